@@ -16,7 +16,7 @@ class FindTheTelephone(dwell.Task):
         places = world.house.navigation().points(world.agents()[0]["position"])
         x, y, z = self.state["goal"] = places[rng.integers(len(places))].tolist()
         world.play("phone", at=(x, y + 1.0, z), loop=True)
-        return dwell.Ask("Find it.", self.way_m(world))
+        return dwell.TaskGoal("Find it.", self.way_m(world))
 
     def way_m(self, world):
         here = world.agents()[0]["position"]
@@ -25,7 +25,7 @@ class FindTheTelephone(dwell.Task):
     def judge(self, world, action, verdict):
         left_m = self.way_m(world)
         is_there = action == "stop" and left_m < 1.0
-        return dwell.Verdict(10.0 * is_there, action == "stop", is_there, left_m)
+        return dwell.StepResult(10.0 * is_there, action == "stop", is_there, left_m)
 
     def expert(self, world):
         return world.toward(self.state["goal"]) or "stop"

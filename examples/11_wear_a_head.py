@@ -5,17 +5,17 @@ import sys
 import dwell
 from dwell import measures
 
-heads = {"adult": dwell.Head.sphere(0.0875), "child": dwell.Head.sphere(0.07)}
+heads = {"adult": dwell.Head.spherical(0.0875), "child": dwell.Head.spherical(0.07)}
 if len(sys.argv) > 1:
     heads["measured"] = dwell.Head.from_sofa(sys.argv[1])
-    print(heads["measured"].about)
+    print(heads["measured"].summary)
 
 room = dwell.House.shoebox((6.0, 3.0, 5.0), absorption=0.6)
 scene = dwell.AcousticScene(room, rate_hz=48_000, rays=1000)
 hiss, place = (1.2, 1.2, 2.6), (4.6, 1.2, 3.3)
 for name, head in heads.items():
     # Facing -Z: what hisses is on the left.
-    found = measures.of_ears(scene.impulse_response(hiss, place, head=head), scene.rate_hz)
+    found = measures.binaural_metrics(scene.impulse_response(hiss, place, head=head), scene.rate_hz)
     print(f"{name}: {1e6 * found['itd_s']:.0f} us earlier and {found['ild_db']:.1f} dB louder left")
 
 world = dwell.World(room, sound_head=heads["child"])

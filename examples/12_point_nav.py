@@ -23,7 +23,7 @@ class PointNav(dwell.Task):
         places = world.house.navigation().points(world.agents()[0]["position"])
         self.state["goal"] = places[rng.integers(len(places))].tolist()
         self.state["left_m"] = self.way_m(world)
-        return dwell.Ask(distance_m=self.state["left_m"])
+        return dwell.TaskGoal(distance_m=self.state["left_m"])
 
     def way_m(self, world):
         here = world.agents()[0]["position"]
@@ -41,7 +41,7 @@ class PointNav(dwell.Task):
         self.state["left_m"] = before_m if left_m is None else left_m
         success = verdict.terminated and self.state["left_m"] < self.near_m
         reward = before_m - self.state["left_m"] - 0.01 + 2.5 * success
-        return dwell.Verdict(reward, verdict.terminated, success, self.state["left_m"])
+        return dwell.StepResult(reward, verdict.terminated, success, self.state["left_m"])
 
     def expert(self, world):
         return world.toward(self.state["goal"]) or "stop"

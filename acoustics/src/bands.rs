@@ -21,9 +21,9 @@ pub const NOMINAL_CENTRES_HZ: BandValues =
     [62.5, 125.0, 250.0, 500.0, 1000.0, 2000.0, 4000.0, 8000.0];
 
 /// Ringing of filters beyond this to either side is neglected, s.
-const LONGEST_RING_S: f64 = 0.05;
+const MAX_FILTER_RINGING_S: f64 = 0.05;
 /// Ringing beyond this wraps around to the other end, s: where bands cross over half an octave or more, less than -77 dB of
-/// the output of [`FilterBank::blend`] and [`FilterBank::sift`], less than -55 dB of that of [`FilterBank::split`].
+/// the output of [`FilterBank::blend`] and [`FilterBank::split_decimated`], less than -55 dB of that of [`FilterBank::split`].
 const WRAP_S: f64 = 0.2;
 /// A band ends below this part of half its decimated rate: the energy of its samples over some milliseconds is then that of
 /// all that were dropped.
@@ -80,9 +80,9 @@ pub struct FilterBank {
     shares: Vec<Vec<f32>>,
     /// The range of bins in which a band has a share. Shape (band,).
     spans: Vec<Range<usize>>,
-    /// As [`Self::up_to`].
+    /// As [`Self::cumulative_pulse_energy`].
     up_to: Vec<Vec<f32>>,
-    /// As [`Self::stride`], and the transform to that rate. Shape (band,).
+    /// As [`Self::decimation_factor`], and the transform to that rate. Shape (band,).
     slow: Vec<(usize, RealFft)>,
     /// Energy in a band of the blend of two bands, for pulses of amplitude 1. Shape (band, one, other).
     blended: Vec<[[f64; BAND_COUNT]; BAND_COUNT]>,
@@ -101,7 +101,7 @@ impl FilterBank {
                 band[bin] = share as f32;
             }
         }
-        let reach = (LONGEST_RING_S * rate_hz) as usize;
+        let reach = (MAX_FILTER_RINGING_S * rate_hz) as usize;
         let mut up_to = Vec::new();
         for share in &shares {
             let mut spectrum: Vec<Complex<f32>> =
@@ -156,9 +156,9 @@ impl FilterBank {
             .collect()
     }
 
-    /// Filters a signal by every band's **power share** as a gain, keeping each [`Self::stride`]th sample. Shape (band,
+    /// Filters a signal by every band's **power share** as a gain, keeping each [`Self::decimation_factor`]th sample. Shape (band,
     /// sample).
-    pub(crate) fn sift(&self, signal: &[f32]) -> Vec<Vec<f32>> {
+    pub(crate) fn split_decimated(&self, signal: &[f32]) -> Vec<Vec<f32>> {
         let spectrum = self.fft.clone().forward(signal);
         let bands = self.shares.iter().zip(&self.spans).zip(&self.slow);
         let sifted = bands.map(|((share, span), (stride, fft))| {
@@ -176,14 +176,14 @@ impl FilterBank {
         sifted.collect()
     }
 
-    /// Returns the decimation factor of a band in [`Self::sift`]: a power of two.
-    pub(crate) fn stride(&self, band: usize) -> usize {
+    /// Returns the decimation factor of a band in [`Self::split_decimated`]: a power of two.
+    pub(crate) fn decimation_factor(&self, band: usize) -> usize {
         self.slow[band].0
     }
 
-    /// Returns the energy that [`Self::sift`] finds in a band of a pulse made by [`Self::blend`], from its energy in each
+    /// Returns the energy that [`Self::split_decimated`] finds in a band of a pulse made by [`Self::blend`], from its energy in each
     /// band. Overlapping pulses with different signs in the bands have up to 0.4 dB less.
-    pub(crate) fn found(&self, band: usize, energy: &[f64; BAND_COUNT]) -> f64 {
+    pub(crate) fn band_pulse_energy(&self, band: usize, energy: &[f64; BAND_COUNT]) -> f64 {
         let amplitude = energy.map(f64::sqrt);
         let rows = self.blended[band].iter().zip(&amplitude);
         let row = |row: &[f64; BAND_COUNT]| -> f64 {
@@ -193,7 +193,7 @@ impl FilterBank {
     }
 
     /// Returns the cumulative fraction of a pulse's energy in a band at each sample; the middle of the row is the pulse. Shape (odd,).
-    pub(crate) fn up_to(&self, band: usize) -> &[f32] {
+    pub(crate) fn cumulative_pulse_energy(&self, band: usize) -> &[f32] {
         &self.up_to[band]
     }
 
@@ -231,7 +231,7 @@ fn span(share: &[f32]) -> Range<usize> {
         .map_or(0..0, |(first, last)| first..last + 1)
 }
 
-/// See [`FilterBank::stride`].
+/// See [`FilterBank::decimation_factor`].
 fn stride(span: &Range<usize>, bins: usize) -> usize {
     let last = span.end.saturating_sub(1);
     let mut stride = SLOWEST;
@@ -326,13 +326,13 @@ mod tests {
             let mut stream = dwell_scene::random::RandomKey::root(3).stream();
             let noise: Vec<f32> = (0..n).map(|_| stream.normal() as f32).collect();
             let spectrum = bank.fft.clone().forward(&noise);
-            let sifted = bank.sift(&noise);
+            let sifted = bank.split_decimated(&noise);
             let mut slowest = 1;
             for (band, few) in sifted.iter().enumerate() {
                 let parts = spectrum.iter().zip(&bank.shares[band]);
                 let mut parts: Vec<Complex<f32>> = parts.map(|(x, share)| x * share).collect();
                 let all = bank.fft.clone().inverse(&mut parts);
-                let stride = bank.stride(band);
+                let stride = bank.decimation_factor(band);
                 slowest = slowest.max(stride);
                 let loudest = all.iter().fold(0.0_f32, |most, x| most.max(x.abs()));
                 for (k, x) in few.iter().enumerate() {
@@ -356,10 +356,13 @@ mod tests {
             for (pulse, energy) in pulses.iter_mut().zip(&energy) {
                 pulse[n / 2] = energy.sqrt() as f32;
             }
-            let heard = bank.sift(&bank.blend(&pulses, n));
+            let heard = bank.split_decimated(&bank.blend(&pulses, n));
             for (band, heard) in heard.iter().enumerate() {
                 let sum: f64 = heard.iter().map(|x| f64::from(*x).powi(2)).sum();
-                let (found, wanted) = (sum * bank.stride(band) as f64, bank.found(band, &energy));
+                let (found, wanted) = (
+                    sum * bank.decimation_factor(band) as f64,
+                    bank.band_pulse_energy(band, &energy),
+                );
                 assert!(
                     (found - wanted).abs() < 1e-3 * wanted.max(1e-9),
                     "{band}: {found} {wanted}"

@@ -19,7 +19,7 @@ pub const CELL_COUNT: usize = ROWS * COLUMNS;
 ///
 /// Cells lie between heights -1, -2/3, ... 1 (of equal area by Archimedes' theorem of the sphere and the cylinder) and between
 /// eighths of a turn from +X towards +Z: cell = 8 row + column.
-pub fn cell_of(direction: Vec3) -> usize {
+pub fn direction_cell(direction: Vec3) -> usize {
     let row = ((direction.y + 1.0) * (0.5 * ROWS as f32)) as usize;
     let (x, z) = (direction.x, direction.z);
     let steep = z.abs() > x.abs();
@@ -33,7 +33,7 @@ pub fn cell_of(direction: Vec3) -> usize {
 }
 
 /// Returns the unit vector at a place within a cell, `u` and `v` from 0 to 1; uniform over the cell where they are uniform.
-pub fn within(cell: usize, u: f32, v: f32) -> Vec3 {
+pub fn direction_in_cell(cell: usize, u: f32, v: f32) -> Vec3 {
     let (row, column) = (cell / COLUMNS, cell % COLUMNS);
     let y = ((row as f32 + u) * (2.0 / ROWS as f32) - 1.0).clamp(-1.0, 1.0);
     let (sin, cos) = sin_cos((column as f32 + v) * FRAC_PI_4);
@@ -72,7 +72,7 @@ impl DirectionalEnergy {
 
     /// Returns the mean of the unit vectors of arrival of the energy of all bands: length 0 for a diffuse field, nearly 1
     /// for a single direction.
-    pub fn mean(&self) -> Vec3 {
+    pub fn mean_direction(&self) -> Vec3 {
         let (mut sum, mut all) = (Vec3::ZERO, 0.0);
         for (cell, energy) in self.energy.iter().enumerate() {
             let energy: f32 = energy.iter().sum();
@@ -122,7 +122,7 @@ impl DirectionalEnergy {
 fn middle(cell: usize) -> Vec3 {
     // Over an eighth of a turn the mean of a vector is sin(pi/8)/(pi/8) of it; over the height it is nearly the middle's.
     const SPREAD: f32 = 0.974_495_4;
-    let v = within(cell, 0.5, 0.5);
+    let v = direction_in_cell(cell, 0.5, 0.5);
     Vec3::new(v.x * SPREAD, v.y, v.z * SPREAD)
 }
 
@@ -140,7 +140,7 @@ impl DirectionSampler {
         let place = stream.uniform_f32() * self.up_to[CELL_COUNT - 1];
         let cell = self.up_to.partition_point(|sum| *sum <= place);
         let cell = cell.min(CELL_COUNT - 1);
-        let direction = within(cell, stream.uniform_f32(), stream.uniform_f32());
+        let direction = direction_in_cell(cell, stream.uniform_f32(), stream.uniform_f32());
         (direction, &self.gain[cell])
     }
 }
@@ -155,14 +155,14 @@ mod tests {
         for cell in 0..CELL_COUNT {
             for u in [0.01, 0.5, 0.99] {
                 for v in [0.01, 0.5, 0.99] {
-                    let direction = within(cell, u, v);
+                    let direction = direction_in_cell(cell, u, v);
                     assert!((direction.length() - 1.0).abs() < 1e-5);
-                    assert_eq!(cell_of(direction), cell, "{direction}");
+                    assert_eq!(direction_cell(direction), cell, "{direction}");
                 }
             }
         }
         for direction in [Vec3::Y, Vec3::NEG_Y, Vec3::X, Vec3::NEG_Z, Vec3::ZERO] {
-            assert!(cell_of(direction) < CELL_COUNT);
+            assert!(direction_cell(direction) < CELL_COUNT);
         }
     }
 
@@ -173,7 +173,7 @@ mod tests {
         let n = 48_000;
         let mut count = [0.0; CELL_COUNT];
         for _ in 0..n {
-            count[cell_of(stream.direction())] += 1.0_f64;
+            count[direction_cell(stream.direction())] += 1.0_f64;
         }
         let expected = f64::from(n) / CELL_COUNT as f64;
         assert!(
@@ -195,14 +195,14 @@ mod tests {
         let mut found = vec![[0.0_f64; BAND_COUNT]; CELL_COUNT];
         for _ in 0..n {
             let (direction, gain) = sampler.draw(&mut stream);
-            for (sum, g) in found[cell_of(direction)].iter_mut().zip(gain) {
+            for (sum, g) in found[direction_cell(direction)].iter_mut().zip(gain) {
                 *sum += f64::from(g * g) / f64::from(n);
             }
         }
         // Half of the draws have energy 2: standard error 1 / sqrt(n).
         assert!((found[3][2] - 1.0).abs() < 0.04 && found[40][2] == 0.0);
         assert!((found[40][6] - 1.0).abs() < 0.04 && found[3][6] == 0.0);
-        assert!((directions.mean().length() - middle(3).length()).abs() < 0.1);
+        assert!((directions.mean_direction().length() - middle(3).length()).abs() < 0.1);
     }
 
     #[test]
@@ -213,6 +213,6 @@ mod tests {
         let sum: Vec3 = (0..n).map(|_| sampler.draw(&mut stream).0).sum();
         // Each component has a variance of a third.
         assert!(sum.length() / (n as f32) < 5.0 * (1.0 / n as f32).sqrt());
-        assert_eq!(DirectionalEnergy::default().mean(), Vec3::ZERO);
+        assert_eq!(DirectionalEnergy::default().mean_direction(), Vec3::ZERO);
     }
 }

@@ -151,7 +151,7 @@ impl TabulatedPattern {
     }
 
     /// Returns it with other gains; `change` gets the cosine of the angle to the axis and the gain there.
-    pub(crate) fn reshaped(&self, change: impl Fn(f32, BandValues) -> BandValues) -> Self {
+    pub(crate) fn map_gains(&self, change: impl Fn(f32, BandValues) -> BandValues) -> Self {
         let cosine = |k: usize| libm::cos(PI * k as f64 / (ANGLES - 1) as f64) as f32;
         let cosines = (0..ANGLES).map(cosine);
         Self::Table(cosines.map(|c| change(c, self.gain(c))).collect())

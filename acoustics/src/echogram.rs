@@ -6,7 +6,7 @@ use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 /// Least distance of source and receiver, m: nearer, 1/d has no meaning for real sources.
-pub const NEAREST_M: f64 = 0.1;
+pub const MIN_DISTANCE_M: f64 = 0.1;
 
 /// One deterministic path from source to receiver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -14,7 +14,7 @@ pub struct PropagationPath {
     /// The planes that reflect it, from the source on. Shape (order,).
     pub planes: Vec<u32>,
     /// Points at which it bends around edges, from the source on, m; a diffracted path is not reflected. Shape (0 to 2,).
-    pub bends: Vec<Vec3>,
+    pub diffraction_points: Vec<Vec3>,
     /// Its length, m.
     pub length_m: f64,
     /// Energy at the receiver re 1/d² of a free path, air included. Shape (band,).
@@ -32,7 +32,7 @@ pub struct PropagationPath {
 impl PropagationPath {
     /// Returns whether it is the straight one, in sight or through walls.
     pub fn is_direct(&self) -> bool {
-        self.planes.is_empty() && self.bends.is_empty()
+        self.planes.is_empty() && self.diffraction_points.is_empty()
     }
 
     /// Returns the number of reflections.
@@ -100,7 +100,7 @@ pub struct RayStatistics {
     /// Shape (span,).
     pub error_over_time: [f32; SPAN_COUNT],
     /// Volume visible from the receiver, m³: that of a convex room, and an underestimate behind corners.
-    pub seen_volume_m3: f64,
+    pub visible_volume_m3: f64,
 }
 
 /// All energies between one source and one receiver, without any noise realisation.
@@ -111,7 +111,7 @@ pub struct Echogram {
     /// Everything else.
     pub tail: EnergyHistogram,
     /// Statistics of the traced rays.
-    pub trace: RayStatistics,
+    pub ray_statistics: RayStatistics,
     /// Position of the source, m.
     pub source: Vec3,
     /// Straight distance from source to receiver, m, whatever is between: nothing is heard before that.

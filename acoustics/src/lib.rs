@@ -16,10 +16,10 @@
 //!
 //! let house = Arc::new(House::shoebox([6.0, 3.0, 5.0], &ShoeboxMaterials::default())?);
 //! let (scene, rays) = (AcousticScene::new(house.clone(), AcousticConfig::rl())?, RayScene::new(house));
-//! let (source, ear) = (SoundSourcePose::at(Vec3::new(1.2, 1.4, 1.5)), Receiver::omni(Vec3::new(4.6, 1.2, 3.3)));
+//! let (source, ear) = (SoundSourcePose::omni(Vec3::new(1.2, 1.4, 1.5)), Receiver::omni(Vec3::new(4.6, 1.2, 3.3)));
 //! let response = scene.impulse_response(&rays, &source, &ear, RandomKey::root(1), Threads::ONE)?;
 //! assert_eq!(response.echogram.paths[0].order(), 0);
-//! assert!(metrics::of_echogram(&response.echogram)[4].edt_s.unwrap() > 0.1);
+//! assert!(metrics::echogram_metrics(&response.echogram)[4].edt_s.unwrap() > 0.1);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -60,16 +60,16 @@ mod transmission;
 
 pub use air::Air;
 pub use config::AcousticConfig;
-pub use directions::{CELL_COUNT, DirectionalEnergy, cell_of, within};
+pub use directions::{CELL_COUNT, DirectionalEnergy, direction_cell, direction_in_cell};
 pub use directivity::Directivity;
 pub use echogram::{
-    Echogram, EnergyHistogram, NEAREST_M, PropagationPath, RayStatistics, SPAN_COUNT,
+    Echogram, EnergyHistogram, MIN_DISTANCE_M, PropagationPath, RayStatistics, SPAN_COUNT,
 };
 pub use error::AcousticsError;
 pub use head::{Head, HeadId};
 pub use material_report::{AcousticReport, MaterialAcoustics};
 pub use planes::{DiffractionEdge, NO_PLANE, Plane, PlaneTable};
-pub use receiver::{MOST_MICROPHONES, Microphone, Receiver, ReceiverKind, SoundSourcePose};
+pub use receiver::{MAX_MICROPHONES, Microphone, Receiver, ReceiverKind, SoundSourcePose};
 pub use recordings::Recording;
 pub use response::ImpulseResponse;
 pub use scene::{AcousticScene, EarlyPath};

@@ -139,7 +139,7 @@ mod tests {
         };
         let house = Arc::new(House::shoebox([6.0, 3.0, 5.0], &materials).unwrap());
         let mut scene = AcousticScene::new(house.clone(), AcousticConfig::rl()).unwrap();
-        let told = scene.explain();
+        let told = scene.material_report();
         assert_eq!(told.bounds_m, [[0.0; 3], [6.0, 3.0, 5.0]]);
         assert!((told.area_m2 - 126.0).abs() < 1e-3 && (told.default_area_m2 - 96.0).abs() < 1e-3);
         let wanted =
@@ -150,7 +150,7 @@ mod tests {
         state.set_parameter(&house, &address, 0.9).unwrap();
         scene.update(&state);
         let row = scene
-            .explain()
+            .material_report()
             .materials
             .into_iter()
             .find(|row| row.name == "floor")

@@ -3,7 +3,9 @@
 use crate::error::AcousticsError;
 use crate::laws::{
     self,
-    microphone_stage::{MicrophoneStage, SampleBlock, StageContext, StageMemory, fade, rise},
+    microphone_stage::{
+        MicrophoneStage, SampleBlock, StageContext, StageState, fade_in, fade_in_weights,
+    },
 };
 use dwell_scene::{LawInfo, LawSpec};
 use serde::{Deserialize, Serialize};
@@ -38,9 +40,9 @@ impl Borrow<LawSpec> for ChainStage {
 
 /// The state of a microphone chain in a snapshot, from which signals continue bit for bit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct ChainMemory {
+pub(crate) struct MicrophoneChainState {
     channels: u64,
-    chain: Vec<(u64, LawSpec, StageMemory)>,
+    chain: Vec<(u64, LawSpec, StageState)>,
 }
 
 impl ChainStage {
@@ -54,12 +56,12 @@ impl ChainStage {
     }
 
     fn hear(&mut self, listener: &StageContext<'_>, whole: bool, samples: &mut [f32]) {
-        self.stage.hear(&mut SampleBlock {
-            listener,
+        self.stage.process(&mut SampleBlock {
+            context: listener,
             samples,
             channels: listener.receiver.channels(),
-            key: listener.own.child(self.place),
-            whole,
+            key: listener.microphone_key.child(self.place),
+            is_entire_signal: whole,
         });
     }
 }
@@ -80,7 +82,7 @@ impl MicrophoneChain {
     }
 
     /// Replaces the next block of pressure by the microphones' output. `samples`: shape (channel, sample), flat.
-    pub(crate) fn hear(
+    pub(crate) fn process_block(
         &mut self,
         installed: &[LawSpec],
         listener: &StageContext<'_>,
@@ -93,7 +95,7 @@ impl MicrophoneChain {
         }
         let amid = self.channels > 0;
         self.channels = channels;
-        let acting = || laws::of_pressure(installed);
+        let acting = || laws::pressure_laws(installed);
         let there = self.chain.iter().map(|link| (link.place, &link.spec));
         let same = there.eq(acting());
         if same {
@@ -113,22 +115,22 @@ impl MicrophoneChain {
         }
         let size = samples.len() / channels.max(1);
         let mut old = samples.to_vec();
-        let mut memories: Vec<StageMemory> = Vec::with_capacity(before.len());
+        let mut memories: Vec<StageState> = Vec::with_capacity(before.len());
         for link in &mut before {
-            memories.push(link.stage.memory());
+            memories.push(link.stage.state());
             link.hear(listener, false, &mut old);
         }
-        let predecessors = LawSpec::predecessors(&before, &self.chain);
+        let predecessors = LawSpec::predecessor_indices(&before, &self.chain);
         for (link, predecessor) in self.chain.iter_mut().zip(predecessors) {
             if let Some(predecessor) = predecessor {
-                link.stage.recall(&memories[predecessor]);
+                link.stage.restore(&memories[predecessor]);
             } else if link.stage.needs_fade_in() {
-                samples.chunks_exact_mut(size.max(1)).for_each(rise);
+                samples.chunks_exact_mut(size.max(1)).for_each(fade_in);
             }
             link.hear(listener, false, samples);
         }
         for (old, new) in old.chunks_exact(size).zip(samples.chunks_exact_mut(size)) {
-            for ((old, new), weight) in old.iter().zip(new).zip(fade(size)) {
+            for ((old, new), weight) in old.iter().zip(new).zip(fade_in_weights(size)) {
                 *new = old + (*new - old) * weight;
             }
         }
@@ -143,7 +145,7 @@ impl MicrophoneChain {
         mut samples: Vec<f32>,
     ) -> Vec<f32> {
         let channels = listener.receiver.channels().max(1);
-        for (place, spec) in laws::of_pressure(installed) {
+        for (place, spec) in laws::pressure_laws(installed) {
             let Some(mut link) = ChainStage::new(place, spec, rate_hz) else {
                 continue;
             };
@@ -151,7 +153,7 @@ impl MicrophoneChain {
             if length == 0 {
                 return samples;
             }
-            let longer = length + link.stage.extra_samples(length);
+            let longer = length + link.stage.tail_samples(length);
             let mut out = vec![0.0; channels * longer];
             for (out, channel) in out
                 .chunks_exact_mut(longer)
@@ -165,21 +167,24 @@ impl MicrophoneChain {
         samples
     }
 
-    pub(crate) fn memory(&self) -> ChainMemory {
+    pub(crate) fn state(&self) -> MicrophoneChainState {
         let links = self.chain.iter();
-        ChainMemory {
+        MicrophoneChainState {
             channels: self.channels as u64,
             chain: links
-                .map(|link| (link.place, link.spec.clone(), link.stage.memory()))
+                .map(|link| (link.place, link.spec.clone(), link.stage.state()))
                 .collect(),
         }
     }
 
-    /// Restores a chain from [`Self::memory`].
+    /// Restores a chain from [`Self::state`].
     ///
     /// # Errors
     /// [`AcousticsError::Snapshot`] for a law that this build does not know or with numbers out of range.
-    pub(crate) fn restore(rate_hz: f64, memory: ChainMemory) -> Result<Self, AcousticsError> {
+    pub(crate) fn restore(
+        rate_hz: f64,
+        memory: MicrophoneChainState,
+    ) -> Result<Self, AcousticsError> {
         let mut chain = Vec::with_capacity(memory.chain.len());
         for (place, spec, stage) in memory.chain {
             let info = LawInfo::find(laws::all(), &spec.id);
@@ -191,7 +196,7 @@ impl MicrophoneChain {
                 let why = format!("law {:?} is not one of this build's microphones", spec.id);
                 return Err(AcousticsError::Snapshot(why));
             };
-            link.stage.recall(&stage);
+            link.stage.restore(&stage);
             chain.push(link);
         }
         let channels = memory.channels as usize;

@@ -8,7 +8,7 @@ use realfft::num_complex::Complex;
 const FLOOR: f32 = 1e-12;
 
 /// Time by which the filters of ears begin before the delay, s: room for their ringing.
-pub(crate) const EAR_LEAD_S: f64 = 0.001;
+pub(crate) const HRIR_PRE_RINGING_S: f64 = 0.001;
 
 /// Duration of the path transforms, s.
 const SPAN_S: f64 = 0.032;
@@ -27,7 +27,7 @@ pub(crate) struct PathFilters {
     rate_hz: f64,
     /// Logarithmic spectrum of a band whose gain is e, others 1. Shape (band, bin).
     basis: Vec<Vec<Complex<f32>>>,
-    /// Spectrum of a delay by [`lead`] samples. Shape (bin,).
+    /// Spectrum of a delay by [`pre_ringing_samples`] samples. Shape (bin,).
     late: Vec<Complex<f32>>,
     /// Fade-out of responses. Shape (tap,).
     fade: Vec<f32>,
@@ -36,7 +36,7 @@ pub(crate) struct PathFilters {
 impl PathFilters {
     /// Filters for `rate_hz`; their transforms span 32 ms.
     pub(crate) fn new(rate_hz: f64) -> Self {
-        Self::spanning(rate_hz, SPAN_S)
+        Self::with_min_span(rate_hz, SPAN_S)
     }
 
     /// Returns the number of bins of a spectrum of [`Self::new`].
@@ -45,7 +45,7 @@ impl PathFilters {
     }
 
     /// Filters whose transforms span at least `span_s`.
-    pub(crate) fn spanning(rate_hz: f64, span_s: f64) -> Self {
+    pub(crate) fn with_min_span(rate_hz: f64, span_s: f64) -> Self {
         let mut fft = RealFft::new(transform_length(rate_hz, span_s));
         let (length, bins) = (fft.len(), fft.bins());
         let basis = (0..BAND_COUNT)
@@ -54,14 +54,14 @@ impl PathFilters {
                 logarithmic(&mut fft, rate_hz, share)
             })
             .collect();
-        let lead = lead(rate_hz);
+        let lead = pre_ringing_samples(rate_hz);
         let late = (0..bins).map(|bin| {
             let turn = std::f64::consts::TAU * ((bin * lead) % length) as f64 / length as f64;
             Complex::new(libm::cos(turn) as f32, -libm::sin(turn) as f32)
         });
         Self {
             late: late.collect(),
-            fade: fade(length / 8),
+            fade: fade_out_weights(length / 8),
             rate_hz,
             fft,
             basis,
@@ -74,7 +74,7 @@ impl PathFilters {
     }
 
     /// Returns the logarithmic spectrum of minimum phase whose gain has, at a frequency in Hz, the natural logarithm `gain`.
-    pub(crate) fn logarithmic(&self, gain: impl Fn(f64) -> f64) -> Vec<Complex<f32>> {
+    pub(crate) fn log_spectrum(&self, gain: impl Fn(f64) -> f64) -> Vec<Complex<f32>> {
         logarithmic(&mut self.fft(), self.rate_hz, gain)
     }
 
@@ -116,8 +116,8 @@ impl PathFilters {
         self.fft.clone()
     }
 
-    /// Delays the response of a spectrum by [`lead`].
-    pub(crate) fn delay(&self, spectrum: &mut [Complex<f32>]) {
+    /// Delays the response of a spectrum by [`pre_ringing_samples`].
+    pub(crate) fn delay_by_pre_ringing(&self, spectrum: &mut [Complex<f32>]) {
         for (value, late) in spectrum.iter_mut().zip(&self.late) {
             *value *= late;
         }
@@ -154,12 +154,12 @@ fn logarithmic(fft: &mut RealFft, rate_hz: f64, gain: impl Fn(f64) -> f64) -> Ve
 }
 
 /// Returns the samples by which the filters of ears begin before the delay.
-pub(crate) fn lead(rate_hz: f64) -> usize {
-    (EAR_LEAD_S * rate_hz) as usize
+pub(crate) fn pre_ringing_samples(rate_hz: f64) -> usize {
+    (HRIR_PRE_RINGING_S * rate_hz) as usize
 }
 
 /// Returns weights that fall from 1 to 0. Shape (tap,).
-pub(crate) fn fade(taps: usize) -> Vec<f32> {
+pub(crate) fn fade_out_weights(taps: usize) -> Vec<f32> {
     let weight = |k: usize| {
         let cos = libm::cosf(std::f32::consts::FRAC_PI_2 * k as f32 / taps as f32);
         cos * cos

@@ -2,9 +2,9 @@
 
 use crate::bands::{BAND_COUNT, BandValues, NOMINAL_CENTRES_HZ};
 use crate::config::AcousticConfig;
-use crate::echogram::NEAREST_M;
+use crate::echogram::MIN_DISTANCE_M;
 use crate::laws::PathEffects;
-use crate::planes::{DiffractionEdge, Plane, PlaneTable, WALL_M2};
+use crate::planes::{DiffractionEdge, MIN_WALL_AREA_M2, Plane, PlaneTable};
 use crate::surface::AcousticSurface;
 use dwell_scene::bvh::Hit;
 use dwell_scene::{Address, House, Id, MaterialId, Pose, State};
@@ -42,9 +42,9 @@ impl PropagationData {
         let table = Arc::new(PlaneTable::new(&house));
         tracing::debug!(planes = table.len(), "acoustic planes built");
         Self {
-            planes: table.at_start.clone(),
-            moving_edges: table.edges().at_start(&house),
-            poses: table.poses_at_start(&house),
+            planes: table.initial_planes.clone(),
+            moving_edges: table.edges().initial_edges(&house),
+            poses: table.initial_poses(&house),
             surfaces: house
                 .materials
                 .ids()
@@ -68,12 +68,12 @@ impl PropagationData {
                 .collect();
         }
         if self.table.update(&mut self.planes, &mut self.poses, state) {
-            self.moving_edges = self.table.edges().in_state(&self.house, state);
+            self.moving_edges = self.table.edges().edges_in_state(&self.house, state);
         }
     }
 
     /// Applies laws' effects on air and sources; `stated`: the original settings.
-    pub(crate) fn apply(&mut self, effects: PathEffects, stated: &AcousticConfig) {
+    pub(crate) fn apply_effects(&mut self, effects: PathEffects, stated: &AcousticConfig) {
         self.config = effects.config(stated);
         self.effects = effects;
     }
@@ -92,7 +92,7 @@ impl PropagationData {
         &self.effects
     }
 
-    pub(crate) fn table(&self) -> &PlaneTable {
+    pub(crate) fn plane_table(&self) -> &PlaneTable {
         &self.table
     }
 
@@ -103,7 +103,7 @@ impl PropagationData {
 
     /// Returns all diffraction edges at their present positions.
     pub(crate) fn edges(&self) -> impl Iterator<Item = &DiffractionEdge> {
-        let fixed = self.table.edges().fixed.iter();
+        let fixed = self.table.edges().static_edges.iter();
         fixed.chain(&self.moving_edges)
     }
 
@@ -111,7 +111,7 @@ impl PropagationData {
         // An id of another house counts as a hard wall; houses are compared where calls come in.
         self.surfaces
             .get(id.index())
-            .unwrap_or(&AcousticSurface::HARD)
+            .unwrap_or(&AcousticSurface::RIGID)
     }
 
     /// Returns the fraction of reflected energy that a surface scatters at a ray's hit, after `straight_m` from the source
@@ -139,14 +139,14 @@ impl PropagationData {
             return scattering;
         }
         let panel = self.table.panel(&self.house, hit);
-        if panel.area_m2 >= WALL_M2 {
+        if panel.area_m2 >= MIN_WALL_AREA_M2 {
             return scattering;
         }
         let cosine = cosine.max(0.05);
         let way_m = 2.0 * straight_m * NEXT_WAY_M / (straight_m + NEXT_WAY_M);
         let speed = self.config.air.speed_of_sound_m_s();
         let limit_hz = (speed * way_m) as f32 / (2.0 * panel.area_m2 * cosine).max(1e-6);
-        let rough_s = 2.0 * std::f32::consts::TAU / speed as f32 * panel.relief_m * cosine;
+        let rough_s = 2.0 * std::f32::consts::TAU / speed as f32 * panel.relief_depth_m * cosine;
         for (s, centre_hz) in scattering.iter_mut().zip(NOMINAL_CENTRES_HZ) {
             let ratio = centre_hz / limit_hz;
             if ratio < 1.0 {
@@ -177,8 +177,8 @@ impl PropagationData {
     }
 
     /// Returns the energy of a free path: 1/d² less absorption by air.
-    pub(crate) fn spread(&self, length_m: f64) -> [f64; BAND_COUNT] {
-        let distance = length_m.max(NEAREST_M);
+    pub(crate) fn air_energy_loss(&self, length_m: f64) -> [f64; BAND_COUNT] {
+        let distance = length_m.max(MIN_DISTANCE_M);
         self.air_decay_per_m()
             .map(|m| libm::exp(-m * length_m) / (distance * distance))
     }

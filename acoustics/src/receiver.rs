@@ -8,7 +8,7 @@ use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 
 /// Most microphones of an array.
-pub const MOST_MICROPHONES: usize = 128;
+pub const MAX_MICROPHONES: usize = 128;
 /// Highest order of ambisonics.
 const HIGHEST_ORDER: u8 = 3;
 
@@ -23,7 +23,7 @@ pub struct SoundSourcePose {
 
 impl SoundSourcePose {
     /// A source at `position` that radiates equally in all directions.
-    pub const fn at(position: Vec3) -> Self {
+    pub const fn omni(position: Vec3) -> Self {
         Self {
             pose: Pose {
                 position,
@@ -34,7 +34,7 @@ impl SoundSourcePose {
     }
 
     /// A directional source.
-    pub const fn facing(pose: Pose, directivity: Directivity) -> Self {
+    pub const fn directional(pose: Pose, directivity: Directivity) -> Self {
         Self { pose, directivity }
     }
 
@@ -130,7 +130,7 @@ impl Receiver {
 
     /// Another head than the built-in one at a pose; [`AcousticScene::add_head`](crate::AcousticScene::add_head) adds it to
     /// the scene.
-    pub const fn wearing(head: HeadId, world_from_head: Pose) -> Self {
+    pub const fn with_head(head: HeadId, world_from_head: Pose) -> Self {
         Self {
             pose: world_from_head,
             kind: ReceiverKind::Head(head),
@@ -200,7 +200,7 @@ impl Receiver {
     }
 
     /// Returns whether rotating it needs no new rays: all its channels are at one point.
-    pub(crate) fn turns_in_place(&self) -> bool {
+    pub(crate) fn is_coincident(&self) -> bool {
         !matches!(self.kind, ReceiverKind::Array(_))
     }
 
@@ -219,7 +219,7 @@ impl Receiver {
                 "0 to 3",
             ),
             ReceiverKind::Array(microphones) => {
-                let most = MOST_MICROPHONES as f64;
+                let most = MAX_MICROPHONES as f64;
                 let count = microphones.len() as f64;
                 range(AT, "microphones", count, (1.0, most), "1 to 128")?;
                 microphones.iter().try_for_each(|microphone| {

@@ -18,16 +18,16 @@ pub(crate) struct ChannelResponse {
 /// Delay of a wave at a channel, re the receiver's centre, s.
 pub(crate) enum Delay {
     None,
-    Same(f32),
+    Constant(f32),
     Banded(BandValues),
 }
 
 impl Delay {
     /// Returns the delay in each band, s.
-    pub(crate) fn banded(&self) -> BandValues {
+    pub(crate) fn per_band(&self) -> BandValues {
         match self {
             Self::None => [0.0; BAND_COUNT],
-            Self::Same(delay_s) => [*delay_s; BAND_COUNT],
+            Self::Constant(delay_s) => [*delay_s; BAND_COUNT],
             Self::Banded(delay_s) => *delay_s,
         }
     }
@@ -82,11 +82,11 @@ impl ReceiverChannel {
     }
 
     /// Returns the response to a wave from `towards`, unit length, world.
-    pub(crate) fn hear(&self, speed_m_s: f64, towards: Vec3) -> ChannelResponse {
+    pub(crate) fn response(&self, speed_m_s: f64, towards: Vec3) -> ChannelResponse {
         let (gain, delay) = match self {
             Self::Omni => ([1.0; BAND_COUNT], Delay::None),
             Self::Ear(ear) => {
-                let (gain, delay) = ear.banded(towards);
+                let (gain, delay) = ear.gain_and_delay(towards);
                 (gain, Delay::Banded(delay))
             }
             Self::Microphone {
@@ -95,7 +95,7 @@ impl ReceiverChannel {
                 pattern,
             } => (
                 pattern.gain(axis.dot(towards)),
-                Delay::Same(-offset.dot(towards) / speed_m_s as f32),
+                Delay::Constant(-offset.dot(towards) / speed_m_s as f32),
             ),
             Self::Harmonic {
                 acn,
@@ -109,13 +109,13 @@ impl ReceiverChannel {
     }
 
     /// Returns whether its filters ring before the delay and need room for that.
-    pub(crate) fn rings_early(&self) -> bool {
+    pub(crate) fn has_pre_ringing(&self) -> bool {
         matches!(self, Self::Ear(_))
     }
 
-    /// Multiplies a path's spectrum by this channel's response beyond [`Self::hear`]'s gains, and returns the delay re the
+    /// Multiplies a path's spectrum by this channel's response beyond [`Self::response`]'s gains, and returns the delay re the
     /// receiver's centre, s.
-    pub(crate) fn shade(
+    pub(crate) fn apply_undelayed_response(
         &self,
         speed_m_s: f64,
         towards: Vec3,
@@ -123,12 +123,12 @@ impl ReceiverChannel {
     ) -> f64 {
         match self {
             Self::Omni | Self::Harmonic { .. } => 0.0,
-            Self::Ear(ear) => ear.shade(towards, spectrum),
+            Self::Ear(ear) => ear.apply_undelayed_response(towards, spectrum),
             Self::Microphone { offset, .. } => -f64::from(offset.dot(towards)) / speed_m_s,
         }
     }
 
-    /// Returns the gains of a path's bands; those of ears are in [`Self::shade`].
+    /// Returns the gains of a path's bands; those of ears are in [`Self::apply_undelayed_response`].
     pub(crate) fn path_gain(&self, towards: Vec3) -> BandValues {
         match self {
             Self::Omni | Self::Ear(_) => [1.0; BAND_COUNT],

@@ -30,7 +30,7 @@ pub(crate) struct Reflection {
 
 impl Reflection {
     /// A surface that absorbs nothing.
-    pub(crate) const HARD: Self = Self {
+    pub(crate) const RIGID: Self = Self {
         admittance: [0.0; crate::bands::BAND_COUNT],
         most: [1.0; crate::bands::BAND_COUNT],
     };
@@ -39,12 +39,12 @@ impl Reflection {
     pub(crate) fn uniform(absorption: &BandValues) -> Self {
         Self {
             most: absorption.map(|a| 1.0 - a),
-            ..Self::HARD
+            ..Self::RIGID
         }
     }
 
     /// The reflection with a random-incidence `absorption` (from 0 to 1).
-    pub(crate) fn by_angle(absorption: &BandValues) -> Self {
+    pub(crate) fn angle_dependent(absorption: &BandValues) -> Self {
         let highest = from_all_sides(HIGHEST_ADMITTANCE);
         let rest = |a: f32| (1.0 - f64::from(a)) / (1.0 - highest);
         Self {
@@ -54,7 +54,7 @@ impl Reflection {
     }
 
     /// Returns the reflected share of energy, at a cosine of incidence. Shape (band,).
-    pub(crate) fn kept(&self, cosine: f32) -> BandValues {
+    pub(crate) fn reflected_share(&self, cosine: f32) -> BandValues {
         let cosine = cosine.max(GRAZING);
         std::array::from_fn(|band| {
             let admittance = self.admittance[band];
@@ -107,29 +107,30 @@ mod tests {
     #[test]
     fn what_comes_from_all_sides_is_absorbed_as_the_table_has_it() {
         let absorption: BandValues = [0.0, 0.01, 0.1, 0.3, 0.6, 0.9, 0.97, 1.0];
-        let reflection = Reflection::by_angle(&absorption);
+        let reflection = Reflection::angle_dependent(&absorption);
         for (band, wanted) in absorption.into_iter().map(f64::from).enumerate() {
-            let absorbed = over_all_sides(|c| 1.0 - f64::from(reflection.kept(c as f32)[band]));
+            let absorbed =
+                over_all_sides(|c| 1.0 - f64::from(reflection.reflected_share(c as f32)[band]));
             assert!((absorbed - wanted).abs() < 2e-4, "{wanted}: {absorbed}");
         }
-        assert_eq!(reflection.kept(0.3)[0], 1.0);
-        assert_eq!(reflection.kept(0.3)[7], 0.0);
+        assert_eq!(reflection.reflected_share(0.3)[0], 1.0);
+        assert_eq!(reflection.reflected_share(0.3)[7], 0.0);
     }
 
     /// An impedance tube measures half of a reverberation room's absorption, where little is absorbed (Kuttruff, section
     /// 2.5): 4 of 8 admittances.
     #[test]
     fn head_on_hard_walls_absorb_half_of_it() {
-        let kept = Reflection::by_angle(&[0.002; BAND_COUNT]).kept(1.0)[3];
+        let kept = Reflection::angle_dependent(&[0.002; BAND_COUNT]).reflected_share(1.0)[3];
         assert!((f64::from(1.0 - kept) / 0.002 - 0.5).abs() < 2e-3, "{kept}");
     }
 
     #[test]
     fn more_is_absorbed_the_flatter_it_comes() {
-        let reflection = Reflection::by_angle(&[0.2; BAND_COUNT]);
+        let reflection = Reflection::angle_dependent(&[0.2; BAND_COUNT]);
         let mut before = 1.0;
         for k in (3..=20).rev() {
-            let kept = reflection.kept(0.05 * k as f32)[0];
+            let kept = reflection.reflected_share(0.05 * k as f32)[0];
             assert!(kept < before, "{k}");
             before = kept;
         }
@@ -139,11 +140,11 @@ mod tests {
     fn along_a_surface_numbers_stay_numbers() {
         for absorption in [0.0, 1e-30, 0.5, 1.0] {
             for reflection in [
-                Reflection::by_angle(&[absorption; BAND_COUNT]),
+                Reflection::angle_dependent(&[absorption; BAND_COUNT]),
                 Reflection::uniform(&[absorption; BAND_COUNT]),
             ] {
                 for cosine in [0.0, 1e-20, 1.0] {
-                    let kept = reflection.kept(cosine)[0];
+                    let kept = reflection.reflected_share(cosine)[0];
                     assert!((0.0..=1.0).contains(&kept), "{absorption} {cosine}: {kept}");
                 }
             }

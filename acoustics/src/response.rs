@@ -20,7 +20,7 @@ pub struct ImpulseResponse {
     pub echogram: Echogram,
     /// Gains that correct the level of its noise: the same for every orientation of the receiver.
     #[serde(skip)]
-    pub(crate) levels: CachedGains,
+    pub(crate) noise_gains: CachedGains,
 }
 
 impl ImpulseResponse {
@@ -65,7 +65,7 @@ mod tests {
         let rays = RayScene::new(house.clone());
         let scene = AcousticScene::new(house, AcousticConfig::rl()).unwrap();
         let (place, key) = (Vec3::new(2.0, 1.5, 2.0), RandomKey::root(4));
-        let source = SoundSourcePose::at(place + 0.5 * Vec3::X);
+        let source = SoundSourcePose::omni(place + 0.5 * Vec3::X);
         let echogram = scene
             .echogram(&rays, &source, place, key, Threads::ONE)
             .unwrap();
@@ -77,20 +77,20 @@ mod tests {
                     |order| Receiver::ambisonics(pose, order),
                 )
             };
-            let before = scene.arrive(echogram.clone(), &head(0.0), None, key);
-            let turned = scene.turn(&before, &head(1.0), key);
+            let before = scene.response_before_microphones(echogram.clone(), &head(0.0), None, key);
+            let turned = scene.rotated_response(&before, &head(1.0), key);
             assert!(turned.samples.iter().any(|x| *x != 0.0) && turned.samples != before.samples);
             assert_eq!(
                 turned,
-                scene.arrive(echogram.clone(), &head(1.0), None, key)
+                scene.response_before_microphones(echogram.clone(), &head(1.0), None, key)
             );
-            assert!(turned.levels.are_shared_with(&before.levels));
+            assert!(turned.noise_gains.are_shared_with(&before.noise_gains));
         }
         // A receiver without channels.
         let nobody = Receiver::array(Pose::from_position(place), Vec::new());
         assert!(
             scene
-                .arrive(echogram, &nobody, None, key)
+                .response_before_microphones(echogram, &nobody, None, key)
                 .samples
                 .is_empty()
         );

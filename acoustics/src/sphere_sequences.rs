@@ -16,7 +16,7 @@ pub(crate) fn fibonacci_direction(k: usize, count: usize) -> Vec3 {
 /// # Source
 /// M. Roberts, *The Unreasonable Effectiveness of Quasirandom Sequences* (2018): the additive recurrence of the plastic number,
 /// mapped to the sphere by equal areas.
-pub(crate) fn sequence_direction(k: usize, (u, v): (f64, f64)) -> Vec3 {
+pub(crate) fn direction_in_sequence(k: usize, (u, v): (f64, f64)) -> Vec3 {
     let place = |start: f64, step: f64| {
         let x = start + k as f64 * step;
         x - x.floor()
@@ -44,7 +44,9 @@ mod tests {
     fn directions_cover_the_sphere_evenly() {
         let n = 5000;
         let lattice: Vec<Vec3> = (0..n).map(|k| fibonacci_direction(k, n)).collect();
-        let sequence: Vec<Vec3> = (0..n).map(|k| sequence_direction(k, (0.3, 0.8))).collect();
+        let sequence: Vec<Vec3> = (0..n)
+            .map(|k| direction_in_sequence(k, (0.3, 0.8)))
+            .collect();
         for (directions, tolerance) in [
             (&lattice[..], 1e-3),
             (&sequence, 3e-3),

@@ -14,22 +14,22 @@ pub(crate) struct AcousticSurface {
     /// Scattered fraction of the reflected energy.
     pub(crate) scattering: BandValues,
     /// Transmitted energy, 0 to 1.
-    pub(crate) passed: BandValues,
+    pub(crate) transmitted: BandValues,
 }
 
 /// The scattered and the mirrored energy of a reflection. Shapes (band,).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ReflectedEnergy {
     pub(crate) scattered: BandValues,
-    pub(crate) mirrored: BandValues,
+    pub(crate) specular: BandValues,
 }
 
 impl AcousticSurface {
-    pub(crate) const HARD: Self = Self {
+    pub(crate) const RIGID: Self = Self {
         absorption: [0.0; BAND_COUNT],
-        reflection: Reflection::HARD,
+        reflection: Reflection::RIGID,
         scattering: [0.0; BAND_COUNT],
-        passed: [0.0; BAND_COUNT],
+        transmitted: [0.0; BAND_COUNT],
     };
 
     pub(crate) fn new(
@@ -57,13 +57,13 @@ impl AcousticSurface {
         Self {
             absorption,
             reflection: if config.absorption_by_angle {
-                Reflection::by_angle(&absorption)
+                Reflection::angle_dependent(&absorption)
             } else {
                 Reflection::uniform(&absorption)
             },
             scattering,
-            passed: loss_db.map(|db| {
-                if db >= Material::OPAQUE_TO_SOUND_DB {
+            transmitted: loss_db.map(|db| {
+                if db >= Material::MAX_TRANSMISSION_LOSS_DB {
                     0.0
                 } else {
                     libm::powf(10.0, -db / 10.0)
@@ -75,11 +75,11 @@ impl AcousticSurface {
     /// Returns the reflected energy of a wave at a cosine of incidence, with `scattering` per band.
     ///
     /// Scattered energy does not depend on the angle of incidence, so that a path and its reverse have equal losses.
-    pub(crate) fn parts(&self, cosine: f32, scattering: &BandValues) -> ReflectedEnergy {
-        let kept = self.reflection.kept(cosine);
+    pub(crate) fn reflected_energy(&self, cosine: f32, scattering: &BandValues) -> ReflectedEnergy {
+        let kept = self.reflection.reflected_share(cosine);
         ReflectedEnergy {
             scattered: std::array::from_fn(|b| (1.0 - self.absorption[b]) * scattering[b]),
-            mirrored: std::array::from_fn(|b| kept[b] * (1.0 - scattering[b])),
+            specular: std::array::from_fn(|b| kept[b] * (1.0 - scattering[b])),
         }
     }
 }

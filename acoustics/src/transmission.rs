@@ -2,14 +2,14 @@
 
 use crate::bands::{BAND_COUNT, BandValues};
 use crate::propagation_data::PropagationData;
-use crate::ray_margin::margin_m;
+use crate::ray_margin::ray_offset_m;
 use dwell_scene::SurfaceOwner;
 use dwell_scene::bvh::{Hit, Ray, RayMask};
 use dwell_scene::rays::RayScene;
 use glam::Vec3;
 
 /// Most walls of a transmitted path.
-pub(crate) const MOST_WALLS: usize = 3;
+pub(crate) const MAX_WALLS: usize = 3;
 /// Most surfaces that are tested between source and receiver.
 const MOST_SURFACES: usize = 64;
 /// Largest distance of parallel faces of the structure that are the two sides of one wall, m.
@@ -26,7 +26,7 @@ struct TransmittingWall {
 }
 
 /// Returns the energy transmitted from `source` to `receiver` through all walls between, and their number.
-pub(crate) fn transmitted(
+pub(crate) fn transmitted_path(
     data: &PropagationData,
     rays: &RayScene,
     source: Vec3,
@@ -36,18 +36,18 @@ pub(crate) fn transmitted(
     let mut near_m = 0.0;
     let mut walls: Vec<TransmittingWall> = Vec::new();
     for _ in 0..MOST_SURFACES {
-        let Some(hit) = rays.closest(&whole.between(near_m, whole.far_m), RayMask::EAR) else {
+        let Some(hit) = rays.closest(&whole.with_range(near_m, whole.far_m), RayMask::EAR) else {
             let fractions = walls.iter().fold([1.0; BAND_COUNT], |product, wall| {
                 std::array::from_fn(|band| product[band] * wall.passed[band])
             });
             return Some((fractions, walls.len()));
         };
-        near_m = hit.distance_m + margin_m(whole.at(hit.distance_m));
+        near_m = hit.distance_m + ray_offset_m(whole.point_at(hit.distance_m));
         let here = TransmittingWall::new(data, rays, &hit);
         // Both faces of a solid, or both shells of a wall, are one wall: it counts once, by its better insulator.
         if let Some(wall) = walls.iter_mut().find(|wall| wall.is_same(&here)) {
             wall.join(&here);
-        } else if walls.len() == MOST_WALLS {
+        } else if walls.len() == MAX_WALLS {
             return None;
         } else {
             walls.push(here);
@@ -65,11 +65,11 @@ pub(crate) struct WallExit {
     /// Origin of the ray behind the wall.
     pub(crate) start: Vec3,
     /// Transmitted energy. Shape (band,).
-    pub(crate) passed: BandValues,
+    pub(crate) transmitted_energy: BandValues,
 }
 
 /// Returns the exit of `ray`, which hits a wall at `hit`; `None` where nothing is transmitted.
-pub(crate) fn beyond(
+pub(crate) fn exit_behind_wall(
     data: &PropagationData,
     rays: &RayScene,
     ray: &Ray,
@@ -81,8 +81,8 @@ pub(crate) fn beyond(
         if wall.passed.iter().all(|passed| *passed <= 0.0) {
             return None;
         }
-        let near_m = last_m + margin_m(ray.at(last_m));
-        let rest = ray.between(near_m, hit.distance_m + THICKEST_WALL_M);
+        let near_m = last_m + ray_offset_m(ray.point_at(last_m));
+        let rest = ray.with_range(near_m, hit.distance_m + THICKEST_WALL_M);
         let next = rays.closest(&rest, RayMask::EAR);
         match next.map(|next| (TransmittingWall::new(data, rays, &next), next.distance_m)) {
             Some((here, distance_m)) if wall.is_same(&here) => {
@@ -91,8 +91,8 @@ pub(crate) fn beyond(
             }
             _ => {
                 return Some(WallExit {
-                    start: ray.at(near_m),
-                    passed: wall.passed,
+                    start: ray.point_at(near_m),
+                    transmitted_energy: wall.passed,
                 });
             }
         }
@@ -107,7 +107,7 @@ impl TransmittingWall {
             owner: surface.owner,
             normal: surface.normal,
             first_m: hit.distance_m,
-            passed: data.surface(surface.material).passed,
+            passed: data.surface(surface.material).transmitted,
         }
     }
 

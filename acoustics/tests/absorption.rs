@@ -17,7 +17,7 @@ const C: f64 = 343.2;
 const BAND: usize = 4;
 
 fn t30_s(echogram: &Echogram) -> f64 {
-    metrics::of_echogram(echogram)[BAND].t30_s.unwrap()
+    metrics::echogram_metrics(echogram)[BAND].t30_s.unwrap()
 }
 
 /// The box of V11: 10 x 3.5 x 7.5 m, a floor that absorbs 60 %, all else 5 %.
@@ -208,10 +208,10 @@ fn source_and_receiver_may_change_places() {
             scene
                 .echogram(
                     &rays,
-                    &SoundSourcePose::at(from),
+                    &SoundSourcePose::omni(from),
                     to,
                     key,
-                    Threads::exactly(2),
+                    Threads::new(2),
                 )
                 .unwrap()
         };
@@ -243,8 +243,8 @@ fn source_and_receiver_may_change_places() {
         );
         for (band, centre_hz) in bands::NOMINAL_CENTRES_HZ.iter().enumerate().skip(1) {
             let (x, y) = (there.tail.total()[band], back.tail.total()[band]);
-            let error = f64::from(there.trace.relative_error[band])
-                .hypot(f64::from(back.trace.relative_error[band]));
+            let error = f64::from(there.ray_statistics.relative_error[band])
+                .hypot(f64::from(back.ray_statistics.relative_error[band]));
             assert!(
                 (x / y - 1.0).abs() < 3.0 * error,
                 "{centre_hz} Hz: {x} {y} {error}"

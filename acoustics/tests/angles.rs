@@ -6,7 +6,7 @@ mod common;
 
 use common::{Hall, dry, material};
 use dwell_acoustics::{AcousticConfig, EnergyHistogram, Microphone, Receiver, SoundSourcePose};
-use dwell_acoustics::{cell_of, metrics, within};
+use dwell_acoustics::{direction_cell, direction_in_cell, metrics};
 use dwell_scene::Pose;
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
@@ -53,7 +53,7 @@ fn squares_of(cell: usize) -> [f64; 3] {
     let mut squares = [0.0; 3];
     for k in 0..16 {
         let (u, v) = ((k / 4) as f32, (k % 4) as f32);
-        let direction = within(cell, 0.25 * u + 0.125, 0.25 * v + 0.125);
+        let direction = direction_in_cell(cell, 0.25 * u + 0.125, 0.25 * v + 0.125);
         for (square, x) in squares.iter_mut().zip(direction.to_array()) {
             *square += f64::from(x * x) / 16.0;
         }
@@ -87,7 +87,7 @@ fn mirrors(kept: impl Fn(f64) -> f64, times_s: &[f64]) -> Vec<(f64, [f64; 3])> {
     let rates: Vec<f64> = directions.iter().map(rate).collect();
     let seen = directions
         .iter()
-        .map(|u| squares_of(cell_of(Vec3::from_array(u.map(|x| x as f32)))));
+        .map(|u| squares_of(direction_cell(Vec3::from_array(u.map(|x| x as f32)))));
     let seen: Vec<[f64; 3]> = seen.collect();
     let at = |time_s: &f64| {
         let (mut all, mut squares) = (0.0, [0.0; 3]);
@@ -177,7 +177,7 @@ fn a_room_of_mirrors_decays_as_the_sum_over_its_directions() {
             Vec3::new(6.4, 1.5, 3.9),
             RandomKey::root(3),
         );
-        let found_s = metrics::of_echogram(&found)[BAND].t30_s.unwrap();
+        let found_s = metrics::echogram_metrics(&found)[BAND].t30_s.unwrap();
         assert!(
             (found_s / wanted_s - 1.0).abs() < 0.04,
             "{by_angle}: {found_s}, {wanted_s}"
@@ -238,8 +238,8 @@ fn the_tail_of_a_long_room_is_that_of_a_diffuse_field() {
         for k in 0..12 {
             let angle = f32::to_radians(30.0 * k as f32);
             let source =
-                SoundSourcePose::at(middle + 2.0 * Vec3::new(angle.cos(), 0.0, angle.sin()));
-            let (key, threads) = (RandomKey::root(0), Threads::exactly(2));
+                SoundSourcePose::omni(middle + 2.0 * Vec3::new(angle.cos(), 0.0, angle.sin()));
+            let (key, threads) = (RandomKey::root(0), Threads::new(2));
             let heard = hall
                 .scene
                 .impulse_response(&hall.rays, &source, &receiver, key, threads)
@@ -287,13 +287,15 @@ fn every_pair_of_places_has_arrivals_of_its_own() {
     let hall = Hall::shoebox(SIZE_M, &material(0.2, 0.5), config(true, 1000));
     let (near, far) = (Vec3::new(2.0, 1.2, 2.0), Vec3::new(7.0, 1.4, 4.0));
     let hear = |source: Vec3, ear: Vec3| {
-        let (source, receiver) = (SoundSourcePose::at(source), Receiver::omni(ear));
+        let (source, receiver) = (SoundSourcePose::omni(source), Receiver::omni(ear));
         let (key, threads) = (RandomKey::root(1), Threads::ONE);
         let heard = hall
             .scene
             .impulse_response(&hall.rays, &source, &receiver, key, threads)
             .unwrap();
-        let again = hall.scene.respond(heard.echogram.clone(), &receiver, key);
+        let again = hall
+            .scene
+            .impulse_response_of(heard.echogram.clone(), &receiver, key);
         assert_eq!(heard.samples, again.samples);
         heard.samples[1600..6400].to_vec()
     };

@@ -66,7 +66,7 @@ fn the_tail_is_as_coherent_as_a_diffuse_field() {
         let size = 512;
         let mut sums = vec![(0.0, 0.0, Complex::default()); frequencies_hz.len()];
         for seed in 0..4 {
-            let heard = hall.scene.respond(
+            let heard = hall.scene.impulse_response_of(
                 echogram(directions.clone()),
                 &receiver,
                 RandomKey::root(seed),
@@ -119,7 +119,7 @@ fn an_array_hears_differences_of_time() {
     for azimuth in 0..12 {
         let angle = f32::to_radians(30.0 * azimuth as f32);
         let towards = Vec3::new(-angle.sin(), 0.0, -angle.cos());
-        let source = SoundSourcePose::at(middle + 50.0 * towards);
+        let source = SoundSourcePose::omni(middle + 50.0 * towards);
         let heard = hall
             .scene
             .impulse_response(
@@ -151,7 +151,7 @@ fn an_array_hears_differences_of_time() {
 #[test]
 fn the_microphones_of_an_array_hear_their_own_early_paths() {
     let hall = box_of(0.2, 0.0, 0);
-    let source = SoundSourcePose::at(Vec3::new(1.2, 1.5, 1.4));
+    let source = SoundSourcePose::omni(Vec3::new(1.2, 1.5, 1.4));
     let (pose, place) = (
         Pose::from_position_yaw(Vec3::new(4.4, 1.2, 3.2), 0.7),
         Vec3::new(0.11, 0.2, -0.3),
@@ -188,7 +188,7 @@ fn ambisonics_encode_where_sound_comes_from() {
             .scene
             .impulse_response(
                 &hall.rays,
-                &SoundSourcePose::at(middle - 10.0 * Vec3::X),
+                &SoundSourcePose::omni(middle - 10.0 * Vec3::X),
                 &Receiver::ambisonics(pose, 1),
                 RandomKey::root(0),
                 Threads::ONE,
@@ -210,15 +210,15 @@ fn a_directive_source_fills_the_room_with_less() {
     let hall = box_of(0.2, 1.0, 20_000);
     let (place, ear) = (Vec3::new(3.0, 1.5, 2.5), Vec3::new(4.6, 1.5, 2.5));
     let hear = |source: &SoundSourcePose| {
-        let threads = Threads::exactly(2);
+        let threads = Threads::new(2);
         hall.scene
             .echogram(&hall.rays, source, ear, RandomKey::root(3), threads)
             .unwrap()
     };
     // Forward -Z turned to -X: away from the ear.
     let pose = Pose::from_position_yaw(place, std::f32::consts::FRAC_PI_2);
-    let away = hear(&SoundSourcePose::facing(pose, Directivity::CARDIOID));
-    let equal = hear(&SoundSourcePose::at(place));
+    let away = hear(&SoundSourcePose::directional(pose, Directivity::CARDIOID));
+    let equal = hear(&SoundSourcePose::omni(place));
     let direct = |echogram: &Echogram| echogram.direct().map_or(0.0, |path| path.energy[4]);
     assert!(direct(&equal) > 0.3 && direct(&away) < 1e-9);
     // What has gone two ways through the room no longer knows where it came from.
@@ -228,7 +228,7 @@ fn a_directive_source_fills_the_room_with_less() {
     };
     let ratio_db = 10.0 * (3.0 * late(&away) / late(&equal)).log10();
     assert!(ratio_db.abs() < 0.3, "{ratio_db} dB");
-    let error = f64::from(equal.trace.relative_error[4]);
+    let error = f64::from(equal.ray_statistics.relative_error[4]);
     assert!(error > 0.0 && error < 0.02, "{error}");
 }
 
@@ -236,7 +236,7 @@ fn a_directive_source_fills_the_room_with_less() {
 #[test]
 fn receivers_share_rays() {
     let hall = box_of(0.2, 0.4, 4000);
-    let source = SoundSourcePose::at(Vec3::new(1.2, 1.5, 1.4));
+    let source = SoundSourcePose::omni(Vec3::new(1.2, 1.5, 1.4));
     let ears = [
         Vec3::new(4.6, 1.2, 3.3),
         Vec3::new(2.0, 1.0, 4.0),
@@ -254,7 +254,8 @@ fn receivers_share_rays() {
         assert_eq!(alone.paths, together.paths);
         for band in 0..BAND_COUNT {
             let (a, b) = (alone.tail.total()[band], together.tail.total()[band]);
-            let error = |echogram: &Echogram| f64::from(echogram.trace.relative_error[band]);
+            let error =
+                |echogram: &Echogram| f64::from(echogram.ray_statistics.relative_error[band]);
             let bound = 4.0 * error(&alone).hypot(error(together));
             assert!((a / b - 1.0).abs() < bound, "{band}: {a} {b} {bound}");
         }
@@ -271,7 +272,7 @@ fn tracing_ends_when_the_error_is_small_enough() {
     };
     let hall = Hall::shoebox([6.0, 3.0, 5.0], &material, config);
     let (source, ear) = (
-        SoundSourcePose::at(Vec3::new(1.2, 1.5, 1.4)),
+        SoundSourcePose::omni(Vec3::new(1.2, 1.5, 1.4)),
         Vec3::new(4.6, 1.2, 3.3),
     );
     let [one, seven] = [1, 7].map(|threads| {
@@ -281,19 +282,23 @@ fn tracing_ends_when_the_error_is_small_enough() {
                 &source,
                 ear,
                 RandomKey::root(1),
-                Threads::exactly(threads),
+                Threads::new(threads),
             )
             .unwrap()
     });
     assert_eq!(one, seven);
-    assert!(one.trace.rays < 100_000, "{}", one.trace.rays);
-    assert!(one.trace.relative_error.iter().all(|e| *e <= 0.02));
+    assert!(
+        one.ray_statistics.rays < 100_000,
+        "{}",
+        one.ray_statistics.rays
+    );
+    assert!(one.ray_statistics.relative_error.iter().all(|e| *e <= 0.02));
 }
 
 #[test]
 fn receivers_and_sources_out_of_range_are_refused() {
     let hall = box_of(0.2, 0.4, 64);
-    let source = SoundSourcePose::at(Vec3::new(1.2, 1.5, 1.4));
+    let source = SoundSourcePose::omni(Vec3::new(1.2, 1.5, 1.4));
     let pose = Pose::from_position(Vec3::new(4.6, 1.2, 3.3));
     let ask = |source: &SoundSourcePose, receiver: &Receiver| {
         let (rays, key) = (&hall.rays, RandomKey::root(0));
@@ -315,6 +320,6 @@ fn receivers_and_sources_out_of_range_are_refused() {
     let mut turned = pose;
     turned.rotation = glam::Quat::from_xyzw(0.0, 0.0, 0.0, 0.0);
     assert!(ask(&source, &Receiver::binaural(turned)).is_err());
-    let loud = SoundSourcePose::facing(pose, Directivity::Sphere { radius_m: -1.0 });
+    let loud = SoundSourcePose::directional(pose, Directivity::Sphere { radius_m: -1.0 });
     assert!(ask(&loud, &crowd(1)).is_err());
 }

@@ -39,7 +39,7 @@ fn screen() -> Hall {
 fn level(hall: &Hall, source: Vec3, receiver: Vec3) -> [f64; BAND_COUNT] {
     let paths = hall
         .scene
-        .early_paths(&hall.rays, &SoundSourcePose::at(source), receiver)
+        .early_paths(&hall.rays, &SoundSourcePose::omni(source), receiver)
         .unwrap();
     let d = f64::from(source.distance(receiver));
     let mut sum = [0.0; BAND_COUNT];
@@ -196,7 +196,10 @@ fn a_doorway_has_six_edges() {
     let edges: Vec<_> = hall.scene.edges().collect();
     let frame = |edge: &&&dwell_acoustics::DiffractionEdge| {
         let middle = edge.ends[0].lerp(edge.ends[1], 0.5);
-        (middle.z - 2.0).abs() < 0.51 && middle.y < 2.01 && edge.open_rad < 4.8 && middle.y > 0.9
+        (middle.z - 2.0).abs() < 0.51
+            && middle.y < 2.01
+            && edge.air_angle_rad < 4.8
+            && middle.y > 0.9
     };
     assert_eq!(edges.iter().filter(frame).count(), 6, "{edges:?}");
     let seam = |edge: &&&dwell_acoustics::DiffractionEdge| {
@@ -216,7 +219,7 @@ fn sound_goes_around_a_door_frame() {
     let bends = |receiver: Vec3| {
         let paths = hall
             .scene
-            .early_paths(&hall.rays, &SoundSourcePose::at(source), receiver)
+            .early_paths(&hall.rays, &SoundSourcePose::omni(source), receiver)
             .unwrap();
         assert!(!paths.is_empty(), "nothing reaches {receiver}");
         for one in &paths {
@@ -226,7 +229,7 @@ fn sound_goes_around_a_door_frame() {
             let e = one.path.energy;
             assert!(e[7] < 0.5 * e[3], "{e:?}");
         }
-        paths[0].path.bends.len()
+        paths[0].path.diffraction_points.len()
     };
     // Straight through the opening to the far jamb, then behind the near one.
     assert_eq!(bends(Vec3::new(5.5, 1.2, 3.7)), 1);
@@ -247,7 +250,7 @@ fn small_things_shadow_short_waves_only() {
         .scene
         .impulse_response(
             &hall.rays,
-            &SoundSourcePose::at(source),
+            &SoundSourcePose::omni(source),
             &Receiver::omni(receiver),
             RandomKey::root(1),
             Threads::ONE,
@@ -279,9 +282,9 @@ fn walking_out_of_sight_is_smooth() {
         let receiver = Vec3::new(5.5, 1.3, 2.0 + 0.01 * k as f32);
         let paths = hall
             .scene
-            .early_paths(&hall.rays, &SoundSourcePose::at(source), receiver)
+            .early_paths(&hall.rays, &SoundSourcePose::omni(source), receiver)
             .unwrap();
-        kinds.extend(paths.iter().map(|one| one.path.bends.len()));
+        kinds.extend(paths.iter().map(|one| one.path.diffraction_points.len()));
         let now = level(&hall, source, receiver);
         if let Some(before) = before {
             for (band, (now, before)) in now.iter().zip(before).enumerate() {

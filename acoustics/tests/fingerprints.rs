@@ -62,7 +62,7 @@ fn response(hall: &Hall, hidden: &[LawSpec], receiver: Vec3) -> Vec<f32> {
     let heard = heard(
         hall,
         hidden,
-        &SoundSourcePose::at(SOURCE),
+        &SoundSourcePose::omni(SOURCE),
         &Receiver::omni(receiver),
     );
     heard.samples
@@ -76,7 +76,7 @@ fn heard(
 ) -> ImpulseResponse {
     let mut scene = hall.scene.clone();
     scene.update(&state(hall, hidden.to_vec()));
-    let threads = Threads::exactly(2);
+    let threads = Threads::new(2);
     let response =
         scene.impulse_response(&hall.rays, source, receiver, RandomKey::root(1), threads);
     response.unwrap()
@@ -91,7 +91,7 @@ fn recording(hall: &Hall, hidden: &[LawSpec], at: Vec3, seed: u64, signal: &[f32
     // Microphones of their own, in one place.
     let own = key.child(u64::from(at.x.to_bits()));
     let stream = Stream::new(hall.scene.clone(), StreamConfig::full(), own, Threads::ONE);
-    let mut stream = stream.unwrap().in_room(key);
+    let mut stream = stream.unwrap().with_room_key(key);
     let mut heard = Vec::with_capacity(signal.len());
     for block in signal.chunks_exact(BLOCK) {
         let sources = [ActiveSource {
@@ -183,7 +183,7 @@ fn lateness(stated: &[f32], measured: &[f32]) -> f64 {
 fn displacement(hall: &Hall, hidden: &[LawSpec]) -> Vec3 {
     let side = |offset: Vec3| {
         let late = |side: Vec3| {
-            let (source, receiver) = (SoundSourcePose::at(NEAR + side), Receiver::omni(NEAR));
+            let (source, receiver) = (SoundSourcePose::omni(NEAR + side), Receiver::omni(NEAR));
             let of = |laws: &[LawSpec]| heard(hall, laws, &source, &receiver).samples;
             lateness(&of(&[]), &of(hidden))
         };
@@ -197,7 +197,7 @@ fn displacement(hall: &Hall, hidden: &[LawSpec]) -> Vec3 {
 fn turned_deg(hall: &Hall, hidden: &[LawSpec]) -> f64 {
     let from = |laws: &[LawSpec], side: Vec3| {
         let receiver = Receiver::ambisonics(Pose::from_position(NEAR), 1);
-        let response = heard(hall, laws, &SoundSourcePose::at(NEAR + side), &receiver);
+        let response = heard(hall, laws, &SoundSourcePose::omni(NEAR + side), &receiver);
         let pressure = response.channel(0);
         let peak = peak_of(pressure);
         let product = |channel: usize| {
@@ -222,7 +222,7 @@ fn uneven_db(hall: &Hall, hidden: &[LawSpec]) -> f64 {
     let ear = Receiver::omni(NEAR + Vec3::X);
     let change = [-0.5, 0.0, 0.5].map(|turns: f32| {
         let pose = Pose::from_position_yaw(NEAR, (turns - 0.5) * std::f32::consts::PI);
-        let source = SoundSourcePose::facing(pose, Directivity::TALKER);
+        let source = SoundSourcePose::directional(pose, Directivity::TALKER);
         let of = |laws: &[LawSpec]| levels(&direct(&heard(hall, laws, &source, &ear).samples));
         let change = difference(&of(hidden), &of(&[]));
         change.iter().sum::<f64>() / change.len() as f64

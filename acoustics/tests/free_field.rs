@@ -16,7 +16,7 @@ fn nowhere(config: AcousticConfig) -> Hall {
 }
 
 fn response(hall: &Hall, source: Vec3, receiver: &Receiver) -> dwell_acoustics::ImpulseResponse {
-    let source = SoundSourcePose::at(source);
+    let source = SoundSourcePose::omni(source);
     let (key, threads) = (RandomKey::root(0), Threads::ONE);
     hall.scene
         .impulse_response(&hall.rays, &source, receiver, key, threads)
@@ -188,7 +188,7 @@ fn low_frequencies_are_equal_at_both_ears_and_at_a_microphone() {
 #[test]
 fn a_point_that_is_nowhere_is_refused() {
     let hall = nowhere(dry(10));
-    let source = SoundSourcePose::at(Vec3::new(f32::NAN, 0.0, 0.0));
+    let source = SoundSourcePose::omni(Vec3::new(f32::NAN, 0.0, 0.0));
     let refused = hall.scene.impulse_response(
         &hall.rays,
         &source,

@@ -35,8 +35,8 @@ fn heard(hall: &Hall, head: &Head, in_head: Vec3) -> [Vec<f32>; 2] {
     let mut scene = hall.scene.clone();
     scene.add_head(head);
     let pose = Pose::from_position_yaw(Vec3::new(3.0, 1.5, -2.0), 0.7);
-    let source = SoundSourcePose::at(pose.transform_point(in_head * FAR_M));
-    let receiver = Receiver::wearing(head.id(), pose);
+    let source = SoundSourcePose::omni(pose.transform_point(in_head * FAR_M));
+    let receiver = Receiver::with_head(head.id(), pose);
     let (key, threads) = (RandomKey::root(1), Threads::ONE);
     let response = scene.impulse_response(&hall.rays, &source, &receiver, key, threads);
     let response = response.unwrap();
@@ -46,7 +46,7 @@ fn heard(hall: &Hall, head: &Head, in_head: Vec3) -> [Vec<f32>; 2] {
 /// A sphere's responses from `count` directions on a spiral.
 fn measure(count: usize) -> HrirMeasurement {
     let hall = nowhere(MEASURED_HZ as u32);
-    let head = Head::sphere(RADIUS_M).unwrap();
+    let head = Head::spherical(RADIUS_M).unwrap();
     let samples = 700;
     let mut measured = HrirMeasurement {
         sources: Vec::new(),
@@ -155,8 +155,8 @@ fn spread(count: usize, seed: u64) -> Vec<Vec3> {
 /// directions opposite to an ear, where the bright spot and its rings are narrower than the grid.
 #[test]
 fn a_measured_sphere_is_heard_as_the_sphere() {
-    let sphere = Head::sphere(RADIUS_M).unwrap();
-    let about = WHOLE.about().unwrap();
+    let sphere = Head::spherical(RADIUS_M).unwrap();
+    let about = WHOLE.summary().unwrap();
     assert_eq!((about.directions, about.filled), (710, 0));
     assert!((about.radius_m - RADIUS_M).abs() < 0.004, "{about:?}");
     // The gain takes back that of the loudspeaker and the way.
@@ -179,7 +179,7 @@ fn a_measured_sphere_is_heard_as_the_sphere() {
 /// where the bass is not the measurement's).
 #[test]
 fn measured_directions_are_heard_as_measured() {
-    let sphere = Head::sphere(RADIUS_M).unwrap();
+    let sphere = Head::spherical(RADIUS_M).unwrap();
     let directions: Vec<Vec3> = MEASURED
         .sources
         .iter()
@@ -198,7 +198,7 @@ fn measured_directions_are_heard_as_measured() {
 /// Every other direction was left out: those that were are still within 1.5 dB and 10 us up to 4 kHz.
 #[test]
 fn directions_between_are_interpolated() {
-    let sphere = Head::sphere(RADIUS_M).unwrap();
+    let sphere = Head::spherical(RADIUS_M).unwrap();
     let half = Head::measured(&part(|k, _| k % 2 == 0)).unwrap();
     let left_out = MEASURED.sources.iter().skip(1).step_by(2);
     let directions: Vec<Vec3> = left_out.map(|s| s.as_vec3() / FAR_M).collect();
@@ -213,10 +213,10 @@ fn directions_between_are_interpolated() {
 /// Nothing below -40 degrees, as of KEMAR: straight down a sphere of the fitted radius takes over, within 1.5 dB and 40 us.
 #[test]
 fn gaps_are_filled_with_a_sphere() {
-    let sphere = Head::sphere(RADIUS_M).unwrap();
+    let sphere = Head::spherical(RADIUS_M).unwrap();
     let lowest = -(40.0_f32.to_radians().sin());
     let gap = Head::measured(&part(|_, d| d.y > lowest)).unwrap();
-    let about = gap.about().unwrap();
+    let about = gap.summary().unwrap();
     assert!(
         about.directions < 600 && (4..20).contains(&about.filled),
         "{about:?}"
@@ -341,14 +341,14 @@ fn bad_measurements_are_refused_by_name() {
         assert!(found.contains(part), "{found}");
     }
     assert!(
-        Head::sphere(0.5)
+        Head::spherical(0.5)
             .unwrap_err()
             .to_string()
             .contains("radius_m is 0.5")
     );
     let hall = nowhere(16_000);
-    let stranger = Receiver::wearing(WHOLE.id(), Pose::IDENTITY);
-    let source = SoundSourcePose::at(Vec3::ONE);
+    let stranger = Receiver::with_head(WHOLE.id(), Pose::IDENTITY);
+    let source = SoundSourcePose::omni(Vec3::ONE);
     let (key, threads) = (RandomKey::root(1), Threads::ONE);
     let refused = hall
         .scene
@@ -372,7 +372,7 @@ fn room() -> Hall {
 const SOURCE: Vec3 = Vec3::new(1.2, 1.5, 1.4);
 
 fn listener() -> Receiver {
-    Receiver::wearing(
+    Receiver::with_head(
         WHOLE.id(),
         Pose::from_position_yaw(Vec3::new(4.6, 1.2, 3.3), 0.7),
     )
@@ -387,7 +387,7 @@ fn threads_and_readings_do_not_matter() {
     let hear = |head: &Head, threads| {
         let mut scene = hall.scene.clone();
         scene.add_head(head);
-        let source = SoundSourcePose::at(SOURCE);
+        let source = SoundSourcePose::omni(SOURCE);
         scene
             .impulse_response(
                 &hall.rays,
@@ -400,7 +400,7 @@ fn threads_and_readings_do_not_matter() {
     };
     let one = hear(&WHOLE, Threads::ONE);
     for (head, threads) in [(&*WHOLE, 2), (&again, 7)] {
-        assert_eq!(one, hear(head, Threads::exactly(threads)));
+        assert_eq!(one, hear(head, Threads::new(threads)));
     }
 }
 
@@ -436,7 +436,7 @@ fn streams_wear_heads() {
     let mut first = stream();
     let found = play(&mut first, 0..6);
     let key = key.child("source").child(5);
-    let source = SoundSourcePose::at(SOURCE);
+    let source = SoundSourcePose::omni(SOURCE);
     let offline = scene.impulse_response(&hall.rays, &source, &listener(), key, Threads::ONE);
     let offline = offline.unwrap();
     let peak = offline.samples.iter().fold(0.0_f32, |m, x| m.max(x.abs()));
@@ -454,7 +454,7 @@ fn streams_wear_heads() {
 #[test]
 fn the_tail_is_as_coherent_as_at_the_sphere() {
     let hall = room();
-    let sphere = Head::sphere(RADIUS_M).unwrap();
+    let sphere = Head::spherical(RADIUS_M).unwrap();
     let late = |head: &Head| {
         let mut scene = hall.scene.clone();
         scene.add_head(head);
@@ -462,13 +462,13 @@ fn the_tail_is_as_coherent_as_at_the_sphere() {
             kind: dwell_acoustics::ReceiverKind::Head(head.id()),
             ..listener()
         };
-        let source = SoundSourcePose::at(SOURCE);
+        let source = SoundSourcePose::omni(SOURCE);
         let mut sums = vec![0.0_f64; 8];
         for seed in 0..6 {
             let (key, threads) = (RandomKey::root(seed), Threads::ONE);
             let response = scene.impulse_response(&hall.rays, &source, &receiver, key, threads);
             let response = response.unwrap();
-            let found = metrics::of_ears(
+            let found = metrics::binaural_metrics(
                 response.channel(0),
                 response.channel(1),
                 16_000.0,

@@ -79,7 +79,7 @@ fn stream(hall: &Hall) -> Stream {
     let key = RandomKey::root(8);
     let stream = Stream::new(hall.scene.clone(), StreamConfig::full(), key, Threads::ONE).unwrap();
     // The place in which the offline responses are computed.
-    stream.in_room(key.child("source").child(ID).child("room"))
+    stream.with_room_key(key.child("source").child(ID).child("room"))
 }
 
 fn noise(samples: usize) -> Vec<f32> {
@@ -121,7 +121,7 @@ fn response(hall: &Hall, laws: &[LawSpec]) -> [Vec<f32>; 2] {
     state.laws = laws.to_vec();
     scene.update(&state);
     let key = RandomKey::root(8).child("source").child(ID);
-    let (source, threads) = (SoundSourcePose::at(SOURCE), Threads::ONE);
+    let (source, threads) = (SoundSourcePose::omni(SOURCE), Threads::ONE);
     let response = scene
         .impulse_response(&hall.rays, &source, &head(), key, threads)
         .unwrap();

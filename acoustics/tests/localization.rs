@@ -183,8 +183,8 @@ fn an_array_hears_where_sources_are_in_a_reverberant_room() {
         let wanted_deg = f64::from(30 * k);
         let angle = wanted_deg.to_radians() as f32;
         let towards = Vec3::new(-angle.sin(), 0.0, -angle.cos());
-        let source = SoundSourcePose::at(pose.transform_point(DISTANCE_M * towards));
-        let threads = Threads::exactly(2);
+        let source = SoundSourcePose::omni(pose.transform_point(DISTANCE_M * towards));
+        let threads = Threads::new(2);
         let heard = hall
             .scene
             .impulse_response(&hall.rays, &source, &receiver, key.child(k as u64), threads)

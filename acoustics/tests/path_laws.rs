@@ -35,7 +35,13 @@ fn echogram(hall: &Hall, laws: Vec<LawSpec>) -> Echogram {
     scene.update(&state);
     let (key, threads) = (RandomKey::root(3), Threads::ONE);
     scene
-        .echogram(&hall.rays, &SoundSourcePose::at(SOURCE), EAR, key, threads)
+        .echogram(
+            &hall.rays,
+            &SoundSourcePose::omni(SOURCE),
+            EAR,
+            key,
+            threads,
+        )
         .unwrap()
 }
 
@@ -193,7 +199,7 @@ fn sources_turn_and_narrow() {
         let mut scene = hall.scene.clone();
         scene.update(&state);
         let pose = Pose::from_position_yaw(SOURCE, yaw_rad);
-        let source = SoundSourcePose::facing(pose, Directivity::CARDIOID);
+        let source = SoundSourcePose::directional(pose, Directivity::CARDIOID);
         let (key, threads) = (RandomKey::root(3), Threads::ONE);
         scene
             .echogram(&hall.rays, &source, EAR, key, threads)
@@ -227,7 +233,7 @@ fn receivers_are_where_laws_put_them() {
         state.laws = laws;
         let mut scene = hall.scene.clone();
         scene.update(&state);
-        let (source, key) = (SoundSourcePose::at(SOURCE), RandomKey::root(3));
+        let (source, key) = (SoundSourcePose::omni(SOURCE), RandomKey::root(3));
         let threads = Threads::ONE;
         let heard = scene.impulse_response(&hall.rays, &source, receiver, key, threads);
         heard.unwrap().samples
@@ -294,7 +300,7 @@ fn streams_follow_changes_of_air_and_sources() {
         let mut out = vec![0.0; 800];
         let ear = Receiver::omni(EAR);
         let report = stream.block(&hall.rays, &state, &[source], &ear, &mut out);
-        report.unwrap().traced
+        report.unwrap().traced_responses
     };
     let warm = law("temperature_error", &[("offset_k", 5.0)]);
     let gain = law("source_gain", &[("gain_db", 5.0)]);
@@ -322,7 +328,7 @@ fn an_array_hears_the_gain_of_its_source_early_and_late() {
         scene
             .impulse_response(
                 &hall.rays,
-                &SoundSourcePose::at(SOURCE),
+                &SoundSourcePose::omni(SOURCE),
                 &array,
                 key,
                 threads,

@@ -41,7 +41,7 @@ proptest! {
         prop_assert_eq!(there.paths.len(), back.paths.len());
         for (a, b) in there.paths.iter().zip(&back.paths) {
             prop_assert!((a.length_m - b.length_m).abs() < 1e-5);
-            let free = 1.0 / a.length_m.max(dwell_acoustics::NEAREST_M).powi(2);
+            let free = 1.0 / a.length_m.max(dwell_acoustics::MIN_DISTANCE_M).powi(2);
             prop_assert!(f64::from(a.energy[4]) <= free * 1.000_001 && a.energy[4] >= 0.0);
             prop_assert!(a.length_m >= there.direct_length_m - 1e-6);
             prop_assert!((a.arrival.length() - 1.0).abs() < 1e-4 || a.length_m < 1e-3);
@@ -51,11 +51,11 @@ proptest! {
             prop_assert!(counted);
         }
         for directions in &there.tail.directions {
-            prop_assert!(directions.mean().length() < 1.001);
+            prop_assert!(directions.mean_direction().length() < 1.001);
         }
-        prop_assert_eq!(there.trace.escaped, 0);
+        prop_assert_eq!(there.ray_statistics.escaped, 0);
         let head = Receiver::binaural(Pose::from_position_yaw(to, yaw_rad));
-        let source = SoundSourcePose::at(from);
+        let source = SoundSourcePose::omni(from);
         let response = hall.scene.impulse_response(&hall.rays, &source, &head, RandomKey::root(seed), Threads::ONE).unwrap();
         prop_assert!(response.samples.iter().all(|x| x.is_finite()));
         let start = (from.distance(to) / 343.2 - 0.001) * 16_000.0 - 46.0;

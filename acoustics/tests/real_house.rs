@@ -73,10 +73,10 @@ fn rooms_sound_like_rooms(house: &Arc<House>) {
         let response = scene
             .impulse_response(
                 &rays,
-                &SoundSourcePose::at(from),
+                &SoundSourcePose::omni(from),
                 &receiver,
                 RandomKey::root(1),
-                Threads::exactly(2),
+                Threads::new(2),
             )
             .unwrap();
         assert!(
@@ -102,7 +102,7 @@ fn rooms_sound_like_rooms(house: &Arc<House>) {
                 room.name
             );
         }
-        let at_1_khz = metrics::of_echogram(&response.echogram)[4];
+        let at_1_khz = metrics::echogram_metrics(&response.echogram)[4];
         if let (Some(t20), Some(g)) = (at_1_khz.t20_s, at_1_khz.g_db) {
             heard += 1;
             assert!((0.1..1.5).contains(&t20), "{}: T20 {t20} s", room.name);
@@ -138,7 +138,7 @@ fn everything_that_sounds_in_the_apartment_has_a_signal() {
 fn a_real_house_is_explained() {
     let Some(house) = sample_house() else { return };
     let scene = AcousticScene::new(house, AcousticConfig::rl()).unwrap();
-    let told = scene.explain();
+    let told = scene.material_report();
     assert!(told.triangles > 100_000 && told.planes < told.triangles);
     let large: f64 = scene
         .planes()

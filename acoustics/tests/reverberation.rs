@@ -46,7 +46,7 @@ fn a_scattering_room_decays_as_eyring_says_in_every_band() {
         RandomKey::root(10),
     );
     let air = hall.scene.config().air.energy_decay_per_m();
-    for (band, metrics) in metrics::of_echogram(&found).iter().enumerate() {
+    for (band, metrics) in metrics::echogram_metrics(&found).iter().enumerate() {
         let absorption = f64::from(wall.absorption.at(bands::NOMINAL_CENTRES_HZ[band]));
         let wanted = eyring_s(size, absorption, air[band]);
         let t30 = metrics.t30_s.unwrap();
@@ -81,7 +81,7 @@ fn three_rooms_have_their_times() {
                 ..dry(1500)
             };
             let hall = Hall::shoebox(size, &material(absorption, scattering), config);
-            let found = metrics::of_echogram(&hall.echogram(source, ear, RandomKey::root(3)));
+            let found = metrics::echogram_metrics(&hall.echogram(source, ear, RandomKey::root(3)));
             let t30 = found[4].t30_s.unwrap();
             let at =
                 format!("{size:?} s {scattering}: {t30}, Eyring {eyring}, Kuttruff {kuttruff}");
@@ -134,15 +134,15 @@ fn energy_is_conserved_and_rays_fly_their_mean_free_path() {
     }
     let slope_db_per_s = (n * stl - st * sl) / (n * stt - st * st);
     assert!(slope_db_per_s.abs() < 60.0 / 200.0, "{slope_db_per_s} dB/s");
-    let leak = found.trace.escaped as f64 / found.trace.segments as f64;
+    let leak = found.ray_statistics.escaped as f64 / found.ray_statistics.segments as f64;
     assert!(
         leak < 1e-5,
         "{} of {} escaped",
-        found.trace.escaped,
-        found.trace.segments
+        found.ray_statistics.escaped,
+        found.ray_statistics.segments
     );
-    assert!((found.trace.mean_free_path_m / (4.0 * volume / surface) - 1.0).abs() < 5e-3);
-    assert!((found.trace.seen_volume_m3 / volume - 1.0).abs() < 0.1);
+    assert!((found.ray_statistics.mean_free_path_m / (4.0 * volume / surface) - 1.0).abs() < 5e-3);
+    assert!((found.ray_statistics.visible_volume_m3 / volume - 1.0).abs() < 0.1);
 }
 
 /// V9: all energy but the direct sound is 16 pi (1 - alpha)/A in a scattering room, within 0.5 dB.
@@ -199,7 +199,7 @@ fn roulette_is_unbiased() {
         let found = (0..TRACES).map(|key| hall.echogram(source, ear, RandomKey::root(key)));
         found.collect::<Vec<_>>()
     });
-    assert!(thinned[0].trace.segments < all[0].trace.segments / 2);
+    assert!(thinned[0].ray_statistics.segments < all[0].ray_statistics.segments / 2);
     let late = |found: &[dwell_acoustics::Echogram]| {
         let bins = found.iter().flat_map(|found| &found.tail.bins[40..60]);
         bins.map(|bin| bin[4]).sum::<f64>()
@@ -245,10 +245,10 @@ fn a_band_does_not_feel_how_others_scatter() {
 #[test]
 fn threads_do_not_change_a_bit() {
     let hall = Hall::shoebox([6.0, 3.0, 5.0], &material(0.2, 0.4), dry(700));
-    let source = SoundSourcePose::at(Vec3::new(1.2, 1.5, 1.4));
+    let source = SoundSourcePose::omni(Vec3::new(1.2, 1.5, 1.4));
     let ear = Receiver::omni(Vec3::new(4.6, 1.2, 3.3));
     let [one, two, seven] = [1, 2, 7].map(|threads| {
-        let threads = Threads::exactly(threads);
+        let threads = Threads::new(threads);
         hall.scene
             .impulse_response(&hall.rays, &source, &ear, RandomKey::root(5), threads)
             .unwrap()
@@ -266,7 +266,7 @@ fn threads_do_not_change_a_bit() {
 #[test]
 fn the_impulse_response_decays_as_its_echogram() {
     let hall = Hall::shoebox([6.0, 3.0, 5.0], &material(0.15, 0.6), dry(2000));
-    let source = SoundSourcePose::at(Vec3::new(1.2, 1.5, 1.4));
+    let source = SoundSourcePose::omni(Vec3::new(1.2, 1.5, 1.4));
     for receiver in [
         Receiver::omni(Vec3::new(4.6, 1.2, 3.3)),
         Receiver::binaural(dwell_scene::Pose::from_position_yaw(
@@ -284,9 +284,9 @@ fn the_impulse_response_decays_as_its_echogram() {
                 Threads::ONE,
             )
             .unwrap();
-        let energies = metrics::of_echogram(&response.echogram);
+        let energies = metrics::echogram_metrics(&response.echogram);
         for channel in 0..receiver.channels() {
-            let pressure = metrics::of_impulse_response(
+            let pressure = metrics::impulse_response_metrics(
                 response.channel(channel),
                 16_000.0,
                 metrics::BandWidth::Octave,

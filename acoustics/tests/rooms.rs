@@ -40,7 +40,7 @@ fn mean_db(echograms: &[Echogram], band: usize) -> f64 {
 }
 
 fn hear(hall: &Hall, source: Vec3, ears: &[Vec3]) -> Vec<Echogram> {
-    let (source, threads) = (SoundSourcePose::at(source), Threads::exactly(2));
+    let (source, threads) = (SoundSourcePose::omni(source), Threads::new(2));
     hall.scene
         .echograms(&hall.rays, &source, ears, RandomKey::root(1), threads)
         .unwrap()

@@ -95,7 +95,7 @@ fn a_still_scene_is_a_convolution() {
         .scene
         .impulse_response(
             &hall.rays,
-            &SoundSourcePose::at(SOURCE),
+            &SoundSourcePose::omni(SOURCE),
             &receiver,
             key,
             Threads::ONE,
@@ -133,7 +133,7 @@ fn a_source_that_stops_rings_out_and_is_forgotten() {
     let report = stream
         .block(&hall.rays, &state, &[source], &receiver, &mut out)
         .unwrap();
-    assert_eq!((report.traced, report.heard), (1, 1));
+    assert_eq!((report.traced_responses, report.audible_sources), (1, 1));
     let silent = stream.hash();
     let mut levels = Vec::new();
     for _ in 0..20 {
@@ -148,7 +148,7 @@ fn a_source_that_stops_rings_out_and_is_forgotten() {
     let report = stream
         .block(&hall.rays, &state, &[], &receiver, &mut out)
         .unwrap();
-    assert_eq!(report.heard, 0);
+    assert_eq!(report.audible_sources, 0);
 }
 
 /// V21: a listener walks past a tone of 1 kHz; the frequency is that of Doppler, and no block begins with a step.
@@ -278,7 +278,7 @@ fn moving_images_sum_up_as_theory_has_it() {
     let at = |k: f64| glam::DVec3::new(4.6 - 0.06 * k, 1.2 + 0.01 * k, 3.3 - 0.04 * k);
     let walk = |k: usize| (SOURCE, Receiver::omni(at(k as f64).as_vec3()));
     let settings = StreamConfig {
-        moving_paths: 64,
+        tracked_reflections: 64,
         ..StreamConfig::full()
     };
     let heard = &play(&hall, &mut stream(&hall, settings), &signal, walk)[0];
@@ -339,8 +339,8 @@ fn turning_the_head_needs_no_rays_and_swaps_the_ears() {
         let report = stream
             .block(&hall.rays, &state, &[source], &head(place, yaw), &mut out)
             .unwrap();
-        assert_eq!(report.traced, usize::from(k == 0));
-        assert_eq!(report.turned, usize::from(k == 6));
+        assert_eq!(report.traced_responses, usize::from(k == 0));
+        assert_eq!(report.rotated, usize::from(k == 6));
         levels.push([0, 1].map(|c| {
             out[c * BLOCK..(c + 1) * BLOCK]
                 .iter()
@@ -551,7 +551,7 @@ fn a_source_that_is_left_out_rings_out_and_is_not_fed() {
             let report = stream
                 .block(rays, &state, &sources, &listener, &mut out)
                 .unwrap();
-            assert_eq!(report.left_out, usize::from(block > 0));
+            assert_eq!(report.dropped_sources, usize::from(block > 0));
             heard.extend_from_slice(&out);
         }
         heard

@@ -128,7 +128,7 @@ fn a_closed_box_is_silent() {
                 .scene
                 .impulse_response(
                     &hall.rays,
-                    &SoundSourcePose::at(from),
+                    &SoundSourcePose::omni(from),
                     &receiver,
                     RandomKey::root(1),
                     Threads::ONE,
@@ -188,7 +188,7 @@ fn a_door_that_swings_is_heard_on_its_way_and_exactly_where_it_rests() {
         let sources = [source];
         let report = stream.block(&hall.rays, state, &sources, &receiver, &mut out);
         let (_, echogram) = stream.echograms().next().unwrap();
-        (report.unwrap().traced, echogram)
+        (report.unwrap().traced_responses, echogram)
     };
     let mut stream = new(&hall);
     let mut traced = 0;
@@ -243,7 +243,7 @@ fn a_door_with_many_sounds_takes_little_in_each_block() {
         ..StreamConfig::full()
     };
     let new = |hall: &Hall, threads: usize| {
-        let threads = Threads::exactly(threads);
+        let threads = Threads::new(threads);
         Stream::new(hall.scene.clone(), config, RandomKey::root(8), threads).unwrap()
     };
     let receiver = Receiver::binaural(Pose::from_position(EAR));
@@ -279,7 +279,7 @@ fn a_door_with_many_sounds_takes_little_in_each_block() {
             stream.restore(&bytes).unwrap();
         }
         assert_eq!(stream.hash(), other.hash(), "{k}");
-        if report.waiting > 0 {
+        if report.waiting_sources > 0 {
             longest_wait = k;
             rests = 0;
         } else {
@@ -294,7 +294,7 @@ fn a_door_with_many_sounds_takes_little_in_each_block() {
     hear(&mut fresh, &hall, &state);
     let energies = |of: &Stream| -> Vec<_> {
         let all = of.echograms();
-        all.map(|(id, echogram)| (id, echogram.tail, echogram.trace))
+        all.map(|(id, echogram)| (id, echogram.tail, echogram.ray_statistics))
             .collect()
     };
     let (found, wanted) = (energies(&stream), energies(&fresh));
@@ -322,7 +322,7 @@ fn a_moved_plate_mirrors_from_its_new_place() {
     let found = scene
         .echogram(
             &rays,
-            &SoundSourcePose::at(source),
+            &SoundSourcePose::omni(source),
             ear,
             RandomKey::root(0),
             Threads::ONE,
@@ -362,7 +362,9 @@ fn direct_sound_passes_a_solid_wall_once() {
     let path = direct(30.0, true).unwrap();
     assert_eq!(path.walls, 1);
     assert!((f64::from(path.energy[4]) * 36.0 / 1e-3 - 1.0).abs() < 1e-5);
-    assert!(direct(30.0, false).is_none() && direct(Material::OPAQUE_TO_SOUND_DB, true).is_none());
+    assert!(
+        direct(30.0, false).is_none() && direct(Material::MAX_TRANSMISSION_LOSS_DB, true).is_none()
+    );
 }
 
 #[test]
@@ -397,8 +399,11 @@ fn sound_passes_three_walls_and_no_more() {
 #[test]
 fn an_overridden_band_decays_faster_and_alone() {
     let mut hall = Hall::shoebox([6.0, 3.0, 5.0], &material(0.1, 1.0), dry(1000));
-    let before =
-        metrics::of_echogram(&hall.echogram(SOURCE, Vec3::new(4.0, 1.2, 3.0), RandomKey::root(0)));
+    let before = metrics::echogram_metrics(&hall.echogram(
+        SOURCE,
+        Vec3::new(4.0, 1.2, 3.0),
+        RandomKey::root(0),
+    ));
     let mut state = State::new(&hall.house);
     for side in ["floor", "ceiling"] {
         for hz in [500, 1000, 2000] {
@@ -408,8 +413,11 @@ fn an_overridden_band_decays_faster_and_alone() {
         }
     }
     hall.scene.update(&state);
-    let after =
-        metrics::of_echogram(&hall.echogram(SOURCE, Vec3::new(4.0, 1.2, 3.0), RandomKey::root(0)));
+    let after = metrics::echogram_metrics(&hall.echogram(
+        SOURCE,
+        Vec3::new(4.0, 1.2, 3.0),
+        RandomKey::root(0),
+    ));
     assert!(after[4].t30_s.unwrap() < 0.5 * before[4].t30_s.unwrap());
     for band in [1, 2, 3, 5, 6] {
         assert!(

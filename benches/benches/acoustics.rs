@@ -97,7 +97,7 @@ fn respond(bencher: Bencher<'_, '_>, name: &str, config: AcousticConfig) {
         RayScene::new(case.house.clone()),
     );
     let (source, ear) = (
-        SoundSourcePose::at(case.source),
+        SoundSourcePose::omni(case.source),
         Receiver::binaural(Pose::from_position(case.ear)),
     );
     bencher
@@ -131,10 +131,10 @@ fn rays(bencher: Bencher<'_, '_>, name: &str) {
         RayScene::new(case.house.clone()),
     );
     let trace = || {
-        let source = SoundSourcePose::at(case.source);
+        let source = SoundSourcePose::omni(case.source);
         scene.echogram(&rays, &source, case.ear, RandomKey::root(0), Threads::ONE)
     };
-    let segments = trace().map_or(0, |echogram| echogram.trace.segments);
+    let segments = trace().map_or(0, |echogram| echogram.ray_statistics.segments);
     bencher.counter(ItemsCount::new(segments)).bench(trace);
 }
 

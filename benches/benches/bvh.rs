@@ -133,7 +133,7 @@ fn closest(bencher: Bencher<'_, '_>, name: &str) {
 #[divan::bench(args = ["apartment", "sample"], sample_count = 10, sample_size = 1)]
 fn occluded(bencher: Bencher<'_, '_>, name: &str) {
     rays(bencher, name, |scene, ray| {
-        i32::from(scene.occluded(&ray.between(0.0, 2.0), RayMask::EYE))
+        i32::from(scene.occluded(&ray.with_range(0.0, 2.0), RayMask::EYE))
     });
 }
 

@@ -12,7 +12,7 @@ use std::path::PathBuf;
 use std::sync::LazyLock;
 
 /// Ways in a round.
-const WAYS: usize = 20;
+const PATH_COUNT: usize = 20;
 
 fn main() {
     divan::main();
@@ -53,7 +53,7 @@ fn grid(house: &House) -> NavGrid {
 /// Ends of ways that exist.
 fn ends(grid: &NavGrid) -> Vec<[NavCell; 2]> {
     let on_island = |cell: NavCell| grid.island(cell) == Some(0);
-    (0..WAYS)
+    (0..PATH_COUNT)
         .filter_map(|k| {
             let key = RandomKey::root(5).child(k as u64);
             Some([

@@ -188,7 +188,7 @@ fn config(sleeping: bool) -> PhysicsConfig {
 /// A world after three seconds: everything lies where it will.
 fn settled(case: &Case, sleeping: bool) -> (PhysicsWorld, State) {
     let mut state = State::new(case.model.house());
-    let made = PhysicsWorld::over(case.model.clone(), &config(sleeping), &mut state);
+    let made = PhysicsWorld::with_model(case.model.clone(), &config(sleeping), &mut state);
     let (mut world, _) = made.expect("the house makes a world");
     run(&mut world, &mut state, &[], 300);
     (world, state)
@@ -215,7 +215,7 @@ fn world(bencher: Bencher, name: &str) {
     let case = named(name);
     bencher.bench_local(|| {
         let mut state = State::new(case.model.house());
-        PhysicsWorld::over(case.model.clone(), &config(true), &mut state)
+        PhysicsWorld::with_model(case.model.clone(), &config(true), &mut state)
     });
 }
 
@@ -236,7 +236,7 @@ fn steps_from_the_start(bencher: Bencher, name: &str) {
         .counter(ItemsCount::new(STEPS))
         .with_inputs(|| {
             let mut state = State::new(case.model.house());
-            let made = PhysicsWorld::over(case.model.clone(), &config(true), &mut state);
+            let made = PhysicsWorld::with_model(case.model.clone(), &config(true), &mut state);
             (made.expect("the house makes a world").0, state)
         })
         .bench_local_values(|(mut world, mut state)| run(&mut world, &mut state, &[], STEPS));

@@ -69,7 +69,7 @@ impl World {
             .counter(ItemsCount::new(views.len()))
             .bench_local(|| {
                 let mut targets: Vec<FrameMut<'_>> = frames.iter_mut().map(Frame::as_mut).collect();
-                let threads = Threads::exactly(threads);
+                let threads = Threads::new(threads);
                 self.renderer
                     .render(&self.scene, &self.state, &views, &mut targets, threads)
                     .unwrap();

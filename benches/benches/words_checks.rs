@@ -93,7 +93,7 @@ fn main() {
         for threads in [1, 2] {
             let began = Instant::now();
             let pieces: Vec<&[Question]> = questions.chunks(count.div_ceil(threads)).collect();
-            let held: usize = Threads::exactly(threads)
+            let held: usize = Threads::new(threads)
                 .map(pieces.len(), |k| {
                     ask(&semantics.scene(&state), pieces[k], &viewer)
                 })

@@ -73,7 +73,7 @@ def of_energies(responses: np.ndarray) -> list[float]:
 
 def of_measures(responses: np.ndarray) -> list[float]:
     """Standard deviation of each measure, the mean over octaves; dwell measures all programs."""
-    heard = [measures.of_response(response, SCENE["fs"]) for response in responses]
+    heard = [measures.response_metrics(response, SCENE["fs"]) for response in responses]
     octaves = [k for k, row in enumerate(heard[0]) if 200 < float(row["centre_hz"] or 0) < 5000]
     spreads = []
     for _, key, relative in MEASURES:

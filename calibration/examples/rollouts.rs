@@ -65,7 +65,7 @@ fn tosses(
 ) -> Result<String, Box<dyn Error>> {
     let options: StudyOptions = serde_json::from_str(options)?;
     let mut models = study::models();
-    models.extend(study::trials());
+    models.extend(study::further_models());
     models.retain(|model| wanted(model.name));
     let peers: Result<Vec<OtherSimulator>, _> = peers
         .iter()

@@ -1,7 +1,7 @@
 //! Numbers in sentences.
 
 /// A number with three significant digits, without an exponent where it is short.
-pub(crate) fn number(value: f64) -> String {
+pub(crate) fn format_number(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
@@ -26,7 +26,7 @@ pub(crate) fn number(value: f64) -> String {
 }
 
 /// A share in percent, with a digit after the point under 10.
-pub(crate) fn percent(share: f64) -> String {
+pub(crate) fn format_percent(share: f64) -> String {
     let percent = 100.0 * share;
     if percent.abs() < 10.0 {
         format!("{percent:.1} %")
@@ -36,7 +36,7 @@ pub(crate) fn percent(share: f64) -> String {
 }
 
 /// `a`, `a and b`, `a, b and c`.
-pub(crate) fn list(names: &[String]) -> String {
+pub(crate) fn format_list(names: &[String]) -> String {
     match names {
         [] => String::new(),
         [one] => one.clone(),
@@ -59,9 +59,12 @@ mod tests {
             (-9.806_65, "-9.81"),
         ];
         for (value, text) in cases {
-            assert_eq!(number(value), text);
+            assert_eq!(format_number(value), text);
         }
-        assert_eq!(percent(0.034), "3.4 %");
-        assert_eq!(list(&["a".into(), "b".into(), "c".into()]), "a, b and c");
+        assert_eq!(format_percent(0.034), "3.4 %");
+        assert_eq!(
+            format_list(&["a".into(), "b".into(), "c".into()]),
+            "a, b and c"
+        );
     }
 }

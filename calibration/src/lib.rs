@@ -65,9 +65,9 @@ pub enum CalibrationOutcome {
     /// The causes that the simulation lacks.
     Causes(Box<CalibrationReport>),
     /// Prediction errors of roll-outs of tosses, with contact parameters by cross-validation.
-    RollOuts(Box<rollout::study::StudyReport>),
+    ContactStudy(Box<rollout::study::StudyReport>),
     /// Prediction errors of roll-outs of drives, with parameters of the base by cross-validation.
-    Series(Box<rollout::series::SeriesReport>),
+    DriveStudy(Box<rollout::series::SeriesReport>),
 }
 
 impl CalibrationOutcome {
@@ -75,8 +75,8 @@ impl CalibrationOutcome {
     pub fn to_json(&self) -> String {
         match self {
             Self::Causes(report) => report.to_json(),
-            Self::RollOuts(report) => report.to_json(),
-            Self::Series(report) => report.to_json(),
+            Self::ContactStudy(report) => report.to_json(),
+            Self::DriveStudy(report) => report.to_json(),
         }
     }
 }
@@ -86,7 +86,7 @@ impl CalibrationOutcome {
 ///
 /// # Errors
 /// As those.
-pub fn examine(
+pub fn calibrate_any(
     path: &Path,
     options: &Options,
     peers: &[rollout::study::OtherSimulator],
@@ -104,7 +104,7 @@ pub fn examine(
         };
         let models = rollout::study::models();
         let report = rollout::study::run(&tracks, &models, peers, &settings, progress)?;
-        return Ok(CalibrationOutcome::RollOuts(Box::new(report)));
+        return Ok(CalibrationOutcome::ContactStudy(Box::new(report)));
     }
     if bundle.kind() == BundleKind::Drive {
         let drives = rollout::drive::DriveRecordings::of(&bundle)?;
@@ -115,7 +115,7 @@ pub fn examine(
             ..rollout::series::SeriesOptions::default()
         };
         let report = rollout::series::run(&drives, &rollout::drive::models(), &settings, progress)?;
-        return Ok(CalibrationOutcome::Series(Box::new(report)));
+        return Ok(CalibrationOutcome::DriveStudy(Box::new(report)));
     }
     let report = explain(&bundle, options, &CallbackProgress::new(progress))?;
     Ok(CalibrationOutcome::Causes(Box::new(report)))
@@ -157,7 +157,7 @@ fn explain(
             ));
         }
     };
-    let findings = select::explain(twin.as_mut(), options, progress)?;
+    let findings = select::find_causes(twin.as_mut(), options, progress)?;
     let report = report::build(bundle, twin.as_ref(), &findings);
     progress.stage(1.0, "done")?;
     Ok(report)

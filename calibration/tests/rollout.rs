@@ -38,7 +38,7 @@ fn tracks(episodes: Vec<PoseTrack>) -> PoseTracks {
         },
         rate_hz: RATE_HZ,
         gravity_m_s2: GRAVITY_M_S2,
-        noise: TrackerNoise::of(&episodes, 1.0 / RATE_HZ, GRAVITY_M_S2),
+        noise: TrackerNoise::estimate(&episodes, 1.0 / RATE_HZ, GRAVITY_M_S2),
         episodes,
     }
 }
@@ -50,7 +50,7 @@ fn rig(friction: f64) -> BoardRig {
         restitution: 0.0,
         laws: Vec::new(),
     };
-    rig.set(&settings).unwrap()
+    rig.with_settings(&settings).unwrap()
 }
 
 fn motion(height_m: f64, linear: DVec3, angular: DVec3) -> MeasuredMotion {
@@ -67,7 +67,7 @@ fn motion(height_m: f64, linear: DVec3, angular: DVec3) -> MeasuredMotion {
 fn a_flight_is_a_parabola_and_a_steady_spin() {
     let (v, w) = (DVec3::new(1.0, 1.5, -0.4), DVec3::new(0.0, 6.0, 0.0));
     let start = motion(0.8, v, w);
-    let found = rig(0.3).roll(&start, 40).unwrap();
+    let found = rig(0.3).simulate(&start, 40).unwrap();
     for (k, there) in found.iter().enumerate() {
         let t = (k + 1) as f64 / RATE_HZ;
         let fall = DVec3::NEG_Y * (0.5 * GRAVITY_M_S2 * t * t);
@@ -94,7 +94,11 @@ fn a_sliding_cube_stops_where_coulomb_says() {
                 laws: Vec::new(),
             };
             let start = motion(HALF_M, DVec3::X, DVec3::ZERO);
-            let found = plain.set(&settings).unwrap().roll(&start, 160).unwrap();
+            let found = plain
+                .with_settings(&settings)
+                .unwrap()
+                .simulate(&start, 160)
+                .unwrap();
             let path = found.last().unwrap().position.x - start.position.x;
             let share = path * 2.0 * friction * GRAVITY_M_S2;
             assert!((least..most).contains(&share), "{way:?}: {share}");
@@ -118,7 +122,7 @@ fn tossed(friction: f64, count: usize) -> PoseTracks {
                 )
             };
             let mut motions = vec![start];
-            motions.extend(rig.roll(&start, 60).unwrap());
+            motions.extend(rig.simulate(&start, 60).unwrap());
             PoseTrack {
                 name: format!("toss {k}"),
                 group: format!("toss {k}"),
@@ -148,12 +152,12 @@ fn roll_outs_meet_their_own_tosses_and_threads_change_nothing() {
     let rigs = vec![&rig; 5];
     let windowing = |threads| WindowOptions {
         stride: 7,
-        guard: Some(RandomKey::root(0)),
+        chaos_guard: Some(RandomKey::root(0)),
         threads,
     };
     let found = ends(&tracks, &rigs, &windowing(Threads::ONE)).unwrap();
     for threads in [2, 7] {
-        let threads = Threads::exactly(threads);
+        let threads = Threads::new(threads);
         assert_eq!(scores(&rig, &tracks, &all, threads).unwrap(), other);
         assert_eq!(ends(&tracks, &rigs, &windowing(threads)).unwrap(), found);
     }
@@ -180,7 +184,7 @@ fn hidden_friction_is_found_out_of_fold() {
         name: "friction",
         unit: "1",
         range: [0.05, 0.6],
-        by_ratio: true,
+        is_logarithmic: true,
     };
     let model = |name, parameters| ContactModel {
         name,
@@ -252,7 +256,7 @@ fn window_starts_in_flight_do_not_lag() {
     let rig = rig(0.3);
     let start = motion(0.9, DVec3::new(1.0, 0.5, 0.0), DVec3::new(2.0, 0.0, 0.0));
     let mut motions = vec![start];
-    motions.extend(rig.roll(&start, 40).unwrap());
+    motions.extend(rig.simulate(&start, 40).unwrap());
     let honest = motions.clone();
     for k in (2..motions.len()).rev() {
         motions[k].linear = honest[k - 2].linear;
@@ -287,7 +291,7 @@ fn a_cube_on_its_edge_is_chance_and_a_flat_one_is_not() {
             ..motion(height_m, DVec3::ZERO, DVec3::ZERO)
         };
         let mut motions = vec![start];
-        motions.extend(rig(0.3).roll(&start, 80).unwrap());
+        motions.extend(rig(0.3).simulate(&start, 80).unwrap());
         PoseTrack {
             name: format!("{degrees}"),
             group: format!("{degrees}"),

@@ -45,7 +45,7 @@ fn drive(name: &str, factors: [f64; 3], tracker_off_rad: f64, seed: u64) -> Driv
         ]);
         turned.push(rates.map(|rate| rate / RATE_HZ));
     }
-    let mut drive = DriveRecording::told(planar, turned, &BASE, RATE_HZ);
+    let mut drive = DriveRecording::from_measurements(planar, turned, &BASE, RATE_HZ);
     drive.name = name.into();
     drive.group = name.into();
     drive.kind = ["even", "odd"][(seed % 2) as usize].into();
@@ -92,7 +92,7 @@ fn hidden_wheels_base_and_tracker_are_found_out_of_fold() {
     let [nominal, base, wheels, tracker] = &report.models[..] else {
         panic!("four models")
     };
-    let typical = tracker.typical();
+    let typical = tracker.median_parameters();
     for (found, hidden) in typical.iter().zip([1.01, 1.02, 0.995]) {
         assert!((found - hidden).abs() < 1e-3, "{typical:?}");
     }
@@ -130,7 +130,7 @@ fn a_base_as_believed_gains_nothing() {
         gain.interval[0] < 0.02 && gain.share.abs() < 0.1,
         "{gain:?}"
     );
-    assert!((report.models[1].typical()[0] - 1.0).abs() < 1e-3);
+    assert!((report.models[1].median_parameters()[0] - 1.0).abs() < 1e-3);
 }
 
 /// Balls of two sizes that fall from 45 m with drag (midpoint steps of 1 ms), seen with 3 cm of noise at 15 Hz, the hand
@@ -199,7 +199,7 @@ fn hidden_drag_is_found_out_of_fold() {
         ..options()
     };
     let report = run(&drops, &models, &settings, &mut |_, _| true).unwrap();
-    let found = report.models[1].typical()[0];
+    let found = report.models[1].median_parameters()[0];
     assert!((found / 0.5 - 1.0).abs() < 0.1, "{found}");
     let gain = report.models[1].gain.as_ref().unwrap();
     assert!(gain.share > 0.9 && gain.interval[0] > 0.5, "{gain:?}");
@@ -279,7 +279,7 @@ fn real_drops_need_air() {
         ..options()
     };
     let report = run(&drops, &models, &settings, &mut |_, _| true).unwrap();
-    let c_d = report.models[1].typical()[0];
+    let c_d = report.models[1].median_parameters()[0];
     assert!((0.3..0.8).contains(&c_d), "{c_d}");
     let gain = report.models[1].gain.as_ref().unwrap();
     assert!(gain.interval[0] > 0.5, "{gain:?}");

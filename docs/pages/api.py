@@ -16,7 +16,7 @@ _BESIDE = {
     "dwell.calibration": ("write_example",),
     "dwell.echogram": ("Echogram",),
     "dwell.house": ("split_of_seed",),
-    "dwell.measures": ("of_response", "of_ears"),
+    "dwell.measures": ("response_metrics", "binaural_metrics"),
     "dwell.navigation": ("Route", "Occupancy"),
     "dwell.places": ("receiver_grid", "random_sources"),
     "dwell.plans": ("floor_plan", "dollhouse", "sheet", "house_sheet", "houses_sheet"),

@@ -88,7 +88,7 @@ pub(crate) fn write_parts(
     let world_from_body = from_rapier(rigid.position());
     let angular = rigid.angvel();
     for (part, body_from_part) in &plan.parts {
-        let pose = place_of(&world_from_body, *part, plan.root(), body_from_part);
+        let pose = pose_of_part(&world_from_body, *part, plan.root(), body_from_part);
         state.part_velocity[*part] = Velocity {
             linear: rigid.velocity_at_point(pose.position),
             angular,
@@ -98,7 +98,7 @@ pub(crate) fn write_parts(
 }
 
 /// Returns a part's pose; the first part's is the body's, bit for bit.
-pub(crate) fn place_of(
+pub(crate) fn pose_of_part(
     world_from_body: &Pose,
     part: PartId,
     root: PartId,

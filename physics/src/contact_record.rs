@@ -14,7 +14,7 @@ use rapier3d::dynamics::RigidBodyHandle;
 pub(crate) struct ContactRecord {
     pub(crate) tracker: ContactTracker,
     /// The events of the last control step that were merged instead of reported one by one.
-    pub(crate) merged: MergedEvents,
+    pub(crate) merged_events: MergedEvents,
     /// The motion of each body before the physics step.
     motion: Vec<BodyMotion>,
 }
@@ -29,16 +29,16 @@ pub(crate) struct SolvedContacts {
 impl ContactRecord {
     /// Runs rapier's physics step.
     pub(crate) fn solve(&mut self, dynamics: &mut Dynamics) -> SolvedContacts {
-        let flying = dynamics.engine.in_free_flight();
+        let flying = dynamics.engine.bodies_in_free_flight();
         record_motion(&dynamics.engine, &self.tracker, &flying, &mut self.motion);
-        let kept = dynamics.engine.friction_kept();
+        let kept = dynamics.engine.friction_storage();
         let hooks = ContactHooks {
             entries: &dynamics.entries,
             properties: dynamics
                 .laws
                 .contact_properties(&dynamics.model.house, &dynamics.table),
-            excluded: &dynamics.excluded,
-            kept,
+            excluded: &dynamics.collision_exclusions,
+            friction_storage: kept,
             dt_s: dynamics.settings.dt_s,
         };
         let config = &dynamics.settings.config;
@@ -50,7 +50,7 @@ impl ContactRecord {
     }
 
     /// Corrects the rebounds of bodies that hit something in free flight. `joints_before`: each joint's coordinates before the step.
-    pub(crate) fn correct_rebounds(
+    pub(crate) fn correct_restitution(
         &self,
         dynamics: &mut Dynamics,
         articulation: &mut JointSystem,
@@ -70,7 +70,7 @@ impl ContactRecord {
     }
 
     /// Records the contacts of a physics step; events that ended or are immediate go to `events`.
-    pub(crate) fn note(
+    pub(crate) fn record_contacts(
         &mut self,
         dynamics: &Dynamics,
         solved: SolvedContacts,
@@ -78,19 +78,19 @@ impl ContactRecord {
         events: &mut Vec<ContactEvent>,
     ) {
         let (tick, settings) = (dynamics.tick, &dynamics.settings);
-        self.tracker.settle(
-            (solved.reports, &rebounds.added),
+        self.tracker.add_reports(
+            (solved.reports, &rebounds.added_impulses),
             tick,
             &settings.config,
             &dynamics.table,
             events,
         );
         self.tracker
-            .note_held_back(&dynamics.engine, &self.motion, settings.dt_s);
+            .record_undone_displacements(&dynamics.engine, &self.motion, settings.dt_s);
     }
 
     /// Emits the remaining events of a control step; `first`: the index of its first event.
-    pub(crate) fn emit_remaining(
+    pub(crate) fn emit_remaining_events(
         &mut self,
         dynamics: &Dynamics,
         events: &mut Vec<ContactEvent>,
@@ -99,6 +99,6 @@ impl ContactRecord {
         let config = &dynamics.settings.config;
         self.tracker
             .emit_events(dynamics.tick, config, &dynamics.table, events);
-        self.merged = bound(events, first, config.max_events_per_step);
+        self.merged_events = bound(events, first, config.max_events_per_step);
     }
 }

@@ -23,12 +23,12 @@ impl BodyInertia {
     /// Returns the inertia of a body's pieces and stated parts in a world, with each part's density times its factor. Shape
     /// of `factors`: (part,).
     pub(crate) fn of(house: &House, plan: &BodyPlan, state: &State, factors: &[f32]) -> Self {
-        let given = plan.given_mass(house, state, factors);
+        let given = plan.explicit_mass_properties(house, state, factors);
         let mut all = given.unwrap_or_default();
         for piece in &plan.pieces {
-            let factor = plan.factor_of(piece, factors);
+            let factor = plan.mass_factor_of(piece, factors);
             let own = piece.shape.mass_properties(piece.density_kg_m3 * factor);
-            all += own.transform_by(&piece.place);
+            all += own.transform_by(&piece.pose);
         }
         Self {
             mass_kg: all.mass(),
@@ -69,7 +69,7 @@ pub(crate) fn altered(
     let bodies = model.bodies.iter().zip(factors).enumerate();
     bodies
         .map(|(index, (plan, factor))| {
-            if laws.is_empty() && !plan.states_inertia {
+            if laws.is_empty() && !plan.has_explicit_inertia {
                 return None;
             }
             let own = BodyInertia::of(&model.house, plan, state, factor);
@@ -77,7 +77,7 @@ pub(crate) fn altered(
             for law in laws {
                 law.modify_mass_properties(index as u32, &mut changed);
             }
-            (changed != own || plan.states_inertia).then_some(changed)
+            (changed != own || plan.has_explicit_inertia).then_some(changed)
         })
         .collect()
 }

@@ -11,19 +11,19 @@ use rapier3d::parry::bounding_volume::BoundingVolume;
 use rapier3d::parry::partitioning::{Bvh, BvhBuildStrategy};
 
 /// Most rigid bodies that can move. Each takes some 15 KB in a world and its shared initial state.
-pub(crate) const MOST_BODIES: usize = 50_000;
+pub(crate) const MAX_BODIES: usize = 50_000;
 /// Most collision pieces of a house, those that never move included.
-pub(crate) const MOST_PIECES: usize = 500_000;
+pub(crate) const MAX_PIECES: usize = 500_000;
 /// Most joints that act on each other: their efforts are computed together, in a time that grows with the third power.
-pub(crate) const MOST_JOINTS_TOGETHER: usize = 256;
+pub(crate) const MAX_TREE_JOINTS: usize = 256;
 /// Most pairs of a moving piece and another one near it as a world begins. Each takes some 1.5 KB, in the world and in its
 /// shared initial state.
-pub(crate) const MOST_NEAR_PAIRS: usize = 300_000;
+pub(crate) const MAX_NEAR_PAIRS: usize = 300_000;
 /// Most pairs of pieces whose boxes intersect, including those of one body and of static geometry. Each is visited, and
 /// takes 8 bytes for a moment.
-pub(crate) const MOST_BOXES_THAT_MEET: usize = 10_000_000;
+pub(crate) const MAX_OVERLAPPING_BOX_PAIRS: usize = 10_000_000;
 /// Most pairs of a jointed body and a piece excluded from collision: of one object, and where they overlap.
-pub(crate) const MOST_PASSING_PAIRS: usize = 300_000;
+pub(crate) const MAX_EXCLUDED_PAIRS: usize = 300_000;
 
 /// Margin of pieces' boxes in rapier, m: half of its prediction distance.
 const REACH_M: f32 = 0.01;
@@ -32,9 +32,9 @@ const MANY_PAIRS: usize = 10_000;
 
 /// The number of pairs of pieces in a world; with many of them a flush takes long.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Crowding {
-    Few,
-    Many,
+pub(crate) enum PairDensity {
+    Low,
+    High,
 }
 
 fn refuse<T>(
@@ -51,34 +51,34 @@ fn refuse<T>(
 }
 
 /// Returns whether a world can hold a house in the given state.
-pub(crate) fn check(model: &PhysicsModel, state: &State) -> Result<Crowding, PhysicsError> {
+pub(crate) fn check(model: &PhysicsModel, state: &State) -> Result<PairDensity, PhysicsError> {
     let house = &model.house;
     let bodies = model.bodies.len();
-    if bodies > MOST_BODIES {
+    if bodies > MAX_BODIES {
         let what = format!("house {:?}: bodies that can move", house.name);
         let change = "Make some of its objects fixed, or leave some out.";
-        return refuse(what, (bodies, MOST_BODIES), change);
+        return refuse(what, (bodies, MAX_BODIES), change);
     }
-    let pieces = model.statics.len()
+    let pieces = model.static_pieces.len()
         + model
             .bodies
             .iter()
             .map(|plan| plan.pieces.len())
             .sum::<usize>();
-    if pieces > MOST_PIECES {
+    if pieces > MAX_PIECES {
         let what = format!("house {:?}: collision pieces", house.name);
         let change = "Give its objects fewer pieces, or leave some out.";
-        return refuse(what, (pieces, MOST_PIECES), change);
+        return refuse(what, (pieces, MAX_PIECES), change);
     }
     // Fewer pieces have no more pairs.
     if pieces * pieces.saturating_sub(1) / 2 <= MANY_PAIRS {
-        return Ok(Crowding::Few);
+        return Ok(PairDensity::Low);
     }
     let near = broad_phase_pairs(model, state)?;
     Ok(if near > MANY_PAIRS {
-        Crowding::Many
+        PairDensity::High
     } else {
-        Crowding::Few
+        PairDensity::Low
     })
 }
 
@@ -92,7 +92,7 @@ pub(crate) fn check_trees(
         return Ok(());
     };
     let count = tree.joints.len();
-    if count <= MOST_JOINTS_TOGETHER {
+    if count <= MAX_TREE_JOINTS {
         return Ok(());
     }
     let first = &house.joints[joints[tree.joints[0]].id];
@@ -101,16 +101,16 @@ pub(crate) fn check_trees(
         house.objects[first.object].name, first.name
     );
     let change = "Leave some out, or fix some of its parts to each other.";
-    refuse(what, (count, MOST_JOINTS_TOGETHER), change)
+    refuse(what, (count, MAX_TREE_JOINTS), change)
 }
 
 /// Returns whether an object's excluded pairs, with those before it, are few enough.
-pub(crate) fn check_passing(
+pub(crate) fn check_excluded_pairs(
     house: &House,
     object: ObjectId,
     pairs: usize,
 ) -> Result<(), PhysicsError> {
-    if pairs <= MOST_PASSING_PAIRS {
+    if pairs <= MAX_EXCLUDED_PAIRS {
         return Ok(());
     }
     let what = format!(
@@ -118,7 +118,7 @@ pub(crate) fn check_passing(
         house.objects[object].name
     );
     let change = "Make several objects of it, or give it fewer joints or pieces.";
-    refuse(what, (pairs, MOST_PASSING_PAIRS), change)
+    refuse(what, (pairs, MAX_EXCLUDED_PAIRS), change)
 }
 
 /// Returns the number of pairs that rapier keeps as a world begins.
@@ -131,15 +131,15 @@ fn broad_phase_pairs(model: &PhysicsModel, state: &State) -> Result<usize, Physi
         boxes.push(Aabb::new(bounds.min, bounds.max).loosened(REACH_M));
         owners.push(owner);
     };
-    for piece in &model.statics {
-        add(STATIC_OWNER, shapes::bounds(&piece.shape, &piece.place));
+    for piece in &model.static_pieces {
+        add(STATIC_OWNER, shapes::bounds(&piece.shape, &piece.pose));
     }
     for (index, plan) in model.bodies.iter().enumerate() {
         let place = to_rapier(&state.part_pose[plan.root()]);
         for piece in &plan.pieces {
             add(
                 index as u32,
-                shapes::bounds(&piece.shape, &(place * piece.place)),
+                shapes::bounds(&piece.shape, &(place * piece.pose)),
             );
         }
     }
@@ -154,12 +154,12 @@ fn broad_phase_pairs(model: &PhysicsModel, state: &State) -> Result<usize, Physi
             }
             met += 1;
             near += usize::from(owners[first] != owners[second as usize]);
-            let (what, most) = if near > MOST_NEAR_PAIRS {
-                ("pairs of collision pieces near each other", MOST_NEAR_PAIRS)
-            } else if met > MOST_BOXES_THAT_MEET {
+            let (what, most) = if near > MAX_NEAR_PAIRS {
+                ("pairs of collision pieces near each other", MAX_NEAR_PAIRS)
+            } else if met > MAX_OVERLAPPING_BOX_PAIRS {
                 (
                     "pairs of collision pieces whose boxes meet",
-                    MOST_BOXES_THAT_MEET,
+                    MAX_OVERLAPPING_BOX_PAIRS,
                 )
             } else {
                 continue;
@@ -185,12 +185,12 @@ mod tests {
         let page = include_str!("../../docs/hostile-input.md");
         let here = include_str!("limits.rs");
         let caps = [
-            ("MOST_BODIES", MOST_BODIES),
-            ("MOST_PIECES", MOST_PIECES),
-            ("MOST_JOINTS_TOGETHER", MOST_JOINTS_TOGETHER),
-            ("MOST_NEAR_PAIRS", MOST_NEAR_PAIRS),
-            ("MOST_BOXES_THAT_MEET", MOST_BOXES_THAT_MEET),
-            ("MOST_PASSING_PAIRS", MOST_PASSING_PAIRS),
+            ("MOST_BODIES", MAX_BODIES),
+            ("MOST_PIECES", MAX_PIECES),
+            ("MOST_JOINTS_TOGETHER", MAX_TREE_JOINTS),
+            ("MOST_NEAR_PAIRS", MAX_NEAR_PAIRS),
+            ("MOST_BOXES_THAT_MEET", MAX_OVERLAPPING_BOX_PAIRS),
+            ("MOST_PASSING_PAIRS", MAX_EXCLUDED_PAIRS),
         ];
         for (name, value) in caps {
             let row = format!("| `{name}` | {value} |");

@@ -27,17 +27,17 @@ pub enum OutcomeCode {
     /// A number that is not finite or out of its range.
     BadNumber,
     /// The agent itself.
-    Oneself,
+    TargetIsSelf,
     /// A wall, a floor or another agent: no object for a hand.
-    NotAThing,
+    NotAnObject,
     /// An agent stands on it.
-    StoodOn,
+    SupportsAgent,
     /// Out of reach.
     TooFar,
     /// Something hides it.
     NotVisible,
     /// It is behind the agent.
-    Behind,
+    BehindAgent,
     /// It cannot be picked up: it is fixed, or not pickable.
     NotPickable,
     /// It weighs more than the agent lifts.
@@ -65,7 +65,7 @@ pub enum OutcomeCode {
     /// It is fixed.
     NotMovable,
     /// It is latched until it is opened.
-    Shut,
+    Latched,
     /// It has no joint.
     NotOpenable,
     /// It is open already.
@@ -79,7 +79,7 @@ pub enum OutcomeCode {
     /// It slipped from the hand.
     Slipped,
     /// Its position or velocity was no longer finite, so that it was stopped.
-    Lost,
+    NonFiniteState,
 }
 
 impl OutcomeCode {
@@ -92,12 +92,12 @@ impl OutcomeCode {
         Self::UnknownAgent,
         Self::UnknownObject,
         Self::BadNumber,
-        Self::Oneself,
-        Self::NotAThing,
-        Self::StoodOn,
+        Self::TargetIsSelf,
+        Self::NotAnObject,
+        Self::SupportsAgent,
         Self::TooFar,
         Self::NotVisible,
-        Self::Behind,
+        Self::BehindAgent,
         Self::NotPickable,
         Self::TooHeavy,
         Self::TooLarge,
@@ -111,14 +111,14 @@ impl OutcomeCode {
         Self::Closed,
         Self::Full,
         Self::NotMovable,
-        Self::Shut,
+        Self::Latched,
         Self::NotOpenable,
         Self::AlreadyOpen,
         Self::AlreadyClosed,
         Self::NoSwitch,
         Self::Blocked,
         Self::Slipped,
-        Self::Lost,
+        Self::NonFiniteState,
     ];
 }
 
@@ -206,7 +206,7 @@ mod tests {
     fn the_list_of_codes_is_whole_and_in_order() {
         // Fails for a new code at the end until the list has it.
         let last = OutcomeCode::ALL.len() - 1;
-        assert_eq!(OutcomeCode::Lost as usize, last);
+        assert_eq!(OutcomeCode::NonFiniteState as usize, last);
         for (k, code) in OutcomeCode::ALL.into_iter().enumerate() {
             assert_eq!(code as usize, k);
         }

@@ -30,7 +30,7 @@ from dwell._native import (
 
 if TYPE_CHECKING:
     from dwell.acoustics import AcousticScene
-    from dwell.actions import Outcome, Pointed
+    from dwell.actions import Outcome, PointedTarget
     from dwell.building import HouseBuilder
     from dwell.calibration import calibrate
     from dwell.camera import Camera
@@ -46,13 +46,13 @@ if TYPE_CHECKING:
     from dwell.replays import Replay
     from dwell.rewards import Reward
     from dwell.sensors import Sensor
-    from dwell.tasks import Ask, Task, Verdict
+    from dwell.tasks import StepResult, Task, TaskGoal
     from dwell.world import World
 
 # Imported at first use, so that the command line starts fast.
 _LAZY = {
     "AcousticScene": "dwell.acoustics",
-    "Ask": "dwell.tasks",
+    "TaskGoal": "dwell.tasks",
     "Camera": "dwell.camera",
     "Directivity": "dwell.directivity",
     "Head": "dwell.heads",
@@ -62,15 +62,15 @@ _LAZY = {
     "Microphone": "dwell.listening",
     "Navigation": "dwell.navigation",
     "Outcome": "dwell.actions",
-    "Pointed": "dwell.actions",
+    "PointedTarget": "dwell.actions",
     "Receiver": "dwell.listening",
     "Replay": "dwell.replays",
     "Reward": "dwell.rewards",
     "Sensor": "dwell.sensors",
     "Source": "dwell.listening",
     "Task": "dwell.tasks",
+    "StepResult": "dwell.tasks",
     "Text": "dwell.grounded_text",
-    "Verdict": "dwell.tasks",
     "Walker": "dwell.navigation",
     "World": "dwell.world",
     "calibrate": "dwell.calibration",
@@ -111,7 +111,6 @@ _MODULES = {
 
 __all__ = [
     "AcousticScene",
-    "Ask",
     "Camera",
     "ConfigError",
     "Directivity",
@@ -128,17 +127,18 @@ __all__ = [
     "Microphone",
     "Navigation",
     "Outcome",
-    "Pointed",
+    "PointedTarget",
     "Receiver",
     "Replay",
     "Reward",
     "SceneError",
     "Sensor",
     "Source",
+    "StepResult",
     "Task",
+    "TaskGoal",
     "Text",
     "UsageError",
-    "Verdict",
     "Walker",
     "World",
     "__version__",

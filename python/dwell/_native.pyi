@@ -105,7 +105,7 @@ class Head:
     """A head that receivers and agents can wear."""
 
     @staticmethod
-    def sphere(radius_m: float) -> Head: ...
+    def spherical(radius_m: float) -> Head: ...
     @staticmethod
     def measured(
         sources: NDArray[np.float64],
@@ -116,7 +116,7 @@ class Head:
         """Shapes (direction, 3), m in head space; (direction, 2, sample); (direction, 2), samples."""
     @property
     def id(self) -> int: ...
-    def about(self) -> dict[str, Any] | None:
+    def summary(self) -> dict[str, Any] | None:
         """``{directions, filled, radius_m, gain_db, removed_delay_s}``, or ``None`` for a sphere."""
 
 @final
@@ -212,7 +212,7 @@ class World:
         """One control step; ``[{"forward_m_s": 1.0, ...}, ...]``, the fields of the native ``AgentControl``."""
     def act(self, agent: int, action: _Data) -> dict[str, Any]:
         """``{"kind": "pick", "object": "mug_1"}`` and kin; answers ``{success, code, sentence, object, pointed}``."""
-    def notices(self) -> list[dict[str, Any]]:
+    def delayed_outcomes(self) -> list[dict[str, Any]]:
         """``[{agent, outcome}, ...]``: what became, in the last step, of actions that take time."""
     def config(self) -> dict[str, Any]:
         """The settings, all of them, as the constructor reads them."""
@@ -372,10 +372,10 @@ class AcousticScene:
         seed: int = ...,
         threads: int | None = ...,
     ) -> dict[str, Any]:
-        """``{paths, tail: {bin_s, bins, bins_per_direction, directions}, direct_length_m, speed_m_s, trace}``."""
+        """``{paths, tail: {bin_s, bins, bins_per_direction, directions}, direct_length_m, speed_m_s, ray_statistics}``."""
     def early_paths(self, source: _Data, mic: tuple[float, float, float]) -> list[dict[str, Any]]:
-        """``[{points, path: {planes, bends, length_m, energy, arrival, departure, walls}}, ...]``, by length."""
-    def explain(self) -> dict[str, Any]: ...
+        """``[{points, path: {planes, diffraction_points, length_m, energy, arrival, departure, walls}}, ...]``, by length."""
+    def material_report(self) -> dict[str, Any]: ...
     def config(self) -> dict[str, Any]:
         """The fields of ``AcousticConfig``, with the air as laws make it."""
     @property

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError, _native
-from dwell.arguments import plain, point, quoted, whole
+from dwell.arguments import integer_in_range, plain_settings, point, quoted
 from dwell.configs import checked
 from dwell.echogram import Echogram
 from dwell.engine_types import AcousticSettings
@@ -51,14 +51,17 @@ class AcousticScene:
         rows, values = found(laws)
         settings = checked("AcousticConfig", config)
         self._native = _native.AcousticScene(
-            self.house.native, plain(settings), plain(rows), plain(values)
+            self.house.native,
+            plain_settings(settings),
+            plain_settings(rows),
+            plain_settings(values),
         )
         self._config = settings
         self._laws = {"laws": rows, "parameters": values}
 
     def __reduce__(self) -> tuple[Any, tuple[House, dict[str, Any], dict[str, Any]]]:
         """House, laws and settings."""
-        return _again, (self.house, self._laws, self._config)
+        return _rebuild, (self.house, self._laws, self._config)
 
     def __repr__(self) -> str:
         """The house and the rate."""
@@ -125,10 +128,10 @@ class AcousticScene:
         given = _receivers("receivers", receivers)
         self._tell_outside(source, given)
         return self._native.impulse_responses(
-            plain(source_of(source).to_json()),
-            plain([receiver.to_json() for receiver in given]),
+            plain_settings(source_of(source).to_json()),
+            plain_settings([receiver.to_json() for receiver in given]),
             heads=[receiver.head.native for receiver in given if receiver.head is not None],
-            seed=whole("seed", seed),
+            seed=integer_in_range("seed", seed),
             threads=_threads(threads),
         )
 
@@ -172,9 +175,9 @@ class AcousticScene:
         receivers = _receivers("mics", mics)
         self._tell_outside(source, receivers)
         return self._native.metrics(
-            plain(source_of(source).to_json()),
-            plain([receiver.to_json() for receiver in receivers]),
-            seed=whole("seed", seed),
+            plain_settings(source_of(source).to_json()),
+            plain_settings([receiver.to_json() for receiver in receivers]),
+            seed=integer_in_range("seed", seed),
             threads=_threads(threads),
         )
 
@@ -190,9 +193,9 @@ class AcousticScene:
         receiver = mic if isinstance(mic, Receiver) else Receiver.omni(mic)
         self._tell_outside(source, [receiver])
         found = self._native.echogram(
-            plain(source_of(source).to_json()),
-            plain(receiver.to_json()),
-            seed=whole("seed", seed),
+            plain_settings(source_of(source).to_json()),
+            plain_settings(receiver.to_json()),
+            seed=integer_in_range("seed", seed),
             threads=_threads(threads),
         )
         return Echogram.from_json(found)
@@ -205,17 +208,19 @@ class AcousticScene:
         Returns:
             For each ``points`` (the source, where it is reflected, the microphone; m) and ``path``:
             ``length_m``, ``energy`` of each octave band from 62.5 Hz against a free path of 1 m,
-            ``arrival`` and ``departure`` (directions), ``walls`` that it passes through, ``bends``
-            (where it goes around edges).
+            ``arrival`` and ``departure`` (directions), ``walls`` that it passes through,
+            ``diffraction_points`` (where it goes around edges).
 
         Raises:
             DwellError: A point is not finite.
         """
-        return self._native.early_paths(plain(source_of(source).to_json()), point("mic", mic))
+        return self._native.early_paths(
+            plain_settings(source_of(source).to_json()), point("mic", mic)
+        )
 
-    def explain(self) -> dict[str, Any]:
+    def material_report(self) -> dict[str, Any]:
         """Surfaces that sound meets: areas, mean absorption, which materials are guesses."""
-        return self._native.explain()
+        return self._native.material_report()
 
 
 def _receivers(name: str, given: object) -> list[Receiver]:
@@ -226,8 +231,8 @@ def _receivers(name: str, given: object) -> list[Receiver]:
 
 
 def _threads(threads: int | None) -> int | None:
-    return None if threads is None else whole("threads", threads, low=1)
+    return None if threads is None else integer_in_range("threads", threads, low=1)
 
 
-def _again(house: House, laws: dict[str, Any], config: dict[str, Any]) -> AcousticScene:
+def _rebuild(house: House, laws: dict[str, Any], config: dict[str, Any]) -> AcousticScene:
     return AcousticScene(house, laws=laws, **config)

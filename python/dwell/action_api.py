@@ -7,7 +7,7 @@ from typing import Any
 
 from dwell import ConfigError, _native
 from dwell.actions import Outcome, checked_action, takes_target
-from dwell.arguments import mapping, quoted, whole
+from dwell.arguments import integer_in_range, mapping, quoted
 from dwell.object_state_api import StateApi
 
 
@@ -24,7 +24,7 @@ class ActionApi(StateApi):
     ) -> Outcome:
         """Lets an agent do something with its hand, without a step of time.
 
-        What takes time (doors, pushes) tells its end through :meth:`notices`.
+        What takes time (doors, pushes) tells its end through :meth:`delayed_outcomes`.
 
         Args:
             action: ``pick``, ``drop``, ``place``, ``place_at``, ``put_in``, ``throw``, ``push``,
@@ -61,7 +61,7 @@ class ActionApi(StateApi):
         request |= details
         if object is not None:
             request["object"] = object
-        agent = whole("agent", agent)
+        agent = integer_in_range("agent", agent)
         checked = checked_action(request)
         if "object" in checked and not takes_target(checked.get("kind", "")):
             self._refuse_not_held(agent, checked["kind"], checked.pop("object"))
@@ -77,9 +77,9 @@ class ActionApi(StateApi):
                 f"{kind} needs no name"
             )
 
-    def notices(self) -> list[tuple[int | None, Outcome]]:
+    def delayed_outcomes(self) -> list[tuple[int | None, Outcome]]:
         """The outcomes, in the last step, of actions that take time: the agent, and its outcome."""
-        notices = self._native.notices()
+        notices = self._native.delayed_outcomes()
         return [(notice["agent"], Outcome._of(notice["outcome"])) for notice in notices]
 
     def do(self, action: int | str, *, agent: int = 0) -> Outcome:
@@ -88,5 +88,8 @@ class ActionApi(StateApi):
         if isinstance(action, str) and action not in names:
             raise ConfigError(f"no action {quoted(action)}; there are {', '.join(names)}")
         number = names.index(action) if isinstance(action, str) else action
-        number, agent = whole("action", number, high=len(names) - 1), whole("agent", agent)
+        number, agent = (
+            integer_in_range("action", number, high=len(names) - 1),
+            integer_in_range("agent", agent),
+        )
         return Outcome._of(self._native.act_discrete(agent, number))

@@ -8,13 +8,13 @@ from collections.abc import Mapping
 from typing import Any
 
 from dwell import _native
-from dwell.arguments import fields, finite, text, whole
+from dwell.arguments import checked_fields, finite_number, integer_in_range, text
 from dwell.camera import Camera, camera_settings
 from dwell.schemas import Check, checks
 
 
 @dataclasses.dataclass(frozen=True)
-class Pointed:
+class PointedTarget:
     """The thing that an agent points at.
 
     Attributes:
@@ -48,13 +48,13 @@ class Outcome:
     code: str
     sentence: str
     object: str | None
-    pointed: Pointed | None = None
+    pointed: PointedTarget | None = None
 
     @classmethod
     def _of(cls, told: Mapping[str, Any]) -> Outcome:
         pointed = told.get("pointed")
         if pointed is not None:
-            pointed = Pointed(**{**pointed, "point": tuple(pointed["point"])})
+            pointed = PointedTarget(**{**pointed, "point": tuple(pointed["point"])})
         return cls(**{**told, "pointed": pointed})
 
 
@@ -63,7 +63,11 @@ def _camera(name: str, value: object) -> dict[str, Any]:
     if isinstance(value, Camera):
         settings = camera_settings(name, value)
         return {key: part for key, part in settings.items() if key not in _NOT_OF_PIXELS}
-    return fields(name, value, {"width": whole, "height": whole, "fov_deg": finite})
+    return checked_fields(
+        name,
+        value,
+        {"width": integer_in_range, "height": integer_in_range, "fov_deg": finite_number},
+    )
 
 
 #: What does not change where a camera's pixels look.
@@ -96,4 +100,4 @@ def takes_target(kind: str) -> bool:
 
 def checked_action(request: Mapping[str, Any]) -> dict[str, Any]:
     """An action with its fields checked, as the native half takes it."""
-    return fields("", request, _checks())
+    return checked_fields("", request, _checks())

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError
-from dwell.arguments import fields, in_order, quoted, refuse_masked
+from dwell.arguments import checked_fields, quoted, refuse_masked, sequence_items
 from dwell.schemas import setting_checks
 
 
@@ -17,10 +17,10 @@ def controls_of(controls: object) -> NDArray[np.float32] | list[dict[str, Any]]:
     """Controls as the native half reads them: an array (agent, 4), or a mapping for each agent."""
     expected = "expected numbers of shape (agent, 4) or a mapping for each agent"
     is_array = isinstance(controls, np.ndarray)
-    rows = controls if is_array else in_order("controls", controls, expected)
+    rows = controls if is_array else sequence_items("controls", controls, expected)
     if isinstance(rows, list) and any(isinstance(row, Mapping) for row in rows):
         known = setting_checks("AgentControl")
-        return [fields(f"controls[{k}]", row, known) for k, row in enumerate(rows)]
+        return [checked_fields(f"controls[{k}]", row, known) for k, row in enumerate(rows)]
     refuse_masked("controls", rows)
     try:
         table = np.asarray(rows)

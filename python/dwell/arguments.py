@@ -17,16 +17,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell._native import ConfigError
-from dwell.files import MOST_DIGITS, parse_json
+from dwell.files import MAX_DIGITS, parse_json
 
 #: What the border holds: seeds and counts are unsigned and have 64 bits.
-_MOST = 2**64 - 1
+_MAX_UINT64 = 2**64 - 1
 #: The engines reckon in 32 bits: what is larger would be infinite there.
-_LARGEST = float(np.finfo(np.float32).max)
+_MAX_FLOAT32 = float(np.finfo(np.float32).max)
 #: How deep lists and mappings lie in each other at most, as the native side reads them.
-_DEEPEST = 100
+_MAX_DEPTH = 100
 #: The first whole number that is not read back from JSON.
-_TOO_LARGE = 10**MOST_DIGITS
+_FIRST_UNREADABLE_INTEGER = 10**MAX_DIGITS
 
 _Record = TypeVar("_Record")
 _Kind = TypeVar("_Kind")
@@ -44,28 +44,28 @@ def quoted(value: object, most: int = 200) -> str:
     return row if len(row) <= most else f"{row[:most]}…"
 
 
-def some(values: Sequence[object], most: int = 8) -> str:
+def abbreviated_list(values: Sequence[object], most: int = 8) -> str:
     """The first of many for error messages, and how many there are."""
     if len(values) <= most:
         return quoted([*values])
     return f"[{', '.join(map(quoted, values[:most]))}, …] ({len(values)} in all)"
 
 
-def whole(name: str, value: object, *, low: int = 0, high: int = _MOST) -> int:
+def integer_in_range(name: str, value: object, *, low: int = 0, high: int = _MAX_UINT64) -> int:
     """A whole number within bounds; ``True``, 1.0 and ``"1"`` are none."""
-    allowed = f"whole numbers from {low}" + (f" to {high}" if high != _MOST else "")
+    allowed = f"whole numbers from {low}" + (f" to {high}" if high != _MAX_UINT64 else "")
     try:
         number = operator.index(value)  # type: ignore[arg-type] # what this finds out
     except TypeError:
         raise ConfigError(f"{name} is {quoted(value)}; allowed are {allowed}") from None
     if isinstance(value, bool) or not low <= number <= high:
-        if number > _MOST:
+        if number > _MAX_UINT64:
             allowed = f"whole numbers from {low} to {high}"
         raise ConfigError(f"{name} is {quoted(value)}; allowed are {allowed}")
     return number
 
 
-def finite(name: str, value: object) -> float:
+def finite_number(name: str, value: object) -> float:
     """A finite number as Python's own float; ``True``, ``"1"`` and complex numbers are none."""
     try:
         # NumPy drops the imaginary part of what is complex.
@@ -76,9 +76,9 @@ def finite(name: str, value: object) -> float:
         raise ConfigError(f"{name} is {quoted(value)}; expected a number") from None
     if not math.isfinite(number):
         raise ConfigError(f"{name} is {number}; allowed are finite numbers")
-    if abs(number) > _LARGEST:
+    if abs(number) > _MAX_FLOAT32:
         raise ConfigError(
-            f"{name} is {number}; allowed are numbers up to {_LARGEST:.3g} either way"
+            f"{name} is {number}; allowed are numbers up to {_MAX_FLOAT32:.3g} either way"
         )
     return number
 
@@ -91,9 +91,9 @@ def refuse_masked(name: str, values: object) -> None:
         )
 
 
-def within(name: str, value: object, low: float, high: float, unit: str = "") -> float:
+def number_in_range(name: str, value: object, low: float, high: float, unit: str = "") -> float:
     """A finite number within bounds."""
-    number = finite(name, value)
+    number = finite_number(name, value)
     if not low <= number <= high:
         raise ConfigError(
             f"{name} is {number:g}; allowed are {low:g} to {high:g}{unit and ' '}{unit}"
@@ -101,7 +101,7 @@ def within(name: str, value: object, low: float, high: float, unit: str = "") ->
     return number
 
 
-def instance(name: str, value: object, kind: type[_Kind]) -> _Kind:
+def instance_of(name: str, value: object, kind: type[_Kind]) -> _Kind:
     """What is of a class of dwell."""
     if not isinstance(value, kind):
         raise ConfigError(f"{name} is {quoted(value)}; expected a dwell.{kind.__name__}")
@@ -117,7 +117,7 @@ def hashable(value: object) -> object:
     return value
 
 
-def numbers(name: str, values: object, dtype: type[np.floating[Any]]) -> NDArray[Any]:
+def real_array(name: str, values: object, dtype: type[np.floating[Any]]) -> NDArray[Any]:
     """An array of real numbers, as C has them; NumPy alone would drop the imaginary part."""
     refuse_masked(name, values)
     try:
@@ -131,7 +131,7 @@ def numbers(name: str, values: object, dtype: type[np.floating[Any]]) -> NDArray
         return np.ascontiguousarray(found, dtype)
 
 
-def in_order(name: str, values: object, expected: str) -> list[Any]:
+def sequence_items(name: str, values: object, expected: str) -> list[Any]:
     """The elements of a list, an array or what else has an order and is no text.
 
     A set has none: what came first would differ from one process to the next.
@@ -181,9 +181,9 @@ def choice(name: str, value: object, allowed: Sequence[str]) -> str:
     return text(name, value)
 
 
-def texts(name: str, values: object) -> list[str]:
+def text_list(name: str, values: object) -> list[str]:
     """A list of text; one text alone is none."""
-    rows = in_order(name, values, "expected a list of text")
+    rows = sequence_items(name, values, "expected a list of text")
     return [text(f"{name}[{k}]", row) for k, row in enumerate(rows)]
 
 
@@ -195,7 +195,7 @@ def path(name: str, value: object) -> str:
         raise ConfigError(f"{name} is {quoted(value)}; expected text or a path") from None
 
 
-def flag(name: str, value: object) -> bool:
+def boolean(name: str, value: object) -> bool:
     """``True`` or ``False``."""
     if not isinstance(value, bool | np.bool_):
         raise ConfigError(f"{name} is {quoted(value)}; allowed are True and False")
@@ -210,7 +210,7 @@ def mapping(name: str, value: object, of: str = "values by name") -> dict[str, A
     return {text(at, key): part for key, part in value.items()}
 
 
-def fields(
+def checked_fields(
     name: str, value: object, known: Mapping[str, Callable[[str, object], Any]]
 ) -> dict[str, Any]:
     """A mapping of known fields, each checked by its own rule."""
@@ -243,20 +243,20 @@ def refuse_unknown(of: str, unknown: Iterable[str], known: Iterable[str]) -> Non
         raise ConfigError(f"{of}: no argument {name!r}; {allowed_values(name, known)}")
 
 
-def record(
+def dataclass_from_mapping(
     name: str, value: object, kind: type[_Record], words: Mapping[str, Sequence[str]]
 ) -> dict[str, Any]:
     """The fields of a data class, numbers or one of several ``words``."""
-    instance(name, value, kind)
+    instance_of(name, value, kind)
     checked: dict[str, Any] = {}
     for field in dataclasses.fields(kind):  # type: ignore[arg-type] # every kind is a data class
         part, at = getattr(value, field.name), f"{name}.{field.name}"
         if field.default is None and part is None:
             checked[field.name] = None
         elif isinstance(field.default, int):
-            checked[field.name] = whole(at, part)
+            checked[field.name] = integer_in_range(at, part)
         elif field.default is None or isinstance(field.default, float):
-            checked[field.name] = finite(at, part)
+            checked[field.name] = finite_number(at, part)
         else:
             checked[field.name] = choice(at, part, words[field.name])
     return checked
@@ -267,7 +267,7 @@ def point(name: str, value: object) -> tuple[float, float, float]:
     return _three(name, value, "expected three numbers (x, y, z) in metres")
 
 
-def triple(name: str, value: Sequence[float]) -> tuple[float, float, float]:
+def three_numbers(name: str, value: Sequence[float]) -> tuple[float, float, float]:
     """Three finite numbers, from any sequence or array."""
     return _three(name, value, "expected three numbers (x, y, z)")
 
@@ -276,25 +276,25 @@ def _three(name: str, value: object, expected: str) -> tuple[float, float, float
     parts = _ordered(value)
     if parts is None or len(parts) != 3:
         raise ConfigError(f"{name}: {expected}, found {_found(value)}")
-    x, y, z = (finite(f"{name}[{k}]", part) for k, part in enumerate(parts))
+    x, y, z = (finite_number(f"{name}[{k}]", part) for k, part in enumerate(parts))
     return x, y, z
 
 
 def unit_quaternion(name: str, value: Sequence[float]) -> tuple[float, ...]:
     """A rotation (x, y, z, w), from four finite numbers that are not all 0, made of unit length."""
     expected = "expected a rotation (x, y, z, w)"
-    parts = [finite(f"{name}[{k}]", part) for k, part in enumerate(_ordered(value) or ())]
+    parts = [finite_number(f"{name}[{k}]", part) for k, part in enumerate(_ordered(value) or ())]
     length = math.hypot(*parts)
     if len(parts) != 4 or length == 0.0 or not math.isfinite(length):
         raise ConfigError(f"{name}: {expected}, found {_found(value)}")
     return tuple(part / length for part in parts)
 
 
-def pair(name: str, value: object) -> tuple[float, float]:
+def two_numbers(name: str, value: object) -> tuple[float, float]:
     """Two finite numbers."""
     if isinstance(value, str | bytes) or not isinstance(value, Sequence) or len(value) != 2:
         raise ConfigError(f"{name}: expected two numbers, found {quoted(value)}")
-    first, second = (finite(f"{name}[{k}]", part) for k, part in enumerate(value))
+    first, second = (finite_number(f"{name}[{k}]", part) for k, part in enumerate(value))
     return first, second
 
 
@@ -309,9 +309,9 @@ def file_name(name: str, value: object) -> str:
 
 def _plain(at: str, value: object, depth: int = 0) -> Any:  # noqa: ANN401 - any JSON value
     """``value`` as JSON knows it; ``at``: its place, for the error."""
-    if depth > _DEEPEST:
+    if depth > _MAX_DEPTH:
         raise ConfigError(
-            f"{at[:60]}… is nested too deep; allowed are {_DEEPEST} lists and mappings in "
+            f"{at[:60]}… is nested too deep; allowed are {_MAX_DEPTH} lists and mappings in "
             "each other"
         )
     if isinstance(value, np.ndarray | np.generic):
@@ -327,10 +327,10 @@ def _plain(at: str, value: object, depth: int = 0) -> Any:  # noqa: ANN401 - any
     if isinstance(value, list | tuple):
         return [_plain(f"{at}[{k}]", part, depth + 1) for k, part in enumerate(value)]
     if isinstance(value, float):
-        return finite(at, value)
-    if isinstance(value, int) and abs(value) >= _TOO_LARGE:
+        return finite_number(at, value)
+    if isinstance(value, int) and abs(value) >= _FIRST_UNREADABLE_INTEGER:
         raise ConfigError(
-            f"{at} is a whole number of more than {MOST_DIGITS} digits, which no float reaches"
+            f"{at} is a whole number of more than {MAX_DIGITS} digits, which no float reaches"
         )
     if isinstance(value, str):
         return text(at, value)
@@ -339,7 +339,7 @@ def _plain(at: str, value: object, depth: int = 0) -> Any:  # noqa: ANN401 - any
     raise ConfigError(f"{at} is {quoted(value)}; expected numbers, text, lists or mappings")
 
 
-def plain(settings: Mapping[str, object] | Sequence[object]) -> Any:  # noqa: ANN401 - of the settings
+def plain_settings(settings: Mapping[str, object] | Sequence[object]) -> Any:  # noqa: ANN401 - of the settings
     """Settings as the native side takes them: numbers, text, lists and mappings.
 
     Raises:

@@ -12,7 +12,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from dwell import ConfigError, _native, arguments
-from dwell.arguments import choice, finite, flag, in_order, pair, path, text, whole
+from dwell.arguments import (
+    boolean,
+    choice,
+    finite_number,
+    integer_in_range,
+    path,
+    sequence_items,
+    text,
+    two_numbers,
+)
 from dwell.edit_fields import Rgb, rgb
 from dwell.editing import EditList
 from dwell.files import atomic_write
@@ -54,9 +63,9 @@ class HouseBuilder(EditList):
         self._name = text("name", name)
         self._building: dict[str, Any] = {
             "style": style,
-            "seed": whole("seed", seed),
-            "outer_wall_m": finite("outer_wall_m", outer_wall_m),
-            "daytime": {"hour_h": finite("hour_h", hour_h)},
+            "seed": integer_in_range("seed", seed),
+            "outer_wall_m": finite_number("outer_wall_m", outer_wall_m),
+            "daytime": {"hour_h": finite_number("hour_h", hour_h)},
         }
         self._storeys: list[dict[str, Any]] = [_storey(2.6)]
 
@@ -73,7 +82,7 @@ class HouseBuilder(EditList):
         """
         if not self._storeys[-1]["rooms"]:
             self._storeys.pop()
-        self._storeys.append(_storey(finite("height_m", height_m)))
+        self._storeys.append(_storey(finite_number("height_m", height_m)))
         return self
 
     def room(
@@ -105,7 +114,7 @@ class HouseBuilder(EditList):
                 "name": text("name", name),
                 "outline": _outline(floor_plan),
                 "kind": kind,
-                "height_m": None if height_m is None else finite("height_m", height_m),
+                "height_m": None if height_m is None else finite_number("height_m", height_m),
                 "floor": _covering("floor", floor),
                 "walls": _covering("walls", walls),
                 "ceiling": _covering("ceiling", ceiling),
@@ -146,12 +155,12 @@ class HouseBuilder(EditList):
             {
                 "rooms": [text("room", room), text("behind", behind)],
                 "side": _side(side),
-                "at_m": None if at_m is None else finite("at_m", at_m),
-                "width_m": finite("width_m", width_m),
-                "height_m": finite("height_m", height_m),
+                "at_m": None if at_m is None else finite_number("at_m", at_m),
+                "width_m": finite_number("width_m", width_m),
+                "height_m": finite_number("height_m", height_m),
                 "leaf": choice("leaf", leaf, ("panel", "glazed", "none")),
                 "hinge": choice("hinge", hinge, ("left", "right")),
-                "open": finite("opened", opened),
+                "open": finite_number("opened", opened),
                 "name": name,
             }
         )
@@ -185,11 +194,11 @@ class HouseBuilder(EditList):
             {
                 "room": text("room", room),
                 "side": _side(side),
-                "at_m": None if at_m is None else finite("at_m", at_m),
-                "width_m": finite("width_m", width_m),
-                "height_m": finite("height_m", height_m),
-                "sill_m": finite("sill_m", sill_m),
-                "frosted": flag("frosted", frosted),
+                "at_m": None if at_m is None else finite_number("at_m", at_m),
+                "width_m": finite_number("width_m", width_m),
+                "height_m": finite_number("height_m", height_m),
+                "sill_m": finite_number("sill_m", sill_m),
+                "frosted": boolean("frosted", frosted),
                 "name": name,
             }
         )
@@ -205,7 +214,8 @@ class HouseBuilder(EditList):
         """
         expected = "expected (x from, z from, x to, z to) in metres"
         corners = [
-            finite(f"rect[{k}]", at) for k, at in enumerate(in_order("rect", rect, expected))
+            finite_number(f"rect[{k}]", at)
+            for k, at in enumerate(sequence_items("rect", rect, expected))
         ]
         if len(corners) != 4:
             raise ConfigError(f"rect has {len(corners)} numbers; expected 4")
@@ -265,8 +275,10 @@ def _covering(name: str, covering: Covering | None) -> dict[str, Any] | None:
 def _outline(
     floor_plan: Sequence[float] | Sequence[tuple[float, float]],
 ) -> list[tuple[float, float]]:
-    rows = in_order("floor_plan", floor_plan, "expected four numbers or corners (x, z) in metres")
+    rows = sequence_items(
+        "floor_plan", floor_plan, "expected four numbers or corners (x, z) in metres"
+    )
     if len(rows) == 4 and not any(isinstance(row, Sequence) for row in rows):
-        x0, z0, x1, z1 = (finite(f"floor_plan[{k}]", at) for k, at in enumerate(rows))
+        x0, z0, x1, z1 = (finite_number(f"floor_plan[{k}]", at) for k, at in enumerate(rows))
         return [(x0, z0), (x1, z0), (x1, z1), (x0, z1)]
-    return [pair(f"floor_plan[{k}]", corner) for k, corner in enumerate(rows)]
+    return [two_numbers(f"floor_plan[{k}]", corner) for k, corner in enumerate(rows)]

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from dwell import ConfigError, _native
-from dwell.arguments import in_order, path, quoted, text, whole
+from dwell.arguments import integer_in_range, path, quoted, sequence_items, text
 
 
 def calibrate(
@@ -35,7 +35,7 @@ def calibrate(
     Raises:
         MeasuredDataError: The bundle cannot be used; the message names file, line and field.
     """
-    tables = in_order("peers", peers, "expected paths of tables")
+    tables = sequence_items("peers", peers, "expected paths of tables")
     names = [path(f"peers[{k}]", peer) for k, peer in enumerate(tables)]
     if progress is not None and not callable(progress):
         raise ConfigError(f"progress is {quoted(progress)}; expected a function or None")
@@ -55,4 +55,4 @@ def write_example(folder: str | os.PathLike[str], seed: int = 0) -> str:
     Returns:
         What is hidden, in a sentence: what :func:`calibrate` should find.
     """
-    return _native.calibration_example(path("folder", folder), whole("seed", seed))
+    return _native.calibration_example(path("folder", folder), integer_in_range("seed", seed))

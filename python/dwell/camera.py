@@ -8,16 +8,16 @@ from typing import Any, Literal, get_args
 
 from dwell._native import ConfigError
 from dwell.arguments import (
+    checked_fields,
     choice,
-    fields,
-    finite,
+    finite_number,
     hashable,
-    instance,
+    instance_of,
+    integer_in_range,
     mapping,
+    number_in_range,
     quoted,
-    triple,
-    whole,
-    within,
+    three_numbers,
 )
 
 Preset = Literal["flat", "lit", "full"]
@@ -42,7 +42,7 @@ PROJECTIONS: dict[str, tuple[str, ...]] = {
 _WITH_DEFAULT = {"k1", "k2", "k3", "k4", "p1", "p2", "half_angle_deg"}
 
 #: Most pixels along an edge, and the end of all depth, as the engine has them.
-MOST_PIXELS = 16_384
+MAX_PIXELS = 16_384
 _FURTHEST_M = 1e6
 
 
@@ -104,25 +104,27 @@ class Camera:
 
 def camera_settings(name: str, camera: object) -> dict[str, Any]:
     """A camera's numbers, checked, as the native side takes them."""
-    camera = instance(name, camera, Camera)
+    camera = instance_of(name, camera, Camera)
     settings: dict[str, Any] = {
-        "width": whole(f"{name}.width", camera.width, low=1, high=MOST_PIXELS),
-        "height": whole(f"{name}.height", camera.height, low=1, high=MOST_PIXELS),
-        "max_objects": whole(f"{name}.max_objects", camera.max_objects, low=1, high=4096),
+        "width": integer_in_range(f"{name}.width", camera.width, low=1, high=MAX_PIXELS),
+        "height": integer_in_range(f"{name}.height", camera.height, low=1, high=MAX_PIXELS),
+        "max_objects": integer_in_range(
+            f"{name}.max_objects", camera.max_objects, low=1, high=4096
+        ),
         "preset": choice(f"{name}.preset", camera.preset, PRESETS),
         "classes": choice(f"{name}.classes", camera.classes, CLASSES),
-        "position_m": list(triple(f"{name}.position_m", camera.position_m)),
+        "position_m": list(three_numbers(f"{name}.position_m", camera.position_m)),
     }
     for field in ("near_m", "far_m", "yaw_deg", "pitch_deg", "roll_deg"):
-        settings[field] = finite(f"{name}.{field}", getattr(camera, field))
-    within(f"{name}.near_m", settings["near_m"], 0.0, _FURTHEST_M, "m")
+        settings[field] = finite_number(f"{name}.{field}", getattr(camera, field))
+    number_in_range(f"{name}.near_m", settings["near_m"], 0.0, _FURTHEST_M, "m")
     if not settings["near_m"] < settings["far_m"] <= _FURTHEST_M:
         raise ConfigError(
             f"{name}.far_m is {quoted(camera.far_m)}; allowed is more than near_m, at most 1e6 m"
         )
     if camera.fov_deg is not None:
         at = f"{name}.fov_deg"
-        settings["fov_deg"] = within(at, camera.fov_deg, 1.0, 175.0, "degrees")
+        settings["fov_deg"] = number_in_range(at, camera.fov_deg, 1.0, 175.0, "degrees")
     if camera.projection is not None:
         settings["projection"] = _projection(f"{name}.projection", camera.projection)
     return settings
@@ -131,11 +133,13 @@ def camera_settings(name: str, camera: object) -> dict[str, Any]:
 def _projection(name: str, projection: object) -> dict[str, Any]:
     rows = mapping(name, projection, "a kind with its numbers")
     kind = choice(f"{name}.kind", rows.pop("kind", None), tuple(PROJECTIONS))
-    known: dict[str, Callable[[str, object], float]] = dict.fromkeys(PROJECTIONS[kind], finite)
+    known: dict[str, Callable[[str, object], float]] = dict.fromkeys(
+        PROJECTIONS[kind], finite_number
+    )
     if unknown := sorted(set(rows) - set(known)):
         has = f"has {', '.join(known)}" if known else "has no numbers"
         raise ConfigError(f"{name}: found {quoted(unknown[0])}; {kind} {has}")
-    numbers = fields(name, rows, known)
+    numbers = checked_fields(name, rows, known)
     for missing in sorted(set(known) - _WITH_DEFAULT - set(rows)):
         raise ConfigError(f"{name} has no {missing}; {kind} has {', '.join(known)}")
     return {"kind": kind, **numbers}

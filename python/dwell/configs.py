@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, get_args
 
 from dwell._native import ConfigError
-from dwell.arguments import fields, finite, mapping, quoted, whole
+from dwell.arguments import checked_fields, finite_number, integer_in_range, mapping, quoted
 from dwell.engine_types import LocomotionName
 from dwell.schemas import setting_checks
 
@@ -27,7 +27,7 @@ def _locomotion(name: str, value: object) -> object:
         raise ConfigError(f"{name}: found {found:.200}; allowed is one of {', '.join(LOCOMOTIONS)}")
     return {
         kind: {
-            field: finite(f"{name}.{kind}.{field}", number)
+            field: finite_number(f"{name}.{kind}.{field}", number)
             for field, number in mapping(f"{name}.{kind}", numbers).items()
         }
         for kind, numbers in kinds.items()
@@ -37,13 +37,13 @@ def _locomotion(name: str, value: object) -> object:
 def bodies(agents: object) -> list[dict[str, Any]]:
     """A body for each agent, from a count or from mappings of what differs from the default."""
     if isinstance(agents, str | bytes) or not isinstance(agents, Sequence):
-        return [{} for _ in range(whole("agents", agents, high=64))]
+        return [{} for _ in range(integer_in_range("agents", agents, high=64))]
     known = {**setting_checks("AgentBody"), "locomotion": _locomotion}
     rows = []
     for k, body in enumerate(agents):
         if not isinstance(body, Mapping):
             raise ConfigError(f"agents[{k}] is {quoted(body)}; expected a mapping")
-        rows.append(fields(f"agents[{k}]", body, known))
+        rows.append(checked_fields(f"agents[{k}]", body, known))
     return rows
 
 

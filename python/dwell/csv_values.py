@@ -17,7 +17,7 @@ def delimiter_of(head: str) -> str:
     return next((mark for mark in DELIMITERS if mark in head), ",")
 
 
-def not_text(path: Path, error: UnicodeDecodeError) -> ValueError:
+def encoding_error(path: Path, error: UnicodeDecodeError) -> ValueError:
     """The fault of a file that is no UTF-8."""
     byte = error.object[error.start]
     return ValueError(
@@ -26,18 +26,18 @@ def not_text(path: Path, error: UnicodeDecodeError) -> ValueError:
     )
 
 
-def has(path: Path, columns: Sequence[str], names: Sequence[str]) -> None:
+def require_unique_columns(path: Path, columns: Sequence[str], names: Sequence[str]) -> None:
     """Refuses a head that lacks columns, or has one of them twice."""
     for name in names:
         if columns.count(name) > 1:
             raise ValueError(f"{path}: column {name!r} stands {columns.count(name)} times; once")
         if name not in columns:
-            near = likely(name, columns)
+            near = similar_column(name, columns)
             meant = f"; write {near!r} in the map if that is meant" if near else ""
             raise ValueError(f"{path}: no column {name!r}; it has {list(columns)}{meant}")
 
 
-def likely(name: str, columns: Sequence[str]) -> str | None:
+def similar_column(name: str, columns: Sequence[str]) -> str | None:
     """The column that may be meant: of that name but for unit and case, or of a similar one."""
 
     def bare(text: str) -> str:
@@ -48,7 +48,7 @@ def likely(name: str, columns: Sequence[str]) -> str | None:
     return next(iter(same or difflib.get_close_matches(name, columns, 1)), None)
 
 
-def number(at: str, row: Mapping[str, object], column: str, delimiter: str) -> float:
+def parse_cell_number(at: str, row: Mapping[str, object], column: str, delimiter: str) -> float:
     """A finite number in a column; it may have a decimal comma where commas part no cells."""
     value = row.get(column)
     told = value.strip() if isinstance(value, str) else value
@@ -71,10 +71,10 @@ def number(at: str, row: Mapping[str, object], column: str, delimiter: str) -> f
 def suggested_fix(told: object) -> str:
     """The remedy for a cell that is no finite number."""
     if told in (None, "") or (isinstance(told, float) and math.isnan(told)):
-        return MISSING
+        return MISSING_NUMBER_HINT
     text = str(told)
     if text.lower() in ("nan", "na", "n/a", "null", "none", "-", "inf", "-inf"):
-        return MISSING
+        return MISSING_NUMBER_HINT
     if re.fullmatch(r"[-+]?[\d.]*,\d+", text):
         return (
             f": a decimal comma? Write {text.replace('.', '').replace(',', '.')}, "
@@ -86,7 +86,7 @@ def suggested_fix(told: object) -> str:
 
 
 #: What to do about a number that is not there.
-MISSING = (
+MISSING_NUMBER_HINT = (
     ": fill it in, or leave the row out; where times must be even, end the episode before it and "
     "give the rows after it another episode's name"
 )

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dwell._native import ConfigError
-from dwell.arguments import finite, numbers, quoted
+from dwell.arguments import finite_number, quoted, real_array
 
 #: Octave bands, 63 Hz to 8 kHz.
 BANDS = 8
@@ -49,7 +49,7 @@ class Directivity:
     @classmethod
     def sphere(cls, radius_m: float) -> Directivity:
         """A point on a rigid sphere, 0.01 to 1 m: 0.0875 a talking head, 0.15 a loudspeaker."""
-        return cls("sphere", (finite("radius_m", radius_m),))
+        return cls("sphere", (finite_number("radius_m", radius_m),))
 
     @classmethod
     def polar(cls, level_db: npt.ArrayLike) -> Directivity:
@@ -63,7 +63,7 @@ class Directivity:
         Raises:
             ConfigError: For another shape, NaN, or a level more than 6 dB above that on the axis.
         """
-        levels = numbers("level_db", level_db, np.float64)
+        levels = real_array("level_db", level_db, np.float64)
         if levels.ndim == 1:
             levels = np.repeat(levels[:, None], BANDS, axis=1)
         if levels.ndim != 2 or levels.shape[1] != BANDS or not 2 <= len(levels) <= 361:
@@ -132,7 +132,7 @@ class Directivity:
 
 def _bands(name: str, value: float | Sequence[float]) -> npt.NDArray[np.float64]:
     """One number for each octave."""
-    bands = np.asarray(numbers(name, value, np.float64)).reshape(np.shape(value))
+    bands = np.asarray(real_array(name, value, np.float64)).reshape(np.shape(value))
     if bands.shape not in ((), (BANDS,)) or not np.isfinite(bands).all():
         raise ConfigError(f"{name} is {quoted(value)}; allowed is a number, or {BANDS} of them")
     return np.broadcast_to(bands, (BANDS,))

@@ -6,7 +6,15 @@ from collections.abc import Sequence
 from typing import Any, Literal
 
 from dwell import ConfigError
-from dwell.arguments import choice, finite, flag, in_order, point, text, whole
+from dwell.arguments import (
+    boolean,
+    choice,
+    finite_number,
+    integer_in_range,
+    point,
+    sequence_items,
+    text,
+)
 
 Point = tuple[float, float, float]
 Rgb = tuple[int, int, int]
@@ -22,7 +30,7 @@ def place_field(
     return {
         "at": None if at is None else point("at", at),
         "on": optional_text("on", on),
-        "yaw_deg": None if yaw_deg is None else finite("yaw_deg", yaw_deg),
+        "yaw_deg": None if yaw_deg is None else finite_number("yaw_deg", yaw_deg),
         "anchor": choice("anchor", anchor, ("foot", "middle", "top", "origin")),
     }
 
@@ -39,10 +47,12 @@ def traits_field(
     traits = {
         "category": optional_text("category", category),
         "mobility": optional_text("mobility", mobility),
-        "mass_kg": None if mass_kg is None else finite("mass_kg", mass_kg),
-        "density_kg_m3": None if density_kg_m3 is None else finite("density_kg_m3", density_kg_m3),
-        "pickable": None if pickable is None else flag("pickable", pickable),
-        "switch": None if switch is None else flag("switch", switch),
+        "mass_kg": None if mass_kg is None else finite_number("mass_kg", mass_kg),
+        "density_kg_m3": None
+        if density_kg_m3 is None
+        else finite_number("density_kg_m3", density_kg_m3),
+        "pickable": None if pickable is None else boolean("pickable", pickable),
+        "switch": None if switch is None else boolean("switch", switch),
     }
     told = {key: value for key, value in traits.items() if value is not None}
     return told or None
@@ -69,8 +79,8 @@ def optional_text(name: str, value: object) -> str | None:
 
 def rgb(name: str, color: Sequence[int]) -> list[int]:
     """A colour: three whole numbers, 0 to 255."""
-    rows = in_order(name, color, "expected three whole numbers, 0 to 255")
-    parts = [whole(f"{name}[{k}]", value, high=255) for k, value in enumerate(rows)]
+    rows = sequence_items(name, color, "expected three whole numbers, 0 to 255")
+    parts = [integer_in_range(f"{name}[{k}]", value, high=255) for k, value in enumerate(rows)]
     if len(parts) != 3:
         raise ConfigError(f"{name} has {len(parts)} numbers; expected 3")
     return parts

@@ -12,7 +12,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, Literal
 
 from dwell import ConfigError, UsageError, _native, arguments
-from dwell.arguments import choice, finite, flag, path, point, text, whole
+from dwell.arguments import boolean, choice, finite_number, integer_in_range, path, point, text
 from dwell.edit_fields import (
     Anchor,
     Mobility,
@@ -97,7 +97,7 @@ class EditList:
         what = {
             "kind": text("kind", kind),
             "style": optional_text("style", style),
-            "seed": whole("seed", seed),
+            "seed": integer_in_range("seed", seed),
         }
         return self._note(
             "add",
@@ -158,7 +158,7 @@ class EditList:
             loop: whether over and over,
             start_s: and from when on.
         """
-        what = {"path": path("file", file), "scale": finite("scale", scale)}
+        what = {"path": path("file", file), "scale": finite_number("scale", scale)}
         what["up"] = choice("up", up, ("y", "z"))
         return self._note(
             "add",
@@ -237,7 +237,10 @@ class EditList:
 
         Objects behind it move up in the list; names stay.
         """
-        fields = {"object": text("thing", thing), "with_things": flag("with_things", with_things)}
+        fields = {
+            "object": text("thing", thing),
+            "with_things": boolean("with_things", with_things),
+        }
         return self._note("remove", fields)
 
     def move(
@@ -270,8 +273,8 @@ class EditList:
                 "object": text("thing", thing),
                 "place": place_field(at, on, yaw_deg, anchor),
                 "by": point("by", by),
-                "turn_deg": finite("turn_deg", turn_deg),
-                "with_things": flag("with_things", with_things),
+                "turn_deg": finite_number("turn_deg", turn_deg),
+                "with_things": boolean("with_things", with_things),
             },
         )
 
@@ -323,9 +326,9 @@ class EditList:
         look = {
             "substance": optional_text("substance", substance),
             "srgb": None if srgb is None else rgb("srgb", srgb),
-            "opacity": None if opacity is None else finite("opacity", opacity),
-            "roughness": None if roughness is None else finite("roughness", roughness),
-            "keep_look": flag("keep_look", keep_look),
+            "opacity": None if opacity is None else finite_number("opacity", opacity),
+            "roughness": None if roughness is None else finite_number("roughness", roughness),
+            "keep_look": boolean("keep_look", keep_look),
         }
         return self._note("re_material", {"of": surfaces, "look": look})
 
@@ -415,12 +418,12 @@ class EditList:
                 "object": optional_text("thing", thing),
                 "kind": kind,
                 "style": optional_text("style", style),
-                "seed": whole("seed", seed),
+                "seed": integer_in_range("seed", seed),
                 "name": optional_text("name", name),
                 "place": place_field(at, on, yaw_deg, anchor or ("top" if hangs else "foot")),
-                "power_w": None if power_w is None else finite("power_w", power_w),
+                "power_w": None if power_w is None else finite_number("power_w", power_w),
                 "srgb": None if srgb is None else rgb("srgb", srgb),
-                "on": flag("lit", lit),
+                "on": boolean("lit", lit),
             },
         )
 
@@ -440,8 +443,8 @@ class EditList:
                 "path": path("file", file),
                 "name": text("name", name),
                 "at": point("at", at),
-                "yaw_deg": finite("yaw_deg", yaw_deg),
-                "fixed_base": None if fixed_base is None else flag("fixed_base", fixed_base),
+                "yaw_deg": finite_number("yaw_deg", yaw_deg),
+                "fixed_base": None if fixed_base is None else boolean("fixed_base", fixed_base),
             },
         )
 
@@ -467,8 +470,8 @@ class EditList:
             {
                 "at": None if at is None else point("at", at),
                 "room": optional_text("room", room),
-                "yaw_deg": finite("yaw_deg", yaw_deg),
-                "agent": None if agent is None else whole("agent", agent),
+                "yaw_deg": finite_number("yaw_deg", yaw_deg),
+                "agent": None if agent is None else integer_in_range("agent", agent),
             },
         )
 
@@ -482,7 +485,7 @@ class EditList:
         """
         fields = {
             "object": text("thing", thing),
-            "open": finite("opened", opened),
+            "open": finite_number("opened", opened),
             "joint": optional_text("joint", joint),
         }
         return self._note("set_door", fields)

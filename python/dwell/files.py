@@ -25,18 +25,18 @@ from numpy.typing import NDArray
 from dwell import _native
 
 #: Drafts for one name that may be in the making at once, and bytes that theirs take from it.
-_MOST_DRAFTS = 10_000
+_MAX_DRAFTS = 10_000
 _DRAFT_NAME_BYTES = 200
 #: A text that is read whole has at most so many bytes, as for the readers of houses.
-MOST_TEXT_BYTES = 64 * 2**20
+MAX_TEXT_BYTES = 64 * 2**20
 #: JSON is nested at most so deep, as for the readers of houses.
-_MOST_DEPTH = 128
+_MAX_DEPTH = 128
 #: Values and names of a JSON text: Python takes some 70 bytes for each.
-_MOST_VALUES = 4_000_000
+_MAX_VALUES = 4_000_000
 #: Digits of a whole number: no float is larger.
-MOST_DIGITS = 309
+MAX_DIGITS = 309
 #: What file systems say that have no hard links.
-_NO_LINKS = {errno.EPERM, errno.ENOTSUP, errno.EOPNOTSUPP, errno.ENOSYS, errno.EINVAL}
+_HARD_LINK_ERRNOS = {errno.EPERM, errno.ENOTSUP, errno.EOPNOTSUPP, errno.ENOSYS, errno.EINVAL}
 
 _Name = str | os.PathLike[str]
 
@@ -67,7 +67,7 @@ def open_file(path: _Name, most_bytes: int | None = None) -> BinaryIO:
     return file
 
 
-def read(path: _Name, most_bytes: int = MOST_TEXT_BYTES) -> bytes:
+def read(path: _Name, most_bytes: int = MAX_TEXT_BYTES) -> bytes:
     """The bytes of a regular file.
 
     Raises:
@@ -88,9 +88,9 @@ def lines(file: IO[bytes], name: _Name) -> Iterator[bytes]:
     Raises:
         ValueError: One is.
     """
-    while line := file.readline(MOST_TEXT_BYTES + 1):
-        if len(line) > MOST_TEXT_BYTES:
-            _refuse_large(f"{os.fspath(name)}: a line", len(line), MOST_TEXT_BYTES)
+    while line := file.readline(MAX_TEXT_BYTES + 1):
+        if len(line) > MAX_TEXT_BYTES:
+            _refuse_large(f"{os.fspath(name)}: a line", len(line), MAX_TEXT_BYTES)
         yield line
 
 
@@ -112,18 +112,18 @@ def parse_json(text: bytes, at: str) -> Any:  # noqa: ANN401 - any JSON value
             than is read; the message begins with ``at``.
     """
     depth, values = _native.json_extent(text)
-    if depth > _MOST_DEPTH:
-        raise ValueError(f"{at}: nested {depth} deep; at most {_MOST_DEPTH} is read")
-    if values > _MOST_VALUES:
-        raise ValueError(f"{at}: {values} values and names; at most {_MOST_VALUES} are read")
+    if depth > _MAX_DEPTH:
+        raise ValueError(f"{at}: nested {depth} deep; at most {_MAX_DEPTH} is read")
+    if values > _MAX_VALUES:
+        raise ValueError(f"{at}: {values} values and names; at most {_MAX_VALUES} are read")
     try:
         decoded = text.decode("utf-8-sig")
         value = json.loads(
             decoded,
-            parse_int=_whole,
-            parse_float=_finite,
+            parse_int=_parse_integer,
+            parse_float=_parse_float,
             parse_constant=_refuse_constant,
-            object_pairs_hook=_once,
+            object_pairs_hook=_unique_keys,
         )
         if "\\u" in decoded:
             # Half of a pair of surrogates is no character, and comes from such an escape alone.
@@ -135,7 +135,7 @@ def parse_json(text: bytes, at: str) -> Any:  # noqa: ANN401 - any JSON value
         raise ValueError(f"{at}: no JSON: byte {error.start} is not UTF-8") from None
     except UnicodeEncodeError:
         raise ValueError(f"{at}: no JSON: half of a pair of surrogates") from None
-    except _TwiceError as error:
+    except _DuplicateKeyError as error:
         raise ValueError(f"{at}: {error}") from None
     except ValueError as error:
         raise ValueError(f"{at}: no JSON: {error}") from None
@@ -196,7 +196,7 @@ class _Bytes:
         self.write = file.write
 
 
-def check_place(path: _Name) -> None:
+def check_writable(path: _Name) -> None:
     """Refuses what :func:`atomic_write` would refuse, before anything is computed; makes nothing.
 
     Raises:
@@ -240,7 +240,7 @@ def _draft(place: Path) -> Iterator[Path]:
 def _claim_draft(place: Path) -> tuple[Path, int | None]:
     """A folder that is nobody else's, and what holds its lock where there are any."""
     name = os.fsencode(place.name)[:_DRAFT_NAME_BYTES].decode(errors="ignore")
-    for number in range(_MOST_DRAFTS):
+    for number in range(_MAX_DRAFTS):
         folder = place.with_name(f".{name}.partial-{number}")
         if os.path.lexists(folder) and not _is_cleared(folder):
             continue
@@ -261,7 +261,7 @@ def _claim_draft(place: Path) -> tuple[Path, int | None]:
             return folder, handle
         if handle is not None:
             os.close(handle)
-    what = f"{_MOST_DRAFTS} drafts of this name are in the making"
+    what = f"{_MAX_DRAFTS} drafts of this name are in the making"
     raise FileExistsError(errno.EEXIST, what, os.fspath(place))
 
 
@@ -326,7 +326,7 @@ def lock(file: int | IO[bytes]) -> bool | None:
     return True
 
 
-def open_alone(path: Path) -> IO[bytes]:
+def open_exclusive(path: Path) -> IO[bytes]:
     """A file to be read and written, new or old, which no other process has as long as it is open.
 
     Raises:
@@ -393,7 +393,7 @@ def _link(name: str, place: Path) -> None:
     except FileExistsError:
         raise FileExistsError(errno.EEXIST, "is there already", os.fspath(place)) from None
     except OSError as error:
-        if error.errno not in _NO_LINKS:
+        if error.errno not in _HARD_LINK_ERRNOS:
             raise
         # An empty file holds the name for the moment.
         os.close(os.open(place, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o644))
@@ -412,26 +412,26 @@ def _refuse_large(name: str, found: int, allowed: int) -> NoReturn:
     raise ValueError(f"{name}: {found} bytes; at most {allowed} are read")
 
 
-class _TwiceError(ValueError):
+class _DuplicateKeyError(ValueError):
     """A key that stands twice in one object: which value is meant nobody knows."""
 
 
-def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+def _unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     found = dict(pairs)
     if len(found) < len(pairs):
         counts = Counter(name for name, _ in pairs)
         twice = next(name for name, count in counts.items() if count > 1)
-        raise _TwiceError(f"key {twice!r:.60} stands twice in one object; once is allowed")
+        raise _DuplicateKeyError(f"key {twice!r:.60} stands twice in one object; once is allowed")
     return found
 
 
-def _whole(text: str) -> int:
-    if len(text) > MOST_DIGITS:
-        raise ValueError(f"a whole number of {len(text)} digits; at most {MOST_DIGITS} are read")
+def _parse_integer(text: str) -> int:
+    if len(text) > MAX_DIGITS:
+        raise ValueError(f"a whole number of {len(text)} digits; at most {MAX_DIGITS} are read")
     return int(text)
 
 
-def _finite(text: str) -> float:
+def _parse_float(text: str) -> float:
     value = float(text)
     if not math.isfinite(value):
         raise ValueError(f"the number {text:.40} is larger than any float")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from dwell import _native
-from dwell.arguments import point, text, whole
+from dwell.arguments import integer_in_range, point, text
 
 
 class GuideApi:
@@ -35,7 +35,7 @@ class GuideApi:
             >>> world.navigation().distance(world.agents()[0]["position"], goal) < 0.5
             True
         """
-        return _name(self._native.guide(whole("agent", agent), point("goal", goal)))
+        return _name(self._native.guide(integer_in_range("agent", agent), point("goal", goal)))
 
     def facing(self, object: str, *, agent: int = 0) -> str | None:
         """The action that turns an agent's gaze towards a thing.
@@ -47,11 +47,11 @@ class GuideApi:
         Returns:
             The action's name; ``None`` when the agent looks at it as straight as its turns allow.
         """
-        return _name(self._native.face(whole("agent", agent), text("object", object)))
+        return _name(self._native.face(integer_in_range("agent", agent), text("object", object)))
 
     def gaze_target(self, *, agent: int = 0) -> str | None:
         """The name of the thing in the middle of an agent's view, at most 10 m away."""
-        return self._native.gaze_target(whole("agent", agent))
+        return self._native.gaze_target(integer_in_range("agent", agent))
 
 
 def _name(number: int | None) -> str | None:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from dwell import ConfigError, DwellError, MeasuredDataError, _native, arguments
-from dwell.arguments import finite, quoted
+from dwell.arguments import finite_number, quoted
 
 #: The built-in head's, m.
 RADIUS_M = 0.0875
@@ -28,17 +28,17 @@ class Head:
         native: _native.Head,
         again: tuple[Callable[..., Head], tuple[Any, ...]],
     ) -> None:
-        """Wraps a native head; use :meth:`sphere`, :meth:`measured` or :meth:`from_sofa`.
+        """Wraps a native head; use :meth:`spherical`, :meth:`measured` or :meth:`from_sofa`.
 
         Args:
             native: The built half.
             again: A function and its arguments that give the head again, in another process too.
         """
         self._native = native
-        self._again = again
+        self._reopen_state = again
 
     @classmethod
-    def sphere(cls, radius_m: float = RADIUS_M) -> Head:
+    def spherical(cls, radius_m: float = RADIUS_M) -> Head:
         """A rigid sphere with ears at both ends of a diameter.
 
         Args:
@@ -47,8 +47,8 @@ class Head:
         Raises:
             ConfigError: The radius is out of range.
         """
-        radius_m = finite("radius_m", radius_m)
-        return cls(_native.Head.sphere(radius_m), (Head.sphere, (radius_m,)))
+        radius_m = finite_number("radius_m", radius_m)
+        return cls(_native.Head.spherical(radius_m), (Head.spherical, (radius_m,)))
 
     @classmethod
     def measured(
@@ -74,7 +74,7 @@ class Head:
         places = _array("sources", sources, 2, np.float64)
         pairs = _array("responses", responses, 3, np.float32)
         late = _array("delays", np.zeros((len(places), 2)) if delays is None else delays, 2)
-        rate_hz = finite("rate_hz", rate_hz)
+        rate_hz = finite_number("rate_hz", rate_hz)
         native = _native.Head.measured(places, pairs, rate_hz, late)
         return cls(native, (_from_arrays, (places, pairs, rate_hz, late)))
 
@@ -108,19 +108,19 @@ class Head:
         return self._native.id
 
     @property
-    def about(self) -> dict[str, Any] | None:
+    def summary(self) -> dict[str, Any] | None:
         """Facts about the measurement; ``None`` for a sphere.
 
         ``directions`` and ``filled`` (how many), ``radius_m`` (of the sphere with the nearest
         delays), ``gain_db`` (by which all responses were changed), ``removed_delay_s`` (which was
         taken off all).
         """
-        return self._native.about()
+        return self._native.summary()
 
     def __repr__(self) -> str:
         """A sphere, or from how many directions it was measured."""
-        about = self.about
-        what = "sphere" if about is None else f"{about['directions']} directions"
+        summary = self.summary
+        what = "sphere" if summary is None else f"{summary['directions']} directions"
         return f"Head({what}, id={self.id:016x})"
 
     def __eq__(self, other: object) -> bool:
@@ -133,7 +133,7 @@ class Head:
 
     def __reduce__(self) -> tuple[Callable[..., Head], tuple[Any, ...]]:
         """Its numbers."""
-        return self._again
+        return self._reopen_state
 
 
 def head_of(name: str, head: object) -> Head | None:
@@ -161,7 +161,7 @@ def _from_arrays(
 
 
 def _array(name: str, values: ArrayLike, axes: int, dtype: Any = np.float64) -> NDArray[Any]:  # noqa: ANN401
-    array = arguments.numbers(name, values, dtype)
+    array = arguments.real_array(name, values, dtype)
     if array.ndim != axes:
         raise ConfigError(f"{name}: expected {axes} axes, found shape {array.shape}")
     return array

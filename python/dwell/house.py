@@ -10,7 +10,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, overload
 
 from dwell import ConfigError, UsageError, _native, arguments
-from dwell.arguments import file_name, finite, flag, point, text, whole, within
+from dwell.arguments import (
+    boolean,
+    file_name,
+    finite_number,
+    integer_in_range,
+    number_in_range,
+    point,
+    text,
+)
 from dwell.grounded_text import Text, texts
 from dwell.house_list import HouseList
 from dwell.navigation import Navigation, Walker, walker_settings
@@ -26,7 +34,7 @@ Level = Literal["object", "room", "house", "graph", "instructions"]
 Form = Literal["dwell", "suncg", "glb"]
 
 #: Houses that a list of names holds at most.
-_MOST_LISTED = 1_000_000
+_MAX_LISTED = 1_000_000
 
 
 class House:
@@ -44,7 +52,7 @@ class House:
             again: A function and its arguments that give the house again, in another process too.
         """
         self._native = native
-        self._again = again
+        self._reopen_state = again
         self._hash: int | None = None
         #: Where somebody stands and looks best takes a while to find.
         self._rooms: list[dict[str, Any]] | None = None
@@ -95,8 +103,8 @@ class House:
             ConfigError: It is longer than 1,000,000 seeds.
         """
         names = HouseList([house])
-        if len(names) > _MOST_LISTED:
-            raise ConfigError(f"{house}: {len(names)} seeds; at most {_MOST_LISTED} are listed")
+        if len(names) > _MAX_LISTED:
+            raise ConfigError(f"{house}: {len(names)} seeds; at most {_MAX_LISTED} are listed")
         return list(names)
 
     @staticmethod
@@ -128,7 +136,7 @@ class House:
         plain = {name: arguments.to_json({name: value}) for name, value in spec.items()}
         values = {name: json.loads(value)[name] for name, value in plain.items()}
         fields = "&".join(f"{name}={json.dumps(value)}" for name, value in values.items())
-        name = f"seed:{whole('seed', seed)}"
+        name = f"seed:{integer_in_range('seed', seed)}"
         return cls.open(f"{name}?{fields}" if fields else name)
 
     @classmethod
@@ -161,14 +169,14 @@ class House:
                 "one of them, as a substance absorbs by its own table"
             )
         edges = [
-            within(f"size_m[{k}]", edge, 0.1, 1000.0, "m")
+            number_in_range(f"size_m[{k}]", edge, 0.1, 1000.0, "m")
             for k, edge in enumerate(point("size_m", size_m))
         ]
         again = (
             (edges[0], edges[1], edges[2]),
             None if substance is None else text("substance", substance),
-            None if absorption is None else within("absorption", absorption, 0.0, 1.0),
-            None if scattering is None else within("scattering", scattering, 0.0, 1.0),
+            None if absorption is None else number_in_range("absorption", absorption, 0.0, 1.0),
+            None if scattering is None else number_in_range("scattering", scattering, 0.0, 1.0),
         )
         return cls(_native.House.shoebox(*again), (_shoebox, again))
 
@@ -198,8 +206,8 @@ class House:
                 arguments.path("path", path),
                 text("name", name),
                 point("position", position),
-                finite("yaw_deg", yaw_deg),
-                None if fixed_base is None else flag("fixed_base", fixed_base),
+                finite_number("yaw_deg", yaw_deg),
+                None if fixed_base is None else boolean("fixed_base", fixed_base),
             )
         )
 
@@ -260,7 +268,7 @@ class House:
             seed: Draws the wordings, with the name of the house; without it each sentence has its
                 first wording.
         """
-        seed = None if seed is None else whole("seed", seed)
+        seed = None if seed is None else integer_in_range("seed", seed)
         return texts(level, self._native.describe(text("level", level), seed))
 
     def semantic_classes(self, table: Classes = "coarse") -> list[str]:
@@ -340,12 +348,12 @@ class House:
 
     def __reduce__(self) -> tuple[Callable[..., House], tuple[Any, ...]]:
         """The call that opens it again."""
-        if self._again is None:
+        if self._reopen_state is None:
             raise UsageError(
                 f"{self!r} was put together in this process and cannot be pickled; "
                 "write it (house.write) and open what was written"
             )
-        return self._again
+        return self._reopen_state
 
     def __repr__(self) -> str:
         """The name, and the numbers of rooms and objects."""
@@ -355,7 +363,7 @@ class House:
 
 def split_of_seed(seed: int) -> Literal["train", "val", "test"]:
     """Which split a seed belongs to: of ten in a row, the ninth is ``val``, the tenth ``test``."""
-    return {8: "val", 9: "test"}.get(whole("seed", seed) % 10, "train")  # type: ignore[return-value]
+    return {8: "val", 9: "test"}.get(integer_in_range("seed", seed) % 10, "train")  # type: ignore[return-value]
 
 
 def _shoebox(

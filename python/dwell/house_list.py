@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import overload
 
 from dwell import ConfigError, _native
-from dwell.arguments import in_order, text
+from dwell.arguments import sequence_items, text
 
 
 class HouseList(Sequence[str]):
@@ -27,7 +27,7 @@ class HouseList(Sequence[str]):
         self._parts: list[str | tuple[range, str]] = []
         #: How many houses there are up to the end of each part.
         self._ends: list[int] = []
-        for house in in_order("houses", houses, "expected HOUSE strings"):
+        for house in sequence_items("houses", houses, "expected HOUSE strings"):
             self.append(house)
 
     def append(self, house: str) -> None:

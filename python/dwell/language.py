@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from dwell import ConfigError, _native
-from dwell.arguments import quoted, text, whole
+from dwell.arguments import integer_in_range, quoted, text
 
 __all__ = ["read", "say"]
 
@@ -49,7 +49,7 @@ def say(form: Mapping[str, Any], *, seed: int | None = None) -> str:
         raise ConfigError(
             f"form is {quoted(form)}; allowed are mappings as dwell.language.read gives"
         )
-    drawn = None if seed is None else whole("seed", seed, high=2**64 - 1)
+    drawn = None if seed is None else integer_in_range("seed", seed, high=2**64 - 1)
     said = _native.language_say(form, drawn)
     if said is None:
         raise ConfigError(f"English has no words for the form {quoted(form)}")

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any, Literal, overload
 
 from dwell import _native
+from dwell.arguments import integer_in_range
 from dwell.arguments import text as checked_text
-from dwell.arguments import whole
 from dwell.grounded_text import Text, texts
 from dwell.relation_api import RelationApi, Viewer, viewer_argument
 
@@ -60,8 +60,8 @@ class LanguageApi(RelationApi):
             >>> world.describe("view", viewer=viewer)[0].split(" you see ")[0]
             'On your left'
         """
-        seed = None if seed is None else whole("seed", seed)
-        listener = None if agent is None else whole("agent", agent, high=2**31 - 1)
+        seed = None if seed is None else integer_in_range("seed", seed)
+        listener = None if agent is None else integer_in_range("agent", agent, high=2**31 - 1)
         looks = viewer_argument(viewer)
         return texts(
             level, self._native.describe(checked_text("level", level), looks, listener, seed)
@@ -104,7 +104,7 @@ class LanguageApi(RelationApi):
             ...
             dwell.ConfigError: unknown word "sofaa" (known are sofa, sofas...
         """
-        listener = None if agent is None else whole("agent", agent, high=2**31 - 1)
+        listener = None if agent is None else integer_in_range("agent", agent, high=2**31 - 1)
         sentence = checked_text("sentence", sentence)
         found: dict[str, Any] = _native.world_check_text(
             self._native, sentence, viewer_argument(viewer), listener

@@ -10,13 +10,13 @@ from typing import Any
 
 from dwell._native import ConfigError
 from dwell.arguments import (
-    finite,
+    finite_number,
     hashable,
-    in_order,
+    integer_in_range,
     mapping,
     point,
+    sequence_items,
     unit_quaternion,
-    whole,
 )
 from dwell.directivity import Directivity, directivity_json
 from dwell.heads import Head, head_of
@@ -133,7 +133,7 @@ class Receiver:
             pitch_deg: How far its front is raised.
         """
         expected = "expected 1 to 128 microphones or points"
-        given = in_order("microphones", microphones, expected)
+        given = sequence_items("microphones", microphones, expected)
         items = [
             item if isinstance(item, Microphone) else Microphone(point(f"microphones[{k}]", item))
             for k, item in enumerate(given)
@@ -164,7 +164,7 @@ class Receiver:
 
         (order + 1)^2 channels in ACN order with SN3D weights.
         """
-        kind = {"ambisonics": {"order": whole("order", order, low=0, high=3)}}
+        kind = {"ambisonics": {"order": integer_in_range("order", order, low=0, high=3)}}
         return cls(_pose(point("position", position), yaw_deg, pitch_deg), kind)
 
     def to_json(self) -> dict[str, Any]:
@@ -179,8 +179,8 @@ def source_of(source: Source | Sequence[float]) -> Source:
 
 def _pose(position: Sequence[float], yaw_deg: float, pitch_deg: float) -> dict[str, Any]:
     """Turned about the vertical, after being raised about its own X axis."""
-    yaw = 0.5 * math.radians(finite("yaw_deg", yaw_deg))
-    pitch = 0.5 * math.radians(finite("pitch_deg", pitch_deg))
+    yaw = 0.5 * math.radians(finite_number("yaw_deg", yaw_deg))
+    pitch = 0.5 * math.radians(finite_number("pitch_deg", pitch_deg))
     (sy, cy), (sp, cp) = (math.sin(yaw), math.cos(yaw)), (math.sin(pitch), math.cos(pitch))
     return {
         "position": list(point("position", position)),

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from dwell import csv_values
-from dwell.arguments import finite
+from dwell.arguments import finite_number
 from dwell.files import make_folder, open_file, read_json
 from dwell.measured_draft import BundleDraft
 from dwell.measured_templates import TEMPLATES
@@ -23,9 +23,9 @@ from dwell.measured_templates import TEMPLATES
 CsvRow = dict[str, Any]
 
 #: Of episodes that are left out, so many names are told.
-MOST_TOLD = 10
+MAX_LISTED = 10
 #: A table has at most so many bytes, as for the reader of bundles.
-_MOST_BYTES = 256 * 2**20
+_MAX_TABLE_BYTES = 256 * 2**20
 
 
 def import_files(
@@ -88,7 +88,7 @@ def read_map(path: Path) -> CsvRow:
 
 
 #: What a map holds where its template holds such a thing.
-_KINDS: dict[type, tuple[tuple[type, ...], str]] = {
+_VALUE_KINDS: dict[type, tuple[tuple[type, ...], str]] = {
     str: ((str,), "text"),
     float: ((int, float), "a number"),
     list: ((list,), "a list"),
@@ -105,7 +105,7 @@ def known_columns(found: CsvRow, template: CsvRow, at: str) -> None:
             if not isinstance(value, dict):
                 raise ValueError(f"{at}: {key} is {value!r:.60}; an object is needed")
             known_columns(value, template[key], f"{at}: {key}")
-        kinds, expected = _KINDS.get(type(template[key]), ((object,), ""))
+        kinds, expected = _VALUE_KINDS.get(type(template[key]), ((object,), ""))
         if value is not None and (isinstance(value, bool) or not isinstance(value, kinds)):
             raise ValueError(f"{at}: {key} is {value!r:.60}; {expected} is needed")
 
@@ -141,11 +141,11 @@ class MeasuredTable:
 
     def has(self, names: list[str]) -> None:
         """Refuses columns that are not there."""
-        csv_values.has(self.path, self.columns, names)
+        csv_values.require_unique_columns(self.path, self.columns, names)
 
     def number(self, at: str, row: CsvRow, column: str) -> float:
         """A finite number in a column."""
-        return csv_values.number(at, row, column, self.delimiter)
+        return csv_values.parse_cell_number(at, row, column, self.delimiter)
 
     def numbers(self, at: str, row: CsvRow, columns: list[str]) -> list[float]:
         """Several columns."""
@@ -161,7 +161,7 @@ def open_table(path: Path, delimiter: str) -> tuple[list[str], Iterator[tuple[in
             raise ModuleNotFoundError(
                 f"{path}: Parquet needs pyarrow; pip install 'dwell[data]'"
             ) from None
-        with open_file(path, _MOST_BYTES) as file, parquet.ParquetFile(file) as table:
+        with open_file(path, _MAX_TABLE_BYTES) as file, parquet.ParquetFile(file) as table:
             return list(table.schema_arrow.names), parquet_rows(path)
     if path.suffix != ".csv":
         raise ValueError(f"{path}: {path.suffix or 'no suffix'}; .csv and .parquet are read")
@@ -177,29 +177,29 @@ def parquet_rows(path: Path) -> Iterator[tuple[int, CsvRow]]:
     """The rows of a Parquet file, counted from 1."""
     import pyarrow.parquet as parquet
 
-    with open_file(path, _MOST_BYTES) as file, parquet.ParquetFile(file) as table:
+    with open_file(path, _MAX_TABLE_BYTES) as file, parquet.ParquetFile(file) as table:
         batches = (row for batch in table.iter_batches() for row in batch.to_pylist())
         yield from enumerate(batches, start=1)
 
 
-def opened(path: Path) -> io.TextIOWrapper:
+def open_csv(path: Path) -> io.TextIOWrapper:
     """A CSV file, to be read as text."""
-    return io.TextIOWrapper(open_file(path, _MOST_BYTES), encoding="utf-8-sig", newline="")
+    return io.TextIOWrapper(open_file(path, _MAX_TABLE_BYTES), encoding="utf-8-sig", newline="")
 
 
 def head_of(path: Path) -> str:
     """The first line of a CSV file."""
     try:
-        with opened(path) as file:
+        with open_csv(path) as file:
             return file.readline()
     except UnicodeDecodeError as error:
-        raise csv_values.not_text(path, error) from None
+        raise csv_values.encoding_error(path, error) from None
 
 
 def csv_rows(path: Path, columns: list[str], delimiter: str) -> Iterator[tuple[int, CsvRow]]:
     """The rows of a CSV file below its head, counted from 1."""
     try:
-        with opened(path) as file:
+        with open_csv(path) as file:
             reader = csv.reader(file, delimiter=delimiter)
             rows = (row for row in reader if row)
             for number, row in enumerate(itertools.islice(rows, 1, None), start=1):
@@ -213,25 +213,25 @@ def csv_rows(path: Path, columns: list[str], delimiter: str) -> Iterator[tuple[i
     except csv.Error as error:
         raise ValueError(f"{path} line {reader.line_num}: {error}") from None
     except UnicodeDecodeError as error:
-        raise csv_values.not_text(path, error) from None
+        raise csv_values.encoding_error(path, error) from None
 
 
-def scale(part: CsvRow, key: str, at: str) -> float:
+def unit_scale(part: CsvRow, key: str, at: str) -> float:
     """The SI value of one unit of a column; 1 where the map does not say."""
     value = part.get(key)
-    found = 1.0 if value is None else finite(f"{at}: {key}", value)
+    found = 1.0 if value is None else finite_number(f"{at}: {key}", value)
     if found == 0:
         raise ValueError(f"{at}: {key} is {value!r}; a finite number other than 0 is needed")
     return found
 
 
-def turned(vector: list[float], up: str) -> list[float]:
+def to_y_up(vector: list[float], up: str) -> list[float]:
     """A vector of a world whose vertical is ``up`` in the engine's, whose is y."""
     x, y, z = vector
     return [x, z, -y] if up == "z" else [x, y, z]
 
 
-def turned_rotation(q: list[float], up: str) -> list[float]:
+def rotation_to_y_up(q: list[float], up: str) -> list[float]:
     """World from body (x, y, z, w) where ``up`` is vertical: -90 degrees about x go before it."""
     if up != "z":
         return q
@@ -248,12 +248,12 @@ def columns_of(part: CsvRow, key: str, count: int, at: str) -> list[str]:
     return [str(name) for name in found]
 
 
-def text(value: object) -> str:
+def episode_name(value: object) -> str:
     """An episode's name."""
     return str(int(value)) if isinstance(value, float) and value.is_integer() else str(value)
 
 
-def short(value: float) -> str:
+def format_single(value: float) -> str:
     """A number with nine digits, as many as single precision has."""
     return f"{value:.9g}"
 
@@ -307,9 +307,9 @@ def pose_bundle(
     episode, clock = require_columns(part, "episode", here), require_columns(part, "t_s", here)
     group = part.get("split_group") or episode
     table.has([episode, group, clock, *place, *quaternion, *rates[0], *rates[1]])
-    times = csv_values.TimeParser(clock, scale(part, "seconds_per_unit", here))
-    metres = scale(part, "metres_per_unit", here)
-    radians = scale(part, "radians_per_unit", here)
+    times = csv_values.TimeParser(clock, unit_scale(part, "seconds_per_unit", here))
+    metres = unit_scale(part, "metres_per_unit", here)
+    radians = unit_scale(part, "radians_per_unit", here)
     in_body = form.get("angular_velocity") == "body"
     groups: dict[str, str] = {}
     head = "episode,t_s,entity,x,y,z,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz"
@@ -319,17 +319,17 @@ def pose_bundle(
     origin = pose_origin(up, [place, *rates]) | {"t_s": [clock], "episode": [episode]}
     with draft.table("poses.csv", head, table, origin) as write:
         for where, row in table:
-            name = text(row[episode])
-            groups.setdefault(name, text(row[group]))
+            name = episode_name(row[episode])
+            groups.setdefault(name, episode_name(row[group]))
             draft.begins(name)
             position = [metres * value for value in table.numbers(where, row, place)]
             rotation = table.numbers(where, row, quaternion)
-            values = [*turned(position, up), *turned_rotation(rotation, up)]
+            values = [*to_y_up(position, up), *rotation_to_y_up(rotation, up)]
             if rates[0] and rates[1]:
                 speed = [metres * value for value in table.numbers(where, row, rates[0])]
                 spin = [radians * value for value in table.numbers(where, row, rates[1])]
-                values += [*turned(speed, up), *(spin if in_body else turned(spin, up))]
-            told = [short(value) for value in values]
+                values += [*to_y_up(speed, up), *(spin if in_body else to_y_up(spin, up))]
+            told = [format_single(value) for value in values]
             told += [""] * (13 - len(told))
             stamp = times.stamp(where, name, table.number(where, row, clock))
             write([name, stamp, str(body.get("name")), *told])
@@ -377,9 +377,9 @@ def write_starts(
         for where, row in table:
             speed = [metres * value for value in table.numbers(where, row, linear)]
             spin = [radians * value for value in table.numbers(where, row, angular)]
-            values = [*turned(speed, up), *(spin if in_body else turned(spin, up))]
+            values = [*to_y_up(speed, up), *(spin if in_body else to_y_up(spin, up))]
             count = str(int(table.number(where, row, sample)))
-            write([text(row[episode]), count, *(short(value) for value in values)])
+            write([episode_name(row[episode]), count, *(format_single(value) for value in values)])
 
 
 def flight_bundle(
@@ -402,7 +402,7 @@ def flight_bundle(
     for where, row in listed:
         if not row[names[2]] or not row[names[3]] or row[names[2]] in ("nan", "NaN"):
             continue
-        body = text(row[names[1]])
+        body = episode_name(row[names[1]])
         mass, diameter = (listed.number(where, row, name) for name in names[2:])
         found = {"name": body, "mass_kg": mass, "radius_m": 0.5 * diameter}
         if body not in bodies:
@@ -417,7 +417,7 @@ def flight_bundle(
                 f"{known['mass_kg']} kg and {2.0 * known['radius_m']} m; give each body a name "
                 "of its own, or correct the row"
             )
-        name = text(row[names[0]])
+        name = episode_name(row[names[0]])
         if body_of.setdefault(name, body) != body:
             raise ValueError(
                 f"{where}: episode {name!r} has the body {body!r}, and in a row above "
@@ -436,8 +436,8 @@ def flight_bundle(
     episode, clock = require_columns(part, "episode", here), require_columns(part, "t_s", here)
     group = part.get("split_group") or episode
     table.has([episode, group, clock, *channels.values()])
-    times = csv_values.TimeParser(clock, scale(part, "seconds_per_unit", here))
-    metres = scale(part, "metres_per_unit", here)
+    times = csv_values.TimeParser(clock, unit_scale(part, "seconds_per_unit", here))
+    metres = unit_scale(part, "metres_per_unit", here)
     groups: dict[str, str] = {}
     left_out: dict[str, None] = {}
     rows = 0
@@ -447,16 +447,16 @@ def flight_bundle(
     head = "episode,t_s,entity,channel,value"
     with draft.table("trajectory.csv", head, table, origin) as write:
         for where, row in table:
-            name = text(row[episode])
+            name = episode_name(row[episode])
             if name not in body_of:
                 left_out[name] = None
                 continue
-            groups.setdefault(name, text(row[group]))
+            groups.setdefault(name, episode_name(row[group]))
             draft.begins(name)
             stamp = times.stamp(where, name, table.number(where, row, clock))
             for channel, column in channels.items():
                 value = metres * table.number(where, row, column)
-                write([name, stamp, body_of[name], channel, short(value)])
+                write([name, stamp, body_of[name], channel, format_single(value)])
             rows += 1
     if left_out and not rows:
         raise ValueError(
@@ -473,7 +473,7 @@ def flight_bundle(
         "rows": rows,
         "episodes": len(groups),
         "left_out": len(left_out),
-        **({"left_out_episodes": [*left_out][:MOST_TOLD]} if left_out else {}),
+        **({"left_out_episodes": [*left_out][:MAX_LISTED]} if left_out else {}),
     }
 
 
@@ -502,7 +502,7 @@ def drive_bundle(
     listed.has(names)
     rows_of: dict[str, CsvRow] = {}
     for where, row in listed:
-        name = text(row[names[0]])
+        name = episode_name(row[names[0]])
         if rows_of.setdefault(name, row) != row:
             raise ValueError(f"{where}: episode {name!r} is listed twice, with other values")
     table = MeasuredTable(part, tables, here)
@@ -511,9 +511,9 @@ def drive_bundle(
     wheels = [require_columns(part, key, here) for key in ("ticks_left", "ticks_right")]
     episode = require_columns(part, "episode", here)
     table.has([episode, clock, *place, heading, *wheels])
-    times = csv_values.TimeParser(clock, scale(part, "seconds_per_unit", here))
-    metres = scale(part, "metres_per_unit", here)
-    radians = scale(part, "radians_per_unit", here)
+    times = csv_values.TimeParser(clock, unit_scale(part, "seconds_per_unit", here))
+    metres = unit_scale(part, "metres_per_unit", here)
+    radians = unit_scale(part, "radians_per_unit", here)
     groups: dict[str, str] = {}
     rows = 0
     head = "episode,t_s,x,y,heading,left_rad,right_rad"
@@ -530,23 +530,23 @@ def drive_bundle(
     }
     with draft.table("drive.csv", head, table, origin) as write:
         for where, row in table:
-            name = text(row[episode])
+            name = episode_name(row[episode])
             if name not in rows_of:
                 raise ValueError(
                     f"{where}: episode {name!r} is not in {listed.path}, whose column {names[0]!r} "
                     f"has {sorted(rows_of)[:3]}"
                 )
-            groups.setdefault(name, text(rows_of[name][names[1]]))
+            groups.setdefault(name, episode_name(rows_of[name][names[1]]))
             draft.begins(name)
             seen = [metres * value for value in table.numbers(where, row, place)]
             seen.append(radians * table.number(where, row, heading))
-            turned = [rad_per_tick * value for value in table.numbers(where, row, wheels)]
+            to_y_up = [rad_per_tick * value for value in table.numbers(where, row, wheels)]
             stamp = times.stamp(where, name, table.number(where, row, clock))
-            write([name, stamp, *(short(value) for value in [*seen, *turned])])
+            write([name, stamp, *(format_single(value) for value in [*seen, *to_y_up])])
             rows += 1
             if rows % 4096 == 0:
                 progress(0.1, f"{rows} rows of {table.path.name}")
-    conditions = {name: text(rows_of[name][names[2]]) for name in groups}
+    conditions = {name: episode_name(rows_of[name][names[2]]) for name in groups}
     write_common(mapping, at, draft, {"base": base}, {}, groups, conditions)
     return {"rows": rows, "episodes": len(groups), "left_out": 0}
 

@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError, _native
-from dwell.arguments import choice, finite, numbers, refuse_masked
+from dwell.arguments import choice, finite_number, real_array, refuse_masked
 
 #: How wide bands are: eight octaves from 62.5 Hz, or 24 third octaves from 50 Hz (IEC 61260-1).
 Bands = Literal["octave", "third_octave"]
 
 
-def of_response(
+def response_metrics(
     response: NDArray[Any], rate_hz: float, *, bands: Bands = "octave"
 ) -> list[dict[str, float | None]]:
     """The measures of one channel, by band (ISO 3382-1:2009).
@@ -49,7 +49,9 @@ def of_response(
     return [{key: row[key] for key in row if key != "lf"} for row in rows]
 
 
-def of_ears(ears: NDArray[Any], rate_hz: float, *, bands: Bands = "octave") -> dict[str, Any]:
+def binaural_metrics(
+    ears: NDArray[Any], rate_hz: float, *, bands: Bands = "octave"
+) -> dict[str, Any]:
     """Interaural measures of one impulse (ISO 3382-1:2009, annex B).
 
     Args:
@@ -66,7 +68,7 @@ def of_ears(ears: NDArray[Any], rate_hz: float, *, bands: Bands = "octave") -> d
     Raises:
         ConfigError: There are not two rows of finite numbers, or the rate is out of range.
     """
-    rows = numbers("ears", ears, np.float64)
+    rows = real_array("ears", ears, np.float64)
     if rows.ndim != 2 or rows.shape[0] != 2:
         raise ConfigError(f"ears: expected shape (2, samples), found {rows.shape}")
     left, right = _channel("ears[0]", rows[0]), _channel("ears[1]", rows[1])
@@ -85,7 +87,7 @@ def _channel(name: str, samples: object) -> NDArray[np.float32]:
 
 
 def _rate(rate_hz: object) -> float:
-    rate = finite("rate_hz", rate_hz)
+    rate = finite_number("rate_hz", rate_hz)
     if not 1000.0 <= rate <= 1e6:
         raise ConfigError(f"rate_hz is {rate:g}; allowed are 1000 to 1000000")
     return rate

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError, _native
-from dwell.arguments import point, quoted, record, whole
+from dwell.arguments import dataclass_from_mapping, integer_in_range, point, quoted
 from dwell.array_record import ArrayRecord
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ class Walker:
 def walker_settings(walker: Walker | None) -> dict[str, Any]:
     """A walker, the default one for ``None``, as the native half reads it."""
     doors = {"doors": ("as_they_stand", "open", "priced")}
-    return record("walker", Walker() if walker is None else walker, Walker, doors)
+    return dataclass_from_mapping("walker", Walker() if walker is None else walker, Walker, doors)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -91,14 +91,14 @@ class Navigation:
         self._native = native
 
     @classmethod
-    def _again(cls, house: House, walks: Mapping[str, Any], state: bytes | None) -> Navigation:
+    def _rebuild(cls, house: House, walks: Mapping[str, Any], state: bytes | None) -> Navigation:
         """Restores a pickled navigation grid."""
         native = _native.Navigation(house.native, walks, state)
         return cls(house, walks, native)
 
     def __reduce__(self) -> tuple[Any, tuple[House, Mapping[str, Any], bytes | None]]:
         """House, walker and state."""
-        return Navigation._again, (self._house, self._walks, self._native.state())
+        return Navigation._rebuild, (self._house, self._walks, self._native.state())
 
     def __repr__(self) -> str:
         """The number of walkable places."""
@@ -114,7 +114,7 @@ class Navigation:
         """Random places (count, 3), each equally likely; none if there are none."""
         where = None if start is None else point("start", start)
         return self._native.sample(
-            whole("seed", seed), whole("count", count, high=10_000_000), where
+            integer_in_range("seed", seed), integer_in_range("count", count, high=10_000_000), where
         )
 
     def island(self, place: Sequence[float]) -> int | None:
@@ -133,7 +133,7 @@ class Navigation:
 
     def occupancy(self, level: int = 0) -> Occupancy:
         """A storey from above; all storeys share one frame."""
-        free, x, z, cell_m = self._native.occupancy(whole("level", level, high=2**31))
+        free, x, z, cell_m = self._native.occupancy(integer_in_range("level", level, high=2**31))
         return Occupancy(free.astype(np.bool_), (x, z), cell_m)
 
     def doors(self) -> list[dict[str, Any]]:

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from dwell import _native
-from dwell.arguments import text, whole
+from dwell.arguments import integer_in_range, text
 
 
 class StateApi:
@@ -72,7 +72,11 @@ class StateApi:
             >>> radio["on"], radio["room"], world.object(radio["id"]) == radio
             (False, 'child_room', True)
         """
-        named = text("name", name) if isinstance(name, str) else whole("name", name, high=2**31 - 1)
+        named = (
+            text("name", name)
+            if isinstance(name, str)
+            else integer_in_range("name", name, high=2**31 - 1)
+        )
         found = self._native.object(named)
         return found
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError
-from dwell.arguments import whole, within
+from dwell.arguments import integer_in_range, number_in_range
 from dwell.house import House
 
 # How far a node may be, in x and z, from the middle of a cell of the floor, m: half and more.
@@ -27,8 +27,8 @@ def receiver_grid(house: House, spacing_m: float, height_m: float = 1.2) -> NDAr
     Raises:
         ConfigError: A number is out of range, or there is no such node.
     """
-    spacing = within("spacing_m", spacing_m, 0.1, 10.0)
-    height = within("height_m", height_m, 0.1, 2.0)
+    spacing = number_in_range("spacing_m", spacing_m, 0.1, 10.0)
+    height = number_in_range("height_m", height_m, 0.1, 2.0)
     stands = house.navigation().points().astype(np.float64)
     nodes = np.round(stands[:, [0, 2]] / spacing) * spacing
     near = np.abs(nodes - stands[:, [0, 2]]).max(axis=1) <= _NEAR_M
@@ -59,9 +59,9 @@ def random_sources(
     Raises:
         ConfigError: A number is out of range, or nobody can stand anywhere.
     """
-    number = whole("count", count, low=1, high=10_000)
-    height = within("height_m", height_m, 0.1, 2.0)
-    places = house.navigation().sample(whole("seed", seed), number).astype(np.float64)
+    number = integer_in_range("count", count, low=1, high=10_000)
+    height = number_in_range("height_m", height_m, 0.1, 2.0)
+    places = house.navigation().sample(integer_in_range("seed", seed), number).astype(np.float64)
     if len(places) < number:
         raise ConfigError(f"{house.name}: nobody can stand anywhere")
     raised: NDArray[np.float64] = places + np.array((0.0, height, 0.0))

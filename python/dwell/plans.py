@@ -9,25 +9,33 @@ from typing import Any
 from PIL import Image, ImageColor, ImageDraw, ImageFont
 
 from dwell import ConfigError, _native
-from dwell.arguments import finite, in_order, instance, point, quoted, text, whole
+from dwell.arguments import (
+    finite_number,
+    instance_of,
+    integer_in_range,
+    point,
+    quoted,
+    sequence_items,
+    text,
+)
 from dwell.camera import Camera, Preset
 from dwell.edit_fields import rgb
 from dwell.house import House
 from dwell.world import World
 
 #: Pictures are drawn this much larger and then made smaller, so that edges are smooth.
-_FINER = 2
-_PAPER = (250, 249, 246)
-_INK = (38, 40, 46)
-_SOFT = (110, 113, 122)
-_DOOR = (176, 92, 44)
+_SUPERSAMPLING = 2
+_BACKGROUND_COLOR = (250, 249, 246)
+_TEXT_COLOR = (38, 40, 46)
+_SECONDARY_COLOR = (110, 113, 122)
+_DOOR_COLOR = (176, 92, 44)
 #: How much squares hide of what is below them, of 255.
-_PAINT = 190
+_SQUARE_ALPHA = 190
 #: Lengths that a scale may show, m.
 _SCALES_M = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
-_MOST_PIXELS = 8192
-_WAYS = "expected a colour and positions (x, y, z) in metres for each"
-_SQUARES = "expected (x, z, edge, colour) for each, the edge in metres"
+_MAX_PIXELS = 8192
+_PATHS_EXPECTED = "expected a colour and positions (x, y, z) in metres for each"
+_SQUARES_EXPECTED = "expected (x, z, edge, colour) for each, the edge in metres"
 
 _Font = ImageFont.FreeTypeFont | ImageFont.ImageFont
 
@@ -53,18 +61,22 @@ def floor_plan(
     Raises:
         DwellError: There is no such storey; a line or square that is none.
     """
-    world = instance("world", world, World)
-    strokes = [_stroke(f"ways[{k}]", row) for k, row in enumerate(in_order("ways", ways, _WAYS))]
-    tiles = [
-        _tile(f"squares[{k}]", row) for k, row in enumerate(in_order("squares", squares, _SQUARES))
+    world = instance_of("world", world, World)
+    strokes = [
+        _stroke(f"ways[{k}]", row)
+        for k, row in enumerate(sequence_items("ways", ways, _PATHS_EXPECTED))
     ]
-    edge = whole("longest_edge", longest_edge, low=16, high=_MOST_PIXELS)
-    picture, (left, top), scale = world.map(_FINER * edge, level=level)
-    plan = _native.floor_plan(world.native, whole("level", level))
-    foot = round(max(_FINER * edge * 0.05, 40.0))
-    canvas = Image.new("RGB", (picture.shape[1], picture.shape[0] + foot), _PAPER)
+    tiles = [
+        _tile(f"squares[{k}]", row)
+        for k, row in enumerate(sequence_items("squares", squares, _SQUARES_EXPECTED))
+    ]
+    edge = integer_in_range("longest_edge", longest_edge, low=16, high=_MAX_PIXELS)
+    picture, (left, top), scale = world.map(_SUPERSAMPLING * edge, level=level)
+    plan = _native.floor_plan(world.native, integer_in_range("level", level))
+    foot = round(max(_SUPERSAMPLING * edge * 0.05, 40.0))
+    canvas = Image.new("RGB", (picture.shape[1], picture.shape[0] + foot), _BACKGROUND_COLOR)
     canvas.paste(Image.fromarray(picture))
-    line = max(round(_FINER * edge / 700), 1)
+    line = max(round(_SUPERSAMPLING * edge / 700), 1)
 
     def place(x: float, z: float) -> tuple[float, float]:
         return (x - left) * scale, (z - top) * scale
@@ -74,42 +86,42 @@ def floor_plan(
         brush = ImageDraw.Draw(paint)
         for x, z, wide, color in tiles:
             corners = [place(x - 0.5 * wide, z - 0.5 * wide), place(x + 0.5 * wide, z + 0.5 * wide)]
-            brush.rectangle(corners, (*color, _PAINT))
+            brush.rectangle(corners, (*color, _SQUARE_ALPHA))
         canvas.paste(paint, mask=paint)
     draw = ImageDraw.Draw(canvas)
     for door in plan["doors"]:
         hinge = place(*door["hinge"])
-        draw.line([hinge, place(*door["open"])], fill=_DOOR, width=2 * line)
-        draw.line([place(*point) for point in _swing(door)], fill=_DOOR, width=line)
+        draw.line([hinge, place(*door["open"])], fill=_DOOR_COLOR, width=2 * line)
+        draw.line([place(*point) for point in _door_swing(door)], fill=_DOOR_COLOR, width=line)
     for stroke, way in strokes:
-        _way(draw, stroke, [place(x, z) for x, _, z in way], line)
+        _draw_path(draw, stroke, [place(x, z) for x, _, z in way], line)
     for room in plan["rooms"]:
-        _name(draw, room, place(*room["place"]), _FINER * edge)
+        _name(draw, room, place(*room["label_position"]), _SUPERSAMPLING * edge)
     _scale(draw, canvas.size, scale, foot, line)
     return _smooth(canvas)
 
 
 def _stroke(name: str, row: object) -> tuple[str, list[tuple[float, float, float]]]:
     """A colour and positions."""
-    parts = in_order(name, row, _WAYS)
+    parts = sequence_items(name, row, _PATHS_EXPECTED)
     if len(parts) != 2:
-        raise ConfigError(f"{name} is {quoted(row)}; {_WAYS}")
+        raise ConfigError(f"{name} is {quoted(row)}; {_PATHS_EXPECTED}")
     color = text(f"{name}[0]", parts[0])
     try:
         ImageColor.getrgb(color)
     except ValueError:
         expected = "expected a colour, as 'red' or '#1f8f5f'"
         raise ConfigError(f"{name}[0] is {quoted(color)}; {expected}") from None
-    places = in_order(f"{name}[1]", parts[1], "expected positions (x, y, z) in metres")
+    places = sequence_items(f"{name}[1]", parts[1], "expected positions (x, y, z) in metres")
     return color, [point(f"{name}[1][{k}]", place) for k, place in enumerate(places)]
 
 
 def _tile(name: str, row: object) -> tuple[float, float, float, tuple[int, int, int]]:
     """The middle and the edge of a square, and its colour."""
-    parts = in_order(name, row, _SQUARES)
+    parts = sequence_items(name, row, _SQUARES_EXPECTED)
     if len(parts) != 4:
-        raise ConfigError(f"{name} is {quoted(row)}; {_SQUARES}")
-    x, z, wide = (finite(f"{name}[{k}]", part) for k, part in enumerate(parts[:3]))
+        raise ConfigError(f"{name} is {quoted(row)}; {_SQUARES_EXPECTED}")
+    x, z, wide = (finite_number(f"{name}[{k}]", part) for k, part in enumerate(parts[:3]))
     if wide <= 0.0:
         raise ConfigError(f"{name}[2] is {wide:g}; allowed are edges above 0 m")
     red, green, blue = rgb(f"{name}[3]", parts[3])
@@ -135,28 +147,31 @@ def dollhouse(
         down_deg: How far one looks down, 20 to 90.
         cut_m: Height of the cut over each floor, m, 0.3 to 10.
     """
-    world = instance("world", world, World)
-    wide = _FINER * whole("width", width, low=16, high=_MOST_PIXELS)
+    world = instance_of("world", world, World)
+    wide = _SUPERSAMPLING * integer_in_range("width", width, low=16, high=_MAX_PIXELS)
     config = {
         "width": wide,
-        "yaw_deg": finite("yaw_deg", yaw_deg),
-        "down_deg": finite("down_deg", down_deg),
-        "cut_m": finite("cut_m", cut_m),
+        "yaw_deg": finite_number("yaw_deg", yaw_deg),
+        "down_deg": finite_number("down_deg", down_deg),
+        "cut_m": finite_number("cut_m", cut_m),
     }
     storeys = [
         Image.fromarray(_native.dollhouse(world.native, level, config))
         for level in range(levels_of(world.house))
     ]
-    joined = _joined(storeys)
+    joined = _stack_storeys(storeys)
     return joined.resize(
-        (wide // _FINER, max(round(joined.height * wide / joined.width / _FINER), 1)),
+        (
+            wide // _SUPERSAMPLING,
+            max(round(joined.height * wide / joined.width / _SUPERSAMPLING), 1),
+        ),
         Image.Resampling.BOX if joined.width == wide else Image.Resampling.LANCZOS,
     )
 
 
 def levels_of(house: House) -> int:
     """How many storeys a house has."""
-    return int(instance("house", house, House).info()["levels"])
+    return int(instance_of("house", house, House).info()["levels"])
 
 
 def sheet(
@@ -172,25 +187,25 @@ def sheet(
         columns: Pictures in a row, from 1.
         tile: Pixels across and down for each.
     """
-    across, down = (whole("tile", edge, low=8, high=_MOST_PIXELS) for edge in tile)
-    columns = min(whole("columns", columns, low=1, high=64), max(len(pictures), 1))
+    across, down = (integer_in_range("tile", edge, low=8, high=_MAX_PIXELS) for edge in tile)
+    columns = min(integer_in_range("columns", columns, low=1, high=64), max(len(pictures), 1))
     gap, foot = 10, 24
     rows = math.ceil(len(pictures) / columns)
     size = (columns * (across + gap) + gap, rows * (down + foot + gap) + gap)
-    canvas = Image.new("RGB", size, _PAPER)
+    canvas = Image.new("RGB", size, _BACKGROUND_COLOR)
     draw = ImageDraw.Draw(canvas)
     for k, (title, picture) in enumerate(pictures):
         x, y = gap + k % columns * (across + gap), gap + k // columns * (down + foot + gap)
         small = picture.convert("RGB")
         small.thumbnail((across, down), Image.Resampling.LANCZOS)
         canvas.paste(small, (x + (across - small.width) // 2, y + (down - small.height) // 2))
-        _text(draw, (x + 2, y + down + 18), title, 15, _INK)
+        _text(draw, (x + 2, y + down + 18), title, 15, _TEXT_COLOR)
     return canvas
 
 
 def house_sheet(world: World, *, columns: int = 4, preset: Preset = "lit") -> Image.Image:
     """One house: the doll's house, the plan of each storey, a view of each room."""
-    house = instance("world", world, World).house
+    house = instance_of("world", world, World).house
     levels = range(levels_of(house))
     pictures = [(house.name, dollhouse(world, width=720))]
     for level in levels:
@@ -198,7 +213,7 @@ def house_sheet(world: World, *, columns: int = 4, preset: Preset = "lit") -> Im
         pictures.append((title, floor_plan(world, level, longest_edge=720)))
     for room in house.rooms():
         image = room_view(world, room, Camera(720, 540, preset=preset))
-        pictures.append((f"{_called(room)}, {room['area_m2']:.1f} m²", image))
+        pictures.append((f"{_room_title(room)}, {room['area_m2']:.1f} m²", image))
     return sheet(pictures, columns=columns)
 
 
@@ -228,7 +243,7 @@ def room_view(world: World, room: dict[str, Any], camera: Camera) -> Image.Image
     return Image.fromarray(seen["rgb"])
 
 
-def _called(room: dict[str, Any]) -> str:
+def _room_title(room: dict[str, Any]) -> str:
     return str(room["kinds"][0] if room["kinds"] else room["name"])
 
 
@@ -241,16 +256,16 @@ def _font(size: float) -> _Font:
 
 
 def _smooth(canvas: Image.Image) -> Image.Image:
-    size = (max(canvas.width // _FINER, 1), max(canvas.height // _FINER, 1))
+    size = (max(canvas.width // _SUPERSAMPLING, 1), max(canvas.height // _SUPERSAMPLING, 1))
     return canvas.resize(size, Image.Resampling.BOX)
 
 
-def _joined(storeys: list[Image.Image]) -> Image.Image:
+def _stack_storeys(storeys: list[Image.Image]) -> Image.Image:
     """Below one another, or side by side if they are higher than wide; all have one width."""
     wide, high = storeys[0].width, max(picture.height for picture in storeys)
     beside = high > wide
     size = (wide * len(storeys), high) if beside else (wide, sum(one.height for one in storeys))
-    canvas = Image.new("RGB", size, _PAPER)
+    canvas = Image.new("RGB", size, _BACKGROUND_COLOR)
     left, top = 0, size[1]
     for picture in storeys:
         top -= picture.height
@@ -259,7 +274,7 @@ def _joined(storeys: list[Image.Image]) -> Image.Image:
     return canvas
 
 
-def _swing(door: dict[str, Any]) -> list[tuple[float, float]]:
+def _door_swing(door: dict[str, Any]) -> list[tuple[float, float]]:
     """The way of a leaf's edge from shut to open, past the middle."""
     hinge_x, hinge_z = door["hinge"]
     turns = [
@@ -273,7 +288,7 @@ def _swing(door: dict[str, Any]) -> list[tuple[float, float]]:
     return [(hinge_x + radius * math.cos(a), hinge_z + radius * math.sin(a)) for a in steps]
 
 
-def _way(
+def _draw_path(
     draw: ImageDraw.ImageDraw, color: str, points: list[tuple[float, float]], line: int
 ) -> None:
     """A line with a halo, its start white and its end filled."""
@@ -292,9 +307,11 @@ def _name(
 ) -> None:
     """The room's word with its area below it."""
     halo = max(edge // 500, 1)
-    _text(draw, (at[0], at[1] - edge * 0.004), _called(room), edge * 0.02, _INK, halo, 0.5)
+    _text(
+        draw, (at[0], at[1] - edge * 0.004), _room_title(room), edge * 0.02, _TEXT_COLOR, halo, 0.5
+    )
     area = f"{room['area_m2']:.1f} m²"
-    _text(draw, (at[0], at[1] + edge * 0.016), area, edge * 0.016, _SOFT, halo, 0.5)
+    _text(draw, (at[0], at[1] + edge * 0.016), area, edge * 0.016, _SECONDARY_COLOR, halo, 0.5)
 
 
 def _text(
@@ -314,7 +331,7 @@ def _text(
     words, font, small = words.removesuffix("²"), _font(size), _font(0.7 * size)
     width = draw.textlength(words, font) + (draw.textlength("2", small) if raised else 0.0)
     x, y = at[0] - before * width, at[1]
-    halo_color = _PAPER if halo else None
+    halo_color = _BACKGROUND_COLOR if halo else None
     draw.text((x, y), words, color, font, "ls", stroke_width=halo, stroke_fill=halo_color)
     if raised:
         place = (x + draw.textlength(words, font), y - 0.35 * size)
@@ -328,7 +345,7 @@ def _scale(
     length_m = max((m for m in _SCALES_M if m * scale <= size[0] / 4), default=_SCALES_M[0])
     x, y = foot / 2, size[1] - foot / 2
     end = x + length_m * scale
-    draw.line([(x, y), (end, y)], fill=_INK, width=2 * line)
+    draw.line([(x, y), (end, y)], fill=_TEXT_COLOR, width=2 * line)
     for at in (x, end):
-        draw.line([(at, y - foot / 6), (at, y + foot / 6)], fill=_INK, width=2 * line)
-    _text(draw, (end + foot / 4, y + foot * 0.15), f"{length_m:g} m", foot * 0.45, _INK)
+        draw.line([(at, y - foot / 6), (at, y + foot / 6)], fill=_TEXT_COLOR, width=2 * line)
+    _text(draw, (end + foot / 4, y + foot * 0.15), f"{length_m:g} m", foot * 0.45, _TEXT_COLOR)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError, _native
-from dwell.arguments import finite, point, quoted, text, texts, whole
+from dwell.arguments import finite_number, integer_in_range, point, quoted, text, text_list
 from dwell.object_state_api import StateApi
 
 #: A thing by its name or its id in instance images; ``"room:NAME"``, ``"storey:0"``,
@@ -88,7 +88,7 @@ class RelationApi(StateApi):
             >>> [row for row in world.relations(["in_room"]) if row[0] == "radio_1"]
             [('radio_1', 'in_room', 'room:child_room')]
         """
-        wanted = None if names is None else texts("names", names)
+        wanted = None if names is None else text_list("names", names)
         return _native.world_relations(self._native, wanted, viewer_argument(viewer))
 
     def relation_array(
@@ -100,7 +100,7 @@ class RelationApi(StateApi):
         :meth:`House.rooms`, storeys -1001, -1002 and so on. A predicate has its place in
         :func:`dwell.relations.predicates`.
         """
-        wanted = None if names is None else texts("names", names)
+        wanted = None if names is None else text_list("names", names)
         return _native.world_relation_array(self._native, wanted, viewer_argument(viewer))
 
     def select(
@@ -136,7 +136,7 @@ class RelationApi(StateApi):
         """
         named = [_thing("things", thing) for thing in things]
         compared = None if reference is None else _thing("reference", reference)
-        place = whole("n", n, low=1, high=2**31 - 1)
+        place = integer_in_range("n", n, low=1, high=2**31 - 1)
         found: tuple[str | None, str | None] = _native.world_select(
             self._native, text("order", order), named, place, compared, viewer_argument(viewer)
         )
@@ -174,7 +174,7 @@ class RelationApi(StateApi):
         Returns:
             The largest share first; empty for what is mostly glass or mirror.
         """
-        count = whole("vocabulary", vocabulary)
+        count = integer_in_range("vocabulary", vocabulary)
         return _native.world_color_names(self._native, _thing("thing", thing), count)
 
     def scene_graph(self, *, viewer: Viewer | None = None) -> dict[str, Any]:
@@ -198,7 +198,11 @@ def _thing(name: str, thing: object) -> Thing:
     Raises:
         ConfigError: It is neither.
     """
-    return text(name, thing) if isinstance(thing, str) else whole(name, thing, high=2**31 - 1)
+    return (
+        text(name, thing)
+        if isinstance(thing, str)
+        else integer_in_range(name, thing, high=2**31 - 1)
+    )
 
 
 def viewer_argument(viewer: object) -> int | dict[str, Any] | None:
@@ -210,7 +214,7 @@ def viewer_argument(viewer: object) -> int | dict[str, Any] | None:
     if viewer is None:
         return None
     if not isinstance(viewer, Mapping):
-        return whole("viewer", viewer, high=2**31 - 1)
+        return integer_in_range("viewer", viewer, high=2**31 - 1)
     unknown = [key for key in viewer if key not in ("position", "yaw_deg", "pitch_deg")]
     if unknown or "position" not in viewer:
         raise ConfigError(
@@ -218,6 +222,6 @@ def viewer_argument(viewer: object) -> int | dict[str, Any] | None:
         )
     return {
         "position": list(point("viewer position", viewer["position"])),
-        "yaw_deg": finite("viewer yaw_deg", viewer.get("yaw_deg", 0.0)),
-        "pitch_deg": finite("viewer pitch_deg", viewer.get("pitch_deg", 0.0)),
+        "yaw_deg": finite_number("viewer yaw_deg", viewer.get("yaw_deg", 0.0)),
+        "pitch_deg": finite_number("viewer pitch_deg", viewer.get("pitch_deg", 0.0)),
     }

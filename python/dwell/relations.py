@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError, _native
-from dwell.arguments import whole
+from dwell.arguments import integer_in_range
 
 if TYPE_CHECKING:
     import networkx
@@ -71,8 +71,8 @@ def graph_arrays(
     Raises:
         ConfigError: The graph has more nodes or edges than there are rows.
     """
-    room = whole("nodes", nodes, low=1, high=10**6)
-    wide = whole("edges", edges, low=1, high=10**8)
+    room = integer_in_range("nodes", nodes, low=1, high=10**6)
+    wide = integer_in_range("edges", edges, low=1, high=10**8)
     rows, index = _nodes(graph)
     found = _edges(graph, index)
     for name, count, most in (("nodes", len(rows), room), ("edges", len(found), wide)):

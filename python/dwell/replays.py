@@ -14,15 +14,15 @@ import numpy as np
 
 from dwell import ConfigError, DwellError, MeasuredDataError, UsageError, _native, arguments
 from dwell.arguments import (
-    flag,
+    boolean,
     from_json,
-    instance,
+    instance_of,
+    integer_in_range,
     mapping,
     quoted,
     text,
-    texts,
+    text_list,
     to_json,
-    whole,
 )
 from dwell.files import atomic_write, read_json
 from dwell.house import House
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 #: What a file says of itself.
 _FORMAT, _VERSION = "dwell-replay", 2
 #: More than any episode is long; its file stays below what is read.
-MOST_STEPS = 1_000_000
+MAX_STEPS = 1_000_000
 
 
 @dataclasses.dataclass(frozen=True)
@@ -121,13 +121,13 @@ class Replay:
         try:
             replay = cls(
                 house=text("house", row["house"]),
-                seed=whole("seed", row["seed"]),
+                seed=integer_in_range("seed", row["seed"]),
                 config=to_json(mapping("config", row["config"])),
-                parts=tuple(texts("parts", row["parts"])),
-                actions=tuple(texts("actions", row["actions"])),
-                hashes=tuple(texts("hashes", row["hashes"])),
+                parts=tuple(text_list("parts", row["parts"])),
+                actions=tuple(text_list("actions", row["actions"])),
+                hashes=tuple(text_list("hashes", row["hashes"])),
                 instruction=text("instruction", row["instruction"]),
-                success=flag("success", row["success"]),
+                success=boolean("success", row["success"]),
                 made_by=text("made_by", row["made_by"]),
                 path=path,
                 sums=None if version == 1 else mapping("sums", row["sums"]),
@@ -153,10 +153,10 @@ class Replay:
                     f"{self._at()}: actions[{k}] is {quoted(action)}; "
                     f"allowed are {', '.join(names)}"
                 )
-        if len(self.hashes) != len(self.actions) + 1 or len(self.actions) > MOST_STEPS:
+        if len(self.hashes) != len(self.actions) + 1 or len(self.actions) > MAX_STEPS:
             raise MeasuredDataError(
                 f"{self._at()}: {len(self.actions)} actions and {len(self.hashes)} hashes; "
-                f"expected at most {MOST_STEPS} actions and one hash more"
+                f"expected at most {MAX_STEPS} actions and one hash more"
             )
 
     def _stated(self) -> dict[str, Any]:
@@ -246,7 +246,7 @@ class Replay:
         config = self._settings()
         if renderer is not None:
             config["world"] = {**config.get("world", {}), "renderer": renderer}
-        opened = House.open(self.house) if house is None else instance("house", house, House)
+        opened = House.open(self.house) if house is None else instance_of("house", house, House)
         return NativeBatch([opened], to_json(config), None, custom=custom)
 
     @contextmanager

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from dwell.plugin_parts import PluginPart
 
 if TYPE_CHECKING:
-    from dwell.tasks import Verdict
+    from dwell.tasks import StepResult
     from dwell.world import World
 
 
@@ -30,7 +30,7 @@ class Reward(PluginPart, abc.ABC):
         """Begins an episode, after the task has."""
 
     @abc.abstractmethod
-    def reward(self, world: World, action: str, verdict: Verdict) -> float:
+    def reward(self, world: World, action: str, verdict: StepResult) -> float:
         """The reward of the step that has just been made.
 
         Args:

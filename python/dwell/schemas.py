@@ -8,7 +8,17 @@ from typing import Any
 
 from dwell import _native
 from dwell._native import ConfigError
-from dwell.arguments import fields, finite, flag, mapping, pair, point, quoted, text, whole
+from dwell.arguments import (
+    boolean,
+    checked_fields,
+    finite_number,
+    integer_in_range,
+    mapping,
+    point,
+    quoted,
+    text,
+    two_numbers,
+)
 
 Check = Callable[[str, object], Any]
 
@@ -22,7 +32,7 @@ _BOUNDS = {
 #: What the package takes in other forms than the engine.
 _WITHOUT_CHECK = {"agents", "laws", "locomotion", "parameters", "sound_head", "sound_root"}
 #: Checks of lists of numbers by their length.
-_LISTS: dict[int, Check] = {2: pair, 3: point}
+_LISTS: dict[int, Check] = {2: two_numbers, 3: point}
 
 
 @functools.cache
@@ -76,13 +86,13 @@ def _kinds(schema: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
 def _check_of_kind(kind: str, schema: Mapping[str, Any]) -> Check:
     if kind == "integer":
         low, high = _BOUNDS[schema["format"]]
-        return lambda name, value: whole(name, value, low=low, high=high)
+        return lambda name, value: integer_in_range(name, value, low=low, high=high)
     if kind == "array":
         return _LISTS.get(schema.get("minItems", 0), _as_is)
     if kind == "object" and schema.get("properties"):
         parts = {name: check_of(part) for name, part in schema["properties"].items()}
-        return lambda name, value: fields(name, value, parts)
-    return {"number": finite, "boolean": flag, "string": text, "object": mapping}[kind]
+        return lambda name, value: checked_fields(name, value, parts)
+    return {"number": finite_number, "boolean": boolean, "string": text, "object": mapping}[kind]
 
 
 def words(schema: Mapping[str, Any]) -> list[str]:

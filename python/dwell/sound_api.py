@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from dwell import ConfigError, UsageError, _native
-from dwell.arguments import choice, finite, flag, path, point, text, whole
+from dwell.arguments import boolean, choice, finite_number, integer_in_range, path, point, text
 from dwell.language_api import LanguageApi
 
 #: What the names of sound files end with.
@@ -34,14 +34,14 @@ def _played(
     if isinstance(at, str):
         place = {"object": text("at", at)}
     elif isinstance(at, int | np.integer):
-        place = {"agent": whole("at", at)}
+        place = {"agent": integer_in_range("at", at)}
     else:
         place = {"position": point("at", at)}
     return {
         "sound": {kind: name},
         "at": place,
-        "level_db": None if level_db is None else finite("level_db", level_db),
-        "loops": flag("loop", loop),
+        "level_db": None if level_db is None else finite_number("level_db", level_db),
+        "loops": boolean("loop", loop),
     }
 
 
@@ -70,11 +70,11 @@ def emitter_sound(
         told["file"] = path("sound", sound)
         if level_db is None:
             raise ConfigError("level_db: a sound file needs one, dB SPL at 1 m")
-    told["level_db"] = finite("level_db", level_db)
+    told["level_db"] = finite_number("level_db", level_db)
     # What every sound does anyway is not noted.
-    if not flag("loop", loop):
+    if not boolean("loop", loop):
         told["loops"] = False
-    if finite("start_s", start_s) != 0.0:
+    if finite_number("start_s", start_s) != 0.0:
         told["start_s"] = start_s
     return told
 
@@ -129,7 +129,7 @@ class SoundApi(LanguageApi):
         Raises:
             UsageError: No sound has the handle, as when it is over.
         """
-        self._native.stop_sound(whole("handle", handle))
+        self._native.stop_sound(integer_in_range("handle", handle))
 
     def start_sound(self, handle: int) -> None:
         """Starts the sound of an object again that was stopped.
@@ -138,7 +138,7 @@ class SoundApi(LanguageApi):
             UsageError: No sound has the handle, or its object is switched off and stays silent:
                 somebody must switch it on, as with ``act("toggle", object)``.
         """
-        handle = whole("handle", handle)
+        handle = integer_in_range("handle", handle)
         switched_off = {row["name"] for row in self.objects() if row["on"] is False}
         for row in self.sounds():
             if row["handle"] == handle and row["object"] in switched_off:
@@ -151,7 +151,9 @@ class SoundApi(LanguageApi):
 
     def set_sound_level(self, handle: int, level_db: float) -> None:
         """Sets the level of a sound at 1 m, dB SPL, from the next step on."""
-        self._native.set_sound_level(whole("handle", handle), finite("level_db", level_db))
+        self._native.set_sound_level(
+            integer_in_range("handle", handle), finite_number("level_db", level_db)
+        )
 
     def sounds(self) -> list[dict[str, Any]]:
         """Every source: the sounds of objects, then those played on request.

@@ -12,9 +12,9 @@ from PIL import Image, ImageDraw
 
 from dwell import ConfigError
 from dwell.acoustics import AcousticScene
-from dwell.arguments import choice, instance
+from dwell.arguments import choice, instance_of
 from dwell.array_record import ArrayRecord
-from dwell.charts import INK, PAPER, font
+from dwell.charts import BACKGROUND_COLOR, TEXT_COLOR, font
 from dwell.false_color import scale_colors
 from dwell.listening import Source, source_of
 from dwell.places import receiver_grid
@@ -85,7 +85,7 @@ def sound_map(
         threads: How many threads to use; the result does not depend on it.
         progress: Is told a fraction and what is being done.
     """
-    scene = instance("scene", scene, AcousticScene)
+    scene = instance_of("scene", scene, AcousticScene)
     field = MEASURES[choice("measure", measure, tuple(MEASURES))][0]
     places = receiver_grid(scene.house, spacing_m, height_m)
     values: list[float] = []
@@ -117,8 +117,8 @@ def draw_map(
     Raises:
         ConfigError: There is no value on this storey.
     """
-    world = instance("world", world, World)
-    _, title, unit = MEASURES[instance("found", found, SoundMap).measure]
+    world = instance_of("world", world, World)
+    _, title, unit = MEASURES[instance_of("found", found, SoundMap).measure]
     here = _on_storey(found.places, world, level)
     there = here & np.isfinite(found.values)
     if not there.any():
@@ -149,15 +149,15 @@ def _on_storey(places: NDArray[np.float64], world: World, level: int) -> NDArray
 def _with_scale(plan: Image.Image, words: str, low: float, high: float) -> Image.Image:
     """A picture with a bar of colours below it, from 2 % to 98 % of the values."""
     size = max(plan.width // 50, 11)
-    canvas = Image.new("RGB", (plan.width, plan.height + 5 * size), PAPER)
+    canvas = Image.new("RGB", (plan.width, plan.height + 5 * size), BACKGROUND_COLOR)
     canvas.paste(plan)
     draw = ImageDraw.Draw(canvas)
     top, wide = plan.height + 2 * size, plan.width - 4 * size
     bar = scale_colors(np.linspace(0.0, 1.0, wide))[None].repeat(size, axis=0)
     canvas.paste(Image.fromarray(bar), (2 * size, top))
-    draw.text((2 * size, top - size // 2), words, INK, font(size), "ls")
+    draw.text((2 * size, top - size // 2), words, TEXT_COLOR, font(size), "ls")
     for k in range(5):
         value, x = low + (high - low) * k / 4, 2 * size + wide * k / 4
         anchor = ("ls", "ms", "ms", "ms", "rs")[k]
-        draw.text((x, top + 2.3 * size), f"{value:.3g}", INK, font(size), anchor)
+        draw.text((x, top + 2.3 * size), f"{value:.3g}", TEXT_COLOR, font(size), anchor)
     return canvas

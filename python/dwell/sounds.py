@@ -10,18 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError, MeasuredDataError, _native, arguments
-from dwell.arguments import finite, numbers, whole
+from dwell.arguments import finite_number, integer_in_range, real_array
 from dwell.files import atomic_write, read
 
 #: A sound file that is read has at most so many bytes.
-_MOST_READ_BYTES = 512 * 2**20
+_MAX_READ_BYTES = 512 * 2**20
 
 #: Formats of samples in a WAV file: whole numbers, and numbers of IEEE 754.
 _PCM, _FLOAT = 1, 3
 #: What one sample of all channels takes has 16 bits.
-_MOST_FRAME_BYTES = 2**16 - 1
+_MAX_FRAME_BYTES = 2**16 - 1
 #: Chunks have lengths of 32 bits.
-_MOST_BYTES = 2**32 - 256
+_MAX_WAV_BYTES = 2**32 - 256
 
 
 def write_wav(
@@ -48,7 +48,7 @@ def write_wav(
             number above 0.
         OSError: The system refuses, or something stands there that is no regular file.
     """
-    sound = numbers("sound", sound, np.float64)
+    sound = real_array("sound", sound, np.float64)
     if sound.ndim != 2 or not sound.shape[0]:
         raise ConfigError(f"sound: expected the shape (channel, sample), found {sound.shape}")
     if not np.isfinite(sound).all():
@@ -57,18 +57,18 @@ def write_wav(
         if sound.size and np.abs(sound).max() > np.finfo(np.float32).max:
             raise ConfigError(f"sound: found {np.abs(sound).max():g} Pa; 32 bits hold up to 3e38")
         form, samples = _FLOAT, sound.T.astype("<f4")
-    elif finite("full_scale_pa", full_scale_pa) > 0.0:
+    elif finite_number("full_scale_pa", full_scale_pa) > 0.0:
         scaled = np.clip(sound.T / full_scale_pa, -1.0, 1.0) * 32767.0
         form, samples = _PCM, np.rint(scaled).astype("<i2")
     else:
         raise ConfigError(f"full_scale_pa is {full_scale_pa}; allowed are numbers above 0")
-    if samples.nbytes > _MOST_BYTES:
-        raise ConfigError(f"sound: {samples.nbytes} bytes; a WAV file holds {_MOST_BYTES}")
+    if samples.nbytes > _MAX_WAV_BYTES:
+        raise ConfigError(f"sound: {samples.nbytes} bytes; a WAV file holds {_MAX_WAV_BYTES}")
     channels, width = sound.shape[0], samples.itemsize
-    if channels * width > _MOST_FRAME_BYTES:
-        most = _MOST_FRAME_BYTES // width
+    if channels * width > _MAX_FRAME_BYTES:
+        most = _MAX_FRAME_BYTES // width
         raise ConfigError(f"sound: {channels} channels; a WAV file of such samples holds {most}")
-    rate_hz = whole("rate_hz", rate_hz, low=1, high=(2**32 - 1) // (channels * width))
+    rate_hz = integer_in_range("rate_hz", rate_hz, low=1, high=(2**32 - 1) // (channels * width))
     rates = (rate_hz, rate_hz * channels * width, channels * width, 8 * width)
     chunks = [(b"fmt ", struct.pack("<HHIIHH", form, channels, *rates))]
     if form == _FLOAT:
@@ -101,7 +101,7 @@ def read_wav(
         OSError: The system refuses, or it is no regular file.
     """
     try:
-        file = read(arguments.path("path", path), _MOST_READ_BYTES)
+        file = read(arguments.path("path", path), _MAX_READ_BYTES)
     except ConfigError:
         raise
     except ValueError as error:

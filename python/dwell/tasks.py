@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 @dataclasses.dataclass(frozen=True)
-class Ask:
+class TaskGoal:
     """The goal of an episode, as an instruction.
 
     Attributes:
@@ -34,7 +34,7 @@ class Ask:
 
 
 @dataclasses.dataclass(frozen=True)
-class Verdict:
+class StepResult:
     """The verdict on a step.
 
     Attributes:
@@ -76,7 +76,7 @@ class Task(PluginPart):
         >>> class GoUp(dwell.Task):
         ...     sensors = ["gps"]
         ...     def judge(self, world, action, verdict):
-        ...         return dwell.Verdict(reward=float(world.agents()[0]["position"][1]))
+        ...         return dwell.StepResult(reward=float(world.agents()[0]["position"][1]))
         >>> env = DwellEnv(task=GoUp)
         >>> observation, info = env.reset(seed=1)
         >>> observation, reward, terminated, truncated, info = env.step(1)
@@ -90,7 +90,7 @@ class Task(PluginPart):
     max_steps: ClassVar[int] = 1000
     spaces: Mapping[str, gymnasium.Space[Any]] = types.MappingProxyType({})
 
-    def reset(self, world: World, rng: np.random.Generator) -> Ask | None:
+    def reset(self, world: World, rng: np.random.Generator) -> TaskGoal | None:
         """Arranges a new episode: ``base`` has put the agent to a start.
 
         Args:
@@ -103,7 +103,7 @@ class Task(PluginPart):
         del world, rng
         return None
 
-    def judge(self, world: World, action: str, verdict: Verdict) -> Verdict:
+    def judge(self, world: World, action: str, verdict: StepResult) -> StepResult:
         """Judges the step that has just been made.
 
         Args:

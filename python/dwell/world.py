@@ -12,20 +12,20 @@ from dwell import ConfigError, _native
 from dwell.action_api import ActionApi
 from dwell.agent_controls import controls_of
 from dwell.arguments import (
-    finite,
+    finite_number,
+    integer_in_range,
     mapping,
-    pair,
+    number_in_range,
     point,
     quoted,
     text,
-    texts,
+    text_list,
+    three_numbers,
     to_json,
-    triple,
+    two_numbers,
     unit_quaternion,
-    whole,
-    within,
 )
-from dwell.camera import MOST_PIXELS, Camera, camera_settings
+from dwell.camera import MAX_PIXELS, Camera, camera_settings
 from dwell.configs import bodies
 from dwell.engine_types import Channel
 from dwell.guide_api import GuideApi
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 #: How steeply an agent looks up or down at most, the engine's 1.5 rad.
 _STEEPEST_DEG = 85.9
 #: Ids have 32 bits.
-_MOST_IDS = 2**32 - 1
+_MAX_ID = 2**32 - 1
 
 JointCommand = Literal["off", "position", "velocity", "effort"]
 
@@ -100,11 +100,11 @@ class World(ActionApi, GuideApi, SoundApi):
         for head in self._heads:
             self.house.native.add_head(head.native)
         settings = {"agents": bodies(agents), **world_settings(laws, parameters, further)}
-        self._config, self._seed = to_json(settings), whole("seed", seed)
+        self._config, self._seed = to_json(settings), integer_in_range("seed", seed)
         self._native = _native.World(self.house.native, self._config, self._seed)
 
     @classmethod
-    def _again(
+    def _rebuild(
         cls, house: House, config: str, seed: int, heads: tuple[Head, ...], snapshot: bytes
     ) -> World:
         """The world of a pickle, in its state."""
@@ -127,7 +127,7 @@ class World(ActionApi, GuideApi, SoundApi):
     def __reduce__(self) -> tuple[Any, tuple[House, str, int, tuple[Head, ...], bytes]]:
         """House, settings, heads and a snapshot."""
         again = (self.house, self._config, self._seed, self._heads, self.snapshot())
-        return World._again, again
+        return World._rebuild, again
 
     def __repr__(self) -> str:
         """The house, the time, and the number of agents."""
@@ -238,14 +238,16 @@ class World(ActionApi, GuideApi, SoundApi):
         """
         row = {
             "position": point("position", position),
-            "yaw_deg": finite("yaw_deg", yaw_deg),
-            "pitch_deg": within("pitch_deg", pitch_deg, -_STEEPEST_DEG, _STEEPEST_DEG, "degrees"),
-            "linear_m_s": triple("linear_m_s", linear_m_s),
-            "yaw_rate_rad_s": finite("yaw_rate_rad_s", yaw_rate_rad_s),
-            "crouched_by_m": finite("crouched_by_m", crouched_by_m),
-            "wheel_rad_s": None if wheel_rad_s is None else pair("wheel_rad_s", wheel_rad_s),
+            "yaw_deg": finite_number("yaw_deg", yaw_deg),
+            "pitch_deg": number_in_range(
+                "pitch_deg", pitch_deg, -_STEEPEST_DEG, _STEEPEST_DEG, "degrees"
+            ),
+            "linear_m_s": three_numbers("linear_m_s", linear_m_s),
+            "yaw_rate_rad_s": finite_number("yaw_rate_rad_s", yaw_rate_rad_s),
+            "crouched_by_m": finite_number("crouched_by_m", crouched_by_m),
+            "wheel_rad_s": None if wheel_rad_s is None else two_numbers("wheel_rad_s", wheel_rad_s),
         }
-        self._native.place_agent(whole("agent", agent), row)
+        self._native.place_agent(integer_in_range("agent", agent), row)
         warn_outside_rooms(self.house, "an agent", position)
 
     def events(self) -> list[dict[str, Any]]:
@@ -301,18 +303,18 @@ class World(ActionApi, GuideApi, SoundApi):
             raise ConfigError("agent, position: found both; expected one of them")
         if position is None:
             for name, angle_deg in (("yaw_deg", yaw_deg), ("pitch_deg", pitch_deg)):
-                if finite(name, angle_deg) != 0.0:
+                if finite_number(name, angle_deg) != 0.0:
                     raise ConfigError(
                         f"{name} is {angle_deg:g} without a position; an agent's eyes look where "
                         "it does: turn it (place_agent), or its camera (Camera.yaw_deg, pitch_deg)"
                     )
-            view["agent"] = 0 if agent is None else whole("agent", agent)
+            view["agent"] = 0 if agent is None else integer_in_range("agent", agent)
         else:
             view["position"] = list(point("position", position))
             warn_outside_rooms(self.house, "a camera", view["position"])
-            view["yaw_deg"] = finite("yaw_deg", yaw_deg)
-            view["pitch_deg"] = finite("pitch_deg", pitch_deg)
-        return self._native.render(view, texts("channels", channels))
+            view["yaw_deg"] = finite_number("yaw_deg", yaw_deg)
+            view["pitch_deg"] = finite_number("pitch_deg", pitch_deg)
+        return self._native.render(view, text_list("channels", channels))
 
     def map(
         self, longest_edge: int = 512, *, level: int = 0
@@ -322,8 +324,8 @@ class World(ActionApi, GuideApi, SoundApi):
         Returns:
             The image (height, width, 3), the x and z of its upper left corner in m, pixels a metre.
         """
-        edge = whole("longest_edge", longest_edge, low=1, high=MOST_PIXELS)
-        level = whole("level", level, high=_MOST_IDS)
+        edge = integer_in_range("longest_edge", longest_edge, low=1, high=MAX_PIXELS)
+        level = integer_in_range("level", level, high=_MAX_ID)
         image, x, z, scale = _native.map(self._native, level, edge)
         return image, (x, z), scale
 
@@ -348,7 +350,9 @@ class World(ActionApi, GuideApi, SoundApi):
             samples: How many, 1 to ten seconds' worth.
             agent: Whose ears.
         """
-        return self._native.listen(whole("agent", agent), whole("samples", samples, low=1))
+        return self._native.listen(
+            integer_in_range("agent", agent), integer_in_range("samples", samples, low=1)
+        )
 
     def joints(self) -> list[dict[str, Any]]:
         """Every joint: id, name, object, kind, limits, motor, position, velocity, command."""
@@ -367,8 +371,8 @@ class World(ActionApi, GuideApi, SoundApi):
             ConfigError: For a kind that does not exist or a number that is not finite.
             UsageError: There is no such joint, or it cannot obey.
         """
-        joint = whole("joint", joint, high=_MOST_IDS)
-        self._native.command_joint(joint, text("kind", kind), finite("value", value))
+        joint = integer_in_range("joint", joint, high=_MAX_ID)
+        self._native.command_joint(joint, text("kind", kind), finite_number("value", value))
 
     def set_joints(self, joints: Mapping[int, tuple[float, float]]) -> None:
         """Sets positions and velocities of joints at once; what hangs on them moves along.
@@ -386,8 +390,8 @@ class World(ActionApi, GuideApi, SoundApi):
             raise ConfigError(f"joints is {quoted(joints)}; expected (position, velocity) by id")
         rows = []
         for joint, stand in joints.items():
-            position, velocity = pair(f"joint {quoted(joint)}: (position, velocity)", stand)
-            rows.append((whole("joint", joint, high=_MOST_IDS), position, velocity))
+            position, velocity = two_numbers(f"joint {quoted(joint)}: (position, velocity)", stand)
+            rows.append((integer_in_range("joint", joint, high=_MAX_ID), position, velocity))
         self._native.set_joints(rows)
 
     def body(self, object: str, *, part: str | None = None) -> dict[str, tuple[float, ...]]:
@@ -449,8 +453,8 @@ class World(ActionApi, GuideApi, SoundApi):
             "part": part,
             "position": now["position"] if position is None else point("position", position),
             "rotation": turn,
-            "linear_m_s": triple("linear_m_s", linear_m_s),
-            "angular_rad_s": triple("angular_rad_s", angular_rad_s),
+            "linear_m_s": three_numbers("linear_m_s", linear_m_s),
+            "angular_rad_s": three_numbers("angular_rad_s", angular_rad_s),
         }
         self._native.set_bodies([row])
 
@@ -502,7 +506,9 @@ class World(ActionApi, GuideApi, SoundApi):
             1.1
         """
         rows = mapping("parameters", parameters, "values by address").items()
-        self._native.set_parameters([(address, finite(address, value)) for address, value in rows])
+        self._native.set_parameters(
+            [(address, finite_number(address, value)) for address, value in rows]
+        )
 
     def snapshot(self) -> bytes:
         """The whole world as bytes; no mesh is in them."""

@@ -11,7 +11,15 @@ from typing import Any
 
 from dwell import _native
 from dwell._native import ConfigError
-from dwell.arguments import fields, finite, mapping, path, quoted, text, whole
+from dwell.arguments import (
+    checked_fields,
+    finite_number,
+    integer_in_range,
+    mapping,
+    path,
+    quoted,
+    text,
+)
 from dwell.configs import bodies, checked
 from dwell.files import read_json
 from dwell.heads import Head, head_of
@@ -22,7 +30,7 @@ Laws = str | os.PathLike[str] | Mapping[str, Any] | Sequence[str | Mapping[str, 
 
 _FOUND = {"laws", "parameters"}
 #: More than anybody has causes for; each is looked for among those before it.
-_MOST_LAWS = 1_000
+_MAX_LAWS = 1_000
 _EXPECTED = (
     "expected a law's name, a list of names and of {id, version, target, params}, parameters by "
     "name as {'drag': {'c_d': 0.5}}, or the path of what calibration found"
@@ -86,15 +94,15 @@ def found(laws: Laws) -> tuple[list[dict[str, Any]], dict[str, float]]:
         or not all(isinstance(law, str | Mapping) for law in laws)
     ):
         raise ConfigError(f"{at}: found {quoted(laws)}; {_EXPECTED}")
-    if len(laws) > _MOST_LAWS:
-        raise ConfigError(f"{at}: found {len(laws)} laws; allowed are at most {_MOST_LAWS}")
+    if len(laws) > _MAX_LAWS:
+        raise ConfigError(f"{at}: found {len(laws)} laws; allowed are at most {_MAX_LAWS}")
     rows = [_row(f"{at}[{k}]", law) for k, law in enumerate(laws)]
     return rows, _values("parameters", parameters)
 
 
 def _row(at: str, given: str | Mapping[str, Any]) -> dict[str, Any]:
     """A law in full."""
-    row = fields(at, {"id": given} if isinstance(given, str) else given, _LAW)
+    row = checked_fields(at, {"id": given} if isinstance(given, str) else given, _LAW)
     if "id" not in row:
         raise ConfigError(f"{at}: no field 'id'; a law has {', '.join(_LAW)}")
     name = row["id"]
@@ -137,7 +145,7 @@ def _has(law: Mapping[str, Any]) -> str:
 def _values(name: str, parameters: object) -> dict[str, float]:
     """Values by address."""
     values = mapping(name, parameters, "values by address")
-    return {address: finite(address, value) for address, value in values.items()}
+    return {address: finite_number(address, value) for address, value in values.items()}
 
 
 def _target(name: str, value: object) -> str | None:
@@ -145,13 +153,13 @@ def _target(name: str, value: object) -> str | None:
 
 
 def _params(name: str, value: object) -> dict[str, float]:
-    return {key: finite(f"{name}.{key}", part) for key, part in mapping(name, value).items()}
+    return {key: finite_number(f"{name}.{key}", part) for key, part in mapping(name, value).items()}
 
 
 #: The fields of a law, and what they may be.
 _LAW: dict[str, Callable[[str, object], Any]] = {
     "id": text,
-    "version": whole,
+    "version": integer_in_range,
     "target": _target,
     "params": _params,
 }

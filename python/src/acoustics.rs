@@ -44,7 +44,7 @@ impl PyAcousticScene {
             let config: AcousticConfig = config.read()?;
             let laws: Vec<LawSpec> = laws.read()?;
             let parameters: BTreeMap<String, f64> = parameters.read()?;
-            let state = dwell::laws::start(&house, &laws, &parameters)?;
+            let state = dwell::laws::state_with_laws(&house, &laws, &parameters)?;
             let mut scene = AcousticScene::new(house.clone(), config)?;
             scene.update(&state);
             Ok(Self {
@@ -112,7 +112,7 @@ impl PyAcousticScene {
             {
                 let axis = metrics::lateral_axis(receiver, source.position());
                 let lateral = metrics::lateral_fraction(echogram, axis);
-                let mut rows = serde_json::to_value(metrics::of_echogram(echogram))?;
+                let mut rows = serde_json::to_value(metrics::echogram_metrics(echogram))?;
                 let bands = rows.as_array_mut().into_iter().flatten();
                 for ((row, centre_hz), lf) in bands.zip(NOMINAL_CENTRES_HZ).zip(lateral) {
                     row["lf"] = lf.into();
@@ -141,8 +141,8 @@ impl PyAcousticScene {
         })
     }
 
-    fn explain(&self, py: Python<'_>) -> PyResult<Answer> {
-        py.engine(|| Answer::of(&self.scene.explain()))
+    fn material_report(&self, py: Python<'_>) -> PyResult<Answer> {
+        py.engine(|| Answer::of(&self.scene.material_report()))
     }
 
     fn config(&self, py: Python<'_>) -> PyResult<Answer> {
@@ -184,7 +184,7 @@ pub(crate) fn response_metrics(
     let samples = arrays::row("samples", &samples)?;
     py.engine(|| -> Result<_, PyFault> {
         let width: BandWidth = width.read()?;
-        let found = metrics::of_impulse_response(samples, rate_hz, width);
+        let found = metrics::impulse_response_metrics(samples, rate_hz, width);
         Answer::of(&named_bands(serde_json::to_value(found)?, width))
     })
 }
@@ -201,7 +201,7 @@ pub(crate) fn ear_metrics(
     let (left, right) = (arrays::row("left", &left)?, arrays::row("right", &right)?);
     py.engine(|| -> Result<_, PyFault> {
         let width: BandWidth = width.read()?;
-        let found = metrics::of_ears(left, right, rate_hz, width);
+        let found = metrics::binaural_metrics(left, right, rate_hz, width);
         let mut found = serde_json::to_value(found)?;
         found["bands"] = named_bands(found["bands"].take(), width);
         Answer::of(&found)
@@ -242,7 +242,7 @@ pub(crate) fn signals() -> PyResult<Answer> {
             "name": signal.name,
             "description": signal.description,
             "loop_s": signal.loop_s,
-            "usual_level_db": signal.usual_level_db,
+            "usual_level_db": signal.typical_level_db,
             "level_source": signal.level_source,
         })
     });

@@ -62,7 +62,7 @@ fn report_of(rows: &Value) -> LoadReport {
 }
 
 fn unmapped(house: &House, report: &Value) -> UnmappedNames {
-    authoring::unmapped(house, &report_of(report))
+    authoring::unmapped_names(house, &report_of(report))
 }
 
 /// Counts, rooms and categories, with what stayed unmapped.

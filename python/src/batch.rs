@@ -9,7 +9,7 @@ use crate::picture;
 use crate::prepared_env::PyPreparedEnv;
 use crate::values::Data;
 use dwell::sensors::{Dtype, ObservationBuffer};
-use dwell::{Batch, DiscreteAction, Engines, Env, EnvConfig, StepInfo, Verdict};
+use dwell::{Batch, DiscreteAction, Engines, Env, EnvConfig, StepInfo, StepResult};
 use dwell_scene::interrupt;
 use dwell_scene::parallel::Threads;
 use numpy::{
@@ -145,7 +145,7 @@ impl PyBatch {
                 }
             }
             let batch = Batch::new(envs, threads)?;
-            Ok(batch.overlapping(overlap))
+            Ok(batch.with_overlapped_rendering(overlap))
         })?;
         Ok(Self {
             batch: batch.into(),
@@ -165,7 +165,7 @@ impl PyBatch {
 
     /// Returns whose each sensor is, by the agent's place.
     fn sensor_agents(&self, py: Python<'_>) -> PyResult<Vec<usize>> {
-        self.with(py, |batch| Ok(batch.sensor_agents()))
+        self.with(py, |batch| Ok(batch.agent_of_sensors()))
     }
 
     fn specs(&self, py: Python<'_>) -> PyResult<Answer> {
@@ -180,7 +180,7 @@ impl PyBatch {
     fn put(&self, py: Python<'_>, env: usize, spare: &Bound<'_, PyPreparedEnv>) -> PyResult<()> {
         let spare = spare.get();
         self.with(py, |batch| {
-            batch.put(env, spare.take()?)?;
+            batch.replace_env(env, spare.take()?)?;
             Ok(())
         })
     }
@@ -223,16 +223,16 @@ impl PyBatch {
                 .collect::<Vec<_>>()
                 .into_pyarray(py)
         };
-        out.set_item("reward", of(|info| info.verdict.reward))?;
-        out.set_item("terminated", is(|info| info.verdict.terminated))?;
-        out.set_item("success", is(|info| info.verdict.success))?;
+        out.set_item("reward", of(|info| info.result.reward))?;
+        out.set_item("terminated", is(|info| info.result.terminated))?;
+        out.set_item("success", is(|info| info.result.success))?;
         out.set_item("action_success", is(|info| info.action_success))?;
         out.set_item("collision", is(|info| info.collision))?;
         out.set_item(
             "distance_to_goal",
             of(|info| info.progress.distance_m.unwrap_or(f64::NAN)),
         )?;
-        out.set_item("spl", of(|info| info.progress.spl(info.verdict.success)))?;
+        out.set_item("spl", of(|info| info.progress.spl(info.result.success)))?;
         out.set_item("soft_spl", of(|info| info.progress.soft_spl()))?;
         out.set_item("path_length", of(|info| info.progress.path_m))?;
         out.set_item("collisions", of(|info| info.progress.collisions as f64))?;
@@ -315,14 +315,15 @@ impl PyBatch {
     fn rule(&self, py: Python<'_>, env: usize, ruling: Data, agent: usize) -> PyResult<Answer> {
         self.with(py, |batch| {
             let ruling: ExternalVerdict = ruling.read()?;
-            let verdict = Verdict {
+            let verdict = StepResult {
                 reward: ruling.reward,
                 terminated: ruling.terminated,
                 success: ruling.success,
             };
-            let progress = batch
-                .env_mut(env)?
-                .set_verdict(agent, verdict, ruling.distance_m)?;
+            let progress =
+                batch
+                    .env_mut(env)?
+                    .set_step_result(agent, verdict, ruling.distance_m)?;
             Answer::of(&serde_json::json!({
                 "distance_to_goal": progress.distance_m,
                 "spl": progress.spl(verdict.success),
@@ -332,7 +333,7 @@ impl PyBatch {
     }
 
     fn texts(&self, py: Python<'_>, sensor: usize) -> PyResult<Vec<String>> {
-        self.with(py, |batch| Ok(batch.texts(sensor)))
+        self.with(py, |batch| Ok(batch.text_observations(sensor)))
     }
 
     fn render<'py>(&self, py: Python<'py>, env: usize, view: Data) -> PyResult<Bound<'py, PyAny>> {
@@ -382,7 +383,7 @@ impl PyBatch {
 
     fn clipped(&self, py: Python<'_>) -> PyResult<Vec<u64>> {
         self.with(py, |batch| {
-            Ok(batch.envs().iter().flat_map(Env::clipped).collect())
+            Ok(batch.envs().iter().flat_map(Env::clipped_samples).collect())
         })
     }
 

@@ -29,14 +29,14 @@ pub(crate) fn action_table() -> PyResult<Answer> {
         json!({
             "name": kind.name,
             "about": kind.about(),
-            "is_of_hand": kind.is_of_hand(),
-            "target": kind.target_about(),
+            "is_of_hand": kind.is_hand_action(),
+            "target": kind.target_description(),
             "fields": kind.fields(),
         })
     });
     let kinds: Value = kinds.collect();
-    let target = schema::fields::<dwell::actions::TargetRequest>();
-    let codes = schema::variants::<dwell_physics::OutcomeCode>();
+    let target = schema::fields_of::<dwell::actions::TargetRequest>();
+    let codes = schema::variants_of::<dwell_physics::OutcomeCode>();
     table(&json!({"kinds": kinds, "target": target, "codes": codes}))
 }
 
@@ -48,7 +48,7 @@ pub(crate) fn tasks() -> PyResult<Answer> {
             "name": kind.name,
             "version": kind.version,
             "about": kind.about,
-            "asks": kind.asks,
+            "asks": kind.has_goal,
             "max_steps": kind.max_steps,
             "sensors": kind.sensors,
             "settings": (kind.settings)(),
@@ -76,13 +76,13 @@ pub(crate) fn sensors() -> PyResult<Answer> {
 #[pyfunction]
 pub(crate) fn settings() -> PyResult<Answer> {
     table(&json!({
-        "AcousticConfig": schema::fields::<dwell_acoustics::AcousticConfig>(),
-        "AgentBody": schema::fields::<dwell_scene::AgentBody>(),
-        "AgentControl": schema::fields::<dwell_physics::AgentControl>(),
-        "Air": schema::fields::<dwell_acoustics::Air>(),
-        "HouseSpec": schema::fields::<dwell_houses::generate::HouseSpec>(),
-        "StepSizes": schema::fields::<dwell::StepSizes>(),
-        "WorldConfig": schema::fields::<dwell::WorldConfig>(),
+        "AcousticConfig": schema::fields_of::<dwell_acoustics::AcousticConfig>(),
+        "AgentBody": schema::fields_of::<dwell_scene::AgentBody>(),
+        "AgentControl": schema::fields_of::<dwell_physics::AgentControl>(),
+        "Air": schema::fields_of::<dwell_acoustics::Air>(),
+        "HouseSpec": schema::fields_of::<dwell_houses::generate::HouseSpec>(),
+        "StepSizes": schema::fields_of::<dwell::StepSizes>(),
+        "WorldConfig": schema::fields_of::<dwell::WorldConfig>(),
     }))
 }
 
@@ -91,7 +91,7 @@ pub(crate) fn settings() -> PyResult<Answer> {
 pub(crate) fn laws() -> PyResult<Answer> {
     let row = |info| -> Result<Value, serde_json::Error> {
         let mut row = serde_json::to_value(info)?;
-        let usual = dwell::laws::USUAL
+        let usual = dwell::laws::DEFAULT_VALUES
             .iter()
             .find(|usual| row["id"] == usual.id);
         row["usual"] = usual.map_or(Value::Null, |usual| {
@@ -152,8 +152,8 @@ fn machine() -> Result<Answer, PyFault> {
         "target": format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
         "threads": threads,
         "available_cores": parallel::available_cores(),
-        "machine_threads": parallel::machine_threads(),
-        "threads_variable": parallel::variable()?,
+        "machine_threads": parallel::available_threads(),
+        "threads_variable": parallel::threads_variable()?,
         "cpu_features": cpu_features(),
         "render_back_ends": ["cpu", "gpu"],
         "graphics_adapters": graphics_adapters(),
@@ -167,13 +167,13 @@ fn graphics_adapters() -> Vec<serde_json::Value> {
     let facts = adapters.map(|adapter| {
         let mut facts = json!({
             "name": adapter.name,
-            "kind": adapter.kind.word(),
+            "kind": adapter.kind.name(),
             "interface": adapter.interface,
             "driver": adapter.driver,
         });
         match speeds(&adapter) {
             Ok(speeds) => {
-                facts["path"] = speeds.best().word().into();
+                facts["path"] = speeds.best().name().into();
                 facts["compute_views_per_s"] = speeds.compute_views_per_s.into();
                 facts["raster_views_per_s"] = speeds.raster_views_per_s.into();
             }
@@ -189,7 +189,7 @@ fn speeds(adapter: &dwell_render::Adapter) -> Result<dwell_render::VisibilityPat
     let house = dwell_houses::open("builtin:studio").map_err(|error| error.to_string())?;
     let tables = Arc::new(dwell_render::CpuRenderer::new(&Arc::new(house.0)));
     dwell_render::Gpu::shared_adapter(adapter)
-        .and_then(|gpu| gpu.speeds(&tables))
+        .and_then(|gpu| gpu.visibility_path_speeds(&tables))
         .map_err(|error| error.to_string())
 }
 

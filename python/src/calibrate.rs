@@ -29,7 +29,7 @@ pub(crate) fn calibrate(
             .iter()
             .map(|p| OtherSimulator::read(Path::new(p)))
             .collect();
-        let report = dwell_calibration::examine(
+        let report = dwell_calibration::calibrate_any(
             Path::new(measured),
             &options,
             &peers?,

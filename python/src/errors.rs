@@ -224,7 +224,7 @@ impl From<WorldError> for PyFault {
         match error {
             WorldError::Houses(error) => error.into(),
             WorldError::Scene(error) => error.into(),
-            WorldError::Usage(message) => Self::Usage(message),
+            WorldError::InvalidCall(message) => Self::Usage(message),
             other => Self::Config(other.to_string()),
         }
     }

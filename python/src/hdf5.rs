@@ -2,7 +2,7 @@
 
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
-use dwell_acoustics::hdf5::{Hdf5, MOST_BYTES};
+use dwell_acoustics::hdf5::{Hdf5, MAX_FILE_BYTES};
 use dwell_houses::DataRoot;
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
@@ -23,7 +23,7 @@ impl PyHdf5 {
             let folder = Path::new(&path).parent().unwrap_or_else(|| Path::new(""));
             let name = Path::new(&path).file_name().unwrap_or_default();
             let bytes = DataRoot::new(folder)
-                .and_then(|root| root.read_named(&name.to_string_lossy(), MOST_BYTES));
+                .and_then(|root| root.read_named(&name.to_string_lossy(), MAX_FILE_BYTES));
             let bytes = bytes.map_err(|error| PyFault::Measured(error.to_string()))?;
             let file =
                 Hdf5::open(bytes).map_err(|error| PyFault::Measured(format!("{path}: {error}")))?;

@@ -23,9 +23,9 @@ fn shape(name: &str, expected: &str, found: &[usize]) -> PyErr {
 #[pymethods]
 impl PyHead {
     #[staticmethod]
-    fn sphere(py: Python<'_>, radius_m: f64) -> PyResult<Self> {
+    fn spherical(py: Python<'_>, radius_m: f64) -> PyResult<Self> {
         py.engine(|| -> Result<_, PyFault> {
-            let head = Head::sphere(radius_m)?;
+            let head = Head::spherical(radius_m)?;
             Ok(Self { head })
         })
     }
@@ -76,7 +76,7 @@ impl PyHead {
     }
 
     /// Returns what was found in the measurement, a mapping; `None` for a sphere.
-    fn about(&self, py: Python<'_>) -> PyResult<Answer> {
-        py.engine(|| Answer::of(&self.head.about()))
+    fn summary(&self, py: Python<'_>) -> PyResult<Answer> {
+        py.engine(|| Answer::of(&self.head.summary()))
     }
 }

@@ -39,7 +39,9 @@ struct GridAtState {
 impl PyNavigation {
     /// Of a house as it starts: every house keeps the grids of its latest walkers.
     fn of_start(engines: &Engines, walker: Data) -> Result<Self, PyFault> {
-        let grid = engines.grid(&walker.read()?).map_err(refused)?;
+        let grid = engines
+            .nav_grid_of_config(&walker.read()?)
+            .map_err(refused)?;
         Ok(Self::at(engines.house(), grid, None))
     }
 
@@ -64,7 +66,7 @@ impl PyNavigation {
             // A shared grid is copied first.
             let rebuilt = Arc::make_mut(&mut moment.grid).update(&self.house, state)?;
             moment.state = Some(state.clone());
-            Ok(rebuilt.rechecked)
+            Ok(rebuilt.rechecked_cells)
         })
     }
 

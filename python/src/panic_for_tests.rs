@@ -14,7 +14,7 @@ pub(crate) fn panic_for_tests(py: Python<'_>, world: Option<&Bound<'_, PyWorld>>
     match world {
         Some(world) => world.get().with(py, |_| panic!("a world's, on purpose")),
         None => py.engine(|| {
-            Threads::exactly(2).map(4, |k| assert!(k != 3, "a pool's, on purpose"));
+            Threads::new(2).map(4, |k| assert!(k != 3, "a pool's, on purpose"));
             Ok::<_, PyFault>(())
         }),
     }

@@ -3,7 +3,7 @@
 use crate::errors::PyFault;
 use crate::values::Data;
 use dwell::sensors::{ImageSettings, Observation, ObservationData};
-use dwell::{CameraMount, PictureRequest, World, camera_mount};
+use dwell::{CameraMount, ImageRequest, World, camera_mount};
 use dwell_render::{Camera, ClassSet, Preset, Projection};
 use dwell_scene::parallel::Threads;
 use dwell_scene::space::{rotation_from_forward, rotation_from_yaw_pitch};
@@ -102,9 +102,9 @@ pub(crate) fn render(
             Camera::from_fov(own.width, own.height, fov_deg)?
         }
     };
-    let request = PictureRequest {
+    let request = ImageRequest {
         camera: camera.with_range(own.near_m, own.far_m)?,
-        place: place(world, &settings)?,
+        mount: place(world, &settings)?,
         preset: own.preset,
     };
     let threads = Threads::requested(None)?;
@@ -112,7 +112,7 @@ pub(crate) fn render(
         max_objects: own.max_objects,
         classes: own.classes,
     };
-    Ok(world.look(&request, channels, images, threads)?)
+    Ok(world.image_observations(&request, channels, images, threads)?)
 }
 
 /// An observation as an array of its own shape.

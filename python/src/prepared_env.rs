@@ -26,7 +26,7 @@ impl PyPreparedEnv {
 /// An environment over each house, with the episode of its seed begun where it has one.
 #[pyfunction]
 #[pyo3(signature = (houses, config_json, seeds, threads=None))]
-pub(crate) fn spares(
+pub(crate) fn prepared_envs(
     py: Python<'_>,
     houses: Vec<Py<PyHouse>>,
     config_json: &str,
@@ -43,7 +43,7 @@ pub(crate) fn spares(
         let envs = threads.map(shared.len(), |k| {
             let mut env = Env::new(shared[k].clone(), &config)?;
             if let Some(seed) = seeds.get(k).copied().flatten() {
-                env.begin(seed)?;
+                env.reset_with_listeners(seed)?;
                 env.warm_up(Threads::ONE)?;
             }
             Ok::<_, PyFault>(env)

@@ -102,7 +102,7 @@ impl WorldAccess<'_> {
             return Ok(Term::Structure(id));
         }
         let known = house.objects.iter().map(|object| object.name.as_str());
-        let near = dwell_houses::nearest(name, known, NAMES);
+        let near = dwell_houses::nearest_names(name, known, NAMES);
         Err(PyFault::Config(format!(
             "nothing is called {named}; of the {} objects the nearest are {near:?}; \
              rooms, storeys and agents are room:NAME, storey:0 and agent:0",

@@ -93,7 +93,7 @@ impl PyWorld {
             WorldSource::Env { batch, env } => {
                 let mut batch = batch.get().lock()?;
                 let env = batch.env_mut(*env)?;
-                let strides = env.strides();
+                let strides = env.step_sizes();
                 work(env.world_mut(), strides)
             }
         }
@@ -193,7 +193,7 @@ impl PyWorld {
         })
     }
 
-    fn notices(&self, py: Python<'_>) -> PyResult<Answer> {
+    fn delayed_outcomes(&self, py: Python<'_>) -> PyResult<Answer> {
         self.look(py, |running| {
             let mut notices = Vec::new();
             for notice in running.world.notices() {
@@ -279,10 +279,10 @@ impl PyWorld {
                 )));
             }
             let agent = running.agent(agent)?;
-            running.world.listen(&[(agent, samples)])?;
+            running.world.enable_listeners(&[(agent, samples)])?;
             let mut heard = vec![0.0; 2 * samples];
             for (channel, out) in heard.chunks_exact_mut(samples).enumerate() {
-                running.world.heard(agent, channel, out);
+                running.world.newest_samples(agent, channel, out);
             }
             Ok(heard)
         })?;
@@ -297,7 +297,7 @@ impl PyWorld {
                 SoundPlaceRow::Object(name) => SoundPlace::Object(running.object(&json!(name))?),
                 SoundPlaceRow::Agent(agent) => SoundPlace::Agent(running.agent(agent)?),
             };
-            let usual_db = dwell::usual_level_db(&row.sound)?;
+            let usual_db = dwell::default_level_db(&row.sound)?;
             let Some(level_db) = row.level_db.or(usual_db) else {
                 let message = "level_db is missing; a file does not say how loud it was";
                 return Err(PyFault::Config(message.to_owned()));
@@ -354,7 +354,7 @@ impl PyWorld {
         self.look(py, |running| {
             let agent = running.agent(agent)?;
             let state = &running.world.state().agents[agent];
-            let grid = running.world.engines().navigation(&state.body)?;
+            let grid = running.world.engines().nav_grid(&state.body)?;
             let ends = (
                 grid.nearest(state.position, 0.6),
                 grid.nearest(Vec3::from_array(goal), 0.6),
@@ -381,7 +381,7 @@ impl PyWorld {
                 .as_ref()
                 .is_none_or(|(old, guide)| *old != bits || guide.agent() != id)
             {
-                let grid = running.world.engines().navigation(&body)?;
+                let grid = running.world.engines().nav_grid(&body)?;
                 let Some(cell) = grid.nearest(Vec3::from_array(goal), 0.6) else {
                     return Err(PyFault::Config(format!(
                         "nobody can stand within 0.6 m of {goal:?}"
@@ -395,7 +395,7 @@ impl PyWorld {
             let WorldAccess { world, guide, .. } = running;
             Ok(guide
                 .as_mut()
-                .and_then(|(_, guide)| guide.walk(world))
+                .and_then(|(_, guide)| guide.next_action(world))
                 .map(|action| action as usize))
         })
     }
@@ -405,7 +405,7 @@ impl PyWorld {
             let agent = running.agent(agent)?;
             let object = running.object(&json!(object))?;
             Ok(
-                dwell::face(running.world, agent, object, &running.stride(agent))
+                dwell::action_towards_object(running.world, agent, object, &running.stride(agent))
                     .map(|action| action as usize),
             )
         })
@@ -413,7 +413,7 @@ impl PyWorld {
 
     fn gaze_target(&self, py: Python<'_>, agent: usize) -> PyResult<Option<String>> {
         self.look(py, |running| {
-            let target = running.world.gaze_target(running.agent(agent)?);
+            let target = running.world.object_in_view_centre(running.agent(agent)?);
             Ok(target.map(|object| running.world.house().objects[object].name.clone()))
         })
     }

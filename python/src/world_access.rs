@@ -32,7 +32,8 @@ impl WorldAccess<'_> {
         };
         found.ok_or_else(|| {
             let known = house.objects.iter().map(|object| object.name.as_str());
-            let near = dwell_houses::nearest(named.as_str().unwrap_or_default(), known, NAMES);
+            let near =
+                dwell_houses::nearest_names(named.as_str().unwrap_or_default(), known, NAMES);
             PyFault::Config(format!(
                 "no object {named}; of the {} the nearest are {near:?}",
                 house.objects.len()

@@ -60,8 +60,8 @@ def test_pixels_mean_what_the_picture_shows(world: dwell.World) -> None:
 
 def test_wrong_actions_are_refused_with_a_reason(world: dwell.World) -> None:
     agent_id = 1 + max(thing["id"] for thing in world.objects())
-    assert world.act("pick", agent_id).code == "oneself"
-    assert world.act("pick", agent_id + 1).code == "not_a_thing"
+    assert world.act("pick", agent_id).code == "target_is_self"
+    assert world.act("pick", agent_id + 1).code == "not_an_object"
     assert world.act("pick", 10**6).code == "unknown_object"
     with pytest.raises(dwell.ConfigError, match="finite"):
         world.act("throw", direction=(math.nan, 0.0, 0.0))
@@ -87,7 +87,7 @@ def test_a_door_tells_when_it_has_opened(world: dwell.World) -> None:
     told = []
     for _ in range(80):
         world.step()
-        told += world.notices()
+        told += world.delayed_outcomes()
     assert [(who, outcome.object) for who, outcome in told] == [(0, doors[0]["name"])]
 
 

@@ -369,7 +369,7 @@ CALLS = [
         "controls has masked elements",
     ),
     (
-        "dwell.measures.of_response(np.ma.masked_array([0.0, 1.0], [1, 0]), 8000)",
+        "dwell.measures.response_metrics(np.ma.masked_array([0.0, 1.0], [1, 0]), 8000)",
         "response has masked elements",
     ),
     # Half of a pair of surrogates.

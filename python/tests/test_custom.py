@@ -35,16 +35,16 @@ class GoThere(dwell.Task):
         here, goal = world.agents()[0]["position"], self.state["goal"]
         return float(np.hypot(here[0] - goal[0], here[2] - goal[2]))
 
-    def reset(self, world: dwell.World, rng: np.random.Generator) -> dwell.Ask:
+    def reset(self, world: dwell.World, rng: np.random.Generator) -> dwell.TaskGoal:
         places = world.house.navigation().points(world.agents()[0]["position"])
         self.state["goal"] = places[rng.integers(len(places))].tolist()
         self.state["steps"] = 0
-        return dwell.Ask("Go there.", self.left_m(world))
+        return dwell.TaskGoal("Go there.", self.left_m(world))
 
-    def judge(self, world: dwell.World, action: str, verdict: dwell.Verdict) -> dwell.Verdict:
+    def judge(self, world: dwell.World, action: str, verdict: dwell.StepResult) -> dwell.StepResult:
         self.state["steps"] += 1
         left_m = self.left_m(world)
-        return dwell.Verdict(
+        return dwell.StepResult(
             reward=-left_m,
             terminated=verdict.terminated or left_m < self.near_m,
             success=left_m < self.near_m,
@@ -57,7 +57,7 @@ class GoThere(dwell.Task):
 
 
 class Doubled(dwell.Reward):
-    def reward(self, world: dwell.World, action: str, verdict: dwell.Verdict) -> float:
+    def reward(self, world: dwell.World, action: str, verdict: dwell.StepResult) -> float:
         return 2.0 * verdict.reward
 
 
@@ -148,11 +148,13 @@ def test_a_task_judges_rewards_double_and_infos_tell() -> None:
 
 def test_without_a_way_to_go_there_are_no_measures_of_it() -> None:
     class Stay(dwell.Task):
-        def reset(self, world: dwell.World, rng: np.random.Generator) -> dwell.Ask:
-            return dwell.Ask("Stay.")
+        def reset(self, world: dwell.World, rng: np.random.Generator) -> dwell.TaskGoal:
+            return dwell.TaskGoal("Stay.")
 
-        def judge(self, world: dwell.World, action: str, verdict: dwell.Verdict) -> dwell.Verdict:
-            return dwell.Verdict(1.0, terminated=True, success=True)
+        def judge(
+            self, world: dwell.World, action: str, verdict: dwell.StepResult
+        ) -> dwell.StepResult:
+            return dwell.StepResult(1.0, terminated=True, success=True)
 
     measures = {"distance_to_goal", "spl", "soft_spl"}
     for task, success in ((Stay, True), ("Free", False)):
@@ -324,7 +326,7 @@ def judging(verdict: object) -> type[dwell.Task]:
     class Judging(dwell.Task):
         sensors = ("gps",)
 
-        def judge(self, world: dwell.World, action: str, _: dwell.Verdict) -> Any:  # noqa: ANN401
+        def judge(self, world: dwell.World, action: str, _: dwell.StepResult) -> Any:  # noqa: ANN401
             return verdict
 
     return Judging
@@ -514,15 +516,15 @@ def play_a_step(env: DwellEnv) -> None:
 
 PLAYING: list[tuple[dict[str, Any], str]] = [
     ({"task": judging(None)}, "judge gave None"),
-    ({"task": judging(dwell.Verdict(reward=float("nan")))}, "reward is nan"),
-    ({"task": judging(dwell.Verdict(terminated=1))}, "terminated is 1"),  # type: ignore[arg-type] # the fault
-    ({"task": judging(dwell.Verdict(distance_m=-1.0))}, "distance_m is -1"),
-    ({"task": judging(dwell.Verdict(info={"spl": 1.0}))}, "info has 'spl'"),
+    ({"task": judging(dwell.StepResult(reward=float("nan")))}, "reward is nan"),
+    ({"task": judging(dwell.StepResult(terminated=1))}, "terminated is 1"),  # type: ignore[arg-type] # the fault
+    ({"task": judging(dwell.StepResult(distance_m=-1.0))}, "distance_m is -1"),
+    ({"task": judging(dwell.StepResult(info={"spl": 1.0}))}, "info has 'spl'"),
     ({"task": asking("Go.")}, "reset gave 'Go.'"),
-    ({"task": asking(dwell.Ask("Gehen Sie zur Tür!"))}, "instruction is"),
-    ({"task": asking(dwell.Ask(""))}, "instruction is"),
-    ({"task": asking(dwell.Ask("Find the xylotheque."))}, "xylotheque"),
-    ({"task": asking(dwell.Ask(distance_m=float("inf")))}, "distance_m is inf"),
+    ({"task": asking(dwell.TaskGoal("Gehen Sie zur Tür!"))}, "instruction is"),
+    ({"task": asking(dwell.TaskGoal(""))}, "instruction is"),
+    ({"task": asking(dwell.TaskGoal("Find the xylotheque."))}, "xylotheque"),
+    ({"task": asking(dwell.TaskGoal(distance_m=float("inf")))}, "distance_m is inf"),
     ({"task": observed(None, goal=BOX)}, "Observed.observe is None"),
     ({"task": observed({}, goal=BOX)}, "Observed.observe gave []; its spaces are ['goal']"),
     ({"task": observed({"goal": [0, 0], "x": 1}, goal=BOX)}, "gave ['goal', 'x']; its spaces are"),
@@ -559,7 +561,7 @@ def test_whole_numbers_that_fit_are_converted(value: object) -> None:
 
 
 def test_a_task_without_an_expert_says_so() -> None:
-    env = DwellEnv(judging(dwell.Verdict()))
+    env = DwellEnv(judging(dwell.StepResult()))
     env.reset(seed=1)
     with pytest.raises(dwell.UsageError, match="Judging has no expert"):
         env.expert_action()

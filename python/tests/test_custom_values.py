@@ -29,8 +29,10 @@ def test_infos_that_no_array_holds_are_refused_by_name() -> None:
 
         def reset(self, world: dwell.World, rng: np.random.Generator) -> None: ...
 
-        def judge(self, world: dwell.World, action: str, verdict: dwell.Verdict) -> dwell.Verdict:
-            return dwell.Verdict(info={"large": 10**400})
+        def judge(
+            self, world: dwell.World, action: str, verdict: dwell.StepResult
+        ) -> dwell.StepResult:
+            return dwell.StepResult(info={"large": 10**400})
 
     envs = DwellVectorEnv(2, Tells, houses="builtin:studio")
     envs.reset(seed=1)

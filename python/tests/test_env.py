@@ -246,9 +246,11 @@ def test_parts_know_the_agent_that_they_are_about() -> None:
     class Turned(dwell.Task):
         sensors = ("compass",)
 
-        def judge(self, world: dwell.World, action: str, verdict: dwell.Verdict) -> dwell.Verdict:
+        def judge(
+            self, world: dwell.World, action: str, verdict: dwell.StepResult
+        ) -> dwell.StepResult:
             del action, verdict
-            return dwell.Verdict(reward=float(world.agents()[self.agent]["yaw_rad"]))
+            return dwell.StepResult(reward=float(world.agents()[self.agent]["yaw_rad"]))
 
     for agent in (0, 1):
         env = DwellEnv(Turned, world={"agents": [{}, {}]}, agent=agent)

@@ -16,7 +16,7 @@ import gymnasium
 import pytest
 
 import dwell
-from dwell.envs.config import KEPT, HouseCache
+from dwell.envs.config import CACHED_HOUSES, HouseCache
 
 
 def test_a_seed_is_a_furnished_house_and_always_the_same() -> None:
@@ -44,16 +44,18 @@ def test_a_range_of_seeds_is_several_houses() -> None:
 
 
 def test_houses_of_thousands_of_seeds_are_not_all_kept() -> None:
-    shelf = HouseCache(f"seed:0..{2 * KEPT}?home=studio")
+    shelf = HouseCache(f"seed:0..{2 * CACHED_HOUSES}?home=studio")
     first = shelf[0]
     assert shelf[0] is first
-    held = [weakref.ref(shelf[k]) for k in range(2 * KEPT)]
+    held = [weakref.ref(shelf[k]) for k in range(2 * CACHED_HOUSES)]
     del first
     gc.collect()
-    assert sum(ref() is not None for ref in held) == KEPT
-    env = gymnasium.make("dwell/InstructionFollowing-v0", houses=f"seed:0..{KEPT + 2}?home=studio")
+    assert sum(ref() is not None for ref in held) == CACHED_HOUSES
+    env = gymnasium.make(
+        "dwell/InstructionFollowing-v0", houses=f"seed:0..{CACHED_HOUSES + 2}?home=studio"
+    )
     start, _ = env.reset(seed=1, options={"house": 0})
-    for house in range(1, KEPT + 2):
+    for house in range(1, CACHED_HOUSES + 2):
         env.reset(options={"house": house})
     again, _ = env.reset(seed=1, options={"house": 0})
     assert (start["rgb"] == again["rgb"]).all()

@@ -162,7 +162,7 @@ def test_a_file_of_the_sphere_is_heard_as_the_sphere(
     write: Write, nowhere: dwell.AcousticScene
 ) -> None:
     head = dwell.Head.from_sofa(write())
-    about = head.about
+    about = head.summary
     assert about is not None
     assert about["filled"] == 0
     assert about["radius_m"] == pytest.approx(RADIUS_M, abs=0.004)
@@ -285,7 +285,7 @@ def test_other_files_are_refused(tmp_path: Path) -> None:
     with pytest.raises(dwell.MeasuredDataError, match=r"none\.sofa: there is no such file"):
         dwell.Head.from_sofa(tmp_path / "none.sofa")
     with pytest.raises(dwell.ConfigError, match=r"radius_m is 0\.5"):
-        dwell.Head.sphere(0.5)
+        dwell.Head.spherical(0.5)
     with pytest.raises(dwell.ConfigError, match="responses: expected shape"):
         dwell.Head.measured(np.ones((9, 3)), np.ones((9, 1, 64)), 48_000)
     whole = (np.ones((9, 3)), np.ones((9, 2, 64)), 48_000)
@@ -307,9 +307,9 @@ def test_heads_are_values(write: Write) -> None:
     for other in (pickle.loads(pickle.dumps(head)), copy.copy(head), dwell.Head.from_sofa(path)):
         assert other == head
         assert hash(other) == hash(head)
-    assert dwell.Head.sphere(0.08) == pickle.loads(pickle.dumps(dwell.Head.sphere(0.08)))
-    assert dwell.Head.sphere(0.08) != dwell.Head.sphere(0.081)
-    assert dwell.Head.sphere().about is None
+    assert dwell.Head.spherical(0.08) == pickle.loads(pickle.dumps(dwell.Head.spherical(0.08)))
+    assert dwell.Head.spherical(0.08) != dwell.Head.spherical(0.081)
+    assert dwell.Head.spherical().summary is None
 
 
 def test_agents_wear_heads(write: Write, shoebox: dwell.House) -> None:
@@ -366,7 +366,7 @@ def _kemar() -> tuple[HeadFile, NDArray[np.float64]]:
 def test_kemar_is_heard_as_measured() -> None:
     """V17: 10 us and 0.5 dB against the file, at its rate and at 16 kHz; the table's figures."""
     head, (file, angles) = dwell.Head.from_sofa(KEMAR), _kemar()
-    about = head.about
+    about = head.summary
     assert about is not None
     assert about["directions"] == 710
     assert 0 < about["filled"] < 20
@@ -408,7 +408,7 @@ def test_kemar_between_its_directions() -> None:
         ring = np.flatnonzero(np.abs(angles[:, 1] - elevation) < 1e-2)
         keep[ring[np.argsort(angles[ring, 0])][1::2]] = False
     half = dwell.Head.measured(file.sources[keep], file.responses[keep], file.rate_hz)
-    about = half.about
+    about = half.summary
     assert about is not None
     scene = _free_field(RATE_HZ)
     errors, late_us = [], []
@@ -442,7 +442,7 @@ def test_kemar_in_a_reverberant_room(shoebox: dwell.House) -> None:
     late = []
     for seed in range(4):
         pair = scene.impulse_response((1.2, 1.5, 1.4), (4.6, 1.2, 3.3), head=head, seed=seed)
-        bands = measures.of_ears(pair, scene.rate_hz)["bands"]
+        bands = measures.binaural_metrics(pair, scene.rate_hz)["bands"]
         late.append([band["iacc_late"] for band in bands])
     coherence = np.mean(late, axis=0)
     print("IACC of late sound by octave", coherence.round(2))

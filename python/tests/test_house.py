@@ -42,7 +42,7 @@ def test_texts_are_short_and_tell() -> None:
         house.edit().add("mug", on="dining_table_1"),
         dwell.HouseBuilder("flat"),
         house.navigation(),
-        dwell.Head.sphere(),
+        dwell.Head.spherical(),
     ]
     for thing in things:
         text = repr(thing)
@@ -166,7 +166,7 @@ def test_a_shoebox_is_of_a_substance_or_absorbs_as_told() -> None:
         dwell.House.shoebox(size, substance="oak", absorption=0.1)
     assert dwell.House.shoebox(size, substance="oak", scattering=0.1)
     # What the documentation says of the default: parquet below, plaster around.
-    plain = dwell.AcousticScene(dwell.House.shoebox(size)).explain()
+    plain = dwell.AcousticScene(dwell.House.shoebox(size)).material_report()
     assert {"parquet", "plaster"} <= {word for word in re.findall(r"\w+", str(plain))}
 
 

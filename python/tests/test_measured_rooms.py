@@ -198,7 +198,7 @@ def placed(
 def recorded(path: Path) -> list[dict[str, float | None]]:
     """The measures of a recording."""
     responses, rate_hz = recording(path)
-    return measures.of_response(responses[-1], rate_hz)
+    return measures.response_metrics(responses[-1], rate_hz)
 
 
 def means(
@@ -218,7 +218,7 @@ def means(
         ]
         if distance:
             response = scene.impulse_response(source, mic)[0]
-            found = measures.of_response(response, scene.rate_hz)
+            found = measures.response_metrics(response, scene.rate_hz)
             tables.append((simulated, found, ("drr_db",)))
         for values, bands, names in tables:
             for band in bands:

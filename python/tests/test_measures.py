@@ -30,7 +30,9 @@ def _decaying(rate_hz: int, t60_s: float, seed: int) -> NDArray[np.float64]:
     ("bands", "count", "at_1_khz"), [("octave", 8, 4), ("third_octave", 24, 13)]
 )
 def test_decaying_noise_has_its_decay(bands: measures.Bands, count: int, at_1_khz: int) -> None:
-    found = [measures.of_response(_decaying(16_000, 0.5, k), 16_000, bands=bands) for k in range(8)]
+    found = [
+        measures.response_metrics(_decaying(16_000, 0.5, k), 16_000, bands=bands) for k in range(8)
+    ]
     assert all(len(rows) == count and "lf" not in rows[0] for rows in found)
     assert found[0][at_1_khz]["centre_hz"] == 1000.0
     mean = {
@@ -47,16 +49,16 @@ def test_decaying_noise_has_its_decay(bands: measures.Bands, count: int, at_1_kh
 def test_what_is_no_response_is_refused() -> None:
     for wrong in (np.zeros((2, 3)), np.array(["a"]), np.array([1.0, np.nan])):
         with pytest.raises(dwell.ConfigError, match="response"):
-            measures.of_response(wrong, 16_000)
+            measures.response_metrics(wrong, 16_000)
     with pytest.raises(dwell.ConfigError, match="rate_hz"):
-        measures.of_response(np.zeros(4), 0)
+        measures.response_metrics(np.zeros(4), 0)
     with pytest.raises(dwell.ConfigError, match="third_octave"):
-        measures.of_response(np.zeros(4), 16_000, bands="half")  # type: ignore[arg-type]
+        measures.response_metrics(np.zeros(4), 16_000, bands="half")  # type: ignore[arg-type]
     with pytest.raises(dwell.ConfigError, match=r"\(2, samples\)"):
-        measures.of_ears(np.zeros((3, 4)), 16_000)
+        measures.binaural_metrics(np.zeros((3, 4)), 16_000)
     with pytest.raises(dwell.ConfigError, match="ears: expected real numbers"):
-        measures.of_ears([np.zeros(10), np.zeros(11)], 16_000)  # type: ignore[arg-type]
-    silent = measures.of_response(np.zeros(100), 16_000)
+        measures.binaural_metrics([np.zeros(10), np.zeros(11)], 16_000)  # type: ignore[arg-type]
+    silent = measures.response_metrics(np.zeros(100), 16_000)
     assert all(value is None for row in silent for key, value in row.items() if key != "centre_hz")
 
 
@@ -66,7 +68,7 @@ def test_a_head_hears_a_source_on_its_left_earlier_and_louder_there(
     # The source is ahead at this yaw; a quarter of a turn to the right puts it to the left.
     ahead = math.degrees(math.atan2(-(SOURCE[0] - MIC[0]), -(SOURCE[2] - MIC[2])))
     ears = scene.impulse_response(SOURCE, MIC, ears=True, yaw_deg=ahead - 90.0)
-    found = measures.of_ears(ears, scene.rate_hz)
+    found = measures.binaural_metrics(ears, scene.rate_hz)
     # Long waves: 3 a / c; Woodworth's short ones: (1 + pi / 2) a / c.
     assert 2.5 * 0.0875 / 343.2 < found["itd_s"] < 3.2 * 0.0875 / 343.2
     assert found["ild_db"] > 3.0
@@ -80,7 +82,7 @@ def test_measures_of_a_scene_are_those_of_its_responses(scene: dwell.AcousticSce
     rows = scene.metrics(SOURCE, MIC)
     response = scene.impulse_response(SOURCE, MIC)
     for row, heard in list(
-        zip(rows, measures.of_response(response[0], scene.rate_hz), strict=True)
+        zip(rows, measures.response_metrics(response[0], scene.rate_hz), strict=True)
     )[3:7]:
         assert heard["t30_s"] == pytest.approx(row["t30_s"], rel=0.15)
         assert heard["g_db"] == pytest.approx(row["g_db"], abs=1.2)
@@ -119,6 +121,8 @@ def test_a_response_may_be_one_row_as_one_microphone_gives_it(scene: dwell.Acous
     response = scene.impulse_response(SOURCE, MIC)
     assert response.shape[0] == 1
     rate_hz = scene.rate_hz
-    assert measures.of_response(response, rate_hz) == measures.of_response(response[0], rate_hz)
+    assert measures.response_metrics(response, rate_hz) == measures.response_metrics(
+        response[0], rate_hz
+    )
     with pytest.raises(dwell.ConfigError, match="one row"):
-        measures.of_response(np.zeros((2, 100), np.float32), rate_hz)
+        measures.response_metrics(np.zeros((2, 100), np.float32), rate_hz)

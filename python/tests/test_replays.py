@@ -23,9 +23,9 @@ class Shouting(dwell.Task):
 
     sensors = ("gps",)
 
-    def reset(self, world: dwell.World, rng: np.random.Generator) -> dwell.Ask:
+    def reset(self, world: dwell.World, rng: np.random.Generator) -> dwell.TaskGoal:
         world.play("phone", at=world.house.rooms()[rng.integers(3)]["eye"], loop=True)
-        return dwell.Ask("Stay.")
+        return dwell.TaskGoal("Stay.")
 
 
 def recorded(folder: Path, **arguments: Any) -> Path:  # noqa: ANN401 - of DwellEnv

@@ -129,16 +129,18 @@ class Counting(dwell.Task):
 
     sensors = ("gps",)
 
-    def reset(self, world: dwell.World, rng: np.random.Generator) -> dwell.Ask:
+    def reset(self, world: dwell.World, rng: np.random.Generator) -> dwell.TaskGoal:
         del rng
         self.state["steps"] = 0
-        return dwell.Ask(f"Stay in {world.house.name.replace(':', ' ')}."[:40].replace("?", " "))
+        return dwell.TaskGoal(
+            f"Stay in {world.house.name.replace(':', ' ')}."[:40].replace("?", " ")
+        )
 
-    def judge(self, world: dwell.World, action: str, verdict: dwell.Verdict) -> dwell.Verdict:
+    def judge(self, world: dwell.World, action: str, verdict: dwell.StepResult) -> dwell.StepResult:
         del action, verdict
         self.state["steps"] += 1
         rooms = float(len(world.house.rooms()))
-        return dwell.Verdict(reward=rooms, terminated=self.state["steps"] == 2)
+        return dwell.StepResult(reward=rooms, terminated=self.state["steps"] == 2)
 
 
 def test_tasks_in_python_go_from_house_to_house(

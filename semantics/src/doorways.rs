@@ -13,7 +13,7 @@ const CLEAR_M: f32 = 0.25;
 /// The height above the door's foot at which they look, m.
 const EYES_M: f32 = 1.3;
 /// Directions in which they look, away from the door: 30 degrees apart.
-const LOOKS: [f32; 5] = [-2.0, -1.0, 0.0, 1.0, 2.0];
+const VIEW_OFFSETS: [f32; 5] = [-2.0, -1.0, 0.0, 1.0, 2.0];
 const TURN_RAD: f32 = std::f32::consts::FRAC_PI_6;
 
 /// The sides of a door or archway.
@@ -76,7 +76,7 @@ fn is_open_air(rays: &RayScene, eye: Vec3, out: Vec3) -> bool {
     };
     let aside = Vec3::Y.cross(out);
     free(Vec3::Y)
-        || LOOKS.iter().any(|turns| {
+        || VIEW_OFFSETS.iter().any(|turns| {
             let (sine, cosine) = math::sin_cos(turns * TURN_RAD);
             free(out * cosine + aside * sine)
         })

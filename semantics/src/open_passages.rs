@@ -82,7 +82,7 @@ fn beyond(rays: &RayScene, doors: &[Aabb], room: RoomId, at: Vec2, out: Vec2) ->
     let near = at - out * BEFORE_M;
     let free = |height_m: &f32| {
         let from = Vec3::new(near.x, floor_y + height_m, near.y);
-        let ray = Ray::new(from, Vec3::new(out.x, 0.0, out.y)).between(0.0, BEFORE_M + BEYOND_M);
+        let ray = Ray::new(from, Vec3::new(out.x, 0.0, out.y)).with_range(0.0, BEFORE_M + BEYOND_M);
         !rays.occluded(&ray, RayMask::EYE)
     };
     HEIGHTS_M.iter().all(free).then_some(other)

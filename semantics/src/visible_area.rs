@@ -80,7 +80,7 @@ fn visible_area(rays: &RayScene, bounds: &Aabb, id: ObjectId) -> Vec<(MaterialId
                 + right * (reach[0] * place(0.754_877_7))
                 + up * (reach[1] * place(0.569_840_3))
                 - along * (reach[2] + START_M);
-            let ray = Ray::new(from, along).between(0.0, 2.0 * reach[2] + START_M);
+            let ray = Ray::new(from, along).with_range(0.0, 2.0 * reach[2] + START_M);
             let Some(hit) = rays.closest(&ray, RayMask::EYE) else {
                 continue;
             };

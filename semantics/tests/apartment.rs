@@ -299,7 +299,7 @@ fn most_things_can_be_asked_for_and_found() {
     let shut: Vec<ObjectId> = house
         .joints
         .iter()
-        .filter(|joint| !joint.switches && joint.initial == joint.closed)
+        .filter(|joint| !joint.toggles_switch && joint.initial == joint.closed)
         .map(|joint| joint.object)
         .collect();
     let shut_away: Vec<ObjectId> = {

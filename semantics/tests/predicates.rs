@@ -151,7 +151,7 @@ fn on_agrees_with_rays_from_above() {
                     }
                     total += 1;
                     let ray = Ray::new(Vec3::new(x, bounds.min.y + 0.029, z), Vec3::NEG_Y)
-                        .between(0.0, 0.058);
+                        .with_range(0.0, 0.058);
                     if let Some(hit) = rays.closest_excluding(&ray, RayMask::ALL, id) {
                         // Undersides carry nothing.
                         if rays.surface(&hit).normal.y < 0.5 {

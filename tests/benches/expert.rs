@@ -56,8 +56,8 @@ fn play(env: &mut Env, seed: u64) -> Result<bool, dwell::WorldError> {
             &info.action_error
         };
         last.push(format!("{action:?} {notice}"));
-        if info.verdict.terminated {
-            if info.verdict.success {
+        if info.result.terminated {
+            if info.result.success {
                 return Ok(true);
             }
             tell(env, seed, step, &last);

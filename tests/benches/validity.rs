@@ -26,7 +26,7 @@ fn main() -> ExitCode {
     let from = number(&arguments, "--from").unwrap_or(0);
     let to = number(&arguments, "--to").unwrap_or(from + 4);
     let threads = number(&arguments, "--threads").map_or_else(Threads::default, |count| {
-        Threads::exactly(count.max(1) as usize)
+        Threads::new(count.max(1) as usize)
     });
     let depth = if arguments.iter().any(|argument| argument == "--settled") {
         CheckDepth::Settled

@@ -95,7 +95,7 @@ pub fn env_in(engines: Arc<Engines>, config: EnvConfig, sensors: &[&str]) -> Env
 /// A sensor by its name, small where it is one of pictures.
 fn small_sensor(name: &str) -> SensorConfig {
     let mut all = dwell::sensors::all().iter();
-    let shows_pictures = all.any(|kind| kind.name == name && kind.shows_pictures());
+    let shows_pictures = all.any(|kind| kind.name == name && kind.is_image_sensor());
     SensorConfig {
         kind: name.to_owned(),
         settings: if shows_pictures {

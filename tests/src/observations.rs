@@ -67,7 +67,7 @@ pub fn observe(batch: &mut Batch) -> Vec<Vec<u8>> {
                     assert!(ints[k].iter().all(fits), "{name} leaves its range");
                     ints[k].iter().flat_map(|x| x.to_le_bytes()).collect()
                 }
-                Dtype::Text => batch.texts(k).concat().into_bytes(),
+                Dtype::Text => batch.text_observations(k).concat().into_bytes(),
             }
         })
         .collect()

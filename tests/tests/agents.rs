@@ -59,13 +59,13 @@ fn env(agents: Vec<AgentConfig>, sensors: Vec<SensorConfig>) -> Env {
 }
 
 fn batch(env: Env) -> Batch {
-    Batch::new(vec![env], Threads::exactly(2)).unwrap()
+    Batch::new(vec![env], Threads::new(2)).unwrap()
 }
 
 /// Returns the observations of each agent of a batch of one environment, in order. Shape (agent,) of (sensor,).
 fn seen(batch: &mut Batch) -> Vec<Vec<Vec<u8>>> {
     let mut by_agent = vec![Vec::new(); batch.agents().len()];
-    for (agent, bits) in batch.sensor_agents().into_iter().zip(observe(batch)) {
+    for (agent, bits) in batch.agent_of_sensors().into_iter().zip(observe(batch)) {
         by_agent[agent].push(bits);
     }
     by_agent
@@ -253,13 +253,13 @@ fn agents_have_tasks_and_sensors_of_their_own() {
         [&OWN[..], &["instruction", "gps"]].concat(),
         "those of the first agent, then of the second"
     );
-    assert_eq!(batch.sensor_agents(), [0, 0, 0, 0, 1, 1]);
+    assert_eq!(batch.agent_of_sensors(), [0, 0, 0, 0, 1, 1]);
     batch.reset(&[Some(SEED)]).unwrap();
     let env = &batch.envs()[0];
     assert_eq!(env.episode(0).unwrap().instruction, "Explore.");
     let asked = env.episode(1).unwrap().instruction.clone();
     assert_ne!(asked, "Explore.");
-    assert_eq!(batch.texts(4), [asked]);
+    assert_eq!(batch.text_observations(4), [asked]);
     assert!(batch.envs()[0].episode(2).is_err());
     let experts = batch.expert_actions().unwrap();
     assert_eq!((experts.len(), experts[0]), (2, Stop));
@@ -280,7 +280,7 @@ fn one_agent_may_end_before_the_other() {
     batch.reset(&[Some(SEED)]).unwrap();
     let first = play(&mut batch, &[vec![TurnLeft, Stop]]);
     let [going, ended] = first[0].0.clone().try_into().unwrap();
-    assert!(!going.verdict.terminated && ended.verdict.terminated);
+    assert!(!going.result.terminated && ended.result.terminated);
     // Whatever its action is, or none.
     let hash = |actions: &[Option<DiscreteAction>]| {
         let saved = batch.env(0).unwrap().snapshot().unwrap();
@@ -293,8 +293,8 @@ fn one_agent_may_end_before_the_other() {
     let none = hash(&[Some(TurnLeft), None]);
     assert!(none == hash(&[Some(TurnLeft), Some(MoveForward)]));
     let rest = none.0[1].clone().unwrap();
-    assert_eq!((rest.agent, rest.verdict.reward), (AgentId(1), 0.0));
-    assert!(rest.verdict.terminated && !rest.action_success);
+    assert_eq!((rest.agent, rest.result.reward), (AgentId(1), 0.0));
+    assert!(rest.result.terminated && !rest.action_success);
     assert_eq!(rest.action_error, "Its episode has ended.");
     assert_eq!(rest.progress, ended.progress);
     // It stands where it was, and sees the other turn.
@@ -361,8 +361,7 @@ fn episodes_of_two_go_on_from_snapshots_on_any_number_of_threads() {
     };
     let expected = rest(&mut alone, 0);
     for threads in [2, 7] {
-        let mut company =
-            Batch::new(vec![make(), make(), make()], Threads::exactly(threads)).unwrap();
+        let mut company = Batch::new(vec![make(), make(), make()], Threads::new(threads)).unwrap();
         company.reset(&[Some(7), Some(8), Some(9)]).unwrap();
         company.restore(1, &saved).unwrap();
         assert!(rest(&mut company, 1) == expected, "{threads} threads");

@@ -10,9 +10,11 @@
 )]
 
 use dwell::sensors::{self, ImageSettings, Observation, ObservationData};
-use dwell::{CameraMount, Engines, PictureRequest, World, WorldConfig, viewpoints};
+use dwell::{CameraMount, Engines, ImageRequest, World, WorldConfig, viewpoints};
 use dwell_physics::AgentControl;
-use dwell_render::{BackEnd, Camera, Frame, ImageChannels, Preset, View, VisibleObject, sightings};
+use dwell_render::{
+    BackEnd, Camera, Frame, ImageChannels, Preset, View, VisibleObject, visible_objects,
+};
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
 use dwell_scene::space::rotation_from_yaw_pitch;
@@ -103,19 +105,14 @@ fn look(
         world.place_agent(AgentId(1), other, 0.0).unwrap();
         world.place_agent(AgentId(0), *feet, *yaw).unwrap();
         world.step(&[walk, walk]).unwrap();
-        let request = PictureRequest {
+        let request = ImageRequest {
             camera: camera(),
-            place: CameraMount::Agent(AgentId(0), Pose::IDENTITY),
+            mount: CameraMount::Agent(AgentId(0), Pose::IDENTITY),
             preset,
         };
         views.push(
             world
-                .look(
-                    &request,
-                    names,
-                    ImageSettings::default(),
-                    Threads::exactly(2),
-                )
+                .image_observations(&request, names, ImageSettings::default(), Threads::new(2))
                 .unwrap(),
         );
     }
@@ -256,9 +253,9 @@ fn faulty(stage: &Stage, fault: &Fault) -> Vec<Vec<u8>> {
         };
         let render = |view: View, channels: ImageChannels| {
             let mut frame = Frame::new(&view.camera, channels);
-            let cpu = stage.engines.renderer();
+            let cpu = stage.engines.cpu_renderer();
             let frames = &mut [frame.as_mut()];
-            cpu.render(&scene, &state, &[view], frames, Threads::exactly(2))
+            cpu.render(&scene, &state, &[view], frames, Threads::new(2))
                 .unwrap();
             frame
         };
@@ -266,7 +263,7 @@ fn faulty(stage: &Stage, fault: &Fault) -> Vec<Vec<u8>> {
             instance: true,
             ..ImageChannels::NONE
         };
-        let things = sightings(&render(view, ids).instance, WIDTH);
+        let things = visible_objects(&render(view, ids).instance, WIDTH);
         (fault.view)(&mut view, &things);
         let colors = ImageChannels {
             rgb: true,
@@ -318,7 +315,7 @@ fn small_faults_are_beyond_the_bounds_of_flip() {
             view: |view, things| {
                 let shown = things.iter().filter(|thing| thing.pixels >= 12);
                 let least = shown.min_by_key(|thing| thing.pixels);
-                view.hide = least.map(|thing| thing.entity);
+                view.hidden_entity = least.map(|thing| thing.entity);
             },
             ..Fault::NONE
         },
@@ -417,7 +414,7 @@ fn every_other_sensor_agrees_by_its_numbers() {
     if paths.is_empty() {
         return;
     }
-    let all = sensors::all().iter().filter(|kind| kind.shows_pictures());
+    let all = sensors::all().iter().filter(|kind| kind.is_image_sensor());
     let names: Vec<String> = all.map(|kind| kind.name.to_owned()).collect();
     assert_eq!(names[0], "rgb");
     let visible = names

@@ -52,7 +52,7 @@ fn heard_rms(world: &mut World, steps: usize) -> f64 {
         world.step(&[]).unwrap();
         for channel in 0..2 {
             let mut heard = [0.0; BLOCK];
-            world.heard(AGENT, channel, &mut heard);
+            world.newest_samples(AGENT, channel, &mut heard);
             power += heard.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>();
         }
     }
@@ -63,7 +63,7 @@ fn heard_rms(world: &mut World, steps: usize) -> f64 {
 fn sound_meets_the_areas_of_what_the_rooms_are_covered_with() {
     let house = Arc::new(built(rooms(json!([]))));
     let scene = AcousticScene::new(house, AcousticConfig::rl()).unwrap();
-    let told = scene.explain();
+    let told = scene.material_report();
     let area = |substance: &str| -> f64 {
         let rows = told
             .materials
@@ -143,7 +143,7 @@ fn an_own_mesh_falls_rests_weighs_and_rings_as_it_was_told() {
         world
             .place_agent(AGENT, Vec3::new(4.6, 0.0, 0.6), 0.0)
             .unwrap();
-        world.listen(&[(AGENT, BLOCK)]).unwrap();
+        world.enable_listeners(&[(AGENT, BLOCK)]).unwrap();
         let mine = world.house().object_named("mine").unwrap();
         let mass = world
             .parameter(&"part/mine/body/mass_kg".parse().unwrap())
@@ -154,7 +154,7 @@ fn an_own_mesh_falls_rests_weighs_and_rings_as_it_was_told() {
         for _ in 0..60 {
             world.step(&[]).unwrap();
             let mut heard = [0.0; BLOCK];
-            world.heard(AGENT, 0, &mut heard);
+            world.newest_samples(AGENT, 0, &mut heard);
             let steps = heard
                 .windows(2)
                 .map(|pair| f64::from(pair[1] - pair[0]).powi(2));
@@ -189,7 +189,7 @@ fn an_emitter_is_heard_from_the_start_at_its_level() {
         world
             .place_agent(AGENT, Vec3::new(3.0, 0.0, 1.5), std::f32::consts::FRAC_PI_2)
             .unwrap();
-        world.listen(&[(AGENT, BLOCK)]).unwrap();
+        world.enable_listeners(&[(AGENT, BLOCK)]).unwrap();
         heard_rms(&mut world, 2);
         heard_rms(&mut world, 20)
     };
@@ -251,7 +251,7 @@ fn a_sound_file_is_heard_when_it_is_told_to_and_at_its_level() {
         world
             .place_agent(AGENT, Vec3::new(3.0, 0.0, 1.5), std::f32::consts::FRAC_PI_2)
             .unwrap();
-        world.listen(&[(AGENT, BLOCK)]).unwrap();
+        world.enable_listeners(&[(AGENT, BLOCK)]).unwrap();
         (0..20).map(|_| heard_rms(&mut world, 2)).collect()
     };
     let once = heard(emitter(json!({"loops": false, "start_s": 0.6})));
@@ -285,7 +285,7 @@ fn a_sound_that_goes_on_is_the_same_after_a_restore() {
         json!([{"add_emitter": {"at": [1.0, 1.2, 1.5], "sound": sound}}]),
     ));
     let mut world = world(house);
-    world.listen(&[(AGENT, BLOCK)]).unwrap();
+    world.enable_listeners(&[(AGENT, BLOCK)]).unwrap();
     heard_rms(&mut world, 8);
     let snapshot = world.snapshot();
     let first = heard_rms(&mut world, 10);

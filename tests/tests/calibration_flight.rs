@@ -200,7 +200,7 @@ fn nothing_is_found_where_nothing_is_hidden() {
         );
         assert_eq!(
             report.verdict,
-            CalibrationVerdict::Nothing,
+            CalibrationVerdict::NoEffect,
             "seed {seed}: {}",
             table(&report)
         );

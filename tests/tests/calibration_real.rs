@@ -107,6 +107,6 @@ fn falling_balls_get_a_defensible_verdict() {
             assert!(laws.contains(&"drag".to_owned()), "{laws:?}");
         }
         CalibrationVerdict::Unexplained { reason } => assert!(!reason.is_empty()),
-        CalibrationVerdict::Nothing => panic!("{}", report.sentence),
+        CalibrationVerdict::NoEffect => panic!("{}", report.sentence),
     }
 }

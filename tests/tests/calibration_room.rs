@@ -256,7 +256,7 @@ fn nothing_is_found_where_nothing_is_hidden() {
         let report = measure(STATED, gain, seed);
         assert_eq!(
             report.verdict,
-            CalibrationVerdict::Nothing,
+            CalibrationVerdict::NoEffect,
             "seed {seed}: {}",
             table(&report)
         );

@@ -167,7 +167,7 @@ fn nothing_is_found_where_nothing_is_hidden() {
         let report = runs(joint, seed);
         assert_eq!(
             report.verdict,
-            CalibrationVerdict::Nothing,
+            CalibrationVerdict::NoEffect,
             "seed {seed}: {}",
             table(&report)
         );

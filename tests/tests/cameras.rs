@@ -4,8 +4,8 @@
 
 use dwell::sensors::{Dtype, ObservationBuffer};
 use dwell::{
-    Batch, CameraMount, DiscreteAction, Engines, Env, EnvConfig, PictureRequest, SensorConfig,
-    World, WorldConfig, camera_mount,
+    Batch, CameraMount, DiscreteAction, Engines, Env, EnvConfig, ImageRequest, SensorConfig, World,
+    WorldConfig, camera_mount,
 };
 use dwell_physics::AgentControl;
 use dwell_render::{Camera, ImageChannels, Preset};
@@ -52,10 +52,10 @@ fn moving(laws: Vec<LawSpec>) -> World {
     world
 }
 
-fn eye(camera: Camera) -> PictureRequest {
-    PictureRequest {
+fn eye(camera: Camera) -> ImageRequest {
+    ImageRequest {
         camera,
-        place: CameraMount::Agent(AgentId(0), Pose::IDENTITY),
+        mount: CameraMount::Agent(AgentId(0), Pose::IDENTITY),
         preset: Preset::Flat,
     }
 }
@@ -68,7 +68,10 @@ const DEPTH: ImageChannels = ImageChannels {
 /// Returns where the eye was a share of the last step ago; the agent turned evenly, about its own axis.
 fn eye_before(world: &World, share: f32) -> Pose {
     let is = world.state().agents[AgentId(0)].world_from_eye();
-    let was = world.past().eye(AgentId(0), world.state()).unwrap();
+    let was = world
+        .motion_history()
+        .eye(AgentId(0), world.state())
+        .unwrap();
     Pose::new(
         is.position.lerp(was.position, share),
         is.rotation.slerp(was.rotation, share),
@@ -76,11 +79,11 @@ fn eye_before(world: &World, share: f32) -> Pose {
 }
 
 /// A camera of the agent of a world without laws, moved to where its eye was a share of the last step ago.
-fn earlier(ideal: &World, camera: Camera, share: f32) -> PictureRequest {
+fn earlier(ideal: &World, camera: Camera, share: f32) -> ImageRequest {
     let is = ideal.state().agents[AgentId(0)].world_from_eye();
     let eye_from_camera = is.inverse() * eye_before(ideal, share);
-    PictureRequest {
-        place: CameraMount::Agent(AgentId(0), eye_from_camera),
+    ImageRequest {
+        mount: CameraMount::Agent(AgentId(0), eye_from_camera),
         ..eye(camera)
     }
 }
@@ -93,12 +96,12 @@ fn a_rolling_shutter_takes_each_row_at_its_time() {
     let ideal = moving(Vec::new());
     let camera = Camera::from_fov(48, 32, 90.0).unwrap();
     let rolled = world
-        .picture(&eye(camera), DEPTH, Threads::exactly(2))
+        .render_image(&eye(camera), DEPTH, Threads::new(2))
         .unwrap()
         .1;
     for row in 0..32_usize {
         let share = (31 - row) as f32 * line_s as f32 / 0.05;
-        let still = ideal.picture(&earlier(&ideal, camera, share), DEPTH, Threads::ONE);
+        let still = ideal.render_image(&earlier(&ideal, camera, share), DEPTH, Threads::ONE);
         let still = still.unwrap().1;
         for k in row * 48..(row + 1) * 48 {
             assert!(
@@ -133,7 +136,7 @@ fn turning(laws: Vec<LawSpec>) -> World {
 fn turn_rate(world: &World) -> f32 {
     let is = world.state().agents[AgentId(0)].world_from_eye().rotation;
     let was = world
-        .past()
+        .motion_history()
         .eye(AgentId(0), world.state())
         .unwrap()
         .rotation;
@@ -151,7 +154,10 @@ fn an_edge_blurs_over_its_speed_times_the_exposure() {
         ..ImageChannels::NONE
     };
     let row = |world: &World| -> Vec<u8> {
-        let frame = world.picture(&eye(camera), rgb, Threads::ONE).unwrap().1;
+        let frame = world
+            .render_image(&eye(camera), rgb, Threads::ONE)
+            .unwrap()
+            .1;
         frame
             .rgb
             .chunks_exact(3)
@@ -190,7 +196,10 @@ fn a_rolling_shutter_shears_upright_edges() {
         ..ImageChannels::NONE
     };
     let edge = |world: &World| -> Vec<f32> {
-        let frame = world.picture(&eye(camera), ids, Threads::ONE).unwrap().1;
+        let frame = world
+            .render_image(&eye(camera), ids, Threads::ONE)
+            .unwrap()
+            .1;
         // The column at which a wall ends where two walls meet.
         let rows = frame.instance.chunks_exact(320);
         rows.map(|row| {
@@ -227,13 +236,16 @@ fn motion_blur_is_the_mean_over_the_exposure() {
         ..ImageChannels::NONE
     };
     let blurred = world
-        .picture(&eye(camera), channels, Threads::exactly(2))
+        .render_image(&eye(camera), channels, Threads::new(2))
         .unwrap()
         .1;
     let ideal = moving(Vec::new());
     let at = |share: f32| {
         let request = earlier(&ideal, camera, share);
-        ideal.picture(&request, channels, Threads::ONE).unwrap().1
+        ideal
+            .render_image(&request, channels, Threads::ONE)
+            .unwrap()
+            .1
     };
     let light = |byte: u8| dwell_scene::units::linear_from_srgb(f32::from(byte) / 255.0);
     let moments: Vec<_> = (0..16).map(|k| at((k as f32 + 0.5) / 16.0 * 0.4)).collect();
@@ -263,11 +275,14 @@ fn motion_blur_is_the_mean_over_the_exposure() {
 fn a_stereo_pair_sees_depth_as_disparity() {
     let world = moving(Vec::new());
     let camera = Camera::from_fov(64, 48, 90.0).unwrap();
-    let at = |x: f32| PictureRequest {
-        place: CameraMount::Agent(AgentId(0), camera_mount([x, 0.0, 0.0], [0.0; 3])),
+    let at = |x: f32| ImageRequest {
+        mount: CameraMount::Agent(AgentId(0), camera_mount([x, 0.0, 0.0], [0.0; 3])),
         ..eye(camera)
     };
-    let left = world.picture(&at(-0.05), DEPTH, Threads::ONE).unwrap().1;
+    let left = world
+        .render_image(&at(-0.05), DEPTH, Threads::ONE)
+        .unwrap()
+        .1;
     let [pose_left, pose_right] = [-0.05, 0.05].map(|x| {
         let is = world.state().agents[AgentId(0)].world_from_eye();
         is * Pose::from_position(Vec3::new(x, 0.0, 0.0))
@@ -420,7 +435,7 @@ fn noise_and_flow_come_back_with_a_snapshot() {
     let sensors = ["rgb", "depth", "flow", "surfels"].map(|kind| (kind, size.clone()));
     let play = |count: usize, threads: usize| {
         let envs = (0..count).map(|_| env(&sensors, laws(), 1)).collect();
-        let mut batch = Batch::new(envs, Threads::exactly(threads)).unwrap();
+        let mut batch = Batch::new(envs, Threads::new(threads)).unwrap();
         let seeds: Vec<Option<u64>> = (0..count as u64).map(|k| Some(5 + k)).collect();
         batch.reset(&seeds).unwrap();
         let mut seen = vec![observe(&mut batch)];

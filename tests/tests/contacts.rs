@@ -27,7 +27,7 @@ fn quiet(near: Vec3) -> World {
     for _ in 0..60 {
         world.step(&[]).unwrap();
     }
-    world.listen(&[(AGENT, BLOCK)]).unwrap();
+    world.enable_listeners(&[(AGENT, BLOCK)]).unwrap();
     world
 }
 
@@ -35,7 +35,7 @@ fn heard(world: &mut World, control: AgentControl) -> Vec<f32> {
     world.step(&[control]).unwrap();
     let mut heard = vec![0.0; 2 * BLOCK];
     for (channel, out) in heard.chunks_exact_mut(BLOCK).enumerate() {
-        world.heard(AGENT, channel, out);
+        world.newest_samples(AGENT, channel, out);
     }
     heard
 }
@@ -81,7 +81,7 @@ fn doors_creak_while_they_move_and_slam_when_they_are_shut_fast() {
     let engines = dwell_tests::apartment();
     let house = engines.house().clone();
     let doors = house.joints.iter_ids().filter(|(_, joint)| {
-        joint.opens() && joint.kind == JointKind::Hinge && joint.parent.is_some()
+        joint.is_openable() && joint.kind == JointKind::Hinge && joint.parent.is_some()
     });
     let tall = |joint: JointId| {
         let part = &house.parts[house.joints[joint].child];

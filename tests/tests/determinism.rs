@@ -46,7 +46,7 @@ fn noisy_env() -> Env {
 
 fn batch(count: usize, threads: usize) -> Batch {
     let envs = (0..count).map(|_| noisy_env()).collect();
-    Batch::new(envs, Threads::exactly(threads)).unwrap()
+    Batch::new(envs, Threads::new(threads)).unwrap()
 }
 
 /// Everything but `stop`, walking more often than not.
@@ -66,7 +66,7 @@ fn digest(batch: &mut Batch, k: usize) -> u64 {
     let mut bytes = batch.envs()[k].world().hash().to_le_bytes().to_vec();
     for (sensor, (spec, seen)) in specs.iter().zip(observe(batch)).enumerate() {
         if spec.dtype == dwell::sensors::Dtype::Text {
-            bytes.extend_from_slice(batch.texts(sensor)[k].as_bytes());
+            bytes.extend_from_slice(batch.text_observations(sensor)[k].as_bytes());
         } else {
             let one = seen.len() / count;
             bytes.extend_from_slice(&seen[k * one..(k + 1) * one]);
@@ -191,7 +191,7 @@ fn company_other_worlds_and_snapshots_change_no_bit() {
         ..EnvConfig::default()
     };
     let other = Env::new(Engines::new(Arc::new(house)), &elsewhere).unwrap();
-    let mut other = Batch::new(vec![other], Threads::exactly(2)).unwrap();
+    let mut other = Batch::new(vec![other], Threads::new(2)).unwrap();
     other.reset(&[Some(5)]).unwrap();
     let mut company = batch(3, 2);
     company

@@ -3,7 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use dwell::sensors::{Observation, ObservationData, SensorSpec};
-use dwell::{CameraMount, Engines, PictureRequest, World};
+use dwell::{CameraMount, Engines, ImageRequest, World};
 use dwell_physics::AgentControl;
 use dwell_render::{ClassSet, Dollhouse, DollhouseConfig, Preset, Projection, StoreyMap};
 use dwell_scene::parallel::Threads;
@@ -26,7 +26,7 @@ fn golden() -> Golden {
 /// Names of the sensors that give pictures or lists of what pictures show.
 fn sensors() -> Vec<&'static str> {
     let all = dwell::sensors::all().iter();
-    all.filter(|kind| kind.shows_pictures())
+    all.filter(|kind| kind.is_image_sensor())
         .map(|kind| kind.name)
         .collect()
 }
@@ -79,32 +79,30 @@ fn pictures_are_the_golden_ones() {
 fn plans(golden: &mut Golden) {
     let world = views::world("builtin:house");
     let house = world.house();
-    let (renderer, rays, state) = (world.engines().renderer(), world.rays(), world.state());
+    let (renderer, rays, state) = (world.engines().cpu_renderer(), world.rays(), world.state());
     let config = DollhouseConfig {
         width: 128,
         ..DollhouseConfig::default()
     };
     for level in house.levels.ids() {
         let map = StoreyMap::new(house, level, 128).unwrap();
-        let plan = map.picture(renderer, rays, state, Threads::ONE).unwrap();
+        let plan = map.render(renderer, rays, state, Threads::ONE).unwrap();
         golden.check_color(
             &format!("plan_map_{}", level.0),
             map.view.camera.width(),
             plan,
         );
         let doll = Dollhouse::new(house, level, &config).unwrap();
-        let picture = doll
-            .picture(renderer, rays, state, Threads::exactly(3))
-            .unwrap();
+        let picture = doll.render(renderer, rays, state, Threads::new(3)).unwrap();
         golden.check_color(&format!("plan_dollhouse_{}", level.0), 128, picture);
     }
 }
 
 /// Returns what the first agent sees.
-fn eyes() -> PictureRequest {
-    PictureRequest {
+fn eyes() -> ImageRequest {
+    ImageRequest {
         camera: views::plain_camera(80, 60).unwrap(),
-        place: CameraMount::Agent(AgentId(0), Pose::IDENTITY),
+        mount: CameraMount::Agent(AgentId(0), Pose::IDENTITY),
         preset: Preset::Lit,
     }
 }

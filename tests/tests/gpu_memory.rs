@@ -62,10 +62,10 @@ fn later_batches_take_little_from_the_heap() {
             let change = region.change();
             taken.push(change.bytes_allocated + change.bytes_reallocated.max(0) as usize);
         }
-        let made = renderer.gpu().buffers_made();
+        let made = renderer.gpu().buffer_count();
         println!(
             "{}: {taken:?} bytes of the heap, {made} buffers",
-            path.word()
+            path.name()
         );
         // The images of a batch alone are 48 * 24 * 24 * 12 bytes, its worlds ten times as much.
         let images = VIEWS * (EDGE * EDGE) as usize * 12;

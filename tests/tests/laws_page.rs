@@ -102,7 +102,10 @@ fn entry(law: &LawInfo, page: &mut String) {
             ),
         );
     }
-    if let Some(usual) = dwell::laws::USUAL.iter().find(|usual| usual.id == *id) {
+    if let Some(usual) = dwell::laws::DEFAULT_VALUES
+        .iter()
+        .find(|usual| usual.id == *id)
+    {
         let numbers = usual
             .params
             .iter()

@@ -138,7 +138,7 @@ fn an_hour_of_sound_keeps_memory_flat() {
     let [a, b, c] = room.footprint[0];
     let middle = (a + b + c) / 3.0;
     let spot = Vec3::new(middle.x, room.floor_y + 1.6, middle.y);
-    let scene = engines.acoustics("rl", 16_000).unwrap();
+    let scene = engines.acoustic_scene("rl", 16_000).unwrap();
     let mut stream =
         Stream::new(scene, StreamConfig::rl(), RandomKey::root(2), Threads::ONE).unwrap();
     let mut signal = vec![0.0; BLOCK];

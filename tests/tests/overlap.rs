@@ -34,8 +34,8 @@ fn env(renderer: &BackEnd, edge: u32, blurs: bool) -> Env {
 fn play(renderer: &BackEnd, blurs: bool, overlaps: bool) -> Vec<Vec<Vec<u8>>> {
     use DiscreteAction::{MoveForward, TurnLeft, TurnRight};
     let envs = (0..COUNT).map(|_| env(renderer, 16, blurs)).collect();
-    let batch = Batch::new(envs, Threads::exactly(2)).unwrap();
-    let mut batch = batch.overlapping(overlaps);
+    let batch = Batch::new(envs, Threads::new(2)).unwrap();
+    let mut batch = batch.with_overlapped_rendering(overlaps);
     let all = [true; COUNT];
     let mut seen = Vec::new();
     let look = |batch: &mut Batch, which: [bool; COUNT]| try_observe(batch, &which).unwrap();
@@ -93,7 +93,7 @@ fn what_goes_wrong_meanwhile_is_told_by_the_call_that_waits() {
         // The first hits of 16 million pixels take 256 MiB, twice what many an adapter lets a kernel use.
         let told = |overlaps: bool| {
             let batch = Batch::new(vec![env(&renderer, 4096, false)], Threads::ONE).unwrap();
-            let mut batch = batch.overlapping(overlaps);
+            let mut batch = batch.with_overlapped_rendering(overlaps);
             batch.reset(&[Some(1)]).unwrap();
             batch.step(&[Some(DiscreteAction::TurnLeft)]).unwrap();
             [(); 2].map(|()| {

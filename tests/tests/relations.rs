@@ -25,7 +25,7 @@ fn physics_and_words_agree_on_what_rests_on_what() {
     let name = |id: ObjectId| &house.objects[id].name;
     let (mut same, mut other) = (0, Vec::new());
     for thing in &loose {
-        let mut felt = state.rests_on(house, *thing);
+        let mut felt = state.supports_of(house, *thing);
         felt.sort_unstable();
         let own = Term::Object(*thing);
         let is_in = |by: &ObjectId| {
@@ -70,7 +70,7 @@ fn physics_and_words_agree_on_what_rests_on_what() {
             let row = scene.facts(*id).category;
             row.is_some_and(|row| ["chair", "sofa", "bed"].contains(&row.nyu40_name))
         };
-        let mut felt_in = state.lies_in(house, *thing, &house.object_boxes(state));
+        let mut felt_in = state.containers_of(house, *thing, &house.object_boxes(state));
         felt_in.retain(|container| !lain_upon(container));
         let mut said_in: Vec<ObjectId> = house.objects.ids().filter(is_in).collect();
         said_in.retain(|container| !lain_upon(container));

@@ -4,7 +4,7 @@
 
 use dwell::sensors::{ImageSettings, ObservationData};
 use dwell::{
-    Batch, CameraMount, DiscreteAction, Env, EnvConfig, PictureRequest, SensorConfig, WorldConfig,
+    Batch, CameraMount, DiscreteAction, Env, EnvConfig, ImageRequest, SensorConfig, WorldConfig,
 };
 use dwell_physics::BodyState;
 use dwell_render::{BackEnd, Camera, Preset};
@@ -59,7 +59,7 @@ fn env(renderer: &BackEnd, laws: &[LawSpec]) -> Env {
 /// Worlds in which the agent has turned and something falls before its eyes.
 fn batch(seeds: std::ops::Range<u64>, renderer: &BackEnd, laws: &[LawSpec]) -> Batch {
     let envs = seeds.clone().map(|_| env(renderer, laws)).collect();
-    let mut batch = Batch::new(envs, Threads::exactly(2)).unwrap();
+    let mut batch = Batch::new(envs, Threads::new(2)).unwrap();
     let seeds: Vec<Option<u64>> = seeds.map(Some).collect();
     batch.reset(&seeds).unwrap();
     batch
@@ -84,7 +84,10 @@ fn batch(seeds: std::ops::Range<u64>, renderer: &BackEnd, laws: &[LawSpec]) -> B
         .step(&vec![Some(DiscreteAction::TurnLeft); seeds.len()])
         .unwrap();
     for env in batch.envs() {
-        assert!(!env.world().past().moved.is_empty(), "something falls");
+        assert!(
+            !env.world().motion_history().previous_part_poses.is_empty(),
+            "something falls"
+        );
     }
     batch
 }
@@ -130,14 +133,14 @@ fn shutters_in_a_batch_give_the_bits_of_worlds_alone() {
                 );
                 // And what a caller who asks for a picture gets.
                 let world = alone.env(0).unwrap().world();
-                let request = PictureRequest {
+                let request = ImageRequest {
                     camera: Camera::from_fov(WIDTH as u32, HEIGHT as u32, 90.0)
                         .and_then(|camera| camera.with_range(0.05, 50.0))
                         .unwrap(),
-                    place: CameraMount::Agent(AgentId(0), Pose::IDENTITY),
+                    mount: CameraMount::Agent(AgentId(0), Pose::IDENTITY),
                     preset: Preset::Lit,
                 };
-                let picture = world.look(
+                let picture = world.image_observations(
                     &request,
                     &["rgb".to_owned()],
                     ImageSettings::default(),

@@ -20,7 +20,7 @@ fn bare(config: &WorldConfig) -> World {
     world
         .place_agent(AGENT, Vec3::new(3.0, 0.0, 2.5), 0.0)
         .unwrap();
-    world.listen(&[(AGENT, BLOCK)]).unwrap();
+    world.enable_listeners(&[(AGENT, BLOCK)]).unwrap();
     world
 }
 
@@ -48,7 +48,7 @@ fn hear(world: &mut World, steps: usize) -> Vec<Vec<f32>> {
         world.step(&[]).unwrap();
         let mut heard = vec![0.0; 2 * BLOCK];
         for (channel, out) in heard.chunks_exact_mut(BLOCK).enumerate() {
-            world.heard(AGENT, channel, out);
+            world.newest_samples(AGENT, channel, out);
         }
         heard
     };
@@ -340,7 +340,7 @@ fn sounds_of_objects_are_silenced_and_move_with_what_they_sit_on() {
     let room = house.rooms[house.room_at(position).unwrap()].bounds;
     let middle = Vec3::new(room.center().x, room.min.y, room.center().z);
     world.place_agent(AGENT, middle, 0.0).unwrap();
-    world.listen(&[(AGENT, BLOCK)]).unwrap();
+    world.enable_listeners(&[(AGENT, BLOCK)]).unwrap();
     for sound in world.sounds() {
         world.stop_sound(sound.handle).unwrap();
     }

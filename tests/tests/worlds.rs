@@ -25,7 +25,7 @@ fn a_restored_world_continues_with_the_same_bits() {
                 world
                     .act_discrete(AGENT, action, &StepSizes::default())
                     .unwrap();
-                world.listen(&[(AGENT, 800)]).unwrap();
+                world.enable_listeners(&[(AGENT, 800)]).unwrap();
                 world.hash()
             })
             .collect()
@@ -51,7 +51,7 @@ fn snapshots_of_worlds_stay_within_their_size() {
     let mut sizes = Vec::new();
     for listens in [false, true] {
         if listens {
-            world.listen(&[(AGENT, 800)]).unwrap();
+            world.enable_listeners(&[(AGENT, 800)]).unwrap();
         }
         for k in 0..40 {
             let action = DiscreteAction::ALL[1 + k % 3];
@@ -174,7 +174,7 @@ fn what_a_hand_takes_moves_with_the_agent_and_is_known_as_held() {
         .unwrap();
     let object = world.house().object_named(&thing.name).unwrap();
     let body = world.state().agents[AGENT].body;
-    let grid = world.engines().navigation(&body).unwrap();
+    let grid = world.engines().nav_grid(&body).unwrap();
     let center = Vec3::from_array(thing.center);
     let near = grid
         .walkable()
@@ -206,7 +206,7 @@ fn what_a_hand_takes_moves_with_the_agent_and_is_known_as_held() {
 fn heard(world: &World, agent: AgentId, samples: usize) -> Vec<f32> {
     let mut both = vec![0.0; 2 * samples];
     for (channel, out) in both.chunks_exact_mut(samples).enumerate() {
-        world.heard(agent, channel, out);
+        world.newest_samples(agent, channel, out);
     }
     both
 }
@@ -238,7 +238,7 @@ fn listening_changes_nothing() {
         for _ in 0..6 {
             world.step(&[]).unwrap();
             for _ in 0..asks {
-                world.listen(ears).unwrap();
+                world.enable_listeners(ears).unwrap();
                 all = heard(&world, AGENT, 4000);
             }
         }
@@ -254,10 +254,10 @@ fn listening_changes_nothing() {
 #[test]
 fn windows_grow_backwards_and_time_goes_on_without_ears() {
     let mut world = gathering(1);
-    world.listen(&[(AGENT, 800)]).unwrap();
+    world.enable_listeners(&[(AGENT, 800)]).unwrap();
     world.step(&[]).unwrap();
     let short = heard(&world, AGENT, 800);
-    world.listen(&[(AGENT, 3200)]).unwrap();
+    world.enable_listeners(&[(AGENT, 3200)]).unwrap();
     assert_eq!(heard(&world, AGENT, 800), short);
     let beside_a_source = || {
         let mut world = gathering(1);
@@ -268,10 +268,7 @@ fn windows_grow_backwards_and_time_goes_on_without_ears() {
             .max_by(|a, b| a.level_db.total_cmp(&b.level_db));
         let source = loudest.expect("something is playing");
         let place = state.part_pose[source.part].transform_point(source.position);
-        let grid = world
-            .engines()
-            .navigation(&state.agents[AGENT].body)
-            .unwrap();
+        let grid = world.engines().nav_grid(&state.agents[AGENT].body).unwrap();
         let beside = grid
             .walkable()
             .map(|cell| grid.position(cell))
@@ -280,12 +277,12 @@ fn windows_grow_backwards_and_time_goes_on_without_ears() {
         world
     };
     let (mut early, mut late) = (beside_a_source(), beside_a_source());
-    early.listen(&[(AGENT, 800)]).unwrap();
+    early.enable_listeners(&[(AGENT, 800)]).unwrap();
     for _ in 0..5 {
         early.step(&[]).unwrap();
         late.step(&[]).unwrap();
     }
-    late.listen(&[(AGENT, 800)]).unwrap();
+    late.enable_listeners(&[(AGENT, 800)]).unwrap();
     // Once what sounded before the late ears listened has rung out, both hear the same moment of the same programme.
     for _ in 0..20 {
         early.step(&[]).unwrap();
@@ -384,8 +381,8 @@ fn the_expert_walks_with_the_strides_of_its_environment() {
         for _ in 0..1000 {
             let action = env.expert_action(0).unwrap();
             let info = &env.step(&[Some(action)]).unwrap()[0];
-            if info.verdict.terminated {
-                fulfilled += u32::from(info.verdict.success);
+            if info.result.terminated {
+                fulfilled += u32::from(info.result.success);
                 break;
             }
         }

@@ -46,19 +46,19 @@ fn differences(name: &str, alone: &DependencyTree, all: &DependencyTree) -> Vec<
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tree::made_up;
+    use crate::tree::parse_fixture;
 
     #[test]
     fn equal_features_pass() {
-        let alone = made_up("0|e v1|MIT|\n1|a v1|MIT|std\n");
-        let all = made_up("0|e v1|MIT|\n1|a v1|MIT|std\n1|t v1|MIT|\n");
+        let alone = parse_fixture("0|e v1|MIT|\n1|a v1|MIT|std\n");
+        let all = parse_fixture("0|e v1|MIT|\n1|a v1|MIT|std\n1|t v1|MIT|\n");
         assert_eq!(differences("e", &alone, &all), [""; 0]);
     }
 
     #[test]
     fn a_feature_that_only_tests_ask_for_is_found() {
-        let alone = made_up("0|e v1|MIT|\n1|a v1|MIT|\n");
-        let all = made_up("0|e v1|MIT|\n1|a v1|MIT|std\n");
+        let alone = parse_fixture("0|e v1|MIT|\n1|a v1|MIT|\n");
+        let all = parse_fixture("0|e v1|MIT|\n1|a v1|MIT|std\n");
         let findings = differences("e", &alone, &all);
         assert_eq!(findings.len(), 1);
         assert!(findings[0].starts_with("a 1: e builds it with [], the tests with [\"std\"]"));

@@ -16,7 +16,7 @@ impl CheckOutcome {
         self.findings.is_empty()
     }
 
-    pub(crate) fn join(&mut self, other: Self) {
+    pub(crate) fn merge(&mut self, other: Self) {
         self.notes.extend(other.notes);
         self.findings.extend(other.findings);
     }

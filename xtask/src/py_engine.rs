@@ -26,7 +26,7 @@ const EXEMPT: &[(&str, &str, &str)] = &[
 ];
 
 /// Methods that call engines: the method itself, and those of this crate that do nothing before it.
-const WAYS: &[&str] = &[
+const ENGINE_CALL_PATTERNS: &[&str] = &[
     ".engine(",
     ".with(py",
     ".with(slf.py()",
@@ -120,7 +120,9 @@ fn called_by_python(text: &str) -> Vec<Function> {
             found.push(Function {
                 name: name.to_owned(),
                 line: k + 1,
-                uses_engine_call: WAYS.iter().any(|way| body.iter().any(|l| l.contains(way))),
+                uses_engine_call: ENGINE_CALL_PATTERNS
+                    .iter()
+                    .any(|way| body.iter().any(|l| l.contains(way))),
             });
             k += body.len();
             is_function = false;

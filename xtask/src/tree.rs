@@ -143,7 +143,7 @@ impl DependencyTree {
 }
 
 #[cfg(test)]
-pub(crate) fn made_up(text: &str) -> DependencyTree {
+pub(crate) fn parse_fixture(text: &str) -> DependencyTree {
     parse(text).unwrap()
 }
 
@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn depth_makes_edges() {
-        let tree = made_up(
+        let tree = parse_fixture(
             "0|a v1.0.0 (/r/a)|MIT|\n1|b v1.0.0|MIT|std\n2|c v1.0.0 (proc-macro)|MIT|x,y\n1|c v1.0.0 (proc-macro)|MIT|x,y (*)\n",
         );
         let edges = [(id("a"), id("b")), (id("a"), id("c")), (id("b"), id("c"))];
@@ -170,7 +170,7 @@ mod tests {
 
     #[test]
     fn what_only_a_macro_uses_is_not_linked() {
-        let tree = made_up(
+        let tree = parse_fixture(
             "0|a v1.0.0|MIT|\n1|m v1.0.0 (proc-macro)|MIT|\n2|q v1.0.0|MIT|\n2|s v1.0.0|MIT|\n1|b v1.0.0|MIT|\n2|s v1.0.0|MIT|\n",
         );
         assert_eq!(tree.linked("a"), [id("a"), id("b"), id("s")].into());
@@ -178,7 +178,7 @@ mod tests {
 
     #[test]
     fn repositories_are_seen() {
-        let tree = made_up("0|a v1.0.0 (https://host/a?rev=1#abc)|MIT|\n");
+        let tree = parse_fixture("0|a v1.0.0 (https://host/a?rev=1#abc)|MIT|\n");
         assert_eq!(
             tree.packages[&id("a")].source.as_deref(),
             Some("https://host/a?rev=1#abc")

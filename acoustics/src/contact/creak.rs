@@ -34,7 +34,7 @@ pub struct CreakSound {
     /// The part that turns on the hinge, and the one that carries it.
     pub partners: [ContactPartner; 2],
     /// Random key of the hinge.
-    pub place: RandomKey,
+    pub hinge_key: RandomKey,
 }
 
 impl CreakSound {
@@ -44,7 +44,7 @@ impl CreakSound {
 
     /// Returns the duration of its sound, s.
     pub fn duration_s(&self) -> f64 {
-        self.length() + SLIP_S + Radiator::new(&self.partners, self.place).ring_s() + 0.012
+        self.length() + SLIP_S + Radiator::new(&self.partners, self.hinge_key).ringing_s() + 0.012
     }
 
     /// Returns the times of its slips, from the beginning of the segment, s, and their impulses, N·s.
@@ -65,7 +65,7 @@ impl CreakSound {
         let last = last.min(first + 2_000);
         let mut slips: Vec<(f64, f64)> = (first..=last)
             .filter_map(|k| {
-                let mut stream = self.place.child("slip").child(k as u64).stream();
+                let mut stream = self.hinge_key.child("slip").child(k as u64).stream();
                 let at = (k as f64 + 0.3 * (stream.uniform() - 0.5)) * SLIP_RAD;
                 let strength = 0.5 + stream.uniform();
                 let inside = at > low && at <= high;
@@ -78,14 +78,14 @@ impl CreakSound {
 
     /// Returns the whole sound: pressure at 1 m, Pa. Shape (`duration_s` * `rate_hz`, rounded up,).
     pub fn render(&self, rate_hz: u32) -> Vec<f32> {
-        let radiator = Radiator::new(&self.partners, self.place);
+        let radiator = Radiator::new(&self.partners, self.hinge_key);
         let mut out = vec![0.0; samples(self.duration_s(), rate_hz)];
         let mut force = vec![0.0; samples(self.length() + SLIP_S, rate_hz) + 1];
         for (start_s, impulse_n_s) in self.slips() {
             add_half_sine(&mut force, rate_hz, start_s, impulse_n_s, SLIP_S);
         }
         if force.iter().any(|f| *f != 0.0) {
-            radiator.respond(&force, rate_hz, &mut out);
+            radiator.add_response(&force, rate_hz, &mut out);
         }
         out.into_iter().map(|x| x as f32).collect()
     }
@@ -103,9 +103,9 @@ mod tests {
             friction_n_m,
             partners: [
                 ContactPartner::body("wood_door", 20.0, [0.9, 2.0, 0.04]),
-                ContactPartner::leaf("gypsum_board", 40.0),
+                ContactPartner::panel("gypsum_board", 40.0),
             ],
-            place: RandomKey::root(8),
+            hinge_key: RandomKey::root(8),
         }
     }
 

@@ -1,7 +1,7 @@
 //! Sound of a footstep.
 
 use super::friction_noise::{FrictionSound, FrictionSoundKind};
-use super::impact_force::{add_half_sine, hertz_s, modulus_pa};
+use super::impact_force::{add_half_sine, hertz_contact_time_s, modulus_pa};
 use super::radiation::Radiator;
 use super::{ContactPartner, samples};
 use dwell_scene::random::RandomKey;
@@ -68,13 +68,13 @@ impl FootstepSound {
                 self.floor.clone(),
             ],
             key: self.key.child("rub"),
-            place: self.key,
+            contact_key: self.key,
         }
     }
 
     /// Returns the duration of its sound, s.
     pub fn duration_s(&self) -> f64 {
-        let ring_s = Radiator::new(std::slice::from_ref(&self.floor), self.key).ring_s();
+        let ring_s = Radiator::new(std::slice::from_ref(&self.floor), self.key).ringing_s();
         (self.toe_s() + 0.1 + ring_s + 0.012).max(self.rub().duration_s())
     }
 
@@ -90,12 +90,12 @@ impl FootstepSound {
                 let strength = share * (0.85 + 0.3 * stream.uniform());
                 for (mass_kg, radius_m, substance) in self.parts() {
                     let modulus = modulus_pa(substance, &self.floor.substance);
-                    let lasts_s = hertz_s(mass_kg, radius_m, modulus, speed);
+                    let lasts_s = hertz_contact_time_s(mass_kg, radius_m, modulus, speed);
                     let impulse = mass_kg * speed * strength;
                     add_half_sine(&mut force, rate_hz, start_s, impulse, lasts_s);
                 }
             }
-            radiator.respond(&force, rate_hz, &mut out);
+            radiator.add_response(&force, rate_hz, &mut out);
         }
         for (y, x) in out.iter_mut().zip(self.rub().render(rate_hz)) {
             *y += f64::from(x);
@@ -114,7 +114,7 @@ mod tests {
             mass_kg,
             speed_m_s,
             period_s: 0.5,
-            floor: ContactPartner::leaf(floor, leaf),
+            floor: ContactPartner::panel(floor, leaf),
             key: RandomKey::root(2),
         }
     }

@@ -53,7 +53,7 @@ pub struct FrictionSound {
     /// Random key of the noise.
     pub key: RandomKey,
     /// Random key of the contact position on the two: the same as long as the contact lasts.
-    pub place: RandomKey,
+    pub contact_key: RandomKey,
 }
 
 impl FrictionSound {
@@ -63,7 +63,7 @@ impl FrictionSound {
 
     /// Returns the duration of its sound, s.
     pub fn duration_s(&self) -> f64 {
-        self.length() + Radiator::new(&self.partners, self.place).ring_s() + 0.012
+        self.length() + Radiator::new(&self.partners, self.contact_key).ringing_s() + 0.012
     }
 
     /// Returns the root mean square of the varying force, N.
@@ -99,7 +99,7 @@ impl FrictionSound {
 
     /// Returns the whole sound: pressure at 1 m, Pa. Shape (`duration_s` * `rate_hz`, rounded up,).
     pub fn render(&self, rate_hz: u32) -> Vec<f32> {
-        let radiator = Radiator::new(&self.partners, self.place);
+        let radiator = Radiator::new(&self.partners, self.contact_key);
         let mut out = vec![0.0; samples(self.duration_s(), rate_hz)];
         let rate = f64::from(rate_hz);
         // Noise through a pole at the corner, and one at 20 Hz below which nothing is audible; its mean square is that of
@@ -121,7 +121,7 @@ impl FrictionSound {
                 force[at] = (low - drift) * swell;
             }
         }
-        radiator.respond(&force, rate_hz, &mut out);
+        radiator.add_response(&force, rate_hz, &mut out);
         out.into_iter().map(|x| x as f32).collect()
     }
 }
@@ -139,10 +139,10 @@ mod tests {
             length_s: 0.1,
             partners: [
                 ContactPartner::body("oak", 6.0, [0.45, 0.9, 0.5]),
-                ContactPartner::leaf(under, 150.0),
+                ContactPartner::panel(under, 150.0),
             ],
             key: RandomKey::root(3),
-            place: RandomKey::root(4),
+            contact_key: RandomKey::root(4),
         }
     }
 

@@ -1,6 +1,6 @@
 //! Sound of an impact.
 
-use super::impact_force::{add_half_sine, lasts_s};
+use super::impact_force::{add_half_sine, impact_duration_s};
 use super::radiation::Radiator;
 use super::{ContactPartner, samples};
 use dwell_scene::random::RandomKey;
@@ -33,20 +33,20 @@ impl ImpactSound {
     /// Returns the duration of its sound, s: the impact, and the ringing down to 60 dB, at most 2.1.
     pub fn duration_s(&self) -> f64 {
         let radiator = Radiator::new(&self.partners, self.key);
-        lasts_s(&self.partners, f64::from(self.speed_m_s)) + radiator.ring_s() + 0.012
+        impact_duration_s(&self.partners, f64::from(self.speed_m_s)) + radiator.ringing_s() + 0.012
     }
 
     /// Returns the whole sound: pressure at 1 m, Pa. Shape (`duration_s` * `rate_hz`, rounded up,).
     pub fn render(&self, rate_hz: u32) -> Vec<f32> {
         let mut radiator = Radiator::new(&self.partners, self.key);
         let speed = f64::from(self.speed_m_s).max(0.0);
-        let lasts = lasts_s(&self.partners, speed);
+        let lasts = impact_duration_s(&self.partners, speed);
         let mut out = vec![0.0; samples(self.duration_s(), rate_hz)];
         let mut force = vec![0.0; samples(lasts, rate_hz) + 1];
         let impulse = f64::from(self.impulse_n_s).max(0.0);
         add_half_sine(&mut force, rate_hz, 0.0, impulse, lasts);
-        radiator.bound(impulse, lasts, MAX_VIBRATION_SHARE * 0.5 * impulse * speed);
-        radiator.respond(&force, rate_hz, &mut out);
+        radiator.limit_mode_energy(impulse, lasts, MAX_VIBRATION_SHARE * 0.5 * impulse * speed);
+        radiator.add_response(&force, rate_hz, &mut out);
         out.into_iter().map(|x| x as f32).collect()
     }
 }
@@ -70,7 +70,7 @@ mod tests {
     }
 
     fn floor(substance: &str) -> ContactPartner {
-        ContactPartner::leaf(substance, 300.0)
+        ContactPartner::panel(substance, 300.0)
     }
 
     fn peak(samples: &[f32]) -> f32 {

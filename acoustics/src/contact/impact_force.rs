@@ -13,7 +13,12 @@ const CURVATURE_M: (f64, f64) = (2e-3, 5e-2);
 ///
 /// # Source
 /// H. Hertz; K. L. Johnson, *Contact Mechanics* (1985), equation 11.24: T = 2.87 (m² / R E*² v)^(1/5).
-pub(super) fn hertz_s(mass_kg: f64, radius_m: f64, modulus_pa: f64, speed_m_s: f64) -> f64 {
+pub(super) fn hertz_contact_time_s(
+    mass_kg: f64,
+    radius_m: f64,
+    modulus_pa: f64,
+    speed_m_s: f64,
+) -> f64 {
     let speed = speed_m_s.max(1e-2);
     let inside = mass_kg * mass_kg / (radius_m * modulus_pa * modulus_pa * speed);
     (2.87 * libm::pow(inside, 0.2)).clamp(LASTS_S.0, LASTS_S.1)
@@ -29,7 +34,7 @@ pub(super) fn modulus_pa(a: &str, b: &str) -> f64 {
 }
 
 /// Returns the duration of an impact between two bodies, s.
-pub(super) fn lasts_s(partners: &[ContactPartner; 2], speed_m_s: f64) -> f64 {
+pub(super) fn impact_duration_s(partners: &[ContactPartner; 2], speed_m_s: f64) -> f64 {
     let inverse: f64 = partners
         .iter()
         .filter_map(ContactPartner::mass_kg)
@@ -43,12 +48,12 @@ pub(super) fn lasts_s(partners: &[ContactPartner; 2], speed_m_s: f64) -> f64 {
             super::PartnerKind::Body(body) => {
                 Some(body.size_m.into_iter().fold(f32::INFINITY, f32::min))
             }
-            super::PartnerKind::Leaf(_) => None,
+            super::PartnerKind::Panel(_) => None,
         })
         .fold(f32::INFINITY, f32::min);
     let radius_m = (CURVATURE * f64::from(smallest)).clamp(CURVATURE_M.0, CURVATURE_M.1);
     let modulus = modulus_pa(&partners[0].substance, &partners[1].substance);
-    hertz_s(mass_kg, radius_m, modulus, speed_m_s)
+    hertz_contact_time_s(mass_kg, radius_m, modulus, speed_m_s)
 }
 
 /// Adds a half sine of `impulse_n_s` that lasts `lasts_s` from `start_s` on to `force`, N, as the mean over each sample.
@@ -89,11 +94,11 @@ mod tests {
             x += v * dt;
             t += dt;
         }
-        let found = hertz_s(mass, radius, modulus, speed);
+        let found = hertz_contact_time_s(mass, radius, modulus, speed);
         assert!((found / t - 1.0).abs() < 0.01, "{found} {t}");
         // Slower by 2^5 lasts twice as long; softer lasts longer.
-        let long = hertz_s(10.0, radius, 1e9, 1.0);
-        assert!((hertz_s(10.0, radius, 1e9, 1.0 / 32.0) / long - 2.0).abs() < 1e-9);
+        let long = hertz_contact_time_s(10.0, radius, 1e9, 1.0);
+        assert!((hertz_contact_time_s(10.0, radius, 1e9, 1.0 / 32.0) / long - 2.0).abs() < 1e-9);
     }
 
     #[test]

@@ -49,7 +49,7 @@ pub enum PartnerKind {
     /// A body with modes.
     Body(ContactBody),
     /// A wall, floor or ceiling, infinite for the impact: surface density of the struck leaf, kg/m².
-    Leaf(f32),
+    Panel(f32),
 }
 
 impl ContactPartner {
@@ -62,10 +62,10 @@ impl ContactPartner {
     }
 
     /// A wall, floor or ceiling.
-    pub fn leaf(substance: &str, surface_density_kg_m2: f32) -> Self {
+    pub fn panel(substance: &str, surface_density_kg_m2: f32) -> Self {
         Self {
             substance: substance.to_owned(),
-            kind: PartnerKind::Leaf(surface_density_kg_m2),
+            kind: PartnerKind::Panel(surface_density_kg_m2),
         }
     }
 
@@ -73,7 +73,7 @@ impl ContactPartner {
     fn mass_kg(&self) -> Option<f64> {
         match self.kind {
             PartnerKind::Body(body) => Some(f64::from(body.mass_kg).max(1e-4)),
-            PartnerKind::Leaf(_) => None,
+            PartnerKind::Panel(_) => None,
         }
     }
 }
@@ -84,7 +84,7 @@ pub enum ContactSound {
     /// An impact.
     Impact(ImpactSound),
     /// A segment of sliding or rolling.
-    Rub(FrictionSound),
+    Friction(FrictionSound),
     /// A segment of a hinge's creaking.
     Creak(CreakSound),
     /// A footstep.
@@ -96,7 +96,7 @@ impl ContactSound {
     pub fn position(&self) -> Vec3 {
         match self {
             Self::Impact(sound) => sound.position,
-            Self::Rub(sound) => sound.position,
+            Self::Friction(sound) => sound.position,
             Self::Creak(sound) => sound.position,
             Self::Footstep(sound) => sound.position,
         }
@@ -106,7 +106,7 @@ impl ContactSound {
     pub fn duration_s(&self) -> f64 {
         match self {
             Self::Impact(sound) => sound.duration_s(),
-            Self::Rub(sound) => sound.duration_s(),
+            Self::Friction(sound) => sound.duration_s(),
             Self::Creak(sound) => sound.duration_s(),
             Self::Footstep(sound) => sound.duration_s(),
         }
@@ -119,7 +119,7 @@ impl ContactSound {
     pub fn render(&self, rate_hz: u32) -> Vec<f32> {
         match self {
             Self::Impact(sound) => sound.render(rate_hz),
-            Self::Rub(sound) => sound.render(rate_hz),
+            Self::Friction(sound) => sound.render(rate_hz),
             Self::Creak(sound) => sound.render(rate_hz),
             Self::Footstep(sound) => sound.render(rate_hz),
         }

@@ -26,7 +26,7 @@ const AUDIBLE_HZ: (f64, f64) = (20.0, 20_000.0);
 /// # Source
 /// Euler and Bernoulli's beam, as in L. Meirovitch, *Fundamentals of Vibrations* (2001), section 8.4:
 /// ω = x² / L² √(E I / ρ A), with I / A = h² / 12.
-pub fn bar_hz(n: u32, length_m: f64, thickness_m: f64, of: &ElasticProperties) -> f64 {
+pub fn bar_mode_hz(n: u32, length_m: f64, thickness_m: f64, of: &ElasticProperties) -> f64 {
     let place = n.max(1) as usize - 1;
     let root = BAR_ROOTS.get(place).copied();
     let root = root.unwrap_or((f64::from(n) + 0.5) * PI);
@@ -39,7 +39,7 @@ pub fn bar_hz(n: u32, length_m: f64, thickness_m: f64, of: &ElasticProperties) -
 ///
 /// # Source
 /// Kirchhoff's plate in the approximation of G. B. Warburton, *Proc. Inst. Mech. Eng.* 168, 371 (1954), table 1, edges free.
-pub fn panel_hz(
+pub fn panel_mode_hz(
     lines: [u32; 2],
     sides_m: [f64; 2],
     thickness_m: f64,
@@ -82,7 +82,7 @@ pub struct BendingPanel {
     /// Radiating area, m².
     pub area_m2: f64,
     /// True if it bends along its length alone.
-    pub bar: bool,
+    pub is_bar: bool,
 }
 
 /// A mode.
@@ -91,7 +91,7 @@ pub struct BendingMode {
     /// Hz.
     pub frequency_hz: f64,
     /// Nodal lines across each side.
-    pub lines: [u32; 2],
+    pub nodal_lines: [u32; 2],
 }
 
 impl BendingPanel {
@@ -122,29 +122,29 @@ impl BendingPanel {
             thickness_m,
             mass_kg,
             area_m2,
-            bar,
+            is_bar: bar,
         }
     }
 
     /// Returns its audible modes, the lowest first; at most 40.
     pub fn modes(&self, of: &ElasticProperties) -> Vec<BendingMode> {
         let mut modes = Vec::new();
-        if self.bar {
+        if self.is_bar {
             for n in 1..=MOST_LINES {
-                let frequency_hz = bar_hz(n, self.sides_m[0], self.thickness_m, of);
+                let frequency_hz = bar_mode_hz(n, self.sides_m[0], self.thickness_m, of);
                 modes.push(BendingMode {
                     frequency_hz,
-                    lines: [n + 1, 0],
+                    nodal_lines: [n + 1, 0],
                 });
             }
         } else {
             for x in 0..=MOST_LINES {
                 for y in 0..=MOST_LINES {
                     let lines = [x, y];
-                    let frequency_hz = panel_hz(lines, self.sides_m, self.thickness_m, of);
+                    let frequency_hz = panel_mode_hz(lines, self.sides_m, self.thickness_m, of);
                     modes.push(BendingMode {
                         frequency_hz,
-                        lines,
+                        nodal_lines: lines,
                     });
                 }
             }
@@ -184,7 +184,7 @@ mod tests {
             (2.5, [3, 0], 60.137),
             (2.5, [2, 1], 71.484),
         ] {
-            let found = panel_hz(lines, [a, a / ratio], h, &of) / unit_hz;
+            let found = panel_mode_hz(lines, [a, a / ratio], h, &of) / unit_hz;
             let error = found / exact - 1.0;
             assert!(
                 (0.0..0.09).contains(&error),
@@ -192,7 +192,7 @@ mod tests {
             );
         }
         for lines in [[0, 0], [1, 0], [0, 1]] {
-            assert_eq!(panel_hz(lines, [a, a], h, &of), 0.0);
+            assert_eq!(panel_mode_hz(lines, [a, a], h, &of), 0.0);
         }
     }
 
@@ -201,7 +201,7 @@ mod tests {
     #[test]
     fn bars_have_the_frequencies_of_euler_and_bernoulli() {
         let of = elastic("steel");
-        let lowest = bar_hz(1, 0.3, 0.006, &of);
+        let lowest = bar_mode_hz(1, 0.3, 0.006, &of);
         let speed = (of.young_pa / of.density_kg_m3).sqrt();
         assert!((lowest / (1.028 * 0.006 / 0.09 * speed) - 1.0).abs() < 1e-3);
         for (n, ratio) in [
@@ -211,12 +211,12 @@ mod tests {
             (5, 13.3443),
             (6, 18.638),
         ] {
-            let found = bar_hz(n, 0.3, 0.006, &of) / lowest;
+            let found = bar_mode_hz(n, 0.3, 0.006, &of) / lowest;
             assert!((found / ratio - 1.0).abs() < 1e-4, "{n}: {found}");
         }
         // A narrow panel is a bar, but for the Poisson effect.
         let stiffened = (1.0 - of.poisson * of.poisson).sqrt();
-        let panel = panel_hz([2, 0], [0.3, 0.01], 0.006, &of) * stiffened;
+        let panel = panel_mode_hz([2, 0], [0.3, 0.01], 0.006, &of) * stiffened;
         assert!((panel / lowest - 1.0).abs() < 2e-3);
     }
 
@@ -229,13 +229,13 @@ mod tests {
             size_m: [0.03, 0.3, 0.002],
         };
         let panel = BendingPanel::of(&ruler, &steel);
-        assert!(panel.bar && (panel.thickness_m - 0.002).abs() < 1e-9);
+        assert!(panel.is_bar && (panel.thickness_m - 0.002).abs() < 1e-9);
         let tray = ContactBody {
             mass_kg: 0.4 * 0.3 * 0.002 * 7850.0,
             size_m: [0.3, 0.002, 0.4],
         };
         let panel = BendingPanel::of(&tray, &steel);
-        assert!(!panel.bar && (panel.mass_kg - f64::from(tray.mass_kg)).abs() < 1e-9);
+        assert!(!panel.is_bar && (panel.mass_kg - f64::from(tray.mass_kg)).abs() < 1e-9);
         let area = 2.0 * (0.3 * 0.3 + 2.0 * 0.3 * 0.2);
         let pot = ContactBody {
             mass_kg: (area * 0.001 * 7850.0) as f32,

@@ -9,7 +9,7 @@ use std::f64::consts::{LN_10, PI, TAU};
 const AIR_KG_M3: f64 = 1.2;
 const SOUND_M_S: f64 = 343.0;
 /// Longest ringing that is rendered, s.
-pub(super) const LONGEST_RING_S: f64 = 2.0;
+pub(super) const MAX_RINGING_S: f64 = 2.0;
 /// Longest time constant of the amplitude, s: a body in use is held, leans or lies.
 const LONGEST_DECAY_S: f64 = 0.4;
 
@@ -44,7 +44,7 @@ impl Radiator {
         };
         for (k, partner) in partners.iter().enumerate() {
             match partner.kind {
-                PartnerKind::Leaf(surface_density_kg_m2) => {
+                PartnerKind::Panel(surface_density_kg_m2) => {
                     // An infinite limp leaf radiates the force itself: p = ρ F / 2π m'' r below its critical frequency
                     // (Cremer, Heckl, Petersson, section 7.4).
                     let leaf = f64::from(surface_density_kg_m2).max(1.0);
@@ -72,7 +72,7 @@ impl Radiator {
             // Mode shapes of free bodies far from the edges are cosines; the mean square of each is 1.
             let shape: f64 = (0..2)
                 .map(|axis| {
-                    let lines = f64::from(mode.lines[axis]);
+                    let lines = f64::from(mode.nodal_lines[axis]);
                     if lines > 0.0 {
                         2.0_f64.sqrt() * libm::cos(PI * lines * at[axis])
                     } else {
@@ -84,7 +84,8 @@ impl Radiator {
             // of their ratio below it. A bending body displaces no net air: where it is smaller than a wavelength it is a
             // dipole at most. An interpolation between the limits of Cremer, Heckl, Petersson, section 7.
             let wave = omega / SOUND_M_S;
-            let [x, y] = [0, 1].map(|axis| f64::from(mode.lines[axis]) * PI / panel.sides_m[axis]);
+            let [x, y] =
+                [0, 1].map(|axis| f64::from(mode.nodal_lines[axis]) * PI / panel.sides_m[axis]);
             let coincidence = wave * wave / (x * x + y * y);
             let compact = libm::pow(wave * half_m, 4.0);
             let efficiency = coincidence / (1.0 + coincidence) * compact / (1.0 + compact);
@@ -106,7 +107,7 @@ impl Radiator {
 
     /// Bounds the energy of the modes to `energy_j` after a half sine of `impulse_n_s` that lasts `lasts_s`: the same
     /// impulse cannot go whole into every mode.
-    pub(super) fn bound(&mut self, impulse_n_s: f64, lasts_s: f64, energy_j: f64) {
+    pub(super) fn limit_mode_energy(&mut self, impulse_n_s: f64, lasts_s: f64, energy_j: f64) {
         let taken = |mode: &DecayingMode| {
             // The spectrum of a half sine re its impulse.
             let x = mode.omega * lasts_s / PI;
@@ -127,18 +128,18 @@ impl Radiator {
     }
 
     /// Returns the time that it rings after the force has ended, until it has decayed by 60 dB, s.
-    pub(super) fn ring_s(&self) -> f64 {
+    pub(super) fn ringing_s(&self) -> f64 {
         let longest = self
             .modes
             .iter()
             .map(|mode| 3.0 * LN_10 / mode.decay_per_s)
             .fold(0.0, f64::max);
-        longest.min(LONGEST_RING_S)
+        longest.min(MAX_RINGING_S)
     }
 
     /// Adds the pressure radiated under `force` to `out`. `force`: shape (sample,), N, the mean over each sample; `out`: Pa
     /// at 1 m, at least as long. The last 10 ms of `out` fade.
-    pub(super) fn respond(&self, force: &[f64], rate_hz: u32, out: &mut [f64]) {
+    pub(super) fn add_response(&self, force: &[f64], rate_hz: u32, out: &mut [f64]) {
         let rate = f64::from(rate_hz);
         let step_s = 1.0 / rate;
         let mut before = 0.0;
@@ -181,7 +182,7 @@ mod tests {
     fn rung(partners: &[ContactPartner], rate_hz: u32, samples: usize) -> Vec<f64> {
         let radiator = Radiator::new(partners, RandomKey::root(5));
         let mut out = vec![0.0; samples];
-        radiator.respond(&[f64::from(rate_hz)], rate_hz, &mut out);
+        radiator.add_response(&[f64::from(rate_hz)], rate_hz, &mut out);
         out
     }
 
@@ -192,7 +193,7 @@ mod tests {
         let rod = ContactPartner::body("steel", 0.2 * 1e-4 * 7850.0, [0.01, 0.2, 0.01]);
         let mode = Radiator::new(std::slice::from_ref(&rod), RandomKey::root(5)).modes[0];
         let hz = mode.omega / TAU;
-        assert!((hz / super::super::modes::bar_hz(1, 0.2, 0.01, &of) - 1.0).abs() < 0.016);
+        assert!((hz / super::super::modes::bar_mode_hz(1, 0.2, 0.01, &of) - 1.0).abs() < 0.016);
         let rate_hz = 4_000;
         let heard = rung(&[rod], rate_hz, 3_000);
         let power = |range: std::ops::Range<usize>| heard[range].iter().map(|x| x * x).sum::<f64>();
@@ -208,13 +209,13 @@ mod tests {
     #[test]
     fn a_wall_gives_the_force_and_a_body_its_mean_square_velocity() {
         let radiator = Radiator::new(
-            &[ContactPartner::leaf("concrete", 100.0)],
+            &[ContactPartner::panel("concrete", 100.0)],
             RandomKey::root(1),
         );
         let mut out = [0.0; 400];
-        radiator.respond(&[500.0], 16_000, &mut out);
+        radiator.add_response(&[500.0], 16_000, &mut out);
         assert!((out[0] - 1.2 * 500.0 / (TAU * 100.0)).abs() < 1e-12 && out[1] == 0.0);
-        assert_eq!(radiator.ring_s(), 0.0);
+        assert_eq!(radiator.ringing_s(), 0.0);
         // Half the mass at the same size: thinner, hollow or not, it vibrates more.
         let loud = |mass_kg| {
             let tray = ContactPartner::body("steel", mass_kg, [0.4, 0.3, 0.004]);

@@ -35,22 +35,22 @@ struct EdgeCoordinates {
 /// The shortest path from one point to another over the line of an edge.
 pub(super) struct EdgePath {
     /// Its point on the edge, m.
-    pub(super) at: DVec3,
+    pub(super) point: DVec3,
     /// Its length beyond that of the straight line, m.
     pub(super) detour_m: f64,
     /// True if the straight line passes behind the edge, through the solid.
-    pub(super) hidden: bool,
+    pub(super) is_occluded: bool,
     /// Weight of the edge for a line in sight: 1 where the path around it goes straight on, 0 where it turns back.
-    pub(super) facing: f64,
+    pub(super) forward_weight: f64,
     /// True for a point in the air around the edge: the first and the second.
-    pub(super) open: [bool; 2],
+    pub(super) ends_in_air: [bool; 2],
     /// Detours over the edge's ends re that over `at`, m; negative for an end that the path does not reach.
-    pub(super) ends_m: [f64; 2],
+    pub(super) end_detours_m: [f64; 2],
 }
 
 /// The shortest path over two edges.
 pub(super) struct DoubleEdgePath {
-    pub(super) at: [DVec3; 2],
+    pub(super) points: [DVec3; 2],
     pub(super) detour_m: f64,
     /// Detours at each edge alone, m.
     local_m: [f64; 2],
@@ -61,14 +61,14 @@ impl EdgeFrame {
     pub(super) fn new(edge: &DiffractionEdge) -> Self {
         let [a, b] = edge.ends.map(Vec3::as_dvec3);
         let along = (b - a).normalize_or_zero();
-        let outward = edge.outward.as_dvec3();
+        let outward = edge.outward_direction.as_dvec3();
         Self {
             start: a,
             along,
             length_m: a.distance(b),
             outward,
             beside: along.cross(outward),
-            open_cosine: libm::cos(0.5 * f64::from(edge.open_rad)),
+            open_cosine: libm::cos(0.5 * f64::from(edge.air_angle_rad)),
         }
     }
 
@@ -93,7 +93,7 @@ impl EdgeFrame {
         self.along.dot(other.along).abs() > PARALLEL
     }
 
-    pub(super) fn along(&self) -> DVec3 {
+    pub(super) fn direction(&self) -> DVec3 {
         self.along
     }
 
@@ -102,7 +102,7 @@ impl EdgeFrame {
     }
 
     /// Returns the path from `a` to `b` over this edge; `None` for points on its line.
-    pub(super) fn bend(&self, a: DVec3, b: DVec3) -> Option<EdgePath> {
+    pub(super) fn diffracted_path(&self, a: DVec3, b: DVec3) -> Option<EdgePath> {
         let (p, q) = (self.see(a), self.see(b));
         let (r, s) = (p.across.length(), q.across.length());
         if r < 1e-6 || s < 1e-6 {
@@ -122,12 +122,12 @@ impl EdgeFrame {
             (self.on_line(self.length_m), self.length_m - along_m),
         ];
         Some(EdgePath {
-            at: self.at(along_m),
+            point: self.at(along_m),
             detour_m: (least_m - straight_m).max(0.0),
-            hidden: p.across.y * q.across.y < 0.0 && crossing < 0.0,
-            facing: (-p.across.dot(q.across) / (r * s)).max(0.0),
-            open: [open(&p, r), open(&q, s)],
-            ends_m: ends.map(|(end, before_m)| {
+            is_occluded: p.across.y * q.across.y < 0.0 && crossing < 0.0,
+            forward_weight: (-p.across.dot(q.across) / (r * s)).max(0.0),
+            ends_in_air: [open(&p, r), open(&q, s)],
+            end_detours_m: ends.map(|(end, before_m)| {
                 let detour_m = (over(end) - least_m).max(0.0);
                 if before_m < 0.0 { -detour_m } else { detour_m }
             }),
@@ -136,7 +136,12 @@ impl EdgeFrame {
 
     /// Returns the path from `a` over this edge and then over `other`, which is parallel to it, to `b`; `None` where it
     /// does not bend around the solid at both.
-    pub(super) fn bend_twice(&self, other: &Self, a: DVec3, b: DVec3) -> Option<DoubleEdgePath> {
+    pub(super) fn doubly_diffracted_path(
+        &self,
+        other: &Self,
+        a: DVec3,
+        b: DVec3,
+    ) -> Option<DoubleEdgePath> {
         let (p, q) = (self.see(a), self.see(b));
         let there = self.see(other.start);
         let (r, m, s) = (
@@ -151,41 +156,51 @@ impl EdgeFrame {
         let first = self.at(p.along_m + rise * r);
         let on_other = self.on_line(p.along_m + rise * (r + m));
         let second = other.at(other.see(on_other).along_m);
-        let (here, then) = (self.bend(a, second)?, other.bend(first, b)?);
-        if !(here.hidden && then.hidden && here.open == [true; 2] && then.open == [true; 2]) {
+        let (here, then) = (
+            self.diffracted_path(a, second)?,
+            other.diffracted_path(first, b)?,
+        );
+        if !(here.is_occluded
+            && then.is_occluded
+            && here.ends_in_air == [true; 2]
+            && then.ends_in_air == [true; 2])
+        {
             return None;
         }
         let length_m = a.distance(first) + first.distance(second) + second.distance(b);
         Some(DoubleEdgePath {
-            at: [first, second],
+            points: [first, second],
             detour_m: (length_m - a.distance(b)).max(0.0),
             local_m: [here.detour_m, then.detour_m],
-            ends_m: [0, 1].map(|k| here.ends_m[k].min(then.ends_m[k])),
+            ends_m: [0, 1].map(|k| here.end_detours_m[k].min(then.end_detours_m[k])),
         })
     }
 }
 
 impl EdgePath {
     /// Returns the effect of an edge of this length over that of an infinite one. `n_per_m`: Fresnel number of a metre.
-    pub(super) fn reach(&self, n_per_m: f64) -> f64 {
-        reach(self.ends_m, n_per_m)
+    pub(super) fn finite_length_factor(&self, n_per_m: f64) -> f64 {
+        reach(self.end_detours_m, n_per_m)
     }
 
     /// Returns the fraction of a free path's energy that is diffracted. Shape (band,).
-    pub(super) fn passed(&self, n_per_m: &[f64; BAND_COUNT]) -> [f64; BAND_COUNT] {
-        n_per_m.map(|n_per_m| insertion_loss::passed(n_per_m * self.detour_m) * self.reach(n_per_m))
+    pub(super) fn transmitted_energy(&self, n_per_m: &[f64; BAND_COUNT]) -> [f64; BAND_COUNT] {
+        n_per_m.map(|n_per_m| {
+            insertion_loss::transmitted_energy(n_per_m * self.detour_m)
+                * self.finite_length_factor(n_per_m)
+        })
     }
 }
 
 impl DoubleEdgePath {
-    /// As [`EdgePath::passed`].
-    pub(super) fn passed(&self, n_per_m: &[f64; BAND_COUNT]) -> [f64; BAND_COUNT] {
-        let apart_m = self.at[0].distance(self.at[1]);
+    /// As [`EdgePath::transmitted_energy`].
+    pub(super) fn transmitted_energy(&self, n_per_m: &[f64; BAND_COUNT]) -> [f64; BAND_COUNT] {
+        let apart_m = self.points[0].distance(self.points[1]);
         n_per_m.map(|n_per_m| {
             let n = n_per_m * self.detour_m;
             let bends = self.local_m.map(|detour_m| n_per_m * detour_m);
-            let thick = insertion_loss::second_edge(n, 2.0 / n_per_m, apart_m, bends);
-            insertion_loss::passed(n) * thick * reach(self.ends_m, n_per_m)
+            let thick = insertion_loss::second_edge_factor(n, 2.0 / n_per_m, apart_m, bends);
+            insertion_loss::transmitted_energy(n) * thick * reach(self.ends_m, n_per_m)
         })
     }
 }
@@ -193,6 +208,6 @@ impl DoubleEdgePath {
 /// An edge's end acts on the path around it as a screen: where the path passes far from the end, nothing is lost. The power
 /// makes the four sides of a plate that is small against the wavelength together pass all of it.
 fn reach(ends_m: [f64; 2], n_per_m: f64) -> f64 {
-    let [a, b] = ends_m.map(|end_m| insertion_loss::passed(-end_m * n_per_m));
+    let [a, b] = ends_m.map(|end_m| insertion_loss::transmitted_energy(-end_m * n_per_m));
     libm::pow(a * b, 0.7)
 }

@@ -9,7 +9,7 @@ const AT_SHADOW_BOUNDARY: f64 = 0.316_227_766_016_837_94;
 const HALF_EFFECT_FRESNEL: f64 = 0.1;
 
 /// Fresnel numbers of a detour of 1 m. Shape (band,).
-pub(super) fn per_metre(speed_m_s: f64) -> [f64; BAND_COUNT] {
+pub(super) fn fresnel_numbers_per_m(speed_m_s: f64) -> [f64; BAND_COUNT] {
     NOMINAL_CENTRES_HZ.map(|centre_hz| 2.0 * f64::from(centre_hz) / speed_m_s)
 }
 
@@ -19,7 +19,7 @@ pub(super) fn per_metre(speed_m_s: f64) -> [f64; BAND_COUNT] {
 /// # Source
 /// U. J. Kurze, G. S. Anderson, *Sound attenuation by barriers*, Applied Acoustics 4, 35 (1971): the loss is
 /// 5 dB + 20 lg(x / tanh x) with x = sqrt(2 pi n); on the lit side tan takes the place of tanh.
-pub(super) fn passed(n: f64) -> f64 {
+pub(super) fn transmitted_energy(n: f64) -> f64 {
     let x = (TAU * n.abs()).sqrt();
     if x < 1e-6 {
         return AT_SHADOW_BOUNDARY;
@@ -43,7 +43,7 @@ pub(super) fn passed(n: f64) -> f64 {
 ///
 /// # Source
 /// ISO 9613-2:1996, equations 14 and 15: the loss of a single edge is 10 lg(3 + 20 n), that of two 10 lg(3 + 20 `c_3` n).
-pub(super) fn second_edge(n: f64, wavelength_m: f64, apart_m: f64, bends: [f64; 2]) -> f64 {
+pub(super) fn second_edge_factor(n: f64, wavelength_m: f64, apart_m: f64, bends: [f64; 2]) -> f64 {
     let ratio = 5.0 * wavelength_m / apart_m.max(1e-6);
     let square = ratio * ratio;
     let full = (1.0 + square) / (1.0 / 3.0 + square);
@@ -62,17 +62,17 @@ mod tests {
     #[test]
     fn losses_follow_the_published_chart() {
         for (n, wanted_db) in [(0.0, 5.0), (1.0, 13.0), (10.0, 23.0)] {
-            let loss_db = -10.0 * libm::log10(passed(n));
+            let loss_db = -10.0 * libm::log10(transmitted_energy(n));
             assert!((loss_db - wanted_db).abs() < 0.3, "{n}: {loss_db}");
         }
-        assert_eq!(passed(-0.3), 1.0);
+        assert_eq!(transmitted_energy(-0.3), 1.0);
     }
 
     #[test]
     fn losses_are_continuous_and_grow_with_the_detour() {
-        let mut before = passed(-0.4);
+        let mut before = transmitted_energy(-0.4);
         for k in -3999..20_000 {
-            let now = passed(f64::from(k) * 1e-4);
+            let now = transmitted_energy(f64::from(k) * 1e-4);
             assert!(now <= before && before - now < 2e-3, "{k}: {before} {now}");
             before = now;
         }
@@ -82,10 +82,10 @@ mod tests {
     fn a_second_edge_takes_at_most_two_thirds_more() {
         for n in [0.0, 0.1, 1.0, 100.0] {
             // Close together against the wavelength: one edge. Far apart, and well bent at both: the bound of the standard.
-            assert!((second_edge(n, 1.0, 0.001, [9.0, 9.0]) - 1.0).abs() < 1e-4);
-            assert!(second_edge(n, 1.0, 100.0, [1e6, 1e6]) >= 1.0 / 3.0);
-            assert_eq!(second_edge(n, 1.0, 100.0, [0.0, 1e6]), 1.0);
+            assert!((second_edge_factor(n, 1.0, 0.001, [9.0, 9.0]) - 1.0).abs() < 1e-4);
+            assert!(second_edge_factor(n, 1.0, 100.0, [1e6, 1e6]) >= 1.0 / 3.0);
+            assert_eq!(second_edge_factor(n, 1.0, 100.0, [0.0, 1e6]), 1.0);
         }
-        assert!(second_edge(100.0, 1.0, 100.0, [1e6, 1e6]) < 0.345);
+        assert!(second_edge_factor(100.0, 1.0, 100.0, [1e6, 1e6]) < 0.345);
     }
 }

@@ -57,7 +57,7 @@ impl EdgePoint {
         let there = at - from;
         Self {
             at,
-            along: frame.along(),
+            along: frame.direction(),
             aside: there - line * line.dot(there),
         }
     }
@@ -71,32 +71,33 @@ impl EdgePoint {
 }
 
 /// Returns the paths from `source` around edges to `receiver`, which is out of sight.
-pub(crate) fn around_edges(
+pub(crate) fn diffracted_paths(
     data: &PropagationData,
     rays: &RayScene,
     source: Vec3,
     receiver: Vec3,
 ) -> Vec<PropagationPath> {
-    let n_per_m = insertion_loss::per_metre(data.config().air.speed_of_sound_m_s());
+    let n_per_m = insertion_loss::fresnel_numbers_per_m(data.config().air.speed_of_sound_m_s());
     let (from, to) = (source.as_dvec3(), receiver.as_dvec3());
     let sight = |a, b| is_free(rays, a, b);
     let mut ways = Vec::new();
     let mut seen: Vec<(&EdgeFrame, &EdgePath, [bool; 2])> = Vec::new();
     let near = near_edges(data, from, to, LONGEST_DETOUR_M, |bend| {
         // A point within the solid of an edge may be reached over a second one.
-        bend.open[0] != bend.open[1] || (bend.hidden && bend.open == [true; 2])
+        bend.ends_in_air[0] != bend.ends_in_air[1]
+            || (bend.is_occluded && bend.ends_in_air == [true; 2])
     });
     for (frame, bend) in &near {
-        let at = bend.at + frame.outward() * STAND_OFF_M;
+        let at = bend.point + frame.outward() * STAND_OFF_M;
         let sees = [
-            bend.open[0] && sight(from, at),
-            bend.open[1] && sight(at, to),
+            bend.ends_in_air[0] && sight(from, at),
+            bend.ends_in_air[1] && sight(at, to),
         ];
-        if sees == [true; 2] && bend.hidden {
+        if sees == [true; 2] && bend.is_occluded {
             ways.push(DiffractionPath {
-                touches: vec![EdgePoint::new(frame, bend.at, from, to)],
+                touches: vec![EdgePoint::new(frame, bend.point, from, to)],
                 detour_m: bend.detour_m,
-                amplitude: bend.passed(&n_per_m).map(f64::sqrt),
+                amplitude: bend.transmitted_energy(&n_per_m).map(f64::sqrt),
             });
         } else if sees != [false; 2] {
             seen.push((frame, bend, sees));
@@ -106,7 +107,7 @@ pub(crate) fn around_edges(
     for (a, _, _) in seen.iter().filter(|(_, _, sees)| sees[0]) {
         for (b, _, _) in seen.iter().filter(|(_, _, sees)| sees[1]) {
             if a.is_parallel(b)
-                && let Some(bend) = a.bend_twice(b, from, to)
+                && let Some(bend) = a.doubly_diffracted_path(b, from, to)
                 && bend.detour_m < LONGEST_DETOUR_M
             {
                 pairs.push((*a, *b, bend));
@@ -115,14 +116,14 @@ pub(crate) fn around_edges(
     }
     pairs.sort_by(|(_, _, a), (_, _, b)| a.detour_m.total_cmp(&b.detour_m));
     for (a, b, bend) in pairs.into_iter().take(MOST_PAIRS) {
-        let first = bend.at[0] + a.outward() * STAND_OFF_M;
-        let second = bend.at[1] + b.outward() * STAND_OFF_M;
+        let first = bend.points[0] + a.outward() * STAND_OFF_M;
+        let second = bend.points[1] + b.outward() * STAND_OFF_M;
         if sight(from, first) && sight(first, second) && sight(second, to) {
             ways.push(DiffractionPath {
-                amplitude: bend.passed(&n_per_m).map(f64::sqrt),
+                amplitude: bend.transmitted_energy(&n_per_m).map(f64::sqrt),
                 touches: vec![
-                    EdgePoint::new(a, bend.at[0], from, to),
-                    EdgePoint::new(b, bend.at[1], from, to),
+                    EdgePoint::new(a, bend.points[0], from, to),
+                    EdgePoint::new(b, bend.points[1], from, to),
                 ],
                 detour_m: bend.detour_m,
             });
@@ -145,7 +146,7 @@ pub(crate) fn around_edges(
     let towards = |from: DVec3, to: DVec3| (to - from).normalize_or_zero().as_vec3();
     let paths = ways.into_iter().map(|way| {
         let length_m = straight_m + way.detour_m;
-        let mut energy = data.spread(length_m);
+        let mut energy = data.air_energy_loss(length_m);
         for (e, amplitude) in energy.iter_mut().zip(way.amplitude) {
             *e *= amplitude * amplitude;
         }
@@ -155,7 +156,7 @@ pub(crate) fn around_edges(
             energy: energy.map(|e| e as f32),
             arrival: towards(to, way.touches[way.touches.len() - 1].at),
             departure: towards(from, way.touches[0].at),
-            bends: way.touches.iter().map(|touch| touch.at.as_vec3()).collect(),
+            diffraction_points: way.touches.iter().map(|touch| touch.at.as_vec3()).collect(),
             walls: 0,
             inverted: false,
         }
@@ -164,7 +165,7 @@ pub(crate) fn around_edges(
 }
 
 /// Returns the share of the sound from a `source` in sight that edges beside the straight line pass. Shape (band,).
-pub(crate) fn in_sight(
+pub(crate) fn unobstructed_share(
     data: &PropagationData,
     rays: &RayScene,
     source: Vec3,
@@ -182,28 +183,28 @@ fn beside_edges(
     receiver: Vec3,
     touched: &[EdgePoint],
 ) -> [f64; BAND_COUNT] {
-    let n_per_m = insertion_loss::per_metre(data.config().air.speed_of_sound_m_s());
+    let n_per_m = insertion_loss::fresnel_numbers_per_m(data.config().air.speed_of_sound_m_s());
     let (from, to) = (source.as_dvec3(), receiver.as_dvec3());
     let longest_m = BESIDE_WAVES * 2.0 / n_per_m[0];
     let near = near_edges(data, from, to, longest_m, |bend| {
-        !bend.hidden && bend.facing > 0.0 && bend.open == [true; 2]
+        !bend.is_occluded && bend.forward_weight > 0.0 && bend.ends_in_air == [true; 2]
     });
     let mut kept = [1.0; BAND_COUNT];
     let mut taken = touched.to_vec();
     for (frame, bend) in &near {
         // Of the edges of one profile the nearest acts.
-        let touch = EdgePoint::new(frame, bend.at, from, to);
+        let touch = EdgePoint::new(frame, bend.point, from, to);
         if taken.iter().any(|other| other.is_near(&touch)) {
             continue;
         }
-        let off = bend.at + frame.outward() * STAND_OFF_M;
+        let off = bend.point + frame.outward() * STAND_OFF_M;
         if !(is_free(rays, from, off) && is_free(rays, off, to)) {
             continue;
         }
         taken.push(touch);
         for (kept, n_per_m) in kept.iter_mut().zip(n_per_m) {
-            let lost = 1.0 - insertion_loss::passed(-n_per_m * bend.detour_m);
-            *kept *= 1.0 - lost * bend.reach(n_per_m) * bend.facing;
+            let lost = 1.0 - insertion_loss::transmitted_energy(-n_per_m * bend.detour_m);
+            *kept *= 1.0 - lost * bend.finite_length_factor(n_per_m) * bend.forward_weight;
         }
     }
     kept
@@ -231,9 +232,9 @@ fn near_edges(
             continue;
         }
         let frame = EdgeFrame::new(edge);
-        if let Some(bend) = frame.bend(from, to)
+        if let Some(bend) = frame.diffracted_path(from, to)
             && bend.detour_m <= longest_m
-            && bend.at.distance(from) + bend.at.distance(to) - straight_m <= longest_m
+            && bend.point.distance(from) + bend.point.distance(to) - straight_m <= longest_m
             && wanted(&bend)
         {
             near.push((frame, bend));

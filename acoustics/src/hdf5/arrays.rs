@@ -1,6 +1,6 @@
 //! Arrays of chunks: fixed and extensible.
 
-use super::bytes::{Cursor, FileBytes, Hdf5Result, refuse};
+use super::bytes::{Cursor, FileBytes, Hdf5Result, unsupported};
 use super::grid::StoredChunk;
 
 /// Bytes of the checksum behind a block.
@@ -22,7 +22,7 @@ impl ArrayEntry {
         cursor: &mut Cursor<'_>,
         place: u64,
     ) -> Hdf5Result<Option<StoredChunk>> {
-        let mut entry = cursor.part(self.width)?;
+        let mut entry = cursor.sub_cursor(self.width)?;
         let address = entry.address()?;
         let (mut size, mut skipped) = (None, 0);
         if self.filtered {
@@ -33,7 +33,7 @@ impl ArrayEntry {
             number: place,
             address,
             size,
-            skipped,
+            skipped_filters: skipped,
         }))
     }
 
@@ -66,7 +66,7 @@ impl ArrayEntry {
             }
             let end = places.end.min(first + (1 << page_bits));
             let length = (end - first).saturating_mul(self.width as u64);
-            let mut content = cursor.part(length.try_into().unwrap_or(usize::MAX))?;
+            let mut content = cursor.sub_cursor(length.try_into().unwrap_or(usize::MAX))?;
             cursor.skip(CHECK_SUM as usize)?;
             let flags: u8 = written.get(page / 8).copied().unwrap_or(0);
             if flags & (0x80 >> (page % 8)) != 0 {
@@ -82,7 +82,7 @@ impl ArrayEntry {
 pub(super) fn fixed(source: &FileBytes<'_>, address: u64) -> Hdf5Result<Vec<StoredChunk>> {
     let mut found = Vec::new();
     let mut header = source.at(address)?;
-    header.signed(b"FAHD", 0)?;
+    header.check_signature(b"FAHD", 0)?;
     let filtered = header.u8()? == 1;
     let width = usize::from(header.u8()?);
     let page_bits = header.u8()?;
@@ -91,13 +91,13 @@ pub(super) fn fixed(source: &FileBytes<'_>, address: u64) -> Hdf5Result<Vec<Stor
         return Ok(found);
     };
     if page_bits > MOST_BITS || count >> MOST_BITS != 0 {
-        return refuse(format!(
+        return unsupported(format!(
             "damaged at byte {address}: an array of {count} chunks"
         ));
     }
     let entry = ArrayEntry { width, filtered };
     let mut cursor = source.at(block)?;
-    cursor.signed(b"FADB", 0)?;
+    cursor.check_signature(b"FADB", 0)?;
     cursor.skip(1)?;
     cursor.address()?;
     if count <= 1 << page_bits {
@@ -131,7 +131,7 @@ struct ExtensibleArray {
 pub(super) fn extensible(source: &FileBytes<'_>, address: u64) -> Hdf5Result<Vec<StoredChunk>> {
     let mut found = Vec::new();
     let mut header = source.at(address)?;
-    header.signed(b"EAHD", 0)?;
+    header.check_signature(b"EAHD", 0)?;
     let filtered = header.u8()? == 1;
     let width = usize::from(header.u8()?);
     let bits = header.u8()?;
@@ -150,7 +150,7 @@ pub(super) fn extensible(source: &FileBytes<'_>, address: u64) -> Hdf5Result<Vec
         && pointers.is_power_of_two()
         && u32::from(bits) >= shortest.ilog2();
     if !sound {
-        return refuse(format!(
+        return unsupported(format!(
             "damaged at byte {address}: an array without a form"
         ));
     }
@@ -180,7 +180,7 @@ impl ExtensibleArray {
         to: &mut Vec<StoredChunk>,
     ) -> Hdf5Result<()> {
         let mut cursor = source.at(index)?;
-        cursor.signed(b"EAIB", 0)?;
+        cursor.check_signature(b"EAIB", 0)?;
         cursor.skip(1)?;
         cursor.address()?;
         self.entry.row(&mut cursor, 0..self.direct, to)?;
@@ -214,7 +214,7 @@ impl ExtensibleArray {
         to: &mut Vec<StoredChunk>,
     ) -> Hdf5Result<()> {
         let mut cursor = source.at(address)?;
-        cursor.signed(b"EASB", 0)?;
+        cursor.check_signature(b"EASB", 0)?;
         cursor.skip(1)?;
         cursor.address()?;
         cursor.skip(self.place_width)?;
@@ -251,7 +251,7 @@ impl ExtensibleArray {
         to: &mut Vec<StoredChunk>,
     ) -> Hdf5Result<()> {
         let mut cursor = source.at(address)?;
-        cursor.signed(b"EADB", 0)?;
+        cursor.check_signature(b"EADB", 0)?;
         cursor.skip(1)?;
         cursor.address()?;
         cursor.skip(self.place_width)?;

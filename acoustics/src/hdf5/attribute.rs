@@ -1,7 +1,7 @@
 //! Attributes: texts of a group or a variable.
 
 use super::btree2;
-use super::bytes::{Cursor, FileBytes, Hdf5Fault, Hdf5Result, refuse};
+use super::bytes::{Cursor, FileBytes, Hdf5Fault, Hdf5Result, unsupported};
 use super::datatype::Datatype;
 use super::fractal_heap::FractalHeap;
 use super::global_heap;
@@ -36,7 +36,7 @@ pub(super) fn text(
     let heap = FractalHeap::read(source, heap)?;
     let mut found = None;
     btree2::records(source, tree, &mut |mut record| {
-        let id = record.part(heap.id_length())?;
+        let id = record.sub_cursor(heap.id_length())?;
         // Attributes by name, except those that several objects share.
         if found.is_none()
             && let Some(object) = heap.object(source, id)?
@@ -56,7 +56,7 @@ fn text_of(
 ) -> Hdf5Result<Option<String>> {
     let version = cursor.u8()?;
     if !(1..=3).contains(&version) {
-        return refuse(format!(
+        return unsupported(format!(
             "an attribute of version {version}; read are 1 to 3"
         ));
     }
@@ -67,7 +67,7 @@ fn text_of(
     }
     let padded = version == 1;
     let mut part = |size: usize| {
-        let part = cursor.part(size)?;
+        let part = cursor.sub_cursor(size)?;
         if padded {
             cursor.align()?;
         }

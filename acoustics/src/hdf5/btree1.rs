@@ -32,8 +32,8 @@ pub(super) fn entries(
         node.address()?;
         node.address()?;
         for _ in 0..count {
-            let key = node.part(key)?;
-            let child = node.place()?;
+            let key = node.sub_cursor(key)?;
+            let child = node.defined_address()?;
             match level.checked_sub(1) {
                 Some(below) => open.push((child, Some(below))),
                 None => each(key, child)?,

@@ -1,6 +1,6 @@
 //! B-trees of version 2: names of links and attributes, and addresses of chunks.
 
-use super::bytes::{Cursor, FileBytes, Hdf5Result, refuse};
+use super::bytes::{Cursor, FileBytes, Hdf5Result, unsupported};
 
 /// The layout of a tree's nodes.
 struct BTreeLayout {
@@ -23,7 +23,7 @@ pub(super) fn records(
     each: &mut impl FnMut(Cursor<'_>) -> Hdf5Result<()>,
 ) -> Hdf5Result<()> {
     let mut header = source.at(address)?;
-    header.signed(b"BTHD", 0)?;
+    header.check_signature(b"BTHD", 0)?;
     let kind = header.u8()?;
     let node_size = u64::from(header.u32()?);
     let record_size = usize::from(header.u16()?);
@@ -36,7 +36,7 @@ pub(super) fn records(
     };
     let Some(tree) = BTreeLayout::new(kind, node_size, record_size, depth, header.widths.address)
     else {
-        return refuse(format!(
+        return unsupported(format!(
             "damaged at byte {address}: a tree of {depth} levels with nodes of {node_size} bytes"
         ));
     };
@@ -44,18 +44,18 @@ pub(super) fn records(
     let mut open = vec![(root, count, depth)];
     while let Some((address, count, level)) = open.pop() {
         let mut node = source.block(address, tree.node_size)?;
-        node.signed(if level == 0 { b"BTLF" } else { b"BTIN" }, 0)?;
+        node.check_signature(if level == 0 { b"BTLF" } else { b"BTIN" }, 0)?;
         if node.u8()? != tree.kind {
-            return refuse(format!("damaged at byte {address}: a node of another tree"));
+            return unsupported(format!("damaged at byte {address}: a node of another tree"));
         }
         for _ in 0..count {
-            each(node.part(tree.record_size)?)?;
+            each(node.sub_cursor(tree.record_size)?)?;
         }
         let Some(below) = level.checked_sub(1) else {
             continue;
         };
         for _ in 0..=count {
-            let child = node.place()?;
+            let child = node.defined_address()?;
             let records = node.uint(tree.count_width)?;
             node.skip(tree.total_widths[usize::from(below)])?;
             open.push((child, records, below));

@@ -14,7 +14,7 @@ pub(super) struct Hdf5Fault(pub(super) String);
 pub(super) type Hdf5Result<T> = Result<T, Hdf5Fault>;
 
 /// Refuses with a sentence.
-pub(super) fn refuse<T>(message: impl Into<String>) -> Hdf5Result<T> {
+pub(super) fn unsupported<T>(message: impl Into<String>) -> Hdf5Result<T> {
     Err(Hdf5Fault(message.into()))
 }
 
@@ -98,7 +98,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Reads `length` bytes as a cursor of their own.
-    pub(super) fn part(&mut self, length: usize) -> Hdf5Result<Self> {
+    pub(super) fn sub_cursor(&mut self, length: usize) -> Hdf5Result<Self> {
         let start = self.position();
         Ok(Self {
             bytes: self.take(length)?,
@@ -110,14 +110,14 @@ impl<'a> Cursor<'a> {
 
     pub(super) fn take(&mut self, length: usize) -> Hdf5Result<&'a [u8]> {
         let Some(taken) = self.bytes[self.at..].get(..length) else {
-            return refuse(format!(
+            return unsupported(format!(
                 "damaged at byte {}: expected {length} more bytes, found {}",
                 self.position(),
                 self.remaining()
             ));
         };
         let Some(left) = self.left.get().checked_sub(length as u64) else {
-            return refuse(format!(
+            return unsupported(format!(
                 "damaged: its headers and trees loop, or take more than {MOST_STRUCTURE_BYTES} bytes"
             ));
         };
@@ -138,7 +138,7 @@ impl<'a> Cursor<'a> {
     /// Reads an unsigned integer of at most 8 bytes.
     pub(super) fn uint(&mut self, width: usize) -> Hdf5Result<u64> {
         if width > 8 {
-            return refuse(format!(
+            return unsupported(format!(
                 "damaged at byte {}: an integer of {width} bytes; allowed are 8",
                 self.position()
             ));
@@ -172,7 +172,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Reads an address that must be defined.
-    pub(super) fn place(&mut self) -> Hdf5Result<u64> {
+    pub(super) fn defined_address(&mut self) -> Hdf5Result<u64> {
         let at = self.position();
         let found = self.address()?;
         found.ok_or_else(|| {
@@ -183,15 +183,15 @@ impl<'a> Cursor<'a> {
     }
 
     /// Reads a signature and a version.
-    pub(super) fn signed(&mut self, signature: &[u8; 4], version: u8) -> Hdf5Result<()> {
+    pub(super) fn check_signature(&mut self, signature: &[u8; 4], version: u8) -> Hdf5Result<()> {
         let at = self.position();
         let name = String::from_utf8_lossy(signature);
         if self.take(4)? != signature {
-            return refuse(format!("damaged at byte {at}: expected a block {name}"));
+            return unsupported(format!("damaged at byte {at}: expected a block {name}"));
         }
         let found = self.u8()?;
         if found != version {
-            return refuse(format!(
+            return unsupported(format!(
                 "a block {name} of version {found}; read is version {version}"
             ));
         }

@@ -1,6 +1,6 @@
 //! Datatypes of values.
 
-use super::bytes::{Cursor, Hdf5Result, refuse};
+use super::bytes::{Cursor, Hdf5Result, unsupported};
 
 /// The supported datatypes: numbers and text.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,7 +36,7 @@ impl Datatype {
             0 => {
                 let (offset, precision) = (cursor.u16()?, usize::from(cursor.u16()?));
                 if !matches!(size, 1 | 2 | 4 | 8) || offset != 0 || precision != 8 * size {
-                    return refuse(format!(
+                    return unsupported(format!(
                         "integers of {precision} bits in {size} bytes; allowed are 8, 16, 32 and 64 bits"
                     ));
                 }
@@ -50,7 +50,7 @@ impl Datatype {
                 let found = (parts, cursor.u32()?, (bits >> 8) & 0xff);
                 let known = (size == 4 && found == SINGLE) || (size == 8 && found == DOUBLE);
                 if !known || !whole || bits & 0x40 != 0 {
-                    return refuse(
+                    return unsupported(
                         "floats of a form of their own; allowed are IEEE 754's of 32 and 64 bits",
                     );
                 }
@@ -58,7 +58,7 @@ impl Datatype {
             }
             3 => Ok(Self::Text { size }),
             9 if bits & 0x0f == 1 => Ok(Self::LongText),
-            _ => refuse("neither numbers nor text"),
+            _ => unsupported("neither numbers nor text"),
         }
     }
 

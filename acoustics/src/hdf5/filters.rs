@@ -1,6 +1,6 @@
 //! Filters applied to a chunk before it was stored.
 
-use super::bytes::{Cursor, Hdf5Result, refuse};
+use super::bytes::{Cursor, Hdf5Result, unsupported};
 use dwell_scene::interrupt;
 use flate2::read::ZlibDecoder;
 use std::io::Read as _;
@@ -27,7 +27,7 @@ impl FilterPipeline {
         let version = cursor.u8()?;
         let count = cursor.u8()?;
         if !(1..=2).contains(&version) || count > MOST_FILTERS {
-            return refuse(format!(
+            return unsupported(format!(
                 "{count} filters of version {version}; allowed are {MOST_FILTERS} of versions 1 and 2"
             ));
         }
@@ -45,7 +45,7 @@ impl FilterPipeline {
             cursor.skip(2)?;
             let values = usize::from(cursor.u16()?);
             cursor.skip(usize::from(name))?;
-            let mut of = cursor.part(4 * values)?;
+            let mut of = cursor.sub_cursor(4 * values)?;
             if version == 1 {
                 cursor.skip(4 * (values % 2))?;
             }
@@ -54,7 +54,7 @@ impl FilterPipeline {
                 2 => ChunkFilter::Shuffle(of.u32()? as usize),
                 3 => ChunkFilter::Fletcher32,
                 _ => {
-                    return refuse(format!(
+                    return unsupported(format!(
                         "compressed by filter {id}; read are deflate (1), shuffle (2) and Fletcher-32 (3)"
                     ));
                 }
@@ -68,7 +68,7 @@ impl FilterPipeline {
     }
 
     /// Returns the `size` bytes of a chunk from those stored; the filters of `skipped` were not applied.
-    pub(super) fn undo(&self, stored: &[u8], skipped: u32, size: usize) -> Hdf5Result<Vec<u8>> {
+    pub(super) fn decode(&self, stored: &[u8], skipped: u32, size: usize) -> Hdf5Result<Vec<u8>> {
         let mut bytes = stored.to_vec();
         for (k, filter) in self.0.iter().enumerate().rev() {
             if skipped & (1 << k) != 0 {
@@ -82,7 +82,7 @@ impl FilterPipeline {
             };
         }
         if bytes.len() != size {
-            return refuse(format!(
+            return unsupported(format!(
                 "damaged: a chunk of {} bytes; expected {size}",
                 bytes.len()
             ));
@@ -99,11 +99,13 @@ fn inflate(bytes: &[u8], most: u64) -> Hdf5Result<Vec<u8>> {
         match (&mut stream).take(PIECE).read_to_end(&mut inflated) {
             Ok(0) => break,
             Ok(_) => {}
-            Err(error) => return refuse(format!("damaged: a chunk cannot be inflated: {error}")),
+            Err(error) => {
+                return unsupported(format!("damaged: a chunk cannot be inflated: {error}"));
+            }
         }
     }
     if inflated.len() as u64 > most {
-        return refuse("damaged: a chunk inflates to more bytes than it has");
+        return unsupported("damaged: a chunk inflates to more bytes than it has");
     }
     Ok(inflated)
 }
@@ -128,13 +130,13 @@ fn in_order(bytes: &[u8], width: usize) -> Vec<u8> {
 /// Returns the bytes before their checksum, if it is valid.
 fn checked(mut bytes: Vec<u8>) -> Hdf5Result<Vec<u8>> {
     let Some(at) = bytes.len().checked_sub(4) else {
-        return refuse("damaged: a chunk without its check sum");
+        return unsupported("damaged: a chunk without its check sum");
     };
     let mut stated = [0; 4];
     stated.copy_from_slice(&bytes[at..]);
     bytes.truncate(at);
     if fletcher32(&bytes) != u32::from_le_bytes(stated) {
-        return refuse("damaged: a chunk whose check sum is another");
+        return unsupported("damaged: a chunk whose check sum is another");
     }
     Ok(bytes)
 }

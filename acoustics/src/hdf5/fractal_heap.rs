@@ -1,6 +1,6 @@
 //! Fractal heaps, which hold links and attributes where there are many.
 
-use super::bytes::{Cursor, FileBytes, Hdf5Fault, Hdf5Result, refuse};
+use super::bytes::{Cursor, FileBytes, Hdf5Fault, Hdf5Result, unsupported};
 
 /// A heap: blocks in rows, whose sizes double from row to row.
 pub(super) struct FractalHeap {
@@ -19,10 +19,10 @@ pub(super) struct FractalHeap {
 impl FractalHeap {
     pub(super) fn read(source: &FileBytes<'_>, address: u64) -> Hdf5Result<Self> {
         let mut header = source.at(address)?;
-        header.signed(b"FRHP", 0)?;
+        header.check_signature(b"FRHP", 0)?;
         let id_length = usize::from(header.u16()?);
         if header.u16()? != 0 {
-            return refuse("its names or attributes are compressed; not read");
+            return unsupported("its names or attributes are compressed; not read");
         }
         header.skip(1)?;
         let most_managed = u64::from(header.u32()?);
@@ -50,7 +50,7 @@ impl FractalHeap {
             && (1..=64).contains(&bits)
             && rows <= 64;
         if !sound {
-            return refuse(format!("damaged at byte {address}: a heap without a form"));
+            return unsupported(format!("damaged at byte {address}: a heap without a form"));
         }
         let log2 = |x: u64| x.checked_ilog2().unwrap_or(0) as usize;
         Ok(Self {
@@ -102,12 +102,12 @@ impl FractalHeap {
             }
             let column = (inside - begin) / size;
             let mut block = source.at(address)?;
-            block.signed(b"FHIB", 0)?;
+            block.check_signature(b"FHIB", 0)?;
             block.address()?;
             block.skip(self.offset_width)?;
             let before = u64::from(row) * self.columns + column;
             block.skip(before as usize * block.widths.address)?;
-            address = block.place()?;
+            address = block.defined_address()?;
             inside -= begin + column * size;
             rows = if size <= self.largest_block {
                 0

@@ -1,6 +1,6 @@
 //! The global heap, which holds texts of any length.
 
-use super::bytes::{FileBytes, Hdf5Result, refuse};
+use super::bytes::{FileBytes, Hdf5Result, unsupported};
 use super::header::as_size;
 
 /// Returns the first `length` bytes of an object of a collection.
@@ -11,11 +11,11 @@ pub(super) fn object<'a>(
     length: usize,
 ) -> Hdf5Result<&'a [u8]> {
     let mut collection = source.at(address)?;
-    collection.signed(b"GCOL", 1)?;
+    collection.check_signature(b"GCOL", 1)?;
     collection.skip(3)?;
     let size = as_size(collection.length()?)?;
     let begun = 8 + collection.widths.length;
-    let mut objects = collection.part(size.saturating_sub(begun))?;
+    let mut objects = collection.sub_cursor(size.saturating_sub(begun))?;
     let prefix = 8 + objects.widths.length;
     while objects.remaining() >= prefix {
         let found = u32::from(objects.u16()?);
@@ -25,13 +25,13 @@ pub(super) fn object<'a>(
         if found == 0 {
             break;
         }
-        let mut content = objects.part(size)?;
+        let mut content = objects.sub_cursor(size)?;
         if found == index {
             return content.take(length);
         }
         objects.align()?;
     }
-    refuse(format!(
+    unsupported(format!(
         "damaged: text {index} is missing in the heap at byte {address}"
     ))
 }

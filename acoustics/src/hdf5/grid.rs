@@ -1,6 +1,6 @@
 //! The chunks of a variable as a grid, and its values from them.
 
-use super::bytes::{FileBytes, Hdf5Fault, Hdf5Result, refuse};
+use super::bytes::{FileBytes, Hdf5Fault, Hdf5Result, unsupported};
 use super::datatype::Datatype;
 use super::filters::FilterPipeline;
 use super::index;
@@ -9,7 +9,7 @@ use super::shape::{Dataspace, product};
 use dwell_scene::interrupt;
 
 /// Most values of all chunks together, those beyond the variable's edges counted.
-const MOST_PADDED: u64 = 2 * super::MOST_NUMBERS;
+const MOST_PADDED: u64 = 2 * super::MAX_ARRAY_VALUES;
 
 /// A chunk in the file.
 #[derive(Debug, Clone, Copy)]
@@ -20,7 +20,7 @@ pub(super) struct StoredChunk {
     /// Bytes as stored; `None` where nothing was compressed.
     pub(super) size: Option<u64>,
     /// Filters that were not applied, a bit each.
-    pub(super) skipped: u32,
+    pub(super) skipped_filters: u32,
 }
 
 /// The grid of chunks of a variable.
@@ -42,7 +42,7 @@ impl ChunkGrid {
     pub(super) fn new(shape: &Dataspace, chunk: &[u64], value_size: usize) -> Hdf5Result<Self> {
         let axes = shape.lengths.len();
         if chunk.len() != axes || axes == 0 || chunk.contains(&0) {
-            return refuse(format!(
+            return unsupported(format!(
                 "damaged: chunks of {} axes for a variable of {axes}",
                 chunk.len()
             ));
@@ -54,11 +54,11 @@ impl ChunkGrid {
                 .collect()
         };
         let counts = over(&shape.lengths);
-        let longest = shape.longest.iter().zip(chunk);
+        let longest = shape.max_lengths.iter().zip(chunk);
         let sizes = product(&counts).zip(product(chunk));
         let padded = sizes.and_then(|(count, values)| count.checked_mul(values));
         let (Some((count, values)), Some(..=MOST_PADDED)) = (sizes, padded) else {
-            return refuse(format!(
+            return unsupported(format!(
                 "chunks of shape {chunk:?} hold more than {MOST_PADDED} numbers with what is beyond the edges"
             ));
         };
@@ -78,7 +78,7 @@ impl ChunkGrid {
     }
 
     /// Returns the number of the chunk at these coordinates, in chunks; `None` outside.
-    pub(super) fn number(&self, at: &[u64]) -> Option<u64> {
+    pub(super) fn chunk_index(&self, at: &[u64]) -> Option<u64> {
         let mut axes = at.iter().zip(&self.counts);
         axes.try_fold(0, |number, (at, count)| {
             Some(number * count + Some(*at).filter(|at| at < count)?)
@@ -86,15 +86,15 @@ impl ChunkGrid {
     }
 
     /// Returns the number of the chunk that begins with the value at `start`; `None` outside.
-    pub(super) fn number_from(&self, start: &[u64]) -> Option<u64> {
+    pub(super) fn chunk_starting_at(&self, start: &[u64]) -> Option<u64> {
         let axes = start.iter().zip(&self.chunk);
         let at = axes.map(|(start, chunk)| (start % chunk == 0).then_some(start / chunk));
-        self.number(&at.collect::<Option<Vec<_>>>()?)
+        self.chunk_index(&at.collect::<Option<Vec<_>>>()?)
     }
 
     /// Returns the number of the chunk at a place of an array of all chunks that the variable may ever have; `None`
     /// outside. An unlimited axis comes first there.
-    pub(super) fn number_in_array(&self, place: u64) -> Option<u64> {
+    pub(super) fn chunk_index_in_array(&self, place: u64) -> Option<u64> {
         let endless = self.longest.iter().position(Option::is_none);
         let others = (0..self.axes()).filter(|axis| Some(*axis) != endless);
         let order: Vec<usize> = endless.into_iter().chain(others).collect();
@@ -107,7 +107,11 @@ impl ChunkGrid {
                 None => (rest, at[axis]) = (0, rest),
             }
         }
-        if rest > 0 { None } else { self.number(&at) }
+        if rest > 0 {
+            None
+        } else {
+            self.chunk_index(&at)
+        }
     }
 
     /// Returns the first value of a chunk along each axis.
@@ -171,13 +175,13 @@ pub(super) fn numbers(
     chunks.sort_by_key(|chunk| chunk.number);
     chunks.dedup_by_key(|chunk| chunk.number);
     if chunks.len() as u64 != grid.count {
-        return refuse(format!(
+        return unsupported(format!(
             "{} of {} chunks were never written, or are lost",
             grid.count.saturating_sub(chunks.len() as u64),
             grid.count
         ));
     }
-    let whole = usize::try_from(grid.bytes).or_else(|_| refuse("chunks too large"))?;
+    let whole = usize::try_from(grid.bytes).or_else(|_| unsupported("chunks too large"))?;
     // Uncompressed chunks must be within the file before memory is allocated.
     for chunk in &chunks {
         source.values(chunk.address, chunk.size.unwrap_or(grid.bytes))?;
@@ -187,7 +191,7 @@ pub(super) fn numbers(
     for chunk in &chunks {
         interrupt::check();
         let stored = source.values(chunk.address, chunk.size.unwrap_or(grid.bytes))?;
-        let undone = filters.undo(stored, chunk.skipped, whole);
+        let undone = filters.decode(stored, chunk.skipped_filters, whole);
         let bytes =
             undone.map_err(|Hdf5Fault(why)| Hdf5Fault(format!("chunk {}: {why}", chunk.number)))?;
         grid.place(chunk.number, &bytes, of, size, shape, &mut values);

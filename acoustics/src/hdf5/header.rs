@@ -1,6 +1,6 @@
 //! Object headers: lists of messages, in two versions of the format.
 
-use super::bytes::{Cursor, FileBytes, Hdf5Result, refuse};
+use super::bytes::{Cursor, FileBytes, Hdf5Result, unsupported};
 use std::collections::VecDeque;
 
 /// Kinds of messages that are read.
@@ -42,18 +42,18 @@ impl<'a> ObjectHeader<'a> {
         let mut cursor = source.at(address)?;
         let mut blocks = VecDeque::new();
         let tracked = if cursor.clone().take(4)? == b"OHDR" {
-            cursor.signed(b"OHDR", 2)?;
+            cursor.check_signature(b"OHDR", 2)?;
             let flags = cursor.u8()?;
             let times = if flags & 0x20 == 0 { 0 } else { 16 };
             let phases = if flags & 0x10 == 0 { 0 } else { 4 };
             cursor.skip(times + phases)?;
             let size = cursor.uint(1 << (flags & 3))?;
-            blocks.push_back(cursor.part(as_size(size)?)?);
+            blocks.push_back(cursor.sub_cursor(as_size(size)?)?);
             Some(flags & 0x04 != 0)
         } else {
             let version = cursor.u8()?;
             if version != 1 {
-                return refuse(format!(
+                return unsupported(format!(
                     "damaged at byte {address}: expected the header of an object"
                 ));
             }
@@ -61,7 +61,7 @@ impl<'a> ObjectHeader<'a> {
             let size = cursor.u32()?;
             // Messages begin at a multiple of 8 bytes.
             cursor.skip(4)?;
-            blocks.push_back(cursor.part(size as usize)?);
+            blocks.push_back(cursor.sub_cursor(size as usize)?);
             None
         };
         let mut count = 0;
@@ -69,7 +69,7 @@ impl<'a> ObjectHeader<'a> {
             while let Some(message) = HeaderMessage::next(&mut block, tracked)? {
                 count += 1;
                 if count > MOST_MESSAGES {
-                    return refuse(format!(
+                    return unsupported(format!(
                         "damaged: its header loops, or has more than {MOST_MESSAGES} messages"
                     ));
                 }
@@ -78,15 +78,17 @@ impl<'a> ObjectHeader<'a> {
                     continue;
                 }
                 let mut content = message.content;
-                let (place, length) = (content.place()?, content.length()?);
+                let (place, length) = (content.defined_address()?, content.length()?);
                 let mut more = source.block(place, length)?;
                 if tracked.is_some() {
                     if more.take(4)? != b"OCHK" {
-                        return refuse(format!("damaged at byte {place}: expected a block OCHK"));
+                        return unsupported(format!(
+                            "damaged at byte {place}: expected a block OCHK"
+                        ));
                     }
                     // A checksum follows the messages.
                     let length = more.remaining().saturating_sub(4);
-                    more = more.part(length)?;
+                    more = more.sub_cursor(length)?;
                 }
                 blocks.push_back(more);
             }
@@ -134,14 +136,14 @@ impl<'a> HeaderMessage<'a> {
         Ok(Some(Self {
             kind,
             shared: flags & 0x02 != 0,
-            content: block.part(size)?,
+            content: block.sub_cursor(size)?,
         }))
     }
 
     /// Returns its content.
     pub(super) fn content(&self) -> Hdf5Result<Cursor<'a>> {
         if self.shared {
-            return refuse("it shares its description with another object; not read");
+            return unsupported("it shares its description with another object; not read");
         }
         Ok(self.content.clone())
     }
@@ -149,5 +151,5 @@ impl<'a> HeaderMessage<'a> {
 
 /// Converts a number of bytes.
 pub(super) fn as_size(found: u64) -> Hdf5Result<usize> {
-    usize::try_from(found).or_else(|_| refuse(format!("damaged: a size of {found} bytes")))
+    usize::try_from(found).or_else(|_| unsupported(format!("damaged: a size of {found} bytes")))
 }

@@ -23,12 +23,12 @@ pub(super) fn chunks(
             let key = 8 + 8 * (grid.axes() + 1);
             btree1::entries(source, address, 1, key, &mut |mut key, address| {
                 let (size, skipped) = (Some(u64::from(key.u32()?)), key.u32()?);
-                let number = grid.number_from(&coordinates(&mut key, grid.axes())?);
+                let number = grid.chunk_starting_at(&coordinates(&mut key, grid.axes())?);
                 found.extend(number.map(|number| StoredChunk {
                     number,
                     address,
                     size,
-                    skipped,
+                    skipped_filters: skipped,
                 }));
                 Ok(())
             })?;
@@ -39,7 +39,7 @@ pub(super) fn chunks(
                 let width = record.remaining().saturating_sub(plain);
                 let filtered = width > record.widths.address;
                 let stored = ArrayEntry { width, filtered }.read(&mut record, 0)?;
-                let number = grid.number(&coordinates(&mut record, grid.axes())?);
+                let number = grid.chunk_index(&coordinates(&mut record, grid.axes())?);
                 let both = stored.zip(number);
                 found.extend(both.map(|(stored, number)| StoredChunk { number, ..stored }));
                 Ok(())
@@ -49,7 +49,7 @@ pub(super) fn chunks(
             number: 0,
             address,
             size,
-            skipped,
+            skipped_filters: skipped,
         }),
         ChunkIndex::Implicit => {
             // All are stored or none is.
@@ -60,7 +60,7 @@ pub(super) fn chunks(
                 number,
                 address: address + number * grid.bytes,
                 size: None,
-                skipped: 0,
+                skipped_filters: 0,
             }));
         }
         ChunkIndex::Fixed | ChunkIndex::Extensible => {
@@ -70,7 +70,7 @@ pub(super) fn chunks(
                 arrays::extensible(source, address)?
             };
             found.extend(entries.into_iter().filter_map(|stored| {
-                let number = grid.number_in_array(stored.number)?;
+                let number = grid.chunk_index_in_array(stored.number)?;
                 Some(StoredChunk { number, ..stored })
             }));
         }

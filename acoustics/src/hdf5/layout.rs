@@ -1,6 +1,6 @@
 //! Data layouts of variables.
 
-use super::bytes::{Cursor, Hdf5Result, refuse};
+use super::bytes::{Cursor, Hdf5Result, unsupported};
 
 /// The storage of a variable.
 #[derive(Debug)]
@@ -45,12 +45,12 @@ impl<'a> StorageLayout<'a> {
     pub(super) fn read(mut cursor: Cursor<'a>) -> Hdf5Result<Self> {
         let version = cursor.u8()?;
         if !(3..=5).contains(&version) {
-            return refuse(format!("a layout of version {version}; read are 3 to 5"));
+            return unsupported(format!("a layout of version {version}; read are 3 to 5"));
         }
         match cursor.u8()? {
             0 => {
                 let size = usize::from(cursor.u16()?);
-                Ok(Self::Compact(cursor.part(size)?))
+                Ok(Self::Compact(cursor.sub_cursor(size)?))
             }
             1 => Ok(Self::Contiguous(cursor.address()?, cursor.length()?)),
             2 if version == 3 => {
@@ -62,7 +62,7 @@ impl<'a> StorageLayout<'a> {
             2 => {
                 let flags = cursor.u8()?;
                 if flags & 0x01 != 0 {
-                    return refuse("chunks at its edges without filters; not read");
+                    return unsupported("chunks at its edges without filters; not read");
                 }
                 let axes = cursor.u8()?;
                 let width = usize::from(cursor.u8()?);
@@ -82,17 +82,17 @@ impl<'a> StorageLayout<'a> {
                     4 => cursor.skip(5).map(|()| ChunkIndex::Extensible)?,
                     5 => cursor.skip(6).map(|()| ChunkIndex::Tree2)?,
                     other => {
-                        return refuse(format!(
+                        return unsupported(format!(
                             "chunks with an index of kind {other}; read are 1 to 5"
                         ));
                     }
                 };
                 chunked(shape, index, cursor.address()?)
             }
-            3 => refuse(
+            3 => unsupported(
                 "a virtual dataset, whose values stand in other files; only the file itself is read",
             ),
-            other => refuse(format!("a layout of class {other}; read are 0 to 2")),
+            other => unsupported(format!("a layout of class {other}; read are 0 to 2")),
         }
     }
 }

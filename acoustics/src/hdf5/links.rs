@@ -2,7 +2,7 @@
 
 use super::btree1;
 use super::btree2;
-use super::bytes::{Cursor, FileBytes, Hdf5Result, refuse};
+use super::bytes::{Cursor, FileBytes, Hdf5Result, unsupported};
 use super::fractal_heap::FractalHeap;
 use super::header::{ObjectHeader, as_size, kind};
 
@@ -42,13 +42,13 @@ pub(super) fn find(
         None => Ok(None),
         Some(LinkTarget::Object(address)) => Ok(Some(address)),
         Some(LinkTarget::Name) => {
-            refuse("is a soft link; read is what the file holds under its own name")
+            unsupported("is a soft link; read is what the file holds under its own name")
         }
         Some(LinkTarget::OtherFile) => {
-            refuse("is a link to another file; only the file itself is read")
+            unsupported("is a link to another file; only the file itself is read")
         }
         Some(LinkTarget::Unknown) => {
-            refuse("is a link of an unknown kind; only the file itself is read")
+            unsupported("is a link of an unknown kind; only the file itself is read")
         }
     }
 }
@@ -59,17 +59,17 @@ fn in_table(
     mut table: Cursor<'_>,
     name: &str,
 ) -> Hdf5Result<Option<LinkTarget>> {
-    let (tree, heap) = (table.place()?, table.place()?);
+    let (tree, heap) = (table.defined_address()?, table.defined_address()?);
     let mut heap = source.at(heap)?;
-    heap.signed(b"HEAP", 0)?;
+    heap.check_signature(b"HEAP", 0)?;
     heap.skip(3)?;
     let size = heap.length()?;
     heap.length()?;
-    let names = source.values(heap.place()?, size)?;
+    let names = source.values(heap.defined_address()?, size)?;
     let mut found = None;
     btree1::entries(source, tree, 0, table.widths.length, &mut |_, address| {
         let mut node = source.at(address)?;
-        node.signed(b"SNOD", 1)?;
+        node.check_signature(b"SNOD", 1)?;
         node.skip(1)?;
         for _ in 0..node.u16()? {
             let name_at = as_size(node.address()?.unwrap_or(u64::MAX))?;
@@ -77,7 +77,7 @@ fn in_table(
             let cache = node.u32()?;
             node.skip(20)?;
             let Some(rest) = names.get(name_at..) else {
-                return refuse(format!(
+                return unsupported(format!(
                     "damaged: a name at {name_at} of a heap of {size} bytes"
                 ));
             };
@@ -115,7 +115,7 @@ fn in_heap(
     btree2::records(source, tree, &mut |mut record| {
         // The name's hash.
         record.skip(4)?;
-        let id = record.part(heap.id_length())?;
+        let id = record.sub_cursor(heap.id_length())?;
         if found.is_none()
             && let Some(link) = heap.object(source, id)?
         {
@@ -130,7 +130,7 @@ fn in_heap(
 fn link_of(mut cursor: Cursor<'_>, name: &str) -> Hdf5Result<Option<LinkTarget>> {
     let version = cursor.u8()?;
     if version != 1 {
-        return refuse(format!("a link of version {version}; read is version 1"));
+        return unsupported(format!("a link of version {version}; read is version 1"));
     }
     let flags = cursor.u8()?;
     let class = if flags & 0x08 == 0 { 0 } else { cursor.u8()? };
@@ -145,7 +145,7 @@ fn link_of(mut cursor: Cursor<'_>, name: &str) -> Hdf5Result<Option<LinkTarget>>
         return Ok(None);
     }
     Ok(Some(match class {
-        0 => LinkTarget::Object(cursor.place()?),
+        0 => LinkTarget::Object(cursor.defined_address()?),
         1 => LinkTarget::Name,
         64 => LinkTarget::OtherFile,
         _ => LinkTarget::Unknown,

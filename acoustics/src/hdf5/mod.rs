@@ -25,7 +25,7 @@ mod shape;
 mod superblock;
 
 use crate::error::AcousticsError;
-use bytes::{FileBytes, Hdf5Fault, Hdf5Result, refuse};
+use bytes::{FileBytes, Hdf5Fault, Hdf5Result, unsupported};
 use datatype::Datatype;
 use filters::FilterPipeline;
 use header::{ObjectHeader, kind};
@@ -34,9 +34,9 @@ use shape::Dataspace;
 use superblock::Superblock;
 
 /// Most bytes of a file.
-pub const MOST_BYTES: u64 = 1 << 30;
+pub const MAX_FILE_BYTES: u64 = 1 << 30;
 /// Most numbers of a variable.
-pub const MOST_NUMBERS: u64 = 1 << 26;
+pub const MAX_ARRAY_VALUES: u64 = 1 << 26;
 
 /// The bytes of a file, and the address of its root.
 #[derive(Debug)]
@@ -100,11 +100,11 @@ impl Hdf5 {
     ///
     /// # Errors
     /// [`AcousticsError::Hdf5`] when there is no such variable, it is damaged or not numeric, its values are in another
-    /// file, or it has more than [`MOST_NUMBERS`].
+    /// file, or it has more than [`MAX_ARRAY_VALUES`].
     pub fn numbers(&self, name: &str) -> Result<Hdf5Array, AcousticsError> {
         self.with_source(name, |source| match self.variable(source, name)? {
             Some(header) => numbers(source, &header),
-            None => refuse("missing"),
+            None => unsupported("missing"),
         })
     }
 
@@ -114,7 +114,10 @@ impl Hdf5 {
         at: &str,
         work: impl FnOnce(&FileBytes<'_>) -> Hdf5Result<T>,
     ) -> Result<T, AcousticsError> {
-        let source = FileBytes::new(&self.bytes[self.superblock.start..], self.superblock.widths);
+        let source = FileBytes::new(
+            &self.bytes[self.superblock.base_offset..],
+            self.superblock.widths,
+        );
         work(&source).map_err(|Hdf5Fault(why)| AcousticsError::Hdf5(format!("{at}: {why}")))
     }
 
@@ -137,24 +140,24 @@ impl Hdf5 {
 fn numbers(source: &FileBytes<'_>, header: &ObjectHeader<'_>) -> Hdf5Result<Hdf5Array> {
     let content = |kind, what: &str| match header.first(kind) {
         Some(message) => message.content(),
-        None => refuse(format!("{what} is missing; it is no variable")),
+        None => unsupported(format!("{what} is missing; it is no variable")),
     };
     if header.first(kind::EXTERNAL_FILES).is_some() {
-        return refuse("its values stand in another file; only the file itself is read");
+        return unsupported("its values stand in another file; only the file itself is read");
     }
     let Some(shape) = Dataspace::read(content(kind::DATASPACE, "its dataspace")?)? else {
-        return refuse("has no values");
+        return unsupported("has no values");
     };
-    let count = shape.count().filter(|count| *count <= MOST_NUMBERS);
+    let count = shape.count().filter(|count| *count <= MAX_ARRAY_VALUES);
     let Some(count) = count else {
-        return refuse(format!(
-            "shape {:?} has more than the {MOST_NUMBERS} numbers that are read",
+        return unsupported(format!(
+            "shape {:?} has more than the {MAX_ARRAY_VALUES} numbers that are read",
             shape.lengths
         ));
     };
     let datatype = Datatype::read(content(kind::DATATYPE, "its datatype")?)?;
     let Some(size) = datatype.number_size() else {
-        return refuse("is text; expected numbers");
+        return unsupported("is text; expected numbers");
     };
     let layout = StorageLayout::read(content(kind::LAYOUT, "its layout")?)?;
     let filters = match header.first(kind::FILTERS) {
@@ -164,7 +167,7 @@ fn numbers(source: &FileBytes<'_>, header: &ObjectHeader<'_>) -> Hdf5Result<Hdf5
     let needed = count * size as u64;
     let plain = |bytes: &[u8], stated: u64| {
         if stated != needed || !filters.is_empty() {
-            return refuse(format!(
+            return unsupported(format!(
                 "damaged: {stated} bytes of values; its shape {:?} takes {needed}",
                 shape.lengths
             ));
@@ -183,7 +186,7 @@ fn numbers(source: &FileBytes<'_>, header: &ObjectHeader<'_>) -> Hdf5Result<Hdf5
         StorageLayout::Contiguous(Some(address), stated) => {
             plain(source.values(address, stated)?, stated)?
         }
-        StorageLayout::Contiguous(None, _) => return refuse("its values were never written"),
+        StorageLayout::Contiguous(None, _) => return unsupported("its values were never written"),
         StorageLayout::Chunked(chunked) => {
             grid::numbers(source, &shape, &chunked, &filters, datatype, size)?
         }

@@ -1,6 +1,6 @@
 //! Dataspaces: numbers of values along axes.
 
-use super::bytes::{Cursor, Hdf5Result, refuse};
+use super::bytes::{Cursor, Hdf5Result, unsupported};
 
 /// Most axes of a variable; SOFA's have at most 4.
 const MOST_AXES: u8 = 8;
@@ -11,7 +11,7 @@ pub(super) struct Dataspace {
     /// Their lengths.
     pub(super) lengths: Vec<u64>,
     /// Their maximum lengths; `None` if unlimited.
-    pub(super) longest: Vec<Option<u64>>,
+    pub(super) max_lengths: Vec<Option<u64>>,
 }
 
 impl Dataspace {
@@ -28,13 +28,13 @@ impl Dataspace {
                 }
             }
             _ => {
-                return refuse(format!(
+                return unsupported(format!(
                     "a dataspace of version {version}; read are 1 and 2"
                 ));
             }
         }
         if axes > MOST_AXES {
-            return refuse(format!("{axes} axes; allowed are {MOST_AXES}"));
+            return unsupported(format!("{axes} axes; allowed are {MOST_AXES}"));
         }
         let lengths = (0..axes)
             .map(|_| cursor.length())
@@ -48,7 +48,10 @@ impl Dataspace {
                 .map(|found| Ok(Some(found?).filter(|found| *found != unlimited)))
                 .collect::<Hdf5Result<_>>()?
         };
-        Ok(Some(Self { lengths, longest }))
+        Ok(Some(Self {
+            lengths,
+            max_lengths: longest,
+        }))
     }
 
     /// Returns the number of values, if it can be represented.

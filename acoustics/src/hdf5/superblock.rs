@@ -1,6 +1,6 @@
 //! The superblock: field widths and the root group of a file.
 
-use super::bytes::{Cursor, FieldWidths, FileBytes, Hdf5Result, refuse};
+use super::bytes::{Cursor, FieldWidths, FileBytes, Hdf5Result, unsupported};
 
 const SIGNATURE: [u8; 8] = *b"\x89HDF\r\n\x1a\n";
 /// Largest user block before the superblock: 512 bytes, or a power of two above.
@@ -10,7 +10,7 @@ const LONGEST_USER_BLOCK: usize = 1 << 16;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Superblock {
     /// Its offset; all addresses count from here.
-    pub(super) start: usize,
+    pub(super) base_offset: usize,
     pub(super) widths: FieldWidths,
     /// The address of the root group's header.
     pub(super) root: u64,
@@ -27,7 +27,7 @@ pub(super) fn read(bytes: &[u8]) -> Hdf5Result<Superblock> {
         .take_while(|start| *start <= LONGEST_USER_BLOCK)
         .find(begins)
     else {
-        return refuse("no HDF5, which SOFA files are: found no signature of it");
+        return unsupported("no HDF5, which SOFA files are: found no signature of it");
     };
     // No field of variable width is read before the widths are known.
     let (address, length) = (8, 8);
@@ -43,7 +43,7 @@ pub(super) fn read(bytes: &[u8]) -> Hdf5Result<Superblock> {
             for _ in 0..2 {
                 cursor.address()?;
             }
-            let end = cursor.place()?;
+            let end = cursor.defined_address()?;
             for _ in 0..2 {
                 cursor.address()?;
             }
@@ -56,23 +56,23 @@ pub(super) fn read(bytes: &[u8]) -> Hdf5Result<Superblock> {
             for _ in 0..2 {
                 cursor.address()?;
             }
-            cursor.place()?
+            cursor.defined_address()?
         }
         version => {
-            return refuse(format!(
+            return unsupported(format!(
                 "a superblock of version {version}; allowed are 0 to 3"
             ));
         }
     };
     if end > bytes.len() as u64 {
-        return refuse(format!(
+        return unsupported(format!(
             "the file is cut: it has {} bytes and should have {end}",
             bytes.len()
         ));
     }
     Ok(Superblock {
-        start,
-        root: cursor.place()?,
+        base_offset: start,
+        root: cursor.defined_address()?,
         widths: cursor.widths,
     })
 }
@@ -81,7 +81,7 @@ fn read_widths(cursor: &mut Cursor<'_>) -> Hdf5Result<()> {
     let (address, length) = (usize::from(cursor.u8()?), usize::from(cursor.u8()?));
     let allowed = [2, 4, 8];
     if !allowed.contains(&address) || !allowed.contains(&length) {
-        return refuse(format!(
+        return unsupported(format!(
             "addresses of {address} and lengths of {length} bytes; allowed are 2, 4 and 8"
         ));
     }

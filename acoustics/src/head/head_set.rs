@@ -58,7 +58,7 @@ impl HeadSet {
     }
 
     /// Returns the same heads in other air.
-    pub(crate) fn in_air(&self, config: &AcousticConfig) -> Self {
+    pub(crate) fn with_speed_of_sound_of(&self, config: &AcousticConfig) -> Self {
         let mut heads = Self::new(config);
         for (head, _) in self.others.values() {
             heads.add(head);
@@ -91,26 +91,32 @@ pub(crate) struct PlacedEar {
 
 impl PlacedEar {
     /// Returns gain of amplitude and delay re the head's centre (s) in each band, for a wave from `towards`, unit length, world.
-    pub(crate) fn banded(&self, towards: Vec3) -> (BandValues, BandValues) {
+    pub(crate) fn gain_and_delay(&self, towards: Vec3) -> (BandValues, BandValues) {
         match &self.head {
-            HeadTables::Sphere(sphere) => sphere.banded(f64::from(self.axis.dot(towards))),
+            HeadTables::Sphere(sphere) => sphere.gain_and_delay(f64::from(self.axis.dot(towards))),
             HeadTables::Measured(measured) => {
-                measured.banded(self.ear, self.head_from_world * towards)
+                measured.gain_and_delay(self.ear, self.head_from_world * towards)
             }
         }
     }
 
     /// Multiplies a path's spectrum by the response without its delay, and returns the delay re the head's centre, s.
-    pub(crate) fn shade(&self, towards: Vec3, spectrum: &mut [Complex<f32>]) -> f64 {
+    pub(crate) fn apply_undelayed_response(
+        &self,
+        towards: Vec3,
+        spectrum: &mut [Complex<f32>],
+    ) -> f64 {
         match &self.head {
             HeadTables::Sphere(sphere) => {
                 let cosine = f64::from(self.axis.dot(towards));
-                sphere.shade(cosine, spectrum);
+                sphere.apply_undelayed_response(cosine, spectrum);
                 sphere.delay_s(cosine)
             }
-            HeadTables::Measured(measured) => {
-                measured.shade(self.ear, self.head_from_world * towards, spectrum)
-            }
+            HeadTables::Measured(measured) => measured.apply_undelayed_response(
+                self.ear,
+                self.head_from_world * towards,
+                spectrum,
+            ),
         }
     }
 }

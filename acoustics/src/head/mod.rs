@@ -82,7 +82,7 @@ impl Head {
     ///
     /// # Source
     /// R. O. Duda, W. L. Martens, JASA 104, 3048 (1998).
-    pub fn sphere(radius_m: f64) -> Result<Self, AcousticsError> {
+    pub fn spherical(radius_m: f64) -> Result<Self, AcousticsError> {
         range("head", "radius_m", radius_m, (0.03, 0.2), "0.03 to 0.2")?;
         let mut bytes = b"sphere".to_vec();
         bytes.extend_from_slice(&radius_m.to_le_bytes());
@@ -116,10 +116,10 @@ impl Head {
     }
 
     /// Returns the summary of the measurement; `None` for a sphere.
-    pub fn about(&self) -> Option<&HeadSummary> {
+    pub fn summary(&self) -> Option<&HeadSummary> {
         match &self.shape {
             HeadModel::Sphere { .. } => None,
-            HeadModel::Measured(measured) => Some(measured.responses.about()),
+            HeadModel::Measured(measured) => Some(measured.responses.summary()),
         }
     }
 
@@ -154,7 +154,7 @@ impl fmt::Debug for Head {
         name.field("id", &self.id);
         match &self.shape {
             HeadModel::Sphere { radius_m } => name.field("radius_m", radius_m),
-            HeadModel::Measured(measured) => name.field("about", measured.responses.about()),
+            HeadModel::Measured(measured) => name.field("about", measured.responses.summary()),
         };
         name.finish_non_exhaustive()
     }

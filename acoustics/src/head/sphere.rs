@@ -100,7 +100,11 @@ impl SphericalHead {
     }
 
     /// Multiplies a path's spectrum by the response without its delay.
-    pub(crate) fn shade(&self, cos_incidence: f64, spectrum: &mut [Complex<f32>]) {
+    pub(crate) fn apply_undelayed_response(
+        &self,
+        cos_incidence: f64,
+        spectrum: &mut [Complex<f32>],
+    ) {
         let (below, way) = Self::place(cos_incidence);
         let rows = self.rest[below].iter().zip(&self.rest[below + 1]);
         for (value, (a, b)) in spectrum.iter_mut().zip(rows) {
@@ -109,7 +113,7 @@ impl SphericalHead {
     }
 
     /// Returns gain of amplitude and delay re the head's centre (s) in each band.
-    pub(crate) fn banded(&self, cos_incidence: f64) -> (BandValues, BandValues) {
+    pub(crate) fn gain_and_delay(&self, cos_incidence: f64) -> (BandValues, BandValues) {
         let (below, way) = Self::place(cos_incidence);
         let mix = |table: &[BandValues]| {
             let (a, b) = (&table[below], &table[below + 1]);
@@ -149,8 +153,8 @@ mod tests {
     #[test]
     fn the_table_shades_the_far_ear_more_at_high_frequencies() {
         let head = SphericalHead::new(0.0875, 343.2, 16_000.0, 257);
-        let (near, near_delay) = head.banded(1.0);
-        let (far, far_delay) = head.banded(-0.7);
+        let (near, near_delay) = head.gain_and_delay(1.0);
+        let (far, far_delay) = head.gain_and_delay(-0.7);
         assert!(
             near[0] / far[0] < 1.02 && near[7] / far[7] > 3.0,
             "{near:?} {far:?}"

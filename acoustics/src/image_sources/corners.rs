@@ -12,8 +12,8 @@ pub(crate) fn corners(
     source: Vec3,
     receiver: Vec3,
 ) -> Vec<Vec3> {
-    if !path.bends.is_empty() {
-        let bends = path.bends.iter().copied();
+    if !path.diffraction_points.is_empty() {
+        let bends = path.diffraction_points.iter().copied();
         return std::iter::once(source)
             .chain(bends)
             .chain([receiver])

@@ -17,13 +17,13 @@ pub(super) fn direct(
 ) -> Option<PropagationPath> {
     let length_m = source.as_dvec3().distance(receiver.as_dvec3());
     let passed = if data.config().transmission {
-        transmission::transmitted(data, rays, source, receiver)?
+        transmission::transmitted_path(data, rays, source, receiver)?
     } else {
         let blocked = rays.occluded(&Ray::segment(source, receiver, 0.0), RayMask::EAR);
         (!blocked).then_some(([1.0; BAND_COUNT], 0))?
     };
     let (fractions, walls) = passed;
-    let mut energy = data.spread(length_m);
+    let mut energy = data.air_energy_loss(length_m);
     for (e, fraction) in energy.iter_mut().zip(fractions) {
         *e *= f64::from(fraction);
     }
@@ -33,7 +33,7 @@ pub(super) fn direct(
     let departure = (receiver - source).normalize_or_zero();
     Some(PropagationPath {
         planes: Vec::new(),
-        bends: Vec::new(),
+        diffraction_points: Vec::new(),
         length_m,
         energy: energy.map(|e| e as f32),
         arrival: -departure,

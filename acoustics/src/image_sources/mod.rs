@@ -16,7 +16,7 @@ use glam::{DVec3, Vec3};
 use visibility::ImageValidator;
 
 /// Returns all audible paths of order 0 to the configured order, by length.
-pub(crate) fn find(
+pub(crate) fn find_specular_paths(
     data: &PropagationData,
     rays: &RayScene,
     source: &SoundSourcePose,
@@ -53,10 +53,10 @@ fn find_omnidirectional(
     let validator = ImageValidator::new(data, rays, source, receiver);
     let mut paths: Vec<(PropagationPath, DVec3)> = Vec::new();
     for path in straight(data, rays, source, receiver) {
-        let from = path.bends.first().copied().unwrap_or(source);
+        let from = path.diffraction_points.first().copied().unwrap_or(source);
         paths.push((path, from.as_dvec3()));
     }
-    sequences::for_each(data, rays, source, receiver, |planes, images| {
+    sequences::for_each_plane_sequence(data, rays, source, receiver, |planes, images| {
         if let Some(path) = validator.path(planes, images) {
             paths.push((path, *images.last().unwrap_or(&DVec3::ZERO)));
         }
@@ -92,13 +92,13 @@ fn straight(
     if data.config().diffraction {
         match &mut direct {
             Some(path) if path.walls == 0 => {
-                let kept = diffraction::in_sight(data, rays, source, receiver);
+                let kept = diffraction::unobstructed_share(data, rays, source, receiver);
                 for (e, kept) in path.energy.iter_mut().zip(kept) {
                     *e *= kept as f32;
                 }
             }
             _ => {
-                paths = diffraction::around_edges(data, rays, source, receiver);
+                paths = diffraction::diffracted_paths(data, rays, source, receiver);
                 if let Some(transmitted) = &direct {
                     subtract_transmitted(data, transmitted, &mut paths);
                 }
@@ -115,7 +115,7 @@ fn subtract_transmitted(
     transmitted: &PropagationPath,
     around: &mut Vec<PropagationPath>,
 ) {
-    let whole = data.spread(transmitted.length_m);
+    let whole = data.air_energy_loss(transmitted.length_m);
     let kept: [f32; BAND_COUNT] = std::array::from_fn(|band| {
         // Over a long distance air absorbs high frequencies completely.
         let passed = f64::from(transmitted.energy[band]) / whole[band].max(f64::MIN_POSITIVE);
@@ -132,7 +132,7 @@ fn subtract_transmitted(
 
 /// Returns `known` paths between points that have moved, for an omnidirectional source: the direct paths, and the
 /// reflections that still exist.
-pub(crate) fn follow(
+pub(crate) fn revalidate_paths(
     data: &PropagationData,
     rays: &RayScene,
     source: Vec3,
@@ -147,6 +147,6 @@ pub(crate) fn follow(
             paths.extend(validator.path(&path.planes, &images));
         }
     }
-    radiate(data, &SoundSourcePose::at(source), &mut paths);
+    radiate(data, &SoundSourcePose::omni(source), &mut paths);
     paths
 }

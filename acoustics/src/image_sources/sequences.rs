@@ -2,7 +2,7 @@
 
 use crate::planes::{NO_PLANE, Plane};
 use crate::propagation_data::PropagationData;
-use crate::ray_margin::margin_m;
+use crate::ray_margin::ray_offset_m;
 use crate::sphere_sequences::fibonacci_direction;
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::rays::RayScene;
@@ -19,7 +19,7 @@ const ON_PLANE_M: f64 = 1e-6;
 ///
 /// Candidates are all sequences of the largest planes, as long as an order has not too many of them, and those of rays from
 /// the receiver.
-pub(super) fn for_each(
+pub(super) fn for_each_plane_sequence(
     data: &PropagationData,
     rays: &RayScene,
     source: Vec3,
@@ -27,7 +27,7 @@ pub(super) fn for_each(
     mut visit: impl FnMut(&[u32], &[DVec3]),
 ) {
     let config = data.config();
-    let largest = data.table().largest();
+    let largest = data.plane_table().by_decreasing_area();
     let tried = &largest[..largest.len().min(config.image_planes)];
     let mut exhaustive = 0;
     let mut count = 1;
@@ -119,16 +119,16 @@ fn discover(data: &PropagationData, rays: &RayScene, receiver: Vec3) -> BTreeSet
             let Some(hit) = rays.closest(&ray, RayMask::EAR) else {
                 break;
             };
-            let id = data.table().of_hit(data.house(), &hit);
+            let id = data.plane_table().plane_of_hit(data.house(), &hit);
             if id == NO_PLANE || backwards.last() == Some(&id) {
                 break;
             }
             backwards.push(id);
             found.insert(backwards.iter().rev().copied().collect());
             let normal = data.planes()[id as usize].normal.as_vec3();
-            let point = ray.at(hit.distance_m);
+            let point = ray.point_at(hit.distance_m);
             let direction = ray.direction - 2.0 * ray.direction.dot(normal) * normal;
-            ray = Ray::new(point, direction).between(margin_m(point), f32::INFINITY);
+            ray = Ray::new(point, direction).with_range(ray_offset_m(point), f32::INFINITY);
         }
     }
     found

@@ -2,7 +2,7 @@
 
 use crate::echogram::PropagationPath;
 use crate::propagation_data::PropagationData;
-use crate::ray_margin::margin_m;
+use crate::ray_margin::ray_offset_m;
 use dwell_scene::bvh::{Hit, Ray, RayMask};
 use dwell_scene::rays::RayScene;
 use glam::{DVec3, Vec3};
@@ -59,12 +59,17 @@ impl<'a> ImageValidator<'a> {
             target = point;
         }
         let length_m = images.last()?.distance(self.receiver);
-        let mut energy = self.data.spread(length_m);
+        let mut energy = self.data.air_energy_loss(length_m);
         let mut from = self.receiver;
         let mut leaves_surface = false;
         for k in (0..order).rev() {
             let hit = self.leg(from, points[k], leaves_surface)?;
-            if self.data.table().of_hit(self.data.house(), &hit) != planes[k] {
+            if self
+                .data
+                .plane_table()
+                .plane_of_hit(self.data.house(), &hit)
+                != planes[k]
+            {
                 return None;
             }
             let surface = self.rays.surface(&hit);
@@ -89,7 +94,7 @@ impl<'a> ImageValidator<'a> {
         let towards = |from: DVec3, to: DVec3| (to - from).normalize_or_zero().as_vec3();
         Some(PropagationPath {
             planes: planes.to_vec(),
-            bends: Vec::new(),
+            diffraction_points: Vec::new(),
             length_m,
             energy: energy.map(|e| e as f32),
             arrival: towards(self.receiver, points[order - 1]),
@@ -110,12 +115,16 @@ impl<'a> ImageValidator<'a> {
 
     fn segment(from: DVec3, to: DVec3, leaves_surface: bool, ends_free: bool) -> Ray {
         let (start, length) = (from.as_vec3(), from.distance(to) as f32);
-        let near = if leaves_surface { margin_m(start) } else { 0.0 };
+        let near = if leaves_surface {
+            ray_offset_m(start)
+        } else {
+            0.0
+        };
         let far = if ends_free {
             (length - 1e-4).max(near)
         } else {
             length + TOLERANCE_M.max(1e-5 * length)
         };
-        Ray::new(start, (to - from).as_vec3()).between(near, far)
+        Ray::new(start, (to - from).as_vec3()).with_range(near, far)
     }
 }

@@ -1,6 +1,6 @@
 //! Automatic gain control of recorders.
 
-use super::microphone_stage::{MicrophoneStage, SampleBlock, StageMemory};
+use super::microphone_stage::{MicrophoneStage, SampleBlock, StageState};
 use super::{AcousticLaw, SignalStage};
 use dwell_scene::law::{EngineKind, ParamInfo};
 use dwell_scene::{LawInfo, LawValues};
@@ -64,7 +64,7 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
                                 a passage to its end, and lifts tails that were loud at first; a clip touches only peaks; absorption \
                                 and gains do not depend on the level",
     },
-    acts: SignalStage::Microphones(install),
+    effect: SignalStage::Microphones(install),
 };
 
 /// Squares below this are silence, Pa².
@@ -95,7 +95,7 @@ fn install(values: LawValues<'_>, rate_hz: f64) -> Box<dyn MicrophoneStage> {
 }
 
 impl MicrophoneStage for AutomaticGain {
-    fn hear(&mut self, block: &mut SampleBlock<'_>) {
+    fn process(&mut self, block: &mut SampleBlock<'_>) {
         let length = block.len();
         for n in 0..length {
             let at = |channel: usize| channel * length + n;
@@ -112,14 +112,14 @@ impl MicrophoneStage for AutomaticGain {
         }
     }
 
-    fn recall(&mut self, memory: &StageMemory) {
+    fn restore(&mut self, memory: &StageState) {
         if let Some(square) = memory.numbers.first() {
             self.square = *square;
         }
     }
 
-    fn memory(&self) -> StageMemory {
-        StageMemory {
+    fn state(&self) -> StageState {
+        StageState {
             numbers: vec![self.square],
             samples: Vec::new(),
         }
@@ -128,7 +128,7 @@ impl MicrophoneStage for AutomaticGain {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{RATE_HZ, law, recorded};
+    use super::super::testing::{RATE_HZ, law, microphone_output};
 
     fn rms(samples: &[f32]) -> f64 {
         let power: f64 = samples.iter().map(|x| f64::from(*x).powi(2)).sum();
@@ -150,7 +150,7 @@ mod tests {
                 ("attack_s", 0.1),
                 ("release_s", 0.1),
             ];
-            let out = recorded(&[law("automatic_gain", &values)], 0, &tone);
+            let out = microphone_output(&[law("automatic_gain", &values)], 0, &tone);
             let (before, after) = (rms(&tone[64_000..]), rms(&out[64_000..]));
             let wanted_db = strength * 20.0 * (0.1 / before).log10();
             let found_db = 20.0 * (after / before).log10();
@@ -168,7 +168,7 @@ mod tests {
             ("release_s", 0.25),
             ("max_gain_db", 20.0),
         ];
-        let out = recorded(&[law("automatic_gain", &values)], 0, &sound);
+        let out = microphone_output(&[law("automatic_gain", &values)], 0, &sound);
         let gain_db = |k: usize| 20.0 * f64::from(out[k] / sound[k]).log10();
         assert!((gain_db(15_999) + 20.0).abs() < 1e-3);
         // The square falls by 1/e in 0.25 s: 4.343 dB; the gain rises as much.

@@ -1,6 +1,6 @@
 //! Background noise of a place: ventilation, traffic, mains hum.
 
-use super::microphone_stage::{MicrophoneStage, SampleBlock, StageContext, StageMemory};
+use super::microphone_stage::{MicrophoneStage, SampleBlock, StageContext, StageState};
 use super::{AcousticLaw, SignalStage};
 use crate::bands::{self, BAND_COUNT};
 use crate::fft::RealFft;
@@ -68,7 +68,7 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
                                 in both at low frequencies, self-noise is not; play the same sound louder: a second slope of the decay \
                                 rises with it, noise does not",
     },
-    acts: SignalStage::Field(install),
+    effect: SignalStage::Field(install),
 };
 
 /// Least half frame, s.
@@ -138,7 +138,7 @@ fn install(values: LawValues<'_>, rate_hz: f64) -> Box<dyn MicrophoneStage> {
 impl NoiseField {
     /// Returns a frame at every channel, under its window. Shape (channel, 2 hop).
     fn frame(&mut self, number: u64, listener: &StageContext<'_>) -> Vec<Vec<f32>> {
-        let key = listener.room.child("background noise").child(number);
+        let key = listener.room_key.child("background noise").child(number);
         let channels = ReceiverChannel::of(listener.receiver, listener.heads, listener.speed_m_s);
         let bins = self.fft.bins();
         let mut spectra = vec![vec![Complex::new(0.0_f32, 0.0); bins]; channels.len()];
@@ -151,8 +151,8 @@ impl NoiseField {
             let early_s = centre.dot(DVec3::from(from)) / listener.speed_m_s;
             let turns: Vec<f32> = (0..bins).map(|_| stream.uniform_f32()).collect();
             for (channel, spectrum) in channels.iter().zip(&mut spectra) {
-                let heard = channel.hear(listener.speed_m_s, from);
-                let (gain, delay_s) = (heard.gain, heard.delay.banded());
+                let heard = channel.response(listener.speed_m_s, from);
+                let (gain, delay_s) = (heard.gain, heard.delay.per_band());
                 for (bin, value) in spectrum.iter_mut().enumerate() {
                     let amplitude = self.amplitude[bin];
                     if amplitude == 0.0 {
@@ -210,10 +210,10 @@ impl NoiseField {
 }
 
 impl MicrophoneStage for NoiseField {
-    fn hear(&mut self, block: &mut SampleBlock<'_>) {
+    fn process(&mut self, block: &mut SampleBlock<'_>) {
         let length = block.len();
         if self.hum_pa != 0.0 {
-            let room = block.listener.room;
+            let room = block.context.room_key;
             for channel in block.channels_mut() {
                 self.hum(room, channel);
             }
@@ -225,7 +225,7 @@ impl MicrophoneStage for NoiseField {
             let count = (self.hop - used).min(length - done);
             if !silent {
                 if used == 0 || self.made.is_empty() {
-                    self.next_hop(block.listener);
+                    self.next_hop(block.context);
                 }
                 for (made, channel) in self.made.iter().zip(block.channels_mut()) {
                     let made = &made[used..used + count];
@@ -239,7 +239,7 @@ impl MicrophoneStage for NoiseField {
         }
     }
 
-    fn recall(&mut self, memory: &StageMemory) {
+    fn restore(&mut self, memory: &StageState) {
         if let Some(time) = memory.numbers.first() {
             self.time = time.max(0.0) as u64;
         }
@@ -249,8 +249,8 @@ impl MicrophoneStage for NoiseField {
         }
     }
 
-    fn memory(&self) -> StageMemory {
-        StageMemory {
+    fn state(&self) -> StageState {
+        StageState {
             numbers: vec![self.time as f64],
             samples: self.made.clone(),
         }
@@ -259,7 +259,7 @@ impl MicrophoneStage for NoiseField {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{RATE_HZ, law, recorded, with_listener};
+    use super::super::testing::{RATE_HZ, law, microphone_output, with_listener};
     use super::*;
     use crate::microphone_chain::MicrophoneChain;
     use crate::receiver::Receiver;
@@ -275,7 +275,7 @@ mod tests {
     fn it_has_its_level_and_slope() {
         for (slope, seed) in [(0.0, 1), (-3.0, 2), (-6.0, 3)] {
             let values = [("level_pa", 0.02), ("slope_db_per_octave", slope)];
-            let out = recorded(
+            let out = microphone_output(
                 &[law("background_noise", &values)],
                 seed,
                 &vec![0.0; 480_000],
@@ -296,7 +296,7 @@ mod tests {
     #[test]
     fn a_hum_is_one_tone() {
         let values = [("hum_pa", 0.1), ("hum_hz", 50.0)];
-        let out = recorded(&[law("background_noise", &values)], 4, &vec![0.0; 16_000]);
+        let out = microphone_output(&[law("background_noise", &values)], 4, &vec![0.0; 16_000]);
         assert!((level(&out) + 20.0).abs() < 1e-3);
         let omega = TAU * 50.0 / RATE_HZ;
         for three in out.windows(3) {

@@ -1,6 +1,6 @@
 //! Recorders whose clock is fast or slow.
 
-use super::microphone_stage::{MicrophoneStage, SampleBlock, StageMemory, fade, rise};
+use super::microphone_stage::{MicrophoneStage, SampleBlock, StageState, fade_in, fade_in_weights};
 use super::{AcousticLaw, SignalStage};
 use dwell_scene::law::{EngineKind, ParamInfo};
 use dwell_scene::{LawInfo, LawValues};
@@ -40,7 +40,7 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
         separating_experiment: "measure the length or pitch of the excitation itself in the recording: a clock changes it as much as \
                                 the arrivals, warmth leaves it; by size: one kelvin is 1700 ppm, clocks are off by 10 to 100 ppm",
     },
-    acts: SignalStage::Microphones(install),
+    effect: SignalStage::Microphones(install),
 };
 
 /// Taps on either side of a point between samples.
@@ -118,7 +118,7 @@ fn install(values: LawValues<'_>, rate_hz: f64) -> Box<dyn MicrophoneStage> {
 impl DriftingClock {
     /// Returns the lag of each sample of a block, that before a skip, and the weight of the new one.
     fn lags(&mut self, length: usize, whole: bool) -> Vec<(f64, f64, f32)> {
-        let weights: Vec<f32> = fade(self.fade).collect();
+        let weights: Vec<f32> = fade_in_weights(self.fade).collect();
         // Lag needed until the end of a crossfade.
         let least = HALF as f64 + 1.0 + self.growth.abs() * self.fade as f64;
         let mut lags = Vec::with_capacity(length);
@@ -181,9 +181,9 @@ fn read(samples: &[f32], now: usize, lag: f64) -> f32 {
 }
 
 impl MicrophoneStage for DriftingClock {
-    fn hear(&mut self, block: &mut SampleBlock<'_>) {
+    fn process(&mut self, block: &mut SampleBlock<'_>) {
         let length = block.len();
-        let lags = self.lags(length, block.whole);
+        let lags = self.lags(length, block.is_entire_signal);
         self.history.resize_with(block.channels, Vec::new);
         // The longest look-back of a skip.
         let reach = self.lag.max(self.old_lag) + self.back + 2.0 * HALF as f64;
@@ -207,7 +207,7 @@ impl MicrophoneStage for DriftingClock {
         }
     }
 
-    fn recall(&mut self, memory: &StageMemory) {
+    fn restore(&mut self, memory: &StageState) {
         let [lag, old_lag, fading, offset] = memory.numbers[..] else {
             return;
         };
@@ -220,19 +220,19 @@ impl MicrophoneStage for DriftingClock {
             // Older samples are unknown.
             for history in &mut self.history {
                 let ramp = history.len().min(self.fade);
-                rise(&mut history[..ramp]);
+                fade_in(&mut history[..ramp]);
             }
         }
     }
 
-    fn memory(&self) -> StageMemory {
-        StageMemory {
+    fn state(&self) -> StageState {
+        StageState {
             numbers: vec![self.lag, self.old_lag, self.fading as f64, self.offset],
             samples: self.history.clone(),
         }
     }
 
-    fn extra_samples(&self, length: usize) -> usize {
+    fn tail_samples(&self, length: usize) -> usize {
         // The lag at the end, less where the clock is slow.
         let at_the_end = self.offset + self.growth * length as f64 / (1.0 - self.growth);
         (at_the_end + HALF as f64).ceil().max(0.0) as usize
@@ -245,7 +245,9 @@ impl MicrophoneStage for DriftingClock {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{RATE_HZ, law, recorded, streamed, with_listener};
+    use super::super::testing::{
+        RATE_HZ, law, microphone_output, streamed_microphone_output, with_listener,
+    };
     use crate::microphone_chain::MicrophoneChain;
     use crate::receiver::Receiver;
     use dwell_scene::random::RandomKey;
@@ -269,7 +271,8 @@ mod tests {
     fn a_tone_is_read_at_its_times() {
         for (drift_ppm, offset_s) in [(0.0, 0.0101), (150.0, 0.0), (-150.0, 0.02), (4000.0, 0.3)] {
             for frequency_hz in [300.0, 2500.0, 6400.0] {
-                let out = recorded(&clock(drift_ppm, offset_s), 0, &tone(frequency_hz, 32_000));
+                let out =
+                    microphone_output(&clock(drift_ppm, offset_s), 0, &tone(frequency_hz, 32_000));
                 for n in (6000..31_000).step_by(101) {
                     let t = (n as f64 / RATE_HZ - offset_s) / (1.0 + 1e-6 * drift_ppm);
                     let wanted = (std::f64::consts::TAU * frequency_hz * t).sin();
@@ -287,15 +290,15 @@ mod tests {
     fn streams_give_what_recordings_give() {
         let sound = tone(777.0, 40_000);
         for drift_ppm in [-300.0, 0.0, 300.0] {
-            let whole = recorded(&clock(drift_ppm, 0.02), 0, &sound);
+            let whole = microphone_output(&clock(drift_ppm, 0.02), 0, &sound);
             for block in [33, 800] {
-                let blocks = streamed(&clock(drift_ppm, 0.02), &sound, block);
+                let blocks = streamed_microphone_output(&clock(drift_ppm, 0.02), &sound, block);
                 let differs = (0..39_000).find(|n| blocks[*n] != whole[*n]);
                 assert_eq!(differs, None, "{drift_ppm} {block}");
             }
         }
-        let late = streamed(&clock(300.0, 0.0), &sound, 800);
-        let whole = recorded(&clock(300.0, 0.0), 0, &sound);
+        let late = streamed_microphone_output(&clock(300.0, 0.0), &sound, 800);
+        let whole = microphone_output(&clock(300.0, 0.0), 0, &sound);
         for n in 1000..39_000 {
             assert!((late[n + 160] - whole[n]).abs() < 0.03);
         }
@@ -310,11 +313,11 @@ mod tests {
             for (k, block) in sound.chunks(800).enumerate() {
                 let (mut block, own) = (block.to_vec(), RandomKey::root(0).child(k as u64));
                 with_listener(&Receiver::omni(glam::Vec3::ZERO), 0, own, |listener| {
-                    microphones.hear(&clock(drift_ppm, 0.0), listener, &mut block);
+                    microphones.process_block(&clock(drift_ppm, 0.0), listener, &mut block);
                 });
-                let memory = microphones.memory();
+                let memory = microphones.state();
                 let again = MicrophoneChain::restore(RATE_HZ, memory.clone()).unwrap();
-                assert!(again.memory() == memory, "{drift_ppm}, block {k}");
+                assert!(again.state() == memory, "{drift_ppm}, block {k}");
             }
         }
     }
@@ -324,7 +327,8 @@ mod tests {
     fn skips_do_not_click() {
         let omega = std::f64::consts::TAU * 200.0 / RATE_HZ;
         for drift_ppm in [-20_000.0, 20_000.0] {
-            let out = streamed(&clock(drift_ppm, 0.0), &tone(200.0, 64 * 16_000), 800);
+            let out =
+                streamed_microphone_output(&clock(drift_ppm, 0.0), &tone(200.0, 64 * 16_000), 800);
             for (n, three) in out.windows(3).enumerate().skip(1000) {
                 let [a, b, c] = [three[2], three[1], three[0]].map(f64::from);
                 let residual = a - 2.0 * omega.cos() * b + c;

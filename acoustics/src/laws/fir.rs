@@ -1,6 +1,6 @@
 //! FIR filters with state between blocks.
 
-use super::microphone_stage::{MicrophoneStage, SampleBlock, StageMemory, rise};
+use super::microphone_stage::{MicrophoneStage, SampleBlock, StageState, fade_in};
 
 /// A filter: a delay in samples, then taps.
 #[derive(Clone, Debug)]
@@ -26,7 +26,7 @@ impl FirFilter {
 }
 
 impl MicrophoneStage for FirFilter {
-    fn hear(&mut self, block: &mut SampleBlock<'_>) {
+    fn process(&mut self, block: &mut SampleBlock<'_>) {
         let (reach, length) = (self.reach(), block.len());
         self.history.resize(block.channels, vec![0.0; reach]);
         let mut heard = Vec::with_capacity(reach + length);
@@ -46,7 +46,7 @@ impl MicrophoneStage for FirFilter {
         }
     }
 
-    fn recall(&mut self, memory: &StageMemory) {
+    fn restore(&mut self, memory: &StageState) {
         let reach = self.reach();
         self.history = memory
             .samples
@@ -57,21 +57,21 @@ impl MicrophoneStage for FirFilter {
                 history[reach - used..].copy_from_slice(&old[old.len() - used..]);
                 if used < reach {
                     // Older samples are unknown.
-                    rise(&mut history[reach - used..]);
+                    fade_in(&mut history[reach - used..]);
                 }
                 history
             })
             .collect();
     }
 
-    fn memory(&self) -> StageMemory {
-        StageMemory {
+    fn state(&self) -> StageState {
+        StageState {
             numbers: Vec::new(),
             samples: self.history.clone(),
         }
     }
 
-    fn extra_samples(&self, _length: usize) -> usize {
+    fn tail_samples(&self, _length: usize) -> usize {
         self.reach()
     }
 

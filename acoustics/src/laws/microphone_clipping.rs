@@ -40,7 +40,7 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
                                 (of an exponential sweep they stand before time 0); automatic gain changes whole passages, all others \
                                 do not depend on the level",
     },
-    acts: SignalStage::Microphones(install),
+    effect: SignalStage::Microphones(install),
 };
 
 fn install(values: LawValues<'_>, _rate_hz: f64) -> Box<dyn MicrophoneStage> {
@@ -64,13 +64,13 @@ fn install(values: LawValues<'_>, _rate_hz: f64) -> Box<dyn MicrophoneStage> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{law, recorded};
+    use super::super::testing::{law, microphone_output};
 
     #[test]
     fn it_bends_as_its_equation_says() {
         let clip = |limit: f64, softness: f64, x: f32| {
             let values = [("limit_pa", limit), ("softness", softness)];
-            recorded(&[law("microphone_clipping", &values)], 0, &[x])[0]
+            microphone_output(&[law("microphone_clipping", &values)], 0, &[x])[0]
         };
         for x in [-3.0, -0.5, 0.0, 0.2, 0.999, 1.001, 7.0_f32] {
             assert_eq!(clip(1.0, 0.0, x), x.clamp(-1.0, 1.0));

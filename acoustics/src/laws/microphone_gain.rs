@@ -27,7 +27,7 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
                                 the same number of decibels at all times, bands, places and levels; that of a microphone raises \
                                 background noise too, that of a source does not",
     },
-    acts: SignalStage::Microphones(install),
+    effect: SignalStage::Microphones(install),
 };
 
 fn install(values: LawValues<'_>, _rate_hz: f64) -> Box<dyn MicrophoneStage> {

@@ -28,7 +28,7 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
                                 unlike in two microphones, background noise is neither; play the same sound louder: a \
                                 second slope of the decay rises with it, noise does not",
     },
-    acts: SignalStage::Microphones(install),
+    effect: SignalStage::Microphones(install),
 };
 
 fn install(values: LawValues<'_>, _rate_hz: f64) -> Box<dyn MicrophoneStage> {
@@ -43,7 +43,7 @@ fn install(values: LawValues<'_>, _rate_hz: f64) -> Box<dyn MicrophoneStage> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{law, recorded};
+    use super::super::testing::{law, microphone_output};
 
     /// Variance within 5 standard errors (two-sided p below 1e-6) for five seeds; two equal noises add their powers.
     #[test]
@@ -54,7 +54,7 @@ mod tests {
                 (vec![noise.clone()], 4e-4),
                 (vec![noise.clone(), noise.clone()], 8e-4),
             ] {
-                let out = recorded(&laws, seed, &vec![0.0; 20_000]);
+                let out = microphone_output(&laws, seed, &vec![0.0; 20_000]);
                 let found = out.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>() / 20_000.0;
                 assert!((found / variance - 1.0).abs() < 5.0 * (2.0 / 20_000.0_f64).sqrt());
             }

@@ -32,7 +32,7 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
                                 and all reflections agree with one displacement; a delay is the same from all sides, warmth \
                                 proportional to the way",
     },
-    acts: SignalStage::Propagation(apply_offset),
+    effect: SignalStage::Propagation(apply_offset),
 };
 
 fn apply_offset(values: LawValues<'_>, effects: &mut PathEffects) {

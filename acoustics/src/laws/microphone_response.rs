@@ -27,11 +27,11 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
                                 absorption grows with time; with all sources off, background noise bears the response of the \
                                 microphone and not that of a source",
     },
-    acts: SignalStage::Microphones(install),
+    effect: SignalStage::Microphones(install),
 };
 
 fn install(values: LawValues<'_>, rate_hz: f64) -> Box<dyn MicrophoneStage> {
-    let filters = PathFilters::spanning(rate_hz, SPAN_S);
+    let filters = PathFilters::with_min_span(rate_hz, SPAN_S);
     let energy = bands_db(values).map(|db| libm::powf(10.0, db / 10.0));
     let (mut spectrum, amplitude) = filters.spectrum(&energy, None);
     let taps = filters.impulse_response(&mut filters.fft(), &mut spectrum);
@@ -41,7 +41,7 @@ fn install(values: LawValues<'_>, rate_hz: f64) -> Box<dyn MicrophoneStage> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{RATE_HZ, law, recorded};
+    use super::super::testing::{RATE_HZ, law, microphone_output};
     use crate::bands::exact_centre_hz;
     use realfft::num_complex::Complex;
 
@@ -54,7 +54,7 @@ mod tests {
         ];
         let wanted = [-9.0, -3.0, 0.0, 4.0, -6.0, -6.0, 3.0, -12.0];
         let values: Vec<_> = names.into_iter().zip(wanted).collect();
-        let out = recorded(&[law("microphone_response", &values)], 0, &[1.0]);
+        let out = microphone_output(&[law("microphone_response", &values)], 0, &[1.0]);
         for (band, wanted) in wanted.iter().enumerate() {
             let frequency_hz = exact_centre_hz(band);
             let omega = std::f64::consts::TAU * frequency_hz / RATE_HZ;

@@ -15,15 +15,15 @@ pub(crate) struct StageContext<'a> {
     /// Speed of sound, m/s.
     pub(crate) speed_m_s: f64,
     /// Random key of the place, the same for all receivers in it.
-    pub(crate) room: RandomKey,
+    pub(crate) room_key: RandomKey,
     /// Random key of the microphones themselves.
-    pub(crate) own: RandomKey,
+    pub(crate) microphone_key: RandomKey,
 }
 
 /// A block of pressure and its context.
 #[derive(Debug)]
 pub(crate) struct SampleBlock<'a> {
-    pub(crate) listener: &'a StageContext<'a>,
+    pub(crate) context: &'a StageContext<'a>,
     /// The pressure, Pa. Shape (channel, sample), one channel after the other.
     pub(crate) samples: &'a mut [f32],
     /// Number of channels, at least 1.
@@ -31,7 +31,7 @@ pub(crate) struct SampleBlock<'a> {
     /// Random key of this block for this law.
     pub(crate) key: RandomKey,
     /// True if the block is the whole signal, with only silence after it. Else later samples are not known yet.
-    pub(crate) whole: bool,
+    pub(crate) is_entire_signal: bool,
 }
 
 impl SampleBlock<'_> {
@@ -49,7 +49,7 @@ impl SampleBlock<'_> {
 
 /// The state of a stage that a snapshot holds.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct StageMemory {
+pub(crate) struct StageState {
     /// A few numbers, in the stage's own order.
     pub(crate) numbers: Vec<f64>,
     /// Samples of each channel, the newest last. Shape (channel, any).
@@ -57,7 +57,7 @@ pub(crate) struct StageMemory {
 }
 
 /// Returns the weights of a fade-in over `length` samples: a raised cosine, so that neither level nor slope has a step.
-pub(crate) fn fade(length: usize) -> impl Iterator<Item = f32> {
+pub(crate) fn fade_in_weights(length: usize) -> impl Iterator<Item = f32> {
     (1..=length).map(move |k| {
         let turn = std::f64::consts::PI * k as f64 / length as f64;
         (0.5 - 0.5 * libm::cos(turn)) as f32
@@ -65,8 +65,8 @@ pub(crate) fn fade(length: usize) -> impl Iterator<Item = f32> {
 }
 
 /// Fades all samples in.
-pub(crate) fn rise(samples: &mut [f32]) {
-    let weights = fade(samples.len());
+pub(crate) fn fade_in(samples: &mut [f32]) {
+    let weights = fade_in_weights(samples.len());
     for (x, weight) in samples.iter_mut().zip(weights) {
         *x *= weight;
     }
@@ -75,18 +75,18 @@ pub(crate) fn rise(samples: &mut [f32]) {
 /// A stage of an installed microphone law.
 pub(crate) trait MicrophoneStage: fmt::Debug + Send + Sync {
     /// Processes a block.
-    fn hear(&mut self, block: &mut SampleBlock<'_>);
+    fn process(&mut self, block: &mut SampleBlock<'_>);
 
     /// Takes over the state of another stage of the same law, possibly with other numbers.
-    fn recall(&mut self, _memory: &StageMemory) {}
+    fn restore(&mut self, _memory: &StageState) {}
 
     /// Returns its state.
-    fn memory(&self) -> StageMemory {
-        StageMemory::default()
+    fn state(&self) -> StageState {
+        StageState::default()
     }
 
     /// Returns the number of samples by which its output is longer than its input of `length` samples.
-    fn extra_samples(&self, _length: usize) -> usize {
+    fn tail_samples(&self, _length: usize) -> usize {
         0
     }
 
@@ -106,7 +106,7 @@ impl<F> fmt::Debug for StatelessStage<F> {
 }
 
 impl<F: Fn(&mut SampleBlock<'_>) + Send + Sync> MicrophoneStage for StatelessStage<F> {
-    fn hear(&mut self, block: &mut SampleBlock<'_>) {
+    fn process(&mut self, block: &mut SampleBlock<'_>) {
         (self.0)(block);
     }
 }

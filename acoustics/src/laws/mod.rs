@@ -117,8 +117,8 @@ fn bands_db(values: LawValues<'_>) -> BandValues {
 /// Returns the installed laws' effects on air and sources.
 pub(crate) fn path_effects(installed: &[LawSpec]) -> PathEffects {
     let mut effects = PathEffects::default();
-    for law in LAWS.acting(installed) {
-        if let SignalStage::Propagation(change) = law.acts {
+    for law in LAWS.active(installed) {
+        if let SignalStage::Propagation(change) = law.effect {
             change(law.values, &mut effects);
         }
     }
@@ -127,8 +127,8 @@ pub(crate) fn path_effects(installed: &[LawSpec]) -> PathEffects {
 
 /// Returns the stage of a law that acts on pressure and has an effect.
 pub(crate) fn microphone_stage(spec: &LawSpec, rate_hz: f64) -> Option<Box<dyn MicrophoneStage>> {
-    let law = LAWS.acting(std::slice::from_ref(spec)).next()?;
-    match law.acts {
+    let law = LAWS.active(std::slice::from_ref(spec)).next()?;
+    match law.effect {
         SignalStage::Propagation(_) => None,
         SignalStage::Field(install) | SignalStage::Microphones(install) => {
             Some(install(law.values, rate_hz))
@@ -137,10 +137,10 @@ pub(crate) fn microphone_stage(spec: &LawSpec, rate_hz: f64) -> Option<Box<dyn M
 }
 
 /// Returns the laws with an effect on pressure, with their indices in the list, in the order in which they act.
-pub(crate) fn of_pressure(installed: &[LawSpec]) -> impl Iterator<Item = (u64, &LawSpec)> {
+pub(crate) fn pressure_laws(installed: &[LawSpec]) -> impl Iterator<Item = (u64, &LawSpec)> {
     let those = move |wanted: fn(&SignalStage) -> bool| {
-        let acting = LAWS.acting(installed).filter(move |law| wanted(law.acts));
-        acting.map(|law| (law.place as u64, law.values.spec))
+        let acting = LAWS.active(installed).filter(move |law| wanted(law.effect));
+        acting.map(|law| (law.index as u64, law.values.spec))
     };
     let fields = those(|acts| matches!(acts, SignalStage::Field(_)));
     fields.chain(those(|acts| matches!(acts, SignalStage::Microphones(_))))
@@ -148,7 +148,7 @@ pub(crate) fn of_pressure(installed: &[LawSpec]) -> impl Iterator<Item = (u64, &
 
 #[cfg(test)]
 mod tests {
-    use super::testing::{RATE_HZ, law, recorded, streamed};
+    use super::testing::{RATE_HZ, law, microphone_output, streamed_microphone_output};
     use super::*;
 
     #[test]
@@ -158,8 +158,11 @@ mod tests {
             spec.check(info).unwrap();
             assert!(spec.is_default(info) && microphone_stage(&spec, RATE_HZ).is_none());
             let before = [0.1, -0.2, 0.3];
-            assert_eq!(recorded(std::slice::from_ref(&spec), 1, &before), before);
-            assert_eq!(streamed(&[spec], &before, 2), before);
+            assert_eq!(
+                microphone_output(std::slice::from_ref(&spec), 1, &before),
+                before
+            );
+            assert_eq!(streamed_microphone_output(&[spec], &before, 2), before);
         }
     }
 
@@ -178,9 +181,12 @@ mod tests {
             ("background_noise", "hum_pa", 0.8),
         ] {
             let laws = [law(id, &[(name, value)])];
-            let whole = recorded(&laws, 0, &pressure);
+            let whole = microphone_output(&laws, 0, &pressure);
             for block in [1, 77, 800] {
-                for (a, b) in streamed(&laws, &pressure, block).iter().zip(&whole) {
+                for (a, b) in streamed_microphone_output(&laws, &pressure, block)
+                    .iter()
+                    .zip(&whole)
+                {
                     assert!((a - b).abs() < 1e-6, "{id} {block}: {a} {b}");
                 }
             }

@@ -27,7 +27,7 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
                                 frequency, where surfaces take them for every reflection and responses take as many at any \
                                 distance; or record at two humidities",
     },
-    acts: SignalStage::Propagation(omit_air_absorption),
+    effect: SignalStage::Propagation(omit_air_absorption),
 };
 
 fn omit_air_absorption(values: LawValues<'_>, effects: &mut PathEffects) {

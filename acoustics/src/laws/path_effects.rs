@@ -20,7 +20,7 @@ pub(crate) struct PathEffects {
     /// Level of all sources above the stated one, dB. Shape (band,).
     pub(super) source_db: BandValues,
     /// Rotation of sources against their stated orientation, degrees: yaw (to the left), pitch (up), in their own axes.
-    pub(super) source_turn_deg: [f32; 2],
+    pub(super) source_rotation_deg: [f32; 2],
     /// Exponent of their patterns above 1.
     pub(super) source_sharpness: f32,
     /// Attenuation behind sources at 1 kHz, besides their patterns, dB.
@@ -28,7 +28,7 @@ pub(crate) struct PathEffects {
     /// Offset of receivers from their stated position, m, in their own axes.
     pub(super) receiver_offset_m: [f32; 3],
     /// Rotation of receivers, degrees: yaw (to the left), pitch (up), roll (to the left), in their own axes.
-    pub(super) receiver_turn_deg: [f32; 3],
+    pub(super) receiver_rotation_deg: [f32; 3],
 }
 
 /// Returns the rotation about the vertical (to the left), then about the sideways axis (up), then about the axis to the back.
@@ -46,11 +46,11 @@ impl Default for PathEffects {
             temperature_error_k: 0.0,
             air_absorption: 1.0,
             source_db: [0.0; BAND_COUNT],
-            source_turn_deg: [0.0; 2],
+            source_rotation_deg: [0.0; 2],
             source_sharpness: 0.0,
             source_beam_db: 0.0,
             receiver_offset_m: [0.0; 3],
-            receiver_turn_deg: [0.0; 3],
+            receiver_rotation_deg: [0.0; 3],
         }
     }
 }
@@ -85,7 +85,7 @@ impl PathEffects {
         speed_m_s: f64,
     ) -> (Vec3, TabulatedPattern) {
         let pattern = source.directivity.pattern(speed_m_s);
-        let axis = match self.source_turn_deg {
+        let axis = match self.source_rotation_deg {
             [0.0, 0.0] => source.axis(),
             [yaw_deg, pitch_deg] => {
                 source.pose.rotation * (turn([yaw_deg, pitch_deg, 0.0]) * Vec3::NEG_Z)
@@ -98,7 +98,7 @@ impl PathEffects {
             let ratio = bands::exact_centre_hz(band) / 1000.0;
             self.source_beam_db * (2.0 * ratio / (1.0 + ratio)) as f32
         });
-        let pattern = pattern.reshaped(|cosine, gain| {
+        let pattern = pattern.map_gains(|cosine, gain| {
             std::array::from_fn(|band| {
                 let own = gain[band];
                 let sharp = if self.source_sharpness == 0.0 || own == 0.0 {
@@ -114,24 +114,24 @@ impl PathEffects {
     }
 
     /// Returns a receiver at its true pose.
-    pub(crate) fn placed(&self, receiver: &Receiver) -> Receiver {
+    pub(crate) fn true_receiver(&self, receiver: &Receiver) -> Receiver {
         let mut placed = receiver.clone();
         let rotation = receiver.pose.rotation;
         if self.receiver_offset_m != [0.0; 3] {
             placed.pose.position += rotation * Vec3::from_array(self.receiver_offset_m);
         }
-        if self.receiver_turn_deg != [0.0; 3] {
-            placed.pose.rotation = rotation * turn(self.receiver_turn_deg);
+        if self.receiver_rotation_deg != [0.0; 3] {
+            placed.pose.rotation = rotation * turn(self.receiver_rotation_deg);
         }
         placed
     }
 
     /// Applies sources' effects to all energies.
-    pub(crate) fn at_source(&self, echogram: &mut Echogram) {
+    pub(crate) fn apply_to_echogram(&self, echogram: &mut Echogram) {
         if self.source_db == [0.0; BAND_COUNT] {
             return;
         }
-        self.on_paths(&mut echogram.paths);
+        self.apply_to_paths(&mut echogram.paths);
         let gain = self.source_gain();
         for bin in &mut echogram.tail.bins {
             for (energy, gain) in bin.iter_mut().zip(gain) {
@@ -141,7 +141,7 @@ impl PathEffects {
     }
 
     /// Applies sources' effects to the energies of early paths.
-    pub(crate) fn on_paths(&self, paths: &mut [PropagationPath]) {
+    pub(crate) fn apply_to_paths(&self, paths: &mut [PropagationPath]) {
         if self.source_db == [0.0; BAND_COUNT] {
             return;
         }

@@ -35,7 +35,7 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
         separating_experiment: "record at two or more distances: a delay shifts all arrivals by the same time at all places, warmth and \
                                 clocks in proportion to the time, a wrong position each path by another",
     },
-    acts: SignalStage::Microphones(install),
+    effect: SignalStage::Microphones(install),
 };
 
 fn install(values: LawValues<'_>, rate_hz: f64) -> Box<dyn MicrophoneStage> {
@@ -88,11 +88,11 @@ fn sinc(fraction: f64, half: usize) -> Vec<f32> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{RATE_HZ, law, recorded};
+    use super::super::testing::{RATE_HZ, law, microphone_output};
     use realfft::num_complex::Complex;
 
     fn delayed(delay_s: f64) -> Vec<f32> {
-        recorded(
+        microphone_output(
             &[law("recording_delay", &[("delay_s", delay_s)])],
             0,
             &[1.0],

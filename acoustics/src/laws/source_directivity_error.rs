@@ -41,12 +41,12 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
                                 stated for each turn, high octaves most, late sound hardly; a gain or a response changes by the \
                                 same for all turns",
     },
-    acts: SignalStage::Propagation(turn),
+    effect: SignalStage::Propagation(turn),
 };
 
 fn turn(values: LawValues<'_>, effects: &mut PathEffects) {
-    effects.source_turn_deg[0] += values.get("yaw_deg") as f32;
-    effects.source_turn_deg[1] += values.get("pitch_deg") as f32;
+    effects.source_rotation_deg[0] += values.get("yaw_deg") as f32;
+    effects.source_rotation_deg[1] += values.get("pitch_deg") as f32;
     effects.source_sharpness += values.get("sharpness") as f32;
     effects.source_beam_db += values.get("beam_db") as f32;
 }

@@ -26,7 +26,7 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
                                 at all times, bands and places, a wrong distance is not; the gain of a microphone raises background \
                                 noise too, that of a source does not",
     },
-    acts: SignalStage::Propagation(apply_gain),
+    effect: SignalStage::Propagation(apply_gain),
 };
 
 fn apply_gain(values: LawValues<'_>, effects: &mut PathEffects) {

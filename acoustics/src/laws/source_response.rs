@@ -21,7 +21,7 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
                                 absorption grows with time; with all sources off, background noise bears the response of the \
                                 microphone and not that of a source",
     },
-    acts: SignalStage::Propagation(apply_response),
+    effect: SignalStage::Propagation(apply_response),
 };
 
 fn apply_response(values: LawValues<'_>, effects: &mut PathEffects) {

@@ -28,7 +28,7 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
                                 excitation keeps its length and pitch; a clock stretches both, a delay nothing; a known distance \
                                 tells warmth from a wrong size of the room",
     },
-    acts: SignalStage::Propagation(apply_temperature_error),
+    effect: SignalStage::Propagation(apply_temperature_error),
 };
 
 fn apply_temperature_error(values: LawValues<'_>, effects: &mut PathEffects) {

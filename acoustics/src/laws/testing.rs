@@ -27,13 +27,13 @@ pub(super) fn with_listener<T>(
         receiver,
         heads,
         speed_m_s: 343.2,
-        room,
-        own,
+        room_key: room,
+        microphone_key: own,
     })
 }
 
 /// Returns the output of one microphone, its ringing included.
-pub(super) fn recorded(laws: &[LawSpec], seed: u64, pressure: &[f32]) -> Vec<f32> {
+pub(super) fn microphone_output(laws: &[LawSpec], seed: u64, pressure: &[f32]) -> Vec<f32> {
     let here = Receiver::omni(glam::Vec3::ZERO);
     with_listener(&here, seed, RandomKey::root(seed), |listener| {
         MicrophoneChain::record(laws, RATE_HZ, listener, pressure.to_vec())
@@ -41,14 +41,18 @@ pub(super) fn recorded(laws: &[LawSpec], seed: u64, pressure: &[f32]) -> Vec<f32
 }
 
 /// Returns the same block by block.
-pub(super) fn streamed(laws: &[LawSpec], pressure: &[f32], block: usize) -> Vec<f32> {
+pub(super) fn streamed_microphone_output(
+    laws: &[LawSpec],
+    pressure: &[f32],
+    block: usize,
+) -> Vec<f32> {
     let mut microphones = MicrophoneChain::new(RATE_HZ);
     let here = Receiver::omni(glam::Vec3::ZERO);
     let mut out = pressure.to_vec();
     for (k, samples) in out.chunks_mut(block).enumerate() {
         let own = RandomKey::root(0).child(k as u64);
         with_listener(&here, 0, own, |listener| {
-            microphones.hear(laws, listener, samples);
+            microphones.process_block(laws, listener, samples);
         });
     }
     out

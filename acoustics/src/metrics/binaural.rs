@@ -1,7 +1,7 @@
 //! Binaural measures: cross-correlation, time and level differences.
 
 use super::filters::{BandWidth, ZeroPhaseFilters};
-use super::response::{DIRECT_S, energy, start};
+use super::response::{DIRECT_SOUND_S, energy, onset_sample};
 use serde::Serialize;
 use std::f64::consts::PI;
 
@@ -51,18 +51,23 @@ pub struct BinauralBandMetrics {
 /// # Source
 /// ISO 3382-1:2009, annex B: the largest magnitude of the normalized cross-correlation over lags up to 1 ms. IEC 61260-1:2014
 /// (bands).
-pub fn of_ears(left: &[f32], right: &[f32], rate_hz: f64, width: BandWidth) -> BinauralMetrics {
+pub fn binaural_metrics(
+    left: &[f32],
+    right: &[f32],
+    rate_hz: f64,
+    width: BandWidth,
+) -> BinauralMetrics {
     let mut metrics = BinauralMetrics {
         bands: vec![BinauralBandMetrics::default(); width.count()],
         ..BinauralMetrics::default()
     };
-    let Some(start) = start(&[left, right]) else {
+    let Some(start) = onset_sample(&[left, right]) else {
         return metrics;
     };
     let lags = libm::ceil(LARGEST_S * rate_hz) as usize;
     let longest = left.len().max(right.len());
     let mut filters = ZeroPhaseFilters::new(width, rate_hz, longest);
-    let direct = start + (DIRECT_S * rate_hz) as usize + 1;
+    let direct = start + (DIRECT_SOUND_S * rate_hz) as usize + 1;
     let whole = [left, right].map(|ear| filters.spectrum(ear));
     let first = [left, right].map(|ear| filters.spectrum(&ear[..direct.min(ear.len())]));
     let early = start + (EARLY_S * rate_hz) as usize;
@@ -75,9 +80,9 @@ pub fn of_ears(left: &[f32], right: &[f32], rate_hz: f64, width: BandWidth) -> B
             continue;
         };
         // Ringing before the start belongs to the early sound.
-        let end = heard[0].len() - filters.before();
+        let end = heard[0].len() - filters.leading_samples();
         let [l, r] = heard.map(|ear| in_time(&ear, end));
-        let early = (early + filters.before()).min(l.len());
+        let early = (early + filters.leading_samples()).min(l.len());
         let iacc = |l: &[f32], r: &[f32]| peak(l, r, lags, rate_hz, true).map(|found| found.1);
         found.iacc_early = iacc(&l[..early], &r[..early]);
         found.iacc_late = iacc(&l[early..], &r[early..]);
@@ -91,7 +96,7 @@ pub fn of_ears(left: &[f32], right: &[f32], rate_hz: f64, width: BandWidth) -> B
     let cut = |ear: &[f32]| energy(&ear[..direct.min(ear.len())]);
     metrics.ild_db = super::decibels(cut(left), cut(right));
     let [l, r] = first.map(|ear| filters.low_pass(&ear, FINE_HZ));
-    let end = l.len() - filters.before();
+    let end = l.len() - filters.leading_samples();
     let (l, r) = (in_time(&l, end), in_time(&r, end));
     metrics.itd_s = peak(&l, &r, lags, rate_hz, false).map(|found| found.0);
     metrics
@@ -200,7 +205,7 @@ mod tests {
             let sin = libm::sin(f64::to_radians(azimuth_deg));
             let delay_s = |cos| 0.01 + woodworth_delay_s(cos, 0.0875, 343.2);
             let (left, right) = (delay_s(sin), delay_s(-sin));
-            let found = of_ears(
+            let found = binaural_metrics(
                 &pulse(left, 1.0),
                 &pulse(right, 0.5),
                 RATE_HZ,
@@ -228,7 +233,7 @@ mod tests {
         let down: Vec<f32> = left.iter().map(|x| -0.3 * x).collect();
         for width in [BandWidth::Octave, BandWidth::ThirdOctave] {
             for right in [&left, &down] {
-                for band in of_ears(&left, right, RATE_HZ, width).bands {
+                for band in binaural_metrics(&left, right, RATE_HZ, width).bands {
                     for iacc in [band.iacc_early, band.iacc_late, band.iacc] {
                         assert!((iacc.unwrap() - 1.0).abs() < 1e-5, "{iacc:?}");
                     }
@@ -236,7 +241,7 @@ mod tests {
             }
         }
         // B T independent values: the largest of some lags is a few times 1 / sqrt(2 B T).
-        let found = of_ears(&left, &other, RATE_HZ, BandWidth::Octave).bands;
+        let found = binaural_metrics(&left, &other, RATE_HZ, BandWidth::Octave).bands;
         assert!(
             found[5].iacc.unwrap() < 0.15 && found[5].iacc_late.unwrap() < 0.15,
             "{found:?}"
@@ -253,7 +258,7 @@ mod tests {
             both.map(|(c, o)| c * share.sqrt() + o * (1.0 - share).sqrt())
                 .collect()
         };
-        let found = of_ears(&ear(0), &ear(1), RATE_HZ, BandWidth::Octave);
+        let found = binaural_metrics(&ear(0), &ear(1), RATE_HZ, BandWidth::Octave);
         // Standard error (1 - a²) / sqrt(2 B T) = 0.013 at 2 kHz.
         assert!(
             (found.bands[5].iacc.unwrap() - 0.6).abs() < 0.05,
@@ -264,7 +269,7 @@ mod tests {
 
     #[test]
     fn silence_has_no_numbers() {
-        let found = of_ears(&[0.0; 100], &[0.0; 100], RATE_HZ, BandWidth::Octave);
+        let found = binaural_metrics(&[0.0; 100], &[0.0; 100], RATE_HZ, BandWidth::Octave);
         assert_eq!((found.itd_s, found.ild_db), (None, None));
         assert!(
             found
@@ -272,7 +277,7 @@ mod tests {
                 .iter()
                 .all(|band| *band == BinauralBandMetrics::default())
         );
-        let one = of_ears(
+        let one = binaural_metrics(
             &pulse(0.01, 1.0),
             &vec![0.0; 9600],
             RATE_HZ,

@@ -161,7 +161,7 @@ impl ZeroPhaseFilters {
     }
 
     /// Returns the number of samples of [`Self::band`] before the signal.
-    pub(super) fn before(&self) -> usize {
+    pub(super) fn leading_samples(&self) -> usize {
         (0.5 * RING_S * self.rate_hz) as usize
     }
 }

@@ -1,7 +1,7 @@
 //! Lateral energy fraction of early sound.
 
 use crate::bands::BAND_COUNT;
-use crate::directions::{CELL_COUNT, within};
+use crate::directions::{CELL_COUNT, direction_in_cell};
 use crate::echogram::Echogram;
 use crate::receiver::{Receiver, ReceiverKind};
 use glam::Vec3;
@@ -96,7 +96,7 @@ fn mean_square(cell: usize, axis: Vec3) -> f64 {
     let mut sum = 0.0;
     for (u, in_u) in PLACES {
         for (v, in_v) in PLACES {
-            let cosine = f64::from(within(cell, u, v).dot(axis));
+            let cosine = f64::from(direction_in_cell(cell, u, v).dot(axis));
             sum += in_u * in_v * cosine * cosine;
         }
     }
@@ -106,13 +106,13 @@ fn mean_square(cell: usize, axis: Vec3) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::directions::{DirectionalEnergy, cell_of};
+    use crate::directions::{DirectionalEnergy, direction_cell};
     use crate::echogram::{EnergyHistogram, PropagationPath};
 
     fn path(length_m: f64, energy: f32, arrival: Vec3) -> PropagationPath {
         PropagationPath {
             planes: Vec::new(),
-            bends: Vec::new(),
+            diffraction_points: Vec::new(),
             length_m,
             energy: [energy; BAND_COUNT],
             arrival,
@@ -167,7 +167,8 @@ mod tests {
         };
         let one_sided = {
             let mut directions = DirectionalEnergy::default();
-            directions.energy[cell_of(Vec3::new(1.0, 0.1, 0.1).normalize())] = [1.0; BAND_COUNT];
+            directions.energy[direction_cell(Vec3::new(1.0, 0.1, 0.1).normalize())] =
+                [1.0; BAND_COUNT];
             directions
         };
         let lf = |directions: Vec<DirectionalEnergy>| {

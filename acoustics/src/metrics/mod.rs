@@ -6,11 +6,11 @@ mod filters;
 mod lateral;
 mod response;
 
-pub use binaural::{BinauralBandMetrics, BinauralMetrics, of_ears};
+pub use binaural::{BinauralBandMetrics, BinauralMetrics, binaural_metrics};
 pub use decay::{BandMetrics, EnergyCurve};
 pub use filters::BandWidth;
 pub use lateral::{lateral_axis, lateral_fraction};
-pub use response::of_impulse_response;
+pub use response::impulse_response_metrics;
 
 use crate::bands::BAND_COUNT;
 use crate::echogram::{Echogram, PropagationPath};
@@ -21,7 +21,7 @@ pub type Metrics = [BandMetrics; BAND_COUNT];
 /// Returns the parameters of an echogram: exact paths and the traced tail, without any noise realisation.
 ///
 /// Times count from the first arrival.
-pub fn of_echogram(echogram: &Echogram) -> Metrics {
+pub fn echogram_metrics(echogram: &Echogram) -> Metrics {
     let tail = &echogram.tail;
     std::array::from_fn(|band| {
         let paths = || {
@@ -78,6 +78,6 @@ mod tests {
 
     #[test]
     fn silence_has_no_numbers() {
-        assert_eq!(of_echogram(&Echogram::default()), Metrics::default());
+        assert_eq!(echogram_metrics(&Echogram::default()), Metrics::default());
     }
 }

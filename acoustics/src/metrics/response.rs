@@ -4,7 +4,7 @@ use super::decay::{BandMetrics, EnergyCurve};
 use super::filters::{BandWidth, ZeroPhaseFilters};
 
 /// Duration of the direct sound after the start, s.
-pub(super) const DIRECT_S: f64 = 0.0025;
+pub(super) const DIRECT_SOUND_S: f64 = 0.0025;
 
 /// Returns the parameters of an impulse response, by octave or third octave. Shape (band,).
 ///
@@ -15,12 +15,16 @@ pub(super) const DIRECT_S: f64 = 0.0025;
 /// # Source
 /// ISO 3382-1:2009, clause 5.3.3 (backward integration) and annex A.3.4 (start); IEC 61260-1:2014 (bands); F. Jacobsen, J. Sound
 /// Vib. 115, 163 (1987) (ringing).
-pub fn of_impulse_response(samples: &[f32], rate_hz: f64, width: BandWidth) -> Vec<BandMetrics> {
+pub fn impulse_response_metrics(
+    samples: &[f32],
+    rate_hz: f64,
+    width: BandWidth,
+) -> Vec<BandMetrics> {
     let mut metrics = vec![BandMetrics::default(); width.count()];
-    let Some(start) = start(&[samples]) else {
+    let Some(start) = onset_sample(&[samples]) else {
         return metrics;
     };
-    let direct = (start + (DIRECT_S * rate_hz) as usize + 1).min(samples.len());
+    let direct = (start + (DIRECT_SOUND_S * rate_hz) as usize + 1).min(samples.len());
     let mut rest = samples.to_vec();
     rest[..direct].fill(0.0);
     let mut filters = ZeroPhaseFilters::new(width, rate_hz, samples.len());
@@ -33,7 +37,7 @@ pub fn of_impulse_response(samples: &[f32], rate_hz: f64, width: BandWidth) -> V
             continue;
         };
         let mut curve = EnergyCurve::new();
-        let end = filtered.len() - filters.before();
+        let end = filtered.len() - filters.leading_samples();
         for (k, x) in filtered.iter().enumerate() {
             // A filter spreads a pulse to both sides; energy before the start belongs to it.
             let sample = if k < end { k.max(start) } else { start };
@@ -51,7 +55,7 @@ pub fn of_impulse_response(samples: &[f32], rate_hz: f64, width: BandWidth) -> V
 }
 
 /// Returns the first sample at which one of several channels rises to -20 dB of the peak of all; `None` in silence.
-pub(super) fn start(channels: &[&[f32]]) -> Option<usize> {
+pub(super) fn onset_sample(channels: &[&[f32]]) -> Option<usize> {
     let all = channels.iter().flat_map(|channel| channel.iter());
     let peak = all.fold(0.0_f32, |peak, x| peak.max(x.abs()));
     let loud = |x: &f32| peak > 0.0 && x.abs() >= 0.1 * peak;
@@ -85,7 +89,7 @@ mod tests {
         let samples = decaying(rate_hz, t60, 16_000);
         // A band B Hz wide holds B T independent values: low bands scatter, the upper ones must be close.
         for (width, from) in [(BandWidth::Octave, 3), (BandWidth::ThirdOctave, 14)] {
-            let found = of_impulse_response(&samples, rate_hz, width);
+            let found = impulse_response_metrics(&samples, rate_hz, width);
             for (band, metrics) in found.iter().enumerate().skip(from) {
                 let Some(t30) = metrics.t30_s else {
                     assert!(width.edges_hz(band).0 >= 8000.0);
@@ -105,7 +109,7 @@ mod tests {
         samples[480] = 2.0;
         samples[480 + 4800] = 1.0;
         for width in [BandWidth::Octave, BandWidth::ThirdOctave] {
-            for (band, found) in of_impulse_response(&samples, rate_hz, width)
+            for (band, found) in impulse_response_metrics(&samples, rate_hz, width)
                 .iter()
                 .enumerate()
             {
@@ -132,12 +136,12 @@ mod tests {
     #[test]
     fn silence_and_bands_above_half_the_rate_have_no_numbers() {
         for samples in [&[0.0_f32; 100][..], &[]] {
-            let found = of_impulse_response(samples, 16_000.0, BandWidth::ThirdOctave);
+            let found = impulse_response_metrics(samples, 16_000.0, BandWidth::ThirdOctave);
             assert_eq!(found, vec![BandMetrics::default(); 24]);
         }
         let mut pulse = [0.0; 100];
         pulse[20] = 1.0;
-        let found = of_impulse_response(&pulse, 8_000.0, BandWidth::Octave);
+        let found = impulse_response_metrics(&pulse, 8_000.0, BandWidth::Octave);
         assert!(found[6].g_db.is_some() && found[7] == BandMetrics::default());
     }
 }

@@ -48,7 +48,7 @@ impl Plane {
 ///
 /// # Determinism
 /// Equal input, equal output: larger triangles come first, equal ones in order.
-pub(super) fn cluster(corners: &[[Vec3; 3]]) -> (Vec<Plane>, Vec<u32>) {
+pub(super) fn cluster_coplanar(corners: &[[Vec3; 3]]) -> (Vec<Plane>, Vec<u32>) {
     let mut order: Vec<(usize, f64, DVec3)> = Vec::with_capacity(corners.len());
     let mut pace = PollEvery::new(TRIANGLES_PER_CHECK);
     for (index, [a, b, c]) in corners.iter().enumerate() {
@@ -201,7 +201,7 @@ mod tests {
     fn a_split_wall_is_one_plane_and_a_parallel_one_another() {
         let mut triangles = grid(10, |u, v| Vec3::new(6.0 * u, 3.0 * v, 5.0));
         triangles.extend(grid(3, |u, v| Vec3::new(6.0 * u, 3.0 * v, 5.1)));
-        let (planes, of_triangle) = cluster(&triangles);
+        let (planes, of_triangle) = cluster_coplanar(&triangles);
         assert_eq!(planes.len(), 2);
         assert!(of_triangle[..200].iter().all(|id| *id == of_triangle[0]));
         assert!(of_triangle[200..].iter().all(|id| *id != of_triangle[0]));
@@ -213,7 +213,7 @@ mod tests {
         let turn = glam::Quat::from_rotation_y(0.7345);
         let at =
             |u: f32, v: f32| turn * Vec3::new(7.3 * u, 2.7 * v, 41.3) + Vec3::new(3.3, 0.1, -7.7);
-        let (planes, _) = cluster(&grid(12, at));
+        let (planes, _) = cluster_coplanar(&grid(12, at));
         assert_eq!(planes.len(), 1);
     }
 
@@ -226,14 +226,14 @@ mod tests {
         }));
         triangles.push([Vec3::ZERO, Vec3::X, Vec3::new(0.5, 1e-6, 0.0)]);
         triangles.push([Vec3::ONE; 3]);
-        let (planes, of_triangle) = cluster(&triangles);
+        let (planes, of_triangle) = cluster_coplanar(&triangles);
         assert_eq!(planes.len(), 2);
         assert_eq!(of_triangle[16..], [super::super::NO_PLANE; 2]);
     }
 
     #[test]
     fn a_mirror_image_lies_as_far_behind() {
-        let (planes, _) = cluster(&grid(1, |u, v| Vec3::new(6.0, 3.0 * u, 5.0 * v)));
+        let (planes, _) = cluster_coplanar(&grid(1, |u, v| Vec3::new(6.0, 3.0 * u, 5.0 * v)));
         let image = planes[0].mirror(DVec3::new(1.2, 1.4, 1.5));
         assert!((image - DVec3::new(10.8, 1.4, 1.5)).length() < 1e-12);
     }

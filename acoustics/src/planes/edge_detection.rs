@@ -57,7 +57,7 @@ struct FaceRim {
 ///
 /// # Determinism
 /// Equal input, equal output.
-pub(super) fn find(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Vec<DiffractionEdge> {
+pub(super) fn find_edges(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Vec<DiffractionEdge> {
     let kept = two_of_each(corners);
     let of_triangle: Vec<u32> = kept.iter().map(|k| of_triangle[*k]).collect();
     let corners: Vec<[Vec3; 3]> = kept.into_iter().map(|k| corners[k]).collect();
@@ -246,8 +246,8 @@ fn widest_gap(ends: &[Vec3; 2], into: &[Vec3]) -> Option<DiffractionEdge> {
     let (sin, cos) = dwell_scene::math::sin_cos(middle);
     (open_rad > PI + LEAST_FOLD_RAD).then_some(DiffractionEdge {
         ends: *ends,
-        outward: first * cos + second * sin,
-        open_rad,
+        outward_direction: first * cos + second * sin,
+        air_angle_rad: open_rad,
     })
 }
 
@@ -268,8 +268,8 @@ fn merge(pieces: &[DiffractionEdge]) -> Vec<DiffractionEdge> {
             for (_, b) in &at[n + 1..] {
                 let (p, q) = (&pieces[*a], &pieces[*b]);
                 if along(p).dot(along(q)).abs() > STRAIGHT
-                    && p.outward.dot(q.outward) > 0.98
-                    && (p.open_rad - q.open_rad).abs() < 0.2
+                    && p.outward_direction.dot(q.outward_direction) > 0.98
+                    && (p.air_angle_rad - q.air_angle_rad).abs() < 0.2
                 {
                     sets.join(*a, *b);
                 }
@@ -381,17 +381,17 @@ mod tests {
     fn a_sheet_has_its_rim_however_it_is_cut() {
         for n in [1, 2, 7] {
             let sheet = grid(n, |u, v| Vec3::new(2.0 * u, 3.0 * v, 1.0));
-            let edges = find(&sheet, &vec![0; sheet.len()]);
+            let edges = find_edges(&sheet, &vec![0; sheet.len()]);
             let found = lengths(&edges);
             for (found, wanted) in found.iter().zip([2.0, 2.0, 3.0, 3.0]) {
                 assert!((found - wanted).abs() < 1e-5, "{n}: {edges:?}");
             }
             assert_eq!(edges.len(), 4);
             for edge in edges {
-                assert!((edge.open_rad - TAU).abs() < 1e-4);
+                assert!((edge.air_angle_rad - TAU).abs() < 1e-4);
                 let middle = edge.ends[0].lerp(edge.ends[1], 0.5);
                 let away = (middle - Vec3::new(1.0, 1.5, 1.0)).normalize();
-                assert!(edge.outward.dot(away) > 0.999, "{edge:?}");
+                assert!(edge.outward_direction.dot(away) > 0.999, "{edge:?}");
             }
         }
     }
@@ -413,13 +413,13 @@ mod tests {
                 faces.extend(face);
             }
         }
-        let edges = find(&faces, &planes);
+        let edges = find_edges(&faces, &planes);
         assert_eq!(edges.len(), 12);
         for edge in edges {
-            assert!((edge.open_rad - 1.5 * PI).abs() < 1e-4);
+            assert!((edge.air_angle_rad - 1.5 * PI).abs() < 1e-4);
             let middle = edge.ends[0].lerp(edge.ends[1], 0.5);
             let away = (middle - Vec3::splat(0.5)).normalize();
-            assert!(edge.outward.dot(away) > 0.999);
+            assert!(edge.outward_direction.dot(away) > 0.999);
         }
     }
 
@@ -433,7 +433,7 @@ mod tests {
         let planes: Vec<u32> = (0..one.len()).map(|k| u32::from(k >= 8)).collect();
         let times = |n: usize| {
             let corners: Vec<[Vec3; 3]> = (0..n).flat_map(|_| one.clone()).collect();
-            find(&corners, &planes.repeat(n))
+            find_edges(&corners, &planes.repeat(n))
         };
         assert!(!times(2).is_empty());
         assert_eq!(times(2), times(3));
@@ -444,7 +444,7 @@ mod tests {
     fn t_junctions_within_a_wall_are_no_edges() {
         let mut wall = grid(1, |u, v| Vec3::new(2.0 * u, 2.0 * v, 0.0));
         wall.extend(grid(3, |u, v| Vec3::new(2.0 + u, 2.0 * v, 0.0)));
-        let edges = find(&wall, &vec![0; wall.len()]);
+        let edges = find_edges(&wall, &vec![0; wall.len()]);
         // The rim: two sides, and above and below either one piece or two.
         assert!(edges.len() <= 6);
         let between =
@@ -458,13 +458,13 @@ mod tests {
             let (sin, cos) = dwell_scene::math::sin_cos(degrees.to_radians());
             let mut roof = grid(1, |u, v| Vec3::new(u, v, 0.0));
             roof.extend(grid(1, |u, v| Vec3::new(-u * cos, v, -u * sin)));
-            let edges = find(&roof, &[0, 0, 1, 1]);
+            let edges = find_edges(&roof, &[0, 0, 1, 1]);
             let ridge =
                 |edge: &&DiffractionEdge| edge.ends.iter().all(|end| end.x == 0.0 && end.z == 0.0);
             edges.iter().filter(ridge).count()
         };
         assert_eq!((folded(20.0), folded(40.0)), (0, 1));
         let small = grid(1, |u, v| 0.1 * Vec3::new(u, v, 0.0));
-        assert!(find(&small, &[0, 0]).is_empty());
+        assert!(find_edges(&small, &[0, 0]).is_empty());
     }
 }

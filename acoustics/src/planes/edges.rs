@@ -9,17 +9,17 @@ pub struct DiffractionEdge {
     /// Its ends, m.
     pub ends: [Vec3; 2],
     /// Away from the solid, in the middle of the air around it, unit length, perpendicular to the edge.
-    pub outward: Vec3,
+    pub outward_direction: Vec3,
     /// Angle of the air around it, rad; from 210 degrees up to a full turn, which is a sheet's.
-    pub open_rad: f32,
+    pub air_angle_rad: f32,
 }
 
 impl DiffractionEdge {
     fn moved(&self, pose: &Pose) -> Self {
         Self {
             ends: self.ends.map(|end| pose.transform_point(end)),
-            outward: (pose.rotation * self.outward).normalize_or_zero(),
-            open_rad: self.open_rad,
+            outward_direction: (pose.rotation * self.outward_direction).normalize_or_zero(),
+            air_angle_rad: self.air_angle_rad,
         }
     }
 }
@@ -36,7 +36,7 @@ struct MovingEdges {
 #[derive(Clone, Debug)]
 pub(crate) struct EdgeTable {
     /// Of everything that never moves.
-    pub(crate) fixed: Vec<DiffractionEdge>,
+    pub(crate) static_edges: Vec<DiffractionEdge>,
     /// Of the parts that have edges.
     moving: Vec<MovingEdges>,
 }
@@ -44,7 +44,7 @@ pub(crate) struct EdgeTable {
 impl EdgeTable {
     pub(super) fn new(fixed: Vec<DiffractionEdge>) -> Self {
         Self {
-            fixed,
+            static_edges: fixed,
             moving: Vec::new(),
         }
     }
@@ -56,12 +56,12 @@ impl EdgeTable {
     }
 
     /// Returns the edges of the moving parts at their initial poses.
-    pub(crate) fn at_start(&self, house: &House) -> Vec<DiffractionEdge> {
+    pub(crate) fn initial_edges(&self, house: &House) -> Vec<DiffractionEdge> {
         self.moved(|part| house.parts[part].world_from_part)
     }
 
     /// Returns the same in a state.
-    pub(crate) fn in_state(&self, house: &House, state: &State) -> Vec<DiffractionEdge> {
+    pub(crate) fn edges_in_state(&self, house: &House, state: &State) -> Vec<DiffractionEdge> {
         let start = |part| house.parts[part].world_from_part;
         self.moved(|part| {
             state

@@ -20,7 +20,7 @@ pub const NO_PLANE: u32 = u32::MAX;
 /// Triangles between checks for cancellation.
 const TRIANGLES_PER_CHECK: usize = 512;
 /// Least area of the walls of rooms, m².
-pub(crate) const WALL_M2: f32 = 4.0;
+pub(crate) const MIN_WALL_AREA_M2: f32 = 4.0;
 
 /// The piece of a plane that a triangle belongs to.
 #[derive(Clone, Copy, Debug)]
@@ -29,13 +29,13 @@ pub(crate) struct ReflectorPanel {
     pub(crate) area_m2: f32,
     /// Relief over a wall behind or around it, rms over both, m; infinite for panels with no wall near, for walls and for
     /// parts that can move.
-    pub(crate) relief_m: f32,
+    pub(crate) relief_depth_m: f32,
 }
 
 impl ReflectorPanel {
     const NONE: Self = Self {
         area_m2: 0.0,
-        relief_m: f32::INFINITY,
+        relief_depth_m: f32::INFINITY,
     };
 }
 
@@ -55,7 +55,7 @@ struct MovingPlanes {
 #[derive(Clone, Debug)]
 pub struct PlaneTable {
     /// Static planes, then those of the moving parts at their initial poses.
-    pub(crate) at_start: Vec<Plane>,
+    pub(crate) initial_planes: Vec<Plane>,
     /// Position of the first triangle of each placed mesh in `of_triangle`. Shape (placed,).
     first_triangle: Vec<u32>,
     of_triangle: Vec<u32>,
@@ -87,18 +87,18 @@ impl PlaneTable {
             .iter()
             .map(|source| corners_of(source.placed as usize, source.triangle))
             .collect();
-        let (mut at_start, planes) = cluster::cluster(&fixed);
+        let (mut at_start, planes) = cluster::cluster_coplanar(&fixed);
         let mut of_triangle = vec![NO_PLANE; total];
         let mut panels = vec![ReflectorPanel::NONE; total];
-        let pieces = panels::find(&fixed, &planes);
-        let reliefs = surface_relief::reliefs(&fixed, &at_start, &planes, &pieces);
-        let mut edges = EdgeTable::new(edge_detection::find(&fixed, &planes));
+        let pieces = panels::find_panels(&fixed, &planes);
+        let reliefs = surface_relief::relief_depths_m(&fixed, &at_start, &planes, &pieces);
+        let mut edges = EdgeTable::new(edge_detection::find_edges(&fixed, &planes));
         for (k, source) in geometry.static_triangles.iter().enumerate() {
             let place = (first_triangle[source.placed as usize] + source.triangle) as usize;
             of_triangle[place] = planes[k];
             panels[place] = ReflectorPanel {
                 area_m2: pieces.area_m2[k],
-                relief_m: reliefs[k],
+                relief_depth_m: reliefs[k],
             };
         }
         let mut largest: Vec<u32> = (0..at_start.len() as u32).collect();
@@ -120,13 +120,13 @@ impl PlaneTable {
                     corners.map(|p| placed.part_from_mesh.transform_point3(p))
                 })
                 .collect();
-            let (planes, of_part) = cluster::cluster(&corners);
+            let (planes, of_part) = cluster::cluster_coplanar(&corners);
             let base = first_triangle[structures + part.index()] as usize;
-            let pieces = panels::find(&corners, &of_part);
+            let pieces = panels::find_panels(&corners, &of_part);
             for (panel, area_m2) in panels[base..].iter_mut().zip(pieces.area_m2) {
                 panel.area_m2 = area_m2;
             }
-            edges.add_moving(part, edge_detection::find(&corners, &of_part));
+            edges.add_moving(part, edge_detection::find_edges(&corners, &of_part));
             for (k, plane) in of_part.into_iter().enumerate() {
                 if plane != NO_PLANE {
                     of_triangle[base + k] = at_start.len() as u32 + plane;
@@ -144,7 +144,7 @@ impl PlaneTable {
             });
         }
         Self {
-            at_start,
+            initial_planes: at_start,
             first_triangle,
             of_triangle,
             panels,
@@ -156,16 +156,16 @@ impl PlaneTable {
 
     /// The number of planes.
     pub fn len(&self) -> usize {
-        self.at_start.len()
+        self.initial_planes.len()
     }
 
     /// Returns whether there are no planes.
     pub fn is_empty(&self) -> bool {
-        self.at_start.is_empty()
+        self.initial_planes.is_empty()
     }
 
     /// Returns the largest static planes, largest first, at most 200.
-    pub(crate) fn largest(&self) -> &[u32] {
+    pub(crate) fn by_decreasing_area(&self) -> &[u32] {
         &self.largest
     }
 
@@ -174,7 +174,7 @@ impl PlaneTable {
     }
 
     /// Returns the plane of a hit; [`NO_PLANE`] where it has none.
-    pub(crate) fn of_hit(&self, house: &House, hit: &Hit) -> u32 {
+    pub(crate) fn plane_of_hit(&self, house: &House, hit: &Hit) -> u32 {
         let place = self.place_of(house, hit);
         place.map_or(NO_PLANE, |place| self.of_triangle[place])
     }
@@ -200,7 +200,7 @@ impl PlaneTable {
     }
 
     /// Returns the initial poses of the moving parts. Shape (moving part,).
-    pub(crate) fn poses_at_start(&self, house: &House) -> Vec<Pose> {
+    pub(crate) fn initial_poses(&self, house: &House) -> Vec<Pose> {
         let parts = self.moving.iter();
         parts
             .map(|moving| house.parts[moving.part].world_from_part)
@@ -255,9 +255,12 @@ mod tests {
         let house = House::shoebox([6.0, 3.0, 5.0], &ShoeboxMaterials::default()).unwrap();
         let table = PlaneTable::new(&house);
         assert_eq!(table.len(), 6);
-        let area: f64 = table.at_start.iter().map(|plane| plane.area_m2).sum();
+        let area: f64 = table.initial_planes.iter().map(|plane| plane.area_m2).sum();
         assert!((area - 126.0).abs() < 1e-4);
-        assert!((table.at_start[table.largest()[0] as usize].area_m2 - 30.0).abs() < 1e-4);
+        assert!(
+            (table.initial_planes[table.by_decreasing_area()[0] as usize].area_m2 - 30.0).abs()
+                < 1e-4
+        );
     }
 
     #[test]

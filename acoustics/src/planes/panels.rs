@@ -24,7 +24,7 @@ pub(super) struct PanelTable {
 /// Joins triangles to panels.
 ///
 /// Contact is tested by axis-aligned boxes: panels that are oblique and close together may count as one.
-pub(super) fn find(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> PanelTable {
+pub(super) fn find_panels(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> PanelTable {
     let boxes: Vec<Aabb> = corners
         .iter()
         .map(|corners| Aabb::from_points(corners.iter().copied()).grown(0.5 * GAP_M))
@@ -119,7 +119,7 @@ mod tests {
         corners.extend(square(2.01, 0.5));
         corners.extend(square(2.5, 0.1));
         let of_triangle = [0, 0, 0, 0, 0, 0, 1, NO_PLANE];
-        let found = find(&corners, &of_triangle).area_m2;
+        let found = find_panels(&corners, &of_triangle).area_m2;
         for (k, wanted) in [2.0, 2.0, 2.0, 2.0, 0.25, 0.25, 0.005, 0.0]
             .into_iter()
             .enumerate()
@@ -134,7 +134,7 @@ mod tests {
         let mut corners: Vec<[Vec3; 3]> = (0..10_000).flat_map(|_| square(0.0, 1.0)).collect();
         corners.extend(square(1.0, 1.0));
         corners.extend(square(2.01, 0.5));
-        let found = find(&corners, &vec![0; corners.len()]);
+        let found = find_panels(&corners, &vec![0; corners.len()]);
         let count = corners.len();
         assert!(found.of_triangle[..count - 2].iter().all(|root| *root == 0));
         assert_eq!(found.of_triangle[count - 2..], [count - 2; 2]);
@@ -144,7 +144,7 @@ mod tests {
     #[test]
     fn a_wall_of_many_triangles_with_loose_corners_is_one_panel() {
         let corners: Vec<[Vec3; 3]> = (0..40).flat_map(|k| square(0.1 * k as f32, 0.1)).collect();
-        let found = find(&corners, &vec![0; corners.len()]).area_m2;
+        let found = find_panels(&corners, &vec![0; corners.len()]).area_m2;
         assert!(found.iter().all(|area| (area - 0.4).abs() < 1e-4));
     }
 }

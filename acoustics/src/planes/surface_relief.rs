@@ -1,7 +1,7 @@
 //! Relief of small panels over the walls behind and around them.
 
 use super::panels::{self, PanelTable};
-use super::{NO_PLANE, Plane, TRIANGLES_PER_CHECK, WALL_M2};
+use super::{MIN_WALL_AREA_M2, NO_PLANE, Plane, TRIANGLES_PER_CHECK};
 use dwell_scene::Aabb;
 use dwell_scene::interrupt::PollEvery;
 use glam::{DVec3, Vec3};
@@ -21,7 +21,7 @@ struct RelievedWall<'a> {
 
 /// Returns the relief of each triangle's panel over the wall that it stands least out of, m, as in [`of_panel`]; infinite
 /// where no wall is near, and for walls. Shape (triangle,).
-pub(super) fn reliefs(
+pub(super) fn relief_depths_m(
     corners: &[[Vec3; 3]],
     planes: &[Plane],
     of_triangle: &[u32],
@@ -29,7 +29,7 @@ pub(super) fn reliefs(
 ) -> Vec<f32> {
     let walls = walls(corners, planes, of_triangle, panels);
     let mut small: Vec<(usize, usize)> = (0..corners.len())
-        .filter(|k| of_triangle[*k] != NO_PLANE && panels.area_m2[*k] < WALL_M2)
+        .filter(|k| of_triangle[*k] != NO_PLANE && panels.area_m2[*k] < MIN_WALL_AREA_M2)
         .map(|k| (panels.of_triangle[k], k))
         .collect();
     small.sort_unstable();
@@ -63,7 +63,7 @@ fn walls<'a>(
 ) -> Vec<RelievedWall<'a>> {
     let mut bounds = vec![Aabb::EMPTY; planes.len()];
     for (k, corners) in corners.iter().enumerate() {
-        if panels.area_m2[k] >= WALL_M2 {
+        if panels.area_m2[k] >= MIN_WALL_AREA_M2 {
             let wall = &mut bounds[of_triangle[k] as usize];
             *wall = wall.union(&Aabb::from_points(*corners));
         }
@@ -104,7 +104,7 @@ fn of_panel<'a>(pieces: &[[Vec3; 3]], walls: impl Iterator<Item = &'a RelievedWa
 
 #[cfg(test)]
 mod tests {
-    use super::super::{cluster::cluster, panels};
+    use super::super::{cluster::cluster_coplanar, panels};
     use super::*;
 
     /// A square whose one side lies along x; `steep`: how much it rises over the other.
@@ -117,9 +117,9 @@ mod tests {
     }
 
     fn found(corners: &[[Vec3; 3]]) -> Vec<f32> {
-        let (planes, of_triangle) = cluster(corners);
-        let panels = panels::find(corners, &of_triangle);
-        reliefs(corners, &planes, &of_triangle, &panels)
+        let (planes, of_triangle) = cluster_coplanar(corners);
+        let panels = panels::find_panels(corners, &of_triangle);
+        relief_depths_m(corners, &planes, &of_triangle, &panels)
     }
 
     fn check(corners: &[[Vec3; 3]], wanted: &[f32]) {

@@ -15,9 +15,9 @@ use crate::signals::Signal;
 use std::fmt::Display;
 
 /// Largest size of a sound file, bytes.
-pub const MOST_BYTES: u64 = 64 << 20;
+pub const MAX_FILE_BYTES: u64 = 64 << 20;
 /// Most samples a channel, in the file and at the requested rate: 35 minutes at 16 kHz.
-pub const MOST_SAMPLES: usize = 1 << 25;
+pub const MAX_SAMPLES: usize = 1 << 25;
 /// Most channels.
 const MOST_CHANNELS: u32 = 64;
 /// Range of sample rates, Hz.
@@ -75,9 +75,9 @@ impl<'a> MonoMix<'a> {
         self.sum += sample;
         self.taken += 1;
         if self.taken == self.channels {
-            if self.samples.len() == MOST_SAMPLES {
-                let found = format!("more than {MOST_SAMPLES}");
-                let allowed = format!("at most {MOST_SAMPLES}");
+            if self.samples.len() == MAX_SAMPLES {
+                let found = format!("more than {MAX_SAMPLES}");
+                let allowed = format!("at most {MAX_SAMPLES}");
                 return Err(fault(self.name, "samples a channel", &found, allowed));
             }
             self.samples
@@ -113,15 +113,15 @@ impl Recording {
     ///
     /// # Errors
     /// [`AcousticsError::SoundFile`] names the value found and the allowed ones: another format, damage, more than
-    /// [`MOST_BYTES`] or [`MOST_SAMPLES`], 1 to 64 channels, 1,000 to 768,000 samples a second, numbers that are not
+    /// [`MAX_FILE_BYTES`] or [`MAX_SAMPLES`], 1 to 64 channels, 1,000 to 768,000 samples a second, numbers that are not
     /// finite, silence.
     ///
     /// # Determinism
     /// WAV and FLAC give the same bits on every machine. The tables of the Vorbis decoder come from the platform's sine and
     /// cosine: between platforms the last bits of its samples can differ.
     pub fn decode(name: &str, bytes: &[u8]) -> Result<Self, AcousticsError> {
-        if bytes.len() as u64 > MOST_BYTES {
-            let allowed = format!("at most {MOST_BYTES}");
+        if bytes.len() as u64 > MAX_FILE_BYTES {
+            let allowed = format!("at most {MAX_FILE_BYTES}");
             return Err(fault(name, "bytes", &bytes.len(), allowed));
         }
         let mix = match bytes {
@@ -174,13 +174,13 @@ impl Recording {
     ///
     /// # Errors
     /// [`AcousticsError::Range`] for a rate outside 1,000 to 192,000, [`AcousticsError::SoundFile`] for more than
-    /// [`MOST_SAMPLES`] at that rate or silence there.
+    /// [`MAX_SAMPLES`] at that rate or silence there.
     pub fn signal(&self, rate_hz: u32) -> Result<Signal, AcousticsError> {
         crate::signals::check_rate(rate_hz)?;
         let length = resample::length(self.samples.len(), self.rate_hz, rate_hz);
-        if !(1..=MOST_SAMPLES).contains(&length) {
+        if !(1..=MAX_SAMPLES).contains(&length) {
             let what = format!("samples at {rate_hz} Hz");
-            let allowed = format!("1 to {MOST_SAMPLES}");
+            let allowed = format!("1 to {MAX_SAMPLES}");
             return Err(fault(&self.name, &what, &length, allowed));
         }
         let mut samples = resample(&self.samples, self.rate_hz, rate_hz);
@@ -199,7 +199,7 @@ impl Recording {
         for sample in &mut samples {
             *sample = (f64::from(*sample) * scale) as f32;
         }
-        Ok(Signal::of(samples.into()))
+        Ok(Signal::from_samples(samples.into()))
     }
 }
 

@@ -31,7 +31,8 @@ impl AcousticScene {
     ) -> Result<Vec<EarlyPath>, AcousticsError> {
         self.check(rays, source, &[receiver])?;
         let position = source.position();
-        let paths = image_sources::find(self.data(), rays, source, receiver).into_iter();
+        let paths =
+            image_sources::find_specular_paths(self.data(), rays, source, receiver).into_iter();
         Ok(paths
             .map(|path| EarlyPath {
                 points: image_sources::corners(self.planes(), &path, position, receiver),
@@ -58,7 +59,7 @@ mod tests {
         let scene = AcousticScene::new(house, AcousticConfig::default()).unwrap();
         let (source, receiver) = (Vec3::new(1.0, 1.2, 1.5), Vec3::new(4.5, 1.6, 3.0));
         let paths = scene
-            .early_paths(&rays, &SoundSourcePose::at(source), receiver)
+            .early_paths(&rays, &SoundSourcePose::omni(source), receiver)
             .unwrap();
         let first = paths.iter().filter(|one| one.path.order() == 1).count();
         assert_eq!(first, 6, "one over each side of the box");

@@ -15,7 +15,7 @@ use crate::planes::{DiffractionEdge, Plane};
 use crate::propagation_data::PropagationData;
 use crate::receiver::{Receiver, ReceiverKind, SoundSourcePose};
 use crate::response::ImpulseResponse;
-use crate::synthesis::{CachedGains, HearingContext, Synthesizer, UpperAir, Wavelet};
+use crate::synthesis::{CachedGains, PathFilter, ReceiverContext, Synthesizer, UpperAirAbsorption};
 use crate::tail::LateReverberation;
 use crate::{image_sources, tail};
 use dwell_scene::parallel::Threads;
@@ -43,7 +43,7 @@ pub struct AcousticScene {
     synthesizer: Arc<Synthesizer>,
     heads: Arc<HeadSet>,
     /// Absorption by air above the highest band, where that can be heard.
-    upper_air: Option<Arc<UpperAir>>,
+    upper_air: Option<Arc<UpperAirAbsorption>>,
 }
 
 impl AcousticScene {
@@ -77,11 +77,11 @@ impl AcousticScene {
     fn apply_laws(&mut self, effects: PathEffects) {
         let air = self.config().air;
         let absorption = self.effects().air_absorption();
-        self.data.apply(effects, &self.stated);
+        self.data.apply_effects(effects, &self.stated);
         let config = *self.config();
         if config.air != air {
             // Interaural delays depend on the speed of sound.
-            self.heads = Arc::new(self.heads.in_air(&config));
+            self.heads = Arc::new(self.heads.with_speed_of_sound_of(&config));
         }
         let share = self.effects().air_absorption();
         if config.air != air || share != absorption {
@@ -89,7 +89,7 @@ impl AcousticScene {
         }
     }
 
-    /// Adds a head that receivers of this scene may use ([`Receiver::wearing`]). A head that is known already costs nothing.
+    /// Adds a head that receivers of this scene may use ([`Receiver::with_head`]). A head that is known already costs nothing.
     pub fn add_head(&mut self, head: &Head) {
         if !self.heads.contains(head.id()) {
             Arc::make_mut(&mut self.heads).add(head);
@@ -97,7 +97,7 @@ impl AcousticScene {
     }
 
     /// Returns the same scene under other effects of laws.
-    pub(crate) fn as_heard(&self, effects: PathEffects) -> Self {
+    pub(crate) fn with_effects(&self, effects: PathEffects) -> Self {
         let mut scene = self.clone();
         scene.apply_laws(effects);
         scene
@@ -134,7 +134,7 @@ impl AcousticScene {
     }
 
     /// Returns the report of acoustic materials: areas, mean absorption, default materials.
-    pub fn explain(&self) -> AcousticReport {
+    pub fn material_report(&self) -> AcousticReport {
         AcousticReport::new(&self.data)
     }
 
@@ -211,7 +211,7 @@ impl AcousticScene {
     ) -> Vec<Echogram> {
         let position = source.position();
         let early = threads.map(receivers.len(), |k| {
-            image_sources::find(&self.data, rays, source, receivers[k])
+            image_sources::find_specular_paths(&self.data, rays, source, receivers[k])
         });
         let late = tail::trace(
             &self.data,
@@ -223,12 +223,14 @@ impl AcousticScene {
             threads,
         );
         let both = early.into_iter().zip(late).zip(receivers);
-        both.map(|((paths, late), receiver)| self.joined(paths, late, position, *receiver))
-            .collect()
+        both.map(|((paths, late), receiver)| {
+            self.join_paths_and_tail(paths, late, position, *receiver)
+        })
+        .collect()
     }
 
     /// Returns the echogram of early paths and a tail.
-    pub(crate) fn joined(
+    pub(crate) fn join_paths_and_tail(
         &self,
         paths: Vec<PropagationPath>,
         late: LateReverberation,
@@ -238,12 +240,12 @@ impl AcousticScene {
         let mut echogram = Echogram {
             paths,
             tail: late.histogram,
-            trace: late.statistics,
+            ray_statistics: late.statistics,
             source,
             direct_length_m: source.as_dvec3().distance(receiver.as_dvec3()),
             speed_m_s: self.config().air.speed_of_sound_m_s(),
         };
-        self.effects().at_source(&mut echogram);
+        self.effects().apply_to_echogram(&mut echogram);
         echogram
     }
 
@@ -287,9 +289,13 @@ impl AcousticScene {
         key: RandomKey,
         threads: Threads,
     ) -> Result<Vec<ImpulseResponse>, AcousticsError> {
-        let placed: Vec<Receiver> = receivers.iter().map(|r| self.effects().placed(r)).collect();
-        let noise = |receiver: &Receiver| between(key, source.position(), receiver.position());
-        let arrived = self.arrivals(rays, source, &placed, key, noise, threads)?;
+        let placed: Vec<Receiver> = receivers
+            .iter()
+            .map(|r| self.effects().true_receiver(r))
+            .collect();
+        let noise = |receiver: &Receiver| arrival_key(key, source.position(), receiver.position());
+        let arrived =
+            self.responses_before_microphones(rays, source, &placed, key, noise, threads)?;
         let both = arrived.into_iter().zip(&placed);
         Ok(both
             .map(|(response, receiver)| self.record(response, receiver, key))
@@ -301,15 +307,19 @@ impl AcousticScene {
     ///
     /// With the key of [`Self::impulse_response`] it has the same random arrivals. The microphones of an array receive the
     /// centre's early paths as plane waves here. A head that is unknown to the scene is replaced by the built-in one.
-    pub fn respond(
+    pub fn impulse_response_of(
         &self,
         echogram: Echogram,
         receiver: &Receiver,
         key: RandomKey,
     ) -> ImpulseResponse {
-        let receiver = &self.effects().placed(receiver);
-        let noise = between(key, echogram.source, receiver.position());
-        self.record(self.arrive(echogram, receiver, None, noise), receiver, key)
+        let receiver = &self.effects().true_receiver(receiver);
+        let noise = arrival_key(key, echogram.source, receiver.position());
+        self.record(
+            self.response_before_microphones(echogram, receiver, None, noise),
+            receiver,
+            key,
+        )
     }
 
     /// Returns a response after the microphone laws.
@@ -320,7 +330,7 @@ impl AcousticScene {
         key: RandomKey,
     ) -> ImpulseResponse {
         let own = key.child("microphone").child(0);
-        let listener = self.listener(receiver, key.child("room"), own);
+        let listener = self.stage_context(receiver, key.child("room"), own);
         let rate_hz = f64::from(self.config().rate_hz);
         ImpulseResponse {
             samples: MicrophoneChain::record(&self.laws, rate_hz, &listener, response.samples),
@@ -329,7 +339,7 @@ impl AcousticScene {
     }
 
     /// Returns the context of a receiver; `room` and `own` as in [`StageContext`].
-    pub(crate) fn listener<'a>(
+    pub(crate) fn stage_context<'a>(
         &'a self,
         receiver: &'a Receiver,
         room: RandomKey,
@@ -339,8 +349,8 @@ impl AcousticScene {
             receiver,
             heads: &self.heads,
             speed_m_s: self.config().air.speed_of_sound_m_s(),
-            room,
-            own,
+            room_key: room,
+            microphone_key: own,
         }
     }
 
@@ -357,7 +367,7 @@ impl AcousticScene {
 
     /// Returns the impulse responses before microphone laws; `noise` keys the random arrivals at a receiver. Shape
     /// (receiver,).
-    pub(crate) fn arrivals(
+    pub(crate) fn responses_before_microphones(
         &self,
         rays: &RayScene,
         source: &SoundSourcePose,
@@ -373,14 +383,14 @@ impl AcousticScene {
         let echograms = self.echograms(rays, source, &centres, key, threads)?;
         Ok(threads.map(receivers.len(), |k| {
             let receiver = &receivers[k];
-            let early = self.early_of_microphones(rays, source, receiver);
+            let early = self.early_paths_per_microphone(rays, source, receiver);
             let echogram = echograms[k].clone();
-            self.arrive(echogram, receiver, early.as_deref(), noise(receiver))
+            self.response_before_microphones(echogram, receiver, early.as_deref(), noise(receiver))
         }))
     }
 
     /// Returns the early paths of each microphone of an array; `None` where the centre's are used.
-    pub(crate) fn early_of_microphones(
+    pub(crate) fn early_paths_per_microphone(
         &self,
         rays: &RayScene,
         source: &SoundSourcePose,
@@ -388,8 +398,8 @@ impl AcousticScene {
     ) -> Option<Vec<Vec<PropagationPath>>> {
         let positions = receiver.microphone_positions()?;
         let found = positions.iter().map(|position| {
-            let mut paths = image_sources::find(&self.data, rays, source, *position);
-            self.effects().on_paths(&mut paths);
+            let mut paths = image_sources::find_specular_paths(&self.data, rays, source, *position);
+            self.effects().apply_to_paths(&mut paths);
             paths
         });
         Some(found.collect())
@@ -397,53 +407,54 @@ impl AcousticScene {
 
     /// Returns early paths at the present positions of source and receiver: the direct path or diffracted ones, and the
     /// `known` reflections that still exist.
-    pub(crate) fn follow(
+    pub(crate) fn updated_early_paths(
         &self,
         rays: &RayScene,
         source: Vec3,
         receiver: Vec3,
         known: &[PropagationPath],
     ) -> Vec<PropagationPath> {
-        let mut paths = image_sources::follow(&self.data, rays, source, receiver, known);
-        self.effects().on_paths(&mut paths);
+        let mut paths = image_sources::revalidate_paths(&self.data, rays, source, receiver, known);
+        self.effects().apply_to_paths(&mut paths);
         paths
     }
 
     /// Returns the filters of paths at each channel of a receiver. Shape (path, channel).
-    pub(crate) fn wavelets(
+    pub(crate) fn path_filters(
         &self,
         speed_m_s: f64,
         paths: &[PropagationPath],
         receiver: &Receiver,
-    ) -> Vec<Vec<Wavelet>> {
+    ) -> Vec<Vec<PathFilter>> {
         let hearing = self.hearing(receiver);
-        self.synthesizer.wavelets(speed_m_s, paths, &hearing)
+        self.synthesizer.path_filters(speed_m_s, paths, &hearing)
     }
 
-    fn hearing<'a>(&'a self, receiver: &'a Receiver) -> HearingContext<'a> {
-        HearingContext {
+    fn hearing<'a>(&'a self, receiver: &'a Receiver) -> ReceiverContext<'a> {
+        ReceiverContext {
             receiver,
             heads: &self.heads,
-            air: self.upper_air.as_deref(),
+            upper_air: self.upper_air.as_deref(),
         }
     }
 
     /// Returns a response without some of its echogram's `paths`, as tracked. Shape (channel, sample), flat.
-    pub(crate) fn without(
+    pub(crate) fn response_without_paths(
         &self,
         response: &ImpulseResponse,
         paths: &[PropagationPath],
         receiver: &Receiver,
     ) -> Vec<f32> {
         let mut samples = response.samples.clone();
-        let wavelets = self.wavelets(response.echogram.speed_m_s, paths, receiver);
-        self.synthesizer.subtract_wavelets(&wavelets, &mut samples);
+        let wavelets = self.path_filters(response.echogram.speed_m_s, paths, receiver);
+        self.synthesizer
+            .subtract_path_filters(&wavelets, &mut samples);
         samples
     }
 
     /// Returns the impulse response of an echogram, before microphone laws. `early`: the paths of each channel where they
     /// are not the centre's.
-    pub(crate) fn arrive(
+    pub(crate) fn response_before_microphones(
         &self,
         echogram: Echogram,
         receiver: &Receiver,
@@ -454,13 +465,13 @@ impl AcousticScene {
     }
 
     /// Returns the same response for a receiver that has rotated in place; `key` as before.
-    pub(crate) fn turn(
+    pub(crate) fn rotated_response(
         &self,
         response: &ImpulseResponse,
         receiver: &Receiver,
         key: RandomKey,
     ) -> ImpulseResponse {
-        let (levels, echogram) = (response.levels.clone(), response.echogram.clone());
+        let (levels, echogram) = (response.noise_gains.clone(), response.echogram.clone());
         self.arrive_with(levels, echogram, receiver, None, key)
     }
 
@@ -480,14 +491,14 @@ impl AcousticScene {
             rate_hz: self.config().rate_hz,
             samples,
             echogram,
-            levels,
+            noise_gains: levels,
         }
     }
 }
 
 /// Returns the key of the random arrivals from one place to another: tails of separate places are uncorrelated, and tiny
 /// displacements do not change them.
-pub(crate) fn between(key: RandomKey, source: Vec3, receiver: Vec3) -> RandomKey {
+pub(crate) fn arrival_key(key: RandomKey, source: Vec3, receiver: Vec3) -> RandomKey {
     let places = source.to_array().into_iter().chain(receiver.to_array());
     let cell = |x: f32| (f64::from(x) / CELL_M + CELL_START).floor() as i64;
     places.fold(key, |key, x| key.child(cell(x).cast_unsigned()))

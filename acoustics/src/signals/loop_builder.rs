@@ -14,7 +14,7 @@ pub(super) struct Tone {
     pub(super) frequency_hz: f64,
     pub(super) amplitude: f64,
     /// Duration of the fade-in and the fade-out, s; both are raised cosines.
-    pub(super) edge_s: f64,
+    pub(super) ramp_s: f64,
 }
 
 /// Samples between checks for cancellation.
@@ -62,12 +62,14 @@ impl LoopBuilder {
         }
         let omega = TAU * tone.frequency_hz;
         self.add(tone.start_s, tone.duration_s, |t| {
-            tone.amplitude * edges(t, tone.duration_s, tone.edge_s) * libm::sin(omega * t)
+            tone.amplitude
+                * raised_cosine_envelope(t, tone.duration_s, tone.ramp_s)
+                * libm::sin(omega * t)
         });
     }
 
     /// Adds a continuous tone; its frequency is moved to the nearest that fits the loop.
-    pub(super) fn drone(&mut self, frequency_hz: f64, amplitude: f64) {
+    pub(super) fn continuous_tone(&mut self, frequency_hz: f64, amplitude: f64) {
         let loop_s = self.loop_s();
         let turns = (frequency_hz * loop_s).round().max(1.0);
         if turns / loop_s > 0.45 * self.rate_hz {
@@ -79,13 +81,19 @@ impl LoopBuilder {
     }
 
     /// Adds a decaying tone that begins with a short rise; its energy falls 60 dB in `decay_s`.
-    pub(super) fn ring(&mut self, start_s: f64, frequency_hz: f64, decay_s: f64, amplitude: f64) {
+    pub(super) fn decaying_tone(
+        &mut self,
+        start_s: f64,
+        frequency_hz: f64,
+        decay_s: f64,
+        amplitude: f64,
+    ) {
         if frequency_hz > 0.45 * self.rate_hz {
             return;
         }
         let (omega, rate) = (TAU * frequency_hz, 3.0 * std::f64::consts::LN_10 / decay_s);
         self.add(start_s, (1.2 * decay_s).min(self.loop_s()), |t| {
-            amplitude * rise(t, 0.002) * libm::exp(-rate * t) * libm::sin(omega * t)
+            amplitude * raised_cosine_rise(t, 0.002) * libm::exp(-rate * t) * libm::sin(omega * t)
         });
     }
 
@@ -141,7 +149,7 @@ impl LoopBuilder {
     }
 
     /// Adds `noise` over the whole loop, times `amplitude`.
-    pub(super) fn lay(&mut self, noise: &[f64], amplitude: f64) {
+    pub(super) fn add_to_loop(&mut self, noise: &[f64], amplitude: f64) {
         for (sample, x) in self.samples.iter_mut().zip(noise) {
             *sample += amplitude * x;
         }
@@ -164,7 +172,7 @@ impl LoopBuilder {
 }
 
 /// 0 to 1 within `edge_s` with a raised cosine.
-pub(super) fn rise(t: f64, edge_s: f64) -> f64 {
+pub(super) fn raised_cosine_rise(t: f64, edge_s: f64) -> f64 {
     if t >= edge_s {
         1.0
     } else {
@@ -173,12 +181,12 @@ pub(super) fn rise(t: f64, edge_s: f64) -> f64 {
 }
 
 /// Rises at the start and falls at the end.
-pub(super) fn edges(t: f64, duration_s: f64, edge_s: f64) -> f64 {
-    rise(t, edge_s) * rise(duration_s - t, edge_s)
+pub(super) fn raised_cosine_envelope(t: f64, duration_s: f64, edge_s: f64) -> f64 {
+    raised_cosine_rise(t, edge_s) * raised_cosine_rise(duration_s - t, edge_s)
 }
 
 /// A resonance of amplitude 1 at `center_hz`, `width_hz` wide.
-pub(super) fn peak(frequency_hz: f64, center_hz: f64, width_hz: f64) -> f64 {
+pub(super) fn resonance_gain(frequency_hz: f64, center_hz: f64, width_hz: f64) -> f64 {
     let x = (frequency_hz - center_hz) / (0.5 * width_hz);
     1.0 / (1.0 + x * x).sqrt()
 }

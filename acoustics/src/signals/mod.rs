@@ -31,7 +31,7 @@ pub struct SignalInfo {
     /// Period, s.
     pub loop_s: f64,
     /// Typical level at 1 m, dB SPL.
-    pub usual_level_db: f32,
+    pub typical_level_db: f32,
     /// Source of that level.
     pub level_source: &'static str,
     paint: fn(&mut LoopBuilder),
@@ -70,12 +70,12 @@ fn made(info: &SignalInfo, rate_hz: u32) -> SharedLoop {
 }
 
 /// Returns whether a signal exists and has not been opened yet: opening it takes up to a second.
-pub fn is_to_be_made(name: &str, rate_hz: u32) -> bool {
+pub fn needs_synthesis(name: &str, rate_hz: u32) -> bool {
     info(name).is_ok_and(|info| made(info, rate_hz).get().is_none())
 }
 
 /// Makes loops before they are opened, several at once; unknown names are ignored.
-pub fn make(names: &[&str], rate_hz: u32, threads: Threads) {
+pub fn presynthesize(names: &[&str], rate_hz: u32, threads: Threads) {
     threads.map(names.len(), |k| Signal::open(names[k], rate_hz).is_ok());
 }
 
@@ -106,7 +106,7 @@ impl Signal {
         })
     }
 
-    pub(crate) fn of(samples: Arc<[f32]>) -> Self {
+    pub(crate) fn from_samples(samples: Arc<[f32]>) -> Self {
         Self { samples }
     }
 
@@ -208,9 +208,9 @@ mod tests {
     fn what_is_made_at_once_is_what_is_opened_alone() {
         const RATE_HZ: u32 = 9_000;
         let names = ["fan", "television", "gramophone", "clock"];
-        assert!(is_to_be_made("clock", RATE_HZ) && !is_to_be_made("gramophone", RATE_HZ));
-        make(&names, RATE_HZ, Threads::exactly(4));
-        assert!(!is_to_be_made("clock", RATE_HZ));
+        assert!(needs_synthesis("clock", RATE_HZ) && !needs_synthesis("gramophone", RATE_HZ));
+        presynthesize(&names, RATE_HZ, Threads::new(4));
+        assert!(!needs_synthesis("clock", RATE_HZ));
         let opened = Signal::open("television", RATE_HZ).unwrap();
         let info = info("television").unwrap();
         let key = RandomKey::root(0).child("signals").child("television");

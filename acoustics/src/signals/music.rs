@@ -1,6 +1,6 @@
 //! Music enough for a radio: chords, a bass, a tune, a beat.
 
-use super::loop_builder::{LoopBuilder, edges, peak};
+use super::loop_builder::{LoopBuilder, raised_cosine_envelope, resonance_gain};
 use std::f64::consts::TAU;
 
 /// Frequency of a key of the piano, A4 = 69 = 440 Hz.
@@ -13,7 +13,7 @@ fn pluck(canvas: &mut LoopBuilder, start_s: f64, key: i32, amplitude: f64, decay
     let frequency_hz = pitch_hz(key);
     for partial in 1..=8 {
         let n = f64::from(partial);
-        canvas.ring(start_s, n * frequency_hz, decay_s / n.sqrt(), amplitude / n);
+        canvas.decaying_tone(start_s, n * frequency_hz, decay_s / n.sqrt(), amplitude / n);
     }
 }
 
@@ -28,19 +28,19 @@ fn hold(canvas: &mut LoopBuilder, start_s: f64, duration_s: f64, key: i32, ampli
         canvas.add(start_s, duration_s, |t| {
             let phase =
                 TAU * frequency_hz * t + 0.004 * frequency_hz / 5.0 * libm::sin(TAU * 5.0 * t);
-            amplitude / (n * n) * edges(t, duration_s, 0.08) * libm::sin(phase)
+            amplitude / (n * n) * raised_cosine_envelope(t, duration_s, 0.08) * libm::sin(phase)
         });
     }
 }
 
 /// Adds the four chords of so many songs (I, vi, IV, V in C), over and over, with bass, drums and a tune that wanders.
-pub(super) fn band(canvas: &mut LoopBuilder, amplitude: f64) {
+pub(super) fn music_band(canvas: &mut LoopBuilder, amplitude: f64) {
     const CHORDS: [[i32; 3]; 4] = [[60, 64, 67], [57, 60, 64], [53, 57, 60], [55, 59, 62]];
     const SCALE: [i32; 6] = [72, 74, 76, 79, 81, 84];
     let bars = (canvas.loop_s() / 2.0).floor() as usize;
     let bar_s = canvas.loop_s() / bars.max(1) as f64;
     let (snare, hat) = (
-        canvas.noise("snare", |f| peak(f, 1800.0, 2500.0)),
+        canvas.noise("snare", |f| resonance_gain(f, 1800.0, 2500.0)),
         canvas.noise("hat", |f| if f > 5000.0 { 1.0 } else { 0.0 }),
     );
     let mut stream = canvas.key.child("tune").stream();
@@ -55,13 +55,17 @@ pub(super) fn band(canvas: &mut LoopBuilder, amplitude: f64) {
             let at_s = start_s + f64::from(beat) * beat_s;
             pluck(canvas, at_s, chord[0] - 24, 0.9 * amplitude, 0.7);
             if beat % 2 == 0 {
-                canvas.ring(at_s, 58.0, 0.3, 1.2 * amplitude);
+                canvas.decaying_tone(at_s, 58.0, 0.3, 1.2 * amplitude);
             } else {
-                let decay = |t: f64| 0.5 * amplitude * libm::exp(-28.0 * t) * edges(t, 0.2, 0.002);
+                let decay = |t: f64| {
+                    0.5 * amplitude * libm::exp(-28.0 * t) * raised_cosine_envelope(t, 0.2, 0.002)
+                };
                 canvas.add_noise(&snare, at_s, 0.2, decay);
             }
             for half in [0.0, 0.5] {
-                let decay = |t: f64| 0.2 * amplitude * libm::exp(-70.0 * t) * edges(t, 0.06, 0.001);
+                let decay = |t: f64| {
+                    0.2 * amplitude * libm::exp(-70.0 * t) * raised_cosine_envelope(t, 0.06, 0.001)
+                };
                 canvas.add_noise(&hat, at_s + half * beat_s, 0.06, decay);
                 if stream.uniform() < 0.7 {
                     step = (step + [0, 1, 5][stream.below(3)]) % SCALE.len();
@@ -80,5 +84,5 @@ pub(super) fn band(canvas: &mut LoopBuilder, amplitude: f64) {
 
 /// Music with a beat.
 pub(super) fn radio(canvas: &mut LoopBuilder) {
-    band(canvas, 1.0);
+    music_band(canvas, 1.0);
 }

@@ -1,6 +1,6 @@
 //! Voices without words: the spectrum, rhythm and pitch of speech.
 
-use super::loop_builder::{LoopBuilder, edges, peak};
+use super::loop_builder::{LoopBuilder, raised_cosine_envelope, resonance_gain};
 use super::music;
 use std::f64::consts::TAU;
 
@@ -23,7 +23,7 @@ const VOWELS_HZ: [[f64; 3]; 5] = [
 
 /// Adds a voice that speaks from `start_s` to `end_s` in syllables of about a quarter of a second, with pauses.
 fn talk(canvas: &mut LoopBuilder, voice: &SpeechVoice, name: &str, (start_s, end_s): (f64, f64)) {
-    let hiss = canvas.noise(name, |f| peak(f, 4500.0, 3000.0));
+    let hiss = canvas.noise(name, |f| resonance_gain(f, 4500.0, 3000.0));
     let mut stream = canvas.key.child(name).stream();
     let mut now_s = start_s;
     while now_s < end_s - 0.3 {
@@ -38,7 +38,9 @@ fn talk(canvas: &mut LoopBuilder, voice: &SpeechVoice, name: &str, (start_s, end
                     0.05 + 0.06 * stream.uniform(),
                     0.06 + 0.1 * stream.uniform(),
                 );
-                canvas.add_noise(&hiss, now_s, length_s, |t| size * edges(t, length_s, 0.02));
+                canvas.add_noise(&hiss, now_s, length_s, |t| {
+                    size * raised_cosine_envelope(t, length_s, 0.02)
+                });
                 now_s += 0.7 * length_s;
             }
             // Pitch falls through a phrase.
@@ -71,7 +73,9 @@ fn vowel_sound(
             let resonance: f64 = vowel
                 .iter()
                 .zip([1.0, 0.5, 0.25])
-                .map(|(formant, weight)| weight * peak(frequency_hz, formant * voice.size, 110.0))
+                .map(|(formant, weight)| {
+                    weight * resonance_gain(frequency_hz, formant * voice.size, 110.0)
+                })
                 .sum();
             // The larynx's pulses fall 12 dB an octave, radiation gives 6 back.
             (
@@ -88,7 +92,7 @@ fn vowel_sound(
             .iter()
             .map(|(omega, size)| size * libm::sin(omega * bent))
             .sum();
-        sum * edges(t, duration_s, 0.03)
+        sum * raised_cosine_envelope(t, duration_s, 0.03)
     });
 }
 
@@ -131,7 +135,7 @@ pub(super) fn television(canvas: &mut LoopBuilder) {
             (start, stop - 0.2),
         );
     }
-    music::band(canvas, 0.12);
+    music::music_band(canvas, 0.12);
 }
 
 /// Six voices at once: a room full of people.

@@ -14,7 +14,7 @@ const fn signal(
         name,
         description,
         loop_s,
-        usual_level_db,
+        typical_level_db: usual_level_db,
         level_source,
         paint,
     }

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 
 /// A tone of 1 kHz, or what fits the loop next to it.
 pub(super) fn sine(canvas: &mut LoopBuilder) {
-    canvas.drone(1000.0, 1.0);
+    canvas.continuous_tone(1000.0, 1.0);
 }
 
 /// One sample a loop.
@@ -18,7 +18,7 @@ pub(super) fn impulse(canvas: &mut LoopBuilder) {
 /// Equal power at all frequencies.
 pub(super) fn white(canvas: &mut LoopBuilder) {
     let noise = canvas.noise("white", |_| 1.0);
-    canvas.lay(&noise, 1.0);
+    canvas.add_to_loop(&noise, 1.0);
 }
 
 /// From 50 Hz to 0.45 of the rate within the first three quarters of the loop, then silence to ring out in.
@@ -28,7 +28,7 @@ pub(super) fn sweep(canvas: &mut LoopBuilder) {
     let growth = libm::log(high_hz / low_hz);
     canvas.add(0.0, duration_s, |t| {
         let phase = TAU * low_hz * duration_s / growth * libm::expm1(growth * t / duration_s);
-        super::loop_builder::edges(t, duration_s, 0.01) * libm::sin(phase)
+        super::loop_builder::raised_cosine_envelope(t, duration_s, 0.01) * libm::sin(phase)
     });
 }
 
@@ -73,7 +73,7 @@ impl Sweep {
         let sample = |k: usize| {
             let t = k as f64 / rate;
             let phase = TAU * low_hz * duration_s / growth * libm::expm1(growth * t / duration_s);
-            super::loop_builder::edges(t, duration_s, 0.01) * libm::sin(phase)
+            super::loop_builder::raised_cosine_envelope(t, duration_s, 0.01) * libm::sin(phase)
         };
         let samples: Vec<f64> = (0..count).map(sample).collect();
         let quieter = |k: usize| libm::exp(-growth * k as f64 / count as f64);

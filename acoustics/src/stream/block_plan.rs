@@ -7,7 +7,7 @@ use crate::echogram::PropagationPath;
 use crate::error::AcousticsError;
 use crate::receiver::Receiver;
 use crate::response::ImpulseResponse;
-use crate::scene::between;
+use crate::scene::arrival_key;
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::rays::RayScene;
 use dwell_scene::{Pose, State};
@@ -24,17 +24,17 @@ const STILL_M: f32 = 5e-3;
 pub(super) struct PlannedSource {
     pub(super) id: u64,
     /// True for a source that still sounds; else it only rings out.
-    pub(super) named: bool,
+    pub(super) is_playing: bool,
     /// Positions of source and receiver.
-    pub(super) place: (Vec3, Pose),
+    pub(super) positions: (Vec3, Pose),
     /// The new impulse response, and its situation; `None`: as before.
     pub(super) new_response: Option<(ListeningSituation, ImpulseResponse)>,
     /// Early paths outside the impulse response, at their present positions; `None`: none are.
-    pub(super) followed: Option<Vec<PropagationPath>>,
+    pub(super) tracked_paths: Option<Vec<PropagationPath>>,
     /// The block since which a new response waits for its turn.
-    pub(super) since: Option<u64>,
+    pub(super) waiting_since_block: Option<u64>,
     /// The state of its partial trace.
-    pub(super) job: PartialTrace,
+    pub(super) partial_trace: PartialTrace,
 }
 
 /// A source that sounds or rings out.
@@ -52,7 +52,7 @@ pub(super) struct BlockContext<'a> {
     pub(super) receiver: &'a Receiver,
     pub(super) threshold: UpdateThreshold,
     /// True while a large part moves.
-    pub(super) passing: bool,
+    pub(super) large_part_moving: bool,
 }
 
 impl Stream {
@@ -67,7 +67,8 @@ impl Stream {
     ) -> Result<Vec<PlannedSource>, AcousticsError> {
         let all = self.sounding(sources, report);
         // The microphones of an array have their own early paths.
-        let glides = self.config.moving_paths > 0 && receiver.microphone_positions().is_none();
+        let glides =
+            self.config.tracked_reflections > 0 && receiver.microphone_positions().is_none();
         let distance_m = self.config.update_distance_m;
         let parts = self.poses(state);
         // Nothing is reused where all rays are traced anyway.
@@ -84,7 +85,8 @@ impl Stream {
                 angle_rad: self.config.update_angle_rad,
                 part_m: self.config.update_part_m,
             },
-            passing: remembers && source_state::largest_movement(&self.parts, &parts) > STILL_M,
+            large_part_moving: remembers
+                && source_state::largest_part_movement(&self.parts, &parts) > STILL_M,
         };
         let wants = all
             .iter()
@@ -92,30 +94,36 @@ impl Stream {
         let mut wants: Vec<UpdateRequest<'_>> = wants.collect();
         self.update_responses(&around, &mut wants, report)?;
         let planned = wants.into_iter().map(|want| {
-            let heard = want.heard();
-            let last = want.voice.and_then(|voice| voice.moved.last);
+            let heard = want.current_response();
+            let last = want
+                .source_state
+                .and_then(|voice| voice.tracked.last_positions);
             let follows = want
-                .voice
-                .is_some_and(|voice| voice.moved.followed.is_some());
-            let moved = follows || last.is_some_and(|last| last != want.place);
+                .source_state
+                .is_some_and(|voice| voice.tracked.paths.is_some());
+            let moved = follows || last.is_some_and(|last| last != want.positions);
             let known = want.new_response.as_ref().or(heard);
             let elsewhere =
-                known.is_some_and(|(then, _)| (then.source, then.receiver.pose) != want.place);
+                known.is_some_and(|(then, _)| (then.source, then.receiver.pose) != want.positions);
             // A source that waits is rendered with its direct path and known reflections as they are now.
             let moved =
                 moved || elsewhere || (want.is_waiting && want.change == SituationChange::Moved);
             let followed = known.filter(|_| glides && moved).map(|(_, response)| {
-                let chosen = early::choose(&response.echogram.paths, self.config.moving_paths);
-                let (source, receiver) = (want.place.0, receiver.position());
-                self.scene.follow(rays, source, receiver, &chosen)
+                let chosen = early::select_tracked_paths(
+                    &response.echogram.paths,
+                    self.config.tracked_reflections,
+                );
+                let (source, receiver) = (want.positions.0, receiver.position());
+                self.scene
+                    .updated_early_paths(rays, source, receiver, &chosen)
             });
             PlannedSource {
                 id: want.id,
-                named: want.named,
-                place: want.place,
-                followed,
-                since: want.is_waiting.then_some(want.since),
-                job: want.job,
+                is_playing: want.is_playing,
+                positions: want.positions,
+                tracked_paths: followed,
+                waiting_since_block: want.is_waiting.then_some(want.due_block),
+                partial_trace: want.partial_trace,
                 new_response: want.new_response,
             }
         });
@@ -133,10 +141,10 @@ impl Stream {
         let id = one.id;
         let at = self.voices.binary_search_by_key(&id, |voice| voice.id);
         let voice = at.ok().map(|at| &self.voices[at]);
-        let heard = voice.and_then(|voice| voice.heard.as_ref());
+        let heard = voice.and_then(|voice| voice.current_response.as_ref());
         let named = one.position.is_some();
         // A source that is no longer named rings out at its last position.
-        let last = voice.and_then(|voice| voice.moved.last);
+        let last = voice.and_then(|voice| voice.tracked.last_positions);
         let position = one.position.or(last.map(|(source, _)| source))?;
         let receiver = around.receiver;
         let now = ListeningSituation {
@@ -145,9 +153,9 @@ impl Stream {
             parts: parts.to_vec(),
             overrides: state.overrides.clone(),
             effects: *self.scene.effects(),
-            rough: false,
+            has_approximate_tail: false,
             noise: heard.map_or_else(
-                || between(self.key_of(id), position, receiver.position()),
+                || arrival_key(self.key_of(id), position, receiver.position()),
                 |(then, _)| then.noise,
             ),
         };
@@ -155,24 +163,26 @@ impl Stream {
             if named {
                 then.change(&now, &around.threshold)
             } else {
-                then.change_while_ringing(&now, &around.threshold)
+                then.change_after_end(&now, &around.threshold)
             }
         });
         Some(UpdateRequest {
             id,
-            named,
-            rank: one.rank,
-            place: (position, receiver.pose),
-            voice,
+            is_playing: named,
+            loudness_rank: one.rank,
+            positions: (position, receiver.pose),
+            source_state: voice,
             change,
             // When a door has come to rest, all rays are traced again.
-            stale: heard.is_some_and(|(then, _)| then.rough && named && !around.passing),
-            since: voice
-                .and_then(|voice| voice.waiting.since)
+            has_stale_tail: heard.is_some_and(|(then, _)| {
+                then.has_approximate_tail && named && !around.large_part_moving
+            }),
+            due_block: voice
+                .and_then(|voice| voice.pending_update.due_block)
                 .unwrap_or(self.block),
             now,
             new_response: None,
-            job: PartialTrace::Unchanged,
+            partial_trace: PartialTrace::Unchanged,
             is_waiting: false,
         })
     }
@@ -206,7 +216,7 @@ impl Stream {
                         rank: all.len(),
                     });
                 } else {
-                    report.left_out += 1;
+                    report.dropped_sources += 1;
                 }
             }
         }
@@ -220,21 +230,25 @@ impl Stream {
             }
         }
         all.sort_by_key(|one| one.id);
-        report.heard = all.len();
+        report.audible_sources = all.len();
         all
     }
 
     /// Returns the response of another source close to the start of a new one, with nothing in between: a footstep sounds
     /// much like the last one.
-    pub(super) fn nearby_similar_source(
+    pub(super) fn response_of_nearby_source(
         &self,
         rays: &RayScene,
         now: &ListeningSituation,
         alike: impl Fn(&ListeningSituation) -> bool,
     ) -> Option<&(ListeningSituation, ImpulseResponse)> {
-        let heard = self.voices.iter().filter_map(|voice| voice.heard.as_ref());
-        let close = heard.filter(|(then, _)| then.moved_m(now) <= BESIDE_M && alike(then));
-        let nearest = close.min_by(|(a, _), (b, _)| a.moved_m(now).total_cmp(&b.moved_m(now)));
+        let heard = self
+            .voices
+            .iter()
+            .filter_map(|voice| voice.current_response.as_ref());
+        let close = heard.filter(|(then, _)| then.displacement_m(now) <= BESIDE_M && alike(then));
+        let nearest =
+            close.min_by(|(a, _), (b, _)| a.displacement_m(now).total_cmp(&b.displacement_m(now)));
         nearest.filter(|(then, _)| {
             let way = |from, to| Ray::segment(from, to, 0.0);
             let sources = way(then.source, now.source);

@@ -17,7 +17,7 @@ pub struct StreamConfig {
     pub update_part_m: f32,
     /// Early paths of a source with gliding delays while it or the listener moves: all direct ones, and reflections up to
     /// this many; the others change with the impulse response. 0 (none) to 64. Microphone arrays have none.
-    pub moving_paths: usize,
+    pub tracked_reflections: usize,
     /// The share of all rays that an update of the tail traces where only source or listener have moved; the rest is
     /// reused, unless these rays indicate another tail: then all are traced. 0.001 to 1.
     pub update_share: f64,
@@ -43,7 +43,7 @@ impl StreamConfig {
             update_distance_m: 0.35,
             update_angle_rad: 0.035,
             update_part_m: 0.03,
-            moving_paths: 12,
+            tracked_reflections: 12,
             update_share: 0.1,
             update_rays: 600,
             max_sources: 64,
@@ -56,7 +56,7 @@ impl StreamConfig {
             update_distance_m: 0.5,
             update_angle_rad: 0.175,
             update_part_m: 0.15,
-            moving_paths: 6,
+            tracked_reflections: 6,
             update_share: 0.15,
             update_rays: 0,
             max_sources: 4,
@@ -68,7 +68,7 @@ impl StreamConfig {
     pub fn reference() -> Self {
         Self {
             update_distance_m: 0.05,
-            moving_paths: 64,
+            tracked_reflections: 64,
             update_share: 1.0,
             update_rays: 0,
             ..Self::full()
@@ -107,7 +107,7 @@ impl StreamConfig {
         range(
             AT,
             "moving_paths",
-            self.moving_paths as f64,
+            self.tracked_reflections as f64,
             (0.0, 64.0),
             "0 to 64",
         )?;

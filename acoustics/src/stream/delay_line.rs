@@ -59,7 +59,7 @@ impl<'a> DelayedSegment<'a> {
     pub(super) fn filtered(&self, response: &[f32], amplitude: f32) -> Vec<f32> {
         let mut filtered = vec![0.0; self.count.next_multiple_of(LANES)];
         let met = self.met(response.len(), filtered.len());
-        SimdLevel::best().run(ConvolutionKernel {
+        SimdLevel::best_available().run(ConvolutionKernel {
             met: &met,
             response,
             amplitude,
@@ -93,7 +93,7 @@ impl<'a> DelayedSegment<'a> {
         fade: &[f32],
         out: &mut [f32],
     ) {
-        SimdLevel::best().run(SegmentReader {
+        SimdLevel::best_available().run(SegmentReader {
             passage: self,
             old,
             new,

@@ -2,7 +2,7 @@
 
 use super::delay_line::DelayedSegment;
 use crate::echogram::PropagationPath;
-use crate::synthesis::{Wavelet, strongest};
+use crate::synthesis::{PathFilter, strongest};
 use serde::{Deserialize, Serialize};
 
 /// Largest change of a gliding delay, as a fraction of the time: an eighth of the speed of sound.
@@ -15,21 +15,25 @@ const SAME_EDGE_M: f32 = 0.4;
 pub(super) struct TrackedPath {
     pub(super) path: PropagationPath,
     /// Its filter at each channel. Shape (channel,).
-    pub(super) wavelets: Vec<Wavelet>,
+    pub(super) wavelets: Vec<PathFilter>,
 }
 
 /// Returns the distance that the bends of a path have slid in a movement, m; `None` where two paths are not the same.
 fn slid_m(a: &PropagationPath, b: &PropagationPath) -> Option<f32> {
-    if a.planes != b.planes || a.bends.len() != b.bends.len() {
+    if a.planes != b.planes || a.diffraction_points.len() != b.diffraction_points.len() {
         return None;
     }
-    let slid = a.bends.iter().zip(&b.bends).map(|(a, b)| a.distance(*b));
+    let slid = a
+        .diffraction_points
+        .iter()
+        .zip(&b.diffraction_points)
+        .map(|(a, b)| a.distance(*b));
     let slid_m = slid.fold(0.0, f32::max);
     (slid_m < SAME_EDGE_M).then_some(slid_m)
 }
 
 /// Returns the tracked paths of a response: all direct ones, then the strongest reflections up to `most` in all.
-pub(super) fn choose(paths: &[PropagationPath], most: usize) -> Vec<PropagationPath> {
+pub(super) fn select_tracked_paths(paths: &[PropagationPath], most: usize) -> Vec<PropagationPath> {
     let (mut chosen, mut others): (Vec<&PropagationPath>, Vec<&PropagationPath>) = strongest(paths)
         .into_iter()
         .partition(|path| path.planes.is_empty());
@@ -41,7 +45,7 @@ pub(super) fn choose(paths: &[PropagationPath], most: usize) -> Vec<PropagationP
 }
 
 /// The movement of a source's paths over one block.
-pub(super) struct DelayGlide<'a> {
+pub(super) struct DelayInterpolation<'a> {
     /// Past samples of the source; the last ones are the block's.
     pub(super) history: &'a [f32],
     pub(super) rate_hz: f64,
@@ -49,7 +53,7 @@ pub(super) struct DelayGlide<'a> {
     pub(super) fade: &'a [f32],
 }
 
-impl DelayGlide<'_> {
+impl DelayInterpolation<'_> {
     /// Adds the output of `old` paths as they become `new` ones to `out`. `out`: shape (channel, sample), flat.
     ///
     /// A path's delay changes linearly from one block's end to the next's, its filter is crossfaded; a path that is only in
@@ -74,9 +78,9 @@ impl DelayGlide<'_> {
         }
     }
 
-    fn channel(&self, old: Option<&Wavelet>, new: Option<&Wavelet>, out: &mut [f32]) {
+    fn channel(&self, old: Option<&PathFilter>, new: Option<&PathFilter>, out: &mut [f32]) {
         let size = out.len();
-        let delay = |wavelet: &Wavelet| wavelet.delay_s * self.rate_hz;
+        let delay = |wavelet: &PathFilter| wavelet.delay_s * self.rate_hz;
         if let (Some(a), Some(b)) = (old, new)
             && (delay(a) - delay(b)).abs() > FASTEST * size as f64
         {
@@ -86,11 +90,13 @@ impl DelayGlide<'_> {
             return;
         }
         // The future is unknown: ringing before the newest sample is left out.
-        let early = |wavelet: &Wavelet| (wavelet.lead as f64 + 1.0 - delay(wavelet)).ceil();
+        let early = |wavelet: &PathFilter| {
+            (wavelet.pre_ringing_samples as f64 + 1.0 - delay(wavelet)).ceil()
+        };
         let skip = [old, new].into_iter().flatten().map(early);
         let skip = skip.fold(0.0, f64::max) as usize;
-        let late = |wavelet: &Wavelet| {
-            let lead = wavelet.lead.saturating_sub(skip);
+        let late = |wavelet: &PathFilter| {
+            let lead = wavelet.pre_ringing_samples.saturating_sub(skip);
             (delay(wavelet) - lead as f64).max(1.0)
         };
         let (from, to) = match (old, new) {
@@ -100,8 +106,8 @@ impl DelayGlide<'_> {
             (None, None) => return,
         };
         let passage = DelayedSegment::new(self.history, size, (from, to));
-        let filtered = |wavelet: &Wavelet| {
-            let skip = skip.min(wavelet.lead);
+        let filtered = |wavelet: &PathFilter| {
+            let skip = skip.min(wavelet.pre_ringing_samples);
             passage.filtered(&wavelet.response[skip..], wavelet.amplitude)
         };
         let (old, new) = (old.map(filtered), new.map(filtered));
@@ -117,7 +123,7 @@ mod tests {
         TrackedPath {
             path: PropagationPath {
                 planes: Vec::new(),
-                bends: Vec::new(),
+                diffraction_points: Vec::new(),
                 length_m: 1.0,
                 energy: [1.0; 8],
                 arrival: glam::Vec3::X,
@@ -125,9 +131,9 @@ mod tests {
                 walls: 0,
                 inverted: false,
             },
-            wavelets: vec![Wavelet {
+            wavelets: vec![PathFilter {
                 response: vec![1.0],
-                lead: 0,
+                pre_ringing_samples: 0,
                 amplitude: 0.5,
                 delay_s,
             }],
@@ -144,7 +150,7 @@ mod tests {
             let history: Vec<f32> = (0..4 * size)
                 .map(|k| (omega * k as f64).sin() as f32)
                 .collect();
-            let glide = DelayGlide {
+            let glide = DelayInterpolation {
                 history: &history,
                 rate_hz,
                 fade: &fade,
@@ -173,7 +179,7 @@ mod tests {
         let mut history = vec![0.0; 300];
         history[250] = 1.0;
         let fade = vec![1.0; 100];
-        let glide = DelayGlide {
+        let glide = DelayInterpolation {
             history: &history,
             rate_hz: 16_000.0,
             fade: &fade,
@@ -181,7 +187,7 @@ mod tests {
         for delay in [3.0, 9.0, 30.0] {
             let mut path = followed(delay / 16_000.0);
             let wavelet = &mut path.wavelets[0];
-            wavelet.lead = 16;
+            wavelet.pre_ringing_samples = 16;
             wavelet.response = vec![0.0; 20];
             wavelet.response[16] = 1.0;
             let mut out = vec![0.0; 100];
@@ -196,14 +202,14 @@ mod tests {
     fn each_path_goes_on_as_one() {
         let history = vec![1.0; 300];
         let fade = vec![0.5; 100];
-        let glide = DelayGlide {
+        let glide = DelayInterpolation {
             history: &history,
             rate_hz: 16_000.0,
             fade: &fade,
         };
         let around = |x: f32| {
             let mut path = followed(0.002);
-            path.path.bends = vec![glam::Vec3::X * x];
+            path.path.diffraction_points = vec![glam::Vec3::X * x];
             path
         };
         for (old, new, wanted) in [
@@ -228,7 +234,7 @@ mod tests {
     fn the_shortest_delays_play() {
         let history: Vec<f32> = (0..300).map(|k| (0.05 * k as f32).sin()).collect();
         let fade = vec![1.0; 100];
-        let glide = DelayGlide {
+        let glide = DelayInterpolation {
             history: &history,
             rate_hz: 16_000.0,
             fade: &fade,

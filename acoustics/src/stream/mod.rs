@@ -25,7 +25,7 @@ use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{PartId, Pose, State};
-use early::{DelayGlide, TrackedPath};
+use early::{DelayInterpolation, TrackedPath};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 use source_state::{ListeningSituation, SourceState};
@@ -51,19 +51,19 @@ pub struct ActiveSource<'a> {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BlockReport {
     /// Number of impulse responses for which rays were traced.
-    pub traced: usize,
+    pub traced_responses: usize,
     /// Number of these rays.
     pub rays: usize,
     /// Number of sources whose new impulse responses wait for their turn ([`StreamConfig::update_rays`]).
-    pub waiting: usize,
+    pub waiting_sources: usize,
     /// Number of impulse responses that were only rotated.
-    pub turned: usize,
+    pub rotated: usize,
     /// Number of tracked early paths.
-    pub followed: usize,
+    pub tracked_paths: usize,
     /// Number of sources that sounded or rang out.
-    pub heard: usize,
+    pub audible_sources: usize,
     /// Number of sources beyond [`StreamConfig::max_sources`].
-    pub left_out: usize,
+    pub dropped_sources: usize,
 }
 
 /// The sound at one receiver, block after block.
@@ -98,9 +98,9 @@ struct StreamSnapshot {
     block_samples: u64,
     partitions: u64,
     block: u64,
-    voices: Vec<source_state::SourceMemory>,
+    voices: Vec<source_state::SourceSnapshot>,
     parts: Vec<Pose>,
-    microphones: microphone_chain::ChainMemory,
+    microphones: microphone_chain::MicrophoneChainState,
 }
 
 impl Stream {
@@ -120,7 +120,7 @@ impl Stream {
         let longest = (longest_s * f64::from(settings.rate_hz)).ceil() as usize;
         let large_parts = scene
             .data()
-            .table()
+            .plane_table()
             .parts_larger_than(LARGE_PART_M)
             .collect();
         Ok(Self {
@@ -142,7 +142,7 @@ impl Stream {
 
     /// Returns the same stream in a place with the random key `room`: streams that begin together share one background noise.
     #[must_use]
-    pub fn in_room(self, room: RandomKey) -> Self {
+    pub fn with_room_key(self, room: RandomKey) -> Self {
         Self { room, ..self }
     }
 
@@ -166,9 +166,10 @@ impl Stream {
     pub fn echograms(&self) -> impl Iterator<Item = (u64, Echogram)> {
         let voices = self.voices.iter();
         voices.filter_map(|voice| {
-            let mut echogram = voice.heard.as_ref()?.1.echogram.clone();
-            if let Some(followed) = &voice.moved.followed {
-                let chosen = early::choose(&echogram.paths, self.config.moving_paths);
+            let mut echogram = voice.current_response.as_ref()?.1.echogram.clone();
+            if let Some(followed) = &voice.tracked.paths {
+                let chosen =
+                    early::select_tracked_paths(&echogram.paths, self.config.tracked_reflections);
                 let mut paths = echogram.paths;
                 paths.retain(|path| !chosen.contains(path));
                 paths.extend(followed.iter().map(|one| one.path.clone()));
@@ -214,7 +215,7 @@ impl Stream {
             finite("a source", source.position)?;
         }
         self.scene.update(state);
-        let receiver = &self.scene.effects().placed(receiver);
+        let receiver = &self.scene.effects().true_receiver(receiver);
         let mut report = BlockReport::default();
         // Fallible work comes first, so that an error leaves the stream as it was.
         let planned = self.plan(rays, state, sources, receiver, &mut report)?;
@@ -223,12 +224,12 @@ impl Stream {
         let mut signal = vec![0.0; size];
         for PlannedSource {
             id,
-            named,
-            place,
+            is_playing: named,
+            positions: place,
             new_response,
-            followed,
-            since,
-            job,
+            tracked_paths: followed,
+            waiting_since_block: since,
+            partial_trace: job,
         } in planned
         {
             let at = self.voices.binary_search_by_key(&id, |voice| voice.id);
@@ -246,33 +247,33 @@ impl Stream {
                     *sum += x;
                 }
             }
-            let fresh = voice.input.is_silent() || voice.heard.is_none();
+            let fresh = voice.input.is_silent() || voice.current_response.is_none();
             voice.input.push(&mut self.fft, &signal);
             let channels = |heard: &Option<(ListeningSituation, ImpulseResponse)>| {
                 heard.as_ref().map(|(_, response)| response.channels)
             };
-            let channels_before = channels(&voice.heard);
-            let before = voice.moved.followed.take();
+            let channels_before = channels(&voice.current_response);
+            let before = voice.tracked.paths.take();
             // Changes of air or microphone do not glide.
             let effects = |heard: &Option<(ListeningSituation, ImpulseResponse)>| {
                 heard.as_ref().map(|(situation, _)| situation.effects)
             };
-            let effects_before = effects(&voice.heard);
+            let effects_before = effects(&voice.current_response);
             let other = new_response.is_some() || before.is_some() != followed.is_some();
             if let Some(new_response) = new_response {
-                voice.heard = Some(new_response);
+                voice.current_response = Some(new_response);
             }
-            let same_channels = channels(&voice.heard) == channels_before;
-            let jumps = effects(&voice.heard) != effects_before;
-            if other && let Some((situation, response)) = &voice.heard {
+            let same_channels = channels(&voice.current_response) == channels_before;
+            let jumps = effects(&voice.current_response) != effects_before;
+            if other && let Some((situation, response)) = &voice.current_response {
                 old.fill(0.0);
                 if !fresh && same_channels {
                     voice.input.convolve(&mut self.fft, &voice.filter, &mut old);
                 }
-                let most = followed.as_ref().map(|_| self.config.moving_paths);
+                let most = followed.as_ref().map(|_| self.config.tracked_reflections);
                 let samples = without_followed(&self.scene, situation, response, most);
                 let channels = response.channels;
-                voice.filter_with(&mut self.fft, &samples, channels, self.partitions);
+                voice.set_filter(&mut self.fft, &samples, channels, self.partitions);
                 voice.input.convolve(&mut self.fft, &voice.filter, &mut new);
                 if fresh {
                     add(out, &new);
@@ -284,9 +285,9 @@ impl Stream {
                 add(out, &new);
             }
             if let Some(paths) = followed {
-                report.followed += paths.len();
+                report.tracked_paths += paths.len();
                 let speed_m_s = self.scene.config().air.speed_of_sound_m_s();
-                let wavelets = self.scene.wavelets(speed_m_s, &paths, receiver);
+                let wavelets = self.scene.path_filters(speed_m_s, &paths, receiver);
                 let pairs = paths.into_iter().zip(wavelets);
                 let now: Vec<TrackedPath> = pairs
                     .map(|(path, wavelets)| TrackedPath { path, wavelets })
@@ -301,24 +302,24 @@ impl Stream {
                 } else {
                     glide.add(&before, &now, out);
                 }
-                voice.moved.followed = Some(now);
+                voice.tracked.paths = Some(now);
             } else if let Some(before) = before.filter(|_| same_channels && !fresh) {
                 glide(&self.scene, &self.fade, voice).add(&before, &[], out);
             }
-            voice.moved.last = Some(place);
-            voice.waiting.since = since;
+            voice.tracked.last_positions = Some(place);
+            voice.pending_update.due_block = since;
             match job {
                 PartialTrace::Unchanged => {}
-                PartialTrace::None => voice.waiting.job = None,
-                PartialTrace::Advanced(job) => voice.waiting.job = Some(job),
+                PartialTrace::None => voice.pending_update.job = None,
+                PartialTrace::Advanced(job) => voice.pending_update.job = Some(job),
             }
         }
         self.voices.retain(|voice| {
             !voice.input.is_silent() || sources.iter().any(|source| source.id == voice.id)
         });
         let own = self.key.child("microphone").child(self.block);
-        let listener = self.scene.listener(receiver, self.room, own);
-        self.microphones.hear(&state.laws, &listener, out);
+        let listener = self.scene.stage_context(receiver, self.room, own);
+        self.microphones.process_block(&state.laws, &listener, out);
         self.parts = self.poses(state);
         self.block += 1;
         Ok(report)
@@ -336,9 +337,9 @@ impl Stream {
             block_samples: self.config.block_samples as u64,
             partitions: self.partitions as u64,
             block: self.block,
-            voices: self.voices.iter().map(SourceState::memory).collect(),
+            voices: self.voices.iter().map(SourceState::snapshot).collect(),
             parts: self.parts.clone(),
-            microphones: self.microphones.memory(),
+            microphones: self.microphones.state(),
         };
         postcard::to_stdvec(&snapshot)
             .expect("a snapshot is plain data that postcard can always write to memory")
@@ -395,21 +396,26 @@ impl Stream {
     }
 
     /// Returns a source from its stored state.
-    fn voice(&mut self, memory: source_state::SourceMemory) -> SourceState {
+    fn voice(&mut self, memory: source_state::SourceSnapshot) -> SourceState {
         let mut voice = SourceState::restore(&mut self.fft, memory, self.partitions);
-        let Some((situation, mut response)) = voice.heard.take() else {
+        let Some((situation, mut response)) = voice.current_response.take() else {
             return voice;
         };
-        let scene = self.scene.as_heard(situation.effects);
+        let scene = self.scene.with_effects(situation.effects);
         let receiver = &situation.receiver;
         if receiver.microphone_positions().is_none() {
-            response = scene.arrive(response.echogram, receiver, None, situation.noise);
+            response = scene.response_before_microphones(
+                response.echogram,
+                receiver,
+                None,
+                situation.noise,
+            );
         }
-        let most = voice.moved.followed.as_ref();
-        let most = most.map(|_| self.config.moving_paths);
+        let most = voice.tracked.paths.as_ref();
+        let most = most.map(|_| self.config.tracked_reflections);
         let samples = without_followed(&scene, &situation, &response, most);
-        voice.filter_with(&mut self.fft, &samples, response.channels, self.partitions);
-        voice.heard = Some((situation, response));
+        voice.set_filter(&mut self.fft, &samples, response.channels, self.partitions);
+        voice.current_response = Some((situation, response));
         voice
     }
 
@@ -425,8 +431,12 @@ impl Stream {
 }
 
 /// Returns the glide of a source's early paths through its block.
-fn glide<'a>(scene: &AcousticScene, fade: &'a [f32], voice: &'a SourceState) -> DelayGlide<'a> {
-    DelayGlide {
+fn glide<'a>(
+    scene: &AcousticScene,
+    fade: &'a [f32],
+    voice: &'a SourceState,
+) -> DelayInterpolation<'a> {
+    DelayInterpolation {
         history: voice.input.history(),
         rate_hz: f64::from(scene.config().rate_hz),
         fade,
@@ -443,8 +453,8 @@ fn without_followed(
     let Some(most) = most else {
         return response.samples.clone();
     };
-    let chosen = early::choose(&response.echogram.paths, most);
-    scene.without(response, &chosen, &situation.receiver)
+    let chosen = early::select_tracked_paths(&response.echogram.paths, most);
+    scene.response_without_paths(response, &chosen, &situation.receiver)
 }
 
 fn check_length(at: &'static str, expected: usize, found: usize) -> Result<(), AcousticsError> {

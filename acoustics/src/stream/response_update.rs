@@ -41,7 +41,7 @@ impl ResponseUpdater<'_> {
         let config = self.scene.config();
         let again = self.key.child("again").child(memory.update);
         let mut echogram = self.echogram(memory.rays(config), again)?;
-        let mut known = memory.recall(&mut echogram);
+        let mut known = memory.blend_into(&mut echogram);
         if !known && all {
             echogram = self.echogram(config.rays, again.child("all"))?;
             known = true;
@@ -53,7 +53,7 @@ impl ResponseUpdater<'_> {
     ///
     /// # Errors
     /// As [`AcousticScene::echogram`].
-    pub(super) fn trace_few(&self, count: usize) -> Result<ImpulseResponse, AcousticsError> {
+    pub(super) fn trace_with_rays(&self, count: usize) -> Result<ImpulseResponse, AcousticsError> {
         let echogram = self.echogram(count, self.key.child("roughly"))?;
         Ok(self.arrive(echogram))
     }
@@ -83,10 +83,10 @@ impl ResponseUpdater<'_> {
         if !trace.advance(progress, most) {
             return Ok(None);
         }
-        let paths = image_sources::find(scene.data(), rays, source, centre);
-        let late = trace.end(progress.clone()).into_iter();
-        let echograms =
-            late.map(|late| scene.joined(paths.clone(), late, source.position(), centre));
+        let paths = image_sources::find_specular_paths(scene.data(), rays, source, centre);
+        let late = trace.finish(progress.clone()).into_iter();
+        let echograms = late
+            .map(|late| scene.join_paths_and_tail(paths.clone(), late, source.position(), centre));
         Ok(echograms.map(|echogram| self.arrive(echogram)).next())
     }
 
@@ -107,7 +107,7 @@ impl ResponseUpdater<'_> {
 
     fn arrive(&self, echogram: Echogram) -> ImpulseResponse {
         let (scene, receiver) = (self.scene, self.receiver);
-        let early = scene.early_of_microphones(self.rays, &self.source, receiver);
-        scene.arrive(echogram, receiver, early.as_deref(), self.noise)
+        let early = scene.early_paths_per_microphone(self.rays, &self.source, receiver);
+        scene.response_before_microphones(echogram, receiver, early.as_deref(), self.noise)
     }
 }

@@ -2,7 +2,7 @@
 //! unbounded memory, endless loops or panics.
 
 use super::early::TrackedPath;
-use super::source_state::{ListeningSituation, SourceMemory};
+use super::source_state::{ListeningSituation, SourceSnapshot};
 use crate::directions::CELL_COUNT;
 use crate::echogram::{Echogram, EnergyHistogram, PropagationPath};
 use crate::response::ImpulseResponse;
@@ -15,7 +15,7 @@ const SPEEDS_M_S: (f64, f64) = (200.0, 500.0);
 ///
 /// # Errors
 /// The violated condition, in words.
-pub(super) fn check(scene: &AcousticScene, voices: &[SourceMemory]) -> Result<(), String> {
+pub(super) fn check(scene: &AcousticScene, voices: &[SourceSnapshot]) -> Result<(), String> {
     if !voices.is_sorted_by(|a, b| a.id < b.id) {
         return Err("its sources are not in the order of their ids".to_owned());
     }
@@ -24,23 +24,23 @@ pub(super) fn check(scene: &AcousticScene, voices: &[SourceMemory]) -> Result<()
     })
 }
 
-fn check_voice(scene: &AcousticScene, voice: &SourceMemory) -> Result<(), String> {
+fn check_voice(scene: &AcousticScene, voice: &SourceSnapshot) -> Result<(), String> {
     let all = |samples: &[f32]| samples.iter().all(|x| x.is_finite());
     require(all(&voice.history), "what it played are no finite numbers")?;
-    if let Some((situation, response)) = &voice.heard {
+    if let Some((situation, response)) = &voice.current_response {
         check_response(scene, situation, response)?;
     }
-    if let Some(job) = &voice.waiting.job {
+    if let Some(job) = &voice.pending_update.job {
         let checked = scene.check_receiver(&job.situation.receiver);
         checked.map_err(|error| error.to_string())?;
         require(job.situation.source.is_finite(), "its place is none")?;
-        let sound = job.progress.is_sound(scene.config());
+        let sound = job.progress.is_valid(scene.config());
         require(sound, "the rays that were traced so far are none")?;
     }
-    for TrackedPath { path, wavelets } in voice.moved.followed.iter().flatten() {
+    for TrackedPath { path, wavelets } in voice.tracked.paths.iter().flatten() {
         check_path(path)?;
         for wavelet in wavelets {
-            let sound = wavelet.lead <= wavelet.response.len()
+            let sound = wavelet.pre_ringing_samples <= wavelet.response.len()
                 && wavelet.delay_s.is_finite()
                 && wavelet.amplitude.is_finite()
                 && all(&wavelet.response);
@@ -177,7 +177,7 @@ mod tests {
     }
 
     /// Returns the snapshot with a change, and a valid checksum.
-    fn forged(stream: &Stream, change: impl FnOnce(&mut Vec<SourceMemory>)) -> Vec<u8> {
+    fn forged(stream: &Stream, change: impl FnOnce(&mut Vec<SourceSnapshot>)) -> Vec<u8> {
         let bytes = stream.snapshot();
         let mut snapshot: StreamSnapshot = postcard::from_bytes(&bytes[8..]).unwrap();
         change(&mut snapshot.voices);
@@ -189,7 +189,7 @@ mod tests {
 
     #[test]
     fn what_was_made_up_is_refused_and_changes_nothing() {
-        type Forgery = (&'static str, fn(&mut Vec<SourceMemory>));
+        type Forgery = (&'static str, fn(&mut Vec<SourceSnapshot>));
         let forgeries: [Forgery; 16] = [
             ("in the order", |voices| voices.reverse()),
             ("source 4: what it played", |voices| {
@@ -239,7 +239,7 @@ mod tests {
                 job(voices).progress = TraceProgress::new(&AcousticConfig::full(), 1);
             }),
             ("the filter of an early path", |voices| {
-                followed(voices).wavelets[0].lead = usize::MAX;
+                followed(voices).wavelets[0].pre_ringing_samples = usize::MAX;
             }),
         ];
         let mut stream = stream();
@@ -262,30 +262,30 @@ mod tests {
             followed(voices).wavelets[0].delay_s = 1e300;
         });
         stream.restore(&far).unwrap();
-        let heard = &stream.voices[0].heard.as_ref().unwrap().1;
+        let heard = &stream.voices[0].current_response.as_ref().unwrap().1;
         assert!(heard.duration_s() < 1.1 * AcousticConfig::rl().max_duration_s);
         hear(&mut stream, 3);
     }
 
-    fn situation(voices: &mut [SourceMemory]) -> &mut ListeningSituation {
-        &mut voices[0].heard.as_mut().unwrap().0
+    fn situation(voices: &mut [SourceSnapshot]) -> &mut ListeningSituation {
+        &mut voices[0].current_response.as_mut().unwrap().0
     }
 
-    fn job(voices: &mut [SourceMemory]) -> &mut TraceJob {
-        let (situation, _) = voices[0].heard.clone().unwrap();
+    fn job(voices: &mut [SourceSnapshot]) -> &mut TraceJob {
+        let (situation, _) = voices[0].current_response.clone().unwrap();
         let progress = TraceProgress::new(&AcousticConfig::rl(), 1);
         let job = TraceJob {
             situation,
             progress,
         };
-        voices[0].waiting.job.insert(Box::new(job))
+        voices[0].pending_update.job.insert(Box::new(job))
     }
 
-    fn response(voices: &mut [SourceMemory]) -> &mut ImpulseResponse {
-        &mut voices[0].heard.as_mut().unwrap().1
+    fn response(voices: &mut [SourceSnapshot]) -> &mut ImpulseResponse {
+        &mut voices[0].current_response.as_mut().unwrap().1
     }
 
-    fn followed(voices: &mut [SourceMemory]) -> &mut TrackedPath {
-        &mut voices[0].moved.followed.as_mut().unwrap()[0]
+    fn followed(voices: &mut [SourceSnapshot]) -> &mut TrackedPath {
+        &mut voices[0].tracked.paths.as_mut().unwrap()[0]
     }
 }

@@ -25,7 +25,7 @@ pub(super) struct ListeningSituation {
     pub(super) effects: PathEffects,
     /// True for a tail that is not traced with all rays: large parts moved, so that it is partly that of their earlier
     /// poses, or only a few rays were traced yet.
-    pub(super) rough: bool,
+    pub(super) has_approximate_tail: bool,
     /// Random key of the tail's arrivals: that between the places where it was first heard.
     pub(super) noise: RandomKey,
 }
@@ -36,7 +36,7 @@ pub(super) enum SituationChange {
     /// No audible change.
     None,
     /// The head turned.
-    Turned,
+    Rotated,
     /// Something moved: new rays are needed.
     Moved,
 }
@@ -55,7 +55,7 @@ const PART_MOVEMENT_FACTOR: f32 = 25.0;
 
 /// Returns the largest displacement, m, or rotation, rad, of the parts: a part that rotates by an angle moves its far edge
 /// by about as many metres. Shape of both: (large part,).
-pub(super) fn largest_movement(before: &[Pose], now: &[Pose]) -> f32 {
+pub(super) fn largest_part_movement(before: &[Pose], now: &[Pose]) -> f32 {
     let ways = before.iter().zip(now).filter(|(a, b)| a != b);
     ways.map(|(a, b)| {
         a.position
@@ -71,14 +71,14 @@ fn angle(a: glam::Quat, b: glam::Quat) -> f32 {
 
 impl ListeningSituation {
     /// Returns the displacement of source and receiver to `now`, m; displacements of large parts count [`PART_MOVEMENT_FACTOR`] times.
-    pub(super) fn moved_m(&self, now: &Self) -> f64 {
+    pub(super) fn displacement_m(&self, now: &Self) -> f64 {
         let receivers = self.receiver.position().distance(now.receiver.position());
-        let parts = PART_MOVEMENT_FACTOR * largest_movement(&self.parts, &now.parts);
+        let parts = PART_MOVEMENT_FACTOR * largest_part_movement(&self.parts, &now.parts);
         f64::from(self.source.distance(now.source) + receivers + parts)
     }
 
     /// Returns whether only source and receiver moved, and large parts if they are `passing`.
-    pub(super) fn differs_by_places_only(
+    pub(super) fn differs_by_positions_only(
         &self,
         now: &Self,
         threshold: &UpdateThreshold,
@@ -97,7 +97,7 @@ impl ListeningSituation {
     }
 
     /// Returns whether more than poses changed, so that the old response must not be used any more.
-    pub(super) fn is_of_another_kind(&self, now: &Self) -> bool {
+    pub(super) fn invalidates_response(&self, now: &Self) -> bool {
         self.receiver.kind != now.receiver.kind
             || self.overrides != now.overrides
             || self.effects != now.effects
@@ -105,7 +105,7 @@ impl ListeningSituation {
     }
 
     /// As [`Self::change`], for a source that has ended: it rings out at its last position.
-    pub(super) fn change_while_ringing(
+    pub(super) fn change_after_end(
         &self,
         now: &Self,
         threshold: &UpdateThreshold,
@@ -128,7 +128,7 @@ impl ListeningSituation {
             far(a.position, b.position, threshold.part_m)
                 || (a.rotation != b.rotation && angle(a.rotation, b.rotation) >= threshold.part_m)
         });
-        if self.is_of_another_kind(now)
+        if self.invalidates_response(now)
             || far(self.source, now.source, threshold.distance_m)
             || far(here.position(), there.position(), threshold.distance_m)
             || parts.any(|moved| moved)
@@ -137,8 +137,8 @@ impl ListeningSituation {
         }
         let (a, b) = (here.rotation(), there.rotation());
         if a != b && angle(a, b) >= threshold.angle_rad {
-            return if here.turns_in_place() {
-                SituationChange::Turned
+            return if here.is_coincident() {
+                SituationChange::Rotated
             } else {
                 SituationChange::Moved
             };
@@ -149,19 +149,19 @@ impl ListeningSituation {
 
 /// The state of a source that a snapshot holds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct SourceMemory {
+pub(super) struct SourceSnapshot {
     pub(super) id: u64,
-    pub(super) heard: Option<(ListeningSituation, ImpulseResponse)>,
+    pub(super) current_response: Option<(ListeningSituation, ImpulseResponse)>,
     pub(super) history: Vec<f32>,
-    pub(super) moved: TrackedPaths,
-    pub(super) waiting: PendingUpdate,
+    pub(super) tracked: TrackedPaths,
+    pub(super) pending_update: PendingUpdate,
 }
 
 /// A response that must be computed anew and has not had its turn, or not fully.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct PendingUpdate {
     /// The block in which it became due.
-    pub(super) since: Option<u64>,
+    pub(super) due_block: Option<u64>,
     pub(super) job: Option<Box<TraceJob>>,
 }
 
@@ -175,7 +175,7 @@ pub(super) struct TraceJob {
 impl TraceJob {
     /// Returns whether its result will still be useful. The motion of slow parts meanwhile is covered by the later rays,
     /// and by its next update.
-    pub(super) fn is_still_useful(
+    pub(super) fn is_still_valid(
         &self,
         now: &ListeningSituation,
         threshold: &UpdateThreshold,
@@ -192,36 +192,36 @@ impl TraceJob {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct TrackedPaths {
     /// Positions of source and receiver at the end of the last block.
-    pub(super) last: Option<(Vec3, Pose)>,
+    pub(super) last_positions: Option<(Vec3, Pose)>,
     /// Early paths outside the filter, once anything has moved.
-    pub(super) followed: Option<Vec<TrackedPath>>,
+    pub(super) paths: Option<Vec<TrackedPath>>,
 }
 
 /// One source.
 #[derive(Clone, Debug)]
 pub(super) struct SourceState {
     pub(super) id: u64,
-    pub(super) heard: Option<(ListeningSituation, ImpulseResponse)>,
+    pub(super) current_response: Option<(ListeningSituation, ImpulseResponse)>,
     pub(super) input: ConvolverInput,
     pub(super) filter: PartitionedFilter,
-    pub(super) moved: TrackedPaths,
-    pub(super) waiting: PendingUpdate,
+    pub(super) tracked: TrackedPaths,
+    pub(super) pending_update: PendingUpdate,
 }
 
 impl SourceState {
     pub(super) fn new(id: u64, block: usize, partitions: usize) -> Self {
         Self {
             id,
-            heard: None,
+            current_response: None,
             input: ConvolverInput::new(block, partitions),
             filter: PartitionedFilter::default(),
-            moved: TrackedPaths::default(),
-            waiting: PendingUpdate::default(),
+            tracked: TrackedPaths::default(),
+            pending_update: PendingUpdate::default(),
         }
     }
 
-    pub(super) fn memory(&self) -> SourceMemory {
-        let heard = self.heard.as_ref().map(|(situation, response)| {
+    pub(super) fn snapshot(&self) -> SourceSnapshot {
+        let heard = self.current_response.as_ref().map(|(situation, response)| {
             // Samples follow from the echogram, except for an array: each of its microphones has its own early paths.
             let samples = match situation.receiver.microphone_positions() {
                 Some(_) => response.samples.clone(),
@@ -230,33 +230,33 @@ impl SourceState {
             let response = ImpulseResponse {
                 samples,
                 echogram: response.echogram.clone(),
-                levels: CachedGains::default(),
+                noise_gains: CachedGains::default(),
                 ..*response
             };
             (situation.clone(), response)
         });
-        SourceMemory {
+        SourceSnapshot {
             id: self.id,
-            heard,
+            current_response: heard,
             history: self.input.history().to_vec(),
-            moved: self.moved.clone(),
-            waiting: self.waiting.clone(),
+            tracked: self.tracked.clone(),
+            pending_update: self.pending_update.clone(),
         }
     }
 
-    pub(super) fn restore(fft: &mut RealFft, memory: SourceMemory, partitions: usize) -> Self {
+    pub(super) fn restore(fft: &mut RealFft, memory: SourceSnapshot, partitions: usize) -> Self {
         Self {
             id: memory.id,
-            heard: memory.heard,
+            current_response: memory.current_response,
             input: ConvolverInput::restore(fft, &memory.history, partitions),
             filter: PartitionedFilter::default(),
-            moved: memory.moved,
-            waiting: memory.waiting,
+            tracked: memory.tracked,
+            pending_update: memory.pending_update,
         }
     }
 
     /// Convolves with `samples` from now on, shape (channel, sample), flat.
-    pub(super) fn filter_with(
+    pub(super) fn set_filter(
         &mut self,
         fft: &mut RealFft,
         samples: &[f32],

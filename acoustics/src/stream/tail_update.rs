@@ -25,7 +25,7 @@ const MAX_RELATIVE_ERROR: f64 = 0.5;
 
 /// The previous tail, and the changes since.
 pub(super) struct TailHistory<'a> {
-    pub(super) before: &'a Echogram,
+    pub(super) previous: &'a Echogram,
     /// Distance that source and receiver have moved since, m.
     pub(super) moved_m: f64,
     /// The share of all rays that is traced anew.
@@ -35,14 +35,14 @@ pub(super) struct TailHistory<'a> {
 }
 
 /// Returns the number of rays of an update that reuses the rest.
-pub(super) fn rays_of(config: &AcousticConfig, share: f64) -> usize {
+pub(super) fn ray_budget(config: &AcousticConfig, share: f64) -> usize {
     (config.rays as f64 * share).ceil() as usize
 }
 
 impl TailHistory<'_> {
     /// Returns the number of rays that are traced anew.
     pub(super) fn rays(&self, config: &AcousticConfig) -> usize {
-        rays_of(config, self.share)
+        ray_budget(config, self.share)
     }
 
     /// Returns the difference of `now` from the previous tail, where it has mixed, as a deviate of a normal distribution: a
@@ -52,16 +52,16 @@ impl TailHistory<'_> {
     /// The sum of squares of the spans' differences over their errors, made normal by E. B. Wilson, M. M. Hilferty, Proc. Natl. Acad.
     /// Sci. 17, 684 (1931).
     fn deviation_score(&self, now: &Echogram) -> f64 {
-        let energies = |of: &Echogram| spans::energies(&of.tail);
-        let (old, new) = (energies(self.before), energies(now));
+        let energies = |of: &Echogram| spans::span_energies(&of.tail);
+        let (old, new) = (energies(self.previous), energies(now));
         let silent = |spans: &[f64]| spans.iter().all(|energy| *energy == 0.0);
         if silent(&old) != silent(&new) {
             return f64::INFINITY;
         }
         let (mut count, mut squares) = (0.0, 0.0);
         for span in spans::span_of(MIXED_S)..SPAN_COUNT {
-            let error = |of: &Echogram| f64::from(of.trace.error_over_time[span]);
-            let (before, after) = (error(self.before), error(now));
+            let error = |of: &Echogram| f64::from(of.ray_statistics.error_over_time[span]);
+            let (before, after) = (error(self.previous), error(now));
             if old[span] > 0.0 && new[span] > 0.0 && before.max(after) <= MAX_RELATIVE_ERROR {
                 let variance = before * before + after * after + PLACE_VARIATION * PLACE_VARIATION;
                 squares += libm::log(new[span] / old[span]).powi(2) / variance;
@@ -82,8 +82,8 @@ impl TailHistory<'_> {
     /// The idea is that of temporal coherence in C. Schissler, D. Manocha, ACM TOG 36(2), 16 (2017), section 4.
     ///
     /// Returns `false` for another tail, which needs all rays.
-    pub(super) fn recall(&self, now: &mut Echogram) -> bool {
-        let before = &self.before.tail;
+    pub(super) fn blend_into(&self, now: &mut Echogram) -> bool {
+        let before = &self.previous.tail;
         if before.bin_s != now.tail.bin_s
             || before.bins.len() != now.tail.bins.len()
             || before.bins_per_direction != now.tail.bins_per_direction
@@ -101,9 +101,15 @@ impl TailHistory<'_> {
             1.0 - (1.0 - doubt) * libm::exp(-self.moved_m / reach_m)
         };
         let (bin_s, per_direction) = (now.tail.bin_s, now.tail.bins_per_direction.max(1));
-        let errors = &self.before.trace.error_over_time;
-        for (span, (error, old)) in now.trace.error_over_time.iter_mut().zip(errors).enumerate() {
-            let weight = weight_at(spans::middle_s(span)) as f32;
+        let errors = &self.previous.ray_statistics.error_over_time;
+        for (span, (error, old)) in now
+            .ray_statistics
+            .error_over_time
+            .iter_mut()
+            .zip(errors)
+            .enumerate()
+        {
+            let weight = weight_at(spans::span_centre_s(span)) as f32;
             *error = libm::hypotf(weight * *error, (1.0 - weight) * old);
         }
         for (k, (bin, old)) in now.tail.bins.iter_mut().zip(&before.bins).enumerate() {

@@ -9,7 +9,7 @@
 use super::block_plan::BlockContext;
 use super::response_update::ResponseUpdater;
 use super::source_state::{ListeningSituation, SituationChange, SourceState, TraceJob};
-use super::tail_update::{TailHistory, rays_of};
+use super::tail_update::{TailHistory, ray_budget};
 use super::{BlockReport, Stream};
 use crate::error::AcousticsError;
 use crate::receiver::SoundSourcePose;
@@ -29,20 +29,20 @@ const MIN_RAYS: usize = 64;
 pub(super) struct UpdateRequest<'a> {
     pub(super) id: u64,
     /// True for a source that still sounds; else it only rings out.
-    pub(super) named: bool,
+    pub(super) is_playing: bool,
     /// Its rank by loudness.
-    pub(super) rank: usize,
+    pub(super) loudness_rank: usize,
     /// Positions of source and receiver.
-    pub(super) place: (Vec3, Pose),
-    pub(super) voice: Option<&'a SourceState>,
+    pub(super) positions: (Vec3, Pose),
+    pub(super) source_state: Option<&'a SourceState>,
     pub(super) now: ListeningSituation,
     pub(super) change: SituationChange,
     /// True if a tail of few rays is to be replaced by one of all rays.
-    pub(super) stale: bool,
+    pub(super) has_stale_tail: bool,
     /// The block in which a new response became due.
-    pub(super) since: u64,
+    pub(super) due_block: u64,
     pub(super) new_response: Option<(ListeningSituation, ImpulseResponse)>,
-    pub(super) job: PartialTrace,
+    pub(super) partial_trace: PartialTrace,
     /// True while a new response still waits for its turn or for rays.
     pub(super) is_waiting: bool,
 }
@@ -65,20 +65,24 @@ enum UpdateUrgency {
 }
 
 impl<'a> UpdateRequest<'a> {
-    pub(super) fn heard(&self) -> Option<&'a (ListeningSituation, ImpulseResponse)> {
-        self.voice.and_then(|voice| voice.heard.as_ref())
+    pub(super) fn current_response(&self) -> Option<&'a (ListeningSituation, ImpulseResponse)> {
+        self.source_state
+            .and_then(|voice| voice.current_response.as_ref())
     }
 
     fn started(&self) -> Option<&'a TraceJob> {
-        self.voice.and_then(|voice| voice.waiting.job.as_deref())
+        self.source_state
+            .and_then(|voice| voice.pending_update.job.as_deref())
     }
 
     fn need(&self) -> UpdateUrgency {
-        match (self.change, self.heard()) {
+        match (self.change, self.current_response()) {
             (_, None) => UpdateUrgency::Immediate,
-            (_, Some((then, _))) if then.is_of_another_kind(&self.now) => UpdateUrgency::Immediate,
-            (SituationChange::Moved | SituationChange::Turned, _) => UpdateUrgency::Moved,
-            (SituationChange::None, _) if self.stale => UpdateUrgency::Stale,
+            (_, Some((then, _))) if then.invalidates_response(&self.now) => {
+                UpdateUrgency::Immediate
+            }
+            (SituationChange::Moved | SituationChange::Rotated, _) => UpdateUrgency::Moved,
+            (SituationChange::None, _) if self.has_stale_tail => UpdateUrgency::Stale,
             (SituationChange::None, _) => UpdateUrgency::None,
         }
     }
@@ -130,7 +134,9 @@ impl Stream {
         for want in wants {
             match want.need() {
                 // The situation is again that of the response.
-                UpdateUrgency::None if want.started().is_some() => want.job = PartialTrace::None,
+                UpdateUrgency::None if want.started().is_some() => {
+                    want.partial_trace = PartialTrace::None;
+                }
                 UpdateUrgency::None => {}
                 _ => order.push(want),
             }
@@ -140,15 +146,15 @@ impl Stream {
                 (
                     want.need(),
                     want.started().is_none(),
-                    want.since,
-                    want.rank,
+                    want.due_block,
+                    want.loudness_rank,
                     want.id,
                 )
             });
         }
         for want in order {
             self.update_one(around, want, &mut budget, report)?;
-            report.waiting += usize::from(want.is_waiting);
+            report.waiting_sources += usize::from(want.is_waiting);
         }
         Ok(())
     }
@@ -160,25 +166,31 @@ impl Stream {
         budget: &mut RayBudget,
         report: &mut BlockReport,
     ) -> Result<(), AcousticsError> {
-        let (heard, threshold, passing) = (want.heard(), &around.threshold, around.passing);
+        let (heard, threshold, passing) = (
+            want.current_response(),
+            &around.threshold,
+            around.large_part_moving,
+        );
         // With bounded work, a place that the listener leaves again is not worth all rays.
         let stays = budget.left.is_none() || want.change == SituationChange::None;
-        let settles = want.stale && stays && !budget.settled;
+        let settles = want.has_stale_tail && stays && !budget.settled;
         budget.settled |= settles;
         match (want.change, heard) {
             (SituationChange::None, Some(_)) if !settles => {
                 want.is_waiting = true;
                 return Ok(());
             }
-            (SituationChange::Turned, Some((then, response))) => {
+            (SituationChange::Rotated, Some((then, response))) => {
                 want.is_waiting = !budget.allows(ROTATION_COST_RAYS);
                 if !want.is_waiting {
                     budget.spend(ROTATION_COST_RAYS);
-                    report.turned += 1;
+                    report.rotated += 1;
                     // The echogram stays that of the place where it was traced.
                     let mut turned = then.clone();
                     turned.receiver.pose.rotation = want.now.receiver.pose.rotation;
-                    let response = self.scene.turn(response, &turned.receiver, turned.noise);
+                    let response =
+                        self.scene
+                            .rotated_response(response, &turned.receiver, turned.noise);
                     want.new_response = Some((turned, response));
                 }
                 return Ok(());
@@ -187,20 +199,24 @@ impl Stream {
         }
         // An impact on the table uses the response of the one before it: other sources' impulse responses serve as well.
         let usable = |then: &ListeningSituation| {
-            (passing || !then.rough) && then.change(&want.now, threshold) == SituationChange::None
+            (passing || !then.has_approximate_tail)
+                && then.change(&want.now, threshold) == SituationChange::None
         };
-        let mut others = self.voices.iter().filter_map(|voice| voice.heard.as_ref());
+        let mut others = self
+            .voices
+            .iter()
+            .filter_map(|voice| voice.current_response.as_ref());
         if let Some(known) = others.find(|(then, _)| usable(then)) {
-            want.job = PartialTrace::None;
+            want.partial_trace = PartialTrace::None;
             want.new_response = Some(known.clone());
             return Ok(());
         }
         let alike = |then: &ListeningSituation| {
-            !settles && then.differs_by_places_only(&want.now, threshold, passing)
+            !settles && then.differs_by_positions_only(&want.now, threshold, passing)
         };
         let again = heard
             .filter(|(then, _)| alike(then))
-            .or_else(|| self.nearby_similar_source(around.rays, &want.now, alike));
+            .or_else(|| self.response_of_nearby_source(around.rays, &want.now, alike));
         match again {
             Some(before) => self.update_with_few_rays(around, want, before, budget, report),
             None => self.update_fully(around, want, budget, report),
@@ -216,7 +232,7 @@ impl Stream {
         budget: &mut RayBudget,
         report: &mut BlockReport,
     ) -> Result<(), AcousticsError> {
-        let rays = rays_of(self.scene.config(), self.config.update_share);
+        let rays = ray_budget(self.scene.config(), self.config.update_share);
         want.is_waiting =
             want.need() != UpdateUrgency::Immediate && !budget.allows(rays + RESPONSE_COST_RAYS);
         if want.is_waiting {
@@ -224,18 +240,19 @@ impl Stream {
         }
         budget.spend(rays + RESPONSE_COST_RAYS);
         let memory = TailHistory {
-            before: &response.echogram,
-            moved_m: then.moved_m(&want.now),
+            previous: &response.echogram,
+            moved_m: then.displacement_m(&want.now),
             share: self.config.update_share,
             update: self.block,
         };
         let all = budget.holds(self.scene.config().rays);
         let way = self.way(around, want.id, &want.now);
         let (response, known) = way.update_from_history(&memory, all)?;
-        report.traced += 1;
-        report.rays += response.echogram.trace.rays as usize;
-        want.now.rough = around.passing || then.rough || !known;
-        want.job = PartialTrace::None;
+        report.traced_responses += 1;
+        report.rays += response.echogram.ray_statistics.rays as usize;
+        want.now.has_approximate_tail =
+            around.large_part_moving || then.has_approximate_tail || !known;
+        want.partial_trace = PartialTrace::None;
         want.new_response = Some((want.now.clone(), response));
         Ok(())
     }
@@ -249,17 +266,17 @@ impl Stream {
         report: &mut BlockReport,
     ) -> Result<(), AcousticsError> {
         let all = self.scene.config().rays;
-        if want.heard().is_none() && !budget.holds(all) {
-            let share = rays_of(self.scene.config(), self.config.update_share);
+        if want.current_response().is_none() && !budget.holds(all) {
+            let share = ray_budget(self.scene.config(), self.config.update_share);
             let rays = share
                 .min(budget.left.unwrap_or(all))
                 .clamp(MIN_RAYS.min(all), all);
             budget.spend(rays + RESPONSE_COST_RAYS);
             let way = self.way(around, want.id, &want.now);
-            let response = way.trace_few(rays)?;
-            report.traced += 1;
+            let response = way.trace_with_rays(rays)?;
+            report.traced_responses += 1;
             report.rays += rays;
-            want.now.rough = true;
+            want.now.has_approximate_tail = true;
             want.new_response = Some((want.now.clone(), response));
             return Ok(());
         }
@@ -273,10 +290,11 @@ impl Stream {
             return Ok(());
         }
         let mut job = match want.started() {
-            Some(job) if job.is_still_useful(&want.now, &around.threshold) => Box::new(job.clone()),
+            Some(job) if job.is_still_valid(&want.now, &around.threshold) => Box::new(job.clone()),
             // A listener who walks on must not keep all other sources from their turns.
             Some(_) if is_waiting => {
-                (want.is_waiting, want.since, want.job) = (true, self.block, PartialTrace::None);
+                (want.is_waiting, want.due_block, want.partial_trace) =
+                    (true, self.block, PartialTrace::None);
                 return Ok(());
             }
             _ => Box::new(TraceJob {
@@ -294,12 +312,12 @@ impl Stream {
         budget.spend(rays);
         if let Some(response) = response {
             budget.spend(RESPONSE_COST_RAYS);
-            report.traced += 1;
-            want.job = PartialTrace::None;
+            report.traced_responses += 1;
+            want.partial_trace = PartialTrace::None;
             want.new_response = Some((job.situation, response));
         } else {
             want.is_waiting = true;
-            want.job = PartialTrace::Advanced(job);
+            want.partial_trace = PartialTrace::Advanced(job);
         }
         Ok(())
     }
@@ -313,7 +331,7 @@ impl Stream {
         ResponseUpdater {
             scene: &self.scene,
             rays: around.rays,
-            source: SoundSourcePose::at(situation.source),
+            source: SoundSourcePose::omni(situation.source),
             receiver: &situation.receiver,
             key: self.key_of(id),
             noise: situation.noise,

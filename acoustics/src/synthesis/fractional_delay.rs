@@ -62,7 +62,7 @@ impl FractionalDelay {
 
     /// Adds `response`, delayed by the delay less `lead` samples and scaled, to `out`. Samples outside are dropped.
     pub(crate) fn add(&self, out: &mut [f32], response: &[f32], lead: usize, gain: f32) {
-        SimdLevel::best().run(DelayedAdd {
+        SimdLevel::best_available().run(DelayedAdd {
             taps: self,
             out,
             response,

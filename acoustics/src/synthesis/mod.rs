@@ -8,10 +8,10 @@ mod upper_air;
 
 use crate::bands::{BAND_COUNT, BandValues, FilterBank};
 use crate::config::AcousticConfig;
-use crate::echogram::{Echogram, NEAREST_M, PropagationPath};
+use crate::echogram::{Echogram, MIN_DISTANCE_M, PropagationPath};
 use crate::fft::RealFft;
 use crate::head::HeadSet;
-use crate::minimum_phase::{self, EAR_LEAD_S, PathFilters};
+use crate::minimum_phase::{self, HRIR_PRE_RINGING_S, PathFilters};
 use crate::receiver::Receiver;
 use crate::receiver_channel::ReceiverChannel;
 use dwell_scene::random::RandomKey;
@@ -19,7 +19,7 @@ use fractional_delay::FractionalDelay;
 pub(crate) use noise_gains::CachedGains;
 use serde::{Deserialize, Serialize};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
-pub(crate) use upper_air::UpperAir;
+pub(crate) use upper_air::UpperAirAbsorption;
 use upper_air::UpperBands;
 
 /// Most paths with filters, the strongest first; fainter ones beyond these are left out.
@@ -62,11 +62,11 @@ struct FilterBankSet {
 }
 
 /// The receiver, its head filters and the air.
-pub(crate) struct HearingContext<'a> {
+pub(crate) struct ReceiverContext<'a> {
     pub(crate) receiver: &'a Receiver,
     pub(crate) heads: &'a HeadSet,
     /// Its absorption above the highest band, where that can be heard.
-    pub(crate) air: Option<&'a UpperAir>,
+    pub(crate) upper_air: Option<&'a UpperAirAbsorption>,
 }
 
 /// Synthesizers in use: scenes with one rate share them.
@@ -110,15 +110,19 @@ impl Synthesizer {
             longest: longest(config),
             banks: [const { OnceLock::new() }; 3],
             filters,
-            fade: minimum_phase::fade(short(rate_hz) / 4),
+            fade: minimum_phase::fade_out_weights(short(rate_hz) / 4),
             rate_hz,
             arrivals_per_s: config.arrivals_per_s,
         }
     }
 
     /// Returns the absorption above the highest band by `config`'s air, with this `share` of it.
-    pub(crate) fn upper_air(&self, config: &AcousticConfig, share: f64) -> Option<UpperAir> {
-        UpperAir::new(config, share, &self.filters)
+    pub(crate) fn upper_air(
+        &self,
+        config: &AcousticConfig,
+        share: f64,
+    ) -> Option<UpperAirAbsorption> {
+        UpperAirAbsorption::new(config, share, &self.filters)
     }
 
     fn bank(&self, length: usize) -> &FilterBankSet {
@@ -169,15 +173,15 @@ impl Synthesizer {
     pub(crate) fn render(
         &self,
         echogram: &Echogram,
-        hearing: &HearingContext<'_>,
+        hearing: &ReceiverContext<'_>,
         early: Option<&[Vec<PropagationPath>]>,
         levels: &mut CachedGains,
         key: RandomKey,
     ) -> Vec<f32> {
-        let HearingContext {
+        let ReceiverContext {
             receiver,
             heads,
-            air,
+            upper_air: air,
         } = *hearing;
         let length = self.length(echogram);
         let mut out = vec![0.0; receiver.channels() * length];
@@ -186,7 +190,9 @@ impl Synthesizer {
         }
         let channels = ReceiverChannel::of(receiver, heads, echogram.speed_m_s);
         // The tail may not begin before the direct sound.
-        let radius_m = receiver.radius_m().max(EAR_LEAD_S * echogram.speed_m_s);
+        let radius_m = receiver
+            .radius_m()
+            .max(HRIR_PRE_RINGING_S * echogram.speed_m_s);
         let quiet_s = (echogram.direct_length_m - radius_m) / echogram.speed_m_s;
         let quiet = ((quiet_s * self.rate_hz).max(0.0) as usize).min(length);
         let bank = self.bank(length);
@@ -196,13 +202,13 @@ impl Synthesizer {
             rate_hz: self.rate_hz,
             arrivals_per_s: self.arrivals_per_s,
             length,
-            quiet,
+            silent_samples: quiet,
             bank: &bank.bands,
-            upper: air.map(|air| (&bank.upper, air)),
+            upper_air_absorption: air.map(|air| (&bank.upper, air)),
         };
         let arrivals = noise.arrivals(key);
         if !arrivals.is_empty() {
-            let levels = levels.or_find(|| {
+            let levels = levels.get_or_compute(|| {
                 let mut paths = vec![0.0; length];
                 // Bands are known at their centres: levels are those before absorption above.
                 let omni = PathListening {
@@ -211,7 +217,7 @@ impl Synthesizer {
                     air: None,
                 };
                 self.add_paths(echogram, &echogram.paths, &omni, &mut paths);
-                noise.levels(&arrivals, &paths, channels.len())
+                noise.noise_gains(&arrivals, &paths, channels.len())
             });
             noise.add(&arrivals, levels, &channels, &mut out);
         }
@@ -250,7 +256,12 @@ impl Synthesizer {
             let wavelets = self.heard(&mut fft, echogram.speed_m_s, path, listening);
             for (wavelet, out) in wavelets.zip(out.chunks_exact_mut(length)) {
                 let taps = FractionalDelay::new(wavelet.delay_s * self.rate_hz);
-                taps.add(out, &wavelet.response, wavelet.lead, wavelet.amplitude);
+                taps.add(
+                    out,
+                    &wavelet.response,
+                    wavelet.pre_ringing_samples,
+                    wavelet.amplitude,
+                );
             }
         }
     }
@@ -262,13 +273,13 @@ impl Synthesizer {
         speed_m_s: f64,
         path: &'a PropagationPath,
         listening: &PathListening<'a>,
-    ) -> impl Iterator<Item = Wavelet> + 'a {
+    ) -> impl Iterator<Item = PathFilter> + 'a {
         let PathListening {
             channels,
             at_channel,
             air,
         } = *listening;
-        let air = air.map(|air| air.along(path.length_m));
+        let air = air.map(|air| air.log_spectrum_at(path.length_m));
         // Most channels have the same energies.
         let (mut last, mut found) = ([f32::NAN; BAND_COUNT], (Vec::new(), 0.0));
         channels.iter().map(move |channel| {
@@ -281,42 +292,43 @@ impl Synthesizer {
             if path.inverted != (gain.iter().sum::<f32>() < 0.0) {
                 amplitude = -amplitude;
             }
-            let mut delay_s = channel.shade(speed_m_s, path.arrival, &mut spectrum);
+            let mut delay_s =
+                channel.apply_undelayed_response(speed_m_s, path.arrival, &mut spectrum);
             if at_channel {
                 delay_s = 0.0;
             }
-            let early = channel.rings_early();
+            let early = channel.has_pre_ringing();
             if early {
-                self.filters.delay(&mut spectrum);
+                self.filters.delay_by_pre_ringing(&mut spectrum);
             }
-            Wavelet {
+            PathFilter {
                 response: self.filters.impulse_response(fft, &mut spectrum),
-                lead: if early {
-                    minimum_phase::lead(self.rate_hz)
+                pre_ringing_samples: if early {
+                    minimum_phase::pre_ringing_samples(self.rate_hz)
                 } else {
                     0
                 },
                 amplitude,
-                delay_s: delay_s + path.length_m.max(NEAREST_M) / speed_m_s,
+                delay_s: delay_s + path.length_m.max(MIN_DISTANCE_M) / speed_m_s,
             }
         })
     }
 
     /// Returns the filters of paths at each channel of a receiver, of length [`SHORT_S`]. Shape (path, channel).
-    pub(crate) fn wavelets(
+    pub(crate) fn path_filters(
         &self,
         speed_m_s: f64,
         paths: &[PropagationPath],
-        hearing: &HearingContext<'_>,
-    ) -> Vec<Vec<Wavelet>> {
+        hearing: &ReceiverContext<'_>,
+    ) -> Vec<Vec<PathFilter>> {
         let channels = ReceiverChannel::of(hearing.receiver, hearing.heads, speed_m_s);
         let listening = PathListening {
             channels: &channels,
             at_channel: false,
-            air: hearing.air,
+            air: hearing.upper_air,
         };
         let mut fft = self.filters.fft();
-        let mut hear = |path: &PropagationPath| -> Vec<Wavelet> {
+        let mut hear = |path: &PropagationPath| -> Vec<PathFilter> {
             let wavelets = self.heard(&mut fft, speed_m_s, path, &listening);
             wavelets.map(|wavelet| self.shorten(wavelet)).collect()
         };
@@ -324,8 +336,8 @@ impl Synthesizer {
     }
 
     /// Keeps the first [`SHORT_S`] after the lead, the last quarter of them faded out.
-    fn shorten(&self, mut wavelet: Wavelet) -> Wavelet {
-        let taps = short(self.rate_hz) + wavelet.lead;
+    fn shorten(&self, mut wavelet: PathFilter) -> PathFilter {
+        let taps = short(self.rate_hz) + wavelet.pre_ringing_samples;
         if wavelet.response.len() > taps {
             wavelet.response.truncate(taps);
             minimum_phase::fade_out(&mut wavelet.response, &self.fade);
@@ -334,7 +346,7 @@ impl Synthesizer {
     }
 
     /// Subtracts wavelets from a response. Shapes: (path, channel) and (channel, sample), flat.
-    pub(crate) fn subtract_wavelets(&self, wavelets: &[Vec<Wavelet>], samples: &mut [f32]) {
+    pub(crate) fn subtract_path_filters(&self, wavelets: &[Vec<PathFilter>], samples: &mut [f32]) {
         let Some(channels) = wavelets.first().map(Vec::len) else {
             return;
         };
@@ -342,7 +354,12 @@ impl Synthesizer {
         for path in wavelets {
             for (wavelet, out) in path.iter().zip(samples.chunks_exact_mut(length.max(1))) {
                 let taps = FractionalDelay::new(wavelet.delay_s * self.rate_hz);
-                taps.add(out, &wavelet.response, wavelet.lead, -wavelet.amplitude);
+                taps.add(
+                    out,
+                    &wavelet.response,
+                    wavelet.pre_ringing_samples,
+                    -wavelet.amplitude,
+                );
             }
         }
     }
@@ -353,7 +370,7 @@ struct PathListening<'a> {
     channels: &'a [ReceiverChannel],
     /// True for paths that end at the channel itself rather than at the centre.
     at_channel: bool,
-    air: Option<&'a UpperAir>,
+    air: Option<&'a UpperAirAbsorption>,
 }
 
 /// Returns the paths that are rendered one by one, the strongest first where there are too many.
@@ -369,11 +386,11 @@ pub(crate) fn strongest(paths: &[PropagationPath]) -> Vec<&PropagationPath> {
 
 /// The filter of one path at one channel.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Wavelet {
+pub(crate) struct PathFilter {
     /// A short filter. Shape (tap,).
     pub(crate) response: Vec<f32>,
     /// Samples of it before the delay.
-    pub(crate) lead: usize,
+    pub(crate) pre_ringing_samples: usize,
     pub(crate) amplitude: f32,
     pub(crate) delay_s: f64,
 }

@@ -23,7 +23,7 @@ pub(super) struct GainCurve {
 
 /// Energy over the hops of a band, each arrival spread by the band's filter.
 pub(super) struct BandEnergy<'a> {
-    /// Samples of a hop, and its decimation factor; see [`FilterBank::stride`].
+    /// Samples of a hop, and its decimation factor; see [`FilterBank::decimation_factor`].
     hop: usize,
     stride: usize,
     /// Energy of the filter's response to a pulse up to each sample; the middle one is the pulse's. Shape (odd,).
@@ -53,12 +53,12 @@ impl<'a> BandEnergy<'a> {
         length: usize,
         quiet: usize,
     ) -> Self {
-        let stride = bank.stride(band);
+        let stride = bank.decimation_factor(band);
         let hop = hop(band, rate_hz, stride);
         Self {
             hop,
             stride,
-            up_to: bank.up_to(band),
+            up_to: bank.cumulative_pulse_energy(band),
             quiet,
             sums: vec![0.0; length.div_ceil(hop) + 1],
         }
@@ -90,7 +90,7 @@ impl<'a> BandEnergy<'a> {
 
 impl GainCurve {
     /// Gains of 1.
-    pub(super) fn ones(wanted: &BandEnergy<'_>) -> Self {
+    pub(super) fn unity(wanted: &BandEnergy<'_>) -> Self {
         Self {
             per_sample: 1.0 / wanted.hop as f32,
             gain: vec![1.0; wanted.sums.len()],
@@ -151,7 +151,7 @@ pub(crate) struct CachedGains(Option<Arc<BandGains>>);
 
 impl CachedGains {
     /// Returns the gains; `find` computes them where they are not known yet.
-    pub(super) fn or_find(&mut self, find: impl FnOnce() -> BandGains) -> &BandGains {
+    pub(super) fn get_or_compute(&mut self, find: impl FnOnce() -> BandGains) -> &BandGains {
         self.0.get_or_insert_with(|| Arc::new(find()))
     }
 }
@@ -190,19 +190,19 @@ mod tests {
         for k in 0..length {
             wanted.add(k, asked);
         }
-        let mut gains = GainCurve::ones(&wanted);
-        let p = bank.sift(&paths);
+        let mut gains = GainCurve::unity(&wanted);
+        let p = bank.split_decimated(&paths);
         for _ in 0..2 {
             let noise: Vec<f32> = (0..length).map(|k| gains.at(k) * noise[k]).collect();
-            gains.correct(&p[band], &bank.sift(&noise)[band], &wanted);
+            gains.correct(&p[band], &bank.split_decimated(&noise)[band], &wanted);
         }
         for window in [400..1800_usize, 2400..3800] {
             let length = window.len() as f64;
             let heard: Vec<f32> = (0..4000)
                 .map(|k| paths[k] + gains.at(k) * noise[k])
                 .collect();
-            let heard = &bank.sift(&heard)[band];
-            let stride = bank.stride(band);
+            let heard = &bank.split_decimated(&heard)[band];
+            let stride = bank.decimation_factor(band);
             let kept = window.start / stride..window.end / stride;
             let energy: f64 = heard[kept].iter().map(|x| f64::from(*x).powi(2)).sum();
             let energy = stride as f64 * energy / (asked * length);

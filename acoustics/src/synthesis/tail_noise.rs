@@ -1,7 +1,7 @@
 //! The tail as pressure: random arrivals with the histogram's energies.
 
 use super::noise_gains::{BandEnergy, BandGains, GainCurve};
-use super::upper_air::{UpperAir, UpperBands};
+use super::upper_air::{UpperAirAbsorption, UpperBands};
 use crate::bands::{BAND_COUNT, BandValues, FilterBank};
 use crate::directions::DirectionalEnergy;
 use crate::echogram::Echogram;
@@ -34,10 +34,10 @@ pub(super) struct TailNoise<'a> {
     pub(super) arrivals_per_s: f64,
     pub(super) length: usize,
     /// Samples at the start that must be silent.
-    pub(super) quiet: usize,
+    pub(super) silent_samples: usize,
     pub(super) bank: &'a FilterBank,
     /// Absorption by air above the highest band, if any.
-    pub(super) upper: Option<(&'a UpperBands, &'a UpperAir)>,
+    pub(super) upper_air_absorption: Option<(&'a UpperBands, &'a UpperAirAbsorption)>,
 }
 
 /// One arrival of the tail.
@@ -78,13 +78,13 @@ impl TailNoise<'_> {
             }
             for (arrival, pulse) in arrivals.iter().zip(&pulses) {
                 poll.turn();
-                let heard = channel.hear(speed, arrival.from);
+                let heard = channel.response(speed, arrival.from);
                 let pulse = std::array::from_fn(|band| pulse[band] * heard.gain[band]);
                 self.add_arrival(&mut bus, arrival.time_s, &pulse, &heard.delay);
             }
             let heard = self.blend(&mut bus);
             // Zero-phase bands ring before their pulses.
-            for (y, x) in out.iter_mut().zip(heard).skip(self.quiet) {
+            for (y, x) in out.iter_mut().zip(heard).skip(self.silent_samples) {
                 *y += x;
             }
         }
@@ -92,13 +92,13 @@ impl TailNoise<'_> {
 
     /// Returns the sum of the bands, with absorption above the highest of them.
     fn blend(&self, bus: &mut BandSignals) -> Vec<f32> {
-        let Some((parts, air)) = self.upper else {
+        let Some((parts, air)) = self.upper_air_absorption else {
             return self.bank.blend(bus, self.length);
         };
         let mut alone = vec![Vec::new(); BAND_COUNT];
         alone[BAND_COUNT - 1] = std::mem::take(&mut bus[BAND_COUNT - 1]);
         let mut highest = self.bank.blend(&alone, self.length);
-        parts.fade(&mut highest, air, self.echogram.speed_m_s / self.rate_hz);
+        parts.apply_air_absorption(&mut highest, air, self.echogram.speed_m_s / self.rate_hz);
         let mut heard = self.bank.blend(bus, self.length);
         for (y, x) in heard.iter_mut().zip(highest) {
             *y += x;
@@ -134,7 +134,7 @@ impl TailNoise<'_> {
             // Keyed by the bin, so that draws in one bin do not depend on the others.
             let mut stream = key.child(k as u64).stream();
             let count = poisson(self.arrivals_per_s * tail.bin_s, &mut stream).max(1);
-            poll.turns(count);
+            poll.count_many(count);
             let amplitude: BandValues =
                 std::array::from_fn(|b| (bin[b] / count as f64).sqrt() as f32);
             for _ in 0..count {
@@ -153,7 +153,7 @@ impl TailNoise<'_> {
 
     /// Returns the gains that give the noise, at the receiver's centre and with the early paths, its wanted energy.
     /// `paths`: the paths at the centre, shape (sample,); `channels`: their number.
-    pub(super) fn levels(
+    pub(super) fn noise_gains(
         &self,
         arrivals: &[TailArrival],
         paths: &[f32],
@@ -165,8 +165,8 @@ impl TailNoise<'_> {
             ROUNDS_OF_MANY
         };
         let wanted: [BandEnergy<'_>; BAND_COUNT] = std::array::from_fn(|band| self.wanted(band));
-        let mut levels: BandGains = std::array::from_fn(|band| GainCurve::ones(&wanted[band]));
-        let paths = self.bank.sift(paths);
+        let mut levels: BandGains = std::array::from_fn(|band| GainCurve::unity(&wanted[band]));
+        let paths = self.bank.split_decimated(paths);
         let mut poll = PollEvery::new(ARRIVALS_BETWEEN_POLLS);
         for _ in 0..rounds {
             let mut bus: BandSignals = vec![vec![0.0; self.length]; BAND_COUNT];
@@ -176,8 +176,8 @@ impl TailNoise<'_> {
                 self.add_arrival(&mut bus, arrival.time_s, &pulse, &Delay::None);
             }
             let mut noise = self.bank.blend(&bus, self.length);
-            noise[..self.quiet].fill(0.0);
-            let noise = self.bank.sift(&noise);
+            noise[..self.silent_samples].fill(0.0);
+            let noise = self.bank.split_decimated(&noise);
             for (band, gains) in levels.iter_mut().enumerate() {
                 gains.correct(&paths[band], &noise[band], &wanted[band]);
             }
@@ -188,11 +188,11 @@ impl TailNoise<'_> {
     /// Returns the wanted energy of a band over time.
     fn wanted(&self, band: usize) -> BandEnergy<'_> {
         let Self { bank, rate_hz, .. } = self;
-        let mut wanted = BandEnergy::new(bank, band, *rate_hz, self.length, self.quiet);
+        let mut wanted = BandEnergy::new(bank, band, *rate_hz, self.length, self.silent_samples);
         let mut add = |time_s: f64, energy: &[f64; BAND_COUNT]| {
             let place = (time_s * rate_hz) as usize;
             if place < self.length {
-                wanted.add(place, bank.found(band, energy));
+                wanted.add(place, bank.band_pulse_energy(band, energy));
             }
         };
         for (k, bin) in self.energy.iter().enumerate() {
@@ -221,7 +221,7 @@ impl TailNoise<'_> {
                     }
                 }
             }
-            Delay::Same(delay_s) => {
+            Delay::Constant(delay_s) => {
                 let between = FractionalPulse::new((time_s + f64::from(*delay_s)) * self.rate_hz);
                 for (band, amplitude) in bus.iter_mut().zip(pulse) {
                     between.add(band, *amplitude);

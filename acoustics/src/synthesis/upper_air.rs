@@ -28,14 +28,14 @@ fn centres_hz(rate_hz: f64) -> impl Iterator<Item = f64> {
 
 /// Absorption by air above the highest band, in excess of that in the band.
 #[derive(Debug)]
-pub(crate) struct UpperAir {
+pub(crate) struct UpperAirAbsorption {
     /// Logarithmic spectrum of minimum phase for 1 m. Shape (bin,).
     per_m: Vec<Complex<f32>>,
     /// Decay of the amplitude of each part, 1/m. Shape (part,).
     decay_per_m: Vec<f64>,
 }
 
-impl UpperAir {
+impl UpperAirAbsorption {
     /// The absorption of `config`'s air, with this `share` of it; `None` without absorption, or where nothing above the
     /// highest band is audible.
     pub(super) fn new(config: &AcousticConfig, share: f64, filters: &PathFilters) -> Option<Self> {
@@ -50,7 +50,7 @@ impl UpperAir {
             share * more_db.max(0.0) / (20.0 * std::f64::consts::LOG10_E)
         };
         Some(Self {
-            per_m: filters.logarithmic(|frequency_hz| {
+            per_m: filters.log_spectrum(|frequency_hz| {
                 if frequency_hz > highest_hz() {
                     -decay_per_m(frequency_hz)
                 } else {
@@ -62,7 +62,7 @@ impl UpperAir {
     }
 
     /// Returns the logarithmic spectrum for a path of `length_m`.
-    pub(super) fn along(&self, length_m: f64) -> (&[Complex<f32>], f32) {
+    pub(super) fn log_spectrum_at(&self, length_m: f64) -> (&[Complex<f32>], f32) {
         (&self.per_m, length_m.min(FURTHEST_M) as f32)
     }
 }
@@ -105,7 +105,12 @@ impl UpperBands {
     }
 
     /// Fades the parts of `signal`, which begins with the impulse, by absorption in air.
-    pub(super) fn fade(&self, signal: &mut [f32], air: &UpperAir, metres_per_sample: f64) {
+    pub(super) fn apply_air_absorption(
+        &self,
+        signal: &mut [f32],
+        air: &UpperAirAbsorption,
+        metres_per_sample: f64,
+    ) {
         let mut fft = self.fft.clone();
         let spectrum = fft.forward(signal);
         let mut part = vec![Complex::default(); fft.bins()];
@@ -141,7 +146,7 @@ mod tests {
             rate_hz: 48_000,
             ..AcousticConfig::full()
         };
-        let air = UpperAir::new(&config, 1.0, &PathFilters::new(48_000.0)).unwrap();
+        let air = UpperAirAbsorption::new(&config, 1.0, &PathFilters::new(48_000.0)).unwrap();
         let n = 48_000;
         let parts = UpperBands::new(48_000.0, n);
         let more_db = |frequency_hz| {
@@ -153,7 +158,7 @@ mod tests {
             let omega = std::f64::consts::TAU * frequency_hz / 48_000.0;
             let mut tone: Vec<f32> = (0..n).map(|k| libm::sin(omega * k as f64) as f32).collect();
             // 0.01 m a sample: 100 m after 10,000 samples.
-            parts.fade(&mut tone, &air, 0.01);
+            parts.apply_air_absorption(&mut tone, &air, 0.01);
             let level_db = |at: usize| {
                 let power = tone[at - 480..at + 480]
                     .iter()
@@ -171,7 +176,7 @@ mod tests {
     #[test]
     fn there_is_nothing_to_take_at_16_khz_or_without_absorption() {
         let made = |config: &AcousticConfig, share| {
-            UpperAir::new(config, share, &PathFilters::new(f64::from(config.rate_hz)))
+            UpperAirAbsorption::new(config, share, &PathFilters::new(f64::from(config.rate_hz)))
         };
         let fast = AcousticConfig {
             rate_hz: 48_000,

@@ -135,7 +135,7 @@ impl TraceProgress {
     }
 
     /// Returns whether it is valid for one receiver: continuing from a damaged snapshot must not panic.
-    pub(crate) fn is_sound(&self, config: &AcousticConfig) -> bool {
+    pub(crate) fn is_valid(&self, config: &AcousticConfig) -> bool {
         let energy = |e: &f64| e.is_finite() && *e >= 0.0;
         let sums = |sums: &ReceiverSums| {
             let directions = sums.directions.iter().flatten();
@@ -144,7 +144,7 @@ impl TraceProgress {
                 && sums.energy.iter().flatten().all(energy)
                 && directions.map(|e| f64::from(*e)).all(|e| energy(&e))
                 && sums.moments.iter().flatten().all(energy)
-                && sums.scatter.is_sound()
+                && sums.scatter.is_valid()
         };
         let all = u64::try_from(self.chunks).unwrap_or(u64::MAX) <= 1 << 40;
         self.sums.len() == 1
@@ -191,7 +191,7 @@ pub(crate) fn trace(
     let trace = TailTrace::new(data, rays, source, receivers, count, key, threads);
     let mut progress = TraceProgress::new(data.config(), receivers.len());
     trace.advance(&mut progress, usize::MAX);
-    trace.end(progress)
+    trace.finish(progress)
 }
 
 impl<'a> TailTrace<'a> {
@@ -232,7 +232,7 @@ impl<'a> TailTrace<'a> {
         let (config, key) = (self.data.config(), self.key);
         let speed = config.air.speed_of_sound_m_s();
         let (bin_count, times) = (config.bin_count(), times(config));
-        let hidden = self.listeners.iter().any(|listener| listener.hidden);
+        let hidden = self.listeners.iter().any(|listener| listener.is_occluded);
         let mut start = key.child("turn").stream();
         let (axis, pattern) = self.data.effects().radiation(self.source, speed);
         let walk = RayTracer {
@@ -242,16 +242,16 @@ impl<'a> TailTrace<'a> {
             axis,
             pattern,
             listeners: &self.listeners,
-            turn: random_rotation(&mut start),
-            place: (start.uniform(), start.uniform()),
+            sequence_rotation: random_rotation(&mut start),
+            sequence_offset: (start.uniform(), start.uniform()),
             bins_per_m: (1.0 / (speed * config.bin_s)) as f32,
-            furthest_m: (speed * config.max_duration_s) as f32,
+            max_distance_m: (speed * config.max_duration_s) as f32,
             bin_count,
-            span_of_bin: spans::of_bins(bin_count, config.bin_s),
+            span_of_bin: spans::spans_of_bins(bin_count, config.bin_s),
             bins_per_direction: bins_per_direction(config),
-            times,
-            roulette: libm::pow(10.0, -0.1 * config.roulette_db) as f32,
-            wall_chance: if config.transmission && hidden {
+            direction_time_bins: times,
+            roulette_threshold: libm::pow(10.0, -0.1 * config.roulette_db) as f32,
+            wall_probability: if config.transmission && hidden {
                 TRANSMISSION_PROBABILITY
             } else {
                 0.0
@@ -271,7 +271,7 @@ impl<'a> TailTrace<'a> {
             let done = self.threads.map(pieces, |k| {
                 let start = (first + k) * RAYS_PER_CHUNK;
                 let end = (start + RAYS_PER_CHUNK).min(self.count);
-                walk.chunk(start..end, key.child("chunk").child((first + k) as u64))
+                walk.trace_chunk(start..end, key.child("chunk").child((first + k) as u64))
             });
             for chunk in &done {
                 progress.segments += chunk.segments;
@@ -292,7 +292,7 @@ impl<'a> TailTrace<'a> {
     }
 
     /// Returns the tails of all rays so far. Shape (receiver,).
-    pub(crate) fn end(&self, progress: TraceProgress) -> Vec<LateReverberation> {
+    pub(crate) fn finish(&self, progress: TraceProgress) -> Vec<LateReverberation> {
         let config = self.data.config();
         let speed = config.air.speed_of_sound_m_s();
         let chunks = progress.chunks;
@@ -332,8 +332,8 @@ impl<'a> TailTrace<'a> {
                 statistics: RayStatistics {
                     relative_error,
                     error_over_time,
-                    receiver_radius_m: listener.largest_m(),
-                    seen_volume_m3: listener.seen_volume_m3,
+                    receiver_radius_m: listener.max_radius_m(),
+                    visible_volume_m3: listener.visible_volume_m3,
                     ..statistics
                 },
             }

@@ -3,12 +3,12 @@
 use super::receiver_volume::TailReceiver;
 use super::{RAYS_PER_CHUNK, RayChunk};
 use crate::bands::{BAND_COUNT, BandValues};
-use crate::directions::{CELL_COUNT, cell_of};
+use crate::directions::{CELL_COUNT, direction_cell};
 use crate::directivity::TabulatedPattern;
 use crate::echogram::SPAN_COUNT;
 use crate::propagation_data::PropagationData;
-use crate::ray_margin::margin_m;
-use crate::sphere_sequences::sequence_direction;
+use crate::ray_margin::ray_offset_m;
+use crate::sphere_sequences::direction_in_sequence;
 use crate::surface::ReflectedEnergy;
 use crate::transmission;
 use dwell_scene::bvh::{Hit, Ray, RayMask};
@@ -41,21 +41,21 @@ pub(super) struct RayTracer<'a> {
     pub(super) axis: Vec3,
     pub(super) pattern: TabulatedPattern,
     pub(super) listeners: &'a [TailReceiver],
-    pub(super) turn: Quat,
+    pub(super) sequence_rotation: Quat,
     /// Offset of the sequence of directions.
-    pub(super) place: (f64, f64),
+    pub(super) sequence_offset: (f64, f64),
     pub(super) bins_per_m: f32,
-    pub(super) furthest_m: f32,
+    pub(super) max_distance_m: f32,
     pub(super) bin_count: usize,
     /// Shape (bin,).
     pub(super) span_of_bin: Vec<usize>,
     pub(super) bins_per_direction: usize,
     /// Entries of directions over time.
-    pub(super) times: usize,
+    pub(super) direction_time_bins: usize,
     /// Energy of a band in all rays of a chunk, re the start, below which it counts less and rays become fewer.
-    pub(super) roulette: f32,
+    pub(super) roulette_threshold: f32,
     /// Probability that a ray also goes on behind a wall; 0 without a receiver there.
-    pub(super) wall_chance: f32,
+    pub(super) wall_probability: f32,
 }
 
 /// Random streams: of rays that never went through a wall, and of all others.
@@ -93,12 +93,12 @@ struct TracedRay {
 
 impl RayTracer<'_> {
     /// Traces the rays of `range`, at most a chunk.
-    pub(super) fn chunk(&self, range: Range<usize>, key: RandomKey) -> RayChunk {
+    pub(super) fn trace_chunk(&self, range: Range<usize>, key: RandomKey) -> RayChunk {
         debug_assert!(range.len() <= RAYS_PER_CHUNK);
         let receivers = self.listeners.len();
         let mut chunk = RayChunk {
             energy: vec![[0.0; BAND_COUNT]; receivers * self.bin_count],
-            directions: vec![[0.0; BAND_COUNT]; receivers * self.times * CELL_COUNT],
+            directions: vec![[0.0; BAND_COUNT]; receivers * self.direction_time_bins * CELL_COUNT],
             by_ray: vec![[0.0; SPAN_COUNT]; receivers * RAYS_PER_CHUNK],
             segments: 0,
             escaped: 0,
@@ -109,7 +109,7 @@ impl RayTracer<'_> {
         let mut aside = key.child("walls").stream();
         let first = range.start;
         let start = range.map(|k| {
-            let direction = self.turn * sequence_direction(k, self.place);
+            let direction = self.sequence_rotation * direction_in_sequence(k, self.sequence_offset);
             let energy = self.pattern.gain(direction.dot(self.axis)).map(|g| g * g);
             TracedRay::new(Ray::new(self.source, direction), energy, k - first)
         });
@@ -139,12 +139,12 @@ impl RayTracer<'_> {
             return;
         };
         let count = rays.len();
-        let least = sum(&rays).map(|all| self.roulette * all);
+        let least = sum(&rays).map(|all| self.roulette_threshold * all);
         let mut worth = band_importance(&rays, &least);
         let mut next = Vec::with_capacity(count);
         for stage in 1_u16.. {
             let end_m = begin_m + f32::from(stage) * STAGE_M;
-            let last = end_m >= self.furthest_m;
+            let last = end_m >= self.max_distance_m;
             for one in rays.drain(..) {
                 next.extend(self.follow(one, end_m, &worth, random, chunk, beyond));
             }
@@ -191,15 +191,15 @@ impl RayTracer<'_> {
             }
             one.travelled_m += hit.distance_m;
             one.straight_m += hit.distance_m;
-            if one.travelled_m >= self.furthest_m {
+            if one.travelled_m >= self.max_distance_m {
                 return None;
             }
             let surface = self.rays.surface(&hit);
             let material = self.data.surface(surface.material);
-            if self.wall_chance > 0.0 && material.passed.iter().any(|passed| *passed > 0.0) {
+            if self.wall_probability > 0.0 && material.transmitted.iter().any(|p| *p > 0.0) {
                 self.pass(&one, &hit, random.aside, beyond);
             }
-            let point = one.ray.at(hit.distance_m);
+            let point = one.ray.point_at(hit.distance_m);
             let cosine = surface.normal.dot(one.ray.direction);
             let normal = if cosine > 0.0 {
                 -surface.normal
@@ -209,8 +209,8 @@ impl RayTracer<'_> {
             let scattering =
                 self.data
                     .scattering(material, &hit, cosine.abs(), f64::from(one.straight_m));
-            let parts = material.parts(cosine.abs(), &scattering);
-            let start = point + normal * margin_m(point);
+            let parts = material.reflected_energy(cosine.abs(), &scattering);
+            let start = point + normal * ray_offset_m(point);
             if scattering.iter().any(|s| *s > 0.0) {
                 self.add_diffuse_rain(start, normal, &one, &parts.scattered, random.aside, chunk);
             }
@@ -233,9 +233,9 @@ impl RayTracer<'_> {
         chunk: &mut RayChunk,
     ) {
         let looks_through =
-            self.wall_chance > 0.0 && aside.uniform_f32() < WALL_SHADOW_RAY_PROBABILITY;
+            self.wall_probability > 0.0 && aside.uniform_f32() < WALL_SHADOW_RAY_PROBABILITY;
         for (receiver, listener) in self.listeners.iter().enumerate() {
-            if one.walls > 0 && !listener.hidden {
+            if one.walls > 0 && !listener.is_occluded {
                 continue;
             }
             let way = listener.position - start;
@@ -243,7 +243,7 @@ impl RayTracer<'_> {
             let cosine = normal.dot(way) / distance_m;
             let way_m = one.travelled_m + distance_m;
             // A receiver on the surface itself has no cosine (0 / 0).
-            if cosine.is_nan() || cosine <= 0.0 || way_m >= self.furthest_m {
+            if cosine.is_nan() || cosine <= 0.0 || way_m >= self.max_distance_m {
                 continue;
             }
             let direction = way / distance_m;
@@ -255,11 +255,11 @@ impl RayTracer<'_> {
             };
             let mut share = one.energy;
             if self.rays.occluded(&shadow, RayMask::EAR) {
-                if !(looks_through && listener.hidden) {
+                if !(looks_through && listener.is_occluded) {
                     continue;
                 }
                 let (data, rays) = (self.data, self.rays);
-                let passed = transmission::transmitted(data, rays, start, listener.position);
+                let passed = transmission::transmitted_path(data, rays, start, listener.position);
                 let Some((passed, _)) = passed else {
                     continue;
                 };
@@ -282,20 +282,21 @@ impl RayTracer<'_> {
         aside: &mut RandomStream,
         beyond: &mut Vec<TracedRay>,
     ) {
-        if one.walls == transmission::MOST_WALLS || aside.uniform_f32() >= self.wall_chance {
+        if one.walls == transmission::MAX_WALLS || aside.uniform_f32() >= self.wall_probability {
             return;
         }
         // Furniture does not separate rooms.
-        let panel = self.data.table().panel(self.data.house(), hit);
+        let panel = self.data.plane_table().panel(self.data.house(), hit);
         if panel.area_m2 < WALL_M2 {
             return;
         }
-        let Some(exit) = transmission::beyond(self.data, self.rays, &one.ray, hit) else {
+        let Some(exit) = transmission::exit_behind_wall(self.data, self.rays, &one.ray, hit) else {
             return;
         };
         let mut energy = one.energy;
-        multiply(&mut energy, &exit.passed.map(|p| p / self.wall_chance));
-        let inside_m = exit.start.distance(one.ray.at(hit.distance_m));
+        let passed = exit.transmitted_energy.map(|p| p / self.wall_probability);
+        multiply(&mut energy, &passed);
+        let inside_m = exit.start.distance(one.ray.point_at(hit.distance_m));
         beyond.push(TracedRay {
             ray: Ray::new(exit.start, one.ray.direction),
             energy,
@@ -317,19 +318,19 @@ impl RayTracer<'_> {
         // Drawn once, so that a receiver's energies do not depend on the others.
         let place = stream.uniform_f32();
         for (receiver, listener) in self.listeners.iter().enumerate() {
-            if one.walls > 0 && !listener.hidden {
+            if one.walls > 0 && !listener.is_occluded {
                 continue;
             }
-            let Some(crossing) = listener.crossing(
+            let Some(crossing) = listener.sphere_crossing(
                 &one.ray,
-                reach_m - margin_m(one.ray.origin),
+                reach_m - ray_offset_m(one.ray.origin),
                 one.travelled_m,
             ) else {
                 continue;
             };
             // Only the visible part of the sphere counts: one point of the segment represents it.
             let along = crossing.enter_m + place * (crossing.leave_m - crossing.enter_m);
-            let point = one.ray.at(along);
+            let point = one.ray.point_at(along);
             let sight = Ray::segment(listener.position, point, 0.0);
             if self.rays.occluded(&sight, RayMask::EAR) {
                 continue;
@@ -356,8 +357,8 @@ impl RayTracer<'_> {
         }
         let all = energy.iter().sum::<f32>() * factor;
         chunk.by_ray[receiver * RAYS_PER_CHUNK + origin][self.span_of_bin[bin]] += all;
-        let time = receiver * self.times + bin / self.bins_per_direction;
-        let cell = &mut chunk.directions[time * CELL_COUNT + cell_of(from)];
+        let time = receiver * self.direction_time_bins + bin / self.bins_per_direction;
+        let cell = &mut chunk.directions[time * CELL_COUNT + direction_cell(from)];
         let bin = &mut chunk.energy[receiver * self.bin_count + bin];
         for ((total, cell), e) in bin.iter_mut().zip(cell).zip(energy) {
             *total += e * factor;
@@ -470,7 +471,7 @@ impl TracedRay {
             let energy = self.energy.iter().zip(worth).map(|(e, worth)| e * worth);
             energy.zip(of).map(|(e, part)| e * part).sum()
         };
-        let (scattered, mirrored) = (part(&parts.scattered), part(&parts.mirrored));
+        let (scattered, mirrored) = (part(&parts.scattered), part(&parts.specular));
         if scattered + mirrored <= 0.0 {
             return false;
         }
@@ -482,7 +483,7 @@ impl TracedRay {
             (self.scattered, self.mirrored, self.straight_m) = (true, false, 0.0);
         } else {
             let kept = 1.0 - scatter;
-            multiply(&mut self.energy, &parts.mirrored.map(|m| m / kept));
+            multiply(&mut self.energy, &parts.specular.map(|m| m / kept));
             let direction = self.ray.direction;
             self.ray = Ray::new(start, direction - 2.0 * direction.dot(normal) * normal);
             self.mirrored = true;

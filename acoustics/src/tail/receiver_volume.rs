@@ -30,9 +30,9 @@ pub(super) struct TailReceiver {
     pub(super) position: Vec3,
     balls: Vec<DetectionSphere>,
     /// Visible volume, m³.
-    pub(super) seen_volume_m3: f64,
+    pub(super) visible_volume_m3: f64,
     /// True if the source is out of sight. Beside direct sound, transmitted sound is inaudible.
-    pub(super) hidden: bool,
+    pub(super) is_occluded: bool,
 }
 
 impl TailReceiver {
@@ -70,26 +70,31 @@ impl TailReceiver {
         Self {
             position,
             balls,
-            seen_volume_m3,
-            hidden: rays.occluded(&Ray::segment(source, position, 0.0), RayMask::EAR),
+            visible_volume_m3: seen_volume_m3,
+            is_occluded: rays.occluded(&Ray::segment(source, position, 0.0), RayMask::EAR),
         }
     }
 
     /// Returns the radius of the largest sphere, m.
-    pub(super) fn largest_m(&self) -> f64 {
+    pub(super) fn max_radius_m(&self) -> f64 {
         self.balls
             .last()
             .map_or(0.0, |ball| f64::from(ball.radius_m))
     }
 
-    /// Returns the sphere for paths of `way_m`.
+    /// Returns the sphere for paths of `path_length_m`.
     fn ball(&self, way_m: f32) -> DetectionSphere {
         let steps = libm::logf((way_m / FIRST_M as f32).max(1.0)) / libm::logf(STEP as f32);
         self.balls[(steps as usize).min(self.balls.len() - 1)]
     }
 
-    /// Returns the segment of a ray, before `reach_m`, in the sphere for its path; `way_m` is the path's length at its origin.
-    pub(super) fn crossing(&self, ray: &Ray, reach_m: f32, way_m: f32) -> Option<SphereCrossing> {
+    /// Returns the segment of a ray, before `reach_m`, in the sphere for its path; `path_length_m` is the path's length at its origin.
+    pub(super) fn sphere_crossing(
+        &self,
+        ray: &Ray,
+        reach_m: f32,
+        path_length_m: f32,
+    ) -> Option<SphereCrossing> {
         let to_center = self.position - ray.origin;
         let along = to_center.dot(ray.direction);
         let miss_squared = (to_center - ray.direction * along).length_squared();
@@ -97,7 +102,7 @@ impl TailReceiver {
         if miss_squared >= largest_m * largest_m {
             return None;
         }
-        let ball = self.ball(way_m + along.max(0.0));
+        let ball = self.ball(path_length_m + along.max(0.0));
         let half = (ball.radius_m * ball.radius_m - miss_squared)
             .max(0.0)
             .sqrt();

@@ -17,21 +17,21 @@ pub(crate) fn span_of(time_s: f64) -> usize {
 }
 
 /// Returns the middle of span `span`, s; of the last one, as if it were as long as its beginning.
-pub(crate) fn middle_s(span: usize) -> f64 {
+pub(crate) fn span_centre_s(span: usize) -> f64 {
     let end_s = FIRST_S * libm::exp2(span as f64);
     if span == 0 { 0.5 * end_s } else { 0.75 * end_s }
 }
 
 /// Returns the span of each of `count` bins of `bin_s`. Shape (bin,).
-pub(super) fn of_bins(count: usize, bin_s: f64) -> Vec<usize> {
+pub(super) fn spans_of_bins(count: usize, bin_s: f64) -> Vec<usize> {
     let middle_s = |k: usize| (k as f64 + 0.5) * bin_s;
     (0..count).map(|k| span_of(middle_s(k))).collect()
 }
 
 /// Returns the energy in each span, all bands together. Shape (span,).
-pub(crate) fn energies(tail: &EnergyHistogram) -> [f64; SPAN_COUNT] {
+pub(crate) fn span_energies(tail: &EnergyHistogram) -> [f64; SPAN_COUNT] {
     let mut sums = [0.0; SPAN_COUNT];
-    let spans = of_bins(tail.bins.len(), tail.bin_s);
+    let spans = spans_of_bins(tail.bins.len(), tail.bin_s);
     for (bin, span) in tail.bins.iter().zip(spans) {
         sums[span] += bin.iter().sum::<f64>();
     }
@@ -47,7 +47,7 @@ pub(super) struct SpanVariance {
 
 impl SpanVariance {
     /// Returns whether these are valid sums.
-    pub(super) fn is_sound(&self) -> bool {
+    pub(super) fn is_valid(&self) -> bool {
         let mut all = self.sums.iter().chain(&self.squares);
         all.all(|sum| sum.is_finite() && *sum >= 0.0)
     }
@@ -96,7 +96,7 @@ mod tests {
         ] {
             assert_eq!(span_of(time_s), span, "{time_s}");
         }
-        assert_eq!(of_bins(4, 0.012), [0, 0, 1, 2]);
+        assert_eq!(spans_of_bins(4, 0.012), [0, 0, 1, 2]);
     }
 
     /// Ten rays of 1 and ten of 3: mean 2, standard deviation 1 (with 19 for 20: 1.026), so that the error is 0.229 of 2.

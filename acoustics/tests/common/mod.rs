@@ -26,7 +26,7 @@ pub(crate) fn material(absorption: f32, scattering: f32) -> Material {
     Material {
         absorption: Bands::constant(absorption),
         scattering: Bands::constant(scattering),
-        transmission_loss_db: Bands::constant(Material::OPAQUE_TO_SOUND_DB),
+        transmission_loss_db: Bands::constant(Material::MAX_TRANSMISSION_LOSS_DB),
         ..Material::of("test", library().default_substance())
     }
 }
@@ -66,8 +66,8 @@ impl Hall {
     }
 
     pub(crate) fn echogram(&self, source: Vec3, receiver: Vec3, key: RandomKey) -> Echogram {
-        let source = SoundSourcePose::at(source);
-        let threads = Threads::exactly(2);
+        let source = SoundSourcePose::omni(source);
+        let threads = Threads::new(2);
         self.scene
             .echogram(&self.rays, &source, receiver, key, threads)
             .unwrap()

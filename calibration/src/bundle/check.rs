@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 type CheckResult = Result<(), CalibrationError>;
 
 /// The sides of a box-shaped room, as scene's shoebox names them.
-pub(crate) const SIDES: [&str; 6] = ["floor", "ceiling", "west", "east", "north", "south"];
+pub(crate) const ROOM_SURFACES: [&str; 6] = ["floor", "ceiling", "west", "east", "north", "south"];
 /// Episodes below which nothing can be held out.
 const FEWEST_EPISODES: usize = 4;
 /// Densities of bodies, kg/m3: from a balloon, which is mostly what it floats in, to beyond osmium.
@@ -71,8 +71,8 @@ fn find(
 }
 
 /// Checks a name of 1 to 128 printable characters.
-pub(super) fn name(at: &str, field: &str, name: &str) -> CheckResult {
-    let fits = (1..=limits::NAME_CHARS).contains(&name.chars().count())
+pub(super) fn check_name(at: &str, field: &str, name: &str) -> CheckResult {
+    let fits = (1..=limits::MAX_NAME_CHARS).contains(&name.chars().count())
         && !name.chars().any(char::is_control);
     if fits {
         return Ok(());
@@ -87,19 +87,20 @@ pub(super) fn name(at: &str, field: &str, name: &str) -> CheckResult {
 }
 
 /// Checks a finite number of at most `limit`.
-pub(super) fn finite(at: &str, field: &str, value: f64, limit: f64) -> CheckResult {
+pub(super) fn check_finite(at: &str, field: &str, value: f64, limit: f64) -> CheckResult {
     range(at, field, value, -limit, limit)
 }
 
 /// Checks a position along an axis, m.
-pub(super) fn position(at: &str, field: &str, value: f64) -> CheckResult {
+pub(super) fn check_position(at: &str, field: &str, value: f64) -> CheckResult {
     let allowed = "-1000 to 1000 m; are lengths in millimetres? Divide them by 1000, or import with \"metres_per_unit\": \
                    0.001 in the map's table";
-    finite(at, field, value, 1e3).map_err(|_| CalibrationError::field(at, field, value, allowed))
+    check_finite(at, field, value, 1e3)
+        .map_err(|_| CalibrationError::field(at, field, value, allowed))
 }
 
 /// Checks a time on a clock, s.
-pub(super) fn time(at: &str, t_s: f64) -> CheckResult {
+pub(super) fn check_time(at: &str, t_s: f64) -> CheckResult {
     range(at, "t_s", t_s, -1e6, 1e6)
 }
 
@@ -116,19 +117,24 @@ fn range(at: &str, field: &str, value: f64, low: f64, high: f64) -> CheckResult 
 }
 
 /// Checks a point in the room.
-pub(super) fn place(at: &str, field: &str, point: [f64; 3], manifest: &Manifest) -> CheckResult {
+pub(super) fn check_point_in_room(
+    at: &str,
+    field: &str,
+    point: [f64; 3],
+    manifest: &Manifest,
+) -> CheckResult {
     for (k, axis) in ["x", "y", "z"].iter().enumerate() {
         let field = format!("{field}_{axis}");
         match &manifest.scene.room {
             Some(room) => range(at, &field, point[k], 0.01, room.size_m[k] - 0.01)?,
-            None => finite(at, &field, point[k], 1e4)?,
+            None => check_finite(at, &field, point[k], 1e4)?,
         }
     }
     Ok(())
 }
 
 /// Checks the manifest's own ranges.
-pub(super) fn manifest(at: &str, manifest: &Manifest) -> CheckResult {
+pub(super) fn check_manifest(at: &str, manifest: &Manifest) -> CheckResult {
     if !(1..=VERSION).contains(&manifest.version) {
         let allowed = format!("1 to {VERSION}, the versions this build reads");
         return Err(CalibrationError::field(
@@ -144,8 +150,8 @@ pub(super) fn manifest(at: &str, manifest: &Manifest) -> CheckResult {
         ("joints", scene.joints.len()),
         ("channels", manifest.channels.len()),
     ] {
-        if count as u64 > limits::THINGS {
-            let (found, limit) = (count as u64, limits::THINGS);
+        if count as u64 > limits::MAX_MANIFEST_ENTRIES {
+            let (found, limit) = (count as u64, limits::MAX_MANIFEST_ENTRIES);
             return Err(CalibrationError::TooLarge {
                 at: at.to_owned(),
                 what,
@@ -173,7 +179,7 @@ pub(super) fn manifest(at: &str, manifest: &Manifest) -> CheckResult {
     }
     for (k, body) in scene.bodies.iter().enumerate() {
         let of = |field: &str| format!("scene.bodies[{k}].{field}");
-        name(at, &of("name"), &body.name)?;
+        check_name(at, &of("name"), &body.name)?;
         range(at, &of("mass_kg"), body.mass_kg, 1e-6, 1e4)?;
         shape(at, &of, body)?;
     }
@@ -197,7 +203,7 @@ pub(super) fn manifest(at: &str, manifest: &Manifest) -> CheckResult {
     }
     for (k, joint) in scene.joints.iter().enumerate() {
         let of = |field: &str| format!("scene.joints[{k}].{field}");
-        name(at, &of("name"), &joint.name)?;
+        check_name(at, &of("name"), &joint.name)?;
         range(at, &of("inertia_kg_m2"), joint.inertia_kg_m2, 1e-7, 1e3)?;
         range(
             at,
@@ -220,7 +226,7 @@ pub(super) fn manifest(at: &str, manifest: &Manifest) -> CheckResult {
         for edge in room.size_m {
             range(at, "scene.room.size_m", edge, 0.5, 200.0)?;
         }
-        for side in SIDES {
+        for side in ROOM_SURFACES {
             let Some(surface) = room.surfaces.get(side) else {
                 return Err(missing(
                     at,
@@ -233,13 +239,13 @@ pub(super) fn manifest(at: &str, manifest: &Manifest) -> CheckResult {
         if let Some(other) = room
             .surfaces
             .keys()
-            .find(|name| !SIDES.contains(&name.as_str()))
+            .find(|name| !ROOM_SURFACES.contains(&name.as_str()))
         {
             return Err(CalibrationError::field(
                 at,
                 "scene.room.surfaces",
                 format!("{other:?}"),
-                format!("{SIDES:?}"),
+                format!("{ROOM_SURFACES:?}"),
             ));
         }
     }
@@ -434,7 +440,7 @@ fn channels(at: &str, manifest: &Manifest) -> CheckResult {
                 format!("{unit:?}"),
             ));
         }
-        name(at, &of("clock"), &channel.clock)?;
+        check_name(at, &of("clock"), &channel.clock)?;
         if let Some(sd) = channel.noise_sd {
             range(at, &of("noise_sd"), sd, 1e-9, 10.0)?;
         }
@@ -451,7 +457,7 @@ fn missing(at: &str, what: &str, needed: &str) -> CalibrationError {
 }
 
 /// Checks that the data suffice.
-pub(super) fn complete(bundle: &Bundle) -> CheckResult {
+pub(super) fn check_sufficient_data(bundle: &Bundle) -> CheckResult {
     let scene = &bundle.manifest.scene;
     let at = format!("{}/manifest.json", bundle.name);
     match bundle.kind() {
@@ -555,9 +561,11 @@ pub(super) fn complete(bundle: &Bundle) -> CheckResult {
     }
     match bundle.kind() {
         BundleKind::PoseTrajectory => {
-            poses::complete(&bundle.name, &bundle.manifest, &bundle.episodes)?;
+            poses::check_poses(&bundle.name, &bundle.manifest, &bundle.episodes)?;
         }
-        BundleKind::Drive => odometry::complete(&bundle.name, &bundle.manifest, &bundle.episodes)?,
+        BundleKind::Drive => {
+            odometry::check_drives(&bundle.name, &bundle.manifest, &bundle.episodes)?;
+        }
         BundleKind::Trajectory | BundleKind::Servo | BundleKind::ImpulseResponse => {}
     }
     durations(bundle)?;

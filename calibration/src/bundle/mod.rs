@@ -55,7 +55,7 @@ pub(crate) struct MeasuredEpisode {
     /// By time.
     pub(crate) poses: Vec<PoseSample>,
     /// The sample to roll out from, and the velocities there; `None`: the first, as measured.
-    pub(crate) start: Option<(usize, PoseRates)>,
+    pub(crate) known_start: Option<(usize, PoseRates)>,
     /// By time.
     pub(crate) drive: Vec<DriveRow>,
 }
@@ -111,6 +111,6 @@ impl Bundle {
     }
 }
 
-pub(crate) use check::SIDES;
-pub(crate) use poses::turn;
+pub(crate) use check::ROOM_SURFACES;
+pub(crate) use poses::rotation_vector_between;
 pub(crate) use read::read;

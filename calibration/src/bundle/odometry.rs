@@ -27,16 +27,16 @@ pub(super) fn read(
     episodes: &mut [MeasuredEpisode],
 ) -> OdometryCheck {
     table(folder, "drive.csv", |row: DriveRow, at| {
-        check::time(at, row.t_s)?;
+        check::check_time(at, row.t_s)?;
         for (field, value) in [("x", row.x), ("y", row.y)] {
-            check::position(at, field, value)?;
+            check::check_position(at, field, value)?;
         }
         for (field, value, most) in [
             ("heading", row.heading, 1e4),
             ("left_rad", row.left_rad, 1e3),
             ("right_rad", row.right_rad, 1e3),
         ] {
-            check::finite(at, field, value, most)?;
+            check::check_finite(at, field, value, most)?;
         }
         let index = episode(at, by_name, &row.episode)?;
         episodes[index].drive.push(row);
@@ -49,7 +49,7 @@ pub(super) fn read(
 }
 
 /// Checks that the drives are what the manifest says: long enough, evenly spaced, and with wheels that go as far as the robot.
-pub(super) fn complete(
+pub(super) fn check_drives(
     name: &str,
     manifest: &Manifest,
     episodes: &[MeasuredEpisode],

@@ -41,9 +41,9 @@ pub(super) fn read(
             rotation: unit(at, DQuat::from_xyzw(row.qx, row.qy, row.qz, row.qw))?,
             rates: None,
         };
-        check::time(at, row.t_s)?;
+        check::check_time(at, row.t_s)?;
         for (field, value) in [("x", row.x), ("y", row.y), ("z", row.z)] {
-            check::position(at, field, value)?;
+            check::check_position(at, field, value)?;
         }
         let rates = rates(at, &row, sample.rotation, frame)?;
         episodes[episode(at, by_name, &row.episode)?]
@@ -69,7 +69,7 @@ fn starts(
     table(folder, "starts.csv", |row: StartRow, at| {
         let index = episode(at, by_name, &row.episode)?;
         let episode = &mut episodes[index];
-        if episode.start.is_some() {
+        if episode.known_start.is_some() {
             let found = format!("{:?} again", row.episode);
             return Err(CalibrationError::field(at, "episode", found, "each once"));
         }
@@ -86,13 +86,13 @@ fn starts(
             ("wy", row.wy),
             ("wz", row.wz),
         ] {
-            check::finite(at, field, value, 1e4)?;
+            check::check_finite(at, field, value, 1e4)?;
         }
         let rates = PoseRates {
             linear: DVec3::new(row.vx, row.vy, row.vz),
             angular: in_world(frame, pose.rotation, DVec3::new(row.wx, row.wy, row.wz)),
         };
-        episode.start = Some((sample, rates));
+        episode.known_start = Some((sample, rates));
         Ok(())
     })
 }
@@ -137,7 +137,7 @@ fn rates(
         ));
     };
     for (field, value) in ["vx", "vy", "vz", "wx", "wy", "wz"].iter().zip(&given) {
-        check::finite(at, field, *value, 1e4)?;
+        check::check_finite(at, field, *value, 1e4)?;
     }
     Ok(Some(PoseRates {
         linear: DVec3::new(vx, vy, vz),
@@ -154,7 +154,11 @@ fn in_world(frame: AngularFrame, world_from_body: DQuat, angular: DVec3) -> DVec
 
 /// Checks that the poses of all episodes are what the manifest says: evenly spaced, long enough, and with velocities that
 /// agree with the poses in unit, sign, frame and clock.
-pub(super) fn complete(name: &str, manifest: &Manifest, episodes: &[MeasuredEpisode]) -> PoseCheck {
+pub(super) fn check_poses(
+    name: &str,
+    manifest: &Manifest,
+    episodes: &[MeasuredEpisode],
+) -> PoseCheck {
     let Some(form) = &manifest.poses else {
         return Ok(());
     };
@@ -226,7 +230,8 @@ fn velocities(
             let Some(rates) = pair[1].rates else { continue };
             let moved = (pair[2].position - pair[0].position) / (2.0 * step_s);
             linear.add(moved, rates.linear, rates.linear);
-            let turned = turn(pair[0].rotation, pair[2].rotation) / (2.0 * step_s);
+            let turned =
+                rotation_vector_between(pair[0].rotation, pair[2].rotation) / (2.0 * step_s);
             // The stated velocities, read in the other frame.
             let other = match frame {
                 AngularFrame::Body => pair[1].rotation.inverse() * rates.angular,
@@ -266,7 +271,7 @@ fn velocities(
 }
 
 /// The rotation vector that leads from `a` to `b`, along the axes of the world, rad.
-pub(crate) fn turn(a: DQuat, b: DQuat) -> DVec3 {
+pub(crate) fn rotation_vector_between(a: DQuat, b: DQuat) -> DVec3 {
     let mut between = b * a.inverse();
     if between.w < 0.0 {
         between = -between;
@@ -333,7 +338,7 @@ mod tests {
             }),
             notes: String::new(),
         };
-        complete("b", &manifest, &episodes).map_err(|error| error.to_string())
+        check_poses("b", &manifest, &episodes).map_err(|error| error.to_string())
     }
 
     fn rates(sample: &mut PoseSample) -> &mut PoseRates {

@@ -25,7 +25,7 @@ pub(crate) fn read(folder: &Path) -> Result<Bundle, CalibrationError> {
         });
     }
     let manifest = manifest(folder)?;
-    check::manifest(&format!("{name}/manifest.json"), &manifest)?;
+    check::check_manifest(&format!("{name}/manifest.json"), &manifest)?;
     let mut bundle = Bundle {
         episodes: episodes(folder)?,
         name,
@@ -58,7 +58,7 @@ pub(crate) fn read(folder: &Path) -> Result<Bundle, CalibrationError> {
         }
         BundleKind::Drive => odometry::read(folder, &by_name, &mut bundle.episodes)?,
     }
-    check::complete(&bundle)?;
+    check::check_sufficient_data(&bundle)?;
     Ok(bundle)
 }
 
@@ -111,9 +111,9 @@ pub(crate) fn refused(path: &Path) -> impl FnOnce(ReadError) -> CalibrationError
 }
 
 fn manifest(folder: &Path) -> Result<Manifest, CalibrationError> {
-    let (file, at) = open(folder, "manifest.json", limits::MANIFEST_BYTES)?;
+    let (file, at) = open(folder, "manifest.json", limits::MAX_MANIFEST_BYTES)?;
     let mut text = String::new();
-    file.take(limits::MANIFEST_BYTES)
+    file.take(limits::MAX_MANIFEST_BYTES)
         .read_to_string(&mut text)
         .map_err(|source| CalibrationError::Read {
             path: folder.join("manifest.json"),
@@ -133,8 +133,8 @@ pub(super) fn table<T: DeserializeOwned>(
     name: &str,
     mut each: impl FnMut(T, &str) -> Result<(), CalibrationError>,
 ) -> Result<(), CalibrationError> {
-    let (file, at) = open(folder, name, limits::TABLE_BYTES)?;
-    let limited = BufReader::new(file).take(limits::TABLE_BYTES);
+    let (file, at) = open(folder, name, limits::MAX_TABLE_BYTES)?;
+    let limited = BufReader::new(file).take(limits::MAX_TABLE_BYTES);
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
         .from_reader(limited);
@@ -146,8 +146,8 @@ pub(super) fn table<T: DeserializeOwned>(
     for (count, record) in reader.records().enumerate() {
         // Line 1 is the head.
         let here = format!("{at} line {}", count + 2);
-        if count as u64 >= limits::TABLE_ROWS {
-            let (found, limit) = (count as u64 + 1, limits::TABLE_ROWS);
+        if count as u64 >= limits::MAX_TABLE_ROWS {
+            let (found, limit) = (count as u64 + 1, limits::MAX_TABLE_ROWS);
             return Err(CalibrationError::TooLarge {
                 at,
                 what: "rows",
@@ -168,8 +168,8 @@ fn episodes(folder: &Path) -> Result<Vec<MeasuredEpisode>, CalibrationError> {
     let mut found: Vec<MeasuredEpisode> = Vec::new();
     let mut names = BTreeSet::new();
     table(folder, "episodes.csv", |row: EpisodeRow, at| {
-        check::name(at, "episode", &row.episode)?;
-        check::name(at, "split_group", &row.split_group)?;
+        check::check_name(at, "episode", &row.episode)?;
+        check::check_name(at, "split_group", &row.split_group)?;
         if !names.insert(row.episode.clone()) {
             return Err(CalibrationError::field(
                 at,
@@ -178,8 +178,8 @@ fn episodes(folder: &Path) -> Result<Vec<MeasuredEpisode>, CalibrationError> {
                 "each name once",
             ));
         }
-        if found.len() as u64 >= limits::EPISODES {
-            let limit = limits::EPISODES;
+        if found.len() as u64 >= limits::MAX_EPISODES {
+            let limit = limits::MAX_EPISODES;
             return Err(CalibrationError::TooLarge {
                 at: at.to_owned(),
                 what: "episodes",
@@ -221,8 +221,8 @@ fn trajectory(
     episodes: &mut [MeasuredEpisode],
 ) -> Result<(), CalibrationError> {
     table(folder, "trajectory.csv", |row: TrajectoryRow, at| {
-        check::time(at, row.t_s)?;
-        check::finite(at, "value", row.value, 1e6)?;
+        check::check_time(at, row.t_s)?;
+        check::check_finite(at, "value", row.value, 1e6)?;
         let sample = MeasuredSample {
             entity: names.entity(at, "entity", &row.entity)?,
             channel: names.channel(at, &row.channel)?,
@@ -250,8 +250,8 @@ fn commands(
     episodes: &mut [MeasuredEpisode],
 ) -> Result<(), CalibrationError> {
     table(folder, "command.csv", |row: CommandRow, at| {
-        check::time(at, row.t_s)?;
-        check::finite(at, "value", row.value, 1e3)?;
+        check::check_time(at, row.t_s)?;
+        check::check_finite(at, "value", row.value, 1e3)?;
         names.entity(at, "actuator", &row.actuator)?;
         if row.kind != "position" {
             return Err(CalibrationError::field(
@@ -281,8 +281,8 @@ fn responses(
     let mut count = 0;
     table(folder, "ir.csv", |row: ResponseRow, at| {
         count += 1;
-        if count > limits::RESPONSES {
-            let limit = limits::RESPONSES;
+        if count > limits::MAX_RESPONSES {
+            let limit = limits::MAX_RESPONSES;
             return Err(CalibrationError::TooLarge {
                 at: at.to_owned(),
                 what: "responses",
@@ -292,9 +292,9 @@ fn responses(
         }
         let source_m = [row.source_x, row.source_y, row.source_z];
         let receiver_m = [row.receiver_x, row.receiver_y, row.receiver_z];
-        check::place(at, "source", source_m, manifest)?;
-        check::place(at, "receiver", receiver_m, manifest)?;
-        let (file, wav_at) = open(folder, &row.file, limits::WAV_BYTES)?;
+        check::check_point_in_room(at, "source", source_m, manifest)?;
+        check::check_point_in_room(at, "receiver", receiver_m, manifest)?;
+        let (file, wav_at) = open(folder, &row.file, limits::MAX_WAV_BYTES)?;
         let samples = wav::samples(file, &wav_at, row.rate_hz)?;
         episodes[episode(at, by_name, &row.episode)?]
             .responses

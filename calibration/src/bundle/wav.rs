@@ -30,8 +30,8 @@ pub(super) fn samples(file: File, at: &str, rate_hz: u32) -> Result<Vec<f32>, Ca
         return field("sample rate", rate_hz, "8000 to 192000 Hz".to_owned());
     }
     let count = u64::from(reader.duration());
-    if count > limits::WAV_SAMPLES {
-        let limit = limits::WAV_SAMPLES;
+    if count > limits::MAX_WAV_SAMPLES {
+        let limit = limits::MAX_WAV_SAMPLES;
         return Err(CalibrationError::TooLarge {
             at: at.to_owned(),
             what: "samples",

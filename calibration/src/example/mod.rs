@@ -3,7 +3,7 @@
 mod flight;
 
 use crate::error::CalibrationError;
-use crate::report::whole;
+use crate::report::write_atomically;
 use dwell_scene::random::RandomKey;
 use std::fmt::Write as _;
 use std::fs;
@@ -84,9 +84,9 @@ pub fn write(folder: &Path, seed: u64) -> Result<String, CalibrationError> {
         "channels": [channel("x"), channel("y"), channel("z")],
         "notes": "Written by dwell's example, not by a camera.",
     });
-    whole(folder, "episodes.csv", episodes.as_bytes())?;
-    whole(folder, "trajectory.csv", trajectory.as_bytes())?;
-    whole(
+    write_atomically(folder, "episodes.csv", episodes.as_bytes())?;
+    write_atomically(folder, "trajectory.csv", trajectory.as_bytes())?;
+    write_atomically(
         folder,
         "manifest.json",
         format!("{manifest:#}\n").as_bytes(),

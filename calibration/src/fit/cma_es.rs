@@ -77,7 +77,7 @@ impl CmaEs {
     }
 
     /// The points of the next generation, in the unit cube. Shape (lambda, parameter).
-    pub(crate) fn ask(&mut self) -> Vec<Vec<f64>> {
+    pub(crate) fn sample_population(&mut self) -> Vec<Vec<f64>> {
         let (root, _) = self.roots();
         let n = self.mean.len();
         (0..self.constants.lambda)
@@ -90,7 +90,7 @@ impl CmaEs {
     }
 
     /// Takes the points with their costs; a cost that is no number is the worst.
-    pub(crate) fn tell(&mut self, points: &[Vec<f64>], costs: &[f64]) {
+    pub(crate) fn update(&mut self, points: &[Vec<f64>], costs: &[f64]) {
         let mut order: Vec<usize> = (0..points.len().min(costs.len())).collect();
         let cost = |k: usize| {
             if costs[k].is_nan() {
@@ -163,9 +163,9 @@ mod tests {
     fn minimum(f: &dyn Fn(&[f64]) -> f64, dimension: usize, seed: u64) -> Vec<f64> {
         let mut search = CmaEs::new(&vec![0.5; dimension], 0.3, 10, RandomKey::root(seed));
         for _ in 0..150 {
-            let points = search.ask();
+            let points = search.sample_population();
             let costs: Vec<f64> = points.iter().map(|x| f(x)).collect();
-            search.tell(&points, &costs);
+            search.update(&points, &costs);
         }
         search.mean()
     }

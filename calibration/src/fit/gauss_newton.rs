@@ -4,7 +4,7 @@ use super::normal::{self, NormalBlock};
 use super::robust::HuberLoss;
 use crate::error::CalibrationError;
 use crate::progress::ProgressReporter;
-use crate::twin::{ParameterIndex, ParameterVector, Twin, range_of};
+use crate::twin::{ParameterIndex, ParameterVector, Twin, cause_range};
 use dwell_scene::parallel::Threads;
 use nalgebra::{DMatrix, DVector};
 
@@ -63,20 +63,26 @@ impl FitTask<'_> {
         let causes = model
             .causes
             .iter()
-            .flat_map(|cause| range_of(self.twin, *cause))
+            .flat_map(|cause| cause_range(self.twin, *cause))
             .map(ParameterIndex::Cause);
-        let shared = (0..self.twin.shared().len()).map(ParameterIndex::Shared);
+        let shared = (0..self.twin.shared_nuisances().len()).map(ParameterIndex::Shared);
         self.run(shared.chain(causes).collect(), start)
     }
 
     /// Fits the episodes' own nuisances alone.
-    pub(crate) fn fit_own(&self, start: &ParameterVector) -> Result<FitResult, CalibrationError> {
+    pub(crate) fn fit_episode_nuisances(
+        &self,
+        start: &ParameterVector,
+    ) -> Result<FitResult, CalibrationError> {
         self.run(Vec::new(), start)
     }
 
     /// The sum of squares at a point, without a fit.
     pub(crate) fn loss_at(&self, point: &ParameterVector) -> Result<f64, CalibrationError> {
-        Ok(total(&self.evaluate(point)?.residuals, HuberLoss::SQUARE))
+        Ok(total(
+            &self.evaluate(point)?.residuals,
+            HuberLoss::QUADRATIC,
+        ))
     }
 
     fn run(
@@ -90,12 +96,12 @@ impl FitTask<'_> {
             &global,
             &mut point,
             &mut now,
-            HuberLoss::SQUARE,
+            HuberLoss::QUADRATIC,
             MOST_ITERATIONS,
         )?;
-        let (mut blocks, mut loss) = (blocks, HuberLoss::SQUARE);
+        let (mut blocks, mut loss) = (blocks, HuberLoss::QUADRATIC);
         if self.robust {
-            loss = HuberLoss::huber(now.residuals.iter().flatten());
+            loss = HuberLoss::from_residuals(now.residuals.iter().flatten());
             blocks = self.iterate(&global, &mut point, &mut now, loss, MOST_ROBUST_ITERATIONS)?;
         }
         Ok(FitResult {
@@ -176,7 +182,7 @@ impl FitTask<'_> {
         }
         for (episode, change) in self.set.iter().zip(&step.own) {
             for (k, change) in change.iter().enumerate() {
-                let value = &mut moved.own[*episode][k];
+                let value = &mut moved.episode_nuisances[*episode][k];
                 *value = bounded(ParameterIndex::Own(k), *value + change);
             }
         }
@@ -189,7 +195,7 @@ impl FitTask<'_> {
             let episode = set[k];
             let measured = &twin.episodes()[episode];
             let predictions = twin.predict(episode, &point.values(episode))?;
-            if predictions.len() != measured.y.len()
+            if predictions.len() != measured.measured.len()
                 || predictions.iter().any(|value| !value.is_finite())
             {
                 return Err(CalibrationError::simulation(
@@ -198,7 +204,7 @@ impl FitTask<'_> {
                 ));
             }
             let residuals = measured
-                .y
+                .measured
                 .iter()
                 .zip(&predictions)
                 .zip(&measured.sd)
@@ -224,7 +230,7 @@ impl FitTask<'_> {
         now: &Evaluation,
         loss: HuberLoss,
     ) -> Result<Vec<NormalBlock>, CalibrationError> {
-        let own = self.twin.own().len();
+        let own = self.twin.episode_nuisances().len();
         let slots: Vec<ParameterIndex> = (0..own)
             .map(ParameterIndex::Own)
             .chain(global.iter().copied())
@@ -248,7 +254,7 @@ impl FitTask<'_> {
 }
 
 fn total(residuals: &[Vec<f64>], loss: HuberLoss) -> f64 {
-    residuals.iter().flatten().map(|r| loss.of(*r)).sum()
+    residuals.iter().flatten().map(|r| loss.loss(*r)).sum()
 }
 
 impl FitResult {
@@ -256,13 +262,13 @@ impl FitResult {
     pub(crate) fn loss_by_episode(&self, robust: Option<&Self>) -> Vec<f64> {
         let loss = match robust {
             // Both models that are compared are judged by one loss.
-            Some(other) => HuberLoss::huber(other.residuals.iter().flatten()),
-            None => HuberLoss::SQUARE,
+            Some(other) => HuberLoss::from_residuals(other.residuals.iter().flatten()),
+            None => HuberLoss::QUADRATIC,
         };
         let sums = self
             .residuals
             .iter()
-            .map(|episode| episode.iter().map(|r| loss.of(*r)).sum());
+            .map(|episode| episode.iter().map(|r| loss.loss(*r)).sum());
         sums.collect()
     }
 }

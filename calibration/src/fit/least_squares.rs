@@ -29,8 +29,8 @@ pub(crate) fn least_squares(
     let mut now = residuals(&values)?;
     let mut damping = 1e-6;
     for _ in 0..most {
-        let loss = HuberLoss::huber(now.iter());
-        let total = |all: &[f64]| all.iter().map(|r| loss.of(*r)).sum::<f64>();
+        let loss = HuberLoss::from_residuals(now.iter());
+        let total = |all: &[f64]| all.iter().map(|r| loss.loss(*r)).sum::<f64>();
         let before = total(&now);
         let mut jacobian = DMatrix::zeros(now.len(), values.len());
         for (k, variable) in variables.iter().enumerate() {

@@ -15,23 +15,23 @@ pub(crate) struct HuberLoss {
 
 impl HuberLoss {
     /// Plain least squares.
-    pub(crate) const SQUARE: Self = Self {
+    pub(crate) const QUADRATIC: Self = Self {
         turn: f64::INFINITY,
     };
 
     /// Huber's loss for residuals of this size.
-    pub(crate) fn huber<'a>(residuals: impl Iterator<Item = &'a f64>) -> Self {
+    pub(crate) fn from_residuals<'a>(residuals: impl Iterator<Item = &'a f64>) -> Self {
         let mut sizes: Vec<f64> = residuals.map(|r| r.abs()).collect();
         let scale = 1.4826 * median(&mut sizes);
         if scale > 0.0 && scale.is_finite() {
             Self { turn: TURN * scale }
         } else {
-            Self::SQUARE
+            Self::QUADRATIC
         }
     }
 
     /// The loss of a residual.
-    pub(crate) fn of(self, residual: f64) -> f64 {
+    pub(crate) fn loss(self, residual: f64) -> f64 {
         let size = residual.abs();
         if size <= self.turn {
             size * size
@@ -67,10 +67,10 @@ mod tests {
     #[test]
     fn the_loss_is_the_square_inside_and_a_line_outside() {
         let loss = HuberLoss { turn: 2.0 };
-        assert!((loss.of(-1.5) - 2.25).abs() < 1e-12);
-        assert!((loss.of(5.0) - loss.of(4.0) - 4.0).abs() < 1e-12);
+        assert!((loss.loss(-1.5) - 2.25).abs() < 1e-12);
+        assert!((loss.loss(5.0) - loss.loss(4.0) - 4.0).abs() < 1e-12);
         // The weight is half the loss's slope over the residual.
-        let slope = (loss.of(5.0 + 1e-6) - loss.of(5.0 - 1e-6)) / 2e-6;
+        let slope = (loss.loss(5.0 + 1e-6) - loss.loss(5.0 - 1e-6)) / 2e-6;
         assert!((loss.weight(5.0) - slope / 10.0).abs() < 1e-6);
     }
 
@@ -78,7 +78,7 @@ mod tests {
     fn the_scale_does_not_see_outliers() {
         let mut residuals: Vec<f64> = (0..100).map(|k| f64::from(k) / 50.0 - 1.0).collect();
         residuals[3] = 1e9;
-        let loss = HuberLoss::huber(residuals.iter());
+        let loss = HuberLoss::from_residuals(residuals.iter());
         assert!(loss.turn < 3.0, "{loss:?}");
     }
 }

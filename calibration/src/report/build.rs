@@ -7,7 +7,7 @@ use super::data::{
 use super::plot::plots;
 use crate::bundle::Bundle;
 use crate::bundle::file::BundleKind;
-use crate::format_number::{list, number, percent};
+use crate::format_number::{format_list, format_number, format_percent};
 use crate::select::{
     Decision, Estimate, Findings, ScoredModel, SingleCause, by_channel, estimates, sd_of,
 };
@@ -118,9 +118,9 @@ fn candidate(twin: &dyn Twin, single: &SingleCause) -> CandidateCause {
         id: cause.id.clone(),
         name: cause.name.clone(),
         equation: cause.equation.clone(),
-        parameters: parameters(twin, &single.judged, single.cause),
-        delta_bic: single.against.delta_bic,
-        gain: single.against.gain,
+        parameters: parameters(twin, &single.scored, single.cause),
+        delta_bic: single.advantage.delta_bic,
+        gain: single.advantage.gain,
         passes: single.passes,
         implausible: single.implausible.clone(),
         separating_experiment: cause.separating_experiment.clone(),
@@ -155,7 +155,7 @@ fn verdict(twin: &dyn Twin, findings: &Findings) -> CalibrationVerdict {
         (Decision::Unexplained(reason), _) => CalibrationVerdict::Unexplained {
             reason: reason.clone(),
         },
-        _ => CalibrationVerdict::Nothing,
+        _ => CalibrationVerdict::NoEffect,
     }
 }
 
@@ -174,11 +174,11 @@ fn in_words(parameters: &[FittedParameter]) -> String {
         .iter()
         .filter(moved)
         .map(|p| {
-            let [low, high] = p.interval.map(number);
+            let [low, high] = p.interval.map(format_number);
             format!(
                 "{} = {}{} ({low} to {high})",
                 p.name,
-                number(p.value),
+                format_number(p.value),
                 with_unit(&p.unit)
             )
         })
@@ -186,7 +186,7 @@ fn in_words(parameters: &[FittedParameter]) -> String {
     if told.is_empty() {
         "within the intervals of what it was".to_owned()
     } else {
-        list(&told)
+        format_list(&told)
     }
 }
 
@@ -203,20 +203,20 @@ fn sentence(
             .map_or(id.clone(), |c| c.name.clone())
     };
     match verdict {
-        CalibrationVerdict::Nothing => {
+        CalibrationVerdict::NoEffect => {
             let limits: Vec<String> = candidates
                 .iter()
                 .filter(|c| c.parameters.len() == 1)
                 .map(|c| {
                     let p = &c.parameters[0];
-                    let [low, high] = p.interval.map(number);
+                    let [low, high] = p.interval.map(format_number);
                     format!("{} {low} to {high}{}", p.name, with_unit(&p.unit))
                 })
                 .collect();
             let limits = if limits.is_empty() {
                 String::new()
             } else {
-                format!(" Limits at 95 %: {}.", list(&limits))
+                format!(" Limits at 95 %: {}.", format_list(&limits))
             };
             format!("Nothing is missing that this data could show.{limits}")
         }
@@ -225,7 +225,7 @@ fn sentence(
                 .iter()
                 .map(|e| format!("{}, {}", e.name, in_words(&e.parameters)))
                 .collect();
-            let [low, high] = gain.share_interval.map(percent);
+            let [low, high] = gain.share_interval.map(format_percent);
             let rest = if findings.remainder_after.is_structured() {
                 " Something small and systematic is left that has no name here."
             } else {
@@ -235,7 +235,7 @@ fn sentence(
                 "What the simulation lacks is {}. It takes away {} ({low} to {high}) of the squared error on episodes \
                  that no fit has seen.{rest}",
                 told.join("; and "),
-                percent(gain.share)
+                format_percent(gain.share)
             )
         }
         CalibrationVerdict::OneOf {
@@ -245,7 +245,7 @@ fn sentence(
             let names: Vec<String> = laws.iter().map(name).collect();
             format!(
                 "Something is missing, but this data cannot tell apart {}. What would: {}.",
-                list(&names),
+                format_list(&names),
                 separating_experiments.join("; ")
             )
         }
@@ -256,7 +256,7 @@ fn sentence(
             let size = worst.map_or_else(String::new, |w| {
                 format!(
                     " It is worth {}{} in {}.",
-                    number(w.rms),
+                    format_number(w.rms),
                     with_unit(&w.unit),
                     w.channel
                 )
@@ -269,7 +269,7 @@ fn sentence(
 }
 
 fn nuisances(twin: &dyn Twin, judged: &ScoredModel) -> Vec<NuisanceParameter> {
-    let shared = twin.shared().iter().enumerate();
+    let shared = twin.shared_nuisances().iter().enumerate();
     shared
         .map(|(k, parameter)| NuisanceParameter {
             name: parameter.name.clone(),
@@ -342,17 +342,17 @@ fn notes(bundle: &Bundle, twin: &dyn Twin, findings: &Findings) -> Vec<String> {
     .map(|(what, _)| what.to_owned())
     .collect();
     if !missing.is_empty() {
-        notes.push(format!("Not measured: {}.", list(&missing)));
+        notes.push(format!("Not measured: {}.", format_list(&missing)));
     }
     let own: Vec<String> = twin
-        .own()
+        .episode_nuisances()
         .iter()
         .map(|parameter| parameter.name.clone())
         .collect();
     if !own.is_empty() {
         notes.push(format!(
             "Fitted in every episode, and never an effect: {}.",
-            list(&own)
+            format_list(&own)
         ));
     }
     match bundle.kind() {

@@ -10,7 +10,8 @@ use std::collections::BTreeMap;
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum CalibrationVerdict {
     /// Nothing is missing above the limits of the data.
-    Nothing,
+    #[serde(rename = "nothing")]
+    NoEffect,
     /// A cause, or two, is named.
     Named {
         /// The id of the first, such as `"drag"`.

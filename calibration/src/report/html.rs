@@ -3,7 +3,7 @@
 use super::data::{CalibrationReport, CalibrationVerdict, CandidateCause, FittedParameter};
 use super::page;
 use super::svg;
-use crate::format_number::{number, percent};
+use crate::format_number::{format_number, format_percent};
 use crate::select::ChannelResidual;
 use std::fmt::Write as _;
 
@@ -47,7 +47,7 @@ fn unit(text: &str) -> String {
 
 fn head(verdict: &CalibrationVerdict) -> (&'static str, &'static str) {
     match verdict {
-        CalibrationVerdict::Nothing => ("nothing", "Nothing is missing"),
+        CalibrationVerdict::NoEffect => ("nothing", "Nothing is missing"),
         CalibrationVerdict::Named { .. } => ("named", "The cause has a name"),
         CalibrationVerdict::OneOf { .. } => ("one_of", "One of several causes"),
         CalibrationVerdict::Unexplained { .. } => ("unexplained", "Something unknown is missing"),
@@ -65,7 +65,7 @@ impl CalibrationReport {
             self.held_out_episodes.len(),
             escape(&self.licence)
         );
-        out.push_str(&page::open(&self.title, &lead));
+        out.push_str(&page::page_head(&self.title, &lead));
         let _ = write!(
             out,
             "<div class=\"verdict {class}\"><b>{says}</b>{}</div>",
@@ -135,8 +135,8 @@ impl CalibrationReport {
         let told = |r: &crate::select::UnexplainedResidual| {
             format!(
                 "{} (noise alone stays below {})",
-                number(r.ratio),
-                number(r.threshold)
+                format_number(r.ratio),
+                format_number(r.threshold)
             )
         };
         let _ = write!(
@@ -150,8 +150,8 @@ impl CalibrationReport {
                 out,
                 "<p class=\"soft\">Fitted apart where it acts weakly and where it acts strongly: {} and {}, {:.1} standard \
                  deviations apart.</p>",
-                number(agreement.weak),
-                number(agreement.strong),
+                format_number(agreement.weak),
+                format_number(agreement.strong),
                 agreement.z.abs()
             );
         }
@@ -165,8 +165,8 @@ impl CalibrationReport {
                     out,
                     "<tr><td>{}</td><td class=\"n\">{} &plusmn; {}{}</td></tr>",
                     escape(&nuisance.name),
-                    number(nuisance.value),
-                    number(nuisance.sd),
+                    format_number(nuisance.value),
+                    format_number(nuisance.sd),
                     unit(&nuisance.unit)
                 );
             }
@@ -197,7 +197,7 @@ impl CalibrationReport {
 
 fn row(out: &mut String, candidate: &CandidateCause) {
     let told: Vec<String> = candidate.parameters.iter().map(parameter).collect();
-    let [low, high] = candidate.gain.share_interval.map(percent);
+    let [low, high] = candidate.gain.share_interval.map(format_percent);
     let judgement = match (&candidate.implausible, candidate.passes) {
         (Some(why), true) => format!("fits, but {}", escape(why)),
         (_, true) => "passes".to_owned(),
@@ -210,19 +210,19 @@ fn row(out: &mut String, candidate: &CandidateCause) {
         escape(&candidate.name),
         escape(&candidate.equation),
         told.join("<br>"),
-        number(candidate.delta_bic),
-        percent(candidate.gain.share)
+        format_number(candidate.delta_bic),
+        format_percent(candidate.gain.share)
     );
 }
 
 fn parameter(p: &FittedParameter) -> String {
-    let [low, high] = p.interval.map(number);
+    let [low, high] = p.interval.map(format_number);
     format!(
         "{} = {}{}<br><span class=\"soft\">{low} to {high}; was {}</span>",
         escape(&p.name),
-        number(p.value),
+        format_number(p.value),
         unit(&p.unit),
-        number(p.default)
+        format_number(p.default)
     )
 }
 
@@ -234,10 +234,10 @@ fn residual_row(out: &mut String, when: &str, r: &ChannelResidual) {
         "<tr><td>{}</td><td class=\"soft\">{when}</td><td class=\"n\">{}{unit}</td><td class=\"n\">{}{unit}</td>\
          <td class=\"n\">{}{unit}{known}</td><td class=\"n\">{}</td><td class=\"n\">{:.0} of {}</td></tr>",
         escape(&r.channel),
-        number(r.bias),
-        number(r.rms),
-        number(r.noise_sd),
-        number(r.chi2_per_count),
+        format_number(r.bias),
+        format_number(r.rms),
+        format_number(r.noise_sd),
+        format_number(r.chi2_per_count),
         r.effective_count,
         r.count
     );

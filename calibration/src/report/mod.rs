@@ -13,4 +13,4 @@ pub use data::{
     CalibrationReport, CalibrationVerdict, CandidateCause, FittedParameter, FoundEffects,
     NamedEffect, NuisanceParameter, ResidualPlot,
 };
-pub(crate) use write::whole;
+pub(crate) use write::write_atomically;

@@ -15,7 +15,7 @@ pub(crate) const COLOURS: [&str; 4] = [
 ];
 
 /// The head of a page, up to and with its title and lead.
-pub(crate) fn open(title: &str, lead: &str) -> String {
+pub(crate) fn page_head(title: &str, lead: &str) -> String {
     let title = escape(title);
     format!(
         "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" \
@@ -25,7 +25,12 @@ pub(crate) fn open(title: &str, lead: &str) -> String {
 }
 
 /// The share of values below each value, a curve for each row, up to `most`.
-pub(crate) fn shares(title: &str, unit: &str, most: f64, rows: &[(String, Vec<f64>)]) -> String {
+pub(crate) fn cumulative_plot(
+    title: &str,
+    unit: &str,
+    most: f64,
+    rows: &[(String, Vec<f64>)],
+) -> String {
     let curves: Vec<svg::Curve> = rows
         .iter()
         .zip(COLOURS.iter().cycle())
@@ -45,7 +50,7 @@ pub(crate) fn shares(title: &str, unit: &str, most: f64, rows: &[(String, Vec<f6
 }
 
 /// Returns which colour is which.
-pub(crate) fn key<'a>(names: impl Iterator<Item = &'a str>) -> String {
+pub(crate) fn legend<'a>(names: impl Iterator<Item = &'a str>) -> String {
     let mut out = String::from("<p class=\"soft key\">");
     for (name, colour) in names.zip(COLOURS.iter().cycle()) {
         let _ = write!(out, "<i style=\"background:{colour}\"></i>{}", escape(name));

@@ -1,7 +1,7 @@
 //! Small pictures as SVG text.
 
 use super::data::{CandidateCause, ResidualPlot};
-use crate::format_number::number;
+use crate::format_number::format_number;
 use std::fmt::Write as _;
 
 pub(crate) const WIDTH: f64 = 640.0;
@@ -20,7 +20,7 @@ pub(crate) struct AxisScale {
 }
 
 impl AxisScale {
-    pub(crate) fn at(&self, value: f64) -> f64 {
+    pub(crate) fn to_pixels(&self, value: f64) -> f64 {
         let span = self.high - self.low;
         let share = if span > 0.0 {
             (value - self.low) / span
@@ -54,7 +54,7 @@ impl AxisScale {
 fn frame(x: &AxisScale, y: &AxisScale, x_name: &str, y_name: &str) -> String {
     let mut out = String::new();
     for tick in y.ticks() {
-        let at = y.at(tick);
+        let at = y.to_pixels(tick);
         let _ = write!(
             out,
             "<line class=\"grid\" x1=\"{:.1}\" y1=\"{at:.1}\" x2=\"{:.1}\" y2=\"{at:.1}\"/><text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>",
@@ -62,18 +62,18 @@ fn frame(x: &AxisScale, y: &AxisScale, x_name: &str, y_name: &str) -> String {
             x.to,
             x.from - 6.0,
             at + 4.0,
-            number(tick)
+            format_number(tick)
         );
     }
     for tick in x.ticks() {
-        let at = x.at(tick);
+        let at = x.to_pixels(tick);
         let _ = write!(
             out,
             "<line class=\"grid\" x1=\"{at:.1}\" y1=\"{:.1}\" x2=\"{at:.1}\" y2=\"{:.1}\"/><text x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
             y.from,
             y.to,
             y.from + 15.0,
-            number(tick)
+            format_number(tick)
         );
     }
     let _ = write!(
@@ -106,7 +106,10 @@ pub(super) fn residuals(plot: &ResidualPlot, name: &str) -> String {
         to: TOP,
     };
     let mut out = open(HEIGHT, name);
-    let (top, bottom) = (y.at(2.0 * plot.noise_sd), y.at(-2.0 * plot.noise_sd));
+    let (top, bottom) = (
+        y.to_pixels(2.0 * plot.noise_sd),
+        y.to_pixels(-2.0 * plot.noise_sd),
+    );
     let _ = write!(
         out,
         "<rect class=\"noise\" x=\"{:.1}\" y=\"{top:.1}\" width=\"{:.1}\" height=\"{:.1}\"/>",
@@ -118,7 +121,7 @@ pub(super) fn residuals(plot: &ResidualPlot, name: &str) -> String {
     for (class, points) in [("before", &plot.before), ("after", &plot.after)] {
         let _ = write!(out, "<path class=\"{class}\" d=\"");
         for [t, r] in points {
-            let _ = write!(out, "M{:.1} {:.1}h0", x.at(*t), y.at(*r));
+            let _ = write!(out, "M{:.1} {:.1}h0", x.to_pixels(*t), y.to_pixels(*r));
         }
         out.push_str("\"/>");
     }
@@ -141,13 +144,13 @@ pub(super) fn gains(candidates: &[CandidateCause]) -> String {
     };
     let mut out = open(height, "held-out gain of every cause");
     for tick in x.ticks() {
-        let at = x.at(tick);
+        let at = x.to_pixels(tick);
         let _ = write!(
             out,
             "<line class=\"grid\" x1=\"{at:.1}\" y1=\"{TOP}\" x2=\"{at:.1}\" y2=\"{:.1}\"/><text x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{} %</text>",
             height - BOTTOM,
             height - BOTTOM + 16.0,
-            number(tick)
+            format_number(tick)
         );
     }
     for (k, candidate) in candidates.iter().enumerate() {
@@ -156,14 +159,14 @@ pub(super) fn gains(candidates: &[CandidateCause]) -> String {
         let [a, b] = candidate
             .gain
             .share_interval
-            .map(|share| x.at(100.0 * share));
+            .map(|share| x.to_pixels(100.0 * share));
         let _ = write!(
             out,
             "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{}</text><line class=\"{class}\" x1=\"{a:.1}\" y1=\"{y:.1}\" x2=\"{b:.1}\" y2=\"{y:.1}\"/><circle class=\"{class}\" cx=\"{:.1}\" cy=\"{y:.1}\" r=\"4\"/>",
             left - 10.0,
             y + 4.0,
             super::html::escape(&candidate.id),
-            x.at(100.0 * candidate.gain.share)
+            x.to_pixels(100.0 * candidate.gain.share)
         );
     }
     out.push_str("</svg>");
@@ -204,7 +207,7 @@ pub(super) fn curves(name: &str, x: (&str, f64), y: (&str, f64), curves: &[Curve
         );
         for (k, [a, b]) in curve.points.iter().enumerate() {
             let pen = if k == 0 { 'M' } else { 'L' };
-            let _ = write!(out, "{pen}{:.1} {:.1}", x.at(*a), y.at(*b));
+            let _ = write!(out, "{pen}{:.1} {:.1}", x.to_pixels(*a), y.to_pixels(*b));
         }
         out.push_str("\"/>");
     }

@@ -34,14 +34,18 @@ impl CalibrationReport {
         })?;
         let pretty = |value: &Value| format!("{value:#}\n");
         let found = serde_json::to_value(&self.found).unwrap_or(Value::Null);
-        whole(folder, "report.json", pretty(&self.value()).as_bytes())?;
-        whole(folder, "report.html", self.to_html().as_bytes())?;
-        whole(folder, "found.json", pretty(&found).as_bytes())
+        write_atomically(folder, "report.json", pretty(&self.value()).as_bytes())?;
+        write_atomically(folder, "report.html", self.to_html().as_bytes())?;
+        write_atomically(folder, "found.json", pretty(&found).as_bytes())
     }
 }
 
 /// Writes a file beside its place and moves it there.
-pub(crate) fn whole(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), CalibrationError> {
+pub(crate) fn write_atomically(
+    folder: &Path,
+    name: &str,
+    bytes: &[u8],
+) -> Result<(), CalibrationError> {
     let path = folder.join(name);
     file::write(&path, bytes).map_err(|source| CalibrationError::Write { path, source })
 }

@@ -3,7 +3,7 @@
 use super::motion::MeasuredMotion;
 use super::pose_tracks::{PoseTracks, TrackedBody};
 use crate::error::CalibrationError;
-use crate::twin::test_world::{BOARD_SUBSTANCE, THING_SUBSTANCE, TestObject, TestWorld};
+use crate::twin::test_world::{BOARD_SUBSTANCE, OBJECT_SUBSTANCE, TestObject, TestWorld};
 use dwell_physics::{ContactFriction, PhysicsConfig};
 use dwell_scene::{LawSpec, PartId};
 use glam::{DQuat, DVec3, Quat, Vec3};
@@ -42,14 +42,14 @@ impl BoardRig {
         tracks: &PoseTracks,
         contact_friction: ContactFriction,
     ) -> Result<Self, CalibrationError> {
-        Self::finer(tracks, contact_friction, 1)
+        Self::with_finer_steps(tracks, contact_friction, 1)
     }
 
     /// The same with `times` as many steps between two samples.
     ///
     /// # Errors
     /// As [`BoardRig::new`].
-    pub fn finer(
+    pub fn with_finer_steps(
         tracks: &PoseTracks,
         contact_friction: ContactFriction,
         times: u32,
@@ -68,10 +68,10 @@ impl BoardRig {
         let stage = TestWorld::new(20.0, &thing, config)?;
         let gravity = [("world/gravity_m_s2", tracks.gravity_m_s2)];
         let rig = Self {
-            stage: stage.with(Vec::new(), &gravity)?,
+            stage: stage.with_laws_and_overrides(Vec::new(), &gravity)?,
             inertia: inertia(&tracks.body),
         };
-        rig.set(&RigSettings {
+        rig.with_settings(&RigSettings {
             friction: tracks.nominal.friction,
             restitution: tracks.nominal.restitution,
             laws: Vec::new(),
@@ -82,8 +82,8 @@ impl BoardRig {
     ///
     /// # Errors
     /// [`CalibrationError::Simulation`] for a value or law that physics does not take.
-    pub fn set(&self, settings: &RigSettings) -> Result<Self, CalibrationError> {
-        let pair = format!("pair/{THING_SUBSTANCE}~{BOARD_SUBSTANCE}");
+    pub fn with_settings(&self, settings: &RigSettings) -> Result<Self, CalibrationError> {
+        let pair = format!("pair/{OBJECT_SUBSTANCE}~{BOARD_SUBSTANCE}");
         let (friction, restitution) = (format!("{pair}/friction"), format!("{pair}/restitution"));
         let values = [
             (friction.as_str(), settings.friction),
@@ -91,7 +91,9 @@ impl BoardRig {
         ];
         let laws = std::iter::once(&self.inertia).chain(&settings.laws);
         Ok(Self {
-            stage: self.stage.with(laws.cloned().collect(), &values)?,
+            stage: self
+                .stage
+                .with_laws_and_overrides(laws.cloned().collect(), &values)?,
             inertia: self.inertia.clone(),
         })
     }
@@ -100,7 +102,7 @@ impl BoardRig {
     ///
     /// # Errors
     /// [`CalibrationError::Simulation`] for a start that is not finite.
-    pub fn roll(
+    pub fn simulate(
         &self,
         start: &MeasuredMotion,
         samples: usize,
@@ -114,7 +116,7 @@ impl BoardRig {
         let velocity = &mut stage.state.part_velocity[BODY];
         velocity.linear = start.linear.as_vec3();
         velocity.angular = start.angular.as_vec3();
-        stage.adopt()?;
+        stage.adopt_state()?;
         let mut motions = Vec::with_capacity(samples);
         for _ in 0..samples {
             stage.step()?;
@@ -154,5 +156,5 @@ fn inertia(body: &TrackedBody) -> LawSpec {
     let moments = body.inertia_kg_m2.iter().zip(body.solid_inertia_kg_m2());
     let errors = moments.map(|(moment, solid)| moment / solid - 1.0);
     let params: Vec<(&str, f64)> = ["x", "y", "z"].into_iter().zip(errors).collect();
-    LawSpec::new("inertia_error", 1, &params).on(&body.name)
+    LawSpec::new("inertia_error", 1, &params).with_target(&body.name)
 }

@@ -1,7 +1,7 @@
 //! Boxes: how residuals of several models spread in several groups.
 
 use super::residuals::ResidualGroups;
-use crate::format_number::number;
+use crate::format_number::format_number;
 use crate::report::page::{COLOURS, escape};
 use crate::report::svg::{self, AxisScale};
 use std::fmt::Write as _;
@@ -31,7 +31,7 @@ fn draw_boxes(residuals: &ResidualGroups, style: &str) -> String {
     let height = TOP + PLOT + BOTTOM;
     let full = svg::WIDTH.max(LEFT + GROUP * residuals.groups.len() as f64);
     let boxes = || residuals.groups.iter().flat_map(|group| &group.models);
-    let most = boxes().map(|b| b.at[4]).fold(1e-9, f64::max);
+    let most = boxes().map(|b| b.values[4]).fold(1e-9, f64::max);
     let y = AxisScale {
         low: 0.0,
         high: most,
@@ -43,14 +43,14 @@ fn draw_boxes(residuals: &ResidualGroups, style: &str) -> String {
         escape(&residuals.title)
     );
     for tick in y.ticks() {
-        let at = y.at(tick);
+        let at = y.to_pixels(tick);
         let _ = write!(
             out,
             "<line class=\"grid\" x1=\"{LEFT}\" y1=\"{at:.1}\" x2=\"{full}\" y2=\"{at:.1}\"/><text x=\"{:.1}\" \
              y=\"{:.1}\" text-anchor=\"end\">{}</text>",
             LEFT - 6.0,
             at + 4.0,
-            number(tick)
+            format_number(tick)
         );
     }
     let middle = TOP + 0.5 * PLOT;
@@ -67,7 +67,8 @@ fn draw_boxes(residuals: &ResidualGroups, style: &str) -> String {
         {
             let centre = from + 0.1 * width + slot * (m as f64 + 0.5);
             let half = (0.35 * slot).min(14.0);
-            let [low, first, median, third, high] = quantiles.at.map(|value| y.at(value));
+            let [low, first, median, third, high] =
+                quantiles.values.map(|value| y.to_pixels(value));
             let _ = write!(
                 out,
                 "<g style=\"stroke:{colour};fill:{colour}\"><path d=\"M{centre:.1} {low:.1}V{high:.1}\"/><rect \

@@ -224,7 +224,7 @@ impl DropRig {
         let mut stage = self.stages[ball].clone();
         let from = stage.state.part_pose[BALL].position;
         stage.state.part_velocity[BALL].linear.y = speed_m_s as f32;
-        stage.adopt()?;
+        stage.adopt_state()?;
         let step_s = 1.0 / self.rate_hz;
         let last = times_s.last().copied().unwrap_or(0.0);
         let steps = (last * self.rate_hz).ceil() as usize + 1;
@@ -259,11 +259,11 @@ impl RolloutSubject for BallDrops {
         &self.episodes[episode].regimes
     }
 
-    fn past(&self) -> usize {
+    fn past_samples(&self) -> usize {
         PAST - 1
     }
 
-    fn divergence(&self) -> Deviation {
+    fn divergence_threshold(&self) -> Deviation {
         Deviation {
             position_m: 2.0,
             rotation_rad: 1.0,
@@ -272,7 +272,7 @@ impl RolloutSubject for BallDrops {
 
     /// Height and speed at the first of the past samples are those with which the simulation itself passes closest by
     /// all of the past: Gauss-Newton, where a shift shifts all and the effect of a speed is found by trying one.
-    fn roll(
+    fn simulate(
         &self,
         rig: &DropRig,
         episode: usize,
@@ -352,11 +352,11 @@ impl ModelledSubject for BallDrops {
         &self.balls[self.episodes[episode].ball].0
     }
 
-    fn lever_m(&self) -> f64 {
+    fn lever_arm_m(&self) -> f64 {
         0.0
     }
 
-    fn rig(
+    fn simulation(
         &self,
         model: &SimulationModel,
         values: &[f64],
@@ -381,12 +381,12 @@ impl ModelledSubject for BallDrops {
                 Vec::new()
             };
             let stage = TestWorld::new(self.size_m, ball, config.clone())?;
-            stages.push(stage.with(laws, &[("world/gravity_m_s2", gravity)])?);
+            stages.push(stage.with_laws_and_overrides(laws, &[("world/gravity_m_s2", gravity)])?);
         }
         Ok(DropRig { stages, rate_hz })
     }
 
-    fn found(&self, model: &SimulationModel, values: &[f64]) -> FoundEffects {
+    fn found_effects(&self, model: &SimulationModel, values: &[f64]) -> FoundEffects {
         let mut found = FoundEffects::default();
         for (name, _) in &self.balls {
             let c_d = Self::c_d(model, values, name);

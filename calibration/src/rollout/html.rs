@@ -3,7 +3,7 @@
 use super::box_plot;
 use super::residuals::ResidualGroups;
 use super::{HORIZONS, Regime, WindowScore};
-use crate::format_number::number;
+use crate::format_number::format_number;
 use crate::report::page;
 use std::fmt::Write as _;
 
@@ -28,7 +28,7 @@ pub(crate) fn windows(out: &mut String, model: &str, scores: &[WindowScore]) {
         let word = if diverging {
             "diverging"
         } else {
-            regime.map_or("all others", Regime::word)
+            regime.map_or("all others", Regime::name)
         };
         let _ = write!(out, "<tr><td>{word}</td>");
         for horizon in HORIZONS {
@@ -36,10 +36,10 @@ pub(crate) fn windows(out: &mut String, model: &str, scores: &[WindowScore]) {
             let cell = found.map_or_else(String::new, |w| {
                 format!(
                     "{} ({}) mm<br>{} ({})&deg;<br><span class=\"soft\">{} windows</span>",
-                    number(w.position_rms_mm),
-                    number(w.position_median_mm),
-                    number(w.rotation_rms_deg),
-                    number(w.rotation_median_deg),
+                    format_number(w.position_rms_mm),
+                    format_number(w.position_median_mm),
+                    format_number(w.rotation_rms_deg),
+                    format_number(w.rotation_median_deg),
                     w.count
                 )
             });

@@ -3,7 +3,7 @@
 use super::motion::MeasuredMotion;
 use super::pose_tracks::PoseTrack;
 use super::regime::Regime;
-use crate::bundle::turn;
+use crate::bundle::rotation_vector_between;
 use crate::fit::median;
 use dwell_scene::random::{RandomKey, RandomStream};
 use glam::{DQuat, DVec3};
@@ -28,7 +28,7 @@ pub struct TrackerNoise {
 impl TrackerNoise {
     /// Returns what flights show of it: second differences of positions, freed from the fall, and of rotations have the square
     /// root of six times the noise of one sample. The median keeps what is no noise out.
-    pub fn of(episodes: &[PoseTrack], step_s: f64, gravity_m_s2: f64) -> Self {
+    pub fn estimate(episodes: &[PoseTrack], step_s: f64, gravity_m_s2: f64) -> Self {
         let fall = DVec3::NEG_Y * (gravity_m_s2 * step_s * step_s);
         let (mut shifts, mut turns) = (Vec::new(), Vec::new());
         for track in episodes {
@@ -38,7 +38,8 @@ impl TrackerNoise {
                 }
                 let [a, b, c] = [&motions[0], &motions[1], &motions[2]];
                 let shift = c.position - 2.0 * b.position + a.position - fall;
-                let bend = turn(b.rotation, c.rotation) - turn(a.rotation, b.rotation);
+                let bend = rotation_vector_between(b.rotation, c.rotation)
+                    - rotation_vector_between(a.rotation, b.rotation);
                 shifts.extend(shift.to_array().map(f64::abs));
                 turns.extend(bend.to_array().map(f64::abs));
             }
@@ -82,7 +83,7 @@ pub fn window_start(
         .collect();
     let turns: Vec<DVec3> = motions
         .iter()
-        .map(|m| turn(here.rotation, m.rotation) + off(noise.rotation_rad))
+        .map(|m| rotation_vector_between(here.rotation, m.rotation) + off(noise.rotation_rad))
         .collect();
     let turned_by = |by: DVec3| (DQuat::from_scaled_axis(by) * here.rotation).normalize();
     if let ([place], [turned]) = (&places[..], &turns[..]) {

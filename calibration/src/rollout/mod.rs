@@ -26,7 +26,7 @@ pub use board_rig::{BoardRig, RigSettings, STEPS_PER_SAMPLE};
 pub use initial_state::{TrackerNoise, window_start};
 pub use motion::{Deviation, MeasuredMotion};
 pub use pose_tracks::{NominalContact, PoseTrack, PoseTracks, TrackedBody};
-pub use refine::{FINER, Refinement, refinements};
+pub use refine::{REFINEMENT_FACTOR, Refinement, refinements};
 pub use regime::Regime;
 pub use residuals::{Quantiles, ResidualGroup, ResidualGroups};
 pub use score::{Score, deviations, diverging, scores};

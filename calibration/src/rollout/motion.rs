@@ -29,7 +29,11 @@ impl Deviation {
     pub fn between(predicted: &MeasuredMotion, measured: &MeasuredMotion) -> Self {
         Self {
             position_m: (predicted.position - measured.position).length(),
-            rotation_rad: crate::bundle::turn(measured.rotation, predicted.rotation).length(),
+            rotation_rad: crate::bundle::rotation_vector_between(
+                measured.rotation,
+                predicted.rotation,
+            )
+            .length(),
         }
     }
 

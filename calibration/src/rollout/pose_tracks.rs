@@ -5,7 +5,7 @@ use super::initial_state::{TrackerNoise, window_start};
 use super::motion::{Deviation, MeasuredMotion};
 use super::regime::{self, Regime};
 use super::subject::RolloutSubject;
-use crate::bundle::{self, Bundle, MeasuredEpisode, PoseRates, turn};
+use crate::bundle::{self, Bundle, MeasuredEpisode, PoseRates, rotation_vector_between};
 use crate::error::CalibrationError;
 use crate::twin::gravity_m_s2;
 use dwell_scene::random::RandomKey;
@@ -140,7 +140,7 @@ impl PoseTracks {
             },
             rate_hz: form.rate_hz,
             gravity_m_s2,
-            noise: TrackerNoise::of(&episodes, step_s, gravity_m_s2),
+            noise: TrackerNoise::estimate(&episodes, step_s, gravity_m_s2),
             episodes,
         })
     }
@@ -170,18 +170,18 @@ impl RolloutSubject for PoseTracks {
         &self.episodes[episode].regimes
     }
 
-    fn past(&self) -> usize {
+    fn past_samples(&self) -> usize {
         0
     }
 
-    fn divergence(&self) -> Deviation {
+    fn divergence_threshold(&self) -> Deviation {
         Deviation {
             position_m: DIVERGED_WIDTHS * 2.0 * self.body.half_width_m(),
             rotation_rad: DIVERGED_RAD,
         }
     }
 
-    fn roll(
+    fn simulate(
         &self,
         rig: &BoardRig,
         episode: usize,
@@ -191,7 +191,7 @@ impl RolloutSubject for PoseTracks {
     ) -> Result<Vec<MeasuredMotion>, CalibrationError> {
         let track = &self.episodes[episode];
         let (step_s, g) = (self.step_s(), self.gravity_m_s2);
-        rig.roll(
+        rig.simulate(
             &window_start(track, at, step_s, g, &self.noise, nudge),
             samples,
         )
@@ -213,7 +213,7 @@ fn track(
                 let (a, b) = (&poses[k - 1], &poses[k]);
                 PoseRates {
                     linear: (b.position - a.position) / step_s,
-                    angular: turn(a.rotation, b.rotation) / step_s,
+                    angular: rotation_vector_between(a.rotation, b.rotation) / step_s,
                 }
             });
             MeasuredMotion {
@@ -224,7 +224,7 @@ fn track(
             }
         })
         .collect();
-    let (start, rates) = match &episode.start {
+    let (start, rates) = match &episode.known_start {
         Some((start, rates)) => (*start, Some(*rates)),
         None => (0, None),
     };

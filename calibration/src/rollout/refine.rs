@@ -4,11 +4,11 @@ use super::motion::Deviation;
 use super::regime::Regime;
 use super::windows::{HORIZONS, WindowEnd};
 use crate::fit::median;
-use crate::format_number::number;
+use crate::format_number::format_number;
 use serde::Serialize;
 
 /// Number of steps of the finer simulation that make one of the other.
-pub const FINER: u32 = 4;
+pub const REFINEMENT_FACTOR: u32 = 4;
 /// Relative change of a median residual by a finer step above which it is an artefact of the solver.
 const ARTEFACT_SHARE: f64 = 0.1;
 /// Changes below which nothing has changed, mm and degrees.
@@ -92,19 +92,19 @@ pub(crate) fn sentence(model: &str, refinements: &[Refinement]) -> String {
     let artefacts = refinements.iter().filter(|r| r.artefact);
     let told: Vec<String> = artefacts
         .map(|r| {
-            let [a, b] = r.position_median_mm.map(number);
-            let [c, d] = r.rotation_median_deg.map(number);
+            let [a, b] = r.position_median_mm.map(format_number);
+            let [c, d] = r.rotation_median_deg.map(format_number);
             format!(
                 "{} ahead in {} ({a} to {b} mm, {c} to {d} degrees)",
                 r.horizon,
-                r.regime.map_or("all", Regime::word)
+                r.regime.map_or("all", Regime::name)
             )
         })
         .collect();
     if told.is_empty() {
         format!("{model}: a quarter of the step changes no median residual by more than a tenth.")
     } else {
-        let told = crate::format_number::list(&told);
+        let told = crate::format_number::format_list(&told);
         format!(
             "{model}: solver artefact, the residual changes with a quarter of the step: {told}."
         )

@@ -41,7 +41,7 @@ impl Regime {
     ];
 
     /// The one of several that decides about a window: the hardest to predict.
-    pub fn deciding(regimes: &[Self]) -> Self {
+    pub fn hardest(regimes: &[Self]) -> Self {
         let order = [
             Self::Impact,
             Self::Contact,
@@ -56,7 +56,7 @@ impl Regime {
     }
 
     /// A word for tables.
-    pub fn word(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Self::Flight => "flight",
             Self::Impact => "impact",

@@ -57,7 +57,8 @@ pub struct Quantiles {
     /// The model.
     pub model: String,
     /// Rising.
-    pub at: [f64; 5],
+    #[serde(rename = "at")]
+    pub values: [f64; 5],
 }
 
 /// A model's name and its windows; the windows of all models are the same.
@@ -99,7 +100,7 @@ pub(crate) fn all(
             }
         };
         let regimes = Regime::ALL.map(|regime| {
-            let label = regime.word().to_owned();
+            let label = regime.name().to_owned();
             group(rows, residual, label, &|end| end.regime == regime)
         });
         push("regime", regimes.into_iter().flatten().collect());
@@ -162,7 +163,7 @@ fn group(
                     .map(|share| sizes[(share * last).round() as usize]);
                 Quantiles {
                     model: (*model).to_owned(),
-                    at,
+                    values: at,
                 }
             })
             .collect(),

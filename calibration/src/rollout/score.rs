@@ -45,7 +45,7 @@ impl Score {
 /// [`CalibrationError::Simulation`] for a start that is not finite.
 pub fn deviations(rig: &BoardRig, track: &PoseTrack) -> Result<Vec<Deviation>, CalibrationError> {
     let ahead = &track.motions[track.start + 1..];
-    let rolled = rig.roll(&track.start_motion, ahead.len())?;
+    let rolled = rig.simulate(&track.start_motion, ahead.len())?;
     let rest = rolled
         .iter()
         .zip(ahead)
@@ -77,7 +77,7 @@ pub fn scores(
 /// Number of times that the chaos guard starts an episode once more.
 const NUDGES: u64 = 4;
 
-/// Returns whether each of the episodes `which` ends elsewhere ([`RolloutSubject::divergence`]) when its start is drawn from within the
+/// Returns whether each of the episodes `which` ends elsewhere ([`RolloutSubject::divergence_threshold`]) when its start is drawn from within the
 /// tracker's noise: which way it goes is chance then.
 ///
 /// # Errors
@@ -92,12 +92,12 @@ pub fn diverging(
     key: RandomKey,
     threads: Threads,
 ) -> Result<Vec<bool>, CalibrationError> {
-    let limit = tracks.divergence();
+    let limit = tracks.divergence_threshold();
     let one = |k: usize| {
         let track = &tracks.episodes[which[k]];
         let samples = track.motions.len() - track.start - 1;
         let last = |start: &MeasuredMotion| {
-            let rolled = rig.roll(start, samples)?;
+            let rolled = rig.simulate(start, samples)?;
             Ok::<_, CalibrationError>(rolled.last().copied().unwrap_or(*start))
         };
         let estimate = |nudge: Option<RandomKey>| {

@@ -20,13 +20,13 @@ pub trait RolloutSubject: Sync {
     fn regimes(&self, episode: usize) -> &[Regime];
 
     /// Number of samples before a start from which its state is estimated.
-    fn past(&self) -> usize;
+    fn past_samples(&self) -> usize;
 
     /// The deviation beyond which two predictions are of different outcomes.
-    fn divergence(&self) -> Deviation;
+    fn divergence_threshold(&self) -> Deviation;
 
     /// Returns the most informative horizon, which pictures show, one of [`HORIZONS`](super::HORIZONS).
-    fn telling_horizon(&self) -> usize {
+    fn most_informative_horizon(&self) -> usize {
         10
     }
 
@@ -35,7 +35,7 @@ pub trait RolloutSubject: Sync {
     ///
     /// # Errors
     /// [`CalibrationError::Simulation`] for a start that is not finite.
-    fn roll(
+    fn simulate(
         &self,
         rig: &Self::Rig,
         episode: usize,

@@ -20,7 +20,7 @@ pub struct WindowOptions {
     /// Samples from one start to the next.
     pub stride: usize,
     /// Seed of the chaos guard's nudges; `None`: no guard, nothing diverges.
-    pub guard: Option<RandomKey>,
+    pub chaos_guard: Option<RandomKey>,
     /// Threads.
     pub threads: Threads,
 }
@@ -75,17 +75,17 @@ fn ends_of<S: RolloutSubject>(
     let longest = HORIZONS.into_iter().max().unwrap_or(1);
     let (measured, regimes) = (subject.measured(episode), subject.regimes(episode));
     let last = measured.len().saturating_sub(1);
-    let limit = subject.divergence();
+    let limit = subject.divergence_threshold();
     let mut ends = Vec::new();
-    for at in (subject.past()..last).step_by(windowing.stride.max(1)) {
+    for at in (subject.past_samples()..last).step_by(windowing.stride.max(1)) {
         let samples = longest.min(last - at);
-        let plain = subject.roll(rig, episode, at, samples, None)?;
+        let plain = subject.simulate(rig, episode, at, samples, None)?;
         let mut nudged = Vec::new();
-        if let Some(key) = windowing.guard {
+        if let Some(key) = windowing.chaos_guard {
             let key = key.child(episode as u64).child(at as u64);
             for nudge in 0..NUDGES {
                 let key = Some(key.child(nudge));
-                nudged.push(subject.roll(rig, episode, at, samples, key)?);
+                nudged.push(subject.simulate(rig, episode, at, samples, key)?);
             }
         }
         for horizon in HORIZONS.into_iter().filter(|h| *h <= plain.len()) {
@@ -93,7 +93,7 @@ fn ends_of<S: RolloutSubject>(
             ends.push(WindowEnd {
                 start: (episode, at),
                 horizon,
-                regime: Regime::deciding(&regimes[at..=at + horizon]),
+                regime: Regime::hardest(&regimes[at..=at + horizon]),
                 speed_m_s: measured[at].linear.length(),
                 predicted,
                 deviation: Deviation::between(&predicted, &measured[at + horizon]),

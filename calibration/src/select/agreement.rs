@@ -3,7 +3,7 @@
 use super::compare::{CauseComparison, Estimate, ScoredModel, estimates};
 use super::residual::effective_count;
 use crate::error::CalibrationError;
-use crate::twin::{ResidualStructure, range_of};
+use crate::twin::{ResidualStructure, cause_range};
 use serde::Serialize;
 
 /// Number of standard deviations of difference from which on the name is refuted.
@@ -24,7 +24,7 @@ pub struct Agreement {
 
 impl Agreement {
     /// Returns whether the two differ by more than chance and the precision of masses and sizes allow.
-    pub(crate) fn refutes(&self) -> bool {
+    pub(crate) fn is_refuting(&self) -> bool {
         let size = self.weak.abs().max(self.strong.abs());
         self.z.abs() > REFUTED && (self.weak - self.strong).abs() > ALLOWED_SHARE * size
     }
@@ -41,7 +41,7 @@ pub(super) fn agreement(
     if all.twin.structure() != ResidualStructure::OverTime || all.split.train.len() < 6 {
         return Ok(None);
     }
-    let first = range_of(all.twin, *cause).start;
+    let first = cause_range(all.twin, *cause).start;
     let default = all.twin.causes()[*cause].parameters[0].default;
     let mut felt = Vec::new();
     for episode in &all.split.train {

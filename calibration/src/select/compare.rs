@@ -7,7 +7,7 @@ use crate::error::CalibrationError;
 use crate::fit::{CauseSet, FitResult, FitTask};
 use crate::options::Options;
 use crate::progress::ProgressReporter;
-use crate::twin::{ParameterIndex, ParameterVector, ResidualStructure, Twin, range_of};
+use crate::twin::{ParameterIndex, ParameterVector, ResidualStructure, Twin, cause_range};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 
@@ -84,7 +84,7 @@ impl CauseComparison<'_> {
     }
 
     /// Fits a model and judges it on the held-out episodes. Of several starts the best is taken.
-    pub(crate) fn judge(
+    pub(crate) fn fit_and_score(
         &self,
         model: &CauseSet,
         from: &ParameterVector,
@@ -92,7 +92,7 @@ impl CauseComparison<'_> {
         let train = self.task(&self.split.train, true);
         let mut start = from.clone();
         if let Some(cause) = model.causes.last() {
-            let first = range_of(self.twin, *cause).start;
+            let first = cause_range(self.twin, *cause).start;
             let mut best = train.loss_at(from)?;
             for value in &self.twin.causes()[*cause].starts {
                 let mut there = from.clone();
@@ -104,7 +104,9 @@ impl CauseComparison<'_> {
             }
         }
         let fit = train.fit(model, &start)?;
-        let held_out = self.task(&self.split.held_out, false).fit_own(&fit.point)?;
+        let held_out = self
+            .task(&self.split.held_out, false)
+            .fit_episode_nuisances(&fit.point)?;
         let effective_count = effective_count(self.twin, &self.split.train, &fit.residuals);
         Ok(ScoredModel {
             model: model.clone(),
@@ -145,7 +147,7 @@ impl CauseComparison<'_> {
     }
 
     /// Returns whether a comparison speaks for the larger model.
-    pub(crate) fn passes(&self, against: &ModelAdvantage) -> bool {
+    pub(crate) fn is_better(&self, against: &ModelAdvantage) -> bool {
         against.delta_bic > self.options.min_delta_bic
             && against.gain.log_density_interval[0] > 0.0
             && against.gain.share >= self.options.min_gain_share
@@ -159,7 +161,7 @@ pub(crate) fn estimates(
     effective_count: f64,
     cause: usize,
 ) -> Vec<Estimate> {
-    let range = range_of(twin, cause);
+    let range = cause_range(twin, cause);
     range
         .map(|slot| Estimate {
             value: fit.point.causes[slot],

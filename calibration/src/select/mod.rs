@@ -14,4 +14,4 @@ pub use residual::{ChannelResidual, UnexplainedResidual};
 
 pub(crate) use compare::{Estimate, ScoredModel, estimates, sd_of};
 pub(crate) use residual::by_channel;
-pub(crate) use verdict::{Decision, Findings, SingleCause, explain};
+pub(crate) use verdict::{Decision, Findings, SingleCause, find_causes};

@@ -34,8 +34,8 @@ pub(crate) struct Findings {
 /// A cause alone.
 pub(crate) struct SingleCause {
     pub(crate) cause: usize,
-    pub(crate) judged: ScoredModel,
-    pub(crate) against: ModelAdvantage,
+    pub(crate) scored: ScoredModel,
+    pub(crate) advantage: ModelAdvantage,
     pub(crate) passes: bool,
     /// The reason why it is not plausible, if it is not.
     pub(crate) implausible: Option<String>,
@@ -44,14 +44,14 @@ pub(crate) struct SingleCause {
 /// The verdict, by positions of causes.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Decision {
-    Nothing,
+    NoEffect,
     Named(Vec<usize>),
     OneOf(Vec<usize>),
     Unexplained(String),
 }
 
 /// Finds what the simulation lacks.
-pub(crate) fn explain(
+pub(crate) fn find_causes(
     twin: &mut dyn Twin,
     options: &Options,
     progress: &dyn ProgressReporter,
@@ -67,7 +67,7 @@ pub(crate) fn explain(
         threads,
         progress,
     };
-    let base = all.judge(&CauseSet::default(), &start)?;
+    let base = all.fit_and_score(&CauseSet::default(), &start)?;
     let mut fitted = Vec::new();
     let count = all.twin.causes().len();
     for (cause, info) in all.twin.causes().iter().enumerate() {
@@ -76,7 +76,7 @@ pub(crate) fn explain(
         let model = CauseSet {
             causes: vec![cause],
         };
-        fitted.push(all.judge(&model, &base.fit.point)?);
+        fitted.push(all.fit_and_score(&model, &base.fit.point)?);
     }
     let best = fitted
         .iter()
@@ -89,10 +89,10 @@ pub(crate) fn explain(
             let against = all.advantage_over(&judged, &base, worth);
             SingleCause {
                 cause,
-                passes: all.passes(&against),
+                passes: all.is_better(&against),
                 implausible: implausible(all.twin, &judged, cause),
-                judged,
-                against,
+                scored: judged,
+                advantage: against,
             }
         })
         .collect();
@@ -113,13 +113,13 @@ pub(crate) fn explain(
             1.0 - (remainder_after.ratio - 1.0) / (remainder_before.ratio - 1.0).max(1e-9);
         if let Some(agreement) = found_agreement
             .as_ref()
-            .filter(|agreement| agreement.refutes())
+            .filter(|agreement| agreement.is_refuting())
         {
             decision = Decision::Unexplained(format!(
                 "{name} fits best, but it would have to be {} where it acts weakly and {} where it acts strongly, {:.1} \
                  standard deviations apart: one value does not serve, so it is not the cause",
-                crate::format_number::number(agreement.weak),
-                crate::format_number::number(agreement.strong),
+                crate::format_number::format_number(agreement.weak),
+                crate::format_number::format_number(agreement.strong),
                 agreement.z.abs()
             ));
         } else if remainder_after.is_structured() && explained < LEAST_EXPLAINED {
@@ -212,7 +212,7 @@ fn implausible(twin: &dyn Twin, judged: &ScoredModel, cause: usize) -> Option<St
     };
     parameters.iter().zip(&found).find_map(|(p, estimate)| {
         let [low, high] = estimate.interval();
-        let number = crate::format_number::number;
+        let number = crate::format_number::format_number;
         // A parameter that the data leave where it was needs no plausibility.
         if low <= p.default && p.default <= high {
             None
@@ -244,19 +244,19 @@ fn decide(
     remainder: &UnexplainedResidual,
 ) -> Result<(Decision, ScoredModel), CalibrationError> {
     let mut passing: Vec<&SingleCause> = singles.iter().filter(|single| single.passes).collect();
-    passing.sort_by(|a, b| b.against.delta_bic.total_cmp(&a.against.delta_bic));
+    passing.sort_by(|a, b| b.advantage.delta_bic.total_cmp(&a.advantage.delta_bic));
     let causes = all.twin.causes();
     let Some(best) = passing.first() else {
         let decision = if remainder.is_structured() {
             Decision::Unexplained(nearest(all, singles))
         } else {
-            Decision::Nothing
+            Decision::NoEffect
         };
         return Ok((decision, base.clone()));
     };
     // Rivals count whether or not each passes on its own: a cause that fits as well could be it.
     let close = |single: &&SingleCause| {
-        best.against.delta_bic - single.against.delta_bic < all.options.rival_delta_bic
+        best.advantage.delta_bic - single.advantage.delta_bic < all.options.rival_delta_bic
     };
     let rivals: Vec<&SingleCause> = singles.iter().filter(close).collect();
     let plausible: Vec<&&SingleCause> = rivals
@@ -269,12 +269,12 @@ fn decide(
             let name = &causes[best.cause].name;
             let decision =
                 Decision::Unexplained(format!("{name} fits best, but it is not plausible: {why}"));
-            Ok((decision, best.judged.clone()))
+            Ok((decision, best.scored.clone()))
         }
         [only] => second_cause(all, only, singles),
         _ => {
             let set = plausible.iter().map(|single| single.cause).collect();
-            Ok((Decision::OneOf(set), plausible[0].judged.clone()))
+            Ok((Decision::OneOf(set), plausible[0].scored.clone()))
         }
     }
 }
@@ -283,15 +283,15 @@ fn decide(
 fn nearest(all: &CauseComparison<'_>, singles: &[SingleCause]) -> String {
     let best = singles
         .iter()
-        .max_by(|a, b| a.against.delta_bic.total_cmp(&b.against.delta_bic));
+        .max_by(|a, b| a.advantage.delta_bic.total_cmp(&b.advantage.delta_bic));
     let none = "none of the causes in the library fits it";
-    match best.filter(|best| best.against.delta_bic > all.options.min_delta_bic) {
+    match best.filter(|best| best.advantage.delta_bic > all.options.min_delta_bic) {
         Some(best) => {
             let [low, high] = best
-                .against
+                .advantage
                 .gain
                 .share_interval
-                .map(crate::format_number::percent);
+                .map(crate::format_number::format_percent);
             format!(
                 "{none}; nearest comes {}, whose gain on episodes that no fit has seen is not certain ({low} to {high} of \
                  the squared error)",
@@ -309,8 +309,8 @@ fn second_cause(
     singles: &[SingleCause],
 ) -> Result<(Decision, ScoredModel), CalibrationError> {
     let remainder =
-        UnexplainedResidual::of(all.twin, &all.split.train, &first.judged.fit.residuals);
-    let alone = (Decision::Named(vec![first.cause]), first.judged.clone());
+        UnexplainedResidual::of(all.twin, &all.split.train, &first.scored.fit.residuals);
+    let alone = (Decision::Named(vec![first.cause]), first.scored.clone());
     // A second cause is searched only where the first leaves structure.
     if !remainder.is_structured() {
         return Ok(alone);
@@ -320,14 +320,14 @@ fn second_cause(
         let model = CauseSet {
             causes: vec![first.cause, other.cause],
         };
-        let judged = all.judge(&model, &first.judged.fit.point)?;
-        let against = all.advantage_over(&judged, &first.judged, judged.effective_weight());
+        let judged = all.fit_and_score(&model, &first.scored.fit.point)?;
+        let against = all.advantage_over(&judged, &first.scored, judged.effective_weight());
         let plausible = model
             .causes
             .iter()
             .all(|cause| implausible(all.twin, &judged, *cause).is_none());
         if plausible
-            && all.passes(&against)
+            && all.is_better(&against)
             && best
                 .as_ref()
                 .is_none_or(|(delta, _)| against.delta_bic > *delta)

@@ -87,13 +87,13 @@ fn decibels(energies: &[f64]) -> impl Iterator<Item = f64> {
 }
 
 /// The smear of an impulse by the filters of the bands: the share of its energy that has come until a time.
-pub(super) struct Smear {
+pub(super) struct FilterRingingModel {
     rate_hz: u32,
     /// From -`SMEAR_S` on, a value a sample. Shape (band, sample).
     shares: Vec<Vec<f64>>,
 }
 
-impl Smear {
+impl FilterRingingModel {
     pub(super) fn new(rate_hz: u32) -> Self {
         let half = (SMEAR_S * f64::from(rate_hz)) as usize;
         let mut impulse = vec![0.0; 2 * half + 1];
@@ -170,7 +170,7 @@ impl Smear {
 ///
 /// # Source
 /// M. R. Schroeder, JASA 45, 1077 (1969): statistics of band-limited decays.
-pub(super) fn chance_db(band: usize, window: usize) -> f64 {
+pub(super) fn random_deviation_db(band: usize, window: usize) -> f64 {
     let width_hz = f64::from(NOMINAL_CENTRES_HZ[band]) * std::f64::consts::FRAC_1_SQRT_2;
     let length_s = EDGES_S[window + 1] - EDGES_S[window];
     10.0 / std::f64::consts::LN_10 / (width_hz * length_s).max(1.0).sqrt()
@@ -198,7 +198,7 @@ mod tests {
         let speed = 343.2;
         let path = |delay_s: f64, energy: f32| PropagationPath {
             planes: vec![],
-            bends: Vec::new(),
+            diffraction_points: Vec::new(),
             length_m: delay_s * speed,
             energy: [energy; BAND_COUNT],
             arrival: Vec3::X,
@@ -214,7 +214,7 @@ mod tests {
         };
         let (a, b) = (
             measured_db(&response),
-            Smear::new(rate_hz).simulated_db(&echogram),
+            FilterRingingModel::new(rate_hz).simulated_db(&echogram),
         );
         assert_eq!(a.len(), bands(rate_hz).len() * WINDOWS);
         for band in 0..bands(rate_hz).len() {

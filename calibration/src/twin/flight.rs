@@ -147,7 +147,7 @@ pub(super) fn measured(bundle: &Bundle, episode: &crate::bundle::MeasuredEpisode
     EpisodeData {
         name: episode.name.clone(),
         group: episode.group.clone(),
-        y: column(&|s| s.value),
+        measured: column(&|s| s.value),
         channel: episode.samples.iter().map(|s| s.channel).collect(),
         t_s: column(&|s| s.t_s - first),
         sd: column(&|s| bundle.manifest.channels[s.channel].noise_sd.unwrap_or(1.0)),
@@ -232,15 +232,15 @@ impl Twin for FlightTwin {
     }
 
     /// A time offset is none here: a flight that starts earlier starts elsewhere.
-    fn shared(&self) -> &[FitParameter] {
+    fn shared_nuisances(&self) -> &[FitParameter] {
         &[]
     }
 
-    fn own(&self) -> &[FitParameter] {
+    fn episode_nuisances(&self) -> &[FitParameter] {
         &self.own
     }
 
-    fn start(&self, episode: usize) -> Vec<f64> {
+    fn initial_nuisances(&self, episode: usize) -> Vec<f64> {
         let measured = &self.episodes[episode];
         self.own_axes
             .iter()
@@ -250,13 +250,13 @@ impl Twin for FlightTwin {
                 } else {
                     0.0
                 };
-                let first: Vec<(f64, f64)> = (0..measured.y.len())
+                let first: Vec<(f64, f64)> = (0..measured.measured.len())
                     .filter(|k| self.axes[measured.channel[*k]] == *axis)
                     .take(START_SAMPLES)
                     .map(|k| {
                         (
                             measured.t_s[k],
-                            measured.y[k] + fall * measured.t_s[k].powi(2),
+                            measured.measured[k] + fall * measured.t_s[k].powi(2),
                         )
                     })
                     .collect();
@@ -274,10 +274,10 @@ impl Twin for FlightTwin {
         let measured = &self.episodes[episode];
         let mut laws = self.laws(at.causes);
         let overrides = [("world/gravity_m_s2", at.causes[2])];
-        let mut stage =
-            self.stages[self.stage_of[episode]].with(std::mem::take(&mut laws), &overrides)?;
+        let mut stage = self.stages[self.stage_of[episode]]
+            .with_laws_and_overrides(std::mem::take(&mut laws), &overrides)?;
         let (mut position, mut velocity) = ([0.0; 3], Vec3::ZERO);
-        for ((axis, speed), value) in self.own_axes.iter().zip(at.own) {
+        for ((axis, speed), value) in self.own_axes.iter().zip(at.episode_nuisances) {
             if *speed {
                 velocity[*axis] = *value as f32;
             } else {
@@ -292,7 +292,7 @@ impl Twin for FlightTwin {
         // Viscous damping is no law of the engine: it acts between the steps, half of it before the first.
         let keep = (-at.causes[1] * step_s).exp() as f32;
         stage.state.part_velocity[part].linear = velocity * keep.sqrt();
-        stage.adopt()?;
+        stage.adopt_state()?;
         let mut tracks: [Vec<(f64, f64)>; 3] =
             std::array::from_fn(|_| Vec::with_capacity(steps + 1));
         for axis in 0..3 {
@@ -310,7 +310,7 @@ impl Twin for FlightTwin {
             }
             if keep < 1.0 {
                 stage.state.part_velocity[part].linear = speed * keep;
-                stage.adopt()?;
+                stage.adopt_state()?;
             }
         }
         let times = measured.t_s.iter().zip(&measured.channel);
@@ -379,7 +379,7 @@ mod tests {
             let values = EpisodeParameters {
                 causes: &[0.0, rate, gravity],
                 shared: &[],
-                own: &own,
+                episode_nuisances: &own,
             };
             let found = twin.predict(0, &values).unwrap();
             let measured = &twin.episodes[0];

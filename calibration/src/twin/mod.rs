@@ -22,7 +22,7 @@ use nalgebra::DMatrix;
 pub(crate) struct EpisodeData {
     pub(crate) name: String,
     pub(crate) group: String,
-    pub(crate) y: Vec<f64>,
+    pub(crate) measured: Vec<f64>,
     /// Position in [`Twin::channels`]. Shape as `y`.
     pub(crate) channel: Vec<usize>,
     /// Time from the start of the episode, s. Shape as `y`.
@@ -57,13 +57,13 @@ pub(crate) struct ParameterVector {
     /// Nuisances that all episodes share.
     pub(crate) shared: Vec<f64>,
     /// Nuisances of each episode. Shape (episode, nuisance).
-    pub(crate) own: Vec<Vec<f64>>,
+    pub(crate) episode_nuisances: Vec<Vec<f64>>,
 }
 
 /// One parameter of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ParameterIndex {
-    /// Position in [`ParameterVector::own`] of the episode.
+    /// Position in [`ParameterVector::episode_nuisances`] of the episode.
     Own(usize),
     /// Position in [`ParameterVector::shared`].
     Shared(usize),
@@ -84,13 +84,13 @@ pub(crate) trait Twin: Sync {
     /// Returns the causes that may be missing.
     fn causes(&self) -> &[Cause];
     /// Nuisances that all episodes share.
-    fn shared(&self) -> &[FitParameter];
+    fn shared_nuisances(&self) -> &[FitParameter];
     /// Nuisances of each episode.
-    fn own(&self) -> &[FitParameter];
+    fn episode_nuisances(&self) -> &[FitParameter];
     /// Returns the initial values of an episode's nuisances.
-    fn start(&self, episode: usize) -> Vec<f64>;
+    fn initial_nuisances(&self, episode: usize) -> Vec<f64>;
 
-    /// Returns the predictions of [`EpisodeData::y`].
+    /// Returns the predictions of [`EpisodeData::measured`].
     fn predict(
         &self,
         episode: usize,
@@ -156,8 +156,8 @@ pub(crate) trait Twin: Sync {
     /// Returns the description of a slot's parameter.
     fn parameter(&self, slot: ParameterIndex) -> &FitParameter {
         match slot {
-            ParameterIndex::Own(k) => &self.own()[k],
-            ParameterIndex::Shared(k) => &self.shared()[k],
+            ParameterIndex::Own(k) => &self.episode_nuisances()[k],
+            ParameterIndex::Shared(k) => &self.shared_nuisances()[k],
             ParameterIndex::Cause(k) => {
                 let mut parameters = self.causes().iter().flat_map(|cause| &cause.parameters);
                 parameters.nth(k).expect("slots are made from the causes")
@@ -171,7 +171,7 @@ pub(crate) trait Twin: Sync {
 pub(crate) struct EpisodeParameters<'a> {
     pub(crate) causes: &'a [f64],
     pub(crate) shared: &'a [f64],
-    pub(crate) own: &'a [f64],
+    pub(crate) episode_nuisances: &'a [f64],
 }
 
 impl EpisodeParameters<'_> {
@@ -179,7 +179,7 @@ impl EpisodeParameters<'_> {
         OwnedEpisodeParameters {
             causes: self.causes.to_vec(),
             shared: self.shared.to_vec(),
-            own: self.own.to_vec(),
+            own: self.episode_nuisances.to_vec(),
         }
     }
 }
@@ -203,7 +203,7 @@ impl OwnedEpisodeParameters {
         EpisodeParameters {
             causes: &self.causes,
             shared: &self.shared,
-            own: &self.own,
+            episode_nuisances: &self.own,
         }
     }
 }
@@ -214,7 +214,7 @@ impl ParameterVector {
         EpisodeParameters {
             causes: &self.causes,
             shared: &self.shared,
-            own: &self.own[episode],
+            episode_nuisances: &self.episode_nuisances[episode],
         }
     }
 
@@ -224,17 +224,19 @@ impl ParameterVector {
         Self {
             causes: parameters.map(|parameter| parameter.default).collect(),
             shared: twin
-                .shared()
+                .shared_nuisances()
                 .iter()
                 .map(|parameter| parameter.default)
                 .collect(),
-            own: (0..twin.episodes().len()).map(|k| twin.start(k)).collect(),
+            episode_nuisances: (0..twin.episodes().len())
+                .map(|k| twin.initial_nuisances(k))
+                .collect(),
         }
     }
 }
 
 /// The positions of a cause's parameters in [`ParameterVector::causes`].
-pub(crate) fn range_of(twin: &dyn Twin, cause: usize) -> std::ops::Range<usize> {
+pub(crate) fn cause_range(twin: &dyn Twin, cause: usize) -> std::ops::Range<usize> {
     let counts = twin.causes().iter().map(|cause| cause.parameters.len());
     let first: usize = counts.take(cause).sum();
     first..first + twin.causes()[cause].parameters.len()

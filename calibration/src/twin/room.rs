@@ -1,12 +1,12 @@
 //! A room: each episode is one or more impulse responses, simulated by the engine's energies.
 
-use super::features::{self, Smear, WINDOWS};
+use super::features::{self, FilterRingingModel, WINDOWS};
 use super::{
     Cause, ChannelInfo, EpisodeData, EpisodeParameters, FitParameter, Installation, ParameterIndex,
     ResidualStructure, Twin,
 };
 use crate::bundle::file::{RoomManifest, SurfaceManifest};
-use crate::bundle::{Bundle, SIDES};
+use crate::bundle::{Bundle, ROOM_SURFACES};
 use crate::error::CalibrationError;
 use crate::options::Options;
 use dwell_acoustics::bands::NOMINAL_CENTRES_HZ;
@@ -40,7 +40,7 @@ pub(crate) struct RoomTwin {
     house: Arc<House>,
     scene: AcousticScene,
     rays: RayScene,
-    smear: Smear,
+    smear: FilterRingingModel,
     /// The bands that are compared, by their position in the engine's.
     bands: std::ops::Range<usize>,
     seed: u64,
@@ -98,7 +98,7 @@ impl RoomTwin {
                 ..EpisodeData::default()
             };
             for response in &episode.responses {
-                measured.y.extend(features::measured_db(response));
+                measured.measured.extend(features::measured_db(response));
                 for band in bands.clone() {
                     for window in 0..WINDOWS {
                         measured.channel.push(band - bands.start);
@@ -107,7 +107,7 @@ impl RoomTwin {
                         );
                         measured
                             .sd
-                            .push(features::chance_db(band, window).hypot(LEAST_SD_DB));
+                            .push(features::random_deviation_db(band, window).hypot(LEAST_SD_DB));
                     }
                 }
             }
@@ -132,7 +132,7 @@ impl RoomTwin {
                     FitParameter::nuisance(&format!("gain at {} Hz", centre(band)), "dB", 1.0)
                 })
                 .collect(),
-            smear: Smear::new(rate_hz),
+            smear: FilterRingingModel::new(rate_hz),
             seed: options.seed,
             episodes,
             causes,
@@ -197,7 +197,7 @@ impl RoomTwin {
             let echogram = scene
                 .echogram(
                     &self.rays,
-                    &SoundSourcePose::at(*source),
+                    &SoundSourcePose::omni(*source),
                     *receiver,
                     key,
                     Threads::ONE,
@@ -233,7 +233,7 @@ fn config(bundle: &Bundle, options: &Options, rate_hz: u32) -> AcousticConfig {
 
 fn shoebox(room: &RoomManifest) -> Result<House, dwell_scene::SceneError> {
     let side = |name: &str| material(name, room.surfaces.get(name));
-    let [floor, ceiling, west, east, north, south] = SIDES.map(side);
+    let [floor, ceiling, west, east, north, south] = ROOM_SURFACES.map(side);
     let materials = ShoeboxMaterials {
         floor,
         ceiling,
@@ -348,15 +348,15 @@ impl Twin for RoomTwin {
     }
 
     /// The gain of source and microphone in each band. The time offset is taken out by the onsets.
-    fn shared(&self) -> &[FitParameter] {
+    fn shared_nuisances(&self) -> &[FitParameter] {
         &self.shared
     }
 
-    fn own(&self) -> &[FitParameter] {
+    fn episode_nuisances(&self) -> &[FitParameter] {
         &[]
     }
 
-    fn start(&self, _episode: usize) -> Vec<f64> {
+    fn initial_nuisances(&self, _episode: usize) -> Vec<f64> {
         Vec::new()
     }
 

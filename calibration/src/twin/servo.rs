@@ -206,16 +206,16 @@ impl Twin for ServoTwin {
         &self.causes
     }
 
-    fn shared(&self) -> &[FitParameter] {
+    fn shared_nuisances(&self) -> &[FitParameter] {
         &self.shared
     }
 
-    fn own(&self) -> &[FitParameter] {
+    fn episode_nuisances(&self) -> &[FitParameter] {
         &self.own
     }
 
-    fn start(&self, episode: usize) -> Vec<f64> {
-        vec![self.episodes[episode].y[0]]
+    fn initial_nuisances(&self, episode: usize) -> Vec<f64> {
+        vec![self.episodes[episode].measured[0]]
     }
 
     fn predict(
@@ -232,8 +232,8 @@ impl Twin for ServoTwin {
         };
         let joint = JointId(0);
         let mut start = self.stage.clone();
-        start.state.joint_position[joint] = at.own[0] as f32;
-        start.adopt()?;
+        start.state.joint_position[joint] = at.episode_nuisances[0] as f32;
+        start.adopt_state()?;
         let mut laws = Vec::new();
         if *half_width > 0.0 {
             laws.push(self.backlash.spec(&[("half_width", *half_width)]));
@@ -246,16 +246,16 @@ impl Twin for ServoTwin {
             overrides.push(("joint/0/damping", *damping));
         }
         // The law's memory begins where the joint stands, so it is installed after the joint was put there.
-        let mut stage = start.with(laws, &overrides)?;
+        let mut stage = start.with_laws_and_overrides(laws, &overrides)?;
         let commands = &self.commands[episode];
         let step_s = 1.0 / self.rate_hz;
         let duration = measured.t_s.iter().copied().fold(0.0, f64::max) + MOST_OFFSET_S;
         let steps = (duration * self.rate_hz).ceil() as usize + 1;
         let mut track = Vec::with_capacity(steps + 1);
-        track.push((at.own[0], 0.0));
+        track.push((at.episode_nuisances[0], 0.0));
         let mut next = 0;
         // Until the first command the servo holds where it stands.
-        let mut target = at.own[0];
+        let mut target = at.episode_nuisances[0];
         for k in 0..steps {
             // A command counts from the step in whose middle it has come.
             let now = (k as f64 + 0.5) * step_s;

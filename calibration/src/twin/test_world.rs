@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// Half the edge of the box that stands for the servo's load, m.
 const ARM_HALF_EDGE_M: f32 = 0.1;
 /// Substance of all tracked things.
-pub(crate) const THING_SUBSTANCE: &str = "rubber";
+pub(crate) const OBJECT_SUBSTANCE: &str = "rubber";
 /// Substance of the board; its contact values with the thing are overridden.
 pub(crate) const BOARD_SUBSTANCE: &str = "plywood";
 /// Half the board's edge, m.
@@ -124,7 +124,7 @@ impl TestWorld {
     }
 
     /// Installs laws and overrides into a copy.
-    pub(crate) fn with(
+    pub(crate) fn with_laws_and_overrides(
         &self,
         laws: Vec<LawSpec>,
         overrides: &[(&str, f64)],
@@ -149,8 +149,8 @@ impl TestWorld {
     }
 
     /// Adopts changes of the state.
-    pub(crate) fn adopt(&mut self) -> Result<(), CalibrationError> {
-        let adopted = self.world.adopt(&mut self.state);
+    pub(crate) fn adopt_state(&mut self) -> Result<(), CalibrationError> {
+        let adopted = self.world.adopt_state(&mut self.state);
         adopted.map_err(|error| CalibrationError::simulation("a start", error))
     }
 
@@ -165,7 +165,7 @@ impl TestWorld {
 fn put(data: &mut HouseData, thing: &TestObject) {
     let material = data.materials.push(Material::of(
         "thing",
-        library().get_or_default(THING_SUBSTANCE),
+        library().get_or_default(OBJECT_SUBSTANCE),
     ));
     let mesh = data.meshes.push(Arc::new(octahedron()));
     let (object, part) = (

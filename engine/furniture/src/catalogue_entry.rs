@@ -46,7 +46,7 @@ impl CatalogueEntry {
     }
 
     /// The same entry in many variants.
-    pub(crate) const fn many(mut self) -> Self {
+    pub(crate) const fn with_variants(mut self) -> Self {
         self.variants = MANY;
         self
     }

@@ -81,20 +81,20 @@ impl Finish {
 
     /// The same finish, glowing.
     #[must_use]
-    pub const fn glowing(mut self, emission: [f32; 3]) -> Self {
+    pub const fn emissive(mut self, emission: [f32; 3]) -> Self {
         self.emission = emission;
         self
     }
 
     /// The same finish, letting light through.
     #[must_use]
-    pub const fn clear(mut self, opacity: f32) -> Self {
+    pub const fn transparent(mut self, opacity: f32) -> Self {
         self.opacity = Some(opacity);
         self
     }
 
     /// Share of substance in bars and thin plates of it: metal ones are tubes and sheets.
-    pub fn hollow(&self) -> f32 {
+    pub fn hollow_fill(&self) -> f32 {
         let metals = ["steel", "chrome", "brass", "aluminium"];
         if metals.contains(&self.substance) {
             0.15
@@ -104,7 +104,7 @@ impl Finish {
     }
 
     /// Share of substance in something stuffed that it covers: the whole weighs as much as upholstery.
-    pub fn padded(&self) -> f32 {
+    pub fn padded_fill(&self) -> f32 {
         let stuffed = library().get_or_default("upholstery").density_kg_m3;
         (stuffed / self.substance().density_kg_m3).min(1.0)
     }
@@ -274,7 +274,7 @@ pub const fn enamel(name: &'static str, srgb: Srgb) -> Finish {
 
 /// Clear glass.
 pub const fn glass() -> Finish {
-    Finish::plain("glass", "glass", [205, 226, 226]).clear(0.18)
+    Finish::plain("glass", "glass", [205, 226, 226]).transparent(0.18)
 }
 
 /// A mirror.
@@ -372,14 +372,14 @@ pub const fn paper(name: &'static str, srgb: Srgb) -> Finish {
 
 /// A lit lampshade of cloth.
 pub const fn lampshade(name: &'static str, srgb: Srgb) -> Finish {
-    cloth(name, srgb).glowing([0.42, 0.36, 0.26])
+    cloth(name, srgb).emissive([0.42, 0.36, 0.26])
 }
 
 /// A lit bulb or diffuser of milk glass.
 pub const fn milk_glass() -> Finish {
     Finish::plain("milk_glass", "glass", [255, 250, 240])
-        .clear(1.0)
-        .glowing([0.9, 0.84, 0.7])
+        .transparent(1.0)
+        .emissive([0.9, 0.84, 0.7])
 }
 
 #[cfg(test)]

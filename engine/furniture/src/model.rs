@@ -71,7 +71,7 @@ pub struct ModelJoint {
     /// The position at the start.
     pub initial: f32,
     /// True for the model's switch.
-    pub switches: bool,
+    pub toggles_switch: bool,
 }
 
 /// A light of a part.
@@ -108,7 +108,7 @@ pub struct ModelReceptacle {
     /// Name in the model.
     pub name: &'static str,
     /// Kind: a surface with things on it or a volume with things in it.
-    pub holding: ReceptacleKind,
+    pub kind: ReceptacleKind,
     /// The room for things, in the space of the part, m.
     pub space: Aabb,
 }
@@ -197,7 +197,7 @@ impl Model {
             axis,
             open,
             initial: 0.0,
-            switches: false,
+            toggles_switch: false,
         });
         self
     }
@@ -206,7 +206,7 @@ impl Model {
     #[must_use]
     pub fn with_switch(mut self) -> Self {
         if let Some(joint) = self.joints.last_mut() {
-            joint.switches = true;
+            joint.toggles_switch = true;
         }
         self.switched(false)
     }
@@ -223,12 +223,12 @@ impl Model {
     /// The same model; its newest part shines in all directions.
     #[must_use]
     pub fn with_light(self, position: [f32; 3], power_w: f32) -> Self {
-        self.light(position, LightShape::Point, power_w)
+        self.with_light_shape(position, LightShape::Point, power_w)
     }
 
     /// The same model; its newest part has a light.
     #[must_use]
-    pub fn light(mut self, position: [f32; 3], shape: LightShape, power_w: f32) -> Self {
+    pub fn with_light_shape(mut self, position: [f32; 3], shape: LightShape, power_w: f32) -> Self {
         let part = self.parts.len() - 1;
         self.lights.push(ModelLight {
             part,
@@ -254,13 +254,13 @@ impl Model {
 
     /// The same model; things can stand on its newest part, in the free space between two corners.
     #[must_use]
-    pub fn top(self, name: &'static str, min: [f32; 3], max: [f32; 3]) -> Self {
+    pub fn with_support_surface(self, name: &'static str, min: [f32; 3], max: [f32; 3]) -> Self {
         self.space(name, ReceptacleKind::On, min, max)
     }
 
     /// The same model; things can lie inside its newest part, in the free space between two corners.
     #[must_use]
-    pub fn inside(self, name: &'static str, min: [f32; 3], max: [f32; 3]) -> Self {
+    pub fn with_container_space(self, name: &'static str, min: [f32; 3], max: [f32; 3]) -> Self {
         self.space(name, ReceptacleKind::In, min, max)
     }
 
@@ -275,7 +275,7 @@ impl Model {
         self.spaces.push(ModelReceptacle {
             part,
             name,
-            holding,
+            kind: holding,
             space: Aabb::new(min.into(), max.into()),
         });
         self
@@ -284,14 +284,14 @@ impl Model {
     /// The same model with the parts, joints and sounds of another one mounted on its root at `pose`; that one's root is
     /// called `name` here, and its switch is the whole's.
     #[must_use]
-    pub fn mounting(mut self, other: Self, name: &'static str, pose: &Pose) -> Self {
+    pub fn with_mounted(mut self, other: Self, name: &'static str, pose: &Pose) -> Self {
         let first = self.parts.len();
         for mut part in other.parts {
             let solid = SolidMesh {
                 mesh: Mesh::clone(&part.mesh),
                 colliders: part.colliders,
             };
-            let SolidMesh { mesh, colliders } = solid.placed(pose);
+            let SolidMesh { mesh, colliders } = solid.transformed(pose);
             part.mesh = Arc::new(mesh);
             part.colliders = colliders;
             self.parts.push(part);
@@ -322,7 +322,7 @@ impl Model {
 
     /// The same model with `paint` on every surface whose finish is called `name`; masses stay.
     #[must_use]
-    pub fn repainted(mut self, name: &str, paint: &Finish) -> Self {
+    pub fn with_finish_replaced(mut self, name: &str, paint: &Finish) -> Self {
         let finishes = self.parts.iter_mut().flat_map(|part| &mut part.finishes);
         for finish in finishes.filter(|finish| finish.name == name) {
             finish.clone_from(paint);
@@ -344,9 +344,10 @@ impl Model {
         };
         let to_axis = Pose::from_position(joint.position);
         let motion = match joint.kind {
-            JointKind::Hinge => {
-                Pose::new(Vec3::ZERO, super::shapes::turn(joint.axis, joint.initial))
-            }
+            JointKind::Hinge => Pose::new(
+                Vec3::ZERO,
+                super::shapes::axis_rotation(joint.axis, joint.initial),
+            ),
             JointKind::Slide => Pose::from_position(joint.axis * joint.initial),
         };
         self.model_from_part(joint.parent) * to_axis * motion * to_axis.inverse()
@@ -380,12 +381,12 @@ impl PartBuilder {
     /// The same part with one more shape, solid of its finish's substance.
     #[must_use]
     pub fn with(self, finish: &Finish, solid: SolidMesh) -> Self {
-        self.with_filled(finish, solid, 1.0)
+        self.with_fill_fraction(finish, solid, 1.0)
     }
 
     /// The same part with one more shape of which `fill` (0 to 1) is substance and the rest air.
     #[must_use]
-    pub fn with_filled(mut self, finish: &Finish, mut solid: SolidMesh, fill: f32) -> Self {
+    pub fn with_fill_fraction(mut self, finish: &Finish, mut solid: SolidMesh, fill: f32) -> Self {
         let slot = self
             .finishes
             .iter()
@@ -409,22 +410,26 @@ impl PartBuilder {
 
     /// The same part with one more bar or plate: metal ones are tubes and sheets.
     #[must_use]
-    pub fn with_bar(self, finish: &Finish, solid: SolidMesh) -> Self {
-        self.with_filled(finish, solid, finish.hollow())
+    pub fn with_hollow(self, finish: &Finish, solid: SolidMesh) -> Self {
+        self.with_fill_fraction(finish, solid, finish.hollow_fill())
     }
 
     /// The same part with each of `solids`, bars or plates: metal ones are tubes and sheets.
     #[must_use]
-    pub fn with_bars(self, finish: &Finish, solids: impl IntoIterator<Item = SolidMesh>) -> Self {
+    pub fn with_all_hollow(
+        self,
+        finish: &Finish,
+        solids: impl IntoIterator<Item = SolidMesh>,
+    ) -> Self {
         solids
             .into_iter()
-            .fold(self, |part, solid| part.with_bar(finish, solid))
+            .fold(self, |part, solid| part.with_hollow(finish, solid))
     }
 
     /// The same part with one more stuffed shape under a cover.
     #[must_use]
     pub fn with_padding(self, cover: &Finish, solid: SolidMesh) -> Self {
-        self.with_filled(cover, solid, cover.padded())
+        self.with_fill_fraction(cover, solid, cover.padded_fill())
     }
 
     /// The same part with each of `solids`.

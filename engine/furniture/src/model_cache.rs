@@ -52,7 +52,9 @@ impl CachedModel {
             for station in 0..=STATIONS {
                 let at = joint.open * station as f32 / STATIONS as f32;
                 let motion = match joint.kind {
-                    JointKind::Hinge => Pose::new(Vec3::ZERO, super::shapes::turn(joint.axis, at)),
+                    JointKind::Hinge => {
+                        Pose::new(Vec3::ZERO, super::shapes::axis_rotation(joint.axis, at))
+                    }
                     JointKind::Slide => Pose::from_position(joint.axis * at),
                 };
                 let pose = parent * to_axis * motion * to_axis.inverse();

@@ -26,7 +26,7 @@ pub(crate) struct SizeDistribution {
 type SizeTable = BTreeMap<String, BTreeMap<String, SizeDistribution>>;
 
 /// All spreads, by model and dimension.
-pub(crate) fn spreads() -> &'static SizeTable {
+pub(crate) fn size_table() -> &'static SizeTable {
     static TABLE: OnceLock<SizeTable> = OnceLock::new();
     TABLE.get_or_init(|| {
         let text = include_str!("../../../assets/furniture_sizes.csv");
@@ -60,8 +60,8 @@ impl SizeSampler {
 
     /// One dimension, m: its median in the middle, denser there, never beyond the least and the largest known; whole
     /// multiples of 5 mm, of things below 0.2 m of 1 mm.
-    pub(crate) fn m(&self, dimension: &'static str) -> f32 {
-        let spread = spreads()
+    pub(crate) fn sample_m(&self, dimension: &'static str) -> f32 {
+        let spread = size_table()
             .get(self.model)
             .and_then(|rows| rows.get(dimension))
             .expect("a test builds every model, so that all rows it asks for are there");
@@ -93,7 +93,11 @@ impl SizeSampler {
     }
 
     /// One of `items`.
-    pub(crate) fn of<T: Copy, const N: usize>(&self, purpose: &'static str, items: [T; N]) -> T {
+    pub(crate) fn choose<T: Copy, const N: usize>(
+        &self,
+        purpose: &'static str,
+        items: [T; N],
+    ) -> T {
         const { assert!(N > 0, "a choice needs something to choose from") };
         items[self.below(purpose, N)]
     }
@@ -110,7 +114,7 @@ mod tests {
 
     #[test]
     fn every_row_is_an_ordered_spread_with_a_source() {
-        for (model, rows) in spreads() {
+        for (model, rows) in size_table() {
             for (dimension, row) in rows {
                 let at = format!("{model} {dimension}");
                 assert!(0.0 < row.low_m, "{at}");
@@ -127,9 +131,9 @@ mod tests {
     /// Over 2,000 keys the share below the median is a half within four standard errors (0.045), and ends are kept.
     #[test]
     fn draws_keep_their_median_and_their_ends() {
-        let spread = &spreads()["sofa"]["depth"];
+        let spread = &size_table()["sofa"]["depth"];
         let drawn: Vec<f32> = (0..2000)
-            .map(|k| SizeSampler::new("sofa", RandomKey::root(k)).m("depth"))
+            .map(|k| SizeSampler::new("sofa", RandomKey::root(k)).sample_m("depth"))
             .collect();
         let share = |test: &dyn Fn(f32) -> bool| {
             drawn.iter().filter(|d| test(**d)).count() as f32 / drawn.len() as f32

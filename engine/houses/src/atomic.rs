@@ -18,7 +18,7 @@ pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<(), HousesError> {
 /// link is followed to the folder it leads to.
 ///
 /// # Errors
-/// [`HousesError::Unwritable`] when something else stands there, [`HousesError::Io`] when the system refuses, and what
+/// [`HousesError::NotRepresentable`] when something else stands there, [`HousesError::Io`] when the system refuses, and what
 /// `fill` says.
 pub(crate) fn write_folder(
     path: &Path,
@@ -32,7 +32,7 @@ pub(crate) fn write_folder(
     };
     if place.exists() && !is_ours(&place) {
         let message = "something else stands there already; it is not replaced".to_owned();
-        return Err(HousesError::Unwritable {
+        return Err(HousesError::NotRepresentable {
             path: path.to_owned(),
             message,
         });

@@ -113,7 +113,7 @@ impl DataRoot {
     pub fn read(&self, path: &str, max_bytes: u64) -> Result<Vec<u8>, HousesError> {
         let full = self.folder.join(path);
         self.check_inside(&full, path)?;
-        read_capped(&full, path, max_bytes)
+        read_up_to(&full, path, max_bytes)
     }
 
     /// Reads the file that the user named, which may be a link to anywhere; files that it refers to are bounded by [`Self::read`].
@@ -121,7 +121,7 @@ impl DataRoot {
     /// # Errors
     /// [`HousesError::TooLarge`] above `max_bytes`, [`HousesError::Io`] when the system refuses.
     pub fn read_named(&self, path: &str, max_bytes: u64) -> Result<Vec<u8>, HousesError> {
-        read_capped(&self.folder.join(path), path, max_bytes)
+        read_up_to(&self.folder.join(path), path, max_bytes)
     }
 }
 
@@ -144,7 +144,7 @@ impl UserFile {
         let root = DataRoot::new(path.parent().unwrap_or_else(|| Path::new("")))?;
         let name = path.file_name().unwrap_or_default();
         let name = name.to_string_lossy().into_owned();
-        let bytes = read_capped(path, &name, max_bytes)?;
+        let bytes = read_up_to(path, &name, max_bytes)?;
         Ok(Self { root, name, bytes })
     }
 }
@@ -157,7 +157,7 @@ pub(crate) fn is_json_with(path: &Path, lists: &[&[&str]]) -> bool {
     if !is_json {
         return false;
     }
-    let Ok(bytes) = read_capped(path, "", crate::limits::MAX_TEXT_BYTES) else {
+    let Ok(bytes) = read_up_to(path, "", crate::limits::MAX_TEXT_BYTES) else {
         return false;
     };
     let holds = |word: &&str| {
@@ -171,7 +171,7 @@ pub(crate) fn is_json_with(path: &Path, lists: &[&[&str]]) -> bool {
 ///
 /// # Errors
 /// [`HousesError::TooLarge`] and [`HousesError::Io`].
-pub(crate) fn read_capped(path: &Path, name: &str, max_bytes: u64) -> Result<Vec<u8>, HousesError> {
+pub(crate) fn read_up_to(path: &Path, name: &str, max_bytes: u64) -> Result<Vec<u8>, HousesError> {
     file::read(path, max_bytes).map_err(|error| match error {
         ReadError::Io(source) => HousesError::io(path)(source),
         ReadError::TooLarge { found, allowed } => HousesError::TooLarge {
@@ -184,7 +184,7 @@ pub(crate) fn read_capped(path: &Path, name: &str, max_bytes: u64) -> Result<Vec
 }
 
 /// The folder part of a path inside a root: `object/83` of `object/83/83.obj`.
-pub(crate) fn folder_of(path: &str) -> &str {
+pub(crate) fn parent_folder(path: &str) -> &str {
     path.rsplit_once('/').map_or("", |(folder, _)| folder)
 }
 

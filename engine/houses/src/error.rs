@@ -128,7 +128,7 @@ pub enum HousesError {
     },
     /// Something the target format cannot express at all.
     #[error("{path}: cannot be written: {message}")]
-    Unwritable {
+    NotRepresentable {
         /// The file or folder to be written.
         path: PathBuf,
         /// The reason.
@@ -166,7 +166,7 @@ impl HousesError {
     }
 
     /// The same of a file in a folder: the folder's name stands before the file's.
-    pub(crate) fn within(mut self, folder: &str) -> Self {
+    pub(crate) fn in_folder(mut self, folder: &str) -> Self {
         match &mut self {
             Self::TooLarge { at, .. }
             | Self::Syntax { at, .. }
@@ -199,7 +199,7 @@ impl HousesError {
         let first: Vec<String> = (report.warnings().iter().take(TOLD))
             .map(ToString::to_string)
             .collect();
-        let report = match report.len() as u64 + report.not_kept() {
+        let report = match report.len() as u64 + report.dropped_count() {
             0 => "nothing was reported".to_owned(),
             1 => format!("1 warning: {}", first.join("")),
             count => format!("{count} warnings, the first: {}", first.join("; ")),

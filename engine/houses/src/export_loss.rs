@@ -8,14 +8,15 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ExportLoss {
     /// The lost content, and its replacement.
-    pub what: String,
+    #[serde(rename = "what")]
+    pub description: String,
     /// Number of affected things.
     pub count: usize,
 }
 
 impl fmt::Display for ExportLoss {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} ({})", self.what, self.count)
+        write!(f, "{} ({})", self.description, self.count)
     }
 }
 
@@ -29,10 +30,10 @@ impl ExportLosses {
         if count == 0 {
             return;
         }
-        match self.0.iter_mut().find(|loss| loss.what == what) {
+        match self.0.iter_mut().find(|loss| loss.description == what) {
             Some(loss) => loss.count += count,
             None => self.0.push(ExportLoss {
-                what: what.to_owned(),
+                description: what.to_owned(),
                 count,
             }),
         }

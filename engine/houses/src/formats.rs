@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use dwell_scene::parallel::Threads;
 
-use crate::data_root::read_capped;
+use crate::data_root::read_up_to;
 use crate::error::HousesError;
 use crate::opened::Opened;
 use crate::report::LoadReport;
@@ -16,7 +16,7 @@ pub struct Format {
     /// The format's name.
     pub name: &'static str,
     /// The form of a HOUSE string of this format.
-    pub spelling: &'static str,
+    pub example: &'static str,
     /// Returns whether a HOUSE string means this format.
     pub recognizes: fn(&str) -> bool,
     /// Opens it.
@@ -27,67 +27,67 @@ pub struct Format {
 pub(crate) const FORMATS: &[Format] = &[
     Format {
         name: "builtin",
-        spelling: "builtin:NAME",
+        example: "builtin:NAME",
         recognizes: |house| house.starts_with("builtin:"),
         open: |house, _| open_builtin(house.strip_prefix("builtin:").unwrap_or(house)),
     },
     Format {
         name: "seed",
-        spelling: "seed:N or seed:N?field=value&field=value",
+        example: "seed:N or seed:N?field=value&field=value",
         recognizes: |house| house.starts_with("seed:"),
         open: |house, _| crate::generate::open(house),
     },
     Format {
         name: "native",
-        spelling: "a path to a .dwell",
+        example: "a path to a .dwell",
         recognizes: |house| crate::native::recognizes(Path::new(house)),
         open: |house, threads| crate::native::open(Path::new(house), threads),
     },
     Format {
         name: "habitat",
-        spelling: "a path to a .scene_instance.json of Habitat",
+        example: "a path to a .scene_instance.json of Habitat",
         recognizes: |house| crate::habitat::recognizes(Path::new(house)),
         open: |house, threads| crate::habitat::open(Path::new(house), threads),
     },
     Format {
         name: "procthor",
-        spelling: "a path to a house's .json of ProcTHOR",
+        example: "a path to a house's .json of ProcTHOR",
         recognizes: |house| crate::procthor::recognizes(Path::new(house)),
         open: |house, _| crate::procthor::open(Path::new(house)),
     },
     Format {
         name: "measured",
-        spelling: "a path to a measured room's .json",
+        example: "a path to a measured room's .json",
         recognizes: |house| crate::measured::recognizes(Path::new(house)),
         open: |house, _| crate::measured::open(Path::new(house)),
     },
     Format {
         name: "suncg",
-        spelling: "a path to a house.json, its folder, or a data root with one house",
+        example: "a path to a house.json, its folder, or a data root with one house",
         recognizes: |house| crate::suncg::recognizes(Path::new(house)),
         open: |house, threads| crate::suncg::open(Path::new(house), threads),
     },
     Format {
         name: "gltf",
-        spelling: "a path to a .glb or .gltf",
+        example: "a path to a .glb or .gltf",
         recognizes: |house| crate::gltf::recognizes(Path::new(house)),
         open: |house, threads| crate::gltf::open(Path::new(house), threads),
     },
     Format {
         name: "obj",
-        spelling: "a path to an .obj",
+        example: "a path to an .obj",
         recognizes: |house| crate::obj::recognizes(Path::new(house)),
         open: |house, threads| crate::obj::open(Path::new(house), threads),
     },
     Format {
         name: "urdf",
-        spelling: "a path to a .urdf",
+        example: "a path to a .urdf",
         recognizes: |house| crate::urdf::recognizes(Path::new(house)),
         open: |house, _| crate::urdf::open(Path::new(house)),
     },
     Format {
         name: "mjcf",
-        spelling: "a path to a .xml of MuJoCo",
+        example: "a path to a .xml of MuJoCo",
         recognizes: |house| crate::mjcf::recognizes(Path::new(house)),
         open: |house, _| crate::mjcf::open(Path::new(house)),
     },
@@ -117,7 +117,7 @@ pub(crate) fn open_by(formats: &[Format], house: &str, threads: Threads) -> Open
         refuse_irregular(Path::new(house))?;
         let allowed = formats
             .iter()
-            .map(|format| format.spelling)
+            .map(|format| format.example)
             .collect::<Vec<_>>()
             .join("; ");
         return Err(HousesError::UnknownHouse {
@@ -152,5 +152,5 @@ fn refuse_irregular(path: &Path) -> Result<(), HousesError> {
         return Ok(());
     }
     // Opens nothing: the error says what it is.
-    read_capped(path, "", 0).map(|_| ())
+    read_up_to(path, "", 0).map(|_| ())
 }

@@ -6,7 +6,7 @@ use crate::error::HousesError;
 use crate::report::FileLocation;
 
 /// Some editors begin a text with a byte order mark.
-pub(crate) fn without_mark(text: &[u8]) -> &[u8] {
+pub(crate) fn without_byte_order_mark(text: &[u8]) -> &[u8] {
     text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text)
 }
 
@@ -15,7 +15,7 @@ pub(crate) fn without_mark(text: &[u8]) -> &[u8] {
 /// # Errors
 /// Those of the JSON reader.
 pub(crate) fn from_slice<T: DeserializeOwned>(text: &[u8]) -> serde_json::Result<T> {
-    serde_json::from_slice(without_mark(text))
+    serde_json::from_slice(without_byte_order_mark(text))
 }
 
 /// [`HousesError::Syntax`] in the line of the file `at` where a reader stopped.

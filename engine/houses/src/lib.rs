@@ -36,7 +36,7 @@ pub use data_root::DataRoot;
 pub use error::HousesError;
 pub use export_loss::ExportLoss;
 pub use formats::Format;
-pub use name_suggestions::nearest;
+pub use name_suggestions::nearest_names;
 pub use open::{formats, open, open_with, seed_range};
 pub use open_robot::open_robot;
 pub use opened::Opened;

@@ -5,7 +5,11 @@ const COMPARED: usize = 64;
 
 /// Of the `known` names those nearest to `name`, at most `count`, each once: those with it as one of their words (`floor_lamp` for
 /// `lamp`), then by the letters that differ, then by the alphabet.
-pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>, count: usize) -> Vec<&'a str> {
+pub fn nearest_names<'a>(
+    name: &str,
+    known: impl Iterator<Item = &'a str>,
+    count: usize,
+) -> Vec<&'a str> {
     let has_word = |other: &str| other.split(['_', ' ']).any(|word| word == name);
     let mut ranked: Vec<(bool, usize, &str)> = known
         .map(|other| (!has_word(other), distance(name, other), other))
@@ -20,7 +24,7 @@ pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>, count: usiz
 }
 
 /// Returns whether at most `letters` letters differ between two names, upper case or not, and more than those are the same.
-pub(crate) fn within(name: &str, known: &str, letters: usize) -> bool {
+pub(crate) fn is_within_edit_distance(name: &str, known: &str, letters: usize) -> bool {
     known.chars().count() > 2 * letters && distance(name, known) <= letters
 }
 
@@ -52,8 +56,11 @@ mod tests {
     fn few_letters_apart_is_near() {
         let known = ["sofa_1", "table_1", "stable", "lamp", "table_1"];
         let kinds = ["tablet", "cake", "dining_table", "safe"];
-        assert_eq!(nearest("table", kinds.into_iter(), 1), ["dining_table"]);
-        let near = nearest("tabel_1", known.into_iter(), 2);
+        assert_eq!(
+            nearest_names("table", kinds.into_iter(), 1),
+            ["dining_table"]
+        );
+        let near = nearest_names("tabel_1", known.into_iter(), 2);
         assert_eq!(near, ["table_1", "stable"]);
         assert_eq!((distance("kitten", "Sitting"), distance("", "abc")), (3, 3));
     }

@@ -29,7 +29,7 @@ pub fn formats() -> &'static [Format] {
 /// Plans, which may rest on a house of any other format.
 const PLAN: Format = Format {
     name: "plan",
-    spelling: "a path to a .plan.json",
+    example: "a path to a .plan.json",
     recognizes: |house| authoring::recognizes(Path::new(house)),
     open: |house, threads| authoring::open(Path::new(house), threads),
 };

@@ -75,14 +75,15 @@ pub struct Warning {
     /// The first place it was seen.
     pub at: FileLocation,
     /// The kind of damage.
-    pub damage: WarningKind,
+    #[serde(rename = "damage")]
+    pub kind: WarningKind,
     /// Number of occurrences; at least 1.
     pub count: u64,
 }
 
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.at, self.damage)?;
+        write!(f, "{}: {}", self.at, self.kind)?;
         if self.count > 1 {
             write!(f, " ({} times)", self.count)?;
         }
@@ -124,7 +125,7 @@ impl LoadReport {
         } else if self.warnings.len() < MAX_WARNINGS {
             self.warnings.push(Warning {
                 at,
-                damage: key.1.clone(),
+                kind: key.1.clone(),
                 count,
             });
             self.index.insert(key, self.warnings.len() - 1);
@@ -136,7 +137,7 @@ impl LoadReport {
     /// Appends the warnings of `other`.
     pub fn append(&mut self, other: Self) {
         for warning in other.warnings {
-            self.warn_times(warning.at, warning.damage, warning.count);
+            self.warn_times(warning.at, warning.kind, warning.count);
         }
         self.not_kept += other.not_kept;
     }
@@ -146,7 +147,7 @@ impl LoadReport {
         let kept = std::mem::take(self);
         self.not_kept = kept.not_kept;
         for warning in kept.warnings.into_iter().filter(keep) {
-            self.warn_times(warning.at, warning.damage, warning.count);
+            self.warn_times(warning.at, warning.kind, warning.count);
         }
     }
 
@@ -166,7 +167,7 @@ impl LoadReport {
     }
 
     /// Returns the number of warnings that were counted but not kept.
-    pub fn not_kept(&self) -> u64 {
+    pub fn dropped_count(&self) -> u64 {
         self.not_kept
     }
 
@@ -174,14 +175,14 @@ impl LoadReport {
     pub fn count(&self, is: impl Fn(&WarningKind) -> bool) -> u64 {
         self.warnings
             .iter()
-            .filter(|w| is(&w.damage))
+            .filter(|w| is(&w.kind))
             .map(|w| w.count)
             .sum()
     }
 
     /// The unmapped names, with their number of uses.
     pub fn unmapped(&self) -> impl Iterator<Item = (UnmappedKind, &str, u64)> {
-        self.warnings.iter().filter_map(|w| match &w.damage {
+        self.warnings.iter().filter_map(|w| match &w.kind {
             WarningKind::Unmapped { what, name } => Some((*what, name.as_str(), w.count)),
             _ => None,
         })
@@ -226,7 +227,7 @@ mod tests {
         for i in 0..MAX_WARNINGS + 5 {
             report.warn(FileLocation::file(format!("{i}")), WarningKind::Shear);
         }
-        assert_eq!((report.len(), report.not_kept()), (MAX_WARNINGS, 5));
+        assert_eq!((report.len(), report.dropped_count()), (MAX_WARNINGS, 5));
     }
 
     #[test]

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 pub enum WarningKind {
     /// Something that a generated house should have had but does not.
     #[error("given up: {what}")]
-    GivenUp {
+    Omitted {
         /// The omitted thing.
         what: String,
     },
@@ -65,7 +65,7 @@ pub enum WarningKind {
     },
     /// An image that ends too early; the missing part is grey.
     #[error("texture {path:?} ends too early; what is missing of it is grey")]
-    CutTexture {
+    TruncatedTexture {
         /// Relative to the data root.
         path: String,
     },

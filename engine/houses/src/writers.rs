@@ -41,7 +41,7 @@ pub fn writers() -> &'static [HouseWriter] {
             name: "suncg",
             write: crate::suncg::write,
             write_into: crate::suncg::write_into,
-            finish: crate::suncg::finish,
+            finish: crate::suncg::write_shared_tables,
         },
         HouseWriter {
             name: "glb",

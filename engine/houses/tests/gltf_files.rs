@@ -139,7 +139,11 @@ fn a_written_house_looks_the_same_when_read() {
     let house = House::shoebox([4.0, 2.5, 3.0], &ShoeboxMaterials::default()).unwrap();
     let path = folder.path().join("room.glb");
     let losses = gltf::write(&house, &path).unwrap();
-    assert!(losses.iter().any(|loss| loss.what.starts_with("rooms;")));
+    assert!(
+        losses
+            .iter()
+            .any(|loss| loss.description.starts_with("rooms;"))
+    );
     let (again, report) = open(&path.to_string_lossy()).unwrap();
     assert!(report.is_empty(), "{report}");
     assert_eq!(again.triangle_count(), house.triangle_count());

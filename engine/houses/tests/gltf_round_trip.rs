@@ -54,7 +54,7 @@ fn told(house: &House) -> Vec<serde_json::Value> {
                         "frames": [joint.parent_from_joint, joint.child_from_joint], "limits": joint.limits,
                         "places": [joint.closed, joint.open, joint.initial],
                         "drag": [joint.friction, joint.damping, joint.armature],
-                        "servo": joint.servo, "switches": joint.switches,
+                        "servo": joint.servo, "switches": joint.toggles_switch,
                     })
                 })
                 .collect();

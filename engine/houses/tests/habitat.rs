@@ -146,7 +146,7 @@ fn what_is_missing_is_said_and_the_rest_stays() {
     let said: Vec<String> = report
         .warnings()
         .iter()
-        .map(|warning| format!("{}: {}", warning.at, warning.damage))
+        .map(|warning| format!("{}: {}", warning.at, warning.kind))
         .collect();
     let says = |words: &str| {
         assert!(
@@ -166,7 +166,7 @@ fn paths_out_of_the_data_set_are_refused() {
         std::fs::write(root.join("objects/v/my_vase_01.object_config.json"), config).unwrap();
     })
     .unwrap();
-    let refused = |warning: &dwell_houses::Warning| matches!(&warning.damage, WarningKind::PathRefused { path } if path == "../../../secret.glb");
+    let refused = |warning: &dwell_houses::Warning| matches!(&warning.kind, WarningKind::PathRefused { path } if path == "../../../secret.glb");
     assert!(report.warnings().iter().any(refused), "{report:?}");
 }
 

@@ -100,7 +100,7 @@ fn a_house_of_version_1_is_read() {
     // No joint was a switch then.
     let mut data = house.data().clone();
     for joint in data.joints.as_mut_slice() {
-        joint.switches = false;
+        joint.toggles_switch = false;
     }
     let house = House::new(data).unwrap();
     native::write(&house, &path).unwrap();

@@ -20,7 +20,7 @@ fn ours(text: &[u8]) -> Corners {
     let mut report = LoadReport::new();
     let file = obj::read_obj(text, "a.obj", &mut report);
     let mut corners = Corners::new();
-    for run in &file.runs {
+    for run in &file.face_groups {
         let of_material = corners
             .entry(run.material.clone().unwrap_or_default())
             .or_default();
@@ -198,7 +198,7 @@ proptest! {
     {
         let text = words.concat();
         let file = obj::read_obj(text.as_bytes(), "a.obj", &mut LoadReport::new());
-        let covered: usize = file.runs.iter().map(|run| run.faces.len()).sum();
+        let covered: usize = file.face_groups.iter().map(|run| run.faces.len()).sum();
         prop_assert_eq!(covered, file.face_count());
         for corner in &file.corners {
             prop_assert!((corner.position as usize) < file.positions.len());

@@ -141,7 +141,7 @@ fn suncg_houses_share_models_and_textures() {
         .iter()
         .map(|(name, house)| suncg::write_into(house, &root, name).unwrap().0)
         .collect();
-    suncg::finish(&root).unwrap();
+    suncg::write_shared_tables(&root).unwrap();
     let mut alone = 0;
     for ((name, house), file) in homes.iter().zip(&written) {
         let (again, report) = open(&file.to_string_lossy()).unwrap();
@@ -176,7 +176,7 @@ fn suncg_houses_share_models_and_textures() {
     for (name, house) in &homes {
         suncg::write_into(house, &root, name).unwrap();
     }
-    suncg::finish(&root).unwrap();
+    suncg::write_shared_tables(&root).unwrap();
     assert!(files(&root) == together);
 }
 

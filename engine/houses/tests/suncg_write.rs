@@ -145,7 +145,7 @@ fn the_apartment_reads_back_without_damage() {
         .report
         .warnings()
         .iter()
-        .filter(|w| serious(&w.damage))
+        .filter(|w| serious(&w.kind))
         .collect();
     assert!(serious.is_empty(), "{serious:#?}");
 }

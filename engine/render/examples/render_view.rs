@@ -60,7 +60,7 @@ impl World {
                     &self.state,
                     views,
                     &mut targets,
-                    Threads::exactly(threads),
+                    Threads::new(threads),
                 )
                 .unwrap();
             best = best.min(begin.elapsed().as_secs_f64());

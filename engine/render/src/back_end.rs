@@ -53,7 +53,7 @@ impl std::str::FromStr for BackEnd {
         let found = path.map(|word| {
             VisibilityPath::ALL
                 .into_iter()
-                .find(|path| path.word() == word)
+                .find(|path| path.name() == word)
         });
         match (kind, found) {
             ("gpu", None | Some(Some(_))) if name.as_deref() != Some("") => Ok(Self::Gpu {
@@ -81,7 +81,7 @@ impl std::fmt::Display for BackEnd {
             Self::Gpu { name, path } => {
                 f.write_str("gpu")?;
                 if let Some(path) = path {
-                    write!(f, "+{}", path.word())?;
+                    write!(f, "+{}", path.name())?;
                 }
                 name.as_ref().map_or(Ok(()), |name| write!(f, ":{name}"))
             }
@@ -116,7 +116,7 @@ impl Renderer {
                 let gpu = Gpu::shared(name.as_deref())?;
                 let path = match path {
                     Some(path) => *path,
-                    None => gpu.speeds(&tables)?.best(),
+                    None => gpu.visibility_path_speeds(&tables)?.best(),
                 };
                 Self::Gpu(Box::new(GpuRenderer::new(gpu, tables, path)?))
             }
@@ -178,10 +178,10 @@ impl Renderer {
     }
 
     /// Returns the back end in words: `cpu`, or the adapter and its path.
-    pub fn describe(&self) -> String {
+    pub fn description(&self) -> String {
         match self {
             Self::Cpu(_) => "cpu".to_owned(),
-            Self::Gpu(gpu) => format!("{}, {}", gpu.gpu().adapter(), gpu.path().word()),
+            Self::Gpu(gpu) => format!("{}, {}", gpu.gpu().adapter(), gpu.visibility_path().name()),
         }
     }
 }

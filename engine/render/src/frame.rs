@@ -34,7 +34,7 @@ impl Preset {
     }
 
     /// The preset of that name.
-    pub fn of(name: &str) -> Option<Self> {
+    pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|preset| preset.name() == name)
     }
 }
@@ -49,7 +49,7 @@ pub struct View {
     /// The light.
     pub preset: Preset,
     /// A thing that the camera does not see: the body that carries it.
-    pub hide: Option<EntityId>,
+    pub hidden_entity: Option<EntityId>,
 }
 
 impl View {
@@ -59,7 +59,7 @@ impl View {
             camera,
             world_from_camera,
             preset: Preset::Flat,
-            hide: None,
+            hidden_entity: None,
         }
     }
 }
@@ -109,7 +109,7 @@ impl ImageChannels {
 
     /// The union of both.
     #[must_use]
-    pub fn and(self, other: Self) -> Self {
+    pub fn union(self, other: Self) -> Self {
         Self {
             rgb: self.rgb | other.rgb,
             depth: self.depth | other.depth,
@@ -140,7 +140,7 @@ pub struct PreviousFrame<'a> {
     /// The camera's earlier pose.
     pub world_from_camera: Pose,
     /// Earlier poses of the parts that have moved since, by part; the others have not moved.
-    pub moved: &'a [(PartId, Pose)],
+    pub moved_parts: &'a [(PartId, Pose)],
     /// Earlier positions of the agents' feet, m. Shape (agent,); those beyond its end have not moved.
     pub agents: &'a [Vec3],
 }
@@ -196,7 +196,7 @@ impl<'a> FrameMut<'a> {
 
     /// Splits the first `pixels` pixels off, such as those of the first rows; a shorter frame gives nothing.
     #[must_use]
-    pub fn take_pixels(&mut self, pixels: usize) -> FrameMut<'a> {
+    pub fn split_off_pixels(&mut self, pixels: usize) -> FrameMut<'a> {
         let mut frame = FrameMut::default();
         macro_rules! cut {
             ($image:ident, $parts:expr) => {
@@ -256,11 +256,11 @@ pub struct Frame {
 impl Frame {
     /// Black images of the right size.
     pub fn new(camera: &Camera, channels: ImageChannels) -> Self {
-        Self::of_pixels(camera.pixels(), channels)
+        Self::with_pixel_count(camera.pixels(), channels)
     }
 
     /// Black images of so many pixels, such as those of some rows.
-    pub(crate) fn of_pixels(pixels: usize, channels: ImageChannels) -> Self {
+    pub(crate) fn with_pixel_count(pixels: usize, channels: ImageChannels) -> Self {
         let mut frame = Self::default();
         macro_rules! fill {
             ($image:ident, $parts:expr) => {

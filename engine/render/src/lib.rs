@@ -64,4 +64,4 @@ pub use gpu::{
 pub use laws::{Optics, Shutter};
 pub use map::{Dollhouse, DollhouseConfig, StoreyMap};
 pub use semantic::{ClassSet, EntityClasses, semantic_classes};
-pub use visible_objects::{OrientedBox, VisibleObject, sightings};
+pub use visible_objects::{OrientedBox, VisibleObject, visible_objects};

@@ -25,11 +25,11 @@ pub(crate) struct ShadingMaterial {
     /// Light of its own, in units of display white.
     pub(crate) emission: [f32; 3],
     /// Pixels of the image, across times down.
-    pub(crate) texels: f32,
+    pub(crate) texel_count: f32,
     /// The bytes of an opaque colour without texture.
     plain: Option<[u8; 3]>,
     /// True if light may pass.
-    pub(crate) clear: bool,
+    pub(crate) transmits_light: bool,
     /// Perceptual roughness, 0 to 1.
     pub(crate) roughness: f32,
     /// 0 (no metal) to 1 (metal).
@@ -46,9 +46,9 @@ impl ShadingMaterial {
             texture: NONE,
             opacity: material.opacity,
             emission: material.emission,
-            texels: 0.0,
+            texel_count: 0.0,
             plain: None,
-            clear: material.opacity < 1.0,
+            transmits_light: material.opacity < 1.0,
             roughness: material.roughness,
             metallic: material.metallic,
             mirror: material.metallic >= MIRROR_METALLIC && material.roughness <= MIRROR_ROUGHNESS,
@@ -58,31 +58,31 @@ impl ShadingMaterial {
                 // An image of one colour is a colour.
                 look.base = std::array::from_fn(|k| look.base[k] * srgb.decode([r, g, b][k]));
                 look.opacity *= f32::from(a) / 255.0;
-                look.clear |= a < 255;
+                look.transmits_light |= a < 255;
             } else {
                 let (width, height) = textures.size(texture);
                 look.texture = texture.index() as u32;
-                look.texels = width * height;
-                look.clear |= textures.is_clear(texture);
+                look.texel_count = width * height;
+                look.transmits_light |= textures.is_clear(texture);
             }
         }
-        if look.texture == NONE && !look.clear {
+        if look.texture == NONE && !look.transmits_light {
             look.plain = Some(srgb.encode3(look.base));
         }
         look
     }
 
     /// Returns the look of agents' bodies: a middle blue, unlike most furniture.
-    pub(crate) fn body() -> Self {
+    pub(crate) fn agent_body() -> Self {
         let base = [0.08, 0.19, 0.42];
         Self {
             base,
             texture: NONE,
             opacity: 1.0,
             emission: [0.0; 3],
-            texels: 0.0,
+            texel_count: 0.0,
             plain: Some(SrgbTables::tables().encode3(base)),
-            clear: false,
+            transmits_light: false,
             roughness: 1.0,
             metallic: 0.0,
             mirror: false,
@@ -105,18 +105,18 @@ impl ShadingMaterial {
     }
 
     /// As rows: colour and opacity; emission and pixels of the image; the image and whether it is a mirror.
-    pub(crate) fn flat(&self) -> [PackedRow; 3] {
+    pub(crate) fn packed_rows(&self) -> [PackedRow; 3] {
         let row = |[x, y, z]: [f32; 3], last: f32| [x, y, z, last].map(f32::to_bits);
         [
             row(self.base, self.opacity),
-            row(self.emission, self.texels),
+            row(self.emission, self.texel_count),
             [self.texture, u32::from(self.mirror), 0, 0],
         ]
     }
 
     /// The bytes of an opaque colour without texture.
     #[inline]
-    pub(crate) fn plain(&self) -> Option<[u8; 3]> {
+    pub(crate) fn opaque_srgb(&self) -> Option<[u8; 3]> {
         self.plain
     }
 }

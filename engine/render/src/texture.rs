@@ -119,7 +119,7 @@ impl Textures {
 
     /// As rows: of each level its first texel, width and height; of each image its first level, last level and whether some
     /// texel lets light through. Then all texels, as bytes R, G, B, A.
-    pub(crate) fn flat(&self) -> (Vec<PackedRow>, Vec<PackedRow>, Vec<[u8; 4]>) {
+    pub(crate) fn to_rows(&self) -> (Vec<PackedRow>, Vec<PackedRow>, Vec<[u8; 4]>) {
         let srgb = SrgbTables::tables();
         let levels = self.images.iter().flat_map(|image| {
             (0..=image.last_level).map(|level| {
@@ -151,8 +151,8 @@ impl Textures {
     #[inline]
     pub(crate) fn sample(&self, texture: u32, uv: Vec2, texels_per_pixel: f32) -> Vec4 {
         let image = self.image(texture);
-        let level = level_of(texels_per_pixel).min(image.last_level);
-        self.mixed(image, level, image.place(level, uv.x, uv.y))
+        let level = mip_level(texels_per_pixel).min(image.last_level);
+        self.bilinear(image, level, image.bilinear_taps(level, uv.x, uv.y))
     }
 
     #[inline]
@@ -162,7 +162,7 @@ impl Textures {
 
     /// Linear colour and alpha between four texels of a level.
     #[inline]
-    pub(crate) fn mixed(&self, image: &MipImage, level: u32, at: BilinearTaps) -> Vec4 {
+    pub(crate) fn bilinear(&self, image: &MipImage, level: u32, at: BilinearTaps) -> Vec4 {
         let offset = self.offsets[image.first_level.wrapping_add(level) as usize];
         let [a, b, c, d] = at.texels.map(|texel| {
             let [r, g, b, a] = self.texels[offset.wrapping_add(texel) as usize];
@@ -189,7 +189,7 @@ impl MipImage {
 
     /// The texels around texture coordinates, of a level.
     #[inline(always)]
-    pub(crate) fn place(&self, level: u32, u: f32, v: f32) -> BilinearTaps {
+    pub(crate) fn bilinear_taps(&self, level: u32, u: f32, v: f32) -> BilinearTaps {
         // As [`next_mip_level`] makes them.
         let size = |edge: u32| edge.wrapping_shr(level).max(1);
         let (width, height) = (size(self.width), size(self.height));
@@ -231,7 +231,7 @@ fn encoded(srgb: &SrgbTables, [r, g, b, a]: [u16; 4]) -> [u8; 4] {
 
 /// The level on which one pixel covers about one texel: half the binary logarithm of the area, rounded.
 #[inline(always)]
-pub(crate) fn level_of(texels_per_pixel: f32) -> u32 {
+pub(crate) fn mip_level(texels_per_pixel: f32) -> u32 {
     // The exponent of twice the area, halved: 0 below 2 texels, 1 below 8, 2 below 32.
     let exponent = (texels_per_pixel.to_bits() >> 23) & 255;
     exponent.max(126).wrapping_sub(126) / 2
@@ -281,7 +281,7 @@ fn next_mip_level(
         |k: usize, from: usize, to: usize| (k * from / to, ((k + 1) * from).div_ceil(to).min(from));
     let mut pace = PollEvery::new(TEXELS_PER_CHECK);
     for y in 0..size.1 {
-        pace.turns(width);
+        pace.count_many(width);
         let (top, bottom) = covers(y, height, size.1);
         for x in 0..size.0 {
             let (left, right) = covers(x, width, size.0);
@@ -394,9 +394,9 @@ mod tests {
             (31.0, 2),
             (32.0, 3),
         ] {
-            assert_eq!(level_of(area), level, "{area}");
+            assert_eq!(mip_level(area), level, "{area}");
         }
-        assert_eq!(level_of(f32::NAN), level_of(f32::INFINITY));
+        assert_eq!(mip_level(f32::NAN), mip_level(f32::INFINITY));
     }
 
     #[test]

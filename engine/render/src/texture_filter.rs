@@ -1,13 +1,13 @@
 //! Anisotropic texture filtering: a pixel's footprint on an image that is seen at an angle, and its average.
 
-use crate::texture::{Textures, level_of};
+use crate::texture::{Textures, mip_level};
 use crate::triangle_table::PosedTriangle;
 use glam::{Vec2, Vec3, Vec4};
 
 /// The least cosine between ray and normal at which a pixel's footprint still grows.
-pub(crate) const GRAZING: f32 = 0.05;
+pub(crate) const MIN_FOOTPRINT_COSINE: f32 = 0.05;
 /// Most samples along the longer axis of a footprint; a longer one is averaged more coarsely in both directions.
-pub(crate) const MOST_TAPS: f32 = 8.0;
+pub(crate) const MAX_ANISOTROPIC_TAPS: f32 = 8.0;
 
 /// Sine below which a surface is seen straight on.
 const STRAIGHT: f32 = 1e-3;
@@ -45,7 +45,7 @@ impl TextureFootprint {
         };
         let beside = normal.cross(ahead);
         let texels = |axis: Vec3| standing.uv_along(axis) * size;
-        let long = standing.uv_along(ahead) * (width_m / along.abs().max(GRAZING));
+        let long = standing.uv_along(ahead) * (width_m / along.abs().max(MIN_FOOTPRINT_COSINE));
         let (a, b) = ((long * size).length(), (texels(beside) * width_m).length());
         // A texture that is stretched may turn them around.
         let (long, most, least) = if a >= b {
@@ -53,9 +53,9 @@ impl TextureFootprint {
         } else {
             (standing.uv_along(beside) * width_m, b, a)
         };
-        let wide = least.max(most * (1.0 / MOST_TAPS)).max(1.0);
+        let wide = least.max(most * (1.0 / MAX_ANISOTROPIC_TAPS)).max(1.0);
         // One sample may cover a quarter more than its part; a cast makes 0 of what is not a number.
-        let taps = ((most / wide + 0.75) as u32).clamp(1, MOST_TAPS as u32);
+        let taps = ((most / wide + 0.75) as u32).clamp(1, MAX_ANISOTROPIC_TAPS as u32);
         Self {
             taps,
             step: long / taps as f32,
@@ -67,11 +67,11 @@ impl TextureFootprint {
     #[inline]
     pub(crate) fn sample(&self, textures: &Textures, texture: u32, uv: Vec2) -> Vec4 {
         let image = textures.image(texture);
-        let level = level_of(self.texels).min(image.last_level);
+        let level = mip_level(self.texels).min(image.last_level);
         let mut at = uv - self.step * (0.5 * (self.taps - 1) as f32);
         let mut sum = Vec4::ZERO;
         for _ in 0..self.taps {
-            sum += textures.mixed(image, level, image.place(level, at.x, at.y));
+            sum += textures.bilinear(image, level, image.bilinear_taps(level, at.x, at.y));
             at += self.step;
         }
         sum * (1.0 / self.taps as f32)

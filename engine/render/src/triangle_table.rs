@@ -20,7 +20,7 @@ pub(crate) struct TriangleShading {
     /// Geometric normal by the winding, unit length; world space, or part space for parts that move.
     pub(crate) normal: Vec3,
     /// Texture area per surface area, 1/m²: times the image's pixels, texels per square metre.
-    pub(crate) density: f32,
+    pub(crate) texture_density: f32,
     pub(crate) material: u32,
 }
 
@@ -84,8 +84,8 @@ pub(crate) fn coordinate(row: &Vec4, x: f32, y: f32, z: f32) -> f32 {
     ((row.x * x + row.y * y) + row.z * z) + row.w
 }
 
-/// Marks a triangle whose colour needs more than [`TriangleTable::quick`].
-pub(crate) const SLOW: u8 = 0;
+/// Marks a triangle whose colour needs more than [`TriangleTable::uniform_color`].
+pub(crate) const NEEDS_SHADING: u8 = 0;
 
 /// Tables over all triangles: static ones first, then those of parts that move, once for all that look alike.
 #[derive(Debug)]
@@ -94,7 +94,7 @@ pub(crate) struct TriangleTable {
     triangles: Vec<TriangleShading>,
     /// Normals of the corners, packed; equal where the mesh has none. Shape (triangle,).
     corner_normals: Vec<[u32; 3]>,
-    /// R, G, B of plain colours and 255, or [`SLOW`] as the last byte. Shape (triangle,).
+    /// R, G, B of plain colours and 255, or [`NEEDS_SHADING`] as the last byte. Shape (triangle,).
     quick: Vec<[u8; 4]>,
     /// First triangle of each moving instance; the same for those that look alike. Shape (instance,).
     first: Vec<u32>,
@@ -169,14 +169,14 @@ impl TriangleTable {
         self.triangles.push(TriangleShading {
             uv: [Vec4::ZERO; 2],
             normal,
-            density: 0.0,
+            texture_density: 0.0,
             material: material as u32,
         });
         self.corner_normals
             .push(corner_normals(mesh, triangle, &Affine3A::IDENTITY, normal));
-        self.quick.push(match looks[material].plain() {
+        self.quick.push(match looks[material].opaque_srgb() {
             Some([r, g, b]) => [r, g, b, 255],
-            None => [0, 0, 0, SLOW],
+            None => [0, 0, 0, NEEDS_SHADING],
         });
     }
 
@@ -209,31 +209,31 @@ impl TriangleTable {
         self.triangles.push(TriangleShading {
             uv,
             normal,
-            density,
+            texture_density: density,
             material: material as u32,
         });
         self.corner_normals
             .push(corner_normals(mesh, triangle, map, normal));
-        self.quick.push(match looks[material].plain() {
+        self.quick.push(match looks[material].opaque_srgb() {
             Some([r, g, b]) => [r, g, b, 255],
-            None => [0, 0, 0, SLOW],
+            None => [0, 0, 0, NEEDS_SHADING],
         });
     }
 
     /// As rows, four a triangle: the map to texture coordinates, normal and density, material and normals of the corners.
-    pub(crate) fn flat(&self) -> Vec<PackedRow> {
+    pub(crate) fn to_rows(&self) -> Vec<PackedRow> {
         let bits = |row: Vec4| row.to_array().map(f32::to_bits);
         let mut rows = Vec::with_capacity(self.triangles.len() * 4);
         for (triangle, [a, b, c]) in self.triangles.iter().zip(&self.corner_normals) {
             rows.extend(triangle.uv.map(bits));
-            rows.push(bits(triangle.normal.extend(triangle.density)));
+            rows.push(bits(triangle.normal.extend(triangle.texture_density)));
             rows.push([triangle.material, *a, *b, *c]);
         }
         rows
     }
 
     /// The first triangle of each part that moves, and of each piece of an agent's body.
-    pub(crate) fn firsts(&self) -> impl Iterator<Item = u32> {
+    pub(crate) fn first_triangles(&self) -> impl Iterator<Item = u32> {
         self.first.iter().chain(&self.bodies).copied()
     }
 
@@ -269,7 +269,7 @@ impl TriangleTable {
     }
 
     #[inline]
-    pub(crate) fn quick(&self, position: usize) -> [u8; 4] {
+    pub(crate) fn uniform_color(&self, position: usize) -> [u8; 4] {
         self.quick[position]
     }
 
@@ -428,7 +428,7 @@ mod tests {
         let triangle = TriangleShading {
             uv: map,
             normal: Vec3::Y,
-            density: 0.0,
+            texture_density: 0.0,
             material: 0,
         };
         for (corner, expected) in corners.into_iter().zip(uv) {
@@ -446,12 +446,12 @@ mod tests {
     fn a_room_has_one_texture_unit_a_metre_and_normals_to_the_inside() {
         let house = House::shoebox([4.0, 3.0, 5.0], &ShoeboxMaterials::default()).unwrap();
         let mut looks = ShadingMaterial::all(&house, &Textures::new(&house));
-        looks.push(ShadingMaterial::body());
+        looks.push(ShadingMaterial::agent_body());
         let surfaces = TriangleTable::new(&house, &looks);
         assert_eq!(surfaces.bodies[0], 12);
         for (k, source) in house.geometry().static_triangles.iter().enumerate() {
             let triangle = surfaces.triangle(surfaces.position(None, k as u32));
-            assert!((triangle.density - 1.0).abs() < 1e-5);
+            assert!((triangle.texture_density - 1.0).abs() < 1e-5);
             let placed = &house.geometry().placed[source.placed as usize];
             assert_eq!(triangle.material as i32 + 1, EntityId(placed.entity.0).0);
             assert!((surfaces.smooth_normal(k, 0.2, 0.3) - triangle.normal).length() < 1e-4);

@@ -13,27 +13,27 @@ pub struct VisibleObject {
     /// Pixels that show it.
     pub pixels: u32,
     /// First column and row that show it.
-    pub first: [u32; 2],
+    pub first_pixel: [u32; 2],
     /// The column and row behind the last ones that show it.
-    pub end: [u32; 2],
+    pub end_pixel: [u32; 2],
 }
 
 /// All things that an instance image shows, by id, without void.
 ///
 /// `instance`: shape (height, `width`).
-pub fn sightings(instance: &[i32], width: u32) -> Vec<VisibleObject> {
+pub fn visible_objects(instance: &[i32], width: u32) -> Vec<VisibleObject> {
     let mut all: BTreeMap<i32, VisibleObject> = BTreeMap::new();
     for (row, ids) in (0_u32..).zip(instance.chunks(width.max(1) as usize)) {
         for (column, id) in (0_u32..).zip(ids).filter(|(_, id)| **id != 0) {
             let thing = all.entry(*id).or_insert(VisibleObject {
                 entity: EntityId(*id),
                 pixels: 0,
-                first: [column, row],
-                end: [column, row],
+                first_pixel: [column, row],
+                end_pixel: [column, row],
             });
             thing.pixels += 1;
-            thing.first[0] = thing.first[0].min(column);
-            thing.end = [thing.end[0].max(column + 1), row + 1];
+            thing.first_pixel[0] = thing.first_pixel[0].min(column);
+            thing.end_pixel = [thing.end_pixel[0].max(column + 1), row + 1];
         }
     }
     all.into_values().collect()

@@ -100,7 +100,7 @@ fn bits_are_equal_for_any_number_of_threads_and_any_company() {
             .map(|view| Frame::new(&view.camera, ImageChannels::ALL))
             .collect();
         let mut targets: Vec<FrameMut<'_>> = frames.iter_mut().map(Frame::as_mut).collect();
-        let threads = Threads::exactly(threads);
+        let threads = Threads::new(threads);
         world
             .renderer
             .render(&world.scene, &world.state, &views, &mut targets, threads)
@@ -145,7 +145,7 @@ fn worlds_over_one_house_share_a_batch() {
         .collect();
     world
         .renderer
-        .render_batch(&mut jobs, Threads::exactly(2))
+        .render_batch(&mut jobs, Threads::new(2))
         .unwrap();
     assert!(
         frames[0] == expected_first && frames[1] == expected_second && frames[2] == expected_first

@@ -157,7 +157,7 @@ fn a_cube_map_agrees_with_six_pinholes() {
     );
     let edge = 64;
     let cube = Camera::cubemap(edge).unwrap();
-    let all = world.shot_with(&View::new(cube, eye), Threads::exactly(2));
+    let all = world.shot_with(&View::new(cube, eye), Threads::new(2));
     let pinhole = Camera::from_fov(edge, edge, 90.0).unwrap();
     let turns = [
         (0.0, 0.0),

@@ -98,7 +98,7 @@ fn full_pictures_have_the_same_bits_for_any_number_of_threads_and_rows() {
     let view = view(Preset::Full);
     let shot = |threads: usize| {
         let mut frame = Frame::new(&view.camera, ImageChannels::default());
-        let threads = Threads::exactly(threads);
+        let threads = Threads::new(threads);
         let frames = &mut [frame.as_mut()];
         world
             .renderer

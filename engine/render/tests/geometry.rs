@@ -305,11 +305,11 @@ fn a_thing_is_seen_where_its_state_has_it_and_not_at_all_when_hidden() {
         (frame.instance[40], frame.depth[40])
     };
     assert_eq!(middle(&world, &view).0, 1);
-    view.hide = Some(EntityId(1));
+    view.hidden_entity = Some(EntityId(1));
     let (id, depth) = middle(&world, &view);
     assert_eq!(id, 2);
     assert!((depth - 4.5).abs() < 1e-5);
-    view.hide = None;
+    view.hidden_entity = None;
     world.state.part_pose[dwell_scene::PartId(0)].position.z = -8.0;
     world.scene.update(&world.state);
     assert_eq!(middle(&world, &view).0, 2);

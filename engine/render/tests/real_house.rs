@@ -67,7 +67,8 @@ fn pictures_agree_with_single_rays() {
             let image = Vec2::new((k % 61) as f32 + 0.5, (k / 61) as f32 + 0.5);
             let way = view.world_from_camera.rotation * camera.ray_in_camera(image).1;
             let near_m = camera.near_m() * way.length();
-            let ray = Ray::new(view.world_from_camera.position, way).between(near_m, f32::INFINITY);
+            let ray =
+                Ray::new(view.world_from_camera.position, way).with_range(near_m, f32::INFINITY);
             let hit = world.scene.closest(&ray, RayMask::EYE);
             let depth = hit.map_or(50.0, |hit| hit.distance_m / way.length());
             // Directions differ in their last bits; a ray past an edge may meet what lies behind.

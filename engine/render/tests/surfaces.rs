@@ -5,7 +5,7 @@
 mod common;
 
 use common::{Builder, World, look, meets, quad};
-use dwell_render::{Camera, Frame, ImageChannels, PreviousFrame, RenderJob, View, sightings};
+use dwell_render::{Camera, Frame, ImageChannels, PreviousFrame, RenderJob, View, visible_objects};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::space::rotation_from_yaw_pitch;
@@ -56,7 +56,7 @@ fn translation_before_a_plane_flows_as_worked_out() {
     let view = View::new(camera, Pose::IDENTITY);
     let from = |x: f32, y: f32, z: f32| PreviousFrame {
         world_from_camera: Pose::from_position(Vec3::new(x, y, z)),
-        moved: &[],
+        moved_parts: &[],
         agents: &[],
     };
     // The camera went right by 0.1 m and down by 0.05 m: things go left and up.
@@ -123,7 +123,7 @@ fn what_moves_flows_and_what_rests_does_not() {
     let view = View::new(camera, Pose::IDENTITY);
     let before = PreviousFrame {
         world_from_camera: Pose::IDENTITY,
-        moved: &[(part, was)],
+        moved_parts: &[(part, was)],
         agents: &[],
     };
     let (frame, flows) = (world.shot(&view), flow(&world, &view, before));
@@ -153,7 +153,7 @@ fn nothing_flows_as_if_it_were_far_away() {
     let view = View::new(camera, Pose::IDENTITY);
     let before = PreviousFrame {
         world_from_camera: Pose::new(Vec3::new(1.0, 2.0, 3.0), rotation_from_yaw_pitch(0.3, 0.0)),
-        moved: &[],
+        moved_parts: &[],
         agents: &[],
     };
     // Turned to the right by 0.3 rad: everything goes left by 64 · 0.3 / 2 pi columns.
@@ -229,7 +229,7 @@ fn lists_of_things_agree_with_brute_force() {
         for camera in [pinhole, Camera::equirectangular(48).unwrap()] {
             let view = View::new(camera, Pose::IDENTITY);
             let frame = world.shot(&view);
-            let things = sightings(&frame.instance, camera.width());
+            let things = visible_objects(&frame.instance, camera.width());
             for thing in &things {
                 let shows = |pixel: &usize| frame.instance[*pixel] == thing.entity.0;
                 let pixels: Vec<Vec2> = (0..camera.pixels())
@@ -242,8 +242,8 @@ fn lists_of_things_agree_with_brute_force() {
                 assert_eq!(
                     (low, high),
                     (
-                        Vec2::new(thing.first[0] as f32, thing.first[1] as f32),
-                        Vec2::new(thing.end[0] as f32, thing.end[1] as f32),
+                        Vec2::new(thing.first_pixel[0] as f32, thing.first_pixel[1] as f32),
+                        Vec2::new(thing.end_pixel[0] as f32, thing.end_pixel[1] as f32),
                     )
                 );
             }
@@ -302,7 +302,7 @@ fn half_hidden_is_half_the_pixels() {
     let world = builder.build();
     let camera = Camera::from_fov(64, 64, 90.0).unwrap();
     let view = View::new(camera, Pose::IDENTITY);
-    let things = sightings(&world.shot(&view).instance, 64);
+    let things = visible_objects(&world.shot(&view).instance, 64);
     let entity = world.house.entity_of_object(back);
     let seen = things.iter().find(|thing| thing.entity == entity).unwrap();
     let alone = world
@@ -310,7 +310,7 @@ fn half_hidden_is_half_the_pixels() {
         .unoccluded_pixels(&world.scene, &world.state, &view, entity);
     // 2 m at 4 m: 16 by 16 pixels.
     assert_eq!((seen.pixels, alone), (128, 256));
-    assert_eq!((seen.first, seen.end), ([24, 24], [32, 40]));
+    assert_eq!((seen.first_pixel, seen.end_pixel), ([24, 24], [32, 40]));
 }
 
 /// A box has the size of its mesh and turns with it; its corners bound the pixels that show it.
@@ -337,7 +337,7 @@ fn oriented_boxes_turn_with_their_things() {
         assert!((found.world_from_box.position - place.position).length() < 1e-5);
         assert!(found.world_from_box.rotation.dot(place.rotation).abs() > 1.0 - 1e-6);
         let camera = Camera::from_fov(64, 48, 90.0).unwrap();
-        let seen = sightings(&world.shot(&View::new(camera, Pose::IDENTITY)).instance, 64)[0];
+        let seen = visible_objects(&world.shot(&View::new(camera, Pose::IDENTITY)).instance, 64)[0];
         let corners = Aabb::new(-0.5 * found.size, 0.5 * found.size).corners();
         let images = corners.map(|corner| {
             camera
@@ -349,8 +349,8 @@ fn oriented_boxes_turn_with_their_things() {
         let high = images.into_iter().reduce(Vec2::max).unwrap();
         for axis in 0..2 {
             // Pixels whose middles lie inside.
-            assert!((seen.first[axis] as f32 - low[axis]).abs() < 1.5);
-            assert!((seen.end[axis] as f32 - high[axis]).abs() < 1.5);
+            assert!((seen.first_pixel[axis] as f32 - low[axis]).abs() < 1.5);
+            assert!((seen.end_pixel[axis] as f32 - high[axis]).abs() < 1.5);
         }
     }
     assert!(
@@ -377,20 +377,20 @@ fn cameras_see_agents_bodies() {
     let eye = Vec3::new(1.0, 1.0, 2.5);
     let pose = Pose::new(eye, space::rotation_from_forward(Vec3::X).unwrap());
     let view = View {
-        hide: Some(own),
+        hidden_entity: Some(own),
         ..View::new(camera, pose)
     };
     let frame = world.shot(&view);
-    let things = sightings(&frame.instance, 120);
+    let things = visible_objects(&frame.instance, 120);
     let seen = things.iter().find(|thing| thing.entity == other).unwrap();
     assert!(things.iter().all(|thing| thing.entity != own));
     // Twice the angle whose sine is radius / distance, 60 pixels a unit of its tangent.
     let width = 2.0 * 60.0 * (body.radius_m / 3.0).asin().tan();
-    let found = (seen.end[0] - seen.first[0]) as f32;
+    let found = (seen.end_pixel[0] - seen.first_pixel[0]) as f32;
     assert!((found - width).abs() < 1.5, "{found} {width}");
     // From the feet 1 m below the eye to the crown, at about 3 m.
     let height = 60.0 * body.height_m / 3.0;
-    let found = (seen.end[1] - seen.first[1]) as f32;
+    let found = (seen.end_pixel[1] - seen.first_pixel[1]) as f32;
     assert!((found - height).abs() < 3.0, "{found} {height}");
     let names = dwell_render::semantic_classes(&world.house);
     let pixel = 45 * 120 + 60;
@@ -412,7 +412,7 @@ fn cameras_see_agents_bodies() {
     // The other one steps towards the eye: flow grows outwards from the middle.
     let before = PreviousFrame {
         world_from_camera: pose,
-        moved: &[],
+        moved_parts: &[],
         agents: &[Vec3::new(1.0, 0.0, 2.5), Vec3::new(4.2, 0.0, 2.5)],
     };
     let flows = flow(&world, &view, before);

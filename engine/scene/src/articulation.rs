@@ -158,7 +158,8 @@ pub struct Articulation {
     pub mimic: Option<Mimic>,
     /// True for its object's switch, such as the lever of a tap: opening it switches the object on, closing it off.
     #[serde(default)]
-    pub switches: bool,
+    #[serde(rename = "switches")]
+    pub toggles_switch: bool,
 }
 
 impl Articulation {
@@ -195,7 +196,7 @@ impl Articulation {
             armature: 0.0,
             servo: None,
             mimic: None,
-            switches: false,
+            toggles_switch: false,
         }
     }
 
@@ -206,7 +207,7 @@ impl Articulation {
     }
 
     /// Returns whether it opens and closes by hand: a door, a drawer, a lid.
-    pub fn opens(&self) -> bool {
+    pub fn is_openable(&self) -> bool {
         self.open != self.closed && self.servo.is_none() && self.mimic.is_none()
     }
 

@@ -119,13 +119,13 @@ fn is_zero(value: &f32) -> bool {
 pub struct SoundFile {
     /// The file's name, unique in the house: `"kettle.wav"`.
     pub name: String,
-    /// Its bytes; at most [`SoundFile::MOST_BYTES`].
+    /// Its bytes; at most [`SoundFile::MAX_BYTES`].
     pub bytes: Vec<u8>,
 }
 
 impl SoundFile {
     /// The most bytes that a sound file may have.
-    pub const MOST_BYTES: u64 = 64 << 20;
+    pub const MAX_BYTES: u64 = 64 << 20;
 }
 
 /// The kind of a receptacle.

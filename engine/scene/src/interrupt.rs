@@ -108,7 +108,7 @@ pub fn uninterruptible<R>(work: impl FnOnce() -> R) -> R {
 /// Unwinds here when the call is to stop. Costs some nanoseconds; meant for loops whose turns take a millisecond or so.
 pub fn check() {
     if POLL.with_borrow(|poll| poll.as_ref().is_some_and(PollSchedule::is_due)) {
-        ask_now();
+        poll_now();
     }
     if TOKEN.with_borrow(|token| token.as_ref().is_some_and(is_set)) {
         Interrupted(()).resume();
@@ -131,12 +131,12 @@ impl PollEvery {
     /// Counts one turn.
     #[inline]
     pub fn turn(&mut self) {
-        self.turns(1);
+        self.count_many(1);
     }
 
     /// Counts several turns at once: those of an inner loop.
     #[inline]
-    pub fn turns(&mut self, count: usize) {
+    pub fn count_many(&mut self, count: usize) {
         if self.left < count.max(1) {
             self.left = self.every;
             check();
@@ -160,12 +160,12 @@ fn schedule() -> Option<PollSchedule> {
 }
 
 /// Returns whether this thread polls.
-pub(crate) fn polls() -> bool {
+pub(crate) fn is_polling() -> bool {
     POLL.with_borrow(Option::is_some)
 }
 
 /// Polls, and stores the result for all threads of the call.
-pub(crate) fn ask_now() {
+pub(crate) fn poll_now() {
     let Some(PollSchedule { ask, token, .. }) = schedule() else {
         return;
     };
@@ -182,7 +182,7 @@ pub(crate) fn token() -> Option<CancelToken> {
 }
 
 /// Runs a piece of the work of the call that `token` belongs to, on any thread.
-pub(crate) fn run_piece<R>(token: Option<&CancelToken>, work: impl FnOnce() -> R) -> R {
+pub(crate) fn run_with_token<R>(token: Option<&CancelToken>, work: impl FnOnce() -> R) -> R {
     // The calling thread polls, too, when it has pieces to do itself.
     let _restore = ScopeGuard::set_and_guard(token.cloned(), schedule());
     check();
@@ -227,7 +227,7 @@ mod tests {
             let done = AtomicUsize::new(0);
             let count = 100_000;
             let stopped = interruptible(yes, || {
-                Threads::exactly(threads).map(count, |_| {
+                Threads::new(threads).map(count, |_| {
                     std::thread::sleep(Duration::from_millis(1));
                     done.fetch_add(1, Ordering::Relaxed)
                 })
@@ -235,7 +235,7 @@ mod tests {
             assert!(stopped.is_err());
             let done = done.into_inner();
             assert!(done > 0 && done < count, "{done}");
-            assert_eq!(Threads::exactly(threads).map(3, |k| k), [0, 1, 2]);
+            assert_eq!(Threads::new(threads).map(3, |k| k), [0, 1, 2]);
         }
     }
 
@@ -243,7 +243,7 @@ mod tests {
     fn what_must_be_whole_is_whole() {
         let mut turns = 0;
         let stopped = interruptible(yes, || {
-            turns = uninterruptible(|| spin(60) + Threads::exactly(2).map(60, |_| spin(1)).len());
+            turns = uninterruptible(|| spin(60) + Threads::new(2).map(60, |_| spin(1)).len());
             spin(100_000)
         });
         assert!(stopped.is_err());
@@ -262,7 +262,7 @@ mod tests {
             uninterruptible(|| {
                 spin(60);
                 alone = ASKED.load(Ordering::Relaxed);
-                Threads::exactly(2).map(60, |_| spin(1));
+                Threads::new(2).map(60, |_| spin(1));
                 shared = ASKED.load(Ordering::Relaxed);
             });
             // Not once the work was done: the answer is known.
@@ -289,7 +289,7 @@ mod tests {
                     next: Instant::now(),
                     token: CancelToken::default(),
                 }));
-                pace.turns(*count);
+                pace.count_many(*count);
             }
             POLL.set(None);
             ASKED.load(Ordering::Relaxed)
@@ -314,6 +314,6 @@ mod tests {
     fn a_panic_is_no_interruption() {
         let panicked = catch_unwind(|| interruptible(no, || panic!("on purpose")));
         assert!(panicked.is_err());
-        assert!(!polls() && token().is_none());
+        assert!(!is_polling() && token().is_none());
     }
 }

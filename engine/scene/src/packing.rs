@@ -42,7 +42,7 @@ pub fn pack(bytes: &[u8], base: &[u8]) -> Vec<u8> {
 ///
 /// # Panics
 /// As [`pack`].
-pub fn pack_within(bytes: &[u8], base: &[u8], most: usize) -> Vec<u8> {
+pub fn pack_to_size(bytes: &[u8], base: &[u8], most: usize) -> Vec<u8> {
     let packed = pack(bytes, base);
     if packed.len() <= most {
         return packed;
@@ -162,8 +162,8 @@ mod tests {
             .flat_map(|_| words[stream.below(words.len())])
             .collect();
         let plain = pack(&bytes, &[]);
-        assert_eq!(pack_within(&bytes, &[], plain.len()), plain);
-        let harder = pack_within(&bytes, &[], plain.len() - 1);
+        assert_eq!(pack_to_size(&bytes, &[], plain.len()), plain);
+        let harder = pack_to_size(&bytes, &[], plain.len() - 1);
         assert!(
             harder.len() < plain.len(),
             "{} of {}",

@@ -16,14 +16,14 @@ pub struct RandomKey(u128);
 #[derive(Clone, Copy, Debug)]
 pub enum Label<'a> {
     /// A purpose.
-    Word(&'a str),
+    Text(&'a str),
     /// A count: world, episode, step, index.
     Number(u64),
 }
 
 impl<'a> From<&'a str> for Label<'a> {
     fn from(word: &'a str) -> Self {
-        Self::Word(word)
+        Self::Text(word)
     }
 }
 
@@ -45,7 +45,7 @@ impl RandomKey {
         // The hash's seed tells a word from a number, so that `child("a")` never equals `child(97)`.
         let parent = self.0.to_le_bytes();
         match label.into() {
-            Label::Word(word) => {
+            Label::Text(word) => {
                 let mut bytes = Vec::with_capacity(16 + word.len());
                 bytes.extend_from_slice(&parent);
                 bytes.extend_from_slice(word.as_bytes());

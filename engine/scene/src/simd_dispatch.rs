@@ -63,7 +63,7 @@ impl SimdLevel {
 
     /// The best level that this machine has.
     #[inline]
-    pub fn best() -> Self {
+    pub fn best_available() -> Self {
         static BEST: std::sync::OnceLock<SimdLevel> = std::sync::OnceLock::new();
         *BEST.get_or_init(|| Self::available().last().unwrap_or(Self::Portable))
     }

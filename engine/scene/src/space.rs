@@ -104,7 +104,7 @@ impl std::ops::Mul for Pose {
 }
 
 /// Returns whether a linear map makes volumes flat: its columns, whatever their lengths, span no volume.
-pub fn flattens(map: &Mat3A) -> bool {
+pub fn is_singular(map: &Mat3A) -> bool {
     let columns = [map.x_axis, map.y_axis, map.z_axis].map(|column| {
         let largest = column.abs().max_element();
         (largest > 0.0).then(|| (column / largest).normalize())
@@ -123,7 +123,7 @@ pub fn flattens(map: &Mat3A) -> bool {
 pub fn split_affine(world_from_mesh: &Affine3A) -> Option<(Pose, Affine3A)> {
     let m = world_from_mesh.matrix3;
     let determinant = m.determinant();
-    if !world_from_mesh.is_finite() || determinant.abs() < 1e-12 || flattens(&m) {
+    if !world_from_mesh.is_finite() || determinant.abs() < 1e-12 || is_singular(&m) {
         return None;
     }
     // Gram-Schmidt with the up axis first: SUNCG's transforms turn about +Y and scale, so the up axis stays exact.
@@ -232,11 +232,11 @@ mod tests {
         let again = pose.to_affine() * rest;
         assert!(again.abs_diff_eq(map, 1e-5));
         assert!(split_affine(&Affine3A::from_scale(Vec3::new(1.0, 0.0, 1.0))).is_none());
-        let scaled = |x, y, z| flattens(&Affine3A::from_scale(Vec3::new(x, y, z)).matrix3);
+        let scaled = |x, y, z| is_singular(&Affine3A::from_scale(Vec3::new(x, y, z)).matrix3);
         assert!(scaled(0.0, 0.0, 0.0) && scaled(2.0, 1.0, 0.0));
         // How small something is does not count.
         assert!(!scaled(1e-30, 1e-30, 1e-30) && !scaled(1e-6, -1.0, 1e6));
         let shear = Mat3A::from_cols_array(&[1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
-        assert!(flattens(&shear));
+        assert!(is_singular(&shear));
     }
 }

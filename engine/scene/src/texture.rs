@@ -66,7 +66,7 @@ impl fmt::Debug for Texture {
             .field("name", &self.name)
             .field("width", &self.width)
             .field("height", &self.height)
-            .field("painted", &self.is_painted())
+            .field("painted", &self.is_loaded())
             .finish_non_exhaustive()
     }
 }
@@ -85,7 +85,7 @@ impl Texture {
 
     /// A texture whose pixels `painter` makes at first use; it must always make the same. Missing pixels are transparent
     /// black, surplus ones are dropped.
-    pub fn painted_later(
+    pub fn lazy(
         name: String,
         width: u32,
         height: u32,
@@ -110,7 +110,7 @@ impl Texture {
     }
 
     /// Returns whether the pixels are in memory.
-    pub fn is_painted(&self) -> bool {
+    pub fn is_loaded(&self) -> bool {
         self.pixels.get().is_some()
     }
 
@@ -181,12 +181,12 @@ mod tests {
     fn pixels_are_painted_once_and_only_when_asked_for() {
         let painted = Arc::new(AtomicUsize::new(0));
         let count = painted.clone();
-        let later = Texture::painted_later("later".to_owned(), 2, 1, move || {
+        let later = Texture::lazy("later".to_owned(), 2, 1, move || {
             count.fetch_add(1, Ordering::SeqCst);
             vec![9; 8]
         });
         later.check("later").unwrap();
-        assert!(!later.is_painted() && painted.load(Ordering::SeqCst) == 0);
+        assert!(!later.is_loaded() && painted.load(Ordering::SeqCst) == 0);
         assert_eq!(later.rgba(), [9; 8]);
         assert_eq!(later.mean_srgb(), [9.0; 3]);
         assert_eq!(painted.load(Ordering::SeqCst), 1);
@@ -195,9 +195,9 @@ mod tests {
 
     #[test]
     fn a_painter_of_another_size_is_cut_or_filled_up() {
-        let short = Texture::painted_later("short".to_owned(), 2, 1, || vec![9; 5]);
+        let short = Texture::lazy("short".to_owned(), 2, 1, || vec![9; 5]);
         assert_eq!(short.rgba(), [9, 9, 9, 9, 9, 0, 0, 0]);
-        let long = Texture::painted_later("long".to_owned(), 1, 1, || vec![9; 5]);
+        let long = Texture::lazy("long".to_owned(), 1, 1, || vec![9; 5]);
         assert_eq!(long.rgba(), [9; 4]);
         assert!(
             Texture::new("bad".to_owned(), 1, 1, vec![9; 5])

@@ -57,7 +57,7 @@ proptest! {
             oracle.check(&ray, found);
             prop_assert_eq!(found.is_some(), tree.occluded(&ray, RayMask::ALL));
             if let Some(hit) = found {
-                let until = |far_m| tree.occluded(&ray.between(ray.near_m, far_m), RayMask::ALL);
+                let until = |far_m| tree.occluded(&ray.with_range(ray.near_m, far_m), RayMask::ALL);
                 prop_assert!(until(hit.distance_m));
                 prop_assert!(!until(hit.distance_m * 0.999));
             }
@@ -165,7 +165,7 @@ fn no_ray_leaves_a_closed_room() {
     for (center, seed) in [(Vec3::new(41.3, 1.2, 38.7), 1), (Vec3::ZERO, 2)] {
         let (positions, triangles) = room(center, 9, RandomKey::root(seed));
         let tree = TriangleBvh::build(&positions, &triangles);
-        assert_eq!(tree.left_out(), 0);
+        assert_eq!(tree.skipped_triangles(), 0);
         let mut stream = RandomKey::root(seed).child("rays").stream();
         let eye = center + stream.direction() * 0.3;
         let mut targets = positions.clone();
@@ -185,7 +185,7 @@ fn no_ray_leaves_a_closed_room() {
             assert!(hit.u >= 0.0 && hit.v >= 0.0 && hit.u + hit.v <= 1.000_001);
             let [a, b, c] = triangles[hit.triangle as usize].map(|k| positions[k as usize]);
             let on_triangle = a * (1.0 - hit.u - hit.v) + b * hit.u + c * hit.v;
-            assert!(ray.at(hit.distance_m).distance(on_triangle) < 2e-5);
+            assert!(ray.point_at(hit.distance_m).distance(on_triangle) < 2e-5);
         }
     }
 }
@@ -258,7 +258,7 @@ fn bad_triangles_are_left_out_and_the_rest_keep_their_numbers() {
         [u32::MAX, 0, 1],
     ];
     let tree = TriangleBvh::build(&positions, &triangles);
-    assert_eq!((tree.len(), tree.left_out()), (1, 7));
+    assert_eq!((tree.len(), tree.skipped_triangles()), (1, 7));
     let hit = tree
         .closest(
             &Ray::new(Vec3::new(0.2, 1.0, 0.25), Vec3::NEG_Y),
@@ -327,12 +327,12 @@ fn empty_scenes_and_bad_rays_meet_nothing() {
             direction: Vec3::new(0.0, f32::NEG_INFINITY, 0.0),
             ..ray
         },
-        ray.between(f32::NAN, 5.0),
-        ray.between(0.0, f32::NAN),
-        ray.between(2.0, 1.0),
-        ray.between(-1.0, 5.0),
-        ray.between(1.5, f32::INFINITY),
-        ray.between(0.0, 0.5),
+        ray.with_range(f32::NAN, 5.0),
+        ray.with_range(0.0, f32::NAN),
+        ray.with_range(2.0, 1.0),
+        ray.with_range(-1.0, 5.0),
+        ray.with_range(1.5, f32::INFINITY),
+        ray.with_range(0.0, 0.5),
     ];
     for ray in bad {
         assert_eq!(scene.closest(&ray, RayMask::ALL), None, "{ray:?}");
@@ -366,7 +366,7 @@ fn ranges_include_both_ends_and_surfaces_have_two_sides() {
             (0.0, 1.999, false),
             (2.001, 9.0, false),
         ] {
-            let ray = ray.between(near, far);
+            let ray = ray.with_range(near, far);
             assert_eq!(
                 floor.closest(&ray, RayMask::ALL).is_some(),
                 meets,
@@ -381,7 +381,10 @@ fn ranges_include_both_ends_and_surfaces_have_two_sides() {
         floor.closest(&on, RayMask::ALL).map(|hit| hit.distance_m),
         Some(0.0)
     );
-    assert_eq!(floor.closest(&on.between(1e-4, 10.0), RayMask::ALL), None);
+    assert_eq!(
+        floor.closest(&on.with_range(1e-4, 10.0), RayMask::ALL),
+        None
+    );
     // Within the plane there is nothing to meet, and nothing hangs.
     assert_eq!(
         floor.closest(&Ray::new(Vec3::new(-9.0, 0.0, 0.1), Vec3::X), RayMask::ALL),
@@ -475,7 +478,7 @@ fn instances_keep_their_accuracy_far_from_the_origin() {
         let [a, b, c] =
             triangles[hit.triangle as usize].map(|k| place.transform_point3(positions[k as usize]));
         let expected = a * (1.0 - hit.u - hit.v) + b * hit.u + c * hit.v;
-        assert!(ray.at(hit.distance_m).distance(expected) < 3e-5);
+        assert!(ray.point_at(hit.distance_m).distance(expected) < 3e-5);
         assert_eq!((hit.instance, hit.id), (Some(0), 4));
     }
 }

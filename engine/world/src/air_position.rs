@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// Distances by which a sound may be moved, of which the least that suffices is taken, m.
 const STEPS_M: [f32; 4] = [0.03, 0.08, 0.16, 0.32];
 /// Directions in which it may be moved: upwards first, since most things lie on something.
-const WAYS: [Vec3; 6] = [
+const SEARCH_DIRECTIONS: [Vec3; 6] = [
     Vec3::Y,
     Vec3::X,
     Vec3::NEG_X,
@@ -23,7 +23,7 @@ const WAYS: [Vec3; 6] = [
     Vec3::NEG_Y,
 ];
 /// Rays from a place that measure its openness.
-const LOOKS: usize = 16;
+const PROBE_RAYS: usize = 16;
 /// Weights of rays that reach something and that reach the sky: over a roof nothing is heard of what is below.
 const OPEN: usize = 2;
 const SKY: usize = 1;
@@ -41,13 +41,13 @@ fn openness(rays: &RayScene, place: Vec3) -> usize {
     if open < ENOUGH {
         return open;
     }
-    let beside = WAYS.map(|way| openness_at(rays, place + way * GRAZE_M));
+    let beside = SEARCH_DIRECTIONS.map(|way| openness_at(rays, place + way * GRAZE_M));
     beside.into_iter().fold(open, usize::min)
 }
 
 fn openness_at(rays: &RayScene, place: Vec3) -> usize {
     let look = |k: usize| {
-        let y = 1.0 - (2 * k + 1) as f32 / LOOKS as f32;
+        let y = 1.0 - (2 * k + 1) as f32 / PROBE_RAYS as f32;
         let (s, c) = sin_cos(TAU * TURNS_A_LOOK * k as f32);
         let r = (1.0 - y * y).sqrt();
         let direction = Vec3::new(r * c, y, r * s);
@@ -58,13 +58,13 @@ fn openness_at(rays: &RayScene, place: Vec3) -> usize {
             _ => 0,
         }
     };
-    (0..LOOKS).map(look).sum()
+    (0..PROBE_RAYS).map(look).sum()
 }
 
 /// The place in the air at or beside `place` from which a sound there is heard: the first that is open enough, else the most open.
-pub(crate) fn air_position(rays: &RayScene, place: Vec3) -> Vec3 {
+pub(crate) fn nearest_open_air_point(rays: &RayScene, place: Vec3) -> Vec3 {
     let mut best = (openness(rays, place), place);
-    for beside in STEPS_M.map(|step_m| WAYS.map(|way| place + way * step_m)) {
+    for beside in STEPS_M.map(|step_m| SEARCH_DIRECTIONS.map(|way| place + way * step_m)) {
         for place in beside {
             if best.0 >= ENOUGH {
                 return best.1;
@@ -80,11 +80,11 @@ pub(crate) fn air_position(rays: &RayScene, place: Vec3) -> Vec3 {
 
 /// The points from which the house's own sounds are heard, in the frames of their parts, m: things' meshes are closed around many of
 /// them. Shape (emitter,).
-pub(crate) fn emitter_places(house: &Arc<House>) -> Vec<Vec3> {
+pub(crate) fn emitter_listening_points(house: &Arc<House>) -> Vec<Vec3> {
     let rays = RayScene::new(house.clone());
     let place = |emitter: &SoundEmitter| {
         let pose = house.parts[emitter.part].world_from_part;
-        let clear = air_position(&rays, pose.transform_point(emitter.position));
+        let clear = nearest_open_air_point(&rays, pose.transform_point(emitter.position));
         pose.inverse().transform_point(clear)
     };
     house.emitters.iter().map(place).collect()
@@ -113,7 +113,7 @@ mod tests {
             Vec3::new(4.02, 1.0, 2.0),
             Vec3::new(1.0, 1.0, 0.0),
         ] {
-            let clear = air_position(&rays, place);
+            let clear = nearest_open_air_point(&rays, place);
             assert!(inside(clear), "{place}: {clear}");
             assert!(clear.distance(place) < 0.1, "{place}: {clear}");
         }
@@ -126,7 +126,7 @@ mod tests {
         for name in ["builtin:apartment", "builtin:studio", "seed:7", "seed:12"] {
             let house = Arc::new(dwell_houses::open(name).unwrap().0);
             let rays = RayScene::new(house.clone());
-            for (emitter, place) in house.emitters.iter().zip(emitter_places(&house)) {
+            for (emitter, place) in house.emitters.iter().zip(emitter_listening_points(&house)) {
                 let pose = house.parts[emitter.part].world_from_part;
                 let told = pose.transform_point(emitter.position);
                 within += usize::from(openness(&rays, told) < ENOUGH);
@@ -144,7 +144,7 @@ mod tests {
         let house = House::shoebox([4.0, 3.0, 5.0], &ShoeboxMaterials::default()).unwrap();
         let rays = RayScene::new(Arc::new(house));
         for place in [Vec3::new(2.0, 1.0, 2.0), Vec3::new(2.0, 5e-3, 2.0)] {
-            assert_eq!(air_position(&rays, place), place);
+            assert_eq!(nearest_open_air_point(&rays, place), place);
         }
     }
 }

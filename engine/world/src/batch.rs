@@ -1,7 +1,7 @@
 //! Several environments stepped together: all views in one submission, results in the caller's buffers.
 
 use crate::actions::DiscreteAction;
-use crate::batch_pictures::{self, PendingPictures};
+use crate::batch_pictures::{self, PendingImages};
 use crate::env::Env;
 use crate::episode::StepInfo;
 use crate::error::WorldError;
@@ -20,7 +20,7 @@ pub struct Batch {
     /// True if pictures are taken while other worlds step.
     overlaps: bool,
     /// Pictures under way, or the error at their start.
-    under_way: Vec<Result<PendingPictures, WorldError>>,
+    under_way: Vec<Result<PendingImages, WorldError>>,
     /// True for environments whose pictures are under way and still show the world as it is. Shape (environment,).
     is_started: Vec<bool>,
 }
@@ -33,7 +33,7 @@ fn difference(first: &Env, other: &Env) -> Option<&'static str> {
     let (agents, sensors) = (first.agents(), first.specs());
     if !agents.eq(other.agents()) {
         Some("agents")
-    } else if sensors != other.specs() || first.sensor_agents() != other.sensor_agents() {
+    } else if sensors != other.specs() || first.agent_of_sensors() != other.agent_of_sensors() {
         Some("sensors")
     } else {
         None
@@ -51,16 +51,16 @@ impl Batch {
     /// Joins environments.
     ///
     /// # Errors
-    /// [`WorldError::Usage`] for none, or for environments whose agents or sensors differ.
+    /// [`WorldError::InvalidCall`] for none, or for environments whose agents or sensors differ.
     pub fn new(envs: Vec<Env>, threads: Threads) -> Result<Self, WorldError> {
         let Some(first) = envs.first() else {
-            return Err(WorldError::Usage(
+            return Err(WorldError::InvalidCall(
                 "a batch needs at least one environment".to_owned(),
             ));
         };
         for (k, env) in envs.iter().enumerate() {
             if let Some(what) = difference(first, env) {
-                return Err(WorldError::Usage(format!(
+                return Err(WorldError::InvalidCall(format!(
                     "environment {k} has other {what} than environment 0"
                 )));
             }
@@ -78,7 +78,7 @@ impl Batch {
     /// the same, of the same step; the error of a picture is returned by [`Self::observe`], which waits for it. A caller that
     /// steps without observing pays for pictures all the same. On the processor nothing changes.
     #[must_use]
-    pub fn overlapping(mut self, overlaps: bool) -> Self {
+    pub fn with_overlapped_rendering(mut self, overlaps: bool) -> Self {
         self.overlaps = overlaps;
         self
     }
@@ -91,42 +91,42 @@ impl Batch {
     /// One environment, for reading.
     ///
     /// # Errors
-    /// [`WorldError::Usage`] for an environment that does not exist.
+    /// [`WorldError::InvalidCall`] for an environment that does not exist.
     pub fn env(&self, index: usize) -> Result<&Env, WorldError> {
         let count = self.envs.len();
-        self.envs
-            .get(index)
-            .ok_or_else(|| WorldError::Usage(format!("no environment {index}; there are {count}")))
+        self.envs.get(index).ok_or_else(|| {
+            WorldError::InvalidCall(format!("no environment {index}; there are {count}"))
+        })
     }
 
     /// One environment, to change its world between steps.
     ///
     /// # Errors
-    /// [`WorldError::Usage`] for an environment that does not exist.
+    /// [`WorldError::InvalidCall`] for an environment that does not exist.
     pub fn env_mut(&mut self, index: usize) -> Result<&mut Env, WorldError> {
         let count = self.envs.len();
         // A world that may be changed has outdated pictures.
         if let Some(is_started) = self.is_started.get_mut(index) {
             *is_started = false;
         }
-        self.envs
-            .get_mut(index)
-            .ok_or_else(|| WorldError::Usage(format!("no environment {index}; there are {count}")))
+        self.envs.get_mut(index).ok_or_else(|| {
+            WorldError::InvalidCall(format!("no environment {index}; there are {count}"))
+        })
     }
 
     /// Replaces an environment and returns the old one: an episode may begin in another house.
     ///
     /// # Errors
-    /// [`WorldError::Usage`] for an environment that does not exist or whose agents or sensors differ, [`WorldError::Render`] for
+    /// [`WorldError::InvalidCall`] for an environment that does not exist or whose agents or sensors differ, [`WorldError::Render`] for
     /// a picture of it that was under way; nothing has changed then.
-    pub fn put(&mut self, index: usize, env: Env) -> Result<Env, WorldError> {
+    pub fn replace_env(&mut self, index: usize, env: Env) -> Result<Env, WorldError> {
         if let Some(what) = difference(self.env(index)?, &env) {
             let told = format!("put: the {what} differ from those of environment {index}");
-            return Err(WorldError::Usage(told));
+            return Err(WorldError::InvalidCall(told));
         }
         // Pictures belong to environments by their indices, and the other one has other indices.
         let mut waiting = self.under_way.iter().flatten();
-        if waiting.any(|own| own.owners().any(|number| number == index)) {
+        if waiting.any(|own| own.env_indices().any(|number| number == index)) {
             self.finish_pictures()?;
         }
         self.is_started[index] = false;
@@ -138,7 +138,7 @@ impl Batch {
     /// Stopped by [`interrupt`], its episode is over.
     ///
     /// # Errors
-    /// [`WorldError::Usage`] for an environment that does not exist, and those of [`Env::restore`].
+    /// [`WorldError::InvalidCall`] for an environment that does not exist, and those of [`Env::restore`].
     pub fn restore(&mut self, index: usize, bytes: &[u8]) -> Result<(), WorldError> {
         self.env(index)?;
         let active: Vec<bool> = (0..self.envs.len()).map(|k| k == index).collect();
@@ -148,7 +148,7 @@ impl Batch {
     /// Returns what each agent's scripted expert would do now. Shape (environment, agent).
     ///
     /// # Errors
-    /// [`WorldError::Usage`] before the first reset.
+    /// [`WorldError::InvalidCall`] before the first reset.
     pub fn expert_actions(&mut self) -> Result<Vec<DiscreteAction>, WorldError> {
         let all = vec![true; self.envs.len()];
         let actions = self.for_active(&all, |_, env| env.expert_actions())?;
@@ -166,8 +166,8 @@ impl Batch {
     }
 
     /// Returns whose each sensor is, by the agent's place. Shape (sensor,).
-    pub fn sensor_agents(&self) -> Vec<usize> {
-        self.envs[0].sensor_agents()
+    pub fn agent_of_sensors(&self) -> Vec<usize> {
+        self.envs[0].agent_of_sensors()
     }
 
     /// Does `work` in the environments of `active`; then, where that is asked for, their pictures are under way.
@@ -189,7 +189,7 @@ impl Batch {
         }
         // Pictures that nobody has observed.
         let mut waiting = self.under_way.iter().flatten();
-        if waiting.any(|own| own.owners().any(|number| active[number])) {
+        if waiting.any(|own| own.env_indices().any(|number| active[number])) {
             self.finish_pictures()?;
         }
         let count = self.envs.len();
@@ -216,9 +216,9 @@ impl Batch {
     fn start_pictures(&mut self, which: &[bool]) {
         let chosen = self.envs.iter_mut().enumerate();
         let chosen = chosen.filter(|(number, _)| which[*number]);
-        match batch_pictures::start(chosen, self.threads) {
+        match batch_pictures::start_rendering(chosen, self.threads) {
             Ok(some) => {
-                let owners = some.iter().flat_map(PendingPictures::owners);
+                let owners = some.iter().flat_map(PendingImages::env_indices);
                 for number in owners {
                     self.is_started[number] = true;
                 }
@@ -274,7 +274,7 @@ impl Batch {
         if found == self.envs.len() {
             return Ok(());
         }
-        Err(WorldError::Usage(format!(
+        Err(WorldError::InvalidCall(format!(
             "{what}: expected one for each of {} environments, found {found}",
             self.envs.len()
         )))
@@ -289,7 +289,7 @@ impl Batch {
     ) -> Result<R, WorldError> {
         interrupt::catch_interrupt(|| work(self)).unwrap_or_else(|interrupted| {
             let stopped = self.envs.iter_mut().zip(active).filter(|(_, on)| **on);
-            stopped.for_each(|(env, _)| env.abandon_episode());
+            stopped.for_each(|(env, _)| env.clear_episodes());
             self.under_way.clear();
             self.is_started.fill(false);
             interrupted.resume()
@@ -305,7 +305,8 @@ impl Batch {
     pub fn reset(&mut self, seeds: &[Option<u64>]) -> Result<(), WorldError> {
         self.check_count("seeds", seeds.len())?;
         let active: Vec<bool> = seeds.iter().map(Option::is_some).collect();
-        let reset = |k: usize, env: &mut Env| env.begin(seeds[k].unwrap_or_default());
+        let reset =
+            |k: usize, env: &mut Env| env.reset_with_listeners(seeds[k].unwrap_or_default());
         let (names, rate_hz) = self.signals_to_make(&active);
         self.or_over(&active, |batch| {
             if names.is_empty() {
@@ -315,8 +316,8 @@ impl Batch {
             // The first time: loops of sound take longest, and need nothing of the world.
             let threads = batch.threads;
             let names: Vec<&str> = names.iter().map(String::as_str).collect();
-            let make = || signals::make(&names, rate_hz, threads);
-            threads.both(make, || batch.change(&active, reset)).1?;
+            let make = || signals::presynthesize(&names, rate_hz, threads);
+            threads.join(make, || batch.change(&active, reset)).1?;
             Ok(())
         })
     }
@@ -327,7 +328,7 @@ impl Batch {
         let (mut all, mut rate_hz) = (BTreeSet::new(), 0);
         for (names, rate) in beginning.map(|(env, _)| env.signals()) {
             let unmade = names.into_iter();
-            all.extend(unmade.filter(|name| signals::is_to_be_made(name, rate)));
+            all.extend(unmade.filter(|name| signals::needs_synthesis(name, rate)));
             rate_hz = rate_hz.max(rate);
         }
         (all.into_iter().collect(), rate_hz)
@@ -348,7 +349,7 @@ impl Batch {
     ) -> Result<Vec<Option<StepInfo>>, WorldError> {
         let agents = self.agents().len();
         if actions.len() != self.envs.len() * agents {
-            return Err(WorldError::Usage(format!(
+            return Err(WorldError::InvalidCall(format!(
                 "actions: expected one for each of {agents} agents in each of {} environments, found {}",
                 self.envs.len(),
                 actions.len()
@@ -371,7 +372,7 @@ impl Batch {
         let infos = self.or_over(&active, |batch| {
             batch.change(&active, |k, env| {
                 let infos = env.step(own[k])?;
-                env.listen()?;
+                env.enable_listeners()?;
                 Ok(infos)
             })
         })?;
@@ -385,10 +386,10 @@ impl Batch {
     /// Writes the observations of the environments in `which`: all their views in one submission.
     ///
     /// `outs`: one for each sensor, in order, each with the elements of all environments one after the other (for text:
-    /// use [`Self::texts`], and give an empty buffer).
+    /// use [`Self::text_observations`], and give an empty buffer).
     ///
     /// # Errors
-    /// [`WorldError::Usage`] for wrong counts or lengths, [`WorldError::Render`] for what went wrong with a picture, also
+    /// [`WorldError::InvalidCall`] for wrong counts or lengths, [`WorldError::Render`] for what went wrong with a picture, also
     /// with one that an earlier call has started.
     pub fn observe(
         &mut self,
@@ -398,7 +399,7 @@ impl Batch {
         self.check_count("which", which.len())?;
         let specs = self.specs();
         if outs.len() != specs.len() {
-            return Err(WorldError::Usage(format!(
+            return Err(WorldError::InvalidCall(format!(
                 "observe: {} buffers for {} sensors",
                 outs.len(),
                 specs.len()
@@ -409,7 +410,7 @@ impl Batch {
             batch.finish_pictures()?;
             let chosen = batch.envs.iter_mut().enumerate();
             let chosen = chosen.filter(|(number, _)| which[*number] && !batch.is_started[*number]);
-            batch_pictures::take(chosen, batch.threads)
+            batch_pictures::render_images(chosen, batch.threads)
         })?;
         for (is_started, _) in self.is_started.iter_mut().zip(which).filter(|(_, on)| **on) {
             *is_started = false;
@@ -418,7 +419,7 @@ impl Batch {
             for (s, (spec, out)) in specs.iter().zip(outs.iter_mut()).enumerate() {
                 let range = k * spec.len()..(k + 1) * spec.len();
                 let fault = || {
-                    WorldError::Usage(format!(
+                    WorldError::InvalidCall(format!(
                         "observe: the buffer of {} is too short or of another type",
                         spec.name
                     ))
@@ -443,7 +444,7 @@ impl Batch {
     }
 
     /// The text of sensor `sensor` in every environment; empty before its first reset.
-    pub fn texts(&self, sensor: usize) -> Vec<String> {
+    pub fn text_observations(&self, sensor: usize) -> Vec<String> {
         let mut texts = vec![String::new(); self.envs.len()];
         for (env, text) in self
             .envs

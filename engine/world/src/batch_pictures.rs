@@ -1,9 +1,9 @@
 //! The pictures of a batch: the views of all worlds over one house in one submission.
 
-use crate::camera_capture::{PendingPicture, PictureRequest};
+use crate::camera_capture::{ImageExposure, ImageRequest};
 use crate::env::Env;
 use crate::error::WorldError;
-use crate::sensor_requests::Picture;
+use crate::sensor_requests::RenderedImage;
 use crate::world::World;
 use dwell_render::{PendingBatch, RenderJob, Renderer};
 use dwell_scene::parallel::Threads;
@@ -20,8 +20,8 @@ struct PictureOrder<'a> {
     /// Index among the environment's pictures.
     place: usize,
     world: &'a World,
-    request: PictureRequest,
-    picture: &'a mut Picture,
+    request: ImageRequest,
+    picture: &'a mut RenderedImage,
 }
 
 /// A picture that is being taken.
@@ -29,8 +29,8 @@ struct PictureInProgress<'a> {
     number: usize,
     place: usize,
     world: &'a World,
-    picture: &'a mut Picture,
-    take: PendingPicture,
+    picture: &'a mut RenderedImage,
+    take: ImageExposure,
 }
 
 /// Pictures by one renderer.
@@ -45,8 +45,8 @@ fn gather<'a>(
 ) -> Result<Vec<RendererGroup<'a>>, WorldError> {
     let mut groups: Vec<RendererGroup<'a>> = Vec::new();
     for (number, env) in envs {
-        let (world, requests, results) = env.picture_work();
-        let renderer = world.engines().pictures(&world.config().renderer)?;
+        let (world, requests, results) = env.world_and_image_buffers();
+        let renderer = world.engines().image_renderer(&world.config().renderer)?;
         let same = |group: &RendererGroup<'_>| Arc::ptr_eq(&group.renderer, &renderer);
         let group = groups.iter().position(same).unwrap_or(groups.len());
         if group == groups.len() {
@@ -55,7 +55,7 @@ fn gather<'a>(
                 orders: Vec::new(),
             });
         }
-        let wishes = requests.views.iter().zip(&mut results.pictures);
+        let wishes = requests.views.iter().zip(&mut results.images);
         for (place, (wish, picture)) in wishes.enumerate() {
             if world.state().agents.get(wish.eye.agent).is_some() {
                 groups[group].orders.push(PictureOrder {
@@ -80,8 +80,8 @@ fn first_orders<'a>(
     while open < MOST_OPEN
         && let Some(order) = orders.next()
     {
-        let optics = order.world.optics(&order.request.place);
-        open += usize::from(!optics.shutter().is_still());
+        let optics = order.world.optics(&order.request.mount);
+        open += usize::from(!optics.shutter().is_global_instant());
         taken.push(order);
     }
     (taken, open)
@@ -101,7 +101,7 @@ fn set_up_cameras(
             picture,
             ..
         } = &orders[k];
-        PendingPicture::new(world, request, !picture.frame.rgb.is_empty())
+        ImageExposure::new(world, request, !picture.frame.rgb.is_empty())
     });
     let pairs = orders.into_iter().zip(takes);
     pairs
@@ -134,17 +134,19 @@ fn jobs<'a>(taking: &'a mut [PictureInProgress<'_>]) -> Vec<RenderJob<'a>> {
 
 /// Develops the pictures that were exposed.
 fn develop<'a>(
-    pairs: impl Iterator<Item = (&'a mut PendingPicture, &'a mut Picture)>,
+    pairs: impl Iterator<Item = (&'a mut ImageExposure, &'a mut RenderedImage)>,
     threads: Threads,
 ) {
-    let mut exposed: Vec<_> = pairs.filter(|(take, _)| take.is_exposed()).collect();
+    let mut exposed: Vec<_> = pairs
+        .filter(|(take, _)| take.has_multiple_exposures())
+        .collect();
     threads.for_each(&mut exposed, |_, (take, picture)| {
-        take.develop(&mut picture.frame);
+        take.average_exposures(&mut picture.frame);
     });
 }
 
 /// Takes all pictures that environments order.
-pub(crate) fn take<'a>(
+pub(crate) fn render_images<'a>(
     envs: impl Iterator<Item = (usize, &'a mut Env)>,
     threads: Threads,
 ) -> Result<(), WorldError> {
@@ -168,18 +170,18 @@ pub(crate) fn take<'a>(
 
 /// Pictures that an adapter takes while worlds go on.
 #[derive(Debug)]
-pub(crate) struct PendingPictures {
+pub(crate) struct PendingImages {
     renderer: Arc<Renderer>,
     submitted: PendingBatch,
     /// The pictures with the index of their environment and their place there. In the order of their work.
-    takes: Vec<(usize, usize, PendingPicture)>,
+    takes: Vec<(usize, usize, ImageExposure)>,
 }
 
 /// Starts the pictures that environments order. Not those on the processor, which would be busy with them.
-pub(crate) fn start<'a>(
+pub(crate) fn start_rendering<'a>(
     envs: impl Iterator<Item = (usize, &'a mut Env)>,
     threads: Threads,
-) -> Result<Vec<PendingPictures>, WorldError> {
+) -> Result<Vec<PendingImages>, WorldError> {
     let mut under_way = Vec::new();
     for RendererGroup { renderer, orders } in gather(envs)? {
         // All pictures of an environment, or none.
@@ -197,10 +199,10 @@ pub(crate) fn start<'a>(
                 break;
             };
             let taken = taking.into_iter().map(|mut taking| {
-                taking.take.drop_past_states();
+                taking.take.drop_render_states();
                 (taking.number, taking.place, taking.take)
             });
-            under_way.push(PendingPictures {
+            under_way.push(PendingImages {
                 renderer: renderer.clone(),
                 submitted,
                 takes: taken.collect(),
@@ -210,9 +212,9 @@ pub(crate) fn start<'a>(
     Ok(under_way)
 }
 
-impl PendingPictures {
+impl PendingImages {
     /// The environments of these pictures.
-    pub(crate) fn owners(&self) -> impl Iterator<Item = usize> + '_ {
+    pub(crate) fn env_indices(&self) -> impl Iterator<Item = usize> + '_ {
         self.takes.iter().map(|(number, ..)| *number)
     }
 
@@ -226,7 +228,7 @@ impl PendingPictures {
         let mut pairs = Vec::with_capacity(takes.len());
         let mut taken = takes.iter_mut().peekable();
         for (number, env) in envs.iter_mut().enumerate() {
-            for (place, picture) in env.results.pictures.iter_mut().enumerate() {
+            for (place, picture) in env.results.images.iter_mut().enumerate() {
                 let own = taken.next_if(|(of, at, _)| (*of, *at) == (number, place));
                 pairs.extend(own.map(|(_, _, take)| (take, picture)));
             }

@@ -85,7 +85,7 @@ impl<'a> SharedQueries<'a> {
         Self {
             world,
             boxes: house.object_boxes(state),
-            carriers: state.carriers(house),
+            carriers: state.supports_of_all(house),
             sounding: house
                 .emitters
                 .iter()
@@ -102,7 +102,7 @@ impl<'a> SharedQueries<'a> {
         let carriers = self.carriers[id.index()].iter();
         let rests_on = carriers.map(|by| by.map_or_else(|| "building".to_owned(), called));
         let lies_in = if object.pickable {
-            state.lies_in(house, id, &self.boxes)
+            state.containers_of(house, id, &self.boxes)
         } else {
             Vec::new()
         };
@@ -145,7 +145,7 @@ mod tests {
         assert_eq!(all.len(), house.objects.len());
         for (id, now) in house.objects.ids().zip(&all) {
             assert_eq!(*now, object_state(&world, id));
-            assert_eq!(now.rests_on.len(), state.rests_on(house, id).len());
+            assert_eq!(now.rests_on.len(), state.supports_of(house, id).len());
             let around = house.objects.ids().filter(|container| {
                 let outer = &boxes[container.index()];
                 *container != id && house.encloses(state, *container, outer, &boxes[id.index()])

@@ -1,6 +1,6 @@
 //! The part of a house's worlds that they share: the house, and each engine's view of it, made at first use.
 
-use crate::air_position::emitter_places;
+use crate::air_position::emitter_listening_points;
 use crate::config::WorldConfig;
 use crate::error::WorldError;
 use crate::initial_state::InitialWorld;
@@ -68,7 +68,7 @@ impl Engines {
     }
 
     /// The renderer with the house's textures and tables.
-    pub fn renderer(&self) -> &CpuRenderer {
+    pub fn cpu_renderer(&self) -> &CpuRenderer {
         self.tables()
     }
 
@@ -81,7 +81,7 @@ impl Engines {
     ///
     /// # Errors
     /// [`WorldError::Render`] for a graphics adapter that is not there, fails, or is too small for the house.
-    pub fn pictures(&self, back_end: &BackEnd) -> Result<Arc<Renderer>, WorldError> {
+    pub fn image_renderer(&self, back_end: &BackEnd) -> Result<Arc<Renderer>, WorldError> {
         let mut made = self.pictures.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(renderer) = made.get(back_end) {
             return Ok(renderer.clone());
@@ -97,19 +97,22 @@ impl Engines {
     }
 
     /// The shapes of the house's bodies.
-    pub fn physics(&self) -> &Arc<PhysicsModel> {
+    pub fn physics_model(&self) -> &Arc<PhysicsModel> {
         self.physics
             .get_or_init(|| Arc::new(PhysicsModel::new(self.house.clone())))
     }
 
     /// Returns the initial state of worlds of a config; worlds that run side by side share it.
-    pub(crate) fn start(&self, config: &WorldConfig) -> Result<Arc<InitialWorld>, WorldError> {
+    pub(crate) fn initial_world(
+        &self,
+        config: &WorldConfig,
+    ) -> Result<Arc<InitialWorld>, WorldError> {
         let mut latest = self.start.lock().unwrap_or_else(PoisonError::into_inner);
         let shared = latest.as_ref().filter(|(of, _)| of == config);
         if let Some(start) = shared.and_then(|(_, start)| start.upgrade()) {
             return Ok(start);
         }
-        let start = Arc::new(InitialWorld::new(self.physics(), config)?);
+        let start = Arc::new(InitialWorld::new(self.physics_model(), config)?);
         *latest = Some((config.clone(), Arc::downgrade(&start)));
         Ok(start)
     }
@@ -118,7 +121,7 @@ impl Engines {
     ///
     /// # Errors
     /// [`WorldError::Config`] for an unknown preset, [`WorldError::Acoustics`] for a rate out of range.
-    pub fn acoustics(&self, preset: &str, rate_hz: u32) -> Result<AcousticScene, WorldError> {
+    pub fn acoustic_scene(&self, preset: &str, rate_hz: u32) -> Result<AcousticScene, WorldError> {
         let mut scenes = self
             .acoustics
             .lock()
@@ -171,14 +174,18 @@ impl Engines {
     }
 
     /// The points from which the house's own sounds are heard, in the frames of their parts, m. Shape (emitter,).
-    pub(crate) fn emitter_places(&self) -> &[Vec3] {
+    pub(crate) fn emitter_listening_points(&self) -> &[Vec3] {
         self.emitter_places
-            .get_or_init(|| emitter_places(&self.house))
+            .get_or_init(|| emitter_listening_points(&self.house))
     }
 
     /// A sound file of the house at a sample rate; decoded once.
-    pub(crate) fn house_sound(&self, id: SoundFileId, rate_hz: u32) -> Result<Signal, WorldError> {
-        self.recordings.of_house(&self.house, id, rate_hz)
+    pub(crate) fn house_sound_file(
+        &self,
+        id: SoundFileId,
+        rate_hz: u32,
+    ) -> Result<Signal, WorldError> {
+        self.recordings.house_sound_file(&self.house, id, rate_hz)
     }
 
     /// Refuses a house with an invalid sound file, before it is heard.
@@ -189,12 +196,12 @@ impl Engines {
         self.recordings.check_house(&self.house)
     }
 
-    /// Returns the navigation grid of a body in the house as it starts, with all doors open; shared as that of [`Engines::grid`].
+    /// Returns the navigation grid of a body in the house as it starts, with all doors open; shared as that of [`Engines::nav_grid_of_config`].
     ///
     /// # Errors
-    /// As [`Engines::grid`].
-    pub fn navigation(&self, body: &dwell_scene::AgentBody) -> Result<Arc<NavGrid>, WorldError> {
-        self.grid(&NavConfig {
+    /// As [`Engines::nav_grid_of_config`].
+    pub fn nav_grid(&self, body: &dwell_scene::AgentBody) -> Result<Arc<NavGrid>, WorldError> {
+        self.nav_grid_of_config(&NavConfig {
             radius_m: body.radius_m,
             height_m: body.height_m,
             step_m: body.step_height_m,
@@ -207,7 +214,7 @@ impl Engines {
     ///
     /// # Errors
     /// [`WorldError::Scene`] for a setting out of range, or a house too large for the grid.
-    pub fn grid(&self, config: &NavConfig) -> Result<Arc<NavGrid>, WorldError> {
+    pub fn nav_grid_of_config(&self, config: &NavConfig) -> Result<Arc<NavGrid>, WorldError> {
         let kept = |grids: &mut Vec<Arc<NavGrid>>| {
             let place = grids.iter().position(|grid| grid.config() == config)?;
             grids[place..].rotate_left(1);
@@ -247,25 +254,37 @@ mod tests {
             cell_m: 0.25 + 0.01 * k as f32,
             ..NavConfig::default()
         };
-        let first = engines.grid(&walker(0)).unwrap();
-        assert!(Arc::ptr_eq(&first, &engines.grid(&walker(0)).unwrap()));
+        let first = engines.nav_grid_of_config(&walker(0)).unwrap();
+        assert!(Arc::ptr_eq(
+            &first,
+            &engines.nav_grid_of_config(&walker(0)).unwrap()
+        ));
         for k in 1..=KEPT_GRIDS {
             // The grid that is requested again stays longest.
-            assert!(Arc::ptr_eq(&first, &engines.grid(&walker(0)).unwrap()));
-            assert_eq!(engines.grid(&walker(k)).unwrap().config(), &walker(k));
+            assert!(Arc::ptr_eq(
+                &first,
+                &engines.nav_grid_of_config(&walker(0)).unwrap()
+            ));
+            assert_eq!(
+                engines.nav_grid_of_config(&walker(k)).unwrap().config(),
+                &walker(k)
+            );
         }
-        assert!(Arc::ptr_eq(&first, &engines.grid(&walker(0)).unwrap()));
+        assert!(Arc::ptr_eq(
+            &first,
+            &engines.nav_grid_of_config(&walker(0)).unwrap()
+        ));
         assert_eq!(engines.grids().len(), KEPT_GRIDS);
         assert!(
             engines
-                .grid(&NavConfig {
+                .nav_grid_of_config(&NavConfig {
                     cell_m: f32::NAN,
                     ..walker(0)
                 })
                 .is_err()
         );
         let body = dwell_scene::AgentBody::default();
-        let theirs = engines.navigation(&body).unwrap();
-        assert!(Arc::ptr_eq(&theirs, &engines.navigation(&body).unwrap()));
+        let theirs = engines.nav_grid(&body).unwrap();
+        assert!(Arc::ptr_eq(&theirs, &engines.nav_grid(&body).unwrap()));
     }
 }

@@ -6,7 +6,7 @@ use crate::env_agent::EnvAgent;
 use crate::env_config::EnvConfig;
 use crate::episode::Episode;
 use crate::error::WorldError;
-use crate::sensor_requests::{Requests, Results};
+use crate::sensor_requests::{EngineResults, SensorRequests};
 use crate::world::World;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, Id, IdVec, Pose};
@@ -27,10 +27,10 @@ pub struct Env {
     pub(crate) world: World,
     /// Those who act, in the order of actions. Shape (agent,).
     pub(crate) agents: Vec<EnvAgent>,
-    pub(crate) requests: Requests,
-    pub(crate) results: Results,
+    pub(crate) requests: SensorRequests,
+    pub(crate) results: EngineResults,
     /// Poses of all agents of the world at the beginning of the episodes. Shape (agent of the world,).
-    pub(crate) starts: IdVec<AgentId, Pose>,
+    pub(crate) start_poses: IdVec<AgentId, Pose>,
     pub(crate) seed: u64,
     pub(crate) episode_key: RandomKey,
     /// True while the world is as it was made.
@@ -59,16 +59,16 @@ impl Env {
             }
         }
         let world = World::new(engines, &world_config)?;
-        let mut requests = Requests::default();
+        let mut requests = SensorRequests::default();
         for sensor in agents.iter().flat_map(|agent| &agent.sensors) {
-            sensor.plan(&world, &mut requests);
+            sensor.request(&world, &mut requests);
         }
         Ok(Self {
             world,
             agents,
             requests,
-            results: Results::default(),
-            starts: IdVec::default(),
+            results: EngineResults::default(),
+            start_poses: IdVec::default(),
             seed: 0,
             episode_key: RandomKey::root(0),
             is_new: true,
@@ -82,12 +82,12 @@ impl Env {
     }
 
     /// Returns how far movement actions go: of each agent that acts its own, of the world's others as of the first that acts.
-    pub fn strides(&self) -> IdVec<AgentId, StepSizes> {
-        let first = self.agents[0].stride;
+    pub fn step_sizes(&self) -> IdVec<AgentId, StepSizes> {
+        let first = self.agents[0].step_sizes;
         let mut strides = IdVec::filled(first, self.world.state().agents.len());
         for agent in &self.agents {
             if let Some(stride) = strides.get_mut(agent.id) {
-                *stride = agent.stride;
+                *stride = agent.step_sizes;
             }
         }
         strides
@@ -107,10 +107,10 @@ impl Env {
     /// Returns the episode of an agent, also one that has ended.
     ///
     /// # Errors
-    /// [`WorldError::Usage`] for an agent that does not act, and before the first reset.
+    /// [`WorldError::InvalidCall`] for an agent that does not act, and before the first reset.
     pub fn episode(&self, agent: usize) -> Result<&Episode, WorldError> {
         let own = self.agent(agent)?.episode.as_ref();
-        let none = || WorldError::Usage("no episode has begun; call reset first".to_owned());
+        let none = || WorldError::InvalidCall("no episode has begun; call reset first".to_owned());
         own.ok_or_else(none)
     }
 
@@ -139,26 +139,26 @@ impl Env {
     /// where to start, and the others keep clear of it.
     ///
     /// # Errors
-    /// [`WorldError::Unplayable`] when the house does not hold what a task needs.
+    /// [`WorldError::TaskNotPlayable`] when the house does not hold what a task needs.
     pub fn reset(&mut self, seed: u64) -> Result<(), WorldError> {
         let key = RandomKey::root(seed).child("episode");
         // A failure from here on leaves no episode behind that could go on.
-        self.abandon_episode();
+        self.clear_episodes();
         // A copy of the start beside the first one would only take its time and memory.
         if std::mem::take(&mut self.is_new) {
-            self.world.begin(key);
+            self.world.reset_fresh(key);
         } else {
             self.world.reset(key)?;
         }
         for agent in &mut self.agents {
-            agent.task.prepare(&self.world)?;
+            agent.task.prepare_house(&self.world)?;
         }
         let mut order: Vec<&mut EnvAgent> = self.agents.iter_mut().collect();
         order.sort_unstable_by_key(|agent| agent.id);
         let mut begun = Vec::with_capacity(order.len());
         let mut placed = Vec::with_capacity(order.len());
         for agent in &mut order {
-            let own = agent.key(key).child("task");
+            let own = agent.agent_key(key).child("task");
             begun.push(agent.task.reset(&mut self.world, &placed, own)?);
             placed.push(agent.id);
         }
@@ -166,18 +166,20 @@ impl Env {
             agent.episode = Some(episode);
         }
         (self.seed, self.episode_key) = (seed, key);
-        self.note_starts();
+        self.record_start_poses();
         Ok(())
     }
 
     /// Notes where all agents start: those who act where their episodes say, the others where they stand.
-    pub(crate) fn note_starts(&mut self) {
+    pub(crate) fn record_start_poses(&mut self) {
         let standing = self.world.state().agents.iter();
-        self.starts = standing
+        self.start_poses = standing
             .map(|agent| Pose::from_position_yaw(agent.position, agent.yaw_rad))
             .collect();
         for agent in &self.agents {
-            if let (Some(start), Some(episode)) = (self.starts.get_mut(agent.id), &agent.episode) {
+            if let (Some(start), Some(episode)) =
+                (self.start_poses.get_mut(agent.id), &agent.episode)
+            {
                 *start = episode.start;
             }
         }
@@ -187,29 +189,29 @@ impl Env {
     ///
     /// # Errors
     /// Those of [`Self::reset`], [`WorldError::Acoustics`] for a source that cannot be simulated.
-    pub fn begin(&mut self, seed: u64) -> Result<(), WorldError> {
+    pub fn reset_with_listeners(&mut self, seed: u64) -> Result<(), WorldError> {
         self.reset(seed)?;
-        self.listen()
+        self.enable_listeners()
     }
 
     /// Ends the episodes: what happens to the world from here on belongs to none.
-    pub(crate) fn abandon_episode(&mut self) {
-        self.agents.iter_mut().for_each(EnvAgent::abandon_episode);
+    pub(crate) fn clear_episodes(&mut self) {
+        self.agents.iter_mut().for_each(EnvAgent::clear_episode);
         self.steps = 0;
     }
 
     /// Opens the ears that the sensors ask for, where they are not open yet.
-    pub(crate) fn listen(&mut self) -> Result<(), WorldError> {
-        self.world.listen(&self.requests.ears)
+    pub(crate) fn enable_listeners(&mut self) -> Result<(), WorldError> {
+        self.world.enable_listeners(&self.requests.listeners)
     }
 }
 
 pub(crate) fn no_episode(call: &str) -> WorldError {
-    WorldError::Usage(format!("{call}: no episode has begun; call reset first"))
+    WorldError::InvalidCall(format!("{call}: no episode has begun; call reset first"))
 }
 
 pub(crate) fn no_agent(agent: usize, count: usize) -> WorldError {
-    WorldError::Usage(format!(
+    WorldError::InvalidCall(format!(
         "no agent {agent} acts; there are {count}, counted from 0"
     ))
 }
@@ -218,7 +220,7 @@ pub(crate) fn no_agent(agent: usize, count: usize) -> WorldError {
 fn fov_deg(agents: &[EnvAgent], whose: AgentId) -> Option<f32> {
     let (own, others): (Vec<_>, Vec<_>) = agents.iter().partition(|agent| agent.id == whose);
     let sensors = own.iter().chain(&others).flat_map(|agent| &agent.sensors);
-    let mut eyes = sensors.filter_map(|sensor| sensor.eye());
+    let mut eyes = sensors.filter_map(|sensor| sensor.camera());
     eyes.find_map(|eye| eye.fov_deg.filter(|_| eye.agent == whose))
 }
 
@@ -229,7 +231,7 @@ mod tests {
     use crate::actions::DiscreteAction;
     use crate::config::WorldConfig;
     use crate::env_config::SensorConfig;
-    use crate::episode::Verdict;
+    use crate::episode::StepResult;
     use crate::tasks::Task;
     use dwell_scene::parallel::Threads;
 
@@ -276,7 +278,7 @@ mod tests {
     #[test]
     fn the_first_episode_is_that_of_any_later_reset() {
         let play = |env: &mut Env| {
-            env.begin(5).unwrap();
+            env.reset_with_listeners(5).unwrap();
             let walk = [DiscreteAction::MoveForward, DiscreteAction::TurnLeft];
             walk.map(|action| {
                 env.step(&[Some(action)]).unwrap();
@@ -306,15 +308,15 @@ mod tests {
             _: &[AgentId],
             _: RandomKey,
         ) -> Result<Episode, WorldError> {
-            Err(WorldError::Unplayable {
+            Err(WorldError::TaskNotPlayable {
                 task: "Refusing",
                 house: world.house().name.clone(),
                 why: "it always does".to_owned(),
             })
         }
 
-        fn judge(&mut self, _: &World, _: &mut Episode, _: DiscreteAction) -> Verdict {
-            Verdict::default()
+        fn judge(&mut self, _: &World, _: &mut Episode, _: DiscreteAction) -> StepResult {
+            StepResult::default()
         }
 
         fn expert(&mut self, _: &mut World, _: &Episode) -> DiscreteAction {
@@ -327,7 +329,10 @@ mod tests {
         let mut env = env();
         env.reset(1).unwrap();
         env.agents[0].task = Box::new(RefusingTask);
-        assert!(matches!(env.reset(2), Err(WorldError::Unplayable { .. })));
+        assert!(matches!(
+            env.reset(2),
+            Err(WorldError::TaskNotPlayable { .. })
+        ));
         assert!(env.episode(0).is_err());
         let error = env
             .step(&[Some(DiscreteAction::Wait)])
@@ -341,9 +346,9 @@ mod tests {
         let mut batch = Batch::new(vec![env(), env()], Threads::ONE).unwrap();
         batch.reset(&[Some(1), Some(2)]).unwrap();
         let mut other = env();
-        other.begin(7).unwrap();
+        other.reset_with_listeners(7).unwrap();
         let hash = other.world.hash();
-        let before = batch.put(1, other).unwrap();
+        let before = batch.replace_env(1, other).unwrap();
         assert_eq!(before.seed, 2);
         assert_eq!(batch.envs()[1].world.hash(), hash);
         let forward = Some(DiscreteAction::MoveForward);
@@ -353,8 +358,14 @@ mod tests {
             ..EnvConfig::default()
         };
         let blind = Env::new(batch.envs()[0].world.engines().clone(), &blind).unwrap();
-        assert!(matches!(batch.put(0, blind), Err(WorldError::Usage(_))));
-        assert!(matches!(batch.put(2, before), Err(WorldError::Usage(_))));
+        assert!(matches!(
+            batch.replace_env(0, blind),
+            Err(WorldError::InvalidCall(_))
+        ));
+        assert!(matches!(
+            batch.replace_env(2, before),
+            Err(WorldError::InvalidCall(_))
+        ));
     }
 
     #[test]
@@ -366,7 +377,7 @@ mod tests {
         let forward = Some(DiscreteAction::MoveForward);
         assert!(matches!(
             batch.step(&[forward, forward]),
-            Err(WorldError::Usage(_))
+            Err(WorldError::InvalidCall(_))
         ));
         assert_eq!(batch.envs()[0].world().hash(), before);
         batch.step(&[forward, None]).unwrap();

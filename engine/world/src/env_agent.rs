@@ -2,8 +2,8 @@
 
 use crate::actions::{DiscreteAction, StepSizes};
 use crate::config::WorldConfig;
-use crate::env_config::{AgentRole, SensorConfig};
-use crate::episode::{Episode, StepInfo, Verdict};
+use crate::env_config::{ResolvedAgentConfig, SensorConfig};
+use crate::episode::{Episode, StepInfo, StepResult};
 use crate::error::WorldError;
 use crate::sensors::{self, Sensor, SensorSetup};
 use crate::tasks::{self, Task, TaskKind, TaskSetup};
@@ -19,7 +19,7 @@ pub(crate) struct EnvAgent {
     pub(crate) id: AgentId,
     pub(crate) kind: &'static TaskKind,
     pub(crate) task: Box<dyn Task>,
-    pub(crate) stride: StepSizes,
+    pub(crate) step_sizes: StepSizes,
     pub(crate) sensors: Vec<Box<dyn Sensor>>,
     pub(crate) episode: Option<Episode>,
     /// True once its episode has ended.
@@ -33,7 +33,10 @@ impl EnvAgent {
     ///
     /// # Errors
     /// [`WorldError`] names the setting.
-    pub(crate) fn new(role: &AgentRole<'_>, config: &WorldConfig) -> Result<Self, WorldError> {
+    pub(crate) fn new(
+        role: &ResolvedAgentConfig<'_>,
+        config: &WorldConfig,
+    ) -> Result<Self, WorldError> {
         let kind = tasks::find(role.task)?;
         let setup = TaskSetup {
             agent: role.agent,
@@ -70,7 +73,7 @@ impl EnvAgent {
             id: role.agent,
             kind,
             task,
-            stride: role.stride,
+            step_sizes: role.stride,
             sensors,
             episode: None,
             done: false,
@@ -79,7 +82,7 @@ impl EnvAgent {
     }
 
     /// The agent's own streams below a key of its environment.
-    pub(crate) fn key(&self, key: RandomKey) -> RandomKey {
+    pub(crate) fn agent_key(&self, key: RandomKey) -> RandomKey {
         match self.id.index() {
             // Agent 0 has those of environments in which it is alone.
             0 => key,
@@ -88,7 +91,7 @@ impl EnvAgent {
     }
 
     /// Forgets the episode.
-    pub(crate) fn abandon_episode(&mut self) {
+    pub(crate) fn clear_episode(&mut self) {
         self.episode = None;
         (self.done, self.success) = (false, false);
     }
@@ -105,10 +108,10 @@ impl EnvAgent {
         let agent = world.state().agents.get(self.id);
         let collision = agent.is_some_and(|agent| agent.collided);
         let progress = episode.progress;
-        self.accept(verdict);
+        self.apply_step_result(verdict);
         Some(StepInfo {
             agent: self.id,
-            verdict,
+            result: verdict,
             action_success: outcome.success,
             action_error: if outcome.success {
                 String::new()
@@ -121,15 +124,15 @@ impl EnvAgent {
     }
 
     /// Takes over how a step is judged.
-    pub(crate) fn accept(&mut self, verdict: Verdict) {
+    pub(crate) fn apply_step_result(&mut self, verdict: StepResult) {
         (self.done, self.success) = (verdict.terminated, verdict.success);
     }
 
     /// Returns the report of a step for an agent whose episode had ended before.
-    pub(crate) fn rest(&self) -> Option<StepInfo> {
+    pub(crate) fn step_info_after_end(&self) -> Option<StepInfo> {
         Some(StepInfo {
             agent: self.id,
-            verdict: Verdict {
+            result: StepResult {
                 reward: 0.0,
                 terminated: true,
                 success: self.success,

@@ -74,7 +74,7 @@ impl Default for EnvConfig {
 
 /// An agent that acts, with all that holds for it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct AgentRole<'a> {
+pub(crate) struct ResolvedAgentConfig<'a> {
     pub(crate) agent: AgentId,
     pub(crate) task: &'a str,
     pub(crate) task_settings: &'a Value,
@@ -88,7 +88,7 @@ impl EnvConfig {
     ///
     /// # Errors
     /// [`WorldError::Config`] for none, one that does not exist or is there twice, and a stride out of range.
-    pub(crate) fn roles(&self) -> Result<Vec<AgentRole<'_>>, WorldError> {
+    pub(crate) fn roles(&self) -> Result<Vec<ResolvedAgentConfig<'_>>, WorldError> {
         let fault = |field: &'static str, found: String, allowed: String| WorldError::Config {
             field,
             found,
@@ -117,14 +117,14 @@ impl EnvConfig {
         roles.collect()
     }
 
-    fn role<'a>(&'a self, own: &'a AgentConfig) -> Result<AgentRole<'a>, WorldError> {
+    fn role<'a>(&'a self, own: &'a AgentConfig) -> Result<ResolvedAgentConfig<'a>, WorldError> {
         let general = match own.task {
             Some(_) => &Value::Null,
             None => &self.task_settings,
         };
         let stride = own.stride.unwrap_or(self.stride);
         stride.check()?;
-        Ok(AgentRole {
+        Ok(ResolvedAgentConfig {
             agent: AgentId::from_index(own.agent as usize),
             task: own.task.as_deref().unwrap_or(&self.task),
             task_settings: own.task_settings.as_ref().unwrap_or(general),

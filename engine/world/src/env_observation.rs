@@ -1,10 +1,10 @@
 //! The observations of the agents of an environment.
 
-use crate::camera_capture::PictureRequest;
+use crate::camera_capture::ImageRequest;
 use crate::env::Env;
 use crate::env_agent::EnvAgent;
 use crate::error::WorldError;
-use crate::sensor_requests::{Requests, Results};
+use crate::sensor_requests::{EngineResults, SensorRequests};
 use crate::sensors::{ObservationBuffer, Sensor, SensorContext, SensorSpec};
 use crate::world::World;
 use dwell_render::{Camera, Preset};
@@ -17,7 +17,7 @@ impl Env {
     }
 
     /// Returns whose each sensor is, by the agent's place. Shape (sensor,).
-    pub fn sensor_agents(&self) -> Vec<usize> {
+    pub fn agent_of_sensors(&self) -> Vec<usize> {
         let agents = self.agents.iter().enumerate();
         agents
             .flat_map(|(place, agent)| std::iter::repeat_n(place, agent.sensors.len()))
@@ -38,7 +38,7 @@ impl Env {
     pub fn warm_up(&self, threads: Threads) -> Result<(), WorldError> {
         for view in &self.requests.views {
             let own = view.eye.request(self.world.state());
-            let small = PictureRequest {
+            let small = ImageRequest {
                 camera: Camera::from_fov(8, 8, 90.0)?,
                 preset: match own.preset {
                     Preset::Flat => Preset::Flat,
@@ -46,41 +46,49 @@ impl Env {
                 },
                 ..own
             };
-            self.world.picture(&small, view.channels, threads)?;
+            self.world.render_image(&small, view.channels, threads)?;
         }
         Ok(())
     }
 
     /// Samples of sound that were cut off in each agent's latest observation, because they were louder than it can hold. Shape
     /// (agent,).
-    pub fn clipped(&self) -> Vec<u64> {
-        let of = |agent: &EnvAgent| agent.sensors.iter().map(|sensor| sensor.clipped()).sum();
+    pub fn clipped_samples(&self) -> Vec<u64> {
+        let of = |agent: &EnvAgent| {
+            agent
+                .sensors
+                .iter()
+                .map(|sensor| sensor.clipped_samples())
+                .sum()
+        };
         self.agents.iter().map(of).collect()
     }
 
     /// Returns what the sensors ask of the engines.
-    pub(crate) fn requests(&self) -> &Requests {
+    pub(crate) fn requests(&self) -> &SensorRequests {
         &self.requests
     }
 
     /// The signals that will be heard as soon as somebody listens, and their rate; none where no sensor listens.
     pub(crate) fn signals(&self) -> (Vec<String>, u32) {
-        if self.requests.ears.is_empty() {
+        if self.requests.listeners.is_empty() {
             return (Vec::new(), 0);
         }
         self.world.signals()
     }
 
     /// The world, and the buffers for its pictures, at the same time.
-    pub(crate) fn picture_work(&mut self) -> (&World, &Requests, &mut Results) {
-        self.results.prepare(&self.requests, &self.world);
+    pub(crate) fn world_and_image_buffers(
+        &mut self,
+    ) -> (&World, &SensorRequests, &mut EngineResults) {
+        self.results.allocate(&self.requests, &self.world);
         (&self.world, &self.requests, &mut self.results)
     }
 
     /// Writes the observation of a sensor, by its place among [`Self::specs`].
     ///
     /// # Errors
-    /// [`WorldError::Usage`] for a wrong index or length, or before the first reset.
+    /// [`WorldError::InvalidCall`] for a wrong index or length, or before the first reset.
     pub(crate) fn observe(
         &self,
         index: usize,
@@ -90,7 +98,7 @@ impl Env {
         let found =
             found.and_then(|(agent, sensor)| Some((agent, sensor, agent.episode.as_ref()?)));
         let Some((agent, sensor, episode)) = found else {
-            return Err(WorldError::Usage(format!(
+            return Err(WorldError::InvalidCall(format!(
                 "observe: no sensor {index}, or no episode has begun"
             )));
         };
@@ -102,7 +110,7 @@ impl Env {
             ObservationBuffer::Text(_) => spec.len(),
         };
         if length != spec.len() {
-            return Err(WorldError::Usage(format!(
+            return Err(WorldError::InvalidCall(format!(
                 "observe: {} needs a buffer of {} elements, shape {:?}; found {length}",
                 spec.name,
                 spec.len(),
@@ -110,15 +118,15 @@ impl Env {
             )));
         }
         let key = agent
-            .key(self.episode_key)
+            .agent_key(self.episode_key)
             .child("sensor")
             .child(spec.name.as_str())
             .child(self.world.state().step);
-        sensor.finish(
+        sensor.write_observation(
             SensorContext {
                 world: &self.world,
                 episode,
-                starts: &self.starts,
+                start_poses: &self.start_poses,
                 results: &self.results,
                 key,
             },

@@ -61,7 +61,7 @@ impl Env {
     /// World and episodes as bytes.
     ///
     /// # Errors
-    /// [`WorldError::Usage`] before the first reset.
+    /// [`WorldError::InvalidCall`] before the first reset.
     ///
     /// # Panics
     /// Never: plain data can always be written to memory.
@@ -70,13 +70,13 @@ impl Env {
         let agents = agents.map(|agent| Some(AgentSnapshot::of(agent, agent.episode.as_ref()?)));
         let Some(agents) = agents.collect() else {
             let message = "snapshot: no episode has begun; call reset first";
-            return Err(WorldError::Usage(message.to_owned()));
+            return Err(WorldError::InvalidCall(message.to_owned()));
         };
         let moment = EnvSnapshot {
             seed: self.seed,
             steps: self.steps,
             agents,
-            starts: self.starts.clone(),
+            starts: self.start_poses.clone(),
             world: self.world.snapshot(),
         };
         let body =
@@ -118,7 +118,7 @@ impl Env {
         let tokens = match restored {
             Ok(tokens) => tokens,
             Err(error) => {
-                self.abandon_episode();
+                self.clear_episodes();
                 return Err(error);
             }
         };
@@ -126,14 +126,14 @@ impl Env {
         for ((agent, saved), tokens) in agents.zip(tokens) {
             saved.apply(agent, tokens);
         }
-        (self.steps, self.starts) = (moment.steps, moment.starts);
+        (self.steps, self.start_poses) = (moment.steps, moment.starts);
         Ok(())
     }
 
     /// Restores the world. Gives back the tokens of all instructions.
     fn restore_world(&mut self, moment: &EnvSnapshot) -> Result<Vec<Vec<i32>>, WorldError> {
         let agents = self.agents.iter().zip(&moment.agents);
-        let tokens = agents.map(|(agent, saved)| agent.tokens_of(&saved.instruction));
+        let tokens = agents.map(|(agent, saved)| agent.instruction_tokens(&saved.instruction));
         let tokens: Result<Vec<_>, _> = tokens.collect();
         self.world.restore(&moment.world)?;
         tokens
@@ -161,12 +161,12 @@ mod tests {
         use DiscreteAction::{MoveForward, Stop, TurnLeft};
 
         let mut env = env();
-        assert!(matches!(env.snapshot(), Err(WorldError::Usage(_))));
+        assert!(matches!(env.snapshot(), Err(WorldError::InvalidCall(_))));
         env.reset(3).unwrap();
         let go = |env: &mut Env, actions: &[DiscreteAction]| -> Vec<(u64, Vec<StepInfo>)> {
             let step = |action: &DiscreteAction| {
                 let info = env.step(&[Some(*action)]).unwrap();
-                env.listen().unwrap();
+                env.enable_listeners().unwrap();
                 (env.world().hash(), info)
             };
             actions.iter().map(step).collect()

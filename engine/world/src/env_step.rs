@@ -1,6 +1,6 @@
 //! The step of an environment: one control step of all its agents together.
 
-use crate::actions::{DiscreteAction, DiscreteStep};
+use crate::actions::{AgentAction, DiscreteAction};
 use crate::env::{Env, no_agent, no_episode};
 use crate::episode::StepInfo;
 use crate::error::WorldError;
@@ -9,7 +9,7 @@ impl Env {
     /// Returns whether a step can be made by these actions.
     ///
     /// # Errors
-    /// [`WorldError::Usage`] before the first reset, when all episodes have ended, and where the actions are not one for each
+    /// [`WorldError::InvalidCall`] before the first reset, when all episodes have ended, and where the actions are not one for each
     /// agent whose episode goes on.
     pub fn check_can_step(&self, actions: &[Option<DiscreteAction>]) -> Result<(), WorldError> {
         if !self.has_episode() {
@@ -17,10 +17,10 @@ impl Env {
         }
         if self.agents.iter().all(|agent| agent.done) {
             let what = "step: the episode has ended; call reset first";
-            return Err(WorldError::Usage(what.to_owned()));
+            return Err(WorldError::InvalidCall(what.to_owned()));
         }
         if actions.len() != self.agents.len() {
-            return Err(WorldError::Usage(format!(
+            return Err(WorldError::InvalidCall(format!(
                 "step: expected one action for each of {} agents, found {}",
                 self.agents.len(),
                 actions.len()
@@ -29,7 +29,7 @@ impl Env {
         let mut idle = self.agents.iter().zip(actions);
         match idle.find(|(agent, action)| !agent.done && action.is_none()) {
             None => Ok(()),
-            Some((agent, _)) => Err(WorldError::Usage(format!(
+            Some((agent, _)) => Err(WorldError::InvalidCall(format!(
                 "step: no action for agent {}, whose episode goes on",
                 agent.id.0
             ))),
@@ -52,22 +52,22 @@ impl Env {
         self.check_can_step(actions)?;
         let acting = self.agents.iter().zip(actions);
         let acting = acting.filter(|(agent, _)| !agent.done);
-        let steps: Vec<DiscreteStep> = acting
+        let steps: Vec<AgentAction> = acting
             .filter_map(|(agent, action)| {
-                Some(DiscreteStep {
+                Some(AgentAction {
                     agent: agent.id,
                     action: (*action)?,
-                    stride: agent.stride,
+                    step_sizes: agent.step_sizes,
                 })
             })
             .collect();
-        let outcomes = self.world.act_together(&steps)?;
+        let outcomes = self.world.step_discrete_actions(&steps)?;
         self.steps += 1;
         let mut done = steps.into_iter().zip(outcomes);
         let mut infos = Vec::with_capacity(self.agents.len());
         for agent in &mut self.agents {
             let info = if agent.done {
-                agent.rest()
+                agent.step_info_after_end()
             } else {
                 done.next()
                     .and_then(|(step, outcome)| agent.judge(&self.world, step.action, outcome))
@@ -80,7 +80,7 @@ impl Env {
     /// Returns what each agent's scripted expert would do now. Shape (agent,).
     ///
     /// # Errors
-    /// [`WorldError::Usage`] before the first reset.
+    /// [`WorldError::InvalidCall`] before the first reset.
     pub fn expert_actions(&mut self) -> Result<Vec<DiscreteAction>, WorldError> {
         (0..self.agents.len())
             .map(|agent| self.expert_action(agent))
@@ -90,7 +90,7 @@ impl Env {
     /// Returns what the scripted expert of one agent would do now.
     ///
     /// # Errors
-    /// [`WorldError::Usage`] for an agent that does not act, and before the first reset.
+    /// [`WorldError::InvalidCall`] for an agent that does not act, and before the first reset.
     pub fn expert_action(&mut self, agent: usize) -> Result<DiscreteAction, WorldError> {
         let count = self.agents.len();
         let own = self.agents.get_mut(agent);

@@ -21,7 +21,7 @@ pub struct Episode {
 
 /// The task's verdict on a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Verdict {
+pub struct StepResult {
     /// The reward of the step.
     pub reward: f64,
     /// True if the task has come to its end, well or badly.
@@ -36,7 +36,7 @@ pub struct StepInfo {
     /// The agent that made the step.
     pub agent: AgentId,
     /// Reward, end, success.
-    pub verdict: Verdict,
+    pub result: StepResult,
     /// True if the action did what it means.
     pub action_success: bool,
     /// The reason of a failure, as a sentence; empty on success.

@@ -54,7 +54,7 @@ pub enum WorldError {
     },
     /// A house in which a task cannot be played.
     #[error("task {task} cannot be played in house {house:?}: {why}")]
-    Unplayable {
+    TaskNotPlayable {
         /// The task.
         task: &'static str,
         /// The house.
@@ -64,10 +64,10 @@ pub enum WorldError {
     },
     /// A bench was stopped by its caller.
     #[error("stopped before all was measured")]
-    Stopped,
+    Cancelled,
     /// A call out of order or with a wrong count.
     #[error("{0}")]
-    Usage(String),
+    InvalidCall(String),
     /// A snapshot that cannot be used here.
     #[error("snapshot refused: {0}")]
     Snapshot(String),

@@ -2,7 +2,7 @@
 
 use crate::env::Env;
 use crate::env_agent::EnvAgent;
-use crate::episode::Verdict;
+use crate::episode::StepResult;
 use crate::error::WorldError;
 use crate::metrics::NavigationMetrics;
 use crate::sensors::Dtype;
@@ -17,7 +17,7 @@ impl Env {
     /// `asked`: the instruction, and the distance to the goal, m, where there is a goal to go to; `None`: as the task sets it.
     ///
     /// # Errors
-    /// [`WorldError::Usage`] for an agent that does not act, and before the first reset, [`WorldError::Config`] for a text that
+    /// [`WorldError::InvalidCall`] for an agent that does not act, and before the first reset, [`WorldError::Config`] for a text that
     /// the sensors of instructions cannot give, or a distance that is none. Nothing has changed then.
     pub fn set_goal(
         &mut self,
@@ -25,13 +25,15 @@ impl Env {
         asked: Option<(&str, Option<f64>)>,
     ) -> Result<(), WorldError> {
         let own = self.agent(agent)?;
-        let tokens = asked.map(|(text, _)| own.tokens_of(text)).transpose()?;
+        let tokens = asked
+            .map(|(text, _)| own.instruction_tokens(text))
+            .transpose()?;
         check_distance(asked.and_then(|(_, distance_m)| distance_m))?;
         let now = self.world.state().agents.get(own.id);
         let now = now.map(|now| Pose::from_position_yaw(now.position, now.yaw_rad));
         let Some(episode) = self.agent_mut(agent)?.episode.as_mut() else {
             let message = "ask: no episode has begun; call reset first";
-            return Err(WorldError::Usage(message.to_owned()));
+            return Err(WorldError::InvalidCall(message.to_owned()));
         };
         episode.start = now.unwrap_or(episode.start);
         let mut distance_m = episode.progress.start_distance_m;
@@ -40,7 +42,7 @@ impl Env {
             (episode.tokens, distance_m) = (tokens, way_m);
         }
         episode.progress = NavigationMetrics::new(episode.start.position, distance_m);
-        self.note_starts();
+        self.record_start_poses();
         Ok(())
     }
 
@@ -48,12 +50,12 @@ impl Env {
     /// to the goal that is left, m, the last known one where it is `None`. Gives back the measures of the episode.
     ///
     /// # Errors
-    /// [`WorldError::Usage`] for an agent that does not act, and before the first reset, [`WorldError::Config`] for a reward or a
+    /// [`WorldError::InvalidCall`] for an agent that does not act, and before the first reset, [`WorldError::Config`] for a reward or a
     /// distance that is no number.
-    pub fn set_verdict(
+    pub fn set_step_result(
         &mut self,
         agent: usize,
-        verdict: Verdict,
+        verdict: StepResult,
         distance_m: Option<f64>,
     ) -> Result<NavigationMetrics, WorldError> {
         check_distance(distance_m)?;
@@ -67,18 +69,18 @@ impl Env {
         let own = self.agent_mut(agent)?;
         let Some(episode) = own.episode.as_mut() else {
             let message = "rule: no episode has begun; call reset first";
-            return Err(WorldError::Usage(message.to_owned()));
+            return Err(WorldError::InvalidCall(message.to_owned()));
         };
         episode.progress.distance_m = distance_m.or(episode.progress.distance_m);
         let progress = episode.progress;
-        own.accept(verdict);
+        own.apply_step_result(verdict);
         Ok(progress)
     }
 }
 
 impl EnvAgent {
     /// The tokens of an instruction; where no sensor gives tokens, words need none.
-    pub(crate) fn tokens_of(&self, instruction: &str) -> Result<Vec<i32>, WorldError> {
+    pub(crate) fn instruction_tokens(&self, instruction: &str) -> Result<Vec<i32>, WorldError> {
         let specs = self.sensors.iter().map(|sensor| sensor.spec());
         let (mut gives_text, mut gives_tokens) = (false, false);
         for spec in specs {
@@ -136,28 +138,28 @@ mod tests {
             ..EnvConfig::default()
         };
         let mut env = Env::new(Engines::new(Arc::new(house)), &config).unwrap();
-        let ruled = Verdict {
+        let ruled = StepResult {
             reward: 1.5,
             terminated: true,
             success: true,
         };
         let wait = [Some(DiscreteAction::Wait)];
-        assert!(env.set_goal(0, None).is_err() && env.set_verdict(0, ruled, None).is_err());
+        assert!(env.set_goal(0, None).is_err() && env.set_step_result(0, ruled, None).is_err());
         env.reset(3).unwrap();
         // There is no sensor of instructions here, so that any words will do.
         env.set_goal(0, Some(("Über die Treppe!", Some(4.0))))
             .unwrap();
         for distance_m in [-1.0, f64::NAN, f64::INFINITY] {
             assert!(env.set_goal(0, Some(("x", Some(distance_m)))).is_err());
-            assert!(env.set_verdict(0, ruled, Some(distance_m)).is_err());
+            assert!(env.set_step_result(0, ruled, Some(distance_m)).is_err());
         }
         env.step(&[Some(DiscreteAction::MoveForward)]).unwrap();
-        let unread = Verdict {
+        let unread = StepResult {
             reward: f64::NAN,
             ..ruled
         };
-        assert!(env.set_verdict(0, unread, None).is_err() && env.check_can_step(&wait).is_ok());
-        let progress = env.set_verdict(0, ruled, Some(3.0)).unwrap();
+        assert!(env.set_step_result(0, unread, None).is_err() && env.check_can_step(&wait).is_ok());
+        let progress = env.set_step_result(0, ruled, Some(3.0)).unwrap();
         assert_eq!(progress.start_distance_m, Some(4.0));
         assert_eq!(progress.distance_m, Some(3.0));
         assert!(env.check_can_step(&wait).is_err());

@@ -1,6 +1,6 @@
 //! Cameras on agents.
 
-use crate::camera_capture::{CameraMount, PictureRequest};
+use crate::camera_capture::{CameraMount, ImageRequest};
 use dwell_render::{Camera, Preset};
 use dwell_scene::{AgentId, Pose, State};
 
@@ -35,10 +35,10 @@ impl EyeCamera {
 
 impl EyeCamera {
     /// Its request for a picture.
-    pub fn request(&self, state: &State) -> PictureRequest {
-        PictureRequest {
+    pub fn request(&self, state: &State) -> ImageRequest {
+        ImageRequest {
             camera: self.camera_in(state),
-            place: CameraMount::Agent(self.agent, self.eye_from_camera),
+            mount: CameraMount::Agent(self.agent, self.eye_from_camera),
             preset: self.preset,
         }
     }

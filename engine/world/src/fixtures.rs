@@ -82,7 +82,7 @@ pub struct ObjectBox {
 }
 
 /// Lamps, sources of sound, joints and boxes as they stand.
-pub fn fixtures(world: &World) -> SceneOverlay {
+pub fn scene_overlay(world: &World) -> SceneOverlay {
     let (house, state) = (world.house(), world.state());
     let lamps = house.lights.iter().map(|light| {
         let middle = match light.shape {
@@ -123,7 +123,7 @@ pub fn fixtures(world: &World) -> SceneOverlay {
             value: state.joint_position[id],
         }
     });
-    let renderer = world.engines().renderer();
+    let renderer = world.engines().cpu_renderer();
     let boxes = house.objects.iter_ids().filter_map(|(id, object)| {
         let entity = house.entity_of_object(id);
         let found = renderer.oriented_box(state, entity)?;

@@ -33,7 +33,7 @@ pub struct PlanRoom {
     /// m².
     pub area_m2: f32,
     /// The place in it that is furthest from its edges.
-    pub place: [f32; 2],
+    pub label_position: [f32; 2],
 }
 
 /// A door on a plan.
@@ -64,7 +64,7 @@ pub fn floor_plan(world: &World, level: LevelId) -> FloorPlan {
         name: room.name.clone(),
         kinds: room.kinds.clone(),
         area_m2: house.exclusive_area_m2(id),
-        place: place(house, id).to_array(),
+        label_position: place(house, id).to_array(),
     });
     let low = here()
         .map(|(_, room)| room.floor_y)
@@ -75,7 +75,7 @@ pub fn floor_plan(world: &World, level: LevelId) -> FloorPlan {
         let axis = joint.parent_from_joint.rotation * joint.axis;
         let center_y = house.part_bounds(state, joint.child).center().y;
         joint.kind == JointKind::Hinge
-            && joint.opens()
+            && joint.is_openable()
             && object.category.coarse == "door"
             && axis.y.abs() > UPRIGHT
             && (low..=high).contains(&center_y)
@@ -180,7 +180,7 @@ mod tests {
             let here = house.rooms.iter().filter(|room| room.level == level);
             assert_eq!(plan.rooms.len(), here.count());
             for room in &plan.rooms {
-                let [x, z] = room.place;
+                let [x, z] = room.label_position;
                 let found = house.room_at(Vec3::new(x, plan.floor_y + 1.0, z)).unwrap();
                 assert_eq!(house.rooms[found].name, room.name);
             }
@@ -195,10 +195,9 @@ mod tests {
             }
             doors += plan.doors.len();
         }
-        let hinged = house
-            .joints
-            .iter()
-            .filter(|joint| joint.opens() && house.objects[joint.object].category.coarse == "door");
+        let hinged = house.joints.iter().filter(|joint| {
+            joint.is_openable() && house.objects[joint.object].category.coarse == "door"
+        });
         assert_eq!(doors, hinged.count(), "every door is on one storey");
         assert!(doors > 5);
         let none = floor_plan(&world, LevelId::from_index(9));

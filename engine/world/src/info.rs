@@ -92,7 +92,7 @@ const PLACES: usize = 48;
 pub fn viewpoints(engines: &Engines) -> Result<Vec<RoomViewpoint>, WorldError> {
     let house = engines.house();
     let body = AgentBody::default();
-    let grid = engines.navigation(&body)?;
+    let grid = engines.nav_grid(&body)?;
     let rays = RayScene::new(house.clone());
     let places = walkable_places(house, &grid);
     let rooms = places.iter_ids();
@@ -168,7 +168,7 @@ fn view_score(rays: &RayScene, room: RoomId, world_from_eye: &Pose) -> f32 {
             let Some(hit) = rays.closest(&ray, RayMask::EYE) else {
                 continue;
             };
-            let point = ray.at(hit.distance_m - 0.05);
+            let point = ray.point_at(hit.distance_m - 0.05);
             // Points beyond a door or window count no more than the opening itself.
             let inside = rays.house().room_at(point) == Some(room);
             sum += ln(hit.distance_m.clamp(0.1, if inside { 12.0 } else { 1.5 }));

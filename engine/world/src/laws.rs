@@ -12,14 +12,14 @@ pub fn all() -> impl Iterator<Item = &'static LawInfo> + Clone {
 }
 
 /// As [`all`], as a slice.
-pub(crate) fn known() -> &'static [&'static LawInfo] {
+pub(crate) fn all_slice() -> &'static [&'static LawInfo] {
     static KNOWN: LazyLock<Vec<&LawInfo>> = LazyLock::new(|| all().collect());
     &KNOWN
 }
 
 /// The numbers of a law that is given by its name alone, where these need no choice.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DefaultAction {
+pub struct LawDefaults {
     /// The law's id.
     pub id: &'static str,
     /// Values by parameter name; the others have their defaults.
@@ -29,33 +29,33 @@ pub struct DefaultAction {
 }
 
 /// The laws that have usual numbers. The others need some: a wind has no usual direction.
-pub const USUAL: &[DefaultAction] = &[
-    DefaultAction {
+pub const DEFAULT_VALUES: &[LawDefaults] = &[
+    LawDefaults {
         id: "drag",
         params: &[("c_d", 0.47)],
         about: "that of a sphere at Reynolds numbers of 1e4 to 1e5: S. F. Hoerner, Fluid-Dynamic Drag (1965), chapter 3",
     },
-    DefaultAction {
+    LawDefaults {
         id: "buoyancy",
         params: &[("fluid_density_kg_m3", 1.204)],
         about: "dry air at 20 degrees Celsius and 101325 Pa",
     },
-    DefaultAction {
+    LawDefaults {
         id: "no_air_absorption",
         params: &[("missing", 1.0)],
         about: "all of it is missing",
     },
-    DefaultAction {
+    LawDefaults {
         id: "vignetting",
         params: &[("strength", 1.0)],
         about: "the law of the fourth power",
     },
-    DefaultAction {
+    LawDefaults {
         id: "redwood_depth",
         params: &[("strength", 1.0)],
         about: "the published noise",
     },
-    DefaultAction {
+    LawDefaults {
         id: "kinect_depth",
         params: &[("axial", 1.0), ("lateral", 1.0)],
         about: "the published noise",
@@ -68,7 +68,7 @@ pub const USUAL: &[DefaultAction] = &[
 /// [`WorldError::Unknown`] lists the laws there are; [`WorldError::Scene`] names a parameter out of bounds, or a target that
 /// is there in two spellings.
 pub fn install(house: &House, specs: &[LawSpec]) -> Result<Vec<LawSpec>, WorldError> {
-    let installed = dwell_scene::law::install(house, known(), specs);
+    let installed = dwell_scene::law::install(house, all_slice(), specs);
     installed.map_err(|error| match error {
         SceneError::UnknownLaw { id, known } => WorldError::Unknown {
             kind: "law",
@@ -83,7 +83,7 @@ pub fn install(house: &House, specs: &[LawSpec]) -> Result<Vec<LawSpec>, WorldEr
 ///
 /// # Errors
 /// As [`install`], and [`WorldError::Scene`] for an address that names nothing or a value out of range.
-pub fn start<'a>(
+pub fn state_with_laws<'a>(
     house: &House,
     specs: &[LawSpec],
     parameters: impl IntoIterator<Item = (&'a String, &'a f64)>,
@@ -108,7 +108,7 @@ pub(crate) fn parameter(
     address: &Address,
 ) -> Result<Parameter, SceneError> {
     if address.is_law() {
-        state.law_parameter(house, known(), address)
+        state.law_parameter(house, all_slice(), address)
     } else {
         state.parameter(house, address)
     }
@@ -129,7 +129,7 @@ pub(crate) fn set_parameters(
         .cloned()
         .partition(|(address, _)| address.is_law());
     state.set_parameters(house, &scene)?;
-    let set = state.set_law_parameters(house, known(), &laws);
+    let set = state.set_law_parameters(house, all_slice(), &laws);
     if set.is_err() {
         (state.overrides, state.agents) = before;
     }
@@ -205,7 +205,7 @@ mod tests {
 
     #[test]
     fn usual_numbers_are_plausible_and_do_something() {
-        for usual in USUAL {
+        for usual in DEFAULT_VALUES {
             let info = LawInfo::find(all(), usual.id).unwrap();
             for (name, value) in usual.params {
                 let [low, high] = info.param(name).unwrap().plausible;

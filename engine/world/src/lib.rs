@@ -46,25 +46,27 @@ mod world;
 mod world_snapshot;
 mod world_sounds;
 
-pub use actions::{ActionRequest, DiscreteAction, DiscreteStep, ObjectRef, PixelCamera, StepSizes};
+pub use actions::{ActionRequest, AgentAction, DiscreteAction, ObjectRef, PixelCamera, StepSizes};
 pub use batch::Batch;
-pub use camera_capture::{CameraMount, PictureRequest};
+pub use camera_capture::{CameraMount, ImageRequest};
 pub use config::WorldConfig;
 pub use current_objects::{ObjectState, effective_agents, object_state, object_states};
 pub use engines::Engines;
 pub use env::Env;
 pub use env_config::{AgentConfig, EnvConfig, SensorConfig};
-pub use episode::{Episode, StepInfo, Verdict};
+pub use episode::{Episode, StepInfo, StepResult};
 pub use error::WorldError;
-pub use expert::{ShortestPathFollower, face};
-pub use fixtures::{JointFixture, LampFixture, ObjectBox, SceneOverlay, SoundSource, fixtures};
+pub use expert::{ShortestPathFollower, action_towards_object};
+pub use fixtures::{
+    JointFixture, LampFixture, ObjectBox, SceneOverlay, SoundSource, scene_overlay,
+};
 pub use floor_plan::{FloorPlan, PlanDoor, PlanRoom, floor_plan};
 pub use info::{RoomViewpoint, info, viewpoints};
 pub use motion_history::MotionHistory;
 pub use plain_json_error::plain_json_error;
 pub use room_surfaces::{RoomSurface, room_surfaces};
-pub use sensor_requests::{Picture, Requests, Results, ViewRequest};
-pub use sound::{PlayRequest, SoundName, SoundPlace, SoundState, usual_level_db};
+pub use sensor_requests::{EngineResults, RenderedImage, SensorRequests, ViewRequest};
+pub use sound::{PlayRequest, SoundName, SoundPlace, SoundState, default_level_db};
 pub use world::World;
 
 /// Returns the pose of a camera relative to the eyes that carry it: position in m, then yaw, pitch and roll in degrees.

@@ -3,7 +3,7 @@
 use crate::env::Env;
 use crate::error::WorldError;
 use crate::free_memory::{free_bytes, mib};
-use crate::sensors::{observation_bytes, picture_bytes};
+use crate::sensors::{image_bytes, observation_bytes};
 use crate::world::World;
 
 /// Memory of a world beside its bodies, bytes.
@@ -28,8 +28,8 @@ impl MemoryEstimate {
     fn of(env: &Env) -> Self {
         let requests = env.requests();
         let views = requests.views.iter();
-        let pictures = views.map(|view| picture_bytes(&view.eye.camera, view.channels));
-        let ears = requests.ears.iter();
+        let pictures = views.map(|view| image_bytes(&view.eye.camera, view.channels));
+        let ears = requests.listeners.iter();
         let heard: u64 = ears.map(|(_, samples)| *samples as u64).sum();
         let specs = env.specs();
         Self {
@@ -45,7 +45,7 @@ impl MemoryEstimate {
 }
 
 fn world_bytes(world: &World) -> u64 {
-    let model = world.engines().physics();
+    let model = world.engines().physics_model();
     let (bodies, pieces) = (model.body_count() as u64, model.static_piece_count() as u64);
     WORLD_BYTES + bodies * BODY_BYTES + pieces * PIECE_BYTES
 }

@@ -8,55 +8,60 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MotionHistory {
     /// Previous poses of the parts that have moved, by part.
-    pub moved: Vec<(PartId, Pose)>,
+    pub previous_part_poses: Vec<(PartId, Pose)>,
     /// True if there was a step since the world began.
-    pub known: bool,
+    pub has_step: bool,
     /// The agents' eyes. Shape (agent,); empty before the first step.
-    pub eyes: Vec<Pose>,
+    pub previous_eye_poses: Vec<Pose>,
     /// The agents' feet, m. Shape (agent,); empty before the first step.
-    pub feet: Vec<Vec3>,
+    pub previous_feet: Vec<Vec3>,
 }
 
 impl MotionHistory {
     /// Records the differences of `before` from `now`.
-    pub(crate) fn remember(&mut self, before: &PreviousState, now: &State) {
-        self.known = true;
-        self.moved.clear();
+    pub(crate) fn record(&mut self, before: &PreviousState, now: &State) {
+        self.has_step = true;
+        self.previous_part_poses.clear();
         let changed = before.parts.iter().zip(now.part_pose.iter_ids());
         let changed = changed.filter(|(was, (_, is))| *was != *is);
-        self.moved
+        self.previous_part_poses
             .extend(changed.map(|(was, (part, _))| (part, *was)));
-        self.eyes.clone_from(&before.eyes);
-        self.feet.clone_from(&before.feet);
+        self.previous_eye_poses.clone_from(&before.eyes);
+        self.previous_feet.clone_from(&before.feet);
     }
 
     /// Clears the history.
     pub(crate) fn clear(&mut self) {
-        self.known = false;
-        self.moved.clear();
-        self.eyes.clear();
-        self.feet.clear();
+        self.has_step = false;
+        self.previous_part_poses.clear();
+        self.previous_eye_poses.clear();
+        self.previous_feet.clear();
     }
 
     /// Returns the previous pose of an agent's eyes; the current one before the first step.
     pub fn eye(&self, agent: AgentId, now: &State) -> Option<Pose> {
         let is = now.agents.get(agent)?.world_from_eye();
-        Some(self.eyes.get(agent.index()).copied().unwrap_or(is))
+        Some(
+            self.previous_eye_poses
+                .get(agent.index())
+                .copied()
+                .unwrap_or(is),
+        )
     }
 
     /// Returns whether nothing but eyes has moved.
     pub(crate) fn is_still(&self, now: &State) -> bool {
-        let feet = self.feet.iter().zip(now.agents.iter());
-        self.moved.is_empty() && feet.into_iter().all(|(was, is)| *was == is.position)
+        let feet = self.previous_feet.iter().zip(now.agents.iter());
+        self.previous_part_poses.is_empty() && feet.into_iter().all(|(was, is)| *was == is.position)
     }
 
     /// Moves parts and agents of a copy of the present back by the part `share` of a step.
     pub(crate) fn rewind(&self, state: &mut State, share: f32) {
-        for (part, was) in &self.moved {
+        for (part, was) in &self.previous_part_poses {
             let is = &mut state.part_pose[*part];
-            *is = between(is, was, share);
+            *is = interpolate_back(is, was, share);
         }
-        for (was, is) in self.feet.iter().zip(state.agents.iter_mut()) {
+        for (was, is) in self.previous_feet.iter().zip(state.agents.iter_mut()) {
             is.position += (*was - is.position) * share;
         }
     }
@@ -75,7 +80,7 @@ pub(crate) struct PreviousState {
 }
 
 impl PreviousState {
-    pub(crate) fn take(&mut self, state: &State) {
+    pub(crate) fn capture(&mut self, state: &State) {
         self.parts.clear();
         self.parts.extend(state.part_pose.iter());
         self.eyes.clear();
@@ -100,7 +105,7 @@ impl PreviousState {
 }
 
 /// The pose the part `share` of the way from `is` back to `was`, along a straight line and about one axis; beyond 1 further back.
-pub(crate) fn between(is: &Pose, was: &Pose, share: f32) -> Pose {
+pub(crate) fn interpolate_back(is: &Pose, was: &Pose, share: f32) -> Pose {
     let mut turn = is.rotation.inverse() * was.rotation;
     if turn.w < 0.0 {
         turn = -turn;
@@ -136,11 +141,11 @@ mod tests {
             (1.0, 0.2, 0.0),
             (2.0, -0.4, -1.0),
         ] {
-            let pose = between(&is, &was, share);
+            let pose = interpolate_back(&is, &was, share);
             let expected = rotation_from_yaw_pitch(yaw, 0.0);
             assert!(pose.rotation.dot(expected).abs() > 1.0 - 1e-6, "{share}");
             assert!((pose.position.x - x).abs() < 1e-6);
         }
-        assert!(between(&is, &is, 0.7).rotation.dot(is.rotation) > 1.0 - 1e-6);
+        assert!(interpolate_back(&is, &is, 0.7).rotation.dot(is.rotation) > 1.0 - 1e-6);
     }
 }

@@ -8,7 +8,10 @@ use serde_json::{Value, json};
 ///
 /// # Errors
 /// [`WorldError::Settings`] names the field that cannot be read.
-pub(crate) fn read<T: DeserializeOwned>(of: &'static str, value: &Value) -> Result<T, WorldError> {
+pub(crate) fn parse_settings<T: DeserializeOwned>(
+    of: &'static str,
+    value: &Value,
+) -> Result<T, WorldError> {
     serde_json::from_value(value.clone()).map_err(|error| {
         // A reader of the whole object does not report the field; reading one field alone does.
         let mut alone = value
@@ -39,7 +42,7 @@ mod tests {
     #[test]
     fn the_field_is_named_and_what_it_may_be() {
         let told = |value: Value| {
-            read::<SampleSettings>("settings", &value)
+            parse_settings::<SampleSettings>("settings", &value)
                 .unwrap_err()
                 .to_string()
         };

@@ -1,7 +1,7 @@
 //! Sound files, read once and shared by all worlds over a house.
 
 use crate::error::WorldError;
-use dwell_acoustics::recordings::MOST_BYTES;
+use dwell_acoustics::recordings::MAX_FILE_BYTES;
 use dwell_acoustics::signals::Signal;
 use dwell_acoustics::{AcousticsError, Recording};
 use dwell_houses::{DataRoot, FileLocation, HousesError};
@@ -66,7 +66,7 @@ impl Recordings {
             path: name.to_owned(),
             root: root.folder().to_owned(),
         })?;
-        let bytes = root.read(&path, MOST_BYTES)?;
+        let bytes = root.read(&path, MAX_FILE_BYTES)?;
         let signal = Recording::decode(name, &bytes)?.signal(rate_hz)?;
         let found = (signal.clone(), print(signal.samples()));
         let kept: usize = known.values().map(|(s, _)| s.samples().len()).sum();
@@ -103,7 +103,7 @@ impl Recordings {
     ///
     /// # Errors
     /// [`WorldError::Acoustics`] for what is no sound, and where all that sound have more than [`MOST_KEPT`] samples together.
-    pub(crate) fn of_house(
+    pub(crate) fn house_sound_file(
         &self,
         house: &House,
         id: SoundFileId,

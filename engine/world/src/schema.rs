@@ -20,12 +20,12 @@ pub struct FieldSchema {
 }
 
 /// The doc comment of a type, on one line.
-pub fn about<T: JsonSchema>() -> String {
+pub fn doc_comment<T: JsonSchema>() -> String {
     take_about(&mut root::<T>())
 }
 
 /// The fields of a struct, in the order in which it declares them.
-pub fn fields<T: JsonSchema + DeserializeOwned>() -> Vec<FieldSchema> {
+pub fn fields_of<T: JsonSchema + DeserializeOwned>() -> Vec<FieldSchema> {
     let mut root = root::<T>();
     let is_required = |name: &str| {
         let required = root["required"].as_array();
@@ -57,7 +57,7 @@ pub struct VariantSchema {
 }
 
 /// The variants without fields of an enum, in the order in which it declares them.
-pub fn variants<T: JsonSchema>() -> Vec<VariantSchema> {
+pub fn variants_of<T: JsonSchema>() -> Vec<VariantSchema> {
     let mut root = root::<T>();
     let variants = root["oneOf"].as_array_mut().map(std::mem::take);
     let one = |mut variant: Value| {
@@ -163,7 +163,7 @@ mod tests {
 
     #[test]
     fn fields_stand_in_order_with_their_text_type_and_range() {
-        let [width, name] = fields::<Thing>().try_into().unwrap();
+        let [width, name] = fields_of::<Thing>().try_into().unwrap();
         assert_eq!((width.name, width.required), ("width_m", true));
         assert_eq!(width.about, "How much, m; see `Thing` and `Thing::name`.");
         assert_eq!(
@@ -176,11 +176,11 @@ mod tests {
             json!({"type": ["string", "null"], "default": null})
         );
         assert_eq!(
-            about::<Thing>(),
+            doc_comment::<Thing>(),
             "What a thing is.  `Thing` has two fields."
         );
-        assert_eq!(fields::<u32>(), []);
-        let [heavy, light] = variants::<Weight>().try_into().unwrap();
+        assert_eq!(fields_of::<u32>(), []);
+        let [heavy, light] = variants_of::<Weight>().try_into().unwrap();
         assert_eq!(
             (heavy.name.as_str(), heavy.about.as_str()),
             ("very_heavy", "As lead.")

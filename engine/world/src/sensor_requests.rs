@@ -16,18 +16,18 @@ pub struct ViewRequest {
 
 /// All requests of one world's sensors in one step. Equal ones are merged.
 #[derive(Clone, Debug, Default)]
-pub struct Requests {
+pub struct SensorRequests {
     /// Pictures.
     pub views: Vec<ViewRequest>,
     /// Agents that listen, with the longest requested window, samples.
-    pub ears: Vec<(AgentId, usize)>,
+    pub listeners: Vec<(AgentId, usize)>,
 }
 
-impl Requests {
+impl SensorRequests {
     /// Requests images of a view.
-    pub fn view(&mut self, eye: &EyeCamera, channels: ImageChannels) {
+    pub fn request_view(&mut self, eye: &EyeCamera, channels: ImageChannels) {
         match self.views.iter_mut().find(|view| view.eye == *eye) {
-            Some(view) => view.channels = view.channels.and(channels),
+            Some(view) => view.channels = view.channels.union(channels),
             None => self.views.push(ViewRequest {
                 eye: eye.clone(),
                 channels,
@@ -36,17 +36,17 @@ impl Requests {
     }
 
     /// Requests the sound at an agent's ears.
-    pub fn ears(&mut self, agent: AgentId, samples: usize) {
-        match self.ears.iter_mut().find(|(other, _)| *other == agent) {
+    pub fn request_sound(&mut self, agent: AgentId, samples: usize) {
+        match self.listeners.iter_mut().find(|(other, _)| *other == agent) {
             Some((_, longest)) => *longest = samples.max(*longest),
-            None => self.ears.push((agent, samples)),
+            None => self.listeners.push((agent, samples)),
         }
     }
 }
 
 /// The images of one view; those that were not requested are empty.
 #[derive(Clone, Debug)]
-pub struct Picture {
+pub struct RenderedImage {
     /// The requested camera.
     pub eye: EyeCamera,
     /// The camera as it was for this picture.
@@ -57,40 +57,40 @@ pub struct Picture {
 
 /// The engines' results for one world. Buffers are kept from step to step.
 #[derive(Clone, Debug, Default)]
-pub struct Results {
+pub struct EngineResults {
     /// Pictures, in the order of the requests.
-    pub pictures: Vec<Picture>,
+    pub images: Vec<RenderedImage>,
 }
 
-impl Results {
+impl EngineResults {
     /// The picture of a view.
-    pub fn view(&self, eye: &EyeCamera) -> Option<&Picture> {
-        self.pictures.iter().find(|picture| picture.eye == *eye)
+    pub fn image_of(&self, eye: &EyeCamera) -> Option<&RenderedImage> {
+        self.images.iter().find(|picture| picture.eye == *eye)
     }
 
     /// Allocates the buffers for the requests, if these are other than the last time.
-    pub(crate) fn prepare(&mut self, requests: &Requests, world: &World) {
-        self.pictures.truncate(requests.views.len());
+    pub(crate) fn allocate(&mut self, requests: &SensorRequests, world: &World) {
+        self.images.truncate(requests.views.len());
         for (k, request) in requests.views.iter().enumerate() {
             let mut channels = request.channels;
             // Laws come and go while a world runs.
             channels.normals |= channels.depth && world.needs_normals(request.eye.agent);
             let camera = request.eye.camera;
-            match self.pictures.get_mut(k) {
+            match self.images.get_mut(k) {
                 Some(picture) if picture.eye == request.eye => {
                     if picture.frame.channels() != channels {
                         picture.frame = Frame::new(&camera, channels);
                     }
                 }
                 found => {
-                    let picture = Picture {
+                    let picture = RenderedImage {
                         eye: request.eye.clone(),
                         camera,
                         frame: Frame::new(&camera, channels),
                     };
                     match found {
                         Some(place) => *place = picture,
-                        None => self.pictures.push(picture),
+                        None => self.images.push(picture),
                     }
                 }
             }

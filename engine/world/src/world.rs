@@ -33,11 +33,11 @@ pub struct World {
     pub(crate) events: Vec<ContactEvent>,
     pub(crate) key: RandomKey,
     /// Poses before the last step.
-    pub(crate) past: MotionHistory,
+    pub(crate) motion_history: MotionHistory,
     /// Memory for it.
     before: PreviousState,
     /// The state that [`World::reset`] goes back to; worlds of one config share it.
-    pub(crate) start: Arc<InitialWorld>,
+    pub(crate) initial: Arc<InitialWorld>,
 }
 
 impl World {
@@ -49,13 +49,13 @@ impl World {
         config.check()?;
         config.check_sound_root()?;
         if config.renderer != BackEnd::Cpu {
-            engines.pictures(&config.renderer)?;
+            engines.image_renderer(&config.renderer)?;
         }
         if let Some(head) = config.sound_head {
             engines.head(head)?;
         }
         engines.check_sounds()?;
-        let start = engines.start(config)?;
+        let start = engines.initial_world(config)?;
         let (state, physics) = (start.state.clone(), start.physics.clone());
         let mut rays = RayScene::new(engines.house().clone());
         rays.update(&state);
@@ -68,9 +68,9 @@ impl World {
             sound: WorldSound::new(config),
             events: Vec::new(),
             key: RandomKey::root(0),
-            past: MotionHistory::default(),
+            motion_history: MotionHistory::default(),
             before: PreviousState::default(),
-            start,
+            initial: start,
         })
     }
 
@@ -79,18 +79,18 @@ impl World {
     /// # Errors
     /// None so far: the start is a copy of one that was possible.
     pub fn reset(&mut self, key: RandomKey) -> Result<(), WorldError> {
-        self.state.clone_from(&self.start.state);
-        self.physics.clone_from(&self.start.physics);
+        self.state.clone_from(&self.initial.state);
+        self.physics.clone_from(&self.initial.physics);
         self.rays.update(&self.state);
         self.sound.reset();
         self.events.clear();
-        self.past.clear();
+        self.motion_history.clear();
         self.key = key;
         Ok(())
     }
 
     /// As [`Self::reset`], in a world in which nothing has happened since it was made.
-    pub(crate) fn begin(&mut self, key: RandomKey) {
+    pub(crate) fn reset_fresh(&mut self, key: RandomKey) {
         self.key = key;
     }
 
@@ -101,12 +101,12 @@ impl World {
     pub fn step(&mut self, controls: &[AgentControl]) -> Result<(), WorldError> {
         self.events.clear();
         let began_s = self.physics.time_s();
-        self.before.take(&self.state);
+        self.before.capture(&self.state);
         self.physics
             .step(&mut self.state, controls, &mut self.events)?;
         self.state.step += 1;
         self.state.time_s = self.state.step as f64 * self.config.step_s();
-        self.past.remember(&self.before, &self.state);
+        self.motion_history.record(&self.before, &self.state);
         self.rays.update(&self.state);
         self.sound.add_contact_sounds(&StepContext {
             house: self.engines.house(),
@@ -132,7 +132,7 @@ impl World {
     /// Places an agent, at rest.
     ///
     /// # Errors
-    /// [`WorldError::Usage`] for an agent that does not exist.
+    /// [`WorldError::InvalidCall`] for an agent that does not exist.
     pub fn place_agent(
         &mut self,
         agent: AgentId,
@@ -141,7 +141,7 @@ impl World {
     ) -> Result<(), WorldError> {
         if agent.index() >= self.state.agents.len() {
             let count = self.state.agents.len();
-            return Err(WorldError::Usage(format!(
+            return Err(WorldError::InvalidCall(format!(
                 "no agent {}; there are {count}",
                 agent.0
             )));
@@ -169,8 +169,8 @@ impl World {
     ///
     /// # Errors
     /// [`WorldError::Acoustics`] for a source or receiver that cannot be simulated.
-    pub fn listen(&mut self, ears: &[(AgentId, usize)]) -> Result<(), WorldError> {
-        self.sound.listen(
+    pub fn enable_listeners(&mut self, ears: &[(AgentId, usize)]) -> Result<(), WorldError> {
+        self.sound.enable_listeners(
             &self.engines,
             &self.rays,
             &self.state,
@@ -185,9 +185,9 @@ impl World {
     }
 
     /// The object in the middle of an agent's view, within 10 m.
-    pub fn gaze_target(&self, agent: AgentId) -> Option<ObjectId> {
+    pub fn object_in_view_centre(&self, agent: AgentId) -> Option<ObjectId> {
         let eye = self.state.agents.get(agent)?.world_from_eye();
-        let ray = Ray::new(eye.position, eye.transform_vector(Vec3::NEG_Z)).between(0.0, 10.0);
+        let ray = Ray::new(eye.position, eye.transform_vector(Vec3::NEG_Z)).with_range(0.0, 10.0);
         let hit = self.rays.closest(&ray, RayMask::EYE)?;
         match self.house().entity(self.rays.surface(&hit).entity)? {
             Entity::Object(object) => Some(object),
@@ -221,8 +221,8 @@ impl World {
     }
 
     /// Returns the poses before the last step.
-    pub fn past(&self) -> &MotionHistory {
-        &self.past
+    pub fn motion_history(&self) -> &MotionHistory {
+        &self.motion_history
     }
 
     /// Returns whether laws of an agent's depth sensors look at normals.
@@ -251,7 +251,7 @@ impl World {
 
     /// Returns what had to be moved or frozen so that the world could start.
     pub fn start_report(&self) -> &StartReport {
-        &self.start.report
+        &self.initial.start_report
     }
 
     /// Returns the parameter at an address.
@@ -265,7 +265,7 @@ impl World {
     /// Every parameter with its address and value now: those of the scene, then those of laws, installed or not.
     pub fn parameters(&self) -> Vec<(Address, Parameter)> {
         let mut addresses = self.state.addresses(self.house());
-        addresses.extend(self.state.law_addresses(crate::laws::known()));
+        addresses.extend(self.state.law_addresses(crate::laws::all_slice()));
         let read = |address: Address| Some((address.clone(), self.parameter(&address).ok()?));
         addresses.into_iter().filter_map(read).collect()
     }
@@ -312,7 +312,7 @@ impl World {
     /// hand and takes positions only.
     ///
     /// # Errors
-    /// [`WorldError::Usage`] for a joint that does not exist, a number that is not finite, or a command the joint cannot
+    /// [`WorldError::InvalidCall`] for a joint that does not exist, a number that is not finite, or a command the joint cannot
     /// obey.
     pub fn command_joint(
         &mut self,
@@ -323,10 +323,10 @@ impl World {
         let count = house.joints.len();
         let Some(articulation) = house.joints.get(joint) else {
             let what = format!("no joint {}; there are {count}, counted from 0", joint.0);
-            return Err(WorldError::Usage(what));
+            return Err(WorldError::InvalidCall(what));
         };
         let name = &articulation.name;
-        let refuse = |why: &str| Err(WorldError::Usage(format!("joint {name:?}: {why}")));
+        let refuse = |why: &str| Err(WorldError::InvalidCall(format!("joint {name:?}: {why}")));
         if !command.is_finite() {
             return refuse("the command is no finite number");
         }
@@ -352,13 +352,13 @@ impl World {
     /// Sets positions and velocities of joints, rad or m and per second, at once; what hangs on them moves along.
     ///
     /// # Errors
-    /// [`WorldError::Usage`] for a joint that does not exist; [`WorldError::Physics`] for numbers that are not finite, a position
+    /// [`WorldError::InvalidCall`] for a joint that does not exist; [`WorldError::Physics`] for numbers that are not finite, a position
     /// beyond the joint's limits or a speed beyond 1000 rad/s or m/s; nothing has changed then.
     pub fn set_joints(&mut self, joints: &[(JointId, f32, f32)]) -> Result<(), WorldError> {
         let count = self.state.joint_position.len();
         if let Some((joint, ..)) = joints.iter().find(|(joint, ..)| joint.index() >= count) {
             let what = format!("no joint {}; there are {count}, counted from 0", joint.0);
-            return Err(WorldError::Usage(what));
+            return Err(WorldError::InvalidCall(what));
         }
         let joints: Vec<JointState> = joints
             .iter()

@@ -4,10 +4,10 @@
 //! initial state, which a restoring process has as well: unchanged parts take next to nothing.
 
 use crate::error::WorldError;
-use crate::initial_state::{SnapshotBase, SnapshotParts, body};
+use crate::initial_state::{SnapshotBase, SnapshotParts, unpacked_body};
 use crate::sound::WorldSound;
 use crate::world::World;
-use dwell_scene::packing::{pack_within, unpack};
+use dwell_scene::packing::{pack_to_size, unpack};
 use dwell_scene::{AgentBody, Id, State};
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -36,19 +36,19 @@ impl World {
         let head = SnapshotHeader {
             house: self.house().fingerprint(),
             agents: self.config().agents.clone(),
-            base: base.sum,
+            base: base.checksum,
         };
         let mut told =
             postcard::to_stdvec(&head).expect("plain bytes can always be written to memory");
         let (state, physics) = (self.state(), &self.physics);
-        let body = body(
+        let body = unpacked_body(
             self.house(),
             state,
             physics,
-            (self.sound.to_bytes(), self.key, self.past.clone()),
+            (self.sound.to_bytes(), self.key, self.motion_history.clone()),
         );
-        let most = physics.largest_snapshot() - told.len() - MAGIC.len() - size_of::<u64>();
-        told.extend_from_slice(&pack_within(&body, &base.bytes, most));
+        let most = physics.target_snapshot_bytes() - told.len() - MAGIC.len() - size_of::<u64>();
+        told.extend_from_slice(&pack_to_size(&body, &base.bytes, most));
         let mut bytes = MAGIC.to_vec();
         bytes.extend_from_slice(&xxh3_64(&told).to_le_bytes());
         bytes.extend_from_slice(&told);
@@ -86,7 +86,7 @@ impl World {
             )));
         }
         let base = self.base();
-        if head.base != base.sum {
+        if head.base != base.checksum {
             return Err(refuse(
                 "its world began otherwise: with other rates, or on another kind of machine"
                     .to_owned(),
@@ -105,7 +105,11 @@ impl World {
             parts.key.child("sound"),
             &parts.sound,
         )?;
-        let parts_of_past = parts.past.moved.iter().map(|(part, _)| part.index());
+        let parts_of_past = parts
+            .motion_history
+            .previous_part_poses
+            .iter()
+            .map(|(part, _)| part.index());
         if parts_of_past.max() >= Some(state.part_pose.len()) {
             return Err(refuse(
                 "parts moved that the house does not have".to_owned(),
@@ -115,14 +119,14 @@ impl World {
         self.state = state;
         self.sound = sound;
         self.key = parts.key;
-        self.past = parts.past;
+        self.motion_history = parts.motion_history;
         self.events.clear();
         self.rays.update(&self.state);
         Ok(())
     }
 
     fn base(&self) -> &SnapshotBase {
-        let model = self.engines.physics();
-        self.start.base(model, &self.config)
+        let model = self.engines.physics_model();
+        self.initial.snapshot_base(model, &self.config)
     }
 }

@@ -13,7 +13,7 @@ impl World {
     ///
     /// # Errors
     /// [`WorldError::Config`] for a level outside -100 to 200 dB, a place that is not finite or a file without
-    /// [`sound_root`](crate::WorldConfig::sound_root), [`WorldError::Usage`] for an object or agent that does not exist,
+    /// [`sound_root`](crate::WorldConfig::sound_root), [`WorldError::InvalidCall`] for an object or agent that does not exist,
     /// [`WorldError::Houses`] for a file that cannot be read or lies outside the root, [`WorldError::Acoustics`] for a
     /// signal that does not exist or a file that is no sound. Nothing has changed then.
     pub fn play(&mut self, request: PlayRequest) -> Result<u64, WorldError> {
@@ -25,7 +25,7 @@ impl World {
     /// again with [`World::start_sound`].
     ///
     /// # Errors
-    /// [`WorldError::Usage`] for a handle that no sound has, as of one that is over.
+    /// [`WorldError::InvalidCall`] for a handle that no sound has, as of one that is over.
     pub fn stop_sound(&mut self, handle: u64) -> Result<(), WorldError> {
         self.sound.set_silent(self.engines.house(), handle, true)
     }
@@ -55,7 +55,7 @@ impl World {
     }
 
     /// The newest samples at an agent's ear (0 left, 1 right), Pa; zeros before it listened that long.
-    pub fn heard(&self, agent: AgentId, channel: usize, out: &mut [f32]) {
-        self.sound.heard(agent, channel, out);
+    pub fn newest_samples(&self, agent: AgentId, channel: usize, out: &mut [f32]) {
+        self.sound.newest_samples(agent, channel, out);
     }
 }

@@ -158,7 +158,7 @@ impl Solver for Ours {
     }
 
     fn bits(&self) -> Vec<u8> {
-        self.world.moment()
+        self.world.unpacked_snapshot()
     }
 
     fn restored(&self) -> Box<dyn Solver> {

@@ -26,6 +26,6 @@ impl Close {
 impl HandAction for Close {
     fn perform(&self, hand: &mut Hand<'_>) -> ActionResult {
         hand.context
-            .swing(hand.state, hand.actor, &self.target, 0.0)
+            .swing_door(hand.state, hand.actor, &self.target, 0.0)
     }
 }

@@ -3,7 +3,7 @@
 use super::request::Target;
 use super::target::ResolvedTarget;
 use super::{ActionContext, ActionResult, Actor};
-use crate::articulation::{CLOSED, OPEN};
+use crate::articulation::{CLOSED_THRESHOLD, OPEN_THRESHOLD};
 use crate::joints::HandDrive;
 use crate::outcome::{OutcomeCode, done, fail};
 use dwell_scene::{JointCommand, JointId, ObjectId, State};
@@ -12,7 +12,7 @@ use dwell_scene::{JointCommand, JointId, ObjectId, State};
 const OPENNESS_TOLERANCE: f32 = 0.02;
 
 impl ActionContext<'_> {
-    pub(super) fn swing(
+    pub(super) fn swing_door(
         &mut self,
         state: &mut State,
         actor: Actor<'_>,
@@ -37,11 +37,11 @@ impl ActionContext<'_> {
         }
         let openness = |id: &JointId| house.joints[*id].openness(state.joint_position[*id]);
         let all = |there: &dyn Fn(f32) -> bool| ids.iter().all(|id| there(openness(id)));
-        if fraction >= OPEN && all(&|share| share >= OPEN) {
+        if fraction >= OPEN_THRESHOLD && all(&|share| share >= OPEN_THRESHOLD) {
             let sentence = format!("The {name} is open already.");
             return refuse(OutcomeCode::AlreadyOpen, sentence);
         }
-        if fraction <= CLOSED && all(&|share| share <= CLOSED) {
+        if fraction <= CLOSED_THRESHOLD && all(&|share| share <= CLOSED_THRESHOLD) {
             let sentence = format!("The {name} is closed already.");
             return refuse(OutcomeCode::AlreadyClosed, sentence);
         }
@@ -50,16 +50,16 @@ impl ActionContext<'_> {
             let sentence = format!("The {name} is {percent:.0} % open already.");
             return refuse(OutcomeCode::AlreadyOpen, sentence);
         }
-        if let Some(refusal) = self.refuse_reach(state, actor, object) {
+        if let Some(refusal) = self.check_reach(state, actor, object) {
             return Ok(refusal);
         }
-        self.lead(state, actor, &ids, fraction);
+        self.drive_joints(state, actor, &ids, fraction);
         let sentence = format!("You {verb} the {name}; it takes a moment.");
         Ok(done(OutcomeCode::Started, sentence, Some(object)))
     }
 
     /// Starts hand drives on joints that move them to an openness (0 to 1) over the next steps.
-    pub(super) fn lead(
+    pub(super) fn drive_joints(
         &mut self,
         state: &mut State,
         actor: Actor<'_>,
@@ -79,7 +79,7 @@ impl ActionContext<'_> {
                 .clamp(goal);
             state.joint_command[*id] = JointCommand::Position(goal);
             let drive = HandDrive::new(goal, state.joint_position[*id], Some(actor.id));
-            self.articulation.drives.insert(*id, drive);
+            self.articulation.hand_drives.insert(*id, drive);
         }
     }
 
@@ -90,7 +90,7 @@ impl ActionContext<'_> {
             let body = self.dynamics.model.body_of_part[part]?;
             self.dynamics.model.bodies[body as usize].joint
         };
-        let opens = |id: &JointId| house.joints[*id].opens();
+        let opens = |id: &JointId| house.joints[*id].is_openable();
         let one = aim.part.and_then(moved_by).filter(opens);
         one.map_or_else(
             || house.joints_of(object).filter(opens).collect(),

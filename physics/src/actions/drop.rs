@@ -12,6 +12,6 @@ pub struct Drop {}
 
 impl HandAction for Drop {
     fn perform(&self, hand: &mut Hand<'_>) -> ActionResult {
-        Ok(hand.context.let_go(hand.state, hand.actor.id))
+        Ok(hand.context.release(hand.state, hand.actor.id))
     }
 }

@@ -44,10 +44,10 @@ impl ActionContext<'_> {
             return refuse(OutcomeCode::NotPickable, sentence);
         }
         let body = bodies[0];
-        if let Some(refusal) = self.refuse_stood_on(state, actor.id, object) {
+        if let Some(refusal) = self.check_not_stood_on(state, actor.id, object) {
             return Ok(refusal);
         }
-        if let Some(refusal) = self.refuse_reach(state, actor, object) {
+        if let Some(refusal) = self.check_reach(state, actor, object) {
             return Ok(refusal);
         }
         if self.dynamics.statuses[body] != BodyStatus::Free {
@@ -79,7 +79,7 @@ impl ActionContext<'_> {
         let loaded = house
             .objects
             .ids()
-            .any(|other| state.rests_on(house, other).contains(&Some(object)));
+            .any(|other| state.supports_of(house, other).contains(&Some(object)));
         let grip = HeldObject::new(
             &self.dynamics.model,
             body as u32,
@@ -88,14 +88,17 @@ impl ActionContext<'_> {
             &from_rapier(&place),
             (grasp, loaded),
         );
-        self.hands.grips.push(grip);
-        self.hands.grips.sort_by_key(|grip| grip.agent);
-        self.dynamics.excluded.carry(body as u32, actor.id);
+        self.hands.held_objects.push(grip);
+        self.hands.held_objects.sort_by_key(|grip| grip.agent);
+        self.dynamics
+            .collision_exclusions
+            .exclude_carried(body as u32, actor.id);
         let target = to_rapier(&hand_pose(&grip, &holder));
         let clear = if loaded {
             None
         } else {
-            self.dynamics.clear_between(body, &holder, &place, &target)
+            self.dynamics
+                .first_clear_pose(body, &holder, &place, &target)
         };
         let gravity_scale = self.hands.gravity_scale(self.dynamics, body);
         self.dynamics
@@ -124,15 +127,20 @@ impl ActionContext<'_> {
         Ok(done(OutcomeCode::Done, sentence, Some(object)))
     }
 
-    pub(super) fn let_go(&mut self, state: &mut State, agent: AgentId) -> ActionOutcome {
-        let Some(place) = self.hands.grips.iter().position(|grip| grip.agent == agent) else {
+    pub(super) fn release(&mut self, state: &mut State, agent: AgentId) -> ActionOutcome {
+        let Some(place) = self
+            .hands
+            .held_objects
+            .iter()
+            .position(|grip| grip.agent == agent)
+        else {
             return fail(
                 OutcomeCode::HandEmpty,
                 "You hold nothing. Pick something first.",
                 None,
             );
         };
-        let object = self.hands.grips[place].object;
+        let object = self.hands.held_objects[place].object;
         self.hands.open_hand(self.dynamics, state, place);
         let sentence = format!("You let go of the {}.", self.dynamics.name_of(object));
         done(OutcomeCode::Done, sentence, Some(object))

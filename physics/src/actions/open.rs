@@ -39,6 +39,6 @@ impl Open {
 impl HandAction for Open {
     fn perform(&self, hand: &mut Hand<'_>) -> ActionResult {
         hand.context
-            .swing(hand.state, hand.actor, &self.target, self.fraction)
+            .swing_door(hand.state, hand.actor, &self.target, self.fraction)
     }
 }

@@ -54,24 +54,24 @@ impl Place {
 impl HandAction for Place {
     fn perform(&self, hand: &mut Hand<'_>) -> ActionResult {
         hand.context
-            .put_on(hand.state, hand.actor, self.target.as_ref())
+            .place_on(hand.state, hand.actor, self.target.as_ref())
     }
 }
 
 impl ActionContext<'_> {
-    pub(super) fn put_on(
+    pub(super) fn place_on(
         &mut self,
         state: &mut State,
         actor: Actor<'_>,
         on: Option<&Target>,
     ) -> ActionResult {
-        let grip = self.grip_of(actor)?;
+        let grip = self.held_object_of(actor)?;
         let stances = self.stable_poses(grip.body as usize);
         let spot = match on {
             Some(target) => self.spot_on(state, actor, &grip, &stances, target)?,
             None => self.spot_in_view(actor, &grip, &stances)?,
         };
-        self.put_down(state, actor, &spot.pose);
+        self.release_at(state, actor, &spot.pose);
         let sentence = format!(
             "You put the {} on the {}.",
             self.dynamics.name_of(grip.object),
@@ -81,8 +81,15 @@ impl ActionContext<'_> {
     }
 
     /// Returns the agent's grip, or the refusal for an empty hand.
-    pub(super) fn grip_of(&self, actor: Actor<'_>) -> Result<HeldObject, Box<ActionOutcome>> {
-        let grip = self.hands.grips.iter().find(|grip| grip.agent == actor.id);
+    pub(super) fn held_object_of(
+        &self,
+        actor: Actor<'_>,
+    ) -> Result<HeldObject, Box<ActionOutcome>> {
+        let grip = self
+            .hands
+            .held_objects
+            .iter()
+            .find(|grip| grip.agent == actor.id);
         grip.copied().ok_or_else(|| {
             let sentence = "You hold nothing. Pick something first.";
             Box::new(fail(OutcomeCode::HandEmpty, sentence, None))
@@ -90,16 +97,16 @@ impl ActionContext<'_> {
     }
 
     /// Opens a hand and leaves the held object under a pose, at rest.
-    pub(super) fn put_down(&mut self, state: &mut State, actor: Actor<'_>, pose: &RapierPose) {
+    pub(super) fn release_at(&mut self, state: &mut State, actor: Actor<'_>, pose: &RapierPose) {
         let Some(place) = self
             .hands
-            .grips
+            .held_objects
             .iter()
             .position(|grip| grip.agent == actor.id)
         else {
             return;
         };
-        let handle = self.dynamics.bodies[self.hands.grips[place].body as usize].handle;
+        let handle = self.dynamics.bodies[self.hands.held_objects[place].body as usize].handle;
         self.hands.open_hand(self.dynamics, state, place);
         if let Some(rigid) = self.dynamics.engine.bodies.get_mut(handle) {
             rigid.set_position(*pose, true);
@@ -137,7 +144,7 @@ impl ActionContext<'_> {
             }
             _ => {
                 let sentence = "Nothing can be put on somebody. Choose a surface.".to_owned();
-                return refuse(OutcomeCode::NotAThing, sentence, None);
+                return refuse(OutcomeCode::NotAnObject, sentence, None);
             }
         };
         let eye = actor.body.eye_position();
@@ -150,7 +157,7 @@ impl ActionContext<'_> {
                 );
                 return refuse(OutcomeCode::HeldByOther, sentence, on);
             }
-            if let Some(refusal) = self.refuse_reach(state, actor, object) {
+            if let Some(refusal) = self.check_reach(state, actor, object) {
                 return Err(Box::new(refusal));
             }
         }
@@ -197,7 +204,7 @@ impl ActionContext<'_> {
                 yaw + LOOK_STEP_RAD * x as f32,
                 pitch + LOOK_STEP_RAD * y as f32,
             );
-            let ray = Ray::new(eye, turned * Vec3::NEG_Z).between(0.0, actor.body.body.reach_m);
+            let ray = Ray::new(eye, turned * Vec3::NEG_Z).with_range(0.0, actor.body.body.reach_m);
             let Some(hit) = actor.rays.closest_excluding(&ray, RayMask::EYE, held) else {
                 continue;
             };
@@ -212,7 +219,7 @@ impl ActionContext<'_> {
                     (SupportFilter::Object(object), Some(object))
                 }
             };
-            let foot = ray.at(hit.distance_m) + Vec3::Y * RING_M;
+            let foot = ray.point_at(hit.distance_m) + Vec3::Y * RING_M;
             let feet: Vec<Vec3> = self
                 .dynamics
                 .support_heights(grip.body as usize, ground, foot, 2.0 * RING_M)
@@ -245,10 +252,10 @@ impl ActionContext<'_> {
             feet.iter().find_map(|foot| {
                 let middle = *foot + Vec3::Y * (0.5 * stance.size().y);
                 let near = (*foot - eye).length() <= reach;
-                if !near || self.dynamics.first_obstacle(eye, middle).is_some() {
+                if !near || self.dynamics.first_reach_obstacle(eye, middle).is_some() {
                     return None;
                 }
-                self.stand_at(body, stance, *foot).ok()
+                self.stable_pose_at(body, stance, *foot).ok()
             })
         })
     }

@@ -23,18 +23,18 @@ pub struct PlaceAt {
 
 impl HandAction for PlaceAt {
     fn perform(&self, hand: &mut Hand<'_>) -> ActionResult {
-        hand.context.put_at(hand.state, hand.actor, self.point)
+        hand.context.place_at(hand.state, hand.actor, self.point)
     }
 }
 
 impl ActionContext<'_> {
-    pub(super) fn put_at(
+    pub(super) fn place_at(
         &mut self,
         state: &mut State,
         actor: Actor<'_>,
         point: Vec3,
     ) -> ActionResult {
-        let grip = self.grip_of(actor)?;
+        let grip = self.held_object_of(actor)?;
         let held = self.dynamics.name_of(grip.object);
         let refuse = |code, sentence: String| Ok(fail(code, sentence, Some(grip.object)));
         if !point.is_finite() {
@@ -50,7 +50,7 @@ impl ActionContext<'_> {
             return refuse(OutcomeCode::TooFar, sentence);
         }
         let above = point + Vec3::Y * SURFACE_M;
-        if let Some(blocker) = self.dynamics.first_obstacle(eye, above) {
+        if let Some(blocker) = self.dynamics.first_reach_obstacle(eye, above) {
             let name = self.name_of_entry(blocker);
             let sentence =
                 format!("The {name} is between you and that place. Choose one in the open.");
@@ -71,9 +71,9 @@ impl ActionContext<'_> {
         let foot = point.with_y(height);
         let mut blocker = None;
         for stance in self.stable_poses(body) {
-            match self.stand_at(body, &stance, foot) {
+            match self.stable_pose_at(body, &stance, foot) {
                 Ok(pose) => {
-                    self.put_down(state, actor, &pose);
+                    self.release_at(state, actor, &pose);
                     let sentence = format!("You put the {held} down there.");
                     return Ok(done(OutcomeCode::Done, sentence, Some(grip.object)));
                 }

@@ -29,7 +29,7 @@ fn moved(a: &RapierPose, b: &RapierPose, most_m: f32, most_rad: f32) -> bool {
 impl ActionContext<'_> {
     /// Returns the pose at which a body put under a pose comes to rest, simulated by the same solver among near objects,
     /// which are fixed meanwhile; `None` when it slides, topples or rolls away.
-    pub(super) fn trial_rest_pose(&self, body: usize, pose: &RapierPose) -> Option<RapierPose> {
+    pub(super) fn simulated_rest_pose(&self, body: usize, pose: &RapierPose) -> Option<RapierPose> {
         let plan = &self.dynamics.model.bodies[body];
         let near = plan.bounds(pose).grown(NEAR_M);
         let mut trial = RapierWorld::new(
@@ -76,8 +76,8 @@ impl ActionContext<'_> {
                 .dynamics
                 .laws
                 .contact_properties(&self.dynamics.model.house, &self.dynamics.table),
-            excluded: &self.dynamics.excluded,
-            kept: self.dynamics.engine.friction_kept(),
+            excluded: &self.dynamics.collision_exclusions,
+            friction_storage: self.dynamics.engine.friction_storage(),
             dt_s: self.dynamics.settings.dt_s,
         };
         let steps = (TRIAL_S / self.dynamics.settings.dt_s).ceil() as u32;
@@ -90,7 +90,7 @@ impl ActionContext<'_> {
                     return None;
                 }
             }
-            let flying = trial.in_free_flight();
+            let flying = trial.bodies_in_free_flight();
             trial.step(flying, &hooks, &());
         }
         let end = *trial.bodies.get(handle)?.position();

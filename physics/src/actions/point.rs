@@ -47,7 +47,7 @@ impl ActionContext<'_> {
             ),
             Entity::Agent(id) if id == actor.id => {
                 let sentence = "You cannot point at yourself. Point at something else.";
-                return Err(Box::new(fail(OutcomeCode::Oneself, sentence, None)));
+                return Err(Box::new(fail(OutcomeCode::TargetIsSelf, sentence, None)));
             }
             Entity::Agent(id) => (
                 house.entity_of_agent(id),

@@ -84,10 +84,10 @@ impl ActionContext<'_> {
             return Ok(fail(OutcomeCode::HeldByOther, sentence, Some(object)));
         }
         let body = self.body_to_push(object, &aim)?;
-        if let Some(refusal) = self.refuse_stood_on(state, actor.id, object) {
+        if let Some(refusal) = self.check_not_stood_on(state, actor.id, object) {
             return Ok(refusal);
         }
-        if let Some(refusal) = self.refuse_reach(state, actor, object) {
+        if let Some(refusal) = self.check_reach(state, actor, object) {
             return Ok(refusal);
         }
         let handle = self.dynamics.bodies[body].handle;
@@ -166,7 +166,7 @@ impl ActionContext<'_> {
                 format!("The {name} stands firm. Choose something loose."),
             ),
             Some(BodyStatus::Latched) => refuse(
-                OutcomeCode::Shut,
+                OutcomeCode::Latched,
                 format!("The {name} is shut and does not give way. Open it first."),
             ),
             Some(_) => refuse(

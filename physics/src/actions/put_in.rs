@@ -49,18 +49,18 @@ pub struct PutIn {
 
 impl HandAction for PutIn {
     fn perform(&self, hand: &mut Hand<'_>) -> ActionResult {
-        hand.context.put_in(hand.state, hand.actor, &self.target)
+        hand.context.place_in(hand.state, hand.actor, &self.target)
     }
 }
 
 impl ActionContext<'_> {
-    pub(super) fn put_in(
+    pub(super) fn place_in(
         &mut self,
         state: &mut State,
         actor: Actor<'_>,
         container: &Target,
     ) -> ActionResult {
-        let grip = self.grip_of(actor)?;
+        let grip = self.held_object_of(actor)?;
         let (object, aim) = self.resolve_object_target(state, actor, container)?;
         let (held, name) = (
             self.dynamics.name_of(grip.object),
@@ -90,7 +90,7 @@ impl ActionContext<'_> {
             );
             return refuse(OutcomeCode::NotContainer, sentence);
         }
-        if let Some(refusal) = self.refuse_reach(state, actor, object) {
+        if let Some(refusal) = self.check_reach(state, actor, object) {
             return Ok(refusal);
         }
         let mut search = InsertionSearch::default();
@@ -138,7 +138,7 @@ impl ActionContext<'_> {
                 ),
             };
         };
-        self.put_down(state, actor, &pose);
+        self.release_at(state, actor, &pose);
         let sentence = format!("You put the {held} in the {name}.");
         Ok(done(OutcomeCode::Done, sentence, Some(object)))
     }
@@ -168,7 +168,7 @@ impl ActionContext<'_> {
         let loose_with_lid = !house.parts[root].fixed
             && house
                 .joints_of(space.object)
-                .any(|id| house.joints[id].opens());
+                .any(|id| house.joints[id].is_openable());
         for stance in self.stable_poses(body) {
             let size = size_in(plan, &stance, &world_from_part);
             let room = inside.size();
@@ -200,13 +200,13 @@ impl ActionContext<'_> {
                     let gets_in = if loose_with_lid {
                         self.gets_in(eye, middle, space.object, &outer, &world_from_part)
                     } else {
-                        self.dynamics.first_obstacle(eye, middle).is_none()
+                        self.dynamics.first_reach_obstacle(eye, middle).is_none()
                     };
                     if !gets_in || !house.encloses(state, space.object, &outer, &inner) {
                         continue;
                     }
                     search.in_sight = true;
-                    if let Ok(pose) = self.stand_at(body, &stance, foot) {
+                    if let Ok(pose) = self.stable_pose_at(body, &stance, foot) {
                         search.pose = Some(pose);
                         return;
                     }
@@ -256,7 +256,7 @@ impl ActionContext<'_> {
             outside.is_some_and(|outside| {
                 let ray = Ray::new(inside, outside - inside);
                 queries.cast_ray(&ray, 1.0, true).is_none()
-                    && self.dynamics.first_obstacle(eye, outside).is_none()
+                    && self.dynamics.first_reach_obstacle(eye, outside).is_none()
             })
         })
     }

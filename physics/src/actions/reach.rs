@@ -20,7 +20,7 @@ const SOLE_M: f32 = 0.06;
 
 impl ActionContext<'_> {
     /// The refusal for an object that is out of reach, behind, or hidden.
-    pub(super) fn refuse_reach(
+    pub(super) fn check_reach(
         &self,
         state: &State,
         actor: Actor<'_>,
@@ -45,7 +45,7 @@ impl ActionContext<'_> {
             .any(|to| to.length() < AT_THE_FEET_M || to.dot(forward) > 0.0);
         if !ahead {
             let sentence = format!("The {name} is behind you. Turn around.");
-            return Some(fail(OutcomeCode::Behind, sentence, Some(object)));
+            return Some(fail(OutcomeCode::BehindAgent, sentence, Some(object)));
         }
         if let Err(blocker) = self.sight(state, actor, object, nearest) {
             let sentence = match blocker {
@@ -77,10 +77,10 @@ impl ActionContext<'_> {
                 }
             }
         }
-        for piece in &model.statics {
+        for piece in &model.static_pieces {
             let own = piece.owner.part();
             if own.is_some_and(|part| model.house.parts[part].object == object) {
-                points.push(piece.shape.project_point(&piece.place, from, true).point);
+                points.push(piece.shape.project_point(&piece.pose, from, true).point);
             }
         }
         if points.is_empty() {
@@ -167,7 +167,7 @@ impl ActionContext<'_> {
 
 impl ActionContext<'_> {
     /// Returns the objects that agents stand on: their supports, and the supports of those.
-    pub(super) fn stood_on(&self, state: &State) -> Vec<(AgentId, ObjectId)> {
+    pub(super) fn objects_under_agents(&self, state: &State) -> Vec<(AgentId, ObjectId)> {
         let house = &self.dynamics.model.house;
         let mut found = Vec::new();
         for (id, agent) in state.agents.iter_ids() {
@@ -177,20 +177,20 @@ impl ActionContext<'_> {
                     continue;
                 }
                 found.push((id, object));
-                open.extend(state.rests_on(house, object).into_iter().flatten());
+                open.extend(state.supports_of(house, object).into_iter().flatten());
             }
         }
         found
     }
 
     /// The refusal for an object that an agent stands on.
-    pub(super) fn refuse_stood_on(
+    pub(super) fn check_not_stood_on(
         &self,
         state: &State,
         agent: AgentId,
         object: ObjectId,
     ) -> Option<ActionOutcome> {
-        let on_it = self.stood_on(state);
+        let on_it = self.objects_under_agents(state);
         let (who, _) = on_it.into_iter().find(|(_, carrier)| *carrier == object)?;
         let name = self.dynamics.name_of(object);
         let sentence = if who == agent {
@@ -201,7 +201,7 @@ impl ActionContext<'_> {
                 who.0
             )
         };
-        Some(fail(OutcomeCode::StoodOn, sentence, Some(object)))
+        Some(fail(OutcomeCode::SupportsAgent, sentence, Some(object)))
     }
 
     /// Returns the object directly under an agent's feet.

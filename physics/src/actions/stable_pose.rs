@@ -1,7 +1,7 @@
 //! Stable poses of an object, and the support that they need.
 
 use super::ActionContext;
-use crate::dynamics::{HolderContacts, SupportFilter};
+use crate::dynamics::{HolderCollision, SupportFilter};
 use crate::model::BodyPlan;
 use glam::{Quat, Vec3};
 use rapier3d::math::Pose as RapierPose;
@@ -27,8 +27,8 @@ const GROUND_PROBE_M: f32 = 0.02;
 pub(super) struct StablePose {
     pub(super) rotation: Quat,
     /// The lower corner of the box around it.
-    pub(super) low: Vec3,
-    pub(super) high: Vec3,
+    pub(super) min: Vec3,
+    pub(super) max: Vec3,
     center_of_mass: Vec3,
     /// The outermost point of the sole in each direction.
     sole: [Vec3; DIRECTIONS],
@@ -45,7 +45,7 @@ fn outermost(plan: &BodyPlan, rotation: Quat, direction: Vec3) -> Option<Vec3> {
     plan.pieces
         .iter()
         .filter_map(|piece| {
-            let at = place * piece.place;
+            let at = place * piece.pose;
             let map = piece.shape.as_support_map()?;
             let local = map.local_support_point(at.rotation.inverse() * direction);
             Some(at * local)
@@ -63,21 +63,21 @@ impl StablePose {
         }
         Some(Self {
             rotation,
-            low: bounds.min,
-            high: bounds.max,
+            min: bounds.min,
+            max: bounds.max,
             center_of_mass: rotation * center_of_mass_in_body,
             sole,
         })
     }
 
     pub(super) fn size(&self) -> Vec3 {
-        self.high - self.low
+        self.max - self.min
     }
 
     /// Returns the body's pose when the middle of its foot is on a point.
     pub(super) fn pose_on(&self, foot: Vec3) -> RapierPose {
-        let middle = 0.5 * (self.low + self.high);
-        let base = Vec3::new(middle.x, self.low.y - GAP_M, middle.z);
+        let middle = 0.5 * (self.min + self.max);
+        let base = Vec3::new(middle.x, self.min.y - GAP_M, middle.z);
         let mut pose = RapierPose::from_rotation(self.rotation);
         pose.translation = foot - base;
         pose
@@ -167,7 +167,7 @@ impl ActionContext<'_> {
 
     /// Returns the resting pose of a body with its foot's middle on a point: free of overlaps, on supporting ground. The error
     /// is the obstacle's name, or `None` when the body would not stay.
-    pub(super) fn stand_at(
+    pub(super) fn stable_pose_at(
         &self,
         body: usize,
         stance: &StablePose,
@@ -176,13 +176,13 @@ impl ActionContext<'_> {
         let pose = stance.pose_on(foot);
         if let Some(blocker) = self
             .dynamics
-            .first_overlap(body, &pose, HolderContacts::Counts)
+            .first_overlap(body, &pose, HolderCollision::Included)
         {
             return Err(Some(self.name_of_entry(blocker)));
         }
         let carried = stance.sole.map(|point| {
             let above = pose.translation + point + Vec3::Y * GROUND_PROBE_M;
-            let bottom = foot.y + (point.y - stance.low.y);
+            let bottom = foot.y + (point.y - stance.min.y);
             self.dynamics
                 .support_heights(body, SupportFilter::Any, above, 2.0 * GROUND_PROBE_M)
                 .iter()
@@ -191,6 +191,6 @@ impl ActionContext<'_> {
         if !stance.stands(&carried) {
             return Err(None);
         }
-        self.trial_rest_pose(body, &pose).ok_or(None)
+        self.simulated_rest_pose(body, &pose).ok_or(None)
     }
 }

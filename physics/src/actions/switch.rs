@@ -44,13 +44,13 @@ impl ActionContext<'_> {
             let sentence = format!("The {name} has no switch. Choose a lamp, radio or television.");
             return Ok(fail(OutcomeCode::NoSwitch, sentence, Some(object)));
         }
-        if let Some(refusal) = self.refuse_reach(state, actor, object) {
+        if let Some(refusal) = self.check_reach(state, actor, object) {
             return Ok(refusal);
         }
         let house = self.dynamics.model.house.clone();
         let levers: Vec<JointId> = house
             .joints_of(object)
-            .filter(|id| house.joints[*id].switches)
+            .filter(|id| house.joints[*id].toggles_switch)
             .collect();
         let word = if state.switched_on[object] {
             "off"
@@ -60,7 +60,7 @@ impl ActionContext<'_> {
         if !levers.is_empty() {
             // The switch follows its lever, which a hand moves.
             let share = if state.switched_on[object] { 0.0 } else { 1.0 };
-            self.lead(state, actor, &levers, share);
+            self.drive_joints(state, actor, &levers, share);
             let sentence = format!("You turn the {name} {word}; it takes a moment.");
             return Ok(done(OutcomeCode::Started, sentence, Some(object)));
         }

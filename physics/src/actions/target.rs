@@ -101,15 +101,15 @@ impl ActionContext<'_> {
         let (code, sentence) = match aim.entity {
             Entity::Object(object) => return Ok((object, aim)),
             Entity::Agent(agent) if agent == actor.id => (
-                OutcomeCode::Oneself,
+                OutcomeCode::TargetIsSelf,
                 "That is you. Choose a thing.".to_owned(),
             ),
             Entity::Agent(agent) => (
-                OutcomeCode::NotAThing,
+                OutcomeCode::NotAnObject,
                 format!("That is agent {}, not a thing. Choose a thing.", agent.0),
             ),
             Entity::Structure(id) => (
-                OutcomeCode::NotAThing,
+                OutcomeCode::NotAnObject,
                 format!(
                     "The {} is part of the building. Choose a thing.",
                     self.surface_name(SurfaceOwner::Structure(id))
@@ -133,7 +133,7 @@ impl ActionContext<'_> {
     ) -> Result<ResolvedTarget, Box<ActionOutcome>> {
         let house = &self.dynamics.model.house;
         let direction = direction.normalize_or_zero();
-        let ray = Ray::new(origin, direction).between(0.0, MAX_RAY_M);
+        let ray = Ray::new(origin, direction).with_range(0.0, MAX_RAY_M);
         let held = actor
             .body
             .holding

@@ -60,7 +60,7 @@ impl ActionContext<'_> {
         direction: Vec3,
         speed_m_s: f32,
     ) -> ActionResult {
-        let grip = self.grip_of(actor)?;
+        let grip = self.held_object_of(actor)?;
         let along = direction.normalize_or_zero();
         let good = direction.is_finite() && along != Vec3::ZERO && speed_m_s.is_finite();
         if !good || speed_m_s < 0.0 {
@@ -82,7 +82,7 @@ impl ActionContext<'_> {
         let speed = speed_m_s.min(most);
         if let Some(place) = self
             .hands
-            .grips
+            .held_objects
             .iter()
             .position(|grip| grip.agent == actor.id)
         {

@@ -66,7 +66,7 @@ impl CharacterController<'_> {
         let motion = motion + slid;
         if motion.length_squared() > 1e-14 {
             if self.probe.is_inside_something(feet) {
-                if let Some(out) = self.probe.exit_push(feet, MAX_EXIT_M) {
+                if let Some(out) = self.probe.exit_displacement(feet, MAX_EXIT_M) {
                     feet += out;
                 }
             } else {
@@ -78,11 +78,11 @@ impl CharacterController<'_> {
             }
         }
         if slid != Vec3::ZERO {
-            loose.slide_m_s = self.slide_left(loose.slide_m_s, feet - agent.position);
+            loose.slide_m_s = self.velocity_after_obstacles(loose.slide_m_s, feet - agent.position);
         }
         self.stand_or_fall(&mut feet, agent, &mut loose.fall_m_s);
         if agent.grounded && loose.fall_m_s == 0.0 {
-            loose.slide_m_s = self.slide_on(feet, loose.slide_m_s);
+            loose.slide_m_s = self.velocity_on_slope(feet, loose.slide_m_s);
         }
         agent.position = feet;
     }
@@ -106,7 +106,7 @@ impl CharacterController<'_> {
             if rise > LEVEL_M {
                 let raised = Vec3::new(target.x, ground, target.z);
                 if self.is_too_steep(target, ground)
-                    || !self.probe.headroom(target, rise)
+                    || !self.probe.can_rise(target, rise)
                     || self.probe.is_inside_something(raised)
                 {
                     return feet;
@@ -160,7 +160,9 @@ impl CharacterController<'_> {
     }
 
     fn note_push(&mut self, hit: &SweepHit, wall: Vec3, left: Vec3) {
-        let Some(body) = hit.light else { return };
+        let Some(body) = hit.pushable_body else {
+            return;
+        };
         let speed = -left.dot(wall) / self.dt_s;
         if speed > 0.0 && !self.pushes.iter().any(|push| push.body == body) {
             self.pushes.push(CharacterPush {
@@ -182,7 +184,7 @@ impl CharacterController<'_> {
             && let Some(ground) = self.probe.ground(*feet, snap)
             && ground - feet.y <= self.probe.body.step_height_m
         {
-            if ground <= feet.y + LEVEL_M || self.probe.headroom(*feet, ground - feet.y) {
+            if ground <= feet.y + LEVEL_M || self.probe.can_rise(*feet, ground - feet.y) {
                 feet.y = ground;
             }
             agent.grounded = true;

@@ -99,7 +99,7 @@ impl AgentControl {
     }
 
     /// Pitches an agent's view up or down for `dt_s` seconds.
-    pub(crate) fn look(&self, agent: &mut AgentState, dt_s: f32) {
+    pub(crate) fn pitch_view(&self, agent: &mut AgentState, dt_s: f32) {
         let pitch = agent.pitch_rad + self.pitch_rate_rad_s * dt_s;
         agent.pitch_rad = pitch.clamp(-STEEPEST_LOOK_RAD, STEEPEST_LOOK_RAD);
     }

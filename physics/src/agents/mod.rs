@@ -78,7 +78,7 @@ fn current_body(state: &AgentState) -> AgentBody {
 }
 
 /// Gives an agent's capsule its present size.
-pub(crate) fn reshape(engine: &mut RapierWorld, agent: &mut Agent, state: &AgentState) {
+pub(crate) fn resize_capsule(engine: &mut RapierWorld, agent: &mut Agent, state: &AgentState) {
     agent.stands = current_body(state);
     let (shape, center) = capsule(state);
     // Colliders are inserted in the order of entries and never removed.
@@ -107,7 +107,7 @@ pub(crate) fn insert(
     let entry = ColliderEntry {
         contact_entity: Some(ContactEntity::Agent(id)),
         body: None,
-        surface: values.table.human(),
+        surface: values.table.agent_material(),
     };
     let number = entries.len();
     let builder = ColliderBuilder::new(shape)
@@ -115,7 +115,7 @@ pub(crate) fn insert(
         .density(0.0)
         .active_events(rapier3d::pipeline::ActiveEvents::CONTACT_FORCE_EVENTS)
         .contact_force_event_threshold(event_force_n);
-    let builder = dynamics::set_contact_properties(builder, values.rule(&entry), true, number);
+    let builder = dynamics::set_contact_properties(builder, values.self_pair(&entry), true, number);
     engine
         .colliders
         .insert_with_parent(builder, handle, &mut engine.bodies);

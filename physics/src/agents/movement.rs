@@ -51,10 +51,10 @@ impl Agents {
             let id = AgentId::from_index(index);
             let control = controls.get(index).copied().unwrap_or_default();
             let mut agent = state.agents[id];
-            control.look(&mut agent, dt_s);
+            control.pitch_view(&mut agent, dt_s);
             let laws = |rolling: &mut WheelMotion| {
                 for law in &dynamics.laws.bases {
-                    law.roll(id, rolling);
+                    law.modify_wheel_motion(id, rolling);
                 }
             };
             let driven = wheeled_step::drive(&mut agent, &way.locomotion, &control, laws, dt_s);
@@ -92,7 +92,7 @@ impl Agents {
                 way.made_m += made.clamp(0.0, length);
             }
             if let Some(motion) = &driven {
-                motion.settle(&mut agent, before);
+                motion.store_rounding_remainder(&mut agent, before);
                 let passive_velocities = &mut self.passive_velocities[index];
                 if !agent.grounded {
                     // In the air it has a single velocity.
@@ -123,7 +123,7 @@ impl Agents {
         motion: Vec3,
     ) -> Vec<CharacterPush> {
         let mut passive_velocities = self.passive_velocities[id.index()];
-        let others = shells(state, id);
+        let others = other_agents(state, id);
         let mut walk = CharacterController {
             probe: probe(dynamics, agent, id, &others),
             pushes: Vec::new(),
@@ -157,8 +157,8 @@ impl Agents {
             return None;
         }
         let up = agent.crouched_by_m - wanted;
-        let others = shells(state, id);
-        if up > 0.0 && !probe(dynamics, agent, id, &others).room_above(agent.position, up) {
+        let others = other_agents(state, id);
+        if up > 0.0 && !probe(dynamics, agent, id, &others).has_headroom(agent.position, up) {
             return Some(DelayedOutcome {
                 agent: Some(id),
                 outcome: fail(
@@ -169,7 +169,7 @@ impl Agents {
             });
         }
         agent.crouched_by_m = wanted;
-        super::reshape(&mut dynamics.engine, &mut self.list[id.index()], agent);
+        super::resize_capsule(&mut dynamics.engine, &mut self.list[id.index()], agent);
         None
     }
 }
@@ -189,7 +189,7 @@ pub(crate) fn finish_movement(dynamics: &Dynamics, state: &mut State, ways: &[Mo
                 .laws
                 .bases
                 .iter()
-                .fold(rate, |rate, law| law.gyro(id, rate)),
+                .fold(rate, |rate, law| law.gyro_reading(id, rate)),
         };
     }
 }
@@ -201,11 +201,11 @@ fn probe<'a>(
     id: AgentId,
     others: &'a [AgentCylinder],
 ) -> AgentQueries<'a> {
-    probe_with(dynamics, super::current_body(agent), id, others)
+    agent_queries(dynamics, super::current_body(agent), id, others)
 }
 
 /// Returns the surroundings of an agent with a body of its present height.
-pub(super) fn probe_with<'a>(
+pub(super) fn agent_queries<'a>(
     dynamics: &'a Dynamics,
     body: AgentBody,
     id: AgentId,
@@ -217,7 +217,7 @@ pub(super) fn probe_with<'a>(
         entries: &dynamics.entries,
         bodies: &dynamics.bodies,
         statuses: &dynamics.statuses,
-        excluded: &dynamics.excluded,
+        excluded: &dynamics.collision_exclusions,
         others,
         agent: id,
         body,
@@ -267,7 +267,7 @@ fn stride(agent: &AgentState, gait: &LeggedLocomotion, control: &AgentControl, d
     motion.clamp_length_max(fastest * dt_s)
 }
 
-pub(super) fn shells(state: &State, except: AgentId) -> Vec<AgentCylinder> {
+pub(super) fn other_agents(state: &State, except: AgentId) -> Vec<AgentCylinder> {
     state
         .agents
         .iter_ids()

@@ -1,7 +1,7 @@
 //! Changes of agents' bodies while the world runs.
 
-use super::movement::{probe_with, shells};
-use super::{Agent, Agents, current_body, reshape};
+use super::movement::{agent_queries, other_agents};
+use super::{Agent, Agents, current_body, resize_capsule};
 use crate::dynamics::Dynamics;
 use crate::error::PhysicsError;
 use dwell_scene::{AgentBody, AgentState, Id, State};
@@ -15,7 +15,7 @@ fn same_room(a: &AgentBody, b: &AgentBody) -> bool {
 impl Agents {
     /// Refuses bodies that would overlap something that they did not overlap before. Light objects give way. A body that
     /// overlapped something already may change as long as its core stays out of it.
-    pub(crate) fn check_room(
+    pub(crate) fn check_resize(
         &self,
         dynamics: &Dynamics,
         state: &State,
@@ -26,8 +26,8 @@ impl Agents {
             if same_room(&now, &was) {
                 continue;
             }
-            let others = shells(state, id);
-            let [now, was] = [now, was].map(|body| probe_with(dynamics, body, id, &others));
+            let others = other_agents(state, id);
+            let [now, was] = [now, was].map(|body| agent_queries(dynamics, body, id, &others));
             let feet = agent.position;
             let cramped = now.is_cylinder_blocked(feet) && !was.is_cylinder_blocked(feet);
             let inside = now.is_inside_something(feet) && !was.is_inside_something(feet);
@@ -48,7 +48,7 @@ impl Agents {
     }
 
     /// Gives an agent's capsule the body of the state. Returns whether it changed.
-    pub(crate) fn take_body(
+    pub(crate) fn apply_resize(
         &mut self,
         dynamics: &mut Dynamics,
         index: usize,
@@ -59,7 +59,7 @@ impl Agents {
         let same = same_room(&now, &agent.stands);
         agent.stands = now;
         if !same {
-            reshape(&mut dynamics.engine, agent, state);
+            resize_capsule(&mut dynamics.engine, agent, state);
         }
         !same
     }

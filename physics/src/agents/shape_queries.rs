@@ -17,7 +17,7 @@ use rapier3d::parry::query::ShapeCastOptions;
 use rapier3d::pipeline::QueryFilter;
 
 /// Gap that the cylinder keeps from obstacles, m.
-pub(crate) const SKIN_M: f32 = 0.008;
+pub(crate) const SKIN_WIDTH_M: f32 = 0.008;
 /// Gap between the cylinder's skin and the edge that its foot has rolled off, m.
 const CLEAR_M: f32 = 0.002;
 /// Height of the hovering cylinder above the highest step, m; more than the skin, so that a step never catches it.
@@ -51,7 +51,7 @@ pub(crate) struct SweepHit {
     /// Contact point, m.
     pub(crate) point: Vec3,
     /// The light body that is hit; `None` for an obstacle that cannot be pushed.
-    pub(crate) light: Option<u32>,
+    pub(crate) pushable_body: Option<u32>,
 }
 
 /// The kind of obstacle that a collider is to an agent.
@@ -146,7 +146,7 @@ impl AgentQueries<'_> {
         let (cylinder, center) = self.cylinder(light);
         let options = ShapeCastOptions {
             max_time_of_impact: 1.0,
-            target_distance: SKIN_M,
+            target_distance: SKIN_WIDTH_M,
             stop_at_penetration: false,
             compute_impact_geometry_on_penetration: true,
         };
@@ -160,7 +160,7 @@ impl AgentQueries<'_> {
             fraction: hit.time_of_impact.clamp(0.0, 1.0),
             normal: hit.normal1,
             point: hit.witness1,
-            light: match self.sees(collider) {
+            pushable_body: match self.sees(collider) {
                 ObstacleKind::Pushable(body) => Some(body),
                 _ => None,
             },
@@ -172,7 +172,7 @@ impl AgentQueries<'_> {
         let apart =
             feet.y >= shell.feet.y + shell.height_m || shell.feet.y >= feet.y + self.body.height_m;
         let from = Vec3::new(feet.x - shell.feet.x, 0.0, feet.z - shell.feet.z);
-        let reach = self.body.radius_m + shell.radius_m + SKIN_M;
+        let reach = self.body.radius_m + shell.radius_m + SKIN_WIDTH_M;
         let (a, b) = (motion.length_squared(), from.dot(motion));
         let c = from.length_squared() - reach * reach;
         if apart || b >= 0.0 || a == 0.0 {
@@ -192,7 +192,7 @@ impl AgentQueries<'_> {
             fraction,
             normal: at.normalize_or(-motion.normalize_or_zero()),
             point: shell.feet + at * (shell.radius_m / reach),
-            light: None,
+            pushable_body: None,
         })
     }
 
@@ -209,7 +209,7 @@ impl AgentQueries<'_> {
     }
 
     /// Returns whether the cylinder can rise by `up_m`.
-    pub(crate) fn headroom(&self, feet: Vec3, up_m: f32) -> bool {
+    pub(crate) fn can_rise(&self, feet: Vec3, up_m: f32) -> bool {
         self.cast_kind(feet, Vec3::Y * up_m, false).is_none()
     }
 
@@ -253,7 +253,7 @@ impl AgentQueries<'_> {
 
     /// Returns the push, at most `most_m` long and horizontal, that leads out of an overlap of the core; `None` if a
     /// surface is in the way.
-    pub(crate) fn exit_push(&self, feet: Vec3, most_m: f32) -> Option<Vec3> {
+    pub(crate) fn exit_displacement(&self, feet: Vec3, most_m: f32) -> Option<Vec3> {
         let predicate =
             |_: ColliderHandle, collider: &Collider| self.sees(collider) == ObstacleKind::Immovable;
         let queries = self
@@ -287,7 +287,7 @@ impl AgentQueries<'_> {
     /// Returns half of the body's radius; less for one that climbs only low steps, so that a foot that rolls off an edge
     /// does not let the cylinder down on it.
     fn foot_radius_m(&self) -> f32 {
-        let most = self.lower_end(false) - SKIN_M - CLEAR_M;
+        let most = self.lower_end(false) - SKIN_WIDTH_M - CLEAR_M;
         (0.5 * self.body.radius_m).min(most).max(1e-3)
     }
 
@@ -349,7 +349,7 @@ impl AgentQueries<'_> {
     }
 
     /// Returns whether there is room above for a body that is taller by `up_m`.
-    pub(crate) fn room_above(&self, feet: Vec3, up_m: f32) -> bool {
+    pub(crate) fn has_headroom(&self, feet: Vec3, up_m: f32) -> bool {
         let rise = Vec3::Y * up_m;
         let top = feet.y + self.body.height_m;
         let under_another = self.others.iter().any(|shell| {

@@ -23,7 +23,7 @@ impl CharacterController<'_> {
     }
 
     /// Returns the slide's horizontal velocity after a step with the displacement `made`: obstacles end it.
-    pub(super) fn slide_left(&self, slide: Vec3, made: Vec3) -> Vec3 {
+    pub(super) fn velocity_after_obstacles(&self, slide: Vec3, made: Vec3) -> Vec3 {
         let speed = slide.length();
         if speed == 0.0 {
             return slide;
@@ -33,7 +33,7 @@ impl CharacterController<'_> {
     }
 
     /// Returns the slide's horizontal velocity after a step on the ground at `feet`.
-    pub(super) fn slide_on(&self, feet: Vec3, slide: Vec3) -> Vec3 {
+    pub(super) fn velocity_on_slope(&self, feet: Vec3, slide: Vec3) -> Vec3 {
         let resting = slide == Vec3::ZERO;
         let Some(normal) = self.probe.surface(feet, feet.y) else {
             return if resting {

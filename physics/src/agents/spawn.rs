@@ -1,6 +1,6 @@
 //! Start positions of agents.
 
-use super::movement::probe_with;
+use super::movement::agent_queries;
 use super::{Agents, current_body};
 use crate::dynamics::Dynamics;
 use crate::error::PhysicsError;
@@ -30,7 +30,7 @@ impl Agents {
     ///
     /// # Errors
     /// [`PhysicsError::Range`] for a body that fits into no room.
-    pub(crate) fn give_room(
+    pub(crate) fn resolve_spawn_overlaps(
         &self,
         dynamics: &mut Dynamics,
         state: &mut State,
@@ -74,7 +74,7 @@ fn place_with_room(
     taken: impl Fn(Vec3) -> bool,
     search: &mut Option<SpawnSearch>,
 ) -> Result<Vec3, PhysicsError> {
-    let probe = probe_with(dynamics, body, id, &[]);
+    let probe = agent_queries(dynamics, body, id, &[]);
     let cramped = |place: Vec3| probe.is_cylinder_blocked(place);
     if house.rooms.is_empty() || (!taken(from) && !cramped(from)) {
         return Ok(from);

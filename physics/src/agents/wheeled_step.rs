@@ -32,7 +32,7 @@ pub(crate) fn drive(
         (Locomotion::DifferentialDrive(nominal), Locomotion::DifferentialDrive(truth)) => {
             let mut rolling = roll(agent, &nominal, truth, control, seconds);
             for side in 0..2 {
-                agent.base.wheel_turned_rad[side] += rolling.rate_rad_s[side] * seconds;
+                agent.base.wheel_rotation_rad[side] += rolling.rate_rad_s[side] * seconds;
             }
             let believed = WheelGeometry::from(&nominal).twist(rolling.rate_rad_s);
             agent.base.twist = narrow(&believed);
@@ -57,16 +57,16 @@ pub(crate) fn drive(
         }
         _ => return None,
     };
-    let odometry = PlanarPose::from_array(agent.base.odometry).advanced(&believed, seconds);
+    let odometry = PlanarPose::from_array(agent.base.odometry).integrated(&believed, seconds);
     agent.base.odometry = odometry.to_array();
     let here = PlanarPose {
         heading_rad: f64::from(agent.yaw_rad),
         ..PlanarPose::default()
     };
-    let there = here.advanced(&true_twist, seconds);
+    let there = here.integrated(&true_twist, seconds);
     if !agent.grounded {
         let level = Vec3::new(agent.velocity.x, 0.0, agent.velocity.z);
-        agent.base.kept_back = [0.0; 3];
+        agent.base.rounding_remainder = [0.0; 3];
         return Some(BaseMotion {
             displacement: level * dt_s,
             turn_rad: 0.0,
@@ -76,7 +76,7 @@ pub(crate) fn drive(
     if true_twist == PlanarTwist::default() {
         return Some(BaseMotion::default());
     }
-    let [x, z, yaw] = agent.base.kept_back;
+    let [x, z, yaw] = agent.base.rounding_remainder;
     Some(BaseMotion {
         displacement: there.displacement() + Vec3::new(x, 0.0, z),
         turn_rad: (there.heading_rad - here.heading_rad) as f32 + yaw,
@@ -110,7 +110,7 @@ fn roll(
         wheels: WheelGeometry::from(truth),
         rate_rad_s: [0.0; 2],
         acceleration_rad_s2: [0.0; 2],
-        slip: [0.0; 2],
+        slip_ratio: [0.0; 2],
     };
     let most = f64::from(truth.max_wheel_acceleration_rad_s2);
     for (side, told) in told.into_iter().enumerate() {
@@ -130,12 +130,12 @@ impl BaseMotion {
             return;
         }
         let yaw = agent.yaw_rad + self.turn_rad;
-        agent.base.kept_back[2] = self.turn_rad - (yaw - agent.yaw_rad);
+        agent.base.rounding_remainder[2] = self.turn_rad - (yaw - agent.yaw_rad);
         agent.yaw_rad = math::wrap_angle(yaw);
     }
 
     /// Keeps the rounding remainder of a displacement that nothing stopped.
-    pub(crate) fn settle(&self, agent: &mut AgentState, before: Vec3) {
+    pub(crate) fn store_rounding_remainder(&self, agent: &mut AgentState, before: Vec3) {
         if self.displacement == Vec3::ZERO {
             return;
         }
@@ -145,7 +145,7 @@ impl BaseMotion {
         } else {
             (0.0, 0.0)
         };
-        agent.base.kept_back[0] = x;
-        agent.base.kept_back[1] = z;
+        agent.base.rounding_remainder[0] = x;
+        agent.base.rounding_remainder[1] = z;
     }
 }

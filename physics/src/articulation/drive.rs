@@ -3,13 +3,13 @@
 use super::JointSystem;
 use crate::contact::{ContactEntity, entry_index};
 use crate::dynamics::Dynamics;
-use crate::joints::{self, DriveProgress, HandDrive, PhysicsJoint, commanded};
+use crate::joints::{self, DriveProgress, HandDrive, PhysicsJoint, motor_command};
 use crate::outcome::{DelayedOutcome, OutcomeCode, done, fail};
 use dwell_scene::{JointCommand, State};
 
 /// Openness from which a joint counts as open, and up to which as closed.
-pub(crate) const OPEN: f32 = 0.95;
-pub(crate) const CLOSED: f32 = 0.02;
+pub(crate) const OPEN_THRESHOLD: f32 = 0.95;
+pub(crate) const CLOSED_THRESHOLD: f32 = 0.02;
 
 impl JointSystem {
     /// Sets the actuation of all joints from the state's targets.
@@ -28,7 +28,7 @@ impl JointSystem {
             if by_laws && articulation.servo.is_some() {
                 continue;
             }
-            let command = commanded(state, joint.id);
+            let command = motor_command(state, joint.id);
             let child = joint.child as usize;
             let now = (
                 state.joint_position[joint.id],
@@ -38,19 +38,19 @@ impl JointSystem {
                 && let JointCommand::Position(goal) = command
             {
                 let goal = joint.values.clamp(goal);
-                let drive = self.drives.get(&joint.id);
+                let drive = self.hand_drives.get(&joint.id);
                 if drive.is_none_or(|drive| drive.goal != goal) {
-                    self.drives
+                    self.hand_drives
                         .insert(joint.id, HandDrive::new(goal, now.0, None));
                 }
-                if (goal - articulation.closed).abs() > joints::tolerance(joint.kind) {
+                if (goal - articulation.closed).abs() > joints::closed_tolerance(joint.kind) {
                     let body = dynamics.bodies[child];
                     joints::release(&mut dynamics.engine, &body, &mut dynamics.statuses[child]);
                 }
             } else if articulation.servo.is_none() {
-                self.drives.remove(&joint.id);
+                self.hand_drives.remove(&joint.id);
             }
-            let hand = self.drives.get_mut(&joint.id);
+            let hand = self.hand_drives.get_mut(&joint.id);
             let puller = hand.as_ref().and_then(|hand| hand.agent);
             let puller = puller.and_then(|agent| state.agents.get(agent));
             let effort = puller.map_or_else(|| state.hand_effort(), |agent| agent.body.hand_effort);
@@ -58,10 +58,10 @@ impl JointSystem {
             let (pull, progress) =
                 joints::advance(joint.kind, &joint.values, command, hand, now, limits);
             // A motor that is switched off wakes what it held, too.
-            if self.pulls[index] != pull {
+            if self.actuations[index] != pull {
                 joints::wake(&mut dynamics.engine, &joint);
             }
-            self.pulls[index] = pull;
+            self.actuations[index] = pull;
             if let Some(progress) = progress.filter(|progress| *progress != DriveProgress::Moving) {
                 let drive = self.finish_drive(dynamics, state, &joint, progress);
                 notices.extend(drive);
@@ -77,7 +77,7 @@ impl JointSystem {
         joint: &PhysicsJoint,
         progress: DriveProgress,
     ) -> Option<DelayedOutcome> {
-        let drive = self.drives.remove(&joint.id)?;
+        let drive = self.hand_drives.remove(&joint.id)?;
         state.joint_command[joint.id] = JointCommand::Off;
         let articulation = dynamics.model.house.joints[joint.id].clone();
         let object = articulation.object;
@@ -86,11 +86,11 @@ impl JointSystem {
         if progress == DriveProgress::Arrived
             && dynamics.settings.config.latches
             && drive.goal == articulation.closed
-            && joints::stands_shut(joint, &articulation, position)
+            && joints::is_at_closed_position(joint, &articulation, position)
         {
             let child = joint.child as usize;
             let body = dynamics.bodies[child];
-            joints::shut(
+            joints::latch(
                 &mut dynamics.engine,
                 joint,
                 &articulation,
@@ -101,9 +101,9 @@ impl JointSystem {
         let share = (articulation.openness(position) * 100.0).round();
         let outcome = if progress == DriveProgress::Arrived {
             let asked = articulation.openness(drive.goal);
-            let sentence = if asked <= CLOSED {
+            let sentence = if asked <= CLOSED_THRESHOLD {
                 format!("The {name} is closed.")
-            } else if asked >= OPEN {
+            } else if asked >= OPEN_THRESHOLD {
                 format!("The {name} is open.")
             } else {
                 format!("The {name} is {share:.0} % open.")

@@ -4,7 +4,7 @@ mod drive;
 mod motors;
 mod step;
 
-pub(crate) use drive::{CLOSED, OPEN};
+pub(crate) use drive::{CLOSED_THRESHOLD, OPEN_THRESHOLD};
 
 use crate::body::{self, BodyStatus};
 use crate::convert::{from_rapier, to_rapier};
@@ -24,8 +24,8 @@ pub(crate) struct JointSystem {
     /// them. Shape (joint,).
     pub(crate) joint_coordinates: Vec<JointCoordinate>,
     /// The actuation of each joint during this control step. Shape (joint,).
-    pub(crate) pulls: Vec<Option<JointActuation>>,
-    pub(crate) drives: HandDrives,
+    pub(crate) actuations: Vec<Option<JointActuation>>,
+    pub(crate) hand_drives: HandDrives,
 }
 
 impl JointSystem {
@@ -51,7 +51,11 @@ impl JointSystem {
             body::write_parts(&dynamics.engine, plan, body, state);
         }
         for joint in &self.joints {
-            let now = joints::stands(&dynamics.engine, joint, joint_from_state(state, joint.id));
+            let now = joints::continued_coordinate(
+                &dynamics.engine,
+                joint,
+                joint_from_state(state, joint.id),
+            );
             let (position, velocity) = (now.position as f32, now.velocity as f32);
             // A latched door is at its closed position, whatever the rounding.
             let shut = dynamics.statuses[joint.child as usize] == BodyStatus::Latched;
@@ -59,16 +63,16 @@ impl JointSystem {
             state.joint_position[joint.id] = if shut { closed } else { position };
             state.joint_velocity[joint.id] = if shut { 0.0 } else { velocity };
         }
-        state.follow_switches(&dynamics.model.house);
+        state.update_switches(&dynamics.model.house);
     }
 
     /// Moves jointed bodies along with their parents.
-    pub(crate) fn carry_jointed_bodies(&self, dynamics: &mut Dynamics, state: &State) {
+    pub(crate) fn move_jointed_bodies(&self, dynamics: &mut Dynamics, state: &State) {
         let stands = self.joints.iter().map(|joint| joints::JointPlacement {
             position: state.joint_position[joint.id],
             velocity: 0.0,
-            anew: false,
-            shut: false,
+            force_update: false,
+            is_latched: false,
         });
         let stands: Vec<joints::JointPlacement> = stands.collect();
         for tree in &self.trees {
@@ -78,7 +82,7 @@ impl JointSystem {
                 body::pose_of(&dynamics.engine, &dynamics.bodies[body]) != Some(from_rapier(&start))
             });
             if moved {
-                joints::place(&mut dynamics.engine, &self.joints, tree, &stands);
+                joints::place_tree(&mut dynamics.engine, &self.joints, tree, &stands);
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use super::JointSystem;
 use crate::dynamics::Dynamics;
-use crate::joints::{self, MotorStep, commanded};
+use crate::joints::{self, MotorStep, motor_command};
 use dwell_scene::State;
 
 impl JointSystem {
@@ -18,7 +18,11 @@ impl JointSystem {
             if articulation.servo.is_none() {
                 continue;
             }
-            let now = joints::stands(&dynamics.engine, &joint, self.joint_coordinates[index]);
+            let now = joints::continued_coordinate(
+                &dynamics.engine,
+                &joint,
+                self.joint_coordinates[index],
+            );
             let (position, velocity) = (now.position as f32, now.velocity as f32);
             let motor = MotorStep {
                 joint: joint.id,
@@ -26,23 +30,23 @@ impl JointSystem {
                 velocity,
                 dt_s: dynamics.settings.dt_s,
             };
-            let mut command = commanded(state, joint.id);
+            let mut command = motor_command(state, joint.id);
             for law in &mut dynamics.laws.motors {
-                law.effect.drive(&motor, &mut command);
+                law.effect.modify_command(&motor, &mut command);
             }
             let now = (position, velocity);
             let (mut pull, _) =
                 joints::advance(joint.kind, &joint.values, command, None, now, (0.0, 0.0));
             if let Some(pull) = &mut pull {
                 for law in &dynamics.laws.motors {
-                    law.effect.modify_motor(joint.id, pull);
+                    law.effect.modify_actuation(joint.id, pull);
                 }
             }
             // A motor that is switched off wakes what it held, too.
-            if self.pulls[index] != pull {
+            if self.actuations[index] != pull {
                 joints::wake(&mut dynamics.engine, &joint);
             }
-            self.pulls[index] = pull;
+            self.actuations[index] = pull;
         }
     }
 }

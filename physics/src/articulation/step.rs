@@ -3,7 +3,7 @@
 use super::JointSystem;
 use crate::dynamics::Dynamics;
 use crate::joints::{
-    self, ExternalWrench, JointDrivers, JointLoad, JointResistance, LinkStep, TreePrediction,
+    self, ExternalWrench, JointLoad, JointResistance, JointStepInputs, LinkStep, TreePrediction,
 };
 use dwell_scene::JointId;
 
@@ -17,15 +17,15 @@ pub(crate) struct JointStep {
 
 impl JointSystem {
     /// Passes the joints' positions to resistance laws.
-    pub(crate) fn follow(&self, dynamics: &mut Dynamics) {
+    pub(crate) fn update_resistance_laws(&self, dynamics: &mut Dynamics) {
         if dynamics.laws.resistances.is_empty() {
             return;
         }
         for (joint, joint_coordinates) in self.joints.iter().zip(&self.joint_coordinates) {
-            let position =
-                joints::stands(&dynamics.engine, joint, *joint_coordinates).position as f32;
+            let position = joints::continued_coordinate(&dynamics.engine, joint, *joint_coordinates)
+                .position as f32;
             for law in &mut dynamics.laws.resistances {
-                law.effect.follow(joint.id, position);
+                law.effect.update_position(joint.id, position);
             }
         }
     }
@@ -39,23 +39,23 @@ impl JointSystem {
         let laws = &dynamics.laws;
         let resist = |joint: JointId, load: &JointLoad, resistance: &mut JointResistance| {
             for law in &laws.resistances {
-                law.effect.resist(joint, load, resistance);
+                law.effect.modify_resistance(joint, load, resistance);
             }
         };
         let dt_s = dynamics.settings.dt_s;
         let time_s = dynamics.tick as f64 * f64::from(dt_s);
         let push = |link: LinkStep| {
             let link = LinkStep { time_s, ..link };
-            let pushes = laws.links.iter().map(|law| law.push(&link));
-            pushes.fold(ExternalWrench::default(), ExternalWrench::and)
+            let pushes = laws.links.iter().map(|law| law.wrench(&link));
+            pushes.fold(ExternalWrench::default(), ExternalWrench::sum)
         };
         let (pushing, resisting) = (!laws.links.is_empty(), !laws.resistances.is_empty());
-        let drivers = JointDrivers {
+        let drivers = JointStepInputs {
             joints: &self.joints,
-            pulls: &self.pulls,
+            actuations: &self.actuations,
             joint_coordinates: &self.joint_coordinates,
-            resist: if resisting { Some(&resist) } else { None },
-            push: if pushing { Some(&push) } else { None },
+            resistance_fn: if resisting { Some(&resist) } else { None },
+            wrench_fn: if pushing { Some(&push) } else { None },
             dt_s,
         };
         let trees = self.trees.iter();
@@ -73,14 +73,18 @@ impl JointSystem {
     }
 
     /// Moves trees to their predicted positions after a physics step. Returns whether one was moved.
-    pub(crate) fn settle(&mut self, dynamics: &mut Dynamics, step: JointStep) -> bool {
+    pub(crate) fn correct_positions(&mut self, dynamics: &mut Dynamics, step: JointStep) -> bool {
         let (engine, coordinates) = (&mut dynamics.engine, &mut self.joint_coordinates);
         let mut placed = false;
         for (tree, prediction) in self.trees.iter().zip(step.predictions) {
             placed |= match prediction {
-                Some(prediction) => {
-                    joints::settle(engine, tree, &self.joints, prediction, coordinates)
-                }
+                Some(prediction) => joints::correct_tree_positions(
+                    engine,
+                    tree,
+                    &self.joints,
+                    prediction,
+                    coordinates,
+                ),
                 None => joints::project_woken(engine, tree, &self.joints, coordinates),
             };
         }

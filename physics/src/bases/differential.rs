@@ -9,14 +9,14 @@ pub struct WheelGeometry {
     /// Radius of the left and right wheel, m.
     pub radius_m: [f64; 2],
     /// Distance between the points where they touch the floor, m.
-    pub base_m: f64,
+    pub wheel_base_m: f64,
 }
 
 impl From<&DifferentialDrive> for WheelGeometry {
     fn from(drive: &DifferentialDrive) -> Self {
         Self {
             radius_m: [drive.left_wheel_radius_m, drive.right_wheel_radius_m].map(f64::from),
-            base_m: f64::from(drive.wheel_base_m),
+            wheel_base_m: f64::from(drive.wheel_base_m),
         }
     }
 }
@@ -33,7 +33,7 @@ impl WheelGeometry {
         PlanarTwist {
             forward_m_s: 0.5 * (left + right),
             left_m_s: 0.0,
-            yaw_rate_rad_s: (right - left) / self.base_m,
+            yaw_rate_rad_s: (right - left) / self.wheel_base_m,
         }
     }
 
@@ -41,7 +41,7 @@ impl WheelGeometry {
     /// [`WheelGeometry::twist`]. Such wheels cannot go sideways.
     pub fn rates(&self, forward_m_s: f64, yaw_rate_rad_s: f64) -> [f64; 2] {
         // w_l = (v - b omega / 2) / r_l and w_r = (v + b omega / 2) / r_r.
-        let turn = 0.5 * self.base_m * yaw_rate_rad_s;
+        let turn = 0.5 * self.wheel_base_m * yaw_rate_rad_s;
         [
             (forward_m_s - turn) / self.radius_m[0],
             (forward_m_s + turn) / self.radius_m[1],
@@ -79,13 +79,13 @@ pub(crate) struct WheelMotion {
     /// Mean acceleration of each wheel over the step, rad/s².
     pub(crate) acceleration_rad_s2: [f64; 2],
     /// The lost share of each wheel's displacement: the body moves by `r w (1 - slip)`.
-    pub(crate) slip: [f64; 2],
+    pub(crate) slip_ratio: [f64; 2],
 }
 
 impl WheelMotion {
     /// Returns the body's twist.
     pub(crate) fn twist(&self) -> PlanarTwist {
-        let gripping = [0, 1].map(|side| self.rate_rad_s[side] * (1.0 - self.slip[side]));
+        let gripping = [0, 1].map(|side| self.rate_rad_s[side] * (1.0 - self.slip_ratio[side]));
         self.wheels.twist(gripping)
     }
 }
@@ -116,7 +116,7 @@ mod tests {
     fn wheels(radii: [f64; 2], base: f64) -> WheelGeometry {
         WheelGeometry {
             radius_m: radii,
-            base_m: base,
+            wheel_base_m: base,
         }
     }
 
@@ -159,7 +159,7 @@ mod tests {
             for _ in 0..4 {
                 for (forward, yaw, seconds) in [(1.0, 0.0, side), (0.0, direction, FRAC_PI_2)] {
                     let twist = truth.twist(nominal.rates(forward, yaw));
-                    pose = pose.advanced(&twist, seconds);
+                    pose = pose.integrated(&twist, seconds);
                 }
             }
             pose.heading_rad

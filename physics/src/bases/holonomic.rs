@@ -5,7 +5,7 @@ use dwell_scene::HolonomicBase;
 
 /// Returns the twist after a step towards `wanted`, and the mean over the step. The velocity changes along a straight line,
 /// independently of the yaw rate.
-pub(crate) fn follow(
+pub(crate) fn accelerate_towards(
     base: &HolonomicBase,
     now: PlanarTwist,
     wanted: PlanarTwist,
@@ -61,7 +61,7 @@ mod tests {
         };
         let mut now = PlanarTwist::default();
         for k in 1..=100 {
-            (now, _) = follow(&base, now, wanted, 0.01);
+            (now, _) = accelerate_towards(&base, now, wanted, 0.01);
             let t = f64::from(k) * 0.01;
             let speed = now.forward_m_s.hypot(now.left_m_s);
             assert!(

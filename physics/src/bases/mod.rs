@@ -15,5 +15,5 @@ mod planar;
 pub(crate) use base_law::BaseLaw;
 pub use differential::WheelGeometry;
 pub(crate) use differential::{WheelCommand, WheelMotion, ramp};
-pub(crate) use holonomic::follow as follow_twist;
+pub(crate) use holonomic::accelerate_towards as follow_twist;
 pub use planar::{PlanarPose, PlanarTwist};

@@ -42,7 +42,7 @@ impl PlanarPose {
     /// The exponential map of SE(2): R. M. Murray, Z. Li, S. S. Sastry, A Mathematical Introduction to Robotic
     /// Manipulation (1994), section 2.3; written with the chord of the arc, which stays accurate for small turns.
     #[must_use]
-    pub fn advanced(&self, twist: &PlanarTwist, duration_s: f64) -> Self {
+    pub fn integrated(&self, twist: &PlanarTwist, duration_s: f64) -> Self {
         let turn = twist.yaw_rate_rad_s * duration_s;
         // An arc of the angle phi over the time t has the chord v t sin(phi/2) / (phi/2), half of phi aside.
         let chord = sinc(0.5 * turn) * duration_s;
@@ -91,7 +91,7 @@ mod tests {
         let (v, omega) = (0.7, -1.3);
         for k in 0..=40 {
             let t = f64::from(k) * 0.25;
-            let pose = PlanarPose::default().advanced(&twist(v, 0.0, omega), t);
+            let pose = PlanarPose::default().integrated(&twist(v, 0.0, omega), t);
             let expected = (
                 v / omega * (omega * t).sin(),
                 v / omega * (1.0 - (omega * t).cos()),
@@ -100,7 +100,7 @@ mod tests {
             assert!((pose.y_m - expected.1).abs() < 1e-12, "{t}");
             assert!((pose.heading_rad - omega * t).abs() < 1e-12);
         }
-        let round = PlanarPose::default().advanced(&twist(v, 0.4, omega), TAU / omega.abs());
+        let round = PlanarPose::default().integrated(&twist(v, 0.4, omega), TAU / omega.abs());
         assert!(round.x_m.hypot(round.y_m) < 1e-12);
     }
 
@@ -109,10 +109,10 @@ mod tests {
     fn many_small_steps_are_one_large_one() {
         for omega in [0.0, 1e-9, 1e-5, 0.3, 3.0 * PI] {
             let twist = twist(0.9, -0.2, omega);
-            let whole = PlanarPose::default().advanced(&twist, 1.0);
+            let whole = PlanarPose::default().integrated(&twist, 1.0);
             let mut pose = PlanarPose::default();
             for _ in 0..1000 {
-                pose = pose.advanced(&twist, 1e-3);
+                pose = pose.integrated(&twist, 1e-3);
             }
             assert!((whole.x_m - pose.x_m).abs() < 1e-12, "{omega}");
             assert!((whole.y_m - pose.y_m).abs() < 1e-12, "{omega}");

@@ -9,17 +9,17 @@ use rapier3d::geometry::{ContactManifold, SolverContact};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ApproachMotion {
     /// The midpoint between the two.
-    pub(super) place: Vec3,
+    pub(super) midpoint: Vec3,
     /// From the centre of mass of each to its surface, m.
-    pub(super) arms: [Vec3; 2],
+    pub(super) lever_arms: [Vec3; 2],
     /// Velocity of the first relative to the second, m/s.
-    pub(super) relative: Vec3,
+    pub(super) relative_velocity: Vec3,
     /// Approach speed along the normal, m/s; negative when they part.
-    pub(super) speed: f32,
+    pub(super) approach_speed_m_s: f32,
     /// Approach speed when they meet, m/s.
-    pub(super) meeting: f32,
+    pub(super) impact_speed_m_s: f32,
     /// When they meet, from the beginning of the step, s; negative when they met before.
-    pub(super) meets_s: f32,
+    pub(super) time_of_impact_s: f32,
 }
 
 impl ApproachMotion {
@@ -33,18 +33,18 @@ impl ApproachMotion {
         let normal = manifold.data.normal;
         let (p, q) = ends_before(manifold, contact, bodies, (a, b));
         let place = (p + q) * 0.5;
-        let relative = a.at(place) - b.at(place);
+        let relative = a.velocity_at(place) - b.velocity_at(place);
         let speed = relative.dot(normal);
-        let gap = (q - p + b.ahead - a.ahead).dot(normal);
+        let gap = (q - p + b.undone_displacement_m - a.undone_displacement_m).dot(normal);
         let pull = (a.gravity - b.gravity).dot(normal);
         let meeting = speed_after(speed, pull, gap);
         Self {
-            place,
-            arms: [p - a.center, q - b.center],
-            relative,
-            speed,
-            meeting,
-            meets_s: 2.0 * gap / (speed + meeting).max(1e-6),
+            midpoint: place,
+            lever_arms: [p - a.center, q - b.center],
+            relative_velocity: relative,
+            approach_speed_m_s: speed,
+            impact_speed_m_s: meeting,
+            time_of_impact_s: 2.0 * gap / (speed + meeting).max(1e-6),
         }
     }
 }
@@ -66,7 +66,7 @@ fn ends_before(
     let (p, q) = manifold.data.solver_contact_world_points(contact, bodies);
     // Anchors move with their bodies, or are fixed in the world.
     let before = |now: Vec3, anchor: Vec3, motion: &BodyMotion, in_world: bool| {
-        if motion.known && !in_world {
+        if motion.is_recorded && !in_world {
             motion.center + motion.rotation * anchor
         } else {
             now

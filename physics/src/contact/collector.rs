@@ -1,7 +1,7 @@
 //! Contact reports gathered while rapier steps.
 
 use super::approach::ApproachMotion;
-use super::body_motion::{BodyMotion, before};
+use super::body_motion::{BodyMotion, motion_before};
 use super::collider_entry::{ColliderEntry, ContactEntity, entry_index};
 use super::friction;
 use crate::engine::{FrictionStorage, points};
@@ -20,21 +20,21 @@ pub(crate) struct ContactReport {
     /// Friction, N·s.
     pub(super) tangential: f32,
     /// Sum of position times impulse.
-    pub(super) moment: Vec3,
+    pub(super) impulse_weighted_position: Vec3,
     /// Fastest approach along the normal before the step, m/s.
-    pub(super) speed: f32,
+    pub(super) approach_speed_m_s: f32,
     /// Time at which the surfaces meet at that speed, from the beginning of the step, s.
-    pub(super) meets_s: f32,
+    pub(super) time_of_impact_s: f32,
     /// Approach speed then, m/s.
-    pub(super) meeting: f32,
+    pub(super) impact_speed_m_s: f32,
     /// Sum of slip speed times impulse.
-    pub(super) slip: f32,
+    pub(super) impulse_weighted_slip: f32,
     /// Relative speed of the centres of mass along the surface, m/s.
-    pub(super) passing: f32,
+    pub(super) tangential_speed_m_s: f32,
     /// Sum of the normal impulses on the second body, N·s.
-    pub(super) pressed: Vec3,
+    pub(super) normal_impulse_on_second: Vec3,
     /// Total contact impulse on each of the two bodies, N·s, with the body; where it can be determined.
-    pub(super) pushed: [Option<(RigidBodyHandle, Vec3)>; 2],
+    pub(super) impulse_on_bodies: [Option<(RigidBodyHandle, Vec3)>; 2],
 }
 
 /// Gathers contacts while rapier steps.
@@ -74,7 +74,7 @@ impl<'a> ContactCollector<'a> {
         reports.sort_by(|a, b| {
             (a.pair, a.classes, a.impulse.to_bits()).cmp(&(b.pair, b.classes, b.impulse.to_bits()))
         });
-        friction::whole(&mut reports);
+        friction::friction_from_momentum(&mut reports);
         reports
     }
 
@@ -89,10 +89,10 @@ impl<'a> ContactCollector<'a> {
         let b = self.entries.get(entry_index(two))?;
         let (touch_a, touch_b) = (a.contact_entity?, b.contact_entity?);
         let motions = (
-            before(self.before, one.parent()),
-            before(self.before, two.parent()),
+            motion_before(self.before, one.parent()),
+            motion_before(self.before, two.parent()),
         );
-        if motions.0.fastest + motions.1.fastest < self.slowest {
+        if motions.0.max_point_speed_m_s + motions.1.max_point_speed_m_s < self.slowest {
             return None;
         }
         let mut report = ContactReport {
@@ -100,14 +100,14 @@ impl<'a> ContactCollector<'a> {
             classes: (0, 0),
             impulse: 0.0,
             tangential: 0.0,
-            moment: Vec3::ZERO,
-            speed: 0.0,
-            meets_s: 0.0,
-            meeting: 0.0,
-            slip: 0.0,
-            passing: 0.0,
-            pressed: Vec3::ZERO,
-            pushed: [(one, &motions.0), (two, &motions.1)]
+            impulse_weighted_position: Vec3::ZERO,
+            approach_speed_m_s: 0.0,
+            time_of_impact_s: 0.0,
+            impact_speed_m_s: 0.0,
+            impulse_weighted_slip: 0.0,
+            tangential_speed_m_s: 0.0,
+            normal_impulse_on_second: Vec3::ZERO,
+            impulse_on_bodies: [(one, &motions.0), (two, &motions.1)]
                 .map(|(collider, motion)| self.pushed(bodies, collider, motion)),
         };
         let mut strongest = 0.0;
@@ -128,8 +128,8 @@ impl<'a> ContactCollector<'a> {
         }
         // Seen from the entity that sorts first.
         if touch_a > touch_b {
-            report.pressed = -report.pressed;
-            report.pushed.swap(0, 1);
+            report.normal_impulse_on_second = -report.normal_impulse_on_second;
+            report.impulse_on_bodies.swap(0, 1);
         }
         (report.impulse > 0.0).then_some(report)
     }
@@ -141,12 +141,12 @@ impl<'a> ContactCollector<'a> {
         collider: &Collider,
         motion: &BodyMotion,
     ) -> Option<(RigidBodyHandle, Vec3)> {
-        if !self.kept.once {
+        if !self.kept.single_solver_call {
             return None;
         }
         let handle = collider.parent()?;
         let body = bodies.get(handle)?;
-        let untouched = motion.linear + motion.free_change?;
+        let untouched = motion.linear + motion.free_velocity_change?;
         Some((handle, (body.linvel() - untouched) * body.mass()))
     }
 }
@@ -168,23 +168,23 @@ impl ContactReport {
                 continue;
             }
             let approach = ApproachMotion::of(manifold, contact, bodies, (a, b));
-            if approach.speed > self.speed {
-                self.speed = approach.speed;
-                self.meeting = approach.meeting;
-                self.meets_s = approach.meets_s;
+            if approach.approach_speed_m_s > self.approach_speed_m_s {
+                self.approach_speed_m_s = approach.approach_speed_m_s;
+                self.impact_speed_m_s = approach.impact_speed_m_s;
+                self.time_of_impact_s = approach.time_of_impact_s;
             }
-            let place = approach.place;
-            let along = approach.relative - normal * approach.speed;
+            let place = approach.midpoint;
+            let along = approach.relative_velocity - normal * approach.approach_speed_m_s;
             here += push;
-            self.moment += place * push;
-            self.slip += along.length() * push;
+            self.impulse_weighted_position += place * push;
+            self.impulse_weighted_slip += along.length() * push;
         }
         let passing = a.linear - b.linear;
         let along = (passing - normal * passing.dot(normal)).length();
-        self.passing = self.passing.max(along);
+        self.tangential_speed_m_s = self.tangential_speed_m_s.max(along);
         self.impulse += here;
-        self.pressed += normal * here;
-        self.tangential += kept.estimate(manifold);
+        self.normal_impulse_on_second += normal * here;
+        self.tangential += kept.estimated_step_friction(manifold);
         here
     }
 }

@@ -20,12 +20,12 @@ pub enum ContactEntity {
 
 /// The contact class of a piece, or of each of its triangles.
 #[derive(Clone, Debug)]
-pub(crate) enum ContactClasses {
+pub(crate) enum SurfaceMaterials {
     Uniform(u16),
     PerTriangle(Arc<[u16]>),
 }
 
-impl ContactClasses {
+impl SurfaceMaterials {
     /// Returns the class at a triangle of the shape; `subshape` is ignored where there is one class.
     pub(crate) fn class(&self, subshape: u32) -> u16 {
         match self {
@@ -39,7 +39,7 @@ impl ContactClasses {
     }
 
     /// Returns whether `is` holds for some class of the surface.
-    pub(crate) fn any_class(&self, is: impl Fn(u16) -> bool) -> bool {
+    pub(crate) fn any_material(&self, is: impl Fn(u16) -> bool) -> bool {
         match self {
             Self::Uniform(class) => is(*class),
             Self::PerTriangle(classes) => classes.iter().any(|class| is(*class)),
@@ -54,15 +54,15 @@ pub(crate) struct ColliderEntry {
     pub(crate) contact_entity: Option<ContactEntity>,
     /// The rigid body it moves with, unless it is static or an agent's.
     pub(crate) body: Option<u32>,
-    pub(crate) surface: ContactClasses,
+    pub(crate) surface: SurfaceMaterials,
 }
 
 impl ColliderEntry {
-    pub(crate) fn new(owner: PieceOwner, body: Option<u32>, surface: ContactClasses) -> Self {
+    pub(crate) fn new(owner: PieceOwner, body: Option<u32>, surface: SurfaceMaterials) -> Self {
         let contact_entity = match owner {
             PieceOwner::Structure(id) => Some(ContactEntity::Structure(id)),
             PieceOwner::Part(id) => Some(ContactEntity::Part(id)),
-            PieceOwner::LastBox => None,
+            PieceOwner::BoundingBox => None,
         };
         Self {
             contact_entity,

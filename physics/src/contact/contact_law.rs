@@ -12,7 +12,7 @@ pub(crate) trait ContactLaw: Debug + Send + Sync {
 
     /// Changes the values of one contact plane (one manifold) within the scope, before it is solved. rapier has one
     /// friction, one restitution and one surface velocity for all points of a plane, and no stiffness of its own.
-    fn shape_contact(&self, touch: &LawContact<'_>, values: &mut ContactValues);
+    fn modify_contact(&self, touch: &LawContact<'_>, values: &mut ContactValues);
 }
 
 /// One of the two things that touch.
@@ -47,12 +47,12 @@ impl LawContact<'_> {
     }
 
     /// Returns the slip velocity of the other over the surface, m/s.
-    pub(crate) fn slip(&self) -> Vec3 {
+    pub(crate) fn slip_velocity(&self) -> Vec3 {
         self.relative_velocity + self.normal * self.approach_speed_m_s()
     }
 
     /// Returns the same seen from the other side.
-    pub(crate) fn turned(self) -> Self {
+    pub(crate) fn swapped(self) -> Self {
         Self {
             surface: self.other,
             other: self.surface,

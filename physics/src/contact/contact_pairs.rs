@@ -18,7 +18,7 @@ pub(crate) fn touching(
 ) -> Vec<([RigidBodyHandle; 2], Contact)> {
     let mut out = Vec::new();
     for pair in narrow_phase.contact_pairs() {
-        let (mut near, mut rest) = (false, SupportRelation::Beside);
+        let (mut near, mut rest) = (false, SupportRelation::NoSupport);
         for manifold in pair.solver_manifolds() {
             let touches = manifold
                 .points
@@ -58,9 +58,13 @@ pub(crate) fn touching(
             Some(second) if second < first => Contact {
                 a: second,
                 b: Some(first),
-                rest: turned(rest),
+                support_relation: turned(rest),
             },
-            b => Contact { a: first, b, rest },
+            b => Contact {
+                a: first,
+                b,
+                support_relation: rest,
+            },
         };
         let bodies = [pair.collider1, pair.collider2].map(|handle| colliders[handle].parent());
         if let [Some(one), Some(two)] = bodies {
@@ -73,7 +77,7 @@ pub(crate) fn touching(
 /// Returns the same seen from the other side.
 fn turned(rest: SupportRelation) -> SupportRelation {
     match rest {
-        SupportRelation::Beside => SupportRelation::Beside,
+        SupportRelation::NoSupport => SupportRelation::NoSupport,
         SupportRelation::AOnB => SupportRelation::BOnA,
         SupportRelation::BOnA => SupportRelation::AOnB,
     }

@@ -66,7 +66,7 @@ pub(crate) struct ContactTracker {
     touching: BTreeMap<ContactPair, ContactAccumulator>,
     moving: BTreeMap<ContactPair, SlidingPair>,
     /// Displacement that the last step cut off by stopping a body at a surface, by its arena index, m.
-    pub(super) held_back: BTreeMap<u32, Vec3>,
+    pub(super) undone_displacements: BTreeMap<u32, Vec3>,
 }
 
 impl ContactTracker {
@@ -79,28 +79,28 @@ impl ContactTracker {
 
     /// Records the bodies that the last step stopped on their way: rapier moves fast bodies only a little into a surface,
     /// and the rest of their step is lost.
-    pub(crate) fn note_held_back(
+    pub(crate) fn record_undone_displacements(
         &mut self,
         engine: &RapierWorld,
         before: &[BodyMotion],
         dt_s: f32,
     ) {
-        self.held_back.clear();
+        self.undone_displacements.clear();
         for handle in engine.islands.active_bodies() {
             let index = handle.into_raw_parts().0;
             let moved = before
                 .get(index as usize)
                 .zip(engine.bodies.get(handle))
-                .and_then(|(motion, body)| motion.held_back(body, dt_s));
+                .and_then(|(motion, body)| motion.undone_displacement(body, dt_s));
             if let Some(rest) = moved {
-                self.held_back.insert(index, rest);
+                self.undone_displacements.insert(index, rest);
             }
         }
     }
 
     /// Adds a physics step's reports; impacts that ended go to `out`. `rebounds`: impulses added to the pairs' normal
     /// impulses, N·s.
-    pub(crate) fn settle(
+    pub(crate) fn add_reports(
         &mut self,
         (mut reports, rebounds): (Vec<ContactReport>, &BTreeMap<ContactPair, f32>),
         tick: u64,
@@ -121,7 +121,10 @@ impl ContactTracker {
         let dt_s = 1.0 / f64::from(config.physics_rate_hz);
         for group in reports.chunk_by(|a, b| a.pair == b.pair) {
             let pair = group[0].pair;
-            let speed = group.iter().map(|report| report.speed).fold(0.0, f32::max);
+            let speed = group
+                .iter()
+                .map(|report| report.approach_speed_m_s)
+                .fold(0.0, f32::max);
             if speed >= config.event_min_speed_m_s {
                 self.hit(pair, group, tick as f64 * dt_s, dt_s as f32);
                 hit.push(pair);
@@ -140,10 +143,17 @@ impl ContactTracker {
 
     fn hit(&mut self, pair: ContactPair, group: &[ContactReport], begin_s: f64, dt_s: f32) {
         // The solver may stop a body shortly before it touches, or after a step in which it penetrated a little.
-        let fastest = group.iter().max_by(|a, b| a.speed.total_cmp(&b.speed));
-        let meets_s = fastest.map_or(0.0, |report| report.meets_s.clamp(-dt_s, 2.0 * dt_s));
+        let fastest = group
+            .iter()
+            .max_by(|a, b| a.approach_speed_m_s.total_cmp(&b.approach_speed_m_s));
+        let meets_s = fastest.map_or(0.0, |report| {
+            report.time_of_impact_s.clamp(-dt_s, 2.0 * dt_s)
+        });
         let impulse: f32 = group.iter().map(|report| report.impulse).sum();
-        let slip: f32 = group.iter().map(|report| report.slip).sum();
+        let slip: f32 = group
+            .iter()
+            .map(|report| report.impulse_weighted_slip)
+            .sum();
         let impact = self.impacts.entry(pair).or_insert(ImpactAccumulator {
             time_s: (begin_s + f64::from(meets_s)).max(0.0),
             steps: 0,
@@ -158,17 +168,20 @@ impl ContactTracker {
         for report in group {
             impact.impulse_n_s += report.impulse;
             impact.tangential_n_s += report.tangential;
-            impact.moment += report.moment;
-            impact.speed_m_s = impact.speed_m_s.max(report.meeting);
+            impact.moment += report.impulse_weighted_position;
+            impact.speed_m_s = impact.speed_m_s.max(report.impact_speed_m_s);
         }
     }
 
     fn touch(&mut self, pair: ContactPair, group: &[ContactReport], tick: u64, dt_s: f32) {
         let impulse: f32 = group.iter().map(|report| report.impulse).sum();
-        let moment: Vec3 = group.iter().map(|report| report.moment).sum();
+        let moment: Vec3 = group
+            .iter()
+            .map(|report| report.impulse_weighted_position)
+            .sum();
         let passing = group
             .iter()
-            .map(|report| report.passing)
+            .map(|report| report.tangential_speed_m_s)
             .fold(0.0, f32::max);
         let place = moment / impulse;
         let before = self.touching.get(&pair).map(|touching| touching.place);
@@ -184,7 +197,7 @@ impl ContactTracker {
         touching.moment += moment;
         for report in group {
             touching.tangential_n_s += report.tangential;
-            touching.slip += report.slip;
+            touching.slip += report.impulse_weighted_slip;
         }
         // The contact point moves when a body rolls, and jumps when pressure shifts under a resting one; a resting body
         // does not pass by.
@@ -250,8 +263,8 @@ impl ContactReport {
     fn scale(&mut self, times: f32) {
         let times = times.max(0.0);
         self.impulse *= times;
-        self.moment *= times;
-        self.slip *= times;
+        self.impulse_weighted_position *= times;
+        self.impulse_weighted_slip *= times;
     }
 }
 

@@ -13,9 +13,9 @@ use std::collections::BTreeSet;
 
 impl FrictionStorage {
     /// Returns the friction of a plane in the last substep, N·s, on its first body.
-    pub(super) fn last(self, plane: &ContactManifold) -> Vec3 {
+    pub(super) fn last_substep_friction(self, plane: &ContactManifold) -> Vec3 {
         let each = points(plane).map(|(_, point)| point.warmstart_tangent_world);
-        if self.by_patch {
+        if self.patch_friction {
             // A new point holds none yet.
             each.fold(Vec3::ZERO, |most, one| {
                 if one.length_squared() > most.length_squared() {
@@ -30,7 +30,7 @@ impl FrictionStorage {
     }
 
     /// Estimates the friction of a plane in a run of rapier, N·s, at the ratio to the normal impulse of the last substep.
-    pub(super) fn estimate(self, plane: &ContactManifold) -> f32 {
+    pub(super) fn estimated_step_friction(self, plane: &ContactManifold) -> f32 {
         let (mut all, mut last) = (0.0, 0.0);
         for (_, point) in points(plane) {
             all += point.impulse;
@@ -41,19 +41,19 @@ impl FrictionStorage {
         } else {
             1.0
         };
-        self.last(plane).length() * substeps
+        self.last_substep_friction(plane).length() * substeps
     }
 }
 
 /// Replaces estimates by the friction that a body's change of momentum gives. `reports`: of one run, sorted by pair.
-pub(super) fn whole(reports: &mut [ContactReport]) {
+pub(super) fn friction_from_momentum(reports: &mut [ContactReport]) {
     // Bodies with more than one contact partner.
     let (mut touched, mut shared) = (BTreeSet::new(), BTreeSet::new());
     let number = |(body, _): (RigidBodyHandle, Vec3)| body.into_raw_parts();
     for group in reports.chunk_by(|a, b| a.pair == b.pair) {
         let bodies: BTreeSet<(u32, u32)> = group
             .iter()
-            .flat_map(|report| report.pushed)
+            .flat_map(|report| report.impulse_on_bodies)
             .flatten()
             .map(number)
             .collect();
@@ -64,12 +64,15 @@ pub(super) fn whole(reports: &mut [ContactReport]) {
         }
     }
     for group in reports.chunk_by_mut(|a, b| a.pair == b.pair) {
-        let pressed: Vec3 = group.iter().map(|report| report.pressed).sum();
+        let pressed: Vec3 = group
+            .iter()
+            .map(|report| report.normal_impulse_on_second)
+            .sum();
         let alone = |side: usize| {
-            let pushed = group[0].pushed[side]?;
+            let pushed = group[0].impulse_on_bodies[side]?;
             // All pieces of the pair move with one body.
             let one = group.iter().all(|report| {
-                report.pushed[side].is_some_and(|other| number(other) == number(pushed))
+                report.impulse_on_bodies[side].is_some_and(|other| number(other) == number(pushed))
             });
             (one && !shared.contains(&number(pushed))).then_some(pushed.1)
         };

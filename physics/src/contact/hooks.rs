@@ -43,13 +43,13 @@ impl CollisionExclusions {
         one_way(a, b) && one_way(b, a)
     }
 
-    pub(crate) fn carry(&mut self, body: u32, agent: AgentId) {
+    pub(crate) fn exclude_carried(&mut self, body: u32, agent: AgentId) {
         if let Err(place) = self.carriers.binary_search(&(body, agent)) {
             self.carriers.insert(place, (body, agent));
         }
     }
 
-    pub(crate) fn part(&mut self, body: u32, agent: AgentId) {
+    pub(crate) fn include_released(&mut self, body: u32, agent: AgentId) {
         self.carriers.retain(|pair| *pair != (body, agent));
     }
 }
@@ -61,21 +61,21 @@ pub(crate) struct ContactProperties<'a> {
     pub(crate) table: &'a ContactTable,
     pub(crate) laws: &'a [Arc<dyn ContactLaw>],
     /// Set if a law makes contacts compliant.
-    pub(crate) soft: bool,
+    pub(crate) is_compliant: bool,
 }
 
 impl ContactProperties<'_> {
     /// Returns the values of a collider on itself, for rapier's own rule, and whether rapier asks the hook about its pairs instead.
-    pub(crate) fn rule(&self, entry: &ColliderEntry) -> (PairContact, bool) {
-        let (mut own, mut special) = self.table.rule(&entry.surface);
-        if self.soft {
+    pub(crate) fn self_pair(&self, entry: &ColliderEntry) -> (PairContact, bool) {
+        let (mut own, mut special) = self.table.self_pair(&entry.surface);
+        if self.is_compliant {
             own.restitution = 0.0;
             special |= entry.body.is_some();
         }
         special |= self
             .laws
             .iter()
-            .any(|law| law.scope().asks(self.house, self.table, entry));
+            .any(|law| law.scope().needs_hook(self.house, self.table, entry));
         (own, special)
     }
 }
@@ -85,7 +85,7 @@ pub(crate) struct ContactHooks<'a> {
     pub(crate) entries: &'a [ColliderEntry],
     pub(crate) properties: ContactProperties<'a>,
     pub(crate) excluded: &'a CollisionExclusions,
-    pub(crate) kept: FrictionStorage,
+    pub(crate) friction_storage: FrictionStorage,
     /// Length of the step, s.
     pub(crate) dt_s: f32,
 }
@@ -108,7 +108,10 @@ impl PhysicsHooks for ContactHooks<'_> {
             return;
         };
         let ContactProperties {
-            table, laws, soft, ..
+            table,
+            laws,
+            is_compliant: soft,
+            ..
         } = self.properties;
         let (bodies, body_a, body_b) = (context.bodies, context.rigid_body1, context.rigid_body2);
         let Some(manifold) = context.rigid_mut() else {
@@ -174,7 +177,8 @@ impl ContactHooks<'_> {
         (a, b): (ContactSide<'_>, ContactSide<'_>),
     ) {
         let count = plane.solver_contacts.len();
-        let turns = |law: &Arc<dyn ContactLaw>| law.scope().turns(self.properties.house, &a, &b);
+        let turns =
+            |law: &Arc<dyn ContactLaw>| law.scope().is_swapped(self.properties.house, &a, &b);
         if count == 0 || self.properties.laws.iter().all(|law| turns(law).is_none()) {
             return;
         }
@@ -194,7 +198,7 @@ impl ContactHooks<'_> {
             normal: *plane.normal,
             relative_velocity: velocity(body_b) - velocity(body_a),
             // rapier keeps the impulse on the first body.
-            friction_impulse_n_s: -self.kept.last(plane.manifold),
+            friction_impulse_n_s: -self.friction_storage.last_substep_friction(plane.manifold),
         };
         let mut values = ContactValues {
             friction: *plane.friction,
@@ -203,10 +207,10 @@ impl ContactHooks<'_> {
         };
         for law in self.properties.laws {
             match turns(law) {
-                Some(false) => law.shape_contact(&touch, &mut values),
+                Some(false) => law.modify_contact(&touch, &mut values),
                 Some(true) => {
                     values.surface_velocity *= -1.0;
-                    law.shape_contact(&touch.turned(), &mut values);
+                    law.modify_contact(&touch.swapped(), &mut values);
                     values.surface_velocity *= -1.0;
                 }
                 None => {}

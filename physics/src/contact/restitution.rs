@@ -12,7 +12,7 @@
 //! each of which keeps the sum of its impulses within its bounds.
 
 use super::approach::{ApproachMotion, speed_after};
-use super::body_motion::{BodyMotion, before};
+use super::body_motion::{BodyMotion, motion_before};
 use super::collider_entry::{ColliderEntry, ContactEntity, entry_index};
 use crate::engine::{RapierWorld, points};
 use crate::joints::{ImpulseDynamics, ImpulsePoint, JointCoordinate, KinematicTree, PhysicsJoint};
@@ -66,9 +66,9 @@ struct TreeImpactPoint {
 /// The corrections made in a step.
 pub(crate) struct RestitutionResult {
     /// Impulses added to the pairs' normal impulses, N·s.
-    pub(crate) added: BTreeMap<(ContactEntity, ContactEntity), f32>,
+    pub(crate) added_impulses: BTreeMap<(ContactEntity, ContactEntity), f32>,
     /// Set if bodies of trees were placed again.
-    pub(crate) placed: bool,
+    pub(crate) moved_trees: bool,
 }
 
 /// The impacts of a body in free flight.
@@ -118,9 +118,12 @@ impl RestitutionContext<'_> {
         }
         let mut placed = false;
         for tree in struck {
-            placed |= tree.write(engine, self.trees, self.joints, joint_coordinates);
+            placed |= tree.write_velocities(engine, self.trees, self.joints, joint_coordinates);
         }
-        RestitutionResult { added, placed }
+        RestitutionResult {
+            added_impulses: added,
+            moved_trees: placed,
+        }
     }
 
     /// Returns the impacts of a body, apart from those with `later`; `None` where nothing bounces.
@@ -146,7 +149,7 @@ impl RestitutionContext<'_> {
             let moves = other.and_then(|other| engine.bodies.get(other));
             stands &= hits.len() == before || moves.is_none_or(|other| !other.is_moving());
         }
-        let before = before(self.motions, Some(body));
+        let before = motion_before(self.motions, Some(body));
         let bounces = hits.iter().any(|hit| hit.parting > 0.0);
         bounces.then(|| FreeFlightImpact {
             body,
@@ -175,12 +178,12 @@ impl RestitutionContext<'_> {
             return;
         };
         let bodies = [pair.collider1, pair.collider2].map(|collider| parent(engine, collider));
-        let [one, two] = bodies.map(|body| before(self.motions, body));
+        let [one, two] = bodies.map(|body| motion_before(self.motions, body));
         for plane in pair.solver_manifolds() {
             let normal = -plane.data.normal;
             for (contact, point) in points(plane).filter(|(_, point)| point.impulse > 0.0) {
                 let approach = ApproachMotion::of(plane, contact, &engine.bodies, (&one, &two));
-                let meets_s = approach.meets_s.clamp(0.0, self.dt_s);
+                let meets_s = approach.time_of_impact_s.clamp(0.0, self.dt_s);
                 let sides = [(0, &two), (1, &one)].map(|(side, other)| {
                     let way = if side == 0 { normal } else { -normal };
                     // Position of the other one when they meet; rapier applied its impulse at its position when the step began.
@@ -189,7 +192,7 @@ impl RestitutionContext<'_> {
                         let tree = self.struck(engine, body, (&mut *struck, joint_coordinates))?;
                         let tree_of = &mut struck[tree];
                         let [point, pushed_at] = [ahead, Vec3::ZERO]
-                            .map(|ahead| tree_of.point(body, approach.place + ahead, way));
+                            .map(|ahead| tree_of.point(body, approach.midpoint + ahead, way));
                         Some(TreeImpactPoint {
                             tree,
                             point: point?,
@@ -198,7 +201,7 @@ impl RestitutionContext<'_> {
                     });
                     ImpactSide {
                         body: bodies[side],
-                        arm: approach.arms[side],
+                        arm: approach.lever_arms[side],
                         way,
                         joined,
                     }
@@ -259,7 +262,10 @@ impl RestitutionContext<'_> {
         bodies: [(Option<RigidBodyHandle>, &BodyMotion); 2],
     ) -> f32 {
         let restitution = plane.data.restitution;
-        if restitution <= 0.0 || approach.speed <= 0.0 || approach.meets_s < -self.dt_s {
+        if restitution <= 0.0
+            || approach.approach_speed_m_s <= 0.0
+            || approach.time_of_impact_s < -self.dt_s
+        {
             return 0.0;
         }
         let normal = plane.data.normal;
@@ -267,14 +273,14 @@ impl RestitutionContext<'_> {
         // The velocity that gravity adds since they met, however far rapier moved them after that.
         let [one, two] = bodies.map(|(body, motion)| {
             body.and_then(|body| engine.bodies.get(body))
-                .filter(|_| motion.known)
+                .filter(|_| motion.is_recorded)
                 .map_or(Vec3::ZERO, |body| {
-                    body.center_of_mass() - motion.center_after(approach.meets_s)
+                    body.center_of_mass() - motion.center_after(approach.time_of_impact_s)
                 })
         });
         let way_m = (one - two).dot(normal);
         // e times the speed at which they met, and what gravity made of it since.
-        speed_after(restitution * approach.meeting, pull, way_m)
+        speed_after(restitution * approach.impact_speed_m_s, pull, way_m)
     }
 }
 
@@ -331,8 +337,8 @@ impl FreeFlightImpact {
         for hit in self.hits.iter().filter(|hit| hit.parting > 0.0) {
             for joined in hit.sides.iter().filter_map(|side| side.joined.as_ref()) {
                 let pushed = f64::from(hit.pushed);
-                struck[joined.tree].push(&joined.point, pushed);
-                struck[joined.tree].push(&joined.pushed_at, -pushed);
+                struck[joined.tree].apply_impulse(&joined.point, pushed);
+                struck[joined.tree].apply_impulse(&joined.pushed_at, -pushed);
             }
         }
     }
@@ -379,7 +385,7 @@ impl ImpactSide {
     /// Returns its speed in its direction, m/s.
     fn speed(&self, engine: &RapierWorld, struck: &[ImpulseDynamics]) -> f32 {
         if let Some(joined) = &self.joined {
-            return struck[joined.tree].speed(&joined.point) as f32;
+            return struck[joined.tree].point_speed(&joined.point) as f32;
         }
         let body = self.body.and_then(|body| engine.bodies.get(body));
         body.map_or(0.0, |body| {
@@ -399,7 +405,7 @@ impl ImpactSide {
     /// Applies an impulse in its direction, N·s.
     fn push(&self, engine: &mut RapierWorld, struck: &mut [ImpulseDynamics], impulse: f32) {
         if let Some(joined) = &self.joined {
-            struck[joined.tree].push(&joined.point, impulse.into());
+            struck[joined.tree].apply_impulse(&joined.point, impulse.into());
         } else if let Some(body) = self.body.filter(|body| moves(engine, *body))
             && let Some(body) = engine.bodies.get_mut(body)
         {

@@ -54,7 +54,7 @@ pub(crate) fn set_rolling_hook(
 
 /// Makes rapier ask the hook about the cylinders that rolled at the time of a snapshot. `built`: the rebuilt world, with
 /// its bodies in order and its entries; `bodies`: those of the snapshot.
-pub(crate) fn resume(
+pub(crate) fn restore_rolling_hooks(
     rollers: &[RollingCylinder],
     built: (&mut RapierWorld, &[BodyHandle], &[ColliderEntry]),
     bodies: &RigidBodySet,

@@ -95,16 +95,21 @@ impl ContactScope {
     }
 
     /// Returns whether rapier must ask the hook about the pairs of a collider.
-    pub(crate) fn asks(&self, house: &House, table: &ContactTable, entry: &ColliderEntry) -> bool {
+    pub(crate) fn needs_hook(
+        &self,
+        house: &House,
+        table: &ContactTable,
+        entry: &ColliderEntry,
+    ) -> bool {
         let Some(one) = &self.one else {
             return entry.body.is_some();
         };
         let made_of = |class: u16| one.substance == Some(table.substance(class));
-        entry.surface.any_class(made_of) || one.is_thing(house, entry.contact_entity)
+        entry.surface.any_material(made_of) || one.is_thing(house, entry.contact_entity)
     }
 
     /// Returns whether a contact is within the scope, and if so, whether `b` is the surface and not `a`.
-    pub(crate) fn turns(
+    pub(crate) fn is_swapped(
         &self,
         house: &House,
         a: &ContactSide<'_>,

@@ -1,6 +1,6 @@
 //! Friction and restitution of every pair of substances in a house, looked up in a step without strings.
 
-use super::collider_entry::ContactClasses;
+use super::collider_entry::SurfaceMaterials;
 use crate::model::MaterialAssignment;
 use dwell_scene::material::{PairContact, library};
 use dwell_scene::{Address, House, IdVec, MaterialId, State};
@@ -121,22 +121,22 @@ impl ContactTable {
     }
 
     /// Returns the class or classes of a piece.
-    pub(crate) fn surface(&self, cover: &MaterialAssignment) -> ContactClasses {
+    pub(crate) fn surface_materials(&self, cover: &MaterialAssignment) -> SurfaceMaterials {
         let class = |material: Option<MaterialId>| {
             material.map_or(self.unknown, |material| self.class_of_material[material])
         };
         match cover {
-            MaterialAssignment::Uniform(material) => ContactClasses::Uniform(class(*material)),
+            MaterialAssignment::Uniform(material) => SurfaceMaterials::Uniform(class(*material)),
             MaterialAssignment::PerTriangle(materials) => {
                 let classes: Arc<[u16]> = materials.iter().map(|m| class(Some(*m))).collect();
-                ContactClasses::PerTriangle(classes)
+                SurfaceMaterials::PerTriangle(classes)
             }
         }
     }
 
     /// Returns the class of an agent's body.
-    pub(crate) fn human(&self) -> ContactClasses {
-        ContactClasses::Uniform(self.human)
+    pub(crate) fn agent_material(&self) -> SurfaceMaterials {
+        SurfaceMaterials::Uniform(self.human)
     }
 
     /// Returns the values between two classes.
@@ -145,18 +145,18 @@ impl ContactTable {
     }
 
     /// Returns the values of a surface on itself, for rapier's own rule, and whether its pairs need a look-up instead.
-    pub(crate) fn rule(&self, surface: &ContactClasses) -> (PairContact, bool) {
+    pub(crate) fn self_pair(&self, surface: &SurfaceMaterials) -> (PairContact, bool) {
         match surface {
-            ContactClasses::Uniform(class) => {
+            SurfaceMaterials::Uniform(class) => {
                 let class = usize::from(*class);
                 (self.own[class], self.special[class])
             }
-            ContactClasses::PerTriangle(_) => (self.own[usize::from(surface.class(0))], true),
+            SurfaceMaterials::PerTriangle(_) => (self.own[usize::from(surface.class(0))], true),
         }
     }
 
     /// Returns whether some pair has other values than in `other`.
-    pub(crate) fn differs(&self, other: &Self) -> bool {
+    pub(crate) fn pairs_differ(&self, other: &Self) -> bool {
         self.classes != other.classes || self.pairs != other.pairs
     }
 
@@ -250,8 +250,8 @@ mod tests {
         }
         // Cast iron on oak is a published pair: one of the two needs the look-up.
         let special = |k: u32| {
-            let surface = ContactClasses::Uniform(table.class_of_material[MaterialId(k)]);
-            table.rule(&surface).1
+            let surface = SurfaceMaterials::Uniform(table.class_of_material[MaterialId(k)]);
+            table.self_pair(&surface).1
         };
         assert!(special(0) || special(1));
     }

@@ -6,7 +6,7 @@ use crate::contact::{ColliderEntry, ContactProperties};
 use crate::engine::{ContactCompliance, RapierWorld};
 use crate::inertia::{self, BodyInertia};
 use crate::laws::LawSet;
-use crate::limits::Crowding;
+use crate::limits::PairDensity;
 use crate::model::{BodyPlan, CollisionPiece, PhysicsModel};
 use dwell_scene::material::PairContact;
 use dwell_scene::{State, interrupt};
@@ -21,14 +21,17 @@ pub(crate) struct BodyMasses {
     /// Density factors. Shape (body, part).
     pub(crate) factors: Vec<Vec<f32>>,
     /// Mass and inertia changed by laws. Shape (body,).
-    pub(crate) altered: Vec<Option<BodyInertia>>,
+    pub(crate) overridden: Vec<Option<BodyInertia>>,
 }
 
 impl BodyMasses {
     pub(crate) fn new(model: &PhysicsModel, state: &State, laws: &LawSet) -> Self {
         let factors = body::mass_factors(model, state);
         let altered = inertia::altered(model, state, &factors, &laws.masses);
-        Self { factors, altered }
+        Self {
+            factors,
+            overridden: altered,
+        }
     }
 }
 
@@ -50,17 +53,17 @@ pub(crate) fn assemble(
     settings: &ResolvedConfig,
     values: ContactProperties<'_>,
     compliance: Option<ContactCompliance>,
-    (gravity_m_s2, agents, crowding): (f32, usize, Crowding),
+    (gravity_m_s2, agents, crowding): (f32, usize, PairDensity),
     places: impl Fn(usize) -> (RapierPose, BodyStatus),
     weights: &BodyMasses,
 ) -> AssembledWorld {
     let mut engine = RapierWorld::new(settings, gravity_m_s2);
     // rapier doubles its lists when they are full.
     let pieces = model.bodies.iter().map(|plan| plan.pieces.len());
-    let pieces: usize = pieces.sum::<usize>() + model.statics.len();
+    let pieces: usize = pieces.sum::<usize>() + model.static_pieces.len();
     engine.colliders = ColliderSet::with_capacity(pieces + agents);
     engine.bodies = RigidBodySet::with_capacity(model.bodies.len() + FIXED_BODIES + agents);
-    engine.soften(settings, compliance);
+    engine.set_compliance(settings, compliance);
     let mut entries = insert_statics(&mut engine, model, values);
     let anchor = engine.bodies.insert(RigidBodyBuilder::fixed());
     let mut bodies = Vec::with_capacity(model.bodies.len());
@@ -70,11 +73,11 @@ pub(crate) fn assemble(
         let place = BodyPlacement {
             index: index as u32,
             world_from_body,
-            hold,
+            status: hold,
             mass_factors: &weights.factors[index],
-            inertia: weights.altered[index],
+            inertia: weights.overridden[index],
             sleeping_allowed: settings.config.sleeping,
-            asks: plan.joint.is_some() || crowding == Crowding::Many,
+            needs_hook: plan.joint.is_some() || crowding == PairDensity::High,
             event_force_n: settings.event_force_n(),
         };
         bodies.push(insert_body(&mut engine, plan, values, &mut entries, place));
@@ -113,13 +116,18 @@ pub(crate) fn insert_statics(
     values: ContactProperties<'_>,
 ) -> Vec<ColliderEntry> {
     let ground = engine.bodies.insert(RigidBodyBuilder::fixed());
-    let mut entries = Vec::with_capacity(model.statics.len());
-    for piece in &model.statics {
-        let entry = ColliderEntry::new(piece.owner, None, values.table.surface(&piece.cover));
+    let mut entries = Vec::with_capacity(model.static_pieces.len());
+    for piece in &model.static_pieces {
+        let entry = ColliderEntry::new(
+            piece.owner,
+            None,
+            values.table.surface_materials(&piece.materials),
+        );
         let builder = ColliderBuilder::new(piece.shape.clone())
-            .position(piece.place)
+            .position(piece.pose)
             .density(0.0);
-        let builder = set_contact_properties(builder, values.rule(&entry), false, entries.len());
+        let builder =
+            set_contact_properties(builder, values.self_pair(&entry), false, entries.len());
         engine
             .colliders
             .insert_with_parent(builder, ground, &mut engine.bodies);
@@ -136,7 +144,7 @@ pub(crate) fn insert_body(
     entries: &mut Vec<ColliderEntry>,
     place: BodyPlacement<'_>,
 ) -> BodyHandle {
-    let mut builder = RigidBodyBuilder::new(body_type(place.hold))
+    let mut builder = RigidBodyBuilder::new(body_type(place.status))
         .pose(place.world_from_body)
         .can_sleep(place.sleeping_allowed)
         // rapier brakes rotations by more than an eighth of a turn in a step, except of wheels and rotors.
@@ -148,17 +156,21 @@ pub(crate) fn insert_body(
     }
     let handle = engine.bodies.insert(builder);
     for piece in &plan.pieces {
-        let surface = values.table.surface(&piece.cover);
+        let surface = values.table.surface_materials(&piece.materials);
         let entry = ColliderEntry::new(piece.owner, Some(place.index), surface);
-        let factor = plan.factor_of(piece, place.mass_factors);
+        let factor = plan.mass_factor_of(piece, place.mass_factors);
         let density = density(piece, factor, place.inertia.as_ref());
         let builder = ColliderBuilder::new(piece.shape.clone())
-            .position(piece.place)
+            .position(piece.pose)
             .density(density)
             .active_events(ActiveEvents::CONTACT_FORCE_EVENTS)
             .contact_force_event_threshold(place.event_force_n);
-        let builder =
-            set_contact_properties(builder, values.rule(&entry), place.asks, entries.len());
+        let builder = set_contact_properties(
+            builder,
+            values.self_pair(&entry),
+            place.needs_hook,
+            entries.len(),
+        );
         engine
             .colliders
             .insert_with_parent(builder, handle, &mut engine.bodies);
@@ -172,7 +184,7 @@ pub(crate) fn insert_body(
 pub(crate) struct BodyPlacement<'a> {
     pub(crate) index: u32,
     pub(crate) world_from_body: RapierPose,
-    pub(crate) hold: BodyStatus,
+    pub(crate) status: BodyStatus,
     /// Density factors of its parts. Shape (part,).
     pub(crate) mass_factors: &'a [f32],
     /// Mass and inertia, if a law changes them.
@@ -181,7 +193,7 @@ pub(crate) struct BodyPlacement<'a> {
     pub(crate) event_force_n: f32,
     /// Makes rapier ask the hook which of its pairs meet: for leaves; for free bodies only against agents, who do so
     /// themselves, and where there are so many pairs that the call must be cancellable between them.
-    pub(crate) asks: bool,
+    pub(crate) needs_hook: bool,
 }
 
 /// Returns the density of a collider, kg/m³: none where the body's mass and inertia are given as a whole.

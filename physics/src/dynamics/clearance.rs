@@ -21,9 +21,9 @@ const TRIES: u32 = 6;
 
 /// Treatment of contacts of a held object with its holder's body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum HolderContacts {
-    Counts,
-    Passes,
+pub(crate) enum HolderCollision {
+    Included,
+    Ignored,
 }
 
 /// The surfaces that an object may be put on.
@@ -41,7 +41,7 @@ impl Dynamics {
 
     /// Returns the first obstacle between an eye and a point that a hand cannot get past: building, furniture, leaves.
     /// Hands reach around loose objects and agents.
-    pub(crate) fn first_obstacle(&self, eye: Vec3, point: Vec3) -> Option<&ColliderEntry> {
+    pub(crate) fn first_reach_obstacle(&self, eye: Vec3, point: Vec3) -> Option<&ColliderEntry> {
         let barring = |_: ColliderHandle, collider: &Collider| {
             let entry = self.entry_of(collider);
             entry.agent().is_none()
@@ -65,20 +65,23 @@ impl Dynamics {
         &self,
         body: usize,
         place: &RapierPose,
-        holder: HolderContacts,
+        holder: HolderCollision,
     ) -> Option<&ColliderEntry> {
         let queries = self.engine.queries(QueryFilter::default());
         let passes = |collider: &Collider| {
             let entry = self.entry_of(collider);
             entry.body == Some(body as u32)
-                || (holder == HolderContacts::Passes
+                || (holder == HolderCollision::Ignored
                     && entry.agent().is_some_and(|agent| {
                         let pair = (body as u32, agent);
-                        self.excluded.carriers.binary_search(&pair).is_ok()
+                        self.collision_exclusions
+                            .carriers
+                            .binary_search(&pair)
+                            .is_ok()
                     }))
         };
         self.model.bodies[body].pieces.iter().find_map(|piece| {
-            let at = *place * piece.place;
+            let at = *place * piece.pose;
             let bounds = shapes::bounds(&piece.shape, &at);
             let aabb = Aabb::new(bounds.min, bounds.max);
             queries
@@ -100,7 +103,7 @@ impl Dynamics {
 
     /// Returns whether a body would overlap nothing under a pose, besides agents that hold it.
     pub(crate) fn is_clear(&self, body: usize, place: &RapierPose) -> bool {
-        self.first_overlap(body, place, HolderContacts::Passes)
+        self.first_overlap(body, place, HolderCollision::Ignored)
             .is_none()
     }
 
@@ -150,7 +153,7 @@ impl Dynamics {
 
     /// Returns the first position on the straight line from `to` back to `from` where a body overlaps nothing solid and is
     /// not beyond a wall, seen from its holder's eye.
-    pub(crate) fn clear_between(
+    pub(crate) fn first_clear_pose(
         &self,
         body: usize,
         holder: &AgentState,
@@ -163,7 +166,7 @@ impl Dynamics {
             let mut place = *to;
             place.translation = to.translation.lerp(from.translation, share);
             let middle = self.model.bodies[body].bounds(&place).center();
-            let open = self.first_obstacle(eye, middle).is_none();
+            let open = self.first_reach_obstacle(eye, middle).is_none();
             (open && self.is_clear(body, &place)).then_some(place)
         })
     }

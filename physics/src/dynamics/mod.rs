@@ -8,7 +8,7 @@ pub(crate) use assembly::{
     AssembledWorld, BodyMasses, assemble, density, invalidate_contacts, set_contact_properties,
     update_collider_properties,
 };
-pub(crate) use clearance::{HolderContacts, SupportFilter};
+pub(crate) use clearance::{HolderCollision, SupportFilter};
 
 use crate::body::{self, BodyHandle, BodyStatus};
 use crate::config::ResolvedConfig;
@@ -33,8 +33,8 @@ pub(crate) struct Dynamics {
     pub(crate) bodies: Vec<BodyHandle>,
     /// The current status of each body. Shape (body,).
     pub(crate) statuses: Vec<BodyStatus>,
-    pub(crate) weights: BodyMasses,
-    pub(crate) excluded: CollisionExclusions,
+    pub(crate) masses: BodyMasses,
+    pub(crate) collision_exclusions: CollisionExclusions,
     pub(crate) laws: Box<LawSet>,
     /// Physics steps since the world was made.
     pub(crate) tick: u64,
@@ -57,8 +57,8 @@ impl Dynamics {
         let hooks = ContactHooks {
             entries: &self.entries,
             properties: self.laws.contact_properties(&self.model.house, &self.table),
-            excluded: &self.excluded,
-            kept: self.engine.friction_kept(),
+            excluded: &self.collision_exclusions,
+            friction_storage: self.engine.friction_storage(),
             dt_s: 0.0,
         };
         self.engine.flush(&hooks);
@@ -69,7 +69,7 @@ impl Dynamics {
         let model = self.model.clone();
         let properties = self.laws.contact_properties(&model.house, &self.table);
         let mut changed = false;
-        for roller in &model.rollers {
+        for roller in &model.rolling_cylinders {
             let handle = self.bodies[roller.body()].handle;
             let body = self.engine.bodies.get(handle);
             let (own, rolls) = (
@@ -80,7 +80,7 @@ impl Dynamics {
             let asked = |index: usize| {
                 entries
                     .get(index)
-                    .is_some_and(|entry| properties.rule(entry).1)
+                    .is_some_and(|entry| properties.self_pair(entry).1)
             };
             changed |= rolling::set_rolling_hook(&mut self.engine, rolls, own, asked);
         }
@@ -128,7 +128,7 @@ impl Dynamics {
     /// Counts a completed physics step.
     pub(crate) fn count_step(&mut self) {
         self.tick += 1;
-        self.engine.copy_pairs_at(self.tick);
+        self.engine.release_pair_memory(self.tick);
     }
 
     /// Returns the name of an object for people.
@@ -157,7 +157,7 @@ impl Dynamics {
     }
 
     /// Returns the speed of the fastest point of any body, m/s.
-    pub(crate) fn fastest_m_s(&self) -> f32 {
+    pub(crate) fn max_speed_m_s(&self) -> f32 {
         self.bodies
             .iter()
             .zip(&self.statuses)

@@ -19,7 +19,7 @@ impl Dynamics {
             .filter(|index| self.is_cacheable(*index) && !is_handled(*index))
             .map(|index| self.bodies[index].handle)
             .collect();
-        self.engine.keep_touching_free_bodies(&mut asleep);
+        self.engine.exclude_bodies_touching_free(&mut asleep);
         if asleep.is_empty() {
             return;
         }
@@ -30,7 +30,7 @@ impl Dynamics {
             asleep.binary_search_by_key(&key(body), key).is_ok()
         };
         let kept = kept.filter(|(bodies, _)| bodies.iter().any(sleeps));
-        self.engine.sleeping_cache.keep_contacts(kept);
+        self.engine.sleeping_cache.store_contacts(kept);
         self.engine.cache_bodies(&asleep);
         self.forget_pairs(&asleep);
     }
@@ -81,7 +81,7 @@ impl Dynamics {
             (
                 contact.a,
                 contact.b,
-                contact.rest == SupportRelation::Beside,
+                contact.support_relation == SupportRelation::NoSupport,
             )
         });
         contacts.dedup_by_key(|contact| (contact.a, contact.b));

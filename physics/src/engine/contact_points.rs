@@ -16,7 +16,7 @@ pub(crate) fn points(
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FrictionStorage {
     /// Each point of a plane holds the friction of the whole plane.
-    pub(crate) by_patch: bool,
+    pub(crate) patch_friction: bool,
     /// rapier runs once in a physics step.
-    pub(crate) once: bool,
+    pub(crate) single_solver_call: bool,
 }

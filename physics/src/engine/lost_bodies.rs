@@ -6,7 +6,7 @@ use rapier3d::dynamics::RigidBodyHandle;
 
 impl RapierWorld {
     /// Restores a removed body, at rest at its position.
-    pub(crate) fn put_back(&mut self, handle: RigidBodyHandle) {
+    pub(crate) fn restore_removed(&mut self, handle: RigidBodyHandle) {
         let Some(body) = self.bodies.get_mut(handle) else {
             return;
         };

@@ -70,7 +70,7 @@ impl RapierWorld {
     }
 
     /// Sets the contact compliance of a law, or the stiffest contacts that the rate allows.
-    pub(crate) fn soften(
+    pub(crate) fn set_compliance(
         &mut self,
         settings: &ResolvedConfig,
         compliance: Option<ContactCompliance>,
@@ -87,7 +87,7 @@ impl RapierWorld {
     }
 
     /// Returns the length of one run of rapier, s: the time over which it keeps impulses.
-    pub(crate) fn run_s(&self) -> f32 {
+    pub(crate) fn solver_call_s(&self) -> f32 {
         self.parameters.dt
     }
 
@@ -97,15 +97,15 @@ impl RapierWorld {
     }
 
     /// Returns the layout of friction impulses in contact points.
-    pub(crate) fn friction_kept(&self) -> FrictionStorage {
+    pub(crate) fn friction_storage(&self) -> FrictionStorage {
         FrictionStorage {
-            by_patch: self.parameters.friction_model == FrictionModel::Simplified,
-            once: self.runs == 1,
+            patch_friction: self.parameters.friction_model == FrictionModel::Simplified,
+            single_solver_call: self.runs == 1,
         }
     }
 
     /// Returns whether rapier runs several times in a physics step; contact data is then of the last run.
-    pub(crate) fn has_multiple_runs(&self) -> bool {
+    pub(crate) fn has_multiple_solver_calls(&self) -> bool {
         self.runs > 1
     }
 
@@ -120,7 +120,7 @@ impl RapierWorld {
     }
 
     /// Returns the awake bodies that move, have no joint and no support, in the order of the islands.
-    pub(crate) fn in_free_flight(&self) -> Vec<RigidBodyHandle> {
+    pub(crate) fn bodies_in_free_flight(&self) -> Vec<RigidBodyHandle> {
         let flies = |handle: &RigidBodyHandle| {
             self.bodies.get(*handle).is_some_and(|body| {
                 body.is_dynamic()
@@ -207,7 +207,7 @@ impl RapierWorld {
     /// Makes one physics step.
     ///
     /// Gravity acts at the beginning of rapier's substeps, so that a body would fall half a substep ahead of its time.
-    /// Bodies in free flight (`flying`: [`RapierWorld::in_free_flight`]) have half of one substep's gravity subtracted
+    /// Bodies in free flight (`flying`: [`RapierWorld::bodies_in_free_flight`]) have half of one substep's gravity subtracted
     /// before and added after: they then follow their parabola exactly (the leapfrog method). A body that hit something in
     /// the step keeps the velocity that the contact gave it. Returns the bodies in free flight that hit something.
     pub(crate) fn step(
@@ -226,8 +226,8 @@ impl RapierWorld {
         let (landed, flew): (Vec<RigidBodyHandle>, Vec<RigidBodyHandle>) =
             flying.into_iter().partition(hit);
         self.fall(&flew, 0.5);
-        self.shrink_bounds(&awake);
-        self.workspace.fit(awake.len());
+        self.shrink_sleeping_bounds(&awake);
+        self.workspace.shrink_to_fit(awake.len());
         landed
     }
 
@@ -306,7 +306,7 @@ impl RapierWorld {
     }
 
     /// Returns the bodies that rapier removed since the last call.
-    pub(crate) fn take_lost(&mut self) -> Vec<RigidBodyHandle> {
+    pub(crate) fn take_removed_bodies(&mut self) -> Vec<RigidBodyHandle> {
         std::mem::take(&mut self.lost)
     }
 

@@ -46,14 +46,14 @@ impl RapierWorld {
     /// Periodically releases the memory of pairs that are gone. rapier keeps each for the next pair, with all its buffers,
     /// so that in a long run every one of them comes to need the most. A copy has no unused memory. `tick`: physics steps
     /// made.
-    pub(crate) fn copy_pairs_at(&mut self, tick: u64) {
+    pub(crate) fn release_pair_memory(&mut self, tick: u64) {
         if tick.is_multiple_of(TICKS_BETWEEN_COPIES) {
             self.narrow_phase = self.narrow_phase.clone();
         }
     }
 
     /// Shrinks the boxes of the bodies that were awake and have fallen asleep.
-    pub(super) fn shrink_bounds(&mut self, awake_before: &[RigidBodyHandle]) {
+    pub(super) fn shrink_sleeping_bounds(&mut self, awake_before: &[RigidBodyHandle]) {
         let parameters = IntegrationParameters {
             length_unit: SKIN_M / RAPIER_SKIN,
             ..*self.parameters()

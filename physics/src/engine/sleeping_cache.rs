@@ -50,7 +50,7 @@ impl SleepingIslandCache {
         self.bodies.binary_search_by_key(&key(&body), key)
     }
 
-    pub(crate) fn has(&self, body: RigidBodyHandle) -> bool {
+    pub(crate) fn contains(&self, body: RigidBodyHandle) -> bool {
         self.place(body).is_ok()
     }
 
@@ -60,7 +60,7 @@ impl SleepingIslandCache {
     }
 
     /// Stores the contacts of bodies to be cached.
-    pub(crate) fn keep_contacts(
+    pub(crate) fn store_contacts(
         &mut self,
         contacts: impl Iterator<Item = ([RigidBodyHandle; 2], Contact)>,
     ) {
@@ -105,9 +105,9 @@ enum WakeRequest {
 
 impl RapierWorld {
     /// Returns whether a body is free and sleeps: in rapier, or in the cache.
-    pub(crate) fn sleeps(&self, body: RigidBodyHandle) -> bool {
+    pub(crate) fn is_sleeping(&self, body: RigidBodyHandle) -> bool {
         let rigid = self.bodies.get(body);
-        self.sleeping_cache.has(body)
+        self.sleeping_cache.contains(body)
             || rigid.is_some_and(|rigid| rigid.is_dynamic() && rigid.is_sleeping())
     }
 
@@ -176,7 +176,7 @@ impl RapierWorld {
 
     /// Wakes bodies within reach of anything that moves in the next step, and those in contact with them, and so on.
     /// `kinematic_bodies`: agents, which are kinematic.
-    pub(crate) fn wake_in_reach(
+    pub(crate) fn wake_bodies_in_reach(
         &mut self,
         kinematic_bodies: impl Iterator<Item = RigidBodyHandle>,
     ) {
@@ -185,7 +185,7 @@ impl RapierWorld {
         }
         let awake = self.islands.active_bodies();
         let mut movers: Vec<RigidBodyHandle> = awake
-            .filter(|body| !self.sleeping_cache.has(*body))
+            .filter(|body| !self.sleeping_cache.contains(*body))
             .collect();
         movers.extend(kinematic_bodies);
         let mut woken = BodyIndexSet::new();
@@ -245,7 +245,7 @@ impl RapierWorld {
         for (_, other) in queries.intersect_aabb_conservative(around) {
             let Some(parent) = other
                 .parent()
-                .filter(|parent| self.sleeping_cache.has(*parent))
+                .filter(|parent| self.sleeping_cache.contains(*parent))
             else {
                 continue;
             };
@@ -272,7 +272,7 @@ impl RapierWorld {
 
     /// Removes those that touch, or are jointed to, a free body that stays one: rapier wakes it when its contacts change.
     /// They then stay free themselves.
-    pub(crate) fn keep_touching_free_bodies(&self, asleep: &mut Vec<RigidBodyHandle>) {
+    pub(crate) fn exclude_bodies_touching_free(&self, asleep: &mut Vec<RigidBodyHandle>) {
         let mut sleeping_cache: BodyIndexSet =
             asleep.iter().map(|body| body.into_raw_parts()).collect();
         let stays = |sleeping_cache: &BodyIndexSet, body: &RigidBodyHandle| {

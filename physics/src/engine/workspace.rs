@@ -34,7 +34,7 @@ impl Workspace {
     }
 
     /// Releases memory that was needed when far more bodies were awake than now: rapier keeps that of its largest step.
-    pub(crate) fn fit(&mut self, awake: usize) {
+    pub(crate) fn shrink_to_fit(&mut self, awake: usize) {
         self.most = self.most.max(awake);
         self.quiet_steps = if 4 * awake < self.most && self.most > FEW_BODIES {
             self.quiet_steps + 1
@@ -60,15 +60,15 @@ mod tests {
     #[test]
     fn memory_of_a_crowd_is_given_back_after_a_long_quiet_only() {
         let mut workspace = Workspace::new();
-        workspace.fit(10 * FEW_BODIES);
+        workspace.shrink_to_fit(10 * FEW_BODIES);
         for _ in 0..PATIENCE_STEPS - 1 {
-            workspace.fit(FEW_BODIES);
+            workspace.shrink_to_fit(FEW_BODIES);
         }
         assert_eq!(workspace.most, 10 * FEW_BODIES);
-        workspace.fit(3 * FEW_BODIES);
+        workspace.shrink_to_fit(3 * FEW_BODIES);
         assert_eq!(workspace.quiet_steps, 0);
         for _ in 0..PATIENCE_STEPS {
-            workspace.fit(FEW_BODIES);
+            workspace.shrink_to_fit(FEW_BODIES);
         }
         assert_eq!((workspace.most, workspace.quiet_steps), (0, 0));
     }

@@ -47,7 +47,7 @@ pub(crate) struct HeldObject {
     /// Half of its largest horizontal edge, m.
     half_m: f32,
     /// Position of its middle before the last physics step, m.
-    pub(crate) middle: Vec3,
+    pub(crate) last_center: Vec3,
     stuck_s: f32,
     grasp: Grasp,
     /// Set if something stands on it or lies in it: it is then moved gently.
@@ -78,7 +78,7 @@ impl HeldObject {
             hand_from_body: (yaw.inverse() * world_from_body.rotation).normalize(),
             middle_in_body: local.center(),
             half_m: 0.5 * size.x.max(size.z),
-            middle: world_from_body.transform_point(local.center()),
+            last_center: world_from_body.transform_point(local.center()),
             stuck_s: 0.0,
             grasp,
             loaded,
@@ -98,7 +98,7 @@ pub(crate) fn hand_pose(grip: &HeldObject, holder: &AgentState) -> Pose {
 }
 
 /// Pulls a held body towards the hand for one physics step. Returns whether it slips.
-pub(crate) fn carry(
+pub(crate) fn pull_towards_hand(
     engine: &mut RapierWorld,
     body: &BodyHandle,
     grip: &mut HeldObject,
@@ -112,7 +112,7 @@ pub(crate) fn carry(
         return true;
     };
     let now = *rigid.position();
-    grip.middle = now * grip.middle_in_body;
+    grip.last_center = now * grip.middle_in_body;
     let away = target.position - now.translation;
     let turn = {
         let q = target.rotation * now.rotation.inverse();
@@ -196,12 +196,12 @@ impl ImplicitSpring {
 
 impl HeldObject {
     /// Returns whether it carries the whole weight.
-    pub(crate) fn is_firm(&self) -> bool {
+    pub(crate) fn has_kinematic_grasp(&self) -> bool {
         self.grasp == Grasp::Kinematic
     }
 
     /// Returns the position of a held body's middle, m.
-    pub(crate) fn middle_at(&self, world_from_body: &rapier3d::math::Pose) -> Vec3 {
+    pub(crate) fn center_at(&self, world_from_body: &rapier3d::math::Pose) -> Vec3 {
         *world_from_body * self.middle_in_body
     }
 }

@@ -17,15 +17,17 @@ use rapier3d::dynamics::RigidBody;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Hands {
     /// Held objects, by agent.
-    pub(crate) grips: Vec<HeldObject>,
+    pub(crate) held_objects: Vec<HeldObject>,
     /// Released bodies that still overlap the agent that held them.
     pub(crate) released_overlapping: Vec<(u32, AgentId)>,
 }
 
 impl Hands {
     /// Returns whether some hand holds a body or has just released it.
-    pub(crate) fn involve(&self, body: usize) -> bool {
-        self.grips.iter().any(|grip| grip.body as usize == body)
+    pub(crate) fn holds_or_just_released(&self, body: usize) -> bool {
+        self.held_objects
+            .iter()
+            .any(|grip| grip.body as usize == body)
             || self
                 .released_overlapping
                 .iter()
@@ -40,13 +42,13 @@ impl Hands {
         notices: &mut Vec<DelayedOutcome>,
     ) {
         let mut place = 0;
-        while place < self.grips.len() {
+        while place < self.held_objects.len() {
             let HeldObject {
                 body,
                 agent,
                 object,
                 ..
-            } = self.grips[place];
+            } = self.held_objects[place];
             let handle = dynamics.bodies[body as usize].handle;
             let mass = dynamics
                 .engine
@@ -75,7 +77,7 @@ impl Hands {
 
     /// Opens the hand of the grip at index `place`.
     pub(crate) fn open_hand(&mut self, dynamics: &mut Dynamics, state: &mut State, place: usize) {
-        let grip = self.grips.remove(place);
+        let grip = self.held_objects.remove(place);
         let velocity = state.agents[grip.agent].velocity;
         let body = grip.body as usize;
         let scale = self.gravity_scale(dynamics, body);
@@ -93,27 +95,28 @@ impl Hands {
 
     /// Returns the share of its weight that a body has: none in a firm grasp, else as laws set it.
     pub(crate) fn gravity_scale(&self, dynamics: &Dynamics, body: usize) -> f32 {
-        let carried = |grip: &HeldObject| grip.body as usize == body && grip.is_firm();
-        if self.grips.iter().any(carried) {
+        let carried = |grip: &HeldObject| grip.body as usize == body && grip.has_kinematic_grasp();
+        if self.held_objects.iter().any(carried) {
             return 0.0;
         }
-        dynamics.weights.altered[body].map_or(1.0, |inertia| inertia.gravity_scale)
+        dynamics.masses.overridden[body].map_or(1.0, |inertia| inertia.gravity_scale)
     }
 
     /// Moves held objects for one physics step, and opens the hands from which one slips.
-    pub(crate) fn carry(
+    pub(crate) fn step_held_objects(
         &mut self,
         dynamics: &mut Dynamics,
         state: &mut State,
         notices: &mut Vec<DelayedOutcome>,
     ) {
         let mut place = 0;
-        while place < self.grips.len() {
-            let agent = state.agents[self.grips[place].agent];
-            let body = dynamics.bodies[self.grips[place].body as usize];
-            let grip = &mut self.grips[place];
+        while place < self.held_objects.len() {
+            let agent = state.agents[self.held_objects[place].agent];
+            let body = dynamics.bodies[self.held_objects[place].body as usize];
+            let grip = &mut self.held_objects[place];
             let dt_s = dynamics.settings.dt_s;
-            let slips = held_object::carry(&mut dynamics.engine, &body, grip, &agent, dt_s);
+            let slips =
+                held_object::pull_towards_hand(&mut dynamics.engine, &body, grip, &agent, dt_s);
             if !slips {
                 place += 1;
                 continue;
@@ -134,10 +137,10 @@ impl Hands {
 
     /// Moves back bodies that were pressed through a thin wall in the last physics step. Contacts stop a held object, but a
     /// hand that presses a thin card against a thin wall overcomes them.
-    pub(crate) fn keep_inside(&self, dynamics: &mut Dynamics) {
+    pub(crate) fn undo_wall_penetration(&self, dynamics: &mut Dynamics) {
         let mut moved = false;
-        for place in 0..self.grips.len() {
-            let grip = self.grips[place];
+        for place in 0..self.held_objects.len() {
+            let grip = self.held_objects[place];
             let handle = dynamics.bodies[grip.body as usize].handle;
             let Some(now) = dynamics
                 .engine
@@ -147,13 +150,17 @@ impl Hands {
             else {
                 continue;
             };
-            let middle = grip.middle_at(&now);
-            if middle == grip.middle || dynamics.first_obstacle(grip.middle, middle).is_none() {
+            let middle = grip.center_at(&now);
+            if middle == grip.last_center
+                || dynamics
+                    .first_reach_obstacle(grip.last_center, middle)
+                    .is_none()
+            {
                 continue;
             }
             if let Some(rigid) = dynamics.engine.bodies.get_mut(handle) {
                 let mut back = now;
-                back.translation += grip.middle - middle;
+                back.translation += grip.last_center - middle;
                 rigid.set_position(back, true);
                 rigid.set_linvel(Vec3::ZERO, true);
                 moved = true;
@@ -165,14 +172,14 @@ impl Hands {
     }
 
     /// Lets bodies and the agents that held them collide again once they are apart.
-    pub(crate) fn end_separations(&mut self, dynamics: &mut Dynamics, state: &State) {
+    pub(crate) fn restore_holder_collisions(&mut self, dynamics: &mut Dynamics, state: &State) {
         if self.released_overlapping.is_empty() {
             return;
         }
         let mut still = Vec::new();
         for (body, agent) in std::mem::take(&mut self.released_overlapping) {
             let held_again = self
-                .grips
+                .held_objects
                 .iter()
                 .any(|grip| (grip.body, grip.agent) == (body, agent));
             if held_again {
@@ -187,7 +194,7 @@ impl Hands {
                 !bounds.intersects(&agent_bounds(&state.agents[agent]).grown(0.01))
             });
             if apart {
-                dynamics.excluded.part(body, agent);
+                dynamics.collision_exclusions.include_released(body, agent);
             } else {
                 still.push((body, agent));
             }

@@ -24,9 +24,9 @@ const STICKING_MASS_RATIO: f64 = 1e4;
 /// The contact state of a support point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum SupportState {
-    Sticks,
+    Sticking,
     /// It presses, and friction brakes it with this force, N.
-    Slips(DVec3),
+    Sliding(DVec3),
     /// It does not press.
     Separated,
 }
@@ -35,8 +35,8 @@ impl SupportState {
     /// Returns the directions in which it holds.
     fn holds(self) -> [bool; 3] {
         match self {
-            Self::Sticks => [true; 3],
-            Self::Slips(_) => [false, true, false],
+            Self::Sticking => [true; 3],
+            Self::Sliding(_) => [false, true, false],
             Self::Separated => [false; 3],
         }
     }
@@ -44,8 +44,8 @@ impl SupportState {
     /// Returns the force that is independent of its motion.
     fn force(self) -> DVec3 {
         match self {
-            Self::Slips(force) => force,
-            Self::Sticks | Self::Separated => DVec3::ZERO,
+            Self::Sliding(force) => force,
+            Self::Sticking | Self::Separated => DVec3::ZERO,
         }
     }
 }
@@ -75,9 +75,9 @@ pub(super) struct BaseContactSolver {
 #[derive(Clone, Debug)]
 pub(super) struct BaseResponse {
     /// The change of its six velocities, per second.
-    pub(super) gained: [f64; 6],
+    pub(super) accelerations: [f64; 6],
     /// On each support, N.
-    pub(super) forces: Vec<DVec3>,
+    pub(super) support_forces: Vec<DVec3>,
 }
 
 /// The joint-space equations of a step after elimination of the root: `inertia * velocity = momentum` at its end, without efforts.
@@ -85,7 +85,7 @@ pub(super) struct ReducedProblem {
     pub(super) inertia: SymmetricMatrix,
     /// Shape (freedom,).
     pub(super) momentum: Vec<f64>,
-    pub(super) footing: Option<BaseContactSolver>,
+    pub(super) base_contacts: Option<BaseContactSolver>,
 }
 
 impl ReducedProblem {
@@ -97,15 +97,15 @@ impl ReducedProblem {
         holds: &[SupportState],
         dt_s: f64,
     ) -> Self {
-        let mut inertia = motion.held_inertia();
-        let bias = motion.along(loads, 0);
+        let mut inertia = motion.fixed_base_inertia();
+        let bias = motion.generalized_forces(loads, 0);
         // H q' - h C.
-        let mut momentum = inertia.times(now);
+        let mut momentum = inertia.multiply(now);
         for (momentum, bias) in momentum.iter_mut().zip(&bias) {
             *momentum -= dt_s * bias;
         }
-        let floating = motion.floating();
-        let (efforts, root_efforts) = motion.touched(floating.as_ref());
+        let floating = motion.floating_base();
+        let (efforts, root_efforts) = motion.contact_forces(floating.as_ref());
         for (momentum, effort) in momentum.iter_mut().zip(efforts) {
             *momentum += dt_s * effort;
         }
@@ -113,14 +113,14 @@ impl ReducedProblem {
             return Self {
                 inertia,
                 momentum,
-                footing: None,
+                base_contacts: None,
             };
         };
-        let before = floating.before(&motion.root, motion.root_velocity);
+        let before = floating.base_velocity(&motion.root, motion.root_velocity);
         let mut own = floating.inertia();
         // I^c_0 v_0 + F q'.
         let mut root_momentum: [f64; 6] = std::array::from_fn(|k| {
-            let shared = floating.columns.iter().zip(now);
+            let shared = floating.momentum_jacobian.iter().zip(now);
             let joints: f64 = shared.map(|(column, now)| column[k] * now).sum();
             let root: f64 = (0..6).map(|j| own.get(k, j) * before[j]).sum();
             root + joints
@@ -131,18 +131,18 @@ impl ReducedProblem {
         {
             *momentum -= dt_s * felt;
         }
-        for (momentum, column) in momentum.iter_mut().zip(&floating.columns) {
+        for (momentum, column) in momentum.iter_mut().zip(&floating.momentum_jacobian) {
             *momentum += dot(column, &before);
         }
-        let brake = STICKING_MASS_RATIO * floating.whole.mass / dt_s;
-        let mut shared = floating.columns.clone();
+        let brake = STICKING_MASS_RATIO * floating.composite_body.mass / dt_s;
+        let mut shared = floating.momentum_jacobian.clone();
         for (momentum, effort) in root_momentum.iter_mut().zip(root_efforts) {
             *momentum += dt_s * effort;
         }
         let rows: Vec<[PointJacobian; 3]> = motion
             .supports
             .iter()
-            .map(|support| rows(motion, &floating, support.link, support.at))
+            .map(|support| rows(motion, &floating, support.link, support.position))
             .collect();
         let strength = brake * dt_s;
         for (rows, hold) in rows.iter().zip(holds) {
@@ -173,7 +173,7 @@ impl ReducedProblem {
             }
         }
         // Schur's complement: H - F^T I^c_0^-1 F, and the same of the momentum.
-        let factor = own.factor();
+        let factor = own.cholesky();
         let answer = factor.solve(&root_momentum);
         for (k, column) in shared.iter().enumerate() {
             momentum[k] -= dot(column, &answer);
@@ -185,7 +185,7 @@ impl ReducedProblem {
         Self {
             inertia,
             momentum,
-            footing: Some(BaseContactSolver {
+            base_contacts: Some(BaseContactSolver {
                 factor,
                 shared,
                 momentum: root_momentum,
@@ -208,10 +208,10 @@ fn rows(
     let mut joints = vec![DVec3::ZERO; motion.axes.len()];
     let mut link = link;
     while let Some(k) = link {
-        joints[k] = motion.axes[k].moves(at).0;
+        joints[k] = motion.axes[k].unit_velocity_at(at).0;
         link = motion.axes[k].parent;
     }
-    let arm = at - floating.whole.center;
+    let arm = at - floating.composite_body.center;
     let row = |way: DVec3| {
         let turn = arm.cross(way);
         PointJacobian {
@@ -224,7 +224,7 @@ fn rows(
 
 impl BaseContactSolver {
     /// Returns the root's response when the joints have these velocities at the end of the step.
-    pub(super) fn answer(&self, velocities: &[f64], holds: &[SupportState]) -> BaseResponse {
+    pub(super) fn base_response(&self, velocities: &[f64], holds: &[SupportState]) -> BaseResponse {
         // I^c_0 v_0 = p_0 - F q'.
         let mut left = self.momentum;
         for (column, velocity) in self.shared.iter().zip(velocities) {
@@ -246,8 +246,8 @@ impl BaseContactSolver {
             hold.force() + DVec3::new(along(0), along(1), along(2))
         };
         BaseResponse {
-            gained: std::array::from_fn(|k| (root[k] - self.before[k]) / self.dt_s),
-            forces: self.rows.iter().zip(holds).map(force).collect(),
+            accelerations: std::array::from_fn(|k| (root[k] - self.before[k]) / self.dt_s),
+            support_forces: self.rows.iter().zip(holds).map(force).collect(),
         }
     }
 }
@@ -260,17 +260,17 @@ pub(super) fn update_support_states(
     holds: &mut [SupportState],
 ) -> bool {
     let mut changed = false;
-    let weighed = motion.supports.iter().zip(&loads.carried);
-    for (((support, weight), force), hold) in weighed.zip(&answer.forces).zip(holds) {
+    let weighed = motion.supports.iter().zip(&loads.support_weights);
+    for (((support, weight), force), hold) in weighed.zip(&answer.support_forces).zip(holds) {
         // f_n >= 0, and |f_t| <= mu f_n with the weight there for f_n.
         let aside = libm::hypot(force.x, force.z);
         let most = support.friction * weight;
         let next = match *hold {
             SupportState::Separated => SupportState::Separated,
             _ if force.y < 0.0 => SupportState::Separated,
-            SupportState::Sticks if aside > most => {
+            SupportState::Sticking if aside > most => {
                 let share = most / aside;
-                SupportState::Slips(DVec3::new(force.x * share, 0.0, force.z * share))
+                SupportState::Sliding(DVec3::new(force.x * share, 0.0, force.z * share))
             }
             same => same,
         };
@@ -283,10 +283,10 @@ pub(super) fn update_support_states(
 impl BaseResponse {
     /// Returns the force of a support as a load on its body about the body's centre.
     pub(super) fn wrench(&self, support: usize, at: DVec3, center: DVec3) -> Wrench {
-        let force = self.forces[support];
+        let force = self.support_forces[support];
         Wrench {
             force,
-            moment: (at - center).cross(force),
+            torque: (at - center).cross(force),
         }
     }
 }

@@ -35,11 +35,11 @@ struct ChainLink {
 /// The wrenches of laws on a tree, and the time of their evaluation within a step.
 #[derive(Clone, Copy)]
 pub(super) struct LawWrenchQuery<'a> {
-    pub(super) push: &'a LinkWrenchFn<'a>,
+    pub(super) wrench_fn: &'a LinkWrenchFn<'a>,
     /// Length of the step, s.
     pub(super) dt_s: f64,
     /// Evaluates at the middle of the step, else at its beginning.
-    pub(super) middle: bool,
+    pub(super) at_midpoint: bool,
 }
 
 /// The free joints of a tree, parents first. Shape (freedom,).
@@ -78,7 +78,8 @@ impl Chain {
                 world_from_parent: RigidTransform::IDENTITY,
                 parent_from_joint: RigidTransform::of(&joint.parent_from_joint),
                 joint_from_child: RigidTransform::of(&joint.child_from_joint).inverse(),
-                lump: body(joint.child_handle).map_or_else(LumpedBody::default, LumpedBody::own),
+                lump: body(joint.child_handle)
+                    .map_or_else(LumpedBody::default, LumpedBody::in_body_frame),
             }
         };
         let mut chain = Self {
@@ -134,7 +135,7 @@ impl Chain {
         let link_of = |k: usize| (k < free.len()).then_some(k);
         if floats {
             for (k, handle) in handles.iter().enumerate() {
-                let supports = support::of_body(engine, *handle, link_of(k), &handles);
+                let supports = support::support_points(engine, *handle, link_of(k), &handles);
                 self.supports.extend(supports);
             }
         }
@@ -144,13 +145,13 @@ impl Chain {
     }
 
     /// Returns whether the root is not dynamic and at rest.
-    pub(super) fn stands(&self) -> bool {
+    pub(super) fn is_root_at_rest(&self) -> bool {
         self.stands
     }
 
     /// Returns the tree with its joints at these positions, rad or m, and velocities. Shape (freedom,) each. `pushed`:
     /// `None` where no law exerts a wrench.
-    pub(super) fn at(
+    pub(super) fn dynamics_at(
         &self,
         positions: &[f64],
         velocities: &[f64],
@@ -166,21 +167,25 @@ impl Chain {
                 Some(parent) => (frames[parent], angular[parent]),
                 None => (link.world_from_parent, self.root.angular),
             };
-            let world_from_joint = parent.then(&link.parent_from_joint);
+            let world_from_joint = parent.compose(&link.parent_from_joint);
             let frame = world_from_joint
-                .then(&RigidTransform::along(link.kind, link.axis, positions[k]))
-                .then(&link.joint_from_child);
-            let direction = world_from_joint.turn * link.axis;
+                .compose(&RigidTransform::joint_displacement(
+                    link.kind,
+                    link.axis,
+                    positions[k],
+                ))
+                .compose(&link.joint_from_child);
+            let direction = world_from_joint.rotation * link.axis;
             axes.push(JointAxisState {
                 kind: link.kind,
                 direction,
-                at: world_from_joint.at,
+                anchor: world_from_joint.translation,
                 parent: link.parent,
                 velocity: velocities[k],
             });
-            let turn = DMat3::from_quat(frame.turn.normalize());
+            let turn = DMat3::from_quat(frame.rotation.normalize());
             masses.push(LumpedBody {
-                center: frame.at + frame.turn * link.lump.center,
+                center: frame.translation + frame.rotation * link.lump.center,
                 inertia: turn * link.lump.inertia * turn.transpose(),
                 ..link.lump
             });
@@ -198,8 +203,8 @@ impl Chain {
             None => (Vec::new(), ExternalWrench::default()),
         };
         TreeDynamics {
-            pushes,
-            root_push,
+            law_wrenches: pushes,
+            root_law_wrench: root_push,
             axes,
             masses,
             angular,
@@ -207,7 +212,7 @@ impl Chain {
             free_root: self.free_root,
             root_velocity: self.root_velocity,
             supports: &self.supports,
-            touches: &self.touches,
+            external_contacts: &self.touches,
             gravity: self.gravity,
         }
     }
@@ -216,14 +221,14 @@ impl Chain {
 impl LawWrenchQuery<'_> {
     /// Returns the wrench of laws on a body with this velocity and angular velocity.
     fn at(&self, body: u32, lump: &LumpedBody, velocity: DVec3, spin: DVec3) -> ExternalWrench {
-        (self.push)(LinkStep {
+        (self.wrench_fn)(LinkStep {
             body,
             mass_kg: lump.mass,
             inertia: lump.inertia,
             velocity,
-            spin,
+            angular_velocity: spin,
             dt_s: self.dt_s,
-            middle: self.middle,
+            is_midpoint: self.at_midpoint,
             time_s: 0.0,
         })
     }
@@ -236,7 +241,7 @@ impl Chain {
             return ExternalWrench::default();
         };
         let begins = LawWrenchQuery {
-            middle: false,
+            at_midpoint: false,
             ..*pushed
         };
         begins.at(body, lump, self.root_velocity, self.root.angular)
@@ -256,7 +261,7 @@ impl Chain {
                 None => (self.root_velocity, self.root.angular, self.root.center),
             };
             let center = masses[k].center;
-            let (along, _) = axis.moves(center);
+            let (along, _) = axis.unit_velocity_at(center);
             linear.push(velocity + spin.cross(center - from) + along * axis.velocity);
             pushes.push(pushed.at(self.links[k].body, &masses[k], linear[k], angular[k]));
         }
@@ -266,24 +271,24 @@ impl Chain {
 
 impl RigidTransform {
     const IDENTITY: Self = Self {
-        at: DVec3::ZERO,
-        turn: DQuat::IDENTITY,
+        translation: DVec3::ZERO,
+        rotation: DQuat::IDENTITY,
     };
 
     /// The displacement of a joint about or along its axis.
-    pub(super) fn along(kind: JointKind, axis: DVec3, position: f64) -> Self {
+    pub(super) fn joint_displacement(kind: JointKind, axis: DVec3, position: f64) -> Self {
         match kind {
             JointKind::Hinge => Self {
-                at: DVec3::ZERO,
-                turn: {
+                translation: DVec3::ZERO,
+                rotation: {
                     let (sin, cos) = libm::sincos(0.5 * position);
                     let part = axis * sin;
                     DQuat::from_xyzw(part.x, part.y, part.z, cos)
                 },
             },
             JointKind::Slide => Self {
-                at: axis * position,
-                turn: DQuat::IDENTITY,
+                translation: axis * position,
+                rotation: DQuat::IDENTITY,
             },
         }
     }

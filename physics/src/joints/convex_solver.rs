@@ -25,23 +25,23 @@ pub(super) struct EffortTerm {
     /// The degree of freedom it acts along.
     pub(super) index: usize,
     /// Another one that it acts against: the velocity is then that of `index` less the second number times the other's.
-    pub(super) follows: Option<(usize, f64)>,
+    pub(super) opposing: Option<(usize, f64)>,
     pub(super) offset: f64,
     /// At least 0.
     pub(super) slope: f64,
     pub(super) bounds: [f64; 2],
     /// A speed beyond which it does not drive, and the slope there.
-    pub(super) speed: Option<(f64, f64)>,
+    pub(super) speed_limit: Option<(f64, f64)>,
 }
 
 impl EffortTerm {
     fn velocity(&self, all: &[f64]) -> f64 {
-        let other = self.follows.map_or(0.0, |(k, share)| share * all[k]);
+        let other = self.opposing.map_or(0.0, |(k, share)| share * all[k]);
         all[self.index] - other
     }
 
     /// Returns the effort at a velocity, and its slope there.
-    pub(super) fn at(&self, velocity: f64) -> (f64, f64) {
+    pub(super) fn effort_and_slope(&self, velocity: f64) -> (f64, f64) {
         let [low, high] = self.bounds;
         let linear = self.offset - self.slope * velocity;
         let (mut effort, mut fall) = if linear > high {
@@ -51,7 +51,7 @@ impl EffortTerm {
         } else {
             (linear, self.slope)
         };
-        if let Some((most, slope)) = self.speed {
+        if let Some((most, slope)) = self.speed_limit {
             for side in [1.0, -1.0] {
                 let left = slope * (most - side * velocity);
                 if side * effort > left.max(0.0) {
@@ -65,7 +65,7 @@ impl EffortTerm {
     /// Adds a value along the term's degrees of freedom.
     fn add(&self, value: f64, to: &mut [f64]) {
         to[self.index] += value;
-        if let Some((k, share)) = self.follows {
+        if let Some((k, share)) = self.opposing {
             to[k] -= share * value;
         }
     }
@@ -100,7 +100,7 @@ impl SymmetricMatrix {
         self.set(i, j, self.get(i, j) + value);
     }
 
-    pub(super) fn times(&self, vector: &[f64]) -> Vec<f64> {
+    pub(super) fn multiply(&self, vector: &[f64]) -> Vec<f64> {
         let row = |i: usize| {
             let row = &self.values[i * self.size..(i + 1) * self.size];
             row.iter().zip(vector).map(|(a, b)| a * b).sum()
@@ -109,7 +109,7 @@ impl SymmetricMatrix {
     }
 
     /// Returns the Cholesky factor; a diagonal entry lost to rounding becomes tiny instead of negative.
-    pub(super) fn factor(&self) -> CholeskyFactor {
+    pub(super) fn cholesky(&self) -> CholeskyFactor {
         let n = self.size;
         let mut l = vec![0.0; n * n];
         for j in 0..n {
@@ -161,25 +161,25 @@ impl CholeskyFactor {
 pub(super) struct EffortProblem {
     pub(super) inertia: SymmetricMatrix,
     /// The velocities at the end of the step without efforts. Shape (freedom,).
-    pub(super) free: Vec<f64>,
-    pub(super) elements: Vec<EffortTerm>,
+    pub(super) free_velocities: Vec<f64>,
+    pub(super) terms: Vec<EffortTerm>,
     pub(super) dt_s: f64,
 }
 
 impl EffortProblem {
     /// Returns the velocities at the end of the step. Shape (freedom,).
     pub(super) fn solve(&self) -> Vec<f64> {
-        let mut velocity = self.free.clone();
+        let mut velocity = self.free_velocities.clone();
         let mut before: Option<Vec<f64>> = None;
         for _ in 0..MOST_ITERATIONS {
             let mut curvature = self.inertia.clone();
-            let mut falls = Vec::with_capacity(self.elements.len());
-            for element in &self.elements {
+            let mut falls = Vec::with_capacity(self.terms.len());
+            for element in &self.terms {
                 // The Hessian: H + h J^T diag(-d tau / d v) J.
-                let (_, fall) = element.at(element.velocity(&velocity));
+                let (_, fall) = element.effort_and_slope(element.velocity(&velocity));
                 let slope = self.dt_s * fall;
                 curvature.add(element.index, element.index, slope);
-                if let Some((k, share)) = element.follows {
+                if let Some((k, share)) = element.opposing {
                     curvature.add(element.index, k, -share * slope);
                     curvature.add(k, k, share * share * slope);
                 }
@@ -191,7 +191,7 @@ impl EffortProblem {
             }
             let gradient: Vec<f64> = self.gradient(&velocity).iter().map(|g| -g).collect();
             // Newton's step: Hessian * way = -gradient.
-            let way = curvature.factor().solve(&gradient);
+            let way = curvature.cholesky().solve(&gradient);
             let stride = self.stride(&velocity, &way);
             for (v, d) in velocity.iter_mut().zip(&way) {
                 *v += stride * d;
@@ -204,8 +204,11 @@ impl EffortProblem {
     /// Returns the efforts that lead to these velocities. Shape (freedom,).
     pub(super) fn efforts(&self, velocity: &[f64]) -> Vec<f64> {
         let mut efforts = vec![0.0; velocity.len()];
-        for element in &self.elements {
-            element.add(element.at(element.velocity(velocity)).0, &mut efforts);
+        for element in &self.terms {
+            element.add(
+                element.effort_and_slope(element.velocity(velocity)).0,
+                &mut efforts,
+            );
         }
         efforts
     }
@@ -213,11 +216,11 @@ impl EffortProblem {
     fn gradient(&self, velocity: &[f64]) -> Vec<f64> {
         let off: Vec<f64> = velocity
             .iter()
-            .zip(&self.free)
+            .zip(&self.free_velocities)
             .map(|(v, f)| v - f)
             .collect();
         // H (v - v_free) - h J^T tau(J v).
-        let mut gradient = self.inertia.times(&off);
+        let mut gradient = self.inertia.multiply(&off);
         for (g, effort) in gradient.iter_mut().zip(self.efforts(velocity)) {
             *g -= self.dt_s * effort;
         }
@@ -268,8 +271,8 @@ mod tests {
         ] {
             a.set(i, j, value);
         }
-        let x = a.factor().solve(&[1.0, -2.0, 3.0]);
-        for (found, expected) in a.times(&x).iter().zip([1.0, -2.0, 3.0]) {
+        let x = a.cholesky().solve(&[1.0, -2.0, 3.0]);
+        for (found, expected) in a.multiply(&x).iter().zip([1.0, -2.0, 3.0]) {
             assert!((found - expected).abs() < 1e-12);
         }
     }
@@ -280,11 +283,11 @@ mod tests {
         let unbounded = [f64::NEG_INFINITY, f64::INFINITY];
         let element = |index, offset, slope, bounds| EffortTerm {
             index,
-            follows: None,
+            opposing: None,
             offset,
             slope,
             bounds,
-            speed: None,
+            speed_limit: None,
         };
         let mut inertia = SymmetricMatrix::zero(3);
         for (i, j, value) in [
@@ -301,14 +304,14 @@ mod tests {
             let x = |k: u32| f64::from((seed * 7 + k * 13) % 29) / 14.0 - 1.0;
             let problem = EffortProblem {
                 inertia: inertia.clone(),
-                free: vec![x(1), 4.0 * x(2), 9.0 * x(3)],
-                elements: vec![
+                free_velocities: vec![x(1), 4.0 * x(2), 9.0 * x(3)],
+                terms: vec![
                     element(0, 500.0 * x(4), 1e5, [-40.0, 40.0]),
                     element(1, 20.0 * x(5), 3.0, unbounded),
                     element(1, 0.0, 1e8, [-30.0, 30.0]),
                     element(2, 0.0, 1e6, [-0.1, 0.1]),
                     EffortTerm {
-                        follows: Some((1, 0.5)),
+                        opposing: Some((1, 0.5)),
                         ..element(2, x(6), 1e4, unbounded)
                     },
                 ],

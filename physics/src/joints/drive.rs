@@ -1,7 +1,7 @@
 //! Joint actuation: servos, or a hand that opens and closes a joint.
 
 use super::effort_term::{ActuationGain, JointActuation};
-use super::latch::tolerance;
+use super::latch::closed_tolerance;
 use dwell_scene::{AgentId, JointCommand, JointId, JointKind, JointParameters};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -78,7 +78,7 @@ impl HandDrive {
         } else {
             STALL_SPEED
         };
-        if left <= tolerance(kind) && velocity.abs() < slow {
+        if left <= closed_tolerance(kind) && velocity.abs() < slow {
             return DriveProgress::Arrived;
         }
         let stride = rate * step_s;
@@ -138,7 +138,7 @@ pub(crate) fn advance(
             target,
             max_effort,
             max_velocity: servo.joint_velocity(),
-            feed_forward: if gain == ActuationGain::Effort {
+            gravity_compensation: if gain == ActuationGain::Effort {
                 0.0
             } else {
                 values.feed_forward
@@ -155,7 +155,7 @@ pub(crate) fn advance(
         target: hand.ramp,
         max_effort: hand_effort,
         max_velocity: f32::INFINITY,
-        feed_forward: 0.0,
+        gravity_compensation: 0.0,
         gain: ActuationGain::Hand {
             frequency_rad_s: HAND_FREQUENCY_RAD_S,
             lead: speed_and_lead(kind).1,

@@ -27,7 +27,7 @@ pub(crate) struct JointActuation {
     /// Highest speed to which it drives, rad/s or m/s; may be infinite.
     pub(crate) max_velocity: f32,
     /// Share of the weight on the joint that is compensated besides.
-    pub(crate) feed_forward: f32,
+    pub(crate) gravity_compensation: f32,
     pub(crate) gain: ActuationGain,
 }
 
@@ -68,11 +68,11 @@ impl JointDof {
     fn element(&self, offset: f64, slope: f64, bounds: [f64; 2]) -> EffortTerm {
         EffortTerm {
             index: self.index,
-            follows: None,
+            opposing: None,
             offset,
             slope,
             bounds,
-            speed: None,
+            speed_limit: None,
         }
     }
 
@@ -114,7 +114,7 @@ impl JointDof {
     }
 
     /// A stop: from below (`side` 1) or from above (-1).
-    pub(super) fn stop(&self, limit: f64, side: f64) -> EffortTerm {
+    pub(super) fn limit_stop(&self, limit: f64, side: f64) -> EffortTerm {
         let stiffness = STOP * self.inertia / (self.dt_s * self.dt_s);
         let bounds = if side > 0.0 {
             [0.0, f64::INFINITY]
@@ -128,7 +128,7 @@ impl JointDof {
 
     /// The constraint of a mimic joint: its position is `multiplier` times another's plus `offset`, or the nearest within
     /// `stops`, against which it would press without bound.
-    pub(super) fn follow(
+    pub(super) fn mimic_constraint(
         &self,
         leader: &Self,
         [multiplier, offset]: [f64; 2],
@@ -141,15 +141,15 @@ impl JointDof {
         let mended = (MIMIC_CORRECTION * off / self.dt_s)
             .clamp(-MIMIC_CORRECTION_SPEED, MIMIC_CORRECTION_SPEED);
         EffortTerm {
-            follows: Some((leader.index, multiplier)),
+            opposing: Some((leader.index, multiplier)),
             ..self.element(-slope * mended, slope, [f64::NEG_INFINITY, f64::INFINITY])
         }
     }
 
     /// A motor or a hand.
-    pub(super) fn pull(&self, pull: &JointActuation) -> EffortTerm {
+    pub(super) fn actuation(&self, pull: &JointActuation) -> EffortTerm {
         let target = f64::from(pull.target);
-        let carry = f64::from(pull.feed_forward) * self.weight;
+        let carry = f64::from(pull.gravity_compensation) * self.weight;
         let most = f64::from(pull.max_effort);
         // k (target - (q + h v)) - d v.
         let spring = |stiffness: f64, damping: f64| {
@@ -175,14 +175,14 @@ impl JointDof {
             (f64::from(pull.max_velocity), slope)
         });
         EffortTerm {
-            speed,
+            speed_limit: speed,
             ..self.element(offset, slope, [-most, most])
         }
     }
 }
 
 /// Returns whether rapier can enforce limits of a hinge or slide, rad or m.
-pub(crate) fn rapier_holds(kind: JointKind, limits: [f32; 2]) -> bool {
+pub(crate) fn rapier_can_limit(kind: JointKind, limits: [f32; 2]) -> bool {
     use std::f32::consts::PI;
     // rapier compares sines of half angles: beyond half a turn they fall again.
     kind == JointKind::Slide || (limits[0] >= -PI && limits[1] <= PI)
@@ -211,7 +211,7 @@ mod tests {
             target,
             max_effort,
             max_velocity: f32::INFINITY,
-            feed_forward: 0.0,
+            gravity_compensation: 0.0,
             gain: ActuationGain::Servo { stiffness, damping },
         }
     }
@@ -222,8 +222,8 @@ mod tests {
         inertia.set(0, 0, 0.1);
         let problem = EffortProblem {
             inertia,
-            free: vec![free],
-            elements,
+            free_velocities: vec![free],
+            terms: elements,
             dt_s: DT_S,
         };
         let velocity = problem.solve();
@@ -236,8 +236,10 @@ mod tests {
         for stiffness in [1.0_f32, 100.0, 1e6] {
             let rest = freedom(0.5 - 2.0 / f64::from(stiffness));
             let falling = -2.0 / 0.1 * DT_S;
-            let (effort, velocity) =
-                effort(vec![rest.pull(&servo(0.5, stiffness, 3.0, 1e9))], falling);
+            let (effort, velocity) = effort(
+                vec![rest.actuation(&servo(0.5, stiffness, 3.0, 1e9))],
+                falling,
+            );
             assert!((effort - 2.0).abs() < 1e-9, "{effort} at {stiffness}");
             assert!(velocity.abs() < 1e-9);
         }
@@ -250,7 +252,7 @@ mod tests {
             let pull = servo(0.0, gain, gain, f32::MAX);
             let (mut x, mut v) = (1.0, 0.0);
             for _ in 0..1000 {
-                v = effort(vec![freedom(x).pull(&pull)], v).1;
+                v = effort(vec![freedom(x).actuation(&pull)], v).1;
                 x += v * DT_S;
                 assert!(x.abs() <= 1.0 + 1e-9 && x.is_finite());
             }
@@ -283,7 +285,7 @@ mod tests {
                     }
                     .damping(damping),
                     freedom(0.0).friction(friction),
-                    freedom(0.0).pull(&JointActuation {
+                    freedom(0.0).actuation(&JointActuation {
                         gain: ActuationGain::Effort,
                         ..servo(torque as f32, 0.0, 0.0, 10.0)
                     }),
@@ -304,8 +306,8 @@ mod tests {
         };
         let (mut driven, mut overrun) = (0.0, 3.0);
         for _ in 0..200 {
-            driven = effort(vec![freedom(0.0).pull(&fast)], driven).1;
-            overrun = effort(vec![freedom(0.0).pull(&fast)], overrun).1;
+            driven = effort(vec![freedom(0.0).actuation(&fast)], driven).1;
+            overrun = effort(vec![freedom(0.0).actuation(&fast)], overrun).1;
         }
         assert!((driven - 0.5).abs() < 1e-5, "{driven}");
         assert!((overrun - 3.0).abs() < 1e-9, "{overrun}");

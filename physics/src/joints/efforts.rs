@@ -8,7 +8,7 @@
 use super::PhysicsJoint;
 use super::effort_term::JointActuation;
 use super::forward_kinematics;
-use super::integration::{AT_REST, TreeIntegration, TreeSolver};
+use super::integration::{REST_DISPLACEMENT, TreeIntegration, TreeSolver};
 use super::joint_state::{JointCoordinate, JointReading, is_untouched};
 use super::tree::KinematicTree;
 use super::tree_step::TreeStep;
@@ -22,16 +22,16 @@ use glam::Vec3;
 const MAX_DEVIATION: (f64, f64) = (2e-3, 0.1);
 
 /// The actuation of joints in a step, besides the bodies.
-pub(crate) struct JointDrivers<'a> {
+pub(crate) struct JointStepInputs<'a> {
     pub(crate) joints: &'a [PhysicsJoint],
     /// The actuation of each joint. Shape (joint,).
-    pub(crate) pulls: &'a [Option<JointActuation>],
+    pub(crate) actuations: &'a [Option<JointActuation>],
     /// Each joint's coordinates after the last step. Shape (joint,).
     pub(crate) joint_coordinates: &'a [JointCoordinate],
     /// Changes of joint resistance by laws; `None`: no law changes it.
-    pub(crate) resist: Option<&'a ResistanceFn<'a>>,
+    pub(crate) resistance_fn: Option<&'a ResistanceFn<'a>>,
     /// Wrenches of laws on the bodies that joints move; `None`: no law exerts one.
-    pub(crate) push: Option<&'a LinkWrenchFn<'a>>,
+    pub(crate) wrench_fn: Option<&'a LinkWrenchFn<'a>>,
     pub(crate) dt_s: f32,
 }
 
@@ -68,7 +68,7 @@ pub(crate) struct TreePrediction {
 pub(crate) fn apply_efforts(
     engine: &mut RapierWorld,
     tree: &KinematicTree,
-    drivers: &JointDrivers<'_>,
+    drivers: &JointStepInputs<'_>,
 ) -> Option<TreePrediction> {
     let standing = TreeStep::of(engine, tree, drivers.joints, drivers.joint_coordinates)?;
     let (positions, velocities) = (standing.positions(), standing.velocities());
@@ -81,13 +81,14 @@ pub(crate) fn apply_efforts(
     };
     let course = freedoms.integrate(&standing.chain, &positions, &velocities);
     carry(engine, tree, &joints, &course);
-    let loose = course.answer.is_some() || !course.middle.touches.is_empty();
+    let loose =
+        course.base_response.is_some() || !course.midpoint_dynamics.external_contacts.is_empty();
     let going = |(k, place): (usize, &usize)| PredictedJoint {
         joint: tree.joints[*place],
         positions: [positions[k], course.positions[k]],
         velocity: course.velocities[k],
     };
-    let moves = course.moves;
+    let moves = course.is_moving;
     let course = standing.free.iter().enumerate().map(going).collect();
     Some(TreePrediction {
         standing,
@@ -106,8 +107,8 @@ fn carry(
     course: &TreeIntegration<'_>,
 ) {
     let (wrenches, root) = course
-        .middle
-        .wrenches(&course.gained, course.answer.as_ref());
+        .midpoint_dynamics
+        .wrenches(&course.mean_accelerations, course.base_response.as_ref());
     let handles = joints.iter().map(|joint| joint.child_handle);
     let all = handles
         .zip(wrenches)
@@ -115,7 +116,7 @@ fn carry(
     for (handle, wrench) in all {
         if let Some(body) = engine.bodies.get_mut(handle) {
             body.add_force(wrench.force.as_vec3(), false);
-            body.add_torque(wrench.moment.as_vec3(), false);
+            body.add_torque(wrench.torque.as_vec3(), false);
         }
     }
 }
@@ -130,7 +131,7 @@ impl PredictedJoint {
         now: &JointReading,
     ) -> bool {
         let [from, to] = self.positions;
-        let way = before.way(engine, self.velocity);
+        let way = before.step_displacement(engine, self.velocity);
         let misses = |expected: f64, way: f64| {
             (now.position - expected).abs() > MAX_DEVIATION.0 + MAX_DEVIATION.1 * way.abs()
         };
@@ -140,7 +141,7 @@ impl PredictedJoint {
 
 /// Puts a tree that nothing touched in the step at its predicted joint positions, and closes the joints of one that was
 /// touched; `joint_coordinates` then holds its joints' values. Returns whether it was moved.
-pub(crate) fn settle(
+pub(crate) fn correct_tree_positions(
     engine: &mut RapierWorld,
     tree: &KinematicTree,
     joints: &[PhysicsJoint],
@@ -153,7 +154,7 @@ pub(crate) fn settle(
         moves,
         loose,
     } = outlook;
-    let before = standing.reread(engine, tree, joints);
+    let before = standing.update_readings(engine, tree, joints);
     for (going, now) in course.iter().zip(&standing.readings) {
         joint_coordinates[going.joint] = now.coordinate();
     }
@@ -161,13 +162,15 @@ pub(crate) fn settle(
     let untouched = || course.iter().all(free);
     let pairs = before.iter().zip(&standing.readings);
     let struck = || {
-        let mut ways = pairs.clone().map(|(b, now)| b.way(engine, now.velocity));
-        ways.any(|way| way.abs() > AT_REST) && !untouched()
+        let mut ways = pairs
+            .clone()
+            .map(|(b, now)| b.step_displacement(engine, now.velocity));
+        ways.any(|way| way.abs() > REST_DISPLACEMENT) && !untouched()
     };
     if !moves && !loose && !struck() {
         return false;
     }
-    if !loose && !engine.has_multiple_runs() && untouched() {
+    if !loose && !engine.has_multiple_solver_calls() && untouched() {
         follow(engine, joints, &course, joint_coordinates);
         return true;
     }
@@ -180,7 +183,7 @@ pub(crate) fn settle(
         follow(engine, joints, &course, joint_coordinates);
         return true;
     }
-    if standing.rests(engine, tree, joints) {
+    if standing.is_at_rest(engine, tree, joints) {
         return false;
     }
     let ends = course.iter().zip(&came_true);
@@ -204,7 +207,7 @@ fn follow(
     for going in course {
         let ([_, position], velocity) = (going.positions, going.velocity);
         joint_coordinates[going.joint] = JointCoordinate { position, velocity };
-        forward_kinematics::put(engine, &joints[going.joint], (position, velocity), false);
+        forward_kinematics::place_child(engine, &joints[going.joint], (position, velocity), false);
     }
 }
 

@@ -20,24 +20,27 @@ pub(super) struct ExternalContact {
     /// The joint whose body is touched; `None`: the root.
     pub(super) link: Option<usize>,
     /// Point of application, m.
-    pub(super) at: DVec3,
+    pub(super) point: DVec3,
     /// Normal force and friction, and torsional friction about `at`.
     wrench: Wrench,
 }
 
 impl ExternalContact {
     /// Returns force and moment about a point.
-    pub(super) fn about(&self, point: DVec3) -> Wrench {
-        let Wrench { force, moment } = self.wrench;
+    pub(super) fn wrench_about(&self, point: DVec3) -> Wrench {
+        let Wrench {
+            force,
+            torque: moment,
+        } = self.wrench;
         Wrench {
             force,
-            moment: moment + (self.at - point).cross(force),
+            torque: moment + (self.point - point).cross(force),
         }
     }
 
     /// Returns the same about the world's origin.
-    pub(super) fn about_origin(&self) -> Wrench {
-        self.about(DVec3::ZERO)
+    pub(super) fn wrench_about_origin(&self) -> Wrench {
+        self.wrench_about(DVec3::ZERO)
     }
 }
 
@@ -67,7 +70,10 @@ pub(super) fn of_tree(
                 };
                 for plane in pair.solver_manifolds() {
                     let itself = bodies.iter().any(|(handle, _)| *handle == parent);
-                    if stands && !itself && support::carries(engine, *collider, plane, first) {
+                    if stands
+                        && !itself
+                        && support::supports_from_below(engine, *collider, plane, first)
+                    {
                         continue;
                     }
                     let touch = of_plane(engine, (body, *link), parent, (pair, plane), first);
@@ -76,10 +82,11 @@ pub(super) fn of_tree(
             }
         }
         own.sort_by(|a, b| {
-            a.at.x
-                .total_cmp(&b.at.x)
-                .then(a.at.y.total_cmp(&b.at.y))
-                .then(a.at.z.total_cmp(&b.at.z))
+            a.point
+                .x
+                .total_cmp(&b.point.x)
+                .then(a.point.y.total_cmp(&b.point.y))
+                .then(a.point.z.total_cmp(&b.point.z))
         });
         found.extend(own);
     }
@@ -105,7 +112,7 @@ fn of_plane(
         // That of the last substep: an impact's earlier impulse is over.
         let push = f64::from(point.data.warmstart_impulse) * per_s;
         press += push;
-        moment += support::place(engine, pair, plane, contact) * push;
+        moment += support::contact_position(engine, pair, plane, contact) * push;
         friction += point.data.warmstart_tangent_world.as_dvec3() * per_s;
         twist += f64::from(point.data.warmstart_twist_impulse) * per_s;
         count += 1.0;
@@ -113,7 +120,7 @@ fn of_plane(
     if press <= 0.0 {
         return None;
     }
-    if engine.friction_kept().by_patch {
+    if engine.friction_storage().patch_friction {
         // Each point holds the friction of the whole patch.
         friction /= count;
         twist /= count;
@@ -130,10 +137,10 @@ fn of_plane(
     // rapier keeps the impulse on the first body, and turns it about the normal that points into it.
     Some(ExternalContact {
         link,
-        at,
+        point: at,
         wrench: Wrench {
             force: normal * press - friction * f64::from(side),
-            moment: normal * twist,
+            torque: normal * twist,
         },
     })
 }

@@ -15,10 +15,10 @@ use glam::DVec3;
 /// The six freedoms of a root: the velocity of the tree's centre of mass as if all joints stood, and its rotation.
 pub(super) struct FloatingBase {
     /// The tree as one body.
-    pub(super) whole: LumpedBody,
+    pub(super) composite_body: LumpedBody,
     factor: CholeskyFactor,
     /// Linear and angular momentum about the common centre of mass for each unit of a joint's velocity. Shape (freedom, 6).
-    pub(super) columns: Vec<[f64; 6]>,
+    pub(super) momentum_jacobian: Vec<[f64; 6]>,
 }
 
 fn six(linear: DVec3, angular: DVec3) -> [f64; 6] {
@@ -42,7 +42,7 @@ impl FloatingBase {
             .iter()
             .zip(carried)
             .filter(|(axis, _)| axis.parent.is_none());
-        let whole = children.fold(*root, |whole, (_, mass)| whole.with(mass));
+        let whole = children.fold(*root, |whole, (_, mass)| whole.combined_with(mass));
         // F_k = I^c_k S_k, about the centre of mass of all, where linear and angular momentum are apart.
         let columns = momenta
             .iter()
@@ -55,17 +55,17 @@ impl FloatingBase {
             })
             .collect();
         Self {
-            whole,
-            factor: six_by_six(&whole).factor(),
-            columns,
+            composite_body: whole,
+            factor: six_by_six(&whole).cholesky(),
+            momentum_jacobian: columns,
         }
     }
 
     /// Takes off what the joints' inertia loses because the root gives way: `F^T I^c_0^-1 F`.
     pub(super) fn subtract_base_inertia(&self, inertia: &mut SymmetricMatrix) {
-        for (k, column) in self.columns.iter().enumerate() {
+        for (k, column) in self.momentum_jacobian.iter().enumerate() {
             let answer = self.factor.solve(column);
-            for (j, other) in self.columns.iter().enumerate().take(k + 1) {
+            for (j, other) in self.momentum_jacobian.iter().enumerate().take(k + 1) {
                 inertia.set(k, j, inertia.get(k, j) - dot(&answer, other));
             }
         }
@@ -73,12 +73,12 @@ impl FloatingBase {
 
     /// Returns what the six freedoms resist with, `I^c_0`.
     pub(super) fn inertia(&self) -> SymmetricMatrix {
-        six_by_six(&self.whole)
+        six_by_six(&self.composite_body)
     }
 
     /// Returns the six velocities of a root with this motion and velocity of its centre of mass.
-    pub(super) fn before(&self, root: &BodyAcceleration, velocity: DVec3) -> [f64; 6] {
-        let there = velocity + root.angular.cross(self.whole.center - root.center);
+    pub(super) fn base_velocity(&self, root: &BodyAcceleration, velocity: DVec3) -> [f64; 6] {
+        let there = velocity + root.angular.cross(self.composite_body.center - root.center);
         six(there, root.angular)
     }
 
@@ -86,20 +86,20 @@ impl FloatingBase {
     pub(super) fn generalized_force(&self, load: &Wrench) -> [f64; 6] {
         six(
             load.force,
-            load.moment - self.whole.center.cross(load.force),
+            load.torque - self.composite_body.center.cross(load.force),
         )
     }
 
     /// Takes off what the joints' efforts lose because the root gives way under a load: `F^T I^c_0^-1 p_0`.
     pub(super) fn subtract_base_load(&self, load: &Wrench, efforts: &mut [f64]) {
         let answer = self.factor.solve(&self.generalized_force(load));
-        for (effort, column) in efforts.iter_mut().zip(&self.columns) {
+        for (effort, column) in efforts.iter_mut().zip(&self.momentum_jacobian) {
             *effort -= dot(&answer, column);
         }
     }
 
     /// Returns the root's motion when its six velocities change at this rate, per second.
-    pub(super) fn accelerated(
+    pub(super) fn base_motion_at(
         &self,
         root: &BodyAcceleration,
         gained: &[f64; 6],
@@ -109,7 +109,7 @@ impl FloatingBase {
         BodyAcceleration {
             acceleration: root.acceleration
                 + linear
-                + angular.cross(root.center - self.whole.center),
+                + angular.cross(root.center - self.composite_body.center),
             angular_acceleration: root.angular_acceleration + angular,
             ..*root
         }

@@ -14,9 +14,9 @@ pub(crate) struct JointPlacement {
     /// rad/s or m/s.
     pub(crate) velocity: f32,
     /// Places it again even if it is there already.
-    pub(crate) anew: bool,
+    pub(crate) force_update: bool,
     /// Leaves its body in place: a door that is shut.
-    pub(crate) shut: bool,
+    pub(crate) is_latched: bool,
 }
 
 /// Tolerance for rounding between a joint's value and that of its bodies: rad or m, and rad/s or m/s.
@@ -26,32 +26,32 @@ const MIN_AXIS_COMPONENT: f64 = 0.2;
 
 /// Places a tree's bodies, parents first; bodies that already have the commanded pose and velocity are left alone, so that
 /// they may sleep on. `stands`: for each of the world's joints.
-pub(crate) fn place(
+pub(crate) fn place_tree(
     engine: &mut RapierWorld,
     joints: &[PhysicsJoint],
     tree: &KinematicTree,
-    stands: &[JointPlacement],
+    placements: &[JointPlacement],
 ) {
     let mut moved = vec![false; tree.joints.len()];
     for (k, place) in tree.joints.iter().enumerate() {
-        let (joint, stand) = (&joints[*place], &stands[*place]);
-        if stand.shut {
+        let (joint, stand) = (&joints[*place], &placements[*place]);
+        if stand.is_latched {
             continue;
         }
-        let found = super::read(engine, joint, stand.position.into());
+        let found = super::read_joint(engine, joint, stand.position.into());
         let there = stand.agrees_with(found, [ROUNDING, ROUNDING]);
         let follows = tree.parents[k].is_some_and(|parent| moved[parent]);
-        if there && !follows && !stand.anew {
+        if there && !follows && !stand.force_update {
             continue;
         }
         moved[k] = true;
         let stand = (stand.position.into(), stand.velocity.into());
-        put(engine, joint, stand, true);
+        place_child(engine, joint, stand, true);
     }
 }
 
 /// Puts the body of a joint at a position (rad or m) with a velocity, relative to its parent's pose and motion.
-pub(super) fn put(
+pub(super) fn place_child(
     engine: &mut RapierWorld,
     joint: &PhysicsJoint,
     (position, velocity): (f64, f64),
@@ -60,14 +60,16 @@ pub(super) fn put(
     let Some(parent) = engine.bodies.get(joint.parent_handle) else {
         return;
     };
-    let world_from_joint =
-        RigidTransform::of(parent.position()).then(&RigidTransform::of(&joint.parent_from_joint));
+    let world_from_joint = RigidTransform::of(parent.position())
+        .compose(&RigidTransform::of(&joint.parent_from_joint));
     let axis = joint.unit_axis();
     let child_from_joint = RigidTransform::of(&joint.child_from_joint);
     let place = world_from_joint
-        .then(&RigidTransform::along(joint.kind, axis, position))
-        .then(&child_from_joint.inverse());
-    let axis = world_from_joint.turn * axis;
+        .compose(&RigidTransform::joint_displacement(
+            joint.kind, axis, position,
+        ))
+        .compose(&child_from_joint.inverse());
+    let axis = world_from_joint.rotation * axis;
     let along = axis * velocity;
     let parent_turns = parent.angvel().as_dvec3();
     let parent_center = parent.center_of_mass().as_dvec3();
@@ -77,7 +79,7 @@ pub(super) fn put(
     };
     child.set_position(place.pose(), wake);
     let center = child.center_of_mass().as_dvec3();
-    let at = world_from_joint.at;
+    let at = world_from_joint.translation;
     let with_parent = |point: DVec3| parent_moves + parent_turns.cross(point - parent_center);
     let (linear, angular) = match joint.kind {
         JointKind::Hinge => {

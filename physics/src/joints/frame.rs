@@ -6,35 +6,35 @@ use rapier3d::math::Pose as RapierPose;
 /// A rigid transform in f64, so that rounding does not accumulate along a chain.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RigidTransform {
-    pub(super) at: DVec3,
-    pub(super) turn: DQuat,
+    pub(super) translation: DVec3,
+    pub(super) rotation: DQuat,
 }
 
 impl RigidTransform {
     pub(super) fn of(pose: &RapierPose) -> Self {
         Self {
-            at: pose.translation.as_dvec3(),
-            turn: pose.rotation.as_dquat().normalize(),
+            translation: pose.translation.as_dvec3(),
+            rotation: pose.rotation.as_dquat().normalize(),
         }
     }
 
-    pub(super) fn then(&self, other: &Self) -> Self {
+    pub(super) fn compose(&self, other: &Self) -> Self {
         Self {
-            at: self.at + self.turn * other.at,
-            turn: self.turn * other.turn,
+            translation: self.translation + self.rotation * other.translation,
+            rotation: self.rotation * other.rotation,
         }
     }
 
     pub(super) fn inverse(&self) -> Self {
-        let turn = self.turn.inverse();
+        let turn = self.rotation.inverse();
         Self {
-            at: -(turn * self.at),
-            turn,
+            translation: -(turn * self.translation),
+            rotation: turn,
         }
     }
 
     pub(super) fn pose(&self) -> RapierPose {
-        let rotation: Quat = self.turn.normalize().as_quat();
-        RapierPose::from_parts(self.at.as_vec3(), rotation)
+        let rotation: Quat = self.rotation.normalize().as_quat();
+        RapierPose::from_parts(self.translation.as_vec3(), rotation)
     }
 }

@@ -93,17 +93,17 @@ impl ImpulseDynamics {
         let own = standing.joints(tree, joints);
         let positions = standing.positions();
         let mut velocities = standing.velocities();
-        let motion = standing.chain.at(&positions, &velocities, None);
-        let floating = motion.floating();
+        let motion = standing.chain.dynamics_at(&positions, &velocities, None);
+        let floating = motion.floating_base();
         let n = own.len();
-        let mut inertia = motion.held_inertia();
+        let mut inertia = motion.fixed_base_inertia();
         for (k, joint) in own.iter().enumerate() {
             inertia.add(k, k, f64::from(joint.values.armature).max(0.0));
         }
         link(&mut inertia, tree, &standing.free, &own);
         if let Some(floating) = &floating {
             inertia = with_root(&inertia, floating, n);
-            velocities.extend(floating.before(&motion.root, motion.root_velocity));
+            velocities.extend(floating.base_velocity(&motion.root, motion.root_velocity));
         }
         let at_stop = |k: usize| {
             let before = began[tree.joints[standing.free[k]]].position;
@@ -138,7 +138,7 @@ impl ImpulseDynamics {
     fn stop(&mut self, k: usize) {
         let mut along = vec![0.0; self.velocities.len()];
         along[k] = 1.0;
-        let answer = self.inertia.factor().solve(&along);
+        let answer = self.inertia.cholesky().solve(&along);
         // q'_k + (H^-1)_kk P = 0.
         let impulse = -self.velocities[k] / answer[k];
         for (velocity, answer) in self.velocities.iter_mut().zip(&answer) {
@@ -169,12 +169,12 @@ impl ImpulseDynamics {
         let mut row = vec![0.0; self.velocities.len()];
         while let Some(k) = link {
             // J_k = n . S_k at the point.
-            row[k] = self.axes[k].moves(at).0.dot(direction);
+            row[k] = self.axes[k].unit_velocity_at(at).0.dot(direction);
             link = self.axes[k].parent;
         }
         let mut root_velocity_along = 0.0;
         if let Some(floating) = &self.floating {
-            let turn = (at - floating.whole.center).cross(direction);
+            let turn = (at - floating.composite_body.center).cross(direction);
             let six = direction.to_array().into_iter().chain(turn.to_array());
             for (entry, value) in row.iter_mut().skip(self.axes.len()).zip(six) {
                 *entry = value;
@@ -196,7 +196,7 @@ impl ImpulseDynamics {
     fn answer(&mut self, row: &[f64]) -> Vec<f64> {
         let mut inertia = self.inertia.clone();
         // H^-1 J^T.
-        let mut answer = inertia.factor().solve(row);
+        let mut answer = inertia.cholesky().solve(row);
         let mut held = vec![false; self.at_stop.len()];
         loop {
             let presses = |k: &usize| {
@@ -209,7 +209,7 @@ impl ImpulseDynamics {
             };
             held[k] = true;
             inertia.add(k, k, RIGID * inertia.get(k, k));
-            answer = inertia.factor().solve(row);
+            answer = inertia.cholesky().solve(row);
             self.positions[k] = stop;
             if self.velocities[k] != 0.0 {
                 self.stop(k);
@@ -218,12 +218,12 @@ impl ImpulseDynamics {
     }
 
     /// Returns the speed of a point in its direction, m/s.
-    pub(crate) fn speed(&self, point: &ImpulsePoint) -> f64 {
+    pub(crate) fn point_speed(&self, point: &ImpulsePoint) -> f64 {
         dot(&point.row, &self.velocities) + point.root_velocity_along
     }
 
     /// Applies an impulse at a point in its direction, N·s.
-    pub(crate) fn push(&mut self, point: &ImpulsePoint, impulse: f64) {
+    pub(crate) fn apply_impulse(&mut self, point: &ImpulsePoint, impulse: f64) {
         for (velocity, answer) in self.velocities.iter_mut().zip(&point.answer) {
             *velocity += impulse * answer;
         }
@@ -242,7 +242,7 @@ impl ImpulseDynamics {
 
     /// Writes the velocities to the bodies; `joint_coordinates`: the coordinates of each of the world's joints. Returns
     /// whether anything was changed.
-    pub(crate) fn write(
+    pub(crate) fn write_velocities(
         &self,
         engine: &mut RapierWorld,
         trees: &[KinematicTree],
@@ -258,7 +258,7 @@ impl ImpulseDynamics {
         {
             let six = &self.velocities[n..];
             let angular = DVec3::new(six[3], six[4], six[5]);
-            let arm = self.root.center - floating.whole.center;
+            let arm = self.root.center - floating.composite_body.center;
             let linear = DVec3::new(six[0], six[1], six[2]) + angular.cross(arm);
             body.set_linvel(linear.as_vec3(), false);
             body.set_angvel(angular.as_vec3(), false);
@@ -267,7 +267,7 @@ impl ImpulseDynamics {
             let (position, velocity) = (self.positions[k], self.velocities[k]);
             let joint = trees[self.tree].joints[*free];
             joint_coordinates[joint] = JointCoordinate { position, velocity };
-            forward_kinematics::put(engine, &joints[joint], (position, velocity), false);
+            forward_kinematics::place_child(engine, &joints[joint], (position, velocity), false);
         }
         true
     }
@@ -281,7 +281,7 @@ fn link(
     joints: &[&PhysicsJoint],
 ) {
     for (k, (joint, place)) in joints.iter().zip(free).enumerate() {
-        if let Some(leader) = tree.follows[*place]
+        if let Some(leader) = tree.mimic_leaders[*place]
             && let Some(mimic) = &joint.values.mimic
             && let Some(leader) = free.iter().position(|other| *other == leader)
         {
@@ -302,7 +302,7 @@ fn with_root(joints: &SymmetricMatrix, floating: &FloatingBase, n: usize) -> Sym
         for j in 0..=k {
             all.set(k, j, joints.get(k, j));
         }
-        for (j, share) in floating.columns[k].iter().enumerate() {
+        for (j, share) in floating.momentum_jacobian[k].iter().enumerate() {
             all.set(n + j, k, *share);
         }
     }

@@ -14,11 +14,11 @@ use super::convex_solver::{EffortProblem, EffortTerm, SymmetricMatrix};
 use super::effort_term::JointDof;
 use super::tree::KinematicTree;
 use super::tree_dynamics::TreeDynamics;
-use super::{JointDrivers, PhysicsJoint};
 use super::{JointLoad, JointResistance};
+use super::{JointStepInputs, PhysicsJoint};
 
 /// Displacement in a step, rad or m, below which a tree counts as at rest.
-pub(super) const AT_REST: f64 = 1e-5;
+pub(super) const REST_DISPLACEMENT: f64 = 1e-5;
 /// Longest displacement of a joint in one part of a step, rad or m.
 const MAX_PART_DISPLACEMENT: f64 = 0.05;
 /// Most parts of a step: those of the highest speed that may be set, 1000 rad/s, at 120 Hz.
@@ -40,21 +40,21 @@ pub(super) struct TreeSolver<'a> {
     /// Their indices in the tree.
     pub(super) free: &'a [usize],
     pub(super) joints: &'a [&'a PhysicsJoint],
-    pub(super) drivers: &'a JointDrivers<'a>,
+    pub(super) drivers: &'a JointStepInputs<'a>,
 }
 
 /// The motion of a tree in a step that nothing else touches. Shape (freedom,) each.
 pub(super) struct TreeIntegration<'a> {
     /// Set if it moves by more than rounding.
-    pub(super) moves: bool,
+    pub(super) is_moving: bool,
     pub(super) positions: Vec<f64>,
     pub(super) velocities: Vec<f64>,
     /// Mean accelerations.
-    pub(super) gained: Vec<f64>,
+    pub(super) mean_accelerations: Vec<f64>,
     /// The response of a free root.
-    pub(super) answer: Option<BaseResponse>,
+    pub(super) base_response: Option<BaseResponse>,
     /// The tree at the middle of the step.
-    pub(super) middle: TreeDynamics<'a>,
+    pub(super) midpoint_dynamics: TreeDynamics<'a>,
 }
 
 /// Accelerations of the joints and of a free root.
@@ -116,7 +116,7 @@ impl TreeSolver<'_> {
         let fastest = velocities
             .iter()
             .fold(0.0, |most: f64, v| most.max(v.abs()));
-        let moves = fastest * dt_s > AT_REST && chain.stands();
+        let moves = fastest * dt_s > REST_DISPLACEMENT && chain.is_root_at_rest();
         let parts = if moves {
             (fastest * dt_s / MAX_PART_DISPLACEMENT)
                 .ceil()
@@ -126,10 +126,10 @@ impl TreeSolver<'_> {
         };
         let part_s = dt_s / parts;
         let at = |middle: bool| {
-            self.drivers.push.map(|push| LawWrenchQuery {
-                push,
+            self.drivers.wrench_fn.map(|push| LawWrenchQuery {
+                wrench_fn: push,
                 dt_s: part_s,
-                middle,
+                at_midpoint: middle,
             })
         };
         let (mut q, mut v) = (positions.to_vec(), velocities.to_vec());
@@ -139,12 +139,13 @@ impl TreeSolver<'_> {
             let SubstepResult {
                 mut gained,
                 answer: of_root,
-            } = self.part(&chain.at(&q, &v, at(false)), &q, &v, part_s);
+            } = self.part(&chain.dynamics_at(&q, &v, at(false)), &q, &v, part_s);
             answer = of_root;
             for _ in 0..if moves { MIDPOINT_ITERATIONS } else { 0 } {
                 // The implicit midpoint rule, by fixed-point iteration: a = a(q + h/2 v_m, v_m) with v_m = v + h/2 a.
                 let between = plus(&v, &gained, 0.5 * part_s);
-                let middle = chain.at(&plus(&q, &between, 0.5 * part_s), &between, at(true));
+                let middle =
+                    chain.dynamics_at(&plus(&q, &between, 0.5 * part_s), &between, at(true));
                 gained = self.part(&middle, &q, &v, part_s).gained;
             }
             // q' = q + h v_m and v' = v + h a.
@@ -164,17 +165,17 @@ impl TreeSolver<'_> {
                     .map(|(a, b)| 0.5 * (a + b))
                     .collect::<Vec<_>>()
             };
-            chain.at(&half(positions, &q), &half(velocities, &v), at(true))
+            chain.dynamics_at(&half(positions, &q), &half(velocities, &v), at(true))
         } else {
-            chain.at(positions, velocities, at(false))
+            chain.dynamics_at(positions, velocities, at(false))
         };
         TreeIntegration {
-            moves,
-            gained: rate(velocities, &v, dt_s),
+            is_moving: moves,
+            mean_accelerations: rate(velocities, &v, dt_s),
             positions: q,
             velocities: v,
-            answer,
-            middle,
+            base_response: answer,
+            midpoint_dynamics: middle,
         }
     }
 
@@ -199,9 +200,9 @@ impl TreeSolver<'_> {
         part_s: f64,
     ) -> SubstepResult {
         let loads = motion.loads();
-        let weights = motion.weights(&loads);
-        let bare = motion.inertia();
-        let mut holds = vec![SupportState::Sticks; motion.supports.len()];
+        let weights = motion.weight_support_efforts(&loads);
+        let bare = motion.joint_space_inertia();
+        let mut holds = vec![SupportState::Sticking; motion.supports.len()];
         let mut round = 0;
         loop {
             let reduced = ReducedProblem::of(motion, &loads, now, &holds, part_s);
@@ -214,8 +215,8 @@ impl TreeSolver<'_> {
             };
             let velocity = self.solve(&reduced, &seen);
             let gained = rate(now, &velocity, part_s);
-            let footing = reduced.footing.as_ref();
-            let answer = footing.map(|footing| footing.answer(&velocity, &holds));
+            let footing = reduced.base_contacts.as_ref();
+            let answer = footing.map(|footing| footing.base_response(&velocity, &holds));
             round += 1;
             match answer {
                 Some(answer)
@@ -250,12 +251,15 @@ impl TreeSolver<'_> {
             .iter()
             .map(|freedom| {
                 let place = self.tree.joints[self.free[freedom.index]];
-                let pull = self.drivers.pulls[place].as_ref();
-                pull.map(|pull| freedom.pull(pull))
+                let pull = self.drivers.actuations[place].as_ref();
+                pull.map(|pull| freedom.actuation(pull))
             })
             .collect();
-        let gives =
-            |k: usize, velocity: f64| pulls[k].as_ref().map_or(0.0, |pull| pull.at(velocity).0);
+        let gives = |k: usize, velocity: f64| {
+            pulls[k]
+                .as_ref()
+                .map_or(0.0, |pull| pull.effort_and_slope(velocity).0)
+        };
         // Each joint's resistance depends on its load and speed, and these on its resistance.
         let mut ends = now.to_vec();
         let mut external: Vec<f64> = weights.iter().map(|weight| -weight).collect();
@@ -285,14 +289,14 @@ impl TreeSolver<'_> {
                 freedoms[k].inertia += armature;
             }
             let velocity = EffortProblem {
-                free: inertia.factor().solve(&momentum),
+                free_velocities: inertia.cholesky().solve(&momentum),
                 inertia,
-                elements: self.elements(&freedoms, &resistances),
+                terms: self.elements(&freedoms, &resistances),
                 dt_s: part_s,
             }
             .solve();
             sweep += 1;
-            if self.drivers.resist.is_none() || sweep == FRICTION_ITERATIONS {
+            if self.drivers.resistance_fn.is_none() || sweep == FRICTION_ITERATIONS {
                 return velocity;
             }
             let seen: Vec<f64> = freedoms
@@ -301,7 +305,9 @@ impl TreeSolver<'_> {
                 .map(|(freedom, resistance)| {
                     let velocity = velocity[freedom.index];
                     let own = self.own_elements(freedom, resistance);
-                    let own: f64 = own.map(|element| element.at(velocity).0).sum();
+                    let own: f64 = own
+                        .map(|element| element.effort_and_slope(velocity).0)
+                        .sum();
                     // All others' effort is what is missing in m a = own + others.
                     freedom.inertia * (velocity - freedom.velocity) / part_s - own
                 })
@@ -327,7 +333,7 @@ impl TreeSolver<'_> {
             armature: joint.values.armature,
             elastic: None,
         };
-        if let Some(resist) = self.drivers.resist {
+        if let Some(resist) = self.drivers.resistance_fn {
             resist(joint.id, load, &mut resistance);
         }
         resistance
@@ -344,8 +350,8 @@ impl TreeSolver<'_> {
         let rubs = rubs.then(|| freedom.friction(resistance.friction.into()));
         let springs = resistance.elastic.as_ref().map(|e| freedom.elastic(e));
         let place = self.tree.joints[self.free[freedom.index]];
-        let pulls = self.drivers.pulls[place].as_ref();
-        let pulls = pulls.map(|pull| freedom.pull(pull));
+        let pulls = self.drivers.actuations[place].as_ref();
+        let pulls = pulls.map(|pull| freedom.actuation(pull));
         [damps, rubs, springs, pulls].into_iter().flatten()
     }
 
@@ -356,16 +362,16 @@ impl TreeSolver<'_> {
             let resistance = &resistances[freedom.index];
             elements.extend(self.own_elements(freedom, resistance));
             if let Some([low, high]) = joint.values.limits {
-                elements.push(freedom.stop(low.into(), 1.0));
-                elements.push(freedom.stop(high.into(), -1.0));
+                elements.push(freedom.limit_stop(low.into(), 1.0));
+                elements.push(freedom.limit_stop(high.into(), -1.0));
             }
-            if let Some(leader) = self.tree.follows[*place]
+            if let Some(leader) = self.tree.mimic_leaders[*place]
                 && let Some(mimic) = &joint.values.mimic
                 && let Some(leader) = self.free.iter().position(|other| *other == leader)
             {
                 let leader = &freedoms[leader];
                 let law = [mimic.multiplier.into(), mimic.offset.into()];
-                elements.push(freedom.follow(leader, law, joint.stops()));
+                elements.push(freedom.mimic_constraint(leader, law, joint.stops()));
             }
         }
         elements

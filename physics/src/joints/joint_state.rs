@@ -40,19 +40,23 @@ pub(super) struct JointReading {
 }
 
 /// Returns position and velocity of a joint, rad or m (and per second). `last_known` picks the turn of a hinge.
-pub(crate) fn read(engine: &RapierWorld, joint: &PhysicsJoint, last_known: f64) -> (f64, f64) {
+pub(crate) fn read_joint(
+    engine: &RapierWorld,
+    joint: &PhysicsJoint,
+    last_known: f64,
+) -> (f64, f64) {
     let reading = JointReading::of(engine, joint, last_known);
     (reading.position, reading.velocity)
 }
 
 /// Returns the coordinates from which physics goes on at a joint with the coordinates `last_known`: the same, where bodies
 /// differ from them by no more than their rounding.
-pub(crate) fn stands(
+pub(crate) fn continued_coordinate(
     engine: &RapierWorld,
     joint: &PhysicsJoint,
     last_known: JointCoordinate,
 ) -> JointCoordinate {
-    JointReading::before(engine, joint, last_known).coordinate()
+    JointReading::at_step_start(engine, joint, last_known).coordinate()
 }
 
 /// Returns the rounding error of a joint's position and velocity because bodies are f32: rad or m, and per second. A
@@ -105,7 +109,7 @@ impl JointReading {
 
     /// Returns the joint before a step. Where bodies differ from `last_known` by no more than their rounding, it has those
     /// coordinates: a joint put at a stop is at the stop, and a slide far from the origin moves as finely as one near it.
-    pub(super) fn before(
+    pub(super) fn at_step_start(
         engine: &RapierWorld,
         joint: &PhysicsJoint,
         last_known: JointCoordinate,
@@ -128,11 +132,11 @@ impl JointReading {
     /// The turn is the right one while the joint's acceleration is constant, however fast it turns, and for an impact that
     /// changes its velocity by less than a turn a physics step, 754 rad/s at 120 Hz: the time of the impact in the step is
     /// not known.
-    pub(super) fn later(&self, engine: &RapierWorld, joint: &PhysicsJoint) -> Self {
+    pub(super) fn at_step_end(&self, engine: &RapierWorld, joint: &PhysicsJoint) -> Self {
         let (count, substep_s) = substeps(engine);
         let turns_alone = is_untouched(engine, joint);
         Self::with(engine, joint, |now, axis| {
-            let way = self.way(engine, now.velocity);
+            let way = self.step_displacement(engine, now.velocity);
             let [child, parent] = [0, 1].map(|k| {
                 let missing = missing_turn(self.spins[k], now.spins[k], count, substep_s);
                 missing.dot(axis)
@@ -145,7 +149,7 @@ impl JointReading {
 
     /// Returns the displacement of the joint in a physics step that it ends with a velocity, rad or m, at constant
     /// acceleration: rapier uses the velocity at the end of each substep.
-    pub(super) fn way(&self, engine: &RapierWorld, velocity: f64) -> f64 {
+    pub(super) fn step_displacement(&self, engine: &RapierWorld, velocity: f64) -> f64 {
         let (count, substep_s) = substeps(engine);
         let gained = (velocity - self.velocity) * 0.5 * (count + 1.0) / count;
         (self.velocity + gained) * count * substep_s
@@ -166,12 +170,12 @@ impl JointReading {
         };
         let spins = [child, parent].map(|body| body.angvel().as_dvec3());
         let world_from_joint = RigidTransform::of(parent.position())
-            .then(&RigidTransform::of(&joint.parent_from_joint));
-        let world_from_moved =
-            RigidTransform::of(child.position()).then(&RigidTransform::of(&joint.child_from_joint));
-        let relative = world_from_joint.inverse().then(&world_from_moved);
+            .compose(&RigidTransform::of(&joint.parent_from_joint));
+        let world_from_moved = RigidTransform::of(child.position())
+            .compose(&RigidTransform::of(&joint.child_from_joint));
+        let relative = world_from_joint.inverse().compose(&world_from_moved);
         let axis = joint.unit_axis();
-        let in_world = world_from_joint.turn * axis;
+        let in_world = world_from_joint.rotation * axis;
         match joint.kind {
             JointKind::Hinge => {
                 let now = Self {
@@ -180,7 +184,7 @@ impl JointReading {
                     spins,
                 };
                 let (last_known, missing) = expect(&now, in_world);
-                let q = relative.turn;
+                let q = relative.rotation;
                 let angle = 2.0 * libm::atan2(DVec3::new(q.x, q.y, q.z).dot(axis), q.w);
                 let turns = libm::round((last_known - angle) / TAU);
                 Self {
@@ -189,10 +193,10 @@ impl JointReading {
                 }
             }
             JointKind::Slide => {
-                let at = world_from_joint.at;
+                let at = world_from_joint.translation;
                 let velocity = velocity_at(child, at) - velocity_at(parent, at);
                 Self {
-                    position: relative.at.dot(axis),
+                    position: relative.translation.dot(axis),
                     velocity: velocity.dot(in_world),
                     spins,
                 }

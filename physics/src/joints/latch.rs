@@ -6,7 +6,7 @@ use crate::engine::RapierWorld;
 use dwell_scene::{Articulation, JointKind};
 
 /// Returns the distance from its closed position within which a joint counts as closed, rad or m.
-pub(crate) fn tolerance(kind: JointKind) -> f32 {
+pub(crate) fn closed_tolerance(kind: JointKind) -> f32 {
     match kind {
         JointKind::Hinge => 0.02,
         JointKind::Slide => 0.005,
@@ -14,16 +14,16 @@ pub(crate) fn tolerance(kind: JointKind) -> f32 {
 }
 
 /// Returns whether a joint at `position` is closed.
-pub(crate) fn stands_shut(
+pub(crate) fn is_at_closed_position(
     joint: &PhysicsJoint,
     articulation: &Articulation,
     position: f32,
 ) -> bool {
-    joint.latchable && (position - articulation.closed).abs() <= tolerance(joint.kind)
+    joint.latchable && (position - articulation.closed).abs() <= closed_tolerance(joint.kind)
 }
 
 /// Latches a joint at its closed position.
-pub(crate) fn shut(
+pub(crate) fn latch(
     engine: &mut RapierWorld,
     joint: &PhysicsJoint,
     articulation: &Articulation,

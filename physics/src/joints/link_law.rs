@@ -10,7 +10,7 @@ use std::fmt::Debug;
 pub(crate) trait LinkLaw: Debug + Send + Sync {
     /// Returns the wrench on a jointed body, or on a free root of a tree. It is called several times in a step, until the
     /// tree's motion and the wrenches agree.
-    fn push(&self, link: &LinkStep) -> ExternalWrench;
+    fn wrench(&self, link: &LinkStep) -> ExternalWrench;
 }
 
 /// A body of a kinematic tree, at the beginning of a step or at its middle.
@@ -24,11 +24,11 @@ pub(crate) struct LinkStep {
     /// Of its centre of mass, m/s.
     pub(crate) velocity: DVec3,
     /// rad/s.
-    pub(crate) spin: DVec3,
+    pub(crate) angular_velocity: DVec3,
     /// Length of the step, s.
     pub(crate) dt_s: f64,
     /// Set if velocities are those at the middle of the step.
-    pub(crate) middle: bool,
+    pub(crate) is_midpoint: bool,
     /// Since the world was made, s.
     pub(crate) time_s: f64,
 }
@@ -37,15 +37,15 @@ pub(crate) struct LinkStep {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct ExternalWrench {
     pub(crate) force: DVec3,
-    pub(crate) moment: DVec3,
+    pub(crate) torque: DVec3,
 }
 
 impl ExternalWrench {
     /// Returns the sum of both.
-    pub(crate) fn and(self, other: Self) -> Self {
+    pub(crate) fn sum(self, other: Self) -> Self {
         Self {
             force: self.force + other.force,
-            moment: self.moment + other.moment,
+            torque: self.torque + other.torque,
         }
     }
 }
@@ -55,7 +55,7 @@ impl LinkStep {
     /// so that an otherwise free body slows exponentially and never reverses.
     pub(crate) fn decay_per_s(&self, rate_per_s: f64) -> f64 {
         let times = rate_per_s * self.dt_s;
-        if self.middle {
+        if self.is_midpoint {
             // v' - v = -2 tanh(r dt / 2) (v' + v) / 2 is v' = v exp(-r dt).
             2.0 * libm::tanh(0.5 * times) / self.dt_s
         } else {
@@ -66,7 +66,7 @@ impl LinkStep {
     /// Returns the same for a decay whose rate is `per_m` times the speed against the air.
     pub(crate) fn quadratic_decay_per_s(&self, per_m: f64, speed_m_s: f64) -> f64 {
         let rate = per_m * speed_m_s;
-        if self.middle {
+        if self.is_midpoint {
             self.decay_per_s(rate)
         } else {
             rate / (1.0 + rate * self.dt_s)
@@ -84,9 +84,9 @@ mod tests {
             mass_kg: 1.0,
             inertia: DMat3::IDENTITY,
             velocity: DVec3::X * velocity,
-            spin: DVec3::ZERO,
+            angular_velocity: DVec3::ZERO,
             dt_s,
-            middle,
+            is_midpoint: middle,
             time_s: 0.0,
         }
     }

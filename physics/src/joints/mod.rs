@@ -26,14 +26,15 @@ mod tree_step;
 pub(crate) use drive::{DriveProgress, HandDrive, HandDrives, advance};
 pub(crate) use effort_term::{ActuationGain, JointActuation};
 pub(crate) use efforts::{
-    JointDrivers, TreePrediction, apply_efforts, clear_efforts, project_woken, settle,
+    JointStepInputs, TreePrediction, apply_efforts, clear_efforts, correct_tree_positions,
+    project_woken,
 };
-pub(crate) use forward_kinematics::{JointPlacement, matches_bodies, place};
+pub(crate) use forward_kinematics::{JointPlacement, matches_bodies, place_tree};
 pub(crate) use impulse_dynamics::{ImpulseDynamics, ImpulsePoint};
-pub(crate) use joint_state::{JointCoordinate, read, stands};
-pub(crate) use latch::{release, shut, stands_shut, tolerance};
+pub(crate) use joint_state::{JointCoordinate, continued_coordinate, read_joint};
+pub(crate) use latch::{closed_tolerance, is_at_closed_position, latch, release};
 pub(crate) use link_law::{ExternalWrench, LinkLaw, LinkStep};
-pub(crate) use motor_law::{LawMemory, MotorLaw, MotorStep, commanded};
+pub(crate) use motor_law::{LawState, MotorLaw, MotorStep, motor_command};
 pub(crate) use resistance_law::{JointLoad, JointResistance, ResistanceLaw, SlipSpring};
 pub(crate) use tree::{KinematicTree, trees};
 
@@ -130,7 +131,7 @@ pub(crate) fn insert(
             body_from_parent,
             parent_from_joint,
             child_from_joint,
-            latchable: standing && joint.opens(),
+            latchable: standing && joint.is_openable(),
             values,
         });
     }
@@ -152,7 +153,7 @@ const SLACK: f32 = 1e-5;
 /// Returns the limits that rapier enforces too.
 fn held_by_rapier(kind: JointKind, values: &JointParameters) -> Option<[f32; 2]> {
     let limits = values.limits?;
-    effort_term::rapier_holds(kind, limits).then_some([limits[0] - SLACK, limits[1] + SLACK])
+    effort_term::rapier_can_limit(kind, limits).then_some([limits[0] - SLACK, limits[1] + SLACK])
 }
 
 /// rapier turns about and slides along the frames' X axes.

@@ -5,26 +5,26 @@ use dwell_scene::{JointCommand, JointId, State};
 use std::fmt::Debug;
 
 /// The state of a motor's or joint's law between steps.
-pub(crate) trait LawMemory {
+pub(crate) trait LawState {
     /// Notes that a joint was set to `position` (rad or m) from outside, which is no motion.
-    fn placed(&mut self, _joint: JointId, _position: f32) {}
+    fn joint_set(&mut self, _joint: JointId, _position: f32) {}
 
     /// Returns its state, for snapshots.
-    fn memory(&self) -> Vec<f32> {
+    fn state(&self) -> Vec<f32> {
         Vec::new()
     }
 
     /// Restores the state from [`LawMemory::memory`].
-    fn restore_memory(&mut self, _memory: &[f32]) {}
+    fn restore_state(&mut self, _memory: &[f32]) {}
 }
 
 /// A law that changes motors in each physics step.
-pub(crate) trait MotorLaw: LawMemory + Debug + Send + Sync {
+pub(crate) trait MotorLaw: LawState + Debug + Send + Sync {
     /// Changes the command that a joint's motor follows in one physics step. It is called for every motor in every step.
-    fn drive(&mut self, _motor: &MotorStep, _command: &mut JointCommand) {}
+    fn modify_command(&mut self, _motor: &MotorStep, _command: &mut JointCommand) {}
 
     /// Changes the actuation by a joint's motor for its command in one physics step.
-    fn modify_motor(&self, _joint: JointId, _pull: &mut JointActuation) {}
+    fn modify_actuation(&self, _joint: JointId, _pull: &mut JointActuation) {}
 
     /// Returns a copy.
     fn clone_box(&self) -> Box<dyn MotorLaw>;
@@ -50,7 +50,7 @@ pub(crate) struct MotorStep {
 
 impl MotorStep {
     /// Returns the value of a command of this kind that keeps the present state.
-    pub(crate) fn rest(&self, command: JointCommand) -> f32 {
+    pub(crate) fn holding_value(&self, command: JointCommand) -> f32 {
         match command {
             JointCommand::Position(_) => self.position,
             JointCommand::Velocity(_) => self.velocity,
@@ -60,7 +60,7 @@ impl MotorStep {
 }
 
 /// Returns the command of a joint's motor in this control step.
-pub(crate) fn commanded(state: &State, joint: JointId) -> JointCommand {
+pub(crate) fn motor_command(state: &State, joint: JointId) -> JointCommand {
     let command = state.joint_command[joint];
     if command.is_finite() {
         command

@@ -37,7 +37,7 @@ impl TreeStep {
         self.chain.follow_root(engine, tree);
         let (positions, velocities) = (self.positions(), self.velocities());
         let joints = self.joints(tree, joints);
-        let motion = self.chain.at(&positions, &velocities, None);
+        let motion = self.chain.dynamics_at(&positions, &velocities, None);
         let momenta: Vec<Wrench> = joints
             .iter()
             .zip(&motion.masses)
@@ -50,12 +50,12 @@ impl TreeStep {
                 let force = linear * lump.mass;
                 Wrench {
                     force,
-                    moment: lump.inertia * angular + lump.center.cross(force),
+                    torque: lump.inertia * angular + lump.center.cross(force),
                 }
             })
             .collect();
-        let floating = motion.floating();
-        let inertia = motion.inertia();
+        let floating = motion.floating_base();
+        let inertia = motion.joint_space_inertia();
         let held = held_by_stops(&joints, &positions, &inertia);
         let (velocity, root) = motion.allowed(floating.as_ref(), momenta, (inertia, held));
         if let (Some((linear, angular)), Some(body)) = (root, engine.bodies.get_mut(tree.root)) {
@@ -68,7 +68,8 @@ impl TreeStep {
             .map(|(joint, (position, end))| arrives(joint, *position, *end))
             .collect();
         if floating.is_some() && arrived != positions {
-            let shift = motion.middle() - self.chain.at(&arrived, &velocities, None).middle();
+            let shift =
+                motion.middle() - self.chain.dynamics_at(&arrived, &velocities, None).middle();
             if let Some(body) = engine.bodies.get_mut(tree.root) {
                 let at = body.position().translation.as_dvec3() + shift;
                 body.set_translation(at.as_vec3(), false);
@@ -79,7 +80,7 @@ impl TreeStep {
             let [low, high] = joint.stops();
             let position = position.max(low).min(high);
             joint_coordinates[tree.joints[*k]] = JointCoordinate { position, velocity };
-            forward_kinematics::put(engine, joint, (position, velocity), false);
+            forward_kinematics::place_child(engine, joint, (position, velocity), false);
         }
     }
 }
@@ -110,11 +111,11 @@ fn held_by_stops(
         };
         Some(EffortTerm {
             index: k,
-            follows: None,
+            opposing: None,
             offset: 0.0,
             slope: RIGID * inertia.get(k, k),
             bounds,
-            speed: None,
+            speed_limit: None,
         })
     };
     let pairs = joints.iter().zip(positions).enumerate();
@@ -137,7 +138,7 @@ impl TreeDynamics<'_> {
         let whole = self
             .masses
             .iter()
-            .fold(root, |whole, mass| whole.with(mass));
+            .fold(root, |whole, mass| whole.combined_with(mass));
         whole.center
     }
 
@@ -153,7 +154,10 @@ impl TreeDynamics<'_> {
             Some(root) => {
                 let force = self.root_velocity * root.mass;
                 let moment = root.inertia * self.root.angular + root.center.cross(force);
-                Wrench { force, moment }
+                Wrench {
+                    force,
+                    torque: moment,
+                }
             }
             None => Wrench::default(),
         };
@@ -163,7 +167,7 @@ impl TreeDynamics<'_> {
                 Some(parent) => &mut momenta[parent],
                 None => &mut whole,
             };
-            *above = above.plus(&below, 1.0);
+            *above = above.add_scaled(&below, 1.0);
         }
         // S^T h: the momentum along each joint of all that it moves.
         let along = self.axes.iter().zip(&momenta);
@@ -175,9 +179,9 @@ impl TreeDynamics<'_> {
         }
         // H q' = S^T h, the normal equations of the least constraint; stops take what they hold.
         let velocity = EffortProblem {
-            free: inertia.factor().solve(&along),
+            free_velocities: inertia.cholesky().solve(&along),
             inertia,
-            elements: stops,
+            terms: stops,
             dt_s: 1.0,
         }
         .solve();
@@ -186,14 +190,14 @@ impl TreeDynamics<'_> {
         };
         // I^c_0 v_0 = h_0 - F q'.
         let mut left = floating.generalized_force(&whole);
-        for (column, velocity) in floating.columns.iter().zip(&velocity) {
+        for (column, velocity) in floating.momentum_jacobian.iter().zip(&velocity) {
             for (left, share) in left.iter_mut().zip(column) {
                 *left -= share * velocity;
             }
         }
-        let six = floating.inertia().factor().solve(&left);
+        let six = floating.inertia().cholesky().solve(&left);
         let angular = DVec3::new(six[3], six[4], six[5]);
-        let arm = self.root.center - floating.whole.center;
+        let arm = self.root.center - floating.composite_body.center;
         let linear = DVec3::new(six[0], six[1], six[2]) + angular.cross(arm);
         (velocity, Some((linear, angular)))
     }

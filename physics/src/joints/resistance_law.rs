@@ -1,17 +1,17 @@
 //! Laws of joint resistance.
 
-use super::LawMemory;
+use super::LawState;
 use dwell_scene::JointId;
 use std::fmt::Debug;
 
 /// A law that changes the resistance of joints.
-pub(crate) trait ResistanceLaw: LawMemory + Debug + Send + Sync {
+pub(crate) trait ResistanceLaw: LawState + Debug + Send + Sync {
     /// Notes a joint's position (rad or m) at the beginning of a physics step.
-    fn follow(&mut self, _joint: JointId, _position: f32) {}
+    fn update_position(&mut self, _joint: JointId, _position: f32) {}
 
     /// Changes the resistance of a joint in one physics step. It is called several times in a step, until resistance and
     /// load agree.
-    fn resist(&self, joint: JointId, load: &JointLoad, resistance: &mut JointResistance);
+    fn modify_resistance(&self, joint: JointId, load: &JointLoad, resistance: &mut JointResistance);
 
     /// Returns a copy.
     fn clone_box(&self) -> Box<dyn ResistanceLaw>;

@@ -24,12 +24,12 @@ pub(super) struct SupportPoint {
     /// The joint whose body is supported; `None`: the root.
     pub(super) link: Option<usize>,
     /// m.
-    pub(super) at: DVec3,
+    pub(super) position: DVec3,
     pub(super) friction: f64,
 }
 
 /// Returns the points where a body stands on something outside its tree.
-pub(super) fn of_body(
+pub(super) fn support_points(
     engine: &RapierWorld,
     handle: RigidBodyHandle,
     link: Option<usize>,
@@ -50,30 +50,35 @@ pub(super) fn of_body(
                 continue;
             }
             for plane in pair.solver_manifolds() {
-                if !carries(engine, *own, plane, first) {
+                if !supports_from_below(engine, *own, plane, first) {
                     continue;
                 }
                 for contact in &plane.data.solver_contacts {
                     if contact.dist > CONTACT_GAP_M {
                         continue;
                     }
-                    let at = place(engine, pair, plane, contact);
+                    let at = contact_position(engine, pair, plane, contact);
                     supports.push(SupportPoint {
                         link,
-                        at,
+                        position: at,
                         friction: plane.data.friction.into(),
                     });
                 }
             }
         }
     }
-    supports.sort_by(|a, b| a.at.x.total_cmp(&b.at.x).then(a.at.z.total_cmp(&b.at.z)));
+    supports.sort_by(|a, b| {
+        a.position
+            .x
+            .total_cmp(&b.position.x)
+            .then(a.position.z.total_cmp(&b.position.z))
+    });
     supports
 }
 
 /// Returns whether a contact plane supports a body from below on fixed points. A wheel's does not: it stands on another
 /// line in every step. `first`: whether the body's is the first of its colliders.
-pub(super) fn carries(
+pub(super) fn supports_from_below(
     engine: &RapierWorld,
     own: ColliderHandle,
     plane: &ContactManifold,
@@ -93,7 +98,7 @@ pub(super) fn carries(
 
 /// Returns the present position of a contact point's surfaces, m. Flat bodies carry their points along; on rolling ones
 /// they stay where it is nearest.
-pub(super) fn place(
+pub(super) fn contact_position(
     engine: &RapierWorld,
     pair: &ContactPair,
     plane: &ContactManifold,
@@ -127,13 +132,17 @@ pub(super) fn place(
 
 /// The vertical forces with the least squares that carry a weight (about the origin), as far as pushes can: with the balance
 /// `A f = w` of force and two moments, `f = A^T (A A^T)^-1 w`. Shape (support,), N.
-pub(super) fn forces(supports: &[SupportPoint], weight: &Wrench, center: DVec3) -> Vec<f64> {
+pub(super) fn support_forces(
+    supports: &[SupportPoint],
+    weight: &Wrench,
+    center: DVec3,
+) -> Vec<f64> {
     let mut carries = vec![true; supports.len()];
     let mut forces = vec![0.0; supports.len()];
-    let moment = weight.moment - center.cross(weight.force);
+    let moment = weight.torque - center.cross(weight.force);
     let needed = [weight.force.y, moment.x, moment.z];
     let row = |support: &SupportPoint| {
-        let arm = support.at - center;
+        let arm = support.position - center;
         [1.0, -arm.z, arm.x]
     };
     // Each iteration releases at least one point that would have to pull.
@@ -156,7 +165,7 @@ pub(super) fn forces(supports: &[SupportPoint], weight: &Wrench, center: DVec3) 
             squares.add(k, k, ridge);
         }
         // (A A^T)^-1 w.
-        let shares = squares.factor().solve(&needed);
+        let shares = squares.cholesky().solve(&needed);
         let mut pulls = false;
         for (k, support) in supports.iter().enumerate() {
             let force: f64 = row(support).iter().zip(&shares).map(|(a, b)| a * b).sum();
@@ -180,7 +189,7 @@ mod tests {
     fn at(x: f64, z: f64) -> SupportPoint {
         SupportPoint {
             link: None,
-            at: DVec3::new(x, 0.0, z),
+            position: DVec3::new(x, 0.0, z),
             friction: 0.5,
         }
     }
@@ -189,7 +198,7 @@ mod tests {
         let force = DVec3::Y * newton;
         Wrench {
             force,
-            moment: DVec3::new(x, 0.3, z).cross(force),
+            torque: DVec3::new(x, 0.3, z).cross(force),
         }
     }
 
@@ -198,7 +207,7 @@ mod tests {
     fn feet_carry_a_weight_in_balance() {
         let feet = [at(-1.0, -1.0), at(1.0, -1.0), at(-1.0, 1.0), at(1.0, 1.0)];
         for (x, z) in [(0.0, 0.0), (0.5, 0.2), (-0.9, 0.05), (0.999, 0.0)] {
-            let found = forces(&feet, &weight(100.0, x, z), DVec3::new(0.2, 0.4, 0.1));
+            let found = support_forces(&feet, &weight(100.0, x, z), DVec3::new(0.2, 0.4, 0.1));
             let sum: f64 = found.iter().sum();
             let along = |of: fn(&SupportPoint) -> f64| -> f64 {
                 feet.iter()
@@ -207,11 +216,17 @@ mod tests {
                     .sum()
             };
             assert!((sum - 100.0).abs() < 1e-5, "{found:?}");
-            assert!((along(|s| s.at.x) - 100.0 * x).abs() < 1e-4, "{found:?}");
-            assert!((along(|s| s.at.z) - 100.0 * z).abs() < 1e-4, "{found:?}");
+            assert!(
+                (along(|s| s.position.x) - 100.0 * x).abs() < 1e-4,
+                "{found:?}"
+            );
+            assert!(
+                (along(|s| s.position.z) - 100.0 * z).abs() < 1e-4,
+                "{found:?}"
+            );
             assert!(found.iter().all(|force| *force >= 0.0), "{found:?}");
         }
-        let tips = forces(&feet, &weight(100.0, 3.0, 0.0), DVec3::ZERO);
+        let tips = support_forces(&feet, &weight(100.0, 3.0, 0.0), DVec3::ZERO);
         assert!(
             tips.iter().all(|force| *force >= 0.0) && tips[0] == 0.0,
             "{tips:?}"

@@ -19,7 +19,7 @@ pub(crate) struct KinematicTree {
     /// For each joint, the index in this tree of the joint that moves its parent. Shape (joint,).
     pub(super) parents: Vec<Option<usize>>,
     /// For each joint, the index in this tree of its leader. Shape (joint,).
-    pub(super) follows: Vec<Option<usize>>,
+    pub(super) mimic_leaders: Vec<Option<usize>>,
 }
 
 impl KinematicTree {
@@ -99,7 +99,7 @@ pub(crate) fn trees(
             root: first.parent_handle,
             root_body: root_part.and_then(|part| model.body_of_part[part]),
             parents: order.iter().map(|k| place_of(above(&joints[*k]))).collect(),
-            follows: order
+            mimic_leaders: order
                 .iter()
                 .map(|k| place_of(leader(&joints[*k])))
                 .collect(),

@@ -33,7 +33,7 @@ pub(super) struct LumpedBody {
 
 impl LumpedBody {
     pub(super) fn of(body: &RigidBody) -> Self {
-        let own = Self::own(body);
+        let own = Self::in_body_frame(body);
         let turn = DMat3::from_quat(body.position().rotation.as_dquat().normalize());
         Self {
             center: body.center_of_mass().as_dvec3(),
@@ -43,7 +43,7 @@ impl LumpedBody {
     }
 
     /// Returns the same in the body's own frame.
-    pub(super) fn own(body: &RigidBody) -> Self {
+    pub(super) fn in_body_frame(body: &RigidBody) -> Self {
         let local = &body.mass_properties().local_mprops;
         let principal = local.principal_inertia().as_dvec3();
         let turn = local.principal_inertia_local_frame.as_dquat();
@@ -57,7 +57,7 @@ impl LumpedBody {
     }
 
     /// Returns two bodies as one.
-    pub(super) fn with(&self, other: &Self) -> Self {
+    pub(super) fn combined_with(&self, other: &Self) -> Self {
         let mass = self.mass + other.mass;
         if mass <= 0.0 {
             return *self;
@@ -85,7 +85,7 @@ pub(super) struct JointAxisState {
     pub(super) kind: JointKind,
     pub(super) direction: DVec3,
     /// A point on it, m.
-    pub(super) at: DVec3,
+    pub(super) anchor: DVec3,
     /// The free joint that moves its parent.
     pub(super) parent: Option<usize>,
     pub(super) velocity: f64,
@@ -93,20 +93,23 @@ pub(super) struct JointAxisState {
 
 impl JointAxisState {
     /// Returns the velocity of a point, and the angular velocity, for each unit of this joint's velocity.
-    pub(super) fn moves(&self, point: DVec3) -> (DVec3, DVec3) {
+    pub(super) fn unit_velocity_at(&self, point: DVec3) -> (DVec3, DVec3) {
         // S at the point: (z x r, z) about an axis z, (z, 0) along one.
         match self.kind {
-            JointKind::Hinge => (self.direction.cross(point - self.at), self.direction),
+            JointKind::Hinge => (self.direction.cross(point - self.anchor), self.direction),
             JointKind::Slide => (self.direction, DVec3::ZERO),
         }
     }
 
     /// Returns the generalized force of a wrench about the origin: its component along the joint.
     pub(super) fn generalized_force_of(&self, wrench: &Wrench) -> f64 {
-        let Wrench { force, moment } = *wrench;
+        let Wrench {
+            force,
+            torque: moment,
+        } = *wrench;
         // S^T f.
         match self.kind {
-            JointKind::Hinge => self.direction.dot(moment - self.at.cross(force)),
+            JointKind::Hinge => self.direction.dot(moment - self.anchor.cross(force)),
             JointKind::Slide => self.direction.dot(force),
         }
     }
@@ -143,9 +146,9 @@ impl BodyAcceleration {
 /// A tree at one moment. Shape (freedom,) each.
 pub(super) struct TreeDynamics<'a> {
     /// Wrenches of laws on the joints' bodies; empty where none acts.
-    pub(super) pushes: Vec<ExternalWrench>,
+    pub(super) law_wrenches: Vec<ExternalWrench>,
     /// Wrench of laws on a free root.
-    pub(super) root_push: ExternalWrench,
+    pub(super) root_law_wrench: ExternalWrench,
     pub(super) axes: Vec<JointAxisState>,
     pub(super) masses: Vec<LumpedBody>,
     pub(super) angular: Vec<DVec3>,
@@ -158,7 +161,7 @@ pub(super) struct TreeDynamics<'a> {
     /// The support points of a tree whose root is free.
     pub(super) supports: &'a [SupportPoint],
     /// Other contact forces on the tree.
-    pub(super) touches: &'a [ExternalContact],
+    pub(super) external_contacts: &'a [ExternalContact],
     pub(super) gravity: DVec3,
 }
 
@@ -169,12 +172,12 @@ impl TreeDynamics<'_> {
         for k in (0..carried.len()).rev() {
             if let Some(parent) = self.axes[k].parent {
                 // I^c_lambda += I^c_k, from the leaves to the root (table 6.2).
-                carried[parent] = carried[parent].with(&carried[k]);
+                carried[parent] = carried[parent].combined_with(&carried[k]);
             }
         }
         // F_k = I^c_k S_k (table 6.2).
         let momentum = |(axis, lump): (&JointAxisState, &LumpedBody)| {
-            let (linear, angular) = axis.moves(lump.center);
+            let (linear, angular) = axis.unit_velocity_at(lump.center);
             (linear * lump.mass, lump.inertia * angular)
         };
         let momenta = self.axes.iter().zip(&carried).map(momentum).collect();
@@ -182,16 +185,16 @@ impl TreeDynamics<'_> {
     }
 
     /// Returns the joint-space inertia matrix. Shape (freedom, freedom).
-    pub(super) fn inertia(&self) -> SymmetricMatrix {
-        let mut inertia = self.held_inertia();
-        if let Some(floating) = self.floating() {
+    pub(super) fn joint_space_inertia(&self) -> SymmetricMatrix {
+        let mut inertia = self.fixed_base_inertia();
+        if let Some(floating) = self.floating_base() {
             floating.subtract_base_inertia(&mut inertia);
         }
         inertia
     }
 
     /// Returns the same while the root is held. Shape (freedom, freedom).
-    pub(super) fn held_inertia(&self) -> SymmetricMatrix {
+    pub(super) fn fixed_base_inertia(&self) -> SymmetricMatrix {
         let n = self.axes.len();
         let (carried, momenta) = self.carried();
         let mut inertia = SymmetricMatrix::zero(n);
@@ -199,7 +202,7 @@ impl TreeDynamics<'_> {
             let mut other = Some(k);
             while let Some(j) = other {
                 // H_kj = F_k^T S_j, for k itself and every joint between it and the root (table 6.2).
-                let (linear, angular) = self.axes[j].moves(carried[k].center);
+                let (linear, angular) = self.axes[j].unit_velocity_at(carried[k].center);
                 inertia.set(k, j, momentum.0.dot(linear) + momentum.1.dot(angular));
                 other = self.axes[j].parent;
             }
@@ -208,7 +211,7 @@ impl TreeDynamics<'_> {
     }
 
     /// Returns the floating base; `None` for a root that is not free.
-    pub(super) fn floating(&self) -> Option<FloatingBase> {
+    pub(super) fn floating_base(&self) -> Option<FloatingBase> {
         let root = self.free_root.as_ref()?;
         let (carried, momenta) = self.carried();
         Some(FloatingBase::of(root, &self.axes, &carried, &momenta))
@@ -233,8 +236,8 @@ impl TreeDynamics<'_> {
                     // alpha = alpha_lambda + omega_lambda x z q' + z q''.
                     body.angular_acceleration =
                         parent.angular_acceleration + parent.angular.cross(turn) + gain;
-                    let arm = center - axis.at;
-                    body.acceleration = parent.acceleration_at(axis.at)
+                    let arm = center - axis.anchor;
+                    body.acceleration = parent.acceleration_at(axis.anchor)
                         + body.angular_acceleration.cross(arm)
                         + body.angular.cross(body.angular.cross(arm));
                 }
@@ -251,12 +254,12 @@ impl TreeDynamics<'_> {
     }
 
     /// Returns the generalized forces of the last step's contacts: on the joints, shape (freedom,), and on a free root's six freedoms.
-    pub(super) fn touched(&self, floating: Option<&FloatingBase>) -> (Vec<f64>, [f64; 6]) {
+    pub(super) fn contact_forces(&self, floating: Option<&FloatingBase>) -> (Vec<f64>, [f64; 6]) {
         let mut efforts = vec![0.0; self.axes.len()];
         let mut whole = Wrench::default();
-        for touch in self.touches {
-            let wrench = touch.about_origin();
-            whole = whole.plus(&wrench, 1.0);
+        for touch in self.external_contacts {
+            let wrench = touch.wrench_about_origin();
+            whole = whole.add_scaled(&wrench, 1.0);
             let mut link = touch.link;
             while let Some(k) = link {
                 // tau_k = S_k^T f for every joint between the touched body and the root.
@@ -276,15 +279,17 @@ impl TreeDynamics<'_> {
         accelerations: &[f64],
         answer: Option<&BaseResponse>,
     ) -> (Vec<Wrench>, Option<Wrench>) {
-        let root = match (self.floating(), answer) {
-            (Some(floating), Some(answer)) => floating.accelerated(&self.root, &answer.gained),
+        let root = match (self.floating_base(), answer) {
+            (Some(floating), Some(answer)) => {
+                floating.base_motion_at(&self.root, &answer.accelerations)
+            }
             _ => self.root,
         };
         let moving = self.moving_over(root, accelerations);
         // Newton's m a - m g and Euler's I alpha; rapier adds omega x I omega itself.
         let wrench = |body: &BodyAcceleration, lump: &LumpedBody| Wrench {
             force: body.acceleration * lump.mass - self.gravity * lump.weight_mass,
-            moment: lump.inertia * body.angular_acceleration,
+            torque: lump.inertia * body.angular_acceleration,
         };
         let mut wrenches: Vec<Wrench> = moving
             .iter()
@@ -292,13 +297,13 @@ impl TreeDynamics<'_> {
             .map(|(body, lump)| wrench(body, lump))
             .collect();
         let mut of_root = self.free_root.as_ref().map(|lump| wrench(&root, lump));
-        for touch in self.touches {
+        for touch in self.external_contacts {
             let (wrench, center) = match (touch.link, &mut of_root, &self.free_root) {
                 (Some(link), _, _) => (&mut wrenches[link], self.masses[link].center),
                 (None, Some(root), Some(own)) => (root, own.center),
                 (None, _, _) => continue,
             };
-            *wrench = wrench.plus(&touch.about(center), -1.0);
+            *wrench = wrench.add_scaled(&touch.wrench_about(center), -1.0);
         }
         if let (Some(answer), Some(own)) = (answer, &self.free_root) {
             for (k, support) in self.supports.iter().enumerate() {
@@ -307,7 +312,7 @@ impl TreeDynamics<'_> {
                     (None, Some(root)) => (root, own.center),
                     (None, None) => continue,
                 };
-                *wrench = wrench.plus(&answer.wrench(k, support.at, center), -1.0);
+                *wrench = wrench.add_scaled(&answer.wrench(k, support.position, center), -1.0);
             }
         }
         (wrenches, of_root)
@@ -325,9 +330,15 @@ impl TreeDynamics<'_> {
                 + lump.center.cross(force);
             let weight = Wrench {
                 force: weight,
-                moment: lump.center.cross(weight),
+                torque: lump.center.cross(weight),
             };
-            [Wrench { force, moment }, weight]
+            [
+                Wrench {
+                    force,
+                    torque: moment,
+                },
+                weight,
+            ]
         };
         let moving = self.moving(&vec![0.0; n]);
         let pairs = moving.iter().zip(&self.masses);
@@ -335,34 +346,40 @@ impl TreeDynamics<'_> {
         let pushed = |load: &mut [Wrench; 2], push: &ExternalWrench, lump: &LumpedBody| {
             let push = Wrench {
                 force: push.force,
-                moment: push.moment + lump.center.cross(push.force),
+                torque: push.torque + lump.center.cross(push.force),
             };
-            load[0] = load[0].plus(&push, -1.0);
+            load[0] = load[0].add_scaled(&push, -1.0);
         };
-        for ((link, push), lump) in links.iter_mut().zip(&self.pushes).zip(&self.masses) {
+        for ((link, push), lump) in links.iter_mut().zip(&self.law_wrenches).zip(&self.masses) {
             pushed(link, push, lump);
         }
         let mut root = [Wrench::default(); 2];
         if let Some(lump) = &self.free_root {
             root = own(&self.root, lump);
-            pushed(&mut root, &self.root_push, lump);
+            pushed(&mut root, &self.root_law_wrench, lump);
         }
         let mut carried = Vec::new();
         if let Some(lump) = &self.free_root {
             let all = links
                 .iter()
-                .fold(root[1], |all, link| all.plus(&link[1], 1.0));
+                .fold(root[1], |all, link| all.add_scaled(&link[1], 1.0));
             let masses = self.masses.iter();
-            let whole = masses.fold(*lump, |whole, mass| whole.with(mass));
-            carried = support::forces(self.supports, &all, whole.center);
+            let whole = masses.fold(*lump, |whole, mass| whole.combined_with(mass));
+            carried = support::support_forces(self.supports, &all, whole.center);
             for (support, force) in self.supports.iter().zip(&carried) {
                 let force = DVec3::Y * *force;
-                let moment = support.at.cross(force);
+                let moment = support.position.cross(force);
                 let load = match support.link {
                     Some(k) => &mut links[k],
                     None => &mut root,
                 };
-                load[1] = load[1].plus(&Wrench { force, moment }, -1.0);
+                load[1] = load[1].add_scaled(
+                    &Wrench {
+                        force,
+                        torque: moment,
+                    },
+                    -1.0,
+                );
             }
         }
         for k in (0..n).rev() {
@@ -373,18 +390,18 @@ impl TreeDynamics<'_> {
             };
             // f_lambda += f_k, from the leaves to the root (table 5.1).
             for (load, below) in above.iter_mut().zip(below) {
-                *load = load.plus(&below, 1.0);
+                *load = load.add_scaled(&below, 1.0);
             }
         }
         TreeLoads {
             links,
             root,
-            carried,
+            support_weights: carried,
         }
     }
 
     /// Returns the efforts that bear the loads with motion (0) or of weight (1). Shape (freedom,).
-    pub(super) fn along(&self, loads: &TreeLoads, which: usize) -> Vec<f64> {
+    pub(super) fn generalized_forces(&self, loads: &TreeLoads, which: usize) -> Vec<f64> {
         let pairs = self.axes.iter().zip(&loads.links);
         // tau_k = S_k^T f_k (table 5.1).
         pairs
@@ -394,9 +411,9 @@ impl TreeDynamics<'_> {
 
     /// Returns the efforts that carry weight: a free root is supported where it or a joint's body stands on something, and
     /// gives way otherwise. Shape (freedom,).
-    pub(super) fn weights(&self, loads: &TreeLoads) -> Vec<f64> {
-        let mut efforts = self.along(loads, 1);
-        if let Some(floating) = self.floating() {
+    pub(super) fn weight_support_efforts(&self, loads: &TreeLoads) -> Vec<f64> {
+        let mut efforts = self.generalized_forces(loads, 1);
+        if let Some(floating) = self.floating_base() {
             floating.subtract_base_load(&loads.root[1], &mut efforts);
         }
         efforts
@@ -407,14 +424,14 @@ impl TreeDynamics<'_> {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Wrench {
     pub(super) force: DVec3,
-    pub(super) moment: DVec3,
+    pub(super) torque: DVec3,
 }
 
 impl Wrench {
-    pub(super) fn plus(&self, other: &Self, times: f64) -> Self {
+    pub(super) fn add_scaled(&self, other: &Self, times: f64) -> Self {
         Self {
             force: self.force + other.force * times,
-            moment: self.moment + other.moment * times,
+            torque: self.torque + other.torque * times,
         }
     }
 }
@@ -426,5 +443,5 @@ pub(super) struct TreeLoads {
     /// On the whole tree.
     pub(super) root: [Wrench; 2],
     /// The weight on each support, N.
-    pub(super) carried: Vec<f64>,
+    pub(super) support_weights: Vec<f64>,
 }

@@ -41,7 +41,7 @@ impl TreeStep {
         }
         let read = |k: &usize| {
             let place = tree.joints[*k];
-            JointReading::before(engine, &joints[place], joint_coordinates[place])
+            JointReading::at_step_start(engine, &joints[place], joint_coordinates[place])
         };
         Some(Self {
             readings: free.iter().map(read).collect(),
@@ -51,21 +51,21 @@ impl TreeStep {
     }
 
     /// Reads the joints again, after the step. Returns their state before.
-    pub(super) fn reread(
+    pub(super) fn update_readings(
         &mut self,
         engine: &RapierWorld,
         tree: &KinematicTree,
         joints: &[PhysicsJoint],
     ) -> Vec<JointReading> {
         let pairs = self.free.iter().zip(&self.readings);
-        let now = pairs.map(|(k, reading)| reading.later(engine, &joints[tree.joints[*k]]));
+        let now = pairs.map(|(k, reading)| reading.at_step_end(engine, &joints[tree.joints[*k]]));
         let now: Vec<JointReading> = now.collect();
         std::mem::replace(&mut self.readings, now)
     }
 
     /// Returns whether nothing of a tree moves and its bodies are at their joints' positions. It is then left to rapier,
     /// which lets it sleep: setting a pose, however near, keeps a body awake.
-    pub(super) fn rests(
+    pub(super) fn is_at_rest(
         &self,
         engine: &RapierWorld,
         tree: &KinematicTree,

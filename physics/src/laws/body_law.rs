@@ -43,22 +43,26 @@ impl LawContext<'_> {
     }
 
     /// Returns a body that moves, freely or with a joint; `None` for one that is latched, frozen or has no mass.
-    pub(crate) fn movable(&mut self, body: u32) -> Option<&RigidBody> {
+    pub(crate) fn movable_body(&mut self, body: u32) -> Option<&RigidBody> {
         let rigid = self.engine.bodies.get(self.bodies[body as usize].handle)?;
         let moves = rigid.is_dynamic()
             || self
                 .engine
                 .sleeping_cache
-                .has(self.bodies[body as usize].handle);
+                .contains(self.bodies[body as usize].handle);
         (moves && rigid.mass() > 0.0).then_some(rigid)
     }
 
     /// Returns a body that is awake and moves without joints.
-    pub(crate) fn free(&mut self, body: u32) -> Option<&mut RigidBody> {
+    pub(crate) fn free_body_mut(&mut self, body: u32) -> Option<&mut RigidBody> {
         let handle = self.bodies[body as usize].handle;
         let on_joint = self.plans[body as usize].joint.is_some();
         let answers = self.floating_roots.contains(&body);
-        if on_joint || answers || self.movable(body).is_none() || self.engine.sleeps(handle) {
+        if on_joint
+            || answers
+            || self.movable_body(body).is_none()
+            || self.engine.is_sleeping(handle)
+        {
             return None;
         }
         self.engine.bodies.get_mut(handle)

@@ -5,7 +5,7 @@ use crate::bases::BaseLaw;
 use crate::contact::{ContactLaw, ContactProperties, ContactTable};
 use crate::engine::ContactCompliance;
 use crate::inertia::MassLaw;
-use crate::joints::{LawMemory, LinkLaw, MotorLaw, ResistanceLaw};
+use crate::joints::{LawState, LinkLaw, MotorLaw, ResistanceLaw};
 use dwell_scene::{House, JointId, LawSpec};
 use std::sync::Arc;
 
@@ -32,7 +32,7 @@ pub(crate) enum LawEffect {
 
 /// An effect with state, with the index of its law among those installed.
 #[derive(Clone, Debug)]
-pub(crate) struct NumberedEffect<T> {
+pub(crate) struct IndexedEffect<T> {
     law: usize,
     pub(crate) effect: T,
 }
@@ -48,8 +48,8 @@ pub(crate) struct LawSet {
     pub(crate) contacts: Vec<Arc<dyn ContactLaw>>,
     /// The contact compliance; of several laws the last decides.
     pub(crate) compliance: Option<ContactCompliance>,
-    pub(crate) motors: Vec<NumberedEffect<Box<dyn MotorLaw>>>,
-    pub(crate) resistances: Vec<NumberedEffect<Box<dyn ResistanceLaw>>>,
+    pub(crate) motors: Vec<IndexedEffect<Box<dyn MotorLaw>>>,
+    pub(crate) resistances: Vec<IndexedEffect<Box<dyn ResistanceLaw>>>,
     pub(crate) bases: Vec<Arc<dyn BaseLaw>>,
 }
 
@@ -64,9 +64,9 @@ impl LawSet {
                 LawEffect::Link(effect) => self.links.push(effect),
                 LawEffect::Contact(effect) => self.contacts.push(effect),
                 LawEffect::Compliance(effect) => self.compliance = Some(effect),
-                LawEffect::Motor(effect) => self.motors.push(NumberedEffect { law, effect }),
+                LawEffect::Motor(effect) => self.motors.push(IndexedEffect { law, effect }),
                 LawEffect::Resistance(effect) => {
-                    self.resistances.push(NumberedEffect { law, effect });
+                    self.resistances.push(IndexedEffect { law, effect });
                 }
                 LawEffect::Base(effect) => self.bases.push(effect),
             }
@@ -88,45 +88,45 @@ impl LawSet {
             house,
             table,
             laws: &self.contacts,
-            soft: self.compliance.is_some(),
+            is_compliant: self.compliance.is_some(),
         }
     }
 
     /// Notes that a joint was set to `position` (rad or m) from outside.
-    pub(crate) fn placed(&mut self, joint: JointId, position: f32) {
+    pub(crate) fn joint_set(&mut self, joint: JointId, position: f32) {
         for (_, effect) in self.remembering() {
-            effect.placed(joint, position);
+            effect.joint_set(joint, position);
         }
     }
 
     /// Returns the state of each law. Shape (law, number).
-    pub(crate) fn memory(&self) -> Vec<Vec<f32>> {
+    pub(crate) fn law_states(&self) -> Vec<Vec<f32>> {
         let mut memory = vec![Vec::new(); self.specs.len()];
         for motor in &self.motors {
-            memory[motor.law].extend(motor.effect.memory());
+            memory[motor.law].extend(motor.effect.state());
         }
         for resistance in &self.resistances {
-            memory[resistance.law].extend(resistance.effect.memory());
+            memory[resistance.law].extend(resistance.effect.state());
         }
         memory
     }
 
     /// Restores a law's state.
-    pub(crate) fn restore_memory(&mut self, law: usize, memory: &[f32]) {
+    pub(crate) fn restore_law_state(&mut self, law: usize, memory: &[f32]) {
         for (owner, effect) in self.remembering() {
             if owner == law {
-                effect.restore_memory(memory);
+                effect.restore_state(memory);
             }
         }
     }
 
-    fn remembering(&mut self) -> impl Iterator<Item = (usize, &mut dyn LawMemory)> {
+    fn remembering(&mut self) -> impl Iterator<Item = (usize, &mut dyn LawState)> {
         let motors = self.motors.iter_mut().map(|motor| {
-            let effect: &mut dyn LawMemory = &mut *motor.effect;
+            let effect: &mut dyn LawState = &mut *motor.effect;
             (motor.law, effect)
         });
         let resistances = self.resistances.iter_mut().map(|resistance| {
-            let effect: &mut dyn LawMemory = &mut *resistance.effect;
+            let effect: &mut dyn LawState = &mut *resistance.effect;
             (resistance.law, effect)
         });
         motors.chain(resistances)

@@ -78,15 +78,15 @@ pub(crate) fn install(
 ) -> Result<LawSet, PhysicsError> {
     LAWS.check(&model.house, &state.laws)?;
     let mut installed = LawSet::default();
-    for law in LAWS.acting(&state.laws) {
-        let effects = (law.acts)(law.values, model, state)?;
+    for law in LAWS.active(&state.laws) {
+        let effects = (law.effect)(law.values, model, state)?;
         installed.add(law.values.spec.clone(), effects);
     }
-    let remembered = before.memory();
-    let predecessors = LawSpec::predecessors(before.specs(), installed.specs());
+    let remembered = before.law_states();
+    let predecessors = LawSpec::predecessor_indices(before.specs(), installed.specs());
     for (law, old) in predecessors.into_iter().enumerate() {
         if let Some(old) = old {
-            installed.restore_memory(law, &remembered[old]);
+            installed.restore_law_state(law, &remembered[old]);
         }
     }
     Ok(installed)

@@ -22,7 +22,7 @@ const MOST_TRIANGLES: usize = 50_000;
 /// # Source
 /// K. Mamou and F. Ghorbel, A simple and efficient approach for 3D mesh approximate convex decomposition, ICIP 2009, in its
 /// voxel form, by parry.
-pub(super) fn pieces(mesh: &Mesh, part_from_mesh: &Affine3A) -> Vec<PlacedShape> {
+pub(super) fn convex_pieces(mesh: &Mesh, part_from_mesh: &Affine3A) -> Vec<PlacedShape> {
     let points: Vec<Vec3> = mesh
         .positions
         .iter()
@@ -84,7 +84,7 @@ mod tests {
     #[test]
     fn a_box_stays_one_piece() {
         let mesh = Mesh::cuboid(Vec3::ZERO, Vec3::new(0.4, 0.2, 0.3));
-        let pieces = pieces(&mesh, &Affine3A::IDENTITY);
+        let pieces = convex_pieces(&mesh, &Affine3A::IDENTITY);
         assert_eq!(pieces.len(), 1);
         assert!((volume_m3(&pieces) - 0.024).abs() < 1e-5);
     }
@@ -93,7 +93,7 @@ mod tests {
     #[test]
     fn under_a_table_there_is_room() {
         let mesh = table();
-        let pieces = pieces(&mesh, &Affine3A::IDENTITY);
+        let pieces = convex_pieces(&mesh, &Affine3A::IDENTITY);
         assert!((2..=MOST_PIECES as usize).contains(&pieces.len()));
         let inside = |p: Vec3| {
             let point = |piece: &PlacedShape| piece.shape.contains_point(&piece.part_from_shape, p);
@@ -120,7 +120,7 @@ mod tests {
     #[test]
     fn pieces_repeat_bit_for_bit() {
         let bits = || -> Vec<u32> {
-            let pieces = pieces(&table(), &Affine3A::IDENTITY);
+            let pieces = convex_pieces(&table(), &Affine3A::IDENTITY);
             let points = pieces
                 .iter()
                 .filter_map(|piece| piece.shape.as_convex_polyhedron());
@@ -143,13 +143,13 @@ mod tests {
             ..Mesh::default()
         };
         let nan = flat(vec![Vec3::NAN; 3], vec![[0, 1, 2]]);
-        assert!(pieces(&nan, &Affine3A::IDENTITY).is_empty());
+        assert!(convex_pieces(&nan, &Affine3A::IDENTITY).is_empty());
         let line = flat(vec![Vec3::ZERO, Vec3::X, Vec3::X * 2.0], vec![[0, 1, 2]]);
-        assert_eq!(pieces(&line, &Affine3A::IDENTITY).len(), 1);
+        assert_eq!(convex_pieces(&line, &Affine3A::IDENTITY).len(), 1);
         let mut open = table();
         open.triangles.truncate(7);
         open.triangles.push([0, 0, 0]);
-        assert!(!pieces(&open, &Affine3A::IDENTITY).is_empty());
+        assert!(!convex_pieces(&open, &Affine3A::IDENTITY).is_empty());
         let mut stream = dwell_scene::random::RandomKey::root(2).stream();
         for _ in 0..20 {
             let count = 12;
@@ -157,7 +157,7 @@ mod tests {
             let triangles = (0..30)
                 .map(|_| [0; 3].map(|_| stream.below(count) as u32))
                 .collect();
-            assert!(!pieces(&flat(positions, triangles), &Affine3A::IDENTITY).is_empty());
+            assert!(!convex_pieces(&flat(positions, triangles), &Affine3A::IDENTITY).is_empty());
         }
     }
 }

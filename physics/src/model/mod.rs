@@ -17,15 +17,15 @@ use std::sync::Arc;
 pub struct PhysicsModel {
     pub(crate) house: Arc<House>,
     /// Pieces that never move, in world space: structure in order, then fixed parts in order.
-    pub(crate) statics: Vec<CollisionPiece>,
+    pub(crate) static_pieces: Vec<CollisionPiece>,
     /// Rigid bodies, in the order of their first parts.
     pub(crate) bodies: Vec<BodyPlan>,
     /// The body of each part that moves.
     pub(crate) body_of_part: IdVec<PartId, Option<u32>>,
     /// Moving objects without collision pieces of their own, which have convex pieces of their visible mesh.
-    pub(crate) stand_ins: Vec<ObjectId>,
+    pub(crate) fallback_collider_objects: Vec<ObjectId>,
     /// The cylinders of bodies.
-    pub(crate) rollers: Vec<RollingCylinder>,
+    pub(crate) rolling_cylinders: Vec<RollingCylinder>,
     /// The box around all static pieces and bodies at the start, m.
     pub(crate) bounds: Aabb,
 }
@@ -48,7 +48,7 @@ impl PhysicsModel {
 
     /// Returns the number of static pieces.
     pub fn static_piece_count(&self) -> usize {
-        self.statics.len()
+        self.static_pieces.len()
     }
 }
 
@@ -57,7 +57,7 @@ impl fmt::Debug for PhysicsModel {
         f.debug_struct("PhysicsModel")
             .field("house", &self.house.name)
             .field("bodies", &self.bodies.len())
-            .field("static_pieces", &self.statics.len())
+            .field("static_pieces", &self.static_pieces.len())
             .finish_non_exhaustive()
     }
 }
@@ -189,7 +189,7 @@ mod tests {
             0,
         );
         let model = thing(mesh, Vec::new(), 640.0);
-        assert_eq!(model.stand_ins, [ObjectId(0)]);
+        assert_eq!(model.fallback_collider_objects, [ObjectId(0)]);
         assert!(model.bodies[0].pieces.len() >= 2);
         let found = BodyInertia::of(
             &model.house,

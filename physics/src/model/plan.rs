@@ -26,7 +26,7 @@ pub(crate) enum PieceOwner {
     /// A part of an object.
     Part(PartId),
     /// The fallback box around the house.
-    LastBox,
+    BoundingBox,
 }
 
 /// The materials of a piece.
@@ -44,10 +44,10 @@ pub(crate) struct CollisionPiece {
     pub(crate) owner: PieceOwner,
     pub(crate) shape: SharedShape,
     /// Pose of the shape on its body, or in the world for a static piece.
-    pub(crate) place: RapierPose,
+    pub(crate) pose: RapierPose,
     /// kg/m³; 0 for a static piece.
     pub(crate) density_kg_m3: f32,
-    pub(crate) cover: MaterialAssignment,
+    pub(crate) materials: MaterialAssignment,
 }
 
 /// A rigid body: one or more parts that move together.
@@ -62,7 +62,7 @@ pub(crate) struct BodyPlan {
     /// Mass of each part without overrides, kg. Shape (part,).
     pub(crate) part_mass_kg: Vec<f32>,
     /// Set if some of its parts state mass, centre of mass and inertia; their pieces then have no density.
-    pub(crate) states_inertia: bool,
+    pub(crate) has_explicit_inertia: bool,
 }
 
 /// A mesh's shape, and the mesh's triangle for each of the shape's.
@@ -89,7 +89,7 @@ impl ShapeCache {
         self.made
             .entry(mesh_key(mesh, part_from_mesh))
             .or_insert_with(|| {
-                shapes::exact(&house.meshes[mesh], part_from_mesh)
+                shapes::triangle_mesh(&house.meshes[mesh], part_from_mesh)
                     .map(|shaped| (shaped.shape, shaped.triangles.into()))
             })
             .clone()
@@ -99,7 +99,7 @@ impl ShapeCache {
     fn convex(&mut self, house: &House, part: PartId) -> Vec<(SharedShape, RapierPose)> {
         let part = &house.parts[part];
         let made = || {
-            let pieces = decompose::pieces(&house.meshes[part.mesh], &part.part_from_mesh);
+            let pieces = decompose::convex_pieces(&house.meshes[part.mesh], &part.part_from_mesh);
             let pieces = pieces.into_iter();
             pieces
                 .map(|piece| (piece.shape, piece.part_from_shape))
@@ -161,9 +161,9 @@ fn part_pieces(
                 pieces.push(CollisionPiece {
                     owner,
                     shape,
-                    place: RapierPose::IDENTITY,
+                    pose: RapierPose::IDENTITY,
                     density_kg_m3: 0.0,
-                    cover: cover(house, part.mesh, &part.materials, &triangles),
+                    materials: cover(house, part.mesh, &part.materials, &triangles),
                 });
             }
         } else if let Some(shaped) = shapes::convex(collider) {
@@ -178,14 +178,14 @@ fn solid(house: &House, id: PartId, shaped: PlacedShape, density: f32) -> Collis
     CollisionPiece {
         owner: PieceOwner::Part(id),
         shape: shaped.shape,
-        place: shaped.part_from_shape,
+        pose: shaped.part_from_shape,
         density_kg_m3: density,
-        cover: MaterialAssignment::Uniform(house.parts[id].materials.first().copied()),
+        materials: MaterialAssignment::Uniform(house.parts[id].materials.first().copied()),
     }
 }
 
 fn moved(mut piece: CollisionPiece, by: &RapierPose) -> CollisionPiece {
-    piece.place = *by * piece.place;
+    piece.pose = *by * piece.pose;
     piece
 }
 
@@ -299,7 +299,7 @@ pub(super) fn plan(house: Arc<House>) -> PhysicsModel {
                 pieces,
                 joint,
                 part_mass_kg: Vec::new(),
-                states_inertia: false,
+                has_explicit_inertia: false,
             });
         }
         for body in &mut bodies[first_body..] {
@@ -318,26 +318,26 @@ pub(super) fn plan(house: Arc<House>) -> PhysicsModel {
                 own.sum::<f32>() + stated(part).map_or(0.0, |given| given.mass())
             };
             body.part_mass_kg = body.parts.iter().map(mass).collect();
-            body.states_inertia = body.parts.iter().any(|part| stated(part).is_some());
+            body.has_explicit_inertia = body.parts.iter().any(|part| stated(part).is_some());
         }
     }
     stand_ins.dedup();
     let bounds = bounds(&house, &statics, &bodies);
-    let sides = shapes::last_box(&bounds).map(|(shape, place)| CollisionPiece {
-        owner: PieceOwner::LastBox,
+    let sides = shapes::bounding_box_walls(&bounds).map(|(shape, place)| CollisionPiece {
+        owner: PieceOwner::BoundingBox,
         shape,
-        place: to_rapier(&place),
+        pose: to_rapier(&place),
         density_kg_m3: 0.0,
-        cover: MaterialAssignment::Uniform(None),
+        materials: MaterialAssignment::Uniform(None),
     });
     statics.extend(sides);
     PhysicsModel {
         house,
-        rollers: rolling_cylinder::rollers(&bodies),
-        statics,
+        rolling_cylinders: rolling_cylinder::rolling_cylinders(&bodies),
+        static_pieces: statics,
         bodies,
         body_of_part,
-        stand_ins,
+        fallback_collider_objects: stand_ins,
         bounds,
     }
 }
@@ -351,9 +351,9 @@ fn structure_pieces(house: &House, meshes: &mut ShapeCache) -> Vec<CollisionPiec
             pieces.push(CollisionPiece {
                 owner: PieceOwner::Structure(id),
                 shape,
-                place: RapierPose::IDENTITY,
+                pose: RapierPose::IDENTITY,
                 density_kg_m3: 0.0,
-                cover: cover(house, structure.mesh, &structure.materials, &triangles),
+                materials: cover(house, structure.mesh, &structure.materials, &triangles),
             });
         }
     }
@@ -402,12 +402,12 @@ fn stand_in_pieces(house: &House, meshes: &mut ShapeCache, body: &BodyPlan) -> V
 fn bounds(house: &House, statics: &[CollisionPiece], bodies: &[BodyPlan]) -> Aabb {
     let mut all = Aabb::EMPTY;
     for piece in statics {
-        all = all.union(&shapes::bounds(&piece.shape, &piece.place));
+        all = all.union(&shapes::bounds(&piece.shape, &piece.pose));
     }
     for body in bodies {
         let place = to_rapier(&house.parts[body.parts[0].0].world_from_part);
         for piece in &body.pieces {
-            all = all.union(&shapes::bounds(&piece.shape, &(place * piece.place)));
+            all = all.union(&shapes::bounds(&piece.shape, &(place * piece.pose)));
         }
     }
     if all.is_empty() {
@@ -431,7 +431,7 @@ impl PieceOwner {
         match self {
             Self::Structure(id) => house.structure[id].name.clone(),
             Self::Part(id) => house.objects[house.parts[id].object].name.clone(),
-            Self::LastBox => "the box of last resort".to_owned(),
+            Self::BoundingBox => "the box of last resort".to_owned(),
         }
     }
 }
@@ -447,13 +447,13 @@ impl BodyPlan {
         self.pieces.iter().fold(Aabb::EMPTY, |all, piece| {
             all.union(&shapes::bounds(
                 &piece.shape,
-                &(*world_from_body * piece.place),
+                &(*world_from_body * piece.pose),
             ))
         })
     }
 
     /// Returns the stated mass properties of its parts in a world, each times its factor. Shape of `factors`: (part,).
-    pub(crate) fn given_mass(
+    pub(crate) fn explicit_mass_properties(
         &self,
         house: &House,
         state: &State,
@@ -473,7 +473,7 @@ impl BodyPlan {
     }
 
     /// Returns the factor of a piece: that of its part. Shape of `factors`: (part,).
-    pub(crate) fn factor_of(&self, piece: &CollisionPiece, factors: &[f32]) -> f32 {
+    pub(crate) fn mass_factor_of(&self, piece: &CollisionPiece, factors: &[f32]) -> f32 {
         let owner = piece.owner.part();
         let place = self.parts.iter().position(|(id, _)| Some(*id) == owner);
         place
@@ -483,7 +483,7 @@ impl BodyPlan {
     }
 
     /// Returns a number that orders bodies: that of the first part.
-    pub(crate) fn order(&self) -> usize {
+    pub(crate) fn sort_key(&self) -> usize {
         self.root().index()
     }
 }

@@ -19,14 +19,14 @@ pub(crate) struct RollingCylinder {
 }
 
 /// Returns all cylinders of bodies, in order.
-pub(crate) fn rollers(bodies: &[BodyPlan]) -> Vec<RollingCylinder> {
+pub(crate) fn rolling_cylinders(bodies: &[BodyPlan]) -> Vec<RollingCylinder> {
     let of_body = |(index, plan): (usize, &BodyPlan)| {
         let roller = move |(piece, shaped): (usize, &CollisionPiece)| {
             let cylinder = shaped.shape.as_cylinder()?;
             Some(RollingCylinder {
                 body: index as u32,
                 piece,
-                axis_in_body: shaped.place.rotation * Vec3::Y,
+                axis_in_body: shaped.pose.rotation * Vec3::Y,
                 radius_m: cylinder.radius,
             })
         };

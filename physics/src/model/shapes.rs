@@ -123,7 +123,7 @@ fn outermost(points: &[Vec3]) -> Vec<Vec3> {
 }
 
 /// Returns the triangles of a mesh under `part_from_mesh`, two-sided; `None` when none has an area.
-pub(crate) fn exact(mesh: &Mesh, part_from_mesh: &Affine3A) -> Option<PlacedShape> {
+pub(crate) fn triangle_mesh(mesh: &Mesh, part_from_mesh: &Affine3A) -> Option<PlacedShape> {
     let corners: Vec<Vec3> = mesh
         .positions
         .iter()
@@ -164,7 +164,7 @@ const LAST_GAP_M: f32 = 0.5;
 const LAST_SIDE_M: f32 = 1.0;
 
 /// Returns the sides of the fallback box: objects that leave the house through an open door or window stay in it.
-pub(crate) fn last_box(house_bounds: &Aabb) -> [(SharedShape, Pose); 6] {
+pub(crate) fn bounding_box_walls(house_bounds: &Aabb) -> [(SharedShape, Pose); 6] {
     let inner = house_bounds.grown(LAST_GAP_M);
     let (half, center) = (inner.size() * 0.5, inner.center());
     let side = |axis: usize, sign: f32| {
@@ -218,7 +218,7 @@ mod tests {
     fn flat_triangles_are_left_out_and_the_others_keep_their_numbers() {
         let mut mesh = Mesh::cuboid(Vec3::ZERO, Vec3::ONE);
         mesh.triangles.insert(3, [0, 0, 1]);
-        let shaped = exact(&mesh, &Affine3A::IDENTITY).unwrap();
+        let shaped = triangle_mesh(&mesh, &Affine3A::IDENTITY).unwrap();
         assert_eq!(shaped.triangles.len(), 12);
         assert_eq!(&shaped.triangles[..4], [0, 1, 2, 4]);
     }

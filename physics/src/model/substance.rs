@@ -31,7 +31,7 @@ pub(super) fn cover_pieces(house: &House, part: PartId, pieces: &mut [CollisionP
     }
     let bounds: Vec<_> = pieces
         .iter()
-        .map(|piece| shapes::bounds(&piece.shape, &piece.place))
+        .map(|piece| shapes::bounds(&piece.shape, &piece.pose))
         .collect();
     let mut areas = vec![vec![0.0; materials.len()]; pieces.len()];
     for spot in spots(house, part) {
@@ -41,9 +41,7 @@ pub(super) fn cover_pieces(house: &House, part: PartId, pieces: &mut [CollisionP
             let apart = (bounds[k].min - spot.point).max(spot.point - bounds[k].max);
             let at_least = apart.max(Vec3::ZERO).length();
             if is_convex(piece) && at_least <= least + TIE_M {
-                distances[k] = piece
-                    .shape
-                    .distance_to_point(&piece.place, spot.point, true);
+                distances[k] = piece.shape.distance_to_point(&piece.pose, spot.point, true);
                 least = least.min(distances[k]);
             }
         }
@@ -59,7 +57,7 @@ pub(super) fn cover_pieces(house: &House, part: PartId, pieces: &mut [CollisionP
         if is_convex(piece)
             && let Some(material) = most(materials, areas)
         {
-            piece.cover = MaterialAssignment::Uniform(Some(material));
+            piece.materials = MaterialAssignment::Uniform(Some(material));
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Collision exclusions of joints' leaves.
 
-use super::overlap::depth;
+use super::overlap::penetration_depth;
 use super::{CLEARANCE_M, StartResolver};
 use crate::contact::{ColliderEntry, CollisionExclusions, ContactEntity, entry_index};
 use crate::error::PhysicsError;
@@ -22,7 +22,7 @@ impl StartResolver<'_> {
     ///
     /// # Errors
     /// [`PhysicsError::TooMany`] for more pairs than a world holds.
-    pub(crate) fn passing(
+    pub(crate) fn joint_exclusions(
         &self,
         report: &mut StartReport,
     ) -> Result<CollisionExclusions, PhysicsError> {
@@ -38,7 +38,7 @@ impl StartResolver<'_> {
             let mut through = BTreeSet::new();
             let place = self.place(index);
             for piece in &plan.pieces {
-                let world_from_piece = place * piece.place;
+                let world_from_piece = place * piece.pose;
                 let near = shapes::bounds(&piece.shape, &world_from_piece).grown(LEAF_MARGIN_M);
                 let aabb = rapier3d::geometry::Aabb::new(near.min, near.max);
                 let queries = self.engine.queries(QueryFilter::default());
@@ -63,7 +63,7 @@ impl StartResolver<'_> {
                         .is_ok_and(|found| found.distance <= margin_m)
                     };
                     let inside = || {
-                        depth(
+                        penetration_depth(
                             collider.position(),
                             collider.shape(),
                             &world_from_piece,
@@ -101,7 +101,7 @@ impl StartResolver<'_> {
                         .map(|entry| (number, entry)),
                 );
             }
-            limits::check_passing(&self.model.house, plan.object, pairs.len())?;
+            limits::check_excluded_pairs(&self.model.house, plan.object, pairs.len())?;
             if !through.is_empty() {
                 report.passing.push(PassingJoint {
                     joint,

@@ -29,7 +29,7 @@ const FLOOR_M: f32 = 100.0;
 impl StartResolver<'_> {
     /// Returns a place near `start` where a body overlaps nothing, on the same side of walls, floors and ceilings; `None`
     /// when there is none within the bound.
-    pub(super) fn free(
+    pub(super) fn free_pose_near(
         &self,
         plan: &BodyPlan,
         start: RapierPose,
@@ -44,7 +44,7 @@ impl StartResolver<'_> {
     }
 
     /// Lifts a body out of something that it has sunk into by more than half, where no floor is below it.
-    pub(super) fn raise(
+    pub(super) fn lift_out(
         &self,
         plan: &BodyPlan,
         start: RapierPose,
@@ -150,12 +150,12 @@ impl StartResolver<'_> {
         placed: &mut PlacedBodies,
     ) -> Option<Vec<(usize, Penetration)>> {
         let plan = &self.model.bodies[index];
-        let start = resolved[index].place;
+        let start = resolved[index].pose;
         let mut others: Vec<(PlacedBody, Penetration)> = Vec::new();
         for one in placed.near(&plan.bounds(&start)) {
             let other = one.body as usize;
             let movable = self.model.bodies[other].joint.is_none()
-                && resolved[other].hold == BodyStatus::Free;
+                && resolved[other].status == BodyStatus::Free;
             let found = self.overlap_of_two(plan, &start, &one);
             others.extend(
                 found
@@ -167,19 +167,19 @@ impl StartResolver<'_> {
             return None;
         }
         for (other, _) in &others {
-            placed.take(other.body as usize);
+            placed.remove(other.body as usize);
         }
         let ways = self.ways(index, start, &others, placed);
-        placed.take(index);
+        placed.remove(index);
         for (other, _) in &others {
-            placed.put_back(*other);
+            placed.reinsert(*other);
         }
         let (place, ways) = ways?;
-        resolved[index].place = place;
+        resolved[index].pose = place;
         for ((other, _), way) in others.iter().zip(ways) {
             let other = other.body as usize;
-            resolved[other].place = way;
-            placed.put(self.model, other, way);
+            resolved[other].pose = way;
+            placed.insert(self.model, other, way);
         }
         let told = others.into_iter();
         Some(
@@ -198,20 +198,20 @@ impl StartResolver<'_> {
     ) -> Option<(RapierPose, Vec<RapierPose>)> {
         let plan = &self.model.bodies[index];
         let place = self.pushed(plan, start, standing, self.limits())?;
-        standing.put(self.model, index, place);
+        standing.insert(self.model, index, place);
         let mut ways = Vec::with_capacity(others.len());
         for (other, _) in others {
             let other = other.body as usize;
             let plan = &self.model.bodies[other];
             let way = self.pushed(plan, self.place(other), standing, self.limits())?;
-            standing.put(self.model, other, way);
+            standing.insert(self.model, other, way);
             ways.push(way);
         }
         Some((place, ways))
     }
 
     /// Returns the nearest place beside a body where it overlaps nothing; never behind a wall.
-    pub(super) fn search(
+    pub(super) fn nearest_free_pose(
         &self,
         plan: &BodyPlan,
         start: RapierPose,

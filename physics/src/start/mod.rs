@@ -35,8 +35,8 @@ pub(crate) struct StartResolver<'a> {
 /// The resolved pose of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ResolvedBody {
-    pub(crate) place: RapierPose,
-    pub(crate) hold: BodyStatus,
+    pub(crate) pose: RapierPose,
+    pub(crate) status: BodyStatus,
 }
 
 impl StartResolver<'_> {
@@ -52,16 +52,16 @@ impl StartResolver<'_> {
     pub(crate) fn resolve(&self, report: &mut StartReport) -> Vec<ResolvedBody> {
         let mut resolved: Vec<ResolvedBody> = (0..self.bodies.len())
             .map(|body| ResolvedBody {
-                place: self.place(body),
-                hold: BodyStatus::Free,
+                pose: self.place(body),
+                status: BodyStatus::Free,
             })
             .collect();
-        let bounds = |body: usize| self.model.bodies[body].bounds(&resolved[body].place);
+        let bounds = |body: usize| self.model.bodies[body].bounds(&resolved[body].pose);
         let mut order: Vec<(f32, usize)> = Vec::new();
         let mut placed = PlacedBodies::default();
         for (index, plan) in self.model.bodies.iter().enumerate() {
             if plan.joint.is_some() {
-                placed.put(self.model, index, resolved[index].place);
+                placed.insert(self.model, index, resolved[index].pose);
             } else {
                 order.push((bounds(index).min.y, index));
             }
@@ -69,38 +69,38 @@ impl StartResolver<'_> {
         order.sort_by(|a, b| {
             let by_number = || {
                 self.model.bodies[a.1]
-                    .order()
-                    .cmp(&self.model.bodies[b.1].order())
+                    .sort_key()
+                    .cmp(&self.model.bodies[b.1].sort_key())
             };
             a.0.total_cmp(&b.0).then_with(by_number)
         });
         let mut deepest: BTreeMap<usize, Penetration> = BTreeMap::new();
         for (_, index) in order {
             let plan = &self.model.bodies[index];
-            let start = resolved[index].place;
+            let start = resolved[index].pose;
             let found = self.overlap(plan, &start, &placed);
             if let Some(overlap) = found.filter(|overlap| self.counts(overlap)) {
                 report.overlaps += 1;
                 deepest.insert(index, overlap);
                 if self.is_crowded(plan, &start, &placed) {
-                    resolved[index].hold = BodyStatus::Frozen;
-                } else if let Some(place) = self.free(plan, start, &placed) {
-                    resolved[index].place = place;
+                    resolved[index].status = BodyStatus::Frozen;
+                } else if let Some(place) = self.free_pose_near(plan, start, &placed) {
+                    resolved[index].pose = place;
                 } else if let Some(others) = self.move_neighbours(index, &mut resolved, &mut placed)
                 {
                     for (other, overlap) in others {
                         deepest.entry(other).or_insert(overlap);
                     }
                 } else if let Some(place) = self
-                    .search(plan, start, &placed)
-                    .or_else(|| self.raise(plan, start, &placed))
+                    .nearest_free_pose(plan, start, &placed)
+                    .or_else(|| self.lift_out(plan, start, &placed))
                 {
-                    resolved[index].place = place;
+                    resolved[index].pose = place;
                 } else {
-                    resolved[index].hold = BodyStatus::Frozen;
+                    resolved[index].status = BodyStatus::Frozen;
                 }
             }
-            placed.put(self.model, index, resolved[index].place);
+            placed.insert(self.model, index, resolved[index].pose);
         }
         self.report_overlaps(&deepest, &resolved, report);
         resolved
@@ -128,7 +128,7 @@ impl StartResolver<'_> {
         let mut moved: BTreeMap<ObjectId, MovedObject> = BTreeMap::new();
         for (index, overlap) in deepest {
             let object = self.model.bodies[*index].object;
-            if resolved[*index].hold == BodyStatus::Frozen {
+            if resolved[*index].status == BodyStatus::Frozen {
                 report.frozen.push(FrozenObject {
                     object,
                     overlap_m: overlap.depth_m,
@@ -142,7 +142,7 @@ impl StartResolver<'_> {
                 distance_m: 0.0,
             });
             entry.overlap_m = entry.overlap_m.max(overlap.depth_m);
-            let way = resolved[*index].place.translation - self.place(*index).translation;
+            let way = resolved[*index].pose.translation - self.place(*index).translation;
             entry.distance_m = entry.distance_m.max(way.length());
         }
         report.moved = moved.into_values().collect();

@@ -36,7 +36,7 @@ impl StartResolver<'_> {
             .engine
             .queries(QueryFilter::default().predicate(&is_static));
         for piece in &plan.pieces {
-            let at = *place * piece.place;
+            let at = *place * piece.pose;
             let bounds = shapes::bounds(&piece.shape, &at);
             let aabb = rapier3d::geometry::Aabb::new(bounds.min, bounds.max);
             let mut near: Vec<_> = queries.intersect_aabb_conservative(aabb).collect();
@@ -46,7 +46,7 @@ impl StartResolver<'_> {
                     continue;
                 }
                 let owner = self.owner(entry_index(collider));
-                found.extend(depth(
+                found.extend(penetration_depth(
                     collider.position(),
                     collider.shape(),
                     &at,
@@ -74,14 +74,14 @@ impl StartResolver<'_> {
             return None;
         }
         let of_piece = |piece: &CollisionPiece| {
-            let at = *place * piece.place;
+            let at = *place * piece.pose;
             let bounds = shapes::bounds(&piece.shape, &at);
             if !other.bounds.intersects(&bounds) {
                 return None;
             }
             let of_obstacle = |obstacle: &CollisionPiece| {
-                let there = other.place * obstacle.place;
-                depth(&there, &*obstacle.shape, &at, &*piece.shape, obstacle.owner)
+                let there = other.pose * obstacle.pose;
+                penetration_depth(&there, &*obstacle.shape, &at, &*piece.shape, obstacle.owner)
             };
             deepest(obstacles.pieces.iter().filter_map(of_obstacle))
         };
@@ -92,7 +92,7 @@ impl StartResolver<'_> {
         match self.entries[entry].contact_entity {
             Some(ContactEntity::Structure(id)) => PieceOwner::Structure(id),
             Some(ContactEntity::Part(id)) => PieceOwner::Part(id),
-            _ => PieceOwner::LastBox,
+            _ => PieceOwner::BoundingBox,
         }
     }
 }
@@ -109,7 +109,7 @@ fn deepest(overlaps: impl Iterator<Item = Penetration>) -> Option<Penetration> {
 }
 
 /// Returns the penetration depth of a piece in an obstacle.
-pub(super) fn depth(
+pub(super) fn penetration_depth(
     there: &RapierPose,
     obstacle: &dyn rapier3d::geometry::Shape,
     at: &RapierPose,

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 pub(super) struct PlacedBody {
     pub(super) body: u32,
     pub(super) bounds: Aabb,
-    pub(super) place: RapierPose,
+    pub(super) pose: RapierPose,
     /// Order of placement.
     rank: u32,
 }
@@ -26,30 +26,30 @@ pub(super) struct PlacedBodies {
 
 impl PlacedBodies {
     /// Places a body; one that is placed already moves there and keeps its rank.
-    pub(super) fn put(&mut self, model: &PhysicsModel, body: usize, place: RapierPose) {
+    pub(super) fn insert(&mut self, model: &PhysicsModel, body: usize, place: RapierPose) {
         let number = body as u32;
         let rank = self
             .by_body
             .get(&number)
             .map_or(self.next_rank, |before| before.rank);
         self.next_rank = self.next_rank.max(rank + 1);
-        self.put_back(PlacedBody {
+        self.reinsert(PlacedBody {
             body: number,
             bounds: model.bodies[body].bounds(&place),
-            place,
+            pose: place,
             rank,
         });
     }
 
     /// Puts a removed body back.
-    pub(super) fn put_back(&mut self, placed: PlacedBody) {
-        self.take(placed.body as usize);
+    pub(super) fn reinsert(&mut self, placed: PlacedBody) {
+        self.remove(placed.body as usize);
         self.tree.insert(to_parry(&placed.bounds), placed.body);
         self.by_body.insert(placed.body, placed);
     }
 
     /// Removes a body.
-    pub(super) fn take(&mut self, body: usize) {
+    pub(super) fn remove(&mut self, body: usize) {
         let number = body as u32;
         if self.by_body.remove(&number).is_some() {
             self.tree.remove(number);
@@ -95,21 +95,21 @@ mod tests {
             match (stood, turn % 5) {
                 (Some(place), 0) => {
                     list.remove(place);
-                    standing.take(body as usize);
+                    standing.remove(body as usize);
                 }
                 (Some(place), _) => {
                     list[place].bounds = draw(1.0);
-                    standing.put_back(list[place]);
+                    standing.reinsert(list[place]);
                 }
                 (None, _) => {
                     let placed = PlacedBody {
                         body,
                         bounds: draw(1.0),
-                        place: RapierPose::IDENTITY,
+                        pose: RapierPose::IDENTITY,
                         rank: turn,
                     };
                     list.push(placed);
-                    standing.put_back(placed);
+                    standing.reinsert(placed);
                 }
             }
             let asked = draw(2.0);

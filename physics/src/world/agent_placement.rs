@@ -275,9 +275,14 @@ impl PhysicsWorld {
                 rigid.set_translation(agent.position, true);
             }
             if restands {
-                agents::reshape(&mut self.dynamics.engine, own, &agent);
+                agents::resize_capsule(&mut self.dynamics.engine, own, &agent);
             }
-            if let Some(place) = self.hands.grips.iter().position(|grip| grip.agent == id) {
+            if let Some(place) = self
+                .hands
+                .held_objects
+                .iter()
+                .position(|grip| grip.agent == id)
+            {
                 self.bring_held(state, place, &agent);
             }
         }
@@ -289,13 +294,13 @@ impl PhysicsWorld {
     /// Brings an agent's held object to its hand: as near as nothing is in the way, never beyond a wall. Where there is no
     /// room at all, the agent releases it, and it stays.
     fn bring_held(&mut self, state: &mut State, place: usize, here: &AgentState) {
-        let grip = self.hands.grips[place];
+        let grip = self.hands.held_objects[place];
         let body = grip.body as usize;
         let hand = to_rapier(&hand_pose(&grip, here));
         let mut eye = hand;
         let middle = self.dynamics.model.bodies[body].bounds(&hand).center();
         eye.translation += here.eye_position() - middle;
-        let clear = self.dynamics.clear_between(body, here, &eye, &hand);
+        let clear = self.dynamics.first_clear_pose(body, here, &eye, &hand);
         if clear.is_none() {
             self.hands.open_hand(&mut self.dynamics, state, place);
         }

@@ -13,16 +13,16 @@ use rapier3d::dynamics::RigidBodyHandle;
 
 impl PhysicsWorld {
     /// Resolves overlaps, attaches joints and latches doors.
-    pub(super) fn begin(
+    pub(super) fn initialize(
         &mut self,
         state: &mut State,
         anchor: RigidBodyHandle,
     ) -> Result<StartReport, PhysicsError> {
         let mut report = StartReport {
             bodies: self.dynamics.bodies.len(),
-            static_pieces: self.dynamics.model.statics.len(),
+            static_pieces: self.dynamics.model.static_pieces.len(),
             joints: self.dynamics.model.house.joints.len(),
-            stand_ins: self.dynamics.model.stand_ins.clone(),
+            stand_ins: self.dynamics.model.fallback_collider_objects.clone(),
             ..StartReport::default()
         };
         let model = self.dynamics.model.clone();
@@ -39,7 +39,7 @@ impl PhysicsWorld {
             &self.articulation.joints,
             &self.articulation.trees,
         )?;
-        self.articulation.pulls = vec![None; self.articulation.joints.len()];
+        self.articulation.actuations = vec![None; self.articulation.joints.len()];
         self.dynamics.flush();
         let start = StartResolver {
             engine: &self.dynamics.engine,
@@ -48,33 +48,37 @@ impl PhysicsWorld {
             bodies: &self.dynamics.bodies,
             settings: &self.dynamics.settings,
         };
-        let excluded = start.passing(&mut report)?;
+        let excluded = start.joint_exclusions(&mut report)?;
         let resolved = start.resolve(&mut report);
-        self.dynamics.excluded = excluded;
+        self.dynamics.collision_exclusions = excluded;
         for (index, resolved) in resolved.iter().enumerate() {
-            self.dynamics.statuses[index] = resolved.hold;
+            self.dynamics.statuses[index] = resolved.status;
             if let Some(rigid) = self
                 .dynamics
                 .engine
                 .bodies
                 .get_mut(self.dynamics.bodies[index].handle)
             {
-                if *rigid.position() != resolved.place {
-                    rigid.set_position(resolved.place, false);
+                if *rigid.position() != resolved.pose {
+                    rigid.set_position(resolved.pose, false);
                 }
-                rigid.set_body_type(body::body_type(resolved.hold), false);
+                rigid.set_body_type(body::body_type(resolved.status), false);
             }
         }
         self.articulation
-            .carry_jointed_bodies(&mut self.dynamics, state);
+            .move_jointed_bodies(&mut self.dynamics, state);
         if self.dynamics.settings.config.latches {
             for joint in &self.articulation.joints {
                 let articulation = &model.house.joints[joint.id];
-                if joints::stands_shut(joint, articulation, state.joint_position[joint.id]) {
+                if joints::is_at_closed_position(
+                    joint,
+                    articulation,
+                    state.joint_position[joint.id],
+                ) {
                     let child = joint.child as usize;
                     let body = self.dynamics.bodies[child];
                     let hold = &mut self.dynamics.statuses[child];
-                    joints::shut(&mut self.dynamics.engine, joint, articulation, &body, hold);
+                    joints::latch(&mut self.dynamics.engine, joint, articulation, &body, hold);
                 }
             }
         }

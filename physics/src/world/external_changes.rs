@@ -47,7 +47,7 @@ impl PhysicsWorld {
     ///
     /// # Errors
     /// [`PhysicsError::ForeignState`] for another house's state; [`PhysicsError::Range`] for a pose that is not rigid.
-    pub fn adopt(&mut self, state: &mut State) -> Result<(), PhysicsError> {
+    pub fn adopt_state(&mut self, state: &mut State) -> Result<(), PhysicsError> {
         self.check_state(state)?;
         let model = self.dynamics.model.clone();
         let mut joints = state.joint_position.iter().zip(&state.joint_velocity);
@@ -87,7 +87,7 @@ impl PhysicsWorld {
             };
             let moved = *rigid.position() != pose;
             let moving = velocity != Velocity::default();
-            if moved || moving && self.dynamics.engine.sleeping_cache.has(handle) {
+            if moved || moving && self.dynamics.engine.sleeping_cache.contains(handle) {
                 self.dynamics.engine.wake_around(handle);
             }
             let Some(rigid) = self.dynamics.engine.bodies.get_mut(handle) else {
@@ -125,7 +125,7 @@ impl PhysicsWorld {
             let articulation = &model.house.joints[joint.id];
             let position = joint.values.clamp(state.joint_position[joint.id]);
             let child = joint.child as usize;
-            let shut = joints::stands_shut(joint, articulation, position);
+            let shut = joints::is_at_closed_position(joint, articulation, position);
             let body = self.dynamics.bodies[child];
             if self.dynamics.statuses[child] == BodyStatus::Latched && !shut {
                 joints::release(
@@ -137,15 +137,15 @@ impl PhysicsWorld {
             let stand = JointPlacement {
                 position,
                 velocity: state.joint_velocity[joint.id],
-                anew: false,
-                shut: self.dynamics.statuses[child] == BodyStatus::Latched,
+                force_update: false,
+                is_latched: self.dynamics.statuses[child] == BodyStatus::Latched,
             };
-            let there = joints::read(&self.dynamics.engine, joint, position.into());
-            let put =
-                !stand.shut && !joints::matches_bodies(&self.dynamics.engine, joint, &stand, there);
+            let there = joints::read_joint(&self.dynamics.engine, joint, position.into());
+            let put = !stand.is_latched
+                && !joints::matches_bodies(&self.dynamics.engine, joint, &stand, there);
             if put {
                 self.dynamics.engine.wake_around(body.handle);
-                self.dynamics.laws.placed(joint.id, position);
+                self.dynamics.laws.joint_set(joint.id, position);
             }
             if self.dynamics.statuses[child] == BodyStatus::Frozen && put {
                 self.dynamics.statuses[child] = BodyStatus::Free;
@@ -161,7 +161,7 @@ impl PhysicsWorld {
                 .is_some_and(|root| disturbed_roots.contains(&root))
             {
                 for joint in &tree.joints {
-                    stands[*joint].anew = true;
+                    stands[*joint].force_update = true;
                 }
             }
         }
@@ -184,7 +184,9 @@ impl PhysicsWorld {
                 state.joint_position[joint.id].into(),
                 state.joint_velocity[joint.id].into(),
             );
-            if !stand.shut && joints::matches_bodies(&self.dynamics.engine, joint, stand, read) {
+            if !stand.is_latched
+                && joints::matches_bodies(&self.dynamics.engine, joint, stand, read)
+            {
                 state.joint_position[joint.id] = stand.position;
                 state.joint_velocity[joint.id] = stand.velocity;
             }
@@ -205,7 +207,11 @@ impl PhysicsWorld {
             .joints
             .binary_search_by_key(&joint, |other| other.id);
         let found = &self.articulation.joints[place.ok()?];
-        let now = joints::stands(&self.dynamics.engine, found, joint_from_state(state, joint));
+        let now = joints::continued_coordinate(
+            &self.dynamics.engine,
+            found,
+            joint_from_state(state, joint),
+        );
         Some((now.position as f32, now.velocity as f32))
     }
 }

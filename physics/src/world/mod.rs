@@ -75,14 +75,14 @@ impl PhysicsWorld {
         config: PhysicsConfig,
         state: &mut State,
     ) -> Result<(Self, StartReport), PhysicsError> {
-        Self::over(Arc::new(PhysicsModel::new(house)), &config, state)
+        Self::with_model(Arc::new(PhysicsModel::new(house)), &config, state)
     }
 
     /// As [`PhysicsWorld::new`], over shapes that other worlds share.
     ///
     /// # Errors
     /// As [`PhysicsWorld::new`].
-    pub fn over(
+    pub fn with_model(
         model: Arc<PhysicsModel>,
         config: &PhysicsConfig,
         state: &mut State,
@@ -118,8 +118,8 @@ impl PhysicsWorld {
             entries: assembly.entries,
             table,
             bodies: assembly.bodies,
-            weights,
-            excluded: CollisionExclusions::default(),
+            masses: weights,
+            collision_exclusions: CollisionExclusions::default(),
             laws: Box::new(laws),
             tick: 0,
         };
@@ -133,14 +133,16 @@ impl PhysicsWorld {
             applied: state.overrides.clone(),
             notices: Vec::new(),
         };
-        let mut report = world.begin(state, assembly.anchor)?;
+        let mut report = world.initialize(state, assembly.anchor)?;
         let agents: Vec<AgentState> = state.agents.iter().copied().collect();
         for agent in agents {
             agent.body.check()?;
             world.agents.insert(&mut world.dynamics, &agent);
         }
         world.dynamics.flush();
-        report.agents = world.agents.give_room(&mut world.dynamics, state)?;
+        report.agents = world
+            .agents
+            .resolve_spawn_overlaps(&mut world.dynamics, state)?;
         if !report.agents.is_empty() {
             world.dynamics.flush();
         }
@@ -151,7 +153,7 @@ impl PhysicsWorld {
 
     /// Performs an agent's hand action, at once or, for doors and pushes, over the next steps.
     ///
-    /// `rays` must show `state` as it is. Operations that take time report their end through [`PhysicsWorld::notices`]. A
+    /// `rays` must show `state` as it is. Operations that take time report their end through [`PhysicsWorld::delayed_outcomes`]. A
     /// state of another world or an agent that does not exist is refused like any other impossible action.
     pub fn act(
         &mut self,
@@ -190,13 +192,13 @@ impl PhysicsWorld {
     }
 
     /// Returns the outcomes, in the last step, of doors, pushes and grips that take time.
-    pub fn notices(&self) -> &[DelayedOutcome] {
+    pub fn delayed_outcomes(&self) -> &[DelayedOutcome] {
         &self.notices
     }
 
     /// Returns the events of the last control step beyond its limit: their number and total impulse.
     pub fn merged_events(&self) -> MergedEvents {
-        self.contacts.merged
+        self.contacts.merged_events
     }
 
     /// Returns friction and restitution between two things, with overrides, by their first surfaces (a wall or mesh of

@@ -9,7 +9,7 @@ use crate::outcome::{ActionOutcome, DelayedOutcome, OutcomeCode};
 impl PhysicsWorld {
     /// Restores bodies that the last step lost. Returns whether there were any.
     pub(crate) fn recover_non_finite(&mut self) -> bool {
-        let lost = self.dynamics.engine.take_lost();
+        let lost = self.dynamics.engine.take_removed_bodies();
         if lost.is_empty() {
             return false;
         }
@@ -17,7 +17,7 @@ impl PhysicsWorld {
         self.dynamics.flush();
         let model = self.dynamics.model.clone();
         for handle in lost {
-            self.dynamics.engine.put_back(handle);
+            self.dynamics.engine.restore_removed(handle);
             let Some(index) = self.dynamics.body_of(handle) else {
                 continue;
             };
@@ -27,7 +27,7 @@ impl PhysicsWorld {
             self.notices.push(DelayedOutcome {
                 agent: None,
                 outcome: ActionOutcome::failed(
-                    OutcomeCode::Lost,
+                    OutcomeCode::NonFiniteState,
                     format!("The {name} moved beyond all numbers and was stopped where it was."),
                     Some(object),
                 ),
@@ -84,11 +84,11 @@ mod tests {
         body.set_linvel(Vec3::NAN, true);
         step(&mut world, &mut state);
         let told: Vec<_> = world
-            .notices()
+            .delayed_outcomes()
             .iter()
             .map(|notice| notice.outcome.code)
             .collect();
-        assert!(told.contains(&OutcomeCode::Lost), "{told:?}");
+        assert!(told.contains(&OutcomeCode::NonFiniteState), "{told:?}");
         let moved = state.part_pose[part].position - before.position;
         assert!(moved.length() < 0.01, "{moved}");
         assert!(
@@ -111,6 +111,6 @@ mod tests {
             }
             assert_eq!(world.hash(), again.hash());
         }
-        assert!(world.notices().is_empty());
+        assert!(world.delayed_outcomes().is_empty());
     }
 }

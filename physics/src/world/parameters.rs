@@ -25,17 +25,18 @@ impl PhysicsWorld {
     pub fn apply_parameters(&mut self, state: &mut State) -> Result<(), PhysicsError> {
         self.check_state(state)?;
         let laws = laws::install(&self.dynamics.model, state, &self.dynamics.laws)?;
-        self.agents.check_room(&self.dynamics, state)?;
+        self.agents.check_resize(&self.dynamics, state)?;
         let model = self.dynamics.model.clone();
         let table = ContactTable::new(&model.house, state);
         let weights = BodyMasses::new(&model, state, &laws);
         let gravity = Vec3::new(0.0, -state.gravity_m_s2(), 0.0);
         // Changes of shapes, masses or joints are applied by a step of zero length, which computes all contacts anew;
         // changes that only act from the next step on are not, so that setting a value and setting it back leaves no trace.
-        let mut changed = weights != self.dynamics.weights || table.differs(&self.dynamics.table);
+        let mut changed =
+            weights != self.dynamics.masses || table.pairs_differ(&self.dynamics.table);
         let values = laws.contact_properties(&model.house, &table);
         let (mut longer, mut shifted) = (false, Vec::new());
-        let statics = model.statics.iter().map(|piece| (piece, None));
+        let statics = model.static_pieces.iter().map(|piece| (piece, None));
         let moving = model
             .bodies
             .iter()
@@ -43,20 +44,20 @@ impl PhysicsWorld {
             .flat_map(|(body, plan)| plan.pieces.iter().map(move |piece| (piece, Some(body))));
         // Entries are in the order of insertion: statics, bodies, agents.
         for (index, (piece, body)) in statics.chain(moving).enumerate() {
-            self.dynamics.entries[index].surface = table.surface(&piece.cover);
+            self.dynamics.entries[index].surface = table.surface_materials(&piece.materials);
             let density = body.map(|body| {
-                let factor = model.bodies[body].factor_of(piece, &weights.factors[body]);
-                dynamics::density(piece, factor, weights.altered[body].as_ref())
+                let factor = model.bodies[body].mass_factor_of(piece, &weights.factors[body]);
+                dynamics::density(piece, factor, weights.overridden[body].as_ref())
             });
             changed |= self.update_collider(index, values, density);
         }
-        for (index, inertia) in weights.altered.iter().enumerate() {
-            if *inertia == self.dynamics.weights.altered[index] {
+        for (index, inertia) in weights.overridden.iter().enumerate() {
+            if *inertia == self.dynamics.masses.overridden[index] {
                 // Other mass ratios of the parts move the centre of mass.
                 let uneven = |factors: &[f32]| factors.iter().any(|factor| *factor != factors[0]);
                 let (new, old) = (
                     &weights.factors[index],
-                    &self.dynamics.weights.factors[index],
+                    &self.dynamics.masses.factors[index],
                 );
                 if new != old && (uneven(new) || uneven(old)) {
                     shifted.push(index);
@@ -65,8 +66,9 @@ impl PhysicsWorld {
             }
             let properties = inertia.map_or_else(MassProperties::default, |i| i.properties());
             let handle = self.dynamics.bodies[index].handle;
-            let held = |grip: &HeldObject| grip.body as usize == index && grip.is_firm();
-            let held = self.hands.grips.iter().any(held);
+            let held =
+                |grip: &HeldObject| grip.body as usize == index && grip.has_kinematic_grasp();
+            let held = self.hands.held_objects.iter().any(held);
             if let Some(rigid) = self.dynamics.engine.bodies.get_mut(handle) {
                 rigid.set_additional_mass_properties(properties, false);
                 let scale = inertia.map_or(1.0, |i| i.gravity_scale);
@@ -76,9 +78,9 @@ impl PhysicsWorld {
         }
         for agent in 0..self.agents.list.len() {
             let entry = self.agents.list[agent].entry as usize;
-            self.dynamics.entries[entry].surface = table.human();
+            self.dynamics.entries[entry].surface = table.agent_material();
             changed |= self.update_collider(entry, values, None);
-            changed |= self.agents.take_body(
+            changed |= self.agents.apply_resize(
                 &mut self.dynamics,
                 agent,
                 &state.agents[AgentId::from_index(agent)],
@@ -108,9 +110,9 @@ impl PhysicsWorld {
         self.dynamics.engine.gravity = gravity;
         self.dynamics
             .engine
-            .soften(&self.dynamics.settings, laws.compliance);
+            .set_compliance(&self.dynamics.settings, laws.compliance);
         self.dynamics.table = table;
-        self.dynamics.weights = weights;
+        self.dynamics.masses = weights;
         self.applied.clone_from(&state.overrides);
         *self.dynamics.laws = laws;
         if changed || longer || acts_anew {
@@ -176,21 +178,21 @@ impl PhysicsWorld {
             .map(|joint| JointPlacement {
                 position: state.joint_position[joint.id],
                 velocity: state.joint_velocity[joint.id],
-                anew: true,
-                shut: self.dynamics.statuses[joint.child as usize] == BodyStatus::Latched,
+                force_update: true,
+                is_latched: self.dynamics.statuses[joint.child as usize] == BodyStatus::Latched,
             })
             .collect();
         self.place_joints(state, &stands);
     }
 
     /// Puts all jointed bodies at these placements, and writes their poses. Shape of `stands`: (joint,).
-    pub(super) fn place_joints(&mut self, state: &mut State, stands: &[JointPlacement]) {
+    pub(super) fn place_joints(&mut self, state: &mut State, placements: &[JointPlacement]) {
         for tree in &self.articulation.trees {
-            joints::place(
+            joints::place_tree(
                 &mut self.dynamics.engine,
                 &self.articulation.joints,
                 tree,
-                stands,
+                placements,
             );
         }
         self.dynamics.flush();
@@ -199,7 +201,7 @@ impl PhysicsWorld {
 
     /// Returns whether a collider is a rolling cylinder: the hook is asked about its contacts whatever the materials are.
     fn rolls(&self, collider: ColliderHandle) -> bool {
-        self.dynamics.model.rollers.iter().any(|roller| {
+        self.dynamics.model.rolling_cylinders.iter().any(|roller| {
             let body = self.dynamics.bodies.get(roller.body());
             let body = body.and_then(|body| self.dynamics.engine.bodies.get(body.handle));
             body.is_some_and(|body| roller.collider(body) == Some(collider) && roller.rolls(body))
@@ -218,7 +220,7 @@ impl PhysicsWorld {
         else {
             return false;
         };
-        let mut rule = values.rule(&self.dynamics.entries[entry]);
+        let mut rule = values.self_pair(&self.dynamics.entries[entry]);
         rule.1 |= self.rolls(handle);
         let same_rule = collider.friction() == rule.0.friction
             && collider.restitution() == rule.0.restitution

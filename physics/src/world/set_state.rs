@@ -67,7 +67,7 @@ impl PhysicsWorld {
             state.part_pose[*root] = *pose;
             state.part_velocity[*root] = *velocity;
         }
-        self.adopt(state)?;
+        self.adopt_state(state)?;
         self.wake_tree_bodies(roots.iter().map(|(root, ..)| *root));
         Ok(())
     }
@@ -99,11 +99,11 @@ impl PhysicsWorld {
             state.joint_position[set.joint] = position;
             state.joint_velocity[set.joint] = set.velocity;
         }
-        self.adopt(state)?;
+        self.adopt_state(state)?;
         for set in joints {
             self.dynamics
                 .laws
-                .placed(set.joint, state.joint_position[set.joint]);
+                .joint_set(set.joint, state.joint_position[set.joint]);
         }
         let children = joints
             .iter()
@@ -182,7 +182,12 @@ impl PhysicsWorld {
                 "it overlapped something at the start and stands for good".to_owned(),
             ));
         }
-        if let Some(grip) = self.hands.grips.iter().find(|grip| grip.body == index) {
+        if let Some(grip) = self
+            .hands
+            .held_objects
+            .iter()
+            .find(|grip| grip.body == index)
+        {
             let holder = grip.agent.index();
             return Err(unmovable(format!("agent {holder} holds it; drop it first")));
         }

@@ -39,7 +39,7 @@ impl PhysicsWorld {
         }
         self.dynamics.tick = 0;
         self.contacts.tracker.forget_events();
-        self.contacts.merged = MergedEvents::default();
+        self.contacts.merged_events = MergedEvents::default();
         self.notices.clear();
         Ok(())
     }

@@ -22,9 +22,9 @@ use crate::error::PhysicsError;
 use crate::hands::HeldObject;
 use crate::joints::{self, HandDrives, JointActuation};
 use crate::laws::{self, LawSet};
-use crate::limits::Crowding;
+use crate::limits::PairDensity;
 use dwell_scene::columnar;
-use dwell_scene::packing::{pack_within, unpack};
+use dwell_scene::packing::{pack_to_size, unpack};
 use dwell_scene::{AgentId, Id, State};
 use rapier3d::dynamics::{ImpulseJointSet, IslandManager, RigidBodySet};
 use rapier3d::geometry::{BroadPhaseBvh, NarrowPhase};
@@ -100,13 +100,13 @@ impl PhysicsWorld {
     /// # Panics
     /// Never: writing plain data to memory cannot fail.
     pub fn snapshot(&self) -> Vec<u8> {
-        let most = self.largest_snapshot() - HEADER;
-        self.with_header(MAGIC, &pack_within(&self.body(), &[], most))
+        let most = self.target_snapshot_bytes() - HEADER;
+        self.with_header(MAGIC, &pack_to_size(&self.body(), &[], most))
     }
 
     /// Returns the target size of a snapshot: 256 KiB and 2 KiB for each body that can move. A larger one is packed harder;
     /// a heap in motion may exceed it.
-    pub fn largest_snapshot(&self) -> usize {
+    pub fn target_snapshot_bytes(&self) -> usize {
         (256 + 2 * self.dynamics.bodies.len()) * 1024
     }
 
@@ -115,7 +115,7 @@ impl PhysicsWorld {
     ///
     /// # Panics
     /// Never: writing plain data to memory cannot fail.
-    pub fn moment(&self) -> Vec<u8> {
+    pub fn unpacked_snapshot(&self) -> Vec<u8> {
         self.with_header(MAGIC_OF_MOMENTS, &self.body())
     }
 
@@ -125,15 +125,15 @@ impl PhysicsWorld {
                 tick: self.dynamics.tick,
                 statuses: self.dynamics.statuses.clone(),
                 passive_velocities: self.agents.passive_velocities.clone(),
-                excluded: self.dynamics.excluded.clone(),
-                grips: self.hands.grips.clone(),
+                excluded: self.dynamics.collision_exclusions.clone(),
+                grips: self.hands.held_objects.clone(),
                 released_overlapping: self.hands.released_overlapping.clone(),
-                drives: self.articulation.drives.clone(),
+                drives: self.articulation.hand_drives.clone(),
                 ongoing_pushes: self.pushes.clone(),
-                pulls: self.articulation.pulls.clone(),
+                pulls: self.articulation.actuations.clone(),
                 contact_tracker: self.contacts.tracker.clone(),
                 sleeping_cache: self.dynamics.engine.sleeping_cache.clone(),
-                laws: self.dynamics.laws.memory(),
+                laws: self.dynamics.laws.law_states(),
             },
             islands: CowField(Cow::Borrowed(&self.dynamics.engine.islands)),
             broad_phase: CowField(Cow::Borrowed(&self.dynamics.engine.broad_phase)),
@@ -170,7 +170,7 @@ impl PhysicsWorld {
         bytes
     }
 
-    /// Restores a [`PhysicsWorld::snapshot`] or a [`PhysicsWorld::moment`]; `state` must be the state of the same time. The
+    /// Restores a [`PhysicsWorld::snapshot`] or a [`PhysicsWorld::unpacked_snapshot`]; `state` must be the state of the same time. The
     /// next steps then give the same bits as they did there.
     ///
     /// # Errors
@@ -200,7 +200,7 @@ impl PhysicsWorld {
             return refuse("it was taken with other laws than the state has");
         }
         for (law, remembered) in memory.laws.iter().enumerate() {
-            laws.restore_memory(law, remembered);
+            laws.restore_law_state(law, remembered);
         }
         // The same overrides and laws give the same values.
         let same = state.overrides == self.applied;
@@ -210,7 +210,7 @@ impl PhysicsWorld {
             ContactTable::new(&model.house, state)
         };
         let weights = if same && laws.specs() == self.dynamics.laws.specs() {
-            self.dynamics.weights.clone()
+            self.dynamics.masses.clone()
         } else {
             BodyMasses::new(&model, state, &laws)
         };
@@ -224,7 +224,7 @@ impl PhysicsWorld {
             (place, BodyStatus::Frozen)
         };
         let gravity = state.gravity_m_s2();
-        let sizes = (gravity, state.agents.len(), Crowding::Few);
+        let sizes = (gravity, state.agents.len(), PairDensity::Low);
         let mut built = assemble(
             &model,
             &self.dynamics.settings,
@@ -241,8 +241,13 @@ impl PhysicsWorld {
             agents.push(agents::insert(engine, values, entries, id, agent, force));
         }
         let (engine, handles, entries) = (&mut built.engine, &built.bodies, &built.entries);
-        let asked = |entry: &ColliderEntry| values.rule(entry).1;
-        rolling::resume(&model.rollers, (engine, handles, entries), &bodies, asked);
+        let asked = |entry: &ColliderEntry| values.self_pair(entry).1;
+        rolling::restore_rolling_hooks(
+            &model.rolling_cylinders,
+            (engine, handles, entries),
+            &bodies,
+            asked,
+        );
         flush(&mut built, values, &memory.excluded);
         let AssembledWorld {
             engine: scaffold,
@@ -250,7 +255,7 @@ impl PhysicsWorld {
             ..
         } = built;
         let mut engine = RapierWorld::new(&self.dynamics.settings, gravity);
-        engine.soften(&self.dynamics.settings, laws.compliance);
+        engine.set_compliance(&self.dynamics.settings, laws.compliance);
         engine.islands = shot.islands.0.into_owned();
         engine.broad_phase = shot.broad_phase.0.into_owned();
         engine.narrow_phase = shot.narrow_phase.0.into_owned();
@@ -281,24 +286,24 @@ impl PhysicsWorld {
         self.dynamics.engine = engine;
         self.dynamics.entries = entries;
         self.dynamics.table = table;
-        self.dynamics.weights = weights;
+        self.dynamics.masses = weights;
         self.applied.clone_from(&state.overrides);
         self.agents.list = agents;
         *self.dynamics.laws = laws;
         self.dynamics.tick = memory.tick;
         self.dynamics.statuses = memory.statuses;
         self.agents.passive_velocities = memory.passive_velocities;
-        self.dynamics.excluded = memory.excluded;
-        self.hands.grips = memory.grips;
+        self.dynamics.collision_exclusions = memory.excluded;
+        self.hands.held_objects = memory.grips;
         self.hands.released_overlapping = memory.released_overlapping;
-        self.articulation.drives = memory.drives;
+        self.articulation.hand_drives = memory.drives;
         self.pushes = memory.ongoing_pushes;
-        self.articulation.pulls = memory.pulls;
+        self.articulation.actuations = memory.pulls;
         for joint in &mut self.articulation.joints {
             joints::set_values(&mut self.dynamics.engine, &model, joint, state);
         }
         self.contacts.tracker = memory.contact_tracker;
-        self.contacts.merged = MergedEvents::default();
+        self.contacts.merged_events = MergedEvents::default();
         self.notices.clear();
         Ok(())
     }
@@ -342,12 +347,12 @@ fn flush(
     excluded: &CollisionExclusions,
 ) {
     let entries = &assembly.entries;
-    let kept = assembly.engine.friction_kept();
+    let kept = assembly.engine.friction_storage();
     assembly.engine.flush(&ContactHooks {
         entries,
         properties,
         excluded,
-        kept,
+        friction_storage: kept,
         dt_s: 0.0,
     });
 }

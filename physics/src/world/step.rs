@@ -40,13 +40,14 @@ impl PhysicsWorld {
             interrupt::check();
             self.move_agents(state, controls, &mut ways, substep == 0);
             placed = self.physics_step(state, events);
-            self.hands.keep_inside(&mut self.dynamics);
+            self.hands.undo_wall_penetration(&mut self.dynamics);
         }
         self.cache_sleepers(tick_before, placed);
         self.contacts
-            .emit_remaining(&self.dynamics, events, first_event);
+            .emit_remaining_events(&self.dynamics, events, first_event);
         finish_movement(&self.dynamics, state, &ways);
-        self.hands.end_separations(&mut self.dynamics, state);
+        self.hands
+            .restore_holder_collisions(&mut self.dynamics, state);
         // A body that slept all the time is as it was written.
         if !slept || self.dynamics.engine.islands.num_active_bodies() > 0 {
             self.articulation.write_coordinates(state);
@@ -61,23 +62,25 @@ impl PhysicsWorld {
     fn physics_step(&mut self, state: &State, events: &mut Vec<ContactEvent>) -> bool {
         self.articulation.drive_motors(&mut self.dynamics, state);
         let led = self.agents.list.iter().map(|agent| agent.handle);
-        self.dynamics.engine.wake_in_reach(led);
-        self.articulation.follow(&mut self.dynamics);
+        self.dynamics.engine.wake_bodies_in_reach(led);
+        self.articulation.update_resistance_laws(&mut self.dynamics);
         let efforts = self.articulation.apply_efforts(&mut self.dynamics);
         let floating_roots = efforts.floating_roots.clone();
         self.dynamics.apply_laws_before(&floating_roots);
         let solved = self.contacts.solve(&mut self.dynamics);
         let joints_before = self.articulation.joint_coordinates.clone();
-        let mut placed = self.articulation.settle(&mut self.dynamics, efforts);
-        let rebounds = self.contacts.correct_rebounds(
+        let mut placed = self
+            .articulation
+            .correct_positions(&mut self.dynamics, efforts);
+        let rebounds = self.contacts.correct_restitution(
             &mut self.dynamics,
             &mut self.articulation,
             &solved,
             &joints_before,
         );
-        placed |= rebounds.placed;
+        placed |= rebounds.moved_trees;
         self.contacts
-            .note(&self.dynamics, solved, &rebounds, events);
+            .record_contacts(&self.dynamics, solved, &rebounds, events);
         self.dynamics.apply_laws_after(&floating_roots);
         self.dynamics.count_step();
         placed |= self.dynamics.update_rolling_contacts();
@@ -96,7 +99,7 @@ impl PhysicsWorld {
         let (dynamics, notices) = (&mut self.dynamics, &mut self.notices);
         self.agents
             .advance(dynamics, state, controls, ways, first, notices);
-        self.hands.carry(dynamics, state, notices);
+        self.hands.step_held_objects(dynamics, state, notices);
         actions::advance_pushes(&mut self.pushes, dynamics, state, notices);
     }
 
@@ -105,7 +108,7 @@ impl PhysicsWorld {
     fn cache_sleepers(&mut self, tick_before: u64, placed: bool) {
         let hands = &self.hands;
         self.dynamics
-            .cache_sleeping(tick_before, |body| hands.involve(body));
+            .cache_sleeping(tick_before, |body| hands.holds_or_just_released(body));
         if placed {
             self.dynamics.flush();
         }
@@ -129,7 +132,7 @@ impl PhysicsWorld {
     }
 
     /// Returns the speed of the fastest point of any body, m/s.
-    pub fn fastest_m_s(&self) -> f32 {
-        self.dynamics.fastest_m_s()
+    pub fn max_speed_m_s(&self) -> f32 {
+        self.dynamics.max_speed_m_s()
     }
 }

@@ -110,7 +110,10 @@ fn every_refusal_says_why_and_what_to_do() {
     let told = k.run.act(agent, actions::Pick::new(mug));
     assert_eq!(
         (told.code, told.sentence.as_str()),
-        (OutcomeCode::Behind, "The mug is behind you. Turn around.")
+        (
+            OutcomeCode::BehindAgent,
+            "The mug is behind you. Turn around."
+        )
     );
     assert!(!told.success && told.object == Some(mug));
 }
@@ -180,7 +183,10 @@ fn a_held_thing_never_passes_a_wall() {
             "{at}"
         );
         if k.run.state.agents[k.agent].holding.is_none() {
-            assert_eq!(k.run.world.notices()[0].outcome.code, OutcomeCode::Slipped);
+            assert_eq!(
+                k.run.world.delayed_outcomes()[0].outcome.code,
+                OutcomeCode::Slipped
+            );
             break;
         }
     }

@@ -115,18 +115,18 @@ fn nobody_takes_oneself_somebody_else_or_the_building() {
         let told = room.run.act(room.agent, action);
         assert_eq!(
             (told.code, told.sentence.as_str()),
-            (OutcomeCode::Oneself, "That is you. Choose a thing.")
+            (OutcomeCode::TargetIsSelf, "That is you. Choose a thing.")
         );
     }
     let told = room
         .run
         .act(room.agent, actions::Point { target: own.into() });
-    assert_eq!(told.code, OutcomeCode::Oneself, "{}", told.sentence);
+    assert_eq!(told.code, OutcomeCode::TargetIsSelf, "{}", told.sentence);
     let told = room.run.act(room.agent, actions::Pick::new(other));
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (
-            OutcomeCode::NotAThing,
+            OutcomeCode::NotAnObject,
             "That is agent 1, not a thing. Choose a thing."
         )
     );
@@ -135,7 +135,7 @@ fn nobody_takes_oneself_somebody_else_or_the_building() {
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (
-            OutcomeCode::NotAThing,
+            OutcomeCode::NotAnObject,
             "The wall is part of the building. Choose a thing."
         )
     );

@@ -138,7 +138,7 @@ fn pose(run: &mut Run, key: RandomKey, reach: f32) -> [f32; 6] {
         run.state.joint_position[JointId(k as u32)] = *q;
         run.state.joint_velocity[JointId(k as u32)] = 0.0;
     }
-    run.world.adopt(&mut run.state).unwrap();
+    run.world.adopt_state(&mut run.state).unwrap();
     q
 }
 
@@ -239,7 +239,7 @@ fn any_pose_and_velocity_reads_back() {
             run.state.joint_position[JointId(k as u32)] = q[k];
             run.state.joint_velocity[JointId(k as u32)] = v[k];
         }
-        run.world.adopt(&mut run.state).unwrap();
+        run.world.adopt_state(&mut run.state).unwrap();
         // The values of physics itself, not those written.
         for k in 0..6 {
             let id = JointId(k as u32);
@@ -299,7 +299,7 @@ pub(crate) fn double_pendulum(servo: Option<Servo>, angles: [f32; 2], speeds: [f
         run.state.joint_position[JointId(k)] = angles[k as usize];
         run.state.joint_velocity[JointId(k)] = speeds[k as usize];
     }
-    run.world.adopt(&mut run.state).unwrap();
+    run.world.adopt_state(&mut run.state).unwrap();
     run
 }
 
@@ -399,7 +399,7 @@ fn friction_of_a_joint_takes_its_own_torque_and_no_more() {
         }
         let (mut run, joint, inertia) = turntable(friction, 0.0, armature);
         run.state.joint_velocity[joint] = 3.0;
-        run.world.adopt(&mut run.state).unwrap();
+        run.world.adopt_state(&mut run.state).unwrap();
         let stops_s = inertia * 3.0 / friction;
         let steps = (0.8 * stops_s * 20.0) as usize;
         run.steps(steps);

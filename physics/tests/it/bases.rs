@@ -55,7 +55,7 @@ fn constant_wheel_speeds_draw_the_circle_of_their_closed_form() {
     for step in 1..=1200 {
         run.walk(1, &[wheels(l, r)]);
         let t = f64::from(step) * 0.05;
-        let pose = PlanarPose::default().advanced(&twist, t);
+        let pose = PlanarPose::default().integrated(&twist, t);
         let agent = &run.state.agents[id];
         let expected = in_world(&pose, at, yaw);
         // Sixty seconds of 7200 roundings in f32; without the kept remainders they would be a millimetre.
@@ -78,7 +78,7 @@ fn constant_wheel_speeds_draw_the_circle_of_their_closed_form() {
         let [x, y, heading] = agent.base.odometry;
         assert!((x - pose.x_m).abs() < 1e-5 && (y - pose.y_m).abs() < 1e-5);
         assert!((heading - pose.heading_rad).abs() < 1e-5);
-        let [left, right] = agent.base.wheel_turned_rad;
+        let [left, right] = agent.base.wheel_rotation_rad;
         assert!((left - 5.0 * t).abs() < 1e-4 && (right - 7.0 * t).abs() < 1e-4);
     }
 }
@@ -158,7 +158,7 @@ fn against_a_wall_wheels_slip_and_odometry_is_deceived() {
         agent.position
     );
     assert!((agent.base.odometry[0] - 1.5).abs() < 1e-5);
-    assert!((agent.base.wheel_turned_rad[0] - 30.0).abs() < 1e-4);
+    assert!((agent.base.wheel_rotation_rad[0] - 30.0).abs() < 1e-4);
 }
 
 #[test]
@@ -229,7 +229,7 @@ fn a_holonomic_base_goes_sideways_and_turns_on_the_way() {
     };
     for step in 1..=400 {
         run.walk(1, &[control]);
-        let pose = PlanarPose::default().advanced(&twist, f64::from(step) * 0.05);
+        let pose = PlanarPose::default().integrated(&twist, f64::from(step) * 0.05);
         let agent = &run.state.agents[id];
         let expected = in_world(&pose, at, -0.4);
         // The first physics step ramps up: 0.67 m/s and 0.7 rad/s within 70 us.

@@ -117,7 +117,7 @@ fn boxes_that_bounce_on_corners_gain_no_energy() {
             );
             let root = run.root(thing);
             run.state.part_velocity[root].angular = axis * 6.0;
-            run.world.adopt(&mut run.state).unwrap();
+            run.world.adopt_state(&mut run.state).unwrap();
             let mass = 500.0 * 8.0 * f64::from(half.element_product());
             let things = [(thing, mass)];
             let start = energy_j(&run, &things);

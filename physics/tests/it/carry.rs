@@ -14,7 +14,7 @@ fn doorway(half: Vec3, grasp: Grasp) -> (Run, AgentId, ObjectId) {
     let thing = build.movable("thing", Piece::cuboid(half, Vec3::new(2.5, half.y, 4.6)));
     let mut run = build.run();
     run.state.joint_position[joint] = 1.55;
-    run.world.adopt(&mut run.state).unwrap();
+    run.world.adopt_state(&mut run.state).unwrap();
     let agent = run.agent(Vec3::new(2.5, 0.0, 5.2), 0.0);
     run.steps(2);
     let told = run.act(
@@ -139,7 +139,7 @@ fn taking_a_thing_beside_a_wall_leaves_it_on_this_side() {
     run.steps(2);
     let told = run.act(agent, actions::Pick::new(thing));
     assert!(
-        told.success || told.code == OutcomeCode::Behind,
+        told.success || told.code == OutcomeCode::BehindAgent,
         "{}",
         told.sentence
     );
@@ -234,7 +234,7 @@ fn what_stands_on_a_thing_comes_along_when_it_is_taken() {
     let mut run = build.run();
     let agent = run.agent(Vec3::new(3.0, 0.0, 2.9), 0.0);
     run.steps(10);
-    assert_eq!(run.state.rests_on(&run.house, block), [Some(tray)]);
+    assert_eq!(run.state.supports_of(&run.house, block), [Some(tray)]);
     assert!(run.act(agent, actions::Pick::new(tray)).success);
     run.steps(60);
     run.walk(40, &[forward(-0.3)]);

@@ -330,7 +330,7 @@ impl Run {
         (0..steps).find_map(|_| {
             self.walk(1, &[]);
             self.world
-                .notices()
+                .delayed_outcomes()
                 .first()
                 .map(|notice| notice.outcome.clone())
         })
@@ -356,12 +356,12 @@ impl Run {
     pub(crate) fn throw(&mut self, object: ObjectId, velocity: Vec3) {
         let root = self.root(object);
         self.state.part_velocity[root].linear = velocity;
-        self.world.adopt(&mut self.state).unwrap();
+        self.world.adopt_state(&mut self.state).unwrap();
     }
 
     /// State and physics as one number.
     pub(crate) fn hash(&self) -> (u64, Vec<u8>) {
-        (self.state.hash(), self.world.moment())
+        (self.state.hash(), self.world.unpacked_snapshot())
     }
 }
 

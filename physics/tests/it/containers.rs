@@ -50,7 +50,7 @@ fn put_in(container: ObjectId) -> impl HandAction {
 impl Room {
     fn open(&mut self) {
         self.run.state.joint_position[self.drawer] = 0.34;
-        self.run.world.adopt(&mut self.run.state).unwrap();
+        self.run.world.adopt_state(&mut self.run.state).unwrap();
         self.run.rays.update(&self.run.state);
     }
 }
@@ -70,7 +70,7 @@ fn an_open_drawer_takes_a_thing_and_carries_it_when_it_is_shut() {
     room.run.steps(20);
     let lies_in = |room: &Room| {
         let (house, state) = (&room.run.house, &room.run.state);
-        state.lies_in(house, room.thing, &house.object_boxes(state))
+        state.containers_of(house, room.thing, &house.object_boxes(state))
     };
     assert_eq!(lies_in(&room), [room.chest]);
     let told = room.run.act(room.agent, actions::Close::new(room.chest));

@@ -60,7 +60,7 @@ fn five_hundred_random_things_stay_finite_and_inside() {
     let mut fastest = 0.0_f32;
     for _ in 0..120 {
         run.steps(1);
-        fastest = fastest.max(run.world.fastest_m_s());
+        fastest = fastest.max(run.world.max_speed_m_s());
         for id in &things {
             let pose = run.state.part_pose[run.root(*id)];
             let p = pose.position;

@@ -33,7 +33,7 @@ fn a_door_opens_lets_an_agent_through_and_shuts_again() {
     let mut arrived = None;
     for step in 0..60 {
         run.walk(1, &[]);
-        if let Some(notice) = run.world.notices().first() {
+        if let Some(notice) = run.world.delayed_outcomes().first() {
             assert_eq!(
                 notice.outcome.code,
                 OutcomeCode::Done,
@@ -93,7 +93,7 @@ fn a_blocked_door_says_what_is_in_the_way() {
     let mut told = None;
     for _ in 0..80 {
         run.walk(1, &[]);
-        if let Some(notice) = run.world.notices().first() {
+        if let Some(notice) = run.world.delayed_outcomes().first() {
             told = Some(notice.clone());
             break;
         }
@@ -121,13 +121,13 @@ fn a_door_does_not_shut_through_an_agent() {
     let (_, joint) = build.wall_with_door(3.0, 6.0);
     let mut run = build.run();
     run.state.joint_position[joint] = 1.5;
-    run.world.adopt(&mut run.state).unwrap();
+    run.world.adopt_state(&mut run.state).unwrap();
     let id = run.agent(Vec3::new(2.75, 0.0, 3.0), 0.0);
     run.state.joint_command[joint] = JointCommand::Position(0.0);
     let mut told = None;
     for _ in 0..80 {
         run.walk(1, &[]);
-        if let Some(notice) = run.world.notices().first() {
+        if let Some(notice) = run.world.delayed_outcomes().first() {
             told = Some(notice.outcome.clone());
             break;
         }
@@ -150,7 +150,7 @@ fn an_open_door_gives_way_to_a_walking_agent() {
     let (_, joint) = build.wall_with_door(3.0, 6.0);
     let mut run = build.run();
     run.state.joint_position[joint] = 0.8;
-    run.world.adopt(&mut run.state).unwrap();
+    run.world.adopt_state(&mut run.state).unwrap();
     let id = run.agent(Vec3::new(2.6, 0.0, 4.0), 0.0);
     run.walk(80, &[forward(1.0)]);
     assert!(

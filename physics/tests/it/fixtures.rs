@@ -36,7 +36,10 @@ fn before(run: &mut Run, point: Vec3) -> AgentId {
 /// Everything with a tap: the object, its lever, and the room.
 fn taps(run: &Run) -> Vec<(ObjectId, JointId, String)> {
     let house = &run.house;
-    let levers = house.joints.iter_ids().filter(|(_, joint)| joint.switches);
+    let levers = house
+        .joints
+        .iter_ids()
+        .filter(|(_, joint)| joint.toggles_switch);
     let taps = levers.map(|(id, joint)| {
         let room = house.objects[joint.object].room.unwrap();
         (joint.object, id, house.rooms[room].kind().to_owned())
@@ -101,7 +104,7 @@ fn a_tap_follows_its_lever() {
     assert!(run.state.is_on(&run.house, tap));
     run.state.joint_position[lever] = 0.02;
     run.state.joint_command[lever] = JointCommand::Off;
-    run.world.adopt(&mut run.state).unwrap();
+    run.world.adopt_state(&mut run.state).unwrap();
     assert!(!run.state.is_on(&run.house, tap));
 }
 
@@ -163,7 +166,7 @@ fn things_go_into_an_open_bin_only() {
         .find(|place| (0.4..0.6).contains(&place.distance(stands)) && place.distance(middle) > 0.5);
     let root = run.root(fruit);
     run.state.part_pose[root].position = floor.unwrap() + Vec3::Y * 0.06;
-    run.world.adopt(&mut run.state).unwrap();
+    run.world.adopt_state(&mut run.state).unwrap();
     run.steps(10);
     let told = run.act(agent, actions::Pick::new(fruit));
     assert!(told.success, "{}", told.sentence);

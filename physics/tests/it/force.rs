@@ -221,12 +221,12 @@ fn a_shut_drawer_does_not_give_way_and_an_ajar_one_does() {
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (
-            OutcomeCode::Shut,
+            OutcomeCode::Latched,
             "The chest of drawers is shut and does not give way. Open it first."
         )
     );
     run.state.joint_position[joint] = 0.1;
-    run.world.adopt(&mut run.state).unwrap();
+    run.world.adopt_state(&mut run.state).unwrap();
     run.rays.update(&run.state);
     assert_eq!(
         run.act(agent, pull(chest, Some(20.0))).code,
@@ -253,7 +253,7 @@ fn an_ajar_door_moves_when_a_body_hits_it() {
     let ball = build.movable("ball", Piece::ball(0.12, Vec3::new(2.8, 0.121, 4.2)));
     let mut run = build.run();
     run.state.joint_position[joint] = 0.5;
-    run.world.adopt(&mut run.state).unwrap();
+    run.world.adopt_state(&mut run.state).unwrap();
     run.throw(ball, Vec3::new(0.0, 0.0, -4.0));
     run.steps(40);
     assert!(
@@ -270,7 +270,7 @@ fn a_stop_holds_a_door_that_is_pushed_hard() {
     let (door, joint) = build.wall_with_door(3.0, 6.0);
     let mut run = build.run();
     run.state.joint_position[joint] = 1.3;
-    run.world.adopt(&mut run.state).unwrap();
+    run.world.adopt_state(&mut run.state).unwrap();
     let leaf = run.house.joints[joint].child;
     run.state.part_velocity[leaf].angular = Vec3::Y * 6.0;
     let _ = door;
@@ -305,7 +305,7 @@ fn nobody_takes_or_pushes_what_somebody_stands_on() {
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (
-            OutcomeCode::StoodOn,
+            OutcomeCode::SupportsAgent,
             "You stand on the plank. Step off it first."
         )
     );
@@ -313,7 +313,7 @@ fn nobody_takes_or_pushes_what_somebody_stands_on() {
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (
-            OutcomeCode::StoodOn,
+            OutcomeCode::SupportsAgent,
             "Agent 0 stands on the plank. Wait until it is free."
         )
     );
@@ -338,7 +338,7 @@ fn a_push_that_gives_way_to_another_is_told_of() {
     run.steps(1);
     assert_eq!(run.act(agent, push(two, None)).code, OutcomeCode::Started);
     run.steps(1);
-    let told = &run.world.notices()[0];
+    let told = &run.world.delayed_outcomes()[0];
     assert_eq!((told.agent, told.outcome.object), (Some(agent), Some(one)));
     assert!(
         told.outcome.sentence.contains("let go of the crate"),

@@ -75,13 +75,13 @@ fn a_crouched_agent_passes_under_a_beam_and_stands_up_only_behind_it() {
     run.walk(2, &[AgentControl::default()]);
     let still = run.state.agents[id];
     assert!(still.height_m() < 1.0, "it stood up through the beam");
-    let notice = &run.world.notices()[0].outcome;
+    let notice = &run.world.delayed_outcomes()[0].outcome;
     assert_eq!(notice.code, OutcomeCode::Blocked);
     assert!(notice.sentence.contains("overhead"), "{}", notice.sentence);
     run.walk(40, &[forward(1.0)]);
     let behind = run.state.agents[id];
     assert!(behind.position.z < 3.4, "{}", behind.position);
-    assert!((behind.height_m() - 1.5).abs() < 1e-6 && run.world.notices().is_empty());
+    assert!((behind.height_m() - 1.5).abs() < 1e-6 && run.world.delayed_outcomes().is_empty());
     // Standing again, it does not come back.
     run.walk(80, &[forward(-1.0)]);
     assert!(run.state.agents[id].position.z < 3.4);

@@ -162,12 +162,14 @@ fn check(run: &Run, before: &Run, told: &str) {
             "{told}"
         );
         assert!(
-            !state.rests_on(&run.house, object).contains(&Some(object)),
+            !state
+                .supports_of(&run.house, object)
+                .contains(&Some(object)),
             "{told}"
         );
         assert!(
             !state
-                .lies_in(&run.house, object, &run.house.object_boxes(state))
+                .containers_of(&run.house, object, &run.house.object_boxes(state))
                 .contains(&object),
             "{told}"
         );

@@ -69,19 +69,19 @@ fn settles(name: &str, mut run: Run, furthest_m: f32, stray: usize) {
     let mut fastest = 0.0_f32;
     for _ in 0..40 {
         run.steps(1);
-        fastest = fastest.max(run.world.fastest_m_s());
+        fastest = fastest.max(run.world.max_speed_m_s());
     }
     let drift = drift(&run, &before);
     println!(
         "  fastest {fastest:.2} m/s, {:.3} m/s after 2 s, {} awake; furthest {:?}",
-        run.world.fastest_m_s(),
+        run.world.max_speed_m_s(),
         run.world.awake_count(),
         &drift[..8]
     );
     assert!(
-        run.world.fastest_m_s() < 0.5,
+        run.world.max_speed_m_s() < 0.5,
         "{} m/s after 2 s",
-        run.world.fastest_m_s()
+        run.world.max_speed_m_s()
     );
     let gone = drift.iter().filter(|(_, far)| *far > furthest_m).count();
     assert!(
@@ -102,7 +102,7 @@ fn settles(name: &str, mut run: Run, furthest_m: f32, stray: usize) {
     println!(
         "  after 5 s: {} awake, {:.4} m/s, {energy_j:.1e} J",
         run.world.awake_count(),
-        run.world.fastest_m_s()
+        run.world.max_speed_m_s()
     );
     assert!(energy_j < 1e-4, "{energy_j} J after 5 s");
     for id in run.house.objects.ids() {
@@ -197,7 +197,7 @@ fn nearly_every_door_and_drawer_of_the_apartment_opens_and_shuts() {
             let mut told = String::new();
             for _ in 0..100 {
                 run.steps(1);
-                if let Some(notice) = run.world.notices().first() {
+                if let Some(notice) = run.world.delayed_outcomes().first() {
                     told.clone_from(&notice.outcome.sentence);
                     break;
                 }

@@ -21,7 +21,7 @@ fn pendulum(start_rad: f32) -> (Run, JointId, ObjectId) {
     build.data.joints[joint].closed = PI;
     let mut run = build.run();
     run.state.joint_position[joint] = start_rad;
-    run.world.adopt(&mut run.state).unwrap();
+    run.world.adopt_state(&mut run.state).unwrap();
     (run, joint, object)
 }
 

@@ -86,8 +86,12 @@ fn a_linkage_that_asks_for_the_impossible_rests_at_the_stop() {
         let mut fastest = 0.0_f32;
         for _ in 0..200 {
             run.steps(1);
-            assert!(run.world.notices().is_empty(), "{:?}", run.world.notices());
-            fastest = fastest.max(run.world.fastest_m_s());
+            assert!(
+                run.world.delayed_outcomes().is_empty(),
+                "{:?}",
+                run.world.delayed_outcomes()
+            );
+            fastest = fastest.max(run.world.max_speed_m_s());
         }
         let q = angles(&run.state);
         println!(

@@ -225,7 +225,7 @@ fn a_compound_body_turns_about_its_centre_of_mass() {
     run.state.part_velocity[root].angular = Vec3::new(0.0, 6.0, 0.0);
     run.state.part_velocity[root].linear =
         Vec3::new(0.0, 6.0, 0.0).cross(Vec3::new(-center, 0.0, 0.0));
-    run.world.adopt(&mut run.state).unwrap();
+    run.world.adopt_state(&mut run.state).unwrap();
     for _ in 0..10 {
         run.steps(1);
         let at = run.state.part_pose[root].transform_point(Vec3::new(center, 0.0, 0.0));

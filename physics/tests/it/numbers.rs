@@ -156,7 +156,7 @@ fn a_dumbbell_with_one_heavy_end_has_its_mass_there() {
         &[("material/of_steel/density_kg_m3", f64::from(nominal))],
     )
     .unwrap();
-    run.world.adopt(&mut run.state).unwrap();
+    run.world.adopt_state(&mut run.state).unwrap();
     let now = run.world.measure_body(root).unwrap().velocity;
     assert!(
         (now.linear - before.linear).length() < 1e-5,
@@ -325,7 +325,7 @@ fn every_listed_number_is_set_read_back_and_restored() {
         };
         run.agent_with(body, Vec3::new(0.6 + k as f32, 0.0, 0.6), 0.0);
     }
-    let start = (run.state.clone(), run.world.moment(), run.hash());
+    let start = (run.state.clone(), run.world.unpacked_snapshot(), run.hash());
     let addresses = run.state.addresses(&run.house);
     for wanted in [
         "joint/0/axis_x",
@@ -356,12 +356,12 @@ fn every_listed_number_is_set_read_back_and_restored() {
             assert_ne!(run.state.hash(), start.2.0, "{address}");
         }
         let bytes = run.state.to_bytes(&house);
-        let moment = run.world.moment();
+        let moment = run.world.unpacked_snapshot();
         let mut again = State::from_bytes(&house, &bytes).unwrap();
         assert_eq!(again, run.state, "{address}");
         let mut world = run.world.clone();
         world.restore(&mut again, &moment).unwrap();
-        assert!(world.moment() == moment, "{address}");
+        assert!(world.unpacked_snapshot() == moment, "{address}");
         run.state = start.0.clone();
         run.world.restore(&mut run.state, &start.1).unwrap();
         assert!(run.hash() == start.2, "{address}");
@@ -426,7 +426,12 @@ fn what_is_too_heavy_now_falls_from_the_hand() {
         assert!(held_at > 0.5 && run.state.agents[agent].holding == Some(cube));
         set(&mut run, &[(address, number)]).unwrap();
         run.walk(1, &[]);
-        let told = run.world.notices().first().expect("it is told").clone();
+        let told = run
+            .world
+            .delayed_outcomes()
+            .first()
+            .expect("it is told")
+            .clone();
         assert_eq!(told.agent, Some(agent));
         assert_eq!(told.outcome.code, dwell_physics::OutcomeCode::TooHeavy);
         assert!(told.outcome.sentence.contains("fell from your hand"));

@@ -47,7 +47,7 @@ fn table(piece: Piece, clutter: &[Vec3]) -> Setting {
     run.steps(1);
     let thing_at = run.root(thing);
     run.state.part_pose[thing_at].position = Vec3::new(3.2, 1.0, 2.3);
-    run.world.adopt(&mut run.state).unwrap();
+    run.world.adopt_state(&mut run.state).unwrap();
     run.rays.update(&run.state);
     let told = run.act(agent, actions::Pick::new(thing));
     assert!(told.success, "{}", told.sentence);
@@ -105,7 +105,7 @@ fn things_of_all_shapes_stand_where_they_are_put() {
             moved < MOVES_M && turn < TURNS_DEG,
             "{k}: {moved} m, {turn} degrees"
         );
-        let table = on.run.state.rests_on(&on.run.house, on.thing);
+        let table = on.run.state.supports_of(&on.run.house, on.thing);
         assert_eq!(table, [Some(on.table)], "{k}");
     }
 }
@@ -252,7 +252,7 @@ fn a_thing_is_put_on_what_is_seen_and_on_the_floor_where_a_ray_meets_it() {
     assert!((at - spot).with_y(0.0).length() < 0.02, "{at}");
     let (moved, turn) = stays(&mut on.run, on.thing);
     assert!(moved < MOVES_M && turn < TURNS_DEG);
-    assert_eq!(on.run.state.rests_on(&on.run.house, on.thing), [None]);
+    assert_eq!(on.run.state.supports_of(&on.run.house, on.thing), [None]);
 }
 
 #[test]
@@ -269,14 +269,14 @@ fn what_rests_on_what_follows_a_stack() {
     });
     let mut run = build.run();
     run.steps(40);
-    let rests = |run: &Run, object| run.state.rests_on(&run.house, object);
+    let rests = |run: &Run, object| run.state.supports_of(&run.house, object);
     assert_eq!(rests(&run, low), [None]);
     assert_eq!(rests(&run, high), [Some(low)]);
     assert_eq!(rests(&run, beside), [None]);
     for contact in &run.state.contacts {
         if contact.b.is_none() {
             assert_eq!(
-                contact.rest,
+                contact.support_relation,
                 SupportRelation::AOnB,
                 "everything stands on the floor"
             );
@@ -314,7 +314,7 @@ fn the_apartments_things_stand_on_its_table() {
         let mut run = start.clone();
         let (eye, root) = (run.state.agents[agent].eye_position(), run.root(*object));
         run.state.part_pose[root].position = eye + ahead * 0.5 - Vec3::Y * 0.1;
-        run.world.adopt(&mut run.state).unwrap();
+        run.world.adopt_state(&mut run.state).unwrap();
         run.rays.update(&run.state);
         let told = run.act(agent, actions::Pick::new(*object));
         if !told.success {

@@ -30,7 +30,7 @@ fn fling(run: &mut Run, stream: &mut RandomStream) {
             angular: stream.direction() * stream.range(0.0, 8.0),
         };
     }
-    run.world.adopt(&mut run.state).unwrap();
+    run.world.adopt_state(&mut run.state).unwrap();
 }
 
 fn bounds(pose: &Pose) -> Aabb {
@@ -102,7 +102,8 @@ fn a_world_restored_while_things_fall_asleep_continues_bit_for_bit() {
                 ahead.steps(1);
                 other.steps(1);
                 assert!(
-                    ahead.world.moment() == other.world.moment() && ahead.state == other.state,
+                    ahead.world.unpacked_snapshot() == other.world.unpacked_snapshot()
+                        && ahead.state == other.state,
                     "{step} steps after {now} were awake"
                 );
             }

@@ -23,7 +23,7 @@ fn what_was_dropped_lies_and_time_begins_then() {
     run.world.settle(&mut run.state, 10.0).unwrap();
     assert_eq!(run.world.awake_count(), 0);
     assert_eq!(run.world.time_s(), 0.0);
-    assert!(run.world.notices().is_empty());
+    assert!(run.world.delayed_outcomes().is_empty());
     let height_m = |run: &Run| {
         let poses = run.state.part_pose.iter();
         poses.map(|pose: &Pose| pose.position.y).fold(0.0, f32::max)

@@ -32,7 +32,7 @@ fn busy() -> (Run, ObjectId, AgentId) {
     );
     let mut run = build.run();
     let drag = LawSpec::new("drag", 1, &[("c_d", 0.5)]);
-    run.state.laws.push(drag.on("ball_2"));
+    run.state.laws.push(drag.with_target("ball_2"));
     run.world.apply_parameters(&mut run.state).unwrap();
     let agent = run.agent(Vec3::new(2.6, 0.0, 4.4), 0.0);
     run.agent(Vec3::new(1.0, 0.0, 4.0), 1.0);
@@ -259,7 +259,7 @@ fn worlds_over_one_model_share_its_shapes() {
     let worlds: Vec<_> = states
         .iter_mut()
         .map(|state| {
-            PhysicsWorld::over(model.clone(), &PhysicsConfig::default(), state)
+            PhysicsWorld::with_model(model.clone(), &PhysicsConfig::default(), state)
                 .unwrap()
                 .0
         })

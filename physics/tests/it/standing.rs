@@ -22,7 +22,7 @@ fn a_robot_that_stands_on_its_base_holds_its_pose() {
             run.state.joint_position[JointId(k as u32)] = *q;
             run.state.joint_command[JointId(k as u32)] = JointCommand::Position(*q);
         }
-        run.world.adopt(&mut run.state).unwrap();
+        run.world.adopt_state(&mut run.state).unwrap();
         let base = run.root(ObjectId(0));
         let mut worst = [0.0_f32; 6];
         let mut tilt: f32 = 0.0;
@@ -94,7 +94,7 @@ fn a_robot_that_stands_on_its_legs_holds_its_pose() {
         run.state.joint_position[JointId(k as u32)] = *q;
         run.state.joint_command[JointId(k as u32)] = JointCommand::Position(*q);
     }
-    run.world.adopt(&mut run.state).unwrap();
+    run.world.adopt_state(&mut run.state).unwrap();
     let trunk = run.root(ObjectId(0));
     let from = run.state.part_pose[trunk];
     let (mut worst, mut at_last) = (0.0_f32, 0.0_f32);

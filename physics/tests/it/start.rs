@@ -32,13 +32,13 @@ fn shallow_overlaps_are_resolved_and_reported_and_nothing_explodes() {
     let mut fastest = 0.0_f32;
     for _ in 0..40 {
         run.steps(1);
-        fastest = fastest.max(run.world.fastest_m_s());
+        fastest = fastest.max(run.world.max_speed_m_s());
     }
     assert!(fastest < 0.5, "{fastest} m/s");
     assert!(
-        run.world.fastest_m_s() < 0.01,
+        run.world.max_speed_m_s() < 0.01,
         "{} m/s after 2 s",
-        run.world.fastest_m_s()
+        run.world.max_speed_m_s()
     );
     assert!((run.position(sunk).y - 0.1).abs() < 2e-3);
     assert!(run.position(in_wall).x > 0.098);
@@ -71,7 +71,7 @@ fn what_needs_more_than_the_bound_is_frozen_and_named() {
     );
     run.steps(40);
     assert_eq!(run.position(buried), Vec3::new(3.0, 0.5, 3.0));
-    assert_eq!(run.world.fastest_m_s(), 0.0);
+    assert_eq!(run.world.max_speed_m_s(), 0.0);
 }
 
 /// A frozen object stays for good; giving it a velocity frees it, so that it collides with what is in its way.
@@ -87,19 +87,19 @@ fn a_frozen_thing_with_a_velocity_is_free() {
         ..PhysicsConfig::default()
     });
     assert_eq!(run.report.frozen.len(), 1);
-    run.world.adopt(&mut run.state).unwrap();
+    run.world.adopt_state(&mut run.state).unwrap();
     run.steps(20);
     assert_eq!(run.position(sunk), Vec3::new(3.0, 0.95, 3.0), "it stands");
     let root = run.root(sunk);
     run.state.part_velocity[root].linear = Vec3::new(2.0, 1.0, 0.0);
-    run.world.adopt(&mut run.state).unwrap();
+    run.world.adopt_state(&mut run.state).unwrap();
     run.steps(100);
     let at = run.position(sunk);
     assert!(
         at.x > 3.2 && at.x < 5.92 && at.y > 0.09,
         "it flew and fell inside the room: {at}"
     );
-    assert!(run.world.fastest_m_s() < 0.1);
+    assert!(run.world.max_speed_m_s() < 0.1);
 }
 
 /// With a larger bound the same thing is lifted out.

@@ -240,7 +240,7 @@ fn collisions_keep_momentum_and_make_no_energy() {
             );
             run.state.part_velocity[root].linear = inwards * 0.8 + aside;
         }
-        run.world.adopt(&mut run.state).unwrap();
+        run.world.adopt_state(&mut run.state).unwrap();
         let sums = |run: &Run| {
             let (mut p, mut l, mut e, mut size) = (DVec3::ZERO, DVec3::ZERO, 0.0, 0.0);
             for ball in &balls {
@@ -319,7 +319,7 @@ fn a_box_that_spins_about_its_middle_axis_turns_over_in_time() {
     let start = DVec3::new(0.1, 12.0, 0.04);
     let root = run.root(body);
     run.state.part_velocity[root].angular = start.as_vec3();
-    run.world.adopt(&mut run.state).unwrap();
+    run.world.adopt_state(&mut run.state).unwrap();
     let measure = |run: &Run| {
         let turn = run.rotation(body).as_dquat();
         let own = turn.inverse() * spin(run, body).as_dvec3();
@@ -408,7 +408,7 @@ fn a_loaded_gyroscope_goes_round_at_its_rate() {
             // Released in steady precession, so that it does not nod.
             run.state.joint_velocity[around] = rate;
         }
-        run.world.adopt(&mut run.state).unwrap();
+        run.world.adopt_state(&mut run.state).unwrap();
         run.steps(20);
         let state = &run.state;
         (
@@ -461,7 +461,7 @@ fn wide_swings_of_a_pendulum_take_longer() {
     for amplitude in [0.2_f32, 0.8, 1.4] {
         let (mut run, joint, mass, inertia) = bar(0.0, 0.0, false);
         run.state.joint_position[joint] = amplitude;
-        run.world.adopt(&mut run.state).unwrap();
+        run.world.adopt_state(&mut run.state).unwrap();
         let (mut crossings, mut top, mut tops) = (Vec::new(), 0.0_f32, Vec::new());
         let mut last = amplitude;
         while crossings.len() < 5 {
@@ -494,7 +494,7 @@ fn wide_swings_of_a_pendulum_take_longer() {
 fn a_damped_pendulum_loses_the_same_share_in_each_second() {
     let (mut run, joint, _, inertia) = bar(0.05, 0.0, false);
     run.state.joint_position[joint] = 0.2;
-    run.world.adopt(&mut run.state).unwrap();
+    run.world.adopt_state(&mut run.state).unwrap();
     let mut tops = Vec::new();
     let mut trail = vec![0.2_f32];
     for step in 1..=160 {
@@ -531,7 +531,7 @@ fn a_pushed_door_coasts_to_a_stop_as_its_hinge_says() {
         let (mut run, joint, _, inertia) = bar(damping, friction, true);
         let speed = 3.0;
         run.state.joint_velocity[joint] = speed;
-        run.world.adopt(&mut run.state).unwrap();
+        run.world.adopt_state(&mut run.state).unwrap();
         let mut stopped = 0;
         for step in 1..=400 {
             run.steps(1);

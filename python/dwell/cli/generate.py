@@ -16,14 +16,14 @@ from pathlib import Path
 from typing import Any
 
 from dwell import _native
-from dwell.arguments import whole
+from dwell.arguments import integer_in_range
 from dwell.cli.common import ProgressBar, count, count_from_1, path, print_json
 from dwell.cli.job_journal import Journal, claim
 from dwell.files import lines, open_file, parse_json
 
 _FORMS = ("dwell", "suncg", "glb")
 #: Houses that failed and are told of on standard error.
-_MOST_TOLD = 10
+_MAX_LISTED_FAILURES = 10
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -80,14 +80,14 @@ def run(args: argparse.Namespace) -> int:
         # Another process of this job may have ended it since.
         with contextlib.suppress(FileExistsError):
             made = _make(args, manifest, {**dataset, "shard": [shard, shards]})
-    made += _make_again(args, manifest)
+    made += _regenerate_missing(args, manifest)
     seconds = time.perf_counter() - start
     rows, failed, told = 0, 0, []
     for row in _rows(manifest):
         rows += 1
         if "error" in row:
             failed += 1
-            if failed <= _MOST_TOLD:
+            if failed <= _MAX_LISTED_FAILURES:
                 told.append(f"{row.get('house')}: {row['error']}")
     summary = {
         "houses": rows - failed,
@@ -145,7 +145,7 @@ def _make(args: argparse.Namespace, manifest: Path, job: dict[str, Any]) -> int:
     return made
 
 
-def _make_again(args: argparse.Namespace, manifest: Path) -> int:
+def _regenerate_missing(args: argparse.Namespace, manifest: Path) -> int:
     """Makes the houses of the manifest that are not there as they were written; returns how many.
 
     Raises:
@@ -157,7 +157,9 @@ def _make_again(args: argparse.Namespace, manifest: Path) -> int:
     made = 0
     with ThreadPoolExecutor(args.workers or os.cpu_count() or 1) as pool:
         while some := list(itertools.islice(missing, 64)):
-            for row, new in zip(some, pool.map(lambda row: _again(args, row), some), strict=True):
+            for row, new in zip(
+                some, pool.map(lambda row: _regenerate_house(args, row), some), strict=True
+            ):
                 # Older manifests have fewer fields.
                 if {key: new[key] for key in new if key in row} != row:
                     raise ValueError(
@@ -171,8 +173,8 @@ def _make_again(args: argparse.Namespace, manifest: Path) -> int:
     return made
 
 
-def _again(args: argparse.Namespace, row: dict[str, Any]) -> dict[str, Any]:
-    return _house(args, whole(f"{args.out}: seed", row.get("seed")))
+def _regenerate_house(args: argparse.Namespace, row: dict[str, Any]) -> dict[str, Any]:
+    return _house(args, integer_in_range(f"{args.out}: seed", row.get("seed")))
 
 
 def _is_there(args: argparse.Namespace, row: dict[str, Any]) -> bool:

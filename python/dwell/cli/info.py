@@ -10,7 +10,7 @@ from dwell import ConfigError
 from dwell.cli.common import path, print_json, refuse_unused
 from dwell.files import atomic_write
 
-_MOST_WARNINGS = 20
+_MAX_WARNINGS = 20
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -79,11 +79,11 @@ def _unmapped(names: dict[str, list[dict[str, Any]]]) -> list[str]:
         if not rows:
             continue
         lines.append(f"unmapped {what}: {len(rows)}")
-        for row in rows[:_MOST_WARNINGS]:
+        for row in rows[:_MAX_WARNINGS]:
             taken = f", taken for {row['taken_for']}" if row["taken_for"] else ""
             lines.append(f"  {row['name']}: {row['count']}, {row['area_m2']:.1f} m2{taken}")
-        if len(rows) > _MOST_WARNINGS:
-            lines.append(f"  and {len(rows) - _MOST_WARNINGS} more (--json has them)")
+        if len(rows) > _MAX_WARNINGS:
+            lines.append(f"  and {len(rows) - _MAX_WARNINGS} more (--json has them)")
     return lines
 
 
@@ -98,8 +98,8 @@ def _report(report: Any) -> list[str]:  # noqa: ANN401 - JSON
         return ["report: nothing to report"]
     not_kept = int(report.get("not_kept", 0))
     lines = [f"report: {_many(len(warnings) + not_kept, 'warning')}"]
-    lines += [f"  {warning['sentence']}" for warning in warnings[:_MOST_WARNINGS]]
-    if more := max(len(warnings) - _MOST_WARNINGS, 0):
+    lines += [f"  {warning['sentence']}" for warning in warnings[:_MAX_WARNINGS]]
+    if more := max(len(warnings) - _MAX_WARNINGS, 0):
         lines.append(f"  and {more} more (--json has them)")
     if not_kept:
         lines.append(f"  and {not_kept} that were counted and not kept")

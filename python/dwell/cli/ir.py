@@ -17,7 +17,7 @@ from dwell.cli.common import (
     refuse_unused,
 )
 from dwell.cli.write_files import add_bits, save_sound
-from dwell.files import check_place
+from dwell.files import check_writable
 
 #: Options of every way to compute responses, and those of each.
 _ALWAYS = {"house", "seed", "rays", "image_order", "laws", "threads", "out", "json"}
@@ -83,7 +83,7 @@ def run(args: argparse.Namespace) -> int:
         refuse_unused(args, _MEASURED_ROOM, "a measured room")
         return measured_room.run(args)
     if args.out is not None and args.grid is None:
-        check_place(args.out)
+        check_writable(args.out)
     if args.map or args.plot:
         refuse_unused(args, _MAP if args.map else _PLOT, "--map" if args.map else "--plot")
         return ir_picture.run(args)

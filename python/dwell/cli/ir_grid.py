@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from dwell.cli.common import ProgressBar, number, print_json
 from dwell.cli.job_journal import claim, refuse_other
-from dwell.files import atomic_write, open_alone, open_file, read, read_json, save_array
+from dwell.files import atomic_write, open_exclusive, open_file, read, read_json, save_array
 from dwell.listening import Receiver
 
 #: Format and the suffix of its files.
@@ -98,7 +98,7 @@ def _alone(out: Path) -> Iterator[None]:
         ValueError: Another process writes it.
     """
     path = out.with_name(f".{out.name}.lock")
-    with open_alone(path):
+    with open_exclusive(path):
         try:
             yield
         finally:
@@ -166,7 +166,7 @@ def _house(
             with atomic_write(part) as path:
                 save_array(path, found)
             made += len(receivers)
-        radius = None if args.head is None else args.head.about
+        radius = None if args.head is None else args.head.summary
         data = Dataset(
             house=name,
             fingerprint=fingerprint,
@@ -176,7 +176,7 @@ def _house(
             yaw_deg=args.yaw_deg,
             parts=[parts / f"{k}.npy" for k in range(len(sources))],
             head_radius_m=float(radius["radius_m"] if radius else scene.config["head_radius_m"]),
-            corners=np.array(scene.explain()["bounds_m"], np.float64),
+            corners=np.array(scene.material_report()["bounds_m"], np.float64),
             air=scene.config["air"],
             settings=job,
             version=__version__,

@@ -11,7 +11,15 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import IO, Any
 
-from dwell.files import atomic_write, is_draft, lines, open_alone, open_file, parse_json, read_json
+from dwell.files import (
+    atomic_write,
+    is_draft,
+    lines,
+    open_exclusive,
+    open_file,
+    parse_json,
+    read_json,
+)
 
 _JOB, _DONE = "job", "done"
 #: Of a result's name, in that of its journal; file systems have names of up to 255 bytes.
@@ -87,7 +95,7 @@ class Journal:
         out.parent.mkdir(parents=True, exist_ok=True)
         #: Items whose rows are there, in the order they came.
         self.done: dict[str, None] = {}
-        self._file: IO[bytes] = open_alone(self._path)
+        self._file: IO[bytes] = open_exclusive(self._path)
         try:
             keep = self._read(job)
             if not keep and os.path.lexists(out):

@@ -12,14 +12,14 @@ from typing import Any
 import numpy as np
 
 from dwell import ConfigError
-from dwell.arguments import finite, whole
+from dwell.arguments import finite_number, integer_in_range
 from dwell.cli.common import ProgressBar, print_json, refuse_other_suffix
-from dwell.files import MOST_TEXT_BYTES, atomic_write, check_place, read, read_json
+from dwell.files import MAX_TEXT_BYTES, atomic_write, check_writable, read, read_json
 from dwell.listening import Receiver
 
 # Receivers this near are one array, of at most so many microphones.
-_ARRAY_M = 0.5
-_MOST_MICROPHONES = 128
+_MAX_ARRAY_SIZE_M = 0.5
+_MAX_MICROPHONES = 128
 #: What responses may last.
 _DURATION_S = (0.02, 20.0)
 #: Of the air: the usual value, the least and the largest, and the unit.
@@ -56,7 +56,7 @@ class MeasuredRoom:
             raise ValueError(f"{path}: air: expected {', '.join(_AIR)}, found {unknown[0]!r}")
         return cls(
             path=path,
-            rate_hz=whole(f"{path}: fs", file.get("fs", 48000), low=8000, high=192_000),
+            rate_hz=integer_in_range(f"{path}: fs", file.get("fs", 48000), low=8000, high=192_000),
             duration_s=_within(
                 f"{path}: duration_s", file.get("duration_s", 2.0), *_DURATION_S, "s"
             ),
@@ -86,7 +86,7 @@ def is_measured_room(house: str) -> bool:
     path = Path(house)
     if path.suffix.lower() != ".json" or not path.is_file():
         return False
-    if path.stat().st_size > MOST_TEXT_BYTES:
+    if path.stat().st_size > MAX_TEXT_BYTES:
         return False
     text = read(path)
     # One of the two lists may have its name misspelt, which the reader then says.
@@ -97,7 +97,7 @@ def is_measured_room(house: str) -> bool:
 
 def _within(name: str, value: object, low: float, high: float, unit: str) -> float:
     """A number of a range, told by the file's own name for it."""
-    found = finite(name, value)
+    found = finite_number(name, value)
     if not low <= found <= high:
         raise ValueError(f"{name} is {found:g}; allowed is {low:g} to {high:g} {unit}")
     return found
@@ -109,7 +109,7 @@ def run(args: argparse.Namespace) -> int:
 
     refuse_other_suffix(args.out, ".npz")
     if args.out is not None:
-        check_place(args.out)
+        check_writable(args.out)
     room = MeasuredRoom.read(Path(args.house))
     sources = _picked("--sources", room.sources, args.sources)
     receivers = _picked("--receivers", room.receivers, args.receivers)
@@ -128,7 +128,7 @@ def run(args: argparse.Namespace) -> int:
     built = time.perf_counter()
     length = round(room.duration_s * room.rate_hz)
     responses = np.zeros((len(sources), len(receivers), length), np.float32)
-    groups = together(list(receivers.values()))
+    groups = group_microphones(list(receivers.values()))
     bar, pairs = ProgressBar(), len(sources) * len(receivers)
     for i, source in enumerate(sources.values()):
         heard = scene.impulse_responses(
@@ -171,7 +171,7 @@ class MicrophoneGroup:
     receiver: Receiver
 
 
-def together(places: list[tuple[float, float, float]]) -> list[MicrophoneGroup]:
+def group_microphones(places: list[tuple[float, float, float]]) -> list[MicrophoneGroup]:
     """Receivers near each other as arrays, whose tails then differ as a real array's do.
 
     Each joins the first group whose first member is within 0.5 m and that has less than 128.
@@ -181,7 +181,8 @@ def together(places: list[tuple[float, float, float]]) -> list[MicrophoneGroup]:
         near = (
             group
             for group in members
-            if math.dist(places[group[0]], place) <= _ARRAY_M and len(group) < _MOST_MICROPHONES
+            if math.dist(places[group[0]], place) <= _MAX_ARRAY_SIZE_M
+            and len(group) < _MAX_MICROPHONES
         )
         group = next(near, None)
         if group is None:
@@ -227,7 +228,7 @@ def _places(path: Path, field: str, file: dict[str, Any]) -> dict[str, tuple[flo
             raise ValueError(f"{at}.id: expected a name of its own, found {name!r}")
         if not isinstance(pos, list) or len(pos) != 3:
             raise ValueError(f"{at}.pos: expected [x, y, z] in metres, found {pos!r}")
-        x, y, z = (finite(f"{at}.pos", number) for number in pos)
+        x, y, z = (finite_number(f"{at}.pos", number) for number in pos)
         places[name] = (x, z, -y)
     return places
 

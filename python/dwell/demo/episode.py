@@ -23,8 +23,8 @@ CAMERA = Camera(256, 192)
 _SAMPLES = 800
 _RATE_HZ = 16_000
 #: Steps that one walk may take, and that all may take together.
-_LONGEST_WALK = 220
-_LONGEST = 520
+_MAX_WALK_STEPS = 220
+_MAX_STEPS = 520
 #: Below this nothing is heard, dB SPL.
 _SILENCE_DB = 0.0
 
@@ -62,7 +62,7 @@ class DemoAgent:
 
     def tired(self) -> bool:
         """True if the errand has become too long."""
-        return len(self.way) > _LONGEST
+        return len(self.way) > _MAX_STEPS
 
     def note(self, what: str, outcome: Outcome) -> None:
         """Writes a line of the log."""
@@ -78,7 +78,7 @@ class DemoAgent:
 
     def walk_to(self, goal: list[float]) -> bool:
         """Walks to a point; doors on the way are opened."""
-        for _ in range(_LONGEST_WALK):
+        for _ in range(_MAX_WALK_STEPS):
             if self.tired():
                 return False
             step = self.world.toward(goal)
@@ -133,10 +133,10 @@ def _open_a_door(walker: DemoAgent) -> None:
                 return
     if not walker.log:
         why = "No door could be reached." if doors else "No door in this house can be moved."
-        walker.log.append(_nothing("open a door", why))
+        walker.log.append(_nothing_to_do("open a door", why))
 
 
-def _nothing(what: str, sentence: str) -> dict[str, Any]:
+def _nothing_to_do(what: str, sentence: str) -> dict[str, Any]:
     return {"what": what, "success": False, "code": "none", "sentence": sentence, "time_s": 0.0}
 
 
@@ -177,7 +177,7 @@ def _take_and_drop(walker: DemoAgent) -> None:
     if not any(line["what"].startswith("take") for line in walker.log):
         why = "Nothing that a hand can take is in reach."
         why = why if things else "Nothing in this house is for a hand to take."
-        walker.log.append(_nothing("take something", why))
+        walker.log.append(_nothing_to_do("take something", why))
 
 
 def _level_db(sound: NDArray[Any]) -> float | None:
@@ -199,7 +199,7 @@ def _visit_a_sound(walker: DemoAgent) -> None:
     source = next((thing for thing in sorted(sources, key=order) if thing["room"] in rooms), None)
     if source is None:
         what = "go to what sounds"
-        walker.log.append(_nothing(what, "Nothing in this house makes a sound of its own."))
+        walker.log.append(_nothing_to_do(what, "Nothing in this house makes a sound of its own."))
         return
     name, room = source["name"], rooms[source["room"]]
     if source["on"] is False:

@@ -10,7 +10,7 @@ from dwell.demo.animation import save_film
 from dwell.envs.single import DwellEnv
 
 _SEED = 5
-_MOST_STEPS = 600
+_MAX_STEPS = 600
 
 
 def follow(house: str, folder: Path) -> dict[str, Any]:
@@ -27,7 +27,7 @@ def follow(house: str, folder: Path) -> dict[str, Any]:
     way, frames = [env.agents()[0]["position"]], [observation["rgb"]]
     text, terminated, steps = str(observation["instruction"]), False, 0
     info: dict[str, Any] = {}
-    while not terminated and steps < _MOST_STEPS:
+    while not terminated and steps < _MAX_STEPS:
         observation, _, terminated, _, info = env.step(env.expert_action())
         steps += 1
         way.append(env.agents()[0]["position"])

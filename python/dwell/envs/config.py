@@ -12,7 +12,16 @@ from collections.abc import Mapping, Sequence
 from typing import Any, TypedDict
 
 from dwell import ConfigError
-from dwell.arguments import fields, in_order, mapping, quoted, text, texts, to_json, whole
+from dwell.arguments import (
+    checked_fields,
+    integer_in_range,
+    mapping,
+    quoted,
+    sequence_items,
+    text,
+    text_list,
+    to_json,
+)
 from dwell.envs.python_tasks import NativeSettings, RewardChoice, Sensors
 from dwell.house import House
 from dwell.house_list import HouseList
@@ -48,7 +57,7 @@ def arguments_of(env: type) -> list[str]:
 
 #: Houses, with their environments, that are kept for the next episode in them: enough for those
 #: who go around a few, and few enough for those who go through thousands.
-KEPT = 16
+CACHED_HOUSES = 16
 
 
 def step_limit(value: object) -> int | None:
@@ -79,21 +88,21 @@ def agent_number(agent: object) -> int:
     Raises:
         ConfigError: It is no whole number from 0.
     """
-    return whole("agent", agent, high=2**32 - 1)
+    return integer_in_range("agent", agent, high=2**32 - 1)
 
 
 class HouseCache:
     """Houses by number.
 
-    Those given by HOUSE string are opened at first use. The last :data:`KEPT` stay open, and those
-    that somebody plays in.
+    Those given by HOUSE string are opened at first use. The last :data:`CACHED_HOUSES` stay open,
+    and those that somebody plays in.
     """
 
     def __init__(self, houses: Houses) -> None:
         """Keeps the houses, one house counting as a list of one; opens nothing."""
         alone = isinstance(houses, str | os.PathLike | House)
         expected = "expected HOUSE strings or Houses"
-        given = [houses] if alone else in_order("houses", houses, expected)
+        given = [houses] if alone else sequence_items("houses", houses, expected)
         if not given:
             raise ConfigError("houses: expected at least one HOUSE string or House, found none")
         self._given: dict[str, House] = {}
@@ -135,7 +144,7 @@ class HouseCache:
         # Without a lock, which a fork beside another thread would leave held.
         self._kept.pop(name, None)
         self._kept[name] = house
-        while len(self._kept) > KEPT:
+        while len(self._kept) > CACHED_HOUSES:
             self._kept.popitem(last=False)
         return house
 
@@ -155,7 +164,7 @@ class HouseCache:
                 f"episode_id is {quoted(episode_id)}; expected HOUSE#NUMBER, as info has it, of a "
                 f"house of this environment: {quoted(self.names[:12])}"
             )
-        return self.names.index(name), whole("episode_id", int(seed))
+        return self.names.index(name), integer_in_range("episode_id", int(seed))
 
 
 def env_json(
@@ -175,7 +184,7 @@ def env_json(
     if native.settings is not None:
         config["task_settings"] = mapping("task_settings", native.settings)
     if stride is not None:
-        config["stride"] = fields("stride", stride, setting_checks("StepSizes"))
+        config["stride"] = checked_fields("stride", stride, setting_checks("StepSizes"))
     if native.sensors is not None:
         config["sensors"] = _sensors(native.sensors)
     if agent:
@@ -186,7 +195,7 @@ def env_json(
 def _sensors(sensors: Sequence[str] | Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
     """Kinds with their settings. A sensor whose settings hold ``kind`` keeps its name beside it."""
     by_name = isinstance(sensors, Mapping)
-    named: dict[str, Any] = {} if by_name else {name: {} for name in texts("sensors", sensors)}
+    named: dict[str, Any] = {} if by_name else {name: {} for name in text_list("sensors", sensors)}
     rows = []
     for name, settings in (mapping("sensors", sensors) if by_name else named).items():
         if not isinstance(settings, Mapping) or "kind" not in settings:

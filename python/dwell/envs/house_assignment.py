@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from dwell.envs.config import KEPT
+from dwell.envs.config import CACHED_HOUSES
 from dwell.envs.env_pool import EnvPool, PreparedEnv
 from dwell.envs.native_batch import NativeBatch
 from dwell.envs.prefetch import Prefetcher
@@ -47,7 +47,9 @@ class HouseAssignment:
             self._put(k, away[k][0], spare)
         missing = [k for k in away if k not in ready]
         # A few at a time: each takes a world's memory while those that they replace are there.
-        for some in (missing[at : at + KEPT] for at in range(0, len(missing), KEPT)):
+        for some in (
+            missing[at : at + CACHED_HOUSES] for at in range(0, len(missing), CACHED_HOUSES)
+        ):
             for k, spare in zip(some, self._stock.make([away[k] for k in some]), strict=True):
                 self._put(k, away[k][0], spare)
         return set(away)

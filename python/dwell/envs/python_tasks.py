@@ -14,12 +14,21 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from dwell import ConfigError, UsageError, _native
-from dwell.arguments import finite, flag, from_json, in_order, mapping, quoted, text, to_json
+from dwell.arguments import (
+    boolean,
+    finite_number,
+    from_json,
+    mapping,
+    quoted,
+    sequence_items,
+    text,
+    to_json,
+)
 from dwell.house import House
 from dwell.plugin_parts import factory
 from dwell.rewards import Reward
 from dwell.sensors import Sensor
-from dwell.tasks import Ask, Task, Verdict
+from dwell.tasks import StepResult, Task, TaskGoal
 from dwell.world import World
 
 #: By name, or what makes a task of one's own: a class, a function or ``"module:Name"``.
@@ -98,7 +107,7 @@ def _sensors(
         return settings, tuple(own)
     if isinstance(sensors, str):
         return sensors, ()
-    rows = in_order("sensors", sensors, "expected names or classes")
+    rows = sequence_items("sensors", sensors, "expected names or classes")
     names = []
     for k, row in enumerate(rows):
         if not isinstance(row, str) or ":" in row:
@@ -163,13 +172,13 @@ class PythonEpisode:
         if asked is None:
             self._batch.ask(self._env)
             return
-        if not isinstance(asked, Ask):
+        if not isinstance(asked, TaskGoal):
             raise ConfigError(
-                f"{self._name()}.reset gave {quoted(asked)}; expected a dwell.Ask or None"
+                f"{self._name()}.reset gave {quoted(asked)}; expected a dwell.TaskGoal or None"
             )
         distance_m = asked.distance_m
         if distance_m is not None:
-            distance_m = finite("distance_m", distance_m)
+            distance_m = finite_number("distance_m", distance_m)
         self._batch.ask(self._env, text("instruction", asked.instruction), distance_m)
 
     def _name(self) -> str:
@@ -184,7 +193,7 @@ class PythonEpisode:
         if self._task is None and self._reward is None:
             return {}
         distance_m = float(answer["distance_to_goal"][k])
-        verdict = Verdict(
+        verdict = StepResult(
             reward=float(answer["reward"][k]),
             terminated=bool(answer["terminated"][k]),
             success=bool(answer["success"][k]),
@@ -194,7 +203,7 @@ class PythonEpisode:
             verdict = _checked(self._name(), self._task.judge(self._world, action, verdict))
         reward = verdict.reward
         if self._reward is not None:
-            reward = finite("reward", self._reward.reward(self._world, action, verdict))
+            reward = finite_number("reward", self._reward.reward(self._world, action, verdict))
         ruling = {
             "reward": reward,
             "terminated": verdict.terminated,
@@ -321,16 +330,16 @@ def _refuse_what_changes(at: str, value: object) -> None:
         )
 
 
-def _checked(task: str, verdict: object) -> Verdict:
-    if not isinstance(verdict, Verdict):
-        raise ConfigError(f"{task}.judge gave {quoted(verdict)}; expected a dwell.Verdict")
+def _checked(task: str, verdict: object) -> StepResult:
+    if not isinstance(verdict, StepResult):
+        raise ConfigError(f"{task}.judge gave {quoted(verdict)}; expected a dwell.StepResult")
     distance_m = verdict.distance_m
     return dataclasses.replace(
         verdict,
-        reward=finite("reward", verdict.reward),
-        terminated=flag("terminated", verdict.terminated),
-        success=flag("success", verdict.success),
-        distance_m=None if distance_m is None else finite("distance_m", distance_m),
+        reward=finite_number("reward", verdict.reward),
+        terminated=boolean("terminated", verdict.terminated),
+        success=boolean("success", verdict.success),
+        distance_m=None if distance_m is None else finite_number("distance_m", distance_m),
     )
 
 

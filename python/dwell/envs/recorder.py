@@ -18,10 +18,10 @@ from dwell.arguments import path
 from dwell.envs.single import DwellEnv
 from dwell.envs.vector import DwellVectorEnv
 from dwell.files import make_folder
-from dwell.replays import MOST_STEPS, Replay
+from dwell.replays import MAX_STEPS, Replay
 
 #: Why an episode goes on no further.
-_FULL = f"{MOST_STEPS} steps are written, all that a file holds; reset begins another"
+_FULL = f"{MAX_STEPS} steps are written, all that a file holds; reset begins another"
 
 
 class _EpisodeInProgress:
@@ -82,7 +82,7 @@ class _EpisodeInProgress:
     @property
     def is_full(self) -> bool:
         """True if no file holds a further step."""
-        return len(self._actions) == MOST_STEPS
+        return len(self._actions) == MAX_STEPS
 
 
 def write_numbered(replay: Replay, folder: Path) -> Path:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import gymnasium
 
 from dwell import ConfigError, _native
-from dwell.arguments import refuse_unknown, text, whole
+from dwell.arguments import integer_in_range, refuse_unknown, text
 from dwell.envs.config import EnvSettings
 from dwell.envs.python_tasks import TaskChoice
 from dwell.plugin_parts import factory
@@ -53,7 +53,7 @@ def register_task(env_id: str, task: TaskChoice, **settings: Unpack[EnvSettings]
     known = [*EnvSettings.__annotations__]
     refuse_unknown("register_task", [name for name in settings if name not in known], known)
     made = factory("task", task, Task, settings.get("task_settings"))()
-    steps = whole(f"{type(made).__name__}.max_steps", made.max_steps, low=1)
+    steps = integer_in_range(f"{type(made).__name__}.max_steps", made.max_steps, low=1)
     if text("env_id", env_id) in gymnasium.registry:
         raise ConfigError(f"env_id is {env_id!r}, which is registered already")
     try:

@@ -17,10 +17,10 @@ from gymnasium.wrappers import TimeLimit
 from numpy.typing import NDArray
 
 from dwell import ConfigError, UsageError, _native
-from dwell.arguments import mapping, quoted, refuse_unknown, text, whole
+from dwell.arguments import integer_in_range, mapping, quoted, refuse_unknown, text
 from dwell.camera import Camera, camera_settings
 from dwell.envs.config import (
-    KEPT,
+    CACHED_HOUSES,
     HouseCache,
     Houses,
     agent_number,
@@ -128,13 +128,13 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
             agent=agent_number(agent),
         )
         self._shelf = HouseCache(houses)
-        threads = None if threads is None else whole("threads", threads, low=1)
+        threads = None if threads is None else integer_in_range("threads", threads, low=1)
         self._closed = False
         # Not of this environment: one that nobody holds any more goes at once, with its worlds.
         run = functools.partial(
             _run, self._shelf, self._config, threads, custom=self._custom, heads=self._heads
         )
-        self._runner_of = functools.lru_cache(KEPT)(run)
+        self._runner_of = functools.lru_cache(CACHED_HOUSES)(run)
         self._house = 0
         self._episode = 0
         self._seed = 0
@@ -176,7 +176,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         """
         self._refuse_closed()
         self._counters = _counters_around(self)
-        super().reset(seed=None if seed is None else whole("seed", seed))
+        super().reset(seed=None if seed is None else integer_in_range("seed", seed))
         options = {} if options is None else mapping("options", options)
         if unknown := sorted(set(options) - {"house", "episode_id"}):
             raise ConfigError(f"options: no {unknown[0]!r}; allowed are house and episode_id")
@@ -186,7 +186,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
             )
         house = int(self.np_random.integers(len(self._shelf.names)))
         if "house" in options:
-            house = whole(
+            house = integer_in_range(
                 "options: house, an index,", options["house"], high=len(self._shelf.names) - 1
             )
         episode = int(self.np_random.integers(2**63))
@@ -203,7 +203,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
 
         ``info`` has no ``distance_to_goal``, ``spl`` and ``soft_spl`` where the task has no goal.
         """
-        number = whole("action", action, high=len(_native.actions()) - 1)
+        number = integer_in_range("action", action, high=len(_native.actions()) - 1)
         answer, further = self._runner.step(np.array([number], np.int64))
         info: dict[str, Any] = {key: np.asarray(answer[key])[0].item() for key in INFO_KEYS}
         info = {k: value for k, value in info.items() if k not in GOAL_KEYS or not isnan(value)}

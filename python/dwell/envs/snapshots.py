@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from dwell import ConfigError
-from dwell.arguments import flag, mapping, quoted, text, to_json
+from dwell.arguments import boolean, mapping, quoted, text, to_json
 
 #: What the bytes begin with, and the number of their form.
 _HEAD = b"dwvec2"
@@ -62,7 +62,7 @@ class BatchSnapshot:
             told = mapping(at, json.loads(about))
             return cls(
                 episode_id=text(f"{at}: episode_id", told["episode_id"]),
-                done=flag(f"{at}: done", told["done"]),
+                done=boolean(f"{at}: done", told["done"]),
                 stream=_stream(told["stream"]),
                 parts=parts,
                 world=world,

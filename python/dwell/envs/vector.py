@@ -14,17 +14,17 @@ from numpy.typing import NDArray
 
 from dwell import ConfigError, UsageError, _native
 from dwell.arguments import (
-    in_order,
+    abbreviated_list,
+    integer_in_range,
     mapping,
     quoted,
     refuse_masked,
     refuse_unknown,
-    some,
-    whole,
+    sequence_items,
 )
 from dwell.camera import camera_settings
 from dwell.envs.config import (
-    KEPT,
+    CACHED_HOUSES,
     HouseCache,
     Houses,
     agent_number,
@@ -104,7 +104,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
         copy: bool = False,
         overlap: bool = False,
-        load_ahead: int = KEPT,
+        load_ahead: int = CACHED_HOUSES,
         render_mode: str | None = None,
         **unknown: NoReturn,
     ) -> None:
@@ -160,13 +160,13 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             load_ahead=load_ahead,
             render_mode=render_mode,
         )
-        num_envs = whole("num_envs", num_envs, low=1, high=65_536)
+        num_envs = integer_in_range("num_envs", num_envs, low=1, high=65_536)
         self.num_envs = num_envs
         self.render_mode = checked_render_mode(render_mode)
         self.autoreset_mode = _autoreset_mode(autoreset_mode)
         self.metadata = {**self.metadata, "autoreset_mode": self.autoreset_mode}
         self._limit = step_limit(max_episode_steps)
-        load_ahead = whole("load_ahead", load_ahead)
+        load_ahead = integer_in_range("load_ahead", load_ahead)
         world, heads = with_head(world)
         native, custom = split(task, task_settings, reward, sensors)
         config = env_json(
@@ -178,7 +178,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             agent=agent_number(agent),
         )
         shelf = HouseCache(houses)
-        threads = None if threads is None else whole("threads", threads, low=1)
+        threads = None if threads is None else integer_in_range("threads", threads, low=1)
         if not isinstance(overlap, bool):
             raise ConfigError(f"overlap: found {overlap!r}, allowed are True and False")
         self._shelf = shelf
@@ -287,11 +287,11 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             )
         seeds: list[int | None] = [None] * self.num_envs
         if isinstance(seed, int | np.integer):
-            seeds = [whole("seed", seed) + k for k in range(self.num_envs)]
+            seeds = [integer_in_range("seed", seed) + k for k in range(self.num_envs)]
         elif seed is not None:
             expected = "expected a whole number, or one for each environment"
-            given = in_order("seed", seed, expected)
-            seeds = [None if one is None else whole("seed", one) for one in given]
+            given = sequence_items("seed", seed, expected)
+            seeds = [None if one is None else integer_in_range("seed", one) for one in given]
             if len(seeds) != self.num_envs:
                 raise ConfigError(f"seed: expected {self.num_envs} seeds, found {len(seeds)}")
         asked = self._asked(options.get("episode_id"), which)
@@ -347,7 +347,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         if any(stream is None for stream in self._streams):
             raise UsageError("step: no episode has begun; call reset first")
         if self._stopped.any():
-            which = some(np.flatnonzero(self._stopped).tolist())
+            which = abbreviated_list(np.flatnonzero(self._stopped).tolist())
             raise UsageError(f"step: no episode of environments {which} has begun; reset them")
         refuse_masked("actions", actions)
         try:
@@ -364,13 +364,14 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         last = len(_native.actions()) - 1
         wrong = np.flatnonzero((numbers < 0) | (numbers > last)).tolist()
         if wrong:
-            found = some(numbers[wrong].tolist())
+            found = abbreviated_list(numbers[wrong].tolist())
             raise ConfigError(
-                f"actions of environments {some(wrong)} are {found}; allowed are 0 to {last}"
+                f"actions of environments {abbreviated_list(wrong)} are {found}; "
+                f"allowed are 0 to {last}"
             )
         begins = self._done.copy()
         if begins.any() and self.autoreset_mode is not AutoresetMode.NEXT_STEP:
-            which = some(np.flatnonzero(begins).tolist())
+            which = abbreviated_list(np.flatnonzero(begins).tolist())
             raise UsageError(f"environments {which} have ended; reset them with reset_mask first")
         if begins.any():
             self._start(begins)

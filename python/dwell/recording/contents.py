@@ -19,7 +19,7 @@ from dwell.world import World
 #: Where ears are over a floor, m.
 _EAR_M = 1.5
 #: After so many steps an episode is left.
-_MOST_STEPS = 2000
+_MAX_STEPS = 2000
 
 
 def record_house(recording: Recording, world: World) -> None:
@@ -61,7 +61,7 @@ def record_episode(recording: Recording, house: House, task: str, seed: int) -> 
         agent = env.agents()[0]
         way.append(agent["position"])
         recording.step(steps, agent, observation["rgb"], camera)
-        if done or steps >= _MOST_STEPS:
+        if done or steps >= _MAX_STEPS:
             break
         observation, _, done, _, _ = env.step(np.int64(env.expert_action()))
         steps += 1

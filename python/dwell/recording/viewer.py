@@ -26,7 +26,7 @@ _RANGE_DB = 40.0
 #: The octave band of 1 kHz among those of ``early_paths``.
 _BAND_OF_1_KHZ = 4
 # The viewer's classes have 16 bits.
-_MOST_IDS = 0xFFFF
+_MAX_ID = 0xFFFF
 
 
 def sdk() -> ModuleType:
@@ -123,7 +123,7 @@ class Recording:
                     show_labels=False,
                 ),
             )
-        names = [(row["id"], row["name"]) for row in fixtures["boxes"] if row["id"] <= _MOST_IDS]
+        names = [(row["id"], row["name"]) for row in fixtures["boxes"] if row["id"] <= _MAX_ID]
         self._log(["world"], rr.AnnotationContext(names))
         self.text("description", "\n".join(house.describe("house")))
 
@@ -166,7 +166,7 @@ class Recording:
         self._log([*path, "rgb"], rr.Image(images["rgb"]))
         self._log([*path, "depth"], rr.DepthImage(images["depth"][..., 0], meter=1.0))
         ids = images["instance"][..., 0]
-        ids = np.where(ids <= _MOST_IDS, ids, 0).astype(np.uint16)
+        ids = np.where(ids <= _MAX_ID, ids, 0).astype(np.uint16)
         self._log([*path, "ids"], rr.SegmentationImage(ids))
 
     def way(self, name: str, way: Sequence[Sequence[float]]) -> None:
@@ -275,7 +275,7 @@ class Recording:
                     sizes=[row["size"] for row in rows],
                     quaternions=[row["rotation"] for row in rows],
                     labels=[row["name"] for row in rows],
-                    class_ids=[min(row["id"], _MOST_IDS) for row in rows],
+                    class_ids=[min(row["id"], _MAX_ID) for row in rows],
                     fill_mode=self._rr.components.FillMode.MajorWireframe,
                     show_labels=False,
                 ),

@@ -2,7 +2,7 @@
 
 use crate::apartment;
 use dwell::sensors::{ImageSettings, Observation};
-use dwell::{CameraMount, Engines, PictureRequest, World, WorldConfig, WorldError};
+use dwell::{CameraMount, Engines, ImageRequest, World, WorldConfig, WorldError};
 use dwell_render::{Camera, ClassSet, Preset, Projection, RenderError};
 use dwell_scene::parallel::Threads;
 use dwell_scene::space::rotation_from_yaw_pitch;
@@ -153,9 +153,9 @@ pub fn look(
     let place = CameraMount::World(Pose::new(Vec3::from_array(eye), rotation));
     at(
         world,
-        PictureRequest {
+        ImageRequest {
             camera,
-            place,
+            mount: place,
             preset,
         },
         sensors,
@@ -169,7 +169,7 @@ pub fn look(
 /// [`WorldError`] for a sensor that there is not.
 pub fn at(
     world: &World,
-    request: PictureRequest,
+    request: ImageRequest,
     sensors: &[&str],
     classes: ClassSet,
 ) -> Result<Vec<Observation>, WorldError> {
@@ -178,5 +178,5 @@ pub fn at(
         max_objects: 16,
         classes,
     };
-    world.look(&request, &names, settings, Threads::ONE)
+    world.image_observations(&request, &names, settings, Threads::ONE)
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use dwell::{CameraMount, DiscreteAction, Engines, PictureRequest, StepSizes, World, WorldConfig};
+use dwell::{CameraMount, DiscreteAction, Engines, ImageRequest, StepSizes, World, WorldConfig};
 use dwell_houses::{HousesError, LoadReport};
 use dwell_render::{Camera, ImageChannels, Preset};
 use dwell_scene::parallel::Threads;
@@ -46,9 +46,9 @@ pub fn live_in(house: House) {
     let Ok(camera) = Camera::from_fov(24, 16, 90.0) else {
         return;
     };
-    let request = PictureRequest {
+    let request = ImageRequest {
         camera,
-        place: CameraMount::Agent(AgentId(0), Pose::IDENTITY),
+        mount: CameraMount::Agent(AgentId(0), Pose::IDENTITY),
         preset: Preset::Lit,
     };
     let channels = ImageChannels {
@@ -56,5 +56,5 @@ pub fn live_in(house: House) {
         depth: true,
         ..ImageChannels::default()
     };
-    let _ = world.picture(&request, channels, Threads::ONE);
+    let _ = world.render_image(&request, channels, Threads::ONE);
 }

@@ -2,7 +2,7 @@
 
 use super::RuleViolation;
 use dwell_furniture::tables::category;
-use dwell_furniture::testing::overlap::{ConvexPiece, deepest, object_pieces, part_pieces};
+use dwell_furniture::testing::overlap::{ConvexPiece, max_depth, object_pieces, part_pieces};
 use dwell_scene::navigation::{DoorPolicy, NavConfig, NavGrid};
 use dwell_scene::{Aabb, House, ObjectId, State};
 use glam::Vec2;
@@ -56,7 +56,7 @@ fn overlaps(house: &House, bodies: &[Body]) -> Vec<String> {
             if !a.bounds.intersects(&b.bounds) {
                 continue;
             }
-            let into = deepest(&a.pieces, &b.pieces, TOLERANCE_M);
+            let into = max_depth(&a.pieces, &b.pieces, TOLERANCE_M);
             if into > TOLERANCE_M {
                 faults.push(format!(
                     "{} reaches {:.1} mm into {}",
@@ -98,7 +98,7 @@ fn blocked_joints(house: &House, bodies: &[Body]) -> Vec<String> {
                 if rides {
                     continue;
                 }
-                let into = deepest(&pieces, &other.pieces, TOLERANCE_M);
+                let into = max_depth(&pieces, &other.pieces, TOLERANCE_M);
                 if into > TOLERANCE_M {
                     faults.push(format!(
                         "{} {} at {open:.2} reaches {:.1} mm into {}",

@@ -73,7 +73,7 @@ pub fn of_other_bytes(seeds: &[u64]) -> Vec<u64> {
             .ok()
     };
     let alone: Vec<_> = seeds.iter().map(|seed| number(*seed)).collect();
-    let beside = Threads::exactly(2).map(seeds.len(), |k| number(seeds[k]));
+    let beside = Threads::new(2).map(seeds.len(), |k| number(seeds[k]));
     let differ = seeds
         .iter()
         .zip(alone.iter().zip(&beside))

@@ -51,7 +51,7 @@ impl Homes {
             sensors.retain(|name| *name != "audio");
             dwell_tests::env_in(engines, config, &sensors)
         };
-        let batch = |env: Env| Batch::new(vec![env], Threads::exactly(2)).unwrap();
+        let batch = |env: Env| Batch::new(vec![env], Threads::new(2)).unwrap();
         let mut homes = Self {
             batches: (0..houses()).map(|seed| batch(env(seed))).collect(),
             stream: RandomKey::root(41).stream(),
@@ -117,13 +117,13 @@ impl Homes {
 /// The last of four control steps' sound at both ears, as bits.
 fn hear(world: &mut World) -> Vec<u8> {
     let samples = 800;
-    world.listen(&[(AgentId(0), samples)]).unwrap();
+    world.enable_listeners(&[(AgentId(0), samples)]).unwrap();
     for _ in 0..4 {
         world.step(&[AgentControl::default()]).unwrap();
     }
     let mut heard = vec![0.0_f32; 2 * samples];
     for (ear, out) in heard.chunks_exact_mut(samples).enumerate() {
-        world.heard(AgentId(0), ear, out);
+        world.newest_samples(AgentId(0), ear, out);
     }
     heard
         .iter()

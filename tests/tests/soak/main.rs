@@ -5,7 +5,7 @@
 //!
 //! `houses` begins episodes in many houses over and over.
 //!
-//! 20,000 physics steps in a house; 1,000,000 with `DWELL_TEST_ALL=1`.
+//! 20,000 physics steps in the apartment; 1,000,000 with `DWELL_TEST_ALL=1`, and in a real house, too.
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 #![expect(clippy::print_stdout, reason = "a long test tells its figures")]
@@ -200,7 +200,7 @@ fn play_watched(engines: &Arc<Engines>, steps: usize) -> u64 {
         play.step();
         check(&play.world, &before, k);
         for lost in play.world.notices() {
-            if lost.outcome.code == OutcomeCode::Lost {
+            if lost.outcome.code == OutcomeCode::NonFiniteState {
                 println!(
                     "  control step {k}: {} Before: {:?}",
                     lost.outcome.sentence, play.lately
@@ -289,8 +289,15 @@ fn long_random_play_in_the_apartment_stays_sound_and_repeats() {
     );
 }
 
+/// With `DWELL_TEST_ALL=1`: 20,000 steps take 20 s of two cores. Without it, the same play in the apartment finds what breaks
+/// in any house, `episodes_in_many_houses_leave_nothing_behind_and_repeat` what leaks or does not repeat elsewhere, and
+/// `physics/tests/it/houses.rs` what is particular to the meshes of real houses.
 #[test]
 fn long_random_play_in_a_real_house_stays_sound_and_repeats() {
+    if std::env::var_os("DWELL_TEST_ALL").is_none() {
+        println!("skipped: slow; DWELL_TEST_ALL=1 runs it");
+        return;
+    }
     let beside = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
     let root = std::env::var_os("DWELL_SHARED_DATA").map_or(beside, PathBuf::from);
     let house = root.join("suncg/house/0004d52d1aeeb8ae6de39d6bd993e992/house.json");

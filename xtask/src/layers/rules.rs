@@ -15,7 +15,7 @@ pub(crate) struct Rule {
 #[derive(Debug)]
 pub(crate) struct DependencyWall {
     pub dependency: &'static str,
-    pub behind: &'static [&'static str],
+    pub allowed_crates: &'static [&'static str],
 }
 
 const SCENE: &[&str] = &["dwell-scene"];
@@ -135,22 +135,22 @@ pub(crate) const CRATES: &[Rule] = &[
 pub(crate) const WALLS: &[DependencyWall] = &[
     DependencyWall {
         dependency: "rapier3d",
-        behind: &["dwell-physics"],
+        allowed_crates: &["dwell-physics"],
     },
     DependencyWall {
         dependency: "parry3d",
-        behind: &["dwell-physics"],
+        allowed_crates: &["dwell-physics"],
     },
     DependencyWall {
         dependency: "wgpu",
-        behind: &["dwell-render"],
+        allowed_crates: &["dwell-render"],
     },
     DependencyWall {
         dependency: "pyo3",
-        behind: &["dwell-python"],
+        allowed_crates: &["dwell-python"],
     },
     DependencyWall {
         dependency: "numpy",
-        behind: &["dwell-python"],
+        allowed_crates: &["dwell-python"],
     },
 ];

@@ -26,7 +26,7 @@ pub(crate) fn check(
     for wall in walls {
         for member in members
             .iter()
-            .filter(|member| !wall.behind.contains(&member.name.as_str()))
+            .filter(|member| !wall.allowed_crates.contains(&member.name.as_str()))
         {
             if let Some(way) = way_to(wall.dependency, &member.name, &uses, &ours) {
                 findings.push(format!(
@@ -34,7 +34,7 @@ pub(crate) fn check(
                     member.name,
                     wall.dependency,
                     way.join(" > "),
-                    wall.behind.join(", ")
+                    wall.allowed_crates.join(", ")
                 ));
             }
         }
@@ -75,11 +75,11 @@ fn way_to<'a>(
 mod tests {
     use super::*;
     use crate::manifests::Dependency;
-    use crate::tree::made_up;
+    use crate::tree::parse_fixture;
 
     const WALLS: &[DependencyWall] = &[DependencyWall {
         dependency: "rigid",
-        behind: &["physics"],
+        allowed_crates: &["physics"],
     }];
 
     fn member(name: &str, declares: &[&str]) -> Member {
@@ -99,7 +99,7 @@ mod tests {
 
     #[test]
     fn through_the_crate_behind_the_wall_is_fine() {
-        let tree = made_up("0|world v1|MIT|\n1|physics v1|MIT|\n2|rigid v1|MIT|\n");
+        let tree = parse_fixture("0|world v1|MIT|\n1|physics v1|MIT|\n2|rigid v1|MIT|\n");
         assert_eq!(
             check(
                 &[member("physics", &["rigid"]), member("world", &[])],
@@ -112,7 +112,7 @@ mod tests {
 
     #[test]
     fn a_declared_use_is_a_breach() {
-        let tree = made_up("0|world v1|MIT|\n");
+        let tree = parse_fixture("0|world v1|MIT|\n");
         let findings = check(&[member("world", &["rigid"])], &tree, WALLS);
         assert_eq!(
             findings,
@@ -122,7 +122,7 @@ mod tests {
 
     #[test]
     fn a_use_through_a_foreign_crate_is_a_breach() {
-        let tree = made_up("0|world v1|MIT|\n1|helper v1|MIT|\n2|rigid v1|MIT|\n");
+        let tree = parse_fixture("0|world v1|MIT|\n1|helper v1|MIT|\n2|rigid v1|MIT|\n");
         let findings = check(
             &[member("physics", &[]), member("world", &["helper"])],
             &tree,
@@ -136,7 +136,7 @@ mod tests {
 
     #[test]
     fn circles_end() {
-        let tree = made_up("0|world v1|MIT|\n1|a v1|MIT|\n2|b v1|MIT|\n3|a v1|MIT|\n");
+        let tree = parse_fixture("0|world v1|MIT|\n1|a v1|MIT|\n2|b v1|MIT|\n3|a v1|MIT|\n");
         assert_eq!(check(&[member("world", &["a"])], &tree, WALLS), [""; 0]);
     }
 }

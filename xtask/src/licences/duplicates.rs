@@ -53,7 +53,7 @@ pub(crate) fn check(tree: &DependencyTree, exemptions: &[Exemption]) -> CheckOut
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tree::made_up;
+    use crate::tree::parse_fixture;
 
     fn exempt(name: &str) -> Exemption {
         Exemption {
@@ -65,7 +65,7 @@ mod tests {
 
     #[test]
     fn a_duplicate_is_found_unless_exempt() {
-        let tree = made_up("0|a v1|MIT|\n0|a v2|MIT|\n0|b v1|MIT|\n");
+        let tree = parse_fixture("0|a v1|MIT|\n0|a v2|MIT|\n0|b v1|MIT|\n");
         assert_eq!(check(&tree, &[]).findings.len(), 1);
         let exempted = check(&tree, &[exempt("a")]);
         assert!(exempted.passed());
@@ -74,7 +74,7 @@ mod tests {
 
     #[test]
     fn a_stale_exemption_is_found() {
-        let tree = made_up("0|b v1|MIT|\n");
+        let tree = parse_fixture("0|b v1|MIT|\n");
         assert!(check(&tree, &[exempt("b")]).findings[0].contains("exempts b"));
     }
 }

@@ -39,7 +39,7 @@ pub(crate) fn run(root: &Path) -> Result<CheckOutcome, String> {
         .extend(licences(&everything, &policy.allowed));
     outcome.findings.extend(foreign_sources(&everything, root));
     outcome.findings.extend(singles(&shipped, &policy.single));
-    outcome.join(duplicates::check(&built, &policy.duplicate));
+    outcome.merge(duplicates::check(&built, &policy.duplicate));
     let counted = everything
         .packages
         .values()
@@ -54,7 +54,7 @@ pub(crate) fn run(root: &Path) -> Result<CheckOutcome, String> {
 fn licences(tree: &DependencyTree, allowed: &BTreeSet<String>) -> Vec<String> {
     let mut findings = Vec::new();
     for ((name, version), package) in &tree.packages {
-        match spdx::satisfied(&package.licence, allowed) {
+        match spdx::is_satisfied(&package.licence, allowed) {
             Ok(true) => {}
             Ok(false) => findings.push(format!(
                 "{name} {version}: licence {:?} asks for more than {FILE} allows",
@@ -105,11 +105,11 @@ fn singles(shipped: &DependencyTree, single: &[String]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tree::made_up;
+    use crate::tree::parse_fixture;
 
     #[test]
     fn an_unlisted_licence_is_found() {
-        let tree = made_up("0|a v1|MIT|\n0|b v1|GPL-3.0-only|\n0|c v1||\n");
+        let tree = parse_fixture("0|a v1|MIT|\n0|b v1|GPL-3.0-only|\n0|c v1||\n");
         let findings = licences(&tree, &["MIT".to_owned()].into());
         assert_eq!(findings.len(), 2);
         assert!(findings[0].starts_with("b 1: licence \"GPL-3.0-only\""));
@@ -118,7 +118,7 @@ mod tests {
 
     #[test]
     fn a_repository_and_a_folder_outside_are_found() {
-        let tree = made_up(
+        let tree = parse_fixture(
             "0|a v1 (/r/a)|MIT|\n0|b v1 (https://host/b#1)|MIT|\n0|c v1 (/elsewhere/c)|MIT|\n0|d v1|MIT|\n",
         );
         let findings = foreign_sources(&tree, Path::new("/r"));
@@ -129,11 +129,11 @@ mod tests {
     #[test]
     fn two_versions_or_none_of_a_single_are_found() {
         let one = ["glam".to_owned()];
-        assert_eq!(singles(&made_up("0|glam v1|MIT|\n"), &one), [""; 0]);
+        assert_eq!(singles(&parse_fixture("0|glam v1|MIT|\n"), &one), [""; 0]);
         assert_eq!(
-            singles(&made_up("0|glam v1|MIT|\n0|glam v2|MIT|\n"), &one).len(),
+            singles(&parse_fixture("0|glam v1|MIT|\n0|glam v2|MIT|\n"), &one).len(),
             1
         );
-        assert_eq!(singles(&made_up("0|a v1|MIT|\n"), &one).len(), 1);
+        assert_eq!(singles(&parse_fixture("0|a v1|MIT|\n"), &one).len(), 1);
     }
 }

@@ -6,7 +6,7 @@
 use std::collections::BTreeSet;
 
 /// Returns whether `allowed` licences are enough to use something under `expression`.
-pub(crate) fn satisfied(expression: &str, allowed: &BTreeSet<String>) -> Result<bool, String> {
+pub(crate) fn is_satisfied(expression: &str, allowed: &BTreeSet<String>) -> Result<bool, String> {
     let spaced = expression
         .replace('/', " OR ")
         .replace('(', " ( ")
@@ -68,7 +68,7 @@ mod tests {
 
     fn ok(expression: &str) -> bool {
         let allowed = ["MIT", "Apache-2.0", "Zlib"].map(str::to_owned).into();
-        satisfied(expression, &allowed).unwrap()
+        is_satisfied(expression, &allowed).unwrap()
     }
 
     #[test]
@@ -99,7 +99,7 @@ mod tests {
         for text in [
             "", "MIT OR", "(MIT", "MIT)", "MIT Zlib", "AND MIT", "MIT WITH",
         ] {
-            assert!(satisfied(text, &BTreeSet::new()).is_err(), "{text:?}");
+            assert!(is_satisfied(text, &BTreeSet::new()).is_err(), "{text:?}");
         }
     }
 }

@@ -77,7 +77,7 @@ impl Manifest {
 #[cfg(test)]
 impl Manifest {
     /// Of a package that lies in a folder.
-    pub(crate) fn lying_in(folder: &Path) -> Self {
+    pub(crate) fn in_folder(folder: &Path) -> Self {
         Self {
             path: folder.join("Cargo.toml"),
             ..Self::default()

@@ -81,7 +81,7 @@ fn crates(
             texts = of_siblings(linked, manifest)?;
         }
         // Its text names no author, so one copy is as good as another; ours is the licence as published.
-        if texts.is_empty() && spdx::satisfied(licence, &["Apache-2.0".to_owned()].into())? {
+        if texts.is_empty() && spdx::is_satisfied(licence, &["Apache-2.0".to_owned()].into())? {
             texts.push(archives::read(&root.join("LICENSE-APACHE"))?);
         }
         if texts.is_empty() {
@@ -169,7 +169,7 @@ mod tests {
     /// One crate under `licence` in a folder without any text.
     fn listed(licence: &str) -> (Vec<IncludedWork>, CheckOutcome) {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
-        let manifest = Manifest::lying_in(&root.join("xtask/src/notices"));
+        let manifest = Manifest::in_folder(&root.join("xtask/src/notices"));
         let id = ("a".to_owned(), "1".to_owned());
         let mut outcome = CheckOutcome::default();
         let linked = [(id, (licence.to_owned(), manifest))].into();

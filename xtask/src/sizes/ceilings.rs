@@ -6,17 +6,17 @@ use std::path::Path;
 
 const FILE: &str = "xtask/ceilings.toml";
 
-pub(crate) struct Ceilings(BTreeMap<String, f64>);
+pub(crate) struct SizeLimits(BTreeMap<String, f64>);
 
-pub(crate) fn read(root: &Path) -> Result<Ceilings, String> {
+pub(crate) fn read(root: &Path) -> Result<SizeLimits, String> {
     let text =
         std::fs::read_to_string(root.join(FILE)).map_err(|error| format!("{FILE}: {error}"))?;
     toml::from_str(&text)
-        .map(Ceilings)
+        .map(SizeLimits)
         .map_err(|error| format!("{FILE}: {error}"))
 }
 
-impl Ceilings {
+impl SizeLimits {
     /// A figure beside its ceiling; `None` is a figure that was not taken in this checkout.
     pub(crate) fn compare(&self, key: &str, what: &str, value: Option<f64>) -> CheckOutcome {
         let mut outcome = CheckOutcome::default();
@@ -73,8 +73,8 @@ pub(crate) fn cold_build_minutes(root: &Path) -> Option<f64> {
 mod tests {
     use super::*;
 
-    fn ceilings() -> Ceilings {
-        Ceilings([("crates".to_owned(), 10.0)].into())
+    fn ceilings() -> SizeLimits {
+        SizeLimits([("crates".to_owned(), 10.0)].into())
     }
 
     #[test]

@@ -35,7 +35,7 @@ pub(crate) fn check(root: &Path) -> Result<CheckOutcome, String> {
             .display()
             .to_string();
         lines.push(text.lines().count());
-        outcome.join(judge(&name, &text));
+        outcome.merge(judge(&name, &text));
     }
     lines.sort_unstable();
     let median = lines.get(lines.len() / 2).copied().unwrap_or(0);

@@ -31,7 +31,7 @@ pub(crate) fn run(root: &Path) -> Result<CheckOutcome, String> {
         ),
     ];
     for (key, what, value) in measured {
-        outcome.join(ceilings.compare(key, what, value));
+        outcome.merge(ceilings.compare(key, what, value));
     }
     Ok(outcome)
 }

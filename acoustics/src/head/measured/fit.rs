@@ -23,7 +23,7 @@ const CLOSE_COSINE: f64 = 0.984_807_753;
 pub(super) struct SphereFit {
     pub(super) radius_m: f64,
     /// Delay common to all responses, re the sphere, s.
-    pub(super) late_s: f64,
+    pub(super) common_delay_s: f64,
     /// Share of the sphere of each direction, up to a factor.
     weights: Vec<f64>,
 }
@@ -90,7 +90,7 @@ impl SphereFit {
         };
         Self {
             radius_m,
-            late_s: y - radius_m * x,
+            common_delay_s: y - radius_m * x,
             weights,
         }
     }
@@ -112,7 +112,7 @@ impl SphereFit {
         let (mut sphere, mut head) = (0.0, 0.0);
         for ((direction, pair), weight) in directions.iter().zip(responses).zip(&self.weights) {
             for (ear, response) in pair.iter().enumerate() {
-                for (frequency_hz, value) in LEVELS_HZ.iter().zip(waves.of(response)) {
+                for (frequency_hz, value) in LEVELS_HZ.iter().zip(waves.spectrum(response)) {
                     let there = self.response(*frequency_hz, &[cosine(*direction, ear)]);
                     sphere += weight * there[0].norm_sqr();
                     head += weight * f64::from(value.norm_sqr());
@@ -124,7 +124,7 @@ impl SphereFit {
 
     /// Returns pressure at the sphere over that at its centre without it. Shape (cosine,).
     fn response(&self, frequency_hz: f64, cosines: &[f64]) -> Vec<Complex<f64>> {
-        response_of(self.radius_m, frequency_hz, cosines)
+        sphere_spectrum(self.radius_m, frequency_hz, cosines)
     }
 
     /// Returns the delays from a direction that was not measured: the sphere's, plus the deviation of those nearby, s.
@@ -145,12 +145,16 @@ impl SphereFit {
 }
 
 /// Returns the pressure at a sphere, with the delay of [`woodworth_delay_s`] included. Shape (cosine,).
-pub(super) fn response_of(radius_m: f64, frequency_hz: f64, cosines: &[f64]) -> Vec<Complex<f64>> {
+pub(super) fn sphere_spectrum(
+    radius_m: f64,
+    frequency_hz: f64,
+    cosines: &[f64],
+) -> Vec<Complex<f64>> {
     sphere_response(TAU * frequency_hz * radius_m / SPEED_M_S, cosines)
 }
 
-/// Returns the phase that removes Woodworth's delay from [`response_of`].
-pub(super) fn undelayed(radius_m: f64, frequency_hz: f64, cosine: f64) -> Complex<f64> {
+/// Returns the phase that removes Woodworth's delay from [`sphere_spectrum`].
+pub(super) fn delay_removal_phase(radius_m: f64, frequency_hz: f64, cosine: f64) -> Complex<f64> {
     let phase = TAU * frequency_hz * woodworth_delay_s(cosine, radius_m, SPEED_M_S);
     Complex::new(libm::cos(phase), libm::sin(phase))
 }

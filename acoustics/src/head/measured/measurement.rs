@@ -13,7 +13,7 @@ const SAMPLES: std::ops::RangeInclusive<usize> = 16..=65_536;
 /// Most numbers of all responses together: 1 GiB.
 const MOST_NUMBERS: usize = 1 << 28;
 /// Distance below which directions are one, as chords: 0.05 degrees.
-pub(super) const SAME: f64 = 8.7e-4;
+pub(super) const SAME_DIRECTION_CHORD: f64 = 8.7e-4;
 
 /// Impulse responses from places around a head to its ears, in an anechoic room; the input of
 /// [`Head::measured`](super::super::Head::measured).
@@ -99,7 +99,7 @@ impl HrirMeasurement {
         let samples = self.samples();
         let mut kept: Vec<(f64, MeasuredDirection<'_>)> = Vec::new();
         // By cells as wide as the least distance of directions, so that only neighbouring cells are searched.
-        let cell = |d: DVec3| (d / SAME).floor().as_i64vec3().to_array();
+        let cell = |d: DVec3| (d / SAME_DIRECTION_CHORD).floor().as_i64vec3().to_array();
         let mut known: BTreeMap<[i64; 3], Vec<usize>> = BTreeMap::new();
         for (k, source) in self.sources.iter().enumerate() {
             let distance_m = source.length();
@@ -120,7 +120,8 @@ impl HrirMeasurement {
             let [x, y, z] = cell(direction);
             let around = (0..27).map(|n| [x + n % 3 - 1, y + n / 3 % 3 - 1, z + n / 9 - 1]);
             let mut near = around.filter_map(|place| known.get(&place)).flatten();
-            let same = near.find(|j| kept[**j].1.direction.distance(direction) < SAME);
+            let same =
+                near.find(|j| kept[**j].1.direction.distance(direction) < SAME_DIRECTION_CHORD);
             match same.copied() {
                 Some(j) if kept[j].0 >= distance_m => {}
                 // It keeps the place of the first, so that the cells stay right.

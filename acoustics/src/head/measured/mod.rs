@@ -18,7 +18,7 @@ use crate::error::AcousticsError;
 use fit::{SphereFit, WeightedDirections};
 use glam::DVec3;
 use hull::Triangulation;
-use measurement::SAME;
+use measurement::SAME_DIRECTION_CHORD;
 use onset::OnsetDetector;
 use serde::Serialize;
 use std::sync::Arc;
@@ -71,7 +71,7 @@ impl HeadResponses {
         let mut responses = Vec::with_capacity(rows.len());
         let (mut begins_s, mut delay_s) = (Vec::new(), Vec::new());
         for row in &rows {
-            let begin_s = row.responses.map(|response| onsets.of(response));
+            let begin_s = row.responses.map(|response| onsets.onset_s(response));
             responses.push([0, 1].map(|ear| cut(row.responses[ear], begin_s[ear], rate_hz)));
             delay_s.push([0, 1].map(|ear| row.delay_s[ear] + begin_s[ear]));
             begins_s.push(begin_s);
@@ -79,7 +79,7 @@ impl HeadResponses {
         let mut directions: Vec<DVec3> = rows.iter().map(|row| row.direction).collect();
         let fit = SphereFit::new(&directions, &delay_s);
         for late_s in delay_s.iter_mut().flatten() {
-            *late_s -= fit.late_s;
+            *late_s -= fit.common_delay_s;
         }
         let samples = responses.iter().flatten().map(Vec::len).max().unwrap_or(0);
         let gain = fit.gain(&directions, &responses, rate_hz, samples);
@@ -100,7 +100,7 @@ impl HeadResponses {
         let Some(mesh) = Triangulation::new(&directions) else {
             // Unreachable: filling leaves no gap, and no two directions are as near as this.
             return Err(AcousticsError::Head(format!(
-                "directions {SAME} apart cannot be joined to triangles"
+                "directions {SAME_DIRECTION_CHORD} apart cannot be joined to triangles"
             )));
         };
         tracing::debug!(measured, triangles = mesh.len(), "measured head read");
@@ -110,7 +110,7 @@ impl HeadResponses {
                 filled: directions.len() - measured,
                 radius_m: fit.radius_m,
                 gain_db: 20.0 * libm::log10(gain),
-                removed_delay_s: fit.late_s,
+                removed_delay_s: fit.common_delay_s,
             },
             rate_hz,
             samples,
@@ -122,7 +122,7 @@ impl HeadResponses {
         })
     }
 
-    pub(super) fn about(&self) -> &HeadSummary {
+    pub(super) fn summary(&self) -> &HeadSummary {
         &self.about
     }
 }

@@ -32,7 +32,7 @@ impl OnsetDetector {
     /// # Source
     /// J. Nam, M. A. Kolar, J. S. Abel, *On the minimum-phase nature of head-related transfer functions*, AES Convention 125 (2008),
     /// paper 7546: the largest cross-correlation of the two.
-    pub(super) fn of(&mut self, response: &[f32]) -> f64 {
+    pub(super) fn onset_s(&mut self, response: &[f32]) -> f64 {
         let length = self.fft.len();
         let spectrum = self.fft.forward(response);
         let loudest = spectrum.iter().map(|x| modulus(*x)).fold(0.0, f32::max);
@@ -111,9 +111,9 @@ mod tests {
             }
             response
         };
-        let none = onsets.of(&made(100.0, 1.0)) * rate_hz - 100.0;
+        let none = onsets.onset_s(&made(100.0, 1.0)) * rate_hz - 100.0;
         for (delay, gain) in [(100.25, 1.0), (100.5, 30.0), (61.7, 1e-3), (230.1, 1.0)] {
-            let found = onsets.of(&made(delay, gain)) * rate_hz - none;
+            let found = onsets.onset_s(&made(delay, gain)) * rate_hz - none;
             assert!((found - delay).abs() < 0.1, "{delay}: {found}");
         }
         assert!(none.abs() < 1.0, "{none}");

@@ -40,7 +40,7 @@ impl ComplexExponentials {
     }
 
     /// Returns the spectrum of a response whose sample 0 is at time 0. Shape (frequency,).
-    pub(super) fn of(&self, response: &[f32]) -> Vec<Complex<f32>> {
+    pub(super) fn spectrum(&self, response: &[f32]) -> Vec<Complex<f32>> {
         let (mut re, mut im) = (vec![0.0_f32; self.count], vec![0.0_f32; self.count]);
         let rows = self.cosine.chunks_exact(self.count);
         let rows = rows.zip(self.sine.chunks_exact(self.count));

@@ -1,7 +1,7 @@
 //! Filters of a measured head for any direction.
 
 use super::HeadResponses;
-use super::fit::{WeightedDirections, cosine, response_of, undelayed};
+use super::fit::{WeightedDirections, cosine, delay_removal_phase, sphere_spectrum};
 use super::hull::Triangulation;
 use super::spectra::{ComplexExponentials, modulus};
 use crate::bands::{self, BAND_COUNT, BandValues};
@@ -67,7 +67,7 @@ impl HeadResponses {
         let mut rests: Vec<[Vec<Complex<f32>>; 2]> = Vec::with_capacity(measured);
         for (pair, begin_s) in self.pressure.iter().zip(&self.begin_s) {
             rests.push([0, 1].map(|ear| {
-                let mut rest = waves.of(&pair[ear]);
+                let mut rest = waves.spectrum(&pair[ear]);
                 for (value, frequency_hz) in rest.iter_mut().zip(&heard) {
                     let turns = frequency_hz * begin_s[ear];
                     let (s, c) = libm::sincos(TAU * (turns - turns.floor()));
@@ -135,7 +135,7 @@ fn filled<'a>(
         .iter()
         .enumerate()
         .map(|(bin, frequency_hz)| {
-            let sphere = response_of(radius_m, *frequency_hz, &cosines);
+            let sphere = sphere_spectrum(radius_m, *frequency_hz, &cosines);
             let differs: f64 = near
                 .0
                 .iter()
@@ -145,7 +145,8 @@ fn filled<'a>(
                     weight * (log(found) - 0.5 * log(there.norm_sqr()))
                 })
                 .sum();
-            let rest = sphere[0] * undelayed(radius_m, *frequency_hz, own) * libm::exp(differs);
+            let rest =
+                sphere[0] * delay_removal_phase(radius_m, *frequency_hz, own) * libm::exp(differs);
             Complex::new(rest.re as f32, rest.im as f32)
         })
         .collect()
@@ -291,7 +292,11 @@ impl MeasuredHead {
     }
 
     /// Returns gain of amplitude and delay re the head's centre (s) in each band, from `towards` in head space.
-    pub(in crate::head) fn banded(&self, ear: Ear, towards: Vec3) -> (BandValues, BandValues) {
+    pub(in crate::head) fn gain_and_delay(
+        &self,
+        ear: Ear,
+        towards: Vec3,
+    ) -> (BandValues, BandValues) {
         let ([a, b, c], [u, v, w]) = self.around(ear, towards);
         let mix = |of: fn(&DirectionRow) -> &BandValues| {
             let (a, b, c) = (of(a), of(b), of(c));
@@ -301,7 +306,7 @@ impl MeasuredHead {
     }
 
     /// Multiplies a spectrum by the response without its delay, and returns the delay re the head's centre, s.
-    pub(in crate::head) fn shade(
+    pub(in crate::head) fn apply_undelayed_response(
         &self,
         ear: Ear,
         towards: Vec3,

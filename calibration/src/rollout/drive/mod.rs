@@ -57,9 +57,9 @@ pub struct DriveRecording {
     /// The kind of path.
     pub kind: String,
     /// The tracked path: x, y in m and the heading in rad, not wrapped. Shape (sample,).
-    pub planar: Vec<[f64; 3]>,
+    pub planar_poses: Vec<[f64; 3]>,
     /// Rotations of the left and the right wheel since the sample before, rad. Shape (sample,).
-    pub turned_rad: Vec<[f64; 2]>,
+    pub wheel_rotation_rad: Vec<[f64; 2]>,
     motions: Vec<MeasuredMotion>,
     regimes: Vec<Regime>,
 }
@@ -94,7 +94,7 @@ impl DriveRecordings {
                 .drive
                 .iter()
                 .map(|row| [row.left_rad, row.right_rad]);
-            let told = DriveRecording::told(
+            let told = DriveRecording::from_measurements(
                 planar(&episode.drive),
                 turned_rad.collect(),
                 &nominal,
@@ -146,7 +146,7 @@ fn motion([x, y, heading]: [f64; 3], speed_m_s: f64) -> MeasuredMotion {
 
 impl DriveRecording {
     /// A drive without a name from what was measured.
-    pub fn told(
+    pub fn from_measurements(
         planar: Vec<[f64; 3]>,
         turned_rad: Vec<[f64; 2]>,
         base: &NominalBase,
@@ -162,9 +162,9 @@ impl DriveRecording {
                 .zip(&speeds)
                 .map(|(place, speed)| motion(*place, speed[0]))
                 .collect(),
-            regimes: regime::of(&speeds, base, rate_hz),
-            planar,
-            turned_rad,
+            regimes: regime::regimes_of_drive(&speeds, base, rate_hz),
+            planar_poses: planar,
+            wheel_rotation_rad: turned_rad,
         }
     }
 }
@@ -184,24 +184,24 @@ impl RolloutSubject for DriveRecordings {
         &self.episodes[episode].regimes
     }
 
-    fn past(&self) -> usize {
+    fn past_samples(&self) -> usize {
         PAST
     }
 
-    fn divergence(&self) -> Deviation {
+    fn divergence_threshold(&self) -> Deviation {
         Deviation {
             position_m: 0.05,
             rotation_rad: 0.1,
         }
     }
 
-    fn telling_horizon(&self) -> usize {
+    fn most_informative_horizon(&self) -> usize {
         40
     }
 
     /// The way of the wheels is rolled from the past samples on and laid over what the tracker saw of them: the mean of the
     /// headings, then of the places. That is the pose at the start by least squares, all of the past used alike.
-    fn roll(
+    fn simulate(
         &self,
         rig: &DriveRig,
         episode: usize,
@@ -211,8 +211,11 @@ impl RolloutSubject for DriveRecordings {
     ) -> Result<Vec<MeasuredMotion>, CalibrationError> {
         let drive = &self.episodes[episode];
         let from = at.saturating_sub(PAST);
-        let way = rig.way(&drive.turned_rad[from + 1..=at + samples], self.rate_hz)?;
-        let seen = &drive.planar[from..=at];
+        let way = rig.simulated_path(
+            &drive.wheel_rotation_rad[from + 1..=at + samples],
+            self.rate_hz,
+        )?;
+        let seen = &drive.planar_poses[from..=at];
         let count = seen.len() as f64;
         let offset = rig.heading_offset_rad;
         let off = seen.iter().zip(&way).map(|(m, w)| m[2] - offset - w[2]);
@@ -278,11 +281,11 @@ impl ModelledSubject for DriveRecordings {
     }
 
     /// A wheel's distance from the middle.
-    fn lever_m(&self) -> f64 {
+    fn lever_arm_m(&self) -> f64 {
         0.5 * self.base.wheel_base_m
     }
 
-    fn rig(
+    fn simulation(
         &self,
         model: &SimulationModel,
         values: &[f64],
@@ -298,7 +301,7 @@ impl ModelledSubject for DriveRecordings {
         )
     }
 
-    fn found(&self, model: &SimulationModel, values: &[f64]) -> FoundEffects {
+    fn found_effects(&self, model: &SimulationModel, values: &[f64]) -> FoundEffects {
         FoundEffects {
             laws: model::laws(model, values),
             ..FoundEffects::default()

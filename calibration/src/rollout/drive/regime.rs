@@ -32,7 +32,11 @@ pub(super) fn speeds(turned_rad: &[[f64; 2]], base: &NominalBase, rate_hz: f64) 
 }
 
 /// The regime of every sample.
-pub(super) fn of(speeds: &[[f64; 2]], base: &NominalBase, rate_hz: f64) -> Vec<Regime> {
+pub(super) fn regimes_of_drive(
+    speeds: &[[f64; 2]],
+    base: &NominalBase,
+    rate_hz: f64,
+) -> Vec<Regime> {
     let half = ((0.5 * CHANGE_S * rate_hz).round() as usize).max(1);
     let rims = |k: usize| {
         let [forward, turn] = speeds[k];
@@ -81,7 +85,7 @@ mod tests {
             .collect();
         let speeds = speeds(&turned, &base, rate_hz);
         assert!((speeds[150][0] - 0.175).abs() < 1e-12 && (speeds[150][1] - 0.25).abs() < 1e-12);
-        let found = of(&speeds, &base, rate_hz);
+        let found = regimes_of_drive(&speeds, &base, rate_hz);
         let at = [30, 60, 90, 150, 210].map(|k| found[k]);
         let expected = [
             Regime::Rest,

@@ -1,7 +1,7 @@
 //! The report of a series as one page: no network, no script.
 
 use super::SeriesReport;
-use crate::format_number::{number, percent};
+use crate::format_number::{format_number, format_percent};
 use crate::report::page;
 use crate::rollout::html;
 use std::fmt::Write as _;
@@ -16,7 +16,7 @@ impl SeriesReport {
              folds chose. Licence of the data: {}.",
             page::escape(&self.licence)
         );
-        let mut out = page::open(&self.title, &lead);
+        let mut out = page::page_head(&self.title, &lead);
         let _ = write!(
             out,
             "<div class=\"verdict named\"><b>Whole episodes</b>{}</div>",
@@ -57,10 +57,10 @@ impl SeriesReport {
                 };
                 let gain = outcome.gain.as_ref().filter(|_| k == 0);
                 let gain = gain.map_or_else(String::new, |gain| {
-                    let [low, high] = gain.interval.map(percent);
+                    let [low, high] = gain.interval.map(format_percent);
                     format!(
                         "{} ({low} to {high}) over {}",
-                        percent(gain.share),
+                        format_percent(gain.share),
                         gain.over
                     )
                 });
@@ -70,10 +70,10 @@ impl SeriesReport {
                      <td class=\"n\">{gain}</td></tr>",
                     row.count,
                     page::escape(row.kind.as_deref().unwrap_or("in all")),
-                    number(row.end_mm),
-                    number(row.end_deg),
-                    number(row.mean_mm),
-                    number(row.mean_deg)
+                    format_number(row.end_mm),
+                    format_number(row.end_deg),
+                    format_number(row.mean_mm),
+                    format_number(row.mean_deg)
                 );
             }
         }
@@ -92,7 +92,7 @@ impl SeriesReport {
                     .iter()
                     .map(|v| format!("{:.5}", v[k]))
                     .collect();
-                let [low, high] = parameter.range.map(number);
+                let [low, high] = parameter.range.map(format_number);
                 let _ = write!(
                     out,
                     "<tr><td>{}</td><td>{} ({})</td><td class=\"n\">{low} to {high}</td><td>{}</td></tr>",

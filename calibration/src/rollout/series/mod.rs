@@ -12,7 +12,10 @@ pub use score::{EpisodeError, KindErrors, ModelGain};
 use super::refine::sentence as told;
 use super::residuals::{self, ResidualGroups};
 use super::study::folds;
-use super::{FINER, Refinement, WindowEnd, WindowOptions, WindowScore, ends, refinements, windows};
+use super::{
+    REFINEMENT_FACTOR, Refinement, WindowEnd, WindowOptions, WindowScore, ends, refinements,
+    windows,
+};
 use crate::error::CalibrationError;
 use crate::fit::{Variable, least_squares, median};
 use crate::progress::{CallbackProgress, ProgressReporter};
@@ -155,8 +158,8 @@ pub fn run<S: ModelledSubject>(
         sentence: best.map_or_else(String::new, |best| score::sentence(best, &outcomes)),
         residuals: residuals::all(
             &rows,
-            subject.telling_horizon(),
-            subject.lever_m() > 0.0,
+            subject.most_informative_horizon(),
+            subject.lever_arm_m() > 0.0,
             &kinds,
         ),
         solver: outcomes
@@ -164,7 +167,7 @@ pub fn run<S: ModelledSubject>(
             .map(|o| told(o.model.name, &o.refinements))
             .collect(),
         found: best.map_or_else(FoundEffects::default, |best| {
-            subject.found(&best.model, &best.typical())
+            subject.found_effects(&best.model, &best.median_parameters())
         }),
         models: outcomes,
     })
@@ -228,8 +231,11 @@ impl<S: ModelledSubject> ModelStudy<'_, S> {
             let done = share[0] + 0.7 * (share[1] - share[0]) * fold as f32 / count as f32;
             progress.stage(done, &format!("{}: fold {}", self.model.name, fold + 1))?;
             let values = self.fitted(fold, threads, progress)?;
-            rigs.push(self.subject.rig(self.model, &values, 1)?);
-            fine.push(self.subject.rig(self.model, &values, FINER)?);
+            rigs.push(self.subject.simulation(self.model, &values, 1)?);
+            fine.push(
+                self.subject
+                    .simulation(self.model, &values, REFINEMENT_FACTOR)?,
+            );
             chosen.push(values);
         }
         progress.stage(
@@ -245,13 +251,13 @@ impl<S: ModelledSubject> ModelStudy<'_, S> {
         let episodes = found.into_iter().collect::<Result<Vec<_>, _>>()?;
         let windowing = WindowOptions {
             stride: self.options.window_stride,
-            guard: Some(self.key.child("windows")),
+            chaos_guard: Some(self.key.child("windows")),
             threads,
         };
         let found = ends(self.subject, &own, &windowing)?;
         progress.check()?;
         let unguarded = WindowOptions {
-            guard: None,
+            chaos_guard: None,
             ..windowing
         };
         let refined = refinements(&found, &ends(self.subject, &finer, &unguarded)?);
@@ -300,7 +306,7 @@ impl<S: ModelledSubject> ModelStudy<'_, S> {
             .collect();
         least_squares(&variables, self.options.iterations, |values| {
             progress.check()?;
-            let rig = self.subject.rig(self.model, values, 1)?;
+            let rig = self.subject.simulation(self.model, values, 1)?;
             let one = |k: usize| score::residuals(self.subject, &rig, train[k]);
             let found: Result<Vec<Vec<f64>>, _> =
                 threads.map(train.len(), one).into_iter().collect();
@@ -311,7 +317,7 @@ impl<S: ModelledSubject> ModelStudy<'_, S> {
 
 impl ModelOutcome {
     /// The median of what the folds chose, by parameter.
-    pub fn typical(&self) -> Vec<f64> {
+    pub fn median_parameters(&self) -> Vec<f64> {
         (0..self.model.parameters.len())
             .map(|k| median(&mut self.chosen.iter().map(|v| v[k]).collect::<Vec<f64>>()))
             .collect()

@@ -80,13 +80,13 @@ pub trait ModelledSubject: RolloutSubject {
     fn kind(&self, episode: usize) -> &str;
 
     /// Returns the lever that turns angles into distances, m; 0: rotations were not measured.
-    fn lever_m(&self) -> f64;
+    fn lever_arm_m(&self) -> f64;
 
     /// The simulation, with `finer` as many steps between two samples.
     ///
     /// # Errors
     /// [`CalibrationError::Simulation`] for what physics does not take.
-    fn rig(
+    fn simulation(
         &self,
         model: &SimulationModel,
         values: &[f64],
@@ -94,5 +94,5 @@ pub trait ModelledSubject: RolloutSubject {
     ) -> Result<Self::Rig, CalibrationError>;
 
     /// Returns the effects to install in the simulator.
-    fn found(&self, model: &SimulationModel, values: &[f64]) -> FoundEffects;
+    fn found_effects(&self, model: &SimulationModel, values: &[f64]) -> FoundEffects;
 }

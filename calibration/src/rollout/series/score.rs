@@ -3,7 +3,7 @@
 use super::{ModelOutcome, ModelledSubject};
 use crate::error::CalibrationError;
 use crate::fit::median;
-use crate::format_number::{number, percent};
+use crate::format_number::{format_number, format_percent};
 use crate::rollout::{Deviation, MeasuredMotion};
 use crate::select::share_gained;
 use dwell_scene::random::RandomKey;
@@ -71,9 +71,9 @@ fn rolled<S: ModelledSubject>(
     episode: usize,
 ) -> Result<Vec<(MeasuredMotion, MeasuredMotion)>, CalibrationError> {
     let measured = subject.measured(episode);
-    let at = subject.past();
+    let at = subject.past_samples();
     let samples = measured.len().saturating_sub(at + 1);
-    let predicted = subject.roll(rig, episode, at, samples, None)?;
+    let predicted = subject.simulate(rig, episode, at, samples, None)?;
     Ok(predicted
         .into_iter()
         .zip(measured[at + 1..].iter().copied())
@@ -95,7 +95,7 @@ pub(super) fn error<S: ModelledSubject>(
     let last = deviations.last().copied().unwrap_or_default();
     let count = deviations.len().max(1) as f64;
     let mean = |f: &dyn Fn(&Deviation) -> f64| deviations.iter().map(f).sum::<f64>() / count;
-    let lever_m = subject.lever_m();
+    let lever_m = subject.lever_arm_m();
     let square = mean(&|d| d.position_m.powi(2) + (lever_m * d.rotation_rad).powi(2));
     Ok(EpisodeError {
         episode: subject.name(episode).to_owned(),
@@ -119,12 +119,13 @@ pub(super) fn residuals<S: ModelledSubject>(
     let stride = pairs.len().div_ceil(FIT_SAMPLES).max(1);
     let seen: Vec<_> = pairs.iter().skip(stride - 1).step_by(stride).collect();
     let weight = 1e3 / (seen.len().max(1) as f64).sqrt();
-    let lever_m = subject.lever_m();
+    let lever_m = subject.lever_arm_m();
     Ok(seen
         .into_iter()
         .flat_map(|(predicted, measured)| {
             let shift = predicted.position - measured.position;
-            let turned = lever_m * crate::bundle::turn(measured.rotation, predicted.rotation);
+            let turned = lever_m
+                * crate::bundle::rotation_vector_between(measured.rotation, predicted.rotation);
             [shift, turned]
                 .map(|vector| (weight * vector).to_array())
                 .concat()
@@ -190,11 +191,11 @@ pub(super) fn sentence(best: &ModelOutcome, all: &[ModelOutcome]) -> String {
     let ends = |outcome: &ModelOutcome| {
         outcome.kinds.first().map_or_else(String::new, |all| {
             let turned = if all.end_deg > 0.0 {
-                format!(" and {} degrees", number(all.end_deg))
+                format!(" and {} degrees", format_number(all.end_deg))
             } else {
                 String::new()
             };
-            format!("{} mm{turned}", number(all.end_mm))
+            format!("{} mm{turned}", format_number(all.end_mm))
         })
     };
     let mut text = format!(
@@ -212,11 +213,11 @@ pub(super) fn sentence(best: &ModelOutcome, all: &[ModelOutcome]) -> String {
     text.push('.');
     for outcome in all {
         if let Some(gain) = &outcome.gain {
-            let [low, high] = gain.interval.map(percent);
+            let [low, high] = gain.interval.map(format_percent);
             text = format!(
                 "{text} \"{}\" takes {} ({low} to {high}) of the squared error of \"{}\" away.",
                 outcome.model.name,
-                percent(gain.share),
+                format_percent(gain.share),
                 gain.over
             );
         }

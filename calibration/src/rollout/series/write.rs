@@ -2,7 +2,7 @@
 
 use super::SeriesReport;
 use crate::error::CalibrationError;
-use crate::report::whole;
+use crate::report::write_atomically;
 use crate::rollout::box_plot;
 use serde_json::Value;
 use std::fs;
@@ -38,10 +38,10 @@ impl SeriesReport {
         let found = serde_json::to_value(&self.found).unwrap_or(Value::Null);
         for residuals in &self.residuals {
             let name = format!("{}.svg", residuals.name);
-            whole(folder, &name, box_plot::to_svg_file(residuals).as_bytes())?;
+            write_atomically(folder, &name, box_plot::to_svg_file(residuals).as_bytes())?;
         }
-        whole(folder, "report.json", pretty(&self.value()).as_bytes())?;
-        whole(folder, "report.html", self.to_html().as_bytes())?;
-        whole(folder, "found.json", pretty(&found).as_bytes())
+        write_atomically(folder, "report.json", pretty(&self.value()).as_bytes())?;
+        write_atomically(folder, "report.html", self.to_html().as_bytes())?;
+        write_atomically(folder, "found.json", pretty(&found).as_bytes())
     }
 }

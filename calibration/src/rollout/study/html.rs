@@ -1,7 +1,7 @@
 //! The report of a study as one page: no network, no script.
 
 use super::StudyReport;
-use crate::format_number::{number, percent};
+use crate::format_number::{format_number, format_percent};
 use crate::report::page;
 use crate::rollout::html;
 use std::fmt::Write as _;
@@ -16,7 +16,7 @@ impl StudyReport {
             self.options.folds,
             page::escape(&self.licence)
         );
-        let mut out = page::open(&self.title, &lead);
+        let mut out = page::page_head(&self.title, &lead);
         let _ = write!(
             out,
             "<div class=\"verdict named\"><b>Whole episodes</b>{}</div>",
@@ -59,15 +59,15 @@ impl StudyReport {
                 let _ = write!(
                     out,
                     "<td class=\"n\">{} / {} / {}</td>",
-                    number(spread.mean),
-                    number(spread.median),
-                    number(spread.sd)
+                    format_number(spread.mean),
+                    format_number(spread.median),
+                    format_number(spread.sd)
                 );
             }
             let _ = write!(
                 out,
                 "<td class=\"n\">{}</td></tr>",
-                percent(summary.predicted_share)
+                format_percent(summary.predicted_share)
             );
         }
         out.push_str("</table></div>");
@@ -77,8 +77,8 @@ impl StudyReport {
                 "<p class=\"soft\">{}: {} episodes whose outcome is not chance, median {} widths and {} degrees.</p>",
                 m.model.name,
                 m.steady.count,
-                number(m.steady.position_widths.median),
-                number(m.steady.rotation_deg.median)
+                format_number(m.steady.position_widths.median),
+                format_number(m.steady.rotation_deg.median)
             );
         }
         let curves = |f: fn(&super::Score) -> f64| -> Vec<(String, Vec<f64>)> {
@@ -107,10 +107,10 @@ impl StudyReport {
             let _ = write!(
                 out,
                 "<p>{title}</p>{}",
-                page::shares(title, unit, most, &values)
+                page::cumulative_plot(title, unit, most, &values)
             );
         }
-        out.push_str(&page::key(self.models.iter().map(|m| m.model.name)));
+        out.push_str(&page::legend(self.models.iter().map(|m| m.model.name)));
     }
 
     fn parameters(&self, out: &mut String) {
@@ -120,8 +120,9 @@ impl StudyReport {
         );
         for report in &self.models {
             for (k, parameter) in report.model.parameters.iter().enumerate() {
-                let chosen: Vec<String> = report.chosen.iter().map(|v| number(v[k])).collect();
-                let [low, high] = parameter.range.map(number);
+                let chosen: Vec<String> =
+                    report.chosen.iter().map(|v| format_number(v[k])).collect();
+                let [low, high] = parameter.range.map(format_number);
                 let _ = write!(
                     out,
                     "<tr><td>{}</td><td>{}{}</td><td class=\"n\">{low} to {high}</td><td class=\"n\">{}</td></tr>",
@@ -171,14 +172,14 @@ impl StudyReport {
                     ("rotation, degrees", &peer.rotation_deg),
                     ("e_q", &peer.e_q),
                 ] {
-                    let [low, high] = paired.interval.map(number);
+                    let [low, high] = paired.interval.map(format_number);
                     let _ = write!(
                         out,
                         "<tr><td>{} against {}</td><td>{what}</td><td class=\"n\">{}</td><td class=\"n\">{}, {low} to {high}</td></tr>",
                         report.model.name,
                         page::escape(&peer.name),
-                        percent(paired.better_share),
-                        number(paired.median_difference)
+                        format_percent(paired.better_share),
+                        format_number(paired.median_difference)
                     );
                 }
             }

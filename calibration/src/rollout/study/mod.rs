@@ -10,20 +10,20 @@ mod search_cache;
 mod write;
 
 pub(super) use folds::folds;
-pub use model::{ContactModel, ContactParameter, all as models, trials};
+pub use model::{ContactModel, ContactParameter, all as models, further_models};
 pub use other_simulator::{OtherSimulator, SimulatorComparison, SimulatorScoreDifference};
 
 use super::refine::sentence as told;
 use super::residuals::{self, ResidualGroups};
 use super::{
-    BoardRig, FINER, PoseTracks, Refinement, RolloutSubject as _, Score, ScoreSummary,
+    BoardRig, PoseTracks, REFINEMENT_FACTOR, Refinement, RolloutSubject as _, Score, ScoreSummary,
     TrackerNoise, WindowEnd, WindowOptions, WindowScore, diverging, ends, refinements, scores,
     windows,
 };
 use crate::error::CalibrationError;
 use crate::progress::{CallbackProgress, ProgressReporter};
 use crate::report::{FoundEffects, page};
-use crate::twin::test_world::{BOARD_SUBSTANCE, THING_SUBSTANCE};
+use crate::twin::test_world::{BOARD_SUBSTANCE, OBJECT_SUBSTANCE};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use serde::{Deserialize, Serialize};
@@ -51,7 +51,7 @@ pub struct StudyOptions {
     pub bootstrap_draws: usize,
     /// A folder in which ended searches are kept, so that the same study need not search again; `None`: nothing is kept.
     #[serde(skip_serializing)]
-    pub kept: Option<PathBuf>,
+    pub cache_folder: Option<PathBuf>,
 }
 
 impl Default for StudyOptions {
@@ -65,7 +65,7 @@ impl Default for StudyOptions {
             first_episodes: 60,
             window_stride: 20,
             bootstrap_draws: 2_000,
-            kept: None,
+            cache_folder: None,
         }
     }
 }
@@ -175,7 +175,7 @@ pub fn run(
             .iter()
             .map(|r| told(r.model.name, &r.refinements))
             .collect(),
-        residuals: residuals::all(&rows, tracks.telling_horizon(), true, &[]),
+        residuals: residuals::all(&rows, tracks.most_informative_horizon(), true, &[]),
         sentence: best.map_or_else(String::new, |best| sentence(best, &reports)),
         found: best.map_or_else(FoundEffects::default, |best| found(tracks, best)),
         models: reports,
@@ -224,7 +224,7 @@ fn study(
         .child("study")
         .child(model.name);
     let plain = BoardRig::new(tracks, model.contact_friction)?;
-    let plain_fine = BoardRig::finer(tracks, model.contact_friction, FINER)?;
+    let plain_fine = BoardRig::with_finer_steps(tracks, model.contact_friction, REFINEMENT_FACTOR)?;
     let (mut chosen, mut rigs, mut fine) = (Vec::new(), Vec::new(), Vec::new());
     for fold in 0..options.folds {
         let done = share[0] + (share[1] - share[0]) * fold as f32 / options.folds as f32;
@@ -235,13 +235,13 @@ fn study(
         } else {
             let key = key.child(fold as u64);
             let what = (tracks, model, fold);
-            search_cache::cached_or_search(options.kept.as_deref(), what, options, || {
+            search_cache::cached_or_search(options.cache_folder.as_deref(), what, options, || {
                 search::search(model, &plain, tracks, &train, options, key, progress)
             })?
         };
         let settings = model.settings(&values, tracks.nominal);
-        rigs.push(plain.set(&settings)?);
-        fine.push(plain_fine.set(&settings)?);
+        rigs.push(plain.with_settings(&settings)?);
+        fine.push(plain_fine.with_settings(&settings)?);
         chosen.push(values);
     }
     let all: Vec<usize> = (0..fold_of.len()).collect();
@@ -264,13 +264,13 @@ fn study(
     let finer: Vec<&BoardRig> = fold_of.iter().map(|fold| &fine[*fold]).collect();
     let windowing = WindowOptions {
         stride: options.window_stride,
-        guard: Some(key.child("windows")),
+        chaos_guard: Some(key.child("windows")),
         threads,
     };
     let found = ends(tracks, &own, &windowing)?;
     progress.check()?;
     let unguarded = WindowOptions {
-        guard: None,
+        chaos_guard: None,
         ..windowing
     };
     let refined = refinements(&found, &ends(tracks, &finer, &unguarded)?);
@@ -307,7 +307,7 @@ fn study(
 
 impl ModelReport {
     /// The median of what the folds chose, by parameter.
-    pub fn typical(&self) -> Vec<f64> {
+    pub fn median_parameters(&self) -> Vec<f64> {
         (0..self.model.parameters.len())
             .map(|k| {
                 let mut column: Vec<f64> = self.chosen.iter().map(|values| values[k]).collect();
@@ -338,8 +338,10 @@ fn sentence(best: &ModelReport, all: &[ModelReport]) -> String {
 }
 
 fn found(tracks: &PoseTracks, best: &ModelReport) -> FoundEffects {
-    let settings = best.model.settings(&best.typical(), tracks.nominal);
-    let pair = format!("pair/{THING_SUBSTANCE}~{BOARD_SUBSTANCE}");
+    let settings = best
+        .model
+        .settings(&best.median_parameters(), tracks.nominal);
+    let pair = format!("pair/{OBJECT_SUBSTANCE}~{BOARD_SUBSTANCE}");
     FoundEffects {
         laws: settings.laws,
         parameters: [

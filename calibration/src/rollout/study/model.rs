@@ -15,7 +15,8 @@ pub struct ContactParameter {
     /// The range that is searched.
     pub range: [f64; 2],
     /// True if the search takes equal ratios for equal steps.
-    pub by_ratio: bool,
+    #[serde(rename = "by_ratio")]
+    pub is_logarithmic: bool,
 }
 
 /// A way to compute contacts.
@@ -36,7 +37,7 @@ const FRICTION: ContactParameter = ContactParameter {
     name: "friction",
     unit: "1",
     range: [0.1, 0.4],
-    by_ratio: true,
+    is_logarithmic: true,
 };
 
 const fn number(
@@ -49,7 +50,7 @@ const fn number(
         name,
         unit,
         range,
-        by_ratio,
+        is_logarithmic: by_ratio,
     }
 }
 
@@ -85,7 +86,7 @@ pub fn all() -> Vec<ContactModel> {
 }
 
 /// Further models that were tried beside [`all`].
-pub fn trials() -> Vec<ContactModel> {
+pub fn further_models() -> Vec<ContactModel> {
     vec![
         ContactModel {
             name: "point",
@@ -110,19 +111,19 @@ pub fn trials() -> Vec<ContactModel> {
 
 impl ContactParameter {
     /// The value at a place in 0..1 of its range.
-    pub(super) fn at(&self, place: f64) -> f64 {
+    pub(super) fn value_at(&self, place: f64) -> f64 {
         let [low, high] = self.range;
-        if self.by_ratio {
+        if self.is_logarithmic {
             low * libm::pow(high / low, place)
         } else {
             low + place * (high - low)
         }
     }
 
-    /// The place in 0..1 of a value, the inverse of [`ContactParameter::at`]. Values outside the range are clamped.
-    pub(super) fn place(&self, value: f64) -> f64 {
+    /// The place in 0..1 of a value, the inverse of [`ContactParameter::value_at`]. Values outside the range are clamped.
+    pub(super) fn position_of(&self, value: f64) -> f64 {
         let [low, high] = self.range;
-        let place = if self.by_ratio {
+        let place = if self.is_logarithmic {
             libm::log(value.max(low) / low) / libm::log(high / low)
         } else {
             (value - low) / (high - low)

@@ -47,7 +47,7 @@ pub(super) fn search(
             "restitution" => Some(tracks.nominal.restitution),
             _ => None,
         };
-        own.map_or(0.5, |value| parameter.place(value))
+        own.map_or(0.5, |value| parameter.position_of(value))
     });
     let start: Vec<f64> = starts.collect();
     let mut cma = CmaEs::new(&start, FIRST_SIGMA, options.population, key.child("search"));
@@ -58,12 +58,12 @@ pub(super) fn search(
     let values = |place: &[f64]| -> Vec<f64> {
         let pairs = model.parameters.iter().zip(place);
         pairs
-            .map(|(parameter, place)| parameter.at(*place))
+            .map(|(parameter, place)| parameter.value_at(*place))
             .collect()
     };
     let judge = |point: &[f64], which: &[usize]| {
         progress.check()?;
-        let set = rig.set(&model.settings(&values(point), tracks.nominal))?;
+        let set = rig.with_settings(&model.settings(&values(point), tracks.nominal))?;
         Ok::<f64, CalibrationError>(cost(&scores(&set, tracks, which, threads)?))
     };
     let [first, then] = options.generations;
@@ -71,7 +71,7 @@ pub(super) fn search(
     let mut best: Option<(f64, Vec<f64>)> = None;
     for generation in 0..first + then {
         let which = if generation < first { &part[..] } else { train };
-        let points = cma.ask();
+        let points = cma.sample_population();
         let mut costs = Vec::with_capacity(points.len());
         for point in &points {
             let found = judge(point, which)?;
@@ -81,7 +81,7 @@ pub(super) fn search(
             }
             costs.push(found);
         }
-        cma.tell(&points, &costs);
+        cma.update(&points, &costs);
     }
     let mean = cma.mean();
     let of_mean = judge(&mean, last_on)?;

@@ -3,7 +3,7 @@
 use super::StudyOptions;
 use super::model::ContactModel;
 use crate::error::CalibrationError;
-use crate::report::whole;
+use crate::report::write_atomically;
 use crate::rollout::PoseTracks;
 use dwell_scene::file;
 use serde::{Deserialize, Serialize};
@@ -75,6 +75,6 @@ pub(super) fn cached_or_search(
     })?;
     let answer = SearchResult { question, chosen };
     let text = serde_json::to_string_pretty(&answer).unwrap_or_default();
-    whole(folder, &name, text.as_bytes())?;
+    write_atomically(folder, &name, text.as_bytes())?;
     Ok(answer.chosen)
 }

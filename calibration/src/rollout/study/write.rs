@@ -2,7 +2,7 @@
 
 use super::StudyReport;
 use crate::error::CalibrationError;
-use crate::report::whole;
+use crate::report::write_atomically;
 use crate::rollout::box_plot;
 use serde_json::Value;
 use std::fs;
@@ -35,16 +35,16 @@ impl StudyReport {
             source,
         })?;
         let found = serde_json::to_value(&self.found).unwrap_or(Value::Null);
-        whole(
+        write_atomically(
             folder,
             "report.json",
             format!("{:#}\n", self.value()).as_bytes(),
         )?;
         for residuals in &self.residuals {
             let name = format!("{}.svg", residuals.name);
-            whole(folder, &name, box_plot::to_svg_file(residuals).as_bytes())?;
+            write_atomically(folder, &name, box_plot::to_svg_file(residuals).as_bytes())?;
         }
-        whole(folder, "report.html", self.to_html().as_bytes())?;
-        whole(folder, "found.json", format!("{found:#}\n").as_bytes())
+        write_atomically(folder, "report.html", self.to_html().as_bytes())?;
+        write_atomically(folder, "found.json", format!("{found:#}\n").as_bytes())
     }
 }

@@ -16,7 +16,11 @@ pub(super) const ENTRIES: &[CatalogueEntry] =
 /// A table with a glass tank of water and fish.
 fn aquarium(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("aquarium", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth);
     let tank = (0.42 * h).min(0.5);
     let low = h - tank - 0.03;
@@ -24,8 +28,8 @@ fn aquarium(style: &Style, key: RandomKey) -> Model {
         min: [-x, 0.05, -z],
         max: [x, low, z - BOARD_M],
     };
-    let wood = style.any_wood(&mut d.stream("wood"));
-    let water = Finish::plain("aquarium_water", "water", [120, 180, 190]).clear(0.35);
+    let wood = style.random_wood(&mut d.stream("wood"));
+    let water = Finish::plain("aquarium_water", "water", [120, 180, 190]).transparent(0.35);
     let sand = Finish::tiled(
         "aquarium_sand",
         "soil",
@@ -81,8 +85,8 @@ fn aquarium(style: &Style, key: RandomKey) -> Model {
         let tail = block([-0.042, -0.012, -0.0015], [-0.025, 0.012, 0.0015]);
         body = body.with(
             &tone,
-            long.and(tail)
-                .about_y(
+            long.merged(tail)
+                .rotated_y(
                     0.3 * side
                         + if side < 0.0 {
                             std::f32::consts::PI
@@ -90,7 +94,7 @@ fn aquarium(style: &Style, key: RandomKey) -> Model {
                             0.0
                         },
                 )
-                .at(a, y, b)
+                .translated(a, y, b)
                 .visual_only(),
         );
     }
@@ -109,12 +113,12 @@ fn aquarium(style: &Style, key: RandomKey) -> Model {
             .visual_only(),
         );
     }
-    let front = style.doors();
+    let front = style.front_style();
     let mut model = Model::articulated("aquarium", "fish_tank")
         .switched(true)
         .part(body)
         .with_sound([0.0, h - 0.05, -z + 0.05], "hum", 34.0)
-        .light([0.0, h + 0.02, 0.0], dwell_scene::LightShape::Point, 3.0);
+        .with_light_shape([0.0, h + 0.02, 0.0], dwell_scene::LightShape::Point, 3.0);
     for (name, a, b, left) in [
         ("left_door", -x + 0.002, -0.5 * GAP_M, true),
         ("right_door", 0.5 * GAP_M, x - 0.002, false),

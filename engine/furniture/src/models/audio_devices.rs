@@ -1,6 +1,6 @@
 //! Radios, loudspeakers, stereos and headphones.
 
-use super::casings::CASES;
+use super::casings::CASING_COLORS;
 use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::{Finish, black, chrome, device, plastic, walnut};
 use crate::model::{Model, PartBuilder};
@@ -37,14 +37,14 @@ fn radio(on: bool) -> Model {
         [[240, 226, 186], [60, 44, 30], [196, 40, 36]],
         1,
     );
-    let scale = crate::shapes::panel(0.11, 0.05, 0.004).at(0.075, 0.1, z);
+    let scale = crate::shapes::panel(0.11, 0.05, 0.004).translated(0.075, 0.1, z);
     let knob = |at: f32| {
         cylinder(0.015, 0.016, 12)
-            .about_x(FRAC_PI_2)
-            .at(at, 0.055, z)
+            .rotated_x(FRAC_PI_2)
+            .translated(at, 0.055, z)
     };
     let body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             &walnut(),
             rounded_block([-x, 0.006, -z], [x, h, z], 0.018, 2),
             0.6,
@@ -72,9 +72,9 @@ fn radio(on: bool) -> Model {
 fn sample_radio(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("radio", key);
     let wood = &style.wood;
-    let set = radio(d.chance("on", 0.25)).resized(d.m("width") / 0.3);
+    let set = radio(d.chance("on", 0.25)).resized(d.sample_m("width") / 0.3);
     if wood.tile_m > 0.0 {
-        set.repainted("walnut", wood)
+        set.with_finish_replaced("walnut", wood)
     } else {
         set
     }
@@ -85,12 +85,12 @@ fn loudspeaker(height_m: f32) -> Model {
     let case = device("black_case", [26, 26, 29]);
     let cone = |y: f32, r: f32| {
         cylinder(r, 0.006, 20)
-            .about_x(FRAC_PI_2)
-            .at(0.0, y, 0.125)
+            .rotated_x(FRAC_PI_2)
+            .translated(0.0, y, 0.125)
             .visual_only()
     };
     let body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             &walnut(),
             rounded_block([-0.1, 0.0, -0.125], [0.1, height_m, 0.125], 0.008, 1),
             0.35,
@@ -108,42 +108,46 @@ fn loudspeaker(height_m: f32) -> Model {
 
 fn sample_loudspeaker(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("loudspeaker", key);
-    let case = style.any_wood(&mut d.stream("wood"));
+    let case = style.random_wood(&mut d.stream("wood"));
     let plain = Finish::plain("speaker_case", "wood", case.srgb);
     let case = if case.pattern.is_some() {
         case.clone()
     } else {
         plain
     };
-    let height = d.m("height");
+    let height = d.sample_m("height");
     loudspeaker(height)
         .switched(false)
         .with_sound([0.0, 0.66 * height, 0.14], "radio", 70.0)
-        .repainted("walnut", &case)
+        .with_finish_replaced("walnut", &case)
 }
 
 /// A stereo: an amplifier with a record player on top.
 fn stereo(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("stereo", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth);
     let amp = 0.5 * h;
     let silver = device(
         "amplifier_face",
-        d.of("face", [[186, 188, 190], [36, 36, 39], [206, 190, 150]]),
+        d.choose("face", [[186, 188, 190], [36, 36, 39], [206, 190, 150]]),
     );
     let vinyl = plastic("vinyl", [20, 20, 22]);
     let label = plastic(
         "record_label",
-        d.of("label", [[196, 60, 50], [60, 110, 170], [226, 180, 70]]),
+        d.choose("label", [[196, 60, 50], [60, 110, 170], [226, 180, 70]]),
     );
     let knob = |a: f32, r: f32| {
         cylinder(r, 0.018, 18)
-            .about_x(FRAC_PI_2)
-            .at(a, 0.5 * amp, z - 0.02)
+            .rotated_x(FRAC_PI_2)
+            .translated(a, 0.5 * amp, z - 0.02)
     };
     let body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             &style.wood,
             rounded_block([-x, 0.012, -z], [x, amp, z - 0.025], 0.006, 1),
             0.4,
@@ -168,7 +172,7 @@ fn stereo(style: &Style, key: RandomKey) -> Model {
                 knob(-0.35 * x, 0.012),
             ],
         )
-        .with_filled(
+        .with_fill_fraction(
             &style.wood,
             rounded_block(
                 [-x + 0.005, amp, -z + 0.005],
@@ -180,17 +184,17 @@ fn stereo(style: &Style, key: RandomKey) -> Model {
         )
         .with(
             &vinyl,
-            cylinder(0.15_f32.min(0.42 * depth), 0.006, 32).at(-0.06, h - 0.03, -0.012),
+            cylinder(0.15_f32.min(0.42 * depth), 0.006, 32).translated(-0.06, h - 0.03, -0.012),
         )
         .with(
             &label,
             cylinder(0.05, 0.0015, 20)
-                .at(-0.06, h - 0.024, -0.012)
+                .translated(-0.06, h - 0.024, -0.012)
                 .visual_only(),
         )
         .with(
             &chrome(),
-            cylinder(0.018, 0.026, 14).at(x - 0.06, h - 0.03, -z + 0.07),
+            cylinder(0.018, 0.026, 14).translated(x - 0.06, h - 0.03, -z + 0.07),
         )
         .with(
             &chrome(),
@@ -210,8 +214,8 @@ fn stereo(style: &Style, key: RandomKey) -> Model {
 /// Headphones hung over a stand.
 fn headphones(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("headphones", key);
-    let (w, h) = (d.m("width"), d.m("height"));
-    let shell = plastic("headphones_shell", d.of("case", CASES));
+    let (w, h) = (d.sample_m("width"), d.sample_m("height"));
+    let shell = plastic("headphones_shell", d.choose("case", CASING_COLORS));
     let r = 0.5 * w - 0.016;
     let y = h - r - 0.012;
     let arc: Vec<[f32; 3]> = (0..=8)
@@ -222,8 +226,8 @@ fn headphones(style: &Style, key: RandomKey) -> Model {
         .collect();
     let ear = |side: f32| {
         cylinder(0.038, 0.03, 18)
-            .about_z(FRAC_PI_2)
-            .at(side * r + 0.015, y - 0.02, 0.0)
+            .rotated_z(FRAC_PI_2)
+            .translated(side * r + 0.015, y - 0.02, 0.0)
     };
     let body = PartBuilder::new("body")
         .with(&style.wood, cylinder(0.36 * w, 0.016, 24))
@@ -232,7 +236,7 @@ fn headphones(style: &Style, key: RandomKey) -> Model {
             rod([0.0, 0.016, 0.0], [0.0, h - 0.024, 0.0], 0.008),
         )
         .with(&shell, tube(&arc, 0.01, 8))
-        .with_filled(&shell, ear(-1.0).and(ear(1.0)), 0.5);
+        .with_fill_fraction(&shell, ear(-1.0).merged(ear(1.0)), 0.5);
     Model::pickable("headphones", "headphones")
         .switched(false)
         .part(body)

@@ -1,6 +1,6 @@
 //! Handbags and backpacks.
 
-use super::clothes::WORN;
+use super::clothes::CLOTHING_COLORS;
 use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::{Finish, leather};
 use crate::model::{Model, PartBuilder};
@@ -28,7 +28,7 @@ fn handbag() -> Model {
         tube(&path, 0.006, 8).visual_only()
     };
     let body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             &hide,
             rounded_block([-0.17, 0.0, -0.06], [0.17, 0.25, 0.06], 0.02, 2),
             0.15,
@@ -41,7 +41,7 @@ fn sample_handbag(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("handbag", key);
     let hide = leather(
         "bag_leather",
-        d.of(
+        d.choose(
             "hide",
             [
                 [150, 88, 48],
@@ -53,16 +53,20 @@ fn sample_handbag(_style: &Style, key: RandomKey) -> Model {
         ),
     );
     handbag()
-        .resized(d.m("height") / 0.376)
-        .repainted("cognac_leather", &hide)
+        .resized(d.sample_m("height") / 0.376)
+        .with_finish_replaced("cognac_leather", &hide)
 }
 
 /// A backpack standing on the floor.
 fn backpack(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("backpack", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth);
-    let cloth = crate::finishes::cloth("backpack_cloth", d.of("tone", WORN));
+    let cloth = crate::finishes::cloth("backpack_cloth", d.choose("tone", CLOTHING_COLORS));
     let strap = Finish {
         srgb: cloth.srgb.map(|c| (f32::from(c) * 0.6) as u8),
         ..cloth.clone()
@@ -76,12 +80,12 @@ fn backpack(_style: &Style, key: RandomKey) -> Model {
         )
     };
     let body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             &cloth,
             rounded_block([-x, 0.0, -z + 0.02], [x, h - 0.03, 0.35 * z], 0.07, 3),
             0.04,
         )
-        .with_filled(
+        .with_fill_fraction(
             &cloth,
             rounded_block([-0.8 * x, 0.02, 0.3 * z], [0.8 * x, 0.5 * h, z], 0.04, 2),
             0.04,

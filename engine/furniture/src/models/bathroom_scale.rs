@@ -20,7 +20,7 @@ fn scale() -> Model {
     let body = PartBuilder::new("body")
         .with(&black(), block([-0.13, 0.0, -0.13], [0.13, 0.012, 0.13]))
         .with(
-            &Finish::plain("green_glass", "glass", [150, 186, 180]).clear(1.0),
+            &Finish::plain("green_glass", "glass", [150, 186, 180]).transparent(1.0),
             rounded_block([-0.15, 0.012, -0.15], [0.15, 0.022, 0.15], 0.004, 1),
         )
         .with(
@@ -35,7 +35,7 @@ fn sample_scale(_style: &Style, key: RandomKey) -> Model {
     let pane = Finish::plain(
         "scale_glass",
         "glass",
-        d.of(
+        d.choose(
             "tone",
             [
                 [150, 186, 180],
@@ -45,8 +45,8 @@ fn sample_scale(_style: &Style, key: RandomKey) -> Model {
             ],
         ),
     )
-    .clear(1.0);
+    .transparent(1.0);
     scale()
-        .resized(d.m("width") / 0.3)
-        .repainted("green_glass", &pane)
+        .resized(d.sample_m("width") / 0.3)
+        .with_finish_replaced("green_glass", &pane)
 }

@@ -16,7 +16,7 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[
 ];
 
 /// Foam inside a cover: how much of its volume is substance of the cover's weight.
-pub(super) fn foam(cover: &Finish) -> f32 {
+pub(super) fn foam_fill(cover: &Finish) -> f32 {
     let density = |name| {
         dwell_scene::material::library()
             .get_or_default(name)
@@ -28,45 +28,51 @@ pub(super) fn foam(cover: &Finish) -> f32 {
 /// A mattress without a bed.
 fn mattress(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("mattress", key);
-    let (w, h, length) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, length) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z) = (0.5 * w, 0.5 * length);
     let cover = cloth(
         "mattress_ticking",
-        d.of("cover", [[238, 236, 230], [226, 230, 234], [232, 224, 208]]),
+        d.choose("cover", [[238, 236, 230], [226, 230, 234], [232, 224, 208]]),
     );
     let band = cloth(
         "mattress_border",
-        d.of("band", [[150, 158, 166], [190, 176, 150], [120, 130, 140]]),
+        d.choose("band", [[150, 158, 166], [190, 176, 150], [120, 130, 140]]),
     );
     let body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             &cover,
             rounded_block([-x, 0.0, -z], [x, 0.35 * h, z], 0.03, 2),
-            foam(&cover),
+            foam_fill(&cover),
         )
-        .with_filled(
+        .with_fill_fraction(
             &band,
             block(
                 [-x + 0.004, 0.35 * h, -z + 0.004],
                 [x - 0.004, 0.65 * h, z - 0.004],
             ),
-            foam(&band),
+            foam_fill(&band),
         )
-        .with_filled(
+        .with_fill_fraction(
             &cover,
             rounded_block([-x, 0.65 * h, -z], [x, h, z], 0.03, 2),
-            foam(&cover),
+            foam_fill(&cover),
         );
-    Model::movable("mattress", "mattress").part(body).top(
-        "top",
-        [-x + 0.05, h, -z + 0.05],
-        [x - 0.05, h + 0.5, z - 0.05],
-    )
+    Model::movable("mattress", "mattress")
+        .part(body)
+        .with_support_surface(
+            "top",
+            [-x + 0.05, h, -z + 0.05],
+            [x - 0.05, h + 0.5, z - 0.05],
+        )
 }
 
 /// A pillow or cushion: width, thickness, depth in m.
 fn pillow(size_m: [f32; 3], cloth: &Finish) -> Model {
-    Model::pickable("pillow", "pillow").part(PartBuilder::new("body").with_filled(
+    Model::pickable("pillow", "pillow").part(PartBuilder::new("body").with_fill_fraction(
         cloth,
         cushion(size_m),
         0.12,
@@ -76,17 +82,21 @@ fn pillow(size_m: [f32; 3], cloth: &Finish) -> Model {
 fn sample_pillow(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("pillow", key);
     pillow(
-        [d.m("width"), d.m("height"), d.m("depth")],
+        [
+            d.sample_m("width"),
+            d.sample_m("height"),
+            d.sample_m("depth"),
+        ],
         &style.cloths[0],
     )
 }
 
 fn sample_cushion(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("cushion", key);
-    let edge = d.m("width");
+    let edge = d.sample_m("width");
     pillow(
-        [edge, d.m("height"), edge],
-        style.cloth(&mut d.stream("cloth")),
+        [edge, d.sample_m("height"), edge],
+        style.random_cloth(&mut d.stream("cloth")),
     )
 }
 
@@ -102,7 +112,7 @@ fn folded_blanket(width_m: f32, depth_m: f32, cloth: &Finish) -> Model {
         (0..3)
             .map(layer)
             .fold(PartBuilder::new("body"), |part, fold| {
-                part.with_filled(cloth, fold, 0.4)
+                part.with_fill_fraction(cloth, fold, 0.4)
             }),
     )
 }
@@ -110,8 +120,8 @@ fn folded_blanket(width_m: f32, depth_m: f32, cloth: &Finish) -> Model {
 fn sample_folded_blanket(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("folded_blanket", key);
     folded_blanket(
-        d.m("width"),
-        d.m("depth"),
-        style.cloth(&mut d.stream("cloth")),
+        d.sample_m("width"),
+        d.sample_m("depth"),
+        style.random_cloth(&mut d.stream("cloth")),
     )
 }

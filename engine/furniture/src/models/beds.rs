@@ -1,6 +1,6 @@
 //! Single and double beds.
 
-use super::bedding::foam;
+use super::bedding::foam_fill;
 use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::{Finish, cloth, oak};
 use crate::model::{Model, PartBuilder};
@@ -80,24 +80,24 @@ impl Bed {
             );
         }
         let (mx, mz) = (0.5 * width, 0.5 * length);
-        body = body.with_filled(
+        body = body.with_fill_fraction(
             &self.sheet,
             rounded_block([-mx, 0.27, -mz], [mx, MATTRESS_TOP_M, mz], 0.06, 2),
-            foam(&self.sheet),
+            foam_fill(&self.sheet),
         );
         // The blanket leaves the upper third of the mattress to the pillows and is turned back there.
         let cover = 0.68 * length;
         body = body
-            .with_filled(
+            .with_fill_fraction(
                 &self.blanket,
-                blanket(width + 0.03, cover, 0.26, 0.035).at(
+                blanket(width + 0.03, cover, 0.26, 0.035).translated(
                     0.0,
                     MATTRESS_TOP_M,
                     mz + 0.02 - 0.5 * cover,
                 ),
                 0.5,
             )
-            .with_filled(
+            .with_fill_fraction(
                 &self.sheet,
                 rounded_block(
                     [-mx, MATTRESS_TOP_M + 0.02, mz - cover - 0.02],
@@ -114,12 +114,12 @@ impl Bed {
         };
         Model::fixed(name, category)
             .part(body)
-            .top(
+            .with_support_surface(
                 "pillow_end",
                 [-mx, MATTRESS_TOP_M, -mz],
                 [mx, 1.2, mz - cover - 0.03],
             )
-            .top(
+            .with_support_surface(
                 "blanket",
                 [-mx, MATTRESS_TOP_M + 0.035, mz - cover + 0.25],
                 [mx, 1.2, mz - 0.1],
@@ -161,12 +161,12 @@ fn bed(style: &Style, d: &SizeSampler) -> Model {
     // Turned and heavy legs go with bars.
     let old = matches!(style.leg, LegStyle::Turned | LegStyle::Square);
     Bed {
-        mattress_m: [d.m("width") - 0.14, d.m("depth") - 0.13],
-        head_m: d.m("height"),
-        wood: style.any_wood(&mut d.stream("wood")).clone(),
+        mattress_m: [d.sample_m("width") - 0.14, d.sample_m("depth") - 0.13],
+        head_m: d.sample_m("height"),
+        wood: style.random_wood(&mut d.stream("wood")).clone(),
         barred: !covered && d.chance("barred", if old { 0.6 } else { 0.2 }),
-        headboard: covered.then(|| style.cover(&mut d.stream("head")).clone()),
-        blanket: style.cloth(&mut d.stream("blanket")).clone(),
+        headboard: covered.then(|| style.random_upholstery(&mut d.stream("head")).clone()),
+        blanket: style.random_cloth(&mut d.stream("blanket")).clone(),
         ..Bed::default()
     }
     .build()

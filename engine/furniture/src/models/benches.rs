@@ -18,11 +18,15 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[
 /// A plain bench: for a long table, a hall or the foot of a bed.
 fn bench(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("bench", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth);
     let padded = d.chance("padded", 0.4);
     let board = if padded { h - 0.05 } else { h };
-    let wood = style.any_wood(&mut d.stream("wood"));
+    let wood = style.random_wood(&mut d.stream("wood"));
     let mut body = PartBuilder::new("body")
         .with(
             wood,
@@ -35,7 +39,7 @@ fn bench(style: &Style, key: RandomKey) -> Model {
                 [x - 0.08, board - 0.035, 0.012],
             ),
         )
-        .with_bars(
+        .with_all_hollow(
             style.leg_finish(),
             style.legs([x - 0.06, z - 0.05], board - 0.035, 0.05),
         );
@@ -46,14 +50,16 @@ fn bench(style: &Style, key: RandomKey) -> Model {
             0.02,
             2,
         );
-        let cover = style.cover(&mut d.stream("cover"));
-        body = body.with_filled(cover, pad, 0.4 * cover.padded());
+        let cover = style.random_upholstery(&mut d.stream("cover"));
+        body = body.with_fill_fraction(cover, pad, 0.4 * cover.padded_fill());
     }
-    Model::movable("bench", "bench_chair").part(body).top(
-        "seat",
-        [-x + 0.02, h, -z + 0.02],
-        [x - 0.02, h + 0.45, z - 0.02],
-    )
+    Model::movable("bench", "bench_chair")
+        .part(body)
+        .with_support_surface(
+            "seat",
+            [-x + 0.02, h, -z + 0.02],
+            [x - 0.02, h + 0.45, z - 0.02],
+        )
 }
 
 /// A bench with a shelf for shoes and a cushion.
@@ -68,7 +74,7 @@ fn shoe_bench(width_m: f32, wood: &Finish, cloth: &Finish) -> Model {
         .with(wood, block([x - 0.025, 0.0, -z], [x, h, z]))
         .with(wood, block([-x + 0.025, h - 0.025, -z], [x - 0.025, h, z]))
         .with_all(wood, (0..4).map(slat))
-        .with_filled(
+        .with_fill_fraction(
             cloth,
             rounded_block(
                 [-x + 0.01, h, -z + 0.01],
@@ -76,16 +82,16 @@ fn shoe_bench(width_m: f32, wood: &Finish, cloth: &Finish) -> Model {
                 0.02,
                 2,
             ),
-            0.5 * cloth.padded(),
+            0.5 * cloth.padded_fill(),
         );
     Model::movable("shoe_bench", "bench_chair")
         .part(body)
-        .top(
+        .with_support_surface(
             "seat",
             [-x + 0.02, h + 0.05, -z + 0.02],
             [x - 0.02, h + 0.5, z - 0.02],
         )
-        .top(
+        .with_support_surface(
             "shelf",
             [-x + 0.03, 0.158, -z + 0.02],
             [x - 0.03, h - 0.03, z],
@@ -95,29 +101,33 @@ fn shoe_bench(width_m: f32, wood: &Finish, cloth: &Finish) -> Model {
 fn sample_shoe_bench(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("shoe_bench", key);
     let (wood, cloth) = (
-        style.any_wood(&mut d.stream("wood")),
-        style.cloth(&mut d.stream("cloth")),
+        style.random_wood(&mut d.stream("wood")),
+        style.random_cloth(&mut d.stream("cloth")),
     );
-    shoe_bench(d.m("width"), wood, cloth)
+    shoe_bench(d.sample_m("width"), wood, cloth)
 }
 
 /// A chest to sit on; its lid turns up about the back edge.
 fn storage_bench(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("storage_bench", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth);
     let (cushion, lid) = (0.05, 0.02);
     let under = h - cushion - lid;
-    let wood = style.any_wood(&mut d.stream("wood"));
+    let wood = style.random_wood(&mut d.stream("wood"));
     let feet = style.legs([x - 0.06, z - 0.06], 0.06, 0.045);
     let low = 0.06;
     let body = PartBuilder::new("body")
         .with(wood, trough([-x, low, -z], [x, under, z], 0.02))
-        .with_bars(style.leg_finish(), feet);
-    let cover = style.cover(&mut d.stream("cover"));
+        .with_all_hollow(style.leg_finish(), feet);
+    let cover = style.random_upholstery(&mut d.stream("cover"));
     let top = PartBuilder::new("lid")
         .with(wood, block([-x, under + 0.001, -z], [x, under + lid, z]))
-        .with_filled(
+        .with_fill_fraction(
             cover,
             rounded_block(
                 [-x + 0.005, under + lid, -z + 0.01],
@@ -125,18 +135,18 @@ fn storage_bench(style: &Style, key: RandomKey) -> Model {
                 0.02,
                 2,
             ),
-            0.4 * cover.padded(),
+            0.4 * cover.padded_fill(),
         );
     Model::articulated("storage_bench", "storage_bench")
         .part(body)
-        .inside(
+        .with_container_space(
             "chest",
             [-x + 0.02, low + 0.02, -z + 0.02],
             [x - 0.02, under - 0.005, z - 0.02],
         )
         .part(top)
         .hinged("lid", [0.0, under + 0.001, -z], Vec3::NEG_X, 1.3)
-        .top(
+        .with_support_surface(
             "seat",
             [-x + 0.02, h, -z + 0.02],
             [x - 0.02, h + 0.5, z - 0.02],

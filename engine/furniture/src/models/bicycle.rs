@@ -15,10 +15,10 @@ pub(super) const ENTRIES: &[CatalogueEntry] =
 /// A bicycle on its stand, riding towards +X.
 fn bicycle(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("bicycle", key);
-    let (w, h) = (d.m("width"), d.m("height"));
+    let (w, h) = (d.sample_m("width"), d.sample_m("height"));
     let paint = painted_steel(
         "bicycle_paint",
-        d.of(
+        d.choose(
             "paint",
             [
                 [176, 40, 44],
@@ -51,17 +51,19 @@ fn bicycle(_style: &Style, key: RandomKey) -> Model {
     ];
     let wheel = |at: [f32; 3]| {
         ring(r - 0.018, 0.018, 32)
-            .about_x(FRAC_PI_2)
-            .at(at[0], at[1], at[2])
+            .rotated_x(FRAC_PI_2)
+            .translated(at[0], at[1], at[2])
     };
     let mut body = PartBuilder::new("body")
-        .with_filled(&rubber, wheel(rear).and(wheel(ahead)), 0.45)
-        .with_filled(
+        .with_fill_fraction(&rubber, wheel(rear).merged(wheel(ahead)), 0.45)
+        .with_fill_fraction(
             &paint,
-            tubes.into_iter().fold(SolidMesh::default(), SolidMesh::and),
+            tubes
+                .into_iter()
+                .fold(SolidMesh::default(), SolidMesh::merged),
             0.16,
         )
-        .with_filled(
+        .with_fill_fraction(
             &black(),
             rounded_block(
                 [saddle[0] - 0.14, h - 0.1, -0.07],
@@ -71,7 +73,7 @@ fn bicycle(_style: &Style, key: RandomKey) -> Model {
             ),
             0.5,
         )
-        .with_filled(
+        .with_fill_fraction(
             &chrome(),
             tube(
                 &[
@@ -85,19 +87,19 @@ fn bicycle(_style: &Style, key: RandomKey) -> Model {
             ),
             0.3,
         )
-        .with_filled(
+        .with_fill_fraction(
             &chrome(),
             rod(head, [head[0] + 0.02, h - 0.02, 0.0], 0.012),
             0.3,
         )
-        .with_filled(
+        .with_fill_fraction(
             &chrome(),
             cylinder(0.09, 0.008, 20)
-                .about_x(FRAC_PI_2)
-                .at(crank[0], crank[1], 0.03),
+                .rotated_x(FRAC_PI_2)
+                .translated(crank[0], crank[1], 0.03),
             0.3,
         )
-        .with_filled(
+        .with_fill_fraction(
             &chrome(),
             rod(
                 [crank[0] - 0.1, crank[1] + 0.13, 0.06],
@@ -121,8 +123,14 @@ fn bicycle(_style: &Style, key: RandomKey) -> Model {
             ),
         )
         // A stand of two legs under the bottom bracket.
-        .with(&black(), ball(0.01, 8).at(crank[0] - 0.08, 0.01, 0.16))
-        .with(&black(), ball(0.01, 8).at(crank[0] - 0.08, 0.01, -0.16))
+        .with(
+            &black(),
+            ball(0.01, 8).translated(crank[0] - 0.08, 0.01, 0.16),
+        )
+        .with(
+            &black(),
+            ball(0.01, 8).translated(crank[0] - 0.08, 0.01, -0.16),
+        )
         .with(
             &black(),
             rod(

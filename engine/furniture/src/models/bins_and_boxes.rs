@@ -23,7 +23,7 @@ const LID_RAD: f32 = 1.6;
 fn laundry_basket() -> Model {
     let (r, h) = (0.2, 0.55);
     let woven = vessel(&[(0.0, 0.0), (0.88 * r, 0.0), (r, h)], 0.008, 24);
-    let body = PartBuilder::new("body").with_filled(&rattan(), woven, 0.6);
+    let body = PartBuilder::new("body").with_fill_fraction(&rattan(), woven, 0.6);
     let (low, high) = (h + 0.001, h + 0.02);
     let cover = surface_of_revolution(
         &[
@@ -35,21 +35,21 @@ fn laundry_basket() -> Model {
         24,
     );
     let grip = ring(0.04, 0.006, 14)
-        .about_x(FRAC_PI_2)
-        .at(0.0, h + 0.06, 0.0);
+        .rotated_x(FRAC_PI_2)
+        .translated(0.0, h + 0.06, 0.0);
     let lid = PartBuilder::new("lid")
-        .with_filled(&rattan(), cover, 0.3)
+        .with_fill_fraction(&rattan(), cover, 0.3)
         .with(&rattan(), grip);
     let half = 0.58 * r;
     Model::movable("laundry_basket", "basket")
         .part(body)
-        .inside("inside", [-half, 0.008, -half], [half, h, half])
+        .with_container_space("inside", [-half, 0.008, -half], [half, h, half])
         .part(lid)
         .hinged("lid", [0.0, low, -r], Vec3::NEG_X, LID_RAD)
 }
 
 fn sample_laundry_basket(_style: &Style, key: RandomKey) -> Model {
-    laundry_basket().resized(SizeSampler::new("laundry_basket", key).m("height") / 0.6)
+    laundry_basket().resized(SizeSampler::new("laundry_basket", key).sample_m("height") / 0.6)
 }
 
 /// A bin with a pedal and a lid that turns up.
@@ -60,7 +60,7 @@ fn pedal_bin(height_m: f32, color: &Finish) -> Model {
     let rim = 0.9 * h;
     let pail = vessel(&[(0.0, 0.0), (r, 0.0), (r, rim)], WALL_M, 26);
     let body = PartBuilder::new("body")
-        .with_filled(color, pail, 0.35)
+        .with_fill_fraction(color, pail, 0.35)
         .with(
             &black(),
             block([-0.03, 0.01, z], [0.03, 0.02, z + 0.06]).visual_only(),
@@ -79,14 +79,14 @@ fn pedal_bin(height_m: f32, color: &Finish) -> Model {
     let half = 0.6 * r;
     Model::movable("trash_can", "trash_can")
         .part(body)
-        .inside("inside", [-half, WALL_M, -half], [half, rim, half])
-        .part(PartBuilder::new("lid").with_filled(&black(), cover, 0.1))
+        .with_container_space("inside", [-half, WALL_M, -half], [half, rim, half])
+        .part(PartBuilder::new("lid").with_fill_fraction(&black(), cover, 0.1))
         .hinged("lid", [0.0, low, -r], Vec3::NEG_X, LID_RAD)
 }
 
 fn waste_bin(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("waste_bin", key);
-    let tone = style.cloth(&mut d.stream("tone")).srgb;
+    let tone = style.random_cloth(&mut d.stream("tone")).srgb;
     let metal = Finish {
         substance: "steel",
         ..style.metal.clone()
@@ -96,7 +96,7 @@ fn waste_bin(style: &Style, key: RandomKey) -> Model {
     } else {
         Finish::plain("bin_paint", "steel", tone)
     };
-    pedal_bin(d.m("height"), &color)
+    pedal_bin(d.sample_m("height"), &color)
 }
 
 /// A box of card or wood without a lid.
@@ -112,7 +112,7 @@ fn open_box(size_m: [f32; 3], material: &Finish) -> Model {
     ];
     Model::pickable("storage_box", "box")
         .part(PartBuilder::new("body").with_all(material, walls))
-        .inside("inside", [-x + t, t, -z + t], [x - t, h, z - t])
+        .with_container_space("inside", [-x + t, t, -z + t], [x - t, h, z - t])
 }
 
 fn storage_box(style: &Style, key: RandomKey) -> Model {
@@ -120,7 +120,7 @@ fn storage_box(style: &Style, key: RandomKey) -> Model {
     let card = Finish::plain(
         "storage_card",
         "paper",
-        d.of(
+        d.choose(
             "card",
             [
                 [176, 138, 96],
@@ -133,7 +133,14 @@ fn storage_box(style: &Style, key: RandomKey) -> Model {
     let stuff = if d.chance("card", 0.5) {
         card
     } else {
-        style.any_wood(&mut d.stream("wood")).clone()
+        style.random_wood(&mut d.stream("wood")).clone()
     };
-    open_box([d.m("width"), d.m("height"), d.m("depth")], &stuff)
+    open_box(
+        [
+            d.sample_m("width"),
+            d.sample_m("height"),
+            d.sample_m("depth"),
+        ],
+        &stuff,
+    )
 }

@@ -43,8 +43,8 @@ fn book(size_m: [f32; 3], k: usize) -> Model {
     let [w, t, d] = size_m;
     let (x, z, board) = (0.5 * w, 0.5 * d, 0.1 * t);
     let front = panel(w, d, board)
-        .about_x(-std::f32::consts::FRAC_PI_2)
-        .at(0.0, t - board, z);
+        .rotated_x(-std::f32::consts::FRAC_PI_2)
+        .translated(0.0, t - board, z);
     let body = PartBuilder::new("body")
         .with(&cover(k), front)
         .with(&spine(k), block([-x, 0.0, -z], [x, board, z]))
@@ -65,7 +65,11 @@ fn book(size_m: [f32; 3], k: usize) -> Model {
 fn sample_book(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("book", key);
     book(
-        [d.m("width"), d.m("height"), d.m("depth")],
+        [
+            d.sample_m("width"),
+            d.sample_m("height"),
+            d.sample_m("depth"),
+        ],
         d.below("cover", 8),
     )
 }
@@ -100,7 +104,7 @@ fn book_row(width_m: f32, height_m: f32, key: RandomKey) -> Model {
 
 fn sample_book_row(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("book_row", key);
-    book_row(d.m("row"), d.m("tall"), key.child("row"))
+    book_row(d.sample_m("row"), d.sample_m("tall"), key.child("row"))
 }
 
 /// A stack of magazines.
@@ -109,9 +113,14 @@ fn magazines(covers: [&Finish; 3]) -> Model {
     for (k, cover) in covers.into_iter().enumerate() {
         let y = 0.008 * k as f32;
         let sheet = panel(0.21, 0.28, 0.008)
-            .about_x(-FRAC_PI_2)
-            .at(0.0, 0.0, 0.14);
-        body = body.with(cover, sheet.about_y(0.12 * k as f32 - 0.1).at(0.0, y, 0.0));
+            .rotated_x(-FRAC_PI_2)
+            .translated(0.0, 0.0, 0.14);
+        body = body.with(
+            cover,
+            sheet
+                .rotated_y(0.12 * k as f32 - 0.1)
+                .translated(0.0, y, 0.0),
+        );
     }
     Model::pickable("magazines", "magazines").part(body)
 }
@@ -123,5 +132,5 @@ fn sample_magazines(style: &Style, key: RandomKey) -> Model {
         let recipe = ["cover", "shapes", "landscape"][k];
         Finish::picture("magazine_cover", "paper", recipe, colors, 1 + k as u64)
     };
-    magazines([&cover(0), &cover(1), &cover(2)]).resized(d.m("width") / 0.24)
+    magazines([&cover(0), &cover(1), &cover(2)]).resized(d.sample_m("width") / 0.24)
 }

@@ -1,6 +1,6 @@
 //! A bunk bed with a ladder.
 
-use super::bedding::foam;
+use super::bedding::foam_fill;
 use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::cloth;
 use crate::model::{Model, PartBuilder};
@@ -15,11 +15,15 @@ pub(super) const ENTRIES: &[CatalogueEntry] =
 /// Two beds, one above the other, with a ladder at the front of the foot end. The heads are at -Z, the open side is +X.
 fn bunk_bed(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("bunk_bed", key);
-    let (w, h, length) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, length) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z) = (0.5 * w, 0.5 * length);
-    let wood = style.any_wood(&mut d.stream("wood"));
+    let wood = style.random_wood(&mut d.stream("wood"));
     let sheet = cloth("white_linen", [238, 236, 230]);
-    let cover = style.cloth(&mut d.stream("cover"));
+    let cover = style.random_cloth(&mut d.stream("cover"));
     let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
     let mut body = PartBuilder::new("body").with_all(
         wood,
@@ -55,7 +59,7 @@ fn bunk_bed(style: &Style, key: RandomKey) -> Model {
                     [x - 0.035, base, z - 0.035],
                 ),
             )
-            .with_filled(
+            .with_fill_fraction(
                 &sheet,
                 rounded_block(
                     [-x + 0.04, base, -z + 0.04],
@@ -63,9 +67,9 @@ fn bunk_bed(style: &Style, key: RandomKey) -> Model {
                     0.04,
                     2,
                 ),
-                foam(&sheet),
+                foam_fill(&sheet),
             )
-            .with_filled(
+            .with_fill_fraction(
                 cover,
                 rounded_block(
                     [-x + 0.045, top, -z + 0.55],
@@ -100,17 +104,17 @@ fn bunk_bed(style: &Style, key: RandomKey) -> Model {
         .with_all(wood, rungs);
     Model::fixed("bunk_bed", "bunker_bed")
         .part(body)
-        .top(
+        .with_support_surface(
             "lower_pillow_end",
             [-x + 0.08, lower + 0.14, -z + 0.08],
             [x - 0.08, lower + 0.5, -z + 0.52],
         )
-        .top(
+        .with_support_surface(
             "lower_bed",
             [-x + 0.08, lower + 0.165, -z + 0.58],
             [x - 0.08, upper - 0.12, z - 0.1],
         )
-        .top(
+        .with_support_surface(
             "upper_pillow_end",
             [-x + 0.08, upper + 0.14, -z + 0.08],
             [x - 0.08, h, -z + 0.52],

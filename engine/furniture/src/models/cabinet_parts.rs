@@ -11,7 +11,7 @@ pub(super) const BOARD_M: f32 = 0.018;
 /// Thickness of back panels, m.
 const BACK_M: f32 = 0.006;
 /// The index of the top among a carcass' boards.
-pub(super) const TOP: usize = 3;
+pub(super) const TOP_BOARD: usize = 3;
 /// Gap between neighbouring fronts, m.
 pub(super) const GAP_M: f32 = 0.005;
 
@@ -112,7 +112,9 @@ impl FrontStyle {
         let edge = BAR_M + 0.004;
         leaf.with(
             &self.board,
-            frame(width, height, BAR_M, 0.005).at(x, y, z).visual_only(),
+            frame(width, height, BAR_M, 0.005)
+                .translated(x, y, z)
+                .visual_only(),
         )
         .with(
             &shade,
@@ -166,9 +168,9 @@ pub(super) fn door(
 /// A round knob on the face at `z`.
 fn knob(x: f32, y: f32, z: f32) -> SolidMesh {
     let stem = cylinder(0.006, 0.014, 8).visual_only();
-    stem.and(cylinder(0.014, 0.014, 14).at(0.0, 0.012, 0.0))
-        .about_x(FRAC_PI_2)
-        .at(x, y, z)
+    stem.merged(cylinder(0.014, 0.014, 14).translated(0.0, 0.012, 0.0))
+        .rotated_x(FRAC_PI_2)
+        .translated(x, y, z)
 }
 
 /// An upright bar handle on the face at `z`.
@@ -179,7 +181,7 @@ pub(super) fn upright_handle(x: f32, low: f32, high: f32, z: f32) -> SolidMesh {
         0.005,
     );
     let foot = |y: f32| rod([x, y, z], [x, y, z + 0.022], 0.004).visual_only();
-    bar.and(foot(low)).and(foot(high))
+    bar.merged(foot(low)).merged(foot(high))
 }
 
 /// A level bar handle on the face at `z`.
@@ -190,7 +192,7 @@ pub(super) fn level_handle(x: f32, y: f32, z: f32, half: f32) -> SolidMesh {
         0.005,
     );
     let foot = |x: f32| rod([x, y, z], [x, y, z + 0.022], 0.004).visual_only();
-    bar.and(foot(x - half)).and(foot(x + half))
+    bar.merged(foot(x - half)).merged(foot(x + half))
 }
 
 /// A drawer: its front from the lower left corner to the upper right one with its back at z, and a box of `depth_m` behind.

@@ -15,7 +15,7 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[
 
 /// A night light in the shape of a mushroom.
 fn night_light() -> Model {
-    let red = plastic("red_glow", [226, 74, 60]).glowing([0.3, 0.06, 0.04]);
+    let red = plastic("red_glow", [226, 74, 60]).emissive([0.3, 0.06, 0.04]);
     let cap = surface_of_revolution(
         &[
             (0.0, 0.07),
@@ -36,7 +36,7 @@ fn night_light() -> Model {
 }
 
 fn sample_night_light(_style: &Style, key: RandomKey) -> Model {
-    night_light().resized(SizeSampler::new("night_light", key).m("height") / 0.132)
+    night_light().resized(SizeSampler::new("night_light", key).sample_m("height") / 0.132)
 }
 
 /// A candle in a dish.
@@ -47,7 +47,10 @@ fn candle(height_m: f32) -> Model {
             &painted_steel("black_steel", [40, 40, 42]),
             surface_of_revolution(&[(0.0, 0.0), (0.055, 0.0), (0.06, 0.012), (0.0, 0.008)], 20),
         )
-        .with(&wax, cylinder(0.032, height_m, 18).at(0.0, 0.008, 0.0))
+        .with(
+            &wax,
+            cylinder(0.032, height_m, 18).translated(0.0, 0.008, 0.0),
+        )
         .with(
             &black(),
             rod(
@@ -68,7 +71,7 @@ fn sample_candle(_style: &Style, key: RandomKey) -> Model {
     let wax = Finish::plain(
         "candle_wax",
         "wax",
-        d.of(
+        d.choose(
             "wax",
             [
                 [240, 230, 204],
@@ -78,5 +81,5 @@ fn sample_candle(_style: &Style, key: RandomKey) -> Model {
             ],
         ),
     );
-    candle(d.m("height") - 0.016).repainted("wax", &wax)
+    candle(d.sample_m("height") - 0.016).with_finish_replaced("wax", &wax)
 }

@@ -27,7 +27,7 @@ pub(super) fn casing(style: &Style, d: &SizeSampler, name: &'static str) -> Fini
 }
 
 /// Common colours of small machines' plastic.
-pub(super) const CASES: [[u8; 3]; 6] = [
+pub(super) const CASING_COLORS: [[u8; 3]; 6] = [
     [236, 234, 228],
     [52, 54, 58],
     [176, 44, 46],

@@ -30,12 +30,12 @@ fn ceiling_dome(radius_m: f32, power_w: f32) -> Model {
         28,
     );
     let body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             &chrome(),
-            cylinder(radius_m, 0.02, 28).at(0.0, -0.02, 0.0),
+            cylinder(radius_m, 0.02, 28).translated(0.0, -0.02, 0.0),
             0.1,
         )
-        .with_filled(&milk_glass(), glass, 0.08);
+        .with_fill_fraction(&milk_glass(), glass, 0.08);
     Model::fixed("ceiling_dome", "chandelier")
         .switched(true)
         .part(body)
@@ -43,7 +43,10 @@ fn ceiling_dome(radius_m: f32, power_w: f32) -> Model {
 }
 
 fn ceiling_lamp(_style: &Style, key: RandomKey) -> Model {
-    ceiling_dome(0.5 * SizeSampler::new("ceiling_lamp", key).m("width"), 14.0)
+    ceiling_dome(
+        0.5 * SizeSampler::new("ceiling_lamp", key).sample_m("width"),
+        14.0,
+    )
 }
 
 /// A drum of cloth on a cord.
@@ -52,7 +55,7 @@ fn drum(drop_m: f32, radius_m: f32, cloth: &Finish, power_w: f32) -> Model {
     let body = PartBuilder::new("body")
         .with(
             &white_lacquer(),
-            cylinder(0.05, 0.025, 20).at(0.0, -0.025, 0.0),
+            cylinder(0.05, 0.025, 20).translated(0.0, -0.025, 0.0),
         )
         .with(
             &black(),
@@ -64,12 +67,12 @@ fn drum(drop_m: f32, radius_m: f32, cloth: &Finish, power_w: f32) -> Model {
         )
         .with(
             cloth,
-            shade_mesh(radius_m, radius_m, height).at(0.0, -drop_m, 0.0),
+            shade_mesh(radius_m, radius_m, height).translated(0.0, -drop_m, 0.0),
         )
         .with(
             &milk_glass(),
             cylinder(radius_m - 0.006, 0.004, 28)
-                .at(0.0, -drop_m + 0.02, 0.0)
+                .translated(0.0, -drop_m + 0.02, 0.0)
                 .visual_only(),
         );
     Model::fixed("drum_lamp", "chandelier")
@@ -81,8 +84,8 @@ fn drum(drop_m: f32, radius_m: f32, cloth: &Finish, power_w: f32) -> Model {
 fn drum_lamp(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("drum_lamp", key);
     drum(
-        d.m("height"),
-        0.5 * d.m("width"),
+        d.sample_m("height"),
+        0.5 * d.sample_m("width"),
         &shade_finish(style, &d),
         14.0,
     )
@@ -103,16 +106,19 @@ fn pendant(drop_m: f32, radius_m: f32, metal: &Finish, power_w: f32) -> Model {
         (radius_m - 0.003, 0.0),
     ];
     let body = PartBuilder::new("body")
-        .with(metal, cylinder(0.05, 0.025, 20).at(0.0, -0.025, 0.0))
+        .with(
+            metal,
+            cylinder(0.05, 0.025, 20).translated(0.0, -0.025, 0.0),
+        )
         .with(&black(), rod([0.0, top, 0.0], [0.0, -0.025, 0.0], 0.004))
         .with(
             metal,
-            surface_of_revolution(&dome, 32).at(0.0, -drop_m, 0.0),
+            surface_of_revolution(&dome, 32).translated(0.0, -drop_m, 0.0),
         )
         .with(
             &milk_glass(),
             ball(0.26 * radius_m, 16)
-                .at(0.0, -drop_m + 0.2 * radius_m, 0.0)
+                .translated(0.0, -drop_m + 0.2 * radius_m, 0.0)
                 .visual_only(),
         );
     Model::fixed("pendant_lamp", "chandelier")
@@ -123,34 +129,43 @@ fn pendant(drop_m: f32, radius_m: f32, metal: &Finish, power_w: f32) -> Model {
 
 fn sample_pendant(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("pendant", key);
-    let tone = style.glaze(&mut d.stream("tone")).srgb;
+    let tone = style.random_glaze(&mut d.stream("tone")).srgb;
     let lacquer = Finish::plain("pendant_lacquer", "steel", tone);
     let metal = if d.chance("metal", 0.5) {
         style.metal.clone()
     } else {
         lacquer
     };
-    pendant(d.m("height"), 0.5 * d.m("width"), &metal, 12.0)
+    pendant(
+        d.sample_m("height"),
+        0.5 * d.sample_m("width"),
+        &metal,
+        12.0,
+    )
 }
 
 /// A chandelier: arms with candles or bulbs around a stem, under the ceiling.
 fn chandelier(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("chandelier", key);
-    let (w, h) = (d.m("span"), d.m("height"));
+    let (w, h) = (d.sample_m("span"), d.sample_m("height"));
     let metal = if d.chance("brass", 0.4) {
         brass()
     } else {
         style.metal.clone()
     };
-    let count = d.of("arms", [5, 6, 8]);
+    let count = d.choose("arms", [5, 6, 8]);
     let (r, low) = (0.5 * w - 0.03, -h);
     let mut body = PartBuilder::new("body")
-        .with_filled(&metal, cylinder(0.06, 0.03, 20).at(0.0, -0.03, 0.0), 0.4)
+        .with_fill_fraction(
+            &metal,
+            cylinder(0.06, 0.03, 20).translated(0.0, -0.03, 0.0),
+            0.4,
+        )
         .with(
             &metal,
             rod([0.0, low + 0.18, 0.0], [0.0, -0.03, 0.0], 0.007),
         )
-        .with_filled(
+        .with_fill_fraction(
             &metal,
             surface_of_revolution(
                 &[
@@ -168,7 +183,7 @@ fn chandelier(style: &Style, key: RandomKey) -> Model {
         let (sin, cos) = dwell_scene::math::sin_cos(TAU * k as f32 / count as f32);
         let at = |out: f32, y: f32| [out * sin, low + y, out * cos];
         body = body
-            .with_filled(
+            .with_fill_fraction(
                 &metal,
                 tube(
                     &[
@@ -184,11 +199,11 @@ fn chandelier(style: &Style, key: RandomKey) -> Model {
             )
             .with(
                 &metal,
-                cylinder(0.028, 0.008, 12).at(r * sin, low + 0.1, r * cos),
+                cylinder(0.028, 0.008, 12).translated(r * sin, low + 0.1, r * cos),
             )
             .with(
                 &plastic("candle_sleeve", [240, 234, 216]),
-                cylinder(0.012, 0.07, 10).at(r * sin, low + 0.108, r * cos),
+                cylinder(0.012, 0.07, 10).translated(r * sin, low + 0.108, r * cos),
             )
             .with(
                 &milk_glass(),
@@ -196,7 +211,7 @@ fn chandelier(style: &Style, key: RandomKey) -> Model {
                     &[(0.0, 0.0), (0.012, 0.008), (0.014, 0.02), (0.0, 0.05)],
                     10,
                 )
-                .at(r * sin, low + 0.178, r * cos)
+                .translated(r * sin, low + 0.178, r * cos)
                 .visual_only(),
             );
     }

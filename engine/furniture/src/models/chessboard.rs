@@ -18,7 +18,7 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[CatalogueEntry::new(
 /// A chess board with some pieces of a game on it.
 fn chessboard(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("chessboard", key);
-    let (w, h) = (d.m("width"), d.m("height"));
+    let (w, h) = (d.sample_m("width"), d.sample_m("height"));
     let thick = 0.016;
     let x = 0.5 * w;
     let square = (w - 0.04) / 8.0;
@@ -29,7 +29,7 @@ fn chessboard(_style: &Style, key: RandomKey) -> Model {
         let (a, b) = (k % 8, k / 8);
         if (a + b) % 2 == 1 {
             let (from_x, from_z) = (-x + 0.02 + square * a as f32, -x + 0.02 + square * b as f32);
-            squares = squares.and(
+            squares = squares.merged(
                 block(
                     [from_x, thick, from_z],
                     [from_x + square, thick + 0.0006, from_z + square],
@@ -74,13 +74,19 @@ fn chessboard(_style: &Style, key: RandomKey) -> Model {
             }
             let rank = home + way * [0, 0, 1, 2][random.below(4)];
             let at = |n: i32| -x + 0.02 + square * (n as f32 + 0.5);
-            body = body.with(color, piece(0.55).at(at(k), thick + 0.0006, at(rank)));
+            body = body.with(
+                color,
+                piece(0.55).translated(at(k), thick + 0.0006, at(rank)),
+            );
         }
     }
     for (color, rank) in [(&maple, 7), (&dark, 0)] {
         for (file, share) in [(0, 0.6), (3, 0.92), (4, 1.0), (5, 0.8), (7, 0.6)] {
             let at = |n: i32| -x + 0.02 + square * (n as f32 + 0.5);
-            body = body.with(color, piece(share).at(at(file), thick + 0.0006, at(rank)));
+            body = body.with(
+                color,
+                piece(share).translated(at(file), thick + 0.0006, at(rank)),
+            );
         }
     }
     Model::movable("chessboard", "chessboard").part(body)

@@ -18,11 +18,15 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[
 /// A vacuum cleaner on wheels with its hose and nozzle put away upright.
 fn vacuum_cleaner(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("vacuum_cleaner", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth);
     let shell = plastic(
         "vacuum_shell",
-        d.of(
+        d.choose(
             "tone",
             [
                 [176, 40, 44],
@@ -35,23 +39,25 @@ fn vacuum_cleaner(_style: &Style, key: RandomKey) -> Model {
     );
     let tank = (0.3 * h).min(0.26);
     let wheel = |sx: f32| {
-        cylinder(0.07, 0.03, 18)
-            .about_z(FRAC_PI_2)
-            .at(sx * (x - 0.015) + 0.015, 0.07, -z + 0.09)
+        cylinder(0.07, 0.03, 18).rotated_z(FRAC_PI_2).translated(
+            sx * (x - 0.015) + 0.015,
+            0.07,
+            -z + 0.09,
+        )
     };
     let body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             &shell,
             rounded_block([-x + 0.035, 0.02, -z], [x - 0.035, tank, z - 0.09], 0.06, 3),
             0.3,
         )
         .with_all(&black(), [wheel(-1.0), wheel(1.0)])
-        .with(&black(), ball(0.03, 10).at(0.0, 0.03, z - 0.13))
+        .with(&black(), ball(0.03, 10).translated(0.0, 0.03, z - 0.13))
         .with(
             &black(),
             rounded_block([-x, 0.0, z - 0.085], [x, 0.035, z], 0.012, 1),
         )
-        .with_filled(
+        .with_fill_fraction(
             &chrome(),
             rod([0.0, 0.03, z - 0.05], [0.0, h - 0.06, z - 0.12], 0.016),
             0.2,
@@ -68,7 +74,7 @@ fn vacuum_cleaner(_style: &Style, key: RandomKey) -> Model {
                 8,
             ),
         )
-        .with_filled(
+        .with_fill_fraction(
             &black(),
             tube(
                 &[
@@ -92,11 +98,15 @@ fn vacuum_cleaner(_style: &Style, key: RandomKey) -> Model {
 /// An iron standing on its heel; the tip points up, the plate to -Z.
 fn iron(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("iron", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth);
     let shell = plastic(
         "iron_shell",
-        d.of(
+        d.choose(
             "tone",
             [[60, 110, 170], [150, 60, 120], [70, 74, 78], [60, 140, 130]],
         ),
@@ -113,13 +123,20 @@ fn iron(_style: &Style, key: RandomKey) -> Model {
         ]
     };
     let body = PartBuilder::new("body")
-        .with(&steel(), extrude(&outline(1.0), 0.012).at(0.0, 0.0, -z))
-        .with_filled(
+        .with(
+            &steel(),
+            extrude(&outline(1.0), 0.012).translated(0.0, 0.0, -z),
+        )
+        .with_fill_fraction(
             &shell,
-            extrude(&outline(0.92).map(|[a, b]| [a, b * 0.94]), 0.05).at(0.0, 0.0, -z + 0.012),
+            extrude(&outline(0.92).map(|[a, b]| [a, b * 0.94]), 0.05).translated(
+                0.0,
+                0.0,
+                -z + 0.012,
+            ),
             0.7,
         )
-        .with_filled(
+        .with_fill_fraction(
             &shell,
             block([-0.5 * x, 0.0, -z + 0.062], [0.5 * x, 0.035, z]),
             0.6,
@@ -144,9 +161,13 @@ fn iron(_style: &Style, key: RandomKey) -> Model {
 /// An ironing board on crossed legs.
 fn ironing_board(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("ironing_board", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth);
-    let cover = style.cloth(&mut d.stream("cover"));
+    let cover = style.random_cloth(&mut d.stream("cover"));
     let outline = [
         [-x, -z],
         [0.55 * x, -z],
@@ -157,7 +178,7 @@ fn ironing_board(style: &Style, key: RandomKey) -> Model {
         [0.55 * x, z],
         [-x, z],
     ];
-    let board = crate::shapes::extrude(&outline, 0.03).about_x(-FRAC_PI_2);
+    let board = crate::shapes::extrude(&outline, 0.03).rotated_x(-FRAC_PI_2);
     let leg = |s: f32, b: f32| rod([-s * 0.6 * x, 0.014, b], [s * 0.6 * x, h - 0.035, b], 0.012);
     let foot = |s: f32, half: f32| {
         rod(
@@ -167,12 +188,12 @@ fn ironing_board(style: &Style, key: RandomKey) -> Model {
         )
     };
     let body = PartBuilder::new("body")
-        .with_filled(cover, board.at(0.0, h - 0.03, 0.0), 0.5)
-        .with_filled(&style.metal, leg(1.0, -0.03).and(leg(-1.0, 0.03)), 0.35)
-        .with_filled(&style.metal, foot(-1.0, z).and(foot(1.0, z)), 0.35);
+        .with_fill_fraction(cover, board.translated(0.0, h - 0.03, 0.0), 0.5)
+        .with_fill_fraction(&style.metal, leg(1.0, -0.03).merged(leg(-1.0, 0.03)), 0.35)
+        .with_fill_fraction(&style.metal, foot(-1.0, z).merged(foot(1.0, z)), 0.35);
     Model::movable("ironing_board", "ironing_board")
         .part(body)
-        .top(
+        .with_support_surface(
             "board",
             [-0.9 * x, h, -0.7 * z],
             [0.5 * x, h + 0.4, 0.7 * z],

@@ -27,18 +27,18 @@ fn wall_clock(radius_m: f32) -> Model {
     let edge = 2.0 * radius_m * 0.7;
     let plate = plastic("white_plastic", [246, 244, 236]);
     let body = PartBuilder::new("body")
-        .with(&plate, cylinder(radius_m, 0.022, 32).about_x(FRAC_PI_2))
+        .with(&plate, cylinder(radius_m, 0.022, 32).rotated_x(FRAC_PI_2))
         .with(
             &frame,
             ring(radius_m, 0.012, 32)
-                .about_x(FRAC_PI_2)
-                .at(0.0, 0.0, 0.014)
+                .rotated_x(FRAC_PI_2)
+                .translated(0.0, 0.0, 0.014)
                 .visual_only(),
         )
         .with(
             &dial,
             panel(edge, edge, 0.002)
-                .at(0.0, -0.5 * edge, 0.022)
+                .translated(0.0, -0.5 * edge, 0.022)
                 .visual_only(),
         );
     Model::fixed("wall_clock", "clock")
@@ -53,7 +53,7 @@ fn sample_wall_clock(style: &Style, key: RandomKey) -> Model {
         substance: "plastic",
         ..style.metal.clone()
     };
-    wall_clock(0.5 * d.m("width")).repainted("black_lacquer", &rim)
+    wall_clock(0.5 * d.sample_m("width")).with_finish_replaced("black_lacquer", &rim)
 }
 
 /// An alarm clock with bells' colour and a ticking work.
@@ -70,12 +70,14 @@ fn alarm_clock() -> Model {
         .with(
             &mint,
             cylinder(0.05, 0.045, 24)
-                .about_x(FRAC_PI_2)
-                .at(0.0, 0.06, -0.022),
+                .rotated_x(FRAC_PI_2)
+                .translated(0.0, 0.06, -0.022),
         )
         .with(
             &dial,
-            panel(0.07, 0.07, 0.001).at(0.0, 0.025, 0.023).visual_only(),
+            panel(0.07, 0.07, 0.001)
+                .translated(0.0, 0.025, 0.023)
+                .visual_only(),
         )
         .with_all(
             &black(),
@@ -88,8 +90,11 @@ fn alarm_clock() -> Model {
 
 fn sample_alarm_clock(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("alarm_clock", key);
-    let case = plastic("alarm_clock_case", style.glaze(&mut d.stream("tone")).srgb);
+    let case = plastic(
+        "alarm_clock_case",
+        style.random_glaze(&mut d.stream("tone")).srgb,
+    );
     alarm_clock()
-        .resized(d.m("height") / 0.11)
-        .repainted("mint_plastic", &case)
+        .resized(d.sample_m("height") / 0.11)
+        .with_finish_replaced("mint_plastic", &case)
 }

@@ -16,7 +16,7 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[
 ];
 
 /// Colours of clothes and of other things that owners choose one by one.
-pub(super) const WORN: [[u8; 3]; 8] = [
+pub(super) const CLOTHING_COLORS: [[u8; 3]; 8] = [
     [56, 66, 92],
     [150, 42, 46],
     [232, 230, 224],
@@ -30,14 +30,18 @@ pub(super) const WORN: [[u8; 3]; 8] = [
 /// A folded shirt or pullover.
 fn folded_clothes(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("folded_clothes", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth);
     let count = ((h / 0.03).round() as usize).clamp(1, 4);
     let each = h / count as f32;
     let mut random = d.stream("tones");
     let mut body = PartBuilder::new("body");
     for k in 0..count {
-        let tone = WORN[random.below(WORN.len())];
+        let tone = CLOTHING_COLORS[random.below(CLOTHING_COLORS.len())];
         let slack = random.range(0.0, 0.012);
         let y = each * k as f32;
         let fold = rounded_block(
@@ -46,7 +50,7 @@ fn folded_clothes(_style: &Style, key: RandomKey) -> Model {
             0.45 * each,
             2,
         );
-        body = body.with_filled(&crate::finishes::cloth("garment", tone), fold, 0.35);
+        body = body.with_fill_fraction(&crate::finishes::cloth("garment", tone), fold, 0.35);
     }
     Model::pickable("folded_clothes", "cloth").part(body)
 }
@@ -73,9 +77,9 @@ fn shoes(hide: &Finish) -> Model {
             outline(0.027, 0.054, 0.1006, -0.07),
         ]);
         body = body
-            .with_filled(hide, upper.at(x, 0.0, 0.0), 0.3)
-            .with(&inside, opening.at(x, 0.0, 0.0).visual_only())
-            .with_filled(&sole, foot.at(x, 0.0, 0.0), 0.6);
+            .with_fill_fraction(hide, upper.translated(x, 0.0, 0.0), 0.3)
+            .with(&inside, opening.translated(x, 0.0, 0.0).visual_only())
+            .with_fill_fraction(&sole, foot.translated(x, 0.0, 0.0), 0.6);
     }
     Model::pickable("shoes", "shoes").part(body)
 }
@@ -84,7 +88,7 @@ fn sample_shoes(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("shoes", key);
     let hide = leather(
         "shoe_leather",
-        d.of(
+        d.choose(
             "hide",
             [
                 [104, 62, 38],
@@ -95,14 +99,18 @@ fn sample_shoes(_style: &Style, key: RandomKey) -> Model {
             ],
         ),
     );
-    shoes(&hide).resized(d.m("depth") / 0.29)
+    shoes(&hide).resized(d.sample_m("depth") / 0.29)
 }
 
 /// A helmet for a cyclist.
 fn helmet(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("helmet", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
-    let shell = plastic("helmet_shell", d.of("tone", WORN));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
+    let shell = plastic("helmet_shell", d.choose("tone", CLOTHING_COLORS));
     let stretch = depth / w;
     let mut dome = surface_of_revolution(
         &[
@@ -134,7 +142,7 @@ fn helmet(_style: &Style, key: RandomKey) -> Model {
         .visual_only()
     };
     let body = PartBuilder::new("body")
-        .with_filled(&shell, dome, 0.05)
+        .with_fill_fraction(&shell, dome, 0.05)
         .with_all(&black(), [vent(-0.13 * w), vent(0.13 * w)]);
     Model::pickable("helmet", "helmet").part(body)
 }

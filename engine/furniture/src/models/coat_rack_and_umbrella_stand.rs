@@ -1,13 +1,13 @@
 //! A coat rack and an umbrella stand.
 
-use super::clothes::WORN;
+use super::clothes::CLOTHING_COLORS;
 use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::{Finish, black, oak};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{
-    ball, block, cylinder, loft, oval, rod, rounded_block, surface_of_revolution, tube, turn,
-    vessel,
+    axis_rotation, ball, block, cylinder, loft, oval, rod, rounded_block, surface_of_revolution,
+    tube, vessel,
 };
 use crate::style::Style;
 use dwell_scene::Pose;
@@ -24,7 +24,8 @@ fn coat_rack(width_m: f32, coat: &Finish, scarf: &Finish) -> Model {
     let x = 0.5 * width_m;
     let hook = |k: usize| {
         let at = -x + 0.1 + (width_m - 0.2) * k as f32 / 4.0;
-        rod([at, -0.01, 0.02], [at, 0.02, 0.075], 0.006).and(ball(0.011, 10).at(at, 0.02, 0.075))
+        rod([at, -0.01, 0.02], [at, 0.02, 0.075], 0.006)
+            .merged(ball(0.011, 10).translated(at, 0.02, 0.075))
     };
     let at = -x + 0.1 + (width_m - 0.2) * 0.25;
     let ring = |half_x: f32, half_z: f32, y: f32| oval(half_x, half_z, y, 0.026 + half_z, 20);
@@ -48,9 +49,9 @@ fn coat_rack(width_m: f32, coat: &Finish, scarf: &Finish) -> Model {
         )
     };
     let garment = garment
-        .and(sleeve(-1.0).visual_only())
-        .and(sleeve(1.0).visual_only())
-        .at(at, 0.0, 0.0);
+        .merged(sleeve(-1.0).visual_only())
+        .merged(sleeve(1.0).visual_only())
+        .translated(at, 0.0, 0.0);
     let wrap = -x + 0.1 + (width_m - 0.2) * 0.75;
     let shawl = rounded_block(
         [wrap - 0.05, -0.75, 0.03],
@@ -58,7 +59,7 @@ fn coat_rack(width_m: f32, coat: &Finish, scarf: &Finish) -> Model {
         0.014,
         1,
     )
-    .and(rounded_block(
+    .merged(rounded_block(
         [wrap - 0.005, -0.6, 0.06],
         [wrap + 0.055, 0.02, 0.085],
         0.012,
@@ -67,8 +68,8 @@ fn coat_rack(width_m: f32, coat: &Finish, scarf: &Finish) -> Model {
     let body = PartBuilder::new("body")
         .with(&oak(), block([-x, -0.05, 0.0], [x, 0.05, 0.02]))
         .with_all(&black(), (0..5).map(hook))
-        .with_filled(coat, garment, 0.15)
-        .with_filled(scarf, shawl, 0.3);
+        .with_fill_fraction(coat, garment, 0.15)
+        .with_fill_fraction(scarf, shawl, 0.3);
     Model::fixed("coat_rack", "hanger").part(body)
 }
 
@@ -84,11 +85,11 @@ fn sample_coat_rack(style: &Style, key: RandomKey) -> Model {
         [44, 44, 48],
         [150, 60, 60],
     ];
-    let coat = crate::finishes::cloth("coat", d.of("coat", tones));
-    let scarf = style.cloth(&mut d.stream("scarf"));
-    coat_rack(d.m("width"), &coat, scarf)
-        .repainted("oak", style.any_wood(&mut d.stream("wood")))
-        .repainted(
+    let coat = crate::finishes::cloth("coat", d.choose("coat", tones));
+    let scarf = style.random_cloth(&mut d.stream("scarf"));
+    coat_rack(d.sample_m("width"), &coat, scarf)
+        .with_finish_replaced("oak", style.random_wood(&mut d.stream("wood")))
+        .with_finish_replaced(
             "black_plastic",
             if d.chance("metal", 0.5) {
                 &style.metal
@@ -101,23 +102,26 @@ fn sample_coat_rack(style: &Style, key: RandomKey) -> Model {
 /// A stand with umbrellas.
 fn umbrella_stand(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("umbrella_stand", key);
-    let (w, h) = (d.m("width"), d.m("height"));
+    let (w, h) = (d.sample_m("width"), d.sample_m("height"));
     let r = 0.5 * w;
     let rim = 0.55;
     let shell = vessel(&[(0.0, 0.0), (0.92 * r, 0.0), (r, rim)], 0.006, 22);
     let holder = if d.chance("metal", 0.5) {
         style.metal.clone()
     } else {
-        style.glaze(&mut d.stream("glaze")).clone()
+        style.random_glaze(&mut d.stream("glaze")).clone()
     };
     let thin = Finish {
         substance: "steel",
         ..holder
     };
-    let mut body = PartBuilder::new("body").with_filled(&thin, shell, 0.2);
+    let mut body = PartBuilder::new("body").with_fill_fraction(&thin, shell, 0.2);
     let mut random = d.stream("umbrellas");
     for k in 0..2 {
-        let tone = crate::finishes::cloth("umbrella_cloth", WORN[random.below(WORN.len())]);
+        let tone = crate::finishes::cloth(
+            "umbrella_cloth",
+            CLOTHING_COLORS[random.below(CLOTHING_COLORS.len())],
+        );
         let side = if k == 0 { -1.0 } else { 1.0 };
         let furled = surface_of_revolution(
             &[
@@ -131,11 +135,11 @@ fn umbrella_stand(style: &Style, key: RandomKey) -> Model {
             12,
         );
         let grip = rod([0.0, 0.78 * h, 0.0], [0.0, h, 0.0], 0.01);
-        let lean = turn(Vec3::Z, -side * 0.05);
+        let lean = axis_rotation(Vec3::Z, -side * 0.05);
         let pose = Pose::new(Vec3::new(side * 0.25 * r, 0.0, 0.1 * r * side), lean);
         body = body
-            .with_filled(&tone, furled.placed(&pose).visual_only(), 0.15)
-            .with(&style.wood, grip.placed(&pose).visual_only());
+            .with_fill_fraction(&tone, furled.transformed(&pose).visual_only(), 0.15)
+            .with(&style.wood, grip.transformed(&pose).visual_only());
     }
     // The bundle is felt as one post.
     let bundle = cylinder(0.45 * r, h - 0.05, 12).collision_only();

@@ -20,8 +20,12 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[CatalogueEntry::new(
 /// A low table before a sofa: with a shelf, round, or of glass on a frame of metal.
 fn coffee_table(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("coffee_table", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
-    let wood = style.any_wood(&mut d.stream("wood")).clone();
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
+    let wood = style.random_wood(&mut d.stream("wood")).clone();
     match d.below("build", 3) {
         0 => Table {
             size_m: [w, depth],
@@ -33,7 +37,7 @@ fn coffee_table(style: &Style, key: RandomKey) -> Model {
         }
         .build(),
         1 => drum_table(
-            SizeSampler::new("round_coffee_table", key).m("width"),
+            SizeSampler::new("round_coffee_table", key).sample_m("width"),
             h,
             style,
             &wood,
@@ -45,7 +49,8 @@ fn coffee_table(style: &Style, key: RandomKey) -> Model {
 /// A round top on four splayed legs.
 fn drum_table(width_m: f32, height_m: f32, style: &Style, wood: &Finish) -> Model {
     let (r, under) = (0.5 * width_m, height_m - 0.03);
-    let mut body = PartBuilder::new("body").with(wood, cylinder(r, 0.03, 36).at(0.0, under, 0.0));
+    let mut body =
+        PartBuilder::new("body").with(wood, cylinder(r, 0.03, 36).translated(0.0, under, 0.0));
     for k in 0..4 {
         let (sin, cos) = dwell_scene::math::sin_cos(TAU * (k as f32 + 0.5) / 4.0);
         let leg = crate::shapes::tapered_leg(
@@ -59,7 +64,7 @@ fn drum_table(width_m: f32, height_m: f32, style: &Style, wood: &Finish) -> Mode
     let half = 0.68 * r;
     Model::movable("round_coffee_table", "coffee_table")
         .part(body)
-        .top(
+        .with_support_surface(
             "top",
             [-half, height_m, -half],
             [half, height_m + 0.6, half],
@@ -72,7 +77,7 @@ fn glass_table(w: f32, h: f32, depth: f32, style: &Style) -> Model {
     let mut body = PartBuilder::new("body").with(&glass(), block([-x, top, -z], [x, h, z]));
     for (sx, sz) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
         let (a, b) = (sx * (x - 0.04), sz * (z - 0.04));
-        body = body.with_filled(
+        body = body.with_fill_fraction(
             &style.metal,
             block([a - t, 0.0, b - t], [a + t, top, b + t]),
             0.3,
@@ -82,7 +87,7 @@ fn glass_table(w: f32, h: f32, depth: f32, style: &Style) -> Model {
         for side in [-1.0_f32, 1.0] {
             let (a, b) = (side * (x - 0.04), side * (z - 0.04));
             body = body
-                .with_filled(
+                .with_fill_fraction(
                     &style.metal,
                     block(
                         [-x + 0.04 + t, y, b - t],
@@ -90,7 +95,7 @@ fn glass_table(w: f32, h: f32, depth: f32, style: &Style) -> Model {
                     ),
                     0.3,
                 )
-                .with_filled(
+                .with_fill_fraction(
                     &style.metal,
                     block(
                         [a - t, y, -z + 0.04 + t],
@@ -102,5 +107,5 @@ fn glass_table(w: f32, h: f32, depth: f32, style: &Style) -> Model {
     }
     Model::movable("coffee_table", "coffee_table")
         .part(body)
-        .top("top", [-x, h, -z], [x, h + 0.6, z])
+        .with_support_surface("top", [-x, h, -z], [x, h + 0.6, z])
 }

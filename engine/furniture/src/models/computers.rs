@@ -17,7 +17,7 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[
 
 /// A glowing picture of a screen.
 pub(super) fn screen(name: &'static str, d: &SizeSampler) -> Finish {
-    let ground = d.of(
+    let ground = d.choose(
         "desktop",
         [[52, 96, 150], [38, 60, 70], [110, 70, 110], [60, 120, 100]],
     );
@@ -28,14 +28,18 @@ pub(super) fn screen(name: &'static str, d: &SizeSampler) -> Finish {
         [ground, [240, 240, 240], [90, 90, 96]],
         1 + d.below("icons", 4) as u64,
     )
-    .clear(1.0)
-    .glowing([0.08, 0.1, 0.13])
+    .transparent(1.0)
+    .emissive([0.08, 0.1, 0.13])
 }
 
 /// A monitor with keyboard and mouse before it.
 fn computer(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("computer", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let z = 0.5 * depth;
     let case = if d.chance("light", 0.3) {
         device("light_case", [206, 208, 212])
@@ -53,17 +57,17 @@ fn computer(_style: &Style, key: RandomKey) -> Model {
     );
     let (kw, kd, kz) = (0.43_f32.min(w), 0.13, z - 0.14);
     let body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             &case,
             block([-0.16 * w, 0.0, -z], [0.16 * w, 0.012, -z + 0.2]),
             0.6,
         )
-        .with_filled(
+        .with_fill_fraction(
             &case,
             block([-0.03, 0.012, at - 0.05], [0.03, low + 0.1, at - 0.025]),
             0.6,
         )
-        .with_filled(
+        .with_fill_fraction(
             &case,
             rounded_block(
                 [-0.5 * w, low, at - 0.025],
@@ -76,10 +80,10 @@ fn computer(_style: &Style, key: RandomKey) -> Model {
         .with(
             &screen("desktop", &d),
             panel(w - 0.02, h - low - 0.035, 0.002)
-                .at(0.0, low + 0.022, at + 0.015)
+                .translated(0.0, low + 0.022, at + 0.015)
                 .visual_only(),
         )
-        .with_filled(
+        .with_fill_fraction(
             &case,
             block(
                 [-0.5 * kw - 0.04, 0.0, kz],
@@ -90,11 +94,11 @@ fn computer(_style: &Style, key: RandomKey) -> Model {
         .with(
             &keys,
             panel(kw - 0.01, kd - 0.01, 0.004)
-                .about_x(-FRAC_PI_2)
-                .at(-0.04, 0.018, kz + kd - 0.005)
+                .rotated_x(-FRAC_PI_2)
+                .translated(-0.04, 0.018, kz + kd - 0.005)
                 .visual_only(),
         )
-        .with_filled(
+        .with_fill_fraction(
             &case,
             rounded_block(
                 [0.5 * kw, 0.0, kz + 0.02],
@@ -112,15 +116,19 @@ fn computer(_style: &Style, key: RandomKey) -> Model {
 /// The tower of a computer.
 fn computer_tower(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("computer_tower", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth);
     let case = device(
         "tower_case",
-        d.of("tone", [[34, 34, 37], [206, 208, 210], [60, 62, 66]]),
+        d.choose("tone", [[34, 34, 37], [206, 208, 210], [60, 62, 66]]),
     );
-    let light = Finish::plain("power_light", "plastic", [90, 160, 240]).glowing([0.05, 0.15, 0.4]);
+    let light = Finish::plain("power_light", "plastic", [90, 160, 240]).emissive([0.05, 0.15, 0.4]);
     let body = PartBuilder::new("body")
-        .with_filled(&case, block([-x, 0.012, -z], [x, h, z - 0.01]), 0.35)
+        .with_fill_fraction(&case, block([-x, 0.012, -z], [x, h, z - 0.01]), 0.35)
         .with(
             &black(),
             block(
@@ -135,8 +143,8 @@ fn computer_tower(_style: &Style, key: RandomKey) -> Model {
         .with(
             &light,
             cylinder(0.012, 0.003, 14)
-                .about_x(FRAC_PI_2)
-                .at(0.0, h - 0.07, z - 0.004)
+                .rotated_x(FRAC_PI_2)
+                .translated(0.0, h - 0.07, z - 0.004)
                 .visual_only(),
         );
     Model::movable("computer_tower", "computer")
@@ -162,10 +170,10 @@ fn laptop() -> Model {
         [[52, 96, 150], [240, 240, 240], [90, 90, 96]],
         4,
     )
-    .clear(1.0)
-    .glowing([0.08, 0.1, 0.13]);
+    .transparent(1.0)
+    .emissive([0.08, 0.1, 0.13]);
     let (w, d) = (0.33, 0.23);
-    let lid = panel(w - 0.02, 0.2, 0.0015).at(0.0, 0.012, 0.007);
+    let lid = panel(w - 0.02, 0.2, 0.0015).translated(0.0, 0.012, 0.007);
     let shell = block([-0.5 * w, 0.0, 0.0], [0.5 * w, 0.222, 0.007]);
     let tilt = -0.32;
     let body = PartBuilder::new("body")
@@ -181,15 +189,20 @@ fn laptop() -> Model {
         .with(
             &keys,
             panel(w - 0.02, d - 0.03, 0.001)
-                .about_x(-FRAC_PI_2)
-                .at(0.0, 0.016, 0.5 * d - 0.012)
+                .rotated_x(-FRAC_PI_2)
+                .translated(0.0, 0.016, 0.5 * d - 0.012)
                 .visual_only(),
         )
-        .with(&case, shell.about_x(tilt).at(0.0, 0.016, -0.5 * d + 0.004))
+        .with(
+            &case,
+            shell
+                .rotated_x(tilt)
+                .translated(0.0, 0.016, -0.5 * d + 0.004),
+        )
         .with(
             &desktop,
-            lid.about_x(tilt)
-                .at(0.0, 0.016, -0.5 * d + 0.004)
+            lid.rotated_x(tilt)
+                .translated(0.0, 0.016, -0.5 * d + 0.004)
                 .visual_only(),
         );
     Model::pickable("laptop", "laptop")
@@ -202,7 +215,7 @@ fn sample_laptop(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("laptop", key);
     let case = crate::finishes::device(
         "laptop_case",
-        d.of(
+        d.choose(
             "case",
             [
                 [150, 152, 156],
@@ -213,6 +226,6 @@ fn sample_laptop(_style: &Style, key: RandomKey) -> Model {
         ),
     );
     laptop()
-        .resized(d.m("width") / 0.33)
-        .repainted("grey_case", &case)
+        .resized(d.sample_m("width") / 0.33)
+        .with_finish_replaced("grey_case", &case)
 }

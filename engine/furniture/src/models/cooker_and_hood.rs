@@ -22,7 +22,7 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[
 /// A cooker 0.6 m wide: glass hob, knobs, an oven whose door folds down.
 fn cooker() -> Model {
     let case = enamel("cooker_steel", [172, 174, 178]);
-    let dark = Finish::plain("black_glass", "glass", [22, 22, 24]).clear(1.0);
+    let dark = Finish::plain("black_glass", "glass", [22, 22, 24]).transparent(1.0);
     let (x, z) = (0.298, 0.5 * UNIT_DEPTH_M - 0.02);
     let face = z - 0.03;
     let top = WORKTOP_M - 0.006;
@@ -37,12 +37,15 @@ fn cooker() -> Model {
     ];
     let knob = |k: usize| {
         cylinder(0.018, 0.022, 14)
-            .about_x(FRAC_PI_2)
-            .at(-0.2 + 0.1 * k as f32, 0.845, z)
+            .rotated_x(FRAC_PI_2)
+            .translated(-0.2 + 0.1 * k as f32, 0.845, z)
     };
-    let plate =
-        |px: f32, pz: f32, r: f32| cylinder(r, 0.0012, 24).at(px, WORKTOP_M, pz).visual_only();
-    let rings = Finish::plain("hob_ring", "glass", [58, 56, 58]).clear(1.0);
+    let plate = |px: f32, pz: f32, r: f32| {
+        cylinder(r, 0.0012, 24)
+            .translated(px, WORKTOP_M, pz)
+            .visual_only()
+    };
+    let rings = Finish::plain("hob_ring", "glass", [58, 56, 58]).transparent(1.0);
     let body = PartBuilder::new("body")
         .with_all(&case, shell)
         .with(
@@ -75,15 +78,15 @@ fn cooker() -> Model {
         .switched(false)
         .part(body)
         .with_sound([0.0, 0.54, face], "fan", 46.0)
-        .top("hob", [-x, WORKTOP_M, -z], [x, WORKTOP_M + 0.4, z])
-        .inside("oven", [-x + w, 0.508, -z + w], [x - w, 0.78, face - 0.01])
+        .with_support_surface("hob", [-x, WORKTOP_M, -z], [x, WORKTOP_M + 0.4, z])
+        .with_container_space("oven", [-x + w, 0.508, -z + w], [x - w, 0.78, face - 0.01])
         .part(door)
         .hinged("oven_door", [0.0, 0.3, z], Vec3::X, 1.5)
 }
 
 fn sample_cooker(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("cooker", key);
-    cooker().repainted("cooker_steel", &casing(style, &d, "cooker_casing"))
+    cooker().with_finish_replaced("cooker_steel", &casing(style, &d, "cooker_casing"))
 }
 
 /// A hood on the wall over a cooker; y = 0 is its lower edge.
@@ -99,8 +102,8 @@ fn range_hood(width_m: f32) -> Model {
         [-x, 0.06],
     ];
     let body = PartBuilder::new("body")
-        .with_filled(&shine, crate::shapes::extrude(&skirt, 0.46), 0.06)
-        .with_filled(&shine, block([-0.12, 0.22, 0.0], [0.12, 0.75, 0.26]), 0.06);
+        .with_fill_fraction(&shine, crate::shapes::extrude(&skirt, 0.46), 0.06)
+        .with_fill_fraction(&shine, block([-0.12, 0.22, 0.0], [0.12, 0.75, 0.26]), 0.06);
     let down = LightShape::Spot {
         direction: Vec3::NEG_Y,
         cutoff_rad: 1.0,
@@ -109,7 +112,7 @@ fn range_hood(width_m: f32) -> Model {
     Model::fixed("range_hood", "range_hood")
         .switched(false)
         .part(body)
-        .light([0.0, -0.01, 0.23], down, 5.0)
+        .with_light_shape([0.0, -0.01, 0.23], down, 5.0)
         .with_sound([0.0, 0.1, 0.23], "fan", 58.0)
 }
 
@@ -123,5 +126,5 @@ fn sample_range_hood(_style: &Style, key: RandomKey) -> Model {
             ..steel()
         }
     };
-    range_hood(d.m("width")).repainted("steel", &shine)
+    range_hood(d.sample_m("width")).with_finish_replaced("steel", &shine)
 }

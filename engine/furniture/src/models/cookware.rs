@@ -43,7 +43,7 @@ fn pot(radius_m: f32, color: &Finish) -> Model {
         )
     };
     let body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             color,
             surface_of_revolution(
                 &[(0.0, 0.0), (0.94 * r, 0.0), (r, 0.1 * h), (r, h), (0.0, h)],
@@ -51,9 +51,12 @@ fn pot(radius_m: f32, color: &Finish) -> Model {
             ),
             0.06,
         )
-        .with_filled(color, lid, 0.25)
+        .with_fill_fraction(color, lid, 0.25)
         .with_all(&black(), [grip(-1.0), grip(1.0)])
-        .with(&black(), cylinder(0.018, 0.022, 12).at(0.0, h + 0.026, 0.0));
+        .with(
+            &black(),
+            cylinder(0.018, 0.022, 12).translated(0.0, h + 0.026, 0.0),
+        );
     Model::pickable("pot", "pot").part(body)
 }
 
@@ -76,25 +79,23 @@ fn open_pot(radius_m: f32, color: &Finish) -> Model {
         tube(&path, 0.006, 8)
     };
     let body = PartBuilder::new("body")
-        .with_filled(color, shell, 0.4)
+        .with_fill_fraction(color, shell, 0.4)
         .with_all(&black(), [grip(-1.0), grip(1.0)]);
     let half = 0.62 * r;
-    Model::pickable("open_pot", "pot").part(body).inside(
-        "inside",
-        [-half, 0.006, -half],
-        [half, h, half],
-    )
+    Model::pickable("open_pot", "pot")
+        .part(body)
+        .with_container_space("inside", [-half, 0.006, -half], [half, h, half])
 }
 
 fn sample_pot(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("pot", key);
-    let tone = style.cloth(&mut d.stream("tone")).srgb;
+    let tone = style.random_cloth(&mut d.stream("tone")).srgb;
     let metal = if d.chance("enamel", 0.5) {
         painted_steel("pot_enamel", tone)
     } else {
         steel()
     };
-    let radius = 0.5 * d.m("depth");
+    let radius = 0.5 * d.sample_m("depth");
     if d.chance("lid", 0.5) {
         pot(radius, &metal)
     } else {
@@ -118,9 +119,9 @@ fn sample_pan(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("pan", key);
     let iron = painted_steel(
         "pan_metal",
-        d.of("metal", [[40, 40, 42], [168, 171, 175], [150, 60, 40]]),
+        d.choose("metal", [[40, 40, 42], [168, 171, 175], [150, 60, 40]]),
     );
-    pan(0.5 * d.m("depth")).repainted("black_steel", &iron)
+    pan(0.5 * d.sample_m("depth")).with_finish_replaced("black_steel", &iron)
 }
 
 /// A steel beaker with wooden spoons.
@@ -128,13 +129,13 @@ fn utensils() -> Model {
     let wood = crate::finishes::beech();
     let spoon = |x: f32, z: f32, tilt: f32| {
         let head = crate::shapes::ball(0.022, 10)
-            .at(0.0, 0.29, 0.0)
+            .translated(0.0, 0.29, 0.0)
             .visual_only();
         rod([0.0, 0.012, 0.0], [0.0, 0.28, 0.0], 0.005)
             .visual_only()
-            .and(head)
-            .about_z(tilt)
-            .at(x, 0.0, z)
+            .merged(head)
+            .rotated_z(tilt)
+            .translated(x, 0.0, z)
     };
     let cup = vessel(&[(0.0, 0.0), (0.05, 0.0), (0.05, 0.14)], 0.003, 20);
     let body = PartBuilder::new("body").with(&steel(), cup).with_all(
@@ -153,11 +154,11 @@ fn sample_utensils(style: &Style, key: RandomKey) -> Model {
     let cup = Finish {
         name: "beaker",
         substance: "steel",
-        ..style.glaze(&mut d.stream("cup")).clone()
+        ..style.random_glaze(&mut d.stream("cup")).clone()
     };
     utensils()
-        .resized(d.m("height") / 0.31)
-        .repainted("steel", &cup)
+        .resized(d.sample_m("height") / 0.31)
+        .with_finish_replaced("steel", &cup)
 }
 
 /// A board for cutting.
@@ -168,15 +169,15 @@ fn cutting_board() -> Model {
     );
     Model::pickable("cutting_board", "cutting_board")
         .part(body)
-        .top("top", [-0.19, 0.02, -0.13], [0.19, 0.3, 0.13])
+        .with_support_surface("top", [-0.19, 0.02, -0.13], [0.19, 0.3, 0.13])
 }
 
 fn sample_cutting_board(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("cutting_board", key);
     let wood = &style.wood;
-    let board = cutting_board().resized(d.m("width") / 0.38);
+    let board = cutting_board().resized(d.sample_m("width") / 0.38);
     if wood.pattern.is_some() && wood.tile_m > 0.0 {
-        board.repainted("beech", wood)
+        board.with_finish_replaced("beech", wood)
     } else {
         board
     }
@@ -195,12 +196,12 @@ fn knife_block() -> Model {
     let body = PartBuilder::new("body")
         .with(
             &beech(),
-            crate::shapes::extrude(&side, 0.1).at(0.0, 0.0, -0.05),
+            crate::shapes::extrude(&side, 0.1).translated(0.0, 0.0, -0.05),
         )
         .with_all(&black(), (0..5).map(grip));
     Model::pickable("knife_block", "knife_rack").part(body)
 }
 
 fn sample_knife_block(_style: &Style, key: RandomKey) -> Model {
-    knife_block().resized(SizeSampler::new("knife_block", key).m("height") / 0.31)
+    knife_block().resized(SizeSampler::new("knife_block", key).sample_m("height") / 0.31)
 }

@@ -1,6 +1,6 @@
 //! A bed with bars for a small child.
 
-use super::bedding::foam;
+use super::bedding::foam_fill;
 use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::cloth;
 use crate::model::{Model, PartBuilder};
@@ -14,12 +14,16 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[CatalogueEntry::new("cot", "baby
 /// A cot: bars all round a small mattress. The head is at -Z.
 fn cot(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("cot", key);
-    let (w, h, length) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, length) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z) = (0.5 * w, 0.5 * length);
-    let wood = style.any_wood(&mut d.stream("wood"));
+    let wood = style.random_wood(&mut d.stream("wood"));
     let sheet = cloth(
         "cot_sheet",
-        d.of(
+        d.choose(
             "sheet",
             [
                 [240, 238, 232],
@@ -52,7 +56,7 @@ fn cot(style: &Style, key: RandomKey) -> Model {
             let at = -z + 0.04 + (length - 0.08) * k as f32 / count as f32;
             // Square bars collide through the panel that stands for all of them.
             cylinder(0.008, h - base - 0.05, 6)
-                .at(sx * (x - 0.02), base - 0.02, at)
+                .translated(sx * (x - 0.02), base - 0.02, at)
                 .visual_only()
         })
     };
@@ -78,7 +82,7 @@ fn cot(style: &Style, key: RandomKey) -> Model {
                 [x - 0.034, base - 0.035, z - 0.03],
             ),
         )
-        .with_filled(
+        .with_fill_fraction(
             &sheet,
             rounded_block(
                 [-x + 0.045, base - 0.035, -z + 0.04],
@@ -86,11 +90,13 @@ fn cot(style: &Style, key: RandomKey) -> Model {
                 0.03,
                 2,
             ),
-            foam(&sheet),
+            foam_fill(&sheet),
         );
-    Model::fixed("cot", "baby_bed").part(body).top(
-        "mattress",
-        [-x + 0.06, base + 0.065, -z + 0.06],
-        [x - 0.06, h, z - 0.06],
-    )
+    Model::fixed("cot", "baby_bed")
+        .part(body)
+        .with_support_surface(
+            "mattress",
+            [-x + 0.06, base + 0.065, -z + 0.06],
+            [x - 0.06, h, z - 0.06],
+        )
 }

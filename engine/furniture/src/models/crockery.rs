@@ -36,12 +36,12 @@ fn mug(glaze: &Finish) -> Model {
     );
     Model::pickable("mug", "cup")
         .part(PartBuilder::new("body").with(glaze, cup).with(glaze, grip))
-        .inside("inside", [-0.025, 0.005, -0.025], [0.025, 0.095, 0.025])
+        .with_container_space("inside", [-0.025, 0.005, -0.025], [0.025, 0.095, 0.025])
 }
 
 fn sample_mug(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("mug", key);
-    mug(style.glaze(&mut d.stream("glaze"))).resized(d.m("height") / 0.095)
+    mug(style.random_glaze(&mut d.stream("glaze"))).resized(d.sample_m("height") / 0.095)
 }
 
 /// A flat plate.
@@ -57,7 +57,7 @@ fn plate(radius_m: f32, glaze: &Finish) -> Model {
     ];
     Model::pickable("plate", "plate")
         .part(PartBuilder::new("body").with(glaze, plate_pieces(&profile, r)))
-        .top(
+        .with_support_surface(
             "top",
             [-0.45 * r, 0.0055, -0.45 * r],
             [0.45 * r, 0.12, 0.45 * r],
@@ -80,7 +80,10 @@ fn plate_pieces(profile: &[(f32, f32)], radius_m: f32) -> crate::shapes::SolidMe
 
 fn sample_plate(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("plate", key);
-    plate(0.5 * d.m("width"), style.glaze(&mut d.stream("glaze")))
+    plate(
+        0.5 * d.sample_m("width"),
+        style.random_glaze(&mut d.stream("glaze")),
+    )
 }
 
 /// A bowl.
@@ -98,7 +101,7 @@ fn bowl(radius_m: f32, glaze: &Finish) -> Model {
     );
     Model::pickable("bowl", "bowl")
         .part(PartBuilder::new("body").with(glaze, shell))
-        .inside(
+        .with_container_space(
             "inside",
             [-0.3 * r, 0.005, -0.3 * r],
             [0.3 * r, 0.62 * r, 0.3 * r],
@@ -107,18 +110,21 @@ fn bowl(radius_m: f32, glaze: &Finish) -> Model {
 
 fn sample_bowl(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("bowl", key);
-    bowl(0.5 * d.m("width"), style.glaze(&mut d.stream("glaze")))
+    bowl(
+        0.5 * d.sample_m("width"),
+        style.random_glaze(&mut d.stream("glaze")),
+    )
 }
 
 /// A jug for water or milk.
 fn jug(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("jug", key);
-    let (w, h) = (d.m("width"), d.m("height"));
+    let (w, h) = (d.sample_m("width"), d.sample_m("height"));
     let clear = d.chance("glass", 0.5);
     let stuff = if clear {
         glass()
     } else {
-        style.glaze(&mut d.stream("glaze")).clone()
+        style.random_glaze(&mut d.stream("glaze")).clone()
     };
     let r = 0.4 * w;
     let shell = vessel(
@@ -144,9 +150,9 @@ fn jug(style: &Style, key: RandomKey) -> Model {
     );
     let mut body = PartBuilder::new("body")
         .with(&stuff, shell)
-        .with(&stuff, grip.at(-0.03 * w, 0.0, 0.0));
+        .with(&stuff, grip.translated(-0.03 * w, 0.0, 0.0));
     if clear {
-        let water = Finish::plain("drinking_water", "water", [170, 206, 222]).clear(0.35);
+        let water = Finish::plain("drinking_water", "water", [170, 206, 222]).transparent(0.35);
         let fill = surface_of_revolution(
             &[
                 (0.0, 0.005),
@@ -157,7 +163,7 @@ fn jug(style: &Style, key: RandomKey) -> Model {
             ],
             20,
         );
-        body = body.with_filled(&water, fill.visual_only(), 0.3);
+        body = body.with_fill_fraction(&water, fill.visual_only(), 0.3);
     }
     Model::pickable("jug", "jug").part(body)
 }
@@ -165,8 +171,8 @@ fn jug(style: &Style, key: RandomKey) -> Model {
 /// A teapot with spout, handle and lid.
 fn teapot(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("teapot", key);
-    let (w, h) = (d.m("width"), d.m("height"));
-    let glaze = style.glaze(&mut d.stream("glaze"));
+    let (w, h) = (d.sample_m("width"), d.sample_m("height"));
+    let glaze = style.random_glaze(&mut d.stream("glaze"));
     let (r, top) = (0.31 * w, 0.82 * h);
     let pot = surface_of_revolution(
         &[
@@ -201,10 +207,10 @@ fn teapot(style: &Style, key: RandomKey) -> Model {
         8,
     );
     let body = PartBuilder::new("body")
-        .with_filled(glaze, pot, 0.25)
+        .with_fill_fraction(glaze, pot, 0.25)
         .with(glaze, spout)
         .with(glaze, grip)
-        .with_filled(
+        .with_fill_fraction(
             glaze,
             surface_of_revolution(
                 &[
@@ -217,6 +223,6 @@ fn teapot(style: &Style, key: RandomKey) -> Model {
             ),
             0.4,
         )
-        .with(glaze, ball(0.05 * h, 10).at(0.0, 0.945 * h, 0.0));
+        .with(glaze, ball(0.05 * h, 10).translated(0.0, 0.945 * h, 0.0));
     Model::pickable("teapot", "teapot").part(body)
 }

@@ -22,7 +22,11 @@ const FLAPS: [&str; 4] = ["flap_1", "flap_2", "flap_3", "flap_4"];
 /// A flat cabinet for shoes; its flaps tilt forward about their lower edges.
 fn shoe_cabinet(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("shoe_cabinet", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let rows = if h > 1.25 { 3 } else { 2 };
     let (x, top) = (0.5 * w, h - 0.02);
     let carcass = Carcass::standing(w - 0.01, 0.05, top, depth - BOARD_M - 0.01);
@@ -42,7 +46,7 @@ fn shoe_cabinet(style: &Style, key: RandomKey) -> Model {
         .with_all(&style.front, carcass.boards(&[], &[]));
     let mut model = Model::articulated("shoe_cabinet", "shoes_cabinet")
         .part(body)
-        .top("top", [-x, h, carcass.min[2]], [x, h + 0.5, z + BOARD_M]);
+        .with_support_surface("top", [-x, h, carcass.min[2]], [x, h + 0.5, z + BOARD_M]);
     let step = (top - 0.05 - GAP_M) / rows as f32;
     for (k, name) in FLAPS.into_iter().take(rows).enumerate() {
         let (low, high) = (0.055 + step * k as f32, 0.05 + step * (k + 1) as f32);
@@ -60,7 +64,7 @@ fn shoe_cabinet(style: &Style, key: RandomKey) -> Model {
             .part(flap)
             .hinged(name, [0.0, low, z + BOARD_M], Vec3::X, 0.75);
         let shelf = carcass.max[1].min(high) - 0.03;
-        model = model.inside(
+        model = model.with_container_space(
             name,
             [-half + 0.03, low + 0.02, carcass.min[2] + 0.01],
             [half - 0.03, shelf, z - 0.01],
@@ -76,7 +80,11 @@ fn shoe_cabinet(style: &Style, key: RandomKey) -> Model {
 /// A tall larder cupboard of a fitted kitchen: two doors, one above the other.
 fn larder(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("larder", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let carcass = Carcass::standing(w, 0.1, h, depth - BOARD_M);
     let (x, z) = (0.5 * w, carcass.max[2]);
     let split = 0.6;
@@ -88,10 +96,10 @@ fn larder(style: &Style, key: RandomKey) -> Model {
         .with_all(&grey_board(), carcass.boards(&[0.2, 0.4, split, 0.8], &[]));
     let mut model = Model::articulated("larder", "kitchen_cabinet")
         .part(body)
-        .top("top", [-x, h, carcass.min[2]], [x, h + 0.3, z]);
+        .with_support_surface("top", [-x, h, carcass.min[2]], [x, h + 0.3, z]);
     for (k, name) in SHELVES.into_iter().take(5).enumerate() {
         let (low, high) = carcass.space(0.2 * k as f32, 0.2 * (k + 1) as f32);
-        model = model.inside(name, low, high);
+        model = model.with_container_space(name, low, high);
     }
     let y = carcass.min[1] + split * (h - carcass.min[1]);
     let left = d.chance("hinge", 0.5);
@@ -100,7 +108,7 @@ fn larder(style: &Style, key: RandomKey) -> Model {
     } else {
         (x, Vec3::Y)
     };
-    let front = style.kitchen_doors();
+    let front = style.kitchen_front_style();
     let leaf = |name, low: f32, high: f32| {
         let (a, b) = ([-x + 0.002, low], [x - 0.002, high]);
         door(name, a, b, z, left, &front)
@@ -115,9 +123,13 @@ fn larder(style: &Style, key: RandomKey) -> Model {
 /// A steel safe with a keypad and a door.
 fn safe(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("safe", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z, t) = (0.5 * w, 0.5 * depth, 0.03);
-    let paint = d.of(
+    let paint = d.choose(
         "paint",
         [[70, 74, 78], [44, 52, 48], [96, 98, 100], [40, 42, 52]],
     );
@@ -133,28 +145,28 @@ fn safe(_style: &Style, key: RandomKey) -> Model {
     let body = walls
         .into_iter()
         .fold(PartBuilder::new("body"), |part, wall| {
-            part.with_filled(&steel, wall, 0.3)
+            part.with_fill_fraction(&steel, wall, 0.3)
         });
-    let knob = cylinder(0.12 * w, 0.02, 20).about_x(FRAC_PI_2);
+    let knob = cylinder(0.12 * w, 0.02, 20).rotated_x(FRAC_PI_2);
     let leaf = block(
         [-x + 0.004, 0.004, face + 0.001],
         [x - 0.004, h - 0.004, z - 0.008],
     );
     let door = PartBuilder::new("door")
-        .with_filled(&steel, leaf, 0.4)
-        .with_filled(&chrome(), knob.at(0.2 * w, 0.5 * h, z - 0.012), 0.5)
+        .with_fill_fraction(&steel, leaf, 0.4)
+        .with_fill_fraction(&chrome(), knob.translated(0.2 * w, 0.5 * h, z - 0.012), 0.5)
         .with(
             &black(),
             block([-0.25 * w, 0.42 * h, z - 0.008], [-0.02 * w, 0.62 * h, z]),
         );
     Model::articulated("safe", "safe")
         .part(body)
-        .inside(
+        .with_container_space(
             "inside",
             [-x + t, t, back + t],
             [x - t, h - t, face - 0.002],
         )
-        .top("top", [-x, h, back], [x, h + 0.3, face])
+        .with_support_surface("top", [-x, h, back], [x, h + 0.3, face])
         .part(door)
         .hinged("door", [-x + 0.004, 0.0, z - 0.008], Vec3::NEG_Y, 1.57)
 }

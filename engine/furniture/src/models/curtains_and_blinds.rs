@@ -39,10 +39,10 @@ impl Curtains {
                 0.07,
                 ((wide / 0.075) as usize).max(3),
             );
-            folded.at(sign * (x - 0.5 * wide - 0.02), -0.03, OFF_M)
+            folded.translated(sign * (x - 0.5 * wide - 0.02), -0.03, OFF_M)
         };
         let hold = |at: f32| rod([at, 0.0, 0.0], [at, 0.0, OFF_M], 0.008);
-        let end = |at: f32| ball(0.022, 12).at(at, 0.0, OFF_M);
+        let end = |at: f32| ball(0.022, 12).translated(at, 0.0, OFF_M);
         let pole: SolidMesh = rod([-x - 0.03, 0.0, OFF_M], [x + 0.03, 0.0, OFF_M], 0.012);
         let body = PartBuilder::new("rod")
             .with(&black(), pole)
@@ -62,12 +62,12 @@ impl Curtains {
 
 fn curtains(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("curtains", key);
-    let tone = style.cloth(&mut d.stream("cloth")).srgb;
-    let substance = d.of("weight", ["light_curtain", "heavy_curtain"]);
+    let tone = style.random_cloth(&mut d.stream("cloth")).srgb;
+    let substance = d.choose("weight", ["light_curtain", "heavy_curtain"]);
     // The ends of the rod stand 62 mm over.
     Curtains {
-        width_m: d.m("width") - 0.124,
-        height_m: d.m("height") - 0.022,
+        width_m: d.sample_m("width") - 0.124,
+        height_m: d.sample_m("height") - 0.022,
         drawn: d.range("drawn", 0.14, 0.3),
         cloth: Finish {
             substance,
@@ -80,11 +80,14 @@ fn curtains(style: &Style, key: RandomKey) -> Model {
 /// A blind before a window, half let down: slats or a roll of cloth. y = 0 is its upper edge, z = 0 the wall.
 fn blind(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("blind", key);
-    let (w, h) = (d.m("width"), d.m("height"));
+    let (w, h) = (d.sample_m("width"), d.sample_m("height"));
     let x = 0.5 * w;
     let white = plastic("blind_white", [238, 238, 234]);
-    let mut body =
-        PartBuilder::new("body").with_filled(&white, block([-x, -0.05, 0.0], [x, 0.0, 0.06]), 0.3);
+    let mut body = PartBuilder::new("body").with_fill_fraction(
+        &white,
+        block([-x, -0.05, 0.0], [x, 0.0, 0.06]),
+        0.3,
+    );
     if d.chance("slats", 0.5) {
         let slat = if d.chance("wood", 0.4) {
             style.wood.clone()
@@ -98,8 +101,8 @@ fn blind(style: &Style, key: RandomKey) -> Model {
         for k in 0..count {
             let y = -0.075 - 0.045 * k as f32;
             let one = block([-x + 0.01, -0.0015, -0.022], [x - 0.01, 0.0015, 0.022])
-                .about_x(0.5)
-                .at(0.0, y, 0.03);
+                .rotated_x(0.5)
+                .translated(0.0, y, 0.03);
             body = body.with(&slat, one.visual_only());
         }
         for a in [-0.7 * x, 0.7 * x] {
@@ -115,7 +118,7 @@ fn blind(style: &Style, key: RandomKey) -> Model {
             block([-x + 0.01, -h, 0.012], [x - 0.01, -h + 0.02, 0.048]),
         );
     } else {
-        let cloth = style.cloth(&mut d.stream("cloth"));
+        let cloth = style.random_cloth(&mut d.stream("cloth"));
         body = body
             .with(
                 cloth,

@@ -29,28 +29,28 @@ fn cutlery(name: &'static str) -> Model {
             ],
             0.0025,
         )
-        .about_x(-std::f32::consts::FRAC_PI_2),
+        .rotated_x(-std::f32::consts::FRAC_PI_2),
         "fork" => block([-0.004, 0.0, -0.05], [0.004, 0.003, 0.0])
-            .and(block([-0.012, 0.0, -0.06], [0.012, 0.003, -0.05]))
-            .and(block([-0.012, 0.0, -0.1], [-0.008, 0.003, -0.06]))
-            .and(block([-0.002, 0.0, -0.1], [0.002, 0.003, -0.06]))
-            .and(block([0.008, 0.0, -0.1], [0.012, 0.003, -0.06])),
-        _ => block([-0.004, 0.0, -0.05], [0.004, 0.003, 0.0]).and(loft(&[
+            .merged(block([-0.012, 0.0, -0.06], [0.012, 0.003, -0.05]))
+            .merged(block([-0.012, 0.0, -0.1], [-0.008, 0.003, -0.06]))
+            .merged(block([-0.002, 0.0, -0.1], [0.002, 0.003, -0.06]))
+            .merged(block([0.008, 0.0, -0.1], [0.012, 0.003, -0.06])),
+        _ => block([-0.004, 0.0, -0.05], [0.004, 0.003, 0.0]).merged(loft(&[
             oval(0.01, 0.018, 0.0, -0.077, 14),
             oval(0.02, 0.03, 0.007, -0.077, 14),
         ])),
     };
-    Model::pickable(name, name).part(PartBuilder::new("body").with(&steel(), handle.and(head)))
+    Model::pickable(name, name).part(PartBuilder::new("body").with(&steel(), handle.merged(head)))
 }
 
 fn knife(_style: &Style, key: RandomKey) -> Model {
-    cutlery("knife").resized(SizeSampler::new("knife", key).m("depth") / 0.21)
+    cutlery("knife").resized(SizeSampler::new("knife", key).sample_m("depth") / 0.21)
 }
 
 fn fork(_style: &Style, key: RandomKey) -> Model {
-    cutlery("fork").resized(SizeSampler::new("fork", key).m("depth") / 0.2)
+    cutlery("fork").resized(SizeSampler::new("fork", key).sample_m("depth") / 0.2)
 }
 
 fn spoon(_style: &Style, key: RandomKey) -> Model {
-    cutlery("spoon").resized(SizeSampler::new("spoon", key).m("depth") / 0.205)
+    cutlery("spoon").resized(SizeSampler::new("spoon", key).sample_m("depth") / 0.205)
 }

@@ -64,11 +64,9 @@ impl Desk {
                 block([x - BLOCK_M, 0.0, -z + 0.05], [x - 0.04, 0.03, z - 0.09]),
             )
             .with_all(&self.body, carcass.boards(&[], &[]));
-        let mut model = Model::articulated("desk", "desk").part(body).top(
-            "top",
-            [-x, self.height_m, -z],
-            [x, self.height_m + 0.6, z],
-        );
+        let mut model = Model::articulated("desk", "desk")
+            .part(body)
+            .with_support_surface("top", [-x, self.height_m, -z], [x, self.height_m + 0.6, z]);
         let front = self.front.clone();
         let face = carcass.max[2];
         for (k, name) in ["upper_drawer", "middle_drawer", "lower_drawer"]
@@ -82,7 +80,7 @@ impl Desk {
             model = model
                 .part(drawer(name, low, high, face, 0.45, &front))
                 .sliding(name, Vec3::Z, 0.36)
-                .inside(name, min, max);
+                .with_container_space(name, min, max);
         }
         model
     }
@@ -90,13 +88,13 @@ impl Desk {
 
 fn desk(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("desk", key);
-    let wood = style.any_wood(&mut d.stream("wood")).clone();
+    let wood = style.random_wood(&mut d.stream("wood")).clone();
     if d.chance("plain", 0.3) {
         return Table {
             name: "writing_table",
             category: "desk",
-            size_m: [d.m("width"), d.m("depth")],
-            height_m: d.m("height"),
+            size_m: [d.sample_m("width"), d.sample_m("depth")],
+            height_m: d.sample_m("height"),
             top: wood,
             legs: style.leg_finish().clone(),
             leg_m: 0.055,
@@ -106,16 +104,16 @@ fn desk(style: &Style, key: RandomKey) -> Model {
     }
     let same = d.chance("one_wood", 0.5);
     Desk {
-        width_m: d.m("width"),
-        depth_m: d.m("depth"),
-        height_m: d.m("height"),
+        width_m: d.sample_m("width"),
+        depth_m: d.sample_m("depth"),
+        height_m: d.sample_m("height"),
         body: if same {
             wood.clone()
         } else {
             style.front.clone()
         },
         top: wood,
-        front: style.doors(),
+        front: style.front_style(),
     }
     .build()
 }

@@ -89,7 +89,7 @@ impl Chair {
         }
         let seat = match &self.pad {
             Some(pad) => {
-                body = body.with_filled(
+                body = body.with_fill_fraction(
                     pad,
                     rounded_block(
                         [-x + 0.02, board, -z + 0.035],
@@ -103,11 +103,13 @@ impl Chair {
             }
             None => board,
         };
-        Model::movable("dining_chair", "chair").part(body).top(
-            "seat",
-            [-x + 0.03, seat, -z + 0.05],
-            [x - 0.03, seat + 0.4, z - 0.02],
-        )
+        Model::movable("dining_chair", "chair")
+            .part(body)
+            .with_support_surface(
+                "seat",
+                [-x + 0.03, seat, -z + 0.05],
+                [x - 0.03, seat + 0.4, z - 0.02],
+            )
     }
 }
 
@@ -122,34 +124,39 @@ fn dining_chair(style: &Style, key: RandomKey) -> Model {
 }
 
 fn slatted(style: &Style, d: &SizeSampler) -> Model {
-    let cloth = style.cloth(&mut d.stream("pad")).clone();
+    let cloth = style.random_cloth(&mut d.stream("pad")).clone();
     Chair {
-        width_m: d.m("width"),
-        seat_m: d.m("seat"),
-        back_m: d.m("height"),
-        slats: d.of("slats", [2, 3, 4]),
-        wood: style.any_wood(&mut d.stream("wood")).clone(),
+        width_m: d.sample_m("width"),
+        seat_m: d.sample_m("seat"),
+        back_m: d.sample_m("height"),
+        slats: d.choose("slats", [2, 3, 4]),
+        wood: style.random_wood(&mut d.stream("wood")).clone(),
         pad: d.chance("padded", 0.6).then_some(cloth),
     }
     .build()
 }
 
 fn upholstered(style: &Style, d: &SizeSampler) -> Model {
-    let (w, h, depth, seat) = (d.m("width"), d.m("height"), d.m("depth"), d.m("seat"));
+    let (w, h, depth, seat) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+        d.sample_m("seat"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth);
-    let cover = style.cover(&mut d.stream("cover"));
+    let cover = style.random_upholstery(&mut d.stream("cover"));
     let under = seat - 0.09;
     let body = PartBuilder::new("body")
-        .with_bars(
+        .with_all_hollow(
             style.leg_finish(),
             style.legs([x - 0.035, z - 0.04], under, 0.04),
         )
-        .with_filled(
+        .with_fill_fraction(
             cover,
             rounded_block([-x, under, -z], [x, seat, z], 0.03, 2),
-            0.5 * cover.padded(),
+            0.5 * cover.padded_fill(),
         )
-        .with_filled(
+        .with_fill_fraction(
             cover,
             rounded_block(
                 [-x + 0.01, seat - 0.02, -z],
@@ -157,19 +164,26 @@ fn upholstered(style: &Style, d: &SizeSampler) -> Model {
                 0.03,
                 2,
             ),
-            0.5 * cover.padded(),
+            0.5 * cover.padded_fill(),
         );
-    Model::movable("dining_chair", "chair").part(body).top(
-        "seat",
-        [-x + 0.03, seat, -z + 0.08],
-        [x - 0.03, seat + 0.4, z - 0.02],
-    )
+    Model::movable("dining_chair", "chair")
+        .part(body)
+        .with_support_surface(
+            "seat",
+            [-x + 0.03, seat, -z + 0.08],
+            [x - 0.03, seat + 0.4, z - 0.02],
+        )
 }
 
 fn shell(style: &Style, d: &SizeSampler) -> Model {
-    let (w, h, depth, seat) = (d.m("width"), d.m("height"), d.m("depth"), d.m("seat"));
+    let (w, h, depth, seat) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+        d.sample_m("seat"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth);
-    let tone = d.of(
+    let tone = d.choose(
         "tone",
         [
             [238, 236, 230],
@@ -192,7 +206,7 @@ fn shell(style: &Style, d: &SizeSampler) -> Model {
         [-0.86 * half, 0.85 * rise],
         [-half, 0.45 * rise],
     ];
-    let back = extrude(&outline, 0.014).about_x(-0.17);
+    let back = extrude(&outline, 0.014).rotated_x(-0.17);
     let mut body = PartBuilder::new("body")
         .with(
             &hull,
@@ -203,7 +217,7 @@ fn shell(style: &Style, d: &SizeSampler) -> Model {
                 2,
             ),
         )
-        .with(&hull, back.at(0.0, seat - 0.015, -z + 0.07));
+        .with(&hull, back.translated(0.0, seat - 0.015, -z + 0.07));
     let legs = if d.chance("metal", 0.5) {
         &style.metal
     } else {
@@ -212,13 +226,15 @@ fn shell(style: &Style, d: &SizeSampler) -> Model {
     for (sx, sz) in CORNERS {
         let foot = [sx * (x - 0.012), 0.0, sz * (z - 0.03)];
         let top = [sx * 0.12, seat - 0.02, sz * 0.11];
-        body = body.with_bar(legs, tapered_leg(foot, top, 0.02, 0.03));
+        body = body.with_hollow(legs, tapered_leg(foot, top, 0.02, 0.03));
     }
-    Model::movable("dining_chair", "chair").part(body).top(
-        "seat",
-        [-x + 0.05, seat, -z + 0.11],
-        [x - 0.05, seat + 0.4, z - 0.02],
-    )
+    Model::movable("dining_chair", "chair")
+        .part(body)
+        .with_support_surface(
+            "seat",
+            [-x + 0.05, seat, -z + 0.11],
+            [x - 0.05, seat + 0.4, z - 0.02],
+        )
 }
 
 pub(super) const CORNERS: [(f32, f32); 4] = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];

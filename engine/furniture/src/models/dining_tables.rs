@@ -19,13 +19,17 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[CatalogueEntry::new(
 /// A dining table: on four legs, on a column, or on trestles.
 fn dining_table(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("dining_table", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
-    let wood = style.any_wood(&mut d.stream("wood")).clone();
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
+    let wood = style.random_wood(&mut d.stream("wood")).clone();
     match d.below("build", 4) {
         0 => column_table(
             "round_dining_table",
             "dining_table",
-            SizeSampler::new("round_dining_table", key).m("width"),
+            SizeSampler::new("round_dining_table", key).sample_m("width"),
             h,
             style,
             &wood,
@@ -63,12 +67,12 @@ pub(super) fn column_table(
         (0.0, h - 0.03),
     ];
     let body = PartBuilder::new("body")
-        .with_bar(style.leg_finish(), surface_of_revolution(&foot, 24))
-        .with(wood, cylinder(r, 0.03, 36).at(0.0, h - 0.03, 0.0));
+        .with_hollow(style.leg_finish(), surface_of_revolution(&foot, 24))
+        .with(wood, cylinder(r, 0.03, 36).translated(0.0, h - 0.03, 0.0));
     let half = 0.68 * r;
     Model::movable(name, category)
         .part(body)
-        .top("top", [-half, h, -half], [half, h + 0.6, half])
+        .with_support_surface("top", [-half, h, -half], [half, h + 0.6, half])
 }
 
 fn trestle_table(w: f32, h: f32, depth: f32, style: &Style, wood: &Finish) -> Model {
@@ -79,15 +83,15 @@ fn trestle_table(w: f32, h: f32, depth: f32, style: &Style, wood: &Finish) -> Mo
     for side in [-1.0_f32, 1.0] {
         let a = side * (x - 0.28);
         body = body
-            .with_bar(
+            .with_hollow(
                 legs,
                 block([a - 0.04, 0.0, -z + 0.08], [a + 0.04, 0.05, z - 0.08]),
             )
-            .with_bar(
+            .with_hollow(
                 legs,
                 block([a - 0.035, 0.05, -0.08], [a + 0.035, under - 0.04, 0.08]),
             )
-            .with_bar(
+            .with_hollow(
                 legs,
                 block(
                     [a - 0.04, under - 0.04, -z + 0.1],
@@ -95,11 +99,11 @@ fn trestle_table(w: f32, h: f32, depth: f32, style: &Style, wood: &Finish) -> Mo
                 ),
             );
     }
-    body = body.with_bar(
+    body = body.with_hollow(
         legs,
         block([-x + 0.315, 0.3, -0.02], [x - 0.315, 0.38, 0.02]),
     );
     Model::movable("dining_table", "dining_table")
         .part(body)
-        .top("top", [-x, h, -z], [x, h + 0.6, z])
+        .with_support_surface("top", [-x, h, -z], [x, h + 0.6, z])
 }

@@ -20,7 +20,11 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[CatalogueEntry::new(
 /// A dishwasher under a worktop; its door folds down.
 fn dishwasher(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("dishwasher", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z, t) = (0.5 * w, 0.5 * depth, 0.03);
     let face = z - 0.045;
     let tub = steel();
@@ -30,28 +34,28 @@ fn dishwasher(style: &Style, key: RandomKey) -> Model {
             &black(),
             block([-x + 0.02, 0.0, -z + 0.03], [x - 0.02, 0.1, face - 0.05]),
         )
-        .with_filled(
+        .with_fill_fraction(
             &style.appliance,
             block([-x, 0.1, -z], [-x + t, h, face]),
             0.5,
         )
-        .with_filled(&style.appliance, block([x - t, 0.1, -z], [x, h, face]), 0.5)
-        .with_filled(
+        .with_fill_fraction(&style.appliance, block([x - t, 0.1, -z], [x, h, face]), 0.5)
+        .with_fill_fraction(
             &style.appliance,
             block([-x + t, top, -z], [x - t, h, face]),
             0.5,
         )
-        .with_filled(
+        .with_fill_fraction(
             &style.appliance,
             block([-x + t, 0.1, -z], [x - t, top, -z + t]),
             0.5,
         )
-        .with_filled(
+        .with_fill_fraction(
             &style.appliance,
             block([-x + t, 0.1, -z + t], [x - t, low + 0.1, face]),
             0.6,
         )
-        .with_filled(
+        .with_fill_fraction(
             &tub,
             block(
                 [-x + t, 0.5 * h, -z + t],
@@ -60,7 +64,7 @@ fn dishwasher(style: &Style, key: RandomKey) -> Model {
             0.1,
         );
     let door = PartBuilder::new("door")
-        .with_filled(
+        .with_fill_fraction(
             &style.appliance,
             block([-x + 0.002, 0.105, face + 0.001], [x - 0.002, h - 0.002, z]),
             0.5,
@@ -74,12 +78,12 @@ fn dishwasher(style: &Style, key: RandomKey) -> Model {
         .switched(false)
         .part(body)
         .with_sound([0.0, 0.4, z], "washing_machine", 48.0)
-        .inside(
+        .with_container_space(
             "lower_rack",
             [-x + t, low + 0.1, -z + t],
             [x - t, 0.5 * h - 0.01, face - 0.01],
         )
-        .inside(
+        .with_container_space(
             "upper_rack",
             [-x + t, 0.5 * h + 0.012, -z + t],
             [x - t, top, face - 0.03],

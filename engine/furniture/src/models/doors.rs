@@ -72,8 +72,8 @@ impl Door {
         let trims = [z, -z - TRIM_M].map(|back| {
             let face = back + TRIM_M;
             block([-outer, 0.0, back], [-inner, top, face])
-                .and(block([inner, 0.0, back], [outer, top, face]))
-                .and(block([-inner, h - 0.01, back], [inner, top, face]))
+                .merged(block([inner, 0.0, back], [outer, top, face]))
+                .merged(block([-inner, h - 0.01, back], [inner, top, face]))
                 .visual_only()
         });
         PartBuilder::new("frame")
@@ -99,8 +99,8 @@ impl Door {
             let plate =
                 |z: f32| block([-x, middle - y, z], [x, middle + y, z + 0.002]).visual_only();
             leaf = leaf
-                .with(&self.leaf, moulding.clone().at(0.0, middle, face))
-                .with(&self.leaf, moulding.at(0.0, middle, back - 0.006))
+                .with(&self.leaf, moulding.clone().translated(0.0, middle, face))
+                .with(&self.leaf, moulding.translated(0.0, middle, back - 0.006))
                 .with(&shade, plate(face))
                 .with(&shade, plate(back - 0.002));
         }
@@ -135,13 +135,13 @@ impl Door {
         for (side, at) in [(1.0, face), (-1.0, face - LEAF_M)] {
             let out = at + side * 0.045;
             let point = |way: f32, z: f32| [grip - inward * way, HEIGHT_M, z];
-            let plate = cylinder(0.025, 0.006, 18).about_x(side * FRAC_PI_2);
+            let plate = cylinder(0.025, 0.006, 18).rotated_x(side * FRAC_PI_2);
             leaf = leaf.with_all(
                 &chrome(),
                 [
                     rod(point(0.0, at), point(0.0, out), 0.009),
                     rod(point(-0.008, out), point(0.115, out), 0.009),
-                    plate.at(grip, HEIGHT_M, at).visual_only(),
+                    plate.translated(grip, HEIGHT_M, at).visual_only(),
                 ],
             );
         }

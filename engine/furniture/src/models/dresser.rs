@@ -59,11 +59,9 @@ impl Dresser {
                 block([-x + 0.03, y - 0.006, z - 0.03], [x - 0.03, y + 0.006, z]),
             );
         }
-        let mut model = Model::articulated("dresser", "dresser").part(body).top(
-            "top",
-            [-x, self.height_m, -z],
-            [x, self.height_m + 0.6, z],
-        );
+        let mut model = Model::articulated("dresser", "dresser")
+            .part(body)
+            .with_support_surface("top", [-x, self.height_m, -z], [x, self.height_m + 0.6, z]);
         let front = self.front.clone();
         let half = carcass.max[0];
         for (k, name) in NAMES.into_iter().take(2 * self.rows).enumerate() {
@@ -77,7 +75,7 @@ impl Dresser {
             model = model
                 .part(drawer(name, low, high, z, self.depth_m - 0.1, &front))
                 .sliding(name, Vec3::Z, self.depth_m - 0.16)
-                .inside(name, min, max);
+                .with_container_space(name, min, max);
         }
         model
     }
@@ -89,14 +87,14 @@ const NAMES: [&str; 8] = [
 
 fn dresser(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("dresser", key);
-    let height = d.m("height");
+    let height = d.sample_m("height");
     Dresser {
-        width_m: d.m("width"),
+        width_m: d.sample_m("width"),
         height_m: height,
-        depth_m: d.m("depth"),
+        depth_m: d.sample_m("depth"),
         rows: ((height / 0.26) as usize).clamp(2, 4),
-        wood: style.any_wood(&mut d.stream("wood")).clone(),
-        front: style.doors(),
+        wood: style.random_wood(&mut d.stream("wood")).clone(),
+        front: style.front_style(),
     }
     .build()
 }

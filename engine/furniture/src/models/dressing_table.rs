@@ -21,9 +21,14 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[CatalogueEntry::new(
 /// A table with a mirror and two drawers, to make oneself up at.
 fn dressing_table(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("dressing_table", key);
-    let (w, h, depth, table) = (d.m("width"), d.m("height"), d.m("depth"), d.m("table"));
+    let (w, h, depth, table) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+        d.sample_m("table"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth);
-    let wood = style.any_wood(&mut d.stream("wood"));
+    let wood = style.random_wood(&mut d.stream("wood"));
     let carcass = Carcass {
         min: [-x + 0.005, table - 0.15, -z + 0.005],
         max: [x - 0.005, table - 0.02, z - BOARD_M],
@@ -35,7 +40,7 @@ fn dressing_table(style: &Style, key: RandomKey) -> Model {
             rounded_block([-x, table - 0.02, -z], [x, table, z], 0.006, 1),
         )
         .with_all(wood, carcass.boards(&[], &[0.5]))
-        .with_bars(
+        .with_all_hollow(
             style.leg_finish(),
             style.legs([x - 0.04, z - 0.05], table - 0.15, 0.045),
         );
@@ -44,7 +49,7 @@ fn dressing_table(style: &Style, key: RandomKey) -> Model {
     if round {
         let r = 0.5 * tall - 0.03;
         let disc = |radius: f32, from: f32, deep: f32| {
-            cylinder(radius, deep, 32).about_x(FRAC_PI_2).at(
+            cylinder(radius, deep, 32).rotated_x(FRAC_PI_2).translated(
                 0.0,
                 table + 0.03 + 0.5 * tall - 0.015,
                 from,
@@ -66,7 +71,7 @@ fn dressing_table(style: &Style, key: RandomKey) -> Model {
         body = body
             .with(
                 wood,
-                frame(wide, tall, 0.03, 0.02).at(0.0, table + 0.5 * tall, -z + 0.01),
+                frame(wide, tall, 0.03, 0.02).translated(0.0, table + 0.5 * tall, -z + 0.01),
             )
             .with(
                 &mirror(),
@@ -78,8 +83,8 @@ fn dressing_table(style: &Style, key: RandomKey) -> Model {
     }
     let mut model = Model::articulated("dressing_table", "dressing_table")
         .part(body)
-        .top("top", [-x, table, -z + 0.07], [x, table + 0.5, z]);
-    let front = style.doors();
+        .with_support_surface("top", [-x, table, -z + 0.07], [x, table + 0.5, z]);
+    let front = style.front_style();
     for (name, a, b) in [
         ("left_drawer", -x + 0.007, -0.5 * GAP_M),
         ("right_drawer", 0.5 * GAP_M, x - 0.007),
@@ -89,7 +94,7 @@ fn dressing_table(style: &Style, key: RandomKey) -> Model {
         model = model
             .part(drawer(name, low, high, face, depth - 0.1, &front))
             .sliding(name, Vec3::Z, 0.6 * (depth - 0.1))
-            .inside(name, min, max);
+            .with_container_space(name, min, max);
     }
     model
 }

@@ -15,12 +15,16 @@ pub(super) const ENTRIES: &[CatalogueEntry] =
 /// A drum kit: bass drum, two toms, a floor tom, a snare, two cymbals, a stool behind.
 fn drum_kit(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("drum_kit", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth);
     let shell = Finish::plain(
         "drum_shell",
         "wood",
-        d.of(
+        d.choose(
             "shell",
             [
                 [170, 36, 40],
@@ -35,34 +39,34 @@ fn drum_kit(_style: &Style, key: RandomKey) -> Model {
     let bass = 0.28;
     let front = z - 0.45;
     let mut body = PartBuilder::new("kit")
-        .with_filled(
+        .with_fill_fraction(
             &shell,
             cylinder(bass, 0.4, 28)
-                .about_x(FRAC_PI_2)
-                .at(0.0, bass, front),
+                .rotated_x(FRAC_PI_2)
+                .translated(0.0, bass, front),
             0.07,
         )
         .with(
             &skin,
             cylinder(bass - 0.015, 0.003, 28)
-                .about_x(FRAC_PI_2)
-                .at(0.0, bass, front + 0.4)
+                .rotated_x(FRAC_PI_2)
+                .translated(0.0, bass, front + 0.4)
                 .visual_only(),
         );
     let drum = |body: PartBuilder, r: f32, tall: f32, at: [f32; 3], legs: bool| {
         let [a, y, b] = at;
         let mut body = body
-            .with_filled(&shell, cylinder(r, tall, 24).at(a, y, b), 0.07)
+            .with_fill_fraction(&shell, cylinder(r, tall, 24).translated(a, y, b), 0.07)
             .with(
                 &skin,
                 cylinder(r - 0.008, 0.003, 24)
-                    .at(a, y + tall, b)
+                    .translated(a, y + tall, b)
                     .visual_only(),
             );
         if legs {
             for k in 0..3 {
                 let (sin, cos) = dwell_scene::math::sin_cos(2.1 * k as f32 + 0.5);
-                body = body.with_filled(
+                body = body.with_fill_fraction(
                     &chrome(),
                     rod(
                         [a + 0.95 * r * sin, 0.008, b + 0.95 * r * cos],
@@ -73,7 +77,7 @@ fn drum_kit(_style: &Style, key: RandomKey) -> Model {
                 );
             }
         } else {
-            body = body.with_filled(
+            body = body.with_fill_fraction(
                 &chrome(),
                 rod([0.4 * a, 2.0 * bass - 0.02, b], [a, y + 0.05, b], 0.012).visual_only(),
                 0.4,
@@ -97,9 +101,9 @@ fn drum_kit(_style: &Style, key: RandomKey) -> Model {
             24,
         );
         (
-            plate.at(a, y, b),
+            plate.translated(a, y, b),
             rod([a, 0.03, b], [a, y, b], 0.011),
-            cylinder(0.16, 0.03, 3).at(a, 0.0, b),
+            cylinder(0.16, 0.03, 3).translated(a, 0.0, b),
         )
     };
     for (plate, post, foot) in [
@@ -108,19 +112,22 @@ fn drum_kit(_style: &Style, key: RandomKey) -> Model {
     ] {
         body = body
             .with(&brass(), plate)
-            .with_filled(&chrome(), post, 0.4)
-            .with_filled(&black(), foot, 0.15);
+            .with_fill_fraction(&chrome(), post, 0.4)
+            .with_fill_fraction(&black(), foot, 0.15);
     }
     let body = body
-        .with(&black(), cylinder(0.17, 0.07, 24).at(0.0, 0.45, -z + 0.18))
-        .with_filled(
+        .with(
+            &black(),
+            cylinder(0.17, 0.07, 24).translated(0.0, 0.45, -z + 0.18),
+        )
+        .with_fill_fraction(
             &chrome(),
             rod([0.0, 0.02, -z + 0.18], [0.0, 0.45, -z + 0.18], 0.015),
             0.5,
         )
-        .with_filled(
+        .with_fill_fraction(
             &black(),
-            cylinder(0.18, 0.03, 3).at(0.0, 0.0, -z + 0.18),
+            cylinder(0.18, 0.03, 3).translated(0.0, 0.0, -z + 0.18),
             0.2,
         );
     Model::fixed("drum_kit", "drumset").part(body)

@@ -5,7 +5,9 @@ use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::Finish;
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
-use crate::shapes::{SolidMesh, ball, cylinder, leaf, rod, surface_of_revolution, turn, vessel};
+use crate::shapes::{
+    SolidMesh, axis_rotation, ball, cylinder, leaf, rod, surface_of_revolution, vessel,
+};
 use crate::style::Style;
 use dwell_scene::Pose;
 use dwell_scene::random::RandomKey;
@@ -34,22 +36,23 @@ fn vase(height_m: f32, glaze: &Finish) -> Model {
     );
     let body = PartBuilder::new("body").with(glaze, shell);
     let neck = 0.24 * r;
-    Model::pickable("vase", "vase").part(body).inside(
-        "inside",
-        [-neck, 0.008, -neck],
-        [neck, h, neck],
-    )
+    Model::pickable("vase", "vase")
+        .part(body)
+        .with_container_space("inside", [-neck, 0.008, -neck], [neck, h, neck])
 }
 
 fn sample_vase(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("vase", key);
-    vase(d.m("height"), style.glaze(&mut d.stream("glaze")))
+    vase(
+        d.sample_m("height"),
+        style.random_glaze(&mut d.stream("glaze")),
+    )
 }
 
 /// A bunch of flowers in a vase.
 fn flowers(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("flowers", key);
-    let (w, h) = (d.m("span"), d.m("height"));
+    let (w, h) = (d.sample_m("span"), d.sample_m("height"));
     let petals = [
         [226, 60, 70],
         [244, 206, 70],
@@ -58,12 +61,12 @@ fn flowers(style: &Style, key: RandomKey) -> Model {
         [240, 150, 60],
         [150, 120, 200],
     ];
-    let bloom = Finish::plain("petals", "leaves", d.of("petals", petals));
+    let bloom = Finish::plain("petals", "leaves", d.choose("petals", petals));
     let heart = Finish::plain("flower_heart", "leaves", [222, 176, 50]);
     let stem = fresh_green();
     let r = 0.26 * w;
     let pot = 0.45 * h;
-    let glaze = style.glaze(&mut d.stream("glaze"));
+    let glaze = style.random_glaze(&mut d.stream("glaze"));
     let shell = vessel(
         &[
             (0.0, 0.0),
@@ -91,7 +94,7 @@ fn flowers(style: &Style, key: RandomKey) -> Model {
             &stem,
             rod(foot.to_array(), top.to_array(), 0.002).visual_only(),
         );
-        crown = crown.and(
+        crown = crown.merged(
             surface_of_revolution(
                 &[
                     (0.0, -0.012),
@@ -102,24 +105,26 @@ fn flowers(style: &Style, key: RandomKey) -> Model {
                 ],
                 8,
             )
-            .at(top.x, top.y, top.z)
+            .translated(top.x, top.y, top.z)
             .visual_only(),
         );
         body = body.with(
             &heart,
-            ball(0.007, 6).at(top.x, top.y + 0.012, top.z).visual_only(),
+            ball(0.007, 6)
+                .translated(top.x, top.y + 0.012, top.z)
+                .visual_only(),
         );
         if k % 2 == 0 {
             let pose = Pose::new(
                 foot + Vec3::Y * 0.35 * pot,
-                turn(Vec3::Y, TAU * 0.381_966 * k as f32) * turn(Vec3::X, -0.7),
+                axis_rotation(Vec3::Y, TAU * 0.381_966 * k as f32) * axis_rotation(Vec3::X, -0.7),
             );
-            body = body.with(&stem, leaf(0.11, 0.03, 0.5).placed(&pose));
+            body = body.with(&stem, leaf(0.11, 0.03, 0.5).transformed(&pose));
         }
     }
     // What is felt of the bunch: a slim post.
     crown.colliders = cylinder(0.3 * w, 0.3 * h, 8)
-        .at(0.0, 0.6 * h, 0.0)
+        .translated(0.0, 0.6 * h, 0.0)
         .colliders;
-    Model::pickable("flowers", "flowers").part(body.with_filled(&bloom, crown, 0.3))
+    Model::pickable("flowers", "flowers").part(body.with_fill_fraction(&bloom, crown, 0.3))
 }

@@ -76,16 +76,16 @@ const fn orange_skin() -> Finish {
 fn sample_fruit(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("fruit", key);
     let skins = [red_skin(), green_skin(), orange_skin()];
-    fruit(0.5 * d.m("width"), &skins[d.below("skin", 3)])
+    fruit(0.5 * d.sample_m("width"), &skins[d.below("skin", 3)])
 }
 
 /// A bowl heaped with fruit.
 fn fruit_bowl(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("fruit_bowl", key);
-    let (w, h) = (d.m("width"), d.m("height"));
+    let (w, h) = (d.sample_m("width"), d.sample_m("height"));
     let r = 0.5 * w;
     let rim = 0.6 * h;
-    let glaze = style.glaze(&mut d.stream("glaze"));
+    let glaze = style.random_glaze(&mut d.stream("glaze"));
     let shell = vessel(
         &[(0.0, 0.0), (0.5 * r, 0.0), (0.86 * r, 0.4 * rim), (r, rim)],
         0.006,
@@ -104,14 +104,14 @@ fn fruit_bowl(style: &Style, key: RandomKey) -> Model {
         let (sin, cos) = dwell_scene::math::sin_cos(TAU * k as f32 / 6.0);
         let out = 0.52 * r;
         let skin = &skins[random.below(3)];
-        body = body.with_filled(
+        body = body.with_fill_fraction(
             skin,
-            ball(size, 12).at(out * sin, rim - 0.2 * size, out * cos),
+            ball(size, 12).translated(out * sin, rim - 0.2 * size, out * cos),
             0.9,
         );
     }
-    let top = ball(size, 12).at(0.0, h - size, 0.0);
-    body = body.with_filled(&skins[random.below(3)], top, 0.9);
+    let top = ball(size, 12).translated(0.0, h - size, 0.0);
+    body = body.with_fill_fraction(&skins[random.below(3)], top, 0.9);
     if d.chance("bananas", 0.5) {
         for side in [-0.5_f32, 0.5] {
             let z = side * 0.036;
@@ -125,7 +125,7 @@ fn fruit_bowl(style: &Style, key: RandomKey) -> Model {
                 0.015,
                 8,
             );
-            body = body.with_filled(&banana, long.visual_only(), 0.9);
+            body = body.with_fill_fraction(&banana, long.visual_only(), 0.9);
         }
     }
     Model::movable("fruit_bowl", "fruit_bowl").part(body)
@@ -147,15 +147,15 @@ fn bread() -> Model {
 }
 
 fn sample_bread(_style: &Style, key: RandomKey) -> Model {
-    bread().resized(SizeSampler::new("bread", key).m("width") / 0.26)
+    bread().resized(SizeSampler::new("bread", key).sample_m("width") / 0.26)
 }
 
 /// A cake on a stand, a slice taken out.
 fn cake(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("cake", key);
-    let (w, h) = (d.m("width"), d.m("height"));
+    let (w, h) = (d.sample_m("width"), d.sample_m("height"));
     let (r, stand) = (0.5 * w, 0.35 * h);
-    let (icing, crumb) = d.of(
+    let (icing, crumb) = d.choose(
         "kind",
         [
             ([92, 54, 38], [70, 40, 28]),
@@ -179,12 +179,12 @@ fn cake(style: &Style, key: RandomKey) -> Model {
         };
         let mut points = vec![[0.0, 0.0]];
         points.extend((3 * k..=3 * k + 3).map(at));
-        crate::shapes::extrude(&points, tall).about_x(-std::f32::consts::FRAC_PI_2)
+        crate::shapes::extrude(&points, tall).rotated_x(-std::f32::consts::FRAC_PI_2)
     };
     let (lower, upper) = (0.6 * (h - low - 0.02), 0.4 * (h - low - 0.02));
-    let glaze = style.glaze(&mut d.stream("glaze"));
+    let glaze = style.random_glaze(&mut d.stream("glaze"));
     let mut body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             glaze,
             surface_of_revolution(
                 &[
@@ -198,16 +198,22 @@ fn cake(style: &Style, key: RandomKey) -> Model {
             ),
             0.6,
         )
-        .with(glaze, cylinder(r, 0.008, 28).at(0.0, stand, 0.0));
+        .with(glaze, cylinder(r, 0.008, 28).translated(0.0, stand, 0.0));
     for k in 0..7 {
         body = body
-            .with(&crumb, wedge(k, 0.985 * cr, lower).at(0.0, low, 0.0))
-            .with(&icing, wedge(k, cr, upper).at(0.0, low + lower, 0.0));
+            .with(
+                &crumb,
+                wedge(k, 0.985 * cr, lower).translated(0.0, low, 0.0),
+            )
+            .with(
+                &icing,
+                wedge(k, cr, upper).translated(0.0, low + lower, 0.0),
+            );
         let (sin, cos) = dwell_scene::math::sin_cos(TAU * (k as f32 + 0.5) / 8.0);
         body = body.with(
             &cherry,
             ball(0.011, 8)
-                .at(0.75 * cr * cos, h - 0.012, -0.75 * cr * sin)
+                .translated(0.75 * cr * cos, h - 0.012, -0.75 * cr * sin)
                 .visual_only(),
         );
     }

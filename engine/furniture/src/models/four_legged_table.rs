@@ -70,7 +70,7 @@ impl Table {
         );
         for (sx, sz) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
             let (a, b) = (sx * (x - inset), sz * (z - inset));
-            body = body.with_bar(
+            body = body.with_hollow(
                 &self.legs,
                 tapered_leg([a, 0.0, b], [a, under, b], self.leg_m * 0.7, self.leg_m),
             );
@@ -83,11 +83,11 @@ impl Table {
         for side in [-1.0_f32, 1.0] {
             let (bz, bx) = (side * (z - inset), side * (x - inset));
             body = body
-                .with_bar(
+                .with_hollow(
                     &self.legs,
                     block([-ax, low, bz - 0.01], [ax, under, bz + 0.01]),
                 )
-                .with_bar(
+                .with_hollow(
                     &self.legs,
                     block([bx - 0.01, low, -az], [bx + 0.01, under, az]),
                 );
@@ -98,13 +98,15 @@ impl Table {
                 block([-ax, shelf - 0.02, -z + 0.03], [ax, shelf, z - 0.03]),
             );
         }
-        let mut model = Model::movable(self.name, self.category).part(body).top(
-            "top",
-            [-x, self.height_m, -z],
-            [x, self.height_m + 0.6, z],
-        );
+        let mut model = Model::movable(self.name, self.category)
+            .part(body)
+            .with_support_surface("top", [-x, self.height_m, -z], [x, self.height_m + 0.6, z]);
         if let Some(shelf) = self.shelf_m {
-            model = model.top("shelf", [-ax, shelf, -z + 0.03], [ax, low - 0.01, z - 0.03]);
+            model = model.with_support_surface(
+                "shelf",
+                [-ax, shelf, -z + 0.03],
+                [ax, low - 0.01, z - 0.03],
+            );
         }
         model
     }

@@ -18,9 +18,13 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[CatalogueEntry::new(
 /// A games console with a pad lying on it.
 fn game_console(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("game_console", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth);
-    let (tone, other) = d.of(
+    let (tone, other) = d.choose(
         "tone",
         [
             ([30, 30, 33], [236, 236, 234]),
@@ -40,13 +44,13 @@ fn game_console(_style: &Style, key: RandomKey) -> Model {
     };
     let stick = |a: f32| {
         cylinder(0.009, 0.012, 12)
-            .at(a, h - 0.004, 0.02)
+            .translated(a, h - 0.004, 0.02)
             .visual_only()
     };
     let body = PartBuilder::new("body")
-        .with_filled(&case, block([-x, 0.006, -z], [x, 0.46 * top, z]), 0.6)
-        .with_filled(&case, block([-x, 0.54 * top, -z], [x, top, z - 0.01]), 0.6)
-        .with_filled(
+        .with_fill_fraction(&case, block([-x, 0.006, -z], [x, 0.46 * top, z]), 0.6)
+        .with_fill_fraction(&case, block([-x, 0.54 * top, -z], [x, top, z - 0.01]), 0.6)
+        .with_fill_fraction(
             &black(),
             block(
                 [-x + 0.012, 0.46 * top, -z + 0.01],
@@ -58,7 +62,7 @@ fn game_console(_style: &Style, key: RandomKey) -> Model {
             &black(),
             block([-x + 0.02, 0.0, -z + 0.02], [x - 0.02, 0.006, z - 0.02]),
         )
-        .with_filled(
+        .with_fill_fraction(
             &pad,
             rounded_block([-0.07, top, -0.03], [0.07, h, 0.03], 0.014, 2),
             0.5,

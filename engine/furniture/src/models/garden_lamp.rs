@@ -18,15 +18,15 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[CatalogueEntry::new(
 /// A lamp on a post beside a path.
 fn garden_lamp(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("garden_lamp", key);
-    let (w, h) = (d.m("width"), d.m("height"));
+    let (w, h) = (d.sample_m("width"), d.sample_m("height"));
     let r = 0.5 * w;
     let iron = painted_steel(
         "lamp_iron",
-        d.of("tone", [[36, 38, 38], [70, 80, 76], [150, 150, 152]]),
+        d.choose("tone", [[36, 38, 38], [70, 80, 76], [150, 150, 152]]),
     );
     let head = h - 1.9 * r;
     let body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             &iron,
             surface_of_revolution(
                 &[
@@ -41,19 +41,23 @@ fn garden_lamp(_style: &Style, key: RandomKey) -> Model {
             ),
             0.35,
         )
-        .with_filled(&iron, cylinder(0.75 * r, 0.02, 18).at(0.0, head, 0.0), 0.8)
-        .with_filled(
+        .with_fill_fraction(
+            &iron,
+            cylinder(0.75 * r, 0.02, 18).translated(0.0, head, 0.0),
+            0.8,
+        )
+        .with_fill_fraction(
             &milk_glass(),
-            cylinder(0.65 * r, 1.2 * r, 18).at(0.0, head + 0.02, 0.0),
+            cylinder(0.65 * r, 1.2 * r, 18).translated(0.0, head + 0.02, 0.0),
             0.15,
         )
-        .with_filled(
+        .with_fill_fraction(
             &iron,
             surface_of_revolution(
                 &[(0.0, 0.0), (r, 0.0), (0.35 * r, 0.45 * r), (0.0, 0.6 * r)],
                 18,
             )
-            .at(0.0, head + 0.02 + 1.2 * r, 0.0),
+            .translated(0.0, head + 0.02 + 1.2 * r, 0.0),
             0.3,
         );
     Model::fixed("garden_lamp", "outdoor_lamp")

@@ -16,14 +16,19 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[
 /// A chair for the garden or the balcony: of slats or basket work, with arms.
 fn garden_chair(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("garden_chair", key);
-    let (w, h, depth, seat) = (d.m("width"), d.m("height"), d.m("depth"), d.m("seat"));
+    let (w, h, depth, seat) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+        d.sample_m("seat"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth);
     let (frame, slats) = match d.below("build", 3) {
         0 => (teak(), teak()),
         1 => (
             painted_steel(
                 "garden_steel",
-                d.of("paint", [[54, 58, 60], [232, 232, 228], [70, 96, 82]]),
+                d.choose("paint", [[54, 58, 60], [232, 232, 228], [70, 96, 82]]),
             ),
             style.wood.clone(),
         ),
@@ -77,11 +82,9 @@ fn garden_chair(style: &Style, key: RandomKey) -> Model {
         let b = a + 1.5 * inner / 5.0;
         body = body.with(
             &slats,
-            block([a, 0.0, -0.009], [b, rise, 0.009]).about_x(-0.17).at(
-                0.0,
-                seat + 0.015,
-                -z + 0.075,
-            ),
+            block([a, 0.0, -0.009], [b, rise, 0.009])
+                .rotated_x(-0.17)
+                .translated(0.0, seat + 0.015, -z + 0.075),
         );
     }
     body = body.with(
@@ -93,7 +96,7 @@ fn garden_chair(style: &Style, key: RandomKey) -> Model {
     );
     Model::movable("garden_chair", "outdoor_seating")
         .part(body)
-        .top(
+        .with_support_surface(
             "seat",
             [-inner, seat, -z + 0.1],
             [inner, seat + 0.19, z - 0.03],
@@ -103,19 +106,23 @@ fn garden_chair(style: &Style, key: RandomKey) -> Model {
 /// A seat that hangs in a stand under a roof of cloth.
 fn garden_swing(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("garden_swing", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth);
     let steel = painted_steel(
         "garden_steel",
-        d.of("paint", [[54, 58, 60], [226, 226, 220], [66, 88, 76]]),
+        d.choose("paint", [[54, 58, 60], [226, 226, 220], [66, 88, 76]]),
     );
-    let cover = style.cloth(&mut d.stream("cover"));
+    let cover = style.random_cloth(&mut d.stream("cover"));
     let r = 0.022;
     let mut body = PartBuilder::new("stand");
     for side in [-1.0_f32, 1.0] {
         let a = side * (x - r);
         body = body
-            .with_filled(
+            .with_fill_fraction(
                 &steel,
                 tube(
                     &[
@@ -129,7 +136,7 @@ fn garden_swing(style: &Style, key: RandomKey) -> Model {
                 ),
                 0.25,
             )
-            .with_filled(&steel, rod([a, r, z - r], [a, r, -z + r], r), 0.25);
+            .with_fill_fraction(&steel, rod([a, r, z - r], [a, r, -z + r], r), 0.25);
         let chain = side * (x - 0.22);
         for at in [-0.22_f32, 0.22] {
             body = body.with(
@@ -141,31 +148,33 @@ fn garden_swing(style: &Style, key: RandomKey) -> Model {
     let seat = x - 0.2;
     let roof = |from: f32, to: f32, y: f32, tilt: f32| {
         block([-x, 0.0, from], [x, 0.012, to])
-            .about_x(tilt)
-            .at(0.0, y, 0.0)
+            .rotated_x(tilt)
+            .translated(0.0, y, 0.0)
     };
     let body = body
-        .with_filled(
+        .with_fill_fraction(
             &steel,
             rod([-x + r, h - 0.2, 0.0], [x - r, h - 0.2, 0.0], r),
             0.25,
         )
         .with(cover, roof(-0.77 * z, 0.0, h - 0.045, -0.14))
         .with(cover, roof(0.0, 0.77 * z, h - 0.045, 0.14))
-        .with_filled(
+        .with_fill_fraction(
             cover,
             cushion([-seat, 0.43, -0.25], [seat, 0.52, 0.27]),
-            0.3 * cover.padded(),
+            0.3 * cover.padded_fill(),
         )
-        .with_filled(
+        .with_fill_fraction(
             cover,
             cushion([-seat, 0.5, -0.31], [seat, 0.98, -0.21]),
-            0.3 * cover.padded(),
+            0.3 * cover.padded_fill(),
         )
-        .with_filled(&steel, block([-seat, 0.4, -0.25], [seat, 0.43, 0.25]), 0.05);
-    Model::fixed("garden_swing", "swing").part(body).top(
-        "seat",
-        [-seat + 0.03, 0.52, -0.2],
-        [seat - 0.03, 0.95, 0.24],
-    )
+        .with_fill_fraction(&steel, block([-seat, 0.4, -0.25], [seat, 0.43, 0.25]), 0.05);
+    Model::fixed("garden_swing", "swing")
+        .part(body)
+        .with_support_surface(
+            "seat",
+            [-seat + 0.03, 0.52, -0.2],
+            [seat - 0.03, 0.95, 0.24],
+        )
 }

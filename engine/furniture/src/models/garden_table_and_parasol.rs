@@ -28,8 +28,8 @@ fn garden_table(style: &Style, key: RandomKey) -> Model {
     Table {
         name: "garden_table",
         category: "table",
-        size_m: [d.m("width"), d.m("depth")],
-        height_m: d.m("height"),
+        size_m: [d.sample_m("width"), d.sample_m("depth")],
+        height_m: d.sample_m("height"),
         legs: if d.chance("metal", 0.5) {
             style.metal.clone()
         } else {
@@ -45,9 +45,9 @@ fn garden_table(style: &Style, key: RandomKey) -> Model {
 /// A parasol on a heavy foot, open.
 fn parasol(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("parasol", key);
-    let (w, h) = (d.m("width"), d.m("height"));
+    let (w, h) = (d.sample_m("width"), d.sample_m("height"));
     let r = 0.5 * w;
-    let cover = style.cloth(&mut d.stream("cover"));
+    let cover = style.random_cloth(&mut d.stream("cover"));
     let stone = Finish::plain("parasol_foot", "concrete", [150, 148, 144]);
     // A ring of eight corners, a tip above, and the same again a hand below: thin cloth, closed.
     let ring = |radius: f32, y: f32| -> Vec<Vec3> {
@@ -65,7 +65,7 @@ fn parasol(style: &Style, key: RandomKey) -> Model {
         style.metal.clone()
     };
     let body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             &stone,
             surface_of_revolution(
                 &[
@@ -79,7 +79,7 @@ fn parasol(style: &Style, key: RandomKey) -> Model {
             ),
             0.5,
         )
-        .with_filled(&post, rod([0.0, 0.08, 0.0], [0.0, h, 0.0], 0.02), 0.4)
-        .with_filled(cover, roof, 0.008);
+        .with_fill_fraction(&post, rod([0.0, 0.08, 0.0], [0.0, h, 0.0], 0.02), 0.4)
+        .with_fill_fraction(cover, roof, 0.008);
     Model::movable("parasol", "umbrella").part(body)
 }

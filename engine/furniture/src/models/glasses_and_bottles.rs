@@ -20,17 +20,17 @@ fn tumbler() -> Model {
     let shell = vessel(&[(0.0, 0.0), (0.03, 0.0), (0.037, 0.12)], 0.003, 20);
     Model::pickable("tumbler", "drinking_glass")
         .part(PartBuilder::new("body").with(&glass(), shell))
-        .inside("inside", [-0.018, 0.004, -0.018], [0.018, 0.12, 0.018])
+        .with_container_space("inside", [-0.018, 0.004, -0.018], [0.018, 0.12, 0.018])
 }
 
 fn sample_tumbler(_style: &Style, key: RandomKey) -> Model {
-    tumbler().resized(SizeSampler::new("tumbler", key).m("height") / 0.12)
+    tumbler().resized(SizeSampler::new("tumbler", key).sample_m("height") / 0.12)
 }
 
 /// A wine glass on its stem.
 fn wine_glass(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("wine_glass", key);
-    let (w, h) = (d.m("width"), d.m("height"));
+    let (w, h) = (d.sample_m("width"), d.sample_m("height"));
     let r = 0.5 * w;
     let foot = surface_of_revolution(
         &[
@@ -56,11 +56,11 @@ fn wine_glass(_style: &Style, key: RandomKey) -> Model {
     );
     let body = PartBuilder::new("body")
         .with(&glass(), foot)
-        .with(&glass(), cup.at(0.0, 0.45 * h, 0.0));
+        .with(&glass(), cup.translated(0.0, 0.45 * h, 0.0));
     let half = 0.3 * r;
     Model::pickable("wine_glass", "drinking_glass")
         .part(body)
-        .inside("inside", [-half, 0.46 * h, -half], [half, h, half])
+        .with_container_space("inside", [-half, 0.46 * h, -half], [half, h, half])
 }
 
 /// A bottle; `cap` closes it.
@@ -90,21 +90,24 @@ fn bottle(height_m: f32, body: &Finish, label: &Finish, cap: &Finish) -> Model {
         20,
     );
     let part = PartBuilder::new("body")
-        .with_filled(body, shape, 0.55)
+        .with_fill_fraction(body, shape, 0.55)
         .with(label, band.visual_only())
-        .with(cap, cylinder(0.38 * r, 0.05 * h, 14).at(0.0, 0.95 * h, 0.0));
+        .with(
+            cap,
+            cylinder(0.38 * r, 0.05 * h, 14).translated(0.0, 0.95 * h, 0.0),
+        );
     Model::pickable("bottle", "bottle").part(part)
 }
 
 fn sample_bottle(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("bottle", key);
     let body = Finish {
-        srgb: d.of("glass", [[52, 92, 60], [110, 60, 40], [186, 206, 214]]),
+        srgb: d.choose("glass", [[52, 92, 60], [110, 60, 40], [186, 206, 214]]),
         ..glass()
     };
     let label = paper(
         "bottle_label",
-        d.of(
+        d.choose(
             "label",
             [
                 [240, 240, 236],
@@ -116,27 +119,27 @@ fn sample_bottle(_style: &Style, key: RandomKey) -> Model {
     );
     let cap = painted_steel(
         "bottle_cap",
-        d.of(
+        d.choose(
             "cap",
             [[168, 171, 175], [150, 40, 44], [40, 44, 50], [190, 156, 84]],
         ),
     );
-    bottle(d.m("height"), &body, &label, &cap)
+    bottle(d.sample_m("height"), &body, &label, &cap)
 }
 
 /// A bottle of beer.
 fn beer(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("beer", key);
-    let (w, h) = (d.m("width"), d.m("height"));
+    let (w, h) = (d.sample_m("width"), d.sample_m("height"));
     let r = 0.5 * w;
     let brown = Finish {
-        srgb: d.of("glass", [[104, 60, 26], [50, 96, 56], [196, 200, 190]]),
+        srgb: d.choose("glass", [[104, 60, 26], [50, 96, 56], [196, 200, 190]]),
         ..glass()
     }
-    .clear(0.75);
+    .transparent(0.75);
     let label = paper(
         "beer_label",
-        d.of(
+        d.choose(
             "label",
             [
                 [232, 220, 180],
@@ -169,11 +172,11 @@ fn beer(_style: &Style, key: RandomKey) -> Model {
         18,
     );
     let body = PartBuilder::new("body")
-        .with_filled(&brown, shape, 0.55)
+        .with_fill_fraction(&brown, shape, 0.55)
         .with(&label, band.visual_only())
         .with(
             &steel(),
-            cylinder(0.45 * r, 0.04 * h, 12).at(0.0, 0.96 * h, 0.0),
+            cylinder(0.45 * r, 0.04 * h, 12).translated(0.0, 0.96 * h, 0.0),
         );
     Model::pickable("beer", "beer").part(body)
 }

@@ -15,11 +15,15 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[CatalogueEntry::new("grill", "gr
 /// A grill: a kettle on three legs or a wagon with a hood that opens.
 fn grill(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("grill", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth);
     let enamel = painted_steel(
         "grill_enamel",
-        d.of(
+        d.choose(
             "tone",
             [[34, 34, 36], [130, 34, 38], [60, 80, 70], [168, 171, 175]],
         ),
@@ -27,12 +31,12 @@ fn grill(_style: &Style, key: RandomKey) -> Model {
     let bowl = 0.42 * w.min(depth * 1.2);
     let rim = h - 0.26;
     let mut body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             &enamel,
             block([-bowl, rim - 0.16, -0.8 * z], [bowl, rim, 0.8 * z]),
             0.06,
         )
-        .with_filled(
+        .with_fill_fraction(
             &steel(),
             block(
                 [-bowl + 0.02, rim, -0.8 * z + 0.02],
@@ -56,7 +60,7 @@ fn grill(_style: &Style, key: RandomKey) -> Model {
         );
     for (sx, sz) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
         let (a, b) = (sx * (bowl - 0.03), sz * (0.7 * z));
-        body = body.with_filled(
+        body = body.with_fill_fraction(
             &black(),
             block(
                 [a - 0.018, 0.0, b - 0.018],
@@ -66,19 +70,21 @@ fn grill(_style: &Style, key: RandomKey) -> Model {
         );
     }
     let knob = |k: usize| {
-        cylinder(0.022, 0.022, 14).about_x(FRAC_PI_2).at(
+        cylinder(0.022, 0.022, 14).rotated_x(FRAC_PI_2).translated(
             -0.5 * bowl + 0.5 * bowl * k as f32,
             rim - 0.1,
             0.8 * z,
         )
     };
     let wheel = |s: f32| {
-        cylinder(0.08, 0.03, 18)
-            .about_z(FRAC_PI_2)
-            .at(s * (bowl + 0.01) + 0.015, 0.08, -0.7 * z)
+        cylinder(0.08, 0.03, 18).rotated_z(FRAC_PI_2).translated(
+            s * (bowl + 0.01) + 0.015,
+            0.08,
+            -0.7 * z,
+        )
     };
     let body = body
-        .with_filled(
+        .with_fill_fraction(
             &black(),
             block(
                 [-bowl + 0.015, 0.16, -0.7 * z + 0.018],
@@ -106,10 +112,10 @@ fn grill(_style: &Style, key: RandomKey) -> Model {
             .collect::<Vec<_>>(),
         2.0 * bowl,
     )
-    .about_y(FRAC_PI_2)
-    .at(-bowl, rim + 0.01, 0.0);
+    .rotated_y(FRAC_PI_2)
+    .translated(-bowl, rim + 0.01, 0.0);
     let lid = PartBuilder::new("lid")
-        .with_filled(&enamel, hood, 0.05)
+        .with_fill_fraction(&enamel, hood, 0.05)
         .with(
             &steel(),
             rod(
@@ -139,7 +145,7 @@ fn grill(_style: &Style, key: RandomKey) -> Model {
     Model::articulated("grill", "grill")
         .switched(false)
         .part(body)
-        .top(
+        .with_support_surface(
             "side_table",
             [bowl + 0.01, rim - 0.015, -0.55 * z],
             [x - 0.01, rim + 0.4, 0.55 * z],

@@ -15,14 +15,18 @@ pub(super) const ENTRIES: &[CatalogueEntry] =
 /// A guitar on its stand, strings towards +Z.
 fn guitar(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("guitar", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth);
     let top = Finish::tiled(
         "spruce",
         "wood",
         "wood",
         [
-            d.of(
+            d.choose(
                 "top",
                 [[222, 176, 108], [196, 120, 60], [120, 60, 40], [60, 40, 34]],
             ),
@@ -56,7 +60,7 @@ fn guitar(_style: &Style, key: RandomKey) -> Model {
     let shape: Vec<[f32; 2]> = right.chain(left).collect();
     let (low, back) = (0.1, -0.045);
     let deep = 0.09;
-    let mut box_of = extrude(&shape, deep).at(0.0, low, back);
+    let mut box_of = extrude(&shape, deep).translated(0.0, low, back);
     // The waist is hollow: two convex halves stand for the body.
     box_of.colliders = [(0.02, 0.55, 0.93), (0.55, 0.98, 0.72)]
         .into_iter()
@@ -71,7 +75,7 @@ fn guitar(_style: &Style, key: RandomKey) -> Model {
     let neck = low + tall;
     let face = back + deep;
     let body = PartBuilder::new("body")
-        .with_filled(&side, box_of, 0.09)
+        .with_fill_fraction(&side, box_of, 0.09)
         .with(
             &top,
             extrude(
@@ -81,14 +85,14 @@ fn guitar(_style: &Style, key: RandomKey) -> Model {
                     .collect::<Vec<_>>(),
                 0.003,
             )
-            .at(0.0, low, face)
+            .translated(0.0, low, face)
             .visual_only(),
         )
         .with(
             &ebony,
             cylinder(0.05, 0.0015, 24)
-                .about_x(FRAC_PI_2)
-                .at(0.0, low + 0.66 * tall, face + 0.003)
+                .rotated_x(FRAC_PI_2)
+                .translated(0.0, low + 0.66 * tall, face + 0.003)
                 .visual_only(),
         )
         .with(
@@ -123,15 +127,21 @@ fn guitar(_style: &Style, key: RandomKey) -> Model {
                 [-0.05, h - 0.14, face - 0.008],
                 [0.05, h - 0.13, face - 0.002],
             )
-            .and(block(
+            .merged(block(
                 [-0.05, h - 0.06, face - 0.008],
                 [0.05, h - 0.05, face - 0.002],
             ))
             .visual_only(),
         )
-        .with(&black(), ball(0.012, 8).at(-0.8 * x, 0.012, z - 0.012))
-        .with(&black(), ball(0.012, 8).at(0.8 * x, 0.012, z - 0.012))
-        .with(&black(), ball(0.012, 8).at(0.0, 0.012, -z + 0.012))
+        .with(
+            &black(),
+            ball(0.012, 8).translated(-0.8 * x, 0.012, z - 0.012),
+        )
+        .with(
+            &black(),
+            ball(0.012, 8).translated(0.8 * x, 0.012, z - 0.012),
+        )
+        .with(&black(), ball(0.012, 8).translated(0.0, 0.012, -z + 0.012))
         // The stand: two feet to the front and one behind, a yoke below, a prop at the back.
         .with(
             &black(),

@@ -17,12 +17,16 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[
 /// A treadmill: a belt between rails, a console on two posts. One runs towards -Z.
 fn treadmill(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("treadmill", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth);
     let frame = Finish::plain(
         "treadmill_frame",
         "steel",
-        d.of("tone", [[60, 62, 66], [190, 192, 196], [40, 42, 46]]),
+        d.choose("tone", [[60, 62, 66], [190, 192, 196], [40, 42, 46]]),
     );
     let belt = Finish::plain("treadmill_belt", "rubber", [30, 30, 32]);
     let screen = Finish::picture(
@@ -32,20 +36,20 @@ fn treadmill(_style: &Style, key: RandomKey) -> Model {
         [[30, 60, 80], [200, 220, 220], [60, 160, 120]],
         2,
     )
-    .glowing([0.04, 0.08, 0.08]);
+    .emissive([0.04, 0.08, 0.08]);
     let mut body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             &frame,
             block([-x, 0.0, -z + 0.2], [-x + 0.08, 0.16, z]),
             0.12,
         )
-        .with_filled(&frame, block([x - 0.08, 0.0, -z + 0.2], [x, 0.16, z]), 0.12)
-        .with_filled(
+        .with_fill_fraction(&frame, block([x - 0.08, 0.0, -z + 0.2], [x, 0.16, z]), 0.12)
+        .with_fill_fraction(
             &belt,
             block([-x + 0.08, 0.05, -z + 0.2], [x - 0.08, 0.14, z - 0.02]),
             0.1,
         )
-        .with_filled(
+        .with_fill_fraction(
             &black(),
             rounded_block([-x, 0.0, -z], [x, 0.24, -z + 0.3], 0.04, 2),
             0.25,
@@ -53,25 +57,25 @@ fn treadmill(_style: &Style, key: RandomKey) -> Model {
     for side in [-1.0_f32, 1.0] {
         let a = side * (x - 0.045);
         body = body
-            .with_filled(
+            .with_fill_fraction(
                 &frame,
                 rod([a, 0.1, -z + 0.32], [a, h - 0.22, -z + 0.12], 0.03),
                 0.12,
             )
-            .with_filled(
+            .with_fill_fraction(
                 &black(),
                 rod([a, h - 0.28, -z + 0.13], [a, h - 0.3, -z + 0.62], 0.02),
                 0.5,
             );
     }
-    let console = rounded_block([-x, 0.0, -0.05], [x, 0.25, 0.05], 0.03, 2).about_x(-0.45);
+    let console = rounded_block([-x, 0.0, -0.05], [x, 0.25, 0.05], 0.03, 2).rotated_x(-0.45);
     let shown = crate::shapes::panel(0.34, 0.16, 0.004)
-        .at(0.0, 0.05, 0.05)
-        .about_x(-0.45);
+        .translated(0.0, 0.05, 0.05)
+        .rotated_x(-0.45);
     let (cy, cz) = (h - 0.25, -z + 0.13);
     let body = body
-        .with_filled(&black(), console.at(0.0, cy, cz), 0.3)
-        .with(&screen, shown.at(0.0, cy, cz).visual_only());
+        .with_fill_fraction(&black(), console.translated(0.0, cy, cz), 0.3)
+        .with(&screen, shown.translated(0.0, cy, cz).visual_only());
     Model::fixed("treadmill", "gym_equipment")
         .switched(false)
         .part(body)
@@ -81,11 +85,11 @@ fn treadmill(_style: &Style, key: RandomKey) -> Model {
 /// A bench to lift weights on, with a bar in its rack.
 fn weight_bench(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("weight_bench", key);
-    let (w, h, depth) = (d.m("width"), d.m("bar"), d.m("depth"));
+    let (w, h, depth) = (d.sample_m("width"), d.sample_m("bar"), d.sample_m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let steel = painted_steel(
         "bench_steel",
-        d.of("tone", [[44, 46, 50], [150, 40, 42], [200, 202, 206]]),
+        d.choose("tone", [[44, 46, 50], [150, 40, 42], [200, 202, 206]]),
     );
     let cover = Finish {
         substance: "leather",
@@ -94,12 +98,12 @@ fn weight_bench(_style: &Style, key: RandomKey) -> Model {
     let iron = Finish::plain("weights", "cast_iron", [52, 54, 58]);
     let seat = 0.45;
     let mut body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             &cover,
             rounded_block([-0.14, seat - 0.06, -0.5 * z], [0.14, seat, z], 0.02, 2),
             0.35,
         )
-        .with_filled(
+        .with_fill_fraction(
             &steel,
             block(
                 [-0.03, seat - 0.12, -z + 0.06],
@@ -107,12 +111,12 @@ fn weight_bench(_style: &Style, key: RandomKey) -> Model {
             ),
             0.2,
         )
-        .with_filled(
+        .with_fill_fraction(
             &steel,
             block([-0.03, 0.05, z - 0.16], [0.03, seat - 0.12, z - 0.1]),
             0.2,
         )
-        .with_filled(
+        .with_fill_fraction(
             &steel,
             block([-0.25, 0.0, z - 0.16], [0.25, 0.05, z - 0.1]),
             0.2,
@@ -121,12 +125,12 @@ fn weight_bench(_style: &Style, key: RandomKey) -> Model {
     for side in [-1.0_f32, 1.0] {
         let a = side * post;
         body = body
-            .with_filled(
+            .with_fill_fraction(
                 &steel,
                 block([a - 0.03, 0.0, -z], [a + 0.03, 0.05, -0.2 * z]),
                 0.2,
             )
-            .with_filled(
+            .with_fill_fraction(
                 &steel,
                 block([a - 0.03, 0.05, -z + 0.08], [a + 0.03, h - 0.06, -z + 0.14]),
                 0.2,
@@ -139,10 +143,10 @@ fn weight_bench(_style: &Style, key: RandomKey) -> Model {
                 ),
             );
         for (k, r) in [0.14_f32, 0.11].into_iter().enumerate() {
-            let plate = cylinder(r, 0.024, 24).about_z(FRAC_PI_2);
-            body = body.with_filled(
+            let plate = cylinder(r, 0.024, 24).rotated_z(FRAC_PI_2);
+            body = body.with_fill_fraction(
                 &iron,
-                plate.at(
+                plate.translated(
                     side * (x - 0.12 + 0.03 * k as f32) + 0.012,
                     h - 0.035,
                     -z + 0.17,
@@ -152,7 +156,7 @@ fn weight_bench(_style: &Style, key: RandomKey) -> Model {
         }
     }
     let body = body
-        .with_filled(
+        .with_fill_fraction(
             &steel,
             block(
                 [-post + 0.03, 0.2, -z + 0.09],

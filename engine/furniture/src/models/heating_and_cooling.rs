@@ -32,7 +32,7 @@ pub fn radiator(width_m: f32, height_m: f32) -> Model {
         (middle - 0.02, middle + 0.02)
     };
     let body = PartBuilder::new("body")
-        .with_filled(&white, block([-x, 0.0, 0.04], [x, height_m, 0.09]), 0.12)
+        .with_fill_fraction(&white, block([-x, 0.0, 0.04], [x, height_m, 0.09]), 0.12)
         .with_all(&white, (0..(width_m / 0.04 - 0.5) as usize).map(rib))
         .with_all(
             &white,
@@ -47,20 +47,24 @@ pub fn radiator(width_m: f32, height_m: f32) -> Model {
 
 fn sample_radiator(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("radiator", key);
-    radiator(d.m("width"), d.m("height")).switched(true)
+    radiator(d.sample_m("width"), d.sample_m("height")).switched(true)
 }
 
 /// The indoor unit of an air conditioner, on the wall; y = 0 is its lower edge.
 fn air_conditioner(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("air_conditioner", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let x = 0.5 * w;
     let white = enamel(
         "white_case",
-        d.of("tone", [[240, 241, 240], [232, 230, 224], [70, 74, 78]]),
+        d.choose("tone", [[240, 241, 240], [232, 230, 224], [70, 74, 78]]),
     );
     let body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             &white,
             rounded_block([-x, 0.0, 0.0], [x, h, depth], 0.025, 2),
             0.45,
@@ -78,7 +82,7 @@ fn air_conditioner(_style: &Style, key: RandomKey) -> Model {
             .visual_only(),
         )
         .with(
-            &Finish::plain("indicator", "plastic", [90, 200, 120]).glowing([0.05, 0.3, 0.1]),
+            &Finish::plain("indicator", "plastic", [90, 200, 120]).emissive([0.05, 0.3, 0.1]),
             block([x - 0.1, 0.12, depth], [x - 0.08, 0.126, depth + 0.001]).visual_only(),
         );
     Model::fixed("air_conditioner", "air_conditioner")
@@ -90,7 +94,7 @@ fn air_conditioner(_style: &Style, key: RandomKey) -> Model {
 /// A fan on a stand: a cage with blades on a post.
 fn pedestal_fan(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("pedestal_fan", key);
-    let (w, h) = (d.m("width"), d.m("height"));
+    let (w, h) = (d.sample_m("width"), d.sample_m("height"));
     let (r, y) = (0.5 * w, h - 0.5 * w);
     let dark = d.chance("dark", 0.5);
     let case = if dark {
@@ -100,8 +104,8 @@ fn pedestal_fan(style: &Style, key: RandomKey) -> Model {
     };
     let hub = |from: f32, deep: f32, radius: f32| {
         cylinder(radius, deep, 16)
-            .about_x(FRAC_PI_2)
-            .at(0.0, y, from)
+            .rotated_x(FRAC_PI_2)
+            .translated(0.0, y, from)
     };
     let mut body = PartBuilder::new("body")
         .with(
@@ -121,7 +125,7 @@ fn pedestal_fan(style: &Style, key: RandomKey) -> Model {
             &style.metal,
             rod([0.0, 0.04, -0.1], [0.0, y - 0.05, -0.1], 0.013),
         )
-        .with_filled(&case, hub(-0.15, 0.12, 0.055), 0.8)
+        .with_fill_fraction(&case, hub(-0.15, 0.12, 0.055), 0.8)
         .with(
             &case,
             block([-0.02, y - 0.09, -0.12], [0.02, y - 0.04, -0.08]),
@@ -131,19 +135,21 @@ fn pedestal_fan(style: &Style, key: RandomKey) -> Model {
         body = body.with(
             &case,
             blade(0.02, 0.86 * r, 0.35 * r)
-                .about_x(FRAC_PI_2)
-                .about_z(spin)
-                .at(0.0, y, 0.0)
+                .rotated_x(FRAC_PI_2)
+                .rotated_z(spin)
+                .translated(0.0, y, 0.0)
                 .visual_only(),
         );
     }
     for z in [-0.045_f32, 0.045] {
         for (k, size) in [1.0_f32, 0.55].into_iter().enumerate() {
-            let wire = ring(size * (r - 0.006), 0.003, 18).about_x(FRAC_PI_2).at(
-                0.0,
-                y,
-                z * (1.0 + 0.25 * k as f32) * if k == 0 { 0.4 } else { 1.0 },
-            );
+            let wire = ring(size * (r - 0.006), 0.003, 18)
+                .rotated_x(FRAC_PI_2)
+                .translated(
+                    0.0,
+                    y,
+                    z * (1.0 + 0.25 * k as f32) * if k == 0 { 0.4 } else { 1.0 },
+                );
             body = body.with(&style.metal, wire.visual_only());
         }
         for k in 0..8 {
@@ -168,26 +174,26 @@ fn pedestal_fan(style: &Style, key: RandomKey) -> Model {
 /// A fan under the ceiling with a lamp in its middle.
 fn ceiling_fan(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("ceiling_fan", key);
-    let (w, h) = (d.m("span"), d.m("height"));
+    let (w, h) = (d.sample_m("span"), d.sample_m("height"));
     let (r, low) = (0.5 * w, -h);
-    let count = d.of("blades", [3, 4, 5]);
+    let count = d.choose("blades", [3, 4, 5]);
     let mut body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             &style.metal,
-            cylinder(0.07, 0.05, 20).at(0.0, -0.05, 0.0),
+            cylinder(0.07, 0.05, 20).translated(0.0, -0.05, 0.0),
             0.3,
         )
-        .with_filled(
+        .with_fill_fraction(
             &style.metal,
             rod([0.0, low + 0.2, 0.0], [0.0, -0.05, 0.0], 0.014),
             0.5,
         )
-        .with_filled(
+        .with_fill_fraction(
             &style.metal,
-            cylinder(0.1, 0.1, 24).at(0.0, low + 0.1, 0.0),
+            cylinder(0.1, 0.1, 24).translated(0.0, low + 0.1, 0.0),
             0.3,
         )
-        .with_filled(
+        .with_fill_fraction(
             &crate::finishes::milk_glass(),
             surface_of_revolution(
                 &[
@@ -202,8 +208,8 @@ fn ceiling_fan(style: &Style, key: RandomKey) -> Model {
             0.2,
         );
     for k in 0..count {
-        let one = blade(0.09, r, 0.13).about_y(TAU * k as f32 / count as f32);
-        body = body.with(&style.wood, one.at(0.0, low + 0.14, 0.0));
+        let one = blade(0.09, r, 0.13).rotated_y(TAU * k as f32 / count as f32);
+        body = body.with(&style.wood, one.translated(0.0, low + 0.14, 0.0));
     }
     Model::fixed("ceiling_fan", "fan")
         .switched(true)
@@ -220,5 +226,5 @@ fn blade(from_m: f32, to_m: f32, width_m: f32) -> SolidMesh {
         0.0035,
         1,
     )
-    .about_x(0.2)
+    .rotated_x(0.2)
 }

@@ -18,9 +18,13 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[
 /// A bar for the living room: a counter towards the guests (+Z) with a foot rail, shelves towards the host (-Z).
 fn home_bar(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("home_bar", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth);
-    let wood = style.any_wood(&mut d.stream("wood"));
+    let wood = style.random_wood(&mut d.stream("wood"));
     let (back, face, low) = (-z + 0.06, z - 0.16, 0.06);
     let (half, under) = (x - 0.02, h - 0.04);
     let shelves = [low, 0.5 * under, under - 0.3];
@@ -40,7 +44,7 @@ fn home_bar(style: &Style, key: RandomKey) -> Model {
         .with(wood, block([half - 0.02, 0.0, back], [half, under, face]))
         .with_all(wood, shelves.map(shelf))
         .with_all(&style.front, (0..3).map(panel))
-        .with_bar(
+        .with_hollow(
             &style.worktop,
             rounded_block([-x, under, -z], [x, h, z], 0.01, 1),
         )
@@ -50,18 +54,21 @@ fn home_bar(style: &Style, key: RandomKey) -> Model {
         )
         .with_all(&brass(), [-half + 0.1, half - 0.1].map(rail));
     let inner = half - 0.03;
-    let mut model = Model::fixed("home_bar", "drinkbar").part(body).top(
-        "counter",
-        [-x + 0.02, h, -z + 0.02],
-        [x - 0.02, h + 0.5, z - 0.02],
-    );
+    let mut model = Model::fixed("home_bar", "drinkbar")
+        .part(body)
+        .with_support_surface(
+            "counter",
+            [-x + 0.02, h, -z + 0.02],
+            [x - 0.02, h + 0.5, z - 0.02],
+        );
     let ceilings = [shelves[1], shelves[2], under];
     for (k, name) in ["lower_shelf", "middle_shelf", "upper_shelf"]
         .into_iter()
         .enumerate()
     {
         let (from, to) = (shelves[k] + 0.02, ceilings[k] - 0.01);
-        model = model.top(name, [-inner, from, back + 0.01], [inner, to, face - 0.01]);
+        model =
+            model.with_support_surface(name, [-inner, from, back + 0.01], [inner, to, face - 0.01]);
     }
     model
 }
@@ -69,9 +76,13 @@ fn home_bar(style: &Style, key: RandomKey) -> Model {
 /// A trolley on castors with two or three trays and a bar to push.
 fn serving_cart(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("serving_cart", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth);
-    let levels = d.of("levels", [2, 3]);
+    let levels = d.choose("levels", [2, 3]);
     let brass_like = d.chance("brass", 0.3);
     let metal = if brass_like {
         brass()
@@ -81,21 +92,21 @@ fn serving_cart(style: &Style, key: RandomKey) -> Model {
     let mut body = PartBuilder::new("body");
     for (sx, sz) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
         let (a, b) = (sx * (x - 0.02), sz * (z - 0.02));
-        let wheel = cylinder(0.03, 0.02, 16).about_z(FRAC_PI_2);
+        let wheel = cylinder(0.03, 0.02, 16).rotated_z(FRAC_PI_2);
         body = body
-            .with_filled(&metal, rod([a, 0.055, b], [a, h - 0.01, b], 0.01), 0.4)
-            .with(&black(), wheel.at(a + 0.01, 0.03, b));
+            .with_fill_fraction(&metal, rod([a, 0.055, b], [a, h - 0.01, b], 0.01), 0.4)
+            .with(&black(), wheel.translated(a + 0.01, 0.03, b));
     }
     for side in [-1.0, 1.0] {
         let a = side * (x - 0.02);
-        body = body.with_filled(
+        body = body.with_fill_fraction(
             &metal,
             rod([a, h - 0.01, -z + 0.02], [a, h - 0.01, z - 0.02], 0.01),
             0.4,
         );
     }
     let level = |k: usize| 0.12 + (h - 0.22) * k as f32 / (levels - 1) as f32;
-    let wood = style.any_wood(&mut d.stream("wood"));
+    let wood = style.random_wood(&mut d.stream("wood"));
     for k in 0..levels {
         let y = level(k);
         body = body.with(
@@ -111,7 +122,7 @@ fn serving_cart(style: &Style, key: RandomKey) -> Model {
             h + 0.3
         };
         let low = [-x + 0.035, level(k) + 0.018, -z + 0.03];
-        model = model.top(name, low, [x - 0.035, ceiling, z - 0.03]);
+        model = model.with_support_surface(name, low, [x - 0.035, ceiling, z - 0.03]);
     }
     model
 }

@@ -1,6 +1,6 @@
 //! Small kitchen appliances: kettle, toaster, coffee machine, microwave, blender.
 
-use super::casings::{CASES, casing};
+use super::casings::{CASING_COLORS, casing};
 use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::{Finish, black, chrome, enamel, glass, painted_steel, plastic, steel};
 use crate::model::{Model, PartBuilder};
@@ -51,10 +51,13 @@ fn kettle() -> Model {
     );
     let body = PartBuilder::new("body")
         .with(&black(), cylinder(0.082, 0.02, 24))
-        .with_filled(&steel(), pot, 0.03)
+        .with_fill_fraction(&steel(), pot, 0.03)
         .with(&black(), grip)
-        .with_filled(&steel(), spout, 0.2)
-        .with(&black(), cylinder(0.012, 0.015, 12).at(0.0, 0.2035, 0.0));
+        .with_fill_fraction(&steel(), spout, 0.2)
+        .with(
+            &black(),
+            cylinder(0.012, 0.015, 12).translated(0.0, 0.2035, 0.0),
+        );
     Model::pickable("kettle", "kettle")
         .switched(false)
         .part(body)
@@ -63,7 +66,7 @@ fn kettle() -> Model {
 
 fn sample_kettle(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("kettle", key);
-    let tone = style.cloth(&mut d.stream("tone")).srgb;
+    let tone = style.random_cloth(&mut d.stream("tone")).srgb;
     let body = match d.below("body", 3) {
         0 => painted_steel("kettle_enamel", tone),
         1 => painted_steel("kettle_white", [236, 236, 232]),
@@ -73,8 +76,8 @@ fn sample_kettle(style: &Style, key: RandomKey) -> Model {
         },
     };
     kettle()
-        .resized(d.m("height") / 0.22)
-        .repainted("steel", &body)
+        .resized(d.sample_m("height") / 0.22)
+        .with_finish_replaced("steel", &body)
 }
 
 /// A toaster for two slices.
@@ -82,7 +85,7 @@ fn toaster() -> Model {
     let cream = plastic("cream_plastic", [232, 218, 186]);
     let slot = |z: f32| block([-0.1, 0.1785, z - 0.013], [0.1, 0.1802, z + 0.013]).visual_only();
     let body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             &cream,
             rounded_block([-0.14, 0.008, -0.085], [0.14, 0.18, 0.085], 0.03, 2),
             0.2,
@@ -98,17 +101,17 @@ fn toaster() -> Model {
 
 fn sample_toaster(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("toaster", key);
-    let tone = style.cloth(&mut d.stream("tone")).srgb;
+    let tone = style.random_cloth(&mut d.stream("tone")).srgb;
     let case = plastic(
         "toaster_case",
-        d.of(
+        d.choose(
             "case",
             [tone, [232, 218, 186], [52, 54, 58], [190, 193, 197]],
         ),
     );
     toaster()
-        .resized(d.m("height") / 0.18)
-        .repainted("cream_plastic", &case)
+        .resized(d.sample_m("height") / 0.18)
+        .with_finish_replaced("cream_plastic", &case)
 }
 
 /// A filter coffee machine with its jug.
@@ -125,22 +128,22 @@ fn coffee_machine() -> Model {
         20,
     );
     let body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             &case,
             rounded_block([-0.1, 0.0, -0.13], [0.1, 0.034, 0.13], 0.01, 1),
             0.5,
         )
-        .with_filled(
+        .with_fill_fraction(
             &case,
             rounded_block([-0.1, 0.034, -0.13], [0.1, 0.22, -0.03], 0.01, 1),
             0.5,
         )
-        .with_filled(
+        .with_fill_fraction(
             &case,
             rounded_block([-0.1, 0.22, -0.13], [0.1, 0.33, 0.1], 0.012, 1),
             0.5,
         )
-        .with_filled(&glass(), jug.at(0.0, 0.0, 0.045), 0.25);
+        .with_fill_fraction(&glass(), jug.translated(0.0, 0.0, 0.045), 0.25);
     Model::movable("coffee_machine", "coffee_machine")
         .switched(false)
         .part(body)
@@ -149,20 +152,20 @@ fn coffee_machine() -> Model {
 
 fn sample_coffee_machine(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("coffee_machine", key);
-    let tone = style.cloth(&mut d.stream("tone")).srgb;
+    let tone = style.random_cloth(&mut d.stream("tone")).srgb;
     let case = plastic(
         "coffee_machine_case",
-        d.of("case", [tone, [54, 56, 60], [196, 198, 202], [150, 36, 38]]),
+        d.choose("case", [tone, [54, 56, 60], [196, 198, 202], [150, 36, 38]]),
     );
     coffee_machine()
-        .resized(d.m("height") / 0.33)
-        .repainted("anthracite_plastic", &case)
+        .resized(d.sample_m("height") / 0.33)
+        .with_finish_replaced("anthracite_plastic", &case)
 }
 
 /// A microwave oven; its door turns on the left.
 fn microwave() -> Model {
     let case = enamel("microwave_white", [232, 232, 230]);
-    let dark = Finish::plain("black_glass", "glass", [22, 22, 24]).clear(1.0);
+    let dark = Finish::plain("black_glass", "glass", [22, 22, 24]).transparent(1.0);
     let (x, h, z) = (0.24, 0.28, 0.18);
     let (low, w, panel) = (0.01, 0.02, 0.145);
     let face = z - 0.025;
@@ -174,7 +177,11 @@ fn microwave() -> Model {
         block([-x + w, h - w, -z], [panel, h, face]),
         block([-x + w, low + w, -z], [panel, h - w, -z + w]),
     ];
-    let knob = |y: f32| cylinder(0.02, 0.018, 14).about_x(FRAC_PI_2).at(0.195, y, z);
+    let knob = |y: f32| {
+        cylinder(0.02, 0.018, 14)
+            .rotated_x(FRAC_PI_2)
+            .translated(0.195, y, z)
+    };
     let body = PartBuilder::new("body")
         .with_all(&case, shell)
         .with(
@@ -211,7 +218,7 @@ fn microwave() -> Model {
         .switched(false)
         .part(body)
         .with_sound([0.0, 0.15, z], "hum", 56.0)
-        .inside(
+        .with_container_space(
             "inside",
             [-x + w, low + w, -z + w],
             [panel, h - w, face - 0.005],
@@ -223,16 +230,16 @@ fn microwave() -> Model {
 fn sample_microwave(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("microwave", key);
     microwave()
-        .resized(d.m("width") / 0.48)
-        .repainted("microwave_white", &casing(style, &d, "microwave_casing"))
+        .resized(d.sample_m("width") / 0.48)
+        .with_finish_replaced("microwave_white", &casing(style, &d, "microwave_casing"))
 }
 
 /// A blender: a jug of glass on a motor.
 fn blender(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("blender", key);
-    let (w, h) = (d.m("width"), d.m("height"));
+    let (w, h) = (d.sample_m("width"), d.sample_m("height"));
     let (r, base) = (0.5 * w, 0.4 * h);
-    let case = plastic("blender_case", d.of("case", CASES));
+    let case = plastic("blender_case", d.choose("case", CASING_COLORS));
     let jug = vessel(
         &[(0.0, 0.0), (0.62 * r, 0.0), (0.82 * r, 0.5 * h)],
         0.004,
@@ -249,7 +256,7 @@ fn blender(_style: &Style, key: RandomKey) -> Model {
         8,
     );
     let body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             &case,
             surface_of_revolution(
                 &[
@@ -263,21 +270,21 @@ fn blender(_style: &Style, key: RandomKey) -> Model {
             ),
             0.85,
         )
-        .with(&glass(), jug.at(0.0, base, 0.0))
+        .with(&glass(), jug.translated(0.0, base, 0.0))
         .with(&glass(), grip.visual_only())
         .with(
             &black(),
-            cylinder(0.84 * r, 0.06 * h, 20).at(0.0, 0.9 * h, 0.0),
+            cylinder(0.84 * r, 0.06 * h, 20).translated(0.0, 0.9 * h, 0.0),
         )
         .with(
             &black(),
-            cylinder(0.4 * r, 0.04 * h, 14).at(0.0, 0.96 * h, 0.0),
+            cylinder(0.4 * r, 0.04 * h, 14).translated(0.0, 0.96 * h, 0.0),
         )
         .with(
             &chrome(),
             cylinder(0.018, 0.02, 14)
-                .about_x(FRAC_PI_2)
-                .at(0.0, 0.14 * h, 0.9 * r),
+                .rotated_x(FRAC_PI_2)
+                .translated(0.0, 0.14 * h, 0.9 * r),
         );
     Model::movable("blender", "food_processor")
         .switched(false)

@@ -1,7 +1,7 @@
 //! Base units of fitted kitchens, with worktop and sink.
 
-use super::cabinet_parts::{BOARD_M, Carcass, GAP_M, TOP, door, drawer, drawer_space};
-use super::taps::tapped;
+use super::cabinet_parts::{BOARD_M, Carcass, GAP_M, TOP_BOARD, door, drawer, drawer_space};
+use super::taps::with_mixer_tap;
 use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::{Finish, black, lacquer, steel};
 use crate::model::{Model, PartBuilder};
@@ -62,7 +62,7 @@ impl KitchenUnit {
         let walls: Vec<f32> = (1..count).map(|k| k as f32 / count as f32).collect();
         // The worktop is the lid: a board below it would go through the sink.
         let mut boards = carcass.boards(&[], &walls);
-        boards.remove(TOP);
+        boards.remove(TOP_BOARD);
         let mut body = PartBuilder::new("body")
             .with(&black(), block([-x, 0.0, -z + 0.02], [x, 0.1, face - 0.04]))
             .with_all(&carcass_board(), boards);
@@ -73,13 +73,13 @@ impl KitchenUnit {
             let middle = left_of(k) + 0.5 * self.bay_m;
             let (a, b) = (middle - 0.25, middle + 0.25);
             body = body
-                .with_bar(&self.worktop, block([start, under, -z], [a, WORKTOP_M, z]))
-                .with_bar(&self.worktop, block([a, under, -z], [b, WORKTOP_M, -0.19]))
-                .with_bar(&self.worktop, block([a, under, 0.21], [b, WORKTOP_M, z]))
+                .with_hollow(&self.worktop, block([start, under, -z], [a, WORKTOP_M, z]))
+                .with_hollow(&self.worktop, block([a, under, -z], [b, WORKTOP_M, -0.19]))
+                .with_hollow(&self.worktop, block([a, under, 0.21], [b, WORKTOP_M, z]))
                 .with_all(&steel(), basin(middle));
             start = b;
         }
-        body = body.with_bar(&self.worktop, block([start, under, -z], [x, WORKTOP_M, z]));
+        body = body.with_hollow(&self.worktop, block([start, under, -z], [x, WORKTOP_M, z]));
         let mut model = Model::articulated("kitchen_unit", "kitchen_set").part(body);
         // Worktop left and right of the sink, and the basin.
         let sink = self
@@ -90,14 +90,14 @@ impl KitchenUnit {
         let (left_end, right_start) =
             sink.map_or((x, x), |k| (left_of(k) + 0.03, left_of(k + 1) - 0.03));
         if left_end > -x + 0.1 {
-            model = model.top(
+            model = model.with_support_surface(
                 "worktop",
                 [-x, WORKTOP_M, -z],
                 [left_end, WORKTOP_M + 0.45, z],
             );
         }
         if right_start < x - 0.1 {
-            model = model.top(
+            model = model.with_support_surface(
                 "worktop_right",
                 [right_start, WORKTOP_M, -z],
                 [x, WORKTOP_M + 0.45, z],
@@ -105,7 +105,7 @@ impl KitchenUnit {
         }
         if let Some(k) = sink {
             let middle = left_of(k) + 0.5 * self.bay_m;
-            model = model.inside(
+            model = model.with_container_space(
                 "sink",
                 [middle - 0.23, WORKTOP_M - 0.168, -0.17],
                 [middle + 0.23, WORKTOP_M, 0.19],
@@ -127,7 +127,7 @@ impl KitchenUnit {
                     model = model
                         .part(drawer(name, low, high, face, 0.48, &front))
                         .sliding(name, Vec3::Z, 0.4)
-                        .inside(name, min, max);
+                        .with_container_space(name, min, max);
                 }
             } else {
                 model = model
@@ -141,7 +141,7 @@ impl KitchenUnit {
                     ))
                     .hinged(DOORS[k], [a, 0.0, face + BOARD_M], Vec3::NEG_Y, 1.7);
                 let last = model.parts.len() - 1;
-                model = model.inside(DOORS[k], inside.0, inside.1);
+                model = model.with_container_space(DOORS[k], inside.0, inside.1);
                 // What lies behind the door stays with the body.
                 if let Some(space) = model.spaces.last_mut().filter(|space| space.part == last) {
                     space.part = 0;
@@ -183,7 +183,7 @@ fn run(style: &Style, bay_m: f32, bays: Vec<UnitKind>) -> Model {
     KitchenUnit {
         bay_m,
         bays,
-        front: style.kitchen_doors(),
+        front: style.kitchen_front_style(),
         worktop: style.worktop.clone(),
     }
     .build()
@@ -193,21 +193,21 @@ fn base_unit_1(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("base_unit_1", key);
     run(
         style,
-        d.m("width"),
-        vec![d.of("bay", [UnitKind::Door, UnitKind::Drawers])],
+        d.sample_m("width"),
+        vec![d.choose("bay", [UnitKind::Door, UnitKind::Drawers])],
     )
 }
 
 fn base_unit_2(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("base_unit_2", key);
-    let bays = d.of(
+    let bays = d.choose(
         "order",
         [
             [UnitKind::Door, UnitKind::Drawers],
             [UnitKind::Drawers, UnitKind::Door],
         ],
     );
-    run(style, 0.5 * d.m("width"), bays.to_vec())
+    run(style, 0.5 * d.sample_m("width"), bays.to_vec())
 }
 
 /// A run with a sink and its tap.
@@ -218,7 +218,7 @@ fn sink(style: &Style, d: &SizeSampler, bay_m: f32, bays: Vec<UnitKind>) -> Mode
         .unwrap_or(0);
     let middle = bay_m * (place as f32 + 0.5 - 0.5 * bays.len() as f32);
     let sizes = [d.range("tap", 0.2, 0.3), d.range("reach", 0.16, 0.19)];
-    tapped(
+    with_mixer_tap(
         run(style, bay_m, bays),
         style,
         d,
@@ -230,19 +230,19 @@ fn sink(style: &Style, d: &SizeSampler, bay_m: f32, bays: Vec<UnitKind>) -> Mode
 
 fn sink_unit(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("sink_unit", key);
-    sink(style, &d, d.m("width"), vec![UnitKind::Sink])
+    sink(style, &d, d.sample_m("width"), vec![UnitKind::Sink])
 }
 
 fn sink_unit_2(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("sink_unit_2", key);
-    let other = d.of("other", [UnitKind::Door, UnitKind::Drawers]);
-    let bays = d.of("order", [[UnitKind::Sink, other], [other, UnitKind::Sink]]);
-    sink(style, &d, 0.5 * d.m("width"), bays.to_vec())
+    let other = d.choose("other", [UnitKind::Door, UnitKind::Drawers]);
+    let bays = d.choose("order", [[UnitKind::Sink, other], [other, UnitKind::Sink]]);
+    sink(style, &d, 0.5 * d.sample_m("width"), bays.to_vec())
 }
 
 fn sink_unit_3(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("sink_unit_3", key);
-    let other = d.of("other", [UnitKind::Door, UnitKind::Drawers]);
+    let other = d.choose("other", [UnitKind::Door, UnitKind::Drawers]);
     let orders = [
         [UnitKind::Drawers, UnitKind::Sink, other],
         [other, UnitKind::Sink, UnitKind::Drawers],
@@ -251,7 +251,7 @@ fn sink_unit_3(style: &Style, key: RandomKey) -> Model {
     sink(
         style,
         &d,
-        d.m("width") / 3.0,
-        d.of("order", orders).to_vec(),
+        d.sample_m("width") / 3.0,
+        d.choose("order", orders).to_vec(),
     )
 }

@@ -59,8 +59,8 @@ fn wall_cabinet(doors: usize, door_m: f32, height_m: f32, front: &FrontStyle) ->
             -x + door_m * (k + 1) as f32 - BOARD_M,
         );
         model = model
-            .inside(lower, [a, low[1], low[2]], [b, middle[1], middle[2]])
-            .inside(above, [a, upper[1], upper[2]], [b, high[1], high[2]]);
+            .with_container_space(lower, [a, low[1], low[2]], [b, middle[1], middle[2]])
+            .with_container_space(above, [a, upper[1], upper[2]], [b, high[1], high[2]]);
     }
     let z = carcass.max[2];
     for (k, name) in DOORS.into_iter().take(count).enumerate() {
@@ -100,9 +100,9 @@ fn cabinet(style: &Style, name: &'static str, key: RandomKey, doors: usize) -> M
     let d = SizeSampler::new(name, key);
     wall_cabinet(
         doors,
-        d.m("width") / doors as f32,
-        d.m("height"),
-        &style.kitchen_doors(),
+        d.sample_m("width") / doors as f32,
+        d.sample_m("height"),
+        &style.kitchen_front_style(),
     )
 }
 

@@ -19,24 +19,28 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[CatalogueEntry::new(
 /// A lawn mower with its handle bar to the back (-Z).
 fn lawn_mower(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("lawn_mower", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth);
     let deck = painted_steel(
         "mower_deck",
-        d.of(
+        d.choose(
             "tone",
             [[190, 40, 36], [50, 120, 60], [226, 120, 30], [60, 90, 140]],
         ),
     );
     let wheel = |sx: f32, b: f32| {
         cylinder(0.09, 0.04, 18)
-            .about_z(FRAC_PI_2)
-            .at(sx * (x - 0.02) + 0.02, 0.09, b)
+            .rotated_z(FRAC_PI_2)
+            .translated(sx * (x - 0.02) + 0.02, 0.09, b)
     };
     let (front, rear) = (z - 0.11, z - 0.62);
     let bag = Finish::plain("grass_bag", "textile", [60, 62, 64]);
     let body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             &deck,
             rounded_block(
                 [-x + 0.045, 0.06, rear - 0.05],
@@ -46,9 +50,9 @@ fn lawn_mower(_style: &Style, key: RandomKey) -> Model {
             ),
             0.1,
         )
-        .with_filled(
+        .with_fill_fraction(
             &black(),
-            cylinder(0.13, 0.14, 20).at(0.0, 0.22, 0.5 * (front + rear) + 0.06),
+            cylinder(0.13, 0.14, 20).translated(0.0, 0.22, 0.5 * (front + rear) + 0.06),
             0.8,
         )
         .with_all(
@@ -60,7 +64,7 @@ fn lawn_mower(_style: &Style, key: RandomKey) -> Model {
                 wheel(1.0, rear),
             ],
         )
-        .with_filled(
+        .with_fill_fraction(
             &bag,
             rounded_block(
                 [-x + 0.08, 0.1, rear - 0.5],
@@ -70,7 +74,7 @@ fn lawn_mower(_style: &Style, key: RandomKey) -> Model {
             ),
             0.04,
         )
-        .with_filled(
+        .with_fill_fraction(
             &black(),
             tube(
                 &[

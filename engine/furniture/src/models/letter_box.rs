@@ -19,11 +19,15 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[CatalogueEntry::new(
 /// A letter box on the wall; its flap turns up. y = 0 is its lower edge.
 fn letter_box(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("letter_box", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let x = 0.5 * w;
     let paint = painted_steel(
         "letter_box_paint",
-        d.of(
+        d.choose(
             "tone",
             [
                 [40, 44, 48],
@@ -45,23 +49,25 @@ fn letter_box(_style: &Style, key: RandomKey) -> Model {
     ];
     let plate = Finish::plain("name_plate", "paper", [236, 234, 226]);
     let body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             &paint,
-            shell.into_iter().fold(SolidMesh::default(), SolidMesh::and),
+            shell
+                .into_iter()
+                .fold(SolidMesh::default(), SolidMesh::merged),
             0.15,
         )
         .with(
             &plate,
             block([-0.2 * w, 0.3 * h, face], [0.2 * w, 0.4 * h, face + 0.002]).visual_only(),
         );
-    let flap = PartBuilder::new("flap").with_filled(
+    let flap = PartBuilder::new("flap").with_fill_fraction(
         &paint,
         block([-x, h - 0.018, 0.004], [x, h, depth]),
         0.3,
     );
     Model::articulated("letter_box", "mailbox")
         .part(body)
-        .inside("inside", [-x + t, t, t], [x - t, 0.72 * h, face - t])
+        .with_container_space("inside", [-x + t, t, t], [x - t, 0.72 * h, face - t])
         .part(flap)
         .hinged("flap", [0.0, h - 0.018, 0.004], Vec3::NEG_X, 1.2)
 }

@@ -28,5 +28,5 @@ fn light_switch() -> Model {
 }
 
 fn sample_light_switch(_style: &Style, key: RandomKey) -> Model {
-    light_switch().resized(SizeSampler::new("light_switch", key).m("width") / 0.08)
+    light_switch().resized(SizeSampler::new("light_switch", key).sample_m("width") / 0.08)
 }

@@ -56,8 +56,8 @@ impl Lowboard {
         let middle = 0.5 * third - 0.02;
         let mut model = Model::articulated(self.name, self.category)
             .part(body)
-            .top("top", [-x, self.height_m, -z], [x, self.height_m + 0.8, z])
-            .top(
+            .with_support_surface("top", [-x, self.height_m, -z], [x, self.height_m + 0.8, z])
+            .with_support_surface(
                 "shelf",
                 [-middle, lower[1], lower[2]],
                 [middle, upper[1], upper[2]],
@@ -91,11 +91,11 @@ fn lowboard(style: &Style, d: &SizeSampler, name: &'static str, category: &'stat
     Lowboard {
         name,
         category,
-        width_m: d.m("width"),
-        height_m: d.m("height"),
-        depth_m: d.m("depth"),
-        wood: style.any_wood(&mut d.stream("wood")).clone(),
-        front: style.doors(),
+        width_m: d.sample_m("width"),
+        height_m: d.sample_m("height"),
+        depth_m: d.sample_m("depth"),
+        wood: style.random_wood(&mut d.stream("wood")).clone(),
+        front: style.front_style(),
     }
     .build()
 }

@@ -35,15 +35,20 @@ fn nightstand(width_m: f32, height_m: f32, wood: &Finish, front: &FrontStyle) ->
     let (min, max) = drawer_space(front_low, front_high, face, 0.3);
     Model::articulated("nightstand", "stand")
         .part(body)
-        .top("top", [-x, height_m, -face], [x, height_m + 0.6, face])
-        .top("shelf", low, high)
+        .with_support_surface("top", [-x, height_m, -face], [x, height_m + 0.6, face])
+        .with_support_surface("shelf", low, high)
         .part(drawer("drawer", front_low, front_high, face, 0.3, front))
         .sliding("drawer", Vec3::Z, 0.24)
-        .inside("drawer", min, max)
+        .with_container_space("drawer", min, max)
 }
 
 fn sample_nightstand(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("nightstand", key);
-    let wood = style.any_wood(&mut d.stream("wood"));
-    nightstand(d.m("width"), d.m("height"), wood, &style.doors())
+    let wood = style.random_wood(&mut d.stream("wood"));
+    nightstand(
+        d.sample_m("width"),
+        d.sample_m("height"),
+        wood,
+        &style.front_style(),
+    )
 }

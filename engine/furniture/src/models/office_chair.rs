@@ -19,27 +19,29 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[CatalogueEntry::new(
 /// A swivel chair on five castors.
 fn office_chair(cloth: &Finish) -> Model {
     let dark = black();
-    let mut body =
-        PartBuilder::new("body").with(&chrome(), cylinder(0.025, 0.34, 14).at(0.0, 0.09, 0.0));
+    let mut body = PartBuilder::new("body").with(
+        &chrome(),
+        cylinder(0.025, 0.34, 14).translated(0.0, 0.09, 0.0),
+    );
     for k in 0..5 {
         let (sin, cos) = dwell_scene::math::sin_cos(TAU * k as f32 / 5.0);
         let (x, z) = (0.28 * sin, 0.28 * cos);
         body = body
             .with(&dark, rod([0.0, 0.1, 0.0], [x, 0.07, z], 0.016))
-            .with(&dark, ball(0.03, 12).at(x, 0.03, z));
+            .with(&dark, ball(0.03, 12).translated(x, 0.03, z));
     }
     let body = body
         .with(&dark, block([-0.2, 0.43, -0.2], [0.2, 0.445, 0.2]))
-        .with_filled(
+        .with_fill_fraction(
             cloth,
             cushion([-0.24, 0.445, -0.23], [0.24, 0.52, 0.25]),
-            0.7 * cloth.padded(),
+            0.7 * cloth.padded_fill(),
         )
         .with(&dark, block([-0.03, 0.43, -0.27], [0.03, 0.72, -0.245]))
-        .with_filled(
+        .with_fill_fraction(
             cloth,
             cushion([-0.22, 0.62, -0.245], [0.22, 1.08, -0.175]),
-            0.7 * cloth.padded(),
+            0.7 * cloth.padded_fill(),
         );
     let mut body = body;
     for side in [-1.0, 1.0] {
@@ -70,10 +72,11 @@ fn office_chair(cloth: &Finish) -> Model {
     }
     Model::movable("office_chair", "office_chair")
         .part(body)
-        .top("seat", [-0.2, 0.52, -0.16], [0.2, 0.9, 0.22])
+        .with_support_surface("seat", [-0.2, 0.52, -0.16], [0.2, 0.9, 0.22])
 }
 
 fn sample_office_chair(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("office_chair", key);
-    office_chair(style.cover(&mut d.stream("cover"))).resized(d.m("height") / 1.08)
+    office_chair(style.random_upholstery(&mut d.stream("cover")))
+        .resized(d.sample_m("height") / 1.08)
 }

@@ -18,7 +18,11 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[
 /// A few sheets of paper.
 fn papers(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("papers", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth);
     let white = paper("white_sheet", [246, 246, 242]);
     let ink = Finish::picture(
@@ -33,8 +37,8 @@ fn papers(_style: &Style, key: RandomKey) -> Model {
         .with(
             &ink,
             panel(0.8 * w, 0.82 * depth, 0.0002)
-                .about_x(-FRAC_PI_2)
-                .at(0.0, h, 0.41 * depth)
+                .rotated_x(-FRAC_PI_2)
+                .translated(0.0, h, 0.41 * depth)
                 .visual_only(),
         );
     Model::pickable("papers", "paper").part(body)
@@ -47,8 +51,8 @@ fn pencil_cup() -> Model {
         let tilt = 0.05 * k as f32 - 0.1;
         rod([0.0, 0.006, 0.0], [0.0, 0.16, 0.0], 0.0035)
             .visual_only()
-            .about_z(tilt)
-            .at(0.0, 0.0, 0.012 * (k % 3) as f32 - 0.012)
+            .rotated_z(tilt)
+            .translated(0.0, 0.0, 0.012 * (k % 3) as f32 - 0.012)
     };
     let body = PartBuilder::new("body")
         .with(&plastic("blue_plastic", [66, 120, 186]), cup)
@@ -63,23 +67,23 @@ fn sample_pencil_cup(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("pencil_cup", key);
     let cup = plastic(
         "pencil_cup_plastic",
-        style.cloth(&mut d.stream("tone")).srgb,
+        style.random_cloth(&mut d.stream("tone")).srgb,
     );
     pencil_cup()
-        .resized(d.m("height") / 0.16)
-        .repainted("blue_plastic", &cup)
+        .resized(d.sample_m("height") / 0.16)
+        .with_finish_replaced("blue_plastic", &cup)
 }
 
 /// A white board in a frame on the wall; y = 0 is its middle.
 fn whiteboard(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("whiteboard", key);
-    let (w, h) = (d.m("width"), d.m("height"));
+    let (w, h) = (d.sample_m("width"), d.sample_m("height"));
     let (x, y) = (0.5 * w, 0.5 * h);
     let alloy = Finish::plain("board_frame", "aluminium", [190, 192, 196]);
     let face = Finish::plain("board_face", "steel", [246, 247, 247]);
     let mut body = PartBuilder::new("body")
         .with(&alloy, frame(w, h, 0.02, 0.022))
-        .with_filled(
+        .with_fill_fraction(
             &face,
             block([-x + 0.02, -y + 0.02, 0.002], [x - 0.02, y - 0.02, 0.016]),
             0.15,

@@ -22,15 +22,15 @@ fn sculpture(stone: &Finish) -> Model {
         .with(
             stone,
             ring(0.07, 0.014, 26)
-                .about_x(FRAC_PI_2)
-                .at(-0.015, 0.11, 0.0),
+                .rotated_x(FRAC_PI_2)
+                .translated(-0.015, 0.11, 0.0),
         )
         .with(
             stone,
             ring(0.045, 0.011, 22)
-                .about_x(FRAC_PI_2)
-                .about_y(0.9)
-                .at(0.04, 0.083, 0.01)
+                .rotated_x(FRAC_PI_2)
+                .rotated_y(0.9)
+                .translated(0.04, 0.083, 0.01)
                 .visual_only(),
         );
     Model::pickable("sculpture", "decoration").part(body)
@@ -38,7 +38,7 @@ fn sculpture(stone: &Finish) -> Model {
 
 fn sample_sculpture(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("sculpture", key);
-    sculpture(style.glaze(&mut d.stream("stone"))).resized(d.m("height") / 0.194)
+    sculpture(style.random_glaze(&mut d.stream("stone"))).resized(d.sample_m("height") / 0.194)
 }
 
 /// A globe of the earth on a stand.
@@ -52,17 +52,17 @@ fn globe() -> Model {
     );
     let body = PartBuilder::new("body")
         .with(&oak(), cylinder(0.07, 0.02, 22))
-        .with(&oak(), cylinder(0.01, 0.05, 12).at(0.0, 0.02, 0.0))
-        .with_filled(&sea, ball(0.11, 24).at(0.0, 0.175, 0.0), 0.05);
+        .with(&oak(), cylinder(0.01, 0.05, 12).translated(0.0, 0.02, 0.0))
+        .with_fill_fraction(&sea, ball(0.11, 24).translated(0.0, 0.175, 0.0), 0.05);
     Model::pickable("globe", "decoration").part(body)
 }
 
 fn sample_globe(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("globe", key);
-    let globe = globe().resized(d.m("height") / 0.285);
+    let globe = globe().resized(d.sample_m("height") / 0.285);
     let wood = &style.wood;
     if wood.tile_m > 0.0 {
-        globe.repainted("oak", wood)
+        globe.with_finish_replaced("oak", wood)
     } else {
         globe
     }
@@ -71,15 +71,15 @@ fn sample_globe(style: &Style, key: RandomKey) -> Model {
 /// A small ornament: a bird, a snow globe, a pyramid of stone, or a box.
 fn trinket(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("trinket", key);
-    let (w, h) = (d.m("width"), d.m("height"));
+    let (w, h) = (d.sample_m("width"), d.sample_m("height"));
     let r = 0.5 * w;
-    let glaze = style.glaze(&mut d.stream("glaze"));
+    let glaze = style.random_glaze(&mut d.stream("glaze"));
     let body = PartBuilder::new("body");
     let body = match d.below("build", 4) {
         0 => {
             let tail = block([-r, 0.3 * h, -0.1 * w], [-0.5 * r, 0.4 * h, 0.1 * w]);
-            let beak = crate::shapes::cone(0.06 * w, 0.006 * w, 0.2 * w, 8).about_z(-FRAC_PI_2);
-            body.with_filled(
+            let beak = crate::shapes::cone(0.06 * w, 0.006 * w, 0.2 * w, 8).rotated_z(-FRAC_PI_2);
+            body.with_fill_fraction(
                 glaze,
                 surface_of_revolution(
                     &[
@@ -93,16 +93,17 @@ fn trinket(style: &Style, key: RandomKey) -> Model {
                 ),
                 0.6,
             )
-            .with(glaze, ball(0.2 * h, 14).at(0.28 * r, 0.8 * h, 0.0))
+            .with(glaze, ball(0.2 * h, 14).translated(0.28 * r, 0.8 * h, 0.0))
             .with(glaze, tail.visual_only())
             .with(
                 &style.metal,
-                beak.at(0.28 * r + 0.15 * h, 0.8 * h, 0.0).visual_only(),
+                beak.translated(0.28 * r + 0.15 * h, 0.8 * h, 0.0)
+                    .visual_only(),
             )
         }
         1 => body
             .with(&style.wood, cylinder(0.8 * r, 0.25 * h, 20))
-            .with_filled(
+            .with_fill_fraction(
                 &crate::finishes::glass(),
                 surface_of_revolution(
                     &[

@@ -28,11 +28,15 @@ fn cellphone(_style: &Style, key: RandomKey) -> Model {
 
 fn slab(name: &'static str, category: &'static str, key: RandomKey) -> Model {
     let d = SizeSampler::new(name, key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth);
     let case = device(
         "slab_case",
-        d.of(
+        d.choose(
             "tone",
             [
                 [30, 30, 33],
@@ -44,8 +48,8 @@ fn slab(name: &'static str, category: &'static str, key: RandomKey) -> Model {
     );
     let rim = 0.05 * w;
     let face = panel(w - 2.0 * rim, depth - 2.0 * rim, 0.0008)
-        .about_x(-FRAC_PI_2)
-        .at(0.0, h, z - rim);
+        .rotated_x(-FRAC_PI_2)
+        .translated(0.0, h, z - rim);
     let body = PartBuilder::new("body")
         .with(&case, rounded_block([-x, 0.0, -z], [x, h, z], 0.45 * h, 1))
         .with(&screen("slab_screen", &d), face.visual_only());
@@ -71,10 +75,10 @@ fn telephone() -> Model {
         1,
     );
     let face = panel(0.09, 0.09, 0.004)
-        .about_x(-FRAC_PI_2 + 0.45)
-        .at(0.0, 0.03, 0.082);
+        .rotated_x(-FRAC_PI_2 + 0.45)
+        .translated(0.0, 0.03, 0.082);
     let body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             &red,
             rounded_block([-0.09, 0.0, -0.09], [0.09, 0.055, 0.09], 0.016, 1),
             0.4,
@@ -95,12 +99,12 @@ fn sample_telephone(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("telephone", key);
     let case = plastic(
         "telephone_case",
-        d.of(
+        d.choose(
             "case",
             [[170, 36, 34], [44, 44, 47], [226, 214, 186], [70, 110, 96]],
         ),
     );
     telephone()
-        .resized(d.m("width") / 0.222)
-        .repainted("red_plastic", &case)
+        .resized(d.sample_m("width") / 0.222)
+        .with_finish_replaced("red_plastic", &case)
 }

@@ -23,7 +23,7 @@ fn keys(half: f32, y: f32, z: f32, depth: f32) -> [(Finish, SolidMesh); 2] {
     let mut dark = SolidMesh::default();
     for k in 0..count {
         let from = -half + wide * k as f32;
-        white = white.and(
+        white = white.merged(
             block(
                 [from + 0.0006, y, z - depth],
                 [from + wide - 0.0006, y + 0.012, z],
@@ -33,7 +33,7 @@ fn keys(half: f32, y: f32, z: f32, depth: f32) -> [(Finish, SolidMesh); 2] {
         // Two and three black keys in turn, as on every keyboard.
         if ![2, 6].contains(&(k % 7)) && k + 1 < count {
             let at = from + wide;
-            dark = dark.and(
+            dark = dark.merged(
                 block(
                     [at - 0.006, y + 0.012, z - depth],
                     [at + 0.006, y + 0.022, z - 0.36 * depth],
@@ -49,7 +49,11 @@ fn keys(half: f32, y: f32, z: f32, depth: f32) -> [(Finish, SolidMesh); 2] {
 /// An upright piano; the lid over its keys turns up.
 fn piano(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("piano", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth);
     let lacquer = match d.below("finish", 3) {
         0 => Finish::plain("piano_black", "wood", [24, 24, 26]),
@@ -73,10 +77,10 @@ fn piano(style: &Style, key: RandomKey) -> Model {
     let toe = |s: f32| {
         let (a, b) = (s * (x - 0.1), s * (x - 0.04));
         block([a.min(b), 0.0, front], [a.max(b), 0.06, z])
-            .and(block([a.min(b), 0.06, z - 0.08], [a.max(b), bed, z - 0.02]))
+            .merged(block([a.min(b), 0.06, z - 0.08], [a.max(b), bed, z - 0.02]))
     };
     let body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             &lacquer,
             block([-x + 0.03, 0.06, -z], [x - 0.03, h - 0.03, front]),
             0.7,
@@ -125,7 +129,7 @@ fn piano(style: &Style, key: RandomKey) -> Model {
     );
     Model::articulated("piano", "piano")
         .part(body)
-        .top("top", [-x + 0.02, h, -z + 0.02], [x - 0.02, h + 0.4, front])
+        .with_support_surface("top", [-x + 0.02, h, -z + 0.02], [x - 0.02, h + 0.4, front])
         .part(lid)
         .hinged("lid", [0.0, board + 0.02, hinge], Vec3::NEG_X, 1.5)
 }
@@ -133,11 +137,15 @@ fn piano(style: &Style, key: RandomKey) -> Model {
 /// An electric piano on a crossed stand.
 fn keyboard(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("keyboard", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth);
     let case = plastic(
         "keyboard_case",
-        d.of("tone", [[34, 34, 37], [222, 222, 220], [120, 40, 44]]),
+        d.choose("tone", [[34, 34, 37], [222, 222, 220], [120, 40, 44]]),
     );
     let under = h - 0.09;
     let [white, dark] = keys(x - 0.03, h - 0.012, z - 0.012, 0.14);
@@ -152,15 +160,15 @@ fn keyboard(_style: &Style, key: RandomKey) -> Model {
         )
     };
     let body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             &case,
             rounded_block([-x, under, -z], [x, h - 0.012, z], 0.012, 1),
             0.35,
         )
-        .with_filled(&case, block([-x, h - 0.012, -z], [x, h, z - 0.16]), 0.5)
+        .with_fill_fraction(&case, block([-x, h - 0.012, -z], [x, h, z - 0.16]), 0.5)
         .with(&white.0, white.1)
         .with(&dark.0, dark.1)
-        .with_filled(&black(), bar(1.0, -0.03).and(bar(-1.0, 0.03)), 0.8)
+        .with_fill_fraction(&black(), bar(1.0, -0.03).merged(bar(-1.0, 0.03)), 0.8)
         .with_all(&black(), [foot(-1.0), foot(1.0), top(-1.0), top(1.0)]);
     Model::movable("keyboard", "keyboard")
         .switched(false)

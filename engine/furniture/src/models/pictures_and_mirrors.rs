@@ -10,8 +10,8 @@ use dwell_scene::random::RandomKey;
 
 pub(super) const ENTRIES: &[CatalogueEntry] = &[
     CatalogueEntry::new("wall_mirror", "mirror", 107, sample_wall_mirror),
-    CatalogueEntry::new("picture", "picture_frame", 108, sample_picture).many(),
-    CatalogueEntry::new("poster", "picture_frame", 109, sample_poster).many(),
+    CatalogueEntry::new("picture", "picture_frame", 108, sample_picture).with_variants(),
+    CatalogueEntry::new("poster", "picture_frame", 109, sample_poster).with_variants(),
 ];
 
 /// The motifs of pictures: names of texture recipes.
@@ -27,8 +27,9 @@ const MOTIFS: [&str; 7] = [
 
 /// A printed or painted picture in tones of the style.
 fn image(style: &Style, d: &SizeSampler) -> Finish {
-    let tones = ["first", "second", "third"].map(|tone| style.cloth(&mut d.stream(tone)).srgb);
-    let recipe = d.of("motif", MOTIFS);
+    let tones =
+        ["first", "second", "third"].map(|tone| style.random_cloth(&mut d.stream(tone)).srgb);
+    let recipe = d.choose("motif", MOTIFS);
     let seed = 1 + d.below("seed", 5) as u64;
     let colors = match recipe {
         // Sky, hills, trees; and paper under twigs.
@@ -53,15 +54,17 @@ fn picture(width_m: f32, height_m: f32, wood: &Finish, image: &Finish) -> Model 
         )
         .with(
             image,
-            panel(iw, ih, 0.002).at(0.0, -0.5 * ih, 0.012).visual_only(),
+            panel(iw, ih, 0.002)
+                .translated(0.0, -0.5 * ih, 0.012)
+                .visual_only(),
         );
     Model::fixed("picture", "picture_frame").part(body)
 }
 
 fn sample_picture(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("picture", key);
-    let (w, h) = (d.m("width"), d.m("height"));
-    let wood = style.any_wood(&mut d.stream("wood"));
+    let (w, h) = (d.sample_m("width"), d.sample_m("height"));
+    let wood = style.random_wood(&mut d.stream("wood"));
     picture(w, h, wood, &image(style, &d))
 }
 
@@ -69,13 +72,13 @@ fn sample_picture(style: &Style, key: RandomKey) -> Model {
 fn poster(width_m: f32, height_m: f32, image: &Finish) -> Model {
     Model::fixed("poster", "picture_frame").part(PartBuilder::new("body").with(
         image,
-        panel(width_m, height_m, 0.004).at(0.0, -0.5 * height_m, 0.0),
+        panel(width_m, height_m, 0.004).translated(0.0, -0.5 * height_m, 0.0),
     ))
 }
 
 fn sample_poster(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("poster", key);
-    poster(d.m("width"), d.m("height"), &image(style, &d))
+    poster(d.sample_m("width"), d.sample_m("height"), &image(style, &d))
 }
 
 /// A mirror on the wall in a thin frame; y = 0 is its middle.
@@ -92,7 +95,7 @@ fn sample_wall_mirror(style: &Style, key: RandomKey) -> Model {
     let rim = if d.chance("metal", 0.5) {
         style.metal.clone()
     } else {
-        style.any_wood(&mut d.stream("rim")).clone()
+        style.random_wood(&mut d.stream("rim")).clone()
     };
-    wall_mirror(d.m("width"), d.m("height"), &rim)
+    wall_mirror(d.sample_m("width"), d.sample_m("height"), &rim)
 }

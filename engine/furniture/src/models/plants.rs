@@ -4,7 +4,7 @@ use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::{Finish, foliage as green, soil};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
-use crate::shapes::{cylinder, foliage, leaf, rod, surface_of_revolution, turn, vessel};
+use crate::shapes::{axis_rotation, cylinder, foliage, leaf, rod, surface_of_revolution, vessel};
 use crate::style::Style;
 use dwell_scene::Pose;
 use dwell_scene::random::RandomKey;
@@ -65,7 +65,7 @@ impl Plant {
         let bark = Finish::plain("stem", "wood", [96, 84, 52]);
         let body = PartBuilder::new("body")
             .with(&self.pot, shell)
-            .with_filled(
+            .with_fill_fraction(
                 &soil(),
                 surface_of_revolution(
                     &[(0.0, 0.01), (0.7 * r, 0.01), (0.9 * r, level), (0.0, level)],
@@ -82,7 +82,7 @@ impl Plant {
                 )
                 .visual_only(),
             )
-            .with(&self.leaf, crown.at(0.0, top, 0.0));
+            .with(&self.leaf, crown.translated(0.0, top, 0.0));
         let model = if r < 0.09 {
             Model::pickable("small_plant", "plant")
         } else {
@@ -112,11 +112,11 @@ fn leaf_green(d: &SizeSampler) -> Finish {
 
 fn plant(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("plant", key);
-    let height = d.m("height");
-    let pot = style.glaze(&mut d.stream("pot")).clone();
+    let height = d.sample_m("height");
+    let pot = style.random_glaze(&mut d.stream("pot")).clone();
     Plant {
         height_m: height,
-        pot_m: 0.5 * d.m("pot"),
+        pot_m: 0.5 * d.sample_m("pot"),
         leaf_m: [0.26 * height, d.range("leaf", 0.09, 0.13) * height],
         leaves: 14 + d.below("leaves", 8),
         stem_m: d.range("stem", 0.2, 0.32) * height,
@@ -129,14 +129,14 @@ fn plant(style: &Style, key: RandomKey) -> Model {
 
 fn small_plant(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("small_plant", key);
-    let height = d.m("height");
+    let height = d.sample_m("height");
     Plant {
         height_m: height,
-        pot_m: 0.5 * d.m("pot"),
+        pot_m: 0.5 * d.sample_m("pot"),
         leaf_m: [0.42 * height, 0.17 * height],
         leaves: 9 + d.below("leaves", 5),
         stem_m: 0.08 * height,
-        pot: style.glaze(&mut d.stream("pot")).clone(),
+        pot: style.random_glaze(&mut d.stream("pot")).clone(),
         leaf: leaf_green(&d),
         key: key.child("crown"),
     }
@@ -147,28 +147,30 @@ fn small_plant(style: &Style, key: RandomKey) -> Model {
 fn sansevieria(height_m: f32, pot: &Finish) -> Model {
     let r = 0.11;
     let shell = vessel(&[(0.0, 0.0), (0.8 * r, 0.0), (r, 0.17)], 0.007, 24);
-    let mut body = PartBuilder::new("body").with(pot, shell).with_filled(
-        &soil(),
-        cylinder(0.82 * r, 0.14, 20).at(0.0, 0.008, 0.0),
-        0.7,
-    );
+    let mut body = PartBuilder::new("body")
+        .with(pot, shell)
+        .with_fill_fraction(
+            &soil(),
+            cylinder(0.82 * r, 0.14, 20).translated(0.0, 0.008, 0.0),
+            0.7,
+        );
     let mut random = RandomKey::root(11).child("sansevieria").stream();
     let mut crown = crate::shapes::SolidMesh::default();
     for k in 0..11 {
         let size = (height_m - 0.15) * random.range(0.6, 1.0);
-        let spin = turn(Vec3::Y, TAU * 0.381_966 * k as f32);
+        let spin = axis_rotation(Vec3::Y, TAU * 0.381_966 * k as f32);
         let blade = leaf(size, 0.055, 0.42);
         // Leaves grow upwards: the leaf's own +Z is turned up, a little outwards.
         let pose = Pose::new(
             spin * Vec3::Z * 0.03 + Vec3::Y * 0.14,
-            spin * turn(Vec3::X, -1.42 + random.range(0.0, 0.16)),
+            spin * axis_rotation(Vec3::X, -1.42 + random.range(0.0, 0.16)),
         );
-        crown = crown.and(blade.placed(&pose));
+        crown = crown.merged(blade.transformed(&pose));
     }
     let bounds = crown.mesh.bounds();
     let (w, h) = (0.6 * bounds.size().x, bounds.size().y);
     crown.colliders = cylinder(0.5 * w, h * 0.95, 8)
-        .at(bounds.center().x, 0.145, bounds.center().z)
+        .translated(bounds.center().x, 0.145, bounds.center().z)
         .colliders;
     body = body.with(&deep_green(), crown);
     Model::movable("sansevieria", "plant").part(body)
@@ -176,5 +178,8 @@ fn sansevieria(height_m: f32, pot: &Finish) -> Model {
 
 fn snake_plant(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("snake_plant", key);
-    sansevieria(d.m("height"), style.glaze(&mut d.stream("pot")))
+    sansevieria(
+        d.sample_m("height"),
+        style.random_glaze(&mut d.stream("pot")),
+    )
 }

@@ -18,19 +18,23 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[CatalogueEntry::new(
 /// A pool table with cushions, pockets and balls racked up.
 fn pool_table(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("pool_table", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth);
     let felt = Finish::plain(
         "billiard_cloth",
         "felt",
-        d.of("cloth", [[34, 110, 70], [40, 84, 130], [130, 36, 44]]),
+        d.choose("cloth", [[34, 110, 70], [40, 84, 130], [130, 36, 44]]),
     );
     let rail = 0.11;
     let bed = h - 0.045;
     let wood = &style.wood;
     let slate = Finish::plain("slate", "stone", [80, 84, 88]);
     let mut body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             wood,
             block(
                 [-x + 0.05, bed - 0.24, -z + 0.05],
@@ -96,14 +100,14 @@ fn pool_table(style: &Style, key: RandomKey) -> Model {
                 [x - rail + 0.03, h - 0.006, z - rail],
             ),
         );
-    body = body.with_bars(
+    body = body.with_all_hollow(
         style.leg_finish(),
         style.legs([x - 0.2, z - 0.2], bed - 0.24, 0.13),
     );
     let pocket = Finish::plain("pocket", "leather", [20, 20, 22]);
     for sx in [-1.0_f32, 0.0, 1.0] {
         for sz in [-1.0_f32, 1.0] {
-            let hole = cylinder(0.055, 0.003, 16).at(
+            let hole = cylinder(0.055, 0.003, 16).translated(
                 sx * (x - rail + 0.015),
                 h - 0.0005,
                 sz * (z - rail + 0.015),
@@ -132,7 +136,9 @@ fn pool_table(style: &Style, key: RandomKey) -> Model {
             );
             body = body.with(
                 &color,
-                ball(0.0285, 10).at(a, bed + 0.0285, b).visual_only(),
+                ball(0.0285, 10)
+                    .translated(a, bed + 0.0285, b)
+                    .visual_only(),
             );
         }
     }
@@ -140,12 +146,14 @@ fn pool_table(style: &Style, key: RandomKey) -> Model {
     body = body.with(
         &white,
         ball(0.0285, 12)
-            .at(-0.25 * w, bed + 0.0285, 0.0)
+            .translated(-0.25 * w, bed + 0.0285, 0.0)
             .visual_only(),
     );
-    Model::fixed("pool_table", "game_table").part(body).top(
-        "bed",
-        [-0.2 * w, bed, -z + rail + 0.02],
-        [0.2 * w, bed + 0.4, z - rail - 0.02],
-    )
+    Model::fixed("pool_table", "game_table")
+        .part(body)
+        .with_support_surface(
+            "bed",
+            [-0.2 * w, bed, -z + rail + 0.02],
+            [0.2 * w, bed + 0.4, z - rail - 0.02],
+        )
 }

@@ -69,10 +69,10 @@ fn refrigerator(width_m: f32, height_m: f32, depth_m: f32) -> Model {
         .switched(true)
         .part(body)
         .with_sound([0.0, 0.2, back + 0.05], "fridge", 38.0)
-        .inside("lower_shelf", a0, a1)
-        .inside("middle_shelf", b0, b1)
-        .inside("upper_shelf", c0, c1)
-        .inside("freezer", d0, d1)
+        .with_container_space("lower_shelf", a0, a1)
+        .with_container_space("middle_shelf", b0, b1)
+        .with_container_space("upper_shelf", c0, c1)
+        .with_container_space("freezer", d0, d1)
         .part(door(
             "door",
             split + 0.004,
@@ -92,5 +92,10 @@ fn refrigerator(width_m: f32, height_m: f32, depth_m: f32) -> Model {
 fn sample_refrigerator(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("refrigerator", key);
     let case = casing(style, &d, "fridge_casing");
-    refrigerator(d.m("width"), d.m("height"), d.m("depth")).repainted("fridge_white", &case)
+    refrigerator(
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    )
+    .with_finish_replaced("fridge_white", &case)
 }

@@ -17,12 +17,16 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[CatalogueEntry::new(
 /// A screen of three leaves that stands in a zigzag.
 fn room_divider(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("room_divider", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
-    let wood = style.any_wood(&mut d.stream("wood"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
+    let wood = style.random_wood(&mut d.stream("wood"));
     let cloth = if d.chance("paper", 0.4) {
         crate::finishes::paper("rice_paper", [240, 234, 218])
     } else {
-        style.cloth(&mut d.stream("cloth")).clone()
+        style.random_cloth(&mut d.stream("cloth")).clone()
     };
     let t = 0.022;
     let run = (w - t) / 3.0;
@@ -34,7 +38,8 @@ fn room_divider(style: &Style, key: RandomKey) -> Model {
         let spin = if k % 2 == 0 { angle } else { -angle };
         let middle = -0.5 * w + 0.5 * t + run * (k as f32 + 0.5);
         let half = 0.5 * leaf_m - 0.5 * t * 0.6;
-        let place = |solid: crate::shapes::SolidMesh| solid.about_y(spin).at(middle, 0.0, 0.0);
+        let place =
+            |solid: crate::shapes::SolidMesh| solid.rotated_y(spin).translated(middle, 0.0, 0.0);
         let (a, bar) = (half, 0.035);
         let rails = [
             block([-a, 0.0, -0.5 * t], [-a + bar, h, 0.5 * t]),

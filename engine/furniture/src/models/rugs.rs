@@ -18,16 +18,16 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[
 /// A rug whose picture fills it.
 fn rug(width_m: f32, depth_m: f32, weave: &Finish) -> Model {
     let flat = panel(width_m, depth_m, 0.009)
-        .about_x(-FRAC_PI_2)
-        .at(0.0, 0.0, 0.5 * depth_m);
+        .rotated_x(-FRAC_PI_2)
+        .translated(0.0, 0.0, 0.5 * depth_m);
     Model::movable("rug", "rug").part(PartBuilder::new("body").with(weave, flat))
 }
 
 fn sample_rug(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("rug", key);
-    let [a, b] = ["ground", "border"].map(|tone| style.cloth(&mut d.stream(tone)).srgb);
+    let [a, b] = ["ground", "border"].map(|tone| style.random_cloth(&mut d.stream(tone)).srgb);
     let pattern = d.stream("pattern").bits();
-    let recipe = d.of("recipe", ["rug", "rug", "stripes", "checks"]);
+    let recipe = d.choose("recipe", ["rug", "rug", "stripes", "checks"]);
     let weave = Finish::picture(
         "woven_rug",
         "carpet",
@@ -35,7 +35,7 @@ fn sample_rug(style: &Style, key: RandomKey) -> Model {
         [a, b, [232, 222, 200]],
         pattern,
     );
-    rug(d.m("width"), d.m("depth"), &weave)
+    rug(d.sample_m("width"), d.sample_m("depth"), &weave)
 }
 
 /// A round or square rug of one colour, pile up.
@@ -46,14 +46,17 @@ fn round_rug(radius_m: f32, pile: &Finish) -> Model {
 
 fn sample_round_rug(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("round_rug", key);
-    round_rug(0.5 * d.m("width"), style.terry(&mut d.stream("pile")))
+    round_rug(
+        0.5 * d.sample_m("width"),
+        style.random_terry(&mut d.stream("pile")),
+    )
 }
 
 /// A bath mat of terry.
 fn bath_mat(width_m: f32, depth_m: f32) -> Model {
     let (x, z) = (0.5 * width_m, 0.5 * depth_m);
     let cloth = terry("aqua_terry", [126, 172, 178]);
-    Model::movable("bath_mat", "rug").part(PartBuilder::new("body").with_filled(
+    Model::movable("bath_mat", "rug").part(PartBuilder::new("body").with_fill_fraction(
         &cloth,
         rounded_block([-x, 0.0, -z], [x, 0.014, z], 0.006, 1),
         0.5,
@@ -62,6 +65,6 @@ fn bath_mat(width_m: f32, depth_m: f32) -> Model {
 
 fn sample_bath_mat(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("bath_mat", key);
-    bath_mat(d.m("width"), d.m("depth"))
-        .repainted("aqua_terry", style.terry(&mut d.stream("terry")))
+    bath_mat(d.sample_m("width"), d.sample_m("depth"))
+        .with_finish_replaced("aqua_terry", style.random_terry(&mut d.stream("terry")))
 }

@@ -42,22 +42,22 @@ impl Bookshelf {
         for (k, name) in SHELVES.into_iter().take(levels).enumerate() {
             let (low, high) =
                 carcass.space(k as f32 / levels as f32, (k + 1) as f32 / levels as f32);
-            model = model.top(name, low, high);
+            model = model.with_support_surface(name, low, high);
         }
         let (x, z) = (0.5 * self.width_m, 0.5 * self.depth_m);
-        model.top("top", [-x, self.height_m, -z], [x, self.height_m + 0.4, z])
+        model.with_support_surface("top", [-x, self.height_m, -z], [x, self.height_m + 0.4, z])
     }
 }
 
 fn bookshelf(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("bookshelf", key);
-    let height = d.m("height");
+    let height = d.sample_m("height");
     Bookshelf {
-        width_m: d.m("width"),
+        width_m: d.sample_m("width"),
         height_m: height,
-        depth_m: d.m("depth"),
+        depth_m: d.sample_m("depth"),
         levels: ((height / 0.36).round() as usize).clamp(2, 6),
-        wood: style.any_wood(&mut d.stream("wood")).clone(),
+        wood: style.random_wood(&mut d.stream("wood")).clone(),
     }
     .build()
 }
@@ -73,15 +73,15 @@ fn wall_shelf(width_m: f32, depth_m: f32, wood: &Finish) -> Model {
         );
     Model::fixed("wall_shelf", "shelving")
         .part(body)
-        .top("top", [-x, 0.0, 0.0], [x, 0.35, depth_m])
+        .with_support_surface("top", [-x, 0.0, 0.0], [x, 0.35, depth_m])
 }
 
 fn sample_wall_shelf(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("wall_shelf", key);
     wall_shelf(
-        d.m("width"),
-        d.m("depth"),
-        style.any_wood(&mut d.stream("wood")),
+        d.sample_m("width"),
+        d.sample_m("depth"),
+        style.random_wood(&mut d.stream("wood")),
     )
 }
 
@@ -94,26 +94,30 @@ fn cube_shelf(style: &Style, key: RandomKey) -> Model {
         ["cube_4_1", "cube_4_2", "cube_4_3", "cube_4_4"],
     ];
     let d = SizeSampler::new("cube_shelf", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let count = |length: f32| ((length / 0.37).round() as usize).clamp(1, 4);
     let (columns, rows) = (count(w), count(h));
     let carcass = Carcass::standing(w, 0.0, h, depth);
     let share = |k: usize, n: usize| k as f32 / n as f32;
     let levels: Vec<f32> = (1..rows).map(|k| share(k, rows)).collect();
     let walls: Vec<f32> = (1..columns).map(|k| share(k, columns)).collect();
-    let wood = style.any_wood(&mut d.stream("wood"));
+    let wood = style.random_wood(&mut d.stream("wood"));
     let body = PartBuilder::new("body").with_all(wood, carcass.boards(&levels, &walls));
     let (x, z) = (0.5 * w, 0.5 * depth);
-    let mut model =
-        Model::fixed("cube_shelf", "shelving")
-            .part(body)
-            .top("top", [-x, h, -z], [x, h + 0.5, z]);
+    let mut model = Model::fixed("cube_shelf", "shelving")
+        .part(body)
+        .with_support_surface("top", [-x, h, -z], [x, h + 0.5, z]);
     for (row, names) in NAMES.iter().take(rows).enumerate() {
         let (low, high) = carcass.space(share(row, rows), share(row + 1, rows));
         for (column, name) in names.iter().take(columns).enumerate() {
             let left = -x + share(column, columns) * w + BOARD_M;
             let right = -x + share(column + 1, columns) * w - BOARD_M;
-            model = model.top(name, [left, low[1], low[2]], [right, high[1], high[2]]);
+            model =
+                model.with_support_surface(name, [left, low[1], low[2]], [right, high[1], high[2]]);
         }
     }
     model
@@ -122,7 +126,11 @@ fn cube_shelf(style: &Style, key: RandomKey) -> Model {
 /// A rack of steel posts with boards: for a pantry, a cellar, a workshop loft.
 fn metal_rack(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("metal_rack", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth);
     let steel = painted_steel("black_steel", [46, 46, 48]);
     let boards = if d.chance("wooden", 0.5) {
@@ -134,7 +142,7 @@ fn metal_rack(style: &Style, key: RandomKey) -> Model {
     for (sx, sz) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
         let (a, b) = (sx * (x - 0.015), sz * (z - 0.015));
         let post = block([a - 0.015, 0.0, b - 0.015], [a + 0.015, h, b + 0.015]);
-        body = body.with_filled(&steel, post, 0.2);
+        body = body.with_fill_fraction(&steel, post, 0.2);
     }
     let levels = ((h / 0.4).round() as usize).clamp(3, SHELVES.len());
     let level = |k: usize| 0.08 + (h - 0.12) * k as f32 / (levels - 1) as f32;
@@ -151,7 +159,7 @@ fn metal_rack(style: &Style, key: RandomKey) -> Model {
             h + 0.35
         };
         let low = [-x + 0.035, level(k) + 0.018, -z + 0.01];
-        model = model.top(name, low, [x - 0.035, ceiling, z - 0.01]);
+        model = model.with_support_surface(name, low, [x - 0.035, ceiling, z - 0.01]);
     }
     model
 }

@@ -18,7 +18,11 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[
 /// A shower in a corner: a tray, two panes of glass and a door of glass; walls behind it (-Z) and to its left (-X).
 fn shower_cabin(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("shower_cabin", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth);
     let metal = if d.chance("metal", 0.4) {
         style.metal.clone()
@@ -42,14 +46,16 @@ fn shower_cabin(style: &Style, key: RandomKey) -> Model {
         8,
     );
     let body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             &sanitary(),
             rounded_block([-x, 0.0, -z], [x, step, z], 0.012, 1),
             0.3,
         )
         .with(
             &chrome(),
-            cylinder(0.045, 0.002, 16).at(0.0, step, 0.0).visual_only(),
+            cylinder(0.045, 0.002, 16)
+                .translated(0.0, step, 0.0)
+                .visual_only(),
         )
         .with(
             &glass(),
@@ -65,8 +71,8 @@ fn shower_cabin(style: &Style, key: RandomKey) -> Model {
                 [split, h - 0.01, face + 0.5 * t],
             ),
         )
-        .with_filled(&metal, post(x - 0.02, face), 0.3)
-        .with_filled(
+        .with_fill_fraction(&metal, post(x - 0.02, face), 0.3)
+        .with_fill_fraction(
             &metal,
             block(
                 [-x, h - 0.01, face - half],
@@ -74,7 +80,7 @@ fn shower_cabin(style: &Style, key: RandomKey) -> Model {
             ),
             0.3,
         )
-        .with_filled(
+        .with_fill_fraction(
             &metal,
             block(
                 [x - 0.02 - half, h - 0.01, -z],
@@ -89,7 +95,7 @@ fn shower_cabin(style: &Style, key: RandomKey) -> Model {
         )
         .with(
             &chrome(),
-            cylinder(0.11, 0.012, 24).at(-0.2 * w, head - 0.024, -z + 0.3),
+            cylinder(0.11, 0.012, 24).translated(-0.2 * w, head - 0.024, -z + 0.3),
         );
     let (a, b) = (split + 0.006, x - 0.02 - half - 0.004);
     let door = PartBuilder::new("door")
@@ -120,7 +126,7 @@ fn shower_cabin(style: &Style, key: RandomKey) -> Model {
         .switched(false)
         .part(body)
         .with_sound([-0.2 * w, head - 0.03, -z + 0.3], "tap", 66.0)
-        .inside(
+        .with_container_space(
             "floor",
             [-x + 0.05, step + 0.004, -z + 0.12],
             [x - 0.05, 0.9, face - 0.03],
@@ -149,7 +155,7 @@ fn shower_screen(width_m: f32, height_m: f32) -> Model {
 
 fn sample_shower_screen(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("shower_screen", key);
-    shower_screen(d.m("depth"), d.m("height"))
+    shower_screen(d.sample_m("depth"), d.sample_m("height"))
 }
 
 /// A shower head on a rail on the wall; y = 0 is the rail's foot.
@@ -165,7 +171,7 @@ fn shower_head() -> Model {
         8,
     );
     let hold = |y: f32| rod([0.0, y, 0.0], [0.0, y, 0.03], 0.012);
-    let head = cylinder(0.1, 0.012, 24).at(0.0, 1.31, 0.2);
+    let head = cylinder(0.1, 0.012, 24).translated(0.0, 1.31, 0.2);
     let mixer = rod([-0.09, 0.08, 0.05], [0.09, 0.08, 0.05], 0.022);
     let body =
         PartBuilder::new("body").with_all(&chrome(), [rail, hold(0.08), hold(1.0), head, mixer]);
@@ -173,5 +179,5 @@ fn shower_head() -> Model {
 }
 
 fn sample_shower_head(_style: &Style, key: RandomKey) -> Model {
-    shower_head().resized(SizeSampler::new("shower_head", key).m("height") / 1.33)
+    shower_head().resized(SizeSampler::new("shower_head", key).sample_m("height") / 1.33)
 }

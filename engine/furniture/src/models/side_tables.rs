@@ -18,8 +18,8 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[
 /// A small table beside a sofa or a chair.
 fn side_table(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("side_table", key);
-    let (w, h) = (d.m("width"), d.m("height"));
-    let wood = style.any_wood(&mut d.stream("wood")).clone();
+    let (w, h) = (d.sample_m("width"), d.sample_m("height"));
+    let wood = style.random_wood(&mut d.stream("wood")).clone();
     match d.below("build", 3) {
         0 => three_legged_table(0.5 * w, h, &wood),
         1 => column_table("side_table", "table", w, h, style, &wood),
@@ -41,8 +41,10 @@ fn side_table(style: &Style, key: RandomKey) -> Model {
 /// A round side table on three legs.
 fn three_legged_table(radius_m: f32, height_m: f32, wood: &Finish) -> Model {
     let under = height_m - 0.022;
-    let mut body =
-        PartBuilder::new("body").with(wood, cylinder(radius_m, 0.022, 28).at(0.0, under, 0.0));
+    let mut body = PartBuilder::new("body").with(
+        wood,
+        cylinder(radius_m, 0.022, 28).translated(0.0, under, 0.0),
+    );
     for k in 0..3 {
         let (sin, cos) = dwell_scene::math::sin_cos(std::f32::consts::TAU * k as f32 / 3.0);
         let (r0, r1) = (radius_m * 0.85, radius_m * 0.55);
@@ -57,11 +59,13 @@ fn three_legged_table(radius_m: f32, height_m: f32, wood: &Finish) -> Model {
         );
     }
     let half = radius_m * 0.7;
-    Model::movable("side_table", "table").part(body).top(
-        "top",
-        [-half, height_m, -half],
-        [half, height_m + 0.5, half],
-    )
+    Model::movable("side_table", "table")
+        .part(body)
+        .with_support_surface(
+            "top",
+            [-half, height_m, -half],
+            [half, height_m + 0.5, half],
+        )
 }
 
 /// A narrow table for a hall or behind a sofa.
@@ -70,11 +74,11 @@ fn console_table(style: &Style, key: RandomKey) -> Model {
     Table {
         name: "console_table",
         category: "table",
-        size_m: [d.m("width"), d.m("depth")],
-        height_m: d.m("height"),
+        size_m: [d.sample_m("width"), d.sample_m("depth")],
+        height_m: d.sample_m("height"),
         top_m: 0.026,
         leg_m: 0.04,
-        top: style.any_wood(&mut d.stream("wood")).clone(),
+        top: style.random_wood(&mut d.stream("wood")).clone(),
         legs: style.leg_finish().clone(),
         shelf_m: d.chance("shelf", 0.5).then_some(0.18),
     }

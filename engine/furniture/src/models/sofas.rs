@@ -121,11 +121,13 @@ impl Sofa {
         } else {
             ("sofa", "sofa")
         };
-        Model::movable(name, category).part(body).top(
-            "seat",
-            [-inner + 0.02, 0.45, -z + 0.34],
-            [inner - 0.02, 0.95, z - 0.04],
-        )
+        Model::movable(name, category)
+            .part(body)
+            .with_support_surface(
+                "seat",
+                [-inner + 0.02, 0.45, -z + 0.34],
+                [inner - 0.02, 0.95, z - 0.04],
+            )
     }
 
     /// The arm between its outer face at x = `outer` and the seat at x = `inner`.
@@ -140,8 +142,8 @@ impl Sofa {
             ArmStyle::Rolled => {
                 let radius = 0.5 * self.arm_m;
                 let roll = cylinder(radius, front - back, 18)
-                    .about_x(std::f32::consts::FRAC_PI_2)
-                    .at(0.5 * (left + right), top - radius, back);
+                    .rotated_x(std::f32::consts::FRAC_PI_2)
+                    .translated(0.5 * (left + right), top - radius, back);
                 let panel = [
                     [left + 0.02, 0.28, back],
                     [right - 0.02, top - radius, front],
@@ -177,10 +179,10 @@ impl Sofa {
 /// Builds and proportions that seats of one family share.
 fn seat(style: &Style, d: &SizeSampler, cover: Finish) -> Sofa {
     let arm = match style.leg {
-        LegStyle::Turned => d.of("arm", [ArmStyle::Rolled, ArmStyle::Rolled, ArmStyle::Block]),
+        LegStyle::Turned => d.choose("arm", [ArmStyle::Rolled, ArmStyle::Rolled, ArmStyle::Block]),
         LegStyle::Metal => ArmStyle::Block,
         LegStyle::Tapered | LegStyle::Square => {
-            d.of("arm", [ArmStyle::Block, ArmStyle::Block, ArmStyle::Wood])
+            d.choose("arm", [ArmStyle::Block, ArmStyle::Block, ArmStyle::Wood])
         }
     };
     Sofa {
@@ -192,8 +194,8 @@ fn seat(style: &Style, d: &SizeSampler, cover: Finish) -> Sofa {
         },
         arm_top_m: d.range("arm_top", 0.54, 0.65),
         leg_m: d.range("leg", 0.07, 0.18),
-        depth_m: d.m("depth"),
-        back_m: d.m("height"),
+        depth_m: d.sample_m("depth"),
+        back_m: d.sample_m("height"),
         wood: style.wood.clone(),
         ..Sofa::armchair(cover)
     }
@@ -201,8 +203,12 @@ fn seat(style: &Style, d: &SizeSampler, cover: Finish) -> Sofa {
 
 fn sofa(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("sofa", key);
-    let family = seat(style, &d, style.cover(&mut d.stream("cover")).clone());
-    let width = d.m("width") - 2.0 * family.arm_m;
+    let family = seat(
+        style,
+        &d,
+        style.random_upholstery(&mut d.stream("cover")).clone(),
+    );
+    let width = d.sample_m("width") - 2.0 * family.arm_m;
     let seats = ((width / 0.64).round() as usize).clamp(2, 3);
     Sofa {
         seats,
@@ -214,9 +220,13 @@ fn sofa(style: &Style, key: RandomKey) -> Model {
 
 fn armchair(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("armchair", key);
-    let family = seat(style, &d, style.cover(&mut d.stream("cover")).clone());
+    let family = seat(
+        style,
+        &d,
+        style.random_upholstery(&mut d.stream("cover")).clone(),
+    );
     Sofa {
-        seat_width_m: d.m("width") - 2.0 * family.arm_m,
+        seat_width_m: d.sample_m("width") - 2.0 * family.arm_m,
         ..family
     }
     .build()

@@ -30,7 +30,7 @@ pub struct Stairs {
     /// From floor to floor, m.
     pub rise_m: f32,
     /// True if another flight starts above.
-    pub goes_on: bool,
+    pub continues_up: bool,
     /// True if the first flight is at the right instead.
     pub mirrored: bool,
     /// Finish of the wooden parts.
@@ -96,7 +96,11 @@ impl Stairs {
             };
             let own = second + RAIL_M;
             let next = self.rise_m + (riser * (k + 1) as f32 - STEP_M).max(0.0);
-            let top = if self.goes_on { own.min(next) } else { own };
+            let top = if self.continues_up {
+                own.min(next)
+            } else {
+                own
+            };
             body = body.with(
                 &self.paint,
                 block([-spine, 0.0, z - TREAD_M], [spine, top, z]),

@@ -40,9 +40,14 @@ fn floor_lamp(height_m: f32, cloth: &Finish) -> Model {
         )
         .with(
             &milk_glass(),
-            ball(0.04, 14).at(0.0, low + 0.14, 0.0).visual_only(),
+            ball(0.04, 14)
+                .translated(0.0, low + 0.14, 0.0)
+                .visual_only(),
         )
-        .with(cloth, shade_mesh(0.21, 0.16, 0.28).at(0.0, low, 0.0));
+        .with(
+            cloth,
+            shade_mesh(0.21, 0.16, 0.28).translated(0.0, low, 0.0),
+        );
     Model::movable("floor_lamp", "floor_lamp")
         .switched(true)
         .part(body)
@@ -62,12 +67,20 @@ fn tripod_lamp(height_m: f32, wood: &Finish, cloth: &Finish) -> Model {
         body = body.with(wood, tapered_leg(foot, top, 0.022, 0.032));
     }
     let body = body
-        .with(&black(), cylinder(0.045, 0.03, 16).at(0.0, low, 0.0))
+        .with(
+            &black(),
+            cylinder(0.045, 0.03, 16).translated(0.0, low, 0.0),
+        )
         .with(
             &milk_glass(),
-            ball(0.04, 14).at(0.0, low + 0.15, 0.0).visual_only(),
+            ball(0.04, 14)
+                .translated(0.0, low + 0.15, 0.0)
+                .visual_only(),
         )
-        .with(cloth, shade_mesh(0.23, 0.21, 0.26).at(0.0, low + 0.04, 0.0));
+        .with(
+            cloth,
+            shade_mesh(0.23, 0.21, 0.26).translated(0.0, low + 0.04, 0.0),
+        );
     Model::movable("tripod_lamp", "floor_lamp")
         .switched(true)
         .part(body)
@@ -78,14 +91,14 @@ fn sample_floor_lamp(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("floor_lamp", key);
     let cloth = shade_finish(style, &d);
     if d.chance("tripod", 0.35) {
-        let legs = style.any_wood(&mut d.stream("legs"));
-        return tripod_lamp(d.m("height"), legs, &cloth);
+        let legs = style.random_wood(&mut d.stream("legs"));
+        return tripod_lamp(d.sample_m("height"), legs, &cloth);
     }
     let foot = Finish {
         name: "lamp_foot",
         ..style.metal.clone()
     };
-    floor_lamp(d.m("height"), &cloth).repainted("black_plastic", &foot)
+    floor_lamp(d.sample_m("height"), &cloth).with_finish_replaced("black_plastic", &foot)
 }
 
 /// A lamp for a bedside table or a sideboard; `base` is its foot's finish.
@@ -102,7 +115,7 @@ fn table_lamp(height_m: f32, base: &Finish, cloth: &Finish) -> Model {
         (0.0, 0.5 * height_m),
     ];
     let body = PartBuilder::new("body")
-        .with_filled(base, surface_of_revolution(&foot, 24), 0.25)
+        .with_fill_fraction(base, surface_of_revolution(&foot, 24), 0.25)
         .with(
             &brass(),
             rod(
@@ -114,11 +127,13 @@ fn table_lamp(height_m: f32, base: &Finish, cloth: &Finish) -> Model {
         )
         .with(
             &milk_glass(),
-            ball(0.028, 12).at(0.0, 0.74 * height_m, 0.0).visual_only(),
+            ball(0.028, 12)
+                .translated(0.0, 0.74 * height_m, 0.0)
+                .visual_only(),
         )
         .with(
             cloth,
-            shade_mesh(0.36 * height_m, 0.24 * height_m, height_m - low).at(0.0, low, 0.0),
+            shade_mesh(0.36 * height_m, 0.24 * height_m, height_m - low).translated(0.0, low, 0.0),
         );
     Model::movable("table_lamp", "table_lamp")
         .switched(true)
@@ -128,8 +143,8 @@ fn table_lamp(height_m: f32, base: &Finish, cloth: &Finish) -> Model {
 
 fn sample_table_lamp(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("table_lamp", key);
-    let base = style.glaze(&mut d.stream("base"));
-    table_lamp(d.m("height"), base, &shade_finish(style, &d))
+    let base = style.random_glaze(&mut d.stream("base"));
+    table_lamp(d.sample_m("height"), base, &shade_finish(style, &d))
 }
 
 /// A desk lamp with a bent arm whose head looks down, above its foot.
@@ -147,7 +162,7 @@ fn desk_lamp(lacquer: &Finish) -> Model {
         20,
     );
     let body = PartBuilder::new("body")
-        .with_filled(lacquer, cylinder(0.1, 0.02, 24), 0.4)
+        .with_fill_fraction(lacquer, cylinder(0.1, 0.02, 24), 0.4)
         .with(
             &chrome(),
             tube(
@@ -156,10 +171,14 @@ fn desk_lamp(lacquer: &Finish) -> Model {
                 8,
             ),
         )
-        .with_filled(lacquer, head.about_x(-0.25).at(0.0, 0.31, 0.05), 0.3)
+        .with_fill_fraction(
+            lacquer,
+            head.rotated_x(-0.25).translated(0.0, 0.31, 0.05),
+            0.3,
+        )
         .with(
             &milk_glass(),
-            ball(0.025, 12).at(0.0, 0.34, 0.045).visual_only(),
+            ball(0.025, 12).translated(0.0, 0.34, 0.045).visual_only(),
         );
     let down = LightShape::Spot {
         direction: Vec3::new(0.0, -0.968, 0.25),
@@ -169,7 +188,7 @@ fn desk_lamp(lacquer: &Finish) -> Model {
     Model::movable("desk_lamp", "table_lamp")
         .switched(true)
         .part(body)
-        .light([0.0, 0.33, 0.05], down, 6.0)
+        .with_light_shape([0.0, 0.33, 0.05], down, 6.0)
 }
 
 fn sample_desk_lamp(style: &Style, key: RandomKey) -> Model {
@@ -177,12 +196,12 @@ fn sample_desk_lamp(style: &Style, key: RandomKey) -> Model {
     let accent = Finish::plain(
         "lamp_lacquer",
         "steel",
-        style.cloth(&mut d.stream("tone")).srgb,
+        style.random_cloth(&mut d.stream("tone")).srgb,
     );
     let lacquer = if d.chance("metal", 0.5) {
         style.metal.clone()
     } else {
         accent
     };
-    desk_lamp(&lacquer).resized(d.m("height") / 0.42)
+    desk_lamp(&lacquer).resized(d.sample_m("height") / 0.42)
 }

@@ -19,9 +19,9 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[
 fn stool(height_m: f32, wood: &Finish, legs: &Finish) -> Model {
     let under = height_m - 0.035;
     let mut body =
-        PartBuilder::new("body").with(wood, cylinder(0.17, 0.035, 26).at(0.0, under, 0.0));
+        PartBuilder::new("body").with(wood, cylinder(0.17, 0.035, 26).translated(0.0, under, 0.0));
     for (x, z) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
-        body = body.with_bar(
+        body = body.with_hollow(
             legs,
             tapered_leg(
                 [0.15 * x, 0.0, 0.15 * z],
@@ -33,7 +33,7 @@ fn stool(height_m: f32, wood: &Finish, legs: &Finish) -> Model {
     }
     let bar = height_m * 0.3;
     let out = 0.13;
-    body = body.with_bars(
+    body = body.with_all_hollow(
         legs,
         [
             rod([-out, bar, -out], [out, bar, -out], 0.009),
@@ -42,26 +42,28 @@ fn stool(height_m: f32, wood: &Finish, legs: &Finish) -> Model {
             rod([out, bar, -out], [out, bar, out], 0.009),
         ],
     );
-    Model::movable("stool", "stool").part(body).top(
-        "seat",
-        [-0.12, height_m, -0.12],
-        [0.12, height_m + 0.4, 0.12],
-    )
+    Model::movable("stool", "stool")
+        .part(body)
+        .with_support_surface(
+            "seat",
+            [-0.12, height_m, -0.12],
+            [0.12, height_m + 0.4, 0.12],
+        )
 }
 
 fn sample_stool(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("stool", key);
-    let wood = style.any_wood(&mut d.stream("wood"));
-    stool(d.m("height"), wood, style.leg_finish())
+    let wood = style.random_wood(&mut d.stream("wood"));
+    stool(d.sample_m("height"), wood, style.leg_finish())
 }
 
 /// A high stool for a counter, with a ring or bars for the feet.
 fn bar_stool(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("bar_stool", key);
-    let (w, h) = (d.m("width"), d.m("height"));
+    let (w, h) = (d.sample_m("width"), d.sample_m("height"));
     let (out, inner, under) = (0.5 * w - 0.014, 0.32 * w, h - 0.05);
     let legs = style.leg_finish();
-    let cover = style.cover(&mut d.stream("cover"));
+    let cover = style.random_upholstery(&mut d.stream("cover"));
     let mut body = PartBuilder::new("body");
     for (sx, sz) in CORNERS {
         let leg = tapered_leg(
@@ -70,11 +72,11 @@ fn bar_stool(style: &Style, key: RandomKey) -> Model {
             0.026,
             0.03,
         );
-        body = body.with_bar(legs, leg);
+        body = body.with_hollow(legs, leg);
     }
     let y = 0.32 * h;
     let r = out + (inner - out) * y / under;
-    body = body.with_bars(
+    body = body.with_all_hollow(
         legs,
         [
             rod([-r, y, -r], [r, y, -r], 0.009),
@@ -84,25 +86,23 @@ fn bar_stool(style: &Style, key: RandomKey) -> Model {
         ],
     );
     body = if d.chance("round", 0.5) {
-        body.with_filled(
+        body.with_fill_fraction(
             cover,
-            cylinder(0.46 * w, 0.05, 24).at(0.0, under, 0.0),
-            0.5 * cover.padded(),
+            cylinder(0.46 * w, 0.05, 24).translated(0.0, under, 0.0),
+            0.5 * cover.padded_fill(),
         )
     } else {
         let s = 0.44 * w;
-        body.with_filled(
+        body.with_fill_fraction(
             cover,
             rounded_block([-s, under, -s], [s, h, s], 0.018, 2),
-            0.5 * cover.padded(),
+            0.5 * cover.padded_fill(),
         )
     };
     let half = 0.3 * w;
-    Model::movable("bar_stool", "stool").part(body).top(
-        "seat",
-        [-half, h, -half],
-        [half, h + 0.4, half],
-    )
+    Model::movable("bar_stool", "stool")
+        .part(body)
+        .with_support_surface("seat", [-half, h, -half], [half, h + 0.4, half])
 }
 
 /// A round footstool of cloth.
@@ -120,15 +120,13 @@ fn pouf(radius_m: f32, height_m: f32, cloth: &Finish) -> Model {
     let body = PartBuilder::new("body")
         .with_padding(cloth, crate::shapes::surface_of_revolution(&shape, 28));
     let half = 0.5 * r;
-    Model::movable("pouf", "ottoman").part(body).top(
-        "top",
-        [-half, h, -half],
-        [half, h + 0.4, half],
-    )
+    Model::movable("pouf", "ottoman")
+        .part(body)
+        .with_support_surface("top", [-half, h, -half], [half, h + 0.4, half])
 }
 
 fn ottoman(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("ottoman", key);
-    let cover = style.cover(&mut d.stream("cover"));
-    pouf(0.5 * d.m("width"), d.m("height"), cover)
+    let cover = style.random_upholstery(&mut d.stream("cover"));
+    pouf(0.5 * d.sample_m("width"), d.sample_m("height"), cover)
 }

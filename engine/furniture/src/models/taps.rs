@@ -4,7 +4,7 @@ use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::{Finish, chrome};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
-use crate::shapes::{cylinder, rod, tube, turn};
+use crate::shapes::{axis_rotation, cylinder, rod, tube};
 use crate::style::Style;
 use dwell_scene::Pose;
 use dwell_scene::random::RandomKey;
@@ -34,12 +34,12 @@ fn mixer_tap(height_m: f32, reach_m: f32) -> Model {
     ];
     let level = 0.36 * h;
     let hub = cylinder(0.012, 0.036, 12)
-        .about_z(-FRAC_PI_2)
-        .at(0.0, level, 0.0);
+        .rotated_z(-FRAC_PI_2)
+        .translated(0.0, level, 0.0);
     let body = PartBuilder::new("body")
-        .with_filled(&chrome(), cylinder(0.025, 0.03, 16), 0.5)
-        .with_filled(&chrome(), tube(&spout, 0.012, 10), 0.4)
-        .with_filled(&chrome(), hub, 0.5);
+        .with_fill_fraction(&chrome(), cylinder(0.025, 0.03, 16), 0.5)
+        .with_fill_fraction(&chrome(), tube(&spout, 0.012, 10), 0.4)
+        .with_fill_fraction(&chrome(), hub, 0.5);
     let x = 0.042;
     let lever = PartBuilder::new("lever").with(
         &chrome(),
@@ -55,9 +55,9 @@ fn mixer_tap(height_m: f32, reach_m: f32) -> Model {
 
 fn sample_mixer_tap(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("mixer_tap", key);
-    let tap = mixer_tap(d.m("height"), d.m("reach"));
+    let tap = mixer_tap(d.sample_m("height"), d.sample_m("reach"));
     if d.chance("metal", 0.3) {
-        tap.repainted("chrome", &tap_metal(style))
+        tap.with_finish_replaced("chrome", &tap_metal(style))
     } else {
         tap
     }
@@ -73,7 +73,7 @@ fn tap_metal(style: &Style) -> Finish {
 }
 
 /// A mixer tap of `sizes_m` (height, reach) on the point `at` of a basin, its spout turned to the left by `turn_rad`.
-pub(super) fn tapped(
+pub(super) fn with_mixer_tap(
     basin: Model,
     style: &Style,
     d: &SizeSampler,
@@ -84,8 +84,8 @@ pub(super) fn tapped(
     let [height, reach] = sizes_m;
     let mut tap = mixer_tap(height, reach);
     if d.chance("metal_tap", 0.3) {
-        tap = tap.repainted("chrome", &tap_metal(style));
+        tap = tap.with_finish_replaced("chrome", &tap_metal(style));
     }
-    let pose = Pose::new(at.into(), turn(Vec3::Y, turn_rad));
-    basin.mounting(tap, "tap", &pose)
+    let pose = Pose::new(at.into(), axis_rotation(Vec3::Y, turn_rad));
+    basin.with_mounted(tap, "tap", &pose)
 }

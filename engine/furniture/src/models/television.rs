@@ -38,14 +38,14 @@ fn television(width_m: f32) -> Model {
             block([-0.3 * width_m, 0.0, -0.11], [0.3 * width_m, 0.012, 0.11]),
         )
         .with(&black(), block([-0.05, 0.012, -0.03], [0.05, low, -0.005]))
-        .with_filled(
+        .with_fill_fraction(
             &case,
             rounded_block([-x, low, -0.035], [x, high, 0.02], 0.01, 1),
             0.45,
         );
     let screen = PartBuilder::new("screen").with(
-        &PROGRAMME.clear(1.0).glowing([0.1, 0.12, 0.17]),
-        panel(width_m - 0.03, height - 0.045, 0.003).at(0.0, low + 0.03, 0.02),
+        &PROGRAMME.transparent(1.0).emissive([0.1, 0.12, 0.17]),
+        panel(width_m - 0.03, height - 0.045, 0.003).translated(0.0, low + 0.03, 0.02),
     );
     Model::fixed("television", "television")
         .switched(true)
@@ -55,7 +55,7 @@ fn television(width_m: f32) -> Model {
 }
 
 fn sample_television(_style: &Style, key: RandomKey) -> Model {
-    television(SizeSampler::new("television", key).m("width"))
+    television(SizeSampler::new("television", key).sample_m("width"))
 }
 
 /// A remote control.
@@ -81,5 +81,5 @@ fn remote_control() -> Model {
 }
 
 fn sample_remote_control(_style: &Style, key: RandomKey) -> Model {
-    remote_control().resized(SizeSampler::new("remote_control", key).m("depth") / 0.17)
+    remote_control().resized(SizeSampler::new("remote_control", key).sample_m("depth") / 0.17)
 }

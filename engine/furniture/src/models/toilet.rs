@@ -50,9 +50,9 @@ fn toilet() -> Model {
     let plate =
         |low: f32, high: f32| loft(&[outline(0.187, back, z, low), outline(0.187, back, z, high)]);
     let body = PartBuilder::new("body")
-        .with_filled(&white, pedestal, 0.25)
-        .with_filled(&white, block([-0.11, 0.0, -z], [0.11, 0.39, back]), 0.25)
-        .with_filled(
+        .with_fill_fraction(&white, pedestal, 0.25)
+        .with_fill_fraction(&white, block([-0.11, 0.0, -z], [0.11, 0.39, back]), 0.25)
+        .with_fill_fraction(
             &white,
             rounded_block([-0.19, 0.39, -z], [0.19, 0.76, -z + 0.16], 0.025, 2),
             0.2,
@@ -63,12 +63,12 @@ fn toilet() -> Model {
         )
         .with(
             &chrome(),
-            cylinder(0.022, 0.01, 16).at(0.0, 0.79, -z + 0.08),
+            cylinder(0.022, 0.01, 16).translated(0.0, 0.79, -z + 0.08),
         )
         .with(&seat, plate(0.4, 0.415));
     // The lid ends a little behind its hinge, so that it turns clear of the seat.
     let cover = [0.417, 0.435].map(|y| outline(0.187, back + 0.024, z, y));
-    let lid = PartBuilder::new("lid").with_filled(&seat, loft(&cover), 0.5);
+    let lid = PartBuilder::new("lid").with_fill_fraction(&seat, loft(&cover), 0.5);
     Model::articulated("toilet", "toilet")
         .switched(false)
         .part(body)
@@ -85,12 +85,12 @@ fn sample_toilet(style: &Style, key: RandomKey) -> Model {
         substance: "plastic",
         ..style.wood.clone()
     };
-    let size = d.m("height") / 0.79;
+    let size = d.sample_m("height") / 0.79;
     let closet = toilet()
         .resized(size)
-        .repainted("white_porcelain", &sanitary_finish(&d));
+        .with_finish_replaced("white_porcelain", &sanitary_finish(&d));
     if d.chance("wooden", 0.2) && seat.pattern.is_none() {
-        closet.repainted("white_plastic", &seat)
+        closet.with_finish_replaced("white_plastic", &seat)
     } else {
         closet
     }

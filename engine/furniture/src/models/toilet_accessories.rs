@@ -22,36 +22,38 @@ fn paper_holder() -> Model {
     let body = PartBuilder::new("body")
         .with(&chrome(), block([-0.085, -0.02, 0.0], [-0.07, 0.02, 0.07]))
         .with(&chrome(), rod([-0.08, 0.0, 0.06], [0.07, 0.0, 0.06], 0.007))
-        .with_filled(
+        .with_fill_fraction(
             &roll,
             cylinder(0.052, 0.1, 20)
-                .about_z(FRAC_PI_2)
-                .at(0.06, 0.0, 0.06),
+                .rotated_z(FRAC_PI_2)
+                .translated(0.06, 0.0, 0.06),
             0.3,
         );
     Model::fixed("paper_holder", "toilet_paper").part(body)
 }
 
 fn sample_paper_holder(_style: &Style, key: RandomKey) -> Model {
-    paper_holder().resized(SizeSampler::new("paper_holder", key).m("width") / 0.155)
+    paper_holder().resized(SizeSampler::new("paper_holder", key).sample_m("width") / 0.155)
 }
 
 /// A spare roll of toilet paper, standing.
 fn toilet_roll(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("toilet_roll", key);
-    let (w, h) = (d.m("width"), d.m("height"));
+    let (w, h) = (d.sample_m("width"), d.sample_m("height"));
     let tissue = Finish::plain(
         "tissue",
         "paper",
-        d.of("tone", [[244, 243, 238], [232, 222, 206], [236, 214, 214]]),
+        d.choose("tone", [[244, 243, 238], [232, 222, 206], [236, 214, 214]]),
     );
     let core = Finish::plain("roll_core", "paper", [176, 146, 108]);
     let roll = cylinder(0.5 * w, h, 24);
     let body = PartBuilder::new("body")
-        .with_filled(&tissue, roll, 0.22)
+        .with_fill_fraction(&tissue, roll, 0.22)
         .with(
             &core,
-            cylinder(0.021, 0.0006, 16).at(0.0, h, 0.0).visual_only(),
+            cylinder(0.021, 0.0006, 16)
+                .translated(0.0, h, 0.0)
+                .visual_only(),
         );
     Model::pickable("toilet_roll", "toilet_paper").part(body)
 }
@@ -59,7 +61,7 @@ fn toilet_roll(_style: &Style, key: RandomKey) -> Model {
 /// A toilet brush in its holder.
 fn toilet_brush(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("toilet_brush", key);
-    let (w, h) = (d.m("width"), d.m("height"));
+    let (w, h) = (d.sample_m("width"), d.sample_m("height"));
     let holder = if d.chance("metal", 0.5) {
         style.metal.clone()
     } else {
@@ -68,30 +70,30 @@ fn toilet_brush(style: &Style, key: RandomKey) -> Model {
     let r = 0.5 * w;
     let cup = vessel(&[(0.0, 0.0), (0.9 * r, 0.0), (r, 0.4 * h)], 0.004, 18);
     let body = PartBuilder::new("body")
-        .with_filled(&holder, cup, 0.3)
+        .with_fill_fraction(&holder, cup, 0.3)
         .with(
             &plastic("bristles", [226, 226, 222]),
             cylinder(0.62 * r, 0.2 * h, 16)
-                .at(0.0, 0.02, 0.0)
+                .translated(0.0, 0.02, 0.0)
                 .visual_only(),
         )
         .with(&holder, rod([0.0, 0.02, 0.0], [0.0, h - 0.02, 0.0], 0.007))
-        .with(&black(), ball(0.012, 10).at(0.0, h - 0.012, 0.0));
+        .with(&black(), ball(0.012, 10).translated(0.0, h - 0.012, 0.0));
     Model::movable("toilet_brush", "toiletries").part(body)
 }
 
 /// A plunger.
 fn plunger(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("plunger", key);
-    let (w, h) = (d.m("width"), d.m("height"));
+    let (w, h) = (d.sample_m("width"), d.sample_m("height"));
     let r = 0.5 * w;
     let rubber = Finish::plain(
         "plunger_rubber",
         "rubber",
-        d.of("tone", [[150, 52, 40], [34, 34, 36], [60, 90, 140]]),
+        d.choose("tone", [[150, 52, 40], [34, 34, 36], [60, 90, 140]]),
     );
     let body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             &rubber,
             surface_of_revolution(
                 &[

@@ -1,6 +1,6 @@
 //! Soap, shampoo, toothbrushes and hair dryers.
 
-use super::casings::CASES;
+use super::casings::CASING_COLORS;
 use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::{Finish, black, chrome, glass, plastic};
 use crate::model::{Model, PartBuilder};
@@ -28,7 +28,7 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[
 /// A soap dispenser.
 fn soap_dispenser(color: &Finish) -> Model {
     let body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             color,
             surface_of_revolution(
                 &[
@@ -43,7 +43,10 @@ fn soap_dispenser(color: &Finish) -> Model {
             ),
             0.7,
         )
-        .with(&chrome(), cylinder(0.006, 0.035, 10).at(0.0, 0.125, 0.0))
+        .with(
+            &chrome(),
+            cylinder(0.006, 0.035, 10).translated(0.0, 0.125, 0.0),
+        )
         .with(
             &chrome(),
             rounded_block([-0.008, 0.16, -0.01], [0.008, 0.172, 0.045], 0.004, 1),
@@ -53,18 +56,22 @@ fn soap_dispenser(color: &Finish) -> Model {
 
 fn sample_soap_dispenser(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("soap_dispenser", key);
-    let tone = style.glaze(&mut d.stream("tone")).srgb;
-    soap_dispenser(&plastic("dispenser_plastic", tone)).resized(d.m("height") / 0.172)
+    let tone = style.random_glaze(&mut d.stream("tone")).srgb;
+    soap_dispenser(&plastic("dispenser_plastic", tone)).resized(d.sample_m("height") / 0.172)
 }
 
 /// A dish with a piece of soap.
 fn soap_dish(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("soap_dish", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let soap = Finish::plain(
         "soap",
         "wax",
-        d.of(
+        d.choose(
             "soap",
             [
                 [238, 230, 206],
@@ -74,7 +81,7 @@ fn soap_dish(style: &Style, key: RandomKey) -> Model {
             ],
         ),
     );
-    let glaze = style.glaze(&mut d.stream("glaze"));
+    let glaze = style.random_glaze(&mut d.stream("glaze"));
     let dish = loft(&[
         oval(0.38 * w, 0.36 * depth, 0.0, 0.0, 20),
         oval(0.5 * w, 0.5 * depth, 0.5 * h, 0.0, 20),
@@ -86,7 +93,7 @@ fn soap_dish(style: &Style, key: RandomKey) -> Model {
         2,
     );
     let body = PartBuilder::new("body")
-        .with_filled(glaze, dish, 0.6)
+        .with_fill_fraction(glaze, dish, 0.6)
         .with(&soap, piece);
     Model::pickable("soap_dish", "soap_dish").part(body)
 }
@@ -98,8 +105,8 @@ fn toothbrushes() -> Model {
             plastic(name, srgb),
             rod([0.0, 0.01, 0.0], [0.0, 0.18, 0.0], 0.004)
                 .visual_only()
-                .about_z(tilt)
-                .at(x, 0.0, 0.0),
+                .rotated_z(tilt)
+                .translated(x, 0.0, 0.0),
         )
     };
     let (green, a) = brush("green_plastic", [88, 168, 112], 0.012, 0.13);
@@ -124,15 +131,19 @@ fn sample_toothbrushes(_style: &Style, key: RandomKey) -> Model {
     let first = d.below("first", tones.len());
     let second = (first + 1 + d.below("second", tones.len() - 1)) % tones.len();
     toothbrushes()
-        .resized(d.m("height") / 0.18)
-        .repainted("green_plastic", &plastic("first_brush", tones[first]))
-        .repainted("blue_plastic", &plastic("second_brush", tones[second]))
+        .resized(d.sample_m("height") / 0.18)
+        .with_finish_replaced("green_plastic", &plastic("first_brush", tones[first]))
+        .with_finish_replaced("blue_plastic", &plastic("second_brush", tones[second]))
 }
 
 /// Shampoo and shower gel: two or three bottles of plastic together.
 fn shampoo(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("shampoo", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let tones = [
         [60, 140, 170],
         [226, 110, 130],
@@ -152,10 +163,10 @@ fn shampoo(_style: &Style, key: RandomKey) -> Model {
             oval(0.1 * w, 0.25 * depth, 0.82 * h * tall, 0.0, 16),
         ]);
         body = body
-            .with_filled(&tone, shell.at(at * w, 0.0, 0.0), 0.75)
+            .with_fill_fraction(&tone, shell.translated(at * w, 0.0, 0.0), 0.75)
             .with(
                 &plastic("bottle_cap", [236, 236, 232]),
-                cylinder(0.09 * w, 0.18 * h * tall, 12).at(at * w, 0.82 * h * tall, 0.0),
+                cylinder(0.09 * w, 0.18 * h * tall, 12).translated(at * w, 0.82 * h * tall, 0.0),
             );
     }
     Model::movable("shampoo", "toiletries").part(body)
@@ -164,11 +175,11 @@ fn shampoo(_style: &Style, key: RandomKey) -> Model {
 /// A hair dryer lying on its side, the nozzle towards +X.
 fn hair_dryer(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("hair_dryer", key);
-    let (w, depth) = (d.m("width"), d.m("depth"));
-    let shell = plastic("dryer_shell", d.of("case", CASES));
+    let (w, depth) = (d.sample_m("width"), d.sample_m("depth"));
+    let shell = plastic("dryer_shell", d.choose("case", CASING_COLORS));
     let r = 0.038;
-    let barrel = cylinder(r, 0.75 * w, 20).about_z(-FRAC_PI_2);
-    let nozzle = cone(0.8 * r, 0.62 * r, 0.25 * w, 16).about_z(-FRAC_PI_2);
+    let barrel = cylinder(r, 0.75 * w, 20).rotated_z(-FRAC_PI_2);
+    let nozzle = cone(0.8 * r, 0.62 * r, 0.25 * w, 16).rotated_z(-FRAC_PI_2);
     let handle = rounded_block(
         [-0.018, -0.016, 0.0],
         [0.018, 0.016, depth - 1.4 * r],
@@ -176,14 +187,26 @@ fn hair_dryer(_style: &Style, key: RandomKey) -> Model {
         2,
     );
     let body = PartBuilder::new("body")
-        .with_filled(&shell, barrel.at(-0.5 * w, r, -0.5 * depth + r), 0.3)
-        .with_filled(&black(), nozzle.at(0.25 * w, r, -0.5 * depth + r), 0.3)
-        .with_filled(&shell, handle.at(-0.2 * w, r, -0.5 * depth + 1.4 * r), 0.5)
+        .with_fill_fraction(
+            &shell,
+            barrel.translated(-0.5 * w, r, -0.5 * depth + r),
+            0.3,
+        )
+        .with_fill_fraction(
+            &black(),
+            nozzle.translated(0.25 * w, r, -0.5 * depth + r),
+            0.3,
+        )
+        .with_fill_fraction(
+            &shell,
+            handle.translated(-0.2 * w, r, -0.5 * depth + 1.4 * r),
+            0.5,
+        )
         .with(
             &black(),
             cylinder(0.03, 0.004, 16)
-                .about_z(FRAC_PI_2)
-                .at(-0.5 * w, r, -0.5 * depth + r)
+                .rotated_z(FRAC_PI_2)
+                .translated(-0.5 * w, r, -0.5 * depth + r)
                 .visual_only(),
         )
         // The handle is lower at its end, so that the dryer lies on barrel and grip.

@@ -18,13 +18,13 @@ fn towel_rail(width_m: f32, towel: &Finish) -> Model {
     let x = 0.5 * width_m;
     let hold = |at: f32| rod([at, 0.0, 0.0], [at, 0.0, 0.08], 0.009);
     let drape = rounded_block([-x + 0.08, -0.46, 0.088], [x - 0.1, 0.012, 0.102], 0.006, 1)
-        .and(rounded_block(
+        .merged(rounded_block(
             [-x + 0.08, -0.4, 0.058],
             [x - 0.1, 0.012, 0.072],
             0.006,
             1,
         ))
-        .and(rounded_block(
+        .merged(rounded_block(
             [-x + 0.08, 0.006, 0.058],
             [x - 0.1, 0.02, 0.102],
             0.006,
@@ -45,18 +45,21 @@ fn towel_rail(width_m: f32, towel: &Finish) -> Model {
 
 fn sample_towel_rail(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("towel_rail", key);
-    towel_rail(d.m("width") - 0.018, style.terry(&mut d.stream("terry")))
+    towel_rail(
+        d.sample_m("width") - 0.018,
+        style.random_terry(&mut d.stream("terry")),
+    )
 }
 
 /// A folded towel.
 fn folded_towel(cloth: &Finish) -> Model {
     let body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             cloth,
             rounded_block([-0.17, 0.0, -0.12], [0.17, 0.035, 0.12], 0.016, 2),
             0.3,
         )
-        .with_filled(
+        .with_fill_fraction(
             cloth,
             rounded_block([-0.165, 0.035, -0.115], [0.165, 0.07, 0.12], 0.016, 2),
             0.3,
@@ -66,5 +69,5 @@ fn folded_towel(cloth: &Finish) -> Model {
 
 fn sample_folded_towel(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("folded_towel", key);
-    folded_towel(style.terry(&mut d.stream("terry"))).resized(d.m("width") / 0.34)
+    folded_towel(style.random_terry(&mut d.stream("terry"))).resized(d.sample_m("width") / 0.34)
 }

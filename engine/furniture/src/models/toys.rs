@@ -21,7 +21,11 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[
 fn teddy_bear(plush: &Finish) -> Model {
     let cream = upholstery("cream_plush", [226, 206, 170]);
     let limb = |from: [f32; 3], to: [f32; 3], r: f32| {
-        rod(from, to, r).and(ball(r * 1.12, 12).at(to[0], to[1], to[2]).visual_only())
+        rod(from, to, r).merged(
+            ball(r * 1.12, 12)
+                .translated(to[0], to[1], to[2])
+                .visual_only(),
+        )
     };
     let body = PartBuilder::new("body")
         .with(
@@ -38,10 +42,19 @@ fn teddy_bear(plush: &Finish) -> Model {
                 16,
             ),
         )
-        .with(plush, ball(0.062, 16).at(0.0, 0.2, 0.0))
-        .with(plush, ball(0.024, 10).at(-0.045, 0.25, 0.0).visual_only())
-        .with(plush, ball(0.024, 10).at(0.045, 0.25, 0.0).visual_only())
-        .with(&cream, ball(0.03, 12).at(0.0, 0.185, 0.05).visual_only())
+        .with(plush, ball(0.062, 16).translated(0.0, 0.2, 0.0))
+        .with(
+            plush,
+            ball(0.024, 10).translated(-0.045, 0.25, 0.0).visual_only(),
+        )
+        .with(
+            plush,
+            ball(0.024, 10).translated(0.045, 0.25, 0.0).visual_only(),
+        )
+        .with(
+            &cream,
+            ball(0.03, 12).translated(0.0, 0.185, 0.05).visual_only(),
+        )
         .with_all(
             plush,
             [-1.0_f32, 1.0].map(|s| limb([s * 0.05, 0.13, 0.02], [s * 0.1, 0.075, 0.07], 0.024)),
@@ -52,9 +65,12 @@ fn teddy_bear(plush: &Finish) -> Model {
         )
         .with_all(
             &black(),
-            [-0.022, 0.022].map(|x| ball(0.006, 8).at(x, 0.215, 0.058).visual_only()),
+            [-0.022, 0.022].map(|x| ball(0.006, 8).translated(x, 0.215, 0.058).visual_only()),
         )
-        .with(&black(), ball(0.008, 8).at(0.0, 0.192, 0.078).visual_only());
+        .with(
+            &black(),
+            ball(0.008, 8).translated(0.0, 0.192, 0.078).visual_only(),
+        );
     Model::pickable("teddy_bear", "toy").part(body)
 }
 
@@ -62,7 +78,7 @@ fn sample_teddy_bear(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("teddy_bear", key);
     let plush = upholstery(
         "plush",
-        d.of(
+        d.choose(
             "plush",
             [
                 [156, 108, 66],
@@ -72,7 +88,7 @@ fn sample_teddy_bear(_style: &Style, key: RandomKey) -> Model {
             ],
         ),
     );
-    teddy_bear(&plush).resized(d.m("height") / 0.274)
+    teddy_bear(&plush).resized(d.sample_m("height") / 0.274)
 }
 
 /// A wooden engine on wheels.
@@ -81,20 +97,23 @@ fn toy_train() -> Model {
     let blue = Finish::plain("blue_wood", "wood", [54, 96, 168]);
     let wheel = |x: f32, z: f32| {
         cylinder(0.022, 0.012, 14)
-            .about_x(FRAC_PI_2)
-            .at(x, 0.022, z)
+            .rotated_x(FRAC_PI_2)
+            .translated(x, 0.022, z)
     };
     let body = PartBuilder::new("body")
         .with(&red, block([-0.12, 0.024, -0.04], [0.12, 0.05, 0.04]))
         .with(
             &blue,
             cylinder(0.034, 0.13, 18)
-                .about_z(FRAC_PI_2)
-                .at(0.11, 0.084, 0.0),
+                .rotated_z(FRAC_PI_2)
+                .translated(0.11, 0.084, 0.0),
         )
         .with(&red, block([-0.11, 0.05, -0.04], [-0.02, 0.14, 0.04]))
         .with(&blue, block([-0.12, 0.14, -0.046], [-0.01, 0.15, 0.046]))
-        .with(&black(), cone(0.013, 0.018, 0.04, 12).at(0.085, 0.115, 0.0))
+        .with(
+            &black(),
+            cone(0.013, 0.018, 0.04, 12).translated(0.085, 0.115, 0.0),
+        )
         .with_all(
             &pine(),
             [
@@ -119,9 +138,9 @@ fn sample_toy_train(_style: &Style, key: RandomKey) -> Model {
     let first = d.below("first", tones.len());
     let second = (first + 1 + d.below("second", tones.len() - 1)) % tones.len();
     toy_train()
-        .resized(d.m("width") / 0.24)
-        .repainted("red_wood", &Finish::plain("toy_body", "wood", tones[first]))
-        .repainted(
+        .resized(d.sample_m("width") / 0.24)
+        .with_finish_replaced("red_wood", &Finish::plain("toy_body", "wood", tones[first]))
+        .with_finish_replaced(
             "blue_wood",
             &Finish::plain("toy_boiler", "wood", tones[second]),
         )
@@ -139,18 +158,18 @@ fn toy_block(edge_m: f32, name: &'static str, srgb: Srgb) -> Model {
 
 fn sample_toy_block(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("toy_block", key);
-    let tone = d.of(
+    let tone = d.choose(
         "tone",
         [[196, 52, 44], [54, 96, 168], [236, 190, 60], [76, 150, 90]],
     );
-    toy_block(d.m("width"), "block_lacquer", tone)
+    toy_block(d.sample_m("width"), "block_lacquer", tone)
 }
 
 /// A ball to play with.
 fn toy_ball(radius_m: f32, rubber: &Finish) -> Model {
-    Model::pickable("ball", "ball").part(PartBuilder::new("body").with_filled(
+    Model::pickable("ball", "ball").part(PartBuilder::new("body").with_fill_fraction(
         rubber,
-        ball(radius_m, 24).at(0.0, radius_m, 0.0),
+        ball(radius_m, 24).translated(0.0, radius_m, 0.0),
         0.06,
     ))
 }
@@ -160,7 +179,7 @@ fn sample_toy_ball(style: &Style, key: RandomKey) -> Model {
     let rubber = Finish::plain(
         "toy_rubber",
         "rubber",
-        style.cloth(&mut d.stream("tone")).srgb,
+        style.random_cloth(&mut d.stream("tone")).srgb,
     );
-    toy_ball(0.5 * d.m("width"), &rubber)
+    toy_ball(0.5 * d.sample_m("width"), &rubber)
 }

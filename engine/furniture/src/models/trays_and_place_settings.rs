@@ -16,13 +16,17 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[
 /// A tray with two grips.
 fn tray(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("tray", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth);
     let stuff = match d.below("build", 3) {
         0 => style.wood.clone(),
         1 => plastic(
             "tray_plastic",
-            d.of(
+            d.choose(
                 "tone",
                 [
                     [60, 62, 66],
@@ -43,10 +47,10 @@ fn tray(style: &Style, key: RandomKey) -> Model {
             [s * (x - 0.014), h + 0.014, 0.06],
             0.006,
         )
-        .and([-0.055_f32, 0.055].into_iter().fold(
+        .merged([-0.055_f32, 0.055].into_iter().fold(
             crate::shapes::SolidMesh::default(),
             |all, b| {
-                all.and(
+                all.merged(
                     rod(
                         [s * (x - 0.014), h - 0.01, b],
                         [s * (x - 0.014), h + 0.014, b],
@@ -60,21 +64,23 @@ fn tray(style: &Style, key: RandomKey) -> Model {
     let body = PartBuilder::new("body")
         .with(&stuff, trough([-x, 0.0, -z], [x, h, z], 0.008))
         .with_all(&style.metal, [grip(-1.0), grip(1.0)]);
-    Model::pickable("tray", "food_tray").part(body).top(
-        "inside",
-        [-x + 0.03, 0.008, -z + 0.012],
-        [x - 0.03, 0.25, z - 0.012],
-    )
+    Model::pickable("tray", "food_tray")
+        .part(body)
+        .with_support_surface(
+            "inside",
+            [-x + 0.03, 0.008, -z + 0.012],
+            [x - 0.03, 0.25, z - 0.012],
+        )
 }
 
 /// A place laid for one: mat, plate, knife, fork, folded napkin.
 fn place_setting(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("place_setting", key);
-    let (w, depth) = (d.m("width"), d.m("depth"));
+    let (w, depth) = (d.sample_m("width"), d.sample_m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
-    let mat = style.cloth(&mut d.stream("mat"));
+    let mat = style.random_cloth(&mut d.stream("mat"));
     let napkin = &style.cloths[d.below("napkin", style.cloths.len())];
-    let glaze = style.glaze(&mut d.stream("glaze"));
+    let glaze = style.random_glaze(&mut d.stream("glaze"));
     let r = 0.3 * w;
     let dish = surface_of_revolution(
         &[
@@ -89,7 +95,7 @@ fn place_setting(style: &Style, key: RandomKey) -> Model {
     );
     let tool = |a: f32, wide: f32| {
         block([a - 0.006, 0.003, -0.02], [a + 0.006, 0.0065, 0.1])
-            .and(block([a - wide, 0.003, -0.1], [a + wide, 0.006, -0.02]))
+            .merged(block([a - wide, 0.003, -0.1], [a + wide, 0.006, -0.02]))
     };
     let body = PartBuilder::new("body")
         .with(mat, block([-x, 0.0, -z], [x, 0.003, z]))

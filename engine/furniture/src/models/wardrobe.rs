@@ -51,9 +51,9 @@ impl Wardrobe {
         let (shelf_low, shelf_high) = carcass.space(0.84, 1.0);
         let mut model = Model::articulated("wardrobe", "wardrobe_cabinet")
             .part(body)
-            .inside("inside", low, [high[0], rail - 0.03, high[2]])
-            .inside("hat_shelf", shelf_low, shelf_high)
-            .top("top", [-x, self.height_m, -z], [x, self.height_m + 0.4, z]);
+            .with_container_space("inside", low, [high[0], rail - 0.03, high[2]])
+            .with_container_space("hat_shelf", shelf_low, shelf_high)
+            .with_support_surface("top", [-x, self.height_m, -z], [x, self.height_m + 0.4, z]);
         let front = self.front.clone();
         let count = self.doors.min(NAMES.len());
         let step = self.width_m / count as f32;
@@ -83,14 +83,14 @@ const NAMES: [&str; 4] = ["door_1", "door_2", "door_3", "door_4"];
 
 fn wardrobe(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("wardrobe", key);
-    let width = d.m("width");
+    let width = d.sample_m("width");
     Wardrobe {
         width_m: width,
-        height_m: d.m("height"),
-        depth_m: d.m("depth"),
+        height_m: d.sample_m("height"),
+        depth_m: d.sample_m("depth"),
         doors: ((width / 0.48).round() as usize).clamp(2, 4),
-        body: style.any_wood(&mut d.stream("wood")).clone(),
-        front: style.doors(),
+        body: style.random_wood(&mut d.stream("wood")).clone(),
+        front: style.front_style(),
     }
     .build()
 }

@@ -1,7 +1,7 @@
 //! Washbasins on a cabinet and on the wall.
 
 use super::cabinet_parts::{BOARD_M, Carcass, GAP_M, door};
-use super::taps::tapped;
+use super::taps::with_mixer_tap;
 use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::{Finish, chrome, sanitary};
 use crate::model::{Model, PartBuilder};
@@ -25,7 +25,7 @@ pub(super) fn sanitary_finish(d: &SizeSampler) -> Finish {
     } else {
         Finish {
             name: "pale_porcelain",
-            srgb: d.of("tone", tones),
+            srgb: d.choose("tone", tones),
             ..sanitary()
         }
     }
@@ -53,15 +53,17 @@ fn washbasin(width_m: f32, look: &FrontStyle) -> Model {
     ];
     let body = PartBuilder::new("body")
         .with_all(&look.board, carcass.boards(&[], &[]))
-        .with_filled(
+        .with_fill_fraction(
             &white,
-            basin.into_iter().fold(SolidMesh::default(), SolidMesh::and),
+            basin
+                .into_iter()
+                .fold(SolidMesh::default(), SolidMesh::merged),
             0.5,
         )
         .with(
             &chrome(),
             cylinder(0.022, 0.004, 16)
-                .at(0.0, low + t, 0.02)
+                .translated(0.0, low + t, 0.02)
                 .visual_only(),
         )
         .with(
@@ -73,12 +75,12 @@ fn washbasin(width_m: f32, look: &FrontStyle) -> Model {
     let (low_in, high_in) = carcass.space(0.0, 1.0);
     Model::articulated("washbasin", "sink")
         .part(body)
-        .inside("basin", [-bx, low + t, back], [bx, rim, front_z])
-        .inside("cabinet", low_in, high_in)
-        .top("left_rim", [-x, rim, -z], [-bx, rim + 0.3, z])
-        .top("right_rim", [bx, rim, -z], [x, rim + 0.3, z])
-        .top("back_left", [-bx, rim, -z], [-0.06, rim + 0.3, back])
-        .top("back_right", [0.06, rim, -z], [bx, rim + 0.3, back])
+        .with_container_space("basin", [-bx, low + t, back], [bx, rim, front_z])
+        .with_container_space("cabinet", low_in, high_in)
+        .with_support_surface("left_rim", [-x, rim, -z], [-bx, rim + 0.3, z])
+        .with_support_surface("right_rim", [bx, rim, -z], [x, rim + 0.3, z])
+        .with_support_surface("back_left", [-bx, rim, -z], [-0.06, rim + 0.3, back])
+        .with_support_surface("back_right", [0.06, rim, -z], [bx, rim + 0.3, back])
         .part(door(
             "left_door",
             [a, carcass.min[1]],
@@ -100,10 +102,10 @@ fn washbasin(width_m: f32, look: &FrontStyle) -> Model {
 }
 
 fn vanity(style: &Style, d: &SizeSampler) -> Model {
-    let basin = washbasin(d.m("width"), &style.doors());
-    let basin = basin.repainted("white_porcelain", &sanitary_finish(d));
+    let basin = washbasin(d.sample_m("width"), &style.front_style());
+    let basin = basin.with_finish_replaced("white_porcelain", &sanitary_finish(d));
     let sizes = [d.range("tap", 0.13, 0.2), 0.13];
-    tapped(basin, style, d, sizes, [0.0, BASIN_RIM_M, -0.17], 0.0)
+    with_mixer_tap(basin, style, d, sizes, [0.0, BASIN_RIM_M, -0.17], 0.0)
 }
 
 fn sample_washbasin(style: &Style, key: RandomKey) -> Model {
@@ -117,7 +119,7 @@ fn hand_basin(style: &Style, key: RandomKey) -> Model {
 /// A washbasin on the wall or on a column, without a cupboard; the wall is at -Z.
 fn basin(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("basin", key);
-    let (w, h, depth) = (d.m("width"), d.m("rim"), d.m("depth"));
+    let (w, h, depth) = (d.sample_m("width"), d.sample_m("rim"), d.sample_m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
     let white = sanitary();
     let (low, floor, wall) = (h - 0.17, h - 0.13, 0.035);
@@ -136,21 +138,27 @@ fn basin(_style: &Style, key: RandomKey) -> Model {
         [0.0, h + 0.09, ledge + 0.08],
     ];
     let mut body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             &white,
             shell.into_iter().fold(
                 crate::shapes::SolidMesh::default(),
-                crate::shapes::SolidMesh::and,
+                crate::shapes::SolidMesh::merged,
             ),
             0.45,
         )
         .with(
             &chrome(),
-            tube(&spout, 0.012, 10).and(cylinder(0.022, 0.02, 16).at(0.0, h, ledge - 0.05)),
+            tube(&spout, 0.012, 10).merged(cylinder(0.022, 0.02, 16).translated(
+                0.0,
+                h,
+                ledge - 0.05,
+            )),
         )
         .with(
             &chrome(),
-            cylinder(0.02, 0.003, 16).at(0.0, floor, 0.03).visual_only(),
+            cylinder(0.02, 0.003, 16)
+                .translated(0.0, floor, 0.03)
+                .visual_only(),
         );
     let column = surface_of_revolution(
         &[
@@ -163,15 +171,15 @@ fn basin(_style: &Style, key: RandomKey) -> Model {
         ],
         20,
     );
-    body = body.with_filled(&white, column.at(0.0, 0.0, -z + 0.12), 0.25);
+    body = body.with_fill_fraction(&white, column.translated(0.0, 0.0, -z + 0.12), 0.25);
     Model::fixed("basin", "sink")
         .switched(false)
         .part(body)
         .with_sound([0.0, h, ledge + 0.06], "tap", 58.0)
-        .inside(
+        .with_container_space(
             "basin",
             [-x + wall, floor + 0.004, ledge],
             [x - wall, h, z - wall],
         )
-        .top("ledge", [0.05, h, -z + 0.01], [x - 0.02, h + 0.25, ledge])
+        .with_support_surface("ledge", [0.05, h, -z + 0.01], [x - 0.02, h + 0.25, ledge])
 }

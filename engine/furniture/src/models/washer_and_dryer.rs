@@ -57,15 +57,15 @@ fn drum_space(middle_m: f32, front_m: f32) -> ([f32; 3], [f32; 3]) {
 fn washer() -> Model {
     let white = enamel("washer_white", [238, 239, 240]);
     let (x, h, z) = (0.298, 0.85, 0.29);
-    let dark = Finish::plain("washer_window", "glass", [62, 70, 78]).clear(1.0);
+    let dark = Finish::plain("washer_window", "glass", [62, 70, 78]).transparent(1.0);
     let (case_low, case_high) = ([0.012, -z], [h, z]);
     let body = PartBuilder::new("body")
         .with_all(&white, drum_case(x, case_low, case_high, 0.42))
         .with(
             &chrome(),
             ring(0.15, 0.006, 28)
-                .about_x(FRAC_PI_2)
-                .at(0.0, 0.42, z)
+                .rotated_x(FRAC_PI_2)
+                .translated(0.0, 0.42, z)
                 .visual_only(),
         )
         .with(
@@ -79,8 +79,8 @@ fn washer() -> Model {
         .with(
             &chrome(),
             cylinder(0.032, 0.02, 18)
-                .about_x(FRAC_PI_2)
-                .at(0.05, h - 0.075, z + 0.004),
+                .rotated_x(FRAC_PI_2)
+                .translated(0.05, h - 0.075, z + 0.004),
         )
         .with(
             &dark,
@@ -90,44 +90,48 @@ fn washer() -> Model {
         .with(
             &dark,
             cylinder(0.145, 0.03, 28)
-                .about_x(FRAC_PI_2)
-                .at(0.0, 0.42, z + 0.002),
+                .rotated_x(FRAC_PI_2)
+                .translated(0.0, 0.42, z + 0.002),
         )
         .with(
             &chrome(),
             ring(0.155, 0.016, 28)
-                .about_x(FRAC_PI_2)
-                .at(0.0, 0.42, z + 0.018),
+                .rotated_x(FRAC_PI_2)
+                .translated(0.0, 0.42, z + 0.018),
         );
     let (low, high) = drum_space(0.42, z);
     Model::articulated("washing_machine", "washer")
         .switched(false)
         .part(body)
         .with_sound([0.0, 0.42, z], "washing_machine", 62.0)
-        .top("top", [-x, h, -z], [x, h + 0.5, z])
-        .inside("drum", low, high)
+        .with_support_surface("top", [-x, h, -z], [x, h + 0.5, z])
+        .with_container_space("drum", low, high)
         .part(door)
         .hinged("door", [-0.17, 0.0, z + 0.034], Vec3::NEG_Y, 1.8)
 }
 
 fn sample_washer(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("washer", key);
-    washer().repainted("washer_white", &casing(style, &d, "washer_casing"))
+    washer().with_finish_replaced("washer_white", &casing(style, &d, "washer_casing"))
 }
 
 /// A tumble dryer: as wide as a washing machine, its door larger and darker, a drawer for water above.
 fn dryer(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("dryer", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth - 0.045);
-    let dark = Finish::plain("dryer_window", "glass", [40, 44, 50]).clear(1.0);
+    let dark = Finish::plain("dryer_window", "glass", [40, 44, 50]).transparent(1.0);
     let middle = 0.46 * h;
     let (case_low, case_high) = ([0.012, -0.5 * depth], [h, z]);
     let case = drum_case(x, case_low, case_high, middle);
     let body = case
         .into_iter()
         .fold(PartBuilder::new("body"), |part, wall| {
-            part.with_filled(&style.appliance, wall, 0.9)
+            part.with_fill_fraction(&style.appliance, wall, 0.9)
         })
         .with(
             &black(),
@@ -147,35 +151,35 @@ fn dryer(style: &Style, key: RandomKey) -> Model {
         .with(
             &chrome(),
             cylinder(0.03, 0.02, 18)
-                .about_x(FRAC_PI_2)
-                .at(0.02, h - 0.075, z + 0.004),
+                .rotated_x(FRAC_PI_2)
+                .translated(0.02, h - 0.075, z + 0.004),
         );
     let (low, high) = drum_space(middle, z);
     let door = PartBuilder::new("door")
-        .with_filled(
+        .with_fill_fraction(
             &chrome(),
             cylinder(0.2, 0.028, 32)
-                .about_x(FRAC_PI_2)
-                .at(0.0, middle, z + 0.002),
+                .rotated_x(FRAC_PI_2)
+                .translated(0.0, middle, z + 0.002),
             0.1,
         )
-        .with_filled(
+        .with_fill_fraction(
             &dark,
             cylinder(0.16, 0.014, 28)
-                .about_x(FRAC_PI_2)
-                .at(0.0, middle, z + 0.03),
+                .rotated_x(FRAC_PI_2)
+                .translated(0.0, middle, z + 0.03),
             0.4,
         );
     Model::articulated("tumble_dryer", "dryer")
         .switched(false)
         .part(body)
         .with_sound([0.0, middle, z], "washing_machine", 60.0)
-        .top(
+        .with_support_surface(
             "top",
             [-x + 0.02, h, -0.5 * depth + 0.02],
             [x - 0.02, h + 0.5, z - 0.02],
         )
-        .inside("drum", low, high)
+        .with_container_space("drum", low, high)
         .part(door)
         .hinged("door", [0.2, 0.0, z + 0.03], Vec3::Y, 1.6)
 }

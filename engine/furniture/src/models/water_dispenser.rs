@@ -18,10 +18,14 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[CatalogueEntry::new(
 /// A stand with a bottle of water upside down.
 fn water_dispenser(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("water_dispenser", key);
-    let (w, h, depth) = (d.m("width"), d.m("height"), d.m("depth"));
+    let (w, h, depth) = (
+        d.sample_m("width"),
+        d.sample_m("height"),
+        d.sample_m("depth"),
+    );
     let (x, z) = (0.5 * w, 0.5 * depth);
     let case = h - 0.38;
-    let water = Finish::plain("bottled_water", "water", [140, 186, 214]).clear(0.45);
+    let water = Finish::plain("bottled_water", "water", [140, 186, 214]).transparent(0.45);
     let r = 0.42 * w;
     let bottle = surface_of_revolution(
         &[
@@ -37,17 +41,17 @@ fn water_dispenser(style: &Style, key: RandomKey) -> Model {
     );
     let tap = |a: f32, tone: [u8; 3]| (a, plastic("tap_lever", tone));
     let mut body = PartBuilder::new("body")
-        .with_filled(
+        .with_fill_fraction(
             &style.appliance,
             rounded_block([-x, 0.0, -z], [x, 0.62 * case, z], 0.015, 1),
             0.18,
         )
-        .with_filled(
+        .with_fill_fraction(
             &style.appliance,
             rounded_block([-x, 0.62 * case, -z], [x, case, z - 0.09], 0.012, 1),
             0.18,
         )
-        .with_filled(
+        .with_fill_fraction(
             &style.appliance,
             rounded_block([-x, 0.9 * case, z - 0.1], [x, case, z], 0.012, 1),
             0.18,
@@ -59,7 +63,7 @@ fn water_dispenser(style: &Style, key: RandomKey) -> Model {
                 [x - 0.04, 0.62 * case + 0.012, z - 0.01],
             ),
         )
-        .with_filled(&water, bottle, 0.6);
+        .with_fill_fraction(&water, bottle, 0.6);
     for (a, lever) in [tap(-0.05, [60, 110, 190]), tap(0.05, [196, 60, 50])] {
         body = body.with(
             &lever,
@@ -73,7 +77,7 @@ fn water_dispenser(style: &Style, key: RandomKey) -> Model {
         .switched(true)
         .part(body)
         .with_sound([0.0, 0.2, -z], "hum", 36.0)
-        .top(
+        .with_support_surface(
             "drip_tray",
             [-x + 0.05, 0.62 * case + 0.012, z - 0.075],
             [x - 0.05, 0.79 * case, z - 0.015],

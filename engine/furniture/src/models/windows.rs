@@ -14,7 +14,7 @@ pub struct Window {
     /// Thickness of the wall, m.
     pub wall_m: f32,
     /// Number of casements side by side.
-    pub lights: usize,
+    pub casements: usize,
     /// The glass.
     pub pane: Finish,
     /// Depth of the sill into the room, m.
@@ -28,7 +28,7 @@ impl Window {
         let white = plastic("window_white", [240, 240, 238]);
         let (depth, back) = (0.07, -0.035);
         let mut body = PartBuilder::new("frame")
-            .with(&white, frame(w, h, 0.05, depth).at(0.0, 0.0, back))
+            .with(&white, frame(w, h, 0.05, depth).translated(0.0, 0.0, back))
             .with(
                 &white,
                 block(
@@ -45,12 +45,12 @@ impl Window {
             );
         let mut panes = PartBuilder::new("glass");
         let (iw, ih) = (w - 0.1, h - 0.1);
-        let step = iw / self.lights as f32;
-        for k in 0..self.lights {
+        let step = iw / self.casements as f32;
+        for k in 0..self.casements {
             let x = -0.5 * iw + step * (k as f32 + 0.5);
             body = body.with(
                 &white,
-                frame(step - 0.004, ih - 0.004, 0.045, 0.05).at(x, 0.0, -0.02),
+                frame(step - 0.004, ih - 0.004, 0.045, 0.05).translated(x, 0.0, -0.02),
             );
             let (px, py) = (0.5 * step - 0.047, 0.5 * ih - 0.047);
             panes = panes.with(
@@ -69,10 +69,10 @@ impl Window {
 
 /// Clear double glazing.
 pub const fn clear_pane() -> Finish {
-    Finish::plain("window_glass", "double_glazing", [206, 226, 232]).clear(0.12)
+    Finish::plain("window_glass", "double_glazing", [206, 226, 232]).transparent(0.12)
 }
 
 /// Frosted double glazing.
 pub const fn frosted_pane() -> Finish {
-    Finish::plain("frosted_glass", "double_glazing", [224, 234, 236]).clear(0.85)
+    Finish::plain("frosted_glass", "double_glazing", [224, 234, 236]).transparent(0.85)
 }

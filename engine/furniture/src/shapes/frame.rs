@@ -14,5 +14,5 @@ pub fn frame(width_m: f32, height_m: f32, bar_m: f32, depth_m: f32) -> SolidMesh
     ];
     bars.into_iter()
         .map(|(min, max)| block(min, max))
-        .fold(SolidMesh::default(), SolidMesh::and)
+        .fold(SolidMesh::default(), SolidMesh::merged)
 }

@@ -2,7 +2,7 @@
 
 use super::SolidMesh;
 use super::cloth::thick_sheet;
-use super::solid::turn;
+use super::solid::axis_rotation;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{Collider, Pose, math};
 use glam::Vec3;
@@ -55,9 +55,9 @@ pub fn foliage(
         let one = leaf(length_m * size, width_m * size, 0.55 - 0.25 * level);
         let pose = Pose::new(
             Vec3::Y * (height_m * level * 0.8),
-            turn(Vec3::Y, around) * turn(Vec3::X, lift * 0.6),
+            axis_rotation(Vec3::Y, around) * axis_rotation(Vec3::X, lift * 0.6),
         );
-        crown = crown.and(one.placed(&pose));
+        crown = crown.merged(one.transformed(&pose));
     }
     let direction = |k: usize| {
         let y = 1.0 - 2.0 * (k as f32 + 0.5) / HULL_DIRECTIONS as f32;

@@ -52,7 +52,7 @@ pub fn loft(rings: &[Vec<Vec3>]) -> SolidMesh {
 pub fn oval(half_x: f32, half_z: f32, y: f32, z: f32, sides: usize) -> Vec<Vec3> {
     (0..sides)
         .map(|k| {
-            let p = super::revolve::around((1.0, 0.0), k, sides);
+            let p = super::revolve::profile_point((1.0, 0.0), k, sides);
             // A superellipse of exponent 2.6.
             let grow = dwell_scene::math::pow(
                 dwell_scene::math::pow(p.x.abs(), 2.6) + dwell_scene::math::pow(p.z.abs(), 2.6),

@@ -32,7 +32,7 @@ pub use loft::{loft, oval};
 pub use panel::panel;
 pub use polygon::triangulate;
 pub use revolve::{ball, cone, cylinder, surface_of_revolution};
-pub use solid::{SolidMesh, turn};
+pub use solid::{SolidMesh, axis_rotation};
 pub use trough::trough;
 pub use tube::{ring, rod, tube};
 pub use vessel::vessel;

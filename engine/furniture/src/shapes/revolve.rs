@@ -16,7 +16,7 @@ const MOST_CYLINDERS: usize = 4;
 /// It collides as a few
 /// cylinders.
 pub fn surface_of_revolution(profile: &[(f32, f32)], segments: usize) -> SolidMesh {
-    SolidMesh::new(surface(profile, segments), stack(profile))
+    SolidMesh::new(surface(profile, segments), cylinder_stack(profile))
 }
 
 /// A cylinder that stands on the origin.
@@ -68,7 +68,7 @@ pub fn ball(radius_m: f32, segments: usize) -> SolidMesh {
 }
 
 /// The point of a profile at `segment` of `segments` around the axis.
-pub(super) fn around((radius, height): (f32, f32), segment: usize, segments: usize) -> Vec3 {
+pub(super) fn profile_point((radius, height): (f32, f32), segment: usize, segments: usize) -> Vec3 {
     // The first angle comes again exactly, so that the seam is closed.
     let (sin, cos) = math::sin_cos(TAU * (segment % segments) as f32 / segments as f32);
     Vec3::new(radius * sin, height, radius * cos)
@@ -78,7 +78,7 @@ pub(super) fn around((radius, height): (f32, f32), segment: usize, segments: usi
 ///
 /// Cylinders, not hulls: contact solvers hold a hull's face by four corners at most, so that a round foot with more
 /// corners tips over.
-pub(super) fn stack(profile: &[(f32, f32)]) -> Vec<Collider> {
+pub(super) fn cylinder_stack(profile: &[(f32, f32)]) -> Vec<Collider> {
     let mut heights: Vec<f32> = profile.iter().map(|p| p.1).collect();
     heights.sort_by(f32::total_cmp);
     heights.dedup_by(|a, b| (*a - *b).abs() < 1e-4);
@@ -196,9 +196,9 @@ pub(super) fn surface(profile: &[(f32, f32)], segments: usize) -> Mesh {
         let wide = a.x.max(b.x);
         add_grid(&mut mesh, segments + 1, 2, |i, j| {
             let end = if j == 0 { *a } else { *b };
-            let direction = around((1.0, 0.0), i, segments);
+            let direction = profile_point((1.0, 0.0), i, segments);
             let normal = direction * normals[j].x + Vec3::Y * normals[j].y;
-            let position = around(end.into(), i, segments);
+            let position = profile_point(end.into(), i, segments);
             // Discs show their image flat, walls have it wrapped around.
             let uv = if outward[k].y.abs() > 0.8 {
                 Vec2::new(position.x, -position.z)

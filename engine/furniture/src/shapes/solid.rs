@@ -20,31 +20,31 @@ impl SolidMesh {
 
     /// The same shape moved.
     #[must_use]
-    pub fn at(self, x: f32, y: f32, z: f32) -> Self {
-        self.placed(&Pose::from_position(Vec3::new(x, y, z)))
+    pub fn translated(self, x: f32, y: f32, z: f32) -> Self {
+        self.transformed(&Pose::from_position(Vec3::new(x, y, z)))
     }
 
     /// The same shape turned about the X axis, rad.
     #[must_use]
-    pub fn about_x(self, angle_rad: f32) -> Self {
-        self.placed(&Pose::new(Vec3::ZERO, turn(Vec3::X, angle_rad)))
+    pub fn rotated_x(self, angle_rad: f32) -> Self {
+        self.transformed(&Pose::new(Vec3::ZERO, axis_rotation(Vec3::X, angle_rad)))
     }
 
     /// The same shape turned about the Y axis, rad.
     #[must_use]
-    pub fn about_y(self, angle_rad: f32) -> Self {
-        self.placed(&Pose::new(Vec3::ZERO, turn(Vec3::Y, angle_rad)))
+    pub fn rotated_y(self, angle_rad: f32) -> Self {
+        self.transformed(&Pose::new(Vec3::ZERO, axis_rotation(Vec3::Y, angle_rad)))
     }
 
     /// The same shape turned about the Z axis, rad.
     #[must_use]
-    pub fn about_z(self, angle_rad: f32) -> Self {
-        self.placed(&Pose::new(Vec3::ZERO, turn(Vec3::Z, angle_rad)))
+    pub fn rotated_z(self, angle_rad: f32) -> Self {
+        self.transformed(&Pose::new(Vec3::ZERO, axis_rotation(Vec3::Z, angle_rad)))
     }
 
     /// The same shape in the space that `pose` leads to.
     #[must_use]
-    pub fn placed(mut self, pose: &Pose) -> Self {
+    pub fn transformed(mut self, pose: &Pose) -> Self {
         for position in &mut self.mesh.positions {
             *position = pose.transform_point(*position);
         }
@@ -73,7 +73,7 @@ impl SolidMesh {
 
     /// Both shapes.
     #[must_use]
-    pub fn and(mut self, other: Self) -> Self {
+    pub fn merged(mut self, other: Self) -> Self {
         if self.mesh.positions.is_empty() {
             return other;
         }
@@ -94,7 +94,7 @@ impl SolidMesh {
 }
 
 /// The rotation by `angle_rad` about a unit `axis`, with the same bits on every machine.
-pub fn turn(axis: Vec3, angle_rad: f32) -> Quat {
+pub fn axis_rotation(axis: Vec3, angle_rad: f32) -> Quat {
     let (sin, cos) = dwell_scene::math::sin_cos(angle_rad * 0.5);
     Quat::from_xyzw(axis.x * sin, axis.y * sin, axis.z * sin, cos)
 }

@@ -13,5 +13,5 @@ pub fn trough(min: [f32; 3], max: [f32; 3], wall_m: f32) -> SolidMesh {
         block([x0 + t, y0 + t, z1 - t], [x1 - t, y1, z1]),
     ]
     .into_iter()
-    .fold(SolidMesh::default(), SolidMesh::and)
+    .fold(SolidMesh::default(), SolidMesh::merged)
 }

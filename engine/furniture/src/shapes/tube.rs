@@ -2,7 +2,7 @@
 
 use super::SolidMesh;
 use super::grid::{Vertex, add_grid};
-use super::revolve::around;
+use super::revolve::profile_point;
 use dwell_scene::{Collider, Mesh, Pose, math};
 use glam::{Quat, Vec2, Vec3};
 use std::f32::consts::TAU;
@@ -34,7 +34,7 @@ pub fn tube(path: &[[f32; 3]], radius_m: f32, sides: usize) -> SolidMesh {
     let mut mesh = Mesh::default();
     // Seen from outside, columns run around (to the right) and rows along the path (upwards).
     add_grid(&mut mesh, sides + 1, last + 1, |i, k| {
-        let normal = frames[k] * around((1.0, 0.0), i, sides);
+        let normal = frames[k] * profile_point((1.0, 0.0), i, sides);
         let uv = Vec2::new(lengths[k], radius_m * TAU * i as f32 / sides as f32);
         Vertex {
             position: path[k] + normal * radius_m,
@@ -45,7 +45,7 @@ pub fn tube(path: &[[f32; 3]], radius_m: f32, sides: usize) -> SolidMesh {
     for (end, outward) in [(0, -1.0), (last, 1.0_f32)] {
         let normal = frames[end] * Vec3::Y * outward;
         add_grid(&mut mesh, sides + 1, 2, |i, j| {
-            let rim = (frames[end] * around((1.0, 0.0), i, sides)) * radius_m;
+            let rim = (frames[end] * profile_point((1.0, 0.0), i, sides)) * radius_m;
             let offset = if (j == 0) == (outward > 0.0) {
                 rim
             } else {
@@ -69,7 +69,7 @@ pub fn ring(radius_m: f32, bar_radius_m: f32, segments: usize) -> SolidMesh {
     let sides = 8;
     let mut mesh = Mesh::default();
     add_grid(&mut mesh, segments + 1, sides + 1, |i, j| {
-        let outward = around((1.0, 0.0), i, segments);
+        let outward = profile_point((1.0, 0.0), i, segments);
         let (sin, cos) = math::sin_cos(TAU * (j % sides) as f32 / sides as f32);
         let normal = outward * cos + Vec3::Y * sin;
         let uv = Vec2::new(
@@ -82,7 +82,7 @@ pub fn ring(radius_m: f32, bar_radius_m: f32, segments: usize) -> SolidMesh {
             uv,
         }
     });
-    let corner = |k: usize| around((radius_m, 0.0), k, 8);
+    let corner = |k: usize| profile_point((radius_m, 0.0), k, 8);
     let colliders = (0..8)
         .map(|k| bar(corner(k), corner(k + 1), bar_radius_m))
         .collect();

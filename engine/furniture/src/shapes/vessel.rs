@@ -1,7 +1,7 @@
 //! Open vessels: mugs, bowls, pots. They are hollow for eyes and for things that are put in.
 
 use super::SolidMesh;
-use super::revolve::{around, surface};
+use super::revolve::{profile_point, surface};
 use dwell_scene::{Collider, Pose};
 use glam::Vec3;
 
@@ -40,7 +40,7 @@ pub fn vessel(outer: &[(f32, f32)], wall_m: f32, segments: usize) -> SolidMesh {
             continue;
         }
         for k in 0..WALL_PIECES {
-            let corner = |p: &(f32, f32), k| around(*p, k, WALL_PIECES);
+            let corner = |p: &(f32, f32), k| profile_point(*p, k, WALL_PIECES);
             let points = pair
                 .iter()
                 .flat_map(|(o, i)| {

@@ -78,27 +78,27 @@ pub struct Style {
 
 impl Style {
     /// One of the cloths.
-    pub fn cloth(&self, stream: &mut RandomStream) -> &Finish {
+    pub fn random_cloth(&self, stream: &mut RandomStream) -> &Finish {
         &self.cloths[stream.below(self.cloths.len())]
     }
 
     /// One of the coverings of seats.
-    pub fn cover(&self, stream: &mut RandomStream) -> &Finish {
+    pub fn random_upholstery(&self, stream: &mut RandomStream) -> &Finish {
         &self.upholstery[stream.below(self.upholstery.len())]
     }
 
     /// One of the terries.
-    pub fn terry(&self, stream: &mut RandomStream) -> &Finish {
+    pub fn random_terry(&self, stream: &mut RandomStream) -> &Finish {
         &self.terries[stream.below(self.terries.len())]
     }
 
     /// One of the glazes.
-    pub fn glaze(&self, stream: &mut RandomStream) -> &Finish {
+    pub fn random_glaze(&self, stream: &mut RandomStream) -> &Finish {
         &self.glazes[stream.below(self.glazes.len())]
     }
 
     /// One of the two woods, more often the first.
-    pub fn any_wood(&self, stream: &mut RandomStream) -> &Finish {
+    pub fn random_wood(&self, stream: &mut RandomStream) -> &Finish {
         if stream.below(3) == 0 {
             &self.second_wood
         } else {
@@ -139,18 +139,19 @@ impl Style {
                     (1.0, 1.0),
                     (0.0, 1.0),
                 ];
-                surface_of_revolution(&beads.map(|(out, up)| (out * r, up * h)), 10).at(x, 0.0, z)
+                surface_of_revolution(&beads.map(|(out, up)| (out * r, up * h)), 10)
+                    .translated(x, 0.0, z)
             }
         }
     }
 
     /// Returns how doors and drawers of furniture look.
-    pub fn doors(&self) -> FrontStyle {
+    pub fn front_style(&self) -> FrontStyle {
         self.fronts(&self.front)
     }
 
     /// Returns how doors and drawers of the kitchen look.
-    pub fn kitchen_doors(&self) -> FrontStyle {
+    pub fn kitchen_front_style(&self) -> FrontStyle {
         self.fronts(&self.kitchen_front)
     }
 

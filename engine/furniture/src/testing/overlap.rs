@@ -76,7 +76,7 @@ impl ConvexPiece {
     }
 
     fn bound(&mut self) {
-        let far = |d: Vec3| self.along(d);
+        let far = |d: Vec3| self.support(d);
         let max = Vec3::new(far(Vec3::X), far(Vec3::Y), far(Vec3::Z));
         let min = -Vec3::new(far(Vec3::NEG_X), far(Vec3::NEG_Y), far(Vec3::NEG_Z));
         self.bounds = Aabb { min, max };
@@ -94,7 +94,7 @@ impl ConvexPiece {
     }
 
     /// The farthest coordinate along a unit direction.
-    pub fn along(&self, direction: Vec3) -> f32 {
+    pub fn support(&self, direction: Vec3) -> f32 {
         let far = self
             .points
             .iter()
@@ -109,13 +109,13 @@ impl ConvexPiece {
     }
 
     fn overlap_along(&self, other: &Self, direction: Vec3) -> f32 {
-        self.along(direction) + other.along(-direction)
+        self.support(direction) + other.support(-direction)
     }
 }
 
 /// Returns how far two pieces reach into each other, m; negative: the gap between them. Never less than the truth: a direction
 /// that separates the pieces is a proof, and the search for the best one stops at `enough`.
-pub fn depth(a: &ConvexPiece, b: &ConvexPiece, enough: f32) -> f32 {
+pub fn penetration_depth(a: &ConvexPiece, b: &ConvexPiece, enough: f32) -> f32 {
     let mut best = (f32::MAX, Vec3::Y);
     let mut attempt = |direction: Vec3| {
         let direction = direction.normalize_or(Vec3::Y);
@@ -188,12 +188,12 @@ pub fn object_pieces(house: &House, object: ObjectId) -> Vec<ConvexPiece> {
 }
 
 /// The largest depth between two sets of pieces, at least `enough`.
-pub fn deepest(a: &[ConvexPiece], b: &[ConvexPiece], enough: f32) -> f32 {
+pub fn max_depth(a: &[ConvexPiece], b: &[ConvexPiece], enough: f32) -> f32 {
     let mut worst = enough;
     for p in a {
         let near = p.bounds.grown(-enough.min(0.0));
         for q in b.iter().filter(|q| near.intersects(&q.bounds)) {
-            worst = worst.max(depth(p, q, worst));
+            worst = worst.max(penetration_depth(p, q, worst));
         }
     }
     worst
@@ -204,11 +204,11 @@ fn depth_of_boxes_and_balls_is_known() {
     let unit = ConvexPiece::cuboid(&Aabb::new(Vec3::ZERO, Vec3::ONE));
     let close = |a: f32, b: f32| assert!((a - b).abs() < 2e-3, "{a} instead of {b}");
     close(
-        depth(&unit, &unit.moved(Vec3::new(0.9, 0.3, 0.2)), -1.0),
+        penetration_depth(&unit, &unit.moved(Vec3::new(0.9, 0.3, 0.2)), -1.0),
         0.1,
     );
     close(
-        depth(&unit, &unit.moved(Vec3::new(1.25, 0.0, 0.0)), -1.0),
+        penetration_depth(&unit, &unit.moved(Vec3::new(1.25, 0.0, 0.0)), -1.0),
         -0.25,
     );
     let ball = ConvexPiece::new(
@@ -219,11 +219,11 @@ fn depth_of_boxes_and_balls_is_known() {
         &Pose::IDENTITY,
     );
     close(
-        depth(&ball, &ball.moved(Vec3::new(0.6, 0.0, 0.4)), -1.0),
+        penetration_depth(&ball, &ball.moved(Vec3::new(0.6, 0.0, 0.4)), -1.0),
         1.0 - 0.52_f32.sqrt(),
     );
     let corner = Vec3::splat(1.0 + 0.4 / 3.0_f32.sqrt());
-    close(depth(&unit, &ball.moved(corner), -1.0), 0.1);
+    close(penetration_depth(&unit, &ball.moved(corner), -1.0), 0.1);
     let post = ConvexPiece::new(
         &Collider::Cylinder {
             part_from_cylinder: Pose::IDENTITY,
@@ -233,7 +233,7 @@ fn depth_of_boxes_and_balls_is_known() {
         &Pose::IDENTITY,
     );
     close(
-        depth(&post, &post.moved(Vec3::new(0.6, 1.5, 0.6)), -1.0),
+        penetration_depth(&post, &post.moved(Vec3::new(0.6, 1.5, 0.6)), -1.0),
         1.0 - 0.72_f32.sqrt(),
     );
 }

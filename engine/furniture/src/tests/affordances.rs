@@ -63,7 +63,7 @@ fn categories_keep_what_their_rows_promise() {
         let holds = |holding: ReceptacleKind| {
             models
                 .iter()
-                .any(|model| model.spaces.iter().any(|space| space.holding == holding))
+                .any(|model| model.spaces.iter().any(|space| space.kind == holding))
         };
         let either = holds(ReceptacleKind::On) || holds(ReceptacleKind::In);
         let claims = [

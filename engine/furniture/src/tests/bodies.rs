@@ -4,7 +4,7 @@ use super::cases::{Case, Summary, every_draw, every_draw_in_every_style};
 use crate::catalogue::entries;
 use crate::style::STYLES;
 use crate::testing::meshes::open_edges;
-use crate::testing::overlap::{ConvexPiece, deepest};
+use crate::testing::overlap::{ConvexPiece, max_depth};
 use dwell_scene::random::RandomKey;
 use dwell_scene::{Collider, Mobility, Pose};
 use glam::Vec3;
@@ -140,7 +140,7 @@ fn what_stands_loose_stands_firm() {
             let reach = pieces
                 .iter()
                 .map(|piece| {
-                    piece.along(direction.normalize_or_zero()) * direction.length() + STEEP * low
+                    piece.support(direction.normalize_or_zero()) * direction.length() + STEEP * low
                 })
                 .fold(f32::MIN, f32::max);
             let out = center.dot(Vec3::new(sin, 0.0, cos)) - reach;
@@ -172,7 +172,7 @@ fn places_for_things_are_free() {
                 continue;
             }
             let free = ConvexPiece::cuboid(&space.space.grown(-0.004));
-            let into = deepest(std::slice::from_ref(&free), &pieces, 0.001);
+            let into = max_depth(std::slice::from_ref(&free), &pieces, 0.001);
             if into > 0.001 {
                 faults.push(format!("{} is taken by {into} m", space.name));
             }

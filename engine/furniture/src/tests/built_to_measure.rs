@@ -22,7 +22,7 @@ fn models() -> Vec<Model> {
         width_m,
         height_m: 1.3,
         wall_m: 0.15,
-        lights,
+        casements: lights,
         pane,
         sill_m: 0.1,
     };
@@ -30,7 +30,7 @@ fn models() -> Vec<Model> {
         width_m: 2.0,
         depth_m: 3.4,
         rise_m: 2.8,
-        goes_on,
+        continues_up: goes_on,
         mirrored,
         wood: oak(),
         paint: white_lacquer(),

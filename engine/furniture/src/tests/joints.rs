@@ -2,8 +2,8 @@
 
 use super::cases::{Case, every_draw};
 use crate::model::ModelJoint;
-use crate::shapes::turn;
-use crate::testing::overlap::{ConvexPiece, deepest};
+use crate::shapes::axis_rotation;
+use crate::testing::overlap::{ConvexPiece, max_depth};
 use dwell_scene::{JointKind, Mobility, Pose};
 use glam::Vec3;
 
@@ -15,7 +15,7 @@ const STEPS: usize = 8;
 fn moved(joint: &ModelJoint, position: f32) -> Pose {
     let to_axis = Pose::from_position(joint.position);
     let motion = match joint.kind {
-        JointKind::Hinge => Pose::new(Vec3::ZERO, turn(joint.axis, position)),
+        JointKind::Hinge => Pose::new(Vec3::ZERO, axis_rotation(joint.axis, position)),
         JointKind::Slide => Pose::from_position(joint.axis * position),
     };
     to_axis * motion * to_axis.inverse()
@@ -71,7 +71,7 @@ fn everything_opens_without_meeting_its_own_body() {
                 let colliders = model.parts[joint.child].colliders.iter();
                 let pieces: Vec<ConvexPiece> =
                     colliders.map(|c| ConvexPiece::new(c, &pose)).collect();
-                let into = deepest(&pieces, &others, TOLERANCE_M);
+                let into = max_depth(&pieces, &others, TOLERANCE_M);
                 if into > TOLERANCE_M {
                     faults.push(format!(
                         "{} meets its body by {into} m at {step}/{STEPS}",

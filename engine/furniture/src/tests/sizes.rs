@@ -2,7 +2,7 @@
 
 use super::cases::{Case, Summary, every_draw, every_draw_in_every_style};
 use crate::catalogue::entries;
-use crate::sampling::{SizeDistribution, spreads};
+use crate::sampling::{SizeDistribution, size_table};
 use crate::style::STYLES;
 use crate::tables::category;
 use dwell_scene::random::RandomKey;
@@ -11,8 +11,8 @@ use std::collections::{BTreeMap, BTreeSet};
 /// The spreads of a model that is no kind of its own, or of the kind.
 fn rows(draw: &Summary) -> Option<&'static BTreeMap<String, SizeDistribution>> {
     let is_kind = entries().iter().any(|entry| entry.kind == draw.name);
-    let own = spreads().get(draw.name).filter(|_| !is_kind);
-    own.or_else(|| spreads().get(draw.entry.kind))
+    let own = size_table().get(draw.name).filter(|_| !is_kind);
+    own.or_else(|| size_table().get(draw.entry.kind))
 }
 
 /// A whole thing is as wide, high and deep as `assets/furniture_sizes.csv` says: 12 mm less where feet or rims do not

@@ -12,12 +12,12 @@ fn grain(
     v: f32,
     rings: f32,
 ) -> EncodedColor {
-    let bend = noise.value(u, v, 2, 5) + 0.3 * noise.value(u, v, 3, 11);
+    let bend = noise.value_at(u, v, 2, 5) + 0.3 * noise.value_at(u, v, 3, 11);
     let ring = wave(rings * v + 1.1 * bend);
     let (tone, fibre, pore) = (
-        noise.value(u, v, 1, 7),
-        noise.value(u, v, 5, 96),
-        noise.value(u, v, 16, 200),
+        noise.value_at(u, v, 1, 7),
+        noise.value_at(u, v, 5, 96),
+        noise.value_at(u, v, 16, 200),
     );
     let dark_share =
         0.25 * tone + 0.3 * ring * ring + 0.3 * fibre + 0.15 * smooth_step(0.72, 0.95, pore);

@@ -45,11 +45,14 @@ impl PixelCanvas {
 
     /// Colours each pixel anew by its place, u to the right and v up, each 0 to 1.
     pub(super) fn fill(&mut self, mut color: impl FnMut(f32, f32) -> EncodedColor) {
-        self.change(|u, v, _| color(u, v));
+        self.map_pixels(|u, v, _| color(u, v));
     }
 
     /// Colours each pixel by its place and the colour that it has.
-    pub(super) fn change(&mut self, mut color: impl FnMut(f32, f32, EncodedColor) -> EncodedColor) {
+    pub(super) fn map_pixels(
+        &mut self,
+        mut color: impl FnMut(f32, f32, EncodedColor) -> EncodedColor,
+    ) {
         let (du, dv) = (1.0 / self.width as f32, 1.0 / self.height as f32);
         for (row, pixels) in self
             .pixels
@@ -66,7 +69,7 @@ impl PixelCanvas {
 
     /// A filled rectangle from its lower left to its upper right corner.
     pub(super) fn rectangle(&mut self, low: [f32; 2], high: [f32; 2], color: EncodedColor) {
-        self.change(|u, v, old| {
+        self.map_pixels(|u, v, old| {
             let inside = u >= low[0] && u < high[0] && v >= low[1] && v < high[1];
             if inside { color } else { old }
         });
@@ -76,7 +79,7 @@ impl PixelCanvas {
     pub(super) fn disc(&mut self, center: [f32; 2], radius: f32, color: EncodedColor) {
         let aspect = self.aspect();
         let edge = 1.5 / self.height as f32;
-        self.change(|u, v, old| {
+        self.map_pixels(|u, v, old| {
             let (x, y) = ((u - center[0]) * aspect, v - center[1]);
             let distance = (x * x + y * y).sqrt();
             mix(

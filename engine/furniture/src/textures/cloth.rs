@@ -9,8 +9,8 @@ use std::f32::consts::TAU;
 pub(super) fn carpet(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [ground, second, _] = paint.colors;
     canvas.fill(|u, v| {
-        let tuft = paint.noise.value(u, v, 64, 64);
-        let patch = paint.noise.cloud(u, v, 4, 4, 3);
+        let tuft = paint.noise.value_at(u, v, 64, 64);
+        let patch = paint.noise.fractal(u, v, 4, 4, 3);
         shade(
             mix(ground, second, 0.5 * smooth_step(0.6, 0.95, tuft)),
             0.82 + 0.2 * tuft + 0.14 * patch,
@@ -61,7 +61,7 @@ pub(super) fn leather(canvas: &mut PixelCanvas, paint: &TexturePaint) {
             let py = (j + dj) as f32 + paint.noise.cell(a + 60, b * 2 + 1);
             nearest = nearest.min((px - x) * (px - x) + (py - y) * (py - y));
         }
-        let worn = paint.noise.cloud(u, v, 3, 3, 3);
+        let worn = paint.noise.fractal(u, v, 3, 3, 3);
         shade(
             paint.colors[0],
             1.06 - 0.28 * nearest.min(1.0) + 0.16 * (worn - 0.5),
@@ -78,7 +78,7 @@ pub(super) fn stripes(canvas: &mut PixelCanvas, paint: &TexturePaint) {
             5 => c,
             _ => a,
         };
-        shade(color, 0.92 + 0.1 * paint.noise.value(u, v, 64, 64))
+        shade(color, 0.92 + 0.1 * paint.noise.value_at(u, v, 64, 64))
     });
 }
 
@@ -93,7 +93,7 @@ pub(super) fn checks(canvas: &mut PixelCanvas, paint: &TexturePaint) {
         };
         let base = mix(ground, band, 0.5 * (band_at(u) + band_at(v)));
         let color = mix(base, line, 0.45 * (line_at(u) + line_at(v)));
-        shade(color, 0.93 + 0.09 * paint.noise.value(u, v, 64, 64))
+        shade(color, 0.93 + 0.09 * paint.noise.value_at(u, v, 64, 64))
     });
 }
 
@@ -147,6 +147,6 @@ pub(super) fn rug(canvas: &mut PixelCanvas, paint: &TexturePaint) {
             () if lattice => mix(field, border, 0.7),
             () => field,
         };
-        shade(color, 0.84 + 0.22 * paint.noise.value(u, v, 110, 110))
+        shade(color, 0.84 + 0.22 * paint.noise.value_at(u, v, 110, 110))
     });
 }

@@ -126,7 +126,7 @@ impl TexturePattern {
     /// The image as a texture that is painted when someone first looks at it; mid-grey for a recipe that does not exist.
     pub fn texture(self) -> Texture {
         let [width, height] = self.recipe().map_or([1, 1], |generator| generator.size_px);
-        Texture::painted_later(self.generator.to_owned(), width, height, move || {
+        Texture::lazy(self.generator.to_owned(), width, height, move || {
             self.paint()
         })
     }

@@ -40,7 +40,7 @@ impl ValueNoise {
 
     /// Smooth noise in [0, 1): (`u`, `v`) in 0 to 1, `across` by `up` lattice cells in the square, repeating.
     #[inline]
-    pub(super) fn value(&self, u: f32, v: f32, across: i32, up: i32) -> f32 {
+    pub(super) fn value_at(&self, u: f32, v: f32, across: i32, up: i32) -> f32 {
         let [(i0, i1, fx), (j0, j1, fy)] = [(u, across), (v, up)].map(|(t, period)| {
             let x = t * period as f32;
             let cell = floor(x);
@@ -59,10 +59,10 @@ impl ValueNoise {
     }
 
     /// The sum of `octaves` noises, each twice as fine and half as strong; about 0 to 1.
-    pub(super) fn cloud(&self, u: f32, v: f32, across: i32, up: i32, octaves: u32) -> f32 {
+    pub(super) fn fractal(&self, u: f32, v: f32, across: i32, up: i32, octaves: u32) -> f32 {
         let (mut sum, mut weight, mut total) = (0.0, 1.0, 0.0);
         for k in 0..octaves {
-            sum += weight * self.value(u, v, across << k, up << k);
+            sum += weight * self.value_at(u, v, across << k, up << k);
             total += weight;
             weight *= 0.5;
         }

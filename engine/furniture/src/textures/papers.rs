@@ -39,7 +39,7 @@ pub(super) fn leaves(canvas: &mut PixelCanvas, paint: &TexturePaint) {
                 }
             }
         }
-        shade(color, 0.97 + 0.05 * paint.noise.value(u, v, 64, 64))
+        shade(color, 0.97 + 0.05 * paint.noise.value_at(u, v, 64, 64))
     });
 }
 
@@ -56,7 +56,7 @@ pub(super) fn stars(canvas: &mut PixelCanvas, paint: &TexturePaint) {
         let rim = 0.13 + 0.05 * math::cos(5.0 * angle);
         let color = if (i + j) % 2 == 0 { a } else { b };
         mix(
-            shade(ground, 0.97 + 0.05 * paint.noise.value(u, v, 64, 64)),
+            shade(ground, 0.97 + 0.05 * paint.noise.value_at(u, v, 64, 64)),
             color,
             1.0 - smooth_step(rim - 0.02, rim, radius),
         )
@@ -74,6 +74,6 @@ pub(super) fn pinstripe(canvas: &mut PixelCanvas, paint: &TexturePaint) {
         } else {
             broad
         };
-        shade(color, 0.97 + 0.05 * paint.noise.value(u, v, 64, 64))
+        shade(color, 0.97 + 0.05 * paint.noise.value_at(u, v, 64, 64))
     });
 }

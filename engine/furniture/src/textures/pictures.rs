@@ -11,7 +11,7 @@ pub(super) fn landscape(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let noise = &paint.noise;
     let light = mix(sky, [1.0, 0.96, 0.88], 0.75);
     canvas.fill(|u, v| {
-        let cloud = smooth_step(0.5, 0.75, noise.cloud(u, v * 0.6, 3, 6, 4));
+        let cloud = smooth_step(0.5, 0.75, noise.fractal(u, v * 0.6, 3, 6, 4));
         mix(
             mix(light, sky, smooth_step(0.4, 1.0, v)),
             [1.0; 3],
@@ -19,15 +19,15 @@ pub(super) fn landscape(canvas: &mut PixelCanvas, paint: &TexturePaint) {
         )
     });
     canvas.disc([0.7, 0.72], 0.08, sun);
-    canvas.change(|u, v, old| {
+    canvas.map_pixels(|u, v, old| {
         let ridge = |base: f32, size: f32, cells: i32| {
-            base + size * noise.cloud(u, 0.37 * base, cells, 1, 4)
+            base + size * noise.fractal(u, 0.37 * base, cells, 1, 4)
         };
         let far = mix(hill, light, 0.55);
         let near = shade(hill, 0.6);
         match v {
-            v if v < ridge(0.05, 0.16, 4) => shade(near, 0.8 + 0.4 * noise.value(u, v, 40, 40)),
-            v if v < 0.24 => mix(shade(sky, 0.75), light, 0.35 * noise.value(u, v, 6, 60)),
+            v if v < ridge(0.05, 0.16, 4) => shade(near, 0.8 + 0.4 * noise.value_at(u, v, 40, 40)),
+            v if v < 0.24 => mix(shade(sky, 0.75), light, 0.35 * noise.value_at(u, v, 6, 60)),
             v if v < ridge(0.22, 0.24, 5) => hill,
             v if v < ridge(0.34, 0.3, 3) => far,
             _ => old,
@@ -39,7 +39,7 @@ pub(super) fn landscape(canvas: &mut PixelCanvas, paint: &TexturePaint) {
 pub(super) fn shapes(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [a, b, c] = paint.colors;
     let paper = [0.95, 0.93, 0.88];
-    canvas.fill(|u, v| shade(paper, 0.97 + 0.04 * paint.noise.value(u, v, 60, 60)));
+    canvas.fill(|u, v| shade(paper, 0.97 + 0.04 * paint.noise.value_at(u, v, 60, 60)));
     let mut random = paint.key.child("shapes").stream();
     let mut jitter = || random.range(-0.05, 0.05);
     canvas.rectangle([0.12 + jitter(), 0.08], [0.62, 0.46 + jitter()], a);
@@ -58,7 +58,7 @@ pub(super) fn branch(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [paper, leaf, stalk] = paint.colors;
     canvas.fill(|u, v| {
         let x = (u - 0.5) * 0.75 - 0.08 * math::sin(3.0 * v);
-        let mut color = shade(paper, 0.97 + 0.04 * paint.noise.value(u, v, 48, 48));
+        let mut color = shade(paper, 0.97 + 0.04 * paint.noise.value_at(u, v, 48, 48));
         if (0.08..0.9).contains(&v) {
             color = mix(color, stalk, 1.0 - smooth_step(0.004, 0.009, x.abs()));
         }
@@ -87,7 +87,7 @@ pub(super) fn fields(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [a, b, c] = paint.colors;
     let ground = mix(shade(b, 0.75), [0.9, 0.86, 0.8], 0.35);
     canvas.fill(|u, v| {
-        let soft = 0.02 + 0.02 * paint.noise.cloud(u, v, 8, 8, 3);
+        let soft = 0.02 + 0.02 * paint.noise.fractal(u, v, 8, 8, 3);
         let inside = |low: f32, high: f32, x: f32| {
             smooth_step(low - soft, low + soft, x)
                 * (1.0 - smooth_step(high - soft, high + soft, x))
@@ -99,7 +99,7 @@ pub(super) fn fields(canvas: &mut PixelCanvas, paint: &TexturePaint) {
             (0.6, 0.94, mix(a, c, 0.45)),
         ] {
             let there = inside(0.09, 0.91, u) * inside(low, high, v);
-            let rubbed = 0.9 + 0.2 * paint.noise.cloud(u, v, 24, 10, 3);
+            let rubbed = 0.9 + 0.2 * paint.noise.fractal(u, v, 24, 10, 3);
             color = mix(color, shade(field, rubbed), 0.92 * there);
         }
         color
@@ -134,12 +134,12 @@ pub(super) fn waves(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [a, b, c] = paint.colors;
     let sky = mix(c, [0.97, 0.95, 0.9], 0.8);
     canvas.fill(|u, v| {
-        let mut color = shade(sky, 0.96 + 0.06 * paint.noise.value(u, v, 50, 50));
+        let mut color = shade(sky, 0.96 + 0.06 * paint.noise.value_at(u, v, 50, 50));
         for k in 0..7 {
             let depth = k as f32 / 6.0;
             let crest = 0.78 - 0.12 * k as f32
                 + 0.05 * math::sin(TAU * (u * (0.8 + 0.25 * depth) + 0.37 * k as f32))
-                + 0.03 * (paint.noise.cloud(u, 0.13 * k as f32, 3, 1, 2) - 0.5);
+                + 0.03 * (paint.noise.fractal(u, 0.13 * k as f32, 3, 1, 2) - 0.5);
             let tone = shade(mix(a, b, depth), 0.75 + 0.1 * (k % 3) as f32);
             color = mix(
                 color,
@@ -155,11 +155,11 @@ pub(super) fn waves(canvas: &mut PixelCanvas, paint: &TexturePaint) {
 pub(super) fn planets(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [space, a, b] = paint.colors;
     canvas.fill(|u, v| {
-        let star = smooth_step(0.93, 0.97, paint.noise.value(u, v, 60, 45));
+        let star = smooth_step(0.93, 0.97, paint.noise.value_at(u, v, 60, 45));
         mix(mix(shade(space, 0.7), space, v), [1.0, 1.0, 0.9], star)
     });
     let aspect = canvas.aspect();
-    canvas.change(|u, v, old| {
+    canvas.map_pixels(|u, v, old| {
         let (x, y) = (u * aspect, v - 0.5);
         let radius = (x * x + y * y).sqrt();
         let near = (0..5)

@@ -11,17 +11,17 @@ pub(super) fn television(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let noise = &paint.noise;
     canvas.fill(|u, v| {
         if v < 0.42 {
-            mix(sea, sky, 0.6 * noise.value(u, v, 8, 70))
+            mix(sea, sky, 0.6 * noise.value_at(u, v, 8, 70))
         } else {
             mix(
                 [1.0, 0.72, 0.45],
                 sky,
-                smooth_step(0.42, 0.85, v + 0.1 * noise.cloud(u, v, 4, 6, 3)),
+                smooth_step(0.42, 0.85, v + 0.1 * noise.fractal(u, v, 4, 6, 3)),
             )
         }
     });
     canvas.disc([0.62, 0.5], 0.1, [1.0, 0.9, 0.7]);
-    canvas.change(|u, v, old| {
+    canvas.map_pixels(|u, v, old| {
         let roof = 0.42
             + 0.2 * noise.cell((u * 26.0) as i32, 4) * smooth_step(0.05, 0.3, (u - 0.55).abs());
         if v > 0.4 && v < roof {
@@ -43,7 +43,7 @@ pub(super) fn desktop(canvas: &mut PixelCanvas, paint: &TexturePaint) {
         mix(
             ground,
             shade(ground, 0.5),
-            smooth_step(0.2, 0.9, v + 0.3 * paint.noise.cloud(u, v, 2, 2, 3)),
+            smooth_step(0.2, 0.9, v + 0.3 * paint.noise.fractal(u, v, 2, 2, 3)),
         )
     });
     canvas.rectangle([0.12, 0.14], [0.82, 0.88], window);

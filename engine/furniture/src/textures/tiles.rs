@@ -10,7 +10,7 @@ pub(super) fn tile(canvas: &mut PixelCanvas, paint: &TexturePaint) {
         let (x, y) = (u * 2.0, v * 2.0);
         let (dx, dy) = (x - x.floor(), y - y.floor());
         let tone = paint.noise.cell(x as i32 + 3, y as i32 * 2 + 5);
-        let veil = paint.noise.cloud(u, v, 6, 6, 3);
+        let veil = paint.noise.fractal(u, v, 6, 6, 3);
         let edge = dx.min(1.0 - dx).min(dy).min(1.0 - dy);
         let body = shade(
             mix(tile, cloud, 0.7 * smooth_step(0.45, 0.8, veil)),
@@ -32,7 +32,7 @@ pub(super) fn brick(canvas: &mut PixelCanvas, paint: &TexturePaint) {
         let tone = paint
             .noise
             .cell((x.floor() as i32).rem_euclid(2) * 3 + 1, course as i32 * 7);
-        let rough = paint.noise.cloud(u, v, 16, 16, 3);
+        let rough = paint.noise.fractal(u, v, 16, 16, 3);
         let edge = (dx.min(1.0 - dx) * 3.0).min(dy.min(1.0 - dy));
         let body = shade(mix(brick, burnt, 0.6 * tone), 0.85 + 0.3 * rough);
         mix(

@@ -16,15 +16,15 @@ use dwell_scene::{
 use glam::{Affine3A, Vec3};
 
 use super::apply::EditSession;
-use super::copy_objects::graft;
-use super::edit_errors::{OFFERED, fault, inside, unknown, within};
+use super::copy_objects::copy_objects;
+use super::edit_errors::{MAX_SUGGESTIONS, check_range, invalid_field, prefix_field, unknown_name};
 use super::edits::{AddObject, ObjectAttributes, ObjectSource, Placement, UpAxis};
 use super::{describe, fixtures, mesh_file, place, surfaces};
 use crate::building::assembly::HouseAssembly;
 use crate::error::HousesError;
 use crate::formats::{FORMATS, open_by};
 use crate::import::{CategoryRow, category, convex_pieces};
-use crate::name_suggestions::nearest;
+use crate::name_suggestions::nearest_names;
 
 /// Longest edge and volume of things that a hand can take, m and m³.
 const HANDY: (f32, f32) = (0.6, 0.05);
@@ -40,39 +40,41 @@ pub(super) fn add(
     wanted: &AddObject,
 ) -> Result<ObjectId, HousesError> {
     if let Some(name) = &wanted.name {
-        session.free_name("name", name)?;
+        session.check_name_is_free("name", name)?;
     }
     if wanted.place.at.is_none() && wanted.place.on.is_none() {
-        return Err(fault("place", "no place", "`at`, `on`, or both"));
+        return Err(invalid_field("place", "no place", "`at`, `on`, or both"));
     }
-    let id = match &wanted.what {
+    let id = match &wanted.source {
         ObjectSource::Catalogue { kind, style, seed } => {
-            let model = model(kind, style.as_deref(), *seed).map_err(inside("what.catalogue"))?;
+            let model =
+                model(kind, style.as_deref(), *seed).map_err(prefix_field("what.catalogue"))?;
             from_model(&mut session.data, model)
         }
         ObjectSource::File { path, scale, up } => {
-            from_file(session, path, *scale, *up, &wanted.traits).map_err(inside("what.file"))?
+            from_file(session, path, *scale, *up, &wanted.attributes)
+                .map_err(prefix_field("what.file"))?
         }
         ObjectSource::Copy { house, object } => {
-            copy(session, house.as_deref(), object).map_err(inside("what.copy"))?
+            copy(session, house.as_deref(), object).map_err(prefix_field("what.copy"))?
         }
-        ObjectSource::Box { size_m } => {
-            from_box(&mut session.data, *size_m, &wanted.traits).map_err(inside("what.box"))?
-        }
+        ObjectSource::Box { size_m } => from_box(&mut session.data, *size_m, &wanted.attributes)
+            .map_err(prefix_field("what.box"))?,
     };
-    describe::describe(&mut session.data, id, &wanted.traits).map_err(inside("traits"))?;
-    if let Some(look) = &wanted.look {
-        surfaces::paint_object(&mut session.data, id, None, look).map_err(inside("look"))?;
+    describe::describe(&mut session.data, id, &wanted.attributes)
+        .map_err(prefix_field("traits"))?;
+    if let Some(look) = &wanted.style {
+        surfaces::paint_object(&mut session.data, id, None, look).map_err(prefix_field("look"))?;
     }
-    put(session, id, wanted.name.as_deref(), &wanted.place)?;
+    place_new_object(session, id, wanted.name.as_deref(), &wanted.place)?;
     if let Some(sound) = &wanted.sound {
-        fixtures::sound_of(session, id, sound).map_err(inside("sound"))?;
+        fixtures::sound_of(session, id, sound).map_err(prefix_field("sound"))?;
     }
     Ok(id)
 }
 
 /// Names a new object and puts it into its place.
-pub(super) fn put(
+pub(super) fn place_new_object(
     session: &mut EditSession<'_>,
     id: ObjectId,
     name: Option<&str>,
@@ -89,9 +91,9 @@ pub(super) fn put(
     let object = &mut session.data.objects[id];
     object.source_id.clone_from(&name);
     object.name = name;
-    let change = place::movement(session, id, placing)?;
-    place::carry(session, &[id].into(), &change);
-    place::settle(&mut session.data, id);
+    let change = place::placement_transform(session, id, placing)?;
+    place::transform_objects(session, &[id].into(), &change);
+    place::update_room_and_level(&mut session.data, id);
     Ok(())
 }
 
@@ -110,7 +112,7 @@ pub(super) fn style(name: Option<&str>, seed: u64) -> Result<&'static Style, Hou
     };
     let found = STYLES.iter().find(|style| style.name == name);
     found.ok_or_else(|| {
-        unknown(
+        unknown_name(
             "style",
             name,
             "styles",
@@ -130,14 +132,14 @@ fn unknown_kind(kind: &str) -> HousesError {
     let kinds = kinds();
     let is_one = kinds.iter().filter(|(_, category)| **category == kind);
     let mut near: Vec<&str> = is_one.map(|(kind, _)| *kind).collect();
-    near.extend(nearest(kind, kinds.keys().copied(), OFFERED));
+    near.extend(nearest_names(kind, kinds.keys().copied(), MAX_SUGGESTIONS));
     let mut seen = BTreeSet::new();
     near.retain(|kind| seen.insert(*kind));
-    near.truncate(OFFERED);
+    near.truncate(MAX_SUGGESTIONS);
     let offer = near.join(", ");
     let count = kinds.len();
     let possible = format!("one of {count} kinds of the catalogue; the nearest are {offer}");
-    fault("kind", format_args!("{kind:?}"), possible)
+    invalid_field("kind", format_args!("{kind:?}"), possible)
 }
 
 /// A model of the catalogue.
@@ -159,11 +161,11 @@ pub(super) fn model(
 /// An instance of a model, at the origin.
 pub(super) fn from_model(data: &mut HouseData, model: Arc<Model>) -> ObjectId {
     let mut assembly = HouseAssembly::new("", "");
-    assembly.storey();
-    let kind = assembly.kind(model);
-    assembly.place(&kind, Pose::IDENTITY, RoomId(0), 0.0);
+    assembly.add_storey();
+    let kind = assembly.add_model(model);
+    assembly.add_instance(&kind, Pose::IDENTITY, RoomId(0), 0.0);
     let single = assembly.finish();
-    first(&graft(data, &single, &[ObjectId(0)]))
+    first(&copy_objects(data, &single, &[ObjectId(0)]))
 }
 
 fn first(ids: &[ObjectId]) -> ObjectId {
@@ -179,8 +181,8 @@ fn copy(
         None => {
             let id = session.object("object", name)?;
             let mut own = HouseData::default();
-            let alone = graft(&mut own, &session.data, &[id]);
-            return Ok(first(&graft(&mut session.data, &own, &alone)));
+            let alone = copy_objects(&mut own, &session.data, &[id]);
+            return Ok(first(&copy_objects(&mut session.data, &own, &alone)));
         }
         Some(house) => {
             let house = session.files.house("house", house)?;
@@ -196,9 +198,9 @@ fn copy(
     };
     let id = source.object_named(name).ok_or_else(|| {
         let names = source.objects.iter().map(|object| object.name.as_str());
-        unknown("object", name, "objects", names)
+        unknown_name("object", name, "objects", names)
     })?;
-    Ok(first(&graft(&mut session.data, &source, &[id])))
+    Ok(first(&copy_objects(&mut session.data, &source, &[id])))
 }
 
 fn from_file(
@@ -222,7 +224,11 @@ fn from_file(
         stem,
         traits,
     );
-    Ok(first(&graft(&mut session.data, &single, &[ObjectId(0)])))
+    Ok(first(&copy_objects(
+        &mut session.data,
+        &single,
+        &[ObjectId(0)],
+    )))
 }
 
 fn from_box(
@@ -231,7 +237,7 @@ fn from_box(
     traits: &ObjectAttributes,
 ) -> Result<ObjectId, HousesError> {
     for edge in size_m {
-        within("size_m", edge, [0.001, 100.0], "m an edge")?;
+        check_range("size_m", edge, [0.001, 100.0], "m an edge")?;
     }
     let half = 0.5 * Vec3::from(size_m);
     let mut own = HouseData::default();
@@ -240,7 +246,7 @@ fn from_box(
     let material = own.materials.push(Material::of("box_wood", wood));
     let colliders = vec![Collider::cuboid(-half, half)];
     let single = rigid(own, vec![material], colliders, "box", traits);
-    Ok(first(&graft(data, &single, &[ObjectId(0)])))
+    Ok(first(&copy_objects(data, &single, &[ObjectId(0)])))
 }
 
 /// The first mesh of `data` as a loose rigid thing; its mass is that of its category over the box around it.

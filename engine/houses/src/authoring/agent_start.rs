@@ -5,7 +5,7 @@ use dwell_scene::{AgentBody, AgentStart, Room, State};
 use glam::{Vec2, Vec3};
 
 use super::apply::EditSession;
-use super::edit_errors::{fault, point, within};
+use super::edit_errors::{check_range, checked_point, invalid_field};
 use super::edits::SetAgentStart;
 use super::surfaces;
 use crate::error::HousesError;
@@ -23,14 +23,15 @@ pub(super) fn set(
     session: &mut EditSession<'_>,
     wanted: &SetAgentStart,
 ) -> Result<(), HousesError> {
-    let yaw_rad = within("yaw_deg", wanted.yaw_deg, [-36_000.0, 36_000.0], "degrees")?.to_radians();
+    let yaw_rad =
+        check_range("yaw_deg", wanted.yaw_deg, [-36_000.0, 36_000.0], "degrees")?.to_radians();
     let room = match &wanted.room {
         Some(name) => Some(surfaces::room(&session.data, "room", name)?),
         None => None,
     };
     let position = match (wanted.at, room) {
         (Some(at), room) => {
-            let at = point("at", at)?;
+            let at = checked_point("at", at)?;
             if let Some(room) = room.map(|id| &session.data.rooms[id])
                 && !holds(room, at)
             {
@@ -38,7 +39,11 @@ pub(super) fn set(
                     "a place over the floor of {:?}, at {} m",
                     room.name, room.floor_y
                 );
-                return Err(fault("at", format_args!("{:?}", at.to_array()), possible));
+                return Err(invalid_field(
+                    "at",
+                    format_args!("{:?}", at.to_array()),
+                    possible,
+                ));
             }
             at
         }
@@ -46,10 +51,10 @@ pub(super) fn set(
             let room = session.data.rooms[room].clone();
             free_place(session, &room)?.ok_or_else(|| {
                 let found = format!("{:?}, where nobody can stand", room.name);
-                fault("room", found, "a room with free floor, or `at`")
+                invalid_field("room", found, "a room with free floor, or `at`")
             })?
         }
-        (None, None) => return Err(fault("at, room", "neither", "one of them, or both")),
+        (None, None) => return Err(invalid_field("at, room", "neither", "one of them, or both")),
     };
     let starts = &mut session.data.agent_starts;
     let next = starts.len();
@@ -57,10 +62,10 @@ pub(super) fn set(
     let start = AgentStart { position, yaw_rad };
     match starts.get_mut(agent) {
         Some(old) => *old = start,
-        None if agent == next && next < AgentStart::MOST => starts.push(start),
+        None if agent == next && next < AgentStart::MAX_PER_HOUSE => starts.push(start),
         None => {
-            let last = next.min(AgentStart::MOST - 1);
-            return Err(fault("agent", agent, format!("0 to {last}")));
+            let last = next.min(AgentStart::MAX_PER_HOUSE - 1);
+            return Err(invalid_field("agent", agent, format!("0 to {last}")));
         }
     }
     Ok(())
@@ -72,7 +77,7 @@ fn holds(room: &Room, at: Vec3) -> bool {
 
 /// The place nearest to the middle of a room where someone of usual size can stand, as the house is now.
 fn free_place(session: &EditSession<'_>, room: &Room) -> Result<Option<Vec3>, HousesError> {
-    let house = session.checked()?;
+    let house = session.build_house()?;
     let body = AgentBody::default();
     let config = NavConfig {
         radius_m: body.radius_m,

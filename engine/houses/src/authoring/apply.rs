@@ -8,12 +8,12 @@ use dwell_scene::parallel::Threads;
 use dwell_scene::{Aabb, House, HouseData, Level, ObjectId, Pose, State};
 use glam::{Quat, Vec3};
 
-use super::edit_errors::{fault, inside, point, unknown, within};
+use super::edit_errors::{check_range, checked_point, invalid_field, prefix_field, unknown_name};
 use super::edits::{AddRobot, Edit, MoveObject, RemoveObject, Rename};
 use super::files::FileAccess;
 use super::mesh_file::LoadedMesh;
 use super::object_index::ObjectIndex;
-use super::overlap_check::{overlaps, reaches_into_a_wall};
+use super::overlap_check::{intersects_wall, overlapping_pairs};
 use super::{add, agent_start, describe, doors, fixtures, place, remove_objects, surfaces};
 use crate::error::HousesError;
 use crate::import::room_kind;
@@ -65,8 +65,8 @@ pub fn edit(
     let mut session = EditSession::new(house.data().clone(), files);
     for (k, edit) in edits.iter().enumerate() {
         interrupt::check();
-        let place = format!("edits[{k}].{}", edit.word());
-        session.apply(edit).map_err(inside(place))?;
+        let place = format!("edits[{k}].{}", edit.json_name());
+        session.apply(edit).map_err(prefix_field(place))?;
     }
     session.flush_removals();
     let at = FileLocation::file("edits");
@@ -79,11 +79,11 @@ pub fn edit(
         interrupt::check();
         if is_outside(&edited, &state, *id) {
             report.warn(at.field(named(*id)), WarningKind::OutsideRooms);
-        } else if reaches_into_a_wall(&edited, *id) {
+        } else if intersects_wall(&edited, *id) {
             report.warn(at.field(named(*id)), WarningKind::InWall);
         }
     }
-    for (one, other) in overlaps(&edited, &put) {
+    for (one, other) in overlapping_pairs(&edited, &put) {
         let other = named(other).clone();
         report.warn(at.field(named(one)), WarningKind::Overlap { other });
     }
@@ -147,14 +147,14 @@ impl<'a> EditSession<'a> {
 
     fn apply(&mut self, edit: &Edit) -> Result<(), HousesError> {
         if let Edit::Remove(remove) = edit
-            && !remove.with_things
+            && !remove.with_contents
             && let Some(id) = self.object_index.find(&remove.object)
             && self.removed.insert(id)
         {
             return Ok(());
         }
         self.flush_removals();
-        self.object_index.follow(&self.data);
+        self.object_index.update(&self.data);
         match edit {
             Edit::Add(add) => add::add(self, add).map(drop),
             Edit::Remove(remove) => self.remove(remove),
@@ -167,12 +167,13 @@ impl<'a> EditSession<'a> {
             Edit::SetDoor(door) => {
                 let id = self.object("object", &door.object)?;
                 let joints = self.object_index.joints_of(&self.data, id);
-                self.object_index.moved([id]);
+                self.object_index.mark_moved([id]);
                 doors::set_door(&mut self.data, id, &joints, door)
             }
             Edit::Describe(change) => {
                 let id = self.object("object", &change.object)?;
-                describe::describe(&mut self.data, id, &change.traits).map_err(inside("traits"))
+                describe::describe(&mut self.data, id, &change.attributes)
+                    .map_err(prefix_field("traits"))
             }
             Edit::Rename(rename) => self.rename(rename),
         }
@@ -183,7 +184,7 @@ impl<'a> EditSession<'a> {
         if !self.removed.is_empty() {
             remove_objects::remove(&mut self.data, &self.removed);
             self.removed.clear();
-            self.object_index.forget();
+            self.object_index.clear();
         }
     }
 
@@ -194,12 +195,12 @@ impl<'a> EditSession<'a> {
     pub(super) fn object(&self, field: &str, name: &str) -> Result<ObjectId, HousesError> {
         self.object_index.find(name).ok_or_else(|| {
             let names = self.data.objects.iter().map(|object| object.name.as_str());
-            unknown(field, name, "objects", names)
+            unknown_name(field, name, "objects", names)
         })
     }
 
     /// The house as it is now.
-    pub(super) fn checked(&self) -> Result<House, HousesError> {
+    pub(super) fn build_house(&self) -> Result<House, HousesError> {
         House::new(self.data.clone()).map_err(HousesError::scene(&FileLocation::file("edits")))
     }
 
@@ -212,110 +213,127 @@ impl<'a> EditSession<'a> {
         if !with_things {
             return Ok(BTreeSet::from([id]));
         }
-        let boxes = self.object_index.boxes(&self.data);
-        place::with_things(&self.data, boxes, id)
+        let boxes = self.object_index.bounding_boxes(&self.data);
+        place::with_supported_objects(&self.data, boxes, id)
     }
 
     fn remove(&mut self, change: &RemoveObject) -> Result<(), HousesError> {
         let id = self.object("object", &change.object)?;
-        self.removed = self.group(id, change.with_things)?;
+        self.removed = self.group(id, change.with_contents)?;
         Ok(())
     }
 
     fn shift(&mut self, change: &MoveObject) -> Result<(), HousesError> {
         let id = self.object("object", &change.object)?;
-        let all = self.group(id, change.with_things)?;
-        let first = place::movement(self, id, &change.place)?;
-        let by = point("by", change.by)?;
-        let turn_rad = within(
+        let all = self.group(id, change.with_contents)?;
+        let first = place::placement_transform(self, id, &change.place)?;
+        let by = checked_point("by", change.translation_m)?;
+        let turn_rad = check_range(
             "turn_deg",
             change.turn_deg,
             [-36_000.0, 36_000.0],
             "degrees",
         )?
         .to_radians();
-        place::carry(self, &all, &first);
+        place::transform_objects(self, &all, &first);
         let pivot = place::anchor_in_world(&self.data, id, change.place.anchor);
         let turn = if turn_rad == 0.0 {
             Quat::IDENTITY
         } else {
             dwell_scene::space::rotation_from_yaw_pitch(turn_rad, 0.0)
         };
-        place::carry(self, &all, &Pose::new(pivot + by - turn * pivot, turn));
+        place::transform_objects(self, &all, &Pose::new(pivot + by - turn * pivot, turn));
         for object in all {
-            place::settle(&mut self.data, object);
+            place::update_room_and_level(&mut self.data, object);
         }
         Ok(())
     }
 
     fn robot(&mut self, robot: &AddRobot) -> Result<(), HousesError> {
-        let at = point("at", robot.at)?;
-        let yaw = within("yaw_deg", robot.yaw_deg, [-36_000.0, 36_000.0], "degrees")?.to_radians();
-        self.free_name("name", &robot.name)?;
+        let at = checked_point("at", robot.at)?;
+        let yaw =
+            check_range("yaw_deg", robot.yaw_deg, [-36_000.0, 36_000.0], "degrees")?.to_radians();
+        self.check_name_is_free("name", &robot.name)?;
         let path = self.files.path("path", &robot.path)?;
         let (model, report) = crate::open_robot(&path)?;
         self.report.append(report);
         let fixed = robot.fixed_base.unwrap_or_else(|| model.has_fixed_base());
-        let base = Pose::from_position_yaw(at, yaw) * crate::robot::ours_from_robot();
+        let base = Pose::from_position_yaw(at, yaw) * crate::robot::dwell_from_robot();
         crate::robot::add(&mut self.data, &model, &robot.name, base, fixed);
         Ok(())
     }
 
     fn rename(&mut self, change: &Rename) -> Result<(), HousesError> {
-        if change.to.trim().is_empty() || change.to.contains(char::is_control) {
+        if change.new_name.trim().is_empty() || change.new_name.contains(char::is_control) {
             let allowed = "a name, without control characters";
-            return Err(fault("to", format_args!("{:?}", change.to), allowed));
+            return Err(invalid_field(
+                "to",
+                format_args!("{:?}", change.new_name),
+                allowed,
+            ));
         }
         if change.kind.is_some() && change.room.is_none() {
-            return Err(fault("kind", "a kind without a room", "`room` and `kind`"));
+            return Err(invalid_field(
+                "kind",
+                "a kind without a room",
+                "`room` and `kind`",
+            ));
         }
         match (&change.object, &change.room) {
-            (Some(_), Some(_)) => Err(fault("object", "an object and a room", "one of them")),
+            (Some(_), Some(_)) => Err(invalid_field(
+                "object",
+                "an object and a room",
+                "one of them",
+            )),
             (Some(name), None) => {
                 let id = self.object("object", name)?;
-                if *name != change.to {
-                    self.free_name("to", &change.to)?;
+                if *name != change.new_name {
+                    self.check_name_is_free("to", &change.new_name)?;
                 }
-                self.data.objects[id].name.clone_from(&change.to);
-                self.object_index.forget();
+                self.data.objects[id].name.clone_from(&change.new_name);
+                self.object_index.clear();
                 Ok(())
             }
             (None, Some(name)) => {
                 let id = surfaces::room(&self.data, "room", name)?;
-                let taken = self.data.rooms.iter().any(|room| room.name == change.to);
-                if taken && *name != change.to {
-                    return Err(fault(
+                let taken = self
+                    .data
+                    .rooms
+                    .iter()
+                    .any(|room| room.name == change.new_name);
+                if taken && *name != change.new_name {
+                    return Err(invalid_field(
                         "to",
-                        format_args!("{:?}", change.to),
+                        format_args!("{:?}", change.new_name),
                         "a name that no other room has",
                     ));
                 }
                 let room = &mut self.data.rooms[id];
-                room.name.clone_from(&change.to);
+                room.name.clone_from(&change.new_name);
                 if let Some(kind) = &change.kind {
                     room.kinds = vec![room_kind(kind).unwrap_or_else(|plain| plain)];
                 }
                 Ok(())
             }
             (None, None) => {
-                self.data.name.clone_from(&change.to);
+                self.data.name.clone_from(&change.new_name);
                 Ok(())
             }
         }
     }
 
     /// Refuses an object's name that is empty or taken.
-    pub(super) fn free_name(&self, field: &str, name: &str) -> Result<(), HousesError> {
+    pub(super) fn check_name_is_free(&self, field: &str, name: &str) -> Result<(), HousesError> {
         let is_name = !name.trim().is_empty() && !name.contains(char::is_control);
         if !is_name || self.object_index.find(name).is_some() {
             let possible = "a name that no other object has";
-            return Err(fault(field, format_args!("{name:?}"), possible));
+            return Err(invalid_field(field, format_args!("{name:?}"), possible));
         }
         Ok(())
     }
 
     /// The middle of an object's root, in the space of that part, m.
-    pub(super) fn middle_of_root(&self, id: ObjectId) -> Vec3 {
+    pub(super) fn root_centre_in_part(&self, id: ObjectId) -> Vec3 {
         let part = &self.data.parts[self.data.objects[id].first_part];
         let bounds = self.data.meshes[part.mesh].bounds();
         if bounds.is_empty() {

@@ -10,7 +10,11 @@ use dwell_scene::{
 use super::sound_file;
 
 /// Appends copies of `objects` to `into` and returns their ids. Storey and room are left to the caller.
-pub(super) fn graft(into: &mut HouseData, from: &HouseData, objects: &[ObjectId]) -> Vec<ObjectId> {
+pub(super) fn copy_objects(
+    into: &mut HouseData,
+    from: &HouseData,
+    objects: &[ObjectId],
+) -> Vec<ObjectId> {
     let mut graft = ObjectCopier {
         into,
         from,
@@ -79,7 +83,7 @@ impl ObjectCopier<'_> {
             (emitter.object, emitter.part) = (new, part_of(emitter.part));
             if let Some(file) = emitter.sound_file {
                 let sound = from.sound_files[file].clone();
-                let file = sound_file::keep(&mut into.sound_files, sound);
+                let file = sound_file::add_or_find(&mut into.sound_files, sound);
                 emitter.signal.clone_from(&into.sound_files[file].name);
                 emitter.sound_file = Some(file);
             }

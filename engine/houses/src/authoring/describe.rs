@@ -3,7 +3,7 @@
 use dwell_furniture::tables::category_names;
 use dwell_scene::{Category, Collider, HouseData, Mobility, ObjectId, Part};
 
-use super::edit_errors::{fault, unknown, within};
+use super::edit_errors::{check_range, invalid_field, unknown_name};
 use super::edits::ObjectAttributes;
 use super::place;
 use crate::error::HousesError;
@@ -21,7 +21,7 @@ pub(super) fn describe(
     if let Some(name) = &traits.category {
         let plain = name.trim().to_ascii_lowercase().replace([' ', '-'], "_");
         let row = category([plain.as_str()])
-            .ok_or_else(|| unknown("category", name, "categories", category_names()))?;
+            .ok_or_else(|| unknown_name("category", name, "categories", category_names()))?;
         data.objects[id].category = Category {
             fine: row.name.clone(),
             coarse: row.name.clone(),
@@ -33,11 +33,15 @@ pub(super) fn describe(
     }
     match (traits.mass_kg, traits.density_kg_m3) {
         (Some(_), Some(_)) => {
-            return Err(fault("mass_kg", "a mass and a density", "one of them"));
+            return Err(invalid_field(
+                "mass_kg",
+                "a mass and a density",
+                "one of them",
+            ));
         }
         (Some(mass_kg), None) => set_mass(data, id, mass_kg)?,
         (None, Some(density)) => {
-            let density = within("density_kg_m3", density, [0.01, 30_000.0], "kg/m3")?;
+            let density = check_range("density_kg_m3", density, [0.01, 30_000.0], "kg/m3")?;
             for part in data.objects[id].parts() {
                 let part = &mut data.parts[part];
                 (part.mass_kg, part.density_kg_m3, part.inertial) = (None, density, None);
@@ -55,7 +59,7 @@ pub(super) fn describe(
 }
 
 fn set_mass(data: &mut HouseData, id: ObjectId, mass_kg: f32) -> Result<(), HousesError> {
-    let mass_kg = within("mass_kg", mass_kg, [1e-6, 1e6], "kg")?;
+    let mass_kg = check_range("mass_kg", mass_kg, [1e-6, 1e6], "kg")?;
     let object = &data.objects[id];
     if let (true, [part]) = (
         object.part_count == 1,
@@ -72,7 +76,7 @@ fn set_mass(data: &mut HouseData, id: ObjectId, mass_kg: f32) -> Result<(), Hous
         .collect();
     let Some(masses) = masses else {
         let possible = "a density: the masses of its parts are not known";
-        return Err(fault("mass_kg", mass_kg, possible));
+        return Err(invalid_field("mass_kg", mass_kg, possible));
     };
     let share = mass_kg / masses.iter().sum::<f32>();
     for (part, mass) in object.parts().zip(masses).collect::<Vec<_>>() {
@@ -102,10 +106,10 @@ fn set_mobility(data: &mut HouseData, id: ObjectId, wanted: Mobility) -> Result<
             "{:?}: only what is one rigid part can be fixed or loosened",
             object.mobility
         );
-        return Err(fault("mobility", found.to_lowercase(), possible));
+        return Err(invalid_field("mobility", found.to_lowercase(), possible));
     }
     let row = category([object.category.coarse.as_str()]);
-    let volume = place::world_box(data, id).volume();
+    let volume = place::world_bounds(data, id).volume();
     let part = data.objects[id].first_part;
     let part = &mut data.parts[part];
     part.fixed = wanted == Mobility::Fixed;

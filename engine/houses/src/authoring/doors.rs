@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use dwell_scene::{HouseData, JointId, ObjectId};
 
-use super::edit_errors::{fault, unknown, within};
+use super::edit_errors::{check_range, invalid_field, unknown_name};
 use super::edits::SetDoor;
 use crate::error::HousesError;
 
@@ -18,14 +18,16 @@ pub(super) fn set_door(
     joints: &[JointId],
     change: &SetDoor,
 ) -> Result<(), HousesError> {
-    let open = within("open", change.open, [0.0, 1.0], "")?;
+    let open = check_range("open", change.open, [0.0, 1.0], "")?;
     let own = joints.iter().copied();
-    let own: Vec<JointId> = own.filter(|joint| data.joints[*joint].opens()).collect();
+    let own: Vec<JointId> = own
+        .filter(|joint| data.joints[*joint].is_openable())
+        .collect();
     if own.is_empty() {
         let openable = data.objects.iter_ids().filter(|(id, _)| {
             data.joints
                 .iter()
-                .any(|joint| joint.object == *id && joint.opens())
+                .any(|joint| joint.object == *id && joint.is_openable())
         });
         let names: Vec<&str> = openable
             .map(|(_, object)| object.name.as_str())
@@ -36,7 +38,7 @@ pub(super) fn set_door(
             "an object with a door, drawer or lid, such as {}",
             names.join(", ")
         );
-        return Err(fault("object", found, possible));
+        return Err(invalid_field("object", found, possible));
     }
     let named = |joint: &JointId| {
         let wanted = change.joint.as_ref();
@@ -45,7 +47,7 @@ pub(super) fn set_door(
     let chosen: BTreeSet<JointId> = own.iter().copied().filter(named).collect();
     if let (true, Some(name)) = (chosen.is_empty(), &change.joint) {
         let known = own.iter().map(|joint| data.joints[*joint].name.as_str());
-        return Err(unknown("joint", name, "joints that open", known));
+        return Err(unknown_name("joint", name, "joints that open", known));
     }
     // Parents stand before their children, so that one pass moves all that hangs on a joint.
     let mut moved = BTreeSet::new();
@@ -68,7 +70,9 @@ pub(super) fn set_door(
             joint.world_from_child(&world_from_parent, joint.initial);
         moved.insert(child);
     }
-    let switches = chosen.iter().any(|joint| data.joints[*joint].switches);
+    let switches = chosen
+        .iter()
+        .any(|joint| data.joints[*joint].toggles_switch);
     if switches {
         data.objects[id].switch = Some(open > 0.5);
     }

@@ -5,13 +5,13 @@ use std::fmt::Display;
 use dwell_scene::material::{Substance, library};
 
 use crate::error::HousesError;
-use crate::name_suggestions::nearest;
+use crate::name_suggestions::nearest_names;
 
 /// Largest number of names that are offered in place of an unknown one.
-pub(super) const OFFERED: usize = 6;
+pub(super) const MAX_SUGGESTIONS: usize = 6;
 
 /// The error of an impossible field.
-pub(super) fn fault(
+pub(super) fn invalid_field(
     field: impl Display,
     found: impl Display,
     possible: impl Into<String>,
@@ -24,40 +24,40 @@ pub(super) fn fault(
 }
 
 /// Prefixes the error's field with `place`.
-pub(super) fn inside(place: impl Display) -> impl FnOnce(HousesError) -> HousesError {
+pub(super) fn prefix_field(place: impl Display) -> impl FnOnce(HousesError) -> HousesError {
     move |error| match error {
         HousesError::Spec {
             field,
             found,
             possible,
-        } => fault(format_args!("{place}.{field}"), found, possible),
+        } => invalid_field(format_args!("{place}.{field}"), found, possible),
         other => other,
     }
 }
 
 /// The error of an unknown name; offers the nearest of those that exist.
-pub(super) fn unknown<'a>(
+pub(super) fn unknown_name<'a>(
     field: impl Display,
     name: &str,
     of: &str,
     known: impl Iterator<Item = &'a str>,
 ) -> HousesError {
     let known: Vec<&str> = known.collect();
-    let near = nearest(name, known.iter().copied(), OFFERED + 1);
+    let near = nearest_names(name, known.iter().copied(), MAX_SUGGESTIONS + 1);
     let possible = match near.len() {
         0 => format!("nothing: there are no {of}"),
-        few if few <= OFFERED => format!("one of the {of}: {}", near.join(", ")),
+        few if few <= MAX_SUGGESTIONS => format!("one of the {of}: {}", near.join(", ")),
         _ => format!(
             "one of {} {of}; the nearest are {}",
             known.len(),
-            near[..OFFERED].join(", ")
+            near[..MAX_SUGGESTIONS].join(", ")
         ),
     };
-    fault(field, format_args!("{name:?}"), possible)
+    invalid_field(field, format_args!("{name:?}"), possible)
 }
 
 /// Checks a number within `[low, high]`.
-pub(super) fn within(
+pub(super) fn check_range(
     field: &str,
     value: f32,
     [low, high]: [f32; 2],
@@ -66,7 +66,7 @@ pub(super) fn within(
     if (low..=high).contains(&value) {
         return Ok(value);
     }
-    Err(fault(
+    Err(invalid_field(
         field,
         value,
         format!("{low} to {high} {unit}").trim(),
@@ -74,13 +74,13 @@ pub(super) fn within(
 }
 
 /// Checks a position in the scene, m.
-pub(super) fn point(field: &str, value: [f32; 3]) -> Result<glam::Vec3, HousesError> {
+pub(super) fn checked_point(field: &str, value: [f32; 3]) -> Result<glam::Vec3, HousesError> {
     let near = |x: &f32| x.abs() <= 32_768.0;
     if value.iter().all(near) {
         return Ok(value.into());
     }
     let found = format!("{value:?}");
-    Err(fault(
+    Err(invalid_field(
         field,
         found,
         "coordinates within 32768 m of the origin",
@@ -88,11 +88,11 @@ pub(super) fn point(field: &str, value: [f32; 3]) -> Result<glam::Vec3, HousesEr
 }
 
 /// Looks up a row of the materials table.
-pub(super) fn substance(field: &str, name: &str) -> Result<&'static Substance, HousesError> {
+pub(super) fn find_substance(field: &str, name: &str) -> Result<&'static Substance, HousesError> {
     let known = || library().iter().map(|substance| substance.name.as_str());
     library()
         .get(name)
-        .ok_or_else(|| unknown(field, name, "substances", known()))
+        .ok_or_else(|| unknown_name(field, name, "substances", known()))
 }
 
 #[cfg(test)]
@@ -110,13 +110,13 @@ mod tests {
             "bed_1",
             "wardrobe_1",
         ];
-        let told = unknown("object", "chiar_1", "objects", known.into_iter()).to_string();
+        let told = unknown_name("object", "chiar_1", "objects", known.into_iter()).to_string();
         assert!(
             told.starts_with("object: found \"chiar_1\"; possible: one of 7 objects"),
             "{told}"
         );
         assert!(told.contains("nearest are chair_1, chair_2"), "{told}");
-        let few = unknown("on", "tabel", "objects", ["table", "cup"].into_iter()).to_string();
+        let few = unknown_name("on", "tabel", "objects", ["table", "cup"].into_iter()).to_string();
         assert_eq!(
             few,
             "on: found \"tabel\"; possible: one of the objects: table, cup"

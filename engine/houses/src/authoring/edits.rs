@@ -33,7 +33,7 @@ pub enum Edit {
 
 impl Edit {
     /// Returns its name in JSON.
-    pub(super) fn word(&self) -> &'static str {
+    pub(super) fn json_name(&self) -> &'static str {
         match self {
             Self::Add(_) => "add",
             Self::Remove(_) => "remove",
@@ -55,7 +55,8 @@ impl Edit {
 #[serde(deny_unknown_fields)]
 pub struct AddObject {
     /// The source of the object.
-    pub what: ObjectSource,
+    #[serde(rename = "what")]
+    pub source: ObjectSource,
     /// Its name; `None`: its category with a number.
     #[serde(default)]
     pub name: Option<String>,
@@ -64,10 +65,12 @@ pub struct AddObject {
     pub place: Placement,
     /// Attributes that differ from those of the source.
     #[serde(default)]
-    pub traits: ObjectAttributes,
+    #[serde(rename = "traits")]
+    pub attributes: ObjectAttributes,
     /// A surface style that replaces those of all its surfaces.
     #[serde(default)]
-    pub look: Option<SurfaceStyle>,
+    #[serde(rename = "look")]
+    pub style: Option<SurfaceStyle>,
     /// A sound that the object emits from its middle.
     #[serde(default)]
     pub sound: Option<SoundSpec>,
@@ -191,7 +194,8 @@ pub struct SurfaceStyle {
     /// Roughness as in glTF 2.0, 0 to 1.
     pub roughness: Option<f32>,
     /// Another substance keeps colour, image, opacity and roughness.
-    pub keep_look: bool,
+    #[serde(rename = "keep_look")]
+    pub keep_appearance: bool,
 }
 
 /// A sound: a signal or a file.
@@ -223,7 +227,8 @@ pub struct RemoveObject {
     pub object: String,
     /// True to remove what stands on it or lies in it too; else that stays in place.
     #[serde(default)]
-    pub with_things: bool,
+    #[serde(rename = "with_things")]
+    pub with_contents: bool,
 }
 
 /// Moves an object.
@@ -237,13 +242,15 @@ pub struct MoveObject {
     pub place: Placement,
     /// Translation after that, m.
     #[serde(default)]
-    pub by: [f32; 3],
+    #[serde(rename = "by")]
+    pub translation_m: [f32; 3],
     /// Rotation about its anchor after that, degrees to the left.
     #[serde(default)]
     pub turn_deg: f32,
     /// True to move what stands on it or lies in it along.
     #[serde(default = "yes")]
-    pub with_things: bool,
+    #[serde(rename = "with_things")]
+    pub with_contents: bool,
 }
 
 const fn yes() -> bool {
@@ -255,9 +262,11 @@ const fn yes() -> bool {
 #[serde(deny_unknown_fields)]
 pub struct ChangeMaterial {
     /// The surfaces to change.
-    pub of: SurfaceSelector,
+    #[serde(rename = "of")]
+    pub surfaces: SurfaceSelector,
     /// Their new style.
-    pub look: SurfaceStyle,
+    #[serde(rename = "look")]
+    pub style: SurfaceStyle,
 }
 
 /// Surfaces of a house.
@@ -403,7 +412,8 @@ pub struct SetAttributes {
     /// The object's name.
     pub object: String,
     /// The attributes to set.
-    pub traits: ObjectAttributes,
+    #[serde(rename = "traits")]
+    pub attributes: ObjectAttributes,
 }
 
 /// Gives another name to an object or a room; without either, to the house.
@@ -417,7 +427,8 @@ pub struct Rename {
     #[serde(default)]
     pub room: Option<String>,
     /// The new name; not taken yet.
-    pub to: String,
+    #[serde(rename = "to")]
+    pub new_name: String,
     /// The kind of the room in everyday words, if that changes too.
     #[serde(default)]
     pub kind: Option<String>,

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::edit_errors::fault;
+use super::edit_errors::invalid_field;
 use crate::data_root::DataRoot;
 use crate::error::HousesError;
 use crate::report::FileLocation;
@@ -23,7 +23,7 @@ impl FileAccess {
     /// [`HousesError::PathLeavesRoot`].
     pub(super) fn path(&self, field: &str, name: &str) -> Result<PathBuf, HousesError> {
         if name.is_empty() {
-            return Err(fault(field, "nothing", "the path of a file"));
+            return Err(invalid_field(field, "nothing", "the path of a file"));
         }
         let Self::Below(root) = self else {
             return Ok(PathBuf::from(name));
@@ -48,7 +48,7 @@ impl FileAccess {
     pub(super) fn house(&self, field: &str, house: &str) -> Result<String, HousesError> {
         if super::open::recognizes(Path::new(house)) || house.contains("?map=") {
             let possible = "a HOUSE that is no plan and has no map";
-            return Err(fault(field, format_args!("{house:?}"), possible));
+            return Err(invalid_field(field, format_args!("{house:?}"), possible));
         }
         if house.starts_with("builtin:") || house.starts_with("seed:") {
             return Ok(house.to_owned());

@@ -9,10 +9,10 @@ use dwell_scene::{
 };
 use glam::{Affine3A, Vec3};
 
-use super::add::{from_model, model, put};
+use super::add::{from_model, model, place_new_object};
 use super::apply::EditSession;
-use super::copy_objects::graft;
-use super::edit_errors::{fault, inside, point, within};
+use super::copy_objects::copy_objects;
+use super::edit_errors::{check_range, checked_point, invalid_field, prefix_field};
 use super::edits::{AddEmitter, AddLamp, Placement, SoundSpec};
 use super::sound_file;
 use crate::error::HousesError;
@@ -32,13 +32,13 @@ pub(super) fn sound_of(
     id: ObjectId,
     sound: &SoundSpec,
 ) -> Result<(), HousesError> {
-    let level_db = within("level_db", sound.level_db, [-20.0, 140.0], "dB SPL at 1 m")?;
-    let start_s = within("start_s", sound.start_s, [0.0, 86_400.0], "s")?;
+    let level_db = check_range("level_db", sound.level_db, [-20.0, 140.0], "dB SPL at 1 m")?;
+    let start_s = check_range("start_s", sound.start_s, [0.0, 86_400.0], "s")?;
     let (signal, sound_file) = match (&sound.signal, &sound.file) {
         (Some(signal), None) if !signal.is_empty() => (signal.clone(), None),
         (None, Some(file)) => {
-            let sound = sound_file::load(session.files, file)?;
-            let id = sound_file::keep(&mut session.data.sound_files, Arc::new(sound));
+            let sound = sound_file::read_sound_file(session.files, file)?;
+            let id = sound_file::add_or_find(&mut session.data.sound_files, Arc::new(sound));
             (session.data.sound_files[id].name.clone(), Some(id))
         }
         (both, _) => {
@@ -48,10 +48,10 @@ pub(super) fn sound_of(
                 "nothing"
             };
             let possible = "the name of a signal, or a sound file";
-            return Err(fault("signal, file", found, possible));
+            return Err(invalid_field("signal, file", found, possible));
         }
     };
-    let position = session.middle_of_root(id);
+    let position = session.root_centre_in_part(id);
     let object = &mut session.data.objects[id];
     object.switch = object.switch.map(|_| true);
     let part = object.first_part;
@@ -80,18 +80,18 @@ pub(super) fn add_emitter(
         (Some(name), None) => {
             let id = session.object("object", name)?;
             if wanted.name.is_some() {
-                return Err(fault(
+                return Err(invalid_field(
                     "name",
                     "a name for an object that has one",
                     "a name beside `at`",
                 ));
             }
-            sound_of(session, id, &wanted.sound).map_err(inside("sound"))
+            sound_of(session, id, &wanted.sound).map_err(prefix_field("sound"))
         }
         (None, Some(at)) => {
-            let at = point("at", at)?;
+            let at = checked_point("at", at)?;
             if let Some(name) = &wanted.name {
-                session.free_name("name", name)?;
+                session.check_name_is_free("name", name)?;
             }
             let id = disc(&mut session.data);
             let name = match &wanted.name {
@@ -104,8 +104,8 @@ pub(super) fn add_emitter(
                 anchor: super::edits::Anchor::Top,
                 ..Placement::default()
             };
-            put(session, id, Some(&name), &place)?;
-            sound_of(session, id, &wanted.sound).map_err(inside("sound"))?;
+            place_new_object(session, id, Some(&name), &place)?;
+            sound_of(session, id, &wanted.sound).map_err(prefix_field("sound"))?;
             if let Some(emitter) = session.data.emitters.last_mut() {
                 emitter.position = Vec3::Y * (0.5 * DISC_M[1] + below);
             }
@@ -117,7 +117,7 @@ pub(super) fn add_emitter(
             } else {
                 "neither"
             };
-            Err(fault("object, at", found, "one of them"))
+            Err(invalid_field("object, at", found, "one of them"))
         }
     }
 }
@@ -163,7 +163,7 @@ fn disc(data: &mut HouseData) -> ObjectId {
         first_part: PartId(0),
         part_count: 1,
     });
-    let added = graft(data, &own, &[ObjectId(0)]);
+    let added = copy_objects(data, &own, &[ObjectId(0)]);
     added.first().copied().unwrap_or(ObjectId::from_index(0))
 }
 
@@ -174,14 +174,14 @@ fn disc(data: &mut HouseData) -> ObjectId {
 pub(super) fn add_lamp(session: &mut EditSession<'_>, wanted: &AddLamp) -> Result<(), HousesError> {
     let power = wanted
         .power_w
-        .map(|power| within("power_w", power, [0.0, 1e5], "W"))
+        .map(|power| check_range("power_w", power, [0.0, 1e5], "W"))
         .transpose()?;
     let color = wanted
         .srgb
         .map(|srgb| srgb.map(|c| units::linear_from_srgb(f32::from(c) / 255.0)));
     if let Some(name) = &wanted.object {
         let id = session.object("object", name)?;
-        let position = session.middle_of_root(id);
+        let position = session.root_centre_in_part(id);
         let object = &mut session.data.objects[id];
         object.switch = Some(wanted.on);
         let part = object.first_part;
@@ -197,22 +197,22 @@ pub(super) fn add_lamp(session: &mut EditSession<'_>, wanted: &AddLamp) -> Resul
         return Ok(());
     }
     if let Some(name) = &wanted.name {
-        session.free_name("name", name)?;
+        session.check_name_is_free("name", name)?;
     }
     let lamp = model(&wanted.kind, wanted.style.as_deref(), wanted.seed)?;
     if lamp.lights.is_empty() {
         let lamps = "a lamp: ceiling_lamp, drum_lamp, pendant, chandelier, floor_lamp, table_lamp, desk_lamp, wall_lamp";
-        return Err(fault(
+        return Err(invalid_field(
             "kind",
             format_args!("{:?}, which does not shine", wanted.kind),
             lamps,
         ));
     }
     if wanted.place.at.is_none() && wanted.place.on.is_none() {
-        return Err(fault("place", "no place", "`at`, `on`, or both"));
+        return Err(invalid_field("place", "no place", "`at`, `on`, or both"));
     }
     let id = from_model(&mut session.data, lamp);
-    put(session, id, wanted.name.as_deref(), &wanted.place)?;
+    place_new_object(session, id, wanted.name.as_deref(), &wanted.place)?;
     session.data.objects[id].switch = Some(wanted.on);
     let own = session
         .data

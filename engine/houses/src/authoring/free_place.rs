@@ -3,7 +3,7 @@
 use dwell_scene::{Aabb, HouseData, Id, ObjectId};
 use glam::{Vec2, Vec3};
 
-use super::place::{height_over, triangles};
+use super::place::{triangle_height_at, triangles};
 
 /// Spacing of the places that are tried, m, and the most of them along a side.
 const STEP_M: f32 = 0.05;
@@ -30,7 +30,10 @@ impl SupportSurface {
 
     /// The highest point on an upright line, m.
     pub(super) fn height_m(&self, xz: Vec2) -> Option<f32> {
-        let heights = self.triangles.iter().filter_map(|t| height_over(*t, xz));
+        let heights = self
+            .triangles
+            .iter()
+            .filter_map(|t| triangle_height_at(*t, xz));
         heights.reduce(f32::max)
     }
 }
@@ -47,7 +50,7 @@ pub(super) struct PlacementSearch<'a> {
 
 impl<'a> PlacementSearch<'a> {
     /// A search on `carrier` for `thing`, which has the box `around` its anchor; `boxes`: those around all objects, m.
-    pub(super) fn on(
+    pub(super) fn new(
         data: &HouseData,
         boxes: &[Aabb],
         carrier: ObjectId,
@@ -74,7 +77,7 @@ impl<'a> PlacementSearch<'a> {
 
     /// The free place nearest to the carrier's middle where the thing stands on even ground; for one that is larger than all even ground,
     /// the one nearest where its middle is carried.
-    pub(super) fn find(&self) -> Option<Vec3> {
+    pub(super) fn find_free_position(&self) -> Option<Vec3> {
         let even = self.places().find(|place| self.is_even(*place));
         even.or_else(|| self.places().next())
     }

@@ -4,7 +4,7 @@ use dwell_scene::{Articulation, Collider, HouseData, JointKind, Mobility, Object
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 
-use super::edit_errors::{fault, point, within};
+use super::edit_errors::{check_range, checked_point, invalid_field};
 use super::edits::ObjectAttributes;
 use super::{describe, place};
 use crate::error::HousesError;
@@ -103,7 +103,7 @@ impl BoxSide {
 /// # Errors
 /// [`HousesError::Spec`] for an object of several parts, a hinge without place or with two, on a side that its axis runs
 /// through, or that does not open.
-pub(super) fn hang(
+pub(super) fn attach_hinge(
     data: &mut HouseData,
     id: ObjectId,
     hinge: &NodeHinge,
@@ -111,17 +111,21 @@ pub(super) fn hang(
     let object = &data.objects[id];
     if object.part_count != 1 || data.joints.iter().any(|joint| joint.object == id) {
         let found = format!("{:?}, which has joints or parts", object.name);
-        return Err(fault("hinge", found, "a node that is one rigid part"));
+        return Err(invalid_field(
+            "hinge",
+            found,
+            "a node that is one rigid part",
+        ));
     }
-    let bounds = place::world_box(data, id);
+    let bounds = place::world_bounds(data, id);
     let axis = hinge.axis.direction();
     let pivot = match (hinge.edge, hinge.at) {
-        (None, Some(at)) => point("hinge.at", at)?,
+        (None, Some(at)) => checked_point("hinge.at", at)?,
         (Some(edge), None) => {
             let normal = edge.normal();
             if normal.dot(axis) != 0.0 {
                 let found = format!("the axis {:?} through that side", hinge.axis).to_lowercase();
-                return Err(fault(
+                return Err(invalid_field(
                     "hinge.edge",
                     found,
                     "a side that the axis runs along",
@@ -131,15 +135,15 @@ pub(super) fn hang(
         }
         (edge, _) => {
             let found = if edge.is_some() { "both" } else { "neither" };
-            return Err(fault("hinge.edge, hinge.at", found, "one of them"));
+            return Err(invalid_field("hinge.edge, hinge.at", found, "one of them"));
         }
     };
     let turn = [-360.0, 360.0];
-    let open = within("hinge.open_deg", hinge.open_deg, turn, "degrees")?.to_radians();
-    let closed = within("hinge.closed_deg", hinge.closed_deg, turn, "degrees")?.to_radians();
+    let open = check_range("hinge.open_deg", hinge.open_deg, turn, "degrees")?.to_radians();
+    let closed = check_range("hinge.closed_deg", hinge.closed_deg, turn, "degrees")?.to_radians();
     if open == closed {
         let possible = "another angle than `closed_deg`";
-        return Err(fault("hinge.open_deg", hinge.open_deg, possible));
+        return Err(invalid_field("hinge.open_deg", hinge.open_deg, possible));
     }
     // A moving part has a mass and convex pieces, as any movable object.
     let traits = ObjectAttributes {

@@ -7,7 +7,7 @@ use dwell_scene::{HouseData, MaterialId, Mesh};
 use glam::{Affine3A, Quat, Vec3};
 
 use super::apply::EditSession;
-use super::edit_errors::{fault, within};
+use super::edit_errors::{check_range, invalid_field};
 use super::edits::UpAxis;
 use crate::data_root::UserFile;
 use crate::error::HousesError;
@@ -34,7 +34,7 @@ pub(super) fn load(
     scale: f32,
     up: UpAxis,
 ) -> Result<Arc<LoadedMesh>, HousesError> {
-    let scale = within(
+    let scale = check_range(
         "scale",
         scale,
         [1e-6, 1e6],
@@ -59,7 +59,7 @@ pub(super) fn load(
     let ours_from_file =
         Affine3A::from_scale_rotation_translation(Vec3::splat(scale), turn, Vec3::ZERO);
     let pieces: Vec<(Arc<Mesh>, Vec<MaterialId>)> = scene
-        .things
+        .nodes
         .into_iter()
         .map(|thing| {
             let map = ours_from_file * thing.world_from_mesh;
@@ -79,11 +79,11 @@ pub(super) fn load(
     }
     if mesh.bounds().size().max_element() > 1_000.0 {
         let found = format!("{:?} m", mesh.bounds().size().to_array());
-        return Err(fault("scale", found, "a thing of at most 1000 m"));
+        return Err(invalid_field("scale", found, "a thing of at most 1000 m"));
     }
     mesh.shrink_to_fit();
     let mut data = HouseData {
-        materials: scene.looks.finish_materials(),
+        materials: scene.materials.finish_materials(),
         textures: scene.textures.into(),
         ..HouseData::default()
     };
@@ -105,11 +105,11 @@ fn read(
         let unread = report
             .warnings()
             .iter()
-            .find(|w| matches!(w.damage, WarningKind::UnreadableMesh { .. }));
+            .find(|w| matches!(w.kind, WarningKind::UnreadableMesh { .. }));
         return match unread {
             Some(warning) => Err(HousesError::Syntax {
                 at,
-                message: warning.damage.to_string(),
+                message: warning.kind.to_string(),
             }),
             None => Ok(scene),
         };
@@ -119,5 +119,5 @@ fn read(
         return crate::gltf::read_scene(&bytes, &root, &name, threads, report);
     }
     let found = format!("{:?}", path.display().to_string());
-    Err(fault("path", found, "a .glb, .gltf or .obj"))
+    Err(invalid_field("path", found, "a .glb, .gltf or .obj"))
 }

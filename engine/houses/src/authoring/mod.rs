@@ -44,4 +44,4 @@ pub use hinge::{BoxSide, HingeAxis, NodeHinge};
 pub use name_mapping::{MappedMaterial, MappedNode, MappedRoom, NameMapping, map_template};
 pub use open::{HousePlan, build, edits_from_json};
 pub(crate) use open::{open, recognizes};
-pub use unmapped::{UnmappedName, UnmappedNames, unmapped};
+pub use unmapped::{UnmappedName, UnmappedNames, unmapped_names};

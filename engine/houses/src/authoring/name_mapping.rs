@@ -10,9 +10,9 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
-use super::edit_errors::{fault, inside};
+use super::edit_errors::{invalid_field, prefix_field};
 use super::edits::{ObjectAttributes, SurfaceStyle};
-use super::hinge::{NodeHinge, hang};
+use super::hinge::{NodeHinge, attach_hinge};
 use super::unmapped::UnmappedNames;
 use super::{describe, place, remove_objects, surfaces};
 use crate::data_root::UserFile;
@@ -225,7 +225,7 @@ impl NameMapping {
                 room.kinds = vec![room_kind(kind).unwrap_or_else(|plain| plain)];
             }
         }
-        report.retain(|warning| match &warning.damage {
+        report.retain(|warning| match &warning.kind {
             WarningKind::Unmapped { name, .. } => {
                 let name = || std::iter::once(name.as_str());
                 let material = best(&self.materials, name())
@@ -258,18 +258,18 @@ impl NameMapping {
                 srgb: row.srgb,
                 opacity: row.opacity,
                 roughness: row.roughness,
-                keep_look: true,
+                keep_appearance: true,
             };
             if look
                 == (SurfaceStyle {
-                    keep_look: true,
+                    keep_appearance: true,
                     ..SurfaceStyle::default()
                 })
             {
                 continue;
             }
             let place = format!("materials.{pattern:?}");
-            surfaces::change_in_place(data, id, &look).map_err(inside(place))?;
+            surfaces::change_in_place(data, id, &look).map_err(prefix_field(place))?;
         }
         Ok(())
     }
@@ -296,10 +296,10 @@ impl NameMapping {
             if row.hinge.is_some() && (row.structure.is_some() || row.mobility.is_some()) {
                 let found = "it beside `structure` or `mobility`";
                 let possible = "a hinge alone: what hangs on one moves with it";
-                return Err(inside(place)(fault("hinge", found, possible)));
+                return Err(prefix_field(place)(invalid_field("hinge", found, possible)));
             }
             if let Some(kind) = row.structure {
-                becomes_structure(data, id, kind).map_err(inside(place))?;
+                becomes_structure(data, id, kind).map_err(prefix_field(place))?;
                 walls.insert(id);
                 continue;
             }
@@ -321,9 +321,9 @@ impl NameMapping {
                 switch: None,
             };
             if let Some(hinge) = &row.hinge {
-                hang(data, id, hinge).map_err(inside(&place))?;
+                attach_hinge(data, id, hinge).map_err(prefix_field(&place))?;
             }
-            describe::describe(data, id, &traits).map_err(inside(&place))?;
+            describe::describe(data, id, &traits).map_err(prefix_field(&place))?;
             let object = &mut data.objects[id];
             let kind = category([object.category.coarse.as_str()]);
             if unknown
@@ -337,7 +337,9 @@ impl NameMapping {
                 let mut number = 2;
                 while name.is_empty() || taken.contains(&free) {
                     if name.is_empty() {
-                        return Err(inside(place)(fault("name", "nothing", "a name")));
+                        return Err(prefix_field(place)(invalid_field(
+                            "name", "nothing", "a name",
+                        )));
                     }
                     free = format!("{name}_{number}");
                     number += 1;
@@ -351,7 +353,7 @@ impl NameMapping {
             if data.rooms.is_empty() {
                 room_over_floors(data);
                 for k in 0..data.objects.len() {
-                    place::settle(data, ObjectId(k as u32));
+                    place::update_room_and_level(data, ObjectId(k as u32));
                 }
             }
         }
@@ -419,7 +421,7 @@ fn usual_mobility(data: &HouseData, id: ObjectId, unknown: bool, name: &str) -> 
 }
 
 fn stands(data: &HouseData, id: ObjectId) -> bool {
-    let own = place::world_box(data, id);
+    let own = place::world_bounds(data, id);
     let foot = own.center().with_y(own.min.y);
     let floors = data.rooms.iter().map(|room| room.floor_y);
     let on_floor = floors.into_iter().any(|y| (foot.y - y).abs() <= GAP_M);
@@ -429,7 +431,7 @@ fn stands(data: &HouseData, id: ObjectId) -> bool {
             .ids()
             .filter(|other| *other != id)
             .any(|other| {
-                let below = place::world_box(data, other);
+                let below = place::world_bounds(data, other);
                 below.min.y < foot.y - 0.01
                     && foot.y < below.max.y + GAP_M
                     && below.contains(foot.with_y(below.center().y))
@@ -445,7 +447,11 @@ fn becomes_structure(
     let object = data.objects[id].clone();
     if object.mobility == Mobility::Articulated || object.part_count > 1 {
         let found = format!("{:?}, which has {} parts", object.name, object.part_count);
-        return Err(fault("structure", found, "an object of one rigid part"));
+        return Err(invalid_field(
+            "structure",
+            found,
+            "an object of one rigid part",
+        ));
     }
     let part = data.parts[object.first_part].clone();
     let map = part.world_from_part.to_affine() * part.part_from_mesh;

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use dwell_scene::{Aabb, HouseData, Id, JointId, ObjectId};
 
-use super::place::world_box;
+use super::place::world_bounds;
 
 /// An index of the objects; it follows the tables from edit to edit.
 #[derive(Default)]
@@ -23,7 +23,7 @@ pub(super) struct ObjectIndex {
 
 impl ObjectIndex {
     /// Adds the new objects and joints.
-    pub(super) fn follow(&mut self, data: &HouseData) {
+    pub(super) fn update(&mut self, data: &HouseData) {
         let [objects, joints] = self.counted;
         let new = data.objects.as_slice().iter().enumerate().skip(objects);
         for (k, object) in new {
@@ -38,12 +38,12 @@ impl ObjectIndex {
     }
 
     /// Clears the index: names or numbers of objects have changed.
-    pub(super) fn forget(&mut self) {
+    pub(super) fn clear(&mut self) {
         *self = Self::default();
     }
 
     /// Marks objects that have moved or have another form.
-    pub(super) fn moved(&mut self, ids: impl IntoIterator<Item = ObjectId>) {
+    pub(super) fn mark_moved(&mut self, ids: impl IntoIterator<Item = ObjectId>) {
         self.moved.extend(ids);
     }
 
@@ -66,14 +66,14 @@ impl ObjectIndex {
     }
 
     /// The boxes around all objects, m. Shape (object,).
-    pub(super) fn boxes(&mut self, data: &HouseData) -> &[Aabb] {
+    pub(super) fn bounding_boxes(&mut self, data: &HouseData) -> &[Aabb] {
         for id in std::mem::take(&mut self.moved) {
             if let Some(known) = self.boxes.get_mut(id.index()) {
-                *known = world_box(data, id);
+                *known = world_bounds(data, id);
             }
         }
         for k in self.boxes.len()..data.objects.len() {
-            self.boxes.push(world_box(data, Id::from_index(k)));
+            self.boxes.push(world_bounds(data, Id::from_index(k)));
         }
         &self.boxes
     }
@@ -116,15 +116,15 @@ mod tests {
     #[test]
     fn names_are_counted_past_those_that_are_taken() {
         let mut census = ObjectIndex::default();
-        census.follow(&named(&["mug_1", "mug_3"]));
+        census.update(&named(&["mug_1", "mug_3"]));
         assert_eq!(census.next_numbered_name("mug"), "mug_2");
         // As long as nothing has it, a name stays free.
         assert_eq!(census.next_numbered_name("mug"), "mug_2");
-        census.follow(&named(&["mug_1", "mug_3", "mug_2"]));
+        census.update(&named(&["mug_1", "mug_3", "mug_2"]));
         assert_eq!(census.next_numbered_name("mug"), "mug_4");
         assert_eq!(census.find("mug_2"), Some(ObjectId(2)));
-        census.forget();
-        census.follow(&named(&["mug_3"]));
+        census.clear();
+        census.update(&named(&["mug_3"]));
         assert_eq!(census.next_numbered_name("mug"), "mug_1");
         assert_eq!(census.find("mug_2"), None);
         assert_eq!(census.next_numbered_name(""), "thing_1");

@@ -7,7 +7,7 @@ use dwell_scene::parallel::Threads;
 use serde::{Deserialize, Serialize};
 
 use super::apply::edit;
-use super::edit_errors::{fault, inside};
+use super::edit_errors::{invalid_field, prefix_field};
 use super::edits::Edit;
 use super::files::FileAccess;
 use super::floor_plan::{BuildingPlan, construct};
@@ -140,14 +140,14 @@ fn build_with(
     let (base, mut report) = match (&plan.house, &plan.building) {
         (Some(house), None) => open_by(FORMATS, &files.house("house", house)?, threads)?,
         (None, Some(building)) => {
-            let data = construct(&plan.name, building).map_err(inside("building"))?;
+            let data = construct(&plan.name, building).map_err(prefix_field("building"))?;
             let house =
                 House::new(data).map_err(HousesError::scene(&FileLocation::file("plan")))?;
             (house, LoadReport::new())
         }
         (both, _) => {
             let found = if both.is_some() { "both" } else { "neither" };
-            return Err(fault("house, building", found, "one of them"));
+            return Err(invalid_field("house, building", found, "one of them"));
         }
     };
     let (mut house, more) = edit(&base, &plan.edits, files)?;

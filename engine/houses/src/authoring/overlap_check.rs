@@ -7,7 +7,7 @@ use dwell_scene::interrupt;
 use dwell_scene::{Aabb, House, Id, ObjectId, RoomId};
 use glam::{Vec2, Vec3};
 
-use super::place::{points, triangles, world_box};
+use super::place::{points, triangles, world_bounds};
 
 /// Smallest penetration depth that is reported, m: less counts as touch.
 const DEEP_M: f32 = 0.01;
@@ -28,11 +28,11 @@ const WAYS: [Vec3; 6] = [
 
 /// The overlaps of any of `put` with other things: pairs, the added or moved one first. A thing whose box reaches into more than 32 others
 /// is compared with those about its middle.
-pub(super) fn overlaps(house: &House, put: &[ObjectId]) -> Vec<(ObjectId, ObjectId)> {
+pub(super) fn overlapping_pairs(house: &House, put: &[ObjectId]) -> Vec<(ObjectId, ObjectId)> {
     let data = house.data();
     let boxes = data.objects.ids().map(|id| {
         interrupt::check();
-        world_box(data, id)
+        world_bounds(data, id)
     });
     let tree = BoxTree::new(boxes.collect());
     let bounds = |id: ObjectId| tree.get(id.index()).copied().unwrap_or_default();
@@ -73,13 +73,13 @@ fn is_around_rooms(house: &House, bounds: &Aabb) -> bool {
 /// Returns whether a point of `one`, a little inside of it, is inside of `other`.
 fn any_inside(house: &House, one: ObjectId, other: ObjectId) -> bool {
     let data = house.data();
-    let middle = world_box(data, one).center();
+    let middle = world_bounds(data, one).center();
     let all: Vec<Vec3> = data.objects[one]
         .parts()
         .flat_map(|part| points(data, part))
         .collect();
     let triangles = triangles(data, other);
-    let bounds = world_box(data, other);
+    let bounds = world_bounds(data, other);
     let stride = all.len().div_ceil(LOOKED_AT).max(1);
     let looked = all.into_iter().step_by(stride);
     let mut inner = looked.map(|p| p + (middle - p).clamp_length_max(DEEP_M));
@@ -114,8 +114,8 @@ fn crossings(triangles: &[[Vec3; 3]], from: Vec3, way: Vec3) -> usize {
 }
 
 /// Returns whether a corner of a thing's footprint lies in no room, though its middle does: in a wall, or through it.
-pub(super) fn reaches_into_a_wall(house: &House, object: ObjectId) -> bool {
-    let bounds = world_box(house.data(), object);
+pub(super) fn intersects_wall(house: &House, object: ObjectId) -> bool {
+    let bounds = world_bounds(house.data(), object);
     let middle = bounds.center();
     let rooms = || house.rooms.ids();
     let at_height = |room: &RoomId| {

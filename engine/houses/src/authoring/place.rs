@@ -9,7 +9,7 @@ use dwell_scene::{
 use glam::{Quat, Vec2, Vec3};
 
 use super::apply::EditSession;
-use super::edit_errors::{fault, point, within};
+use super::edit_errors::{check_range, checked_point, invalid_field};
 use super::edits::{Anchor, Placement};
 use super::free_place::{PlacementSearch, SupportSurface};
 use crate::error::HousesError;
@@ -41,7 +41,7 @@ pub(super) fn triangles(data: &HouseData, object: ObjectId) -> Vec<[Vec3; 3]> {
 }
 
 /// The box around an object, m, world space.
-pub(super) fn world_box(data: &HouseData, object: ObjectId) -> Aabb {
+pub(super) fn world_bounds(data: &HouseData, object: ObjectId) -> Aabb {
     let parts = data.objects[object].parts();
     Aabb::from_points(parts.flat_map(|part| points(data, part)))
 }
@@ -84,8 +84,12 @@ pub(super) fn anchor_in_world(data: &HouseData, object: ObjectId, which: Anchor)
 }
 
 /// Moves objects, each part and each joint that hangs on the house.
-pub(super) fn carry(session: &mut EditSession<'_>, objects: &BTreeSet<ObjectId>, change: &Pose) {
-    session.object_index.moved(objects.iter().copied());
+pub(super) fn transform_objects(
+    session: &mut EditSession<'_>,
+    objects: &BTreeSet<ObjectId>,
+    change: &Pose,
+) {
+    session.object_index.mark_moved(objects.iter().copied());
     for object in objects {
         let joints = session.object_index.joints_of(&session.data, *object);
         let data = &mut session.data;
@@ -103,7 +107,7 @@ pub(super) fn carry(session: &mut EditSession<'_>, objects: &BTreeSet<ObjectId>,
 }
 
 /// The movement that puts an object's anchor at a place with a heading; values that `placing` leaves open stay.
-pub(super) fn movement(
+pub(super) fn placement_transform(
     session: &mut EditSession<'_>,
     object: ObjectId,
     placing: &Placement,
@@ -114,7 +118,7 @@ pub(super) fn movement(
     let old_yaw = yaw_of(&root);
     let yaw = match placing.yaw_deg {
         Some(degrees) => {
-            within("place.yaw_deg", degrees, [-36_000.0, 36_000.0], "degrees")?.to_radians()
+            check_range("place.yaw_deg", degrees, [-36_000.0, 36_000.0], "degrees")?.to_radians()
         }
         None => old_yaw,
     };
@@ -141,12 +145,15 @@ fn target(
     placing: &Placement,
     around: &Aabb,
 ) -> Result<Option<Vec3>, HousesError> {
-    let at = placing.at.map(|at| point("place.at", at)).transpose()?;
+    let at = placing
+        .at
+        .map(|at| checked_point("place.at", at))
+        .transpose()?;
     let Some(on) = &placing.on else {
         return Ok(at);
     };
     if session.data.objects[object].name == *on {
-        return Err(fault(
+        return Err(invalid_field(
             "place.on",
             format_args!("{on:?}, itself"),
             "another object",
@@ -155,11 +162,11 @@ fn target(
     let carrier = session.object("place.on", on)?;
     let data = &session.data;
     let Some(Vec3 { x, z, .. }) = at else {
-        let boxes = session.object_index.boxes(data);
-        let free = PlacementSearch::on(data, boxes, carrier, object, around).find();
+        let boxes = session.object_index.bounding_boxes(data);
+        let free = PlacementSearch::new(data, boxes, carrier, object, around).find_free_position();
         let [wide, deep] = [around.size().x, around.size().z];
         return free.map(Some).ok_or_else(|| {
-            fault(
+            invalid_field(
                 "place.on",
                 format_args!("{on:?}, where nothing of {wide:.2} x {deep:.2} m is free"),
                 "`at`, or something with more room on it",
@@ -168,13 +175,13 @@ fn target(
     };
     let top = SupportSurface::of(data, carrier).height_m(Vec2::new(x, z));
     let top = top.ok_or_else(|| {
-        let bounds = world_box(data, carrier);
+        let bounds = world_bounds(data, carrier);
         let [low, high] = [bounds.min, bounds.max];
         let possible = format!(
             "a place over {on:?}: x {:.3} to {:.3} m, z {:.3} to {:.3} m",
             low.x, high.x, low.z, high.z
         );
-        fault(
+        invalid_field(
             "place.at",
             format!("x {x}, z {z}, where nothing of {on:?} is"),
             possible,
@@ -184,7 +191,7 @@ fn target(
 }
 
 /// The height of a triangle on a vertical line that meets it.
-pub(super) fn height_over([a, b, c]: [Vec3; 3], xz: Vec2) -> Option<f32> {
+pub(super) fn triangle_height_at([a, b, c]: [Vec3; 3], xz: Vec2) -> Option<f32> {
     let flat = |p: Vec3| Vec2::new(p.x, p.z);
     let (u, v, w) = (flat(b) - flat(a), flat(c) - flat(a), xz - flat(a));
     let area = u.perp_dot(v);
@@ -200,7 +207,7 @@ pub(super) fn height_over([a, b, c]: [Vec3; 3], xz: Vec2) -> Option<f32> {
 ///
 /// # Errors
 /// [`HousesError::Spec`] where more than 10,000 pairs of things lie in each other's boxes.
-pub(super) fn with_things(
+pub(super) fn with_supported_objects(
     data: &HouseData,
     boxes: &[Aabb],
     object: ObjectId,
@@ -236,7 +243,7 @@ pub(super) fn with_things(
     }
     let found = format!("true, where more than {MOST_PAIRS} pairs of things lie in each other");
     let possible = "false, or fewer things in one place";
-    Err(fault("with_things", found, possible))
+    Err(invalid_field("with_things", found, possible))
 }
 
 /// Returns whether the foot of a box is above the foot of another, and no higher than its top.
@@ -265,12 +272,15 @@ fn touches(data: &HouseData, carrier: ObjectId, own: &Aabb) -> bool {
 fn surface_near(data: &HouseData, object: ObjectId, xz: Vec2, height_m: f32) -> bool {
     let mut heights = triangles(data, object)
         .into_iter()
-        .filter_map(|corners| height_over(corners, xz));
+        .filter_map(|corners| triangle_height_at(corners, xz));
     heights.any(|y| (y - height_m).abs() < GAP_M)
 }
 
 /// The room and the storey of a box: the smallest room that holds its middle.
-pub(super) fn home(data: &HouseData, bounds: &Aabb) -> (Option<RoomId>, LevelId) {
+pub(super) fn containing_room_and_level(
+    data: &HouseData,
+    bounds: &Aabb,
+) -> (Option<RoomId>, LevelId) {
     let middle = bounds.center();
     let holds = |room: &Room| {
         room.contains_xz(Vec2::new(middle.x, middle.z))
@@ -295,12 +305,12 @@ pub(super) fn home(data: &HouseData, bounds: &Aabb) -> (Option<RoomId>, LevelId)
 }
 
 /// Writes room and storey of an object and widens the storey's box around it.
-pub(super) fn settle(data: &mut HouseData, object: ObjectId) {
-    let bounds = world_box(data, object);
+pub(super) fn update_room_and_level(data: &mut HouseData, object: ObjectId) {
+    let bounds = world_bounds(data, object);
     if bounds.is_empty() {
         return;
     }
-    let (room, level) = home(data, &bounds);
+    let (room, level) = containing_room_and_level(data, &bounds);
     (data.objects[object].room, data.objects[object].level) = (room, level);
     let all = &mut data.levels[level].bounds;
     *all = all.union(&bounds);

@@ -148,7 +148,7 @@ fn drop_unused(data: &mut HouseData, once: &UsedAssets) {
 }
 
 /// Drops those of some materials, and their images, that nothing shows any more.
-pub(super) fn drop_materials(data: &mut HouseData, materials: &[MaterialId]) {
+pub(super) fn remove_unused_materials(data: &mut HouseData, materials: &[MaterialId]) {
     let once = UsedAssets {
         meshes: BTreeSet::new(),
         materials: materials.iter().map(|id| id.0).collect(),
@@ -157,7 +157,7 @@ pub(super) fn drop_materials(data: &mut HouseData, materials: &[MaterialId]) {
 }
 
 /// Drops a mesh when nothing has it any more.
-pub(super) fn drop_mesh(data: &mut HouseData, mesh: MeshId) {
+pub(super) fn remove_unused_mesh(data: &mut HouseData, mesh: MeshId) {
     let once = UsedAssets {
         meshes: [mesh.0].into(),
         materials: BTreeSet::new(),

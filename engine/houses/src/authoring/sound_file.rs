@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use dwell_scene::{IdVec, SoundFile, SoundFileId};
 
-use super::edit_errors::fault;
+use super::edit_errors::invalid_field;
 use super::files::FileAccess;
 use crate::data_root::UserFile;
 use crate::error::HousesError;
@@ -15,15 +15,15 @@ const BEGINNINGS: [&[u8]; 3] = [b"RIFF", b"fLaC", b"OggS"];
 /// Reads a sound file.
 ///
 /// # Errors
-/// [`HousesError::PathLeavesRoot`], [`HousesError::Io`], [`HousesError::TooLarge`] above [`SoundFile::MOST_BYTES`], and
+/// [`HousesError::PathLeavesRoot`], [`HousesError::Io`], [`HousesError::TooLarge`] above [`SoundFile::MAX_BYTES`], and
 /// [`HousesError::Spec`] for a file of another form.
-pub(super) fn load(files: &FileAccess, file: &str) -> Result<SoundFile, HousesError> {
+pub(super) fn read_sound_file(files: &FileAccess, file: &str) -> Result<SoundFile, HousesError> {
     let path = files.path("file", file)?;
-    let UserFile { name, bytes, .. } = UserFile::read(&path, SoundFile::MOST_BYTES)?;
+    let UserFile { name, bytes, .. } = UserFile::read(&path, SoundFile::MAX_BYTES)?;
     if !BEGINNINGS.iter().any(|begin| bytes.starts_with(begin)) {
         let begins: Vec<u8> = bytes.iter().copied().take(4).collect();
         let begins = String::from_utf8_lossy(&begins);
-        return Err(fault(
+        return Err(invalid_field(
             "file",
             format_args!("{file:?}, which begins with {begins:?}"),
             "WAV (\"RIFF\"), FLAC (\"fLaC\") or Ogg Vorbis (\"OggS\")",
@@ -33,7 +33,7 @@ pub(super) fn load(files: &FileAccess, file: &str) -> Result<SoundFile, HousesEr
 }
 
 /// The id of a sound file: of one with the same name and bytes, else of a new one with a name that was free.
-pub(super) fn keep(
+pub(super) fn add_or_find(
     table: &mut IdVec<SoundFileId, Arc<SoundFile>>,
     mut sound: Arc<SoundFile>,
 ) -> SoundFileId {

@@ -11,7 +11,7 @@ use glam::{Vec2, Vec3};
 
 use super::apply::EditSession;
 use super::copy_objects::material_of;
-use super::edit_errors::{fault, inside, substance, unknown, within};
+use super::edit_errors::{check_range, find_substance, invalid_field, prefix_field, unknown_name};
 use super::edits::{ChangeMaterial, RoomSide, SurfaceSelector, SurfaceStyle};
 use super::remove_objects;
 use crate::error::HousesError;
@@ -30,7 +30,7 @@ pub(super) fn room(data: &HouseData, field: &str, name: &str) -> Result<RoomId, 
     let found = all.find_map(|(id, room)| (room.name == name).then_some(id));
     found.ok_or_else(|| {
         let names = data.rooms.iter().map(|room| room.name.as_str());
-        unknown(field, name, "rooms", names)
+        unknown_name(field, name, "rooms", names)
     })
 }
 
@@ -42,8 +42,8 @@ pub(super) fn change_material(
     session: &mut EditSession<'_>,
     change: &ChangeMaterial,
 ) -> Result<(), HousesError> {
-    let look = &change.look;
-    match &change.of {
+    let look = &change.style;
+    match &change.surfaces {
         SurfaceSelector::Material(name) => {
             let data = &mut session.data;
             let found = data
@@ -52,21 +52,21 @@ pub(super) fn change_material(
                 .position(|material| material.name == *name);
             let id = found.map(MaterialId::from_index).ok_or_else(|| {
                 let names = data.materials.iter().map(|material| material.name.as_str());
-                unknown("of.material", name, "materials", names)
+                unknown_name("of.material", name, "materials", names)
             })?;
-            change_in_place(data, id, look).map_err(inside("look"))
+            change_in_place(data, id, look).map_err(prefix_field("look"))
         }
         SurfaceSelector::Structure(name) => {
             let data = &mut session.data;
             let found = data.structure.iter().position(|piece| piece.name == *name);
             let id = found.map(StructureId::from_index).ok_or_else(|| {
                 let names = data.structure.iter().map(|piece| piece.name.as_str());
-                unknown("of.structure", name, "pieces of the building", names)
+                unknown_name("of.structure", name, "pieces of the building", names)
             })?;
             let old = data.structure[id].materials.clone();
-            let new = repainted(data, &old, look).map_err(inside("look"))?;
+            let new = repainted(data, &old, look).map_err(prefix_field("look"))?;
             data.structure[id].materials = new;
-            remove_objects::drop_materials(data, &old);
+            remove_objects::remove_unused_materials(data, &old);
             Ok(())
         }
         SurfaceSelector::Object { name, part } => {
@@ -103,8 +103,8 @@ pub(super) fn change_in_place(
 fn changed(old: &Material, look: &SurfaceStyle) -> Result<Material, HousesError> {
     let mut new = old.clone();
     if let Some(name) = &look.substance {
-        let row = substance("substance", name)?;
-        new = if look.keep_look {
+        let row = find_substance("substance", name)?;
+        new = if look.keep_appearance {
             Material {
                 base_color: old.base_color,
                 texture: old.texture,
@@ -123,10 +123,10 @@ fn changed(old: &Material, look: &SurfaceStyle) -> Result<Material, HousesError>
         new.texture = None;
     }
     if let Some(opacity) = look.opacity {
-        new.opacity = within("opacity", opacity, [0.0, 1.0], "")?;
+        new.opacity = check_range("opacity", opacity, [0.0, 1.0], "")?;
     }
     if let Some(roughness) = look.roughness {
-        new.roughness = within("roughness", roughness, [0.0, 1.0], "")?;
+        new.roughness = check_range("roughness", roughness, [0.0, 1.0], "")?;
     }
     let told = look.substance.is_some()
         || look.srgb.is_some()
@@ -136,7 +136,7 @@ fn changed(old: &Material, look: &SurfaceStyle) -> Result<Material, HousesError>
         return Ok(new);
     }
     let possible = "at least one of substance, srgb, opacity and roughness";
-    Err(fault("substance", "nothing", possible))
+    Err(invalid_field("substance", "nothing", possible))
 }
 
 /// Returns the new materials of old ones.
@@ -171,7 +171,7 @@ pub(super) fn paint_object(
         let known = data.objects[id]
             .parts()
             .map(|part| data.parts[part].name.as_str());
-        return Err(unknown(
+        return Err(unknown_name(
             "of.object.part",
             name,
             "parts of the object",
@@ -184,7 +184,7 @@ pub(super) fn paint_object(
         data.parts[part].materials = repainted(data, &old, look)?;
         before.extend(old);
     }
-    remove_objects::drop_materials(data, &before);
+    remove_objects::remove_unused_materials(data, &before);
     Ok(())
 }
 
@@ -217,19 +217,24 @@ fn paint_room(
         }
         found = true;
         materials.extend(piece.materials.clone());
-        meshes
-            .extend(paint_triangles(data, piece_id, &mesh, &chosen, look).map_err(inside("look"))?);
+        meshes.extend(
+            paint_triangles(data, piece_id, &mesh, &chosen, look).map_err(prefix_field("look"))?,
+        );
     }
     if !found {
         let name = &data.rooms[id].name;
         let found = format!("no {kind:?} before which room {name:?} lies").to_lowercase();
-        return Err(fault("of.room.side", found, "a side that the building has"));
+        return Err(invalid_field(
+            "of.room.side",
+            found,
+            "a side that the building has",
+        ));
     }
-    remove_objects::drop_materials(data, &materials);
+    remove_objects::remove_unused_materials(data, &materials);
     // One after the other: each removal moves those behind it.
     meshes.sort_unstable_by(|a, b| b.cmp(a));
     for mesh in meshes {
-        remove_objects::drop_mesh(data, mesh);
+        remove_objects::remove_unused_mesh(data, mesh);
     }
     Ok(())
 }
@@ -288,7 +293,11 @@ fn paint_triangles(
             continue;
         }
         let Ok(free) = u16::try_from(materials.len()) else {
-            return Err(fault("of.room", "a piece of 65536 materials", "fewer"));
+            return Err(invalid_field(
+                "of.room",
+                "a piece of 65536 materials",
+                "fewer",
+            ));
         };
         materials.push(new);
         let split = own.get_or_insert_with(|| Mesh {

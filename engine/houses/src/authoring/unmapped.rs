@@ -36,7 +36,7 @@ pub struct UnmappedNames {
 
 /// Returns the unmapped names of a house: materials of the default substance and those that its reader reported, objects without a
 /// category, and rooms without a known word.
-pub fn unmapped(house: &House, report: &LoadReport) -> UnmappedNames {
+pub fn unmapped_names(house: &House, report: &LoadReport) -> UnmappedNames {
     let reported = |what: UnmappedKind| {
         let names = report.unmapped().filter(move |(kind, _, _)| *kind == what);
         names

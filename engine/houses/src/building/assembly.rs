@@ -56,14 +56,14 @@ impl HouseAssembly {
     }
 
     /// Adds a storey above the others; later pieces stand on it.
-    pub(crate) fn storey(&mut self) {
+    pub(crate) fn add_storey(&mut self) {
         let name = self.data.levels.len().to_string();
         let bounds = Aabb::EMPTY;
         self.level = self.data.levels.push(Level { name, bounds });
     }
 
     /// The material of a finish; equal finishes are one material.
-    pub(crate) fn material(&mut self, finish: &Finish) -> MaterialId {
+    pub(crate) fn add_material(&mut self, finish: &Finish) -> MaterialId {
         if let Some((_, id)) = self.finishes.iter().find(|(known, _)| known == finish) {
             return *id;
         }
@@ -85,7 +85,7 @@ impl HouseAssembly {
     }
 
     /// Adds a model; a shared model is one kind.
-    pub(crate) fn kind(&mut self, model: impl Into<Arc<Model>>) -> ModelInstances {
+    pub(crate) fn add_model(&mut self, model: impl Into<Arc<Model>>) -> ModelInstances {
         let model = model.into();
         let address = Arc::as_ptr(&model) as usize;
         if let Some(known) = self.kinds.get(&address) {
@@ -102,7 +102,7 @@ impl HouseAssembly {
             .map(|part| {
                 part.finishes
                     .iter()
-                    .map(|finish| self.material(finish))
+                    .map(|finish| self.add_material(finish))
                     .collect()
             })
             .collect();
@@ -116,7 +116,7 @@ impl HouseAssembly {
     }
 
     /// A piece of the building, its mesh in world space.
-    pub(crate) fn structure(
+    pub(crate) fn add_structure(
         &mut self,
         name: &str,
         kind: StructureKind,
@@ -127,7 +127,7 @@ impl HouseAssembly {
         mesh.shrink_to_fit();
         let materials = finishes
             .iter()
-            .map(|finish| self.material(finish))
+            .map(|finish| self.add_material(finish))
             .collect();
         let mesh = self.data.meshes.push(Arc::new(mesh));
         self.data.structure.push(Structure {
@@ -141,7 +141,7 @@ impl HouseAssembly {
     }
 
     /// Puts an instance into a room, its first joint open by `openness` (0 to 1).
-    pub(crate) fn place(
+    pub(crate) fn add_instance(
         &mut self,
         kind: &ModelInstances,
         world_from_model: Pose,
@@ -158,7 +158,7 @@ impl HouseAssembly {
             ObjectId::from_index(data.objects.len()),
             PartId::from_index(data.parts.len()),
         );
-        let name = self.object_names.counted(model.category);
+        let name = self.object_names.numbered(model.category);
         let nyu40 =
             category([model.category]).map_or_else(String::new, |row| row.nyu40_name.clone());
         let joined = |part: usize| model.joints.iter().any(|joint| joint.child == part);
@@ -210,7 +210,7 @@ impl HouseAssembly {
                 limits: Some([0.0, joint.open]),
                 open: joint.open,
                 initial: joint.initial,
-                switches: joint.switches,
+                toggles_switch: joint.toggles_switch,
                 friction: FRICTION,
                 damping: if hinge { HINGE_DAMPING } else { SLIDE_DAMPING },
                 ..Articulation::new(
@@ -245,7 +245,7 @@ impl HouseAssembly {
                 object,
                 part: part_id(space.part),
                 name: space.name.to_owned(),
-                holding: space.holding,
+                holding: space.kind,
                 space_in_part: space.space,
             }));
     }

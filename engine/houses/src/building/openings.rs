@@ -10,7 +10,7 @@ use dwell_scene::{Pose, RoomId};
 
 /// Hangs a door into a hole, open by `openness` (0 to 1). `square`: the leaf opens to a right angle, as beside an outer wall,
 /// which is thicker.
-pub(crate) fn put_door(
+pub(crate) fn add_door(
     assembly: &mut HouseAssembly,
     door: &Door,
     square: bool,
@@ -19,18 +19,18 @@ pub(crate) fn put_door(
     openness: f32,
 ) {
     let settings = format!("{door:?} square {square}");
-    let kind = assembly.kind(built_to_size(settings, || {
+    let kind = assembly.add_model(built_to_size(settings, || {
         let mut model = door.build();
         for joint in model.joints.iter_mut().filter(|_| square) {
             joint.open = joint.open.min(FRAC_PI_2);
         }
         model
     }));
-    assembly.place(&kind, pose, room, openness);
+    assembly.add_instance(&kind, pose, room, openness);
 }
 
 /// Puts a window into a hole; `pose` is its middle, the room at +Z.
-pub(crate) fn put_window(assembly: &mut HouseAssembly, window: &Window, pose: Pose, room: RoomId) {
-    let kind = assembly.kind(built_to_size(format!("{window:?}"), || window.build()));
-    assembly.place(&kind, pose, room, 0.0);
+pub(crate) fn add_window(assembly: &mut HouseAssembly, window: &Window, pose: Pose, room: RoomId) {
+    let kind = assembly.add_model(built_to_size(format!("{window:?}"), || window.build()));
+    assembly.add_instance(&kind, pose, room, 0.0);
 }

@@ -31,7 +31,7 @@ pub(crate) struct ShellRoom {
     /// Its floor and the slab above it; they reach to the middle of walls.
     pub(crate) slabs: [FloorSlab; 2],
     /// The outlines of a ceiling that hangs below that slab.
-    pub(crate) hung: Vec<PolygonXz>,
+    pub(crate) suspended_ceiling: Vec<PolygonXz>,
     pub(crate) floor_finish: Finish,
     pub(crate) ceiling_finish: Finish,
 }
@@ -75,8 +75,8 @@ impl ShellRoom {
         let piece = |outline: &PolygonXz, thick_m: f32, top: f32, finish: &Finish| {
             // The prism's (x, y) plane becomes the world's (x, z), its depth runs down.
             let mut mesh = extrude(outline, thick_m)
-                .about_x(std::f32::consts::FRAC_PI_2)
-                .at(0.0, top, 0.0)
+                .rotated_x(std::f32::consts::FRAC_PI_2)
+                .translated(0.0, top, 0.0)
                 .mesh;
             if finish.tile_m > 0.0 {
                 for uv in &mut mesh.uvs {
@@ -89,7 +89,7 @@ impl ShellRoom {
         let top = self.floor_m + self.storey_m + above.thick_m;
         let hung_m = self.storey_m - self.ceiling_m;
         // A part above a hung ceiling is hidden.
-        let (kind, word) = if self.hung.is_empty() {
+        let (kind, word) = if self.suspended_ceiling.is_empty() {
             (StructureKind::Ceiling, "ceiling")
         } else {
             (StructureKind::Other, "slab")
@@ -108,7 +108,7 @@ impl ShellRoom {
             (
                 StructureKind::Ceiling,
                 "ceiling",
-                &self.hung,
+                &self.suspended_ceiling,
                 hung_m,
                 self.floor_m + self.storey_m,
                 ceiling,
@@ -122,7 +122,7 @@ impl ShellRoom {
                     _ => format!("{word}_{}_{}", self.name, k + 1),
                 };
                 let mesh = piece(outline, thick_m, top, finish);
-                assembly.structure(&name, kind, Some(id), mesh, std::slice::from_ref(finish));
+                assembly.add_structure(&name, kind, Some(id), mesh, std::slice::from_ref(finish));
             }
         }
         id

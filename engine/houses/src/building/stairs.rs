@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::assembly::HouseAssembly;
-use super::yaw::yaw;
+use super::yaw::yaw_rotation;
 use dwell_furniture::finishes::Finish;
 use dwell_furniture::model::Model;
 use dwell_furniture::model_cache::built_to_size;
@@ -47,7 +47,7 @@ impl StairFlights {
 }
 
 /// Puts stairs to the next storey, `rise_m` higher. `goes_on`: another flight starts there.
-pub(crate) fn put_stairs(
+pub(crate) fn add_stairs(
     assembly: &mut HouseAssembly,
     flights: &StairFlights,
     rise_m: f32,
@@ -59,18 +59,18 @@ pub(crate) fn put_stairs(
         width_m: flights.width_m,
         depth_m: flights.depth_m,
         rise_m,
-        goes_on,
+        continues_up: goes_on,
         mirrored: flights.mirrored,
         wood: style.wood.clone(),
         paint: Finish::plain("stair_white", "wood", [238, 236, 230]),
     };
-    let kind = assembly.kind(built_to_size(format!("{model:?}"), || model.build()));
-    let pose = Pose::new(flights.front, yaw(flights.yaw_deg()));
-    assembly.place(&kind, pose, room, 0.0);
+    let kind = assembly.add_model(built_to_size(format!("{model:?}"), || model.build()));
+    let pose = Pose::new(flights.front, yaw_rotation(flights.yaw_deg()));
+    assembly.add_instance(&kind, pose, room, 0.0);
 }
 
 /// Puts a railing where a first flight would start on the storey where the stairs end.
-pub(crate) fn put_railing(
+pub(crate) fn add_railing(
     assembly: &mut HouseAssembly,
     flights: &StairFlights,
     style: &Style,
@@ -84,14 +84,14 @@ pub(crate) fn put_railing(
         climb.cross(Vec3::Y)
     };
     let side = -across * 0.25 * flights.width_m;
-    let kind = assembly.kind(railing_of(0.5 * flights.width_m, style));
+    let kind = assembly.add_model(railing_model(0.5 * flights.width_m, style));
     let back = climb * (RAILING_INSET_M - 0.1);
-    let pose = Pose::new(flights.front + side + back, yaw(flights.yaw_deg()));
-    assembly.place(&kind, pose, room, 0.0);
+    let pose = Pose::new(flights.front + side + back, yaw_rotation(flights.yaw_deg()));
+    assembly.add_instance(&kind, pose, room, 0.0);
 }
 
 /// A railing of a length.
-pub(crate) fn railing_of(length_m: f32, style: &Style) -> Arc<Model> {
+pub(crate) fn railing_model(length_m: f32, style: &Style) -> Arc<Model> {
     let metal = &style.metal;
     built_to_size(format!("railing {length_m} {metal:?}"), || {
         railing(length_m, metal)

@@ -40,7 +40,7 @@ pub(crate) struct ShellWall {
     pub(crate) front: FinishBands,
     pub(crate) back: FinishBands,
     /// The finish of ends, top and the insides of openings.
-    pub(crate) edge: Finish,
+    pub(crate) reveal_finish: Finish,
     pub(crate) openings: Vec<WallOpening>,
 }
 
@@ -99,7 +99,7 @@ impl ShellWall {
 
     /// Adds the wall, one closed piece.
     pub(crate) fn build(&self, assembly: &mut HouseAssembly) {
-        let mut finishes: Vec<Finish> = vec![self.edge.clone()];
+        let mut finishes: Vec<Finish> = vec![self.reveal_finish.clone()];
         let mut look = |finish: &Finish| -> SlotAndTile {
             let known = finishes.iter().position(|known| known == finish);
             let slot = known.unwrap_or_else(|| {
@@ -115,9 +115,9 @@ impl ShellWall {
                 .collect()
         };
         let (back, front) = (bands(&self.back), bands(&self.front));
-        let mesh = self.mesh(&back, &front, (0, self.edge.tile_m));
+        let mesh = self.mesh(&back, &front, (0, self.reveal_finish.tile_m));
         let name = format!("wall_{}", self.name);
-        assembly.structure(&name, StructureKind::Wall, Some(self.room), mesh, &finishes);
+        assembly.add_structure(&name, StructureKind::Wall, Some(self.room), mesh, &finishes);
     }
 
     fn mesh(

@@ -98,7 +98,7 @@ pub fn generate(seed: u64, spec: &HouseSpec) -> Result<GeneratedHouse, HousesErr
     assembly.data.sky = Some(sky(spec, key.child("sky")).map_err(HousesError::scene(&at))?);
     let house = House::new(assembly.finish()).map_err(HousesError::scene(&at))?;
     let mut given_up = draft.given_up();
-    given_up.extend(furnish::missing(furnished));
+    given_up.extend(furnish::missing_items(furnished));
     given_up.extend(paper.unreached.iter().map(|(level, room)| {
         let id = shell.rooms[*level][*room];
         format!("a way to {}", house.rooms[id].name)
@@ -133,13 +133,13 @@ fn furnished_plan(
     let furnish_key = key.child("furnish");
     let furnisher = furnish::HouseFurnisher {
         plan: &draft.plan,
-        holes: &draft.holes,
+        wall_holes: &draft.holes,
         style,
         spec,
         key: furnish_key.child(0_u64),
     };
     let mut furnished = furnisher.furnish();
-    let mut unreached = reachability::unreached(&draft.plan, &draft.holes, &furnished);
+    let mut unreached = reachability::unreachable_rooms(&draft.plan, &draft.holes, &furnished);
     for (round, share) in SHARES.into_iter().enumerate() {
         if unreached.is_empty() {
             break;
@@ -148,7 +148,7 @@ fn furnished_plan(
             let cells = StoreyCells::new(&storey.rooms);
             let lost = |room: usize| unreached.contains(&(level, room));
             for (room, place) in furnished[level].iter_mut().enumerate() {
-                let beside = storey.links.iter().any(|link| {
+                let beside = storey.connections.iter().any(|link| {
                     link.into == room && link.from.is_some_and(lost)
                         || link.from == Some(room) && lost(link.into)
                 });
@@ -158,7 +158,7 @@ fn furnished_plan(
                 }
             }
         }
-        unreached = reachability::unreached(&draft.plan, &draft.holes, &furnished);
+        unreached = reachability::unreachable_rooms(&draft.plan, &draft.holes, &furnished);
     }
     Ok(FurnishedPlan {
         key,
@@ -185,7 +185,7 @@ pub(crate) fn open(house: &str) -> Opened {
     let generated = generate(seed, &spec_of(fields)?)?;
     let mut report = LoadReport::new();
     for what in generated.report.given_up {
-        report.warn(FileLocation::file(house), WarningKind::GivenUp { what });
+        report.warn(FileLocation::file(house), WarningKind::Omitted { what });
     }
     Ok((generated.house, report))
 }
@@ -249,7 +249,7 @@ impl UnfurnishedPlan {
     /// Returns the omissions, in sentences.
     fn given_up(&self) -> Vec<String> {
         let missing_connections = self.plan.missing_connections.iter().map(|pair| {
-            let [a, b] = pair.map(|kind| kind.traits().words[0]);
+            let [a, b] = pair.map(|kind| kind.requirements().everyday_names[0]);
             format!("no door between {a} and {b}")
         });
         let mut given_up: Vec<String> = missing_connections.collect();
@@ -268,9 +268,9 @@ fn draft(spec: &HouseSpec, key: RandomKey) -> Result<UnfurnishedPlan, HousesErro
     let mut best: Option<UnfurnishedPlan> = None;
     let mut last = None;
     for round in 0..PROGRAMMES {
-        let programme = room_program::programme(spec, key.child("programme").child(round));
+        let programme = room_program::draw_room_program(spec, key.child("programme").child(round));
         check_area(spec, &programme)?;
-        let drawn = plan::lay_out(&programme, &spec.adjacency, key.child("plan").child(round));
+        let drawn = plan::best_plan(&programme, &spec.adjacency, key.child("plan").child(round));
         let Some(plan) = drawn else {
             last = Some(programme);
             continue;
@@ -322,7 +322,7 @@ fn check_area(spec: &HouseSpec, programme: &RoomProgram) -> Result<(), HousesErr
     let rooms = || programme.storeys.iter().flatten();
     let [least, most] = [0, 2].map(|k| {
         rooms()
-            .map(|room| room.kind.traits().area_m2[k])
+            .map(|room| room.kind.requirements().area_m2[k])
             .sum::<f32>()
     });
     let (least, most) = (least * 1.05, most * 1.4);
@@ -347,7 +347,7 @@ fn no_plan(spec: &HouseSpec, programme: Option<&RoomProgram>) -> HousesError {
             .flatten()
     };
     let area: f32 = rooms().map(|room| room.area_m2).sum();
-    let kinds: Vec<&str> = rooms().map(|room| room.kind.traits().name).collect();
+    let kinds: Vec<&str> = rooms().map(|room| room.kind.requirements().name).collect();
     HousesError::Spec {
         field: if spec.rooms.is_empty() {
             "area_m2"

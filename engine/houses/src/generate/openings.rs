@@ -7,14 +7,14 @@ use super::plan::{
     ConnectionKind, GeneratedPlan, GeneratedStorey, GridRect, GridSteps, RoomBoundary,
     StairwellPlan, StoreyCells, metres, steps,
 };
-use super::reachability::unreached_when_empty;
+use super::reachability::unreachable_rooms_when_empty;
 use super::rooms::{GeneratedRoomKind, WindowStyle};
 use dwell_scene::random::{RandomKey, RandomStream};
 
 /// Thickness of walls between rooms, m.
-pub(crate) const INNER_M: f32 = 0.1;
+pub(crate) const INNER_WALL_M: f32 = 0.1;
 /// Thickness of walls to the outside, m.
-pub(crate) const OUTER_M: f32 = 0.2;
+pub(crate) const OUTER_WALL_M: f32 = 0.2;
 /// Width of the opening of a door, in steps.
 const DOOR: GridSteps = 19;
 /// From the middle of the wall at a corner to the opening.
@@ -24,7 +24,7 @@ const BESIDE_M: f32 = 0.099;
 /// Depth before a door that no open leaf may reach into, from the middle of its wall, m: one passes between the two.
 const PASS_M: f32 = 0.85;
 /// Upper edge of doors, m.
-pub(crate) const DOOR_M: f32 = 2.06;
+pub(crate) const DOOR_WIDTH_M: f32 = 2.06;
 /// Upper edge of openings without a leaf, m.
 const ARCH_M: f32 = 2.2;
 
@@ -58,7 +58,7 @@ pub(crate) struct WallHole {
     /// The room to which it belongs: that into which a leaf swings.
     pub(crate) room: usize,
     /// The room behind; `None`: outside.
-    pub(crate) behind: Option<usize>,
+    pub(crate) other_room: Option<usize>,
     /// True if the wall runs along x.
     pub(crate) along_x: bool,
     /// The middle of the wall, across it, m.
@@ -70,22 +70,22 @@ pub(crate) struct WallHole {
     pub(crate) low_m: f32,
     pub(crate) high_m: f32,
     /// +1 when the room lies at larger coordinates across the wall, else -1.
-    pub(crate) inward: f32,
-    pub(crate) filling: HoleContents,
+    pub(crate) inward_sign: f32,
+    pub(crate) contents: HoleContents,
 }
 
 impl WallHole {
     /// The thickness of its wall, m.
     pub(crate) fn wall_m(&self, storey: &GeneratedStorey) -> f32 {
         let outside = self
-            .behind
+            .other_room
             .is_none_or(|room| storey.rooms[room].kind.is_outside());
-        if outside { OUTER_M } else { INNER_M }
+        if outside { OUTER_WALL_M } else { INNER_WALL_M }
     }
 
     /// A rectangle before it in its room (`side` 1) or in the one behind (-1), from the wall's middle to `depth_m`.
-    pub(crate) fn front(&self, side: f32, depth_m: f32, margin_m: f32) -> ZoneXz {
-        let far = self.at_m + self.inward * side * depth_m;
+    pub(crate) fn zone_in_front(&self, side: f32, depth_m: f32, margin_m: f32) -> ZoneXz {
+        let far = self.at_m + self.inward_sign * side * depth_m;
         let (low, high) = (self.at_m.min(far), self.at_m.max(far));
         let (from, to) = (self.from_m - margin_m, self.to_m + margin_m);
         if self.along_x {
@@ -96,14 +96,14 @@ impl WallHole {
     }
 
     /// The floor that its leaf passes, if it has one.
-    pub(crate) fn sweep(&self) -> Option<ZoneXz> {
-        matches!(self.filling, HoleContents::Door { .. })
-            .then(|| self.front(1.0, self.to_m - self.from_m + 0.1, 0.06))
+    pub(crate) fn swept_zone(&self) -> Option<ZoneXz> {
+        matches!(self.contents, HoleContents::Door { .. })
+            .then(|| self.zone_in_front(1.0, self.to_m - self.from_m + 0.1, 0.06))
     }
 
     /// The floor beside its hinges into which a leaf reaches that opens beyond a right angle, if it has one.
-    pub(crate) fn beside_hinges(&self, wall_m: f32) -> Option<ZoneXz> {
-        let HoleContents::Door { hinge_right, .. } = self.filling else {
+    pub(crate) fn zone_beside_hinges(&self, wall_m: f32) -> Option<ZoneXz> {
+        let HoleContents::Door { hinge_right, .. } = self.contents else {
             return None;
         };
         let (from, to) = if self.hinge_at_low_end(hinge_right) {
@@ -111,7 +111,8 @@ impl WallHole {
         } else {
             (self.to_m, self.to_m + BESIDE_M)
         };
-        let ends = [0.5 * wall_m, self.to_m - self.from_m].map(|off| self.at_m + self.inward * off);
+        let ends =
+            [0.5 * wall_m, self.to_m - self.from_m].map(|off| self.at_m + self.inward_sign * off);
         let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
         Some(if self.along_x {
             [from, low, to, high]
@@ -121,11 +122,11 @@ impl WallHole {
     }
 
     /// Returns where its leaf stands when open.
-    pub(crate) fn open_leaf(&self) -> Option<ZoneXz> {
-        let HoleContents::Door { hinge_right, .. } = self.filling else {
+    pub(crate) fn open_leaf_zone(&self) -> Option<ZoneXz> {
+        let HoleContents::Door { hinge_right, .. } = self.contents else {
             return None;
         };
-        let zone = self.front(1.0, self.to_m - self.from_m + 0.1, 0.0);
+        let zone = self.zone_in_front(1.0, self.to_m - self.from_m + 0.1, 0.0);
         let low_end = self.hinge_at_low_end(hinge_right);
         let mut leaf = zone;
         let axis = usize::from(!self.along_x);
@@ -143,16 +144,16 @@ impl WallHole {
     /// room and its right is +X: with the room at larger z, right is the larger x; at larger x, the smaller z.
     fn hinge_at_low_end(&self, hinge_right: bool) -> bool {
         let right_is_high = if self.along_x {
-            self.inward > 0.0
+            self.inward_sign > 0.0
         } else {
-            self.inward < 0.0
+            self.inward_sign < 0.0
         };
         hinge_right != right_is_high
     }
 
     /// The yaw that turns the model's +Z into the room, degrees.
     pub(crate) fn yaw_deg(&self) -> f32 {
-        match (self.along_x, self.inward > 0.0) {
+        match (self.along_x, self.inward_sign > 0.0) {
             (true, true) => 0.0,
             (true, false) => 180.0,
             (false, true) => 90.0,
@@ -171,7 +172,7 @@ pub(crate) fn openings(plan: &GeneratedPlan, key: RandomKey) -> (Vec<Vec<WallHol
     let mut tight = 0;
     let all = plan.storeys.iter().enumerate().map(|(k, storey)| {
         let key = key.child(k as u64);
-        let runs = StoreyCells::new(&storey.rooms).runs();
+        let runs = StoreyCells::new(&storey.rooms).boundaries();
         let stairs = plan.stairs.map(|stairs| stairs.area);
         let (mut holes, faults) =
             doors(storey, &runs, plan.stairs, &mut key.child("doors").stream());
@@ -203,7 +204,7 @@ fn doors(
         let mut dealt = deal(storey, runs, stairs.map(|stairs| stairs.area), stream);
         // Where no two doors meet, an open leaf may still block the way to a room.
         if dealt.1 == 0 {
-            dealt.1 = unreached_when_empty(storey, &dealt.0, stairs);
+            dealt.1 = unreachable_rooms_when_empty(storey, &dealt.0, stairs);
         }
         if best.as_ref().is_none_or(|(_, least)| dealt.1 < *least) {
             best = Some(dealt);
@@ -223,7 +224,7 @@ fn deal(
 ) -> (Vec<WallHole>, usize) {
     let mut holes: Vec<WallHole> = Vec::new();
     let mut tight = 0;
-    for link in &storey.links {
+    for link in &storey.connections {
         let mut found = candidates(storey, runs, link.into, link.from, link.kind, stream);
         stream.shuffle(&mut found);
         let clear = |hole: &WallHole| {
@@ -231,7 +232,7 @@ fn deal(
                 let zone = area.map(metres);
                 [1.0, -1.0]
                     .iter()
-                    .any(|side| overlap(&hole.front(*side, 0.5, 0.0), &zone))
+                    .any(|side| overlap(&hole.zone_in_front(*side, 0.5, 0.0), &zone))
             });
             !on_stairs
                 && leaves_passage(storey, runs, hole)
@@ -249,10 +250,10 @@ const FREE_LEAF_M: f32 = 1.75;
 
 /// Returns whether one can pass the open leaf: it lies against a wall of a corner, or the room is deep.
 fn leaves_passage(storey: &GeneratedStorey, runs: &[RoomBoundary], hole: &WallHole) -> bool {
-    let HoleContents::Door { hinge_right, .. } = hole.filling else {
+    let HoleContents::Door { hinge_right, .. } = hole.contents else {
         return true;
     };
-    let zone = hole.front(1.0, FREE_LEAF_M, 0.1);
+    let zone = hole.zone_in_front(1.0, FREE_LEAF_M, 0.1);
     let area = |z: &ZoneXz| (z[2] - z[0]).max(0.0) * (z[3] - z[1]).max(0.0);
     let common = |a: ZoneXz| {
         area(&[
@@ -277,7 +278,7 @@ fn leaves_passage(storey: &GeneratedStorey, runs: &[RoomBoundary], hole: &WallHo
             && run.sides.contains(&Some(hole.room))
             && (metres(run.at) - hinge).abs() < 0.25;
         let (from, to) = (metres(run.from), metres(run.to));
-        let inward = if hole.inward > 0.0 {
+        let inward = if hole.inward_sign > 0.0 {
             (from - hole.at_m).abs() < 0.01 && to - from > 0.85
         } else {
             (to - hole.at_m).abs() < 0.01 && to - from > 0.85
@@ -293,15 +294,16 @@ fn apart(a: &WallHole, b: &WallHole) -> bool {
         _ => false,
     };
     let blocked = |leaf: &WallHole, door: &WallHole| {
-        leaf.open_leaf().is_some_and(|leaf| {
+        leaf.open_leaf_zone().is_some_and(|leaf| {
             [1.0, -1.0]
                 .iter()
-                .any(|side| overlap(&leaf, &door.front(*side, PASS_M, 0.0)))
+                .any(|side| overlap(&leaf, &door.zone_in_front(*side, PASS_M, 0.0)))
         })
     };
-    let beside = |p: f32, q: f32| overlap(&a.front(p, 0.1, 0.1), &b.front(q, 0.1, 0.1));
+    let beside =
+        |p: f32, q: f32| overlap(&a.zone_in_front(p, 0.1, 0.1), &b.zone_in_front(q, 0.1, 0.1));
     let same = beside(1.0, 1.0) || beside(1.0, -1.0);
-    !same && !meet(a.sweep(), b.sweep()) && !blocked(a, b) && !blocked(b, a)
+    !same && !meet(a.swept_zone(), b.swept_zone()) && !blocked(a, b) && !blocked(b, a)
 }
 
 /// Returns where a door between two rooms can be: at both ends and in the middle of every stretch that is long enough.
@@ -315,7 +317,7 @@ fn candidates(
 ) -> Vec<WallHole> {
     use GeneratedRoomKind::{Balcony, DiningRoom, LivingRoom, Lobby, Studio, Terrace};
     let kinds = [Some(room), behind].map(|room| room.map(|room| storey.rooms[room].kind));
-    let between = runs.iter().filter(|run| run.parts(Some(room), behind));
+    let between = runs.iter().filter(|run| run.separates(Some(room), behind));
     let mut holes = Vec::new();
     for run in between {
         let length = run.to - run.from;
@@ -337,7 +339,7 @@ fn candidates(
         for (from, hinge_low) in [(start, true), (end, false), (middle, stream.below(2) == 0)] {
             let mut hole = WallHole {
                 room,
-                behind,
+                other_room: behind,
                 along_x: run.along_x,
                 at_m: metres(run.at),
                 from_m: metres(from),
@@ -346,10 +348,10 @@ fn candidates(
                 high_m: if kind == ConnectionKind::Open {
                     ARCH_M
                 } else {
-                    DOOR_M
+                    DOOR_WIDTH_M
                 },
-                inward,
-                filling: HoleContents::Open,
+                inward_sign: inward,
+                contents: HoleContents::Open,
             };
             if kind == ConnectionKind::Door {
                 let outside = matches!(kinds[1], Some(Balcony | Terrace));
@@ -357,7 +359,7 @@ fn candidates(
                     || matches!(kinds[0], Some(LivingRoom | DiningRoom | Studio | Lobby))
                         && behind.is_some();
                 let right = hole.hinge_at_low_end(true) == hinge_low;
-                hole.filling = HoleContents::Door {
+                hole.contents = HoleContents::Door {
                     hinge_right: right,
                     glazed,
                     entrance: behind.is_none(),
@@ -377,7 +379,7 @@ fn windows(
     stream: &mut RandomStream,
 ) {
     for (room, plan) in storey.rooms.iter().enumerate() {
-        let traits = plan.kind.traits();
+        let traits = plan.kind.requirements();
         // Width, lower and upper edge in m, how many at most, and how much wall each takes.
         let (wide_m, low_m, high_m, most, each_m) = match traits.windows {
             WindowStyle::Wide => (
@@ -395,7 +397,7 @@ fn windows(
         };
         let mut outer: Vec<&RoomBoundary> = runs
             .iter()
-            .filter(|run| run.parts(Some(room), None) && run.to - run.from >= 18)
+            .filter(|run| run.separates(Some(room), None) && run.to - run.from >= 18)
             .collect();
         outer.sort_by_key(|run| run.from - run.to);
         let mut left = most;
@@ -413,19 +415,19 @@ fn windows(
                         [middle - half, middle + half].map(|edge| metres(steps(edge)));
                     let hole = WallHole {
                         room,
-                        behind: None,
+                        other_room: None,
                         along_x: run.along_x,
                         at_m: metres(run.at),
                         from_m,
                         to_m,
                         low_m,
                         high_m,
-                        inward: if run.sides[1] == Some(room) {
+                        inward_sign: if run.sides[1] == Some(room) {
                             1.0
                         } else {
                             -1.0
                         },
-                        filling: HoleContents::Window {
+                        contents: HoleContents::Window {
                             frosted: traits.windows == WindowStyle::Frosted,
                         },
                     };
@@ -446,18 +448,18 @@ fn windows(
 
 /// Returns whether a window keeps clear of other holes, of open leaves and of the stairs.
 fn is_clear(hole: &WallHole, holes: &[WallHole], stairs: Option<GridRect>) -> bool {
-    let before = hole.front(1.0, 0.5 * OUTER_M + 0.12, 0.02);
+    let before = hole.zone_in_front(1.0, 0.5 * OUTER_WALL_M + 0.12, 0.02);
     let free = |other: &WallHole| {
         let beside = other.along_x != hole.along_x
             || (other.at_m - hole.at_m).abs() > 0.01
             || other.to_m + 0.2 < hole.from_m
             || hole.to_m + 0.2 < other.from_m;
         let leaf = other
-            .open_leaf()
+            .open_leaf_zone()
             .is_some_and(|leaf| overlap(&leaf, &before));
         beside && !leaf
     };
-    let deep = hole.front(1.0, 0.5, 0.0);
+    let deep = hole.zone_in_front(1.0, 0.5, 0.0);
     let on_stairs = stairs.is_some_and(|area| overlap(&deep, &area.map(metres)));
     !on_stairs && holes.iter().all(free)
 }

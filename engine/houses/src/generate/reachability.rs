@@ -5,7 +5,7 @@
 //! Stricter than a `NavGrid` of cells of 10 cm for a walker of 0.2 m radius: where a square of half of 0.3 m passes, such a
 //! grid has a cell free of what the square is free of. So a room that counts as reached here is reached there; tests hold it.
 
-use super::furnish::{RoomFurniture, stands_in_the_way, zone};
+use super::furnish::{RoomFurniture, is_walking_obstacle, zone_of_box};
 use super::openings::{HoleContents, WallHole, ZoneXz};
 use super::plan::{GeneratedPlan, GeneratedStorey, StairwellPlan, StoreyCells, metres};
 use super::rooms::GeneratedRoomKind;
@@ -32,7 +32,7 @@ pub(super) type RoomIndex = (usize, usize);
 
 /// The rooms that a walker that opens doors cannot reach: those of which less than half of the walkable floor is connected
 /// with the largest walkable floor of the storey. A storey from which one cannot get to the stairs has lost its hallway.
-pub(super) fn unreached(
+pub(super) fn unreachable_rooms(
     plan: &GeneratedPlan,
     holes: &[Vec<WallHole>],
     furnished: &[Vec<RoomFurniture>],
@@ -42,14 +42,14 @@ pub(super) fn unreached(
         let mut map = OccupancyMap::new(storey, &holes[level], plan.stairs);
         for room in &furnished[level] {
             let boxes = room.pieces.iter().flat_map(|piece| &piece.boxes);
-            for bounds in boxes.filter(|bounds| stands_in_the_way(bounds)) {
-                map.block(&zone(bounds));
+            for bounds in boxes.filter(|bounds| is_walking_obstacle(bounds)) {
+                map.block(&zone_of_box(bounds));
             }
             // Someone may have opened a wardrobe.
             for piece in &room.pieces {
                 let place = piece.pose.to_affine();
-                for leaf in &piece.stock.open_leaves {
-                    map.block(&zone(&leaf.transformed(&place)));
+                for leaf in &piece.model.open_leaves {
+                    map.block(&zone_of_box(&leaf.transformed(&place)));
                 }
             }
         }
@@ -70,7 +70,7 @@ pub(super) fn unreached(
 }
 
 /// Returns the number of rooms of a storey that are unreachable while they are empty.
-pub(super) fn unreached_when_empty(
+pub(super) fn unreachable_rooms_when_empty(
     storey: &GeneratedStorey,
     holes: &[WallHole],
     stairs: Option<StairwellPlan>,
@@ -149,25 +149,25 @@ impl OccupancyMap {
         }
         for hole in holes {
             let half = 0.5 * hole.wall_m(storey);
-            if matches!(hole.filling, HoleContents::Window { .. }) {
-                map.block(&hole.front(1.0, half + SILL_M, 0.0));
+            if matches!(hole.contents, HoleContents::Window { .. }) {
+                map.block(&hole.zone_in_front(1.0, half + SILL_M, 0.0));
                 continue;
             }
-            let frame = if hole.filling == HoleContents::Open {
+            let frame = if hole.contents == HoleContents::Open {
                 0.0
             } else {
                 -FRAME_M
             };
             for side in [1.0, -1.0] {
                 // A little farther than the wall's face, so that no cell's middle is left out between.
-                let zone = hole.front(side, half + 0.5 * CELL_M, frame);
+                let zone = hole.zone_in_front(side, half + 0.5 * CELL_M, frame);
                 map.centres(&zone, |map, cell| {
                     if map.room[cell] == WALL {
                         map.room[cell] = DOORWAY;
                     }
                 });
             }
-            if let Some(leaf) = hole.open_leaf() {
+            if let Some(leaf) = hole.open_leaf_zone() {
                 map.block(&leaf);
             }
         }

@@ -10,7 +10,7 @@ use dwell_scene::random::{RandomKey, RandomStream};
 /// Height of skirting boards, m.
 const SKIRTING_M: f32 = 0.08;
 /// Height above all bands: everything below the ceiling.
-pub(crate) const TOP_M: f32 = 10.0;
+pub(crate) const ABOVE_ALL_BANDS_M: f32 = 10.0;
 
 /// The finishes of a room.
 #[derive(Clone, Debug)]
@@ -32,12 +32,12 @@ fn paint(name: &'static str, srgb: Srgb) -> Finish {
 }
 
 /// Returns the finish of the insides of openings.
-pub(crate) fn reveal() -> Finish {
+pub(crate) fn reveal_finish() -> Finish {
     paint("reveal_white", [240, 238, 232])
 }
 
 /// The finish of the outside of the building.
-pub(crate) fn facade(key: RandomKey) -> FinishBands {
+pub(crate) fn facade_finish(key: RandomKey) -> FinishBands {
     let mut draw = key.stream();
     let bricks = [
         [[168, 92, 66], [196, 188, 176], [120, 62, 48]],
@@ -55,7 +55,7 @@ pub(crate) fn facade(key: RandomKey) -> FinishBands {
     } else {
         paint("facade_plaster", paints[draw.below(paints.len())])
     };
-    vec![(TOP_M, finish)]
+    vec![(ABOVE_ALL_BANDS_M, finish)]
 }
 
 fn tiles(name: &'static str, stream: &mut RandomStream) -> Finish {
@@ -78,7 +78,7 @@ fn tiles(name: &'static str, stream: &mut RandomStream) -> Finish {
 fn carpet(style: &Style, stream: &mut RandomStream) -> Finish {
     // Of the style's colours, but muted: floors are large.
     let wool = style
-        .terry(stream)
+        .random_terry(stream)
         .srgb
         .map(|c| (0.35 * f32::from(c) + 0.65 * 178.0) as u8);
     let dark = wool.map(|c| (f32::from(c) * 0.86) as u8);
@@ -86,7 +86,11 @@ fn carpet(style: &Style, stream: &mut RandomStream) -> Finish {
 }
 
 /// The finishes of a room, by its use.
-pub(crate) fn look(kind: GeneratedRoomKind, style: &Style, key: RandomKey) -> RoomFinishes {
+pub(crate) fn room_finishes(
+    kind: GeneratedRoomKind,
+    style: &Style,
+    key: RandomKey,
+) -> RoomFinishes {
     use GeneratedRoomKind::{
         Balcony, Bathroom, Bedroom, BoilerRoom, ChildRoom, Gym, Kitchen, Lobby, Office, Storage,
         Terrace, Toilet,
@@ -122,14 +126,21 @@ pub(crate) fn look(kind: GeneratedRoomKind, style: &Style, key: RandomKey) -> Ro
     let walls = match kind {
         Bathroom | Toilet | BoilerRoom => {
             let high = if kind == Bathroom { 2.0 } else { 1.3 };
-            vec![(high, tiles("wall_tiles", &mut draw)), (TOP_M, calm)]
+            vec![
+                (high, tiles("wall_tiles", &mut draw)),
+                (ABOVE_ALL_BANDS_M, calm),
+            ]
         }
         Kitchen if draw.below(2) == 0 => {
             let white = [[238, 238, 234], [206, 206, 200], [228, 228, 224]];
             let metro = Finish::tiled("metro_tiles", "ceramic_tile", "metro", white, 0.3);
-            vec![(SKIRTING_M, skirting()), (1.5, metro), (TOP_M, tone)]
+            vec![
+                (SKIRTING_M, skirting()),
+                (1.5, metro),
+                (ABOVE_ALL_BANDS_M, tone),
+            ]
         }
-        _ => vec![(SKIRTING_M, skirting()), (TOP_M, tone)],
+        _ => vec![(SKIRTING_M, skirting()), (ABOVE_ALL_BANDS_M, tone)],
     };
     RoomFinishes {
         floor,

@@ -26,7 +26,7 @@ pub(crate) struct RoomProgram {
 }
 
 /// Draws the values that the spec leaves open.
-pub(crate) fn programme(spec: &HouseSpec, key: RandomKey) -> RoomProgram {
+pub(crate) fn draw_room_program(spec: &HouseSpec, key: RandomKey) -> RoomProgram {
     let mut draw = key.stream();
     let home = home(spec, &mut draw);
     let mut outside = None;
@@ -52,7 +52,7 @@ pub(crate) fn programme(spec: &HouseSpec, key: RandomKey) -> RoomProgram {
         .into_iter()
         .map(|rooms| {
             let wanted = |kind: GeneratedRoomKind| {
-                let [low, usual, high] = kind.traits().area_m2;
+                let [low, usual, high] = kind.requirements().area_m2;
                 let area_m2 = (usual * key.range(0.8, 1.35)).clamp(low, high);
                 RoomRequirement { kind, area_m2 }
             };
@@ -171,7 +171,7 @@ fn spread(rooms: &[GeneratedRoomKind], count: usize) -> Vec<Vec<GeneratedRoomKin
     let mut storeys = vec![Vec::new(); count.max(1)];
     let mut above = 0;
     for kind in rooms {
-        let storey = if kind.traits().storey == 0 || count < 2 {
+        let storey = if kind.requirements().storey == 0 || count < 2 {
             0
         } else {
             // Private rooms fill the upper storeys in turn.
@@ -197,7 +197,10 @@ fn spread(rooms: &[GeneratedRoomKind], count: usize) -> Vec<Vec<GeneratedRoomKin
 /// Adds rooms to storeys that are much smaller than the largest: they all stand on one another.
 fn balance(storeys: &mut [Vec<GeneratedRoomKind>]) {
     let usual = |rooms: &[GeneratedRoomKind]| -> f32 {
-        rooms.iter().map(|kind| kind.traits().area_m2[1]).sum()
+        rooms
+            .iter()
+            .map(|kind| kind.requirements().area_m2[1])
+            .sum()
     };
     let largest = storeys.iter().map(|rooms| usual(rooms)).fold(0.0, f32::max);
     let mut spare = [GuestRoom, Office, Bathroom, Wardrobe, Gym, Storage]
@@ -223,7 +226,7 @@ fn scale(storeys: &mut [Vec<RoomRequirement>], area_m2: f32) {
         let total: f32 = storeys.iter().flatten().map(|room| room.area_m2).sum();
         let factor = area_m2 / (total * hallways).max(1.0);
         for room in storeys.iter_mut().flatten() {
-            let [low, _, high] = room.kind.traits().area_m2;
+            let [low, _, high] = room.kind.requirements().area_m2;
             room.area_m2 = (room.area_m2 * factor).clamp(low, high * 1.3);
         }
     }

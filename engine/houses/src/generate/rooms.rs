@@ -68,11 +68,11 @@ pub(crate) struct RoomRequirements {
     /// A row of `assets/rooms.csv`; rooms are named after it.
     pub(crate) name: &'static str,
     /// Everyday names of its kind, the most fitting first.
-    pub(crate) words: &'static [&'static str],
+    pub(crate) everyday_names: &'static [&'static str],
     /// The smallest, the usual and the largest floor, m².
     pub(crate) area_m2: [f32; 3],
     /// Smallest width between the middles of its walls, m.
-    pub(crate) least_width_m: f32,
+    pub(crate) min_width_m: f32,
     pub(crate) windows: WindowStyle,
     /// The storey that it is usually on when there are several: 0 the ground, 1 above.
     pub(crate) storey: usize,
@@ -88,9 +88,9 @@ const fn traits(
 ) -> RoomRequirements {
     RoomRequirements {
         name,
-        words,
+        everyday_names: words,
         area_m2,
-        least_width_m,
+        min_width_m: least_width_m,
         windows,
         storey,
     }
@@ -119,7 +119,7 @@ impl GeneratedRoomKind {
     ];
 
     /// Areas: usual German flats after E. Neufert, *Architects' Data*, 4th ed. (2012), "Housing", rounded.
-    pub(crate) const fn traits(self) -> RoomRequirements {
+    pub(crate) const fn requirements(self) -> RoomRequirements {
         use WindowStyle::{Frosted, High, None, Usual, Wide};
         match self {
             Self::Studio => traits(

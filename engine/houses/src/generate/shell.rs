@@ -1,20 +1,22 @@
 //! The building: rooms with their slabs, walls with holes, doors, windows, stairs and railings.
 
 use super::furnish::RoomFurniture;
-use super::openings::{HoleContents, INNER_M, OUTER_M, WallHole, ZoneXz, overlap};
+use super::openings::{HoleContents, INNER_WALL_M, OUTER_WALL_M, WallHole, ZoneXz, overlap};
 use super::plan::{
     GeneratedPlan, GeneratedRoom, GeneratedStorey, RoomBoundary, StoreyCells, metres,
 };
-use super::room_finishes::{RoomFinishes, facade, look, reveal};
+use super::room_finishes::{RoomFinishes, facade_finish, reveal_finish, room_finishes};
 use super::rooms::GeneratedRoomKind;
 use super::spec::DoorStates;
 use crate::building::assembly::HouseAssembly;
-use crate::building::openings::{put_door, put_window};
+use crate::building::openings::{add_door, add_window};
 use crate::building::outline::outline;
 use crate::building::room::{CEILING_M, FloorSlab, ShellRoom};
-use crate::building::stairs::{RAILING_INSET_M, StairFlights, put_railing, put_stairs, railing_of};
+use crate::building::stairs::{
+    RAILING_INSET_M, StairFlights, add_railing, add_stairs, railing_model,
+};
 use crate::building::wall::{FinishBands, ShellWall, WallAxis, WallOpening};
-use crate::building::yaw::yaw;
+use crate::building::yaw::yaw_rotation;
 use crate::import::UniqueNames;
 use dwell_furniture::finishes::Finish;
 use dwell_furniture::models::doors::Door;
@@ -45,9 +47,9 @@ impl BuildingShell {
             let up = Pose::from_position(Vec3::Y * ShellBuilder::floor_m(level));
             for (room, furnished) in rooms.iter().enumerate() {
                 for piece in &furnished.pieces {
-                    let model = &piece.stock.model;
-                    let kind = assembly.kind(model.clone());
-                    assembly.place(&kind, up * piece.pose, self.rooms[level][room], 0.0);
+                    let model = &piece.model.model;
+                    let kind = assembly.add_model(model.clone());
+                    assembly.add_instance(&kind, up * piece.pose, self.rooms[level][room], 0.0);
                 }
             }
         }
@@ -64,13 +66,17 @@ pub(crate) struct ShellBuilder<'a> {
 }
 
 /// Half of the thickness of the wall between a room and its neighbour, m; 0 where there is none.
-pub(crate) fn half_wall(storey: &GeneratedStorey, room: usize, other: Option<usize>) -> f32 {
+pub(crate) fn half_wall_thickness_m(
+    storey: &GeneratedStorey,
+    room: usize,
+    other: Option<usize>,
+) -> f32 {
     let outside = |room: usize| storey.rooms[room].kind.is_outside();
     match other {
         Some(other) if other == room => 0.0,
         None if outside(room) => 2.0 * RAILING_INSET_M,
-        Some(other) if !outside(room) && !outside(other) => 0.5 * INNER_M,
-        _ => 0.5 * OUTER_M,
+        Some(other) if !outside(room) && !outside(other) => 0.5 * INNER_WALL_M,
+        _ => 0.5 * OUTER_WALL_M,
     }
 }
 
@@ -80,16 +86,20 @@ pub(crate) fn free_floor(
     cells: &StoreyCells,
     room: usize,
 ) -> Vec<ZoneXz> {
-    let rectangles = cells.of(room).into_iter().map(|(area, neighbours)| {
-        let [west, north, east, south] = neighbours.map(|other| half_wall(storey, room, other));
-        let [x0, z0, x1, z1] = area.map(metres);
-        [x0 + west, z0 + north, x1 - east, z1 - south]
-    });
+    let rectangles = cells
+        .cells_of_room(room)
+        .into_iter()
+        .map(|(area, neighbours)| {
+            let [west, north, east, south] =
+                neighbours.map(|other| half_wall_thickness_m(storey, room, other));
+            let [x0, z0, x1, z1] = area.map(metres);
+            [x0 + west, z0 + north, x1 - east, z1 - south]
+        });
     rectangles.collect()
 }
 
 /// Returns whether a rectangle lies over a floor entirely.
-pub(crate) fn covers(floor: &[ZoneXz], rect: &ZoneXz) -> bool {
+pub(crate) fn floor_contains_zone(floor: &[ZoneXz], rect: &ZoneXz) -> bool {
     let area = |r: &ZoneXz| (r[2] - r[0]).max(0.0) * (r[3] - r[1]).max(0.0);
     let common = |z: &ZoneXz| {
         [
@@ -116,22 +126,25 @@ fn slab(
     hole: Option<ZoneXz>,
 ) -> Vec<[f32; 2]> {
     let inside = !storey.rooms[room].kind.is_outside();
-    let grown = cells.of(room).into_iter().filter_map(|(area, neighbours)| {
-        let zone = area.map(metres);
-        if hole.is_some_and(|hole| overlap(&hole, &zone)) {
-            return None;
-        }
-        let [west, north, east, south] = neighbours.map(|other| {
-            let to_outside = other.is_none_or(|other| storey.rooms[other].kind.is_outside());
-            match (inside, to_outside) {
-                (true, true) => 0.5 * OUTER_M,
-                (false, false) => -0.5 * OUTER_M,
-                _ => 0.0,
+    let grown = cells
+        .cells_of_room(room)
+        .into_iter()
+        .filter_map(|(area, neighbours)| {
+            let zone = area.map(metres);
+            if hole.is_some_and(|hole| overlap(&hole, &zone)) {
+                return None;
             }
+            let [west, north, east, south] = neighbours.map(|other| {
+                let to_outside = other.is_none_or(|other| storey.rooms[other].kind.is_outside());
+                match (inside, to_outside) {
+                    (true, true) => 0.5 * OUTER_WALL_M,
+                    (false, false) => -0.5 * OUTER_WALL_M,
+                    _ => 0.0,
+                }
+            });
+            let [x0, z0, x1, z1] = zone;
+            Some([x0 - west, z0 - north, x1 + east, z1 + south])
         });
-        let [x0, z0, x1, z1] = zone;
-        Some([x0 - west, z0 - north, x1 + east, z1 + south])
-    });
     outline(&grown.collect::<Vec<_>>())
 }
 
@@ -139,10 +152,10 @@ impl ShellBuilder<'_> {
     /// Adds the building to an empty house.
     pub(crate) fn build(&self, assembly: &mut HouseAssembly) -> BuildingShell {
         let mut names = UniqueNames::default();
-        let outside = facade(self.key.child("facade"));
+        let outside = facade_finish(self.key.child("facade"));
         let mut shell = BuildingShell { rooms: Vec::new() };
         for (level, storey) in self.plan.storeys.iter().enumerate() {
-            assembly.storey();
+            assembly.add_storey();
             let cells = StoreyCells::new(&storey.rooms);
             let looks: Vec<RoomFinishes> = (0..storey.rooms.len())
                 .map(|room| {
@@ -151,7 +164,7 @@ impl ShellBuilder<'_> {
                         .child("look")
                         .child(level as u64)
                         .child(room as u64);
-                    look(storey.rooms[room].kind, self.style, key)
+                    room_finishes(storey.rooms[room].kind, self.style, key)
                 })
                 .collect();
             let ids = self.rooms(level, &cells, &looks, &mut names, assembly);
@@ -189,7 +202,7 @@ impl ShellBuilder<'_> {
                 .map(|s| s.area.map(metres))
         };
         let rooms = storey.rooms.iter().enumerate().map(|(room, plan)| {
-            let traits = plan.kind.traits();
+            let traits = plan.kind.requirements();
             let void = well(level > 0 && plan.kind == GeneratedRoomKind::Hallway);
             let mut floor = free_floor(storey, cells, room);
             floor.retain(|zone| void.is_none_or(|void| !overlap(&void, zone)));
@@ -203,7 +216,11 @@ impl ShellBuilder<'_> {
             };
             let built = ShellRoom {
                 name: names.unique(traits.name),
-                kinds: traits.words.iter().map(|word| (*word).to_owned()).collect(),
+                kinds: traits
+                    .everyday_names
+                    .iter()
+                    .map(|word| (*word).to_owned())
+                    .collect(),
                 floor,
                 floor_m: Self::floor_m(level),
                 ceiling_m: CEILING_M,
@@ -218,7 +235,7 @@ impl ShellBuilder<'_> {
                         thick_m: if top { FLOOR_SLAB_M } else { CEILING_SLAB_M },
                     },
                 ],
-                hung: Vec::new(),
+                suspended_ceiling: Vec::new(),
                 floor_finish: looks[room].floor.clone(),
                 ceiling_finish: looks[room].ceiling.clone(),
             };
@@ -232,14 +249,14 @@ impl ShellBuilder<'_> {
         let storey = self.storey(level);
         let doors = self.holes[level]
             .iter()
-            .filter(|hole| !matches!(hole.filling, HoleContents::Window { .. }));
+            .filter(|hole| !matches!(hole.contents, HoleContents::Window { .. }));
         doors
             .filter_map(|hole| {
                 let half = 0.5 * hole.wall_m(storey);
                 if hole.room == room {
-                    Some(hole.front(1.0, half, 0.0))
+                    Some(hole.zone_in_front(1.0, half, 0.0))
                 } else {
-                    (hole.behind == Some(room)).then(|| hole.front(-1.0, half, 0.0))
+                    (hole.other_room == Some(room)).then(|| hole.zone_in_front(-1.0, half, 0.0))
                 }
             })
             .collect()
@@ -256,7 +273,7 @@ impl ShellBuilder<'_> {
     ) {
         let storey = self.storey(level);
         let runs: Vec<RoomBoundary> = cells
-            .runs()
+            .boundaries()
             .into_iter()
             .filter(|run| !is_railing(storey, run))
             .collect();
@@ -314,7 +331,7 @@ impl ShellBuilder<'_> {
                 },
                 front: bands(run.sides[1]),
                 back: bands(run.sides[0]),
-                edge: reveal(),
+                reveal_finish: reveal_finish(),
                 openings: openings
                     .map(|hole| WallOpening {
                         along: [hole.from_m, hole.to_m],
@@ -341,8 +358,8 @@ impl ShellBuilder<'_> {
             };
             let wall_m = hole.wall_m(storey);
             let width_m = hole.to_m - hole.from_m;
-            let turn = yaw(hole.yaw_deg());
-            match hole.filling {
+            let turn = yaw_rotation(hole.yaw_deg());
+            match hole.contents {
                 HoleContents::Open => {}
                 HoleContents::Door {
                     hinge_right,
@@ -361,11 +378,11 @@ impl ShellBuilder<'_> {
                         door.leaf = entrance_leaf(self.style);
                     }
                     // Beside an outer wall, which is thicker, the leaf opens square.
-                    let beside = hole.beside_hinges(wall_m);
-                    let square = beside.is_some_and(|zone| !covers(&free, &zone));
+                    let beside = hole.zone_beside_hinges(wall_m);
+                    let square = beside.is_some_and(|zone| !floor_contains_zone(&free, &zone));
                     let openness = self.openness(hole, key.child(k as u64));
                     let pose = Pose::new(Vec3::new(x, floor, z), turn);
-                    put_door(assembly, &door, square, pose, ids[hole.room], openness);
+                    add_door(assembly, &door, square, pose, ids[hole.room], openness);
                 }
                 HoleContents::Window { frosted } => {
                     let pane = if frosted {
@@ -377,13 +394,13 @@ impl ShellBuilder<'_> {
                         width_m,
                         height_m: hole.high_m - hole.low_m,
                         wall_m,
-                        lights: if width_m > 1.0 { 2 } else { 1 },
+                        casements: if width_m > 1.0 { 2 } else { 1 },
                         pane,
                         sill_m: 0.03,
                     };
                     let y = floor + 0.5 * (hole.low_m + hole.high_m);
                     let pose = Pose::new(Vec3::new(x, y, z), turn);
-                    put_window(assembly, &window, pose, ids[hole.room]);
+                    add_window(assembly, &window, pose, ids[hole.room]);
                 }
             }
         }
@@ -391,8 +408,8 @@ impl ShellBuilder<'_> {
 
     fn openness(&self, hole: &WallHole, key: RandomKey) -> f32 {
         let outside = hole
-            .behind
-            .is_none_or(|_| matches!(hole.filling, HoleContents::Door { entrance: true, .. }));
+            .other_room
+            .is_none_or(|_| matches!(hole.contents, HoleContents::Door { entrance: true, .. }));
         if outside {
             return 0.0;
         }
@@ -422,7 +439,7 @@ impl ShellBuilder<'_> {
         let last = level + 1 == self.plan.storeys.len();
         // Between the walls; at the front it ends with the hallway's floor.
         let [x0, z0, x1, z1] = stairs.area.map(metres);
-        let inset = 0.5 * OUTER_M + 0.005;
+        let inset = 0.5 * OUTER_WALL_M + 0.005;
         let climb = Vec3::new(stairs.climb[0] as f32, 0.0, stairs.climb[1] as f32);
         let across = Vec3::new(stairs.across[0] as f32, 0.0, stairs.across[1] as f32);
         let size = Vec3::new(x1 - x0, 0.0, z1 - z0);
@@ -440,10 +457,10 @@ impl ShellBuilder<'_> {
         };
         if last {
             // The first flight would start here: a railing instead.
-            put_railing(assembly, &flights, self.style, room);
+            add_railing(assembly, &flights, self.style, room);
         } else {
             let goes_on = level + 2 < self.plan.storeys.len();
-            put_stairs(assembly, &flights, STOREY_M, goes_on, self.style, room);
+            add_stairs(assembly, &flights, STOREY_M, goes_on, self.style, room);
         }
     }
 
@@ -456,7 +473,7 @@ impl ShellBuilder<'_> {
     ) {
         let storey = self.storey(level);
         let rails: Vec<RoomBoundary> = cells
-            .runs()
+            .boundaries()
             .into_iter()
             .filter(|run| is_railing(storey, run))
             .collect();
@@ -480,7 +497,7 @@ impl ShellBuilder<'_> {
                 match (turns, run.along_x) {
                     (true, true) => 0.02,
                     (true, false) => 0.08,
-                    _ => 0.5 * OUTER_M + 0.01,
+                    _ => 0.5 * OUTER_WALL_M + 0.01,
                 }
             };
             let (from, to) = (metres(run.from) + cut(false), metres(run.to) - cut(true));
@@ -491,9 +508,9 @@ impl ShellBuilder<'_> {
             } else {
                 (at, middle, 90.0)
             };
-            let kind = assembly.kind(railing_of(to - from, self.style));
-            let pose = Pose::new(Vec3::new(x, Self::floor_m(level), z), yaw(turn));
-            assembly.place(&kind, pose, ids[*room], 0.0);
+            let kind = assembly.add_model(railing_model(to - from, self.style));
+            let pose = Pose::new(Vec3::new(x, Self::floor_m(level), z), yaw_rotation(turn));
+            assembly.add_instance(&kind, pose, ids[*room], 0.0);
         }
     }
 }
@@ -511,9 +528,9 @@ fn is_railing(storey: &GeneratedStorey, run: &RoomBoundary) -> bool {
 fn thickness(storey: &GeneratedStorey, run: &RoomBoundary) -> f32 {
     let indoors = |side: &Option<usize>| side.is_some_and(|k| !storey.rooms[k].kind.is_outside());
     if run.sides.iter().all(indoors) {
-        INNER_M
+        INNER_WALL_M
     } else {
-        OUTER_M
+        OUTER_WALL_M
     }
 }
 

@@ -172,10 +172,14 @@ impl HouseSpec {
         for [a, b] in &self.adjacency {
             for kind in [a, b] {
                 if kind.is_outside() || *kind == GeneratedRoomKind::Hallway {
-                    return Err(fault("adjacency", kind.traits().name, "rooms inside"));
+                    return Err(fault("adjacency", kind.requirements().name, "rooms inside"));
                 }
                 if !self.rooms.is_empty() && !self.rooms.contains(kind) {
-                    return Err(fault("adjacency", kind.traits().name, "kinds in `rooms`"));
+                    return Err(fault(
+                        "adjacency",
+                        kind.requirements().name,
+                        "kinds in `rooms`",
+                    ));
                 }
             }
         }
@@ -232,7 +236,7 @@ impl HouseSpec {
         let inside = self.rooms.iter().filter(|kind| !kind.is_outside());
         let (mut least, mut most) = (0.0, 0.0);
         for kind in inside {
-            let [low, _, high] = kind.traits().area_m2;
+            let [low, _, high] = kind.requirements().area_m2;
             least += low;
             most += high;
         }

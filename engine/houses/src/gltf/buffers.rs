@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use ::gltf::json::{Root, buffer::View};
 
-use super::glb::{TO_LIBRARY, content_name};
+use super::glb::{LIBRARY_PREFIX, content_name};
 use crate::data_root::DataRoot;
 use crate::error::HousesError;
 use crate::limits::MAX_BUFFER_BYTES;
@@ -123,7 +123,7 @@ pub(super) fn read_shared(
 ) -> Result<Vec<u8>, WarningKind> {
     let short = || uri.chars().take(60).collect::<String>();
     let refused = || WarningKind::PathRefused { path: short() };
-    let path = uri.strip_prefix(TO_LIBRARY).ok_or_else(refused)?;
+    let path = uri.strip_prefix(LIBRARY_PREFIX).ok_or_else(refused)?;
     let (folder, file) = path.split_once('/').ok_or_else(refused)?;
     let (name, _) = file.split_once('.').ok_or_else(refused)?;
     let is_name = name.len() == 32 && name.bytes().all(|byte| byte.is_ascii_hexdigit());

@@ -6,14 +6,14 @@ use ::gltf::json::{Root, deserialize};
 use serde_json::Value;
 
 use super::indices;
-use crate::json::without_mark;
+use crate::json::without_byte_order_mark;
 use crate::limits::MAX_TEXT_BYTES;
 
 /// The tables and the binary chunk, empty when there is none. Text without the GLB header is glTF.
 ///
 /// # Errors
 /// A sentence when the bytes are neither.
-pub(super) fn split(bytes: &[u8]) -> Result<(Root, &[u8]), String> {
+pub(super) fn split_glb(bytes: &[u8]) -> Result<(Root, &[u8]), String> {
     if bytes.is_empty() {
         return Err("the file is empty; expected a GLB, or glTF 2.0 as JSON".to_owned());
     }
@@ -48,7 +48,7 @@ pub(super) fn text_and_blob(bytes: &[u8]) -> Result<(&[u8], &[u8]), String> {
     if bytes.starts_with(b"glTF") {
         chunks(bytes)
     } else {
-        Ok((without_mark(bytes), &[]))
+        Ok((without_byte_order_mark(bytes), &[]))
     }
 }
 
@@ -120,7 +120,7 @@ mod tests {
 
     #[test]
     fn broken_containers_say_what_is_wrong() {
-        let message = |bytes: &[u8]| split(bytes).unwrap_err();
+        let message = |bytes: &[u8]| split_glb(bytes).unwrap_err();
         assert_eq!(
             message(b"glTF\x02\0\0\0"),
             "ends at byte 8, inside a header"
@@ -151,7 +151,7 @@ mod tests {
             "the file is empty; expected a GLB, or glTF 2.0 as JSON"
         );
         let marked = b"\xef\xbb\xbf{\"asset\": {\"version\": \"2.0\"}}";
-        assert!(split(marked).is_ok());
+        assert!(split_glb(marked).is_ok());
         assert!(message(b"{").starts_with("no valid glTF 2.0: EOF"));
         // Other shapes than an object with a list of textures, on the way that reads a tree.
         for text in ["[\"KHR_texture_basisu\"]", "\"KHR_texture_basisu\""] {

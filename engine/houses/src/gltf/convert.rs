@@ -11,7 +11,7 @@ use glam::{Vec2, Vec3};
 
 use super::accessor::{floats, indices};
 use super::buffers::Buffers;
-use super::nodes::tree;
+use super::nodes::node_tree;
 use super::surface::{images, materials};
 use crate::data_root::DataRoot;
 use crate::error::HousesError;
@@ -57,7 +57,7 @@ pub(super) fn convert(
     let mut meshes: Vec<Option<(Arc<Mesh>, Vec<MaterialId>)>> = vec![None; json.meshes.len()];
     let (mut read, mut shown) = (VertexWriter::default(), VertexWriter::default());
     let mut things = Vec::new();
-    let tree = tree(json, trusted, &at, report);
+    let tree = node_tree(json, trusted, &at, report);
     for instance in tree.instances {
         let Some(mesh) = json.meshes.get(instance.mesh) else {
             continue;
@@ -108,8 +108,8 @@ pub(super) fn convert(
     Ok(ImportedScene {
         name: texture_name(name),
         source: "gltf",
-        things,
-        looks,
+        nodes: things,
+        materials: looks,
         textures: images.textures,
         levels: tree.levels,
         rooms: tree.rooms,

@@ -8,7 +8,7 @@ use super::container;
 const MAX_TOLD: usize = 5;
 
 /// The sentence of an error: for each place what is wrong, what was found, and what is allowed where that is known.
-pub(super) fn told(error: &::gltf::Error, bytes: &[u8]) -> String {
+pub(super) fn error_sentence(error: &::gltf::Error, bytes: &[u8]) -> String {
     let ::gltf::Error::Validation(places) = error else {
         return error.to_string();
     };

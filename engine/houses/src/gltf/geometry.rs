@@ -36,11 +36,11 @@ impl<'a> ParsedGlb<'a> {
             at: at.clone(),
             message,
         };
-        let (json, blob) = super::container::split(bytes).map_err(syntax)?;
+        let (json, blob) = super::container::split_glb(bytes).map_err(syntax)?;
         let mut report = LoadReport::new();
         let buffers = Buffers::of_library(&json, blob, library, &at, &mut report)?;
         match report.warnings().first() {
-            Some(warning) => Err(syntax(warning.damage.to_string())),
+            Some(warning) => Err(syntax(warning.kind.to_string())),
             None => Ok(Self {
                 json,
                 buffers,

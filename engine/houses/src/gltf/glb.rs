@@ -17,7 +17,7 @@ pub(crate) struct SidecarFile {
 }
 
 /// Prefix of [`SidecarFile::path`] in URIs: a native house is at `house/NAME.dwell/`.
-pub(crate) const TO_LIBRARY: &str = "../../";
+pub(crate) const LIBRARY_PREFIX: &str = "../../";
 
 /// The name of a shared file: 128 bits of its content.
 pub(crate) fn content_name(bytes: &[u8]) -> String {
@@ -57,7 +57,7 @@ impl Default for BinaryChunk {
 
 impl BinaryChunk {
     /// Runs `write`, whose data go into the chunk, or, if `apart`, into a file of its own in `folder`, named by its content.
-    pub(crate) fn part<T>(
+    pub(crate) fn append_bytes<T>(
         &mut self,
         folder: &str,
         apart: bool,
@@ -79,15 +79,15 @@ impl BinaryChunk {
     }
 
     /// Adds a file beside the GLB, named by its content; returns its URI.
-    pub(crate) fn beside(&mut self, folder: &str, ending: &str, bytes: Vec<u8>) -> String {
+    pub(crate) fn add_sidecar(&mut self, folder: &str, ending: &str, bytes: Vec<u8>) -> String {
         let path = format!("{folder}/{}.{ending}", content_name(&bytes));
-        let uri = format!("{TO_LIBRARY}{path}");
+        let uri = format!("{LIBRARY_PREFIX}{path}");
         self.beside.push(SidecarFile { path, bytes });
         uri
     }
 
     /// Appends bytes and returns their view.
-    pub(crate) fn view(&mut self, bytes: &[u8]) -> usize {
+    pub(crate) fn add_buffer_view(&mut self, bytes: &[u8]) -> usize {
         let to = &mut self.buffers[self.open].bytes;
         // Every view starts at a multiple of four, which fits all component types.
         to.resize(to.len().next_multiple_of(4), 0);
@@ -98,7 +98,7 @@ impl BinaryChunk {
     }
 
     /// Appends an accessor over part of a view and returns it.
-    pub(crate) fn accessor(
+    pub(crate) fn add_accessor(
         &mut self,
         view: usize,
         byte_offset: usize,
@@ -129,8 +129,8 @@ impl BinaryChunk {
                 bytes.extend_from_slice(&value.to_le_bytes());
             }
         }
-        let view = self.view(&bytes);
-        let accessor = self.accessor(view, 0, FLOAT, count, shape);
+        let view = self.add_buffer_view(&bytes);
+        let accessor = self.add_accessor(view, 0, FLOAT, count, shape);
         if bounds {
             self.accessors[accessor]["min"] = json!(low.to_vec());
             self.accessors[accessor]["max"] = json!(high.to_vec());
@@ -153,7 +153,7 @@ impl BinaryChunk {
             let row = |buffer: &Buffer| match &buffer.path {
                 None => json!({"byteLength": buffer.bytes.len()}),
                 Some(path) => json!({
-                    "byteLength": buffer.bytes.len(), "uri": format!("{TO_LIBRARY}{path}")
+                    "byteLength": buffer.bytes.len(), "uri": format!("{LIBRARY_PREFIX}{path}")
                 }),
             };
             document["buffers"] = self.buffers.iter().map(row).collect();

@@ -87,7 +87,7 @@ pub(super) fn lamp(
         cone,
         color: light.color.map(|c| c.clamp(0.0, 1.0)),
         power_w: power_w.min(MOST_W),
-        carrier: said.light_of,
+        object_name: said.light_of,
         on: said.on.unwrap_or(true),
     })
 }

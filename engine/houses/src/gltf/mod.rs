@@ -113,14 +113,14 @@ fn read(
         at: at.clone(),
         message,
     };
-    let (json, blob) = container::split(bytes).map_err(syntax)?;
+    let (json, blob) = container::split_glb(bytes).map_err(syntax)?;
     check_version(&json.asset, &at)?;
     check_positions(&json, &at)?;
     // The crate's document checks every index and required field.
     let document = ::gltf::Document::from_json(json).map_err(|error| {
         syntax(format!(
             "no valid glTF 2.0: {}",
-            faults::told(&error, bytes)
+            faults::error_sentence(&error, bytes)
         ))
     })?;
     let json = document.into_json();

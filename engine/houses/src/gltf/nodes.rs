@@ -111,7 +111,7 @@ impl fmt::Display for NodeReference {
 
 /// All nodes of the default scene (of all scenes when none is the default), parents first. `trusted`: whether what `extras` say
 /// of objects counts.
-pub(super) fn tree(
+pub(super) fn node_tree(
     json: &Root,
     trusted: bool,
     at: &FileLocation,
@@ -219,7 +219,7 @@ pub(super) fn tree(
             .flatten();
         let part_of = object.zip(part).map(|(object, mut part)| {
             part.world_from_node = world_from_mesh;
-            part.shown = node.mesh.is_some();
+            part.is_visible = node.mesh.is_some();
             let parts = &mut found.objects[object].parts;
             parts.push(part);
             (object, parts.len() - 1)

@@ -14,8 +14,8 @@ use super::buffers::{Buffers, read_uri};
 use super::extras::dwell_extras;
 use crate::data_root::DataRoot;
 use crate::import::{
-    ImportedMaterial, MaterialTableBuilder, PixelBudget, decode, is_cut, pixels, substance_of,
-    texture_name,
+    ImportedMaterial, MaterialTableBuilder, PixelBudget, decode, is_truncated_jpeg, pixels,
+    substance_of, texture_name,
 };
 use crate::limits::MAX_IMAGE_BYTES;
 use crate::report::{FileLocation, LoadReport};
@@ -90,13 +90,13 @@ pub(super) fn images(
     let within: Vec<Result<(), WarningKind>> = sizes
         .into_iter()
         .enumerate()
-        .map(|(k, size)| budget.take(size?).map_err(unreadable(k)))
+        .map(|(k, size)| budget.reserve(size?).map_err(unreadable(k)))
         .collect();
     let decoded = threads.map(used.len(), |k| {
         within[k].clone()?;
         let bytes = bytes_of(k)?;
         let texture = decode(&name_of(k), &bytes).map_err(unreadable(k))?;
-        Ok((texture, is_cut(&bytes)))
+        Ok((texture, is_truncated_jpeg(&bytes)))
     });
     let mut images = DecodedImages {
         textures: Vec::new(),
@@ -108,7 +108,7 @@ pub(super) fn images(
                 if cut {
                     let path = texture.name.clone();
                     let at = at.field(format_args!("images[{k}]"));
-                    report.warn(at, WarningKind::CutTexture { path });
+                    report.warn(at, WarningKind::TruncatedTexture { path });
                 }
                 images.ids[k] = Some(TextureId(images.textures.len() as u32));
                 images.textures.push(Arc::new(texture));

@@ -4,8 +4,8 @@ use dwell_scene::{Aabb, Mobility};
 use serde_json::Value;
 
 use super::dataset::TemplateKind;
-use super::file::{ArticulatedTemplate, SceneInstance};
-use super::objects::{coarse, home};
+use super::file::{ArticulatedTemplate, ObjectInstance};
+use super::objects::{coarse_category, containing_room_and_level};
 use super::{HabitatReader, place};
 use crate::data_root::DataRoot;
 use crate::report::FileLocation;
@@ -15,7 +15,7 @@ use crate::warning_kind::WarningKind;
 
 impl HabitatReader<'_> {
     /// Adds the articulated object that `instance` places: a URDF by name, or a template that names one.
-    pub(super) fn articulated(&mut self, instance: &SceneInstance, at: &FileLocation) {
+    pub(super) fn articulated(&mut self, instance: &ObjectInstance, at: &FileLocation) {
         let name = &instance.template_name;
         let config = self
             .dataset
@@ -84,7 +84,7 @@ impl HabitatReader<'_> {
         let word = name.rsplit('/').next().unwrap_or(name);
         let unique = self
             .names
-            .counted(row.map_or(word, |row| row.name.as_str()));
+            .numbered(row.map_or(word, |row| row.name.as_str()));
         let (first_joint, object) = (self.data.joints.len(), self.data.objects.len());
         robot::add(&mut self.data, &robot, &unique, pose, fixed);
         // Joints of a robot state no direction: doors and drawers of furniture open towards their farther limit.
@@ -104,10 +104,10 @@ impl HabitatReader<'_> {
             let place = part.world_from_part.to_affine();
             bounds = bounds.union(&self.data.meshes[part.mesh].bounds().transformed(&place));
         }
-        let (room, level) = home(&self.data, &bounds);
+        let (room, level) = containing_room_and_level(&self.data, &bounds);
         let added = &mut self.data.objects.as_mut_slice()[object];
         instance.template_name.clone_into(&mut added.source_id);
-        (added.room, added.level, added.category) = (room, level, coarse(row));
+        (added.room, added.level, added.category) = (room, level, coarse_category(row));
         if !fixed {
             added.mobility = Mobility::Movable;
         }
@@ -132,7 +132,7 @@ fn begin_at(robot: &mut Robot, pose: &Value) {
     let moving = robot
         .joints
         .iter_mut()
-        .filter(|joint| joint.motion != robot::RobotJointKind::Fixed);
+        .filter(|joint| joint.kind != robot::RobotJointKind::Fixed);
     for (k, joint) in moving.enumerate() {
         let stated = match pose {
             Value::Array(list) => list.get(k),

@@ -7,7 +7,7 @@ use dwell_scene::parallel::Threads;
 use dwell_scene::{Aabb, HouseData, MaterialId, Mesh, MeshId, TextureId};
 
 use super::dataset::ResolvedTemplate;
-use crate::data_root::{DataRoot, folder_of};
+use crate::data_root::{DataRoot, parent_folder};
 use crate::gltf;
 use crate::import::{ImportedScene, MeshPieces, UniqueNames, merge_meshes};
 use crate::limits::MAX_BUFFER_BYTES;
@@ -56,7 +56,7 @@ impl Assets {
     }
 
     /// The pieces of the asset at `path`; `None`, reported once, when it cannot be read.
-    pub(super) fn pieces(
+    pub(super) fn asset_meshes(
         &mut self,
         root: &DataRoot,
         path: &str,
@@ -99,13 +99,13 @@ impl Assets {
             data.textures.push(texture);
         }
         let mut ids = Vec::new();
-        for mut material in scene.looks.finish_materials().iter().cloned() {
+        for mut material in scene.materials.finish_materials().iter().cloned() {
             material.texture = material.texture.map(|id| TextureId(id.0 + first_texture));
             material.name = self.material_names.unique(&material.name);
             ids.push(data.materials.push(material));
         }
         let mut pieces = Vec::new();
-        for thing in scene.things {
+        for thing in scene.nodes {
             let mesh = thing.mesh.transformed(&thing.world_from_mesh);
             let own = thing
                 .materials
@@ -125,7 +125,7 @@ impl Assets {
     }
 
     /// The pieces of `whole`, the asset at `path`: its collision shape.
-    pub(super) fn whole_shape(
+    pub(super) fn collision_shape_of_merged(
         &mut self,
         path: &str,
         whole: &MergedAsset,
@@ -138,7 +138,7 @@ impl Assets {
 
     /// The pieces of the asset at `path`, which the house does not hold: a collision shape. `None`, reported once, when
     /// it cannot be read.
-    pub(super) fn shape(
+    pub(super) fn collision_shape(
         &mut self,
         root: &DataRoot,
         path: &str,
@@ -151,7 +151,7 @@ impl Assets {
         let shape = match read_scene(root, path, threads, report) {
             Ok(scene) => {
                 let mut shape = Mesh::default();
-                for thing in scene.things {
+                for thing in scene.nodes {
                     shape.append(&thing.mesh.transformed(&thing.world_from_mesh), 0);
                 }
                 Some(Arc::new(MeshPieces::of(&shape)))
@@ -170,7 +170,7 @@ impl Assets {
     }
 
     /// The asset at `path` as one mesh of the house.
-    pub(super) fn whole(
+    pub(super) fn merged_asset(
         &mut self,
         root: &DataRoot,
         path: &str,
@@ -181,7 +181,7 @@ impl Assets {
         if let Some(known) = self.wholes.get(path) {
             return known.clone();
         }
-        let pieces = self.pieces(root, path, data, threads, report);
+        let pieces = self.asset_meshes(root, path, data, threads, report);
         let whole = pieces.map(|pieces| {
             let pieces = pieces
                 .iter()
@@ -213,7 +213,7 @@ fn read_scene(
     let bytes = root
         .read(path, MAX_BUFFER_BYTES)
         .map_err(|error| error.reason())?;
-    let folder = DataRoot::new(root.folder().join(folder_of(path)));
+    let folder = DataRoot::new(root.folder().join(parent_folder(path)));
     let folder = folder.map_err(|error| error.reason())?;
     let name = path.rsplit('/').next().unwrap_or(path);
     gltf::read_scene(&bytes, &folder, name, threads, report).map_err(|error| error.reason())

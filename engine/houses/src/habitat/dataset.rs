@@ -7,7 +7,7 @@ use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
 use super::file::{DatasetFile, Lexicon, SemanticFile, TemplateSection};
-use crate::data_root::{DataRoot, folder_of};
+use crate::data_root::{DataRoot, parent_folder};
 use crate::error::HousesError;
 use crate::json;
 use crate::limits::{MAX_NODES, MAX_PATTERN_WORDS, MAX_TEXT_BYTES};
@@ -80,7 +80,7 @@ impl Dataset {
     /// # Errors
     /// [`HousesError::Io`], [`HousesError::TooLarge`], and [`HousesError::Syntax`] when the data set's file is no JSON of
     /// that form.
-    pub(super) fn around(
+    pub(super) fn of_scene(
         path: &Path,
         report: &mut LoadReport,
     ) -> Result<(Self, String), HousesError> {
@@ -242,7 +242,7 @@ impl Dataset {
         };
         let mut found = ResolvedTemplate {
             at: FileLocation::file(path.as_ref().unwrap_or(&self.path)),
-            folder: folder_of(path.as_ref().unwrap_or(&self.path)).to_owned(),
+            folder: parent_folder(path.as_ref().unwrap_or(&self.path)).to_owned(),
             attributes: section.default_attributes.clone(),
             path: path.clone().unwrap_or_default(),
         };
@@ -307,7 +307,7 @@ impl Dataset {
         let mut folder = String::new();
         if let Some(path) = path {
             at = FileLocation::file(&path);
-            folder_of(&path).clone_into(&mut folder);
+            parent_folder(&path).clone_into(&mut folder);
             match read_json::<SemanticFile>(&self.root, &path) {
                 Ok(file) => {
                     lexicon = file.semantic_descriptor_filename.clone().or(lexicon);

@@ -51,7 +51,7 @@ pub(super) struct SceneFile {
 
 /// An instance of a stage, an object or an articulated object.
 #[derive(Debug, Deserialize)]
-pub(super) struct SceneInstance {
+pub(super) struct ObjectInstance {
     pub(super) template_name: String,
     /// m.
     #[serde(default)]

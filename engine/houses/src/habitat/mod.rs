@@ -26,7 +26,7 @@ use crate::robot::Robot;
 use crate::warning_kind::WarningKind;
 use assets::Assets;
 use dataset::{Dataset, ResolvedTemplate, SCENE_ENDING, TemplateKind};
-use file::{SceneFile, SceneInstance, Template};
+use file::{ObjectInstance, SceneFile, Template};
 
 /// Returns whether `path` names a scene of Habitat.
 pub(crate) fn recognizes(path: &Path) -> bool {
@@ -43,7 +43,7 @@ pub(crate) fn recognizes(path: &Path) -> bool {
 /// [`HousesError::Scene`] when the result breaks a rule of the scene. Everything else is reported.
 pub fn open(path: &Path, threads: Threads) -> Result<(House, LoadReport), HousesError> {
     let mut report = LoadReport::new();
-    let (dataset, scene_path) = Dataset::around(path, &mut report)?;
+    let (dataset, scene_path) = Dataset::of_scene(path, &mut report)?;
     let at = FileLocation::file(&scene_path);
     let scene: SceneFile = dataset::read_json(&dataset.root, &scene_path)?;
     let count = scene.object_instances.len() + scene.articulated_object_instances.len();
@@ -98,7 +98,7 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, LoadReport), Houses
         );
     }
     let mut data = reader.data;
-    stage::grow_empty_storeys(&mut data);
+    stage::extend_empty_levels(&mut data);
     if data.meshes.iter().all(|mesh| mesh.triangles.is_empty()) {
         return Err(HousesError::empty(&at, &report));
     }
@@ -146,9 +146,9 @@ impl HabitatReader<'_> {
             return;
         };
         let (root, threads) = (&self.dataset.root, self.threads);
-        if let Some(pieces) = self
-            .assets
-            .pieces(root, &path, &mut self.data, threads, self.report)
+        if let Some(pieces) =
+            self.assets
+                .asset_meshes(root, &path, &mut self.data, threads, self.report)
         {
             let world_from_stage = pose.to_affine() * glam::Affine3A::from_scale(scale) * frame;
             stage::structure(&mut self.data, &pieces, &world_from_stage, regions);
@@ -156,7 +156,7 @@ impl HabitatReader<'_> {
     }
 
     /// An instance; `None`, reported, when a field is missing or of the wrong kind.
-    fn instance(&mut self, value: Value, at: &FileLocation) -> Option<SceneInstance> {
+    fn instance(&mut self, value: Value, at: &FileLocation) -> Option<ObjectInstance> {
         serde_json::from_value(value)
             .map_err(|error| {
                 let reason = crate::plain_parse_error(&error);

@@ -9,7 +9,7 @@ use glam::{Affine3A, Vec2, Vec3};
 use super::HabitatReader;
 use super::assets::Assets;
 use super::dataset::{ResolvedTemplate, TemplateKind};
-use super::file::{SceneInstance, Template};
+use super::file::{ObjectInstance, Template};
 use super::place;
 use crate::import::{CategoryRow, MeshPieces, category, category_of};
 use crate::report::FileLocation;
@@ -20,7 +20,7 @@ const ROOM_M: f32 = 0.3;
 
 impl HabitatReader<'_> {
     /// Adds the object that `instance` places.
-    pub(super) fn object(&mut self, instance: &SceneInstance, at: &FileLocation) {
+    pub(super) fn object(&mut self, instance: &ObjectInstance, at: &FileLocation) {
         let name = &instance.template_name;
         let Some(found) = self.template(TemplateKind::Object, name, at) else {
             return;
@@ -40,15 +40,15 @@ impl HabitatReader<'_> {
             return;
         };
         let (root, threads) = (&self.dataset.root, self.threads);
-        let Some(asset) = self
-            .assets
-            .whole(root, &path, &mut self.data, threads, self.report)
+        let Some(asset) =
+            self.assets
+                .merged_asset(root, &path, &mut self.data, threads, self.report)
         else {
             return;
         };
         let object_from_asset = Affine3A::from_scale(scale) * frame;
         // Habitat moves an object's origin to its centre of mass; a translation may count from there or from the asset's origin.
-        let origin = if self.counts_from_centre(instance) {
+        let origin = if self.is_translated_by_com(instance) {
             let middle = asset.bounds.transformed(&object_from_asset).center();
             template
                 .com
@@ -72,7 +72,10 @@ impl HabitatReader<'_> {
             .is_some_and(|kind| kind.eq_ignore_ascii_case("DYNAMIC"));
         let colliders = if moves {
             let shape = self.collision_shape(&found, &template, &path);
-            let shape = shape.unwrap_or_else(|| self.assets.whole_shape(&path, &asset, &self.data));
+            let shape = shape.unwrap_or_else(|| {
+                self.assets
+                    .collision_shape_of_merged(&path, &asset, &self.data)
+            });
             shape.hulls(&part_from_mesh)
         } else {
             vec![Collider::ExactMesh]
@@ -95,7 +98,7 @@ impl HabitatReader<'_> {
             self.report.warn(found.at.field("mass"), damage);
         }
         let mass_kg = stated.map_or(own_box.volume() * density_kg_m3, |mass| mass * grown);
-        let (room, level) = home(&self.data, &bounds);
+        let (room, level) = containing_room_and_level(&self.data, &bounds);
         let first_part = PartId(self.data.parts.len() as u32);
         let object = ObjectId(self.data.objects.len() as u32);
         self.data.parts.push(Part {
@@ -114,12 +117,12 @@ impl HabitatReader<'_> {
         let handy = own_box.size().max_element() <= 0.6 && own_box.volume() <= 0.05;
         let word = name.rsplit('/').next().unwrap_or(name);
         let base = row.map_or(word, |row| row.name.as_str());
-        let name = self.names.counted(base);
+        let name = self.names.numbered(base);
         self.data.objects.push(Object {
             name,
             source_id: instance.template_name.clone(),
             model: word.to_owned(),
-            category: coarse(row),
+            category: coarse_category(row),
             level,
             room,
             mobility: if moves {
@@ -149,11 +152,12 @@ impl HabitatReader<'_> {
             return None;
         }
         let (root, threads) = (&self.dataset.root, self.threads);
-        self.assets.shape(root, &path, threads, self.report)
+        self.assets
+            .collision_shape(root, &path, threads, self.report)
     }
 
     /// Returns whether the translation of an instance is that of its centre of mass.
-    pub(super) fn counts_from_centre(&self, instance: &SceneInstance) -> bool {
+    pub(super) fn is_translated_by_com(&self, instance: &ObjectInstance) -> bool {
         let own = instance.translation_origin.as_deref();
         own.or(self.origin.as_deref())
             .is_some_and(|word| word.eq_ignore_ascii_case("COM"))
@@ -185,7 +189,7 @@ impl HabitatReader<'_> {
     }
 }
 
-pub(super) fn coarse(row: Option<&CategoryRow>) -> Category {
+pub(super) fn coarse_category(row: Option<&CategoryRow>) -> Category {
     row.map_or_else(Category::default, |row| Category {
         fine: row.name.clone(),
         coarse: row.name.clone(),
@@ -194,7 +198,10 @@ pub(super) fn coarse(row: Option<&CategoryRow>) -> Category {
 }
 
 /// The room and the storey of a box.
-pub(super) fn home(data: &HouseData, bounds: &Aabb) -> (Option<RoomId>, LevelId) {
+pub(super) fn containing_room_and_level(
+    data: &HouseData,
+    bounds: &Aabb,
+) -> (Option<RoomId>, LevelId) {
     let middle = bounds.center();
     let room = data.rooms.iter_ids().find(|(_, room)| {
         room.contains_xz(Vec2::new(middle.x, middle.z))

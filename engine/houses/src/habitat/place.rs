@@ -3,13 +3,13 @@
 use dwell_scene::Pose;
 use glam::{Affine3A, Mat3, Quat, Vec3};
 
-use super::file::{SceneInstance, Template};
+use super::file::{ObjectInstance, Template};
 
 /// Largest scale, and the inverse of the smallest: anything beyond is a mistake.
 const MAX_SCALE: f32 = 1e4;
 
 /// The pose that an instance states; `None` when it is not finite or its rotation is zero.
-pub(super) fn pose(instance: &SceneInstance) -> Option<Pose> {
+pub(super) fn pose(instance: &ObjectInstance) -> Option<Pose> {
     let [w, x, y, z] = instance.rotation;
     let rotation = Quat::from_xyzw(x, y, z, w);
     let length = rotation.length();
@@ -21,7 +21,7 @@ pub(super) fn pose(instance: &SceneInstance) -> Option<Pose> {
 }
 
 /// The scale of an instance, along its own axes; `None` when it flattens space or is not finite.
-pub(super) fn scale(instance: &SceneInstance) -> Option<Vec3> {
+pub(super) fn scale(instance: &ObjectInstance) -> Option<Vec3> {
     let scale = Vec3::from_array(instance.non_uniform_scale) * instance.uniform_scale;
     let usable = |s: f32| s.is_finite() && (1.0 / MAX_SCALE..=MAX_SCALE).contains(&s.abs());
     scale.to_array().into_iter().all(usable).then_some(scale)
@@ -32,7 +32,7 @@ pub(super) fn scale(instance: &SceneInstance) -> Option<Vec3> {
 /// # Errors
 /// The field that is not usable, and what it holds.
 pub(super) fn placement(
-    instance: &SceneInstance,
+    instance: &ObjectInstance,
     template: &Template,
 ) -> Result<(Pose, Vec3, Affine3A), String> {
     let pose = pose(instance).ok_or_else(|| {

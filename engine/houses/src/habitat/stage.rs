@@ -238,7 +238,7 @@ pub(super) fn rooms(
 }
 
 /// Gives storeys without a building the box of what stands on them.
-pub(super) fn grow_empty_storeys(data: &mut HouseData) {
+pub(super) fn extend_empty_levels(data: &mut HouseData) {
     for level in data.levels.ids().collect::<Vec<_>>() {
         if !data.levels[level].bounds.is_empty() {
             continue;

@@ -66,7 +66,7 @@ pub(crate) struct AnnotatedPart {
     pub(crate) world_from_node: Affine3A,
     /// True if it shows a mesh.
     #[serde(skip)]
-    pub(crate) shown: bool,
+    pub(crate) is_visible: bool,
 }
 
 #[derive(Debug, Deserialize)]
@@ -162,12 +162,12 @@ impl AnnotatedPart {
         if !was.is_valid() || !self.world_from_node.is_finite() {
             return None;
         }
-        let part_from_mesh = match (self.part_from_mesh, self.shown) {
+        let part_from_mesh = match (self.part_from_mesh, self.is_visible) {
             (Some(map), _) => map,
             (None, true) => was.to_affine().inverse() * self.world_from_node,
             (None, false) => Affine3A::IDENTITY,
         };
-        let (before, now) = if self.shown {
+        let (before, now) = if self.is_visible {
             (was.to_affine() * part_from_mesh, self.world_from_node)
         } else {
             (Affine3A::IDENTITY, self.world_from_node)
@@ -246,12 +246,12 @@ impl ImportedObject {
     }
 
     /// The storey and the room in the file.
-    pub(super) fn home(&self) -> (Option<usize>, Option<usize>) {
+    pub(super) fn level_and_room(&self) -> (Option<usize>, Option<usize>) {
         (self.object.level, self.object.room)
     }
 
     /// Writes it into the tables under `name`. `mesh`: gives the id of a mesh.
-    pub(super) fn put(
+    pub(super) fn add_to_house(
         self,
         data: &mut HouseData,
         name: String,
@@ -319,7 +319,7 @@ impl ImportedObject {
                 armature: joint.armature,
                 servo: joint.servo,
                 mimic,
-                switches: joint.switches,
+                toggles_switch: joint.switches,
                 ..Articulation::new(&joint.name, id, part(child), joint.kind, joint.axis)
             });
             leaders.entry(joint.name).or_insert(added);

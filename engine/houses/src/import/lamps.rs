@@ -16,7 +16,7 @@ pub(crate) struct ImportedLamp {
     pub(crate) color: [f32; 3],
     pub(crate) power_w: f32,
     /// The object that it belongs to by the file, or whose parts it belongs to.
-    pub(crate) carrier: Option<String>,
+    pub(crate) object_name: Option<String>,
     /// True if it is on at the start.
     pub(crate) on: bool,
 }
@@ -29,7 +29,7 @@ fn is_of(name: &str, thing: &str) -> bool {
 
 /// Attaches lamps to the objects that the file names, else to the nearest, which get a switch: to a moving one only if it is right there.
 /// `bounds`: the box of each object. Without an object there are no lamps.
-pub(super) fn hang(lamps: Vec<ImportedLamp>, data: &mut HouseData, bounds: &[Aabb]) {
+pub(super) fn attach_lamps(lamps: Vec<ImportedLamp>, data: &mut HouseData, bounds: &[Aabb]) {
     for lamp in lamps {
         let apart_m = |k: usize| {
             let own = &bounds[k];
@@ -38,7 +38,7 @@ pub(super) fn hang(lamps: Vec<ImportedLamp>, data: &mut HouseData, bounds: &[Aab
             let far = moves && apart > OWN_M;
             let named =
                 |wanted: &String| is_of(&data.objects[ObjectId::from_index(k)].source_id, wanted);
-            let other = !lamp.carrier.as_ref().is_some_and(named);
+            let other = !lamp.object_name.as_ref().is_some_and(named);
             ((other, far), apart)
         };
         let nearest = (0..bounds.len()).min_by(|a, b| {

@@ -23,5 +23,5 @@ pub(crate) use scene::{
     ImportedScene, NamedRoom, NodeRole, SceneNode, category_of, room_over_floors, structure_kind,
 };
 pub(crate) use textures::{
-    PixelBudget, decode, encode_png, is_cut, pixels, read_images, texture_name,
+    PixelBudget, decode, encode_png, is_truncated_jpeg, pixels, read_images, texture_name,
 };

@@ -28,7 +28,7 @@ impl UniqueNames {
     }
 
     /// `base_1`, `base_2`, ...: the numbering of objects of a category.
-    pub(crate) fn counted(&mut self, base: &str) -> String {
+    pub(crate) fn numbered(&mut self, base: &str) -> String {
         let base = if base.is_empty() { "thing" } else { base };
         let next = self.next.entry(base.to_owned()).or_insert(1);
         loop {
@@ -53,12 +53,12 @@ mod tests {
             names.unique("a_2"),
             names.unique("a"),
             names.unique("a"),
-            names.counted("a"),
+            names.numbered("a"),
             names.unique(""),
         ];
         assert_eq!(given, ["a", "a_2", "a_3", "a_4", "a_5", "unnamed"]);
         assert_eq!(
-            (names.counted("chair"), names.counted("chair")),
+            (names.numbered("chair"), names.numbered("chair")),
             ("chair_1".into(), "chair_2".into())
         );
     }

@@ -60,7 +60,7 @@ impl SceneNode {
 
     /// Returns whether its transform leaves it a volume; one that does not is reported.
     fn keeps_volume(&self, at: &FileLocation, report: &mut LoadReport) -> bool {
-        let keeps = !space::flattens(&self.world_from_mesh.matrix3);
+        let keeps = !space::is_singular(&self.world_from_mesh.matrix3);
         if !keeps {
             let reason = "it flattens space".to_owned();
             report.warn(at.field(&self.name), WarningKind::BadTransform { reason });
@@ -85,8 +85,8 @@ pub(crate) struct NamedRoom {
 pub(crate) struct ImportedScene {
     pub(crate) name: String,
     pub(crate) source: &'static str,
-    pub(crate) things: Vec<SceneNode>,
-    pub(crate) looks: MaterialTableBuilder,
+    pub(crate) nodes: Vec<SceneNode>,
+    pub(crate) materials: MaterialTableBuilder,
     pub(crate) textures: Vec<Arc<Texture>>,
     /// Storeys that the file names; empty: one.
     pub(crate) levels: Vec<String>,
@@ -109,7 +109,7 @@ impl ImportedScene {
         report: &mut LoadReport,
     ) -> Result<House, HousesError> {
         if self
-            .things
+            .nodes
             .iter()
             .all(|thing| thing.mesh.triangles.is_empty())
         {
@@ -118,7 +118,7 @@ impl ImportedScene {
         let data = HouseData {
             name: self.name,
             source: self.source.to_owned(),
-            materials: self.looks.finish_materials(),
+            materials: self.materials.finish_materials(),
             textures: self.textures.into(),
             sky: self.sky,
             ..HouseData::default()
@@ -140,7 +140,7 @@ impl ImportedScene {
         for room in self.rooms {
             builder.named_room(room);
         }
-        let (given, things) = given_objects(self.objects, self.things, at, report);
+        let (given, things) = given_objects(self.objects, self.nodes, at, report);
         let (structure, objects): (Vec<_>, Vec<_>) = things
             .into_iter()
             .filter(|thing| !thing.mesh.triangles.is_empty())
@@ -161,7 +161,7 @@ impl ImportedScene {
             builder.object(thing, alone, at, report);
         }
         builder.settle(alone, known);
-        lamps::hang(self.lamps, &mut builder.data, &builder.bounds);
+        lamps::attach_lamps(self.lamps, &mut builder.data, &builder.bounds);
         if builder.data.structure.is_empty() && builder.data.objects.is_empty() {
             return Err(HousesError::empty(at, report));
         }
@@ -366,7 +366,7 @@ impl HouseBuilder {
     }
 
     fn given(&mut self, object: ImportedObject) {
-        let (level, _) = object.home();
+        let (level, _) = object.level_and_room();
         let level = level.filter(|k| *k < self.data.levels.len());
         let level = level.map_or(LEVEL, |k| LevelId(k as u32));
         let bounds = object.bounds();
@@ -374,7 +374,7 @@ impl HouseBuilder {
         self.bounds.push(bounds);
         let name = self.names.unique(object.name());
         let meshes = &mut self.meshes;
-        object.put(&mut self.data, name, level, |data, mesh| {
+        object.add_to_house(&mut self.data, name, level, |data, mesh| {
             Self::mesh(meshes, data, mesh)
         });
     }

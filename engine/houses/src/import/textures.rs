@@ -116,7 +116,7 @@ fn rgba(mut raw: Vec<u8>, color: ColorType, pixels: u64) -> Result<Vec<u8>, Stri
 }
 
 /// Returns whether a JPEG image ends before its end marker: the decoder fills the rest with grey.
-pub(crate) fn is_cut(bytes: &[u8]) -> bool {
+pub(crate) fn is_truncated_jpeg(bytes: &[u8]) -> bool {
     if !bytes.starts_with(&JPEG_START) {
         return false;
     }
@@ -160,7 +160,7 @@ impl PixelBudget {
     ///
     /// # Errors
     /// A sentence when they are more than what is left.
-    pub(crate) fn take(&mut self, pixels: u64) -> Result<(), String> {
+    pub(crate) fn reserve(&mut self, pixels: u64) -> Result<(), String> {
         let used = self.used.saturating_add(pixels);
         if used > MAX_ALL_PIXELS {
             return Err(format!(
@@ -203,7 +203,7 @@ pub(crate) fn read_images(
             let (bytes, pixels) = read?;
             let path = path.clone();
             let unreadable = |reason| WarningKind::UnreadableTexture { path, reason };
-            budget.take(pixels).map_err(unreadable)?;
+            budget.reserve(pixels).map_err(unreadable)?;
             Ok(bytes)
         })
         .collect();
@@ -215,14 +215,14 @@ pub(crate) fn read_images(
         };
         let bytes = within[k].as_ref().map_err(Clone::clone)?;
         let texture = decode(&texture_name(path), bytes).map_err(unreadable)?;
-        Ok((texture, is_cut(bytes)))
+        Ok((texture, is_truncated_jpeg(bytes)))
     });
     let mut textures = BTreeMap::new();
     for (path, result) in wanted.into_iter().zip(decoded) {
         match result {
             Ok((texture, cut)) => {
                 if cut {
-                    let damage = WarningKind::CutTexture { path: path.clone() };
+                    let damage = WarningKind::TruncatedTexture { path: path.clone() };
                     report.warn(FileLocation::file(path.as_str()), damage);
                 }
                 textures.insert(path, Arc::new(texture));
@@ -311,10 +311,14 @@ mod tests {
         picture
             .write_to(&mut Cursor::new(&mut bytes), jpeg)
             .unwrap();
-        assert!(!is_cut(&bytes));
-        assert!(!is_cut(&[&bytes[..], b"more"].concat()));
+        assert!(!is_truncated_jpeg(&bytes));
+        assert!(!is_truncated_jpeg(&[&bytes[..], b"more"].concat()));
         for length in 2..bytes.len() {
-            assert!(is_cut(&bytes[..length]), "{length} of {}", bytes.len());
+            assert!(
+                is_truncated_jpeg(&bytes[..length]),
+                "{length} of {}",
+                bytes.len()
+            );
         }
         // A header that states more than the scan can hold is refused before it is decoded.
         let frame = bytes
@@ -331,6 +335,6 @@ mod tests {
             ))
         );
         // Truncated files of other formats are errors of their decoders.
-        assert!(!is_cut(b"\x89PNG"));
+        assert!(!is_truncated_jpeg(b"\x89PNG"));
     }
 }

@@ -4,7 +4,7 @@ use super::file::{BandCoefficient, MeasuredMaterial, MeasuredRoomFile};
 use super::unknown_names;
 use crate::data_root::DataRoot;
 use crate::error::HousesError;
-use crate::obj::{PartShape, read_mesh, shape_of};
+use crate::obj::{PartShape, mesh_of_shape, read_mesh};
 use crate::report::{FileLocation, LoadReport};
 use dwell_scene::material::{Bands, library};
 use dwell_scene::{
@@ -127,7 +127,7 @@ impl MeasuredRoomBuilder<'_> {
         Ok(Material {
             absorption: self.bands(&at, "absorption", &file.absorption)?,
             scattering: self.bands(&at, "scattering", &file.scattering)?,
-            transmission_loss_db: Bands::constant(Material::OPAQUE_TO_SOUND_DB),
+            transmission_loss_db: Bands::constant(Material::MAX_TRANSMISSION_LOSS_DB),
             ..Material::of(name, substance)
         })
     }
@@ -140,8 +140,8 @@ impl MeasuredRoomBuilder<'_> {
     ) -> Result<Bands, HousesError> {
         let count = self.file.bands_hz.len();
         let values = match table {
-            BandCoefficient::One(value) => vec![*value; count],
-            BandCoefficient::Each(values) => values.clone(),
+            BandCoefficient::AllBands(value) => vec![*value; count],
+            BandCoefficient::PerBand(values) => values.clone(),
         };
         if values.len() != count {
             return Err(HousesError::Field {
@@ -220,7 +220,12 @@ impl MeasuredRoomBuilder<'_> {
             });
         };
         let mut by_material: BTreeMap<Option<&str>, Vec<_>> = BTreeMap::new();
-        for run in files.obj.runs.iter().filter(|run| !run.faces.is_empty()) {
+        for run in files
+            .obj
+            .face_groups
+            .iter()
+            .filter(|run| !run.faces.is_empty())
+        {
             let runs = by_material.entry(run.material.as_deref()).or_default();
             runs.push((0, run));
         }
@@ -230,10 +235,10 @@ impl MeasuredRoomBuilder<'_> {
             let material = self.material_of(&FileLocation::file(&inside).field("usemtl"), name)?;
             let shape = PartShape {
                 obj: &files.obj,
-                runs,
+                face_groups: runs,
                 box_mapping: false,
             };
-            let mut mesh = shape_of(&shape, &FileLocation::file(&inside), report);
+            let mut mesh = mesh_of_shape(&shape, &FileLocation::file(&inside), report);
             for point in mesh.positions.iter_mut().chain(&mut mesh.normals) {
                 *point = upright(*point);
             }

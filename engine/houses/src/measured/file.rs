@@ -23,7 +23,7 @@ pub(super) struct MeasuredRoomFile {
     pub(super) materials: BTreeMap<String, MeasuredMaterial>,
     /// All other fields; they belong to the measurement.
     #[serde(flatten)]
-    pub(super) others: BTreeMap<String, serde_json::Value>,
+    pub(super) other_fields: BTreeMap<String, serde_json::Value>,
 }
 
 /// A map without repeated names: which of two materials counts is not for us to say.
@@ -62,7 +62,7 @@ pub(super) struct MeasuredMaterial {
     pub(super) scattering: BandCoefficient,
     /// All other fields.
     #[serde(flatten)]
-    pub(super) others: BTreeMap<String, serde_json::Value>,
+    pub(super) other_fields: BTreeMap<String, serde_json::Value>,
 }
 
 /// One number for all bands, or one for each.
@@ -73,9 +73,9 @@ pub(super) struct MeasuredMaterial {
 )]
 pub(super) enum BandCoefficient {
     /// For all bands.
-    One(f32),
+    AllBands(f32),
     /// Shape (band,).
-    Each(Vec<f32>),
+    PerBand(Vec<f32>),
 }
 
 fn octaves() -> Vec<f32> {
@@ -83,9 +83,9 @@ fn octaves() -> Vec<f32> {
 }
 
 fn little() -> BandCoefficient {
-    BandCoefficient::One(0.1)
+    BandCoefficient::AllBands(0.1)
 }
 
 fn none() -> BandCoefficient {
-    BandCoefficient::One(0.0)
+    BandCoefficient::AllBands(0.0)
 }

@@ -2,7 +2,7 @@
 
 use super::file::MeasuredRoomFile;
 use crate::error::HousesError;
-use crate::name_suggestions::within;
+use crate::name_suggestions::is_within_edit_distance;
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
 
@@ -37,16 +37,16 @@ pub(super) fn check(
     report: &mut LoadReport,
 ) -> Result<(), HousesError> {
     // "source" beside "sources" is no misspelling.
-    let is_there = |field: &&str| file.others.contains_key(*field);
+    let is_there = |field: &&str| file.other_fields.contains_key(*field);
     let (there, absent): (Vec<_>, Vec<_>) = FIELDS.into_iter().partition(is_there);
-    for name in file.others.keys() {
+    for name in file.other_fields.keys() {
         if !there.contains(&&**name) {
             refuse_slip(at, name, &absent)?;
         }
     }
     for (material, values) in &file.materials {
         let at = at.field("materials").field(material);
-        for name in values.others.keys() {
+        for name in values.other_fields.keys() {
             refuse_slip(&at, name, &MATERIAL_FIELDS)?;
             let found = name.chars().take(60).collect();
             report.warn(at.clone(), WarningKind::BadStatement { found });
@@ -56,9 +56,9 @@ pub(super) fn check(
 }
 
 fn refuse_slip(at: &FileLocation, name: &str, fields: &[&'static str]) -> Result<(), HousesError> {
-    let meant = fields
-        .iter()
-        .find(|field| within(name, field, SLIP_LETTERS) || is_short_slip(name, field));
+    let meant = fields.iter().find(|field| {
+        is_within_edit_distance(name, field, SLIP_LETTERS) || is_short_slip(name, field)
+    });
     meant.map_or(Ok(()), |field| {
         Err(HousesError::Field {
             at: at.field(name),

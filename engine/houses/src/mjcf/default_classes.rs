@@ -21,7 +21,12 @@ pub(super) struct DefaultClasses {
 
 impl DefaultClasses {
     /// Records the classes that `node` of the file `at` defines or names.
-    pub(super) fn note(&mut self, node: Node<'_, '_>, at: &FileLocation, report: &mut LoadReport) {
+    pub(super) fn record(
+        &mut self,
+        node: Node<'_, '_>,
+        at: &FileLocation,
+        report: &mut LoadReport,
+    ) {
         let tag = node.tag_name().name();
         let at = |field: &str| {
             at.line(node.document().text_pos_at(node.range().start).row)
@@ -42,7 +47,7 @@ impl DefaultClasses {
     }
 
     /// Reports the names without a definition.
-    pub(super) fn finish(self, report: &mut LoadReport) {
+    pub(super) fn report_undefined(self, report: &mut LoadReport) {
         for (at, name) in self.named {
             if name != TOP && !self.defined.contains(&name) {
                 let name = shortened(&name);

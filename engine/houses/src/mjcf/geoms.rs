@@ -5,7 +5,7 @@ use mjcf_rs::Model;
 use mjcf_rs::body::{Body, Geom, GeomType};
 
 use super::read::pose;
-use crate::data_root::folder_of;
+use crate::data_root::parent_folder;
 use crate::error::HousesError;
 use crate::report::{FileLocation, LoadReport};
 use crate::robot::{LinkInertia, LinkShape, RobotFiles, ShapeGeometry};
@@ -27,8 +27,8 @@ pub(super) struct BodyGeom {
     pub(super) shape: LinkShape,
     /// Its name in the file.
     pub(super) name: Option<String>,
-    pub(super) touches: bool,
-    pub(super) seen: bool,
+    pub(super) has_contacts: bool,
+    pub(super) is_visible: bool,
     /// True for a plane, which is held as a flat box.
     pub(super) is_plane: bool,
     /// Mass as stated, kg.
@@ -38,7 +38,7 @@ pub(super) struct BodyGeom {
 }
 
 /// The geoms of a body that are solid.
-pub(super) fn pieces(
+pub(super) fn body_geoms(
     model: &Model,
     body: &Body,
     files: &mut RobotFiles,
@@ -56,8 +56,8 @@ pub(super) fn pieces(
                 shape,
                 name: geom.name.clone(),
                 is_plane: geom.type_ == GeomType::Plane,
-                touches,
-                seen: geom.group < HIDDEN_GROUP || !touches,
+                has_contacts: touches,
+                is_visible: geom.group < HIDDEN_GROUP || !touches,
                 mass: geom.mass,
                 density: geom.density.unwrap_or(USUAL_DENSITY_KG_M3),
             });
@@ -119,7 +119,7 @@ fn shape(
                 (Some(folder), _) | (None, Some(folder)) => format!("{folder}/{file}"),
                 (None, None) => file.to_owned(),
             };
-            let path = files.resolve(folder_of(&files.file), &inside, &at)?;
+            let path = files.resolve(parent_folder(&files.file), &inside, &at)?;
             link_from_shape = link_from_shape * pose(&asset.refpose).inverse();
             ShapeGeometry::Mesh {
                 mesh: files.mesh(&path, &at, report)?,
@@ -151,7 +151,7 @@ fn shape(
     };
     Ok(Some(LinkShape {
         link_from_shape,
-        solid,
+        geometry: solid,
         rgba: rgba.map(|rgba| rgba.map(|x| x.clamp(0.0, 1.0) as f32)),
         material,
         image,
@@ -176,7 +176,7 @@ fn image(
         (None, None) => file.to_owned(),
     };
     let at = at.field("material.texture");
-    match files.resolve(folder_of(&files.file), &inside, &at) {
+    match files.resolve(parent_folder(&files.file), &inside, &at) {
         Ok(path) => files.image(&path, &at, report),
         Err(error) => {
             let (path, reason) = (inside, error.to_string());
@@ -187,7 +187,7 @@ fn image(
 }
 
 /// The mass of a body from its geoms; `None` for a body without one.
-pub(super) fn weight(
+pub(super) fn mass_of_geoms(
     pieces: &[BodyGeom],
     at: &FileLocation,
 ) -> Result<Option<LinkInertia>, HousesError> {
@@ -218,7 +218,7 @@ pub(super) fn weight(
 /// # Source
 /// B. Mirtich, Fast and Accurate Computation of Polyhedral Mass Properties (1996); here the closed form for tetrahedra.
 fn moments(shape: &LinkShape) -> (f64, DVec3, DMat3) {
-    let mesh = shape.solid.surface();
+    let mesh = shape.geometry.surface();
     let turn = DMat3::from_quat(shape.link_from_shape.rotation.as_dquat().normalize());
     let at = shape.link_from_shape.position.as_dvec3();
     let (mut volume, mut first, mut second) = (0.0, DVec3::ZERO, DMat3::ZERO);
@@ -255,7 +255,7 @@ mod tests {
     fn a_box_has_its_moments() {
         let shape = LinkShape {
             link_from_shape: Pose::from_position(Vec3::new(1.0, 2.0, 3.0)),
-            solid: ShapeGeometry::Cuboid {
+            geometry: ShapeGeometry::Cuboid {
                 half: Vec3::new(0.1, 0.2, 0.3),
             },
             rgba: None,

@@ -40,7 +40,7 @@ pub(super) fn is_house(source: &MjcfSource) -> bool {
         .iter()
         .filter_map(|geom| structure_kind(geom.name.as_deref()?));
     let walls = built.filter(|kind| *kind == StructureKind::Wall).count();
-    source.roots().len() > 1 || walls > 1
+    source.root_bodies().len() > 1 || walls > 1
 }
 
 /// Reads the house.
@@ -61,18 +61,18 @@ pub(super) fn read(mut source: MjcfSource, report: &mut LoadReport) -> Result<Ho
         },
         structure_names: UniqueNames::default(),
         names: UniqueNames::default(),
-        world_from_file: robot::ours_from_robot(),
+        world_from_file: robot::dwell_from_robot(),
     };
     reader.data.levels.push(Level {
         name: "0".to_owned(),
         bounds: Aabb::EMPTY,
     });
     let mut objects = Vec::new();
-    match source.pieces(0, report) {
+    match source.body_geoms(0, report) {
         Ok(pieces) => reader.building(&source, 0, Pose::IDENTITY, &pieces, report),
         Err(error) => left_out(&error, &source, report),
     }
-    for root in source.roots() {
+    for root in source.root_bodies() {
         if structure_kind(&name_of(&source.model, root)).is_some() {
             reader.walls(&mut source, root, report);
         } else {
@@ -116,7 +116,7 @@ impl MjcfHouseReader {
         let mut open = vec![(root, Pose::IDENTITY)];
         while let Some((id, file_from_parent)) = open.pop() {
             let file_from_body = file_from_parent * pose(&source.model.bodies[id].body.pose);
-            match source.pieces(id, report) {
+            match source.body_geoms(id, report) {
                 Ok(pieces) => self.building(source, id, file_from_body, &pieces, report),
                 Err(error) => left_out(&error, source, report),
             }
@@ -136,8 +136,8 @@ impl MjcfHouseReader {
         report: &mut LoadReport,
     ) {
         let body = name_of(&source.model, id);
-        let seen = pieces.iter().any(|piece| piece.seen);
-        for piece in pieces.iter().filter(|piece| piece.seen || !seen) {
+        let seen = pieces.iter().any(|piece| piece.is_visible);
+        for piece in pieces.iter().filter(|piece| piece.is_visible || !seen) {
             let name = match (&piece.name, id) {
                 (Some(name), _) if structure_kind(name).is_some() || id == 0 => name.clone(),
                 (None, 0) => "geom".to_owned(),
@@ -150,7 +150,11 @@ impl MjcfHouseReader {
             });
             let material = self.material(piece, &name, report, source);
             let place = self.world_from_file * file_from_body * piece.shape.link_from_shape;
-            let mut mesh = piece.shape.solid.surface().transformed(&place.to_affine());
+            let mut mesh = piece
+                .shape
+                .geometry
+                .surface()
+                .transformed(&place.to_affine());
             mesh.slots = Vec::new();
             if piece.shape.image.is_none() {
                 mesh.uvs = Vec::new();
@@ -284,7 +288,7 @@ impl MjcfHouseReader {
                 };
                 report.warn(source.at.field("worldbody"), damage);
             }
-            let name = names.counted(&kind.as_deref().unwrap_or("room").replace(' ', "_"));
+            let name = names.numbered(&kind.as_deref().unwrap_or("room").replace(' ', "_"));
             let id = self.data.rooms.push(Room {
                 name,
                 level: LEVEL,

@@ -9,7 +9,7 @@ use roxmltree::Node;
 
 use super::default_classes::DefaultClasses;
 use super::{finite_check, unread_elements};
-use crate::data_root::folder_of;
+use crate::data_root::parent_folder;
 use crate::error::HousesError;
 use crate::limits::{MAX_TEXT_BYTES, MAX_XML_ELEMENTS, MAX_XML_FILES};
 use crate::report::{FileLocation, LoadReport};
@@ -35,7 +35,7 @@ pub(super) fn check(
         classes: DefaultClasses::default(),
     };
     walk.file(&files.file, text)?;
-    walk.classes.finish(walk.report);
+    walk.classes.report_undefined(walk.report);
     Ok(())
 }
 
@@ -83,8 +83,8 @@ impl IncludeResolver<'_> {
                 interrupt::check();
             }
             finite_check::check(node, &at)?;
-            unread_elements::report(node, &at, self.report);
-            self.classes.note(node, &at, self.report);
+            unread_elements::report_unread_elements(node, &at, self.report);
+            self.classes.record(node, &at, self.report);
             match node.tag_name().name() {
                 "include" => elements = elements.saturating_add(self.named(node, name)?),
                 // Models of `<asset>` are copied by each `<attach>`.
@@ -92,7 +92,7 @@ impl IncludeResolver<'_> {
                     // It has classes of its own.
                     let outer = mem::take(&mut self.classes);
                     largest = largest.max(self.named(node, name)?);
-                    mem::replace(&mut self.classes, outer).finish(self.report);
+                    mem::replace(&mut self.classes, outer).report_undefined(self.report);
                 }
                 _ => {}
             }
@@ -121,7 +121,7 @@ impl IncludeResolver<'_> {
             .field(format_args!("{tag}.file"));
         // The parser resolves paths from the folder of the file that names them.
         let stated = node.attribute("file").unwrap_or("");
-        let path = self.files.resolve(folder_of(name), stated, &at)?;
+        let path = self.files.resolve(parent_folder(name), stated, &at)?;
         let bytes = self.files.root.read(&path, MAX_TEXT_BYTES)?;
         let text = String::from_utf8(bytes).map_err(|error| HousesError::Syntax {
             at,

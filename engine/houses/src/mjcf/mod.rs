@@ -52,5 +52,5 @@ pub fn open(path: &Path) -> Result<(House, LoadReport), HousesError> {
         return Ok((house, report));
     }
     let robot = source.first_robot(&mut report)?;
-    Ok((robot::alone(&robot)?, report))
+    Ok((robot::house_with_robot_only(&robot)?, report))
 }

@@ -11,7 +11,7 @@ use mjcf_rs::{BodyId, Model};
 
 use super::geoms::{self, BodyGeom};
 use super::{actuators, includes};
-use crate::data_root::folder_of;
+use crate::data_root::parent_folder;
 use crate::error::{HousesError, refuse_field};
 use crate::limits::MAX_NODES;
 use crate::report::{FileLocation, LoadReport};
@@ -33,11 +33,11 @@ impl MjcfSource {
     /// # Errors
     /// Those of [`open_robot`](crate::open_robot) for files that cannot be read or are not this format.
     pub(super) fn load(path: &Path, report: &mut LoadReport) -> Result<Self, HousesError> {
-        let files = RobotFiles::around(path)?;
+        let files = RobotFiles::of_file(path)?;
         let text = files.text()?;
         includes::check(&files, &text, report)?;
         let at = FileLocation::file(&files.file);
-        let folder = files.root.folder().join(folder_of(&files.file));
+        let folder = files.root.folder().join(parent_folder(&files.file));
         let model = Model::from_str(&text, folder).map_err(|error| HousesError::Syntax {
             at: at.clone(),
             message: error.to_string(),
@@ -71,7 +71,7 @@ impl MjcfSource {
     }
 
     /// The bodies without a parent.
-    pub(super) fn roots(&self) -> Vec<BodyId> {
+    pub(super) fn root_bodies(&self) -> Vec<BodyId> {
         let roots = self.model.bodies_iter();
         let roots = roots.filter(|(_, entry)| entry.parent == Some(0));
         roots.map(|(id, _)| id).collect()
@@ -92,7 +92,7 @@ impl MjcfSource {
     ///
     /// # Errors
     /// [`HousesError::Field`] for a mesh that cannot be read.
-    pub(super) fn pieces(
+    pub(super) fn body_geoms(
         &mut self,
         id: BodyId,
         report: &mut LoadReport,
@@ -100,7 +100,7 @@ impl MjcfSource {
         let name = name_of(&self.model, id);
         let at = self.at.field(format_args!("body[{name}]"));
         let body = &self.model.bodies[id].body;
-        geoms::pieces(&self.model, body, &mut self.files, &at, report)
+        geoms::body_geoms(&self.model, body, &mut self.files, &at, report)
     }
 
     /// Converts a body with its descendants. A root with a hinge or slide gets a fixed empty link as its parent.
@@ -122,7 +122,7 @@ impl MjcfSource {
         if base == RootAttachment::Hung {
             links.push(RobotLink {
                 name: format!("{}_frame", name_of(&self.model, root)),
-                weight: None,
+                inertial: None,
                 visuals: Vec::new(),
                 collisions: Vec::new(),
             });
@@ -130,7 +130,7 @@ impl MjcfSource {
         let places: BTreeMap<BodyId, usize> = bodies.iter().copied().zip(hung..).collect();
         for id in &bodies {
             interrupt::check();
-            let pieces = self.pieces(*id, report)?;
+            let pieces = self.body_geoms(*id, report)?;
             let entry = &self.model.bodies[*id];
             let name = name_of(&self.model, *id);
             let at = self.at.field(format_args!("body[{name}]"));
@@ -139,10 +139,10 @@ impl MjcfSource {
                 taken.map(|piece| piece.shape.clone()).collect()
             };
             links.push(RobotLink {
-                weight: weight(&self.model, &entry.body, &pieces, &at, report)?,
+                inertial: weight(&self.model, &entry.body, &pieces, &at, report)?,
                 name,
-                visuals: of(|piece| piece.seen),
-                collisions: of(|piece| piece.touches),
+                visuals: of(|piece| piece.is_visible),
+                collisions: of(|piece| piece.has_contacts),
             });
             let place = |id: BodyId| places.get(&id).copied().unwrap_or(hung);
             if *id == root {
@@ -180,7 +180,7 @@ impl MjcfSource {
     /// # Errors
     /// Those of [`open_robot`](crate::open_robot).
     pub(super) fn first_robot(&mut self, report: &mut LoadReport) -> Result<Robot, HousesError> {
-        let roots = self.roots();
+        let roots = self.root_bodies();
         let Some(root) = roots.first() else {
             return refuse_field(self.at.clone(), "a <body> in <worldbody>", "none");
         };
@@ -260,7 +260,7 @@ fn joint(
         name: name.clone(),
         parent,
         child,
-        motion: RobotJointKind::Fixed,
+        kind: RobotJointKind::Fixed,
         parent_from_joint: pose(&body.pose),
         child_from_joint: Pose::IDENTITY,
         axis: Vec3::X,
@@ -310,7 +310,7 @@ fn joint(
         .resolve(model.compiler.autolimits, joint.range.is_some());
     let range = joint.range.map(|range| range.map(|x| x as f32));
     Ok(RobotJoint {
-        motion,
+        kind: motion,
         parent_from_joint: pose(&body.pose) * anchor,
         child_from_joint: anchor,
         axis: axis.as_vec3(),
@@ -342,7 +342,7 @@ fn weight(
             weight.report_impossible(&at.field("inertial"), report);
             Ok(Some(weight))
         }
-        _ => geoms::weight(pieces, at),
+        _ => geoms::mass_of_geoms(pieces, at),
     }
 }
 

@@ -27,7 +27,11 @@ const MAKERS: [&str; 3] = ["composite", "flexcomp", "replicate"];
 const SHOWN: usize = 60;
 
 /// Reports the losses of an element; `at` is its file.
-pub(super) fn report(node: Node<'_, '_>, at: &FileLocation, report: &mut LoadReport) {
+pub(super) fn report_unread_elements(
+    node: Node<'_, '_>,
+    at: &FileLocation,
+    report: &mut LoadReport,
+) {
     let at = || at.line(node.document().text_pos_at(node.range().start).row);
     let tag = node.tag_name().name();
     let holder = node.parent_element().map(|parent| parent.tag_name().name());

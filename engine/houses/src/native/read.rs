@@ -33,7 +33,7 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, LoadReport), Houses
     }
     let house = read(path, threads).map_err(|error| {
         let name = path.file_name().unwrap_or(path.as_os_str());
-        error.within(&name.to_string_lossy())
+        error.in_folder(&name.to_string_lossy())
     })?;
     Ok((house, LoadReport::new()))
 }
@@ -82,7 +82,7 @@ fn read(path: &Path, threads: Threads) -> Result<House, HousesError> {
     for (k, [width, height]) in sizes.iter().enumerate() {
         let at = FileLocation::file(TABLES).field(format_args!("texture_sizes[{k}]"));
         budget
-            .take(u64::from(*width) * u64::from(*height))
+            .reserve(u64::from(*width) * u64::from(*height))
             .map_err(|message| HousesError::Syntax { at, message })?;
     }
     let textures = threads.map(sizes.len(), |k| geometry.texture(k, sizes[k]));
@@ -95,7 +95,7 @@ fn read(path: &Path, threads: Threads) -> Result<House, HousesError> {
     let mut left = MAX_ALL_SOUND_BYTES;
     for (k, name) in file.sound_names.into_iter().enumerate() {
         let path = sound_path(k, &name);
-        let bytes = root.read(&path, left.min(SoundFile::MOST_BYTES))?;
+        let bytes = root.read(&path, left.min(SoundFile::MAX_BYTES))?;
         left -= bytes.len() as u64;
         data.sound_files.push(Arc::new(SoundFile { name, bytes }));
     }

@@ -17,7 +17,7 @@ fn check_name(path: &Path) -> Result<(), HousesError> {
     if super::recognizes(path) {
         return Ok(());
     }
-    Err(HousesError::Unwritable {
+    Err(HousesError::NotRepresentable {
         path: path.to_owned(),
         message: "its name does not end in .dwell, by which it is known again".to_owned(),
     })
@@ -26,7 +26,7 @@ fn check_name(path: &Path) -> Result<(), HousesError> {
 /// Writes a house so that [`open`](super::open) gives it back bit for bit. An old native house at `path` is replaced.
 ///
 /// # Errors
-/// [`HousesError::Unwritable`] when the name is not that of a `.dwell`, when the house holds a number that is not finite outside of its meshes, when its geometry
+/// [`HousesError::NotRepresentable`] when the name is not that of a `.dwell`, when the house holds a number that is not finite outside of its meshes, when its geometry
 /// exceeds 4 GiB, when its tables exceed what is read again, or when something else stands at `path`; [`HousesError::Io`] when the system refuses.
 pub fn write(house: &House, path: &Path) -> Result<(), HousesError> {
     check_name(path)?;
@@ -49,7 +49,7 @@ pub fn write_into(house: &House, root: &Path, name: &str) -> Result<PathBuf, Hou
 }
 
 fn write_as(house: &House, path: &Path, storage: Storage) -> Result<(), HousesError> {
-    let unwritable = |message: String| HousesError::Unwritable {
+    let unwritable = |message: String| HousesError::NotRepresentable {
         path: path.to_owned(),
         message,
     };
@@ -90,7 +90,7 @@ fn write_as(house: &House, path: &Path, storage: Storage) -> Result<(), HousesEr
     }
     // Shared files come first: a house that exists is complete.
     if let Some(root) = path.parent().and_then(Path::parent) {
-        for beside in &written.beside {
+        for beside in &written.sidecars {
             let path = root.join(&beside.path);
             // The name is the content's, so an existing file is the same.
             if !path.exists() {

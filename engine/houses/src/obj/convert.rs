@@ -12,7 +12,7 @@ use glam::Affine3A;
 use super::file::FaceGroup;
 use super::load::{MeshFiles, mesh_files};
 use super::read_obj;
-use super::shape::{MaterialSlots, PartShape, shape_of};
+use super::shape::{MaterialSlots, PartShape, mesh_of_shape};
 use crate::data_root::DataRoot;
 use crate::error::HousesError;
 use crate::import::{
@@ -73,7 +73,7 @@ pub(crate) fn read_scene(
     let name = texture_name(&inside);
     let mut things: Vec<(String, Vec<(u16, &FaceGroup)>)> = Vec::new();
     let mut places: BTreeMap<&str, usize> = BTreeMap::new();
-    for run in &files.obj.runs {
+    for run in &files.obj.face_groups {
         let thing = if run.object.is_empty() {
             &name
         } else {
@@ -98,10 +98,10 @@ pub(crate) fn read_scene(
     let things = things
         .into_iter()
         .map(|(name, runs)| {
-            let mesh = shape_of(
+            let mesh = mesh_of_shape(
                 &PartShape {
                     obj: &files.obj,
-                    runs,
+                    face_groups: runs,
                     box_mapping,
                 },
                 &at,
@@ -123,8 +123,8 @@ pub(crate) fn read_scene(
     let scene = ImportedScene {
         name,
         source: "obj",
-        things,
-        looks,
+        nodes: things,
+        materials: looks,
         textures,
         levels: Vec::new(),
         rooms: Vec::new(),
@@ -136,14 +136,14 @@ pub(crate) fn read_scene(
 }
 
 /// All faces of an OBJ file as one mesh, without materials.
-pub(crate) fn bare_mesh(bytes: &[u8], path: &str, report: &mut LoadReport) -> Mesh {
+pub(crate) fn mesh_without_materials(bytes: &[u8], path: &str, report: &mut LoadReport) -> Mesh {
     let obj = read_obj(bytes, path, report);
     let shape = PartShape {
-        runs: obj.runs.iter().map(|run| (0, run)).collect(),
+        face_groups: obj.face_groups.iter().map(|run| (0, run)).collect(),
         obj: &obj,
         box_mapping: false,
     };
-    shape_of(&shape, &FileLocation::file(path), report)
+    mesh_of_shape(&shape, &FileLocation::file(path), report)
 }
 
 /// The folder that bounds the file's paths, and the file in it: the data root if the file is a SUNCG model, whose

@@ -21,7 +21,7 @@ pub struct ObjFile {
     /// End of each face in `corners`.
     pub face_ends: Vec<u32>,
     /// Stretches of faces under the same `o`, `g` and `usemtl`; together they cover all faces in order.
-    pub runs: Vec<FaceGroup>,
+    pub face_groups: Vec<FaceGroup>,
 }
 
 /// A corner of a face: 0-based indices, or [`NONE`].

@@ -4,7 +4,7 @@
 ///
 /// A `\` at the end of a line joins it with the next one. Lines end as in files of any system: by `\n`, `\r\n`, or `\r` alone.
 pub(super) fn lines(text: &[u8]) -> impl Iterator<Item = (u32, std::borrow::Cow<'_, [u8]>)> {
-    let text = crate::json::without_mark(text);
+    let text = crate::json::without_byte_order_mark(text);
     let end = if text.contains(&b'\n') { b'\n' } else { b'\r' };
     let mut raw = text.split(move |&b| b == end).zip(1_u32..);
     std::iter::from_fn(move || {

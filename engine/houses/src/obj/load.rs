@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::file::{MtlFile, ObjFile};
 use super::{read_mtl, read_obj};
-use crate::data_root::{DataRoot, folder_of};
+use crate::data_root::{DataRoot, parent_folder};
 use crate::limits::{MAX_LIBRARIES, MAX_MESH_BYTES};
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
@@ -46,7 +46,7 @@ pub(crate) fn mesh_files(
         obj: read_obj(bytes, path, report),
         ..MeshFiles::default()
     };
-    let folder = folder_of(path);
+    let folder = parent_folder(path);
     let mut known = BTreeSet::new();
     let named = files.obj.material_libraries.iter();
     // A library that is named again adds nothing.
@@ -82,7 +82,7 @@ pub(crate) fn mesh_files(
             let texture = material
                 .diffuse_map
                 .as_deref()
-                .map(|map| (map, DataRoot::resolve(folder_of(&mtl_path), map)));
+                .map(|map| (map, DataRoot::resolve(parent_folder(&mtl_path), map)));
             if let Some((map, Err(_))) = &texture {
                 report.warn(
                     FileLocation::file(&mtl_path),

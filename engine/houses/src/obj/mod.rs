@@ -12,12 +12,12 @@ mod read_obj;
 mod shape;
 mod write;
 
-pub(crate) use convert::bare_mesh;
+pub(crate) use convert::mesh_without_materials;
 pub use convert::open;
 pub(crate) use convert::{read_scene, recognizes};
 pub use load::MeshFiles;
 pub(crate) use load::read_mesh;
 pub use read_mtl::read_mtl;
 pub use read_obj::read_obj;
-pub(crate) use shape::{MaterialSlots, PartShape, shape_of};
+pub(crate) use shape::{MaterialSlots, PartShape, mesh_of_shape};
 pub(crate) use write::{ObjWriter, mtl_material};

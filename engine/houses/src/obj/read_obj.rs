@@ -183,13 +183,13 @@ impl ObjReader<'_> {
 
     /// Ends the stretch of faces under the current names.
     fn close_run(&mut self) {
-        let start = self.obj.runs.last().map_or(0, |run| run.faces.end);
+        let start = self.obj.face_groups.last().map_or(0, |run| run.faces.end);
         let end = self.obj.face_ends.len();
         if start == end {
             return;
         }
         let names = &self.names;
-        match self.obj.runs.last_mut() {
+        match self.obj.face_groups.last_mut() {
             // `usemtl` with the same name again is the same stretch.
             Some(run)
                 if run.object == names.object
@@ -198,7 +198,7 @@ impl ObjReader<'_> {
             {
                 run.faces.end = end;
             }
-            _ => self.obj.runs.push(FaceGroup {
+            _ => self.obj.face_groups.push(FaceGroup {
                 object: names.object.clone(),
                 group: names.group.clone(),
                 material: names.material.clone(),
@@ -239,7 +239,7 @@ impl ObjReader<'_> {
         }
         let old = std::mem::take(obj);
         let mut bad = 0;
-        for run in &old.runs {
+        for run in &old.face_groups {
             let start = obj.face_ends.len();
             for face in run.faces.clone() {
                 let corners = old.face(face);
@@ -251,7 +251,7 @@ impl ObjReader<'_> {
                 }
             }
             if obj.face_ends.len() > start {
-                obj.runs.push(FaceGroup {
+                obj.face_groups.push(FaceGroup {
                     faces: start..obj.face_ends.len(),
                     ..run.clone()
                 });
@@ -263,7 +263,7 @@ impl ObjReader<'_> {
         *obj = ObjFile {
             corners: std::mem::take(&mut obj.corners),
             face_ends: std::mem::take(&mut obj.face_ends),
-            runs: std::mem::take(&mut obj.runs),
+            face_groups: std::mem::take(&mut obj.face_groups),
             ..old
         };
     }
@@ -340,12 +340,12 @@ mod tests {
             "v 0 0 0\nv 1 0 0\nv 0 1 0\no A\nf 1 2 9\nf 1 2 3\nf 1 2\nf 0 1 2\nf x 1 2\nf -9 1 2\no B\nusemtl m\nf 1 2 3\n",
         );
         assert_eq!(obj.face_count(), 2);
-        assert_eq!(obj.runs.len(), 2);
+        assert_eq!(obj.face_groups.len(), 2);
         assert_eq!(
             (
-                obj.runs[1].object.as_str(),
-                obj.runs[1].material.as_deref(),
-                obj.runs[1].faces.clone()
+                obj.face_groups[1].object.as_str(),
+                obj.face_groups[1].material.as_deref(),
+                obj.face_groups[1].faces.clone()
             ),
             ("B", Some("m"), 1..2)
         );

@@ -46,7 +46,7 @@ impl MaterialSlots {
             }
             slots.push(&material.name, Some(i));
         }
-        for run in &obj.runs {
+        for run in &obj.face_groups {
             let name = run.material.as_deref().unwrap_or("");
             if slots.find(name).is_none() && slots.entries.len() < MAX_SLOTS {
                 if run.material.is_some() {
@@ -85,18 +85,22 @@ pub(crate) struct PartShape<'a> {
     /// The file.
     pub(crate) obj: &'a ObjFile,
     /// The slot of each run that is taken, with the run.
-    pub(crate) runs: Vec<(u16, &'a FaceGroup)>,
+    pub(crate) face_groups: Vec<(u16, &'a FaceGroup)>,
     /// True if corners without texture coordinates get some, in metres on the nearest axis plane, because a texture
     /// lies on them.
     pub(crate) box_mapping: bool,
 }
 
 /// Fans polygons into triangles, merges corners into vertices, replaces numbers that are not finite.
-pub(crate) fn shape_of(shape: &PartShape<'_>, at: &FileLocation, report: &mut LoadReport) -> Mesh {
+pub(crate) fn mesh_of_shape(
+    shape: &PartShape<'_>,
+    at: &FileLocation,
+    report: &mut LoadReport,
+) -> Mesh {
     let obj = shape.obj;
     let faces = || {
         shape
-            .runs
+            .face_groups
             .iter()
             .flat_map(|(slot, run)| run.faces.clone().map(move |face| (*slot, face)))
     };
@@ -270,14 +274,14 @@ mod tests {
         let obj = read_obj(text.as_bytes(), "a.obj", &mut report);
         let slots = MaterialSlots::of(&obj, &MtlFile::default(), &at, &mut LoadReport::new());
         let runs = obj
-            .runs
+            .face_groups
             .iter()
             .map(|run| (slots.of_run(run), run))
             .collect();
-        let mesh = shape_of(
+        let mesh = mesh_of_shape(
             &PartShape {
                 obj: &obj,
-                runs,
+                face_groups: runs,
                 box_mapping,
             },
             &at,
@@ -354,7 +358,10 @@ mod tests {
             ]
         );
         assert_eq!(
-            (slots.of_run(&obj.runs[0]), slots.of_run(&obj.runs[1])),
+            (
+                slots.of_run(&obj.face_groups[0]),
+                slots.of_run(&obj.face_groups[1])
+            ),
             (1, 2)
         );
         assert_eq!(report.len(), 1);

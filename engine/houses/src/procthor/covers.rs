@@ -38,7 +38,7 @@ const PLAIN: Finish = Finish::plain("paint", "painted_plaster", [226, 222, 212])
 
 /// Returns the finish of a material of the file: a name, or an object with a `name` and a `color`. The name is returned beside it
 /// where it has no known meaning.
-pub(super) fn cover(material: &Value) -> (Finish, Option<String>) {
+pub(super) fn finish_of_material(material: &Value) -> (Finish, Option<String>) {
     let name = material
         .as_str()
         .or_else(|| material["name"].as_str())
@@ -80,7 +80,7 @@ mod tests {
     #[test]
     fn names_and_colours_of_files_are_understood() {
         let seen = |value| {
-            let (finish, unknown) = cover(&value);
+            let (finish, unknown) = finish_of_material(&value);
             assert_eq!(unknown, None);
             (finish.substance, finish.srgb)
         };
@@ -88,6 +88,9 @@ mod tests {
         let red = json!({"name": "PureWhite", "color": {"r": 1.0, "g": 0.5, "b": 0.0}});
         assert_eq!(seen(red), ("painted_plaster", [255, 128, 0]));
         assert_eq!(seen(json!(null)).0, "painted_plaster");
-        assert_eq!(cover(&json!("Xyz 4")).1.as_deref(), Some("Xyz 4"));
+        assert_eq!(
+            finish_of_material(&json!("Xyz 4")).1.as_deref(),
+            Some("Xyz 4")
+        );
     }
 }

@@ -43,7 +43,7 @@ pub fn open(path: &Path) -> Result<(House, LoadReport), HousesError> {
     let root = DataRoot::new(folder)?;
     let bytes = root.read_named(&name, MAX_TEXT_BYTES)?;
     let mut report = LoadReport::new();
-    let sizes = AssetSizes::around(folder, &mut report);
+    let sizes = AssetSizes::read_near(folder, &mut report);
     convert(&bytes, &name, &sizes, report)
 }
 
@@ -66,12 +66,12 @@ fn convert(
             allowed: MAX_NODES as u64,
         });
     }
-    if file.rooms.len() > Room::MOST {
+    if file.rooms.len() > Room::MAX_PER_HOUSE {
         return Err(HousesError::TooLarge {
             at: at.field("rooms"),
             what: "count of rooms",
             found: file.rooms.len() as u64,
-            allowed: Room::MOST as u64,
+            allowed: Room::MAX_PER_HOUSE as u64,
         });
     }
     let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
@@ -84,7 +84,7 @@ fn convert(
         ids: BTreeSet::new(),
         floor_y: 0.0,
     };
-    reader.assembly.storey();
+    reader.assembly.add_storey();
     reader.shell(&file);
     if reader.rooms.is_empty() {
         return Err(HousesError::empty(&at, &report));
@@ -160,7 +160,8 @@ fn point(p: Vector3) -> Vec3 {
 
 /// Euler angles of the file (about Z, then X, then Y, in left-handed axes) as a rotation in ours.
 fn rotation(degrees: Vector3) -> Quat {
-    let turn = |axis: Vec3, angle: f32| dwell_furniture::shapes::turn(axis, angle.to_radians());
+    let turn =
+        |axis: Vec3, angle: f32| dwell_furniture::shapes::axis_rotation(axis, angle.to_radians());
     // Seen in a mirror across z = 0, turns about X and Y run the other way.
     turn(Vec3::Y, -degrees.y) * turn(Vec3::X, -degrees.x) * turn(Vec3::Z, degrees.z)
 }

@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 use dwell_furniture::finishes::Finish;
 use dwell_furniture::model::{Model, PartBuilder};
 use dwell_furniture::model_cache::cached_model;
-use dwell_furniture::shapes::{block, turn};
+use dwell_furniture::shapes::{axis_rotation, block};
 use dwell_furniture::style::STYLES;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{Aabb, Mobility, Pose, RoomId};
@@ -14,7 +14,7 @@ use glam::Vec3;
 use serde::Deserialize;
 
 use super::file::{ObjectFile, ProcThorLight};
-use super::shell::words;
+use super::shell::split_camel_case;
 use super::{ProcThorReader, is_place, point, rotation};
 use crate::building::assembly::ModelInstances;
 use crate::import::{CategoryRow, category, category_of};
@@ -121,17 +121,17 @@ impl ProcThorReader<'_> {
         );
         if !kinds.contains_key(&key) {
             let model = self.model(&type_name, &key.0, size, height, object.kinematic, at);
-            let kind = model.map(|model| self.assembly.kind(model));
+            let kind = model.map(|model| self.assembly.add_model(model));
             kinds.insert(key.clone(), kind);
         }
         let Some(Some(kind)) = kinds.get(&key) else {
             return;
         };
         let center = kind.model.bounds().center();
-        let facing = turned * turn(Vec3::Y, HALF_TURN);
+        let facing = turned * axis_rotation(Vec3::Y, HALF_TURN);
         let pose = Pose::new(middle, facing) * Pose::from_position(-center);
-        self.assembly.place(kind, pose, room, 0.0);
-        self.name_last(&object.id, &object.asset_id, at);
+        self.assembly.add_instance(kind, pose, room, 0.0);
+        self.rename_last_object(&object.id, &object.asset_id, at);
         self.check_last(room, middle, at);
     }
 
@@ -203,7 +203,7 @@ impl ProcThorReader<'_> {
         else {
             return;
         };
-        let kind = self.assembly.kind(Arc::clone(&lamp.model));
+        let kind = self.assembly.add_model(Arc::clone(&lamp.model));
         let top = lamp.model.bounds().max.y;
         for light in lights.iter().filter(|light| light.kind == "point") {
             let at = point(light.position);
@@ -213,7 +213,7 @@ impl ProcThorReader<'_> {
             if let Some(room) = self.room_at(at) {
                 let (id, up) = (room.id, room.ceiling_y - top);
                 let pose = Pose::from_position(at.with_y(up));
-                self.assembly.place(&kind, pose, id, 0.0);
+                self.assembly.add_instance(&kind, pose, id, 0.0);
             }
         }
     }
@@ -237,7 +237,7 @@ fn plain_block(type_name: &str, size: Vec3) -> Model {
     let wood = Finish::plain("unknown", "wood", [170, 150, 124]);
     let half = size * 0.5;
     let shape = block([-half.x, 0.0, -half.z], [half.x, size.y, half.z]);
-    let row = category_of(&words(type_name));
+    let row = category_of(&split_camel_case(type_name));
     let category = row.map_or("object", |row| row.name.as_str());
     let model = if size.max_element() < 0.4 {
         Model::pickable("block", category)
@@ -245,7 +245,7 @@ fn plain_block(type_name: &str, size: Vec3) -> Model {
         Model::movable("block", category)
     };
     // Most of a thing's box is air.
-    model.part(PartBuilder::new("body").with_filled(&wood, shape, 0.3))
+    model.part(PartBuilder::new("body").with_fill_fraction(&wood, shape, 0.3))
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ use dwell_scene::{Aabb, Mesh, Pose, Room, StructureKind};
 use glam::{DVec2, Vec2, Vec3};
 use serde_json::Value;
 
-use super::covers::cover;
+use super::covers::finish_of_material;
 use super::file::{HoleFile, ProcThorHouse, ProcThorRoom, Vector3, WallFile};
 use super::{ConvertedRoom, ProcThorReader, is_place, point};
 use crate::import::{UniqueNames, room_kind, triangulate};
@@ -206,13 +206,13 @@ impl ProcThorReader<'_> {
             let mesh = face.mesh(holes);
             if !mesh.triangles.is_empty() {
                 self.assembly
-                    .structure(&name, StructureKind::Wall, room, mesh, &[finish]);
+                    .add_structure(&name, StructureKind::Wall, room, mesh, &[finish]);
             }
         }
     }
 
     fn finish(&mut self, material: &Value, field: &str) -> Finish {
-        let (finish, unknown) = cover(material);
+        let (finish, unknown) = finish_of_material(material);
         if let Some(name) = unknown {
             let what = UnmappedKind::Substance;
             self.warn(field, WarningKind::Unmapped { what, name });
@@ -271,7 +271,7 @@ impl ProcThorReader<'_> {
             .into_iter()
             .map(|t| t.map(|k| flat(outline[k])))
             .collect();
-        let kind = words(&room.room_type);
+        let kind = split_camel_case(&room.room_type);
         let kind = room_kind(&kind).unwrap_or_else(|name| {
             if !name.is_empty() {
                 let what = UnmappedKind::RoomType;
@@ -288,7 +288,7 @@ impl ProcThorReader<'_> {
             bounds.add_point(Vec3::new(*x, floor_y, *z));
             bounds.add_point(Vec3::new(*x, ceiling_y, *z));
         }
-        let name = names.counted(&kind.replace(' ', "_"));
+        let name = names.numbered(&kind.replace(' ', "_"));
         if self.rooms.iter().any(|other| other.file_id == room.id) {
             let (id, renamed) = (room.id.clone(), name.clone());
             self.warn(
@@ -326,11 +326,11 @@ impl ProcThorReader<'_> {
         for (kind, word, top, finish) in slabs {
             // The prism's (x, y) plane becomes the world's (x, z), its depth runs down.
             let slab = extrude(&plan, SLAB_M)
-                .about_x(std::f32::consts::FRAC_PI_2)
-                .at(0.0, top, 0.0);
+                .rotated_x(std::f32::consts::FRAC_PI_2)
+                .translated(0.0, top, 0.0);
             let name = format!("{word}_{name}");
             self.assembly
-                .structure(&name, kind, Some(id), slab.mesh, &[finish]);
+                .add_structure(&name, kind, Some(id), slab.mesh, &[finish]);
         }
         self.rooms.push(ConvertedRoom {
             id,
@@ -411,7 +411,7 @@ impl ProcThorReader<'_> {
                 width_m,
                 height_m,
                 wall_m,
-                lights,
+                casements: lights,
                 pane,
                 sill_m,
             }
@@ -426,7 +426,7 @@ impl ProcThorReader<'_> {
             }
             .build()
         };
-        let kind = self.assembly.kind(model);
+        let kind = self.assembly.add_model(model);
         let turn = glam::Quat::from_rotation_arc(Vec3::Z, face.normal);
         let openness = if is_window {
             0.0
@@ -434,12 +434,12 @@ impl ProcThorReader<'_> {
             row.openness.clamp(0.0, 1.0)
         };
         self.assembly
-            .place(&kind, Pose::new(place, turn), room, openness);
-        self.name_last(&row.id, &row.asset_id, at);
+            .add_instance(&kind, Pose::new(place, turn), room, openness);
+        self.rename_last_object(&row.id, &row.asset_id, at);
     }
 
     /// Renames the newest object to its name in the file; `at` is the place of its row.
-    pub(super) fn name_last(&mut self, id: &str, asset: &str, at: &str) {
+    pub(super) fn rename_last_object(&mut self, id: &str, asset: &str, at: &str) {
         let Some(object) = self.assembly.data.objects.as_mut_slice().last_mut() else {
             return;
         };
@@ -473,7 +473,7 @@ fn rectangle(row: &HoleFile) -> Option<FaceHole> {
 }
 
 /// `LivingRoom` as words: `living room`.
-pub(super) fn words(name: &str) -> String {
+pub(super) fn split_camel_case(name: &str) -> String {
     let mut words = String::new();
     for c in name.chars() {
         if c.is_ascii_uppercase() && !words.is_empty() {

@@ -24,7 +24,7 @@ pub(super) struct AssetSizes {
 
 impl AssetSizes {
     /// Reads the nearest file at or above `folder`; a missing one is no fault, an unreadable one is reported.
-    pub(super) fn around(folder: &Path, report: &mut LoadReport) -> Self {
+    pub(super) fn read_near(folder: &Path, report: &mut LoadReport) -> Self {
         let folder = folder.canonicalize().unwrap_or_default();
         let mut folders = folder.ancestors().take(FOLDERS);
         let Some(folder) = folders.find(|folder| folder.join(FILE).is_file()) else {

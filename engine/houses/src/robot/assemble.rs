@@ -11,7 +11,7 @@ use dwell_scene::{
 };
 use glam::{Affine3A, Mat3, Quat, Vec2, Vec3};
 
-use super::masses::{FixedLinks, weigh};
+use super::masses::{FixedLinks, combined_inertia};
 use super::model::{LinkShape, Robot, RobotJointKind};
 use super::shape::colliders;
 use crate::error::HousesError;
@@ -24,7 +24,7 @@ const GROUND_M: f32 = 5.0;
 const GROUND_DEPTH_M: f32 = 0.1;
 
 /// The transform from a robot's axes (+X forward, +Z up) to dwell's (-Z forward, +Y up).
-pub(crate) fn ours_from_robot() -> Pose {
+pub(crate) fn dwell_from_robot() -> Pose {
     let axes = Mat3::from_cols(Vec3::NEG_Z, Vec3::NEG_X, Vec3::Y);
     Pose::new(Vec3::ZERO, Quat::from_mat3(&axes))
 }
@@ -44,13 +44,14 @@ pub(crate) fn add(
         robot
             .joints
             .iter()
-            .filter(|joint| joint.motion != RobotJointKind::Fixed)
+            .filter(|joint| joint.kind != RobotJointKind::Fixed)
     };
     let heads: Vec<usize> = std::iter::once(0)
         .chain(moving().map(|joint| joint.child))
         .collect();
     let rigid = FixedLinks::new(robot);
-    let groups: Vec<Vec<(usize, Pose)>> = heads.iter().map(|head| rigid.group(*head)).collect();
+    let groups: Vec<Vec<(usize, Pose)>> =
+        heads.iter().map(|head| rigid.rigid_group(*head)).collect();
     let mut homes: Vec<Option<(usize, Pose)>> = vec![None; robot.links.len()];
     for (k, group) in groups.iter().enumerate() {
         for (link, place) in group {
@@ -66,7 +67,7 @@ pub(crate) fn add(
         else {
             continue;
         };
-        let kind = if joint.motion == RobotJointKind::Slide {
+        let kind = if joint.kind == RobotJointKind::Slide {
             JointKind::Slide
         } else {
             JointKind::Hinge
@@ -134,7 +135,7 @@ pub(crate) fn add(
                 materials.push(material);
                 materials.len() - 1
             });
-            let mut surface = shape.solid.surface();
+            let mut surface = shape.geometry.surface();
             surface
                 .positions
                 .iter_mut()
@@ -147,7 +148,7 @@ pub(crate) fn add(
             surface.slots = vec![0; surface.triangles.len()];
             mesh.append(&surface, slot as u16);
         }
-        let weight = weigh(robot, group);
+        let weight = combined_inertia(robot, group);
         let pieces =
             shapes(|link| &link.collisions).flat_map(|(shape, place)| colliders(shape, &place));
         let mesh = data.meshes.push(Arc::new(mesh));
@@ -261,7 +262,7 @@ pub(crate) fn texture(data: &mut HouseData, image: &Arc<Texture>) -> TextureId {
 ///
 /// # Errors
 /// [`HousesError::Scene`] when the robot breaks a rule of the scene.
-pub(crate) fn alone(robot: &Robot) -> Result<House, HousesError> {
+pub(crate) fn house_with_robot_only(robot: &Robot) -> Result<House, HousesError> {
     let mut data = HouseData {
         name: robot.name.clone(),
         source: robot.format.to_owned(),
@@ -290,7 +291,7 @@ pub(crate) fn alone(robot: &Robot) -> Result<House, HousesError> {
         &mut data,
         robot,
         &robot.name,
-        ours_from_robot(),
+        dwell_from_robot(),
         robot.fixed_base,
     );
     // It stands on the ground with its lowest point.

@@ -91,8 +91,7 @@ pub(crate) fn check(mut robot: Robot) -> Result<Robot, HousesError> {
         })
         .collect();
     robot.links = order.iter().map(|k| robot.links[*k].clone()).collect();
-    let leads =
-        |joint: &&RobotJoint| joint.motion != RobotJointKind::Fixed && joint.mimic.is_none();
+    let leads = |joint: &&RobotJoint| joint.kind != RobotJointKind::Fixed && joint.mimic.is_none();
     let leaders = robot.joints.iter().filter(leads);
     let leaders: BTreeSet<&str> = leaders.map(|joint| joint.name.as_str()).collect();
     for joint in &robot.joints {
@@ -186,13 +185,13 @@ fn check_link(link: &RobotLink, at: &FileLocation) -> Result<(), HousesError> {
         for (k, shape) in shapes.iter().enumerate() {
             let at = at.field(format_args!("{what}[{k}]"));
             check_pose(&shape.link_from_shape, &at, "origin")?;
-            if !shape.solid.is_sound() {
-                let found = format!("{:?}", shape.solid.numbers());
+            if !shape.geometry.is_valid() {
+                let found = format!("{:?}", shape.geometry.dimensions());
                 return refuse_field(at.field("geometry"), "sizes of 1e-6 to 1000 m", found);
             }
         }
     }
-    let Some(weight) = &link.weight else {
+    let Some(weight) = &link.inertial else {
         return Ok(());
     };
     let at = at.field("inertial");
@@ -227,12 +226,12 @@ fn massive(robot: &Robot, at: &FileLocation) -> Result<(), HousesError> {
     for joint in robot
         .joints
         .iter()
-        .filter(|joint| joint.motion != RobotJointKind::Fixed)
+        .filter(|joint| joint.kind != RobotJointKind::Fixed)
     {
-        let group = fixed.group(joint.child);
+        let group = fixed.rigid_group(joint.child);
         if group
             .iter()
-            .all(|(link, _)| robot.links[*link].weight.is_none())
+            .all(|(link, _)| robot.links[*link].inertial.is_none())
         {
             let name = &robot.links[joint.child].name;
             let at = at

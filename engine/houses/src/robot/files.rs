@@ -8,9 +8,9 @@ use dwell_scene::parallel::Threads;
 use dwell_scene::{House, Mesh, Texture};
 
 use super::stl;
-use crate::data_root::{DataRoot, folder_of};
+use crate::data_root::{DataRoot, parent_folder};
 use crate::error::HousesError;
-use crate::import::{PixelBudget, decode, is_cut, pixels, texture_name};
+use crate::import::{PixelBudget, decode, is_truncated_jpeg, pixels, texture_name};
 use crate::limits::{MAX_IMAGE_BYTES, MAX_MESH_BYTES, MAX_TEXT_BYTES};
 use crate::obj;
 use crate::report::{FileLocation, LoadReport};
@@ -35,7 +35,7 @@ impl RobotFiles {
     ///
     /// # Errors
     /// [`HousesError::Io`] when it does not exist.
-    pub(crate) fn around(path: &Path) -> Result<Self, HousesError> {
+    pub(crate) fn of_file(path: &Path) -> Result<Self, HousesError> {
         let real = path.canonicalize().map_err(HousesError::io(path))?;
         let folder = real.parent().unwrap_or_else(|| Path::new("/"));
         let package = folder
@@ -112,11 +112,11 @@ impl RobotFiles {
         let bytes = self.root.read(path, MAX_IMAGE_BYTES);
         let bytes = bytes.map_err(|error| error.reason());
         let image = bytes.and_then(|bytes| {
-            self.pixels.take(pixels(&bytes)?)?;
+            self.pixels.reserve(pixels(&bytes)?)?;
             let texture = decode(&texture_name(path), &bytes)?;
-            if is_cut(&bytes) {
+            if is_truncated_jpeg(&bytes) {
                 let path = path.to_owned();
-                report.warn(at.clone(), WarningKind::CutTexture { path });
+                report.warn(at.clone(), WarningKind::TruncatedTexture { path });
             }
             Ok(texture)
         });
@@ -169,9 +169,9 @@ impl RobotFiles {
         let broken = |reason: String| fault(expected, format!("{path:?}: {reason}"));
         let mesh = match ending.as_str() {
             "stl" => stl::read(&bytes).map_err(broken)?,
-            "obj" => obj::bare_mesh(&bytes, path, report),
+            "obj" => obj::mesh_without_materials(&bytes, path, report),
             "glb" | "gltf" => {
-                let root = DataRoot::new(self.root.folder().join(folder_of(path)))?;
+                let root = DataRoot::new(self.root.folder().join(parent_folder(path)))?;
                 let name = path.rsplit('/').next().unwrap_or(path);
                 let (house, _) = crate::gltf::open_bytes(&bytes, &root, name, Threads::default())
                     .map_err(|error| broken(error.to_string()))?;

@@ -21,7 +21,7 @@ impl<'a> FixedLinks<'a> {
     pub(super) fn new(robot: &'a Robot) -> Self {
         let mut below = vec![Vec::new(); robot.links.len()];
         for joint in &robot.joints {
-            if joint.motion == RobotJointKind::Fixed {
+            if joint.kind == RobotJointKind::Fixed {
                 below[joint.parent].push(joint);
             }
         }
@@ -29,7 +29,7 @@ impl<'a> FixedLinks<'a> {
     }
 
     /// The link `first` and all that is fixed to it, each with its pose on `first`.
-    pub(super) fn group(&self, first: usize) -> Vec<(usize, Pose)> {
+    pub(super) fn rigid_group(&self, first: usize) -> Vec<(usize, Pose)> {
         let mut group = vec![(first, Pose::IDENTITY)];
         let mut next = 0;
         while let Some(&(link, first_from_link)) = group.get(next) {
@@ -45,11 +45,11 @@ impl<'a> FixedLinks<'a> {
 }
 
 /// The common mass of links, in the frame of the first; `None` when none has a mass.
-pub(super) fn weigh(robot: &Robot, group: &[(usize, Pose)]) -> Option<LinkInertia> {
+pub(super) fn combined_inertia(robot: &Robot, group: &[(usize, Pose)]) -> Option<LinkInertia> {
     let placed: Vec<LinkInertia> = group
         .iter()
         .filter_map(|(link, place)| {
-            let weight = robot.links[*link].weight?;
+            let weight = robot.links[*link].inertial?;
             let turn = DMat3::from_quat(place.rotation.as_dquat().normalize());
             Some(LinkInertia {
                 mass: weight.mass,

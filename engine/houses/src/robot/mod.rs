@@ -14,7 +14,7 @@ mod stl;
 
 pub use model::Robot;
 
-pub(crate) use assemble::{add, alone, ours_from_robot, texture};
+pub(crate) use assemble::{add, dwell_from_robot, house_with_robot_only, texture};
 pub(crate) use check::check;
 pub(crate) use files::RobotFiles;
 pub(crate) use model::{
@@ -44,7 +44,7 @@ pub fn with_robot(
     fixed_base: bool,
 ) -> Result<House, HousesError> {
     let mut data = house.data().clone();
-    let world_from_root = world_from_base * assemble::ours_from_robot();
+    let world_from_root = world_from_base * assemble::dwell_from_robot();
     assemble::add(&mut data, robot, name, world_from_root, fixed_base);
     House::new(data).map_err(HousesError::scene(&FileLocation::file(&robot.source)))
 }

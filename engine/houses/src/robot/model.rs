@@ -26,7 +26,7 @@ pub struct Robot {
 #[derive(Clone, Debug)]
 pub(crate) struct RobotLink {
     pub(crate) name: String,
-    pub(crate) weight: Option<LinkInertia>,
+    pub(crate) inertial: Option<LinkInertia>,
     pub(crate) visuals: Vec<LinkShape>,
     pub(crate) collisions: Vec<LinkShape>,
 }
@@ -46,7 +46,7 @@ pub(crate) struct LinkInertia {
 #[derive(Clone, Debug)]
 pub(crate) struct LinkShape {
     pub(crate) link_from_shape: Pose,
-    pub(crate) solid: ShapeGeometry,
+    pub(crate) geometry: ShapeGeometry,
     /// sRGB and opacity.
     pub(crate) rgba: Option<[f32; 4]>,
     /// The name of its material in the file.
@@ -81,7 +81,7 @@ pub(crate) struct RobotJoint {
     /// Positions in the robot's links.
     pub(crate) parent: usize,
     pub(crate) child: usize,
-    pub(crate) motion: RobotJointKind,
+    pub(crate) kind: RobotJointKind,
     pub(crate) parent_from_joint: Pose,
     pub(crate) child_from_joint: Pose,
     pub(crate) axis: Vec3,
@@ -117,7 +117,7 @@ impl Robot {
         let moving = self
             .joints
             .iter()
-            .filter(|joint| joint.motion != RobotJointKind::Fixed);
+            .filter(|joint| joint.kind != RobotJointKind::Fixed);
         moving.map(|joint| joint.name.as_str())
     }
 

@@ -12,7 +12,7 @@ impl Robot {
     pub(crate) fn scaled(mut self, factor: f32, mass_factor: f32) -> Self {
         let moved = |pose: Pose| Pose::new(pose.position * factor, pose.rotation);
         for link in &mut self.links {
-            if let Some(weight) = &mut link.weight {
+            if let Some(weight) = &mut link.inertial {
                 let (length, mass) = (f64::from(factor), f64::from(mass_factor));
                 weight.mass *= mass;
                 weight.center *= length;
@@ -21,7 +21,7 @@ impl Robot {
             for shape in link.visuals.iter_mut().chain(&mut link.collisions) {
                 *shape = LinkShape {
                     link_from_shape: moved(shape.link_from_shape),
-                    solid: shape.solid.scaled(factor),
+                    geometry: shape.geometry.scaled(factor),
                     ..shape.clone()
                 };
             }
@@ -29,7 +29,7 @@ impl Robot {
         for joint in &mut self.joints {
             joint.parent_from_joint = moved(joint.parent_from_joint);
             joint.child_from_joint = moved(joint.child_from_joint);
-            if joint.motion == RobotJointKind::Slide {
+            if joint.kind == RobotJointKind::Slide {
                 joint.limits = joint
                     .limits
                     .map(|limits| limits.map(|limit| limit * factor));

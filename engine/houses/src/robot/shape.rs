@@ -13,7 +13,7 @@ const BANDS: u32 = 8;
 
 impl ShapeGeometry {
     /// Its sizes, m.
-    pub(super) fn numbers(&self) -> Vec<f32> {
+    pub(super) fn dimensions(&self) -> Vec<f32> {
         match self {
             Self::Cuboid { half } => half.to_array().to_vec(),
             Self::Ball { radius } => vec![*radius],
@@ -31,8 +31,10 @@ impl ShapeGeometry {
     }
 
     /// Returns whether its sizes are finite and positive.
-    pub(super) fn is_sound(&self) -> bool {
-        self.numbers().iter().all(|x| (1e-6..=1000.0).contains(x))
+    pub(super) fn is_valid(&self) -> bool {
+        self.dimensions()
+            .iter()
+            .all(|x| (1e-6..=1000.0).contains(x))
     }
 
     /// Its surface.
@@ -131,7 +133,7 @@ pub(super) fn colliders(shape: &LinkShape, part_from_shape: &Pose) -> Vec<Collid
         half_height,
         radius,
     };
-    match &shape.solid {
+    match &shape.geometry {
         ShapeGeometry::Cuboid { half } => vec![Collider::Cuboid {
             part_from_box: *part_from_shape,
             half_extents: *half,
@@ -150,7 +152,7 @@ pub(super) fn colliders(shape: &LinkShape, part_from_shape: &Pose) -> Vec<Collid
             ball(-half_height, *radius),
         ],
         ShapeGeometry::Ellipsoid { .. } => {
-            convex_pieces(&shape.solid.surface(), &part_from_shape.to_affine())
+            convex_pieces(&shape.geometry.surface(), &part_from_shape.to_affine())
         }
         ShapeGeometry::Mesh { mesh, scale } => {
             let map = part_from_shape.to_affine() * Affine3A::from_scale(*scale);

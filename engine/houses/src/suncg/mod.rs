@@ -17,4 +17,4 @@ pub use open::open;
 pub(crate) use open::recognizes;
 pub use parse::parse;
 pub use read::{SuncgFiles, locate};
-pub use write::{finish, write, write_into};
+pub use write::{write, write_into, write_shared_tables};

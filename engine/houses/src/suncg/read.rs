@@ -12,7 +12,7 @@ use super::arch::{self, ArchFile};
 use super::file::{NodeFile, SuncgHouse};
 use super::metadata::{CategoryTable, LightTable, SoundTable, read_table};
 use super::parse;
-use crate::data_root::{DataRoot, folder_of};
+use crate::data_root::{DataRoot, parent_folder};
 use crate::error::HousesError;
 use crate::import::read_images;
 use crate::limits::MAX_TEXT_BYTES;
@@ -52,11 +52,11 @@ pub(super) mod paths {
 
     /// Returns whether an id can be the name of a file: it comes from the file and must not lead anywhere else.
     pub(in super::super) fn is_plain(id: &str) -> bool {
-        refusal(id).is_none()
+        invalid_id_reason(id).is_none()
     }
 
     /// Returns why an id is no name of a file, if it is none.
-    pub(in super::super) fn refusal(id: &str) -> Option<WarningKind> {
+    pub(in super::super) fn invalid_id_reason(id: &str) -> Option<WarningKind> {
         if id == ".." || id.contains(['/', '\\', ':']) {
             let path = id.to_owned();
             return Some(WarningKind::PathRefused { path });
@@ -120,7 +120,7 @@ impl SuncgFiles {
             let bytes = root.read_named(house_path, MAX_TEXT_BYTES)?;
             parse(&bytes, house_path, report)?
         };
-        let folder = folder_of(house_path).rsplit('/').next().unwrap_or("");
+        let folder = parent_folder(house_path).rsplit('/').next().unwrap_or("");
         let from_file = house.id.as_deref().filter(|id| paths::is_plain(id));
         // The folder's name finds the rooms; the id inside may have been changed by a tool.
         let scene_id = if folder.is_empty() || !root.folder().join("room").join(folder).is_dir() {

@@ -28,5 +28,5 @@ pub(crate) fn recognizes(path: &Path) -> bool {
 pub fn open(path: &Path) -> Result<(House, LoadReport), HousesError> {
     let mut report = LoadReport::new();
     let robot = read(path, &mut report)?;
-    Ok((robot::alone(&robot)?, report))
+    Ok((robot::house_with_robot_only(&robot)?, report))
 }

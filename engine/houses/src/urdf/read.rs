@@ -7,7 +7,7 @@ use dwell_scene::{Pose, Servo};
 use glam::{DMat3, DVec3, EulerRot, Quat, Vec3};
 use roxmltree::Node;
 
-use crate::data_root::folder_of;
+use crate::data_root::parent_folder;
 use crate::error::HousesError;
 use crate::limits::MAX_NODES;
 use crate::report::{FileLocation, LoadReport};
@@ -27,7 +27,7 @@ const FULL_EFFORT_AT: f32 = 0.02;
 /// # Errors
 /// Those of [`open_robot`](crate::open_robot).
 pub(crate) fn read(path: &Path, report: &mut LoadReport) -> Result<Robot, HousesError> {
-    let files = RobotFiles::around(path)?;
+    let files = RobotFiles::of_file(path)?;
     let text = files.text()?;
     let at = FileLocation::file(&files.file);
     let document = xml::parse(&text, &at)?;
@@ -201,7 +201,7 @@ impl UrdfReader<'_> {
         let [visuals, collisions] = shapes;
         Ok(RobotLink {
             name: self.name(node)?,
-            weight,
+            inertial: weight,
             visuals,
             collisions,
         })
@@ -278,7 +278,7 @@ impl UrdfReader<'_> {
                     return self.fault(form, "filename", "a path", "nothing");
                 };
                 let scale = self.numbers(form, "scale", [1.0; 3])?;
-                let folder = folder_of(&self.files.file).to_owned();
+                let folder = parent_folder(&self.files.file).to_owned();
                 let path = self.files.resolve(&folder, name, &at)?;
                 ShapeGeometry::Mesh {
                     mesh: self.files.mesh(&path, &at, self.report)?,
@@ -292,7 +292,7 @@ impl UrdfReader<'_> {
         };
         let mut shape = LinkShape {
             link_from_shape,
-            solid,
+            geometry: solid,
             rgba: None,
             material: String::new(),
             image: None,
@@ -376,7 +376,7 @@ impl UrdfReader<'_> {
             name: self.name(node)?,
             parent,
             child,
-            motion,
+            kind: motion,
             parent_from_joint: self.origin(node)?,
             child_from_joint: Pose::IDENTITY,
             axis,

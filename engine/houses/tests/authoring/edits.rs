@@ -225,7 +225,7 @@ fn doors_start_where_they_are_told() {
     let door = house
         .joints
         .iter()
-        .find(|joint| joint.opens() && house.objects[joint.object].category.coarse == "door")
+        .find(|joint| joint.is_openable() && house.objects[joint.object].category.coarse == "door")
         .unwrap();
     let name = house.objects[door.object].name.clone();
     let opened = edited(&house, json!([{"set_door": {"object": name, "open": 0.5}}]));

@@ -1,6 +1,6 @@
 //! Map files: foreign names get a meaning, and what has none is listed.
 
-use dwell_houses::authoring::{UnmappedNames, map_template, unmapped};
+use dwell_houses::authoring::{UnmappedNames, map_template, unmapped_names};
 use dwell_houses::open;
 use dwell_scene::Mobility;
 use std::fmt::Write as _;
@@ -29,7 +29,7 @@ fn folder() -> (tempfile::TempDir, String) {
 fn what_is_unmapped_is_listed_with_its_area_and_understood_with_a_map() {
     let (folder, path) = folder();
     let (house, report) = open(&path).unwrap();
-    let names = unmapped(&house, &report);
+    let names = unmapped_names(&house, &report);
     let materials: Vec<_> = names
         .materials
         .iter()
@@ -88,7 +88,7 @@ fn what_is_unmapped_is_listed_with_its_area_and_understood_with_a_map() {
     assert_eq!(house.objects[seat].category.coarse, "stool");
     assert!(house.structure.iter().any(|piece| piece.name == "Plane.3"));
     assert_eq!(house.rooms.as_slice()[0].kinds, ["kitchen"]);
-    assert_eq!(unmapped(&house, &report), UnmappedNames::default());
+    assert_eq!(unmapped_names(&house, &report), UnmappedNames::default());
 }
 
 #[test]
@@ -178,7 +178,7 @@ fn a_node_hangs_on_the_hinge_that_the_map_says() {
         .iter()
         .find(|joint| joint.object == door)
         .unwrap();
-    assert!(joint.opens());
+    assert!(joint.is_openable());
     let radians = |degrees: f32| degrees.to_radians();
     assert_eq!(joint.limits, Some([radians(-10.0), radians(100.0)]));
     // It stands where the file has it, and turns about its left edge: x goes to -z.

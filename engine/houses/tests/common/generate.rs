@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use dwell_scene::space::flattens;
+use dwell_scene::space::is_singular;
 use dwell_scene::{
     Aabb, Articulation, Bands, Category, Collider, Daytime, HouseData, JointKind, Level, LevelId,
     Light, LightShape, Material, MaterialId, Mesh, MeshId, Mobility, Object, ObjectId, Part,
@@ -98,7 +98,7 @@ impl<'a> Numbers<'a> {
         let columns = [self.vec3(), self.vec3(), self.vec3()].map(|c| Vec3A::from(c) * 5e-5);
         let drawn = Mat3A::from_cols(columns[0], columns[1], columns[2]);
         Affine3A {
-            matrix3: if flattens(&drawn) {
+            matrix3: if is_singular(&drawn) {
                 Mat3A::IDENTITY
             } else {
                 drawn
@@ -373,7 +373,7 @@ fn joint(n: &mut Numbers<'_>, object: ObjectId, first: PartId, child: PartId) ->
             feed_forward: n.flag(),
         }),
         mimic: None,
-        switches: false,
+        toggles_switch: false,
     }
 }
 

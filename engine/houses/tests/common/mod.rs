@@ -42,8 +42,8 @@ pub(crate) fn real() -> Option<&'static Real> {
         let root = data_root()?;
         let (data, path) = locate(&root.join("house").join(SCENE_ID).join("house.json")).unwrap();
         let mut report = LoadReport::new();
-        let files = SuncgFiles::read(&data, &path, Threads::exactly(2), &mut report).unwrap();
-        let house = convert(&files, Threads::exactly(2), &mut report).unwrap();
+        let files = SuncgFiles::read(&data, &path, Threads::new(2), &mut report).unwrap();
+        let house = convert(&files, Threads::new(2), &mut report).unwrap();
         Some(Real {
             root,
             files,

@@ -50,7 +50,7 @@ fn asked() -> u64 {
 /// Opens a HOUSE; also how many bytes that asked for.
 fn opened(house: &Path) -> (Result<LoadReport, HousesError>, u64) {
     let before = asked();
-    let opened = open_with(&house.to_string_lossy(), Threads::exactly(2));
+    let opened = open_with(&house.to_string_lossy(), Threads::new(2));
     let taken = asked() - before;
     (opened.map(|(_, report)| report), taken)
 }

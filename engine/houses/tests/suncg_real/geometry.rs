@@ -162,7 +162,7 @@ fn fact_8_room_meshes_and_wall_pieces() {
         let triangles =
             ['c', 'f', 'w'].map(|part| room_mesh(&real.files, room, part).triangle_count());
         let names: BTreeSet<&str> = room_mesh(&real.files, room, 'w')
-            .runs
+            .face_groups
             .iter()
             .map(|run| run.object.as_str())
             .collect();

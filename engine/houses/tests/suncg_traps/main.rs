@@ -69,7 +69,7 @@ pub(crate) fn reported_at(field: &str, is: impl Fn(&WarningKind) -> bool) -> boo
         .1
         .warnings()
         .iter()
-        .any(|w| w.at.field.as_deref() == Some(field) && is(&w.damage))
+        .any(|w| w.at.field.as_deref() == Some(field) && is(&w.kind))
 }
 
 #[test]
@@ -122,7 +122,7 @@ fn a_room_may_come_after_its_nodes_and_list_them_in_any_spelling() {
         .1
         .warnings()
         .iter()
-        .filter_map(|w| match &w.damage {
+        .filter_map(|w| match &w.kind {
             WarningKind::BadIndex { found, .. }
                 if w.at.to_string().ends_with("nodes[7].nodeIndices") =>
             {
@@ -271,7 +271,7 @@ fn numbers_that_are_none_become_zero_and_are_counted() {
         .1
         .warnings()
         .iter()
-        .find(|w| w.damage == WarningKind::NanVertices)
+        .find(|w| w.kind == WarningKind::NanVertices)
         .unwrap();
     assert_eq!(
         (nan.at.to_string().as_str(), nan.count),
@@ -467,8 +467,7 @@ fn the_same_house_comes_out_for_any_number_of_threads() {
     let house = root.path().to_string_lossy().into_owned();
     for threads in [1, 2, 7] {
         let opened =
-            dwell_houses::open_with(&house, dwell_scene::parallel::Threads::exactly(threads))
-                .unwrap();
+            dwell_houses::open_with(&house, dwell_scene::parallel::Threads::new(threads)).unwrap();
         assert_eq!(
             (&opened.0, opened.1.warnings()),
             (&traps().0, traps().1.warnings())

@@ -23,7 +23,7 @@ fn slope(k: [f32; 4], angle: f64) -> f64 {
 }
 
 /// The first angle up to `most` rad at which the radius does not grow.
-pub(super) fn first_fold(k: [f32; 4], most: f32) -> Option<f64> {
+pub(super) fn max_injective_angle(k: [f32; 4], most: f32) -> Option<f64> {
     (1..=CHECKS)
         .map(|step| f64::from(most) * f64::from(step) / f64::from(CHECKS))
         .find(|angle| slope(k, *angle) <= 0.0)

@@ -3,7 +3,7 @@
 use glam::{DVec2, Vec2};
 
 /// Largest coefficient of a lens.
-pub(super) const MOST: f32 = 100.0;
+pub(super) const MAX_COEFFICIENT: f32 = 100.0;
 /// Steps of Newton's method.
 const STEPS: usize = 30;
 /// Rings on which the radius is checked to grow.

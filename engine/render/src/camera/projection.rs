@@ -115,7 +115,7 @@ impl Projection {
     }
 
     /// Returns whether straight lines appear straight.
-    pub fn keeps_lines(&self) -> bool {
+    pub fn preserves_straight_lines(&self) -> bool {
         matches!(self, Self::Pinhole { .. } | Self::Orthographic { .. })
     }
 
@@ -161,7 +161,7 @@ impl Projection {
                 k1, k2, k3, p1, p2, ..
             } => {
                 for (field, k) in [("k1", k1), ("k2", k2), ("k3", k3), ("p1", p1), ("p2", p2)] {
-                    if !(-lens::MOST..=lens::MOST).contains(&k) {
+                    if !(-lens::MAX_COEFFICIENT..=lens::MAX_COEFFICIENT).contains(&k) {
                         return fault(field, k, "-100 to 100");
                     }
                 }
@@ -180,11 +180,11 @@ impl Projection {
                 }
                 let k = [k1, k2, k3, k4];
                 for (field, k) in ["k1", "k2", "k3", "k4"].into_iter().zip(k) {
-                    if !(-lens::MOST..=lens::MOST).contains(&k) {
+                    if !(-lens::MAX_COEFFICIENT..=lens::MAX_COEFFICIENT).contains(&k) {
                         return fault(field, k, "-100 to 100");
                     }
                 }
-                if let Some(angle) = fisheye::first_fold(k, half_angle_deg.to_radians()) {
+                if let Some(angle) = fisheye::max_injective_angle(k, half_angle_deg.to_radians()) {
                     let found = format!(
                         "[{k1}, {k2}, {k3}, {k4}], which turn back at {:.1} degrees",
                         angle.to_degrees()

@@ -1,6 +1,6 @@
 //! The rays of a view, a packet of pixels at a time.
 
-use super::path_tracer::SAMPLES;
+use super::path_tracer::SAMPLES_PER_PIXEL;
 use crate::camera::{Camera, Projection};
 use crate::frame::{Preset, View};
 use dwell_scene::EntityId;
@@ -8,13 +8,13 @@ use dwell_scene::bvh::{Hit, PacketHits, Ray, RayMask, RayPacket, SceneBvh};
 use glam::{Vec2, Vec3};
 
 /// Pixels across a packet.
-pub(super) const COLUMNS: usize = 8;
+pub(super) const PACKET_COLUMNS: usize = 8;
 /// Pixels down a packet.
-pub(super) const ROWS: usize = 4;
+pub(super) const PACKET_ROWS: usize = 4;
 /// The surfaces that cameras see.
-pub(crate) const SEEN: RayMask = RayMask::EYE.or(RayMask::BODY);
+pub(crate) const VISIBLE_MASK: RayMask = RayMask::EYE.union(RayMask::BODY);
 /// Rays of a packet.
-pub(super) const LANES: usize = COLUMNS * ROWS;
+pub(super) const LANES: usize = PACKET_COLUMNS * PACKET_ROWS;
 
 /// A view, prepared.
 #[derive(Clone, Copy, Debug)]
@@ -40,11 +40,11 @@ pub(super) struct CameraPacket {
 
 /// Rays from one point with their hits.
 #[derive(Clone, Copy)]
-pub(super) struct PacketView<'a> {
+pub(super) struct RayPacketHits<'a> {
     pub(super) rays: &'a RayPacket<LANES>,
     pub(super) hits: &'a PacketHits<LANES>,
     /// Depth per length along the ray.
-    pub(super) per_length: &'a [f32; LANES],
+    pub(super) depth_per_length: &'a [f32; LANES],
 }
 
 /// Rays side by side.
@@ -61,7 +61,7 @@ pub(super) struct PrimaryHit {
     pub(super) direction: Vec3,
     pub(super) depth: f32,
     /// Depth per length along the ray.
-    pub(super) per_length: f32,
+    pub(super) depth_per_length: f32,
     pub(super) id: i32,
     pub(super) instance: Option<u32>,
     pub(super) triangle: u32,
@@ -87,7 +87,7 @@ impl CameraPacket {
 
     /// Returns a pixel's closest hit.
     #[inline]
-    pub(super) fn sight(&self, lane: usize) -> Option<PrimaryHit> {
+    pub(super) fn closest_hit(&self, lane: usize) -> Option<PrimaryHit> {
         let direction = self.direction(lane);
         let (start, distance, id, instance, triangle) = match &self.beam {
             None => {
@@ -119,7 +119,7 @@ impl CameraPacket {
             point: start + direction * distance,
             direction,
             depth: distance * per_length,
-            per_length,
+            depth_per_length: per_length,
             id,
             instance,
             triangle,
@@ -128,17 +128,17 @@ impl CameraPacket {
 
     /// Returns the closest hits of pixels and their rays, where those start at one point.
     #[inline]
-    pub(super) fn packet_view(&self) -> Option<PacketView<'_>> {
-        let seen = PacketView {
+    pub(super) fn ray_packet_hits(&self) -> Option<RayPacketHits<'_>> {
+        let seen = RayPacketHits {
             rays: &self.rays,
             hits: &self.hits,
-            per_length: &self.per_length,
+            depth_per_length: &self.per_length,
         };
         self.beam.is_none().then_some(seen)
     }
 
     /// Returns whether a pixel sees anything.
-    pub(super) fn sees(&self, lane: usize) -> bool {
+    pub(super) fn has_hit(&self, lane: usize) -> bool {
         match &self.beam {
             None => self.hits.is_hit(lane),
             Some(beam) => beam.hits[lane].is_some(),
@@ -178,7 +178,7 @@ impl CameraPacket {
     }
 
     /// Continues behind the given depths; lanes that are not named hit nothing from now on.
-    pub(super) fn advance_behind(
+    pub(super) fn continue_behind(
         &mut self,
         rays: &CameraRays,
         scene: SceneBvh<'_>,
@@ -195,7 +195,12 @@ impl CameraPacket {
 
     fn trace(&mut self, rays: &CameraRays, scene: SceneBvh<'_>) {
         let Some(beam) = &mut self.beam else {
-            scene.closest_packet(&self.rays, SEEN, Some(rays.hidden.0), &mut self.hits);
+            scene.closest_packet(
+                &self.rays,
+                VISIBLE_MASK,
+                Some(rays.hidden.0),
+                &mut self.hits,
+            );
             return;
         };
         for k in 0..LANES {
@@ -203,7 +208,7 @@ impl CameraPacket {
                 origin: beam.start[k],
                 ..self.rays.ray(k)
             };
-            beam.hits[k] = scene.closest_excluding(&ray, SEEN, rays.hidden.0);
+            beam.hits[k] = scene.closest_excluding(&ray, VISIBLE_MASK, rays.hidden.0);
         }
     }
 }
@@ -213,7 +218,7 @@ impl CameraRays {
         let rotation = view.world_from_camera.rotation.normalize();
         let (fixed, growing) = view.camera.pixel_area();
         let share = match view.preset {
-            Preset::Full => 1.0 / SAMPLES as f32,
+            Preset::Full => 1.0 / SAMPLES_PER_PIXEL as f32,
             Preset::Flat | Preset::Lit => 1.0,
         };
         Self {
@@ -222,13 +227,13 @@ impl CameraRays {
             up: rotation * Vec3::Y,
             back: rotation * Vec3::Z,
             // What nothing has as its id hides nothing.
-            hidden: view.hide.unwrap_or(EntityId::VOID),
+            hidden: view.hidden_entity.unwrap_or(EntityId::VOID),
             pixel_area: (fixed * share, growing * share),
         }
     }
 
     /// The range of depth in which things are seen, m.
-    pub(super) fn range(&self) -> (f32, f32) {
+    pub(super) fn depth_range(&self) -> (f32, f32) {
         (self.view.camera.near_m(), self.view.camera.far_m())
     }
 
@@ -241,13 +246,13 @@ impl CameraRays {
         (width, height): (usize, usize),
         packet: &mut CameraPacket,
     ) {
-        let (near, far) = self.range();
+        let (near, far) = self.depth_range();
         packet.rays.origin = self.view.world_from_camera.position;
         packet.rays.near_m = [near; LANES];
         packet.rays.far_m = [far; LANES];
-        if left + COLUMNS > width || top + ROWS > height {
+        if left + PACKET_COLUMNS > width || top + PACKET_ROWS > height {
             for k in 0..LANES {
-                if left + k % COLUMNS >= width || top + k / COLUMNS >= height {
+                if left + k % PACKET_COLUMNS >= width || top + k / PACKET_COLUMNS >= height {
                     packet.rays.far_m[k] = -1.0;
                 }
             }
@@ -271,13 +276,13 @@ impl CameraRays {
         (fx, fy, cx, cy): (f32, f32, f32, f32),
     ) {
         let rays = &mut packet.rays;
-        let across: [f32; COLUMNS] =
+        let across: [f32; PACKET_COLUMNS] =
             std::array::from_fn(|column| (left + column as f32 + 0.5 - cx) * (1.0 / fx));
-        for row in 0..ROWS {
+        for row in 0..PACKET_ROWS {
             let y = (cy - (top + row as f32 + 0.5)) * (1.0 / fy);
             let fixed = self.up * y - self.back;
             for (column, x) in across.iter().enumerate() {
-                let k = row * COLUMNS + column;
+                let k = row * PACKET_COLUMNS + column;
                 let length = (x * x + (y * y + 1.0)).sqrt();
                 let scale = 1.0 / length;
                 for axis in 0..3 {
@@ -296,8 +301,8 @@ impl CameraRays {
         let is_range = camera.projection().depth_is_range();
         for k in 0..LANES {
             let image = Vec2::new(
-                (left + k % COLUMNS) as f32 + 0.5,
-                (top + k / COLUMNS) as f32 + 0.5,
+                (left + k % PACKET_COLUMNS) as f32 + 0.5,
+                (top + k / PACKET_COLUMNS) as f32 + 0.5,
             );
             let seen = camera.ray_in_camera(image).1;
             let direction = self.right * seen.x + self.up * seen.y + self.back * seen.z;
@@ -325,7 +330,7 @@ impl CameraRays {
         } else {
             seen.length()
         };
-        let (near, far) = self.range();
+        let (near, far) = self.depth_range();
         let ray = Ray {
             origin: self.view.world_from_camera.position + turned(start),
             direction,
@@ -346,7 +351,7 @@ impl CameraRays {
     }
 
     /// Returns the id that the camera does not see.
-    pub(super) fn hidden(&self) -> i32 {
+    pub(super) fn hidden_entity(&self) -> i32 {
         self.hidden.0
     }
 
@@ -369,8 +374,8 @@ impl CameraRays {
     fn spread(&self, packet: &mut CameraPacket, (left, top): (usize, usize)) {
         let start = std::array::from_fn(|k| {
             let image = Vec2::new(
-                (left + k % COLUMNS) as f32 + 0.5,
-                (top + k / COLUMNS) as f32 + 0.5,
+                (left + k % PACKET_COLUMNS) as f32 + 0.5,
+                (top + k / PACKET_COLUMNS) as f32 + 0.5,
             );
             let start = self.view.camera.ray_in_camera(image).0;
             self.view.world_from_camera.position + self.right * start.x + self.up * start.y

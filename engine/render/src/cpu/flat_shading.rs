@@ -10,12 +10,12 @@
 )]
 
 use super::CpuRenderer;
-use super::camera_rays::{CameraPacket, LANES, PacketView};
+use super::camera_rays::{CameraPacket, LANES, RayPacketHits};
 use super::tile::ImageTile;
 use crate::color::SrgbTables;
-use crate::texture::{BilinearTaps, MipImage, level_of};
-use crate::texture_filter::GRAZING;
-use crate::triangle_table::{PosedTriangle, SLOW, coordinate};
+use crate::texture::{BilinearTaps, MipImage, mip_level};
+use crate::texture_filter::MIN_FOOTPRINT_COSINE;
+use crate::triangle_table::{NEEDS_SHADING, PosedTriangle, coordinate};
 use dwell_scene::simd_dispatch::{SimdKernel, SimdLevel};
 use glam::Vec3;
 
@@ -24,7 +24,7 @@ const FEW: u32 = 4;
 
 /// The positions of the bits that are set, the lowest first.
 #[inline]
-pub(super) fn bits(mut set: u64) -> impl Iterator<Item = usize> {
+pub(super) fn set_bit_positions(mut set: u64) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
         let lane = set.trailing_zeros() as usize;
         set &= set.wrapping_sub(1);
@@ -43,7 +43,7 @@ struct TexelLookups {
 
 /// Locates the texels of pixels that see one triangle.
 struct TexelLocator<'a> {
-    seen: PacketView<'a>,
+    seen: RayPacketHits<'a>,
     standing: &'a PosedTriangle,
     image: &'a MipImage,
     /// Texels of the largest level for each m² of the triangle.
@@ -57,10 +57,10 @@ impl SimdKernel for TexelLocator<'_> {
 
     #[inline(always)]
     fn run(self) -> TexelLookups {
-        let PacketView {
+        let RayPacketHits {
             rays,
             hits,
-            per_length,
+            depth_per_length: per_length,
         } = self.seen;
         let [x, y, z] = &rays.direction;
         let PosedTriangle { uv, normal } = self.standing;
@@ -75,10 +75,14 @@ impl SimdKernel for TexelLocator<'_> {
             let distance = hits.distance_m[k];
             let slope = (normal.x * x[k] + normal.y * y[k]) + normal.z * z[k];
             let slope = slope.abs();
-            let slope = if slope > GRAZING { slope } else { GRAZING };
+            let slope = if slope > MIN_FOOTPRINT_COSINE {
+                slope
+            } else {
+                MIN_FOOTPRINT_COSINE
+            };
             let depth = distance * per_length[k];
             let area = (fixed + growing * depth * depth) * per_length[k] / slope;
-            let level = level_of(area * self.density).min(self.image.last_level);
+            let level = mip_level(area * self.density).min(self.image.last_level);
             let (px, py, pz) = (
                 start.x + x[k] * distance,
                 start.y + y[k] * distance,
@@ -88,7 +92,7 @@ impl SimdKernel for TexelLocator<'_> {
                 coordinate(&uv[0], px, py, pz),
                 coordinate(&uv[1], px, py, pz),
             );
-            let BilinearTaps { texels, weights } = self.image.place(level, u, v);
+            let BilinearTaps { texels, weights } = self.image.bilinear_taps(level, u, v);
             places.level[k] = level;
             for corner in 0..4 {
                 places.texels[corner][k] = texels[corner];
@@ -103,14 +107,14 @@ impl SimdKernel for TexelLocator<'_> {
 
 impl ImageTile<'_> {
     /// Colours the pixels, of those in `lanes`, that see nothing or something opaque; returns the others.
-    pub(super) fn plain_colors(
+    pub(super) fn color_opaque_pixels(
         &self,
         renderer: &CpuRenderer,
         packet: &CameraPacket,
         mut lanes: u64,
         bytes: &mut [[u8; 3]; LANES],
     ) -> u64 {
-        let Some(seen) = packet.packet_view() else {
+        let Some(seen) = packet.ray_packet_hits() else {
             return lanes;
         };
         let mut others = 0;
@@ -121,20 +125,20 @@ impl ImageTile<'_> {
                 lanes &= lanes - 1;
                 continue;
             }
-            let same = seen.hits.same(lane) & lanes;
+            let same = seen.hits.same_triangle_mask(lane) & lanes;
             lanes &= !same;
             let (instance, triangle) = (seen.hits.instance(lane), seen.hits.triangle[lane]);
-            let position = renderer.surfaces.position(instance, triangle);
-            let [r, g, b, kind] = renderer.surfaces.quick(position);
-            if kind != SLOW {
-                for lane in bits(same) {
+            let position = renderer.triangle_table.position(instance, triangle);
+            let [r, g, b, kind] = renderer.triangle_table.uniform_color(position);
+            if kind != NEEDS_SHADING {
+                for lane in set_bit_positions(same) {
                     bytes[lane] = [r, g, b];
                 }
                 continue;
             }
-            let triangle = renderer.surfaces.triangle(position);
-            let look = &renderer.looks[triangle.material as usize];
-            let Some(texture) = look.texture().filter(|_| !look.clear) else {
+            let triangle = renderer.triangle_table.triangle(position);
+            let look = &renderer.shading_materials[triangle.material as usize];
+            let Some(texture) = look.texture().filter(|_| !look.transmits_light) else {
                 others |= same;
                 continue;
             };
@@ -142,23 +146,26 @@ impl ImageTile<'_> {
                 others |= same;
                 continue;
             }
-            let pose = renderer.surfaces.pose(instance, self.state);
+            let pose = renderer.triangle_table.pose(instance, self.state);
             let image = renderer.textures.image(texture);
-            let places = SimdLevel::best().run(TexelLocator {
+            let places = SimdLevel::best_available().run(TexelLocator {
                 seen,
                 standing: &triangle.posed(pose),
                 image,
-                density: triangle.density * look.texels,
+                density: triangle.texture_density * look.texel_count,
                 pixel_area: self.rays.pixel_area,
             });
             let base = Vec3::from_array(look.base).extend(1.0);
             let srgb = SrgbTables::tables();
-            for lane in bits(same) {
+            for lane in set_bit_positions(same) {
                 let corners = BilinearTaps {
                     texels: std::array::from_fn(|corner| places.texels[corner][lane]),
                     weights: std::array::from_fn(|axis| places.weights[axis][lane]),
                 };
-                let color = renderer.textures.mixed(image, places.level[lane], corners) * base;
+                let color = renderer
+                    .textures
+                    .bilinear(image, places.level[lane], corners)
+                    * base;
                 bytes[lane] = srgb.encode_vec(color);
             }
         }
@@ -210,7 +217,7 @@ mod tests {
                 per_length[k] = stream.range(0.4, 1.0);
             }
             let mut hits = PacketHits::new();
-            let seen = super::super::camera_rays::SEEN;
+            let seen = super::super::camera_rays::VISIBLE_MASK;
             scene.closest_packet(&rays, seen, None, &mut hits);
             let row = |stream: &mut dwell_scene::random::RandomStream| {
                 (stream.direction() * stream.range(0.01, 9.0)).extend(stream.range(-2.0, 2.0))
@@ -222,10 +229,10 @@ mod tests {
             let (fixed, growing) = (0.0, 1.0 / 64.0_f32.powi(2));
             let places = |level: SimdLevel| {
                 level.run(TexelLocator {
-                    seen: PacketView {
+                    seen: RayPacketHits {
                         rays: &rays,
                         hits: &hits,
-                        per_length: &per_length,
+                        depth_per_length: &per_length,
                     },
                     standing: &PosedTriangle { uv, normal },
                     image,
@@ -240,11 +247,14 @@ mod tests {
             for k in (0..LANES).filter(|k| hits.is_hit(*k)) {
                 let Vec3 { x, y, z } = eye + rays.ray(k).direction * hits.distance_m[k];
                 let depth = hits.distance_m[k] * per_length[k];
-                let slope = normal.dot(rays.ray(k).direction).abs().max(GRAZING);
+                let slope = normal
+                    .dot(rays.ray(k).direction)
+                    .abs()
+                    .max(MIN_FOOTPRINT_COSINE);
                 let area = (fixed + growing * depth * depth) * per_length[k] / slope;
-                let level = level_of(area * density).min(image.last_level);
+                let level = mip_level(area * density).min(image.last_level);
                 let [u, v] = uv.map(|row| coordinate(&row, x, y, z));
-                let BilinearTaps { texels, weights } = image.place(level, u, v);
+                let BilinearTaps { texels, weights } = image.bilinear_taps(level, u, v);
                 assert_eq!(found.level[k], level);
                 assert_eq!(found.texels.map(|corner| corner[k]), texels);
                 assert_eq!(found.weights.map(|axis| axis[k]), weights);

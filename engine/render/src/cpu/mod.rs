@@ -17,7 +17,7 @@ use crate::material::ShadingMaterial;
 use crate::semantic::{ClassSet, EntityClasses};
 use crate::texture::Textures;
 use crate::triangle_table::TriangleTable;
-pub(crate) use camera_rays::SEEN;
+pub(crate) use camera_rays::VISIBLE_MASK;
 use dwell_scene::bvh::{Ray, TriangleBvh};
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
@@ -55,8 +55,8 @@ const BAND_ROWS: usize = 8;
 pub struct CpuRenderer {
     house: Arc<House>,
     pub(crate) textures: Textures,
-    pub(crate) looks: Vec<ShadingMaterial>,
-    pub(crate) surfaces: TriangleTable,
+    pub(crate) shading_materials: Vec<ShadingMaterial>,
+    pub(crate) triangle_table: TriangleTable,
     /// Class of every entity, by each table.
     classes: [EntityClasses; 3],
     /// Boxes around the surface of each part, in its own space. Shape (part,).
@@ -113,7 +113,7 @@ impl CpuRenderer {
     pub fn new(house: &Arc<House>) -> Self {
         let textures = Textures::new(house);
         let mut looks = ShadingMaterial::all(house, &textures);
-        looks.push(ShadingMaterial::body());
+        looks.push(ShadingMaterial::agent_body());
         let surfaces = TriangleTable::new(house, &looks);
         tracing::debug!(
             texture_bytes = textures.bytes(),
@@ -126,8 +126,8 @@ impl CpuRenderer {
             part_bounds: OnceLock::new(),
             house: house.clone(),
             textures,
-            looks,
-            surfaces,
+            shading_materials: looks,
+            triangle_table: surfaces,
             light: OnceLock::new(),
             lightings: Mutex::default(),
             trees: house.meshes.iter().map(|_| OnceLock::new()).collect(),
@@ -188,7 +188,7 @@ impl CpuRenderer {
             }
             if !last.is_some_and(|state| std::ptr::eq(state, job.state)) {
                 last = Some(job.state);
-                lightings.push(self.lighting(job.scene, job.state));
+                lightings.push(self.cached_or_computed_lighting(job.scene, job.state));
             }
             lit.push(Some(lightings.len() - 1));
         }
@@ -227,12 +227,12 @@ impl CpuRenderer {
 
     pub(crate) fn house_light(&self) -> &HouseLight {
         self.light
-            .get_or_init(|| HouseLight::new(&self.house, &self.looks, &self.textures))
+            .get_or_init(|| HouseLight::new(&self.house, &self.shading_materials, &self.textures))
     }
 
     /// The light of a world as it stands: kept where all its inputs are as they were, else computed in the memory that was used
-    /// longest ago; see [`Self::keep_lighting`].
-    pub(crate) fn lighting(&self, scene: &RayScene, state: &State) -> Lighting {
+    /// longest ago; see [`Self::return_to_lighting_cache`].
+    pub(crate) fn cached_or_computed_lighting(&self, scene: &RayScene, state: &State) -> Lighting {
         let inputs = LightingInputs {
             house: &self.house,
             fixed: self.house_light(),
@@ -242,21 +242,21 @@ impl CpuRenderer {
         let hash = inputs.hash();
         let mut lighting = {
             let mut all = self.lightings();
-            let kept = all.iter().position(|lighting| lighting.has(hash));
+            let kept = all.iter().position(|lighting| lighting.may_match(hash));
             all.remove(kept.unwrap_or(0)).unwrap_or_default()
         };
         let bvh = scene.bvh();
         lighting.update(
             &inputs,
             hash,
-            |point| self.sun_reaches(bvh, point),
-            |from, to, hidden| self.passes(bvh, &Ray::segment(from, to, 0.0), hidden),
+            |point| self.is_sun_visible(bvh, point),
+            |from, to, hidden| self.is_unoccluded(bvh, &Ray::segment(from, to, 0.0), hidden),
         );
         lighting
     }
 
-    /// Returns the light of [`Self::lighting`] for reuse.
-    pub(crate) fn keep_lighting(&self, lighting: Lighting) {
+    /// Returns the light of [`Self::cached_or_computed_lighting`] for reuse.
+    pub(crate) fn return_to_lighting_cache(&self, lighting: Lighting) {
         self.lightings().push_back(lighting);
     }
 

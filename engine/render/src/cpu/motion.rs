@@ -8,7 +8,7 @@ use dwell_scene::{Id, State};
 use glam::{Vec2, Vec3};
 
 /// Returns the motion in the image of a point that is seen at `image`, pixels; it was at `was` in the world.
-pub(super) fn flow(
+pub(super) fn point_flow(
     camera: &Camera,
     before: &PreviousFrame<'_>,
     image: (f32, f32),
@@ -18,8 +18,8 @@ pub(super) fn flow(
     moved(camera, image, eye.rotation.inverse() * (was - eye.position))
 }
 
-/// As [`flow`] for a direction that is infinitely far away.
-pub(super) fn far_flow(
+/// As [`point_flow`] for a direction that is infinitely far away.
+pub(super) fn direction_flow(
     camera: &Camera,
     before: &PreviousFrame<'_>,
     image: (f32, f32),
@@ -56,7 +56,7 @@ fn moved(camera: &Camera, (x, y): (f32, f32), was_in_camera: Vec3) -> [f32; 2] {
 
 impl CpuRenderer {
     /// Returns the previous position in the world of the point that is seen.
-    pub(super) fn point_before(
+    pub(super) fn previous_position(
         &self,
         sight: &PrimaryHit,
         state: &State,
@@ -65,7 +65,7 @@ impl CpuRenderer {
         let Some(instance) = sight.instance else {
             return sight.point;
         };
-        if let Some(agent) = self.surfaces.agent_of(instance) {
+        if let Some(agent) = self.triangle_table.agent_of(instance) {
             let was = before.agents.get(agent);
             let now = state
                 .agents
@@ -77,17 +77,17 @@ impl CpuRenderer {
                 _ => sight.point,
             };
         }
-        let Some(part) = self.surfaces.part_of(instance) else {
+        let Some(part) = self.triangle_table.part_of(instance) else {
             return sight.point;
         };
         let Ok(place) = before
-            .moved
+            .moved_parts
             .binary_search_by_key(&part.index(), |(part, _)| part.index())
         else {
             return sight.point;
         };
         let now = &state.part_pose[part];
         let in_part = now.rotation.inverse() * (sight.point - now.position);
-        before.moved[place].1.transform_point(in_part)
+        before.moved_parts[place].1.transform_point(in_part)
     }
 }

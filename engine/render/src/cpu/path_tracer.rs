@@ -1,6 +1,6 @@
 //! Pictures with all light: paths of many rays a pixel.
 //!
-//! Each pixel is the mean of [`SAMPLES`] rays through different places in it. Where one meets a surface, every source of light is
+//! Each pixel is the mean of [`SAMPLES_PER_PIXEL`] rays through different places in it. Where one meets a surface, every source of light is
 //! sampled by a ray to another point of it, so that shadows are soft; light from all around is gathered by rays to the surfaces
 //! that reflect it, which have light of their own and the room's mean for the rest. Metals and polished surfaces reflect; how facets of
 //! rough surfaces hide one another is left out.
@@ -11,12 +11,16 @@
 //! 2007, equations 35 and 36 (GGX).
 
 use super::CpuRenderer;
-use super::camera_rays::{PrimaryHit, SEEN};
+use super::camera_rays::{PrimaryHit, VISIBLE_MASK};
 use super::sampler::PixelSampler;
-use super::shade::{GAP, LAYERS, MIRRORS, OFF_SURFACE_M, OPAQUE};
+use super::shade::{
+    CONTINUATION_OFFSET, MAX_MIRROR_BOUNCES, MAX_TRANSPARENT_LAYERS, OPAQUE_THRESHOLD,
+    SHADOW_RAY_OFFSET_M,
+};
 use super::tile::ImageTile;
 use crate::light::{
-    Exposure, IncidentLight, LightSource, Lighting, ShadingPoint, display, room_lookup_point, sky,
+    Exposure, IncidentLight, LightSource, Lighting, ShadingPoint, room_lookup_point, sky_luminance,
+    tone_map,
 };
 use crate::material::ShadingMaterial;
 use dwell_scene::EntityId;
@@ -24,9 +28,9 @@ use dwell_scene::bvh::Ray;
 use glam::{Vec2, Vec3};
 
 /// Sample positions in a pixel, along each edge.
-pub(super) const EDGE: usize = 4;
+pub(super) const SAMPLES_PER_EDGE: usize = 4;
 /// Rays a pixel.
-pub(super) const SAMPLES: usize = EDGE * EDGE;
+pub(super) const SAMPLES_PER_PIXEL: usize = SAMPLES_PER_EDGE * SAMPLES_PER_EDGE;
 /// Rays of each that gather light from all around.
 const GATHERED: usize = 2;
 /// Largest radiance of a gathered ray, in units of display white: few that meet a patch of sun would show as single bright pixels.
@@ -77,26 +81,26 @@ impl ImageTile<'_> {
             exposure,
         };
         let mut sum = Vec3::ZERO;
-        for sample in 0..SAMPLES {
+        for sample in 0..SAMPLES_PER_PIXEL {
             let mut sampler = PixelSampler::new((column, row), sample);
-            let (x, y) = sampler.pair();
-            let place = |cell: usize, within: f32| (cell as f32 + within) / EDGE as f32;
+            let (x, y) = sampler.uniform_pair();
+            let place = |cell: usize, within: f32| (cell as f32 + within) / SAMPLES_PER_EDGE as f32;
             let image = Vec2::new(
-                column as f32 + place(sample % EDGE, x),
-                row as f32 + place(sample / EDGE, y),
+                column as f32 + place(sample % SAMPLES_PER_EDGE, x),
+                row as f32 + place(sample / SAMPLES_PER_EDGE, y),
             );
             if let Some((ray, per_length)) = self.rays.ray(image) {
                 let path = PathState {
                     bounces: 1,
-                    mirrors: MIRRORS,
+                    mirrors: MAX_MIRROR_BOUNCES,
                     depth: 0.0,
                     per_length,
-                    hidden: self.rays.hidden(),
+                    hidden: self.rays.hidden_entity(),
                 };
-                sum += display(tracer.light_along(ray, path, &mut sampler));
+                sum += tone_map(tracer.light_along(ray, path, &mut sampler));
             }
         }
-        crate::color::SrgbTables::tables().encode3((sum / SAMPLES as f32).to_array())
+        crate::color::SrgbTables::tables().encode3((sum / SAMPLES_PER_PIXEL as f32).to_array())
     }
 }
 
@@ -104,8 +108,12 @@ impl PathTracer<'_> {
     /// Returns the radiance along a ray, in units of display white.
     fn light_along(&self, mut ray: Ray, path: PathState, sampler: &mut PixelSampler) -> Vec3 {
         let (mut light, mut rest) = (Vec3::ZERO, 1.0);
-        for layer in 1..=LAYERS {
-            let Some(hit) = self.band.scene.closest_excluding(&ray, SEEN, path.hidden) else {
+        for layer in 1..=MAX_TRANSPARENT_LAYERS {
+            let Some(hit) = self
+                .band
+                .scene
+                .closest_excluding(&ray, VISIBLE_MASK, path.hidden)
+            else {
                 break;
             };
             let distance = hit.distance_m;
@@ -113,25 +121,25 @@ impl PathTracer<'_> {
                 point: ray.origin + ray.direction * distance,
                 direction: ray.direction,
                 depth: path.depth + distance * path.per_length,
-                per_length: path.per_length,
+                depth_per_length: path.per_length,
                 id: hit.id,
                 instance: hit.instance,
                 triangle: hit.triangle,
             };
             let (more, opacity) = self.surface((&sight, distance), (hit.u, hit.v), path, sampler);
-            if opacity >= OPAQUE || layer == LAYERS {
+            if opacity >= OPAQUE_THRESHOLD || layer == MAX_TRANSPARENT_LAYERS {
                 return light + more * rest;
             }
             light += more * (opacity * rest);
             rest *= 1.0 - opacity;
-            ray.near_m = distance * (1.0 + GAP.1) + GAP.0;
+            ray.near_m = distance * (1.0 + CONTINUATION_OFFSET.1) + CONTINUATION_OFFSET.0;
         }
         // The sky's light on rooms comes by their windows, each sampled by itself.
         if path.bounces == 0 {
             return light;
         }
         let fixed = self.renderer.house_light();
-        light + sky(ray.direction, Some((fixed, self.exposure))) * rest
+        light + sky_luminance(ray.direction, Some((fixed, self.exposure))) * rest
     }
 
     /// Returns the radiance that a surface sends back along the ray that met it, and its opacity.
@@ -143,11 +151,13 @@ impl PathTracer<'_> {
         sampler: &mut PixelSampler,
     ) -> (Vec3, f32) {
         let (renderer, state) = (self.renderer, self.band.state);
-        let position = renderer.surfaces.position(sight.instance, sight.triangle);
+        let position = renderer
+            .triangle_table
+            .position(sight.instance, sight.triangle);
         let skin = renderer.surface_at_point(&self.band.rays, state, sight, position);
         let (facing, smooth) = renderer.normals(&skin, sight, position, weights);
-        let off = sight.point + facing * OFF_SURFACE_M;
-        if skin.look.mirror && path.mirrors > 0 {
+        let off = sight.point + facing * SHADOW_RAY_OFFSET_M;
+        if skin.material.mirror && path.mirrors > 0 {
             let seen = Microfacet {
                 facet: facing,
                 facing,
@@ -159,7 +169,7 @@ impl PathTracer<'_> {
             point: sight.point,
             normal: smooth,
             // Not behind where a short ray comes from.
-            room_lookup: room_lookup_point(
+            room_lookup_point: room_lookup_point(
                 sight.point,
                 facing,
                 sight.direction * (distance_m * NEAR).min(1.0),
@@ -169,34 +179,34 @@ impl PathTracer<'_> {
         let fixed = renderer.house_light();
         if path.bounces == 0 {
             let incoming: IncidentLight<2> = self.lighting.incoming(fixed, self.exposure, &site);
-            let light = incoming.arriving(|source| {
-                renderer.arrives(self.band.scene, self.lighting, source, (off, facing))
+            let light = incoming.total_arriving(|source| {
+                renderer.light_arrives(self.band.scene, self.lighting, source, (off, facing))
             });
             return (skin.color * light, skin.opacity);
         }
         let mut sum = Vec3::ZERO;
         self.lighting
-            .each(fixed, self.exposure, &site, |source, light| {
+            .for_each_source(fixed, self.exposure, &site, |source, light| {
                 if light == Vec3::ZERO {
                     return;
                 }
                 sum += match source {
-                    LightSource::Room => self.indirect_light(off, smooth, path, sampler),
+                    LightSource::RoomWalls => self.indirect_light(off, smooth, path, sampler),
                     _ if self.arrives(source, (off, facing), smooth, sampler) => light,
                     _ => Vec3::ZERO,
                 };
             });
         let mut shown = skin.color * sum;
-        if path.mirrors > 0 && reflects(skin.look) {
-            let facet = sampler.sample_microfacet(smooth, skin.look.roughness);
-            let share = reflectance(skin.look, skin.color, -sight.direction.dot(facet));
+        if path.mirrors > 0 && reflects(skin.material) {
+            let facet = sampler.sample_microfacet(smooth, skin.material.roughness);
+            let share = reflectance(skin.material, skin.color, -sight.direction.dot(facet));
             let seen = Microfacet { facet, facing };
             let light = self.reflected(sight, off, seen, path, sampler);
-            shown = shown * (Vec3::ONE - share) * (1.0 - skin.look.metallic) + light * share;
+            shown = shown * (Vec3::ONE - share) * (1.0 - skin.material.metallic) + light * share;
         }
         shown += self
             .band
-            .emitted_light(renderer, skin.look.emission, sight.id);
+            .emitted_light(renderer, skin.material.emission, sight.id);
         (shown, skin.opacity)
     }
 
@@ -241,7 +251,7 @@ impl PathTracer<'_> {
             ..path
         };
         let one = |sampler: &mut PixelSampler| {
-            let direction = sampler.cosine(normal);
+            let direction = sampler.cosine_hemisphere(normal);
             let light = self.light_along(Ray::new(off, direction), path, sampler);
             light.min(Vec3::splat(MOST_GATHERED))
         };
@@ -259,33 +269,34 @@ impl PathTracer<'_> {
     ) -> bool {
         let (renderer, scene) = (self.renderer, self.band.scene);
         let (target, hidden) = match source {
-            LightSource::None | LightSource::Room => return true,
+            LightSource::None | LightSource::RoomWalls => return true,
             LightSource::Sun => {
                 let to_sun = sampler.uniform_cone(renderer.house_light().sun.0, SUN_RADIUS);
-                return renderer.sky_reaches(scene, off, to_sun);
+                return renderer.is_sky_visible(scene, off, to_sun);
             }
             LightSource::Sky => {
-                let direction = sampler.cosine(normal);
+                let direction = sampler.cosine_hemisphere(normal);
                 // What lies below throws back what the ground is taken to.
-                return direction.y < 0.0 || renderer.sky_reaches(scene, off, direction);
+                return direction.y < 0.0 || renderer.is_sky_visible(scene, off, direction);
             }
             LightSource::Window(position) => {
                 let window = &renderer.house_light().windows[position as usize];
-                let (x, y) = sampler.pair();
-                let [across, along] = window.half;
+                let (x, y) = sampler.uniform_pair();
+                let [across, along] = window.half_edges;
                 let on_pane = window.center + across * (2.0 * x - 1.0) + along * (2.0 * y - 1.0);
                 (on_pane + window.normal * BEFORE_FRAME_M, EntityId::VOID.0)
             }
-            LightSource::Caster(position) => {
-                let caster = self.lighting.caster(position);
-                let (pick, within) = (sampler.pair(), sampler.uniform_ball());
-                let place = self.lighting.place_in_caster(caster, off, pick, within);
+            LightSource::LampCluster(position) => {
+                let caster = self.lighting.lamp_cluster(position);
+                let (pick, within) = (sampler.uniform_pair(), sampler.uniform_ball());
+                let place = self.lighting.point_in_cluster(caster, off, pick, within);
                 (place, caster.entity)
             }
         };
         let way = target - off;
         // A flat surface that faces away meets light only by its rounded normal.
-        facing.dot(way) <= 0.0 || renderer.passes(scene, &Ray::segment(off, target, 0.0), hidden)
+        facing.dot(way) <= 0.0
+            || renderer.is_unoccluded(scene, &Ray::segment(off, target, 0.0), hidden)
     }
 }
 

@@ -27,7 +27,7 @@ impl PixelSampler {
 
     /// Two numbers from 0 up to 1: over all samples of a pixel evenly spread, each pixel's shifted by its own.
     #[inline]
-    pub(super) fn pair(&mut self) -> (f32, f32) {
+    pub(super) fn uniform_pair(&mut self) -> (f32, f32) {
         self.draw += 1;
         let shift = mixed(self.pixel ^ mixed(self.draw));
         // Draws of one sample would be correlated if all took the samples in one order.
@@ -40,8 +40,8 @@ impl PixelSampler {
     }
 
     /// A direction on the side of a normal, as likely as its cosine.
-    pub(super) fn cosine(&mut self, normal: Vec3) -> Vec3 {
-        let (u, v) = self.pair();
+    pub(super) fn cosine_hemisphere(&mut self, normal: Vec3) -> Vec3 {
+        let (u, v) = self.uniform_pair();
         let (across, along) = normal.any_orthonormal_pair();
         let (radius, turn) = (u.sqrt(), v * TAU);
         let up = (1.0 - u).max(0.0).sqrt();
@@ -50,7 +50,7 @@ impl PixelSampler {
 
     /// A direction in the cone around another, evenly over the disc that it shows. `radius`: the tangent of half its angle.
     pub(super) fn uniform_cone(&mut self, direction: Vec3, radius: f32) -> Vec3 {
-        let (u, v) = self.pair();
+        let (u, v) = self.uniform_pair();
         let (across, along) = direction.any_orthonormal_pair();
         let (aside, turn) = (radius * u.sqrt(), v * TAU);
         let off = across * math::cos(turn) + along * math::sin(turn);
@@ -59,7 +59,7 @@ impl PixelSampler {
 
     /// A point in a ball of radius 1.
     pub(super) fn uniform_ball(&mut self) -> Vec3 {
-        let ((u, v), (w, _)) = (self.pair(), self.pair());
+        let ((u, v), (w, _)) = (self.uniform_pair(), self.uniform_pair());
         let up = 2.0 * u - 1.0;
         let (level, turn) = ((1.0 - up * up).max(0.0).sqrt(), v * TAU);
         let direction = Vec3::new(level * math::cos(turn), up, level * math::sin(turn));
@@ -68,7 +68,7 @@ impl PixelSampler {
 
     /// The normal of a facet of a rough surface: tan² of its slope is a² u / (1 - u), with a the square of the roughness.
     pub(super) fn sample_microfacet(&mut self, normal: Vec3, roughness: f32) -> Vec3 {
-        let (u, v) = self.pair();
+        let (u, v) = self.uniform_pair();
         let slope = roughness * roughness * (u / (1.0 - u).max(1e-6)).sqrt();
         let (across, along) = normal.any_orthonormal_pair();
         let turn = v * TAU;
@@ -103,7 +103,7 @@ mod tests {
     fn throws_are_even() {
         let normal = Vec3::new(0.48, 0.6, -0.64);
         let pair = all(|sampler| {
-            let (u, v) = sampler.pair();
+            let (u, v) = sampler.uniform_pair();
             Vec3::new(u, v, u * v)
         });
         assert!(
@@ -111,7 +111,7 @@ mod tests {
             "{pair}"
         );
         // The mean cosine of directions as likely as their cosine is 2/3.
-        let cosine = all(|sampler| sampler.cosine(normal));
+        let cosine = all(|sampler| sampler.cosine_hemisphere(normal));
         assert!((cosine - normal * (2.0 / 3.0)).length() < 0.005, "{cosine}");
         // The mean square of the tangent over a disc is half of that at its rim.
         let tangent = all(|sampler| {

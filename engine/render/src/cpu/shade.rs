@@ -2,27 +2,27 @@
 
 use super::CpuRenderer;
 use super::camera_rays::CameraRays;
-use super::camera_rays::{COLUMNS, CameraPacket, LANES, PrimaryHit, SEEN};
-use super::flat_shading::bits;
+use super::camera_rays::{CameraPacket, LANES, PACKET_COLUMNS, PrimaryHit, VISIBLE_MASK};
+use super::flat_shading::set_bit_positions;
 use super::tile::ImageTile;
 use crate::color::SrgbTables;
-use crate::light::{IncidentLight, ShadingPoint, display, room_lookup_point, sky};
+use crate::light::{IncidentLight, ShadingPoint, room_lookup_point, sky_luminance, tone_map};
 use crate::material::ShadingMaterial;
-use crate::texture_filter::{GRAZING, TextureFootprint};
+use crate::texture_filter::{MIN_FOOTPRINT_COSINE, TextureFootprint};
 use dwell_scene::bvh::Ray;
 use dwell_scene::{Entity, EntityId, Pose, State};
 use glam::Vec3;
 
 /// Largest number of surfaces that a ray passes; the last one counts as opaque.
-pub(super) const LAYERS: usize = 8;
+pub(super) const MAX_TRANSPARENT_LAYERS: usize = 8;
 /// Opacity from which on a surface shows only itself.
-pub(super) const OPAQUE: f32 = 1.0 - 1.0 / 512.0;
+pub(super) const OPAQUE_THRESHOLD: f32 = 1.0 - 1.0 / 512.0;
 /// Offset of a continued ray behind the surface that it passed: a length and a part of the depth.
-pub(super) const GAP: (f32, f32) = (2e-4, 2e-6);
+pub(super) const CONTINUATION_OFFSET: (f32, f32) = (2e-4, 2e-6);
 /// Largest number of mirrors that light meets; one more shows its colour.
-pub(super) const MIRRORS: u32 = 2;
+pub(super) const MAX_MIRROR_BOUNCES: u32 = 2;
 /// Offset from a surface at which its shadow ray or reflection starts, m.
-pub(super) const OFF_SURFACE_M: f32 = 1e-3;
+pub(super) const SHADOW_RAY_OFFSET_M: f32 = 1e-3;
 /// A pixel whose ray passed a surface.
 #[derive(Clone, Copy)]
 struct TransmittedPixel {
@@ -37,7 +37,7 @@ struct TransmittedPixel {
 
 /// A surface's properties at a point, before light.
 pub(super) struct ShadedSurface<'a> {
-    pub(super) look: &'a ShadingMaterial,
+    pub(super) material: &'a ShadingMaterial,
     /// Reflectance, linear.
     pub(super) color: Vec3,
     pub(super) opacity: f32,
@@ -49,7 +49,7 @@ pub(super) struct ShadedSurface<'a> {
 
 impl ShadedSurface<'_> {
     /// The normal on the side that is seen along `direction`.
-    pub(super) fn facing(&self, direction: Vec3) -> Vec3 {
+    pub(super) fn normal_facing(&self, direction: Vec3) -> Vec3 {
         if self.normal.dot(direction) > 0.0 {
             -self.normal
         } else {
@@ -97,9 +97,9 @@ pub(super) struct PendingShadows {
     /// The light that it sends to the camera.
     pub(super) incoming: IncidentLight<SHADOW_RAYS>,
     /// The end of its shadow rays.
-    pub(super) off: Vec3,
+    pub(super) ray_end: Vec3,
     /// Normal of the flat triangle towards the viewer.
-    pub(super) facing: Vec3,
+    pub(super) flat_normal: Vec3,
     /// Depth behind it from which a ray goes on, m.
     from: f32,
 }
@@ -109,8 +109,8 @@ impl PendingShadows {
         lane: 0,
         opacity: 1.0,
         incoming: IncidentLight::NONE,
-        off: Vec3::ZERO,
-        facing: Vec3::ZERO,
+        ray_end: Vec3::ZERO,
+        flat_normal: Vec3::ZERO,
         from: 0.0,
     };
 }
@@ -127,7 +127,7 @@ struct OutgoingLight {
 impl OutgoingLight {
     fn plain(light: Vec3, opacity: f32) -> Self {
         Self {
-            incoming: IncidentLight::plain(light),
+            incoming: IncidentLight::unshadowed(light),
             opacity,
             off: Vec3::ZERO,
             facing: Vec3::ZERO,
@@ -162,7 +162,7 @@ impl CpuRenderer {
         state: &'a State,
         sight: &PrimaryHit,
     ) -> ShadedSurface<'a> {
-        let position = self.surfaces.position(sight.instance, sight.triangle);
+        let position = self.triangle_table.position(sight.instance, sight.triangle);
         self.surface_at_point(rays, state, sight, position)
     }
 
@@ -174,8 +174,8 @@ impl CpuRenderer {
         sight: &PrimaryHit,
         position: usize,
     ) -> ShadedSurface<'a> {
-        let triangle = self.surfaces.triangle(position);
-        let look = &self.looks[triangle.material as usize];
+        let triangle = self.triangle_table.triangle(position);
+        let look = &self.shading_materials[triangle.material as usize];
         let mut color = Vec3::from_array(look.base);
         let mut opacity = look.opacity;
         let &PrimaryHit {
@@ -184,16 +184,16 @@ impl CpuRenderer {
             depth,
             ..
         } = sight;
-        let pose = self.surfaces.pose(sight.instance, state);
+        let pose = self.triangle_table.pose(sight.instance, state);
         let standing = triangle.posed(pose);
         let normal = standing.normal;
         if let Some(texture) = look.texture() {
             let (fixed, growing) = rays.pixel_area;
-            let area = (fixed + growing * depth * depth) * sight.per_length;
+            let area = (fixed + growing * depth * depth) * sight.depth_per_length;
             let uv = standing.uv(point);
             let sample = if rays.is_flat() {
-                let slope = normal.dot(direction).abs().max(GRAZING);
-                let texels = area / slope * (triangle.density * look.texels);
+                let slope = normal.dot(direction).abs().max(MIN_FOOTPRINT_COSINE);
+                let texels = area / slope * (triangle.texture_density * look.texel_count);
                 self.textures.sample(texture, uv, texels)
             } else {
                 let size = self.textures.image(texture).size();
@@ -204,7 +204,7 @@ impl CpuRenderer {
             opacity *= sample.w;
         }
         ShadedSurface {
-            look,
+            material: look,
             color,
             opacity,
             normal,
@@ -221,8 +221,8 @@ impl CpuRenderer {
         position: usize,
         (u, v): (f32, f32),
     ) -> (Vec3, Vec3) {
-        let facing = skin.facing(sight.direction);
-        let smooth = self.surfaces.smooth_normal(position, u, v);
+        let facing = skin.normal_facing(sight.direction);
+        let smooth = self.triangle_table.smooth_normal(position, u, v);
         let smooth = skin
             .pose
             .map_or(smooth, |pose| pose.rotation * smooth)
@@ -248,13 +248,13 @@ impl ImageTile<'_> {
         palette.open.count = 0;
         let mut lanes = 0_u64;
         for row in 0..rows {
-            lanes |= ((1 << columns) - 1) << (row * COLUMNS);
+            lanes |= ((1 << columns) - 1) << (row * PACKET_COLUMNS);
         }
         if self.light.is_none() {
-            lanes = self.plain_colors(renderer, packet, lanes, &mut palette.bytes);
+            lanes = self.color_opaque_pixels(renderer, packet, lanes, &mut palette.bytes);
         }
         let mut count = 0;
-        for lane in bits(lanes) {
+        for lane in set_bit_positions(lanes) {
             match self.color(renderer, packet, lane) {
                 Ok(bytes) => palette.bytes[lane] = bytes,
                 Err(pending) => {
@@ -270,7 +270,7 @@ impl ImageTile<'_> {
         for one in pending {
             let (lane, light, opacity) = (one.lane, one.incoming.light, one.opacity);
             palette.bytes[lane] = self.encode(light);
-            if opacity < OPAQUE {
+            if opacity < OPAQUE_THRESHOLD {
                 palette.open.push(TransmittedPixel {
                     lane,
                     light: light * opacity,
@@ -292,27 +292,29 @@ impl ImageTile<'_> {
         packet: &CameraPacket,
         lane: usize,
     ) -> Result<[u8; 3], PendingShadows> {
-        let Some(sight) = packet.sight(lane) else {
+        let Some(sight) = packet.closest_hit(lane) else {
             let direction = packet.direction(lane);
             if direction == Vec3::ZERO {
                 return Ok([0; 3]);
             }
             return Ok(self.encode(self.sky(renderer, direction)));
         };
-        let position = renderer.surfaces.position(sight.instance, sight.triangle);
-        let sent = self.surface(renderer, &sight, position, MIRRORS, || {
+        let position = renderer
+            .triangle_table
+            .position(sight.instance, sight.triangle);
+        let sent = self.surface(renderer, &sight, position, MAX_MIRROR_BOUNCES, || {
             packet.weights(self.scene, lane)
         });
-        if self.light.is_none() && sent.opacity >= OPAQUE {
+        if self.light.is_none() && sent.opacity >= OPAQUE_THRESHOLD {
             return Ok(self.encode(sent.incoming.light));
         }
         Err(PendingShadows {
             lane,
             opacity: sent.opacity,
             incoming: sent.incoming,
-            off: sent.off,
-            facing: sent.facing,
-            from: sight.depth * (1.0 + GAP.1) + GAP.0,
+            ray_end: sent.off,
+            flat_normal: sent.facing,
+            from: sight.depth * (1.0 + CONTINUATION_OFFSET.1) + CONTINUATION_OFFSET.0,
         })
     }
 
@@ -326,25 +328,27 @@ impl ImageTile<'_> {
     ) {
         let bytes = &mut palette.bytes;
         let (mut open, mut next) = (&mut palette.open, &mut palette.next);
-        for layer in 1..=LAYERS {
+        for layer in 1..=MAX_TRANSPARENT_LAYERS {
             let ways = open.all().iter().map(|open| (open.lane, open.from));
-            packet.advance_behind(&self.rays, self.scene, ways);
+            packet.continue_behind(&self.rays, self.scene, ways);
             next.count = 0;
             for &TransmittedPixel {
                 lane, light, rest, ..
             } in open.all()
             {
-                let Some(sight) = packet.sight(lane) else {
+                let Some(sight) = packet.closest_hit(lane) else {
                     bytes[lane] =
                         self.encode(light + self.sky(renderer, packet.direction(lane)) * rest);
                     continue;
                 };
-                let position = renderer.surfaces.position(sight.instance, sight.triangle);
-                let sent = self.surface(renderer, &sight, position, MIRRORS, || {
+                let position = renderer
+                    .triangle_table
+                    .position(sight.instance, sight.triangle);
+                let sent = self.surface(renderer, &sight, position, MAX_MIRROR_BOUNCES, || {
                     packet.weights(self.scene, lane)
                 });
                 let (more, opacity) = self.settle(renderer, &sent);
-                if opacity >= OPAQUE || layer == LAYERS {
+                if opacity >= OPAQUE_THRESHOLD || layer == MAX_TRANSPARENT_LAYERS {
                     bytes[lane] = self.encode(light + more * rest);
                     continue;
                 }
@@ -352,7 +356,7 @@ impl ImageTile<'_> {
                     lane,
                     light: light + more * (opacity * rest),
                     rest: rest * (1.0 - opacity),
-                    from: sight.depth * (1.0 + GAP.1) + GAP.0,
+                    from: sight.depth * (1.0 + CONTINUATION_OFFSET.1) + CONTINUATION_OFFSET.0,
                 });
             }
             if next.count == 0 {
@@ -367,13 +371,13 @@ impl ImageTile<'_> {
         let light = self
             .light
             .map(|(_, exposure)| (renderer.house_light(), exposure));
-        sky(direction, light)
+        sky_luminance(direction, light)
     }
 
     #[inline]
     pub(super) fn encode(&self, light: Vec3) -> [u8; 3] {
         let shown = if self.light.is_some() {
-            display(light)
+            tone_map(light)
         } else {
             light
         };
@@ -383,8 +387,8 @@ impl ImageTile<'_> {
     /// The light that a surface sends to the camera, and its opacity, once its shadows are known.
     fn settle(&self, renderer: &CpuRenderer, sent: &OutgoingLight) -> (Vec3, f32) {
         let light = self.light.map_or(sent.incoming.light, |(lighting, _)| {
-            sent.incoming.arriving(|source| {
-                renderer.arrives(self.scene, lighting, source, (sent.off, sent.facing))
+            sent.incoming.total_arriving(|source| {
+                renderer.light_arrives(self.scene, lighting, source, (sent.off, sent.facing))
             })
         });
         (light, sent.opacity)
@@ -409,8 +413,8 @@ impl ImageTile<'_> {
         let Some((lighting, exposure)) = &self.light else {
             return OutgoingLight::plain(skin.color, skin.opacity);
         };
-        if skin.look.mirror && mirrors > 0 {
-            let facing = skin.facing(direction);
+        if skin.material.mirror && mirrors > 0 {
+            let facing = skin.normal_facing(direction);
             let light = self.reflected(renderer, sight, facing, mirrors - 1);
             return OutgoingLight::plain(skin.color * light, skin.opacity);
         }
@@ -418,16 +422,16 @@ impl ImageTile<'_> {
         let site = ShadingPoint {
             point,
             normal: smooth,
-            room_lookup: room_lookup_point(point, facing, direction),
+            room_lookup_point: room_lookup_point(point, facing, direction),
             entity: sight.id,
         };
         let incoming = lighting.incoming(renderer.house_light(), *exposure, &site);
-        let mut incoming = incoming.on(skin.color);
-        incoming.light += self.emitted_light(renderer, skin.look.emission, sight.id);
+        let mut incoming = incoming.reflected_by(skin.color);
+        incoming.light += self.emitted_light(renderer, skin.material.emission, sight.id);
         OutgoingLight {
             incoming,
             opacity: skin.opacity,
-            off: point + facing * OFF_SURFACE_M,
+            off: point + facing * SHADOW_RAY_OFFSET_M,
             facing,
         }
     }
@@ -443,14 +447,14 @@ impl ImageTile<'_> {
     ) -> Vec3 {
         let direction = mirror.direction.reflect(facing).normalize_or(facing);
         let mut ray = Ray {
-            origin: mirror.point + facing * OFF_SURFACE_M,
+            origin: mirror.point + facing * SHADOW_RAY_OFFSET_M,
             direction,
             near_m: 0.0,
             far_m: f32::INFINITY,
         };
         let (mut light, mut rest) = (Vec3::ZERO, 1.0);
-        for layer in 1..=LAYERS {
-            let Some(hit) = self.scene.closest(&ray, SEEN) else {
+        for layer in 1..=MAX_TRANSPARENT_LAYERS {
+            let Some(hit) = self.scene.closest(&ray, VISIBLE_MASK) else {
                 break;
             };
             let distance = hit.distance_m;
@@ -458,21 +462,21 @@ impl ImageTile<'_> {
                 point: ray.origin + direction * distance,
                 direction,
                 // Patterns in a mirror are as fine as if they stood behind it.
-                depth: mirror.depth + distance * mirror.per_length,
-                per_length: mirror.per_length,
+                depth: mirror.depth + distance * mirror.depth_per_length,
+                depth_per_length: mirror.depth_per_length,
                 id: hit.id,
                 instance: hit.instance,
                 triangle: hit.triangle,
             };
-            let position = renderer.surfaces.position(hit.instance, hit.triangle);
+            let position = renderer.triangle_table.position(hit.instance, hit.triangle);
             let sent = self.surface(renderer, &sight, position, mirrors, || (hit.u, hit.v));
             let (more, opacity) = self.settle(renderer, &sent);
-            if opacity >= OPAQUE || layer == LAYERS {
+            if opacity >= OPAQUE_THRESHOLD || layer == MAX_TRANSPARENT_LAYERS {
                 return light + more * rest;
             }
             light += more * (opacity * rest);
             rest *= 1.0 - opacity;
-            ray.near_m = distance * (1.0 + GAP.1) + GAP.0;
+            ray.near_m = distance * (1.0 + CONTINUATION_OFFSET.1) + CONTINUATION_OFFSET.0;
         }
         light + self.sky(renderer, direction) * rest
     }

@@ -1,7 +1,7 @@
 //! Shadow rays: occlusion of lights.
 
 use super::CpuRenderer;
-use super::camera_rays::{LANES, SEEN};
+use super::camera_rays::{LANES, VISIBLE_MASK};
 use super::shade::PendingShadows;
 use crate::light::{LampCluster, LightSource, Lighting};
 use dwell_scene::EntityId;
@@ -17,10 +17,10 @@ const GLASS: f32 = 0.5;
 
 impl CpuRenderer {
     /// Returns whether nothing but glass blocks a ray, apart from one thing.
-    pub(super) fn passes(&self, scene: SceneBvh<'_>, ray: &Ray, hidden: i32) -> bool {
+    pub(super) fn is_unoccluded(&self, scene: SceneBvh<'_>, ray: &Ray, hidden: i32) -> bool {
         let mut ray = *ray;
         for _ in 0..PANES {
-            let Some(hit) = scene.closest_excluding(&ray, SEEN, hidden) else {
+            let Some(hit) = scene.closest_excluding(&ray, VISIBLE_MASK, hidden) else {
                 return true;
             };
             if !self.is_glass(hit.instance, hit.triangle) {
@@ -32,29 +32,29 @@ impl CpuRenderer {
     }
 
     fn is_glass(&self, instance: Option<u32>, triangle: u32) -> bool {
-        let position = self.surfaces.position(instance, triangle);
-        let material = self.surfaces.triangle(position).material;
-        self.looks[material as usize].opacity <= GLASS
+        let position = self.triangle_table.position(instance, triangle);
+        let material = self.triangle_table.triangle(position).material;
+        self.shading_materials[material as usize].opacity <= GLASS
     }
 
     /// Returns whether the middle of the sun shines on a point.
-    pub(super) fn sun_reaches(&self, scene: SceneBvh<'_>, point: Vec3) -> bool {
-        self.sky_reaches(scene, point, self.house_light().sun.0)
+    pub(super) fn is_sun_visible(&self, scene: SceneBvh<'_>, point: Vec3) -> bool {
+        self.is_sky_visible(scene, point, self.house_light().sun.0)
     }
 
     /// Returns whether light comes to a point from far away. `direction`: unit length, towards it.
-    pub(super) fn sky_reaches(&self, scene: SceneBvh<'_>, point: Vec3, direction: Vec3) -> bool {
+    pub(super) fn is_sky_visible(&self, scene: SceneBvh<'_>, point: Vec3, direction: Vec3) -> bool {
         let ray = Ray {
             origin: point,
             direction,
             near_m: 0.0,
             far_m: SKY_RAY_M,
         };
-        self.passes(scene, &ray, EntityId::VOID.0)
+        self.is_unoccluded(scene, &ray, EntityId::VOID.0)
     }
 
     /// Returns whether light of a source arrives at a point off a surface, whose flat normal is `facing`.
-    pub(super) fn arrives(
+    pub(super) fn light_arrives(
         &self,
         scene: SceneBvh<'_>,
         lighting: &Lighting,
@@ -62,14 +62,15 @@ impl CpuRenderer {
         (point, facing): (Vec3, Vec3),
     ) -> bool {
         match source {
-            LightSource::None | LightSource::Room | LightSource::Sky | LightSource::Window(_) => {
-                true
-            }
-            LightSource::Sun => self.sun_reaches(scene, point),
-            LightSource::Caster(position) => {
-                let caster = lighting.caster(position);
+            LightSource::None
+            | LightSource::RoomWalls
+            | LightSource::Sky
+            | LightSource::Window(_) => true,
+            LightSource::Sun => self.is_sun_visible(scene, point),
+            LightSource::LampCluster(position) => {
+                let caster = lighting.lamp_cluster(position);
                 ray_from(caster, point, facing)
-                    .is_none_or(|ray| self.passes(scene, &ray, caster.entity))
+                    .is_none_or(|ray| self.is_unoccluded(scene, &ray, caster.entity))
             }
         }
     }
@@ -90,24 +91,24 @@ impl CpuRenderer {
                 }
                 let mut stopped = 0_u64;
                 let rest = &mut pending[first..];
-                if let LightSource::Caster(position) = source {
-                    let caster = lighting.caster(position);
+                if let LightSource::LampCluster(position) = source {
+                    let caster = lighting.lamp_cluster(position);
                     let mut rays = RayPacket::<LANES>::new(caster.center);
                     let mut used = 0_u64;
                     for (lane, one) in rest.iter().enumerate() {
                         let asked = one.incoming.rays.iter().any(|ray| ray.source == source);
-                        if asked && let Some(ray) = ray_from(caster, one.off, one.facing) {
+                        if asked && let Some(ray) = ray_from(caster, one.ray_end, one.flat_normal) {
                             rays.set(lane, ray.direction, ray.near_m, ray.far_m);
                             used |= 1 << lane;
                         }
                     }
                     if used != 0 {
-                        scene.closest_packet(&rays, SEEN, Some(caster.entity), &mut hits);
+                        scene.closest_packet(&rays, VISIBLE_MASK, Some(caster.entity), &mut hits);
                     }
                     for lane in (0..rest.len()).filter(|lane| used >> lane & 1 == 1) {
                         let through = || {
                             self.is_glass(hits.instance(lane), hits.triangle[lane])
-                                && self.passes(scene, &rays.ray(lane), caster.entity)
+                                && self.is_unoccluded(scene, &rays.ray(lane), caster.entity)
                         };
                         if hits.is_hit(lane) && !through() {
                             stopped |= 1 << lane;
@@ -125,7 +126,7 @@ impl CpuRenderer {
                     };
                     ray.source = LightSource::None;
                     let arrives = match source {
-                        LightSource::Sun => self.sun_reaches(scene, one.off),
+                        LightSource::Sun => self.is_sun_visible(scene, one.ray_end),
                         _ => stopped >> lane & 1 == 0,
                     };
                     if arrives {

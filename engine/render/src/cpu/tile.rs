@@ -1,6 +1,6 @@
 //! A tile: some rows of one picture.
 
-use super::camera_rays::{COLUMNS, CameraPacket, CameraRays, ROWS};
+use super::camera_rays::{CameraPacket, CameraRays, PACKET_COLUMNS, PACKET_ROWS};
 use super::motion;
 use super::shade::ShadeScratch;
 use super::{BAND_ROWS, CpuRenderer, RenderJob};
@@ -53,7 +53,7 @@ impl<'a> ImageTile<'a> {
                 size: (width, height),
                 first_row,
                 rows,
-                frame: rest.take_pixels(rows * width),
+                frame: rest.split_off_pixels(rows * width),
             });
         }
     }
@@ -68,8 +68,8 @@ impl<'a> ImageTile<'a> {
         } else {
             PACKETS_PER_CHECK
         });
-        for top in (0..self.rows).step_by(ROWS) {
-            for left in (0..self.size.0).step_by(COLUMNS) {
+        for top in (0..self.rows).step_by(PACKET_ROWS) {
+            for left in (0..self.size.0).step_by(PACKET_COLUMNS) {
                 pace.turn();
                 let corner = (left, self.first_row + top);
                 self.rays.cast(self.scene, corner, end, &mut packet);
@@ -86,17 +86,20 @@ impl<'a> ImageTile<'a> {
         (left, top): (usize, usize),
     ) {
         let width = self.size.0;
-        let (columns, rows) = (COLUMNS.min(width - left), ROWS.min(self.rows - top));
+        let (columns, rows) = (
+            PACKET_COLUMNS.min(width - left),
+            PACKET_ROWS.min(self.rows - top),
+        );
         // Pixels and lanes of each row.
         let spans = |row: usize| {
             let first = (top + row) * width + left;
             (
                 first..first + columns,
-                row * COLUMNS..row * COLUMNS + columns,
+                row * PACKET_COLUMNS..row * PACKET_COLUMNS + columns,
             )
         };
         if let Some(buffer) = &mut self.frame.depth {
-            let (near_m, far_m) = self.rays.range();
+            let (near_m, far_m) = self.rays.depth_range();
             let depths = packet.depths(near_m, far_m);
             for (pixels, lanes) in (0..rows).map(spans) {
                 buffer[pixels].copy_from_slice(&depths[lanes]);
@@ -131,7 +134,7 @@ impl<'a> ImageTile<'a> {
                     for row in 0..rows {
                         for column in 0..columns {
                             let place = (left + column, self.first_row + top + row);
-                            palette.bytes[row * COLUMNS + column] =
+                            palette.bytes[row * PACKET_COLUMNS + column] =
                                 self.full_color(renderer, light, place);
                         }
                     }
@@ -155,7 +158,7 @@ impl<'a> ImageTile<'a> {
         lane: usize,
         pixel: usize,
     ) {
-        let sight = packet.sight(lane);
+        let sight = packet.closest_hit(lane);
         let skin = sight
             .as_ref()
             .map(|sight| renderer.surface_at_hit(&self.rays, self.state, sight));
@@ -166,7 +169,7 @@ impl<'a> ImageTile<'a> {
         };
         let (normal, albedo) = match (&sight, &skin) {
             (Some(sight), Some(skin)) => (
-                self.rays.in_camera(skin.facing(sight.direction)),
+                self.rays.in_camera(skin.normal_facing(sight.direction)),
                 skin.color.clamp(Vec3::ZERO, Vec3::ONE),
             ),
             _ => (Vec3::ZERO, Vec3::ZERO),
@@ -184,10 +187,10 @@ impl<'a> ImageTile<'a> {
             let camera = self.rays.camera();
             match &sight {
                 Some(sight) => {
-                    let was = renderer.point_before(sight, self.state, before);
-                    motion::flow(camera, before, image, was)
+                    let was = renderer.previous_position(sight, self.state, before);
+                    motion::point_flow(camera, before, image, was)
                 }
-                None => motion::far_flow(camera, before, image, packet.direction(lane)),
+                None => motion::direction_flow(camera, before, image, packet.direction(lane)),
             }
         });
         buffer[pixel * 2..pixel * 2 + 2].copy_from_slice(&flow);

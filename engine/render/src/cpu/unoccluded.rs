@@ -1,7 +1,7 @@
 //! Unoccluded pixels: how many a thing would have without all others.
 
 use super::CpuRenderer;
-use super::camera_rays::{COLUMNS, CameraPacket, CameraRays, LANES, ROWS};
+use super::camera_rays::{CameraPacket, CameraRays, LANES, PACKET_COLUMNS, PACKET_ROWS};
 use crate::frame::View;
 use dwell_scene::bvh::{Instance, InstanceSet, RayMask, SceneBvh, TriangleBvh};
 use dwell_scene::rays::{BODY_PIECES, RayScene};
@@ -31,16 +31,16 @@ impl CpuRenderer {
             moving: &set,
         };
         let rays = CameraRays::new(&View {
-            hide: None,
+            hidden_entity: None,
             ..*view
         });
         let (columns, rows) = image_bounds(view, &set);
         let (mut packet, mut count) = (CameraPacket::new(), 0);
         let end = (view.camera.width() as usize, view.camera.height() as usize);
-        for top in rows.step_by(ROWS) {
-            for left in columns.clone().step_by(COLUMNS) {
+        for top in rows.step_by(PACKET_ROWS) {
+            for left in columns.clone().step_by(PACKET_COLUMNS) {
                 rays.cast(alone, (left, top), end, &mut packet);
-                count += (0..LANES).filter(|lane| packet.sees(*lane)).count() as u32;
+                count += (0..LANES).filter(|lane| packet.has_hit(*lane)).count() as u32;
             }
         }
         count
@@ -110,7 +110,7 @@ fn image_bounds(
     }
     let all = (0..width, 0..height);
     // Only there straight lines stay straight, so that corners bound what lies between them.
-    if !camera.projection().keeps_lines() {
+    if !camera.projection().preserves_straight_lines() {
         return all;
     }
     let camera_from_world = view.world_from_camera.inverse();
@@ -128,7 +128,7 @@ fn image_bounds(
         first.min(end)..end
     };
     (
-        cut(low.x, high.x, width, COLUMNS),
-        cut(low.y, high.y, height, ROWS),
+        cut(low.x, high.x, width, PACKET_COLUMNS),
+        cut(low.y, high.y, height, PACKET_ROWS),
     )
 }

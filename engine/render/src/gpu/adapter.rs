@@ -22,7 +22,7 @@ pub enum AdapterKind {
 
 impl AdapterKind {
     /// In one word.
-    pub fn word(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Self::Discrete => "discrete",
             Self::Integrated => "integrated",
@@ -50,7 +50,7 @@ pub struct Adapter {
     /// The driver and its version.
     pub driver: String,
     /// The number of adapters equal in all else that the interface lists before it.
-    pub twin: usize,
+    pub duplicate_index: usize,
 }
 
 impl Adapter {
@@ -77,7 +77,7 @@ impl Adapter {
             interface: info.backend.to_str().to_owned(),
             ids: [info.vendor, info.device],
             bus: info.device_pci_bus_id,
-            twin: 0,
+            duplicate_index: 0,
             driver: format!("{} {}", info.driver, info.driver_info)
                 .trim()
                 .to_owned(),
@@ -90,12 +90,12 @@ impl std::fmt::Display for Adapter {
         let Self {
             name, interface, ..
         } = self;
-        write!(f, "{name:?} ({}, {interface})", self.kind.word())
+        write!(f, "{name:?} ({}, {interface})", self.kind.name())
     }
 }
 
 /// The result of a future of wgpu, which outside of browsers needs no waker.
-pub(super) fn ready<T>(future: impl Future<Output = T>) -> T {
+pub(super) fn block_on<T>(future: impl Future<Output = T>) -> T {
     let mut future = pin!(future);
     let mut context = Context::from_waker(Waker::noop());
     loop {
@@ -115,7 +115,7 @@ pub(super) enum AdapterChoice<'a> {
     /// only those of that interface.
     Named(&'a str),
     /// This one.
-    Exactly(&'a Adapter),
+    Exact(&'a Adapter),
 }
 
 const INTERFACES: [&str; 4] = ["vulkan", "metal", "dx12", "gl"];
@@ -125,7 +125,7 @@ impl AdapterChoice<'_> {
         let is_hardware = adapter.kind != AdapterKind::Software;
         match self {
             Self::Hardware => is_hardware,
-            Self::Exactly(wanted) => adapter == *wanted,
+            Self::Exact(wanted) => adapter == *wanted,
             Self::Named(text) => {
                 let text = text.to_lowercase();
                 let split = text.split_once('/');
@@ -146,7 +146,7 @@ impl std::fmt::Display for AdapterChoice<'_> {
         match self {
             Self::Hardware => f.write_str("of hardware"),
             Self::Named(text) => write!(f, "with {text:?} in its name"),
-            Self::Exactly(adapter) => write!(f, "that is {adapter}"),
+            Self::Exact(adapter) => write!(f, "that is {adapter}"),
         }
     }
 }
@@ -171,13 +171,13 @@ fn gather<T>(mut ask: impl FnMut(wgpu::Backends) -> Vec<(Adapter, T)>) -> Vec<(A
         let (before, rest) = all.split_at_mut(k);
         let own = &mut rest[0].0;
         let same = |(other, _): &&(Adapter, T)| {
-            let twin = own.twin;
+            let twin = own.duplicate_index;
             Adapter {
-                twin,
+                duplicate_index: twin,
                 ..other.clone()
             } == *own
         };
-        own.twin = before.iter().filter(same).count();
+        own.duplicate_index = before.iter().filter(same).count();
     }
     all
 }
@@ -205,7 +205,7 @@ fn list() -> (Vec<(Adapter, wgpu::Adapter)>, bool) {
         description.backends = backends;
         description.flags = wgpu::InstanceFlags::empty();
         let instance = wgpu::Instance::new(description);
-        let found = ready(instance.enumerate_adapters(backends));
+        let found = block_on(instance.enumerate_adapters(backends));
         if is_gl && !found.is_empty() {
             GL_USED_BY.store(process, Ordering::Relaxed);
         }
@@ -228,7 +228,7 @@ pub fn adapters() -> Vec<Adapter> {
 const NOT_GL: &str = "it cannot be opened again here: start workers with \"spawn\", or use `cpu`";
 
 /// Returns the error for a process that was forked from one that has opened an adapter.
-pub(super) fn forked(adapter: &Adapter) -> RenderError {
+pub(super) fn forked_process_error(adapter: &Adapter) -> RenderError {
     let instead = if adapter.interface == "gl" {
         NOT_GL
     } else {
@@ -278,7 +278,7 @@ mod tests {
             ids: [0x10de, 0x2335],
             bus: bus.into(),
             driver: String::new(),
-            twin: 0,
+            duplicate_index: 0,
         }
     }
 
@@ -341,7 +341,7 @@ mod tests {
     fn what_was_forked_is_told_what_to_do_instead() {
         let lost = |interface: &str| {
             let adapter = adapter(AdapterKind::Software, interface, "llvmpipe", "");
-            forked(&adapter).to_string()
+            forked_process_error(&adapter).to_string()
         };
         assert!(lost("vulkan").contains("in the forked process"));
         assert!(!lost("gl").contains("in the forked process"));
@@ -359,12 +359,12 @@ mod tests {
             &[],
         );
         for (k, adapter) in all.iter().enumerate() {
-            assert_eq!(chosen(&all, AdapterChoice::Exactly(adapter)), Some(k));
+            assert_eq!(chosen(&all, AdapterChoice::Exact(adapter)), Some(k));
         }
         assert_eq!(all[0], first, "vulkan comes before dx12");
         assert_eq!(chosen(&all, AdapterChoice::Named("r5/r7")), Some(0));
         assert_eq!(chosen(&all, AdapterChoice::Named("0000:65")), Some(1));
         assert_eq!(chosen(&all, AdapterChoice::Named("dx12/r5")), Some(2));
-        assert_eq!((all[2].twin, all[3].twin), (0, 1));
+        assert_eq!((all[2].duplicate_index, all[3].duplicate_index), (0, 1));
     }
 }

@@ -1,9 +1,9 @@
 //! A batch as the kernels read it: views, worlds, and offsets of images.
 
-use super::batch_buffers::SEEN_BYTES;
+use super::batch_buffers::HIT_BYTES;
 use super::house_buffers::point;
 use super::raster::{DrawBatch, RasterScene};
-use super::world_rows::{WorldRows, runs};
+use super::world_rows::{WorldRows, runs_of_same_world};
 use crate::camera::{Camera, Projection};
 use crate::cpu::{CpuRenderer, RenderJob};
 use crate::error::RenderError;
@@ -89,12 +89,12 @@ impl LensRays {
     /// Forgets old cameras when there are too many; before a batch.
     fn evict_old(&mut self) {
         if self.rays.len() > MOST_LENS_RAYS {
-            self.forget();
+            self.invalidate();
         }
     }
 
     /// Forgets all cameras.
-    pub(super) fn forget(&mut self) {
+    pub(super) fn invalidate(&mut self) {
         self.cameras.clear();
         self.rays.clear();
     }
@@ -122,19 +122,19 @@ impl LensRays {
 #[derive(Debug, Default)]
 pub(super) struct GpuBatch {
     pub(super) rows: Vec<PackedRow>,
-    pub(super) places: Vec<ImageOffsets>,
-    pub(super) lenses: LensRays,
+    pub(super) image_offsets: Vec<ImageOffsets>,
+    pub(super) lens_rays: LensRays,
     /// The draw calls of the raster path.
-    pub(super) drawing: DrawBatch,
+    pub(super) draw_batch: DrawBatch,
     worlds: WorldRows,
     pub(super) pixels: usize,
     pub(super) words: usize,
     pub(super) tiles: usize,
     /// Most instances of a world.
     pub(super) instances: usize,
-    pub(super) paints: bool,
-    pub(super) paints_lit: bool,
-    pub(super) describes: bool,
+    pub(super) has_flat_color: bool,
+    pub(super) has_lit_color: bool,
+    pub(super) has_geometry_images: bool,
 }
 
 /// Returns whether a view needs light: colours alone show it.
@@ -156,21 +156,25 @@ impl GpuBatch {
         threads: Threads,
     ) {
         self.rows.clear();
-        self.places.clear();
+        self.image_offsets.clear();
         (self.pixels, self.words, self.tiles, self.instances) = (0, 0, 0, 0);
-        (self.paints, self.paints_lit, self.describes) = (false, false, false);
-        self.lenses.evict_old();
+        (
+            self.has_flat_color,
+            self.has_lit_color,
+            self.has_geometry_images,
+        ) = (false, false, false);
+        self.lens_rays.evict_old();
         let sheets = if let Some((house, edge)) = draws {
-            self.drawing.fill(house, jobs, edge, threads)
+            self.draw_batch.fill(house, jobs, edge, threads)
         } else {
-            self.drawing.sheets.clear();
+            self.draw_batch.atlas_tiles.clear();
             vec![None; jobs.len()]
         };
-        let runs = runs(jobs);
+        let runs = runs_of_same_world(jobs);
         self.worlds.fill(&runs, threads);
         let mut lights = threads.map(runs.len(), |run| {
             let lit = runs[run].iter().find(|job| is_lit(job))?;
-            Some(cpu.lighting(lit.scene, lit.state))
+            Some(cpu.cached_or_computed_lighting(lit.scene, lit.state))
         });
         self.rows.resize(1 + jobs.len() * VIEW_ROWS, [0; 4]);
         let mut k = 0;
@@ -186,26 +190,26 @@ impl GpuBatch {
                     Some((light, first)) if is_lit(job) => {
                         let eye = job.view.world_from_camera.position;
                         let exposure = light.exposure(cpu.house_light(), eye);
-                        [1, *first, exposure.per_lx().to_bits(), 0]
+                        [1, *first, exposure.white_per_lx().to_bits(), 0]
                     }
                     _ => [0; 4],
                 };
                 self.add_view(k, job, world, shown);
-                if let Some(sheet) = sheets[k].map(|sheet| &self.drawing.sheets[sheet]) {
+                if let Some(sheet) = sheets[k].map(|sheet| &self.draw_batch.atlas_tiles[sheet]) {
                     self.rows[1 + k * VIEW_ROWS + 15] = [1, sheet.x, sheet.y, 0];
                 }
                 k += 1;
             }
             if let Some((light, _)) = light {
-                cpu.keep_lighting(light);
+                cpu.return_to_lighting_cache(light);
             }
         }
         let records = self.rows.len();
         let mut pieces = records;
-        if !self.drawing.sheets.is_empty() {
-            self.rows.extend_from_slice(&self.drawing.records);
+        if !self.draw_batch.atlas_tiles.is_empty() {
+            self.rows.extend_from_slice(&self.draw_batch.instance_rows);
             pieces = self.rows.len();
-            self.rows.extend_from_slice(&self.drawing.pieces);
+            self.rows.extend_from_slice(&self.draw_batch.draw_rows);
         }
         self.rows[0] = [jobs.len(), self.tiles, records, pieces].map(|number| number as u32);
     }
@@ -214,8 +218,8 @@ impl GpuBatch {
     pub(super) fn bytes(&self) -> [u64; 4] {
         [
             size_of_val(&self.rows[..]) as u64,
-            size_of_val(&self.lenses.rays[..]) as u64,
-            self.pixels as u64 * SEEN_BYTES,
+            size_of_val(&self.lens_rays.rays[..]) as u64,
+            self.pixels as u64 * HIT_BYTES,
             self.words as u64 * 4,
         ]
     }
@@ -223,7 +227,7 @@ impl GpuBatch {
     /// Adds the light of a world, and which things are switched off; returns the first row.
     fn add_light(&mut self, cpu: &CpuRenderer, lighting: &Lighting, state: &State) -> u32 {
         let first = self.rows.len() as u32;
-        lighting.flatten(&mut self.rows);
+        lighting.append_rows(&mut self.rows);
         let house = cpu.house();
         let bits = self.rows.len();
         let entities = 1 + house.structure.len() + house.objects.len();
@@ -250,14 +254,14 @@ impl GpuBatch {
         let lens_rays = if kind == PINHOLE || kind == ORTHOGRAPHIC {
             0
         } else {
-            self.lenses.of(camera)
+            self.lens_rays.of(camera)
         };
         let before = job.before.as_ref().filter(|_| places.flow.is_some());
         let before_rows = before.map_or(0, |before| self.add_before(job, before));
         let (fixed, growing) = camera.pixel_area();
         let eye_before = before.map_or(view.world_from_camera, |before| before.world_from_camera);
         let word = |place: Option<usize>| place.map_or(NOT_WANTED, |place| place as u32);
-        let hidden = view.hide.map_or(0, |entity| entity.0) as u32;
+        let hidden = view.hidden_entity.map_or(0, |entity| entity.0) as u32;
         let written = [
             point(rotation * Vec3::X, camera.near_m().to_bits()),
             point(rotation * Vec3::Y, camera.far_m().to_bits()),
@@ -284,12 +288,12 @@ impl GpuBatch {
         self.rows[first..first + written.len()].copy_from_slice(&written);
         self.tiles += tiles(camera.width(), rows);
         self.pixels += pixels;
-        self.places.push(places);
+        self.image_offsets.push(places);
         let frame = &job.frame;
         let is_lit = shown[0] == 1;
-        self.paints |= frame.rgb.is_some() && !is_lit;
-        self.paints_lit |= frame.rgb.is_some() && is_lit;
-        self.describes |= words_per_pixel(frame) > usize::from(frame.rgb.is_some());
+        self.has_flat_color |= frame.rgb.is_some() && !is_lit;
+        self.has_lit_color |= frame.rgb.is_some() && is_lit;
+        self.has_geometry_images |= words_per_pixel(frame) > usize::from(frame.rgb.is_some());
     }
 
     fn place(&mut self, frame: &FrameMut<'_>, pixels: usize) -> ImageOffsets {
@@ -314,7 +318,7 @@ impl GpuBatch {
     fn add_before(&mut self, job: &RenderJob<'_>, before: &PreviousFrame<'_>) -> u32 {
         let first = self.rows.len() as u32;
         for part in &job.scene.house().geometry().movable {
-            let moved = &before.moved;
+            let moved = &before.moved_parts;
             let was = moved.binary_search_by_key(&part.index(), |(part, _)| part.index());
             let pose = match was {
                 Ok(place) => moved[place].1,

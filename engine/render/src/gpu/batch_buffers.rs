@@ -44,7 +44,7 @@ impl GrowableBuffer {
     }
 
     fn held(&self, gpu: &Gpu) -> Result<&wgpu::Buffer, RenderError> {
-        let missing = || gpu.driver("to find a buffer", format!("no {} yet", self.what));
+        let missing = || gpu.driver_error("to find a buffer", format!("no {} yet", self.what));
         self.buffer.as_ref().ok_or_else(missing)
     }
 }
@@ -81,10 +81,10 @@ impl StagingBuffer {
             let roomy = gpu.upload_buffer(what, length + length / 8);
             self.buffer = Some(roomy.or_else(|_| gpu.upload_buffer(what, length))?);
         }
-        let missing = || gpu.driver("to find a buffer", "no memory to write to".into());
+        let missing = || gpu.driver_error("to find a buffer", "no memory to write to".into());
         let buffer = self.buffer.as_ref().ok_or_else(missing)?;
         let view = buffer.get_mapped_range_mut(0..length);
-        let mut view = view.map_err(|error| gpu.driver("to write", error.to_string()))?;
+        let mut view = view.map_err(|error| gpu.driver_error("to write", error.to_string()))?;
         view.copy_from_slice(bytes);
         drop(view);
         buffer.unmap();
@@ -121,7 +121,7 @@ pub(super) struct BatchBuffers {
 }
 
 /// Bytes of a pixel's first hit.
-pub(super) const SEEN_BYTES: u64 = 16;
+pub(super) const HIT_BYTES: u64 = 16;
 
 impl BatchBuffers {
     pub(super) fn new() -> Self {
@@ -148,7 +148,7 @@ impl BatchBuffers {
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<(), RenderError> {
         let rows: &[u8] = bytemuck::cast_slice(&self.batch.rows);
-        let rays: &[u8] = bytemuck::cast_slice(&self.batch.lenses.rays);
+        let rays: &[u8] = bytemuck::cast_slice(&self.batch.lens_rays.rays);
         let [row_bytes, lens_bytes, seen_bytes, image_bytes] =
             self.batch.bytes().map(|bytes| bytes.max(16));
         let mut changed = self.rows.reserve(gpu, row_bytes)?;
@@ -158,9 +158,9 @@ impl BatchBuffers {
         changed |= self.images.reserve(gpu, image_bytes)?;
         self.back.reserve(gpu, image_bytes)?;
         self.upload.send(gpu, rows, self.rows.held(gpu)?, encoder)?;
-        if (self.batch.lenses.changed || new_lenses) && !rays.is_empty() {
+        if (self.batch.lens_rays.changed || new_lenses) && !rays.is_empty() {
             gpu.queue.write_buffer(self.lenses.held(gpu)?, 0, rays);
-            self.batch.lenses.changed = false;
+            self.batch.lens_rays.changed = false;
         }
         if changed || self.group.is_none() {
             let buffers = [
@@ -188,15 +188,15 @@ impl BatchBuffers {
                 }],
             }));
         }
-        if !self.batch.drawing.sheets.is_empty() {
-            let atlas = RenderAtlas::reserve(self.atlas.take(), gpu, self.batch.drawing.size)?;
+        if !self.batch.draw_batch.atlas_tiles.is_empty() {
+            let atlas = RenderAtlas::reserve(self.atlas.take(), gpu, self.batch.draw_batch.size)?;
             self.atlas = Some(atlas);
         }
         Ok(())
     }
 
     /// To be called when the batch has been submitted.
-    pub(super) fn recall(&self) {
+    pub(super) fn remap_upload_memory(&self) {
         self.upload.recall();
     }
 
@@ -205,7 +205,10 @@ impl BatchBuffers {
     }
 
     /// Returns the buffers of images: that which kernels write, and that into which it is read back.
-    pub(super) fn ways(&self, gpu: &Gpu) -> Result<(&wgpu::Buffer, &wgpu::Buffer), RenderError> {
+    pub(super) fn image_buffers(
+        &self,
+        gpu: &Gpu,
+    ) -> Result<(&wgpu::Buffer, &wgpu::Buffer), RenderError> {
         Ok((self.images.held(gpu)?, self.back.held(gpu)?))
     }
 

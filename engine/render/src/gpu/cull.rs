@@ -18,7 +18,7 @@ const SHADOWS: usize = 24;
 /// Smallest solid angle of a wall that is tried, sr.
 const LEAST_SR: f32 = 0.02;
 /// Slack of the planes, m, and for each metre from the camera: more than rounding.
-pub(super) const SLACK_M: f32 = 1e-3;
+pub(super) const PLANE_SLACK_M: f32 = 1e-3;
 const SLACK_PER_M: f32 = 1e-5;
 
 /// A subtree of static geometry: a chunk, or a node above chunks.
@@ -46,7 +46,7 @@ pub(super) struct CullingView {
     pub(super) planes: [Vec4; 6],
     /// The least distance of a surface that is seen wherever it is in the picture, m.
     pub(super) near_m: f32,
-    pub(super) hidden: i32,
+    pub(super) hidden_entity: i32,
 }
 
 /// A query of what is visible from an eye.
@@ -71,14 +71,14 @@ fn furthest(plane: Vec4, bounds: &Aabb) -> f32 {
 
 impl CullingView {
     /// A plane through the eye.
-    pub(super) fn through(position: Vec3, normal: Vec3) -> Vec4 {
+    pub(super) fn plane_through(position: Vec3, normal: Vec3) -> Vec4 {
         let normal = normal.normalize_or_zero();
         normal.extend(-normal.dot(position))
     }
 
     fn shows(&self, bounds: &Aabb) -> bool {
         let reach = (bounds.center() - self.position).length() + bounds.size().length();
-        let slack = SLACK_M + SLACK_PER_M * reach;
+        let slack = PLANE_SLACK_M + SLACK_PER_M * reach;
         let outside = |plane: &Vec4| furthest(*plane, bounds) < -slack;
         !bounds.is_empty() && !self.planes.iter().any(outside)
     }
@@ -86,7 +86,7 @@ impl CullingView {
 
 impl VisibilityQuery<'_> {
     /// Returns whether something in a box may be seen.
-    pub(super) fn sees(&self, bounds: &Aabb) -> bool {
+    pub(super) fn is_visible(&self, bounds: &Aabb) -> bool {
         self.eye.shows(bounds) && !self.shadows.iter().any(|shadow| shadow.hides(bounds))
     }
 }
@@ -128,7 +128,7 @@ impl Culler {
     }
 
     /// Returns the visibility query of an eye.
-    pub(super) fn sightline<'a>(
+    pub(super) fn visibility_query<'a>(
         &self,
         eye: &'a CullingView,
         memory: &'a mut OccluderScratch,
@@ -142,25 +142,30 @@ impl Culler {
                 .filter(|(size, _)| *size > LEAST_SR)
                 .filter(|(_, k)| {
                     let wall = &self.occluders[*k];
-                    wall.id != eye.hidden && eye.shows(&wall.bounds)
+                    wall.id != eye.hidden_entity && eye.shows(&wall.bounds)
                 }),
         );
         best.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         let largest = best.iter().take(SHADOWS);
         shadows.clear();
-        shadows.extend(
-            largest.filter_map(|(_, k)| self.occluders[*k].shadow(eye.position, eye.near_m)),
-        );
+        shadows
+            .extend(largest.filter_map(|(_, k)| {
+                self.occluders[*k].occlusion_volume(eye.position, eye.near_m)
+            }));
         VisibilityQuery { eye, shadows }
     }
 
     /// The blocks that may be seen, as ranges in order; those that touch are one.
-    pub(super) fn visible(&self, sightline: &VisibilityQuery<'_>, ranges: &mut Vec<Range<u32>>) {
+    pub(super) fn visible_blocks(
+        &self,
+        sightline: &VisibilityQuery<'_>,
+        ranges: &mut Vec<Range<u32>>,
+    ) {
         ranges.clear();
         let mut place = 0;
         while let Some(subtree) = self.subtrees.get(place) {
             let is_chunk = subtree.next == place + 1;
-            if !sightline.sees(&subtree.bounds) {
+            if !sightline.is_visible(&subtree.bounds) {
                 place = subtree.next;
                 continue;
             }
@@ -174,7 +179,7 @@ impl Culler {
     }
 
     /// All blocks.
-    pub(super) fn everything(&self) -> Range<u32> {
+    pub(super) fn all_blocks(&self) -> Range<u32> {
         let all = self.subtrees.first();
         all.map_or(0..0, |subtree| subtree.blocks.clone())
     }
@@ -229,15 +234,15 @@ mod tests {
         let sides = [-back + right, -back - right, -back + up, -back - up];
         let mut planes = [Vec4::ZERO; 6];
         for (plane, side) in planes.iter_mut().zip(sides) {
-            *plane = CullingView::through(position, side);
+            *plane = CullingView::plane_through(position, side);
         }
-        planes[4] = CullingView::through(position - back * 0.05, -back);
-        planes[5] = CullingView::through(position - back * 50.0, back);
+        planes[4] = CullingView::plane_through(position - back * 0.05, -back);
+        planes[5] = CullingView::plane_through(position - back * 50.0, back);
         let eye = CullingView {
             position,
             planes,
             near_m: 0.05 * 1.75,
-            hidden: 0,
+            hidden_entity: 0,
         };
         (eye, [right, up, back])
     }
@@ -255,7 +260,7 @@ mod tests {
             let flat = geometry
                 .static_bvh
                 .flatten(RayMask::EYE, &mut nodes, &mut blocks);
-            let culler = Culler::new(&nodes, flat.top, flat.bounds, occluders(&blocks));
+            let culler = Culler::new(&nodes, flat.root, flat.bounds, occluders(&blocks));
             assert!(culler.occluders.len() > 20, "{}", culler.occluders.len());
             let mut block_of = vec![u32::MAX; geometry.static_triangles.len()];
             for (block, rows) in blocks.chunks(BLOCK_ROWS).enumerate() {
@@ -274,15 +279,15 @@ mod tests {
                 );
                 let (eye, [right, up, back]) =
                     eye(place, stream.range(-3.1, 3.1), stream.range(-1.0, 1.0));
-                let sightline = culler.sightline(&eye, &mut memory);
-                culler.visible(&sightline, &mut ranges);
+                let sightline = culler.visibility_query(&eye, &mut memory);
+                culler.visible_blocks(&sightline, &mut ranges);
                 left += ranges.iter().map(|range| range.len() as u64).sum::<u64>();
-                all += culler.everything().len() as u64;
+                all += culler.all_blocks().len() as u64;
                 for _ in 0..60 {
                     let (x, y) = (stream.range(-1.0, 1.0), stream.range(-1.0, 1.0));
                     let way = right * x + up * y - back;
                     let ray =
-                        Ray::new(place, way).between(0.05 * way.length(), 50.0 * way.length());
+                        Ray::new(place, way).with_range(0.05 * way.length(), 50.0 * way.length());
                     let Some(hit) = scene.closest(&ray, RayMask::EYE) else {
                         continue;
                     };
@@ -293,7 +298,10 @@ mod tests {
                         continue;
                     };
                     let bounds = scene.bvh().moving.bounds_of(instance);
-                    assert!(sightline.sees(&bounds), "{seed} {place} {way}: {instance}");
+                    assert!(
+                        sightline.is_visible(&bounds),
+                        "{seed} {place} {way}: {instance}"
+                    );
                 }
             }
         }

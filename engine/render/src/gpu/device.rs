@@ -1,6 +1,6 @@
 //! An adapter in use.
 
-use super::adapter::{Adapter, AdapterChoice, find, forked, ready};
+use super::adapter::{Adapter, AdapterChoice, block_on, find, forked_process_error};
 use super::kernels::{BindGroupLayouts, Kernels};
 use super::raster;
 use super::visibility_path::VisibilityPathSpeeds;
@@ -30,7 +30,7 @@ pub struct Gpu {
 }
 
 /// Locks a mutex, even a poisoned one.
-pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+pub(super) fn lock_ignoring_poison<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
@@ -102,7 +102,7 @@ impl Gpu {
     /// # Errors
     /// As [`Self::open`]; where houses do not fit, making renderers fails.
     pub fn open_adapter(adapter: &Adapter, most: BatchLimits) -> Result<Arc<Self>, RenderError> {
-        let (adapter, handle) = find(AdapterChoice::Exactly(adapter))?;
+        let (adapter, handle) = find(AdapterChoice::Exact(adapter))?;
         Self::open_found(adapter, &handle, most)
     }
 
@@ -133,7 +133,7 @@ impl Gpu {
             required_limits: limits,
             ..wgpu::DeviceDescriptor::default()
         };
-        let opened = ready(handle.request_device(&description));
+        let opened = block_on(handle.request_device(&description));
         let (device, queue) = opened.map_err(|error| RenderError::Driver {
             adapter: adapter.to_string(),
             doing: "to open",
@@ -143,12 +143,13 @@ impl Gpu {
         let note = fault.clone();
         // Without a handler wgpu would panic.
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
-            lock(&note).get_or_insert_with(|| error.to_string());
+            lock_ignoring_poison(&note).get_or_insert_with(|| error.to_string());
         }));
         let note = fault.clone();
         device.set_device_lost_callback(move |reason, message| {
             if reason != wgpu::DeviceLostReason::Destroyed {
-                lock(&note).get_or_insert_with(|| format!("device lost: {message}"));
+                lock_ignoring_poison(&note)
+                    .get_or_insert_with(|| format!("device lost: {message}"));
             }
         });
         let gpu = Self {
@@ -173,7 +174,7 @@ impl Gpu {
     /// # Errors
     /// As [`Self::open`].
     pub fn shared(name: Option<&str>) -> Result<Arc<Self>, RenderError> {
-        let mut open = lock(&OPEN);
+        let mut open = lock_ignoring_poison(&OPEN);
         let key = name.map(str::to_lowercase);
         if let Some(adapter) = open.names.get(&key).cloned()
             && let Some(gpu) = open.known(&adapter)
@@ -190,11 +191,11 @@ impl Gpu {
     /// # Errors
     /// As [`Self::open`].
     pub fn shared_adapter(adapter: &Adapter) -> Result<Arc<Self>, RenderError> {
-        let mut open = lock(&OPEN);
+        let mut open = lock_ignoring_poison(&OPEN);
         if let Some(gpu) = open.known(adapter) {
             return Ok(gpu);
         }
-        let (adapter, handle) = find(AdapterChoice::Exactly(adapter))?;
+        let (adapter, handle) = find(AdapterChoice::Exact(adapter))?;
         Self::share(&mut open, adapter, &handle)
     }
 
@@ -216,7 +217,7 @@ impl Gpu {
         if self.process == std::process::id() {
             return Ok(());
         }
-        Err(forked(&self.adapter))
+        Err(forked_process_error(&self.adapter))
     }
 
     /// The adapter.
@@ -228,7 +229,7 @@ impl Gpu {
     ///
     /// # Errors
     /// As [`VisibilityPathSpeeds::measure`].
-    pub fn speeds(
+    pub fn visibility_path_speeds(
         self: &Arc<Self>,
         tables: &Arc<CpuRenderer>,
     ) -> Result<VisibilityPathSpeeds, RenderError> {
@@ -236,7 +237,7 @@ impl Gpu {
             return Ok(*speeds);
         }
         let speeds = VisibilityPathSpeeds::measure(self, tables)?;
-        tracing::debug!(adapter = %self.adapter, ?speeds, path = speeds.best().word(), "path chosen");
+        tracing::debug!(adapter = %self.adapter, ?speeds, path = speeds.best().name(), "path chosen");
         Ok(*self.speeds.get_or_init(|| speeds))
     }
 
@@ -247,28 +248,28 @@ impl Gpu {
     }
 
     /// The longest edge of a texture, pixels.
-    pub(super) fn most_edge(&self) -> u32 {
+    pub(super) fn max_texture_edge(&self) -> u32 {
         self.device.limits().max_texture_dimension_2d
     }
 
-    pub(super) fn count_buffer(&self) {
+    pub(super) fn increment_buffer_count(&self) {
         self.buffers_made.fetch_add(1, Ordering::Relaxed);
     }
 
     /// Buffers and textures made so far: no more after the first batch of a kind.
-    pub fn buffers_made(&self) -> usize {
+    pub fn buffer_count(&self) -> usize {
         self.buffers_made.load(Ordering::Relaxed)
     }
 
     /// Returns the driver's message since the last call, as an error.
     pub(super) fn check(&self, doing: &'static str) -> Result<(), RenderError> {
-        match lock(&self.fault).take() {
+        match lock_ignoring_poison(&self.fault).take() {
             None => Ok(()),
-            Some(message) => Err(self.driver(doing, message)),
+            Some(message) => Err(self.driver_error(doing, message)),
         }
     }
 
-    pub(super) fn driver(&self, doing: &'static str, message: String) -> RenderError {
+    pub(super) fn driver_error(&self, doing: &'static str, message: String) -> RenderError {
         RenderError::Driver {
             adapter: self.adapter.to_string(),
             doing,
@@ -277,7 +278,7 @@ impl Gpu {
     }
 
     /// The largest buffer that kernels can use, bytes.
-    pub(super) fn most_bytes(&self) -> u64 {
+    pub(super) fn max_buffer_bytes(&self) -> u64 {
         let limits = self.device.limits();
         limits
             .max_storage_buffer_binding_size
@@ -286,7 +287,7 @@ impl Gpu {
     }
 
     /// Most groups of a kernel along one axis.
-    pub(super) fn most_groups(&self) -> usize {
+    pub(super) fn max_workgroups(&self) -> usize {
         self.device.limits().max_compute_workgroups_per_dimension as usize
     }
 
@@ -317,7 +318,7 @@ impl Gpu {
         usage: wgpu::BufferUsages,
         mapped_at_creation: bool,
     ) -> Result<wgpu::Buffer, RenderError> {
-        let allowed = self.most_bytes();
+        let allowed = self.max_buffer_bytes();
         let size = buffer_size(bytes);
         if size > allowed {
             return Err(RenderError::TooLarge {
@@ -334,7 +335,7 @@ impl Gpu {
             usage,
             mapped_at_creation,
         });
-        self.count_buffer();
+        self.increment_buffer_count();
         self.check("to make a buffer")?;
         Ok(buffer)
     }
@@ -342,7 +343,7 @@ impl Gpu {
     /// Kernels whose stacks hold at least so many links; made at first use.
     pub(super) fn kernels(&self, stack: usize) -> Result<Arc<Kernels>, RenderError> {
         let stack = stack.next_multiple_of(32);
-        let mut made = lock(&self.kernels);
+        let mut made = lock_ignoring_poison(&self.kernels);
         if let Some(kernels) = made.get(&stack) {
             return Ok(kernels.clone());
         }

@@ -5,7 +5,7 @@ use super::device::Gpu;
 use super::occluders::occluders;
 use super::raster::RasterScene;
 use crate::color::SrgbTables;
-use crate::cpu::{CpuRenderer, SEEN};
+use crate::cpu::{CpuRenderer, VISIBLE_MASK};
 use crate::error::RenderError;
 use crate::semantic::ClassSet;
 use dwell_scene::bvh::TriangleBvh;
@@ -72,8 +72,10 @@ impl HouseBuffers {
     pub(super) fn new(gpu: &Gpu, cpu: &CpuRenderer) -> Result<Self, RenderError> {
         let (house, geometry) = (cpu.house(), cpu.house().geometry());
         let (mut nodes, mut blocks) = (Vec::new(), Vec::new());
-        let fixed = geometry.static_bvh.flatten(SEEN, &mut nodes, &mut blocks);
-        let culler = Culler::new(&nodes, fixed.top, fixed.bounds, occluders(&blocks));
+        let fixed = geometry
+            .static_bvh
+            .flatten(VISIBLE_MASK, &mut nodes, &mut blocks);
+        let culler = Culler::new(&nodes, fixed.root, fixed.bounds, occluders(&blocks));
         // Each mesh once, however many parts show it.
         let mut flat: IdVec<MeshId, Option<(FlatBvh, Range<u32>)>> =
             IdVec::filled(None, house.meshes.len());
@@ -81,7 +83,7 @@ impl HouseBuffers {
         let mut ranges: Vec<Range<u32>> = Vec::new();
         let mut add = |tree: &TriangleBvh| {
             let first = (blocks.len() / BLOCK_ROWS) as u32;
-            let tree = tree.flatten(SEEN, &mut nodes, &mut blocks);
+            let tree = tree.flatten(VISIBLE_MASK, &mut nodes, &mut blocks);
             (tree, first..(blocks.len() / BLOCK_ROWS) as u32)
         };
         for part in &geometry.movable {
@@ -90,9 +92,9 @@ impl HouseBuffers {
                 Some(tree) => add(tree),
                 None => (
                     FlatBvh {
-                        top: NO_LINK,
+                        root: NO_LINK,
                         bounds: dwell_scene::Aabb::EMPTY,
-                        stack: 0,
+                        stack_size: 0,
                     },
                     0..0,
                 ),
@@ -107,13 +109,13 @@ impl HouseBuffers {
         }
         debug_assert_eq!(trees.len(), geometry.movable.len() + BODY_PIECES);
         let mut tables = TableOffsets(vec![[0; 4]; HEADER_ROWS]);
-        let (levels, images, texels) = cpu.textures.flat();
+        let (levels, images, texels) = cpu.textures.to_rows();
         let levels = tables.add(levels);
         let images = tables.add(images);
         let looks = tables.add(
-            cpu.looks
+            cpu.shading_materials
                 .iter()
-                .flat_map(crate::material::ShadingMaterial::flat),
+                .flat_map(crate::material::ShadingMaterial::packed_rows),
         );
         let classes = cpu.classes(ClassSet::Coarse).all();
         let class_rows = tables.add(rows_of_words(classes.iter().map(|class| *class as u32)));
@@ -121,10 +123,10 @@ impl HouseBuffers {
         let decode = tables.add(rows_of_words(decode.iter().map(|light| light.to_bits())));
         let steps = encode.as_chunks::<4>().0.iter();
         let encode = tables.add(rows_of_words(steps.map(|bytes| u32::from_le_bytes(*bytes))));
-        let meshes = trees.iter().zip(cpu.surfaces.firsts());
+        let meshes = trees.iter().zip(cpu.triangle_table.first_triangles());
         let meshes = tables.add(meshes.flat_map(|(tree, first)| {
             [
-                point(tree.bounds.min, tree.top),
+                point(tree.bounds.min, tree.root),
                 point(tree.bounds.max, first),
             ]
         }));
@@ -134,13 +136,13 @@ impl HouseBuffers {
         tables.0[0] = [levels, images, looks, class_rows];
         tables.0[1] = [decode, encode, meshes, texels];
         let parts = geometry.movable.len() as u32;
-        tables.0[2] = [fixed.top, 0, parts, classes.len() as u32];
+        tables.0[2] = [fixed.root, 0, parts, classes.len() as u32];
         tables.0[3] = point(fixed.bounds.min, 0);
         tables.0[4] = point(fixed.bounds.max, 0);
         let light = tables.0.len();
-        tables.add(cpu.house_light().flat(light));
+        tables.add(cpu.house_light().to_rows(light));
         tables.0[2][1] = light as u32;
-        let triangles = cpu.surfaces.flat();
+        let triangles = cpu.triangle_table.to_rows();
         let name = &house.name;
         let mut bytes = 0;
         let mut upload = |what: &str, rows: &[PackedRow]| {
@@ -171,12 +173,12 @@ impl HouseBuffers {
         tracing::debug!(bytes, "house in the adapter's memory");
         Ok(Self {
             group,
-            stack: fixed.stack,
-            mesh_stack: trees.iter().map(|tree| tree.stack).max().unwrap_or(0),
+            stack: fixed.stack_size,
+            mesh_stack: trees.iter().map(|tree| tree.stack_size).max().unwrap_or(0),
             drawable: RasterScene {
                 culler,
-                meshes: ranges,
-                culls: true,
+                mesh_blocks: ranges,
+                is_culling: true,
             },
             bytes,
         })

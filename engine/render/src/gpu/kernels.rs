@@ -84,9 +84,9 @@ pub(super) struct Kernels {
     /// The closest hit of each pixel, by rays.
     pub(super) trace: wgpu::ComputePipeline,
     /// All images but colour.
-    pub(super) describe: wgpu::ComputePipeline,
+    pub(super) geometry_images: wgpu::ComputePipeline,
     /// Flat colour.
-    pub(super) paint: wgpu::ComputePipeline,
+    pub(super) flat_color: wgpu::ComputePipeline,
     /// Made for the first lit view.
     lit: OnceLock<wgpu::ComputePipeline>,
     /// Made for the first view that is drawn.
@@ -104,8 +104,8 @@ impl Kernels {
         Self {
             stack,
             trace: kernel("trace", &[include_str!("shaders/trace.wgsl")]),
-            describe: kernel("describe", &[SKIN, include_str!("shaders/describe.wgsl")]),
-            paint: kernel("paint", &[SKIN, COLORS, include_str!("shaders/paint.wgsl")]),
+            geometry_images: kernel("describe", &[SKIN, include_str!("shaders/describe.wgsl")]),
+            flat_color: kernel("paint", &[SKIN, COLORS, include_str!("shaders/paint.wgsl")]),
             lit: OnceLock::new(),
             settle: OnceLock::new(),
         }
@@ -126,7 +126,7 @@ impl Kernels {
     }
 
     /// Returns the kernel that finds the closest hit of each pixel of drawn pictures.
-    pub(super) fn settle(
+    pub(super) fn raster_hit_kernel(
         &self,
         device: &wgpu::Device,
         layouts: &BindGroupLayouts,

@@ -1,6 +1,6 @@
 //! Occluders: large flat convex pieces of walls without gaps.
 
-use super::cull::SLACK_M;
+use super::cull::PLANE_SLACK_M;
 use dwell_scene::Aabb;
 use dwell_scene::bvh::flat::{BLOCK_ROWS, PackedRow};
 use glam::{DVec3, Vec3, Vec4, Vec4Swizzles};
@@ -38,9 +38,9 @@ impl OcclusionVolume {
     /// Returns whether a box lies in the shadow as a whole.
     pub(super) fn hides(&self, bounds: &Aabb) -> bool {
         let (center, half) = (bounds.center(), bounds.size() * 0.5);
-        self.planes[..self.count]
-            .iter()
-            .all(|plane| plane.xyz().dot(center) + plane.w - plane.xyz().abs().dot(half) > SLACK_M)
+        self.planes[..self.count].iter().all(|plane| {
+            plane.xyz().dot(center) + plane.w - plane.xyz().abs().dot(half) > PLANE_SLACK_M
+        })
     }
 }
 
@@ -84,7 +84,7 @@ impl Occluder {
     }
 
     /// Returns the volume that it hides from a point; `None` where parts of it may be nearer than `near_m`, where they are not seen.
-    pub(super) fn shadow(&self, eye: Vec3, near_m: f32) -> Option<OcclusionVolume> {
+    pub(super) fn occlusion_volume(&self, eye: Vec3, near_m: f32) -> Option<OcclusionVolume> {
         let height = self.normal.dot(self.corners[0] - eye);
         if height.abs() < near_m.max(0.01) {
             return None;
@@ -212,7 +212,9 @@ mod tests {
             panic!("{} pieces", found.len())
         };
         assert!((wall.area_m2 - 6.0).abs() < 1e-5 && wall.corners.len() == 4);
-        let shadow = wall.shadow(Vec3::new(1.5, 1.0, 3.0), 0.1).unwrap();
+        let shadow = wall
+            .occlusion_volume(Vec3::new(1.5, 1.0, 3.0), 0.1)
+            .unwrap();
         let around = |x: f32, y: f32, z: f32, half: f32| {
             let middle = Vec3::new(x, y, z);
             Aabb::new(middle - half, middle + half)
@@ -229,7 +231,10 @@ mod tests {
             assert!(!shadow.hides(&seen), "{seen:?}");
         }
         // Too near to be seen as a whole.
-        assert!(wall.shadow(Vec3::new(1.5, 1.0, 1.05), 0.1).is_none());
+        assert!(
+            wall.occlusion_volume(Vec3::new(1.5, 1.0, 1.05), 0.1)
+                .is_none()
+        );
     }
 
     #[test]

@@ -4,7 +4,7 @@ use super::cull::{Culler, CullingView, OccluderScratch, VisibilityQuery};
 use super::device::Gpu;
 use super::kernels::BindGroupLayouts;
 use crate::camera::Projection;
-use crate::cpu::{RenderJob, SEEN};
+use crate::cpu::{RenderJob, VISIBLE_MASK};
 use crate::error::RenderError;
 use dwell_scene::bvh::flat::PackedRow;
 use dwell_scene::parallel::Threads;
@@ -27,9 +27,9 @@ const RECORD_ROWS: usize = 5;
 pub(super) struct RasterScene {
     pub(super) culler: Culler,
     /// The blocks of each part that moves, then of each piece of an agent's body. Shape (mesh,).
-    pub(super) meshes: Vec<Range<u32>>,
+    pub(super) mesh_blocks: Vec<Range<u32>>,
     /// True to leave out what cannot be seen; tests compare.
-    pub(super) culls: bool,
+    pub(super) is_culling: bool,
 }
 
 /// A picture's place in the texture, its size, and its drawing.
@@ -46,11 +46,11 @@ pub(super) struct AtlasTile {
 /// The drawing of a batch. Its memory is used again.
 #[derive(Debug, Default)]
 pub(super) struct DrawBatch {
-    pub(super) sheets: Vec<AtlasTile>,
+    pub(super) atlas_tiles: Vec<AtlasTile>,
     /// Five rows each: from a mesh to the picture's clip space, then source, id and the id that is not seen.
-    pub(super) records: Vec<PackedRow>,
+    pub(super) instance_rows: Vec<PackedRow>,
     /// First block, number of blocks, and the record.
-    pub(super) pieces: Vec<PackedRow>,
+    pub(super) draw_rows: Vec<PackedRow>,
     /// Size of the texture.
     pub(super) size: (u32, u32),
     /// The list of each sheet.
@@ -98,12 +98,13 @@ impl DrawBatch {
         most_edge: u32,
         threads: Threads,
     ) -> Vec<Option<usize>> {
-        self.sheets.clear();
-        self.records.clear();
-        self.pieces.clear();
+        self.atlas_tiles.clear();
+        self.instance_rows.clear();
+        self.draw_rows.clear();
         let places = self.lay_out(jobs, most_edge);
-        if self.lists.len() < self.sheets.len() {
-            self.lists.resize_with(self.sheets.len(), DrawList::default);
+        if self.lists.len() < self.atlas_tiles.len() {
+            self.lists
+                .resize_with(self.atlas_tiles.len(), DrawList::default);
         }
         let drawn = jobs
             .iter()
@@ -122,16 +123,16 @@ impl DrawBatch {
                 list.fill(house, shot);
             }
         });
-        for (sheet, list) in self.sheets.iter_mut().zip(&self.lists) {
-            let first_record = (self.records.len() / RECORD_ROWS) as u32;
-            let first_piece = self.pieces.len() as u32;
-            self.records.extend_from_slice(&list.records);
+        for (sheet, list) in self.atlas_tiles.iter_mut().zip(&self.lists) {
+            let first_record = (self.instance_rows.len() / RECORD_ROWS) as u32;
+            let first_piece = self.draw_rows.len() as u32;
+            self.instance_rows.extend_from_slice(&list.records);
             let pieces = list.pieces.iter();
-            self.pieces.extend(
+            self.draw_rows.extend(
                 pieces
                     .map(|[block, blocks, record, _]| [*block, *blocks, record + first_record, 0]),
             );
-            sheet.pieces = first_piece..self.pieces.len() as u32;
+            sheet.pieces = first_piece..self.draw_rows.len() as u32;
         }
         places
     }
@@ -157,7 +158,7 @@ impl DrawBatch {
             if y + down > most_edge {
                 return None;
             }
-            self.sheets.push(AtlasTile {
+            self.atlas_tiles.push(AtlasTile {
                 x,
                 y,
                 width: across,
@@ -166,7 +167,7 @@ impl DrawBatch {
             });
             x += across;
             tallest = tallest.max(down);
-            Some(self.sheets.len() - 1)
+            Some(self.atlas_tiles.len() - 1)
         };
         let places = jobs.iter().map(&mut place).collect();
         self.size = (width, y + tallest);
@@ -174,14 +175,18 @@ impl DrawBatch {
     }
 
     /// Returns the number of draw calls of [`Self::draw`].
-    pub(super) fn calls(&self) -> usize {
-        let sheets = self.sheets.iter();
+    pub(super) fn draw_call_count(&self) -> usize {
+        let sheets = self.atlas_tiles.iter();
         sheets.filter(|sheet| !sheet.pieces.is_empty()).count()
     }
 
     /// Draws everything: one call for each picture.
     pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        for sheet in self.sheets.iter().filter(|sheet| !sheet.pieces.is_empty()) {
+        for sheet in self
+            .atlas_tiles
+            .iter()
+            .filter(|sheet| !sheet.pieces.is_empty())
+        {
             let [x, y, width, height] = [sheet.x, sheet.y, sheet.width, sheet.height];
             let [left, top, across, down] = [x, y, width, height].map(|edge| edge as f32);
             pass.set_viewport(left, top, across, down, 0.0, 1.0);
@@ -199,31 +204,31 @@ impl DrawList {
 
     /// Lists the visible geometry of a shot: static geometry, then instances.
     fn fill(&mut self, house: &RasterScene, shot: &DrawView<'_, '_>) {
-        let hidden = shot.eye.hidden as u32;
+        let hidden = shot.eye.hidden_entity as u32;
         let mut shadows = std::mem::take(&mut self.shadows);
         let sightline = house
-            .culls
-            .then(|| house.culler.sightline(&shot.eye, &mut shadows));
+            .is_culling
+            .then(|| house.culler.visibility_query(&shot.eye, &mut shadows));
         self.record(shot.clip, [0, 0, hidden, 0]);
         let mut ranges = std::mem::take(&mut self.ranges);
         match &sightline {
-            Some(sightline) => house.culler.visible(sightline, &mut ranges),
-            None => ranges = vec![house.culler.everything()],
+            Some(sightline) => house.culler.visible_blocks(sightline, &mut ranges),
+            None => ranges = vec![house.culler.all_blocks()],
         }
         for range in &ranges {
             self.piece(range.clone());
         }
         self.ranges = ranges;
         let moving = shot.job.scene.bvh().moving;
-        let parts = house.meshes.len() - BODY_PIECES;
+        let parts = house.mesh_blocks.len() - BODY_PIECES;
         for instance in 0..moving.len() {
             let sees = |sightline: &VisibilityQuery<'_>| {
-                sightline.sees(&moving.bounds_of(instance as u32))
+                sightline.is_visible(&moving.bounds_of(instance as u32))
             };
             if !sightline.as_ref().is_none_or(sees) {
                 continue;
             }
-            let Some(rows) = moving.flat_instance(instance, SEEN) else {
+            let Some(rows) = moving.flat_instance(instance, VISIBLE_MASK) else {
                 continue;
             };
             let Some(world_from_mesh) = shot.job.scene.world_from_mesh(instance) else {
@@ -240,7 +245,7 @@ impl DrawList {
             } else {
                 parts + (instance - parts) % BODY_PIECES
             };
-            self.piece(house.meshes[mesh].clone());
+            self.piece(house.mesh_blocks[mesh].clone());
         }
         self.shadows = shadows;
     }
@@ -288,15 +293,15 @@ impl<'a, 'b> DrawView<'a, 'b> {
         let eye = CullingView {
             position,
             planes: [
-                CullingView::through(position, right + back * left),
-                CullingView::through(position, -back * across - right),
-                CullingView::through(position, -back * top - up),
-                CullingView::through(position, up + back * bottom),
-                CullingView::through(position - back * near, -back),
-                CullingView::through(position - back * far, back),
+                CullingView::plane_through(position, right + back * left),
+                CullingView::plane_through(position, -back * across - right),
+                CullingView::plane_through(position, -back * top - up),
+                CullingView::plane_through(position, up + back * bottom),
+                CullingView::plane_through(position - back * near, -back),
+                CullingView::plane_through(position - back * far, back),
             ],
             near_m: near * longest,
-            hidden: view.hide.map_or(0, |entity| entity.0),
+            hidden_entity: view.hidden_entity.map_or(0, |entity| entity.0),
         };
         let from_eye = |axis: Vec3| {
             let axis: DVec3 = axis.as_dvec3();
@@ -339,7 +344,7 @@ impl RenderAtlas {
             return Ok(held);
         }
         let texture = |format, usage| {
-            gpu.count_buffer();
+            gpu.increment_buffer_count();
             let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some("atlas"),
                 size: wgpu::Extent3d {

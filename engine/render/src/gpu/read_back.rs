@@ -17,7 +17,7 @@ impl Gpu {
     /// [`RenderError::Driver`].
     pub fn read_back_bytes_per_s(&self) -> Result<f64, RenderError> {
         use wgpu::BufferUsages as Use;
-        let bytes = BYTES.min(self.most_bytes());
+        let bytes = BYTES.min(self.max_buffer_bytes());
         let images = self.buffer("a measurement", bytes, Use::STORAGE | Use::COPY_SRC)?;
         let back = self.buffer("a measurement", bytes, Use::MAP_READ | Use::COPY_DST)?;
         let mut into = vec![0_u8; bytes as usize];
@@ -36,7 +36,7 @@ impl Gpu {
             });
             self.wait(&index, &mapped)?;
             let held = back.get_mapped_range(0..bytes);
-            let held = held.map_err(|error| self.driver("to read", error.to_string()))?;
+            let held = held.map_err(|error| self.driver_error("to read", error.to_string()))?;
             into.copy_from_slice(&held);
             drop(held);
             back.unmap();
@@ -56,12 +56,12 @@ impl Gpu {
             timeout: None,
         };
         let polled = self.device.poll(until);
-        polled.map_err(|error| self.driver("to render", error.to_string()))?;
+        polled.map_err(|error| self.driver_error("to render", error.to_string()))?;
         self.check("to render")?;
         match mapped.recv() {
             Ok(Ok(())) => Ok(()),
-            Ok(Err(error)) => Err(self.driver("to read", error.to_string())),
-            Err(error) => Err(self.driver("to read", error.to_string())),
+            Ok(Err(error)) => Err(self.driver_error("to read", error.to_string())),
+            Err(error) => Err(self.driver_error("to read", error.to_string())),
         }
     }
 }

@@ -1,8 +1,8 @@
 //! Batches of views by an adapter.
 
 use super::batch::{ImageOffsets, tiles, words_per_pixel};
-use super::batch_buffers::{BatchBuffers, SEEN_BYTES};
-use super::device::{Gpu, buffer_size, lock};
+use super::batch_buffers::{BatchBuffers, HIT_BYTES};
+use super::device::{Gpu, buffer_size, lock_ignoring_poison};
 use super::house_buffers::HouseBuffers;
 use super::visibility_path::VisibilityPath;
 use crate::cpu::{CpuRenderer, RenderJob};
@@ -38,13 +38,15 @@ pub struct PendingBatch {
 
 impl PendingBatch {
     /// Number of draw calls of the raster path: one for each view that shows something.
-    pub fn draws(&self) -> usize {
+    pub fn draw_calls(&self) -> usize {
         let parts = self.parts.iter();
-        parts.map(|part| part.slot.batch.drawing.calls()).sum()
+        parts
+            .map(|part| part.slot.batch.draw_batch.draw_call_count())
+            .sum()
     }
 
     /// Number of submissions into which the batch was cut.
-    pub fn parts(&self) -> usize {
+    pub fn submission_count(&self) -> usize {
         self.parts.len()
     }
 }
@@ -90,14 +92,14 @@ impl GpuRenderer {
     }
 
     /// Returns the method by which it finds what pixels see first.
-    pub fn path(&self) -> VisibilityPath {
+    pub fn visibility_path(&self) -> VisibilityPath {
         self.path
     }
 
     /// Draws everything, seen or not; pictures are the same. For comparisons.
     #[must_use]
     pub fn without_culling(mut self) -> Self {
-        self.house.drawable.culls = false;
+        self.house.drawable.is_culling = false;
         self
     }
 
@@ -158,7 +160,7 @@ impl GpuRenderer {
             let some = self.fitting(rest).min(most);
             interrupt::check();
             let part = interrupt::uninterruptible(|| self.submit_part(&rest[..some], threads))?;
-            let taken = part.slot.batch.places.len();
+            let taken = part.slot.batch.image_offsets.len();
             // What follows is as large as a rule.
             most = if taken < some { taken } else { most };
             parts.push(part);
@@ -187,12 +189,12 @@ impl GpuRenderer {
 
     /// Returns the number of the first jobs whose images fit into one submission; at least one.
     fn fitting(&self, jobs: &[RenderJob<'_>]) -> usize {
-        let (most, most_groups) = (self.gpu.most_bytes(), self.gpu.most_groups());
+        let (most, most_groups) = (self.gpu.max_buffer_bytes(), self.gpu.max_workgroups());
         let (mut seen, mut words, mut groups) = (0, 0, 0);
         let fits = |job: &&RenderJob<'_>| {
             let (first, end) = job.row_range();
             let pixels = ((end - first) * job.view.camera.width() as usize) as u64;
-            seen += pixels * SEEN_BYTES;
+            seen += pixels * HIT_BYTES;
             words += pixels * words_per_pixel(&job.frame) as u64 * 4;
             groups += tiles(job.view.camera.width(), (end - first) as u32);
             seen.max(words) <= most && groups.div_ceil(most_groups) <= most_groups
@@ -202,9 +204,9 @@ impl GpuRenderer {
 
     /// Writes the rows of as many of the first jobs as fit into the buffers; at least of one.
     fn fill(&self, slot: &mut BatchBuffers, jobs: &[RenderJob<'_>], threads: Threads) {
-        let most = self.gpu.most_bytes();
+        let most = self.gpu.max_buffer_bytes();
         let draws = (self.path == VisibilityPath::Raster)
-            .then(|| (&self.house.drawable, self.gpu.most_edge()));
+            .then(|| (&self.house.drawable, self.gpu.max_texture_edge()));
         let (mut count, mut is_fresh) = (jobs.len(), false);
         loop {
             let batch = &mut slot.batch;
@@ -218,7 +220,7 @@ impl GpuRenderer {
             }
             // First without the lenses of earlier batches, then with half the views.
             count = if is_fresh { count.div_ceil(2) } else { count };
-            batch.lenses.forget();
+            batch.lens_rays.invalidate();
             is_fresh = true;
         }
     }
@@ -229,7 +231,9 @@ impl GpuRenderer {
         threads: Threads,
     ) -> Result<SubmittedPart, RenderError> {
         let gpu = &*self.gpu;
-        let mut slot = lock(&self.slots).pop().unwrap_or_else(BatchBuffers::new);
+        let mut slot = lock_ignoring_poison(&self.slots)
+            .pop()
+            .unwrap_or_else(BatchBuffers::new);
         self.fill(&mut slot, jobs, threads);
         let mut encoder = gpu
             .device
@@ -239,33 +243,34 @@ impl GpuRenderer {
         let levels = usize::BITS - slot.batch.instances.saturating_sub(1).leading_zeros();
         let moving = 3 * levels as usize + self.house.mesh_stack;
         let kernels = gpu.kernels(self.house.stack.max(moving) + 1)?;
-        let is_drawn = !slot.batch.drawing.sheets.is_empty();
+        let is_drawn = !slot.batch.draw_batch.atlas_tiles.is_empty();
         let atlas = slot.atlas.as_ref().filter(|_| is_drawn);
         if let (Some(atlas), Some(rows)) = (atlas, &slot.rows_group) {
             let mut pass = atlas.pass(&mut encoder);
             pass.set_pipeline(gpu.raster());
             pass.set_bind_group(0, &self.house.group, &[]);
             pass.set_bind_group(1, rows, &[]);
-            slot.batch.drawing.draw(&mut pass);
+            slot.batch.draw_batch.draw(&mut pass);
         }
-        let groups_x = slot.batch.tiles.clamp(1, gpu.most_groups());
+        let groups_x = slot.batch.tiles.clamp(1, gpu.max_workgroups());
         let groups_y = slot.batch.tiles.div_ceil(groups_x).max(1);
         if let Some(group) = slot.group() {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
             pass.set_bind_group(0, &self.house.group, &[]);
             pass.set_bind_group(1, group, &[]);
             if let Some(atlas) = atlas {
-                pass.set_pipeline(kernels.settle(&gpu.device, &gpu.layouts));
+                pass.set_pipeline(kernels.raster_hit_kernel(&gpu.device, &gpu.layouts));
                 pass.set_bind_group(2, &atlas.group, &[]);
                 pass.dispatch_workgroups(groups_x as u32, groups_y as u32, 1);
             }
-            let all_drawn = slot.batch.drawing.sheets.len() == slot.batch.places.len();
+            let all_drawn =
+                slot.batch.draw_batch.atlas_tiles.len() == slot.batch.image_offsets.len();
             let steps = [
                 (!all_drawn, &kernels.trace),
-                (slot.batch.describes, &kernels.describe),
-                (slot.batch.paints, &kernels.paint),
+                (slot.batch.has_geometry_images, &kernels.geometry_images),
+                (slot.batch.has_flat_color, &kernels.flat_color),
             ];
-            let lit = slot.batch.paints_lit.then(|| {
+            let lit = slot.batch.has_lit_color.then(|| {
                 let kernel = kernels.lit(&gpu.device, &gpu.layouts);
                 (true, kernel)
             });
@@ -275,12 +280,12 @@ impl GpuRenderer {
             }
         }
         let bytes = slot.image_bytes();
-        let (images, back) = slot.ways(gpu)?;
+        let (images, back) = slot.image_buffers(gpu)?;
         if bytes > 0 {
             encoder.copy_buffer_to_buffer(images, 0, back, 0, bytes);
         }
         let index = gpu.queue.submit([encoder.finish()]);
-        slot.recall();
+        slot.remap_upload_memory();
         let (sender, mapped) = mpsc::channel();
         back.map_async(wgpu::MapMode::Read, 0..bytes.max(16), move |result| {
             // Nobody waits any more when the batch was dropped.
@@ -306,7 +311,7 @@ impl GpuRenderer {
         let views = submitted
             .parts
             .iter()
-            .map(|part| part.slot.batch.places.len());
+            .map(|part| part.slot.batch.image_offsets.len());
         let views = views.sum();
         if frames.len() != views {
             return Err(RenderError::Count {
@@ -317,7 +322,7 @@ impl GpuRenderer {
         let places = submitted
             .parts
             .iter()
-            .flat_map(|part| &part.slot.batch.places);
+            .flat_map(|part| &part.slot.batch.image_offsets);
         let mut all = Vec::with_capacity(views);
         for (view, (places, frame)) in places.zip(frames).enumerate() {
             places.check(view, frame)?;
@@ -329,18 +334,18 @@ impl GpuRenderer {
         }
         let mut rest = &mut all[..];
         for part in submitted.parts {
-            let (deliveries, more) = rest.split_at_mut(part.slot.batch.places.len());
+            let (deliveries, more) = rest.split_at_mut(part.slot.batch.image_offsets.len());
             rest = more;
             self.gpu.wait(&part.index, &part.mapped)?;
-            let (_, back) = part.slot.ways(&self.gpu)?;
+            let (_, back) = part.slot.image_buffers(&self.gpu)?;
             let range = 0..part.slot.image_bytes().max(16);
             let held = back.get_mapped_range(range);
-            let held = held.map_err(|error| self.gpu.driver("to read", error.to_string()))?;
+            let held = held.map_err(|error| self.gpu.driver_error("to read", error.to_string()))?;
             let bytes: &[u8] = &held;
             threads.for_each(deliveries, |_, delivery| delivery.write(bytes));
             drop(held);
             back.unmap();
-            lock(&self.slots).push(part.slot);
+            lock_ignoring_poison(&self.slots).push(part.slot);
         }
         Ok(())
     }

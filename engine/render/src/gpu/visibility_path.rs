@@ -28,7 +28,7 @@ impl VisibilityPath {
     pub const ALL: [Self; 2] = [Self::Compute, Self::Raster];
 
     /// Its name.
-    pub fn word(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Self::Compute => "compute",
             Self::Raster => "raster",

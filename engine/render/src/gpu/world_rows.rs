@@ -1,7 +1,7 @@
 //! Worlds as kernels read them: the tree over what moves, and its instances.
 
 use super::house_buffers::point;
-use crate::cpu::{RenderJob, SEEN};
+use crate::cpu::{RenderJob, VISIBLE_MASK};
 use dwell_scene::Pose;
 use dwell_scene::bvh::flat::{INSTANCE_ROWS, NODE_ROWS, PackedRow, flat_pose};
 use dwell_scene::parallel::Threads;
@@ -19,7 +19,7 @@ fn is_same(a: &RenderJob<'_>, b: &RenderJob<'_>) -> bool {
 }
 
 /// Views of one world follow one another as a rule: the runs of those that do.
-pub(super) fn runs<'j, 'a>(jobs: &'j [RenderJob<'a>]) -> Vec<&'j [RenderJob<'a>]> {
+pub(super) fn runs_of_same_world<'j, 'a>(jobs: &'j [RenderJob<'a>]) -> Vec<&'j [RenderJob<'a>]> {
     jobs.chunk_by(is_same).collect()
 }
 
@@ -60,7 +60,11 @@ fn list(job: &RenderJob<'_>, rows: &mut Vec<PackedRow>) {
     let parts = &job.scene.house().geometry().movable;
     for instance in 0..moving.len() {
         let hidden = [[0; 4]; INSTANCE_ROWS];
-        rows.extend(moving.flat_instance(instance, SEEN).unwrap_or(hidden));
+        rows.extend(
+            moving
+                .flat_instance(instance, VISIBLE_MASK)
+                .unwrap_or(hidden),
+        );
         let pose = parts
             .get(instance)
             .and_then(|part| job.state.part_pose.get(*part));

@@ -36,7 +36,7 @@ pub(super) const LAW: RenderLaw = RenderLaw {
         separating_experiment: "stand before a wall at three known distances: scale is the slope, bias the rest; a mount moved along \
                                 the axis looks like bias, and shifts things at the side as well; a focal length acts only sideways",
     },
-    acts: RenderStage::Depth(change),
+    effect: RenderStage::Depth(change),
 };
 
 fn change(values: LawValues<'_>, scan: &DepthContext<'_>, _: RandomKey, image: &mut [f32]) {

@@ -46,7 +46,7 @@ pub(super) const LAW: RenderLaw = RenderLaw {
         separating_experiment: "move slowly away from a wall: quantization is a saw-tooth over depth that comes back the same, noise \
                                 is not",
     },
-    acts: RenderStage::Depth(change),
+    effect: RenderStage::Depth(change),
 };
 
 fn change(values: LawValues<'_>, scan: &DepthContext<'_>, _: RandomKey, image: &mut [f32]) {

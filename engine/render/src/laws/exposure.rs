@@ -45,7 +45,7 @@ pub(super) const LAW: RenderLaw = RenderLaw {
         separating_experiment: "switch a lamp: its light changes with place and throws shadows, exposure changes all pixels alike; \
                                 dark and bright patches together separate gamma from a factor",
     },
-    acts: RenderStage::Color(change),
+    effect: RenderStage::Color(change),
 };
 
 fn change(values: LawValues<'_>, _: &Camera, _: RandomKey, light: &mut [Vec3]) {

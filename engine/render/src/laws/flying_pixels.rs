@@ -47,7 +47,7 @@ pub(super) const LAW: RenderLaw = RenderLaw {
         separating_experiment: "look at the edge of a thing before a far wall: mixed pixels lie between the two depths on both sides \
                                 of the edge, lateral noise gives one or the other, an offset between cameras has a sign by side",
     },
-    acts: RenderStage::Depth(change),
+    effect: RenderStage::Depth(change),
 };
 
 fn change(values: LawValues<'_>, scan: &DepthContext<'_>, key: RandomKey, image: &mut [f32]) {

@@ -28,7 +28,7 @@ pub(super) const LAW: RenderLaw = RenderLaw {
                                 1/z, a focal length by the same part at both; look at straight edges in the corners: only a \
                                 lens bends them",
     },
-    acts: RenderStage::Lens(change),
+    effect: RenderStage::Lens(change),
 };
 
 fn change(values: LawValues<'_>, camera: Camera) -> Camera {

@@ -36,7 +36,7 @@ pub(super) const LAW: RenderLaw = RenderLaw {
         separating_experiment: "look at one wall frontally and at 70 degrees, at three distances: axial noise grows with z^2 and with \
                                 the angle, quantization not with the angle; an edge before a far wall shows the lateral noise",
     },
-    acts: RenderStage::DepthByNormals(change),
+    effect: RenderStage::DepthByNormals(change),
 };
 
 /// Steepest angle that is measured, rad.

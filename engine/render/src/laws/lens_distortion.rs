@@ -39,7 +39,7 @@ pub(super) const LAW: RenderLaw = RenderLaw {
         separating_experiment: "fill the corners of the image: a focal length moves points by r, radial terms by r^3 and r^5, \
                                 tangential ones not evenly around the middle",
     },
-    acts: RenderStage::Lens(change),
+    effect: RenderStage::Lens(change),
 };
 
 fn change(values: LawValues<'_>, camera: Camera) -> Camera {

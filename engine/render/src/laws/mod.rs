@@ -22,7 +22,7 @@ mod vignetting;
 use crate::camera::Camera;
 use crate::color::SrgbTables;
 use crate::error::RenderError;
-use dwell_scene::law::{ActingLaw, Law, LawRegistry};
+use dwell_scene::law::{ActiveLaw, Law, LawRegistry};
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, LawInfo, LawSpec, LawValues};
 use glam::Vec3;
@@ -96,7 +96,7 @@ pub struct Shutter {
 
 impl Shutter {
     /// Returns whether all rows are taken at one moment.
-    pub fn is_still(&self) -> bool {
+    pub fn is_global_instant(&self) -> bool {
         self.line_s == 0.0 && self.exposure_s == 0.0
     }
 }
@@ -121,7 +121,7 @@ pub fn check(laws: &[LawSpec], agents: usize) -> Result<(), RenderError> {
 
 /// The laws that act on one agent's cameras.
 pub struct Optics<'a> {
-    laws: Vec<ActingLaw<'a, RenderStage>>,
+    laws: Vec<ActiveLaw<'a, RenderStage>>,
 }
 
 impl std::fmt::Debug for Optics<'_> {
@@ -134,7 +134,7 @@ impl std::fmt::Debug for Optics<'_> {
 impl<'a> Optics<'a> {
     /// Those of `laws` that act on the cameras of `agent`.
     pub fn of(laws: &'a [LawSpec], agent: AgentId) -> Self {
-        let acting = LAWS.acting(laws);
+        let acting = LAWS.active(laws);
         Self {
             laws: acting
                 .filter(|law| law.values.spec.is_on_agent(agent))
@@ -151,7 +151,7 @@ impl<'a> Optics<'a> {
     #[must_use]
     pub fn camera(&self, mut camera: Camera) -> Camera {
         for law in &self.laws {
-            if let RenderStage::Lens(change) = law.acts {
+            if let RenderStage::Lens(change) = law.effect {
                 camera = change(law.values, camera);
             }
         }
@@ -162,7 +162,7 @@ impl<'a> Optics<'a> {
     pub fn shutter(&self) -> Shutter {
         let mut shutter = Shutter::default();
         for law in &self.laws {
-            if let RenderStage::Shutter(change) = law.acts {
+            if let RenderStage::Shutter(change) = law.effect {
                 change(law.values, &mut shutter);
             }
         }
@@ -172,7 +172,7 @@ impl<'a> Optics<'a> {
     /// Returns whether [`Self::depth`] needs normals.
     pub fn needs_normals(&self) -> bool {
         let mut laws = self.laws.iter();
-        laws.any(|law| matches!(law.acts, RenderStage::DepthByNormals(_)))
+        laws.any(|law| matches!(law.effect, RenderStage::DepthByNormals(_)))
     }
 
     /// Applies the sensor's laws to the depths `image`, m; 0 to the camera's far end.
@@ -188,12 +188,12 @@ impl<'a> Optics<'a> {
         }
         let mut changed = false;
         for law in &self.laws {
-            let change = match law.acts {
+            let change = match law.effect {
                 RenderStage::Depth(change) => change,
                 RenderStage::DepthByNormals(change) if normals.len() == 3 * image.len() => change,
                 _ => continue,
             };
-            change(law.values, &scan, key.child(law.place as u64), image);
+            change(law.values, &scan, key.child(law.index as u64), image);
             changed = true;
         }
         if changed {
@@ -213,7 +213,8 @@ impl<'a> Optics<'a> {
     /// # Determinism
     /// Equal keys, equal bits.
     pub fn color(&self, camera: &Camera, key: RandomKey, image: &mut [u8]) {
-        let is_color = |law: &ActingLaw<'_, RenderStage>| matches!(law.acts, RenderStage::Color(_));
+        let is_color =
+            |law: &ActiveLaw<'_, RenderStage>| matches!(law.effect, RenderStage::Color(_));
         if !self.laws.iter().any(is_color) || image.len() != 3 * camera.pixels() {
             return;
         }
@@ -229,8 +230,8 @@ impl<'a> Optics<'a> {
             })
             .collect();
         for law in &self.laws {
-            if let RenderStage::Color(change) = law.acts {
-                change(law.values, camera, key.child(law.place as u64), &mut light);
+            if let RenderStage::Color(change) = law.effect {
+                change(law.values, camera, key.child(law.index as u64), &mut light);
             }
         }
         for (rgb, light) in image.chunks_exact_mut(3).zip(&light) {
@@ -277,7 +278,7 @@ mod tests {
                 optics.depth(&camera, &normals, RandomKey::root(1), &mut z);
                 optics.color(&camera, RandomKey::root(1), &mut rgb);
                 assert!(z == depth && rgb == color && optics.camera(camera) == camera);
-                assert!(optics.shutter().is_still() && !optics.needs_normals());
+                assert!(optics.shutter().is_global_instant() && !optics.needs_normals());
             }
         }
     }

@@ -29,7 +29,7 @@ pub(super) const LAW: RenderLaw = RenderLaw {
         separating_experiment: "hold the camera still: defocus stays, motion blur goes; its width grows with speed and lies along \
                                 the movement",
     },
-    acts: RenderStage::Shutter(change),
+    effect: RenderStage::Shutter(change),
 };
 
 fn change(values: LawValues<'_>, shutter: &mut Shutter) {

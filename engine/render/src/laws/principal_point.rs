@@ -30,7 +30,7 @@ pub(super) const LAW: RenderLaw = RenderLaw {
         separating_experiment: "turn the camera about its axis: the shift stays in the image, that of a turned mount turns along; \
                                 near the corners a turned camera also changes shapes",
     },
-    acts: RenderStage::Lens(change),
+    effect: RenderStage::Lens(change),
 };
 
 fn change(values: LawValues<'_>, camera: Camera) -> Camera {

@@ -30,7 +30,7 @@ pub(super) const LAW: RenderLaw = RenderLaw {
         separating_experiment: "look at one wall frontally at several distances and draw the histogram of readings: this noise keeps \
                                 to the steps of 1/8 of a disparity, axial noise fills the gaps between them",
     },
-    acts: RenderStage::Depth(change),
+    effect: RenderStage::Depth(change),
 };
 
 /// Disparity times depth of the device.

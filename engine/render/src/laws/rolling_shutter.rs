@@ -28,7 +28,7 @@ pub(super) const LAW: RenderLaw = RenderLaw {
         separating_experiment: "look at an upright edge at rest and while the camera turns: only rolling rows shear it, and the \
                                 other way round when it turns the other way; a time offset moves all rows alike",
     },
-    acts: RenderStage::Shutter(change),
+    effect: RenderStage::Shutter(change),
 };
 
 fn change(values: LawValues<'_>, shutter: &mut Shutter) {

@@ -41,7 +41,7 @@ pub(super) const LAW: RenderLaw = RenderLaw {
                                 transfer): shot noise is a slope, read noise the rest at black; noise of rendering goes when \
                                 samples are added",
     },
-    acts: RenderStage::Color(change),
+    effect: RenderStage::Color(change),
 };
 
 /// Mean from which on rejection is faster than counting.
@@ -142,7 +142,7 @@ mod tests {
     fn variance_is_a_line_over_light() {
         let spec = law("shot_read_noise", &[("gain", 1e-3), ("read", 0.01)]);
         let camera = camera();
-        let RenderStage::Color(change) = LAW.acts else {
+        let RenderStage::Color(change) = LAW.effect else {
             panic!("acts on colour")
         };
         let values = LawValues {

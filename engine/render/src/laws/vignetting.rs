@@ -30,7 +30,7 @@ pub(super) const LAW: RenderLaw = RenderLaw {
         separating_experiment: "turn the camera so that one evenly lit wall wanders from the middle to a corner: only vignetting \
                                 darkens it there",
     },
-    acts: RenderStage::Color(change),
+    effect: RenderStage::Color(change),
 };
 
 fn change(values: LawValues<'_>, camera: &Camera, _: RandomKey, light: &mut [Vec3]) {

@@ -57,13 +57,13 @@ pub(crate) struct LightingCacheKey {
 
 impl LightingCacheKey {
     /// Returns whether inputs of this hash may be these.
-    pub(crate) fn has(&self, hash: u64) -> bool {
+    pub(crate) fn may_match(&self, hash: u64) -> bool {
         self.hash == Some(hash)
     }
 
     /// Returns whether the inputs are these, to the bit; stores them otherwise. `hash`: theirs.
-    pub(crate) fn renew(&mut self, inputs: &LightingInputs<'_>, hash: u64) -> bool {
-        if self.has(hash) {
+    pub(crate) fn matches_or_store(&mut self, inputs: &LightingInputs<'_>, hash: u64) -> bool {
+        if self.may_match(hash) {
             let (mut is_same, mut known) = (true, self.words.iter());
             inputs.each(|word| is_same &= known.next() == Some(&word));
             if is_same && known.next().is_none() {

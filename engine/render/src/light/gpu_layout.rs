@@ -26,7 +26,7 @@ fn split(vector: Vec3) -> (Vec3, f32) {
 }
 
 fn window_rows(window: &WindowLight) -> [PackedRow; 6] {
-    let [(across, width), (along, height)] = window.half.map(split);
+    let [(across, width), (along, height)] = window.half_edges.map(split);
     let [up, down] = window.luminance_cd_m2;
     [
         row(window.center, window.area_m2()),
@@ -40,26 +40,26 @@ fn window_rows(window: &WindowLight) -> [PackedRow; 6] {
 
 fn air_rows(air: &OutdoorLight) -> Vec<PackedRow> {
     let mut rows = vec![
-        row(air.to_sun, air.per_lx),
+        row(air.to_sun, air.white_per_lx),
         row(air.sun_lx, 0.0),
         row(air.ground_lx, 0.0),
     ];
     rows.extend(air.harmonics.map(|part| row(part, 0.0)));
-    rows.extend(air.dome.numbers().map(|part| part.map(f32::to_bits)));
+    rows.extend(air.dome.coefficients().map(|part| part.map(f32::to_bits)));
     rows
 }
 
 impl HouseLight {
     /// The constant light, when its first row is `first`: four rows of heads, storeys, windows, first windows of each room,
     /// the open air, and cells of storeys.
-    pub(crate) fn flat(&self, first: usize) -> Vec<PackedRow> {
+    pub(crate) fn to_rows(&self, first: usize) -> Vec<PackedRow> {
         let grid = &self.grid;
         let storeys = first + 4;
         let windows = storeys + grid.storeys.len();
         let starts = windows + self.windows.len() * 6;
         let start_rows = words(self.window_starts.iter().map(|start| *start as u32));
         let air = starts + start_rows.len();
-        let air_rows = self.air.as_ref().map_or_else(Vec::new, air_rows);
+        let air_rows = self.outdoor.as_ref().map_or_else(Vec::new, air_rows);
         let mut cells = air + air_rows.len();
         let mut rows = vec![
             [
@@ -74,7 +74,7 @@ impl HouseLight {
                 windows as u32,
                 starts as u32,
             ],
-            row(self.sun.0, f32::from(u8::from(self.air.is_some()))),
+            row(self.sun.0, f32::from(u8::from(self.outdoor.is_some()))),
             row(self.sun.1, 0.0),
         ];
         rows[3][3] = air as u32;
@@ -109,14 +109,14 @@ fn lamp_rows(lamp: &PointLamp) -> [PackedRow; 4] {
         tagged(lamp.position, lamp.entity as u32),
         row(lamp.intensity, cutoff),
         row(axis, exponent),
-        tagged(Vec3::from_array(lamp.attenuation), lamp.caster),
+        tagged(Vec3::from_array(lamp.attenuation), lamp.cluster),
     ]
 }
 
 impl Lighting {
     /// Appends the light of one state: two rows of heads (first rows of lamps, of the first lamps of each room, of rooms, and
     /// behind all; of shadow casters), then these.
-    pub(crate) fn flatten(&self, rows: &mut Vec<PackedRow>) {
+    pub(crate) fn append_rows(&self, rows: &mut Vec<PackedRow>) {
         let lamps = rows.len() + 2;
         let starts = lamps + self.lamps.len() * 4;
         let start_rows = words(self.lamp_starts.iter().map(|start| *start as u32));
@@ -136,7 +136,7 @@ impl Lighting {
 
 impl Exposure {
     /// Display white per lx.
-    pub(crate) fn per_lx(self) -> f32 {
+    pub(crate) fn white_per_lx(self) -> f32 {
         self.per_lx
     }
 }

@@ -9,7 +9,7 @@ pub(crate) enum LightSource {
     /// No source.
     None,
     /// Light reflected by the walls of a room.
-    Room,
+    RoomWalls,
     /// The whole open sky.
     Sky,
     /// The sky in a window: a position in [`super::HouseLight::windows`].
@@ -17,7 +17,7 @@ pub(crate) enum LightSource {
     /// The sun.
     Sun,
     /// A position in [`super::Lighting::casters`].
-    Caster(u32),
+    LampCluster(u32),
 }
 
 /// Light of one source.
@@ -50,7 +50,7 @@ impl<const N: usize> IncidentLight<N> {
     };
 
     /// Only light that arrives.
-    pub(crate) fn plain(light: Vec3) -> Self {
+    pub(crate) fn unshadowed(light: Vec3) -> Self {
         Self {
             light,
             ..Self::NONE
@@ -58,8 +58,8 @@ impl<const N: usize> IncidentLight<N> {
     }
 
     /// Adds a source; the weakest of more than `N` counts as arriving.
-    pub(super) fn offer(&mut self, source: LightSource, light: Vec3) {
-        if !matches!(source, LightSource::Sun | LightSource::Caster(_)) {
+    pub(super) fn add_source(&mut self, source: LightSource, light: Vec3) {
+        if !matches!(source, LightSource::Sun | LightSource::LampCluster(_)) {
             self.light += light;
             return;
         }
@@ -83,7 +83,7 @@ impl<const N: usize> IncidentLight<N> {
     }
 
     /// The light that a surface of that reflectance reflects.
-    pub(crate) fn on(mut self, color: Vec3) -> Self {
+    pub(crate) fn reflected_by(mut self, color: Vec3) -> Self {
         self.light *= color;
         for ray in &mut self.rays {
             ray.light *= color;
@@ -92,7 +92,7 @@ impl<const N: usize> IncidentLight<N> {
     }
 
     /// All light that arrives.
-    pub(crate) fn arriving(&self, mut arrives: impl FnMut(LightSource) -> bool) -> Vec3 {
+    pub(crate) fn total_arriving(&self, mut arrives: impl FnMut(LightSource) -> bool) -> Vec3 {
         self.rays.iter().fold(self.light, |sum, ray| {
             if ray.source != LightSource::None && arrives(ray.source) {
                 sum + ray.light
@@ -109,21 +109,26 @@ mod tests {
 
     #[test]
     fn the_strongest_sources_are_asked_and_the_rest_arrives() {
-        let mut incoming = IncidentLight::<2>::plain(Vec3::ONE);
+        let mut incoming = IncidentLight::<2>::unshadowed(Vec3::ONE);
         let lights = [3.0, 1.0, 5.0, 2.0, 4.0];
         for (k, light) in lights.into_iter().enumerate() {
-            incoming.offer(LightSource::Caster(k as u32), Vec3::splat(light));
+            incoming.add_source(LightSource::LampCluster(k as u32), Vec3::splat(light));
         }
-        incoming.offer(LightSource::Sun, Vec3::ZERO);
+        incoming.add_source(LightSource::Sun, Vec3::ZERO);
         let mut asked = Vec::new();
-        let none = incoming.arriving(|source| {
+        let none = incoming.total_arriving(|source| {
             asked.push(source);
             false
         });
         asked.sort_by_key(|source| format!("{source:?}"));
-        assert_eq!(asked, [LightSource::Caster(2), LightSource::Caster(4)]);
+        assert_eq!(
+            asked,
+            [LightSource::LampCluster(2), LightSource::LampCluster(4)]
+        );
         assert_eq!(none, Vec3::splat(1.0 + 3.0 + 1.0 + 2.0));
-        let all = incoming.on(Vec3::splat(0.5)).arriving(|_| true);
+        let all = incoming
+            .reflected_by(Vec3::splat(0.5))
+            .total_arriving(|_| true);
         assert_eq!(all, Vec3::splat(8.0));
     }
 }

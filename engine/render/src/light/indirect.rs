@@ -19,7 +19,7 @@ pub(crate) const PANE_TRANSMITTANCE: f32 = 0.7;
 /// thin cloud.
 const SUN_LX: f32 = 2500.0;
 /// Direction to that sun: 36 degrees high, between the axes, so that it enters houses however they stand.
-pub(super) const TO_SUN: Vec3 = Vec3::new(0.485, 0.588, 0.647);
+pub(super) const DEFAULT_SUN_DIRECTION: Vec3 = Vec3::new(0.485, 0.588, 0.647);
 /// Illuminance that even a dark room has, lx: light through gaps and from appliances that are not modelled.
 const RESIDUAL_LX: f32 = 15.0;
 /// Factor by which furniture lowers the walls' reflectance.
@@ -36,7 +36,7 @@ const ROUNDS: usize = 24;
 pub(crate) struct HouseLight {
     pub(crate) grid: RoomGrid,
     /// The open air, if the house knows its own.
-    pub(crate) air: Option<OutdoorLight>,
+    pub(crate) outdoor: Option<OutdoorLight>,
     /// Direction to the sun, and its illuminance behind a pane across its rays, lx.
     pub(crate) sun: (Vec3, Vec3),
     /// Windows by room.
@@ -83,9 +83,11 @@ impl HouseLight {
             ]
         };
         let (mut windows, passages) = openings(house, &grid, luminance);
-        let sun = air.as_ref().map_or((TO_SUN, Vec3::splat(SUN_LX)), |air| {
-            (air.to_sun, air.sun_lx * PANE_TRANSMITTANCE)
-        });
+        let sun = air
+            .as_ref()
+            .map_or((DEFAULT_SUN_DIRECTION, Vec3::splat(SUN_LX)), |air| {
+                (air.to_sun, air.sun_lx * PANE_TRANSMITTANCE)
+            });
         windows.sort_by_key(|window| window.room);
         let start = |room: usize| windows.partition_point(|window| window.room < room);
         let window_starts = (0..=house.rooms.len()).map(start).collect();
@@ -96,7 +98,7 @@ impl HouseLight {
             .collect();
         Self {
             grid,
-            air,
+            outdoor: air,
             sun,
             windows,
             window_starts,
@@ -134,7 +136,7 @@ impl HouseLight {
         for (k, window) in self.windows.iter().enumerate() {
             let area_m2 = window.area_m2();
             let outwards = -window.normal;
-            let lx = if let Some(air) = &self.air {
+            let lx = if let Some(air) = &self.outdoor {
                 air.sky_illuminance(outwards) + air.ground_illuminance(outwards)
             } else {
                 // A vertical window sees half the sky, a roof window all of it.

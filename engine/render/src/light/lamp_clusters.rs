@@ -74,7 +74,7 @@ pub(crate) fn cluster_lamps(
             let next = casters.len() as u32;
             casters.push(caster);
             for lamp in group {
-                lamp.caster = next;
+                lamp.cluster = next;
             }
         }
     }

@@ -19,7 +19,7 @@ const LINE_PARTS: [f32; 4] = [0.125, 0.375, 0.625, 0.875];
 pub(crate) struct PointLamp {
     pub(crate) position: Vec3,
     /// From there to its ends, m: a piece of a glowing line has a length.
-    pub(super) half: Vec3,
+    pub(super) half_length: Vec3,
     /// Intensity along the axis, cd, for red, green and blue.
     pub(super) intensity: Vec3,
     /// The cone, if it is a spot: axis, cosine of the half angle, exponent.
@@ -30,7 +30,7 @@ pub(crate) struct PointLamp {
     /// Position of its room.
     pub(crate) room: Option<usize>,
     /// Position among those that cast shadows, see [`super::lamp_clusters`]; or [`super::lamp_clusters::NONE`].
-    pub(crate) caster: u32,
+    pub(crate) cluster: u32,
     /// Luminous flux, lm, for red, green and blue.
     pub(crate) flux_lm: Vec3,
 }
@@ -90,13 +90,13 @@ pub(crate) fn add_lamps(
         let position = world_from_part.transform_point(point_in_part);
         PointLamp {
             position,
-            half: Vec3::ZERO,
+            half_length: Vec3::ZERO,
             intensity: intensity * share,
             cone,
             attenuation,
             entity: house.entity_of_object(light.object).0,
             room: grid.room(position),
-            caster: super::lamp_clusters::NONE,
+            cluster: super::lamp_clusters::NONE,
             flux_lm: flux_lm * share,
         }
     };
@@ -132,7 +132,7 @@ pub(crate) fn add_lamps(
             for part in LINE_PARTS {
                 let at = light.position.lerp(end, part);
                 lamps.push(PointLamp {
-                    half,
+                    half_length: half,
                     ..lamp(at, share, flux_lm / (4.0 * PI), None)
                 });
             }

@@ -15,11 +15,11 @@ pub(crate) use cache_key::LightingInputs;
 pub(crate) use incoming::{IncidentLight, LightSource};
 pub(crate) use indirect::HouseLight;
 pub(crate) use lamp_clusters::LampCluster;
-pub(crate) use tone::display;
+pub(crate) use tone::tone_map;
 
 use cache_key::LightingCacheKey;
 use glam::Vec3;
-use indirect::{PANE_TRANSMITTANCE, RoomLight, TO_SUN};
+use indirect::{DEFAULT_SUN_DIRECTION, PANE_TRANSMITTANCE, RoomLight};
 use lamps::{PointLamp, add_lamps};
 use openings::WindowLight;
 use std::f32::consts::PI;
@@ -70,8 +70,8 @@ pub(crate) struct Exposure {
 
 impl Lighting {
     /// Returns whether it may have been made from inputs of this hash.
-    pub(crate) fn has(&self, hash: u64) -> bool {
-        self.cache_key.has(hash)
+    pub(crate) fn may_match(&self, hash: u64) -> bool {
+        self.cache_key.may_match(hash)
     }
 
     /// Reads the switches and places of lamps, in the memory of an earlier state; does nothing where all is as it was then. `hash`: of
@@ -83,7 +83,7 @@ impl Lighting {
         sun_reaches: impl Fn(Vec3) -> bool,
         passes: impl Fn(Vec3, Vec3, i32) -> bool,
     ) {
-        if self.cache_key.renew(inputs, hash) {
+        if self.cache_key.matches_or_store(inputs, hash) {
             return;
         }
         let &LightingInputs {
@@ -93,7 +93,7 @@ impl Lighting {
             ..
         } = inputs;
         self.sunlit.clear();
-        if fixed.air.is_some() {
+        if fixed.outdoor.is_some() {
             let windows = fixed.windows.iter();
             self.sunlit
                 .extend(windows.map(|window| sunlit(window, fixed.sun, &sun_reaches)));
@@ -154,13 +154,13 @@ impl Lighting {
     }
 
     /// Returns the shadow caster of a source.
-    pub(crate) fn caster(&self, position: u32) -> &LampCluster {
+    pub(crate) fn lamp_cluster(&self, position: u32) -> &LampCluster {
         &self.casters[position as usize]
     }
 
     /// A point of a shadow caster from which light comes to `point`: in one of its lamps, as likely as that one's flux, on the
     /// side that the point sees. `pick`: which lamp and where along it, from 0 up to 1 each; `within`: in a ball of radius 1.
-    pub(crate) fn place_in_caster(
+    pub(crate) fn point_in_cluster(
         &self,
         caster: &LampCluster,
         point: Vec3,
@@ -182,7 +182,7 @@ impl Lighting {
         } else {
             within
         };
-        lamp.position + lamp.half * (2.0 * pick.1 - 1.0) + seen * BULB_M
+        lamp.position + lamp.half_length * (2.0 * pick.1 - 1.0) + seen * BULB_M
     }
 
     /// Returns the light on a surface of reflectance 1, for red, green and blue: of its strongest sources apart, before shadows.
@@ -194,15 +194,15 @@ impl Lighting {
         site: &ShadingPoint,
     ) -> IncidentLight<N> {
         let mut incoming = IncidentLight::NONE;
-        self.each(fixed, exposure, site, |source, light| {
-            incoming.offer(source, light);
+        self.for_each_source(fixed, exposure, site, |source, light| {
+            incoming.add_source(source, light);
         });
         incoming
     }
 
     /// Passes on the light of each source on a surface of reflectance 1, in units of display white, before shadows.
     #[inline]
-    pub(crate) fn each(
+    pub(crate) fn for_each_source(
         &self,
         fixed: &HouseLight,
         exposure: Exposure,
@@ -210,13 +210,13 @@ impl Lighting {
         mut tell: impl FnMut(LightSource, Vec3),
     ) {
         let &ShadingPoint { point, normal, .. } = site;
-        let room = fixed.grid.room(site.room_lookup);
+        let room = fixed.grid.room(site.room_lookup_point);
         let Some(position) = room else {
-            let Some(air) = &fixed.air else {
+            let Some(air) = &fixed.outdoor else {
                 tell(LightSource::Sky, open_air(normal));
                 return self.lamp_illuminance(None, site, exposure.per_lx, tell);
             };
-            let per_lx = air.per_lx(exposure.per_lx);
+            let per_lx = air.exposure_beside(exposure.per_lx);
             let sky = air.sky_illuminance(normal) + air.ground_illuminance(normal);
             tell(LightSource::Sky, sky * per_lx);
             let across = normal.dot(air.to_sun).max(0.0);
@@ -225,12 +225,12 @@ impl Lighting {
         };
         let per_lx = exposure.per_lx;
         let indirect = self.rooms[position].indirect * fill(normal);
-        tell(LightSource::Room, indirect * per_lx);
+        tell(LightSource::RoomWalls, indirect * per_lx);
         let mut sun = 0.0_f32;
         let first = fixed.window_starts[position];
         for (k, window) in fixed.windows_of(position).iter().enumerate() {
             let (mut lx, part) = daylight(window, fixed.sun.0, point, normal);
-            if fixed.air.is_some() {
+            if fixed.outdoor.is_some() {
                 // Windows side by side let in one and the same sun.
                 sun = sun.max(part);
             } else {
@@ -257,7 +257,7 @@ impl Lighting {
             let source = if caster == lamp_clusters::NONE {
                 LightSource::None
             } else {
-                LightSource::Caster(caster)
+                LightSource::LampCluster(caster)
             };
             tell(source, light);
         };
@@ -266,7 +266,7 @@ impl Lighting {
             let its = if site.entity == lamp.entity {
                 lamp_clusters::NONE
             } else {
-                lamp.caster
+                lamp.cluster
             };
             if its != caster {
                 all(caster, sum);
@@ -285,7 +285,7 @@ pub(crate) struct ShadingPoint {
     /// Unit length, towards the viewer; interpolated between corners.
     pub(crate) normal: Vec3,
     /// The point at which its room is looked up, see [`room_lookup_point`].
-    pub(crate) room_lookup: Vec3,
+    pub(crate) room_lookup_point: Vec3,
     /// The entity of the surface.
     pub(crate) entity: i32,
 }
@@ -325,7 +325,7 @@ fn daylight(window: &WindowLight, to_sun: Vec3, point: Vec3, normal: Vec3) -> (V
         return (sky, 0.0);
     }
     let on_window = point + to_sun * (height / against) - window.center;
-    let inside = window.half.map(|half| {
+    let inside = window.half_edges.map(|half| {
         let length = half.length().max(1e-6);
         ((length - on_window.dot(half / length).abs()) / PENUMBRA_M).clamp(0.0, 1.0)
     });
@@ -341,7 +341,7 @@ fn sunlit(
     if window.normal.dot(to_sun) >= -0.01 || lx == Vec3::ZERO {
         return 0.0;
     }
-    let [across, along] = window.half;
+    let [across, along] = window.half_edges;
     let lit = |k: u32| {
         let place = |k: u32| (k as f32 + 0.5) * (2.0 / SUN_POINTS as f32) - 1.0;
         let (a, b) = (place(k % SUN_POINTS), place(k / SUN_POINTS));
@@ -354,17 +354,17 @@ fn sunlit(
 /// Returns the radiance of white in the open air of a house without a sky, in units of display white.
 fn open_air(normal: Vec3) -> Vec3 {
     let sky = 0.35 + 0.25 * normal.y;
-    let sun = 0.5 * normal.dot(TO_SUN).max(0.0);
+    let sun = 0.5 * normal.dot(DEFAULT_SUN_DIRECTION).max(0.0);
     Vec3::splat((sky + sun) * OPEN_AIR)
 }
 
 /// Returns the radiance of the background, in units of display white, along a unit direction. `light`: `None` on a flat picture.
-pub(crate) fn sky(direction: Vec3, light: Option<(&HouseLight, Exposure)>) -> Vec3 {
+pub(crate) fn sky_luminance(direction: Vec3, light: Option<(&HouseLight, Exposure)>) -> Vec3 {
     match light {
         None => plain_sky(direction),
-        Some((fixed, exposure)) => match &fixed.air {
+        Some((fixed, exposure)) => match &fixed.outdoor {
             None => plain_sky(direction) * LIT_SKY,
-            Some(air) => air.background_luminance(direction) * air.per_lx(exposure.per_lx),
+            Some(air) => air.background_luminance(direction) * air.exposure_beside(exposure.per_lx),
         },
     }
 }

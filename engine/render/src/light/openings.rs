@@ -17,7 +17,7 @@ pub(crate) struct WindowLight {
     /// Into the room, unit length.
     pub(crate) normal: Vec3,
     /// From the middle to two of its edges, m.
-    pub(crate) half: [Vec3; 2],
+    pub(crate) half_edges: [Vec3; 2],
     /// Mean luminance seen through it upwards and downwards, cd/m².
     pub(crate) luminance_cd_m2: [Vec3; 2],
 }
@@ -25,7 +25,7 @@ pub(crate) struct WindowLight {
 impl WindowLight {
     /// m².
     pub(crate) fn area_m2(&self) -> f32 {
-        4.0 * self.half[0].length() * self.half[1].length()
+        4.0 * self.half_edges[0].length() * self.half_edges[1].length()
     }
 }
 
@@ -67,7 +67,7 @@ pub(crate) fn openings(
             room,
             center,
             normal: inwards,
-            half,
+            half_edges: half,
             luminance_cd_m2: luminance(-inwards),
         };
         let area_m2 = 4.0 * half[0].length() * half[1].length();

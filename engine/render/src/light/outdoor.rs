@@ -23,7 +23,7 @@ pub(crate) struct OutdoorLight {
     /// Radiant exitance of the ground, lm/m².
     pub(super) ground_lx: Vec3,
     /// Display white per lx in the open.
-    pub(super) per_lx: f32,
+    pub(super) white_per_lx: f32,
 }
 
 /// The first nine spherical harmonics in a direction.
@@ -64,11 +64,11 @@ impl OutdoorLight {
             sun_lx: Vec3::from_array(sky.sun_lx),
             harmonics,
             ground_lx: Vec3::ZERO,
-            per_lx: 1.0,
+            white_per_lx: 1.0,
         };
         let level = air.sky_illuminance(Vec3::Y) + air.sun_lx * air.to_sun.y.max(0.0);
         air.ground_lx = level * GROUND;
-        air.per_lx = tone::exposure_per_lx(super::indirect::luminance(level));
+        air.white_per_lx = tone::exposure_per_lx(super::indirect::luminance(level));
         air
     }
 
@@ -95,8 +95,8 @@ impl OutdoorLight {
 
     /// Returns the exposure of the open air beside a camera's own exposure: as eyes adapt to it by day, and not brighter than
     /// rooms by night.
-    pub(crate) fn per_lx(&self, camera_per_lx: f32) -> f32 {
-        self.per_lx.min(camera_per_lx)
+    pub(crate) fn exposure_beside(&self, camera_per_lx: f32) -> f32 {
+        self.white_per_lx.min(camera_per_lx)
     }
 
     /// Returns the luminance of the background, cd/m² times pi.
@@ -118,9 +118,9 @@ mod tests {
     #[test]
     fn skylight_is_the_sum_over_the_sky() {
         for (hour_h, weather) in [
-            (9.0, Weather::FINE),
-            (12.0, Weather::FINE),
-            (18.0, Weather::FINE),
+            (9.0, Weather::CLEAR_DEFAULT),
+            (12.0, Weather::CLEAR_DEFAULT),
+            (18.0, Weather::CLEAR_DEFAULT),
             (12.0, Weather::Overcast),
         ] {
             let sky = Sky::at(&Daytime {

@@ -32,7 +32,7 @@ fn compress(light: f32) -> f32 {
 /// Halfway between compressing each channel, which bleaches bright colours, and the luminance alone, which lets them
 /// glow.
 #[inline]
-pub(crate) fn display(light: Vec3) -> Vec3 {
+pub(crate) fn tone_map(light: Vec3) -> Vec3 {
     let each = Vec3::new(compress(light.x), compress(light.y), compress(light.z));
     let bright = luminance(light);
     let whole = light * (compress(bright) / bright.max(1e-6));
@@ -53,7 +53,7 @@ mod tests {
             assert!(now >= last);
             last = now;
             // Grey stays grey.
-            let grey = display(Vec3::splat(k as f32 * 0.01));
+            let grey = tone_map(Vec3::splat(k as f32 * 0.01));
             assert!((grey - now).abs().max_element() < 1e-5);
         }
     }

@@ -76,7 +76,7 @@ impl DollhouseConfig {
 /// A storey from outside and above, cut open; storeys of one house are seen from the same place above them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dollhouse {
-    /// Camera and pose. [`Self::picture`] leaves out the part over the cut.
+    /// Camera and pose. [`Self::render`] leaves out the part over the cut.
     pub view: View,
     /// Height of the cut, m.
     pub cut_y: f32,
@@ -142,7 +142,7 @@ impl Dollhouse {
     ///
     /// # Errors
     /// [`RenderError::OtherHouse`] for a scene over another house than the renderer's.
-    pub fn picture(
+    pub fn render(
         &self,
         renderer: &CpuRenderer,
         scene: &RayScene,
@@ -155,7 +155,7 @@ impl Dollhouse {
             floor_y: self.floor_y,
             plan: &self.plan,
         };
-        cut.picture(renderer, scene, state, threads)
+        cut.render(renderer, scene, state, threads)
     }
 }
 
@@ -190,7 +190,7 @@ mod tests {
         let doll = Dollhouse::new(&house, LevelId(0), config).unwrap();
         let renderer = CpuRenderer::new(&house);
         let rgb = doll
-            .picture(&renderer, &scene, &state, Threads::ONE)
+            .render(&renderer, &scene, &state, Threads::ONE)
             .unwrap();
         (doll, rgb)
     }

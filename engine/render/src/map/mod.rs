@@ -94,7 +94,7 @@ impl StoreyMap {
     ///
     /// # Errors
     /// [`RenderError::OtherHouse`] for a scene over another house than the renderer's.
-    pub fn picture(
+    pub fn render(
         &self,
         renderer: &CpuRenderer,
         scene: &RayScene,
@@ -107,7 +107,7 @@ impl StoreyMap {
             floor_y: self.cut_y - self.view.camera.far_m(),
             plan: self,
         };
-        cut.picture(renderer, scene, state, threads)
+        cut.render(renderer, scene, state, threads)
     }
 
     /// Returns the image of a point, pixels from the upper left corner of the image.

@@ -47,7 +47,7 @@ pub(super) struct SectionView<'a> {
 
 impl SectionView<'_> {
     /// The picture in flat colours, darker where a surface turns away, with dark walls at the cut. Shape (height, width, 3).
-    pub(super) fn picture(
+    pub(super) fn render(
         &self,
         renderer: &CpuRenderer,
         scene: &RayScene,
@@ -73,7 +73,7 @@ impl SectionView<'_> {
         for (strip, rgb) in rgb.chunks_mut(rows * width * 3).enumerate() {
             let first = (strip * rows) as u32;
             let end = camera.height().min(first + rows as u32);
-            let mut beside = Frame::of_pixels(rgb.len() / 3, BESIDE);
+            let mut beside = Frame::with_pixel_count(rgb.len() / 3, BESIDE);
             let images = FrameMut {
                 rgb: Some(&mut *rgb),
                 ..beside.as_mut()
@@ -118,7 +118,7 @@ impl SectionView<'_> {
                 end += 1;
             }
             let pixels = (end - first) as usize * camera.width() as usize;
-            let part = rest.take_pixels(pixels);
+            let part = rest.split_off_pixels(pixels);
             if let Some(near_m) = near.filter(|near_m| *near_m < camera.far_m()) {
                 let view = View {
                     camera: camera.with_range(near_m, camera.far_m())?,

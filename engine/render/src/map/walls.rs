@@ -73,7 +73,7 @@ impl StoreyMap {
             let (low, high) = (a.min(*b) - half_m, a.max(*b) + half_m);
             for y in first(low.y)..last(high.y, height) {
                 let columns = first(low.x)..last(high.x, width);
-                pace.turns(columns.len());
+                pace.count_many(columns.len());
                 for x in columns {
                     if distance(Vec2::new(middle(x), middle(y)), *a, *b) <= half_m {
                         paint(x, y);
@@ -100,7 +100,7 @@ impl StoreyMap {
             meets.sort_by(f32::total_cmp);
             for pair in meets.chunks_exact(2) {
                 let columns = first(pair[0])..last(pair[1], width);
-                pace.turns(columns.len());
+                pace.count_many(columns.len());
                 for x in columns {
                     if (pair[0]..pair[1]).contains(&middle(x)) {
                         paint(x, y);

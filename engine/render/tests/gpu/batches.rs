@@ -117,13 +117,13 @@ fn later_batches_make_no_buffers() {
             view.preset = [Preset::Flat, Preset::Lit][k % 2];
         }
         pair.shoot(&views);
-        let before = pair.gpu.gpu().buffers_made();
+        let before = pair.gpu.gpu().buffer_count();
         assert!(before > 8, "{before}");
         for _ in 0..3 {
             views.reverse();
             pair.shoot(&views);
         }
-        assert_eq!(pair.gpu.gpu().buffers_made(), before);
+        assert_eq!(pair.gpu.gpu().buffer_count(), before);
     }
 }
 
@@ -150,7 +150,7 @@ fn a_view_is_drawn_by_one_call() {
             .map(|(view, frame)| RenderJob::new(&pair.scene, &pair.state, *view, frame.as_mut()))
             .collect();
         let submitted = renderer.submit(&jobs, Threads::ONE).unwrap();
-        assert_eq!(submitted.draws(), views.len());
+        assert_eq!(submitted.draw_calls(), views.len());
         drop(jobs);
         let mut into: Vec<_> = frames.iter_mut().map(Frame::as_mut).collect();
         renderer
@@ -186,8 +186,10 @@ fn culling_changes_no_pixel() {
 fn a_measurement_chooses_the_quicker_path() {
     let Some(shared) = gpu() else { return };
     let house = Arc::new(dwell_houses::open("seed:4").unwrap().0);
-    let speeds = shared.speeds(&Arc::new(CpuRenderer::new(&house))).unwrap();
-    println!("{speeds:?}: {}", speeds.best().word());
+    let speeds = shared
+        .visibility_path_speeds(&Arc::new(CpuRenderer::new(&house)))
+        .unwrap();
+    println!("{speeds:?}: {}", speeds.best().name());
     assert!(speeds.compute_views_per_s > 1.0 && speeds.raster_views_per_s > 1.0);
     let quicker = |compute_views_per_s: f64, raster_views_per_s: f64| {
         let speeds = VisibilityPathSpeeds {

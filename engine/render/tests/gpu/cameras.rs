@@ -115,12 +115,12 @@ fn cameras_agree(path: VisibilityPath, cameras: &[(&'static str, Camera)]) {
             was.rotation *= Quat::from_rotation_y(0.02);
             let before = PreviousFrame {
                 world_from_camera: was,
-                moved: &parts,
+                moved_parts: &parts,
                 agents: &agents,
             };
             let mut view = *view;
             // Every other camera is the first agent's.
-            view.hide = (k % 2 == 0).then(|| {
+            view.hidden_entity = (k % 2 == 0).then(|| {
                 pair.house
                     .entity_of_agent(dwell_scene::AgentId::from_index(0))
             });

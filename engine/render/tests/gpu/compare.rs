@@ -195,7 +195,7 @@ impl Count {
 
     /// Prints the figures and checks those that are shares. `least`: the share of inner pixels.
     pub(crate) fn finish(&self, name: &str, path: VisibilityPath, least: f64) {
-        let name = &format!("{name}, {}", path.word());
+        let name = &format!("{name}, {}", path.name());
         let (pixels, inner) = (self.pixels as f64, self.inner.max(1) as f64);
         println!(
             "{name}: {} pixels, {} inner, {} coincident, {} colours off by more than {LEVELS}, mean {:.4} levels; beyond what \

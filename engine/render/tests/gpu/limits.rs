@@ -150,7 +150,7 @@ fn taken(
         .collect();
     let submitted = by.submit(&jobs, Threads::ONE).unwrap();
     drop(jobs);
-    let parts = submitted.parts();
+    let parts = submitted.submission_count();
     let mut into: Vec<_> = frames.iter_mut().map(Frame::as_mut).collect();
     by.collect(submitted, &mut into, Threads::ONE).unwrap();
     drop(into);
@@ -182,7 +182,7 @@ fn a_batch_too_large_for_any_buffer_is_cut_and_shows_the_same() {
             // Twice: what earlier batches left is in no one's way.
             for _ in 0..2 {
                 let (cut, parts) = taken(&pair, &worlds, &case, &small);
-                println!("{}, {}: {parts} parts", case.what, path.word());
+                println!("{}, {}: {parts} parts", case.what, path.name());
                 assert!((2..20).contains(&parts), "{}: {parts}", case.what);
                 assert!(cut == whole, "{}", case.what);
             }

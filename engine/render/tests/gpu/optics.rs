@@ -156,7 +156,7 @@ fn what_was_endlessly_far_beside_the_picture_has_no_flow() {
     let place = Pose::from_position(Vec3::new(3.0, 1.2, 3.6));
     let before = PreviousFrame {
         world_from_camera: place,
-        moved: &moved,
+        moved_parts: &moved,
         agents: &[],
     };
     for (name, camera) in cameras() {

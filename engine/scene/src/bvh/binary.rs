@@ -18,7 +18,7 @@ pub(super) struct BinaryNode {
 pub(super) struct BinaryBvh {
     pub(super) nodes: Vec<BinaryNode>,
     /// Positions in the input, referred to by leaves. Shape (boxes,).
-    pub(super) order: Vec<u32>,
+    pub(super) primitive_order: Vec<u32>,
 }
 
 /// A balanced tree by halving at the median; its depth is the binary logarithm of the number of boxes. For the few boxes
@@ -32,8 +32,8 @@ pub(super) fn median_tree(boxes: &[Aabb]) -> BinaryBvh {
 /// As [`median_tree`] with at most `leaf` boxes in a leaf, reusing an earlier tree's memory.
 pub(super) fn rebuild(boxes: &[Aabb], leaf: usize, tree: &mut BinaryBvh) {
     tree.nodes.clear();
-    tree.order.clear();
-    tree.order.extend(0..boxes.len() as u32);
+    tree.primitive_order.clear();
+    tree.primitive_order.extend(0..boxes.len() as u32);
     if !boxes.is_empty() {
         tree.nodes.push(BinaryNode {
             bounds: Aabb::EMPTY,
@@ -46,7 +46,7 @@ pub(super) fn rebuild(boxes: &[Aabb], leaf: usize, tree: &mut BinaryBvh) {
 
 /// Builds node `k` over `order[start..end]`, and all below it.
 fn fill(boxes: &[Aabb], leaf: usize, tree: &mut BinaryBvh, k: usize, (start, end): (usize, usize)) {
-    let order = &mut tree.order[start..end];
+    let order = &mut tree.primitive_order[start..end];
     let (mut all, mut centers) = (Aabb::EMPTY, Aabb::EMPTY);
     for &k in order.iter() {
         all = all.union(&boxes[k as usize]);

@@ -76,7 +76,7 @@ impl BoxTree {
                 open.extend([first + 1 - nearer, first + nearer]);
                 continue;
             }
-            for index in &self.tree.order[first..first + node.count as usize] {
+            for index in &self.tree.primitive_order[first..first + node.count as usize] {
                 let index = *index as usize;
                 if found.len() < most && asked < most_asked && self.boxes[index].intersects(reach) {
                     asked += 1;

@@ -70,7 +70,7 @@ pub(super) fn tree(boxes: &[Aabb]) -> BinaryBvh {
     });
     BinaryBvh {
         nodes: nodes.collect(),
-        order: built.primitive_indices,
+        primitive_order: built.primitive_indices,
     }
 }
 
@@ -147,7 +147,7 @@ mod tests {
         assert!(longest_unmerged(&boxes) > MAX_UNMERGED);
         let tree = tree(&boxes);
         assert!(depth(&tree, 0) <= 16, "{}", depth(&tree, 0));
-        let mut order = tree.order;
+        let mut order = tree.primitive_order;
         order.sort_unstable();
         assert!(order.into_iter().eq(0..boxes.len() as u32));
     }

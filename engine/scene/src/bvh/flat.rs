@@ -32,11 +32,11 @@ pub const NO_LINK: u32 = u32::MAX;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlatBvh {
     /// The link to its root.
-    pub top: u32,
+    pub root: u32,
     /// Around all triangles, m.
     pub bounds: Aabb,
     /// Largest size of a traversal's stack.
-    pub stack: usize,
+    pub stack_size: usize,
 }
 
 fn bits(row: Vec4) -> PackedRow {
@@ -97,7 +97,7 @@ impl TriangleBvh {
         let (first_node, first_block) = (nodes.len() / NODE_ROWS, blocks.len() / BLOCK_ROWS);
         write_nodes(&self.tree, first_node, first_block, nodes);
         for (block, surfaces) in self.blocks.iter().zip(self.surfaces.as_chunks::<WIDTH>().0) {
-            let seen = surfaces.map(|s| s.index != u32::MAX && s.mask.meets(mask));
+            let seen = surfaces.map(|s| s.index != u32::MAX && s.mask.intersects(mask));
             for row in [block.a, block.b, block.c, block.normal].as_flattened() {
                 let row = row.to_array();
                 blocks.push(std::array::from_fn(|k| {
@@ -110,9 +110,9 @@ impl TriangleBvh {
             }));
         }
         FlatBvh {
-            top: moved(self.tree.top, first_node, first_block),
+            root: moved(self.tree.root, first_node, first_block),
             bounds: self.tree.bounds,
-            stack: waiting(&self.tree, self.tree.top),
+            stack_size: waiting(&self.tree, self.tree.root),
         }
     }
 }
@@ -122,7 +122,7 @@ impl InstanceSet {
     /// first of these rows, and from the first instance.
     pub fn flatten_tree(&self, nodes: &mut Vec<PackedRow>) -> u32 {
         write_nodes(&self.tree, 0, 0, nodes);
-        moved(self.tree.top, 0, 0)
+        moved(self.tree.root, 0, 0)
     }
 
     /// Returns the rows of an instance; one that `mask` excludes is hidden.
@@ -132,9 +132,9 @@ impl InstanceSet {
         mask: RayMask,
     ) -> Option<[PackedRow; INSTANCE_ROWS]> {
         let placed = self.placed.get(instance)?;
-        let [x, y, z] = placed.mesh_from_world.numbers();
-        let longest = if placed.mask.meets(mask) {
-            placed.mesh_from_world.longest
+        let [x, y, z] = placed.mesh_from_world.rows();
+        let longest = if placed.mask.intersects(mask) {
+            placed.mesh_from_world.max_component
         } else {
             0.0
         };
@@ -188,7 +188,7 @@ mod tests {
         let flat = bvh.flatten(RayMask::EYE, &mut nodes, &mut blocks);
         let number = |row: &PackedRow, k: usize| f32::from_bits(row[k]);
         let mut seen = vec![0; 300];
-        let mut open = vec![(flat.top, flat.bounds)];
+        let mut open = vec![(flat.root, flat.bounds)];
         let mut most = 0;
         while let Some((link, bounds)) = open.pop() {
             most = most.max(open.len());
@@ -228,6 +228,6 @@ mod tests {
         for (k, count) in seen.iter().enumerate() {
             assert_eq!(*count, i32::from(k % 3 != 0), "{k}");
         }
-        assert!(most <= flat.stack, "{most} {}", flat.stack);
+        assert!(most <= flat.stack_size, "{most} {}", flat.stack_size);
     }
 }

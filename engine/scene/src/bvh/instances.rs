@@ -43,7 +43,7 @@ pub(super) struct MeshFromWorld {
     rows: [[f32; 3]; 3],
     origin: [f32; 3],
     /// Bound on each component of a transformed unit vector.
-    pub(super) longest: f32,
+    pub(super) max_component: f32,
 }
 
 impl MeshFromWorld {
@@ -62,12 +62,12 @@ impl MeshFromWorld {
         usable.then_some(Self {
             rows: rows.map(|row| row.to_array()),
             origin: origin.to_array(),
-            longest,
+            max_component: longest,
         })
     }
 
     /// Returns its rows, each followed by a coordinate of the origin.
-    pub(super) fn numbers(&self) -> [Vec4; 3] {
+    pub(super) fn rows(&self) -> [Vec4; 3] {
         [0, 1, 2].map(|k| Vec3::from_array(self.rows[k]).extend(self.origin[k]))
     }
 
@@ -189,7 +189,7 @@ impl InstanceSet {
         self.boxes
             .extend(self.placed.iter().map(|placed| placed.bounds));
         binary::rebuild(&self.boxes, 1, &mut self.binary);
-        let order = &self.binary.order;
+        let order = &self.binary.primitive_order;
         // Halving makes no tree too deep.
         self.tree.fill(&self.binary, &mut |leaf| {
             NodeLink::leaf(order[leaf.start] as usize)
@@ -212,7 +212,7 @@ impl PreparedInstance {
     /// Returns whether no ray can hit it because of its pose or its mesh.
     #[inline(always)]
     pub(super) fn is_hidden(&self) -> bool {
-        self.mesh_from_world.longest == 0.0
+        self.mesh_from_world.max_component == 0.0
     }
 
     /// Sets the pose.

@@ -63,7 +63,7 @@ impl<const N: usize> RayPacket<N> {
 
     /// Returns the upper end of each ray's range; minus infinity for a ray that cannot hit anything.
     #[inline(always)]
-    pub(super) fn usable_far(&self) -> [f32; N] {
+    pub(super) fn effective_far(&self) -> [f32; N] {
         let mut far = [f32::NEG_INFINITY; N];
         if self.origin.is_finite() {
             let [x, y, z] = &self.direction;
@@ -117,7 +117,7 @@ impl<const N: usize> PacketHits<N> {
 
     /// Returns the rays that hit the same triangle of the same instance as ray `k`, as bits.
     #[inline]
-    pub fn same(&self, k: usize) -> u64 {
+    pub fn same_triangle_mask(&self, k: usize) -> u64 {
         let (source, slot) = (self.source[k], self.slot[k]);
         let mut bits = 0;
         for first in (0..N).step_by(8) {

@@ -22,13 +22,13 @@ impl RayMask {
 
     /// Returns whether a ray and a surface share a bit.
     #[inline]
-    pub fn meets(self, other: Self) -> bool {
+    pub fn intersects(self, other: Self) -> bool {
         self.0 & other.0 != 0
     }
 
     /// The bits of both.
     #[must_use]
-    pub const fn or(self, other: Self) -> Self {
+    pub const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 }
@@ -62,7 +62,7 @@ impl Ray {
 
     /// Returns the part of this ray between two distances, m.
     #[must_use]
-    pub fn between(self, near_m: f32, far_m: f32) -> Self {
+    pub fn with_range(self, near_m: f32, far_m: f32) -> Self {
         Self {
             near_m,
             far_m,
@@ -72,11 +72,11 @@ impl Ray {
 
     /// The segment from `start` to `end`, less `margin_m` at either end.
     pub fn segment(start: Vec3, end: Vec3, margin_m: f32) -> Self {
-        Self::new(start, end - start).between(margin_m, (end - start).length() - margin_m)
+        Self::new(start, end - start).with_range(margin_m, (end - start).length() - margin_m)
     }
 
     /// The point at `distance_m`.
-    pub fn at(&self, distance_m: f32) -> Vec3 {
+    pub fn point_at(&self, distance_m: f32) -> Vec3 {
         self.origin + self.direction * distance_m
     }
 

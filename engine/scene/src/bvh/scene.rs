@@ -1,11 +1,11 @@
 //! Ray queries on static geometry and moving instances.
 
 use super::instances::InstanceSet;
-use super::kernels::closest_hit::{ClosestHit, HitIndex, TieBreak, reach};
+use super::kernels::closest_hit::{ClosestHit, HitIndex, TieBreak, coincidence_min_distance};
 use super::kernels::dispatch::{ClosestPacket, OccludedPacket};
 use super::kernels::scene_ray::{AllHitsVisitor, AnyHitVisitor, ClosestHitVisitor, SceneRayQuery};
 use super::kernels::tree_ray::HitVisitor;
-use super::kernels::triangle::{EdgePlanes, dot, height_of, weights};
+use super::kernels::triangle::{EdgePlanes, barycentric_weights, dot, plane_distance};
 use super::kernels::{HitFilter, tree_packet};
 use super::packet::{PacketHits, RayPacket};
 use super::ray::{Hit, Ray, RayMask};
@@ -81,7 +81,12 @@ impl SceneBvh<'_> {
         hidden: Option<i32>,
         hits: &mut PacketHits<N>,
     ) {
-        self.closest_packet_at_level(SimdLevel::best(), rays, &HitFilter::new(mask, hidden), hits);
+        self.closest_packet_at_level(
+            SimdLevel::best_available(),
+            rays,
+            &HitFilter::new(mask, hidden),
+            hits,
+        );
     }
 
     /// Returns the rays of a packet that hit anything, as bits; the same as [`Self::occluded`] for each.
@@ -92,7 +97,7 @@ impl SceneBvh<'_> {
         hidden: Option<i32>,
     ) -> u64 {
         let filter = &HitFilter::new(mask, hidden);
-        SimdLevel::best().run(OccludedPacket {
+        SimdLevel::best_available().run(OccludedPacket {
             scene: self,
             rays,
             filter,
@@ -126,13 +131,13 @@ impl SceneBvh<'_> {
             scene: self,
             rays,
             filter,
-            answers: &mut answers,
+            hits: &mut answers,
         });
         for k in 0..N {
             if answers.is_ambiguous(k) {
                 let ray = rays.ray(k);
                 let settled = self.settle(&ray, filter, &answers.lane(k, ray.far_m));
-                answers.set(k, settled.best);
+                answers.set(k, settled.closest);
             }
         }
         (hits.distance_m, hits.source, hits.slot) =
@@ -156,7 +161,8 @@ impl SceneBvh<'_> {
         if nearest.is_ambiguous() {
             nearest = self.settle(ray, filter, &nearest);
         }
-        (nearest.best != HitIndex::NONE).then(|| self.hit(ray, nearest.best, nearest.distance))
+        (nearest.closest != HitIndex::NONE)
+            .then(|| self.hit(ray, nearest.closest, nearest.distance))
     }
 
     fn occluded_filtered(&self, ray: &Ray, filter: &HitFilter) -> bool {
@@ -174,13 +180,20 @@ impl SceneBvh<'_> {
     /// Offers all hits that may matter.
     fn offer_all(&self, ray: &Ray, filter: &HitFilter, nearest: &mut ClosestHit) {
         let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
-        let claim = |place: HitIndex| self.claim(origin, direction, place);
-        self.offer(ray, filter, &mut ClosestHitVisitor { nearest, claim });
+        let claim = |place: HitIndex| self.tie_break(origin, direction, place);
+        self.offer(
+            ray,
+            filter,
+            &mut ClosestHitVisitor {
+                nearest,
+                tie_break: claim,
+            },
+        );
     }
 
     /// Passes hits to `hits`; returns whether it needs no more.
     fn offer(&self, ray: &Ray, filter: &HitFilter, hits: &mut impl HitVisitor) -> bool {
-        SimdLevel::best().run(SceneRayQuery {
+        SimdLevel::best_available().run(SceneRayQuery {
             scene: self,
             ray,
             filter,
@@ -211,7 +224,12 @@ impl SceneBvh<'_> {
     }
 
     /// Returns the tie-break of a hit among coincident ones.
-    pub(super) fn claim(&self, origin: [f32; 3], direction: [f32; 3], place: HitIndex) -> TieBreak {
+    pub(super) fn tie_break(
+        &self,
+        origin: [f32; 3],
+        direction: [f32; 3],
+        place: HitIndex,
+    ) -> TieBreak {
         let LocalRay {
             bvh,
             origin,
@@ -222,10 +240,10 @@ impl SceneBvh<'_> {
         let surface = &bvh.surfaces[slot];
         let (block, lane) = (&bvh.blocks[slot / 4], slot % 4);
         let slope = dot(block.normal_of(lane), x, y, z);
-        let distance = height_of(block, lane, origin) / slope;
+        let distance = plane_distance(block, lane, origin) / slope;
         let cosine = slope.abs() / dot([x, y, z], x, y, z).sqrt();
         TieBreak {
-            reach: reach(distance, cosine),
+            reach: coincidence_min_distance(distance, cosine),
             id: id.unwrap_or(surface.id),
             triangle: surface.index,
         }
@@ -255,9 +273,9 @@ impl SceneBvh<'_> {
         );
         let slot = place.slot as usize;
         let sides = EdgePlanes::new(&bvh.blocks[slot / 4], origin, 1.0)
-            .sides(direction)
+            .edge_functions(direction)
             .map(|side| side[slot % 4]);
-        let (u, v) = weights(sides);
+        let (u, v) = barycentric_weights(sides);
         let (id, triangle) = self.name(place);
         Hit {
             distance_m,

@@ -46,7 +46,7 @@ impl TriangleBvh {
     /// Builds the tree of a mesh; every triangle has id 0 and is seen by every ray.
     ///
     /// `positions`: m. `triangles`: indices into `positions`, shape (triangle, 3). Triangles without area, with indices out
-    /// of range or with coordinates that are not finite or exceed 10^12 m are left out (see [`Self::left_out`]); the others
+    /// of range or with coordinates that are not finite or exceed 10^12 m are left out (see [`Self::skipped_triangles`]); the others
     /// keep their numbers.
     ///
     /// # Determinism
@@ -91,7 +91,7 @@ impl TriangleBvh {
             let mut block = TriangleBlock::EMPTY;
             let first = surfaces.len();
             surfaces.resize(first + WIDTH, TriangleInfo::NONE);
-            for (lane, &k) in binary.order[leaf].iter().enumerate() {
+            for (lane, &k) in binary.primitive_order[leaf].iter().enumerate() {
                 let [a, b, c] = list.corners[k as usize];
                 for axis in 0..3 {
                     block.a[axis][lane] = a[axis];
@@ -122,7 +122,7 @@ impl TriangleBvh {
     }
 
     /// Returns the number of input triangles that were left out.
-    pub fn left_out(&self) -> usize {
+    pub fn skipped_triangles(&self) -> usize {
         self.left_out
     }
 

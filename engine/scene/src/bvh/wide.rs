@@ -8,7 +8,7 @@ use crate::bounds::Aabb;
 #[derive(Clone, Debug)]
 pub(super) struct WideBvh {
     pub(super) nodes: Vec<Node>,
-    pub(super) top: NodeLink,
+    pub(super) root: NodeLink,
     pub(super) bounds: Aabb,
 }
 
@@ -16,7 +16,7 @@ impl Default for WideBvh {
     fn default() -> Self {
         Self {
             nodes: Vec::new(),
-            top: NodeLink::NONE,
+            root: NodeLink::NONE,
             bounds: Aabb::EMPTY,
         }
     }
@@ -37,7 +37,7 @@ impl WideBvh {
         } else {
             self.below(tree, 0, 0, leaf)
         };
-        self.top = top.unwrap_or(NodeLink::NONE);
+        self.root = top.unwrap_or(NodeLink::NONE);
         top.is_some()
     }
 
@@ -110,7 +110,7 @@ mod tests {
         }
         BinaryBvh {
             nodes,
-            order: vec![0],
+            primitive_order: vec![0],
         }
     }
 

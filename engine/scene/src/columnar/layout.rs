@@ -13,7 +13,7 @@ const UNIT_TOLERANCE: f32 = 1e-5;
 const MAX_UNIT_STEPS: i32 = 15;
 
 /// Writes floats in the layout that usually packs best.
-pub(super) fn write(floats: &[u32], bytes: &mut Vec<u8>) -> FloatLayout {
+pub(super) fn write_floats(floats: &[u32], bytes: &mut Vec<u8>) -> FloatLayout {
     for width in FloatLayout::WIDTHS {
         if floats.len() >= MIN_FLOATS && floats.len().is_multiple_of(width) {
             let rows = RowDictionary::of(floats, width);
@@ -35,8 +35,8 @@ pub(super) fn write(floats: &[u32], bytes: &mut Vec<u8>) -> FloatLayout {
     FloatLayout::ByteShuffled
 }
 
-/// Reads `count` floats that [`write`] wrote.
-pub(super) fn read(
+/// Reads `count` floats that [`write_floats`] wrote.
+pub(super) fn read_floats(
     layout: FloatLayout,
     count: usize,
     bytes: &[u8],

@@ -25,7 +25,7 @@ pub fn from_bytes<'de, T: Deserialize<'de>>(bytes: &'de [u8]) -> Result<T, Colum
     let mut columns = Vec::with_capacity(count as usize);
     for (floats, layout, bytes, rest) in sizes {
         columns.push(Column {
-            floats: layout::read(layout, floats, take(&mut head, bytes)?)?,
+            floats: layout::read_floats(layout, floats, take(&mut head, bytes)?)?,
             read: 0,
             rest: take(&mut head, rest)?,
         });

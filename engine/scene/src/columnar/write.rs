@@ -42,7 +42,7 @@ impl ColumnarWriter {
         push_varint(&mut head, self.columns.len() as u64);
         for column in &self.columns {
             let start = body.len();
-            let layout = layout::write(&column.floats, &mut body);
+            let layout = layout::write_floats(&column.floats, &mut body);
             push_varint(&mut head, column.floats.len() as u64);
             head.push(layout.byte());
             push_varint(&mut head, (body.len() - start) as u64);

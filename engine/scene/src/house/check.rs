@@ -7,14 +7,14 @@ use crate::collider::Collider;
 use crate::error::{SceneError, range};
 use crate::fixtures::{LightShape, SoundFile};
 use crate::ids::{Id, IdVec, JointId, MaterialId, MeshId};
-use crate::space::flattens;
+use crate::space::is_singular;
 use glam::Vec3A;
 use std::collections::BTreeSet;
 
 /// Largest coordinate of anything, m: beyond it f32 positions are coarser than 4 mm.
 pub(super) const LARGEST_COORDINATE_M: f32 = 32_768.0;
 
-pub(super) fn exists<I: Id, T>(
+pub(super) fn check_id<I: Id, T>(
     at: &str,
     table: &'static str,
     items: &IdVec<I, T>,
@@ -58,9 +58,9 @@ fn slots(
     mesh: MeshId,
     materials: &[MaterialId],
 ) -> Result<(), SceneError> {
-    exists(at, "meshes", &data.meshes, mesh)?;
+    check_id(at, "meshes", &data.meshes, mesh)?;
     for material in materials {
-        exists(at, "materials", &data.materials, *material)?;
+        check_id(at, "materials", &data.materials, *material)?;
     }
     let used = data.meshes[mesh].slot_count();
     range(
@@ -72,14 +72,20 @@ fn slots(
     )
 }
 
-pub(super) fn is_near(coordinate_m: f32) -> bool {
+pub(super) fn is_within_coordinate_limit(coordinate_m: f32) -> bool {
     coordinate_m.abs() <= LARGEST_COORDINATE_M
 }
 
 /// Checks every index, name and range of `data`.
 pub(super) fn check(data: &HouseData) -> Result<(), SceneError> {
     let rooms = data.rooms.len();
-    range("house", "rooms", rooms <= Room::MOST, rooms, "at most 500")?;
+    range(
+        "house",
+        "rooms",
+        rooms <= Room::MAX_PER_HOUSE,
+        rooms,
+        "at most 500",
+    )?;
     unique("rooms", data.rooms.iter().map(|room| room.name.as_str()))?;
     unique(
         "structure",
@@ -111,15 +117,15 @@ pub(super) fn check(data: &HouseData) -> Result<(), SceneError> {
         let at = format!("materials[{}] {:?}", id.0, material.name);
         material.check(&at)?;
         if let Some(texture) = material.texture {
-            exists(&at, "textures", &data.textures, texture)?;
+            check_id(&at, "textures", &data.textures, texture)?;
         }
     }
     check_rooms::check(data)?;
     for (id, piece) in data.structure.iter_ids() {
         let at = format!("structure[{}] {:?}", id.0, piece.name);
-        exists(&at, "levels", &data.levels, piece.level)?;
+        check_id(&at, "levels", &data.levels, piece.level)?;
         if let Some(room) = piece.room {
-            exists(&at, "rooms", &data.rooms, room)?;
+            check_id(&at, "rooms", &data.rooms, room)?;
         }
         slots(data, &at, piece.mesh, &piece.materials)?;
         let bounds = data.meshes[piece.mesh].bounds();
@@ -143,9 +149,9 @@ fn objects(data: &HouseData) -> Result<(), SceneError> {
     let mut next_part = 0;
     for (id, object) in data.objects.iter_ids() {
         let at = format!("objects[{}] {:?}", id.0, object.name);
-        exists(&at, "levels", &data.levels, object.level)?;
+        check_id(&at, "levels", &data.levels, object.level)?;
         if let Some(room) = object.room {
-            exists(&at, "rooms", &data.rooms, room)?;
+            check_id(&at, "rooms", &data.rooms, room)?;
         }
         let follows = object.first_part.0 == next_part && object.part_count > 0;
         range(
@@ -205,7 +211,7 @@ fn objects(data: &HouseData) -> Result<(), SceneError> {
             range(
                 &at,
                 "part_from_mesh",
-                !flattens(&part.part_from_mesh.matrix3),
+                !is_singular(&part.part_from_mesh.matrix3),
                 "a transform that flattens space",
                 "one that keeps a volume",
             )?;
@@ -279,8 +285,8 @@ fn joints(data: &HouseData) -> Result<(), SceneError> {
     let mut moved = BTreeSet::new();
     for (id, joint) in data.joints.iter_ids() {
         let at = format!("joints[{}] {:?}", id.0, joint.name);
-        exists(&at, "objects", &data.objects, joint.object)?;
-        exists(&at, "parts", &data.parts, joint.child)?;
+        check_id(&at, "objects", &data.objects, joint.object)?;
+        check_id(&at, "parts", &data.parts, joint.child)?;
         range(
             &at,
             "child",
@@ -303,7 +309,7 @@ fn joints(data: &HouseData) -> Result<(), SceneError> {
             "a part that no other joint moves",
         )?;
         if let Some(parent) = joint.parent {
-            exists(&at, "parts", &data.parts, parent)?;
+            check_id(&at, "parts", &data.parts, parent)?;
             range(
                 &at,
                 "parent",
@@ -369,12 +375,12 @@ fn joints(data: &HouseData) -> Result<(), SceneError> {
             joint.armature,
             "0 to 1e6",
         )?;
-        let switches = joint.opens() && data.objects[joint.object].switch.is_some();
+        let switches = joint.is_openable() && data.objects[joint.object].switch.is_some();
         range(
             &at,
             "switches",
-            !joint.switches || switches,
-            joint.switches,
+            !joint.toggles_switch || switches,
+            joint.toggles_switch,
             "true for what opens by hand on an object with a switch",
         )?;
         motor(data, &at, id, joint)?;
@@ -407,7 +413,7 @@ fn motor(data: &HouseData, at: &str, id: JointId, joint: &Articulation) -> Resul
         }
     }
     if let Some(mimic) = &joint.mimic {
-        exists(at, "joints", &data.joints, mimic.leader)?;
+        check_id(at, "joints", &data.joints, mimic.leader)?;
         let leads = mimic.leader < id && data.joints[mimic.leader].mimic.is_none();
         let (found, allowed) = (
             mimic.leader.0,
@@ -428,8 +434,8 @@ fn fixtures(data: &HouseData) -> Result<(), SceneError> {
             .iter()
             .map(|x| ("receptacles", x.object, x.part)),
     ) {
-        exists(table, "objects", &data.objects, object)?;
-        exists(table, "parts", &data.parts, part)?;
+        check_id(table, "objects", &data.objects, object)?;
+        check_id(table, "parts", &data.parts, part)?;
         range(
             table,
             "part",
@@ -454,7 +460,9 @@ fn fixtures(data: &HouseData) -> Result<(), SceneError> {
             }
         };
         let numbers = shape.into_iter().chain(light.position.to_array());
-        let far = numbers.into_iter().find(|x| !is_near(*x));
+        let far = numbers
+            .into_iter()
+            .find(|x| !is_within_coordinate_limit(*x));
         range(
             "lights",
             "position, shape",
@@ -491,7 +499,7 @@ fn fixtures(data: &HouseData) -> Result<(), SceneError> {
             "-20 to 140",
         )?;
         if let Some(file) = emitter.sound_file {
-            exists("emitters", "sound_files", &data.sound_files, file)?;
+            check_id("emitters", "sound_files", &data.sound_files, file)?;
         }
         range(
             "emitters",
@@ -523,7 +531,7 @@ fn sounds_and_starts(data: &HouseData) -> Result<(), SceneError> {
         range(
             &format!("sound_files[{}] {:?}", id.0, sound.name),
             "bytes",
-            (1..=SoundFile::MOST_BYTES).contains(&(sound.bytes.len() as u64)),
+            (1..=SoundFile::MAX_BYTES).contains(&(sound.bytes.len() as u64)),
             sound.bytes.len(),
             "1 to 67108864",
         )?;
@@ -531,14 +539,14 @@ fn sounds_and_starts(data: &HouseData) -> Result<(), SceneError> {
     range(
         "agent_starts",
         "count",
-        data.agent_starts.len() <= AgentStart::MOST,
+        data.agent_starts.len() <= AgentStart::MAX_PER_HOUSE,
         data.agent_starts.len(),
         "at most 64",
     )?;
     for (k, start) in data.agent_starts.iter().enumerate() {
         let at = format!("agent_starts[{k}]");
         let mut numbers = start.position.to_array().into_iter();
-        let far = numbers.find(|x| !is_near(*x));
+        let far = numbers.find(|x| !is_within_coordinate_limit(*x));
         range(
             &at,
             "position",

@@ -1,6 +1,6 @@
 //! The check of storeys and rooms: heights, floors and boxes, over which grids are made.
 
-use super::check::{LARGEST_COORDINATE_M, exists, is_near};
+use super::check::{LARGEST_COORDINATE_M, check_id, is_within_coordinate_limit};
 use super::data::{HouseData, Room};
 use crate::bounds::Aabb;
 use crate::error::{SceneError, range};
@@ -10,7 +10,7 @@ use glam::Vec2;
 pub(super) fn check(data: &HouseData) -> Result<(), SceneError> {
     for (id, room) in data.rooms.iter_ids() {
         let at = format!("rooms[{}] {:?}", id.0, room.name);
-        exists(&at, "levels", &data.levels, room.level)?;
+        check_id(&at, "levels", &data.levels, room.level)?;
         heights_and_floor(&at, room)?;
     }
     Ok(())
@@ -34,7 +34,7 @@ fn heights_and_floor(at: &str, room: &Room) -> Result<(), SceneError> {
     let far = footprint
         .flat_map(Vec2::to_array)
         .chain([room.floor_y, room.ceiling_y])
-        .find(|x| !is_near(*x));
+        .find(|x| !is_within_coordinate_limit(*x));
     range(
         at,
         "footprint, floor_y, ceiling_y",

@@ -70,7 +70,7 @@ pub struct AgentStart {
 
 impl AgentStart {
     /// The largest number in a house: as many as a world has agents.
-    pub const MOST: usize = 64;
+    pub const MAX_PER_HOUSE: usize = 64;
 }
 
 /// A storey.
@@ -104,7 +104,7 @@ pub struct Room {
 
 impl Room {
     /// The largest number in a house, since a point is looked up in every room. Houses of SUNCG and ProcTHOR have some dozens.
-    pub const MOST: usize = 500;
+    pub const MAX_PER_HOUSE: usize = 500;
 
     /// Puts right what importers cannot rule out: leaves triangles without area out of the footprint, and lifts a ceiling below
     /// the floor to the floor. Returns the height of such a ceiling, m.

@@ -13,7 +13,7 @@ mod values;
 
 pub use info::{EngineKind, LawInfo, ParamInfo};
 pub use install::install;
-pub use registry::{ActingLaw, Law, LawRegistry};
+pub use registry::{ActiveLaw, Law, LawRegistry};
 pub use spec::LawSpec;
 pub use target::{is_joint_named, is_part_named};
 pub use values::LawValues;

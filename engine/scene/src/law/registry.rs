@@ -11,7 +11,7 @@ pub struct Law<A> {
     /// Its description.
     pub info: LawInfo,
     /// Its effect, in the engine's own type, such as the stage of a step together with a function.
-    pub acts: A,
+    pub effect: A,
 }
 
 /// The laws of one engine, in the order in which they are listed.
@@ -40,11 +40,11 @@ pub struct Law<A> {
 ///         rivals: &["offset"],
 ///         separating_experiment: "measure at two inputs",
 ///     },
-///     acts: |factor, x| factor * x,
+///     effect: |factor, x| factor * x,
 /// }]);
 ///
 /// let specs = [LawSpec::new("gain", 1, &[("factor", 2.0)]), LawSpec::new("gain", 1, &[])];
-/// let y = LAWS.acting(&specs).fold(3.0, |x, law| (law.acts)(law.values.get("factor"), x));
+/// let y = LAWS.active(&specs).fold(3.0, |x, law| (law.effect)(law.values.get("factor"), x));
 /// assert_eq!(y, 6.0);
 /// ```
 #[derive(Debug)]
@@ -54,13 +54,13 @@ pub struct LawRegistry<A: 'static> {
 
 /// A law that does something, as an engine finds it among the installed ones.
 #[derive(Debug)]
-pub struct ActingLaw<'a, A: 'static> {
+pub struct ActiveLaw<'a, A: 'static> {
     /// Its position among the installed laws, those of other engines included.
-    pub place: usize,
+    pub index: usize,
     /// Its numbers.
     pub values: LawValues<'a>,
     /// Its effect.
-    pub acts: &'static A,
+    pub effect: &'static A,
 }
 
 impl<A> LawRegistry<A> {
@@ -80,14 +80,14 @@ impl<A> LawRegistry<A> {
 
     /// Returns those of the installed laws that belong to this engine and do something, in order: a law at its defaults does
     /// nothing.
-    pub fn acting<'a>(&self, installed: &'a [LawSpec]) -> impl Iterator<Item = ActingLaw<'a, A>> {
+    pub fn active<'a>(&self, installed: &'a [LawSpec]) -> impl Iterator<Item = ActiveLaw<'a, A>> {
         let numbered = installed.iter().enumerate();
         numbered.filter_map(|(place, spec)| {
-            let Law { info, acts } = self.find(&spec.id)?;
-            (!spec.is_default(info)).then_some(ActingLaw {
-                place,
+            let Law { info, effect: acts } = self.find(&spec.id)?;
+            (!spec.is_default(info)).then_some(ActiveLaw {
+                index: place,
                 values: LawValues { spec, info },
-                acts,
+                effect: acts,
             })
         })
     }
@@ -150,7 +150,7 @@ mod tests {
     };
     static LAWS: LawRegistry<&str> = LawRegistry::new(&[Law {
         info: GAIN,
-        acts: "before the step",
+        effect: "before the step",
     }]);
 
     fn house() -> House {
@@ -164,9 +164,9 @@ mod tests {
             GAIN.spec(&[("factor", 1.0)]),
             GAIN.spec(&[("offset", 0.5)]),
         ];
-        let acting: Vec<_> = LAWS.acting(&specs).collect();
-        assert_eq!((acting.len(), acting[0].place), (1, 2));
-        assert_eq!(*acting[0].acts, "before the step");
+        let acting: Vec<_> = LAWS.active(&specs).collect();
+        assert_eq!((acting.len(), acting[0].index), (1, 2));
+        assert_eq!(*acting[0].effect, "before the step");
         let values = acting[0].values;
         assert_eq!((values.get("factor"), values.get_f32("offset")), (1.0, 0.5));
     }
@@ -187,7 +187,10 @@ mod tests {
             let message = check(spec).unwrap_err();
             assert!(message.contains(part), "{message}");
         }
-        let twice = [GAIN.spec(&[]).on("1"), GAIN.spec(&[]).on("+1")];
+        let twice = [
+            GAIN.spec(&[]).with_target("1"),
+            GAIN.spec(&[]).with_target("+1"),
+        ];
         assert!(LAWS.check(&house(), &twice).is_err());
     }
 
@@ -199,10 +202,11 @@ mod tests {
             &known,
             &[
                 LAG.spec(&[("factor", 1.0)]),
-                GAIN.spec(&[("factor", 1.0), ("offset", 0.5)]).on("+1"),
+                GAIN.spec(&[("factor", 1.0), ("offset", 0.5)])
+                    .with_target("+1"),
             ],
         );
-        let expected = GAIN.spec(&[("offset", 0.5)]).on("1");
+        let expected = GAIN.spec(&[("offset", 0.5)]).with_target("1");
         assert_eq!(installed, Ok(vec![expected]));
         let unknown = install(&house(), &known, &[LawSpec::new("lift", 1, &[])]);
         assert_eq!(

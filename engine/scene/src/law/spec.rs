@@ -40,7 +40,7 @@ impl LawSpec {
 
     /// Returns the same law on `target`.
     #[must_use]
-    pub fn on(mut self, target: &str) -> Self {
+    pub fn with_target(mut self, target: &str) -> Self {
         self.target = Some(target.to_owned());
         self
     }
@@ -113,7 +113,7 @@ impl LawSpec {
 
     /// Returns for each of the laws `now` the position of the one among those `before` that it goes on from: the same law,
     /// and of several the one with the same number. Shape as `now`.
-    pub fn predecessors<S: std::borrow::Borrow<Self>>(
+    pub fn predecessor_indices<S: std::borrow::Borrow<Self>>(
         before: &[S],
         now: &[S],
     ) -> Vec<Option<usize>> {
@@ -156,11 +156,11 @@ mod tests {
     #[test]
     fn laws_go_on_from_the_same_law_with_the_same_number() {
         let lag = LawSpec::new("lag", 1, &[("tau_s", 0.1)]);
-        let other = LawSpec::new("lag", 1, &[]).on("elbow");
+        let other = LawSpec::new("lag", 1, &[]).with_target("elbow");
         let wind = LawSpec::new("wind", 1, &[]);
         let before = [&lag, &other, &lag];
         let now = [&wind, &lag, &lag, &other, &lag];
-        let places = LawSpec::predecessors(&before, &now);
+        let places = LawSpec::predecessor_indices(&before, &now);
         assert_eq!(places, [None, Some(0), Some(2), Some(1), None]);
     }
 
@@ -169,11 +169,11 @@ mod tests {
         let law = LawSpec::new("noise", 1, &[]);
         assert_eq!(law.agent(0), Ok(None));
         assert!(law.is_on_agent(AgentId(3)));
-        let law = law.on("1");
+        let law = law.with_target("1");
         assert_eq!(law.agent(2), Ok(Some(AgentId(1))));
         assert!(law.is_on_agent(AgentId(1)) && !law.is_on_agent(AgentId(0)));
         assert_eq!(law.agent(1), Err("1"));
-        let law = law.on("robot");
+        let law = law.with_target("robot");
         assert_eq!(law.agent(9), Err("robot"));
         assert!(!law.is_on_agent(AgentId(0)));
     }

@@ -46,7 +46,7 @@ pub struct Material {
 
 impl Material {
     /// The loss at and above which nothing is transmitted, dB.
-    pub const OPAQUE_TO_SOUND_DB: f32 = 200.0;
+    pub const MAX_TRANSMISSION_LOSS_DB: f32 = 200.0;
 
     /// A material of a substance, with its properties and default colour.
     pub fn of(name: impl Into<String>, substance: &Substance) -> Self {
@@ -128,7 +128,7 @@ impl Material {
         self.transmission_loss_db.check(
             &format!("{at}.transmission_loss_db"),
             0.0,
-            Self::OPAQUE_TO_SOUND_DB,
+            Self::MAX_TRANSMISSION_LOSS_DB,
         )
     }
 }

@@ -50,7 +50,7 @@ impl NavGrid {
             [(x, z), (-z, x), (-x, -z), (z, -x)]
                 .into_iter()
                 .filter_map(move |(dx, dz)| {
-                    let crossing = self.straight(cell, dx, dz)?;
+                    let crossing = self.straight_path_by(cell, dx, dz)?;
                     let counts = !(only_uneven && crossing.level);
                     counts.then(|| (crossing.to, self.cost_m(&crossing)))
                 })
@@ -71,7 +71,7 @@ impl NavGrid {
         let ahead = |cell: NavCell| {
             let Some(aim) = start else { return 0.0 };
             let (dx, dz) = self.offset(cell, aim);
-            let (plan, up) = (self.plan_m(dx, dz), height(aim) - height(cell));
+            let (plan, up) = (self.horizontal_length_m(dx, dz), height(aim) - height(cell));
             (plan * plan + up * up).sqrt() * (1.0 - 1e-9)
         };
         let mut queue = BinaryHeap::new();

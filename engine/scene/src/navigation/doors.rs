@@ -1,8 +1,8 @@
 //! Doors as edges between the islands of a grid.
 
 use super::grid::{NavCell, NavGrid};
-use super::obstacles::stands_open;
-use super::static_grid::{around, blocks};
+use super::obstacles::is_passable;
+use super::static_grid::{columns_around, is_standing_blocked};
 use crate::ids::JointId;
 
 /// A door in the way of walking agents, as the grid has it.
@@ -23,9 +23,7 @@ pub struct NavDoor {
 impl NavGrid {
     /// Returns the doors in the way of walking agents, by joint.
     pub fn doors(&self) -> Vec<NavDoor> {
-        (0..self.ground.passages.len())
-            .map(|k| self.door(k))
-            .collect()
+        (0..self.ground.doors.len()).map(|k| self.door(k)).collect()
     }
 
     fn door(&self, passage: usize) -> NavDoor {
@@ -33,8 +31,8 @@ impl NavGrid {
         let mut islands: Vec<u32> = Vec::new();
         // Where an agent stands in front of the closed leaf, and a cell or two more for the grid's rounding.
         let reach = self.config.radius_m + 2.5 * self.config.cell_m;
-        for (column, _) in &self.ground.passages[passage].shut {
-            for (beside, _) in around(&self.ground.frame, *column as usize, reach) {
+        for (column, _) in &self.ground.doors[passage].closed_spans {
+            for (beside, _) in columns_around(&self.ground.frame, *column as usize, reach) {
                 let cells = self
                     .layers
                     .cells_of(beside)
@@ -46,9 +44,9 @@ impl NavGrid {
         islands.sort_unstable();
         islands.dedup();
         NavDoor {
-            joint: self.ground.passages[passage].joint,
+            joint: self.ground.doors[passage].joint,
             openness,
-            is_open: stands_open(openness),
+            is_open: is_passable(openness),
             cells: self.doorway(passage),
             islands,
         }
@@ -57,19 +55,19 @@ impl NavGrid {
     /// Returns whether an agent on `cell` is at the height of the door's leaf.
     fn is_beside(&self, passage: usize, cell: NavCell) -> bool {
         let y = self.layers.height[cell.0 as usize];
-        let leaf = &self.ground.passages[passage].shut;
+        let leaf = &self.ground.doors[passage].closed_spans;
         leaf.iter()
-            .any(|(_, span)| blocks(std::slice::from_ref(span), y, &self.config))
+            .any(|(_, span)| is_standing_blocked(std::slice::from_ref(span), y, &self.config))
     }
 
     /// Returns the walkable cells under the closed leaf of a door.
     fn doorway(&self, passage: usize) -> Vec<NavCell> {
         let mut cells = Vec::new();
-        for (column, leaf) in &self.ground.passages[passage].shut {
+        for (column, leaf) in &self.ground.doors[passage].closed_spans {
             for cell in self.layers.cells_of(*column as usize) {
                 let y = self.layers.height[cell];
                 let walkable = self.is_walkable(NavCell(cell as u32));
-                if walkable && blocks(std::slice::from_ref(leaf), y, &self.config) {
+                if walkable && is_standing_blocked(std::slice::from_ref(leaf), y, &self.config) {
                     cells.push(NavCell(cell as u32));
                 }
             }
@@ -82,7 +80,7 @@ impl NavGrid {
     /// Returns the closed doors that straight pieces between `corners` pass, in order.
     pub(super) fn shut_doors_on(&self, corners: &[NavCell]) -> Vec<JointId> {
         let crosses = |ends: &[NavCell]| {
-            let crossing = self.straight_between(ends[0], ends[1]);
+            let crossing = self.straight_path_between(ends[0], ends[1]);
             crossing.is_some_and(|crossing| crossing.door_crossings > 0)
         };
         let mut passed: Vec<JointId> = Vec::new();
@@ -92,8 +90,8 @@ impl NavGrid {
                 .ceil()
                 .max(1.0) as usize;
             let mut met: Vec<(usize, JointId)> = Vec::new();
-            for (k, passage) in self.ground.passages.iter().enumerate() {
-                if stands_open(self.openness[k]) {
+            for (k, passage) in self.ground.doors.iter().enumerate() {
+                if is_passable(self.openness[k]) {
                     continue;
                 }
                 let doorway = self.doorway(k);

@@ -1,10 +1,10 @@
 //! The walkable grid.
 
 use super::config::{DoorPolicy, NavConfig, range};
-use super::heightfield::{HeightSpan, join};
-use super::layers::{DOORWAY, FREE, INDOORS, Layers, NOWHERE, ON_FLOOR, middle};
-use super::obstacles::{Obstacles, openness, stands_open};
-use super::static_grid::{MAX_CELLS, StaticGrid, around, blocks};
+use super::heightfield::{HeightSpan, merge_spans};
+use super::layers::{DOORWAY, FREE, INDOORS, Layers, NO_CELL, ON_FLOOR, column_centre};
+use super::obstacles::{Obstacles, is_passable, openness};
+use super::static_grid::{MAX_CELLS, StaticGrid, columns_around, is_standing_blocked};
 use crate::error::SceneError;
 use crate::house::House;
 use crate::ids::LevelId;
@@ -28,7 +28,7 @@ pub struct NavGrid {
     /// Height spans of the columns that moving parts occupy; `None`: the static spans alone.
     mixed: Vec<Option<Box<[HeightSpan]>>>,
     pub(super) layers: Layers,
-    /// Shape (cell,); [`NOWHERE`] where an agent cannot stand.
+    /// Shape (cell,); [`NO_CELL`] where an agent cannot stand.
     island: Vec<u32>,
     /// Openness of each passage.
     pub(super) openness: Vec<f32>,
@@ -38,11 +38,11 @@ pub struct NavGrid {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct NavGridUpdate {
     /// Parts that moved.
-    pub parts: usize,
+    pub moved_parts: usize,
     /// Columns whose occupation changed.
-    pub columns: usize,
+    pub changed_columns: usize,
     /// Columns whose clearance was checked again: those within the agent's radius.
-    pub rechecked: usize,
+    pub rechecked_cells: usize,
 }
 
 /// The occupancy map of a storey, from above.
@@ -75,7 +75,7 @@ impl NavGrid {
             mixed: vec![None; columns],
             layers: Layers::new(columns),
             island: Vec::new(),
-            openness: vec![0.0; ground.passages.len()],
+            openness: vec![0.0; ground.doors.len()],
             ground,
         };
         grid.check_state(house, state)?;
@@ -94,9 +94,9 @@ impl NavGrid {
         self.check_state(house, state)?;
         let moved = self.follow(house, state);
         let mut rebuilt = NavGridUpdate {
-            parts: moved.parts,
-            columns: moved.columns.len(),
-            rechecked: 0,
+            moved_parts: moved.parts,
+            changed_columns: moved.columns.len(),
+            rechecked_cells: 0,
         };
         let filled: Vec<usize> = moved
             .columns
@@ -105,14 +105,14 @@ impl NavGrid {
             .collect();
         let near = self.grown(&filled, self.config.radius_m);
         let linked = self.grown(&near, self.config.cell_m);
-        rebuilt.rechecked = near.len();
+        rebuilt.rechecked_cells = near.len();
         self.settle(house, &filled, &near, &linked)?;
         Ok(rebuilt)
     }
 
     fn check_state(&self, house: &House, state: &State) -> Result<(), SceneError> {
         let same = house.geometry().movable.len() == self.obstacles.len()
-            && house.parts.len() == self.ground.passage_of_part.len()
+            && house.parts.len() == self.ground.door_of_part.len()
             && state.part_pose.len() == house.parts.len()
             && state.joint_position.len() == house.joints.len()
             && state.held_by.len() == house.objects.len();
@@ -130,14 +130,14 @@ impl NavGrid {
             *open = openness(house, state, &self.ground, k);
         }
         self.obstacles
-            .follow(house, state, &self.ground, &self.config)
+            .update_poses(house, state, &self.ground, &self.config)
     }
 
     /// Returns the columns within `radius_m` of some of `columns`, in order.
     fn grown(&self, columns: &[usize], radius_m: f32) -> Vec<usize> {
         let mut all: Vec<usize> = columns
             .iter()
-            .flat_map(|column| around(&self.ground.frame, *column, radius_m))
+            .flat_map(|column| columns_around(&self.ground.frame, *column, radius_m))
             .map(|(column, _)| column)
             .collect();
         all.sort_unstable();
@@ -157,13 +157,14 @@ impl NavGrid {
             interrupt::check();
             self.fill(column);
             let spans = spans_at(&self.mixed, &self.ground, column);
-            self.layers.stand(column, spans, &self.config);
+            self.layers
+                .set_standing_heights(column, spans, &self.config);
             if self.layers.height.len() >= MAX_CELLS {
                 let allowed = "a walker so tall that there are fewer than 2^25 surfaces";
                 return Err(range("height_m", self.config.height_m, allowed));
             }
         }
-        self.layers.trim();
+        self.layers.drop_empty_top_layers();
         for &column in near {
             interrupt::check();
             let cells: Vec<usize> = self.layers.cells_of(column).collect();
@@ -185,7 +186,7 @@ impl NavGrid {
         self.mixed[column] = moving.peek().is_some().then(|| {
             let fixed = self.ground.fixed.at(column).iter().copied();
             let mut spans: Vec<HeightSpan> = fixed.chain(moving).collect();
-            join(&mut spans);
+            merge_spans(&mut spans);
             spans.into_boxed_slice()
         });
     }
@@ -193,7 +194,7 @@ impl NavGrid {
     fn flags(&self, house: &House, column: usize, layer: usize, cell: usize) -> u8 {
         let spans = |column: usize| spans_at(&self.mixed, &self.ground, column);
         let frame = &self.ground.frame;
-        if !self.layers.has_room(cell, frame, &self.config, spans) {
+        if !self.layers.has_clearance(cell, frame, &self.config, spans) {
             return 0;
         }
         let y = self.layers.height[cell];
@@ -205,7 +206,7 @@ impl NavGrid {
         } else {
             floors.at(column).iter().any(over)
         };
-        let room = house.room_at(middle(frame, column, y) + Vec3::Y * 0.1);
+        let room = house.room_at(column_centre(frame, column, y) + Vec3::Y * 0.1);
         let indoors = room.is_some_and(|room| (y - house.rooms[room].floor_y).abs() < 0.5);
         FREE + ON_FLOOR * u8::from(on_floor) + INDOORS * u8::from(indoors)
     }
@@ -216,17 +217,17 @@ impl NavGrid {
             return;
         }
         for clear in [true, false] {
-            for (k, passage) in self.ground.passages.iter().enumerate() {
-                if !clear && stands_open(self.openness[k]) {
+            for (k, passage) in self.ground.doors.iter().enumerate() {
+                if !clear && is_passable(self.openness[k]) {
                     continue;
                 }
-                for (column, leaf) in &passage.shut {
+                for (column, leaf) in &passage.closed_spans {
                     let cells: Vec<usize> = self.layers.cells_of(*column as usize).collect();
                     for cell in cells {
                         let y = self.layers.height[cell];
                         if clear {
                             self.layers.flags[cell] &= !DOORWAY;
-                        } else if blocks(std::slice::from_ref(leaf), y, &self.config) {
+                        } else if is_standing_blocked(std::slice::from_ref(leaf), y, &self.config) {
                             self.layers.flags[cell] |= DOORWAY;
                         }
                     }
@@ -253,12 +254,12 @@ impl NavGrid {
     /// Returns the island of a walkable cell, 0 being the one with most cells on rooms' floors.
     pub fn island(&self, cell: NavCell) -> Option<u32> {
         let label = self.island.get(cell.0 as usize).copied();
-        label.filter(|label| *label != NOWHERE)
+        label.filter(|label| *label != NO_CELL)
     }
 
     /// All walkable cells, in order.
     pub fn walkable(&self) -> impl Iterator<Item = NavCell> + '_ {
-        let walkable = |(_, label): &(usize, &u32)| **label != NOWHERE;
+        let walkable = |(_, label): &(usize, &u32)| **label != NO_CELL;
         let cells = self.island.iter().enumerate().filter(walkable);
         cells.map(|(cell, _)| NavCell(cell as u32))
     }
@@ -286,7 +287,7 @@ impl NavGrid {
     pub fn position(&self, cell: NavCell) -> Vec3 {
         let cell = cell.0 as usize;
         let column = cell % self.layers.columns;
-        middle(&self.ground.frame, column, self.layers.height[cell])
+        column_centre(&self.ground.frame, column, self.layers.height[cell])
     }
 
     /// The storey of a walkable cell.

@@ -18,25 +18,25 @@ pub(super) struct HeightSpan {
     pub(super) low: f32,
     pub(super) high: f32,
     /// The highest point of its triangles that are flat enough to walk on; minus infinity without one.
-    pub(super) flat: f32,
+    pub(super) walkable_height: f32,
 }
 
 impl HeightSpan {
     const NONE: Self = Self {
         low: 0.0,
         high: 0.0,
-        flat: f32::NEG_INFINITY,
+        walkable_height: f32::NEG_INFINITY,
     };
 }
 
 /// Sorts spans and joins those that touch. The result depends on the set of them only, and joining joined spans again
 /// changes nothing.
-pub(super) fn join(spans: &mut Vec<HeightSpan>) {
+pub(super) fn merge_spans(spans: &mut Vec<HeightSpan>) {
     let kept = join_first(spans);
     spans.truncate(kept);
 }
 
-/// As [`join`]; the joined spans come first, and their number is returned.
+/// As [`merge_spans`]; the joined spans come first, and their number is returned.
 fn join_first(spans: &mut [HeightSpan]) -> usize {
     spans.sort_by(|a, b| a.low.total_cmp(&b.low).then(a.high.total_cmp(&b.high)));
     let mut kept = 0_usize;
@@ -45,7 +45,7 @@ fn join_first(spans: &mut [HeightSpan]) -> usize {
         match kept.checked_sub(1).map(|last| &mut spans[last]) {
             Some(last) if span.low <= last.high + TOUCHING_M => {
                 last.high = last.high.max(span.high);
-                last.flat = last.flat.max(span.flat);
+                last.walkable_height = last.walkable_height.max(span.walkable_height);
             }
             _ => {
                 spans[kept] = span;
@@ -109,7 +109,11 @@ impl GridFrame {
     }
 
     /// Calls `found` for every column that a triangle crosses, with its exact range of heights there.
-    pub(super) fn cross(&self, corners: [Vec3; 3], mut found: impl FnMut(usize, HeightSpan)) {
+    pub(super) fn rasterize_triangle(
+        &self,
+        corners: [Vec3; 3],
+        mut found: impl FnMut(usize, HeightSpan),
+    ) {
         let bounds = Aabb::from_points(corners);
         let [low, high] = self.heights;
         if bounds.is_empty() || bounds.max.y < low || bounds.min.y > high {
@@ -125,7 +129,7 @@ impl GridFrame {
         let span = |[low, high]: [f32; 2]| HeightSpan {
             low,
             high,
-            flat: if is_flat { high } else { f32::NEG_INFINITY },
+            walkable_height: if is_flat { high } else { f32::NEG_INFINITY },
         };
         let inside = |low: f32, high: f32, origin: f32, count: usize| {
             low >= origin && high <= origin + count as f32 * self.cell_m
@@ -242,7 +246,7 @@ mod tests {
             ];
             let frame = frame();
             let mut raw = Vec::new();
-            frame.cross(corners, |column, span| raw.push((column as u32, span)));
+            frame.rasterize_triangle(corners, |column, span| raw.push((column as u32, span)));
             let columns = Heightfield::new(frame.count(), &raw);
             let steps = 200;
             for i in 0..=steps {
@@ -269,9 +273,9 @@ mod tests {
             Vec3::new(9.1, 0.0, 0.5),
             Vec3::new(9.0, 1.0, 0.6),
         ];
-        frame.cross(beside, |column, _| panic!("column {column}"));
+        frame.rasterize_triangle(beside, |column, _| panic!("column {column}"));
         let above = beside.map(|p| p + Vec3::new(-8.5, 9.0, 0.0));
-        frame.cross(above, |column, _| panic!("column {column}"));
+        frame.rasterize_triangle(above, |column, _| panic!("column {column}"));
     }
 
     #[test]
@@ -281,7 +285,11 @@ mod tests {
             let low = stream.range(0.0, 3.0);
             let high = low + stream.range(0.0, 0.5);
             let flat = high - stream.range(0.0, 0.1);
-            HeightSpan { low, high, flat }
+            HeightSpan {
+                low,
+                high,
+                walkable_height: flat,
+            }
         };
         let count = 9;
         // The first and the last column stay empty.
@@ -292,7 +300,7 @@ mod tests {
         for column in 0..count {
             let own = raw.iter().filter(|(at, _)| *at as usize == column);
             let mut own: Vec<HeightSpan> = own.map(|(_, span)| *span).collect();
-            join(&mut own);
+            merge_spans(&mut own);
             assert_eq!(columns.at(column), own, "{column}");
         }
         let backwards: Vec<(u32, HeightSpan)> = raw.into_iter().rev().collect();
@@ -312,15 +320,15 @@ mod tests {
                     HeightSpan {
                         low,
                         high,
-                        flat: high - 0.1,
+                        walkable_height: high - 0.1,
                     }
                 })
                 .collect();
             let mut parts = all[..5].to_vec();
-            join(&mut parts);
+            merge_spans(&mut parts);
             parts.extend_from_slice(&all[5..]);
-            join(&mut parts);
-            join(&mut all);
+            merge_spans(&mut parts);
+            merge_spans(&mut all);
             assert_eq!(parts, all);
         }
     }

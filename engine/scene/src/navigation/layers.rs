@@ -2,7 +2,7 @@
 
 use super::config::NavConfig;
 use super::heightfield::{GridFrame, HeightSpan};
-use super::static_grid::{around, standing};
+use super::static_grid::{columns_around, standing_heights};
 use crate::interrupt::{self, PollEvery};
 use glam::Vec3;
 
@@ -10,7 +10,7 @@ use glam::Vec3;
 const SURFACES_PER_CHECK: usize = 1 << 14;
 
 /// No cell.
-pub(super) const NOWHERE: u32 = u32::MAX;
+pub(super) const NO_CELL: u32 = u32::MAX;
 
 /// A surface with clearance for the agent.
 pub(super) const FREE: u8 = 1;
@@ -37,7 +37,7 @@ pub(super) struct Layers {
     pub(super) height: Vec<f32>,
     /// [`FREE`] and so on.
     pub(super) flags: Vec<u8>,
-    /// The free surfaces one step away in the four directions, [`NOWHERE`] without one. Links are mutual.
+    /// The free surfaces one step away in the four directions, [`NO_CELL`] without one. Links are mutual.
     pub(super) links: Vec<[u32; 4]>,
     /// Number of surfaces in each layer.
     used: Vec<usize>,
@@ -64,8 +64,13 @@ impl Layers {
     }
 
     /// Writes the heights at which the agent can stand upright in a column.
-    pub(super) fn stand(&mut self, column: usize, spans: &[HeightSpan], config: &NavConfig) {
-        let mut heights = standing(spans, config);
+    pub(super) fn set_standing_heights(
+        &mut self,
+        column: usize,
+        spans: &[HeightSpan],
+        config: &NavConfig,
+    ) {
+        let mut heights = standing_heights(spans, config);
         let mut layer = 0;
         loop {
             let height = heights.next();
@@ -76,7 +81,7 @@ impl Layers {
                 let len = (layer + 1) * self.columns;
                 self.height.resize(len, f32::NAN);
                 self.flags.resize(len, 0);
-                self.links.resize(len, [NOWHERE; 4]);
+                self.links.resize(len, [NO_CELL; 4]);
                 self.used.push(0);
             }
             let cell = layer * self.columns + column;
@@ -84,13 +89,13 @@ impl Layers {
             self.used[layer] -= usize::from(!self.height[cell].is_nan());
             self.height[cell] = height.unwrap_or(f32::NAN);
             self.flags[cell] = 0;
-            self.links[cell] = [NOWHERE; 4];
+            self.links[cell] = [NO_CELL; 4];
             layer += 1;
         }
     }
 
     /// Drops empty layers at the top, so that the numbers depend on the present surfaces and not on earlier ones.
-    pub(super) fn trim(&mut self) {
+    pub(super) fn drop_empty_top_layers(&mut self) {
         while self.used.last() == Some(&0) {
             self.used.pop();
         }
@@ -102,7 +107,7 @@ impl Layers {
 
     /// Returns whether the agent has clearance on a surface: within its radius nothing stands between a step and its height
     /// above it, unless it gets up there step by step within that radius, as on stairs and slopes.
-    pub(super) fn has_room<'a>(
+    pub(super) fn has_clearance<'a>(
         &self,
         cell: usize,
         frame: &GridFrame,
@@ -113,7 +118,7 @@ impl Layers {
         let (low, high) = (y + config.step_m, y + config.height_m);
         // The columns with something in the way, and the surface above it.
         let mut above: Vec<usize> = Vec::new();
-        for (beside, _) in around(frame, column, config.radius_m) {
+        for (beside, _) in columns_around(frame, column, config.radius_m) {
             let in_the_way = |span: &&HeightSpan| span.high > low && span.low < high;
             let Some(last) = spans_at(beside).iter().rfind(in_the_way) else {
                 continue;
@@ -137,7 +142,7 @@ impl Layers {
         config: &NavConfig,
         mut goals: Vec<usize>,
     ) -> bool {
-        let disk: Vec<usize> = around(frame, cell % self.columns, config.radius_m)
+        let disk: Vec<usize> = columns_around(frame, cell % self.columns, config.radius_m)
             .map(|(column, _)| column)
             .collect();
         let mut reached = vec![cell];
@@ -149,7 +154,7 @@ impl Layers {
                 return true;
             }
             for way in 0..4 {
-                let Some(column) = beside(frame, here % self.columns, way) else {
+                let Some(column) = neighbour_column(frame, here % self.columns, way) else {
                     continue;
                 };
                 // Offsets are in order of z, then x, and so are column numbers.
@@ -187,10 +192,10 @@ impl Layers {
     pub(super) fn link(&mut self, column: usize, frame: &GridFrame, config: &NavConfig) {
         let cells: Vec<usize> = self.cells_of(column).collect();
         for cell in cells {
-            let mut links = [NOWHERE; 4];
+            let mut links = [NO_CELL; 4];
             if self.is_free(cell) {
                 for (way, link) in links.iter_mut().enumerate() {
-                    let Some(column_there) = beside(frame, column, way) else {
+                    let Some(column_there) = neighbour_column(frame, column, way) else {
                         continue;
                     };
                     let free = |cell: usize| self.is_free(cell);
@@ -207,15 +212,15 @@ impl Layers {
     }
 
     /// Numbers connected surfaces, keeping only those connected with a floor of the house: no beds, no tops of walls. First
-    /// comes the island with most surfaces in rooms, then the largest. Shape (cell,); [`NOWHERE`] where an agent cannot
+    /// comes the island with most surfaces in rooms, then the largest. Shape (cell,); [`NO_CELL`] where an agent cannot
     /// stand.
     pub(super) fn islands(&self) -> Vec<u32> {
-        let mut island = vec![NOWHERE; self.height.len()];
+        let mut island = vec![NO_CELL; self.height.len()];
         let mut found: Vec<(usize, usize, bool)> = Vec::new();
         let mut stack = Vec::new();
         let mut pace = PollEvery::new(SURFACES_PER_CHECK);
         for start in 0..self.height.len() {
-            if island[start] != NOWHERE || !self.is_free(start) {
+            if island[start] != NO_CELL || !self.is_free(start) {
                 continue;
             }
             interrupt::check();
@@ -230,7 +235,7 @@ impl Layers {
                 kept |= flags & ON_FLOOR != 0;
                 size += 1;
                 for there in self.links[cell as usize] {
-                    if there != NOWHERE && island[there as usize] == NOWHERE {
+                    if there != NO_CELL && island[there as usize] == NO_CELL {
                         island[there as usize] = label;
                         stack.push(there);
                     }
@@ -240,11 +245,11 @@ impl Layers {
         }
         let mut order: Vec<usize> = (0..found.len()).filter(|k| found[*k].2).collect();
         order.sort_by_key(|k| (std::cmp::Reverse((found[*k].0, found[*k].1)), *k));
-        let mut rank = vec![NOWHERE; found.len()];
+        let mut rank = vec![NO_CELL; found.len()];
         for (new, old) in order.into_iter().enumerate() {
             rank[old] = new as u32;
         }
-        for label in island.iter_mut().filter(|label| **label != NOWHERE) {
+        for label in island.iter_mut().filter(|label| **label != NO_CELL) {
             *label = rank[*label as usize];
         }
         island
@@ -252,7 +257,7 @@ impl Layers {
 }
 
 /// The column beside one in a direction.
-pub(super) fn beside(frame: &GridFrame, column: usize, way: usize) -> Option<usize> {
+pub(super) fn neighbour_column(frame: &GridFrame, column: usize, way: usize) -> Option<usize> {
     let x = column % frame.width;
     match way {
         EAST => (x + 1 < frame.width).then(|| column + 1),
@@ -263,7 +268,7 @@ pub(super) fn beside(frame: &GridFrame, column: usize, way: usize) -> Option<usi
 }
 
 /// The middle of a surface, m.
-pub(super) fn middle(frame: &GridFrame, column: usize, y: f32) -> Vec3 {
+pub(super) fn column_centre(frame: &GridFrame, column: usize, y: f32) -> Vec3 {
     let along = |k: usize| (k as f32 + 0.5) * frame.cell_m;
     Vec3::new(
         frame.origin.x + along(column % frame.width),

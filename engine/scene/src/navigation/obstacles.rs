@@ -1,8 +1,8 @@
 //! Moving obstacles: parts of objects, and the columns that each of them occupies.
 
 use super::config::{DoorPolicy, NavConfig};
-use super::heightfield::{GridFrame, HeightSpan, join};
-use super::static_grid::{StaticGrid, leaf_at};
+use super::heightfield::{GridFrame, HeightSpan, merge_spans};
+use super::static_grid::{StaticGrid, leaf_transform};
 use crate::house::House;
 use crate::ids::PartId;
 use crate::interrupt::PollEvery;
@@ -34,7 +34,7 @@ pub(super) struct Obstacles {
     filled: BTreeMap<u32, Vec<(u32, HeightSpan)>>,
 }
 
-/// The changes found by [`Obstacles::follow`].
+/// The changes found by [`Obstacles::update_poses`].
 pub(super) struct ObstacleChanges {
     /// Number of parts that moved.
     pub(super) parts: usize,
@@ -62,7 +62,7 @@ impl Obstacles {
     }
 
     /// Moves every part to its pose in `state`.
-    pub(super) fn follow(
+    pub(super) fn update_poses(
         &mut self,
         house: &House,
         state: &State,
@@ -79,7 +79,7 @@ impl Obstacles {
                 continue;
             }
             let columns = place.map_or_else(Vec::new, |world_from_part| {
-                raster(house, &ground.frame, obstacle.part, &world_from_part)
+                rasterize_part(house, &ground.frame, obstacle.part, &world_from_part)
             });
             moved.parts += 1;
             for (column, _) in &obstacle.columns {
@@ -114,12 +114,12 @@ impl Obstacles {
 
 /// Returns the openness of a passage's door in `state`, 0 to 1.
 pub(super) fn openness(house: &House, state: &State, ground: &StaticGrid, passage: usize) -> f32 {
-    let id = ground.passages[passage].joint;
+    let id = ground.doors[passage].joint;
     house.joints[id].openness(state.joint_position[id])
 }
 
 /// Returns whether a door of this openness lets an agent pass.
-pub(super) fn stands_open(openness: f32) -> bool {
+pub(super) fn is_passable(openness: f32) -> bool {
     openness >= MIN_OPENNESS
 }
 
@@ -134,23 +134,23 @@ fn place_of(
     if state.held_by[house.parts[part].object].is_some() {
         return None;
     }
-    if let Some(passage) = ground.passage_of_part[part] {
-        let open = stands_open(openness(house, state, ground, passage as usize));
+    if let Some(passage) = ground.door_of_part[part] {
+        let open = is_passable(openness(house, state, ground, passage as usize));
         let opened = match config.doors {
             DoorPolicy::AsTheyStand => false,
             DoorPolicy::Open => true,
             DoorPolicy::Priced => !open,
         };
         if opened {
-            let joint = &house.joints[ground.passages[passage as usize].joint];
-            return Some(leaf_at(state, joint, joint.open));
+            let joint = &house.joints[ground.doors[passage as usize].joint];
+            return Some(leaf_transform(state, joint, joint.open));
         }
     }
     Some(state.part_pose[part].to_affine())
 }
 
 /// Returns the columns that a part crosses at a pose, in order, with disjoint spans.
-pub(super) fn raster(
+pub(super) fn rasterize_part(
     house: &House,
     frame: &GridFrame,
     part: PartId,
@@ -168,7 +168,7 @@ pub(super) fn raster(
     let mut pace = PollEvery::new(TRIANGLES_PER_CHECK);
     for triangle in &mesh.triangles {
         pace.turn();
-        frame.cross(triangle.map(|v| points[v as usize]), |column, span| {
+        frame.rasterize_triangle(triangle.map(|v| points[v as usize]), |column, span| {
             crossed.push((column as u32, span));
         });
     }
@@ -176,7 +176,7 @@ pub(super) fn raster(
     let mut columns = Vec::new();
     for spans in crossed.chunk_by(|a, b| a.0 == b.0) {
         let mut joined: Vec<HeightSpan> = spans.iter().map(|(_, span)| *span).collect();
-        join(&mut joined);
+        merge_spans(&mut joined);
         columns.extend(joined.into_iter().map(|span| (spans[0].0, span)));
     }
     columns

@@ -36,7 +36,7 @@ impl NavGrid {
         let points: Vec<Vec3> = corners.iter().map(|cell| self.position(*cell)).collect();
         let pieces = corners
             .windows(2)
-            .filter_map(|ends| self.straight_between(ends[0], ends[1]));
+            .filter_map(|ends| self.straight_path_between(ends[0], ends[1]));
         Some(Route {
             // A sum of nothing is -0.
             length_m: pieces.fold(0.0, |sum, piece| sum + piece.length_m),
@@ -73,7 +73,7 @@ impl NavGrid {
         best[0].0 = 0.0;
         for k in 0..last {
             for next in k + 1..=last.min(k + LOOK_AHEAD) {
-                if let Some(crossing) = self.straight_between(path[k], path[next]) {
+                if let Some(crossing) = self.straight_path_between(path[k], path[next]) {
                     let cost = best[k].0 + self.cost_m(&crossing);
                     // A tiny gain does not make a corner.
                     if cost < best[next].0 - 1e-9 || best[next].0.is_infinite() {
@@ -103,8 +103,8 @@ impl NavGrid {
         for k in 1..corners.len().saturating_sub(1) {
             let (before, after) = (corners[k - 1], corners[k + 1]);
             let cost = |cell: NavCell| {
-                let to = self.straight_between(before, cell)?;
-                let on = self.straight_between(cell, after)?;
+                let to = self.straight_path_between(before, cell)?;
+                let on = self.straight_path_between(cell, after)?;
                 Some(self.cost_m(&to) + self.cost_m(&on))
             };
             let Some(now) = cost(corners[k]) else {
@@ -112,7 +112,7 @@ impl NavGrid {
             };
             let around = (-1..=1).flat_map(|dz| (-1..=1).map(move |dx| (dx, dz)));
             let best = around
-                .filter_map(|(dx, dz)| self.straight(corners[k], dx, dz))
+                .filter_map(|(dx, dz)| self.straight_path_by(corners[k], dx, dz))
                 .filter_map(|crossing| Some((cost(crossing.to)?, crossing.to)))
                 .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             if let Some((cost, cell)) = best

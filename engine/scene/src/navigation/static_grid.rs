@@ -2,7 +2,7 @@
 
 use super::config::{NavConfig, range};
 use super::heightfield::{GridFrame, HeightSpan, Heightfield};
-use super::obstacles::raster;
+use super::obstacles::rasterize_part;
 use crate::articulation::Articulation;
 use crate::bounds::Aabb;
 use crate::error::SceneError;
@@ -24,9 +24,9 @@ pub(super) struct StaticGrid {
     /// The height at which each storey ends, m, from the lowest; infinite for the last. Empty storeys are left out.
     tops: Vec<(LevelId, f32)>,
     /// The doors in the way of walking agents, by joint.
-    pub(super) passages: Vec<DoorObstacle>,
+    pub(super) doors: Vec<DoorObstacle>,
     /// For each part, the position in `passages` of the door that moves it.
-    pub(super) passage_of_part: IdVec<PartId, Option<u32>>,
+    pub(super) door_of_part: IdVec<PartId, Option<u32>>,
 }
 
 /// A door in the way of walking agents.
@@ -34,7 +34,7 @@ pub(super) struct StaticGrid {
 pub(super) struct DoorObstacle {
     pub(super) joint: JointId,
     /// The columns that its leaf crosses when closed, in order.
-    pub(super) shut: Vec<(u32, HeightSpan)>,
+    pub(super) closed_spans: Vec<(u32, HeightSpan)>,
 }
 
 /// The largest number of cells: 32 million would be 100 by 100 m in 1.8 cm cells, or a town in 10 cm cells.
@@ -70,8 +70,8 @@ impl StaticGrid {
             fixed,
             floors,
             tops,
-            passages: Vec::new(),
-            passage_of_part: IdVec::filled(None, house.parts.len()),
+            doors: Vec::new(),
+            door_of_part: IdVec::filled(None, house.parts.len()),
         };
         ground.find_passages(house, config);
         Ok(ground)
@@ -97,7 +97,7 @@ impl StaticGrid {
             }
             let world_from_child =
                 joint.world_from_child(&start_of_parent(house, joint), joint.closed);
-            let shut = raster(
+            let shut = rasterize_part(
                 house,
                 &self.frame,
                 joint.child,
@@ -105,44 +105,51 @@ impl StaticGrid {
             );
             let is_passage = shut.iter().any(|(column, leaf)| {
                 let spans = self.fixed.at(*column as usize);
-                standing(spans, config).any(|y| {
+                standing_heights(spans, config).any(|y| {
                     let in_the_way =
                         leaf.high > y + config.step_m && leaf.low < y + config.height_m;
                     in_the_way && self.has_room(*column as usize, y, config)
                 })
             });
             if is_passage {
-                self.passage_of_part[joint.child] = Some(self.passages.len() as u32);
-                self.passages.push(DoorObstacle { joint: id, shut });
+                self.door_of_part[joint.child] = Some(self.doors.len() as u32);
+                self.doors.push(DoorObstacle {
+                    joint: id,
+                    closed_spans: shut,
+                });
             }
         }
     }
 
     /// Returns whether no fixed thing stands within the radius between a step and the agent's height above `y`.
     fn has_room(&self, column: usize, y: f32, config: &NavConfig) -> bool {
-        around(&self.frame, column, config.radius_m)
-            .all(|(beside, _)| !blocks(self.fixed.at(beside), y, config))
+        columns_around(&self.frame, column, config.radius_m)
+            .all(|(beside, _)| !is_standing_blocked(self.fixed.at(beside), y, config))
     }
 }
 
 /// Returns whether something stands between a step and the agent's height above `y`.
-pub(super) fn blocks(spans: &[HeightSpan], y: f32, config: &NavConfig) -> bool {
+pub(super) fn is_standing_blocked(spans: &[HeightSpan], y: f32, config: &NavConfig) -> bool {
     let (low, high) = (y + config.step_m, y + config.height_m);
     spans.iter().any(|span| span.high > low && span.low < high)
 }
 
 /// Returns the heights in a column on which the agent can stand upright, from below.
-pub(super) fn standing(spans: &[HeightSpan], config: &NavConfig) -> impl Iterator<Item = f32> {
+pub(super) fn standing_heights(
+    spans: &[HeightSpan],
+    config: &NavConfig,
+) -> impl Iterator<Item = f32> {
     spans.iter().enumerate().filter_map(|(k, span)| {
         let above = spans.get(k + 1).map_or(f32::INFINITY, |next| next.low);
         // Something steep on a flat surface is a step too, if it is no higher than one.
-        let fits = above - span.high >= config.height_m && span.flat >= span.high - config.step_m;
+        let fits = above - span.high >= config.height_m
+            && span.walkable_height >= span.high - config.step_m;
         fits.then_some(span.high)
     })
 }
 
 /// Returns the columns some point of which lies nearer than `radius_m` to the middle of `column`, with their offsets.
-pub(super) fn around(
+pub(super) fn columns_around(
     frame: &GridFrame,
     column: usize,
     radius_m: f32,
@@ -169,7 +176,7 @@ fn start_of_parent(house: &House, joint: &Articulation) -> Pose {
 }
 
 /// Returns the transform of a door's leaf at a position of its joint.
-pub(super) fn leaf_at(state: &State, joint: &Articulation, position: f32) -> Affine3A {
+pub(super) fn leaf_transform(state: &State, joint: &Articulation, position: f32) -> Affine3A {
     let parent = joint
         .parent
         .map_or(Pose::IDENTITY, |parent| state.part_pose[parent]);
@@ -193,7 +200,7 @@ fn fixed_columns(house: &House, frame: &GridFrame) -> (Heightfield, Heightfield)
             .collect();
         for triangle in &mesh.triangles {
             interrupt::check();
-            frame.cross(triangle.map(|v| points[v as usize]), |column, span| {
+            frame.rasterize_triangle(triangle.map(|v| points[v as usize]), |column, span| {
                 fixed.push((column as u32, span));
                 if is_floor {
                     floors.push((column as u32, span));

@@ -2,7 +2,7 @@
 
 use super::config::DoorPolicy;
 use super::grid::{NavCell, NavGrid};
-use super::layers::{DOORWAY, EAST, NORTH, NOWHERE, SOUTH, WEST};
+use super::layers::{DOORWAY, EAST, NO_CELL, NORTH, SOUTH, WEST};
 
 /// A straight line between the middles of two cells.
 #[derive(Clone, Copy, Debug)]
@@ -29,10 +29,15 @@ impl NavGrid {
     ///
     /// # Source
     /// The integer form of J. Amanatides and A. Woo, Eurographics 1987, 3: which border comes next is decided exactly.
-    pub(super) fn straight(&self, from: NavCell, dx: isize, dz: isize) -> Option<StraightPath> {
+    pub(super) fn straight_path_by(
+        &self,
+        from: NavCell,
+        dx: isize,
+        dz: isize,
+    ) -> Option<StraightPath> {
         let link = |cell: u32, way: usize| {
             let there = self.layers.links[cell as usize][way];
-            (there != NOWHERE).then_some(there)
+            (there != NO_CELL).then_some(there)
         };
         let priced = self.config.doors == DoorPolicy::Priced;
         let doorway = |cell: u32| priced && self.layers.flags[cell as usize] & DOORWAY != 0;
@@ -44,7 +49,10 @@ impl NavGrid {
         let mut ahead = steps_x - steps_z;
         let (mut left_x, mut left_z) = (steps_x, steps_z);
         let (mut here, mut door_crossings, mut level) = (from.0, 0, true);
-        let mut ground = ElevationProfile::new(self.plan_m(dx, dz), f64::from(self.config.cell_m));
+        let mut ground = ElevationProfile::new(
+            self.horizontal_length_m(dx, dz),
+            f64::from(self.config.cell_m),
+        );
         while left_x > 0 || left_z > 0 {
             let there = if ahead == 0 && left_x > 0 && left_z > 0 {
                 let (a, b) = (link(here, along_x)?, link(here, along_z)?);
@@ -83,12 +91,12 @@ impl NavGrid {
     }
 
     /// Returns the straight line between two cells, if it is free.
-    pub(super) fn straight_between(&self, from: NavCell, to: NavCell) -> Option<StraightPath> {
+    pub(super) fn straight_path_between(&self, from: NavCell, to: NavCell) -> Option<StraightPath> {
         if !self.is_walkable(from) || !self.is_walkable(to) {
             return None;
         }
         let (dx, dz) = self.offset(from, to);
-        self.straight(from, dx, dz)
+        self.straight_path_by(from, dx, dz)
             .filter(|crossing| crossing.to == to)
     }
 
@@ -104,7 +112,7 @@ impl NavGrid {
     }
 
     /// Returns the length of a straight line on the plan, m.
-    pub(super) fn plan_m(&self, dx: isize, dz: isize) -> f64 {
+    pub(super) fn horizontal_length_m(&self, dx: isize, dz: isize) -> f64 {
         let squared = dx * dx + dz * dz;
         f64::from(self.config.cell_m) * (squared as f64).sqrt()
     }
@@ -112,7 +120,7 @@ impl NavGrid {
     /// Returns whether the straight line between the middles of two cells stays on walkable cells without a step too high:
     /// decided exactly, for every cell that the line touches.
     pub fn is_straight_free(&self, from: NavCell, to: NavCell) -> bool {
-        self.straight_between(from, to).is_some()
+        self.straight_path_between(from, to).is_some()
     }
 
     /// Returns the cost of a straight line: its length over the ground, and half a door's price at each threshold, m.

@@ -8,7 +8,7 @@ mod thread_count;
 
 use crate::error::SceneError;
 use crate::interrupt;
-pub use thread_count::{available_cores, machine_threads, variable};
+pub use thread_count::{available_cores, available_threads, threads_variable};
 
 /// The number of threads that a call may use; at least one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,11 +19,11 @@ impl Threads {
     pub const ONE: Self = Self(1);
 
     /// The largest number of threads.
-    pub const MOST: usize = 1024;
+    pub const MAX: usize = 1024;
 
-    /// Exactly `thread_count` threads, at least one and at most [`Threads::MOST`].
-    pub fn exactly(count: usize) -> Self {
-        Self(count.clamp(1, Self::MOST))
+    /// Exactly `thread_count` threads, at least one and at most [`Threads::MAX`].
+    pub fn new(count: usize) -> Self {
+        Self(count.clamp(1, Self::MAX))
     }
 
     /// As [`Threads::resolve`], for numbers from users: invalid ones are refused.
@@ -32,10 +32,10 @@ impl Threads {
     /// [`SceneError::Threads`] for zero or too many, requested or in the variable, and for a variable that is no number.
     pub fn requested(requested: Option<usize>) -> Result<Self, SceneError> {
         match requested {
-            Some(count) if (1..=Self::MOST).contains(&count) => Ok(Self(count)),
+            Some(count) if (1..=Self::MAX).contains(&count) => Ok(Self(count)),
             Some(count) => Err(thread_count::refuse("threads", count.to_string())),
-            None => Ok(Self::exactly(thread_count::default_thread_count(
-                variable()?
+            None => Ok(Self::new(thread_count::default_thread_count(
+                threads_variable()?,
             ))),
         }
     }
@@ -43,10 +43,9 @@ impl Threads {
     /// `requested` if given, else all [`available_cores`], but no more than the variable `DWELL_THREADS` allows. An invalid
     /// variable is ignored.
     pub fn resolve(requested: Option<usize>) -> Self {
-        Self::exactly(
-            requested
-                .unwrap_or_else(|| thread_count::default_thread_count(variable().ok().flatten())),
-        )
+        Self::new(requested.unwrap_or_else(|| {
+            thread_count::default_thread_count(threads_variable().ok().flatten())
+        }))
     }
 
     /// The number of threads.
@@ -71,7 +70,9 @@ impl Threads {
                     .par_iter_mut()
                     .enumerate()
                     .with_max_len(1)
-                    .for_each(|(k, item)| interrupt::run_piece(token.as_ref(), || work(k, item)));
+                    .for_each(|(k, item)| {
+                        interrupt::run_with_token(token.as_ref(), || work(k, item));
+                    });
             });
             return;
         }
@@ -82,7 +83,7 @@ impl Threads {
     }
 
     /// Runs both, at the same time where there are threads for it.
-    pub fn both<A: Send, B: Send>(
+    pub fn join<A: Send, B: Send>(
         self,
         first: impl FnOnce() -> A + Send,
         second: impl FnOnce() -> B + Send,
@@ -92,8 +93,8 @@ impl Threads {
             let token = token.as_ref();
             return pool::install(&pool, || {
                 rayon::join(
-                    || interrupt::run_piece(token, first),
-                    || interrupt::run_piece(token, second),
+                    || interrupt::run_with_token(token, first),
+                    || interrupt::run_with_token(token, second),
                 )
             });
         }
@@ -111,7 +112,7 @@ impl Threads {
                 (0..count)
                     .into_par_iter()
                     .with_max_len(1)
-                    .map(|k| interrupt::run_piece(token.as_ref(), || work(k)))
+                    .map(|k| interrupt::run_with_token(token.as_ref(), || work(k)))
                     .collect()
             });
         }
@@ -138,7 +139,7 @@ mod tests {
         for count in [0, 1025, 100_000, usize::MAX] {
             let error = Threads::requested(Some(count)).unwrap_err().to_string();
             assert_eq!(error, format!("threads is {count}; allowed are 1 to 1024"));
-            assert!((1..=Threads::MOST).contains(&Threads::exactly(count).count()));
+            assert!((1..=Threads::MAX).contains(&Threads::new(count).count()));
         }
         assert_eq!(Threads::requested(Some(1024)).unwrap().count(), 1024);
     }
@@ -147,9 +148,9 @@ mod tests {
     fn results_come_in_order_for_any_number_of_threads() {
         let expected: Vec<usize> = (0..1000).map(|k| k * k).collect();
         for count in [1, 2, 7] {
-            assert_eq!(Threads::exactly(count).map(1000, |k| k * k), expected);
+            assert_eq!(Threads::new(count).map(1000, |k| k * k), expected);
             let mut items: Vec<usize> = (0..1000).collect();
-            Threads::exactly(count).for_each(&mut items, |k, item| *item *= k);
+            Threads::new(count).for_each(&mut items, |k, item| *item *= k);
             assert_eq!(items, expected);
         }
     }

@@ -36,7 +36,7 @@ pub(super) fn pool(count: usize) -> Option<Arc<rayon::ThreadPool>> {
 
 /// Runs `work` on the pool. A thread whose call can be cancelled polls while it waits.
 pub(super) fn install<R: Send>(pool: &rayon::ThreadPool, work: impl FnOnce() -> R + Send) -> R {
-    if !interrupt::polls() {
+    if !interrupt::is_polling() {
         return pool.install(work);
     }
     let (mut outcome, done) = (None, OneShotEvent::default());
@@ -47,7 +47,7 @@ pub(super) fn install<R: Send>(pool: &rayon::ThreadPool, work: impl FnOnce() -> 
             done.raise();
         });
         while !done.wait() {
-            interrupt::ask_now();
+            interrupt::poll_now();
         }
     });
     match outcome {

@@ -23,7 +23,7 @@ pub fn available_cores() -> usize {
 }
 
 /// Returns the hardware threads of the machine, whoever may use them; `None` where unknown.
-pub fn machine_threads() -> Option<usize> {
+pub fn available_threads() -> Option<usize> {
     let text = std::fs::read_to_string("/proc/cpuinfo").ok()?;
     let count = text
         .lines()
@@ -36,11 +36,11 @@ pub fn machine_threads() -> Option<usize> {
 ///
 /// # Errors
 /// [`SceneError::Threads`] for a value that is no number, or out of range.
-pub fn variable() -> Result<Option<usize>, SceneError> {
+pub fn threads_variable() -> Result<Option<usize>, SceneError> {
     let Some(text) = std::env::var_os(VARIABLE) else {
         return Ok(None);
     };
-    let range = 1..=Threads::MOST;
+    let range = 1..=Threads::MAX;
     let count = text.to_str().and_then(|text| text.trim().parse().ok());
     count
         .filter(|count| range.contains(count))
@@ -53,7 +53,7 @@ pub(super) fn refuse(at: &'static str, found: String) -> SceneError {
     SceneError::Threads {
         at,
         found,
-        allowed: Threads::MOST,
+        allowed: Threads::MAX,
     }
 }
 

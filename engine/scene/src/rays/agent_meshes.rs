@@ -88,7 +88,7 @@ pub fn body_trees() -> &'static [Arc<TriangleBvh>; BODY_PIECES] {
 }
 
 /// Returns the transforms of an agent's pieces: a capsule of its radius from its feet to its present height.
-pub(super) fn places(agent: &AgentState) -> [Affine3A; BODY_PIECES] {
+pub(super) fn piece_transforms(agent: &AgentState) -> [Affine3A; BODY_PIECES] {
     let radius = agent.body.radius_m;
     let middle = (agent.height_m() - 2.0 * radius).max(0.0);
     let at = |height: f32, scale: Vec3| {
@@ -120,11 +120,15 @@ mod tests {
         let (feet, eye) = (Vec3::new(3.0, 0.0, 2.0), Vec3::new(1.0, 1.0, 2.0));
         let ray = Ray::new(eye, Vec3::X);
         scene.update(&state);
-        let wall = scene.closest(&ray, RayMask::EYE.or(RayMask::BODY)).unwrap();
+        let wall = scene
+            .closest(&ray, RayMask::EYE.union(RayMask::BODY))
+            .unwrap();
         let agent = AgentState::new(AgentBody::default(), feet, 0.3);
         let id = state.agents.push(agent);
         scene.update(&state);
-        let hit = scene.closest(&ray, RayMask::EYE.or(RayMask::BODY)).unwrap();
+        let hit = scene
+            .closest(&ray, RayMask::EYE.union(RayMask::BODY))
+            .unwrap();
         assert_eq!(hit.id, house.entity_of_agent(id).0);
         let radius = agent.body.radius_m;
         assert!(
@@ -145,7 +149,9 @@ mod tests {
         state.agents = crate::IdVec::new();
         scene.update(&state);
         assert_eq!(
-            scene.closest(&ray, RayMask::EYE.or(RayMask::BODY)).unwrap(),
+            scene
+                .closest(&ray, RayMask::EYE.union(RayMask::BODY))
+                .unwrap(),
             wall
         );
     }

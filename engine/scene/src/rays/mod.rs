@@ -12,7 +12,7 @@ use glam::{Affine3A, Mat3A, Vec2, Vec3};
 use std::sync::Arc;
 
 /// Rays in a fan: they share an origin, as those of a pinhole camera do.
-pub const FAN: usize = 16;
+pub const PACKET_SIZE: usize = 16;
 
 /// The surfaces of a house in the state of one world.
 ///
@@ -53,7 +53,7 @@ impl RayScene {
             .iter()
             .zip(self.world_from_mesh[parts..].chunks_exact_mut(BODY_PIECES))
         {
-            pieces.copy_from_slice(&agent_meshes::places(agent));
+            pieces.copy_from_slice(&agent_meshes::piece_transforms(agent));
         }
         let geometry = self.house.geometry();
         for (place, part) in self.world_from_mesh.iter_mut().zip(&geometry.movable) {
@@ -119,16 +119,16 @@ impl RayScene {
     pub fn closest_from_origin(
         &self,
         origin: Vec3,
-        directions: &[[f32; FAN]; 3],
+        directions: &[[f32; PACKET_SIZE]; 3],
         near_m: f32,
         far_m: f32,
         mask: RayMask,
-    ) -> [Option<Hit>; FAN] {
+    ) -> [Option<Hit>; PACKET_SIZE] {
         let bvh = self.bvh();
         let rays = RayPacket {
             direction: *directions,
-            near_m: [near_m; FAN],
-            far_m: [far_m; FAN],
+            near_m: [near_m; PACKET_SIZE],
+            far_m: [far_m; PACKET_SIZE],
             origin,
         };
         let mut hits = PacketHits::new();
@@ -284,7 +284,7 @@ mod tests {
         assert!((surface.normal - Vec3::NEG_X).length() < 1e-6);
         assert!(
             scene.occluded(&ray, RayMask::ALL)
-                && !scene.occluded(&ray.between(0.0, 4.9), RayMask::ALL)
+                && !scene.occluded(&ray.with_range(0.0, 4.9), RayMask::ALL)
         );
     }
 }

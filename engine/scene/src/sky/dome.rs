@@ -76,7 +76,7 @@ impl SkyDome {
 
     /// Returns the coefficients of [`Self::luminance`], for processors that compute it without this crate: position of the
     /// sun, and 1 for a clear sky; zenith chromaticity and scale; then coefficients A to E for Y, x and y.
-    pub fn numbers(&self) -> [[f32; 4]; 6] {
+    pub fn coefficients(&self) -> [[f32; 4]; 6] {
         let [x, y, z] = self.to_sun.to_array();
         let (clear, zenith, perez) = match &self.spread {
             SkyModel::Clear { perez, zenith } => (1.0, *zenith, *perez),
@@ -224,7 +224,7 @@ mod tests {
     #[test]
     fn a_clear_sky_gives_the_light_that_it_shall() {
         for hour in [7.0, 9.0, 12.0, 18.0, 19.5] {
-            let sky = sky(hour, Weather::FINE);
+            let sky = sky(hour, Weather::CLEAR_DEFAULT);
             let dome = SkyDome::new(&sky);
             let count = 40_000_u16;
             let mut sum = 0.0_f64;
@@ -243,7 +243,7 @@ mod tests {
 
     #[test]
     fn a_clear_sky_is_blue_overhead_and_brightest_at_the_sun() {
-        let sky = sky(10.0, Weather::FINE);
+        let sky = sky(10.0, Weather::CLEAR_DEFAULT);
         let dome = SkyDome::new(&sky);
         let zenith = dome.luminance(Vec3::Y);
         assert!(zenith.z > 1.5 * zenith.x, "{zenith}");

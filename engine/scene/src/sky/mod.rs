@@ -29,7 +29,7 @@ pub enum Weather {
 
 impl Weather {
     /// Clear with a turbidity of 2.5, a fine day.
-    pub const FINE: Self = Self::Clear { turbidity: 2.5 };
+    pub const CLEAR_DEFAULT: Self = Self::Clear { turbidity: 2.5 };
 }
 
 /// Daylight from sun and sky at one moment, the same for all of a house.
@@ -71,7 +71,7 @@ impl Default for Daytime {
             day: 105,
             latitude_deg: 48.0,
             north_yaw_deg: 0.0,
-            weather: Weather::FINE,
+            weather: Weather::CLEAR_DEFAULT,
         }
     }
 }
@@ -120,7 +120,7 @@ impl Sky {
     }
 
     /// Returns the horizontal illuminance by sun and sky in the open, lx, in linear sRGB without the sky's colour.
-    pub fn level_lx(&self) -> Vec3 {
+    pub fn horizontal_illuminance_lx(&self) -> Vec3 {
         Vec3::splat(self.diffuse_lx) + Vec3::from_array(self.sun_lx) * self.to_sun.y.max(0.0)
     }
 
@@ -227,7 +227,7 @@ mod tests {
     #[test]
     fn a_day_is_bright_at_noon_red_in_the_evening_and_dark_at_night() {
         let (noon, evening, night) = (at(12.0), at(18.3), at(23.0));
-        let level = |sky: &Sky| sky.level_lx().y;
+        let level = |sky: &Sky| sky.horizontal_illuminance_lx().y;
         // A clear sky with the sun 51 degrees high: 80 to 100 klx, of which the sky gives some 15 (IES).
         assert!((75e3..105e3).contains(&level(&noon)), "{}", level(&noon));
         assert!((13e3..16e3).contains(&noon.diffuse_lx));

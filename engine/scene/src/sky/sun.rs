@@ -146,7 +146,7 @@ mod tests {
 
     #[test]
     fn light_falls_steadily_as_the_sun_sinks() {
-        for weather in [Weather::FINE, Weather::Overcast] {
+        for weather in [Weather::CLEAR_DEFAULT, Weather::Overcast] {
             let mut last = f32::INFINITY;
             for tenths in (-200..=900).rev() {
                 let altitude = (tenths as f32 * 0.1).to_radians();

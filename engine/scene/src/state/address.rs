@@ -43,7 +43,7 @@ impl Address {
             return Ok(());
         }
         let [low, high] = [low, high].map(plain);
-        Err(self.fault(format!(
+        Err(self.invalid(format!(
             "{value} is out of range; allowed are {low} to {high} {unit}"
         )))
     }
@@ -53,7 +53,7 @@ impl Address {
         Self(format!("part/{}/{field}", part.0))
     }
 
-    pub(super) fn fault(&self, what: impl Into<String>) -> SceneError {
+    pub(super) fn invalid(&self, what: impl Into<String>) -> SceneError {
         SceneError::Address {
             address: self.0.clone(),
             what: what.into(),

@@ -12,14 +12,14 @@ pub struct BaseState {
     /// Speeds of the left and right wheel, rad/s; 0 without wheels.
     pub wheel_rad_s: [f32; 2],
     /// Rotation of the left and right wheel since the agent was placed, rad, as their encoders count.
-    pub wheel_turned_rad: [f64; 2],
+    pub wheel_rotation_rad: [f64; 2],
     /// Twist that its wheels would give it without slip: m/s forward, m/s to the left, rad/s to the left.
     pub twist: [f32; 3],
     /// Odometry from its wheels and nominal geometry: m forward and m to the left of its initial position, and rad to the
     /// left.
     pub odometry: [f64; 3],
     /// Rounding remainder of its motion so far: m along X and Z, rad.
-    pub kept_back: [f32; 3],
+    pub rounding_remainder: [f32; 3],
 }
 
 /// The state of one agent.

@@ -11,7 +11,7 @@ impl State {
             .ok()
             .filter(|index| *index < self.agents.len());
         index.map(AgentId::from_index).ok_or_else(|| {
-            address.fault(format!(
+            address.invalid(format!(
                 "no agent {word:?}; there are {}, counted from 0",
                 self.agents.len()
             ))
@@ -27,12 +27,12 @@ impl State {
         if self.overrides.is_empty() {
             return nominal;
         }
-        nominal.with(|field| self.lookup(format!("agent/{}/base/{field}", agent.index())))
+        nominal.with(|field| self.override_value(format!("agent/{}/base/{field}", agent.index())))
     }
 
     /// Returns the overridden horizontal field of view of the cameras at an agent's eyes, degrees; `None`: each has its own.
     pub fn overridden_fov_deg(&self, agent: AgentId) -> Option<f32> {
-        self.lookup(format!("agent/{}/camera/fov_deg", agent.index()))
+        self.override_value(format!("agent/{}/camera/fov_deg", agent.index()))
     }
 
     /// Returns the horizontal field of view of a camera at an agent's eyes that states none of its own, degrees.
@@ -57,7 +57,7 @@ impl State {
             ["body", _] => (body.parameters(), "its body"),
             ["base", _] => (self.locomotion(id).parameters(), body.locomotion.name()),
             ["camera", "fov_deg"] => {
-                let [low, high] = AgentBody::FOV_DEG;
+                let [low, high] = AgentBody::FOV_RANGE_DEG;
                 return Ok(Parameter {
                     value: self.camera_fov_deg(id).into(),
                     unit: "deg",
@@ -66,7 +66,7 @@ impl State {
                 });
             }
             _ => {
-                return Err(address.fault(
+                return Err(address.invalid(
                     "an agent has agent/N/body/FIELD, agent/N/base/FIELD and agent/N/camera/fov_deg",
                 ));
             }
@@ -74,7 +74,7 @@ impl State {
         let found = parameters.iter().find(|(name, _)| *name == words[1]);
         found.map(|(_, parameter)| *parameter).ok_or_else(|| {
             let names: Vec<_> = parameters.iter().map(|(name, _)| *name).collect();
-            address.fault(format!(
+            address.invalid(format!(
                 "no field {:?}; agent {agent} ({kind}) has {names:?}",
                 words[1]
             ))

@@ -78,7 +78,7 @@ impl AgentBody {
     pub(super) const HAND_EFFORT: f32 = 40.0;
 
     /// The range of the field of view of cameras at an agent's eyes, degrees.
-    pub(super) const FOV_DEG: [f64; 2] = [1.0, 170.0];
+    pub(super) const FOV_RANGE_DEG: [f64; 2] = [1.0, 170.0];
 
     /// Returns its numbers by name, with units and their ranges given the others: it is at least twice as high as its
     /// radius, and its eyes are not above it. The fields of the address `agent/N/body/FIELD`.
@@ -130,7 +130,7 @@ impl AgentBody {
             } = parameter;
             return refuse(field, format!("{value} (range {low} to {high} {unit})"));
         }
-        let [low, high] = Self::FOV_DEG;
+        let [low, high] = Self::FOV_RANGE_DEG;
         if !(low..=high).contains(&f64::from(self.camera_fov_deg)) {
             let found = format!("{} (range {low} to {high} deg)", self.camera_fov_deg);
             return refuse("camera_fov_deg", found);

@@ -299,7 +299,7 @@ impl State {
         if axis.length() >= SHORTEST_AXIS {
             return Ok(());
         }
-        Err(canonical.fault(format!(
+        Err(canonical.invalid(format!(
             "the joint's axis would be {axis}, which has no direction; allowed is a length of at least {SHORTEST_AXIS}"
         )))
     }

@@ -33,7 +33,9 @@ impl Address {
         inner
             .and_then(|inner| inner.rsplit_once('/'))
             .ok_or_else(|| {
-                self.fault("a law's parameter is law/ID/PARAM, law/ID@TARGET/PARAM or law/N/PARAM")
+                self.invalid(
+                    "a law's parameter is law/ID/PARAM, law/ID@TARGET/PARAM or law/N/PARAM",
+                )
             })
     }
 }
@@ -48,12 +50,12 @@ impl State {
         let (name, param) = address.law_words()?;
         let info_of = |id: &str| {
             LawInfo::find(known.iter().copied(), id)
-                .map_err(|unknown| address.fault(unknown.to_string()))
+                .map_err(|unknown| address.invalid(unknown.to_string()))
         };
         let (info, target, place) = if let Ok(place) = name.parse::<usize>() {
             let spec = self.laws.get(place).ok_or_else(|| {
                 let count = self.laws.len();
-                address.fault(format!(
+                address.invalid(format!(
                     "no law {place}; {count} are installed, counted from 0"
                 ))
             })?;
@@ -76,7 +78,7 @@ impl State {
             let mut places = (0..self.laws.len()).filter(|place| is(&self.laws[*place]));
             let place = places.next();
             if let (Some(first), Some(second)) = (place, places.next()) {
-                return Err(address.fault(format!(
+                return Err(address.invalid(format!(
                     "this law is installed more than once; say which by its number: law/{first}/{param}, law/{second}/{param}"
                 )));
             }
@@ -85,7 +87,7 @@ impl State {
                 && there.contains('~')
                 && there != asked
             {
-                return Err(address.fault(format!(
+                return Err(address.invalid(format!(
                     "this law is installed as law/{id}@{there}: the surface stands first"
                 )));
             }
@@ -93,7 +95,7 @@ impl State {
         };
         let param = info.param(param).ok_or_else(|| {
             let names: Vec<_> = info.params.iter().map(|known| known.name).collect();
-            address.fault(format!(
+            address.invalid(format!(
                 "no parameter {param:?}; law {} has {names:?}",
                 info.id
             ))
@@ -174,7 +176,7 @@ impl State {
             let named = self.find_law(house, known, address)?;
             let target = named.target.filter(|_| named.place.is_none());
             if !there.insert((named.place, named.info.id, target, named.param.name)) {
-                return Err(address.fault(
+                return Err(address.invalid(
                     "it is set twice at once, in one or two spellings; allowed is each parameter once",
                 ));
             }
@@ -417,7 +419,7 @@ mod tests {
             "a//b",
             "tab\t",
         ] {
-            state.laws = vec![DRAG.spec(&[("c_d", 0.5)]).on(target)];
+            state.laws = vec![DRAG.spec(&[("c_d", 0.5)]).with_target(target)];
             let listed = state.law_addresses(known);
             assert_eq!(listed.len(), 2 + 2 + 1, "{target}: {listed:?}");
             let read = |address: &Address| {

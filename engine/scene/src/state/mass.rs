@@ -7,7 +7,7 @@ use crate::ids::{Id, ObjectId, PartId};
 impl State {
     /// Returns the overridden mass of an object, kg; `None` without an override of the object itself.
     pub fn object_mass_kg(&self, house: &House, object: ObjectId) -> Option<f32> {
-        self.lookup(format!(
+        self.override_value(format!(
             "object/{}/mass_kg",
             house.entity_of_object(object).0
         ))
@@ -30,7 +30,7 @@ impl State {
     /// (`material/NAME/density_kg_m3`), weighted by their shares of its surface: a house does not give the volume of each
     /// material.
     pub fn part_mass_factor(&self, house: &House, part: PartId) -> f32 {
-        let own = self.lookup(format!("part/{}/mass_kg", part.index()));
+        let own = self.override_value(format!("part/{}/mass_kg", part.index()));
         match (own, house.parts[part].mass_kg) {
             (Some(now), Some(nominal)) if nominal > 0.0 => now / nominal,
             _ => self.density_factor(house, part),
@@ -44,7 +44,7 @@ impl State {
             .iter()
             .map(|id| {
                 let material = &house.materials[*id];
-                let now = self.lookup(format!("material/{}/density_kg_m3", material.name));
+                let now = self.override_value(format!("material/{}/density_kg_m3", material.name));
                 now.map_or(1.0, |now| now / material.density_kg_m3)
             })
             .collect();

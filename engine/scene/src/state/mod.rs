@@ -120,14 +120,19 @@ impl State {
     pub fn openness(&self, house: &House, object: ObjectId) -> Option<f32> {
         house
             .joints_of(object)
-            .filter(|joint| house.joints[*joint].opens())
+            .filter(|joint| house.joints[*joint].is_openable())
             .map(|joint| house.joints[joint].openness(self.joint_position[joint]))
             .reduce(f32::max)
     }
 
     /// Updates objects whose joints are their switches: on where such a joint is open, off where all are closed.
-    pub fn follow_switches(&mut self, house: &House) {
-        let switches = || house.joints.iter_ids().filter(|(_, joint)| joint.switches);
+    pub fn update_switches(&mut self, house: &House) {
+        let switches = || {
+            house
+                .joints
+                .iter_ids()
+                .filter(|(_, joint)| joint.toggles_switch)
+        };
         for (_, joint) in switches() {
             self.switched_on[joint.object] = false;
         }

@@ -21,7 +21,7 @@ pub(super) fn find_object(
     by_id.or_else(|| house.object_named(word)).ok_or_else(|| {
         let first = house.structure.len() + 1;
         let last = house.structure.len() + house.objects.len();
-        address.fault(format!(
+        address.invalid(format!(
             "no object {word:?}; objects have the ids {first} to {last}, or names"
         ))
     })
@@ -43,7 +43,7 @@ pub(super) fn find_material(
             .take(12)
             .map(|material| &material.name)
             .collect();
-        address.fault(format!(
+        address.invalid(format!(
             "no material {word:?}; there are {} such as {known:?}",
             house.materials.len()
         ))
@@ -61,7 +61,7 @@ pub(super) fn find_joint(
         .map(JointId)
         .filter(|id| house.joints.get(*id).is_some());
     index.ok_or_else(|| {
-        address.fault(format!(
+        address.invalid(format!(
             "no joint {word:?}; there are {}, counted from 0, or by OBJECT/NAME",
             house.joints.len()
         ))
@@ -84,7 +84,7 @@ pub(super) fn find_joint_of(
                 .joints_of(object)
                 .map(|id| &house.joints[id].name)
                 .collect();
-            address.fault(format!("no joint {name:?}; the object has {known:?}"))
+            address.invalid(format!("no joint {name:?}; the object has {known:?}"))
         })
 }
 
@@ -98,7 +98,7 @@ pub(super) fn find_part(
     index
         .filter(|id| house.parts.get(*id).is_some())
         .ok_or_else(|| {
-            address.fault(format!(
+            address.invalid(format!(
                 "no part {word:?}; there are {}, counted from 0, or by OBJECT/NAME",
                 house.parts.len()
             ))
@@ -118,6 +118,6 @@ pub(super) fn find_part_of(
         .find(|id| house.parts[*id].name == name)
         .ok_or_else(|| {
             let known: Vec<_> = object.parts().map(|id| &house.parts[id].name).collect();
-            address.fault(format!("no part {name:?}; the object has {known:?}"))
+            address.invalid(format!("no part {name:?}; the object has {known:?}"))
         })
 }

@@ -14,7 +14,7 @@ impl State {
             .map_or(base, |value| *value as f32)
     }
 
-    pub(super) fn lookup(&self, text: String) -> Option<f32> {
+    pub(super) fn override_value(&self, text: String) -> Option<f32> {
         if self.overrides.is_empty() {
             None
         } else {
@@ -27,7 +27,7 @@ impl State {
     /// Returns friction and restitution between two substances, with overrides.
     pub fn pair_contact(&self, a: &str, b: &str) -> PairContact {
         let base = library().pair(a, b);
-        let field = |name: &str| self.lookup(pair_address(a, b, name));
+        let field = |name: &str| self.override_value(pair_address(a, b, name));
         PairContact {
             friction: field("friction").unwrap_or(base.friction),
             restitution: field("restitution").unwrap_or(base.restitution),
@@ -44,13 +44,13 @@ impl State {
 
     /// Returns the acceleration of gravity, m/s².
     pub fn gravity_m_s2(&self) -> f32 {
-        self.lookup("world/gravity_m_s2".to_owned())
+        self.override_value("world/gravity_m_s2".to_owned())
             .unwrap_or(STANDARD_GRAVITY_M_S2)
     }
 
     /// Returns the strongest pull on a joint without a motor by commands that come from no agent, N·m or N.
     pub fn hand_effort(&self) -> f32 {
-        self.lookup("world/hand_effort".to_owned())
+        self.override_value("world/hand_effort".to_owned())
             .unwrap_or(AgentBody::HAND_EFFORT)
     }
 

@@ -61,7 +61,7 @@ impl State {
                     "friction" => make(self.scalar(&known, material.friction), "1", 0.0, 10.0),
                     "restitution" => make(self.scalar(&known, material.restitution), "1", 0.0, 1.0),
                     "density_kg_m3" => make(self.scalar(&known, material.density_kg_m3), "kg/m3", 0.01, 30_000.0),
-                    _ => Err(address.fault(format!(
+                    _ => Err(address.invalid(format!(
                         "no field {field:?}; a material has friction, restitution, density_kg_m3, absorption/HZ, scattering/HZ, transmission_loss_db/HZ"
                     ))),
                 }
@@ -69,30 +69,30 @@ impl State {
             ["material", material, field, hz] => {
                 let id = find_material(house, address, material)?;
                 let frequency: f32 = hz.parse().ok().filter(|f| (1.0..=1e5).contains(f)).ok_or_else(|| {
-                    address.fault(format!("{hz:?} is no frequency; allowed are 1 to 100000 Hz"))
+                    address.invalid(format!("{hz:?} is no frequency; allowed are 1 to 100000 Hz"))
                 })?;
                 match field {
                     "absorption" => make(self.absorption(house, id).at(frequency), "1", 0.0, 1.0),
                     "scattering" => make(self.scattering(house, id).at(frequency), "1", 0.0, 1.0),
                     "transmission_loss_db" => {
                         let loss = self.transmission_loss_db(house, id).at(frequency);
-                        make(loss, "dB", 0.0, f64::from(Material::OPAQUE_TO_SOUND_DB))
+                        make(loss, "dB", 0.0, f64::from(Material::MAX_TRANSMISSION_LOSS_DB))
                     }
-                    _ => Err(address.fault(format!(
+                    _ => Err(address.invalid(format!(
                         "no field {field:?} by frequency; there are absorption, scattering and transmission_loss_db"
                     ))),
                 }
             }
             ["pair", pair, field] => {
-                let (a, b) = pair.split_once('~').ok_or_else(|| address.fault("a pair is written a~b"))?;
+                let (a, b) = pair.split_once('~').ok_or_else(|| address.invalid("a pair is written a~b"))?;
                 if let Some(name) = [a, b].into_iter().find(|name| library().get(name).is_none()) {
-                    return Err(address.fault(format!("no substance {name:?} in the library")));
+                    return Err(address.invalid(format!("no substance {name:?} in the library")));
                 }
                 let contact = self.pair_contact(a, b);
                 match field {
                     "friction" => make(contact.friction, "1", 0.0, 10.0),
                     "restitution" => make(contact.restitution, "1", 0.0, 1.0),
-                    _ => Err(address.fault(format!("no field {field:?}; a pair has friction and restitution"))),
+                    _ => Err(address.invalid(format!("no field {field:?}; a pair has friction and restitution"))),
                 }
             }
             ["joint", joint, field] => {
@@ -102,7 +102,7 @@ impl State {
                 let found = here.iter().find(|here| here.name == field);
                 let found = found.ok_or_else(|| {
                     let names: Vec<_> = here.iter().map(|field| field.name).collect();
-                    address.fault(format!("no field {field:?}; this joint has {names:?}"))
+                    address.invalid(format!("no field {field:?}; this joint has {names:?}"))
                 })?;
                 let base = (found.get)(joint).unwrap_or(0.0);
                 let [low, high] = self.joint_range(house, id, found);
@@ -111,7 +111,7 @@ impl State {
             ["part", part, "mass_kg"] => {
                 let part = &house.parts[find_part(house, address, part)?];
                 let base = part.mass_kg.ok_or_else(|| {
-                    address.fault("the part has no mass of its own: it follows from its material's density")
+                    address.invalid("the part has no mass of its own: it follows from its material's density")
                 })?;
                 make(self.scalar(&known, base), "kg", 1e-6, 1e6)
             }
@@ -122,10 +122,10 @@ impl State {
             ["agent", agent, ref words @ ..] => self.agent_parameter(address, agent, words),
             ["world", "gravity_m_s2"] => make(self.gravity_m_s2(), "m/s2", 0.0, 100.0),
             ["world", "hand_effort"] => make(self.hand_effort(), "N m or N", 0.0, 1e4),
-            ["law", ..] => Err(address.fault(
+            ["law", ..] => Err(address.invalid(
                 "parameters of laws are read and set through the world, which knows the laws of all engines",
             )),
-            _ => Err(address.fault(
+            _ => Err(address.invalid(
                 "known are law/ID/PARAM, object/ID/mass_kg, part/N/FIELD, material/NAME/FIELD[/HZ], pair/A~B/FIELD, joint/N/FIELD, agent/N/body/FIELD, agent/N/base/FIELD, agent/N/camera/fov_deg, world/gravity_m_s2, world/hand_effort",
             )),
         }
@@ -173,7 +173,7 @@ impl State {
             let canonical = self.canonical(house, address)?;
             if !known.insert(canonical.clone()) {
                 return Err(
-                    address.fault("it is set twice at once, in one or two spellings; allowed is each parameter once")
+                    address.invalid("it is set twice at once, in one or two spellings; allowed is each parameter once")
                 );
             }
             self.put(canonical, *value);

@@ -28,7 +28,7 @@ impl State {
             return Some(inertial);
         }
         for (k, field) in INERTIAL_FIELDS.iter().enumerate() {
-            if let Some(value) = self.lookup(format!("part/{}/{field}", part.index())) {
+            if let Some(value) = self.override_value(format!("part/{}/{field}", part.index())) {
                 match k {
                     0..3 => inertial.part_from_principal.position[k] = value,
                     _ => inertial.moments[k - 3] = value,
@@ -48,12 +48,12 @@ impl State {
     ) -> Result<Parameter, SceneError> {
         let place = INERTIAL_FIELDS.iter().position(|known| *known == field);
         let place = place.ok_or_else(|| {
-            address.fault(format!(
+            address.invalid(format!(
                 "no field {field:?}; a part has mass_kg and, where it states its inertia, {INERTIAL_FIELDS:?}"
             ))
         })?;
         let inertial = self.part_inertial(house, part).ok_or_else(|| {
-            address.fault(
+            address.invalid(
                 "the part states no inertia of its own: it follows from its colliders (the laws center_of_mass_offset and \
                  inertia_error change it)",
             )

@@ -25,7 +25,7 @@ const MIN_ENCLOSING_RAYS: usize = 4;
 pub enum SupportRelation {
     /// Neither supports the other.
     #[default]
-    Beside,
+    NoSupport,
     /// `a` rests on `b`: some contact normal is at most 60 degrees from upright.
     AOnB,
     /// `b` rests on `a`.
@@ -40,13 +40,13 @@ pub struct Contact {
     /// The other part; `None`: the structure of the house.
     pub b: Option<PartId>,
     /// The support relation.
-    pub rest: SupportRelation,
+    pub support_relation: SupportRelation,
 }
 
 impl State {
     /// Returns the supports of an object: objects in order, `None` for the building. Empty while it is held, flies, or
     /// never moves (physics finds no contacts between things that cannot move).
-    pub fn rests_on(&self, house: &House, object: ObjectId) -> Vec<Option<ObjectId>> {
+    pub fn supports_of(&self, house: &House, object: ObjectId) -> Vec<Option<ObjectId>> {
         if self.held_by[object].is_some() {
             return Vec::new();
         }
@@ -59,8 +59,8 @@ impl State {
         carriers
     }
 
-    /// Returns the supports of each object, as [`State::rests_on`] of one, in one pass over the contacts. Shape (object,).
-    pub fn carriers(&self, house: &House) -> Vec<Vec<Option<ObjectId>>> {
+    /// Returns the supports of each object, as [`State::supports_of`] of one, in one pass over the contacts. Shape (object,).
+    pub fn supports_of_all(&self, house: &House) -> Vec<Vec<Option<ObjectId>>> {
         let mut all = vec![Vec::new(); house.objects.len()];
         for (carried, by) in self.carried(house) {
             if self.held_by[carried].is_none() {
@@ -79,10 +79,10 @@ impl State {
         let owner = |part: PartId| house.parts[part].object;
         let pairs = self.contacts.iter().filter_map(move |contact| {
             let (a, b) = (owner(contact.a), contact.b.map(owner));
-            match contact.rest {
+            match contact.support_relation {
                 SupportRelation::AOnB => Some((a, b)),
                 SupportRelation::BOnA => b.map(|b| (b, Some(a))),
-                SupportRelation::Beside => None,
+                SupportRelation::NoSupport => None,
             }
         });
         pairs.filter(|(carried, by)| *by != Some(*carried))
@@ -91,7 +91,7 @@ impl State {
     /// Returns the objects that contain an object, in order. A held object is in nothing.
     ///
     /// `boxes`: the boxes around all objects, shape (object,), as [`House::object_boxes`] gives them.
-    pub fn lies_in(&self, house: &House, object: ObjectId, boxes: &[Aabb]) -> Vec<ObjectId> {
+    pub fn containers_of(&self, house: &House, object: ObjectId, boxes: &[Aabb]) -> Vec<ObjectId> {
         if self.held_by[object].is_some() {
             return Vec::new();
         }
@@ -292,21 +292,21 @@ mod tests {
         let contact = |a: u32, b: Option<u32>, rest| Contact {
             a: PartId(a),
             b: b.map(PartId),
-            rest,
+            support_relation: rest,
         };
         state.contacts = vec![
-            contact(0, None, SupportRelation::Beside),
+            contact(0, None, SupportRelation::NoSupport),
             contact(0, Some(1), SupportRelation::AOnB),
             contact(1, None, SupportRelation::AOnB),
         ];
-        assert_eq!(state.rests_on(&house, ObjectId(0)), [Some(ObjectId(1))]);
-        assert_eq!(state.rests_on(&house, ObjectId(1)), [None]);
+        assert_eq!(state.supports_of(&house, ObjectId(0)), [Some(ObjectId(1))]);
+        assert_eq!(state.supports_of(&house, ObjectId(1)), [None]);
         assert_eq!(
-            state.carriers(&house),
+            state.supports_of_all(&house),
             [vec![Some(ObjectId(1))], vec![None]]
         );
         state.held_by[ObjectId(0)] = Some(crate::AgentId(0));
-        assert!(state.rests_on(&house, ObjectId(0)).is_empty());
-        assert_eq!(state.carriers(&house), [vec![], vec![None]]);
+        assert!(state.supports_of(&house, ObjectId(0)).is_empty());
+        assert_eq!(state.supports_of_all(&house), [vec![], vec![None]]);
     }
 }

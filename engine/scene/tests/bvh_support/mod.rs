@@ -161,7 +161,7 @@ impl Soup {
                     f32::INFINITY
                 };
                 rays.push(
-                    Ray::new(origin, ahead + stream.direction() * spread).between(near_m, far_m),
+                    Ray::new(origin, ahead + stream.direction() * spread).with_range(near_m, far_m),
                 );
             }
         }
@@ -199,7 +199,7 @@ pub(crate) fn rays_at(key: RandomKey, count: usize, soup: &Soup) -> Vec<Ray> {
             0 => Ray::new(target - axes[k / 4 % 6] * 5.0, axes[k / 4 % 6]),
             1 if !soup.corners.is_empty() => {
                 let [a, b, c] = soup.corners[stream.below(soup.corners.len())];
-                Ray::new((a + b + c) / 3.0, stream.direction()).between(1e-3, f32::INFINITY)
+                Ray::new((a + b + c) / 3.0, stream.direction()).with_range(1e-3, f32::INFINITY)
             }
             _ => Ray::new(origin, target - origin),
         }

@@ -117,8 +117,12 @@ fn following_what_moves_equals_building_anew() {
             let rebuilt = grid.update(&house, &state).unwrap();
             let anew = NavGrid::build(&house, &state, &config).unwrap();
             assert_same(&grid, &anew);
-            assert_eq!(grid.update(&house, &state).unwrap().rechecked, 0, "{round}");
-            assert!(rebuilt.columns <= rebuilt.rechecked);
+            assert_eq!(
+                grid.update(&house, &state).unwrap().rechecked_cells,
+                0,
+                "{round}"
+            );
+            assert!(rebuilt.changed_columns <= rebuilt.rechecked_cells);
         }
     }
 }
@@ -130,10 +134,10 @@ fn only_columns_near_a_door_are_looked_at_again() {
     let mut grid = NavGrid::build(&house, &state, &with(DoorPolicy::AsTheyStand)).unwrap();
     open_door(&house, &mut state, 0.5);
     let rebuilt = grid.update(&house, &state).unwrap();
-    assert_eq!(rebuilt.parts, 1);
+    assert_eq!(rebuilt.moved_parts, 1);
     // A leaf of 1 by 0.04 m, twice: some 12 columns shut and 20 slanting; with the radius 3 columns around each.
-    assert!((15..60).contains(&rebuilt.columns), "{rebuilt:?}");
-    assert!(rebuilt.rechecked < 260, "{rebuilt:?}");
+    assert!((15..60).contains(&rebuilt.changed_columns), "{rebuilt:?}");
+    assert!(rebuilt.rechecked_cells < 260, "{rebuilt:?}");
 }
 
 #[test]

@@ -28,11 +28,11 @@ proptest! {
                 let angle = k as f32 * std::f32::consts::TAU / 16.0;
                 let ahead = Vec3::new(dwell_scene::math::cos(angle), 0.0, dwell_scene::math::sin(angle));
                 for height in [0.21, 0.5, 0.9, 1.3, 1.49] {
-                    let feeler = Ray::new(p + Vec3::Y * height, ahead).between(0.0, config.radius_m - 1e-3);
+                    let feeler = Ray::new(p + Vec3::Y * height, ahead).with_range(0.0, config.radius_m - 1e-3);
                     prop_assert!(!rays.occluded(&feeler, RayMask::ALL), "{p} at {height} m towards {ahead}");
                 }
             }
-            let up = Ray::new(p + Vec3::Y * 0.01, Vec3::Y).between(0.0, config.height_m - 0.02);
+            let up = Ray::new(p + Vec3::Y * 0.01, Vec3::Y).with_range(0.0, config.height_m - 0.02);
             prop_assert!(!rays.occluded(&up, RayMask::ALL));
         }
         let reach = config.radius_m + 1.5 * config.cell_m;

@@ -111,7 +111,7 @@ pub(crate) fn room_with_door() -> HouseData {
         servo: None,
         armature: 0.0,
         mimic: None,
-        switches: false,
+        toggles_switch: false,
     });
     data
 }

@@ -9,20 +9,20 @@ use serde_json::Map;
 
 /// A discrete action of one agent in a control step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DiscreteStep {
+pub struct AgentAction {
     /// The agent.
     pub agent: AgentId,
     /// The action.
     pub action: DiscreteAction,
     /// Lengths and angles of its movement actions.
-    pub stride: StepSizes,
+    pub step_sizes: StepSizes,
 }
 
 impl World {
     /// Makes one control step of one agent's discrete action; all others stand still.
     ///
     /// # Errors
-    /// Those of [`World::act_together`].
+    /// Those of [`World::step_discrete_actions`].
     pub fn act_discrete(
         &mut self,
         agent: AgentId,
@@ -30,13 +30,13 @@ impl World {
         stride: &StepSizes,
     ) -> Result<ActionOutcome, WorldError> {
         let stride = *stride;
-        let step = DiscreteStep {
+        let step = AgentAction {
             agent,
             action,
-            stride,
+            step_sizes: stride,
         };
-        let mut outcomes = self.act_together(&[step])?;
-        let none = || WorldError::Usage("no action was made".to_owned());
+        let mut outcomes = self.step_discrete_actions(&[step])?;
+        let none = || WorldError::InvalidCall("no action was made".to_owned());
         outcomes.pop().ok_or_else(none)
     }
 
@@ -44,22 +44,22 @@ impl World {
     /// before the step, one after the other in the order of the agents' numbers. Returns what became of each.
     ///
     /// # Errors
-    /// [`WorldError::Usage`] for an agent that does not exist; nothing has changed then.
-    pub fn act_together(
+    /// [`WorldError::InvalidCall`] for an agent that does not exist; nothing has changed then.
+    pub fn step_discrete_actions(
         &mut self,
-        steps: &[DiscreteStep],
+        steps: &[AgentAction],
     ) -> Result<Vec<ActionOutcome>, WorldError> {
         let step_s = self.config().step_s();
         let mut controls = vec![AgentControl::default(); self.state().agents.len()];
         for step in steps {
             let count = controls.len();
             let Some(control) = controls.get_mut(step.agent.index()) else {
-                return Err(WorldError::Usage(format!(
+                return Err(WorldError::InvalidCall(format!(
                     "no agent {}; there are {count}",
                     step.agent.0
                 )));
             };
-            *control = step.action.kind().control(&step.stride, step_s);
+            *control = step.action.kind().control(&step.step_sizes, step_s);
         }
         let mut order: Vec<usize> = (0..steps.len()).collect();
         order.sort_unstable_by_key(|place| steps[*place].agent);
@@ -91,12 +91,12 @@ impl World {
         action: DiscreteAction,
     ) -> Result<Option<ActionOutcome>, WorldError> {
         let kind = action.kind();
-        if !kind.is_of_hand() {
+        if !kind.is_hand_action() {
             return Ok(None);
         }
         let mut target = None;
         if kind.takes_target() {
-            let Some(object) = self.gaze_target(agent) else {
+            let Some(object) = self.object_in_view_centre(agent) else {
                 let sentence =
                     "You look at nothing that you could take, open or switch. Turn towards it.";
                 let outcome = ActionOutcome::failed(OutcomeCode::NoTarget, sentence, None);

@@ -18,7 +18,7 @@ pub struct ActionKind {
     /// The name, as in lists, requests and files.
     pub name: &'static str,
     about: About,
-    control: Control,
+    control: ControlFn,
     hand: Option<HandReader>,
 }
 
@@ -30,7 +30,7 @@ enum About {
 }
 
 /// The velocities of the body in a step of so many seconds.
-pub(super) type Control = fn(&StepSizes, f64) -> AgentControl;
+pub(super) type ControlFn = fn(&StepSizes, f64) -> AgentControl;
 
 /// The reader of an action of the hand.
 #[derive(Clone, Copy, Debug)]
@@ -44,7 +44,7 @@ struct HandReader {
 pub(super) const fn movement(
     name: &'static str,
     about: &'static str,
-    control: Control,
+    control: ControlFn,
 ) -> ActionKind {
     ActionKind {
         name,
@@ -61,13 +61,13 @@ where
 {
     ActionKind {
         name,
-        about: About::DocComment(schema::about::<A>),
-        control: stand_still,
+        about: About::DocComment(schema::doc_comment::<A>),
+        control: zero_velocity,
         hand: Some(HandReader {
             field_names: schema::field_names::<A>,
-            fields: schema::fields::<A>,
+            fields: schema::fields_of::<A>,
             read: |fields| {
-                let action: A = crate::parse_settings::read("action", fields)?;
+                let action: A = crate::parse_settings::parse_settings("action", fields)?;
                 Ok(Box::new(action))
             },
         }),
@@ -75,7 +75,7 @@ where
 }
 
 /// Returns zero velocities: those of an action that moves nothing but the hand.
-pub(super) fn stand_still(_: &StepSizes, _: f64) -> AgentControl {
+pub(super) fn zero_velocity(_: &StepSizes, _: f64) -> AgentControl {
     AgentControl::default()
 }
 
@@ -89,7 +89,7 @@ impl ActionKind {
     }
 
     /// Returns whether it is an action of the hand, which requests can name.
-    pub fn is_of_hand(&self) -> bool {
+    pub fn is_hand_action(&self) -> bool {
         self.hand.is_some()
     }
 
@@ -111,7 +111,7 @@ impl ActionKind {
     }
 
     /// The doc comment of its target; `None` without one.
-    pub fn target_about(&self) -> Option<String> {
+    pub fn target_description(&self) -> Option<String> {
         let fields = self.hand.map_or_else(Vec::new, |hand| (hand.fields)());
         let target = fields.into_iter().find(|field| field.name == TARGET)?;
         Some(target.about)
@@ -134,7 +134,7 @@ impl ActionKind {
     ///
     /// # Errors
     /// [`WorldError::Config`] for a field that is missing, [`WorldError::Settings`] for one that cannot be read,
-    /// [`WorldError::Usage`] for an action that is not of the hand.
+    /// [`WorldError::InvalidCall`] for an action that is not of the hand.
     pub(super) fn read(
         &self,
         target: Option<Target>,
@@ -142,7 +142,7 @@ impl ActionKind {
     ) -> Result<Box<dyn HandAction>, WorldError> {
         let Some(hand) = self.hand else {
             let name = self.name;
-            return Err(WorldError::Usage(format!("{name}: no hand does it")));
+            return Err(WorldError::InvalidCall(format!("{name}: no hand does it")));
         };
         if let Some(target) = target {
             fields.insert(TARGET.to_owned(), to_value(&target)?);
@@ -171,5 +171,5 @@ impl ActionKind {
 }
 
 fn to_value(target: &impl Serialize) -> Result<Value, WorldError> {
-    serde_json::to_value(target).map_err(|error| WorldError::Usage(error.to_string()))
+    serde_json::to_value(target).map_err(|error| WorldError::InvalidCall(error.to_string()))
 }

@@ -16,7 +16,7 @@ mod turn_left;
 mod turn_right;
 mod wait;
 
-pub use discrete::DiscreteStep;
+pub use discrete::AgentAction;
 pub use kind::ActionKind;
 pub use request::ActionRequest;
 pub use step_sizes::StepSizes;
@@ -97,7 +97,7 @@ mod tests {
         for kind in all() {
             let documented = kind.fields().iter().all(|field| !field.about.is_empty());
             assert!(documented && kind.about().ends_with('.'), "{kind:?}");
-            let target = kind.target_about();
+            let target = kind.target_description();
             assert_eq!(target.is_some(), kind.takes_target(), "{}", kind.name);
             assert!(target.is_none_or(|about| !about.is_empty()), "{kind:?}");
         }

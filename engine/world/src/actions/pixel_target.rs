@@ -14,7 +14,7 @@ impl World {
     /// `pixel`: column and row, counted from 0 at the top left; the middle of the pixel is meant.
     ///
     /// # Errors
-    /// [`WorldError::Config`] for a pixel outside the image, [`WorldError::Usage`] for an agent that does not exist.
+    /// [`WorldError::Config`] for a pixel outside the image, [`WorldError::InvalidCall`] for an agent that does not exist.
     pub fn pixel_target(
         &self,
         agent: AgentId,
@@ -31,7 +31,7 @@ impl World {
             });
         }
         let Some(state) = self.state().agents.get(agent) else {
-            return Err(WorldError::Usage(format!(
+            return Err(WorldError::InvalidCall(format!(
                 "no agent {}; there are {}",
                 agent.0,
                 self.state().agents.len()

@@ -27,7 +27,7 @@ impl ActionRequest {
     /// # Errors
     /// [`WorldError::Unknown`] lists the kinds there are.
     fn kind(&self) -> Result<&'static ActionKind, WorldError> {
-        let hands = || all().iter().filter(|kind| kind.is_of_hand());
+        let hands = || all().iter().filter(|kind| kind.is_hand_action());
         hands()
             .find(|kind| kind.name == self.kind)
             .ok_or_else(|| WorldError::Unknown {
@@ -88,7 +88,7 @@ impl World {
             }
         }
         let target: TargetRequest =
-            crate::parse_settings::read("action", &Value::Object(of_target))?;
+            crate::parse_settings::parse_settings("action", &Value::Object(of_target))?;
         kind.read(target.resolve(self, agent)?, own)
     }
 
@@ -107,7 +107,7 @@ impl World {
 
     /// Returns the outcomes, in the last step, of actions that take time.
     pub fn notices(&self) -> &[DelayedOutcome] {
-        self.physics().notices()
+        self.physics().delayed_outcomes()
     }
 }
 

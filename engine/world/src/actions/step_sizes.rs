@@ -49,6 +49,6 @@ impl StepSizes {
 }
 
 /// The velocity that turns by `degrees` within `step_s`.
-pub(super) fn rate_rad_s(degrees: f32, step_s: f64) -> f32 {
+pub(super) fn turn_rate_rad_s(degrees: f32, step_s: f64) -> f32 {
     (f64::from(degrees).to_radians() / step_s) as f32
 }

@@ -1,5 +1,5 @@
 //! Stopping: it tells the task that it is done.
 
-use super::kind::{ActionKind, movement, stand_still};
+use super::kind::{ActionKind, movement, zero_velocity};
 
-pub(super) const KIND: ActionKind = movement("stop", "Declares the task done.", stand_still);
+pub(super) const KIND: ActionKind = movement("stop", "Declares the task done.", zero_velocity);

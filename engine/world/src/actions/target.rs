@@ -168,7 +168,7 @@ impl TargetRequest {
 
 /// The similar names.
 fn similar_names<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Vec<String> {
-    let near = dwell_houses::nearest(name, known, NAMES);
+    let near = dwell_houses::nearest_names(name, known, NAMES);
     near.into_iter().map(str::to_owned).collect()
 }
 

@@ -1,5 +1,5 @@
 //! Waiting.
 
-use super::kind::{ActionKind, movement, stand_still};
+use super::kind::{ActionKind, movement, zero_velocity};
 
-pub(super) const KIND: ActionKind = movement("wait", "Does nothing.", stand_still);
+pub(super) const KIND: ActionKind = movement("wait", "Does nothing.", zero_velocity);

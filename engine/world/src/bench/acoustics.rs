@@ -33,11 +33,11 @@ pub(super) fn run(
         .take(ROOMS.min(options.walks))
         .collect();
     let walk_count = if rooms.is_empty() { 0 } else { options.walks };
-    progress.begin(options.presets.len() * (1 + walk_count) + rooms.len());
+    progress.set_part_count(options.presets.len() * (1 + walk_count) + rooms.len());
     let mut rates = serde_json::Map::new();
     for preset in &options.presets {
-        progress.part(&format!("impulse responses, {preset}"))?;
-        let scene = engines.acoustics(preset, 16_000)?;
+        progress.begin_part(&format!("impulse responses, {preset}"))?;
+        let scene = engines.acoustic_scene(preset, 16_000)?;
         let mut pairs = 0;
         let seconds = timed(options.repeats.min(3), || {
             pairs = 0;
@@ -46,7 +46,7 @@ pub(super) fn run(
                 let receiver = Receiver::binaural(Pose::from_position(ear));
                 scene.impulse_response(
                     &rays,
-                    &SoundSourcePose::at(*source),
+                    &SoundSourcePose::omni(*source),
                     &receiver,
                     RandomKey::root(k as u64),
                     threads,
@@ -63,7 +63,7 @@ pub(super) fn run(
     let wanted: Vec<Metrics> = rooms
         .iter()
         .map(|figure| {
-            progress.part("the reference of a room")?;
+            progress.begin_part("the reference of a room")?;
             wanted(&engines, &rays, *figure, threads)
         })
         .collect::<Result<_, _>>()?;
@@ -73,7 +73,7 @@ pub(super) fn run(
         let walks: Vec<WalkBench> = (0..options.walks)
             .zip(walks)
             .map(|(k, (figure, wanted))| {
-                progress.part(&format!("walk {} of {walk_count}, {preset}", k + 1))?;
+                progress.begin_part(&format!("walk {} of {walk_count}, {preset}", k + 1))?;
                 let seed = (k / rooms.len()) as u64;
                 walk(&engines, &rays, preset, *figure, wanted, seed)
             })
@@ -188,10 +188,10 @@ fn wanted(
     threads: Threads,
 ) -> Result<Metrics, WorldError> {
     let (position, head) = figure.place(BLOCKS - 1);
-    let scene = engines.acoustics("reference", 16_000)?;
-    let source = SoundSourcePose::at(position);
+    let scene = engines.acoustic_scene("reference", 16_000)?;
+    let source = SoundSourcePose::omni(position);
     let echogram = scene.echogram(rays, &source, head.position, RandomKey::root(1), threads)?;
-    Ok(metrics::of_echogram(&echogram))
+    Ok(metrics::echogram_metrics(&echogram))
 }
 
 /// Walks on one thread.
@@ -203,7 +203,7 @@ fn walk(
     wanted: &Metrics,
     seed: u64,
 ) -> Result<WalkBench, WorldError> {
-    let scene = engines.acoustics(preset, 16_000)?;
+    let scene = engines.acoustic_scene(preset, 16_000)?;
     let config = StreamConfig::preset(preset).unwrap_or_default();
     let mut stream = Stream::new(scene, config, RandomKey::root(seed), Threads::ONE)?;
     let state = State::new(engines.house());
@@ -222,7 +222,7 @@ fn walk(
     }
     let seconds = start.elapsed().as_secs_f64();
     let mut heard = stream.echograms();
-    let found = heard.next().map(|(_, e)| metrics::of_echogram(&e));
+    let found = heard.next().map(|(_, e)| metrics::echogram_metrics(&e));
     let found = found.unwrap_or_default();
     let mean = |off: fn(&BandMetrics, &BandMetrics) -> Option<f64>| {
         let bands = found.iter().zip(wanted).skip(2).take(5);

@@ -16,7 +16,7 @@ pub(super) fn run(
     options: &BenchOptions,
     progress: &mut BenchProgress<'_>,
 ) -> Result<Value, WorldError> {
-    progress.part("steps of environments")?;
+    progress.begin_part("steps of environments")?;
     let engines = open(house)?;
     let config = EnvConfig::default();
     let envs = (0..options.envs)

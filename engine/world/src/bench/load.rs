@@ -12,8 +12,8 @@ pub(super) fn run(
     options: &BenchOptions,
     progress: &mut BenchProgress<'_>,
 ) -> Result<Value, WorldError> {
-    progress.begin(2);
-    progress.part("opening the house")?;
+    progress.set_part_count(2);
+    progress.begin_part("opening the house")?;
     let mut triangles = 0;
     let seconds = timed(options.repeats, || {
         let (house, _) = dwell_houses::open(house)?;
@@ -21,7 +21,7 @@ pub(super) fn run(
         triangles = house.triangle_count();
         Ok(())
     })?;
-    progress.part("starting over")?;
+    progress.begin_part("starting over")?;
     let engines = open(house)?;
     let mut world = World::new(engines, &WorldConfig::default())?;
     let reset = timed(options.repeats, || world.reset(RandomKey::root(0)))?;

@@ -161,7 +161,7 @@ fn median(sorted: &[f64]) -> f64 {
 /// Measures one stage over a house: `load`, `render`, `physics`, `acoustics` or `env`. `listener` receives the progress.
 ///
 /// # Errors
-/// [`WorldError`] for an unknown stage, a wrong option or a house that cannot be opened; [`WorldError::Stopped`] where the listener does
+/// [`WorldError`] for an unknown stage, a wrong option or a house that cannot be opened; [`WorldError::Cancelled`] where the listener does
 /// not want to go on.
 pub fn run(
     what: &str,

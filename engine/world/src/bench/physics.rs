@@ -1,6 +1,6 @@
 //! Physics steps a second: of one world as it falls to rest, without sleep, asleep, and of many worlds together.
 
-use super::unwinding::DropInBackground;
+use super::unwinding::DropOnThread;
 use super::{BenchOptions, BenchProgress, median};
 use crate::error::WorldError;
 use dwell_physics::{PhysicsConfig, PhysicsModel, PhysicsWorld};
@@ -117,7 +117,7 @@ impl BenchStart {
         config: &PhysicsConfig,
     ) -> Result<(Self, dwell_physics::StartReport), WorldError> {
         let mut state = State::new(house);
-        let (world, report) = PhysicsWorld::over(model.clone(), config, &mut state)?;
+        let (world, report) = PhysicsWorld::with_model(model.clone(), config, &mut state)?;
         Ok((Self { world, state }, report))
     }
 
@@ -141,8 +141,8 @@ pub(super) fn run(
     options: &BenchOptions,
     progress: &mut BenchProgress<'_>,
 ) -> Result<Value, WorldError> {
-    progress.begin(5);
-    progress.part("coming to rest")?;
+    progress.set_part_count(5);
+    progress.begin_part("coming to rest")?;
     let (mut opened, _) = dwell_houses::open(house)?;
     let mut config = PhysicsConfig::default();
     if let Some(boxes) = &options.boxes {
@@ -181,10 +181,10 @@ pub(super) fn run(
         .count();
     settled.run(10 * config.physics_rate_hz as usize)?;
     let threads = Threads::requested(options.threads)?;
-    progress.part("worlds together")?;
+    progress.begin_part("worlds together")?;
     let together = together(&start, options, threads)?;
     let mut rate = |what: &str, start: &BenchStart| -> Result<f64, WorldError> {
-        progress.part(what)?;
+        progress.begin_part(what)?;
         let mut rates = Vec::new();
         for _ in 0..options.repeats {
             rates.push(start.clone().run(options.steps)?);
@@ -218,7 +218,7 @@ fn together(
     let mut ratios = Vec::new();
     for _ in 0..options.repeats.min(5) {
         let alone = start.clone().run(options.steps)?;
-        let mut worlds = DropInBackground(Vec::with_capacity(options.worlds));
+        let mut worlds = DropOnThread(Vec::with_capacity(options.worlds));
         for _ in 0..options.worlds {
             interrupt::check();
             worlds.push((start.clone(), Ok(0.0)));

@@ -22,15 +22,15 @@ impl<'a> BenchProgress<'a> {
     }
 
     /// Sets the number of parts.
-    pub(super) fn begin(&mut self, parts: usize) {
+    pub(super) fn set_part_count(&mut self, parts: usize) {
         self.parts = parts.max(1);
     }
 
     /// Begins the next part.
     ///
     /// # Errors
-    /// [`WorldError::Stopped`] where the listener does not want to go on.
-    pub(super) fn part(&mut self, what: &str) -> Result<(), WorldError> {
+    /// [`WorldError::Cancelled`] where the listener does not want to go on.
+    pub(super) fn begin_part(&mut self, what: &str) -> Result<(), WorldError> {
         let fraction = self.done as f64 / self.parts as f64;
         self.done += 1;
         self.tell(fraction.min(1.0), what)
@@ -39,7 +39,7 @@ impl<'a> BenchProgress<'a> {
     /// Reports that all is measured.
     ///
     /// # Errors
-    /// As [`Self::part`].
+    /// As [`Self::begin_part`].
     pub(super) fn end(&mut self) -> Result<(), WorldError> {
         self.tell(1.0, "done")
     }
@@ -48,7 +48,7 @@ impl<'a> BenchProgress<'a> {
         if (self.listener)(fraction, what) {
             Ok(())
         } else {
-            Err(WorldError::Stopped)
+            Err(WorldError::Cancelled)
         }
     }
 }

@@ -52,7 +52,7 @@ pub(super) fn run(
     if !options.batch.is_empty() {
         return table::run(house, options, progress);
     }
-    progress.part("pictures")?;
+    progress.begin_part("pictures")?;
     let engines = open(house)?;
     let (state, scene) = (
         State::new(engines.house()),
@@ -69,7 +69,7 @@ pub(super) fn run(
         .iter()
         .map(|_| Frame::new(&camera, dwell_render::ImageChannels::default()))
         .collect();
-    let renderer = engines.pictures(&options.backend)?;
+    let renderer = engines.image_renderer(&options.backend)?;
     let seconds = timed(options.repeats + 1, || {
         let mut jobs: Vec<RenderJob<'_>> = poses
             .iter()
@@ -90,7 +90,7 @@ pub(super) fn run(
         "views": poses.len(),
         "resolution": options.resolution,
         "preset": options.preset,
-        "backend": renderer.describe(),
+        "backend": renderer.description(),
         "threads": threads.count(),
         "triangles": engines.house().triangle_count(),
     }))

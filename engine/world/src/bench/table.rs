@@ -50,17 +50,17 @@ pub(super) fn run(
         worlds: (0..most).map(|_| world(&engines)).collect(),
     };
     let back_ends = back_ends(&options.backend);
-    progress.begin(back_ends.len() * options.resolutions().len() * options.batch.len());
+    progress.set_part_count(back_ends.len() * options.resolutions().len() * options.batch.len());
     let mut rows = Vec::new();
     let mut read_back = None;
     for back_end in back_ends {
-        let renderer = engines.pictures(&back_end)?;
+        let renderer = engines.image_renderer(&back_end)?;
         if let (Renderer::Gpu(gpu), None) = (&*renderer, read_back) {
             read_back = Some(gpu.gpu().read_back_bytes_per_s()?);
         }
         for resolution in &options.resolutions() {
             for batch in &options.batch {
-                progress.part(&format!("batches of {batch} at {resolution} pixels"))?;
+                progress.begin_part(&format!("batches of {batch} at {resolution} pixels"))?;
                 let size = BenchSize {
                     batch: *batch,
                     resolution: *resolution,
@@ -108,7 +108,7 @@ fn row(
     let seconds = timed(options.repeats, || jobs(&mut frames))?;
     let views_per_s = batch as f64 / median(&seconds);
     let mut row = json!({
-        "backend": renderer.describe(),
+        "backend": renderer.description(),
         "resolution": resolution,
         "batch": batch,
         "views_per_s": views_per_s,

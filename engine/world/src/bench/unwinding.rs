@@ -5,9 +5,9 @@ use std::ops::{Deref, DerefMut};
 /// A vector whose items are dropped on a thread of their own when the stack unwinds: thousands of worlds take seconds, and Ctrl-C
 /// should wait for none of them.
 #[derive(Debug)]
-pub(super) struct DropInBackground<T: Send + 'static>(pub(super) Vec<T>);
+pub(super) struct DropOnThread<T: Send + 'static>(pub(super) Vec<T>);
 
-impl<T: Send + 'static> Drop for DropInBackground<T> {
+impl<T: Send + 'static> Drop for DropOnThread<T> {
     fn drop(&mut self) {
         if std::thread::panicking() {
             let items = std::mem::take(&mut self.0);
@@ -17,14 +17,14 @@ impl<T: Send + 'static> Drop for DropInBackground<T> {
     }
 }
 
-impl<T: Send + 'static> Deref for DropInBackground<T> {
+impl<T: Send + 'static> Deref for DropOnThread<T> {
     type Target = Vec<T>;
     fn deref(&self) -> &Vec<T> {
         &self.0
     }
 }
 
-impl<T: Send + 'static> DerefMut for DropInBackground<T> {
+impl<T: Send + 'static> DerefMut for DropOnThread<T> {
     fn deref_mut(&mut self) -> &mut Vec<T> {
         &mut self.0
     }
@@ -55,7 +55,7 @@ mod tests {
         let stopped = interrupt::interruptible(
             || true,
             || {
-                let _items = DropInBackground(vec![Slow(told, may)]);
+                let _items = DropOnThread(vec![Slow(told, may)]);
                 std::thread::sleep(interrupt::INTERVAL);
                 interrupt::check();
             },
@@ -72,7 +72,7 @@ mod tests {
         let (told, dropped) = mpsc::channel();
         let (go, may) = mpsc::channel();
         go.send(()).unwrap();
-        drop(DropInBackground(vec![Slow(told, may)]));
+        drop(DropOnThread(vec![Slow(told, may)]));
         assert_eq!(dropped.try_recv(), Ok(std::thread::current().id()));
     }
 }

@@ -2,7 +2,7 @@
 
 mod shutter;
 
-pub(crate) use shutter::PendingPicture;
+pub(crate) use shutter::ImageExposure;
 
 use crate::error::WorldError;
 use crate::world::World;
@@ -12,11 +12,11 @@ use dwell_scene::{AgentId, AgentState, EntityId, Pose};
 
 /// A requested picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PictureRequest {
+pub struct ImageRequest {
     /// The ideal camera; laws of the agent's cameras turn it into the real one.
     pub camera: Camera,
     /// The camera's mount.
-    pub place: CameraMount,
+    pub mount: CameraMount,
     /// The amount of light transport.
     pub preset: Preset,
 }
@@ -32,10 +32,10 @@ pub enum CameraMount {
 
 /// A view with its camera's previous pose.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct TimedView {
+pub(crate) struct MovingView {
     pub(crate) view: View,
     /// The camera's pose a control step ago.
-    pub(crate) was: Pose,
+    pub(crate) previous_pose: Pose,
 }
 
 impl World {
@@ -47,56 +47,59 @@ impl World {
         }
     }
 
-    pub(crate) fn shot(&self, request: &PictureRequest) -> TimedView {
+    pub(crate) fn moving_view(&self, request: &ImageRequest) -> MovingView {
         let state = self.state();
-        let camera = self.optics(&request.place).camera(request.camera);
-        let (is, was, hide): (Pose, Pose, Option<EntityId>) = match request.place {
+        let camera = self.optics(&request.mount).camera(request.camera);
+        let (is, was, hide): (Pose, Pose, Option<EntityId>) = match request.mount {
             CameraMount::World(pose) => (pose, pose, None),
             CameraMount::Agent(agent, eye_from_camera) => {
                 let is = state.agents.get(agent).map(AgentState::world_from_eye);
                 let is = is.unwrap_or_default();
-                let was = self.past().eye(agent, state).unwrap_or(is);
+                let was = self.motion_history().eye(agent, state).unwrap_or(is);
                 let hide = self.house().entity_of_agent(agent);
                 (is * eye_from_camera, was * eye_from_camera, Some(hide))
             }
         };
         let view = View {
             preset: request.preset,
-            hide,
+            hidden_entity: hide,
             ..View::new(camera, is)
         };
-        TimedView { view, was }
+        MovingView {
+            view,
+            previous_pose: was,
+        }
     }
 
     /// One picture, without the noise that laws add to it, and the camera that took it, as laws make it.
     ///
     /// # Errors
     /// [`WorldError::Render`] for a pose that is not finite.
-    pub fn picture(
+    pub fn render_image(
         &self,
-        request: &PictureRequest,
+        request: &ImageRequest,
         mut channels: ImageChannels,
         threads: Threads,
     ) -> Result<(Camera, Frame), WorldError> {
-        channels.normals |= channels.depth && self.optics(&request.place).needs_normals();
-        let mut take = PendingPicture::new(self, request, channels.rgb);
+        channels.normals |= channels.depth && self.optics(&request.mount).needs_normals();
+        let mut take = ImageExposure::new(self, request, channels.rgb);
         let mut frame = Frame::new(&take.camera(), channels);
         let mut jobs = Vec::new();
         take.jobs(self, frame.as_mut(), &mut jobs);
-        let renderer = self.engines().pictures(&self.config().renderer)?;
+        let renderer = self.engines().image_renderer(&self.config().renderer)?;
         renderer.render_batch(&mut jobs, threads)?;
         drop(jobs);
-        take.develop(&mut frame);
+        take.average_exposures(&mut frame);
         Ok((take.camera(), frame))
     }
 
     /// Returns the previous frame; `None` in the first step.
-    pub(crate) fn before(&self, world_from_camera: Pose) -> Option<PreviousFrame<'_>> {
-        let past = self.past();
-        past.known.then_some(PreviousFrame {
+    pub(crate) fn previous_frame(&self, world_from_camera: Pose) -> Option<PreviousFrame<'_>> {
+        let past = self.motion_history();
+        past.has_step.then_some(PreviousFrame {
             world_from_camera,
-            moved: &past.moved,
-            agents: &past.feet,
+            moved_parts: &past.previous_part_poses,
+            agents: &past.previous_feet,
         })
     }
 }

@@ -1,7 +1,7 @@
 //! Pictures whose shutter is open or rolls: the moments that they are made of, and how those become one picture.
 
-use super::{PictureRequest, TimedView};
-use crate::motion_history::between;
+use super::{ImageRequest, MovingView};
+use crate::motion_history::interpolate_back;
 use crate::world::World;
 use dwell_render::laws::mean_color;
 use dwell_render::{Camera, Frame, FrameMut, RenderJob};
@@ -33,19 +33,19 @@ struct PictureRows<'a> {
 
 /// A picture that is being taken.
 #[derive(Debug)]
-pub(crate) struct PendingPicture {
-    shot: TimedView,
+pub(crate) struct ImageExposure {
+    shot: MovingView,
     timing: RowTiming,
     moments: PastStates,
     /// Colours at each moment of the exposure; empty without one.
     exposed: Vec<Vec<u8>>,
 }
 
-impl PendingPicture {
+impl ImageExposure {
     /// A picture of a world as it stands, as the laws of its camera have it. `has_color`: whether colours are wanted.
-    pub(crate) fn new(world: &World, request: &PictureRequest, has_color: bool) -> Self {
-        let shot = world.shot(request);
-        let shutter = world.optics(&request.place).shutter();
+    pub(crate) fn new(world: &World, request: &ImageRequest, has_color: bool) -> Self {
+        let shot = world.moving_view(request);
+        let shutter = world.optics(&request.mount).shutter();
         let step_s = world.config().step_s() as f32;
         let timing = RowTiming {
             delay: shutter.line_s / step_s,
@@ -86,10 +86,11 @@ impl PendingPicture {
             let (state, scene) = moments.at(world, part.share);
             let mut view = shot.view;
             if part.rows.is_some() || part.share > 0.0 {
-                view.world_from_camera = between(&view.world_from_camera, &shot.was, part.share);
+                view.world_from_camera =
+                    interpolate_back(&view.world_from_camera, &shot.previous_pose, part.share);
             }
             jobs.push(RenderJob {
-                before: world.before(shot.was),
+                before: world.previous_frame(shot.previous_pose),
                 rows: part.rows,
                 ..RenderJob::new(scene, state, view, part.frame)
             });
@@ -109,18 +110,18 @@ impl PendingPicture {
     }
 
     /// Drops the data that only [`Self::jobs`] needs.
-    pub(crate) fn drop_past_states(&mut self) {
+    pub(crate) fn drop_render_states(&mut self) {
         self.moments.copies = Vec::new();
     }
 
-    /// Returns whether [`Self::develop`] has something to do.
-    pub(crate) fn is_exposed(&self) -> bool {
+    /// Returns whether [`Self::average_exposures`] has something to do.
+    pub(crate) fn has_multiple_exposures(&self) -> bool {
         !self.exposed.is_empty()
     }
 
     /// Makes the picture's colours from those of its moments.
-    pub(crate) fn develop(&self, frame: &mut Frame) {
-        if self.is_exposed() {
+    pub(crate) fn average_exposures(&self, frame: &mut Frame) {
+        if self.has_multiple_exposures() {
             mean_color(self.exposed.iter().map(Vec::as_slice), &mut frame.rgb);
         }
     }
@@ -175,7 +176,7 @@ fn rolling_rows<'a>(
     parts.extend((0..height).map(|row| PictureRows {
         share: earlier + delay * (height - 1 - row) as f32,
         rows: Some((row, row + 1)),
-        frame: frame.take_pixels(camera.width() as usize),
+        frame: frame.split_off_pixels(camera.width() as usize),
     }));
 }
 
@@ -190,11 +191,11 @@ struct PastStates {
 
 impl PastStates {
     fn new(world: &World, longest: f32) -> Self {
-        let still = longest <= 0.0 || world.past().is_still(world.state());
+        let still = longest <= 0.0 || world.motion_history().is_still(world.state());
         let copies = (1..MOMENTS).map(|k| {
             let share = longest * k as f32 / (MOMENTS - 1) as f32;
             let (mut state, mut scene) = (world.state().clone(), world.rays().clone());
-            world.past().rewind(&mut state, share);
+            world.motion_history().rewind(&mut state, share);
             scene.update(&state);
             (state, scene)
         });

@@ -22,7 +22,7 @@ pub(super) struct DoorOpening {
     openness: f32,
     still: u32,
     /// The path to where the leaf does not reach, once it was held up.
-    pub(super) clear_cells_field: Option<Arc<DistanceField>>,
+    pub(super) distance_to_clear_cells: Option<Arc<DistanceField>>,
 }
 
 impl DoorOpening {
@@ -31,12 +31,12 @@ impl DoorOpening {
             door,
             openness: 0.0,
             still: 0,
-            clear_cells_field: None,
+            distance_to_clear_cells: None,
         }
     }
 
     /// Notes one more order to open: steps aside where the door stands still for long.
-    pub(super) fn ordered(&mut self, world: &World, grid: &NavGrid, agent: AgentId) {
+    pub(super) fn count_open_request(&mut self, world: &World, grid: &NavGrid, agent: AgentId) {
         let now = world
             .state()
             .openness(world.house(), self.door)
@@ -47,7 +47,7 @@ impl DoorOpening {
         if self.still > PATIENCE {
             self.still = 0;
             let free = cells_clear_of_leaf(world, grid, agent, self.door);
-            self.clear_cells_field =
+            self.distance_to_clear_cells =
                 (!free.is_empty()).then(|| Arc::new(grid.distance_field(&free)));
         }
     }
@@ -62,7 +62,7 @@ fn cells_clear_of_leaf(
 ) -> Vec<NavCell> {
     let (house, state) = (world.house(), world.state());
     let hinge = house.joints_of(door).find(|joint| {
-        house.joints[*joint].opens() && house.joints[*joint].kind == JointKind::Hinge
+        house.joints[*joint].is_openable() && house.joints[*joint].kind == JointKind::Hinge
     });
     let (Some(hinge), Some(agent)) = (hinge, state.agents.get(agent)) else {
         return Vec::new();

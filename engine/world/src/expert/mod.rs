@@ -70,12 +70,12 @@ impl ShortestPathFollower {
     }
 
     /// Geodesic distance of a cell to the goals, m.
-    pub fn at(&self, cell: NavCell) -> Option<f64> {
+    pub fn distance_at(&self, cell: NavCell) -> Option<f64> {
         self.field.at(cell)
     }
 
     /// The next step of the path; `None` when it stands on a goal or there is no path.
-    pub fn walk(&mut self, world: &World) -> Option<DiscreteAction> {
+    pub fn next_action(&mut self, world: &World) -> Option<DiscreteAction> {
         let agent = *world.state().agents.get(self.agent)?;
         let here = self.grid.nearest(agent.position, 0.6)?;
         if self.field.at(here)? <= 0.0 {
@@ -114,7 +114,7 @@ impl ShortestPathFollower {
         if open.is_none_or(|open| open >= PASSABLE) {
             return None;
         }
-        let (door, clear_cells_field) = (opening.door, opening.clear_cells_field.clone());
+        let (door, clear_cells_field) = (opening.door, opening.distance_to_clear_cells.clone());
         self.opening = Some(opening);
         let agent = *world.state().agents.get(self.agent)?;
         let clear_cells_field = clear_cells_field?;
@@ -196,15 +196,15 @@ impl ShortestPathFollower {
 
     /// Turns to a door and opens it; waits while it opens.
     fn open(&mut self, world: &World, door: ObjectId) -> DiscreteAction {
-        if let Some(turn) = face(world, self.agent, door, &self.stride) {
+        if let Some(turn) = action_towards_object(world, self.agent, door, &self.stride) {
             return turn;
         }
-        if world.gaze_target(self.agent) != Some(door) {
+        if world.object_in_view_centre(self.agent) != Some(door) {
             return DiscreteAction::MoveForward;
         }
         let opening = self.opening.take().filter(|opening| opening.door == door);
         let mut opening = opening.unwrap_or_else(|| DoorOpening::of(door));
-        opening.ordered(world, &self.grid, self.agent);
+        opening.count_open_request(world, &self.grid, self.agent);
         self.opening = Some(opening);
         DiscreteAction::Open
     }
@@ -247,7 +247,7 @@ fn face_point(
 }
 
 /// The turn or tilt that brings an object into the middle of an agent's view; `None` when it already is there.
-pub fn face(
+pub fn action_towards_object(
     world: &World,
     agent: AgentId,
     object: ObjectId,

@@ -2,7 +2,7 @@
 
 mod snapshot_base;
 
-pub(crate) use snapshot_base::{SnapshotBase, SnapshotParts, body};
+pub(crate) use snapshot_base::{SnapshotBase, SnapshotParts, unpacked_body};
 
 use crate::config::WorldConfig;
 use crate::error::WorldError;
@@ -17,13 +17,17 @@ use std::sync::{Arc, OnceLock};
 pub(crate) struct InitialWorld {
     pub(crate) state: State,
     pub(crate) physics: PhysicsWorld,
-    pub(crate) report: StartReport,
+    pub(crate) start_report: StartReport,
     base: OnceLock<SnapshotBase>,
 }
 
 impl InitialWorld {
     /// Returns the bytes that snapshots are packed beside, made at first use.
-    pub(crate) fn base(&self, model: &Arc<PhysicsModel>, config: &WorldConfig) -> &SnapshotBase {
+    pub(crate) fn snapshot_base(
+        &self,
+        model: &Arc<PhysicsModel>,
+        config: &WorldConfig,
+    ) -> &SnapshotBase {
         self.base.get_or_init(|| SnapshotBase::of(model, config))
     }
 
@@ -55,12 +59,13 @@ impl InitialWorld {
             physics_rate_hz: config.physics_rate_hz as f32,
             ..PhysicsConfig::default()
         };
-        let (mut physics, report) = PhysicsWorld::over(model.clone(), &physics_config, &mut state)?;
+        let (mut physics, report) =
+            PhysicsWorld::with_model(model.clone(), &physics_config, &mut state)?;
         physics.settle(&mut state, config.settle_s.unwrap_or_default())?;
         Ok(Self {
             state,
             physics,
-            report,
+            start_report: report,
             base: OnceLock::new(),
         })
     }

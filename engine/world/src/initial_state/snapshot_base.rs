@@ -18,14 +18,14 @@ pub(crate) struct SnapshotParts {
     pub(crate) physics: Vec<u8>,
     pub(crate) sound: Vec<u8>,
     pub(crate) key: RandomKey,
-    pub(crate) past: MotionHistory,
+    pub(crate) motion_history: MotionHistory,
 }
 
 /// The bytes of the common initial state of worlds.
 #[derive(Debug)]
 pub(crate) struct SnapshotBase {
     pub(crate) bytes: Vec<u8>,
-    pub(crate) sum: u64,
+    pub(crate) checksum: u64,
 }
 
 impl SnapshotBase {
@@ -42,7 +42,7 @@ impl SnapshotBase {
         let bytes = start.map_or_else(
             |_| Vec::new(),
             |start| {
-                body(
+                unpacked_body(
                     model.house(),
                     &start.state,
                     &start.physics,
@@ -51,12 +51,15 @@ impl SnapshotBase {
             },
         );
         let sum = xxh3_64(&bytes);
-        Self { bytes, sum }
+        Self {
+            bytes,
+            checksum: sum,
+        }
     }
 }
 
 /// The parts of a world as bytes, before they are packed.
-pub(crate) fn body(
+pub(crate) fn unpacked_body(
     house: &House,
     state: &State,
     physics: &PhysicsWorld,
@@ -64,10 +67,10 @@ pub(crate) fn body(
 ) -> Vec<u8> {
     let parts = SnapshotParts {
         state: state.to_bytes(house),
-        physics: physics.moment(),
+        physics: physics.unpacked_snapshot(),
         sound,
         key,
-        past,
+        motion_history: past,
     };
     postcard::to_stdvec(&parts).expect("plain bytes can always be written to memory")
 }

@@ -14,7 +14,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: IMAGE.name,
     about: ABOUT,
     build,
-    settings: schema::fields::<CameraConfig>,
+    settings: schema::fields_of::<CameraConfig>,
     image: Some(|_| &IMAGE),
 };
 
@@ -22,7 +22,7 @@ static IMAGE: ImageSensorKind = ImageSensorKind {
     name: "albedo",
     about: ABOUT,
     shape: ObservationShape::Image(3),
-    shown: PictureStyle::Light,
+    style: PictureStyle::Light,
     dtype: Dtype::Float32,
     unit: "1",
     low: 0.0,

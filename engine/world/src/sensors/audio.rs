@@ -1,11 +1,12 @@
 //! The binaural sensor: sound at an agent's two ears.
 
 use super::{
-    Dtype, ObservationBuffer, Sensor, SensorContext, SensorKind, SensorSetup, SensorSpec, settings,
+    Dtype, ObservationBuffer, Sensor, SensorContext, SensorKind, SensorSetup, SensorSpec,
+    parse_sensor_settings,
 };
 use crate::error::WorldError;
 use crate::schema;
-use crate::sensor_requests::Requests;
+use crate::sensor_requests::SensorRequests;
 use crate::world::World;
 use dwell_scene::AgentId;
 use schemars::JsonSchema;
@@ -21,7 +22,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: "audio",
     about: ABOUT,
     build,
-    settings: schema::fields::<AudioConfig>,
+    settings: schema::fields_of::<AudioConfig>,
     image: None,
 };
 
@@ -57,7 +58,7 @@ fn clip(samples: &mut [f32]) -> u64 {
 }
 
 fn build(value: &serde_json::Value, site: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
-    let config: AudioConfig = settings(value)?;
+    let config: AudioConfig = parse_sensor_settings(value)?;
     let agent = site.agent(config.agent)?;
     let window_s = config.window_s.unwrap_or_else(|| site.config.step_s());
     let samples = (window_s * f64::from(site.config.sound_rate_hz)).round();
@@ -90,23 +91,23 @@ impl Sensor for AudioSensor {
         }
     }
 
-    fn plan(&self, _world: &World, requests: &mut Requests) {
-        requests.ears(self.agent, self.samples);
+    fn request(&self, _world: &World, requests: &mut SensorRequests) {
+        requests.request_sound(self.agent, self.samples);
     }
 
-    fn finish(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>) {
+    fn write_observation(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>) {
         let ObservationBuffer::Float32(out) = out else {
             return;
         };
         let mut clipped = 0;
         for (channel, window) in out.chunks_exact_mut(self.samples).enumerate() {
-            seen.world.heard(self.agent, channel, window);
+            seen.world.newest_samples(self.agent, channel, window);
             clipped += clip(window);
         }
         self.clipped.store(clipped, Ordering::Relaxed);
     }
 
-    fn clipped(&self) -> u64 {
+    fn clipped_samples(&self) -> u64 {
         self.clipped.load(Ordering::Relaxed)
     }
 }

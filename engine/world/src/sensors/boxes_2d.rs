@@ -15,7 +15,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: IMAGE.name,
     about: ABOUT,
     build,
-    settings: schema::fields::<CameraConfig>,
+    settings: schema::fields_of::<CameraConfig>,
     image: Some(|_| &IMAGE),
 };
 
@@ -23,7 +23,7 @@ static IMAGE: ImageSensorKind = ImageSensorKind {
     name: "boxes_2d",
     about: ABOUT,
     shape: ObservationShape::List(6),
-    shown: PictureStyle::List,
+    style: PictureStyle::List,
     dtype: Dtype::Int32,
     unit: "id, px",
     low: 0.0,
@@ -44,7 +44,7 @@ fn write(look: ImageContext<'_>, out: ObservationBuffer<'_>) {
         return;
     };
     object_list::fill(&look, out, |sighting| {
-        let ([left, top], [right, bottom]) = (sighting.first, sighting.end);
+        let ([left, top], [right, bottom]) = (sighting.first_pixel, sighting.end_pixel);
         [
             sighting.entity.0 as u32,
             left,

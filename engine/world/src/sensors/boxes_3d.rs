@@ -15,7 +15,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: IMAGE.name,
     about: ABOUT,
     build,
-    settings: schema::fields::<CameraConfig>,
+    settings: schema::fields_of::<CameraConfig>,
     image: Some(|_| &IMAGE),
 };
 
@@ -23,7 +23,7 @@ static IMAGE: ImageSensorKind = ImageSensorKind {
     name: "boxes_3d",
     about: ABOUT,
     shape: ObservationShape::List(11),
-    shown: PictureStyle::List,
+    style: PictureStyle::List,
     dtype: Dtype::Float32,
     unit: "id, m, m, 1",
     low: -1e9,
@@ -46,7 +46,7 @@ fn write(look: ImageContext<'_>, out: ObservationBuffer<'_>) {
     let world = look.world;
     let camera_from_world = look.view().world_from_camera.inverse();
     object_list::fill(&look, out, |sighting| {
-        let renderer = world.engines().renderer();
+        let renderer = world.engines().cpu_renderer();
         let mut row = [0.0; 11];
         row[0] = sighting.entity.0 as f32;
         if let Some(bounds) = renderer.oriented_box(world.state(), sighting.entity) {

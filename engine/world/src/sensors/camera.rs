@@ -95,7 +95,7 @@ impl CameraConfig {
         };
         let agent = setup.agent(self.agent)?;
         let body = &setup.config.agents[agent.index()];
-        let Some(preset) = Preset::of(&self.preset) else {
+        let Some(preset) = Preset::from_name(&self.preset) else {
             let allowed = Preset::ALL.map(|preset| format!("{:?}", preset.name()));
             return fault("preset", format!("{:?}", self.preset), allowed.join(", "));
         };

@@ -17,7 +17,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: "compass",
     about: ABOUT,
     build,
-    settings: schema::fields::<AgentSettings>,
+    settings: schema::fields_of::<AgentSettings>,
     image: None,
 };
 
@@ -44,10 +44,10 @@ impl Sensor for CompassSensor {
         }
     }
 
-    fn finish(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>) {
+    fn write_observation(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>) {
         if let (Some(agent), ObservationBuffer::Float32(out)) = (self.0.state(seen), out) {
             let start_yaw =
-                yaw_from_forward(seen.start_of(self.0.agent).transform_vector(Vec3::NEG_Z));
+                yaw_from_forward(seen.start_pose(self.0.agent).transform_vector(Vec3::NEG_Z));
             out[0] = math::wrap_angle(agent.yaw_rad - start_yaw);
         }
     }

@@ -14,7 +14,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: IMAGE.name,
     about: ABOUT,
     build,
-    settings: schema::fields::<CameraConfig>,
+    settings: schema::fields_of::<CameraConfig>,
     image: Some(|_| &IMAGE),
 };
 
@@ -22,7 +22,7 @@ static IMAGE: ImageSensorKind = ImageSensorKind {
     name: "depth",
     about: ABOUT,
     shape: ObservationShape::Image(1),
-    shown: PictureStyle::Depth,
+    style: PictureStyle::Depth,
     dtype: Dtype::Float32,
     unit: "m",
     low: 0.0,

@@ -14,7 +14,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: IMAGE.name,
     about: ABOUT,
     build,
-    settings: schema::fields::<CameraConfig>,
+    settings: schema::fields_of::<CameraConfig>,
     image: Some(|_| &IMAGE),
 };
 
@@ -22,7 +22,7 @@ static IMAGE: ImageSensorKind = ImageSensorKind {
     name: "flow",
     about: ABOUT,
     shape: ObservationShape::Image(2),
-    shown: PictureStyle::Flow,
+    style: PictureStyle::Flow,
     dtype: Dtype::Float32,
     unit: "px",
     low: -1e9,

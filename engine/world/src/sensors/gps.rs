@@ -13,7 +13,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: "gps",
     about: ABOUT,
     build,
-    settings: schema::fields::<AgentSettings>,
+    settings: schema::fields_of::<AgentSettings>,
     image: None,
 };
 
@@ -39,10 +39,10 @@ impl Sensor for GpsSensor {
         }
     }
 
-    fn finish(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>) {
+    fn write_observation(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>) {
         if let (Some(agent), ObservationBuffer::Float32(out)) = (self.0.state(seen), out) {
             let moved = seen
-                .start_of(self.0.agent)
+                .start_pose(self.0.agent)
                 .inverse()
                 .transform_point(agent.position);
             out.copy_from_slice(&[

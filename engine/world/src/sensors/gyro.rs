@@ -17,7 +17,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: "gyro",
     about: ABOUT,
     build,
-    settings: schema::fields::<AgentSettings>,
+    settings: schema::fields_of::<AgentSettings>,
     image: None,
 };
 
@@ -43,7 +43,7 @@ impl Sensor for GyroSensor {
         }
     }
 
-    fn finish(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>) {
+    fn write_observation(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>) {
         if let (Some(agent), ObservationBuffer::Float32(out)) = (self.0.state(seen), out) {
             out[0] = agent.gyro_rad_s.clamp(-FULL_SCALE_RAD_S, FULL_SCALE_RAD_S);
         }

@@ -2,11 +2,13 @@
 
 use super::camera::CameraConfig;
 use super::picture_memory;
-use super::{Dtype, ObservationBuffer, Sensor, SensorContext, SensorSetup, SensorSpec, settings};
-use crate::camera_capture::PictureRequest;
+use super::{
+    Dtype, ObservationBuffer, Sensor, SensorContext, SensorSetup, SensorSpec, parse_sensor_settings,
+};
+use crate::camera_capture::ImageRequest;
 use crate::error::WorldError;
 use crate::eye_camera::EyeCamera;
-use crate::sensor_requests::Requests;
+use crate::sensor_requests::SensorRequests;
 use crate::world::World;
 use dwell_render::{Camera, ClassSet, Frame, ImageChannels, Optics, View};
 use dwell_scene::parallel::Threads;
@@ -19,7 +21,7 @@ pub(crate) struct ImageSensorKind {
     pub(super) name: &'static str,
     pub(super) about: &'static str,
     pub(super) shape: ObservationShape,
-    pub(super) shown: PictureStyle,
+    pub(super) style: PictureStyle,
     pub(super) dtype: Dtype,
     pub(super) unit: &'static str,
     pub(super) low: f64,
@@ -32,7 +34,7 @@ pub(crate) struct ImageSensorKind {
 }
 
 /// The image sensor for a table of classes, if its classes depend on one.
-pub(crate) type ImageOfClasses = fn(ClassSet) -> &'static ImageSensorKind;
+pub(crate) type ClassImageSensor = fn(ClassSet) -> &'static ImageSensorKind;
 
 /// The style in which an observation is shown to people.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -108,7 +110,7 @@ impl ImageSensorKind {
 #[derive(Clone, Copy)]
 pub(super) struct ImageContext<'a> {
     pub(super) world: &'a World,
-    pub(super) request: PictureRequest,
+    pub(super) request: ImageRequest,
     /// The camera as it was for the picture.
     pub(super) camera: &'a Camera,
     /// The images, without noise.
@@ -120,18 +122,18 @@ pub(super) struct ImageContext<'a> {
 impl ImageContext<'_> {
     /// The laws of the camera.
     pub(super) fn optics(&self) -> Optics<'_> {
-        self.world.optics(&self.request.place)
+        self.world.optics(&self.request.mount)
     }
 
     /// The view of the picture.
     pub(super) fn view(&self) -> View {
-        self.world.shot(&self.request).view
+        self.world.moving_view(&self.request).view
     }
 
     /// The class of what each pixel shows.
     pub(super) fn write_classes(&self, classes: ClassSet, out: ObservationBuffer<'_>) {
         if let ObservationBuffer::Int32(out) = out {
-            let renderer = self.world.engines().renderer();
+            let renderer = self.world.engines().cpu_renderer();
             let classes = renderer.classes(classes);
             for (class, id) in out.iter_mut().zip(&self.frame.instance) {
                 *class = classes.of(*id);
@@ -150,11 +152,11 @@ struct ImageSensor {
 
 /// Builds a sensor from its settings.
 pub(super) fn build(
-    of: ImageOfClasses,
+    of: ClassImageSensor,
     value: &serde_json::Value,
     site: SensorSetup<'_>,
 ) -> Result<Box<dyn Sensor>, WorldError> {
-    let config: CameraConfig = settings(value)?;
+    let config: CameraConfig = parse_sensor_settings(value)?;
     let kind = of(config.classes);
     let eye = config.build(site)?;
     Ok(Box::new(ImageSensor { kind, config, eye }))
@@ -167,16 +169,16 @@ impl Sensor for ImageSensor {
         self.kind.spec(name, camera, self.config.max_objects)
     }
 
-    fn eye(&self) -> Option<&EyeCamera> {
+    fn camera(&self) -> Option<&EyeCamera> {
         Some(&self.eye)
     }
 
-    fn plan(&self, _world: &World, requests: &mut Requests) {
-        requests.view(&self.eye, self.kind.channels);
+    fn request(&self, _world: &World, requests: &mut SensorRequests) {
+        requests.request_view(&self.eye, self.kind.channels);
     }
 
-    fn finish(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>) {
-        if let Some(picture) = seen.results.view(&self.eye) {
+    fn write_observation(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>) {
+        if let Some(picture) = seen.results.image_of(&self.eye) {
             let look = ImageContext {
                 world: seen.world,
                 request: self.eye.request(seen.world.state()),
@@ -218,9 +220,9 @@ impl World {
     ///
     /// # Determinism
     /// The random draws of laws depend on the episode, the step and the sensor's name alone.
-    pub fn look(
+    pub fn image_observations(
         &self,
-        request: &PictureRequest,
+        request: &ImageRequest,
         names: &[String],
         settings: ImageSettings,
         threads: Threads,
@@ -236,7 +238,7 @@ impl World {
                 allowed: "1 to 4096".to_owned(),
             });
         }
-        let images = || super::all().iter().filter(|kind| kind.shows_pictures());
+        let images = || super::all().iter().filter(|kind| kind.is_image_sensor());
         let find = |name: &String| {
             let kind = images().find(|kind| kind.name == name);
             let image = kind.and_then(|kind| kind.image);
@@ -246,11 +248,11 @@ impl World {
         };
         let kinds: Vec<&ImageSensorKind> = names.iter().map(find).collect::<Result<_, _>>()?;
         let wanted = kinds.iter().map(|kind| kind.channels);
-        let channels = wanted.fold(ImageChannels::NONE, ImageChannels::and);
+        let channels = wanted.fold(ImageChannels::NONE, ImageChannels::union);
         let specs = kinds.iter();
         let specs = specs.map(|kind| kind.spec(kind.name, &request.camera, max_objects));
-        picture_memory::check_picture(&request.camera, channels, &specs.collect::<Vec<_>>())?;
-        let (camera, frame) = self.picture(request, channels, threads)?;
+        picture_memory::check_image_memory(&request.camera, channels, &specs.collect::<Vec<_>>())?;
+        let (camera, frame) = self.render_image(request, channels, threads)?;
         let key = self.key.child("picture").child(self.state().step);
         let observe = |kind: &&ImageSensorKind| {
             let spec = kind.spec(kind.name, &camera, max_objects);

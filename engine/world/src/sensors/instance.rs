@@ -14,7 +14,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: IMAGE.name,
     about: ABOUT,
     build,
-    settings: schema::fields::<CameraConfig>,
+    settings: schema::fields_of::<CameraConfig>,
     image: Some(|_| &IMAGE),
 };
 
@@ -22,7 +22,7 @@ static IMAGE: ImageSensorKind = ImageSensorKind {
     name: "instance",
     about: ABOUT,
     shape: ObservationShape::Image(1),
-    shown: PictureStyle::Ids,
+    style: PictureStyle::Ids,
     dtype: Dtype::Int32,
     unit: "id",
     low: 0.0,

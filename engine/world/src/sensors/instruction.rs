@@ -2,7 +2,7 @@
 
 use super::{
     Dtype, NoSettings, ObservationBuffer, Sensor, SensorContext, SensorKind, SensorSetup,
-    SensorSpec, settings,
+    SensorSpec, parse_sensor_settings,
 };
 use crate::error::WorldError;
 use crate::schema;
@@ -14,7 +14,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: "instruction",
     about: ABOUT,
     build,
-    settings: schema::fields::<NoSettings>,
+    settings: schema::fields_of::<NoSettings>,
     image: None,
 };
 
@@ -22,7 +22,7 @@ pub(super) const KIND: SensorKind = SensorKind {
 struct InstructionSensor;
 
 fn build(value: &serde_json::Value, _: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
-    let NoSettings {} = settings(value)?;
+    let NoSettings {} = parse_sensor_settings(value)?;
     Ok(Box::new(InstructionSensor))
 }
 
@@ -39,7 +39,7 @@ impl Sensor for InstructionSensor {
         }
     }
 
-    fn finish(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>) {
+    fn write_observation(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>) {
         if let ObservationBuffer::Text(out) = out {
             out.clear();
             out.push_str(&seen.episode.instruction);

@@ -2,7 +2,7 @@
 
 use super::{
     Dtype, NoSettings, ObservationBuffer, Sensor, SensorContext, SensorKind, SensorSetup,
-    SensorSpec, settings,
+    SensorSpec, parse_sensor_settings,
 };
 use crate::error::WorldError;
 use crate::schema;
@@ -14,7 +14,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: "instruction_tokens",
     about: ABOUT,
     build,
-    settings: schema::fields::<NoSettings>,
+    settings: schema::fields_of::<NoSettings>,
     image: None,
 };
 
@@ -22,7 +22,7 @@ pub(super) const KIND: SensorKind = SensorKind {
 struct InstructionTokensSensor;
 
 fn build(value: &serde_json::Value, _: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
-    let NoSettings {} = settings(value)?;
+    let NoSettings {} = parse_sensor_settings(value)?;
     Ok(Box::new(InstructionTokensSensor))
 }
 
@@ -39,7 +39,7 @@ impl Sensor for InstructionTokensSensor {
         }
     }
 
-    fn finish(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>) {
+    fn write_observation(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>) {
         if let ObservationBuffer::Int32(out) = out {
             out.copy_from_slice(&seen.episode.tokens);
         }

@@ -1,7 +1,7 @@
 //! Sensors: what an agent observes. One file each, and one line in [`all`].
 //!
-//! A sensor works in two phases. In the first it states its requests ([`Sensor::plan`]); the engines then run once for
-//! all sensors of all worlds; in the second it writes into a buffer that the caller owns ([`Sensor::finish`]).
+//! A sensor works in two phases. In the first it states its requests ([`Sensor::request`]); the engines then run once for
+//! all sensors of all worlds; in the second it writes into a buffer that the caller owns ([`Sensor::write_observation`]).
 
 mod albedo;
 mod audio;
@@ -30,12 +30,12 @@ pub use crate::eye_camera::EyeCamera;
 pub use camera::CameraConfig;
 pub(crate) use camera::mount;
 pub use image::{ImageSettings, Observation, ObservationData, PictureStyle};
-pub(crate) use picture_memory::{observation_bytes, picture_bytes};
+pub(crate) use picture_memory::{image_bytes, observation_bytes};
 
 use crate::episode::Episode;
 use crate::error::WorldError;
 use crate::schema::FieldSchema;
-use crate::sensor_requests::{Requests, Results};
+use crate::sensor_requests::{EngineResults, SensorRequests};
 use crate::world::World;
 use dwell_render::ClassSet;
 use dwell_scene::random::RandomKey;
@@ -109,17 +109,20 @@ pub struct SensorContext<'a> {
     /// The episode of the agent whose sensor it is.
     pub episode: &'a Episode,
     /// Poses of all agents of the world at the beginning of the episode. Shape (agent,).
-    pub starts: &'a IdVec<AgentId, Pose>,
+    pub start_poses: &'a IdVec<AgentId, Pose>,
     /// The results of the engines.
-    pub results: &'a Results,
+    pub results: &'a EngineResults,
     /// The sensor's random stream in this step.
     pub key: RandomKey,
 }
 
 impl SensorContext<'_> {
     /// Returns where an agent started.
-    pub(crate) fn start_of(&self, agent: AgentId) -> Pose {
-        self.starts.get(agent).copied().unwrap_or(Pose::IDENTITY)
+    pub(crate) fn start_pose(&self, agent: AgentId) -> Pose {
+        self.start_poses
+            .get(agent)
+            .copied()
+            .unwrap_or(Pose::IDENTITY)
     }
 }
 
@@ -129,18 +132,18 @@ pub trait Sensor: Debug + Send + Sync {
     fn spec(&self) -> SensorSpec;
 
     /// Its camera, if it has one.
-    fn eye(&self) -> Option<&EyeCamera> {
+    fn camera(&self) -> Option<&EyeCamera> {
         None
     }
 
     /// States the requests to the engines; most sensors that read the state need nothing.
-    fn plan(&self, _world: &World, _requests: &mut Requests) {}
+    fn request(&self, _world: &World, _requests: &mut SensorRequests) {}
 
     /// Writes the observation. `out` has the type and length of [`Sensor::spec`].
-    fn finish(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>);
+    fn write_observation(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>);
 
     /// Returns the number of samples of the latest observation that were clipped to its range.
-    fn clipped(&self) -> u64 {
+    fn clipped_samples(&self) -> u64 {
         0
     }
 }
@@ -195,7 +198,7 @@ impl AgentSensor {
         value: &serde_json::Value,
         setup: SensorSetup<'_>,
     ) -> Result<Self, WorldError> {
-        let AgentSettings { name, agent } = settings(value)?;
+        let AgentSettings { name, agent } = parse_sensor_settings(value)?;
         Ok(Self {
             name: key(kind, name)?,
             agent: setup.agent(agent)?,
@@ -238,20 +241,20 @@ pub struct SensorKind {
     pub build: SensorBuilder,
     /// The fields of its settings.
     pub settings: fn() -> Vec<FieldSchema>,
-    /// The image sensor's part in [`World::look`].
-    pub(crate) image: Option<image::ImageOfClasses>,
+    /// The image sensor's part in [`World::image_observations`].
+    pub(crate) image: Option<image::ClassImageSensor>,
 }
 
 impl SensorKind {
-    /// Returns whether it is an image sensor: [`World::look`] knows it.
-    pub fn shows_pictures(&self) -> bool {
+    /// Returns whether it is an image sensor: [`World::image_observations`] knows it.
+    pub fn is_image_sensor(&self) -> bool {
         self.image.is_some()
     }
 
     /// Returns the style in which its observation is shown to people; `None` for other than image sensors.
     pub fn picture_style(&self) -> Option<PictureStyle> {
         let image = self.image?;
-        Some(image(ClassSet::Coarse).shown)
+        Some(image(ClassSet::Coarse).style)
     }
 }
 
@@ -314,7 +317,7 @@ fn unknown<'a>(
     name: &str,
     known: impl Iterator<Item = &'a SensorKind>,
 ) -> WorldError {
-    match semantic::setting_of_earlier_name(name) {
+    match semantic::setting_of_deprecated_name(name) {
         Some(classes) => WorldError::Config {
             field: kind,
             found: format!("{name:?}"),
@@ -329,13 +332,13 @@ fn unknown<'a>(
 }
 
 /// Reads a sensor's settings; `null` counts as `{}`.
-pub(crate) fn settings<T: serde::de::DeserializeOwned + Default>(
+pub(crate) fn parse_sensor_settings<T: serde::de::DeserializeOwned + Default>(
     value: &serde_json::Value,
 ) -> Result<T, WorldError> {
     if value.is_null() {
         return Ok(T::default());
     }
-    crate::parse_settings::read("sensor settings", value)
+    crate::parse_settings::parse_settings("sensor settings", value)
 }
 
 /// The settings of a sensor that has none.

@@ -1,7 +1,7 @@
 //! Sensors that list the contents of a picture.
 
 use super::image::ImageContext;
-use dwell_render::{VisibleObject, sightings};
+use dwell_render::{VisibleObject, visible_objects};
 use dwell_scene::Entity;
 
 /// Writes a row for every object and agent in the picture, by id; of more than fit those with most pixels. Unused rows are 0.
@@ -12,7 +12,7 @@ pub(super) fn fill<T: Copy + Default, const N: usize>(
 ) {
     let house = look.world.house();
     let width = look.camera.width();
-    let mut things = sightings(&look.frame.instance, width);
+    let mut things = visible_objects(&look.frame.instance, width);
     things.retain(|thing| {
         matches!(
             house.entity(thing.entity),

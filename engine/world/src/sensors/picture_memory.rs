@@ -9,7 +9,7 @@ use dwell_render::{Camera, ImageChannels};
 const PICTURE_BYTES_ASKED_ABOUT: u64 = 64 << 20;
 
 /// The memory of the images of a picture, bytes.
-pub(crate) fn picture_bytes(camera: &Camera, channels: ImageChannels) -> u64 {
+pub(crate) fn image_bytes(camera: &Camera, channels: ImageChannels) -> u64 {
     let ImageChannels {
         rgb,
         depth,
@@ -46,13 +46,13 @@ pub(crate) fn observation_bytes(spec: &SensorSpec) -> u64 {
 ///
 /// # Errors
 /// [`WorldError::Config`] with what it takes and what is free.
-pub(super) fn check_picture(
+pub(super) fn check_image_memory(
     camera: &Camera,
     channels: ImageChannels,
     specs: &[SensorSpec],
 ) -> Result<(), WorldError> {
     let observations = specs.iter().map(observation_bytes);
-    let need = picture_bytes(camera, channels) + observations.sum::<u64>();
+    let need = image_bytes(camera, channels) + observations.sum::<u64>();
     // Small ones are made without asking the system.
     if need < PICTURE_BYTES_ASKED_ABOUT {
         return Ok(());
@@ -86,7 +86,7 @@ mod tests {
             rgb: true,
             ..ImageChannels::NONE
         };
-        let need = picture_bytes(&camera, channels);
+        let need = image_bytes(&camera, channels);
         assert_eq!(need, 3 * 8000 * 4000);
         let refused = |free| check_picture_against(&camera, need, free).map_err(|e| e.to_string());
         assert_eq!(refused(need), Ok(()));

@@ -13,7 +13,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: IMAGE.name,
     about: ABOUT,
     build,
-    settings: schema::fields::<CameraConfig>,
+    settings: schema::fields_of::<CameraConfig>,
     image: Some(|_| &IMAGE),
 };
 
@@ -21,7 +21,7 @@ static IMAGE: ImageSensorKind = ImageSensorKind {
     name: "rgb",
     about: ABOUT,
     shape: ObservationShape::Image(3),
-    shown: PictureStyle::Colors,
+    style: PictureStyle::Colors,
     dtype: Dtype::Uint8,
     unit: "sRGB",
     low: 0.0,

@@ -15,7 +15,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: NAME,
     about: COARSE_ABOUT,
     build,
-    settings: schema::fields::<CameraConfig>,
+    settings: schema::fields_of::<CameraConfig>,
     image: Some(of_classes),
 };
 
@@ -23,7 +23,7 @@ static COARSE: ImageSensorKind = ImageSensorKind {
     name: NAME,
     about: COARSE_ABOUT,
     shape: ObservationShape::Image(1),
-    shown: PictureStyle::Ids,
+    style: PictureStyle::Ids,
     dtype: Dtype::Int32,
     unit: "class",
     low: 0.0,
@@ -72,7 +72,7 @@ fn write_coarse(look: ImageContext<'_>, out: ObservationBuffer<'_>) {
 }
 
 /// The setting that an earlier name of a sensor of classes stands for.
-pub(super) fn setting_of_earlier_name(name: &str) -> Option<&'static str> {
+pub(super) fn setting_of_deprecated_name(name: &str) -> Option<&'static str> {
     match name {
         "semantic_fine" => Some("fine"),
         "semantic_nyu40" => Some("nyu40"),

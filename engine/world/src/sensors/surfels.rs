@@ -15,7 +15,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: IMAGE.name,
     about: ABOUT,
     build,
-    settings: schema::fields::<CameraConfig>,
+    settings: schema::fields_of::<CameraConfig>,
     image: Some(|_| &IMAGE),
 };
 
@@ -23,7 +23,7 @@ static IMAGE: ImageSensorKind = ImageSensorKind {
     name: "surfels",
     about: ABOUT,
     shape: ObservationShape::Image(9),
-    shown: PictureStyle::Light,
+    style: PictureStyle::Light,
     dtype: Dtype::Float32,
     unit: "m, 1, 1",
     low: -1e6,

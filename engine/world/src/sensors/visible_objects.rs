@@ -15,7 +15,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: IMAGE.name,
     about: ABOUT,
     build,
-    settings: schema::fields::<CameraConfig>,
+    settings: schema::fields_of::<CameraConfig>,
     image: Some(|_| &IMAGE),
 };
 
@@ -23,7 +23,7 @@ static IMAGE: ImageSensorKind = ImageSensorKind {
     name: "visible_objects",
     about: ABOUT,
     shape: ObservationShape::List(3),
-    shown: PictureStyle::List,
+    style: PictureStyle::List,
     dtype: Dtype::Float32,
     unit: "id, px, 1",
     low: 0.0,
@@ -46,7 +46,7 @@ fn write(look: ImageContext<'_>, out: ObservationBuffer<'_>) {
     let world = look.world;
     let view = look.view();
     object_list::fill(&look, out, |sighting| {
-        let renderer = world.engines().renderer();
+        let renderer = world.engines().cpu_renderer();
         let (scene, state) = (world.rays(), world.state());
         let alone = renderer.unoccluded_pixels(scene, state, &view, sighting.entity);
         let hidden = 1.0 - sighting.pixels as f32 / alone.max(sighting.pixels) as f32;

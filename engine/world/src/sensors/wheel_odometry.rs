@@ -18,7 +18,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: "wheel_odometry",
     about: ABOUT,
     build,
-    settings: schema::fields::<AgentSettings>,
+    settings: schema::fields_of::<AgentSettings>,
     image: None,
 };
 
@@ -44,7 +44,7 @@ impl Sensor for WheelOdometrySensor {
         }
     }
 
-    fn finish(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>) {
+    fn write_observation(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>) {
         if let (Some(agent), ObservationBuffer::Float32(out)) = (self.0.state(seen), out) {
             let [forward, left, heading] = agent.base.odometry;
             let shown = |way: f64| way.clamp(-FURTHEST_M, FURTHEST_M) as f32;

@@ -15,17 +15,17 @@ const INAUDIBLE_DB: f32 = 15.0;
 
 /// One agent's ears.
 #[derive(Debug)]
-pub(super) struct AgentEars {
+pub(super) struct AgentListener {
     pub(super) agent: AgentId,
     pub(super) stream: Stream,
     /// The head of these ears; `None`: the built-in sphere.
     pub(super) head: Option<HeadId>,
     /// The newest samples. Shape (2, length), oldest first.
-    pub(super) window: Vec<f32>,
+    pub(super) recent_samples: Vec<f32>,
     pub(super) length: usize,
 }
 
-impl AgentEars {
+impl AgentListener {
     /// Hears the next block.
     pub(super) fn hear(
         &mut self,
@@ -39,7 +39,7 @@ impl AgentEars {
         };
         let pose = agent.world_from_head();
         let receiver = match self.head {
-            Some(head) => Receiver::wearing(head, pose),
+            Some(head) => Receiver::with_head(head, pose),
             None => Receiver::binaural(pose),
         };
         let active = sort_by_loudness(house, sources, agent.eye_position());
@@ -48,7 +48,7 @@ impl AgentEars {
         self.stream
             .block(rays, state, &active, &receiver, &mut heard)?;
         for (window, block) in self
-            .window
+            .recent_samples
             .chunks_exact_mut(self.length)
             .zip(heard.chunks_exact(size))
         {
@@ -59,23 +59,23 @@ impl AgentEars {
     }
 
     /// Makes the window at least `length` long; earlier samples stay at its end.
-    pub(super) fn lengthen(&mut self, length: usize) {
+    pub(super) fn extend_window(&mut self, length: usize) {
         if length <= self.length {
             return;
         }
         let mut longer = vec![0.0; 2 * length];
         for (new, old) in longer
             .chunks_exact_mut(length)
-            .zip(self.window.chunks_exact(self.length))
+            .zip(self.recent_samples.chunks_exact(self.length))
         {
             new[length - self.length..].copy_from_slice(old);
         }
-        (self.window, self.length) = (longer, length);
+        (self.recent_samples, self.length) = (longer, length);
     }
 
     /// Copies the newest samples of a channel to the end of `out`.
-    pub(super) fn newest(&self, channel: usize, out: &mut [f32]) {
-        let window = &self.window[channel * self.length..(channel + 1) * self.length];
+    pub(super) fn copy_newest(&self, channel: usize, out: &mut [f32]) {
+        let window = &self.recent_samples[channel * self.length..(channel + 1) * self.length];
         let count = out.len().min(window.len());
         let first = out.len() - count;
         out[first..].copy_from_slice(&window[window.len() - count..]);

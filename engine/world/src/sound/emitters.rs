@@ -21,7 +21,7 @@ pub(super) fn read(
     out: &mut [f32],
 ) -> Result<(), WorldError> {
     let signal = match emitter.sound_file {
-        Some(file) => engines.house_sound(file, rate_hz)?,
+        Some(file) => engines.house_sound_file(file, rate_hz)?,
         None => Signal::open(&emitter.signal, rate_hz)?,
     };
     if emitter.loops && emitter.start_s == 0.0 {

@@ -1,8 +1,8 @@
 //! Contacts, swinging joints and footsteps become sound here, and nowhere else: physics knows no sounds, the acoustics no physics.
 
 use super::WorldSound;
-use super::gait::{FootEvent, mass_kg};
-use crate::air_position::air_position;
+use super::gait::{FootEvent, body_mass_kg};
+use crate::air_position::nearest_open_air_point;
 use dwell_acoustics::contact::{
     ContactPartner, ContactSound, CreakSound, FootstepSound, FrictionSound, FrictionSoundKind,
     ImpactSound,
@@ -52,7 +52,7 @@ pub(super) struct ActiveContactSound {
     pub(super) id: u64,
     pub(super) sound: ContactSound,
     /// The place in the air beside the contact, m.
-    pub(super) heard_from: Vec3,
+    pub(super) air_position: Vec3,
     /// The sample, since the world's start, at which it begins.
     pub(super) start: u64,
     /// Samples.
@@ -95,7 +95,7 @@ impl WorldSound {
         self.add_impacts(step);
         self.add_friction_sounds(step);
         for (joint, articulation) in step.house.joints.iter_ids() {
-            if articulation.opens() {
+            if articulation.is_openable() {
                 self.add_joint_sounds(step, joint, articulation);
             }
         }
@@ -113,7 +113,7 @@ impl WorldSound {
             start: self.blocks * self.block as u64 + late,
             length,
             rendered: OnceLock::new(),
-            heard_from: air_position(step.rays, sound.position()),
+            air_position: nearest_open_air_point(step.rays, sound.position()),
             sound,
         });
     }
@@ -165,10 +165,10 @@ impl WorldSound {
                 length_s: 2.0 * step.length_s as f32,
                 partners: partners(step, event),
                 key: place.child(self.blocks),
-                place,
+                contact_key: place,
             };
             let id = FIRST_RUB_ID + (a.rotate_left(20) ^ b) % FIRST_BLOW_ID;
-            self.add(step, id, 0.0, ContactSound::Rub(sound));
+            self.add(step, id, 0.0, ContactSound::Friction(sound));
         }
     }
 
@@ -186,7 +186,7 @@ impl WorldSound {
         let leaf = part(house, state, of.child);
         let frame = match of.parent {
             Some(parent) => part(house, state, parent),
-            None => ContactPartner::leaf("wood", FRAME_KG_M2),
+            None => ContactPartner::panel("wood", FRAME_KG_M2),
         };
         let parent = of
             .parent
@@ -203,9 +203,9 @@ impl WorldSound {
                 length_s: step.length_s as f32,
                 friction_n_m: friction,
                 partners: partners.clone(),
-                place,
+                hinge_key: place,
             }),
-            JointKind::Slide => ContactSound::Rub(FrictionSound {
+            JointKind::Slide => ContactSound::Friction(FrictionSound {
                 position: middle,
                 kind: FrictionSoundKind::Slide,
                 force_n: friction / library().pair("wood", "wood").friction.max(0.1),
@@ -213,7 +213,7 @@ impl WorldSound {
                 length_s: 2.0 * step.length_s as f32,
                 partners: partners.clone(),
                 key: place.child(self.blocks),
-                place,
+                contact_key: place,
             }),
         };
         if friction > 0.0 {
@@ -260,7 +260,7 @@ impl WorldSound {
                 continue;
             };
             let gait = &mut self.gaits[id.index()];
-            let Some(stride) = gait.follow(agent, feet, yaw_rad, step.length_s) else {
+            let Some(stride) = gait.advance(agent, feet, yaw_rad, step.length_s) else {
                 continue;
             };
             let foot = match stride {
@@ -284,7 +284,7 @@ impl WorldSound {
                     late_s,
                     ContactSound::Footstep(FootstepSound {
                         position: foot,
-                        mass_kg: mass_kg(agent.body.height_m),
+                        mass_kg: body_mass_kg(agent.body.height_m),
                         speed_m_s,
                         period_s,
                         floor,
@@ -293,15 +293,15 @@ impl WorldSound {
                 ),
                 FootEvent::Wheels { speed_m_s } => (
                     0.0,
-                    ContactSound::Rub(FrictionSound {
+                    ContactSound::Friction(FrictionSound {
                         position: foot,
                         kind: FrictionSoundKind::Roll,
-                        force_n: mass_kg(agent.body.height_m) * 9.8,
+                        force_n: body_mass_kg(agent.body.height_m) * 9.8,
                         speed_m_s,
                         length_s: 2.0 * step.length_s as f32,
                         partners: [agent_partner(agent.body.height_m, "plastic"), floor],
                         key: key.child(self.blocks),
-                        place: key,
+                        contact_key: key,
                     }),
                 ),
             };
@@ -361,7 +361,7 @@ fn partners(step: &StepContext<'_>, event: &ContactEvent) -> [ContactPartner; 2]
 fn leaf(substance: &str, floor: bool) -> ContactPartner {
     let own = library().get_or_default(substance).surface_density_kg_m2;
     let least = if floor { FLOOR_KG_M2 } else { WALL_KG_M2 };
-    ContactPartner::leaf(substance, own.max(least))
+    ContactPartner::panel(substance, own.max(least))
 }
 
 fn agent(state: &State, id: AgentId, substance: &str) -> ContactPartner {
@@ -373,7 +373,7 @@ fn agent(state: &State, id: AgentId, substance: &str) -> ContactPartner {
 }
 
 fn agent_partner(height_m: f32, substance: &str) -> ContactPartner {
-    ContactPartner::body(substance, mass_kg(height_m), [0.4, 0.25, height_m])
+    ContactPartner::body(substance, body_mass_kg(height_m), [0.4, 0.25, height_m])
 }
 
 /// A part with the substance of its first material.
@@ -414,7 +414,7 @@ fn middle(house: &House, state: &State, id: PartId) -> Vec3 {
 
 /// Returns the floor under a foot.
 fn floor_at(step: &StepContext<'_>, foot: Vec3) -> Option<ContactPartner> {
-    let ray = Ray::new(foot + Vec3::Y * 0.25, Vec3::NEG_Y).between(0.0, 0.6);
+    let ray = Ray::new(foot + Vec3::Y * 0.25, Vec3::NEG_Y).with_range(0.0, 0.6);
     let hit = step.rays.closest(&ray, RayMask::EAR)?;
     let material = step.rays.surface(&hit).material;
     Some(leaf(&step.house.materials[material].substance, true))

@@ -21,7 +21,7 @@ const SIDE_M: f32 = 0.08;
 const SLOWEST_M_S: f32 = 0.02;
 
 /// The mass of a person of a height, kg: body mass index 22.
-pub(super) fn mass_kg(height_m: f32) -> f32 {
+pub(super) fn body_mass_kg(height_m: f32) -> f32 {
     22.0 * height_m * height_m
 }
 
@@ -69,7 +69,7 @@ pub(super) enum FootEvent {
 
 impl GaitPhase {
     /// Advances from the agent's `feet` and `yaw_rad` of a control step ago.
-    pub(super) fn follow(
+    pub(super) fn advance(
         &mut self,
         agent: &AgentState,
         feet: Vec3,
@@ -134,7 +134,7 @@ mod tests {
             let before = (agent.position, agent.yaw_rad);
             agent.position.z -= speed_m_s * 0.05;
             agent.yaw_rad = wrap_angle(agent.yaw_rad + yaw_rate_rad_s * 0.05);
-            match gait.follow(&agent, before.0, before.1, step_s) {
+            match gait.advance(&agent, before.0, before.1, step_s) {
                 Some(FootEvent::Step { late_s, side_m, .. }) => {
                     heard.push((k as f64 * step_s + late_s, side_m));
                 }

@@ -15,10 +15,10 @@ mod sound_state;
 
 pub(crate) use events::StepContext;
 pub(crate) use playback::check_level;
-pub use playback::{PlayRequest, SoundName, SoundPlace, usual_level_db};
+pub use playback::{PlayRequest, SoundName, SoundPlace, default_level_db};
 pub use sound_state::SoundState;
 
-use crate::air_position::air_position;
+use crate::air_position::nearest_open_air_point;
 use crate::config::WorldConfig;
 use crate::engines::Engines;
 use crate::error::WorldError;
@@ -27,7 +27,7 @@ use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{AgentId, House, State};
-use ears::AgentEars;
+use ears::AgentListener;
 use emitters::EmitterStates;
 use events::ActiveContactSound;
 use gait::GaitPhase;
@@ -55,7 +55,7 @@ pub(crate) struct WorldSound {
     emitters: EmitterStates,
     playing: Vec<Playback>,
     next_played: u64,
-    ears: Vec<AgentEars>,
+    ears: Vec<AgentListener>,
 }
 
 /// A source that sounds in a block.
@@ -130,13 +130,13 @@ impl WorldSound {
         let ended = (self.blocks - 1) * self.block as u64;
         self.touches
             .retain(|touch| touch.start + touch.length > ended);
-        self.playing.retain(|playing| !playing.is_over(ended));
+        self.playing.retain(|playing| !playing.is_finished(ended));
         Ok(())
     }
 
     /// Opens the ears of these agents, each with a window of at least so many samples. New ears hear the block that
     /// has just ended; ears that listen already keep what they heard.
-    pub(crate) fn listen(
+    pub(crate) fn enable_listeners(
         &mut self,
         engines: &Engines,
         rays: &RayScene,
@@ -147,14 +147,14 @@ impl WorldSound {
         for (agent, samples) in agents {
             let length = samples.next_multiple_of(self.block).max(self.block);
             if let Some(ears) = self.ears.iter_mut().find(|ears| ears.agent == *agent) {
-                ears.lengthen(length);
+                ears.extend_window(length);
                 continue;
             }
-            let mut ears = AgentEars {
+            let mut ears = AgentListener {
                 agent: *agent,
                 stream: self.stream(engines, *agent, key)?,
                 head: self.head,
-                window: vec![0.0; 2 * length],
+                recent_samples: vec![0.0; 2 * length],
                 length,
             };
             let sources = self.sources(engines, rays, state, self.blocks - 1)?;
@@ -172,7 +172,7 @@ impl WorldSound {
         agent: AgentId,
         key: RandomKey,
     ) -> Result<Stream, WorldError> {
-        let mut scene = engines.acoustics(&self.preset, self.rate_hz)?;
+        let mut scene = engines.acoustic_scene(&self.preset, self.rate_hz)?;
         if let Some(head) = self.head {
             scene.add_head(&engines.head(head)?);
         }
@@ -190,7 +190,7 @@ impl WorldSound {
         };
         let own = key.child("ears").child(u64::from(agent.0));
         // One background noise for all ears of a world.
-        Ok(Stream::new(scene, config, own, Threads::ONE)?.in_room(key.child("room")))
+        Ok(Stream::new(scene, config, own, Threads::ONE)?.with_room_key(key.child("room")))
     }
 
     /// Returns the sources of the block that has just ended or ends now: emitters, playbacks, and contacts.
@@ -205,7 +205,7 @@ impl WorldSound {
         let start = block * self.block as u64;
         let mut sources = Vec::new();
         let fades = self.emitters.fades(house, state);
-        let places = engines.emitter_places();
+        let places = engines.emitter_listening_points();
         for (k, (emitter, fade)) in house.emitters.iter().zip(fades).enumerate() {
             if fade.is_silent() {
                 continue;
@@ -226,7 +226,7 @@ impl WorldSound {
             playing.state.fade.apply(self.rate_hz, &mut signal);
             sources.push(BlockSource {
                 id: playing.state.id,
-                position: air_position(rays, playing.heard_from(house, state)),
+                position: nearest_open_air_point(rays, playing.air_position(house, state)),
                 signal,
             });
         }
@@ -235,7 +235,7 @@ impl WorldSound {
             touch.read(self.rate_hz, start, &mut signal);
             sources.push(BlockSource {
                 id: touch.id,
-                position: touch.heard_from,
+                position: touch.air_position,
                 signal,
             });
         }
@@ -243,14 +243,14 @@ impl WorldSound {
     }
 
     /// The newest samples at an ear, Pa; zeros before it listened that long, and for agents that never listened.
-    pub(crate) fn heard(&self, agent: AgentId, channel: usize, out: &mut [f32]) {
+    pub(crate) fn newest_samples(&self, agent: AgentId, channel: usize, out: &mut [f32]) {
         out.fill(0.0);
         if let Some(ears) = self
             .ears
             .iter()
             .find(|ears| ears.agent == agent && channel < 2)
         {
-            ears.newest(channel, out);
+            ears.copy_newest(channel, out);
         }
     }
 
@@ -308,7 +308,7 @@ impl WorldSound {
             return Ok(self.emitters.overrides.entry(handle).or_default());
         }
         let playing: Vec<u64> = self.playing.iter().map(|p| p.state.id).collect();
-        Err(WorldError::Usage(format!(
+        Err(WorldError::InvalidCall(format!(
             "no sound {handle}: it is over, or never was; the house has {count}, counted from 0, and {playing:?} play"
         )))
     }

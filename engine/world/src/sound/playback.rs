@@ -68,7 +68,7 @@ pub(super) struct PlaybackState {
     pub(super) stopped: bool,
     pub(super) fade: GainRamp,
     /// Hash of the samples: a file may have changed when a snapshot is restored.
-    pub(super) print: u64,
+    pub(super) content_hash: u64,
 }
 
 /// A sound that plays.
@@ -122,7 +122,7 @@ fn check_place(house: &House, state: &State, place: &SoundPlace) -> Result<(), W
     if found < count {
         return Ok(());
     }
-    Err(WorldError::Usage(format!(
+    Err(WorldError::InvalidCall(format!(
         "no {what} {found}; there are {count}"
     )))
 }
@@ -142,7 +142,7 @@ impl Playback {
             start,
             stopped: false,
             fade: GainRamp::steady(pa_from_db_spl(request.level_db)),
-            print,
+            content_hash: print,
             request,
         };
         Ok(Self {
@@ -159,7 +159,7 @@ impl Playback {
     ) -> Result<Self, WorldError> {
         check_place(engines.house(), state, &saved.request.place)?;
         let (signal, print) = open(engines, root, rate_hz, &saved.request.sound)?;
-        if print != saved.print {
+        if print != saved.content_hash {
             let sound = &saved.request.sound;
             return Err(WorldError::Snapshot(format!(
                 "{sound} is another sound now than the one that played"
@@ -193,14 +193,14 @@ impl Playback {
     }
 
     /// Returns whether nothing of it can be heard any more in blocks from `start` on.
-    pub(super) fn is_over(&self, start: u64) -> bool {
+    pub(super) fn is_finished(&self, start: u64) -> bool {
         let end = self.state.start + self.signal.samples().len() as u64;
         (!self.state.request.loops && end <= start)
             || (self.state.stopped && self.state.fade.is_silent())
     }
 
     /// The point from which it is heard, m: of an object, not from within it, but from above.
-    pub(super) fn heard_from(&self, house: &House, state: &State) -> Vec3 {
+    pub(super) fn air_position(&self, house: &House, state: &State) -> Vec3 {
         let SoundPlace::Object(object) = self.state.request.place else {
             return self.position(house, state);
         };
@@ -235,9 +235,9 @@ impl Playback {
 ///
 /// # Errors
 /// [`WorldError::Acoustics`] for a signal that does not exist.
-pub fn usual_level_db(sound: &SoundName) -> Result<Option<f32>, WorldError> {
+pub fn default_level_db(sound: &SoundName) -> Result<Option<f32>, WorldError> {
     match sound {
-        SoundName::Signal(name) => Ok(Some(signals::info(name)?.usual_level_db)),
+        SoundName::Signal(name) => Ok(Some(signals::info(name)?.typical_level_db)),
         SoundName::File(_) => Ok(None),
     }
 }

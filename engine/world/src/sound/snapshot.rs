@@ -1,6 +1,6 @@
 //! Sounds as bytes: the part that goes on bit for bit after a restore.
 
-use super::ears::AgentEars;
+use super::ears::AgentListener;
 use super::emitters::EmitterStates;
 use super::events::ActiveContactSound;
 use super::gait::GaitPhase;
@@ -30,10 +30,13 @@ struct SoundSnapshot {
 
 impl WorldSound {
     pub(crate) fn to_bytes(&self) -> Vec<u8> {
-        let ears = self
-            .ears
-            .iter()
-            .map(|ears| (ears.agent, ears.window.clone(), ears.stream.snapshot()));
+        let ears = self.ears.iter().map(|ears| {
+            (
+                ears.agent,
+                ears.recent_samples.clone(),
+                ears.stream.snapshot(),
+            )
+        });
         let memory = SoundSnapshot {
             rate_hz: self.rate_hz,
             block: self.block,
@@ -97,11 +100,11 @@ impl WorldSound {
                     window.len()
                 )));
             }
-            let mut ears = AgentEars {
+            let mut ears = AgentListener {
                 agent,
                 stream: sound.stream(engines, agent, key)?,
                 head: sound.head,
-                window,
+                recent_samples: window,
                 length,
             };
             ears.stream.restore(&stream)?;

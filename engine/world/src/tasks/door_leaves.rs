@@ -50,7 +50,7 @@ impl DoorLeaves {
     }
 
     /// Returns whether a body on `cell` would stand in a leaf.
-    pub(super) fn block(&self, grid: &NavGrid, cell: NavCell) -> bool {
+    pub(super) fn is_blocked(&self, grid: &NavGrid, cell: NavCell) -> bool {
         let at = grid.position(cell);
         self.leaves
             .iter()

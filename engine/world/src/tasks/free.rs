@@ -4,10 +4,10 @@
 //! floor that it can walk, looking anywhere. Every reward is 0, and an episode ends with `stop`, without success.
 
 use super::door_leaves::DoorLeaves;
-use super::standing_room::StandingRoom;
+use super::standing_room::FreeStartCells;
 use super::{Task, TaskKind, TaskSetup};
 use crate::actions::DiscreteAction;
-use crate::episode::{Episode, Verdict};
+use crate::episode::{Episode, StepResult};
 use crate::error::WorldError;
 use crate::metrics::NavigationMetrics;
 use crate::schema;
@@ -27,10 +27,10 @@ pub(super) const KIND: TaskKind = TaskKind {
     name: NAME,
     version: 0,
     about: "Nothing is asked; explore, or build a task of your own upon it.",
-    asks: false,
+    has_goal: false,
     max_steps: 1000,
     sensors: &["rgb", "depth", "semantic", "audio"],
-    settings: schema::fields::<FreeSettings>,
+    settings: schema::fields_of::<FreeSettings>,
     build,
 };
 
@@ -61,7 +61,7 @@ fn build(value: &serde_json::Value, setup: TaskSetup) -> Result<Box<dyn Task>, W
     let settings = if value.is_null() {
         FreeSettings::default()
     } else {
-        crate::parse_settings::read("task_settings", value)?
+        crate::parse_settings::parse_settings("task_settings", value)?
     };
     Ok(Box::new(FreeTask {
         settings,
@@ -83,12 +83,12 @@ impl FreeTask {
         body: &AgentBody,
         (placed, key): (&[AgentId], RandomKey),
     ) -> Result<(Vec3, f32), WorldError> {
-        let unplayable = |why: String| WorldError::Unplayable {
+        let unplayable = |why: String| WorldError::TaskNotPlayable {
             task: NAME,
             house: world.house().name.clone(),
             why,
         };
-        let grid = world.engines().navigation(body)?;
+        let grid = world.engines().nav_grid(body)?;
         let of_house = world.house().agent_starts.get(self.agent.index());
         if let Some(start) = of_house.filter(|_| self.settings.start == StartChoice::House) {
             if grid.nearest(start.position, NEAR_M).is_none() {
@@ -100,8 +100,8 @@ impl FreeTask {
             return Ok((start.position, start.yaw_rad));
         }
         let leaves = DoorLeaves::of(world, &grid);
-        let on_island = |cell| grid.island(cell) == Some(0) && !leaves.block(&grid, cell);
-        let room = StandingRoom::beside(world, placed, body);
+        let on_island = |cell| grid.island(cell) == Some(0) && !leaves.is_blocked(&grid, cell);
+        let room = FreeStartCells::excluding_agents(world, placed, body);
         let start = room.sample(&grid, key.child("start"), on_island);
         let Some(cell) = start else {
             let why = "nobody of the agent's size can stand anywhere";
@@ -122,7 +122,7 @@ impl Task for FreeTask {
     ) -> Result<Episode, WorldError> {
         let agent = self.agent;
         let Some(body) = world.state().agents.get(agent).map(|agent| agent.body) else {
-            return Err(WorldError::Usage(format!(
+            return Err(WorldError::InvalidCall(format!(
                 "{NAME} needs a world with agent {}",
                 agent.0
             )));
@@ -138,14 +138,19 @@ impl Task for FreeTask {
         })
     }
 
-    fn judge(&mut self, world: &World, episode: &mut Episode, action: DiscreteAction) -> Verdict {
+    fn judge(
+        &mut self,
+        world: &World,
+        episode: &mut Episode,
+        action: DiscreteAction,
+    ) -> StepResult {
         if let Some(agent) = world.state().agents.get(self.agent) {
             let progress = &mut episode.progress;
             progress.advance(agent.position, None, agent.collided);
         }
-        Verdict {
+        StepResult {
             terminated: action == DiscreteAction::Stop,
-            ..Verdict::default()
+            ..StepResult::default()
         }
     }
 

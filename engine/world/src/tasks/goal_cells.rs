@@ -46,7 +46,7 @@ impl<'a> GoalCells<'a> {
     }
 
     /// The cells over or under a box, and some around it.
-    pub(super) fn around(&self, bounds: &Aabb) -> Vec<NavCell> {
+    pub(super) fn cells_around(&self, bounds: &Aabb) -> Vec<NavCell> {
         let (low, high) = (bounds.min, bounds.max);
         let rows = cell_block_of(low.x)..=cell_block_of(high.x);
         let mut found = Vec::new();
@@ -58,7 +58,7 @@ impl<'a> GoalCells<'a> {
     }
 
     /// The cells that have one of some rooms all around, so that an agent that stops anywhere on them counts; rising.
-    pub(super) fn within(&self, house: &House, rooms: &[RoomId]) -> Vec<NavCell> {
+    pub(super) fn cells_in_rooms(&self, house: &House, rooms: &[RoomId]) -> Vec<NavCell> {
         let mut pace = PollEvery::new(CELLS_PER_CHECK);
         let sides = self.sides.get_or_init(|| {
             let edge = self.grid.config().cell_m;
@@ -95,7 +95,7 @@ mod tests {
         for object in house.objects.ids() {
             let bounds = house.object_bounds(&state, object).grown(1.2);
             let over = |cell: &NavCell| bounds.contains(grid.position(*cell).with_y(bounds.min.y));
-            let found = ground.around(&bounds);
+            let found = ground.cells_around(&bounds);
             asked += found.len();
             let mut over_it: Vec<NavCell> = found.into_iter().filter(over).collect();
             over_it.sort_unstable();
@@ -112,9 +112,9 @@ mod tests {
                 })
             };
             let expected: Vec<NavCell> = all().filter(within).collect();
-            assert_eq!(ground.within(&house, &[room]), expected);
+            assert_eq!(ground.cells_in_rooms(&house, &[room]), expected);
         }
-        assert!(ground.within(&house, &[]).is_empty());
-        assert!(ground.around(&Aabb::EMPTY).is_empty());
+        assert!(ground.cells_in_rooms(&house, &[]).is_empty());
+        assert!(ground.cells_around(&Aabb::EMPTY).is_empty());
     }
 }

@@ -5,12 +5,12 @@
 
 use super::door_leaves::DoorLeaves;
 use super::goal_cells::GoalCells;
-use super::standing_room::StandingRoom;
+use super::standing_room::FreeStartCells;
 use super::{Task, TaskKind, TaskSetup};
 use crate::actions::{DiscreteAction, StepSizes};
-use crate::episode::{Episode, Verdict};
+use crate::episode::{Episode, StepResult};
 use crate::error::WorldError;
-use crate::expert::{ShortestPathFollower, face};
+use crate::expert::{ShortestPathFollower, action_towards_object};
 use crate::metrics::NavigationMetrics;
 use crate::schema;
 use crate::world::World;
@@ -37,7 +37,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     name: NAME,
     version: 0,
     about: "Follow an instruction: go to a room or find a thing, then stop.",
-    asks: true,
+    has_goal: true,
     max_steps: 1000,
     sensors: &[
         "rgb",
@@ -47,7 +47,7 @@ pub(super) const KIND: TaskKind = TaskKind {
         "instruction",
         "instruction_tokens",
     ],
-    settings: schema::fields::<InstructionFollowingSettings>,
+    settings: schema::fields_of::<InstructionFollowingSettings>,
     build,
 };
 
@@ -77,7 +77,7 @@ fn build(value: &serde_json::Value, setup: TaskSetup) -> Result<Box<dyn Task>, W
     let settings: InstructionFollowingSettings = if value.is_null() {
         InstructionFollowingSettings::default()
     } else {
-        crate::parse_settings::read("task_settings", value)?
+        crate::parse_settings::parse_settings("task_settings", value)?
     };
     if settings.kinds.is_empty() {
         let allowed = "at least one of go_to_room, find_object".to_owned();
@@ -153,7 +153,7 @@ impl InstructionFollowing {
     fn body(&self, world: &World) -> Result<AgentBody, WorldError> {
         let id = self.setup.agent;
         let agent = world.state().agents.get(id);
-        let none = || WorldError::Usage(format!("{NAME} needs a world with agent {}", id.0));
+        let none = || WorldError::InvalidCall(format!("{NAME} needs a world with agent {}", id.0));
         Ok(agent.ok_or_else(none)?.body)
     }
 
@@ -184,7 +184,7 @@ fn goal_cells(
     instruction: &Instruction,
 ) -> Vec<NavCell> {
     if !instruction.goal.rooms.is_empty() {
-        return ground.within(world.house(), &instruction.goal.rooms);
+        return ground.cells_in_rooms(world.house(), &instruction.goal.rooms);
     }
     let (house, state, grid) = (world.house(), world.state(), ground.grid);
     let scene = world.engines().semantics().scene(state);
@@ -199,7 +199,7 @@ fn goal_cells(
     for object in &instruction.goal.objects {
         let extent = scene.extent(*object);
         let entity = house.entity_of_object(*object);
-        let found = ground.around(&extent.bounds.grown(radius_m + 0.01));
+        let found = ground.cells_around(&extent.bounds.grown(radius_m + 0.01));
         goals.extend(found.into_iter().filter(|cell| {
             pace.turn();
             let at = grid.position(*cell);
@@ -223,9 +223,9 @@ fn goal_cells(
 }
 
 impl Task for InstructionFollowing {
-    fn prepare(&mut self, world: &World) -> Result<(), WorldError> {
+    fn prepare_house(&mut self, world: &World) -> Result<(), WorldError> {
         if self.offers.is_empty() {
-            let grid = world.engines().navigation(&self.body(world)?)?;
+            let grid = world.engines().nav_grid(&self.body(world)?)?;
             self.offers = self.find_playable(world, &grid);
         }
         Ok(())
@@ -239,14 +239,14 @@ impl Task for InstructionFollowing {
     ) -> Result<Episode, WorldError> {
         let agent = self.setup.agent;
         let body = self.body(world)?;
-        let grid = world.engines().navigation(&body)?;
-        let unplayable = |why: &str| WorldError::Unplayable {
+        let grid = world.engines().nav_grid(&body)?;
+        let unplayable = |why: &str| WorldError::TaskNotPlayable {
             task: NAME,
             house: world.house().name.clone(),
             why: why.to_owned(),
         };
         let leaves = DoorLeaves::of(world, &grid);
-        let room = StandingRoom::beside(world, placed, &body);
+        let room = FreeStartCells::excluding_agents(world, placed, &body);
         let mut order: Vec<usize> = (0..self.offers.len()).collect();
         key.child("order").stream().shuffle(&mut order);
         let found = order.into_iter().find_map(|k| {
@@ -257,8 +257,8 @@ impl Task for InstructionFollowing {
             let range = self.settings.min_distance_m..=self.settings.max_distance_m;
             let allowed = |cell: NavCell| {
                 grid.island(cell) == Some(0)
-                    && guide.at(cell).is_some_and(|d| range.contains(&d))
-                    && !leaves.block(&grid, cell)
+                    && guide.distance_at(cell).is_some_and(|d| range.contains(&d))
+                    && !leaves.is_blocked(&grid, cell)
             };
             let start = room.sample(&grid, key.child("start"), allowed)?;
             Some((offer, guide, start))
@@ -278,7 +278,7 @@ impl Task for InstructionFollowing {
             .range(-std::f32::consts::PI, std::f32::consts::PI);
         let position = grid.position(start);
         world.place_agent(agent, position, yaw_rad)?;
-        let distance_m = guide.at(start);
+        let distance_m = guide.distance_at(start);
         let episode = Episode {
             agent,
             instruction: instruction.text.clone(),
@@ -296,20 +296,25 @@ impl Task for InstructionFollowing {
         Ok(episode)
     }
 
-    fn judge(&mut self, world: &World, episode: &mut Episode, action: DiscreteAction) -> Verdict {
+    fn judge(
+        &mut self,
+        world: &World,
+        episode: &mut Episode,
+        action: DiscreteAction,
+    ) -> StepResult {
         let (Some(active), Some(agent)) =
             (&self.active, world.state().agents.get(self.setup.agent))
         else {
-            return Verdict::default();
+            return StepResult::default();
         };
         let gain = episode.progress.advance(
             agent.position,
             active.guide.distance_m(world),
             agent.collided,
         );
-        let mut verdict = Verdict {
+        let mut verdict = StepResult {
             reward: gain + SLACK_REWARD,
-            ..Verdict::default()
+            ..StepResult::default()
         };
         if action == DiscreteAction::Stop {
             let scene = world.engines().semantics().scene(world.state());
@@ -329,13 +334,15 @@ impl Task for InstructionFollowing {
         let Some(active) = &mut self.active else {
             return DiscreteAction::Stop;
         };
-        if let Some(step) = active.expert_path.walk(world) {
+        if let Some(step) = active.expert_path.next_action(world) {
             return step;
         }
         let Some(object) = active.instruction.goal.objects.first() else {
             return DiscreteAction::Stop;
         };
-        if let Some(turn) = face(world, self.setup.agent, *object, &self.setup.stride) {
+        if let Some(turn) =
+            action_towards_object(world, self.setup.agent, *object, &self.setup.stride)
+        {
             return turn;
         }
         let scene = world.engines().semantics().scene(world.state());

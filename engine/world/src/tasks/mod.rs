@@ -7,7 +7,7 @@ mod instruction_following;
 mod standing_room;
 
 use crate::actions::{DiscreteAction, StepSizes};
-use crate::episode::{Episode, Verdict};
+use crate::episode::{Episode, StepResult};
 use crate::error::WorldError;
 use crate::schema::FieldSchema;
 use crate::world::World;
@@ -21,7 +21,7 @@ pub trait Task: Debug + Send + Sync {
     ///
     /// # Errors
     /// As [`Self::reset`].
-    fn prepare(&mut self, _world: &World) -> Result<(), WorldError> {
+    fn prepare_house(&mut self, _world: &World) -> Result<(), WorldError> {
         Ok(())
     }
 
@@ -33,7 +33,7 @@ pub trait Task: Debug + Send + Sync {
     /// Everything is drawn from `key`.
     ///
     /// # Errors
-    /// [`WorldError::Unplayable`] when the house does not hold what the task needs.
+    /// [`WorldError::TaskNotPlayable`] when the house does not hold what the task needs.
     fn reset(
         &mut self,
         world: &mut World,
@@ -42,7 +42,8 @@ pub trait Task: Debug + Send + Sync {
     ) -> Result<Episode, WorldError>;
 
     /// Judges the step that has just been made with `action`.
-    fn judge(&mut self, world: &World, episode: &mut Episode, action: DiscreteAction) -> Verdict;
+    fn judge(&mut self, world: &World, episode: &mut Episode, action: DiscreteAction)
+    -> StepResult;
 
     /// Returns the action of a scripted expert, which knows the house, now.
     fn expert(&mut self, world: &mut World, episode: &Episode) -> DiscreteAction;
@@ -70,7 +71,7 @@ pub struct TaskKind {
     /// One sentence about it.
     pub about: &'static str,
     /// True if the task has a goal, so that an episode can succeed.
-    pub asks: bool,
+    pub has_goal: bool,
     /// Control steps after which an episode is cut off.
     pub max_steps: u64,
     /// The sensors of its environment by default.

@@ -10,14 +10,14 @@ use glam::Vec3;
 const APART_M: f32 = 0.1;
 
 /// The floor that agents with a start leave free.
-pub(super) struct StandingRoom {
+pub(super) struct FreeStartCells {
     /// Their positions, each with the least distance of the new agent's middle, m.
     taken: Vec<(Vec3, f32)>,
 }
 
-impl StandingRoom {
+impl FreeStartCells {
     /// For an agent of this body beside `placed`.
-    pub(super) fn beside(world: &World, placed: &[AgentId], body: &AgentBody) -> Self {
+    pub(super) fn excluding_agents(world: &World, placed: &[AgentId], body: &AgentBody) -> Self {
         let agents = placed.iter().filter_map(|id| world.state().agents.get(*id));
         let taken = agents
             .map(|agent| {

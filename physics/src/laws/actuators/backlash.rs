@@ -2,7 +2,7 @@
 
 use super::TargetMotors;
 use crate::error::PhysicsError;
-use crate::joints::{LawMemory, MotorLaw, MotorStep};
+use crate::joints::{LawState, MotorLaw, MotorStep};
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
@@ -48,7 +48,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 between the two branches whatever the speed, latency a gap that grows with it, and \
                                 friction one that shrinks with the servo's stiffness",
     },
-    acts: install,
+    effect: install,
 };
 
 /// The backlash state of a motor.
@@ -126,7 +126,7 @@ impl BacklashState {
 }
 
 impl MotorLaw for Backlash {
-    fn drive(&mut self, motor: &MotorStep, command: &mut JointCommand) {
+    fn modify_command(&mut self, motor: &MotorStep, command: &mut JointCommand) {
         let (half_width, inertia) = (self.half_width, self.motor_inertia);
         let Some(gear) = self.motors.get_mut(&motor.joint) else {
             return;
@@ -160,21 +160,21 @@ impl MotorLaw for Backlash {
     }
 }
 
-impl LawMemory for Backlash {
-    fn placed(&mut self, joint: JointId, position: f32) {
+impl LawState for Backlash {
+    fn joint_set(&mut self, joint: JointId, position: f32) {
         if let Some(play) = self.motors.get_mut(&joint) {
             *play = BacklashState::at(position);
         }
     }
 
-    fn memory(&self) -> Vec<f32> {
+    fn state(&self) -> Vec<f32> {
         let motors = self.motors.values();
         motors
             .flat_map(|play| [play.output, play.gap, play.velocity])
             .collect()
     }
 
-    fn restore_memory(&mut self, memory: &[f32]) {
+    fn restore_state(&mut self, memory: &[f32]) {
         for (play, remembered) in self.motors.values_mut().zip(memory.chunks_exact(3)) {
             *play = BacklashState {
                 output: remembered[0],
@@ -207,7 +207,7 @@ mod tests {
         };
         let given = |law: &mut Backlash| {
             let mut command = command;
-            law.drive(&motor, &mut command);
+            law.modify_command(&motor, &mut command);
             command
         };
         let steps = (0..100_000).take_while(|_| given(law) == JointCommand::Effort(0.0));

@@ -2,7 +2,7 @@
 
 use super::TargetMotors;
 use crate::error::PhysicsError;
-use crate::joints::{ActuationGain, JointActuation, LawMemory, MotorLaw};
+use crate::joints::{ActuationGain, JointActuation, LawState, MotorLaw};
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
@@ -36,7 +36,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 load; a wrong torque constant or mass shows in efforts and not at a motor that carries its \
                                 weight ahead",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]
@@ -58,7 +58,7 @@ fn install(
 }
 
 impl MotorLaw for JointCompliance {
-    fn modify_motor(&self, joint: JointId, pull: &mut JointActuation) {
+    fn modify_actuation(&self, joint: JointId, pull: &mut JointActuation) {
         if !self.motors.hold(joint) {
             return;
         }
@@ -67,7 +67,7 @@ impl MotorLaw for JointCompliance {
             let part = 1.0 / (1.0 + *stiffness * self.compliance);
             *stiffness *= part;
             *damping *= part * part;
-            pull.feed_forward *= part;
+            pull.gravity_compensation *= part;
         }
     }
 
@@ -76,4 +76,4 @@ impl MotorLaw for JointCompliance {
     }
 }
 
-impl LawMemory for JointCompliance {}
+impl LawState for JointCompliance {}

@@ -2,7 +2,7 @@
 
 use super::TargetMotors;
 use crate::error::PhysicsError;
-use crate::joints::{LawMemory, MotorLaw, MotorStep};
+use crate::joints::{LawState, MotorLaw, MotorStep};
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
@@ -41,7 +41,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 width whatever came before, backlash depends on the last turn, and static friction can be \
                                 seen when the joint is pushed with the motor off",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]
@@ -64,7 +64,7 @@ fn install(
 }
 
 impl MotorLaw for Deadband {
-    fn drive(&mut self, motor: &MotorStep, command: &mut JointCommand) {
+    fn modify_command(&mut self, motor: &MotorStep, command: &mut JointCommand) {
         if !self.motors.hold(motor.joint) {
             return;
         }
@@ -83,4 +83,4 @@ impl MotorLaw for Deadband {
     }
 }
 
-impl LawMemory for Deadband {}
+impl LawState for Deadband {}

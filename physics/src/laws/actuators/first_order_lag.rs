@@ -2,7 +2,7 @@
 
 use super::FilteredCommands;
 use crate::error::PhysicsError;
-use crate::joints::{LawMemory, MotorLaw, MotorStep};
+use crate::joints::{LawState, MotorLaw, MotorStep};
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
@@ -32,7 +32,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 delay takes none and its phase grows in proportion to frequency; steps of two sizes tell \
                                 it from a rate limit",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]
@@ -61,7 +61,7 @@ fn relax(y: f32, u: f32, steps: f32) -> (f32, f32) {
 }
 
 impl MotorLaw for FirstOrderLag {
-    fn drive(&mut self, motor: &MotorStep, command: &mut JointCommand) {
+    fn modify_command(&mut self, motor: &MotorStep, command: &mut JointCommand) {
         let steps = motor.dt_s / self.tau_s;
         self.outputs
             .follow(motor, command, |y, told| relax(y, told, steps));
@@ -72,12 +72,12 @@ impl MotorLaw for FirstOrderLag {
     }
 }
 
-impl LawMemory for FirstOrderLag {
-    fn memory(&self) -> Vec<f32> {
+impl LawState for FirstOrderLag {
+    fn state(&self) -> Vec<f32> {
         self.outputs.memory()
     }
 
-    fn restore_memory(&mut self, memory: &[f32]) {
+    fn restore_state(&mut self, memory: &[f32]) {
         self.outputs.restore_memory(memory);
     }
 }

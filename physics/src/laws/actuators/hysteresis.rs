@@ -2,7 +2,7 @@
 
 use super::TargetJoints;
 use crate::error::PhysicsError;
-use crate::joints::{JointLoad, JointResistance, LawMemory, ResistanceLaw, SlipSpring};
+use crate::joints::{JointLoad, JointResistance, LawState, ResistanceLaw, SlipSpring};
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
@@ -45,7 +45,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 lie anywhere within its gap without an effort; what a motor's drive gives is seen under its load \
                                 only",
     },
-    acts: install,
+    effect: install,
 };
 
 /// The state of a joint's hysteresis spring.
@@ -91,7 +91,7 @@ impl Hysteresis {
 }
 
 impl ResistanceLaw for Hysteresis {
-    fn follow(&mut self, joint: JointId, position: f32) {
+    fn update_position(&mut self, joint: JointId, position: f32) {
         if let Some(spring) = self.springs.get(&joint).copied() {
             let effort = self.effort(&spring, position);
             self.springs
@@ -99,7 +99,12 @@ impl ResistanceLaw for Hysteresis {
         }
     }
 
-    fn resist(&self, joint: JointId, load: &JointLoad, resistance: &mut JointResistance) {
+    fn modify_resistance(
+        &self,
+        joint: JointId,
+        load: &JointLoad,
+        resistance: &mut JointResistance,
+    ) {
         if let Some(spring) = self.springs.get(&joint) {
             resistance.elastic = Some(SlipSpring {
                 effort: self.effort(spring, load.position),
@@ -114,8 +119,8 @@ impl ResistanceLaw for Hysteresis {
     }
 }
 
-impl LawMemory for Hysteresis {
-    fn placed(&mut self, joint: JointId, position: f32) {
+impl LawState for Hysteresis {
+    fn joint_set(&mut self, joint: JointId, position: f32) {
         if let Some(spring) = self.springs.get_mut(&joint) {
             *spring = HysteresisSpring {
                 effort: 0.0,
@@ -124,14 +129,14 @@ impl LawMemory for Hysteresis {
         }
     }
 
-    fn memory(&self) -> Vec<f32> {
+    fn state(&self) -> Vec<f32> {
         let springs = self.springs.values();
         springs
             .flat_map(|spring| [spring.effort, spring.position])
             .collect()
     }
 
-    fn restore_memory(&mut self, memory: &[f32]) {
+    fn restore_state(&mut self, memory: &[f32]) {
         for (spring, remembered) in self.springs.values_mut().zip(memory.chunks_exact(2)) {
             (spring.effort, spring.position) = (remembered[0], remembered[1]);
         }
@@ -167,7 +172,7 @@ mod tests {
                 p if p <= 3.0 => reach * (2.0 - p),
                 p => reach * (p - 4.0),
             };
-            law.follow(joint, q);
+            law.update_position(joint, q);
             let effort = law.springs[&joint].effort;
             if phase <= 1.0 {
                 assert!((effort + (10.0 * q).min(0.5)).abs() < 1e-4, "{q} {effort}");

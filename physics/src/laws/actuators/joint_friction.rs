@@ -2,7 +2,7 @@
 
 use super::TargetJoints;
 use crate::error::PhysicsError;
-use crate::joints::{JointLoad, JointResistance, LawMemory, ResistanceLaw};
+use crate::joints::{JointLoad, JointResistance, LawState, ResistanceLaw};
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
@@ -69,7 +69,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 not; hold it still from above and from below for Coulomb and load; creep for Stribeck; \
                                 drive it and be driven by it with the same load for direction",
     },
-    acts: install,
+    effect: install,
 };
 
 /// The numbers of the law, in its equation's order.
@@ -149,7 +149,12 @@ fn install(
 }
 
 impl ResistanceLaw for JointFriction {
-    fn resist(&self, joint: JointId, load: &JointLoad, resistance: &mut JointResistance) {
+    fn modify_resistance(
+        &self,
+        joint: JointId,
+        load: &JointLoad,
+        resistance: &mut JointResistance,
+    ) {
         if self.hinges.hold(joint) {
             resistance.friction += self.friction.bound(load);
             resistance.damping += self.friction.viscous;
@@ -161,7 +166,7 @@ impl ResistanceLaw for JointFriction {
     }
 }
 
-impl LawMemory for JointFriction {}
+impl LawState for JointFriction {}
 
 #[cfg(test)]
 mod tests {

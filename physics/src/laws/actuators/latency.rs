@@ -2,7 +2,7 @@
 
 use super::{TargetMotors, number, same_kind, with};
 use crate::error::PhysicsError;
-use crate::joints::{LawMemory, MotorLaw, MotorStep, commanded};
+use crate::joints::{LawState, MotorLaw, MotorStep, motor_command};
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
@@ -32,7 +32,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 its phase grows with frequency without end; a lag rounds the step and its phase ends at \
                                 90 degrees; an offset between clocks also shifts what no motor causes",
     },
-    acts: install,
+    effect: install,
 };
 
 /// The commands of a joint in past physics steps, newest first: as many as the delay reaches back, initially the command at
@@ -55,7 +55,7 @@ fn install(
     let mut motors = TargetMotors::of(values, model)?.each(CommandDelayLine::default);
     // What motors are told at that moment they have been told for long: no motor lets go because a cable grew.
     for (joint, past) in &mut motors {
-        past.0.push_back(commanded(state, *joint));
+        past.0.push_back(motor_command(state, *joint));
     }
     Ok(vec![LawEffect::Motor(Box::new(Latency {
         delay_s: values.get_f32("delay_s"),
@@ -85,7 +85,7 @@ impl CommandDelayLine {
 }
 
 impl MotorLaw for Latency {
-    fn drive(&mut self, motor: &MotorStep, command: &mut JointCommand) {
+    fn modify_command(&mut self, motor: &MotorStep, command: &mut JointCommand) {
         if let Some(past) = self.past.get_mut(&motor.joint) {
             *command = past.shift(*command, self.delay_s / motor.dt_s);
         }
@@ -96,8 +96,8 @@ impl MotorLaw for Latency {
     }
 }
 
-impl LawMemory for Latency {
-    fn memory(&self) -> Vec<f32> {
+impl LawState for Latency {
+    fn state(&self) -> Vec<f32> {
         let mut memory = Vec::new();
         for past in self.past.values() {
             memory.push(past.0.len() as f32);
@@ -106,7 +106,7 @@ impl LawMemory for Latency {
         memory
     }
 
-    fn restore_memory(&mut self, memory: &[f32]) {
+    fn restore_state(&mut self, memory: &[f32]) {
         let mut rest = memory.iter().copied();
         for past in self.past.values_mut() {
             let count = rest.next().unwrap_or(0.0) as usize;

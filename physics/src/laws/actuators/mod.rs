@@ -106,7 +106,7 @@ impl FilteredCommands {
             return;
         };
         if !same_kind(*output, *command) {
-            *output = with(*command, motor.rest(*command));
+            *output = with(*command, motor.holding_value(*command));
         }
         let (end, mean) = step(number(*output).unwrap_or(told), told);
         *output = with(*command, end);

@@ -3,7 +3,7 @@
 use super::TargetMotors;
 use crate::error::PhysicsError;
 use crate::joints::{
-    ActuationGain, JointActuation, JointLoad, JointResistance, LawMemory, MotorLaw, ResistanceLaw,
+    ActuationGain, JointActuation, JointLoad, JointResistance, LawState, MotorLaw, ResistanceLaw,
 };
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
@@ -78,7 +78,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 second, viscous friction both; repeat a motion with a known load added: a torque constant \
                                 scales with it, a wrong mass or rotor does not",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]
@@ -120,7 +120,7 @@ fn install(
 }
 
 impl MotorLaw for MotorConstants {
-    fn modify_motor(&self, joint: JointId, pull: &mut JointActuation) {
+    fn modify_actuation(&self, joint: JointId, pull: &mut JointActuation) {
         if !self.motors.hold(joint) {
             return;
         }
@@ -143,7 +143,12 @@ impl MotorLaw for MotorConstants {
 }
 
 impl ResistanceLaw for MotorConstants {
-    fn resist(&self, joint: JointId, load: &JointLoad, resistance: &mut JointResistance) {
+    fn modify_resistance(
+        &self,
+        joint: JointId,
+        load: &JointLoad,
+        resistance: &mut JointResistance,
+    ) {
         if self.motors.hold(joint) {
             resistance.armature += self.armature;
             if load.is_driven {
@@ -157,4 +162,4 @@ impl ResistanceLaw for MotorConstants {
     }
 }
 
-impl LawMemory for MotorConstants {}
+impl LawState for MotorConstants {}

@@ -2,7 +2,7 @@
 
 use super::FilteredCommands;
 use crate::error::PhysicsError;
-use crate::joints::{LawMemory, MotorLaw, MotorStep};
+use crate::joints::{LawState, MotorLaw, MotorStep};
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
@@ -31,7 +31,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
         separating_experiment: "tell it steps of two sizes: with a rate limit the slope is the same for both and the time \
                                 grows with the size, with a lag the time is the same",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]
@@ -63,7 +63,7 @@ fn approach(y: f32, u: f32, most: f32) -> (f32, f32) {
 }
 
 impl MotorLaw for RateLimit {
-    fn drive(&mut self, motor: &MotorStep, command: &mut JointCommand) {
+    fn modify_command(&mut self, motor: &MotorStep, command: &mut JointCommand) {
         let most = self.max_rate * motor.dt_s;
         self.outputs
             .follow(motor, command, |y, told| approach(y, told, most));
@@ -74,12 +74,12 @@ impl MotorLaw for RateLimit {
     }
 }
 
-impl LawMemory for RateLimit {
-    fn memory(&self) -> Vec<f32> {
+impl LawState for RateLimit {
+    fn state(&self) -> Vec<f32> {
         self.outputs.memory()
     }
 
-    fn restore_memory(&mut self, memory: &[f32]) {
+    fn restore_state(&mut self, memory: &[f32]) {
         self.outputs.restore_memory(memory);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::TargetMotors;
 use crate::error::PhysicsError;
-use crate::joints::{JointActuation, LawMemory, MotorLaw};
+use crate::joints::{JointActuation, LawState, MotorLaw};
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
@@ -30,7 +30,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
         separating_experiment: "sweep the amplitude of a sine or lift growing loads: below its bound a saturated motor is \
                                 exact, friction errs from the smallest effort on, a wrong constant in proportion",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]
@@ -51,7 +51,7 @@ fn install(
 }
 
 impl MotorLaw for Saturation {
-    fn modify_motor(&self, joint: JointId, pull: &mut JointActuation) {
+    fn modify_actuation(&self, joint: JointId, pull: &mut JointActuation) {
         if self.motors.hold(joint) {
             pull.max_effort = pull.max_effort.min(self.max_effort);
         }
@@ -62,4 +62,4 @@ impl MotorLaw for Saturation {
     }
 }
 
-impl LawMemory for Saturation {}
+impl LawState for Saturation {}

@@ -41,7 +41,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 time also at rest, a scale errs with the angle and with its sign, and a wrong wheel base \
                                 shows in the wheels' odometry and not in the gyro",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]
@@ -64,7 +64,7 @@ fn install(
 }
 
 impl BaseLaw for GyroBiasScale {
-    fn gyro(&self, agent: AgentId, rate_rad_s: f32) -> f32 {
+    fn gyro_reading(&self, agent: AgentId, rate_rad_s: f32) -> f32 {
         if self.riders.holds(agent) {
             self.scale * rate_rad_s + self.bias_rad_s
         } else {

@@ -43,7 +43,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 the same way in space, a wrong base turns both too far or too little, and only straight \
                                 runs against a tape show the size; a gyro's bias grows with time also at rest",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]
@@ -70,12 +70,12 @@ fn install(
 }
 
 impl BaseLaw for UnequalWheels {
-    fn roll(&self, agent: AgentId, rolling: &mut WheelMotion) {
+    fn modify_wheel_motion(&self, agent: AgentId, rolling: &mut WheelMotion) {
         if self.riders.holds(agent) {
             for (radius, factor) in rolling.wheels.radius_m.iter_mut().zip(self.radius_factors) {
                 *radius *= factor;
             }
-            rolling.wheels.base_m *= self.base_factor;
+            rolling.wheels.wheel_base_m *= self.base_factor;
         }
     }
 }

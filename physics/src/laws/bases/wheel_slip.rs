@@ -34,7 +34,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
         separating_experiment: "drive the same way once slowly and once with hard starts and soft stops: a wrong radius \
                                 errs with the way whatever the speed, slip only where the speed changes",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]
@@ -55,7 +55,7 @@ fn install(
 }
 
 impl BaseLaw for WheelSlip {
-    fn roll(&self, agent: AgentId, rolling: &mut WheelMotion) {
+    fn modify_wheel_motion(&self, agent: AgentId, rolling: &mut WheelMotion) {
         if !self.riders.holds(agent) {
             return;
         }
@@ -63,7 +63,7 @@ impl BaseLaw for WheelSlip {
             let onward = rolling.rate_rad_s[side].signum();
             let gathering = rolling.acceleration_rad_s2[side] * onward;
             let slip = self.slip_per_m_s2 * rolling.wheels.radius_m[side] * gathering;
-            rolling.slip[side] = (rolling.slip[side] + slip).clamp(-1.0, 1.0);
+            rolling.slip_ratio[side] = (rolling.slip_ratio[side] + slip).clamp(-1.0, 1.0);
         }
     }
 }

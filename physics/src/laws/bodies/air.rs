@@ -29,14 +29,14 @@ pub(super) const AIR_DENSITY: ParamInfo = ParamInfo {
     plausible: [1.0, 1.4],
 };
 
-/// Returns the value that [`in_air`] found for a body, kg/m; `None` for one that is not affected.
-pub(super) fn gain_of(bodies: &[(u32, f32)], body: u32) -> Option<f64> {
+/// Returns the value that [`drag_factors`] found for a body, kg/m; `None` for one that is not affected.
+pub(super) fn drag_factor_of(bodies: &[(u32, f32)], body: u32) -> Option<f64> {
     let place = bodies.binary_search_by_key(&body, |(index, _)| *index);
     place.ok().map(|place| bodies[place].1.into())
 }
 
 /// Returns the force of `gain |u| u` against the velocity `u` of a jointed body, N.
-pub(super) fn against_air(link: &LinkStep, gain: f64, against: DVec3) -> DVec3 {
+pub(super) fn drag_force(link: &LinkStep, gain: f64, against: DVec3) -> DVec3 {
     if link.mass_kg <= 0.0 {
         return DVec3::ZERO;
     }
@@ -45,7 +45,7 @@ pub(super) fn against_air(link: &LinkStep, gain: f64, against: DVec3) -> DVec3 {
 }
 
 /// Returns the moving bodies that a spec acts on, each with `gain` of the air's density (kg/m³) and its cross-section (m²).
-pub(super) fn in_air(
+pub(super) fn drag_factors(
     values: LawValues<'_>,
     model: &PhysicsModel,
     gain: impl Fn(f32, f32) -> f32,

@@ -52,7 +52,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
         separating_experiment: "drop two objects of one shape and different density: gravity, clock and scale treat them \
                                 alike, the air carries the lighter one more",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]

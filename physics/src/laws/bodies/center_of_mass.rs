@@ -41,7 +41,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 flight in the same way, but only the centre of mass decides over which edge it falls and \
                                 the slope at which it does",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]

@@ -1,6 +1,6 @@
 //! Quadratic air drag.
 
-use super::air::{AIR_DENSITY, AREA, against_air, gain_of, in_air};
+use super::air::{AIR_DENSITY, AREA, drag_factor_of, drag_factors, drag_force};
 use crate::error::PhysicsError;
 use crate::joints::{ExternalWrench, LinkLaw, LinkStep};
 use crate::laws::{BodyLaw, LawContext, LawEffect, PhysicsLaw};
@@ -37,7 +37,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 bodies of the same shape and different mass: drag alone bends the path in proportion \
                                 to v^2/m, gravity and clocks do not",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]
@@ -52,7 +52,7 @@ fn install(
     _state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
     let c_d = values.get_f32("c_d");
-    let bodies = in_air(values, model, |density, area| 0.5 * density * c_d * area)?;
+    let bodies = drag_factors(values, model, |density, area| 0.5 * density * c_d * area)?;
     let law = Arc::new(Drag { bodies });
     Ok(vec![LawEffect::Body(law.clone()), LawEffect::Link(law)])
 }
@@ -60,7 +60,7 @@ fn install(
 impl BodyLaw for Drag {
     fn apply_half_step(&self, stage: &mut LawContext<'_>, half_dt_s: f32) {
         for (body, gain) in &self.bodies {
-            let Some(rigid) = stage.free(*body) else {
+            let Some(rigid) = stage.free_body_mut(*body) else {
                 continue;
             };
             // The exact solution of m dv/dt = -k |v| v over the half step; it never reverses the velocity.
@@ -72,12 +72,12 @@ impl BodyLaw for Drag {
 }
 
 impl LinkLaw for Drag {
-    fn push(&self, link: &LinkStep) -> ExternalWrench {
-        let Some(gain) = gain_of(&self.bodies, link.body) else {
+    fn wrench(&self, link: &LinkStep) -> ExternalWrench {
+        let Some(gain) = drag_factor_of(&self.bodies, link.body) else {
             return ExternalWrench::default();
         };
         ExternalWrench {
-            force: against_air(link, gain, link.velocity),
+            force: drag_force(link, gain, link.velocity),
             ..ExternalWrench::default()
         }
     }

@@ -57,7 +57,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 seen without a force), and let it hit the floor with a corner, or add a known mass, for \
                                 the scale",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]

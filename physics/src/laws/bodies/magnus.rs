@@ -1,6 +1,6 @@
 //! Magnus effect: lift of a spinning body.
 
-use super::air::{AIR_DENSITY, AREA, gain_of, in_air};
+use super::air::{AIR_DENSITY, AREA, drag_factor_of, drag_factors};
 use crate::error::PhysicsError;
 use crate::joints::{ExternalWrench, LinkLaw, LinkStep};
 use crate::laws::{BodyLaw, LawContext, LawEffect, PhysicsLaw};
@@ -40,7 +40,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
         separating_experiment: "throw the object twice alike with the spin turned round, its spin measured: only lift \
                                 changes sides; a tilted frame and wind push the same way both times",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]
@@ -55,7 +55,7 @@ fn install(
     _state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
     let c_l = values.get_f32("c_l");
-    let bodies = in_air(values, model, |density, area| {
+    let bodies = drag_factors(values, model, |density, area| {
         0.5 * density * area * (area / PI).sqrt() * c_l
     })?;
     let law = Arc::new(Magnus { bodies });
@@ -65,7 +65,7 @@ fn install(
 impl BodyLaw for Magnus {
     fn apply_half_step(&self, stage: &mut LawContext<'_>, half_dt_s: f32) {
         for (body, gain) in &self.bodies {
-            let Some(rigid) = stage.free(*body) else {
+            let Some(rigid) = stage.free_body_mut(*body) else {
                 continue;
             };
             // dv/dt = (gain / m) w x v turns the velocity about the spin and keeps its length.
@@ -84,12 +84,12 @@ impl BodyLaw for Magnus {
 }
 
 impl LinkLaw for Magnus {
-    fn push(&self, link: &LinkStep) -> ExternalWrench {
-        let Some(gain) = gain_of(&self.bodies, link.body) else {
+    fn wrench(&self, link: &LinkStep) -> ExternalWrench {
+        let Some(gain) = drag_factor_of(&self.bodies, link.body) else {
             return ExternalWrench::default();
         };
         ExternalWrench {
-            force: gain * link.spin.cross(link.velocity),
+            force: gain * link.angular_velocity.cross(link.velocity),
             ..ExternalWrench::default()
         }
     }

@@ -43,7 +43,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 takes the same share of the speed in each second, quadratic drag a share that grows with \
                                 it; friction acts in contact only",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]
@@ -72,7 +72,7 @@ impl BodyLaw for ViscousDamping {
         let linear = math::exp(-self.linear_per_s * half_dt_s);
         let angular = math::exp(-self.angular_per_s * half_dt_s);
         for body in &self.bodies {
-            if let Some(rigid) = stage.free(*body) {
+            if let Some(rigid) = stage.free_body_mut(*body) {
                 rigid.set_linvel(rigid.linvel() * linear, false);
                 rigid.set_angvel(rigid.angvel() * angular, false);
             }
@@ -81,14 +81,15 @@ impl BodyLaw for ViscousDamping {
 }
 
 impl LinkLaw for ViscousDamping {
-    fn push(&self, link: &LinkStep) -> ExternalWrench {
+    fn wrench(&self, link: &LinkStep) -> ExternalWrench {
         if self.bodies.binary_search(&link.body).is_err() {
             return ExternalWrench::default();
         }
         let linear = link.mass_kg * link.decay_per_s(self.linear_per_s.into());
         ExternalWrench {
             force: -linear * link.velocity,
-            moment: -link.decay_per_s(self.angular_per_s.into()) * (link.inertia * link.spin),
+            torque: -link.decay_per_s(self.angular_per_s.into())
+                * (link.inertia * link.angular_velocity),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Wind.
 
-use super::air::{AIR_DENSITY, AREA, against_air, gain_of, in_air};
+use super::air::{AIR_DENSITY, AREA, drag_factor_of, drag_factors, drag_force};
 use crate::error::PhysicsError;
 use crate::joints::{ExternalWrench, LinkLaw, LinkStep};
 use crate::laws::{BodyLaw, LawContext, LawEffect, PhysicsLaw};
@@ -72,7 +72,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
         separating_experiment: "put a light and a heavy object of one shape side by side, or switch the fan off: wind moves \
                                 the light one, a tilted floor or frame both",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]
@@ -90,7 +90,7 @@ fn install(
     _state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
     let c_d = values.get_f32("c_d");
-    let bodies = in_air(values, model, |density, area| 0.5 * density * c_d * area)?;
+    let bodies = drag_factors(values, model, |density, area| 0.5 * density * c_d * area)?;
     let velocity = ["x_m_s", "y_m_s", "z_m_s"].map(|name| values.get_f32(name));
     let law = Arc::new(Wind {
         bodies,
@@ -116,7 +116,7 @@ impl BodyLaw for Wind {
         let air = self.air(stage.time_s());
         let gravity = stage.engine.gravity.length();
         for (body, gain) in &self.bodies {
-            let Some(rigid) = stage.movable(*body) else {
+            let Some(rigid) = stage.movable_body(*body) else {
                 continue;
             };
             let (mass, against) = (rigid.mass(), rigid.linvel() - air);
@@ -124,7 +124,7 @@ impl BodyLaw for Wind {
             if air != Vec3::ZERO && push > WAKING_SHARE * mass * gravity {
                 stage.wake(*body);
             }
-            if let Some(rigid) = stage.free(*body) {
+            if let Some(rigid) = stage.free_body_mut(*body) {
                 // The exact solution of m du/dt = -k |u| u for the velocity against the air over the half step.
                 let slowed = against / (1.0 + gain / mass * against.length() * half_dt_s);
                 rigid.set_linvel(air + slowed, false);
@@ -134,13 +134,13 @@ impl BodyLaw for Wind {
 }
 
 impl LinkLaw for Wind {
-    fn push(&self, link: &LinkStep) -> ExternalWrench {
-        let Some(gain) = gain_of(&self.bodies, link.body) else {
+    fn wrench(&self, link: &LinkStep) -> ExternalWrench {
+        let Some(gain) = drag_factor_of(&self.bodies, link.body) else {
             return ExternalWrench::default();
         };
         let air = self.air(link.time_s).as_dvec3();
         ExternalWrench {
-            force: against_air(link, gain, link.velocity - air),
+            force: drag_force(link, gain, link.velocity - air),
             ..ExternalWrench::default()
         }
     }

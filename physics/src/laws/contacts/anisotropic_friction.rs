@@ -57,7 +57,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 freely in the same directions: a tilted floor or frame also bends the flight, or pulls to \
                                 one side only",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]
@@ -88,8 +88,8 @@ impl ContactLaw for AnisotropicFriction {
         &self.scope
     }
 
-    fn shape_contact(&self, touch: &LawContact<'_>, values: &mut ContactValues) {
-        let slip = touch.slip();
+    fn modify_contact(&self, touch: &LawContact<'_>, values: &mut ContactValues) {
+        let slip = touch.slip_velocity();
         // A sticking body would slide against its friction force.
         let direction = if slip.length() > HELD_M_S {
             slip

@@ -53,7 +53,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 with at least ten samples in it: only compliance sinks by m g / k and rebounds pi sqrt(m/k) \
                                 late whatever the speed; a wrong size or floor height is the same for every mass",
     },
-    acts: install,
+    effect: install,
 };
 
 /// Natural frequency below which there is no compliance, Hz.

@@ -24,7 +24,7 @@ pub(super) struct ContactLoad {
 /// All loaded contact planes within a scope, in a fixed order.
 pub(super) fn loads(stage: &LawContext<'_>, scope: &ContactScope) -> Vec<ContactLoad> {
     let engine = &stage.engine;
-    let run_s = engine.run_s();
+    let run_s = engine.solver_call_s();
     let mut loads = Vec::new();
     for pair in engine.narrow_phase.contact_pairs() {
         let colliders = (
@@ -73,7 +73,7 @@ pub(super) fn loads(stage: &LawContext<'_>, scope: &ContactScope) -> Vec<Contact
                 rotation: Quat::IDENTITY,
             };
             let sides = (side(a, classes.0), side(b, classes.1));
-            if scope.turns(stage.house, &sides.0, &sides.1).is_none() {
+            if scope.is_swapped(stage.house, &sides.0, &sides.1).is_none() {
                 continue;
             }
             loads.push(ContactLoad {
@@ -105,14 +105,14 @@ impl ContactLoad {
     }
 
     /// Returns the relative angular velocity of the first body against the second, rad/s.
-    pub(super) fn spin(&self, stage: &LawContext<'_>) -> Vec3 {
+    pub(super) fn relative_spin(&self, stage: &LawContext<'_>) -> Vec3 {
         self.each(stage)
             .map(|(sign, rigid)| rigid.angvel() * sign)
             .sum()
     }
 
     /// Returns the angular acceleration by gravity of the first about the contact against the second, without slip, rad/s².
-    pub(super) fn gravity_turn(&self, stage: &LawContext<'_>) -> Vec3 {
+    pub(super) fn gravity_angular_acceleration(&self, stage: &LawContext<'_>) -> Vec3 {
         let gravity = stage.engine.gravity;
         self.each(stage)
             .filter(|(_, rigid)| rigid.is_dynamic())
@@ -149,7 +149,7 @@ impl ContactLoad {
     }
 
     /// Applies an angular impulse to the first body and its opposite to the second, kg·m²/s.
-    pub(super) fn turn(&self, stage: &mut LawContext<'_>, impulse: Vec3) {
+    pub(super) fn apply_angular_impulse(&self, stage: &mut LawContext<'_>, impulse: Vec3) {
         for (sign, handle) in [(1.0, self.bodies.0), (-1.0, self.bodies.1)] {
             let Some(handle) = handle else { continue };
             if let Some(rigid) = stage.engine.bodies.get_mut(handle)

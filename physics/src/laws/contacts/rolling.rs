@@ -35,7 +35,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 rolling resistance slows it alike each time, a tilted floor helps one way, air takes more \
                                 from the faster one",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]
@@ -59,7 +59,8 @@ impl BodyLaw for RollingResistance {
     fn before_step(&self, stage: &mut LawContext<'_>) {
         for load in loads(stage, &self.scope) {
             // The angular velocity at the end of the step without resistance.
-            let spin = load.spin(stage) + load.gravity_turn(stage) * stage.dt_s;
+            let spin =
+                load.relative_spin(stage) + load.gravity_angular_acceleration(stage) * stage.dt_s;
             let rolling = spin - load.normal * spin.dot(load.normal);
             let speed = rolling.length();
             if speed <= 0.0 {
@@ -69,7 +70,7 @@ impl BodyLaw for RollingResistance {
             // c_rr N r h, and no more than the I omega that stops it.
             let most = self.c_rr * load.normal_force_n * load.radius_m(stage) * stage.dt_s;
             let stops = load.inertia(stage, axis, true) * speed;
-            load.turn(stage, -axis * most.min(stops));
+            load.apply_angular_impulse(stage, -axis * most.min(stops));
         }
     }
 }

@@ -48,7 +48,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
         separating_experiment: "tilt the floor slowly until the object starts to slide, then until one that was pushed \
                                 stops: two angles mean two frictions; a single coefficient, and play, have one",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]
@@ -77,9 +77,9 @@ impl ContactLaw for StribeckFriction {
         &self.scope
     }
 
-    fn shape_contact(&self, touch: &LawContact<'_>, values: &mut ContactValues) {
+    fn modify_contact(&self, touch: &LawContact<'_>, values: &mut ContactValues) {
         // mu_k (1 + (ratio - 1) exp(-(v / v_s)^shape)).
-        let share = touch.slip().length() / self.speed_m_s;
+        let share = touch.slip_velocity().length() / self.speed_m_s;
         values.friction *= 1.0 + (self.ratio - 1.0) * math::exp(-math::pow(share, self.shape));
     }
 }

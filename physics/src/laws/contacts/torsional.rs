@@ -34,7 +34,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
         separating_experiment: "spin the object on the floor at two speeds, and in the air: friction of the patch takes the \
                                 same spin from it in each second and nothing in flight",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]
@@ -57,12 +57,12 @@ fn install(
 impl BodyLaw for TorsionalFriction {
     fn before_step(&self, stage: &mut LawContext<'_>) {
         for load in loads(stage, &self.scope) {
-            let spin = load.spin(stage).dot(load.normal);
+            let spin = load.relative_spin(stage).dot(load.normal);
             // mu N r h, and no more than the I omega that stops it.
             let most = load.friction * load.normal_force_n * self.radius_m * stage.dt_s;
             let stops = load.inertia(stage, load.normal, false) * spin.abs();
             let impulse = -most.min(stops) * spin.signum();
-            load.turn(stage, load.normal * impulse);
+            load.apply_angular_impulse(stage, load.normal * impulse);
         }
     }
 }

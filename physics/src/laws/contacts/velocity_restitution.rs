@@ -44,7 +44,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 the share of the speed that is left: one restitution leaves the same share everywhere, and \
                                 air takes speed between the bounces as well",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]
@@ -71,7 +71,7 @@ impl ContactLaw for VelocityRestitution {
         &self.scope
     }
 
-    fn shape_contact(&self, touch: &LawContact<'_>, values: &mut ContactValues) {
+    fn modify_contact(&self, touch: &LawContact<'_>, values: &mut ContactValues) {
         let speed = touch.approach_speed_m_s().max(0.0);
         // e - slope (v - v_ref).
         let e = values.restitution - self.slope * (speed - self.reference);

@@ -86,7 +86,7 @@ fn a_number_changed_by_its_address_is_the_law_with_that_number() {
             told.steps(12);
             installed.steps(12);
             assert!(
-                told.world.moment() == installed.world.moment()
+                told.world.unpacked_snapshot() == installed.world.unpacked_snapshot()
                     && told.state.part_pose == installed.state.part_pose,
                 "{} {}",
                 info.id,

@@ -55,7 +55,7 @@ fn an_inertia_error_makes_a_cube_precess_as_a_symmetric_top() {
         let cube = run.house.object_named("cube").unwrap();
         let root = run.root(cube);
         run.state.part_velocity[root].angular = Vec3::new(0.3, 0.0, 6.0);
-        run.world.adopt(&mut run.state).unwrap();
+        run.world.adopt_state(&mut run.state).unwrap();
         let mut turned = 0.0;
         let mut before = 0.0_f32;
         for _ in 0..40 {
@@ -78,7 +78,7 @@ fn an_inertia_error_makes_a_cube_precess_as_a_symmetric_top() {
     let cube = run.house.object_named("cube").unwrap();
     let root = run.root(cube);
     run.state.part_velocity[root].angular = Vec3::new(0.3, 0.0, 6.0);
-    run.world.adopt(&mut run.state).unwrap();
+    run.world.adopt_state(&mut run.state).unwrap();
     run.steps(40);
     let spin = run.state.part_velocity[root].angular;
     assert!((spin - Vec3::new(0.3, 0.0, 6.0)).length() < 1e-3, "{spin}");
@@ -151,7 +151,7 @@ fn a_body_turns_about_its_shifted_centre_of_mass() {
     let root = run.root(cube);
     run.state.part_velocity[root].angular = Vec3::new(0.0, 5.0, 0.0);
     run.state.part_velocity[root].linear = Vec3::new(0.2, 0.0, 0.1);
-    run.world.adopt(&mut run.state).unwrap();
+    run.world.adopt_state(&mut run.state).unwrap();
     let center = |run: &Run| {
         let pose = run.state.part_pose[root];
         pose.position + pose.rotation * offset

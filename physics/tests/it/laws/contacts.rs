@@ -307,7 +307,7 @@ fn torsional_friction_slows_a_spinning_ball_evenly() {
     run.steps(10);
     let root = run.root(ball);
     run.state.part_velocity[root].angular = Vec3::new(0.0, 10.0, 0.0);
-    run.world.adopt(&mut run.state).unwrap();
+    run.world.adopt_state(&mut run.state).unwrap();
     let slowing = mu * gravity() * 0.002 / (0.4 * 0.01);
     for step in 1..=60 {
         run.steps(1);
@@ -322,7 +322,7 @@ fn torsional_friction_slows_a_spinning_ball_evenly() {
     let (mut run, ball) = drop_from(5.0, vec![law], PhysicsConfig::default());
     let root = run.root(ball);
     run.state.part_velocity[root].angular = Vec3::new(0.0, 10.0, 0.0);
-    run.world.adopt(&mut run.state).unwrap();
+    run.world.adopt_state(&mut run.state).unwrap();
     run.steps(10);
     let kept = run.state.part_velocity[root].angular.y;
     assert!((kept - 10.0).abs() < 1e-3, "{kept} rad/s");

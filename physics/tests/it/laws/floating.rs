@@ -110,7 +110,7 @@ fn joints_stay_still_in_air_that_pushes_all_bodies_alike() {
             let root = run.root(run.house.object_named("robot").unwrap());
             run.state.part_pose[root].position.x = if start.x > 0.0 { 0.5 } else { 20.0 };
             run.state.part_velocity[root].linear = start;
-            run.world.adopt(&mut run.state).unwrap();
+            run.world.adopt_state(&mut run.state).unwrap();
             let before = velocities(&run);
             assert!(
                 before

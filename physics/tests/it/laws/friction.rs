@@ -131,7 +131,7 @@ fn arm(numbers: Numbers, (position, velocity): (f64, f64)) -> (Run, JointId) {
     let mut run = Run::from_state(house, awake(), state);
     run.state.joint_position[joint] = position as f32;
     run.state.joint_velocity[joint] = velocity as f32;
-    run.world.adopt(&mut run.state).unwrap();
+    run.world.adopt_state(&mut run.state).unwrap();
     (run, joint)
 }
 

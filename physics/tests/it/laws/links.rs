@@ -285,7 +285,7 @@ fn drag_on_all_of_a_floating_robot_takes_its_share_of_momentum() {
     let mut run = Run::from_state(house, awake(), state);
     run.state.part_velocity[parts[0]].linear = Vec3::new(1.0, 0.5, -0.3);
     run.state.joint_velocity[JointId(0)] = 3.0;
-    run.world.adopt(&mut run.state).unwrap();
+    run.world.adopt_state(&mut run.state).unwrap();
     let masses = [500.0 * 0.008, 500.0 * 0.5 * 0.0036];
     let momentum = |run: &Run| -> DVec3 {
         let middles = [Vec3::ZERO, Vec3::X * 0.25];

@@ -75,7 +75,7 @@ fn lively(laws: Vec<LawSpec>) -> Run {
         run.state.part_velocity[root].linear = linear;
         run.state.part_velocity[root].angular = angular;
     }
-    run.world.adopt(&mut run.state).unwrap();
+    run.world.adopt_state(&mut run.state).unwrap();
     run
 }
 

@@ -61,7 +61,7 @@ fn a_law_on_one_thing_under_two_names_is_refused() {
         let param = info.param(param).unwrap_or(&info.params[0]).name;
         let mut state = State::new(&house);
         state.laws = [one, other]
-            .map(|target| info.spec(&[(param, 0.01)]).on(target))
+            .map(|target| info.spec(&[(param, 0.01)]).with_target(target))
             .into();
         let config = PhysicsConfig::default();
         let refused = dwell_physics::PhysicsWorld::new(house.clone(), config, &mut state);

@@ -53,7 +53,7 @@ impl ModuleGraph {
     }
 
     /// Returns the shortest circle through each use, shortest first.
-    pub(super) fn circles(&self) -> Vec<String> {
+    pub(super) fn cycles(&self) -> Vec<String> {
         let mut circles = BTreeSet::new();
         for (user, uses) in &self.uses {
             for used in uses.keys() {

@@ -35,7 +35,7 @@ fn of_crate(root: &Path, folder: &Path) -> Result<Vec<String>, String> {
             modules.add(root, &files)?;
         }
     }
-    Ok(modules.circles())
+    Ok(modules.cycles())
 }
 
 #[cfg(test)]

@@ -10,24 +10,24 @@ use dwell_scene::{HouseData, Pose, RoomId, Sky};
 use glam::{Vec2, Vec3};
 
 use super::super::add::style;
-use super::super::edit_errors::{fault, inside, within};
+use super::super::edit_errors::{check_range, invalid_field, prefix_field};
 use super::data::{
     BuildingPlan, CardinalDirection, DoorLeaf, HingeSide, RoomPlan, StairsPlan, StoreyPlan,
 };
 use super::finishes;
 use super::grid::{Millimetres, PlanCell, PlanGrid, metres, millimetres};
-use super::openings::{OpeningFill, PlanOpening, holes};
-use super::walls::{WallSegment, stretches};
+use super::openings::{OpeningFill, PlanOpening, plan_openings};
+use super::walls::{WallSegment, wall_segments};
 use crate::building::assembly::HouseAssembly;
-use crate::building::openings::{put_door, put_window};
+use crate::building::openings::{add_door, add_window};
 use crate::building::outline::outline;
 use crate::building::room::{FloorSlab, ShellRoom};
-use crate::building::stairs::{StairFlights, put_railing, put_stairs};
+use crate::building::stairs::{StairFlights, add_railing, add_stairs};
 use crate::building::wall::{FinishBands, ShellWall, WallAxis};
-use crate::building::yaw::yaw;
+use crate::building::yaw::yaw_rotation;
 use crate::error::HousesError;
 use crate::generate::GeneratedRoomKind;
-use crate::generate::room_finishes::{RoomFinishes, facade, look, reveal};
+use crate::generate::room_finishes::{RoomFinishes, facade_finish, reveal_finish, room_finishes};
 use crate::import::room_kind;
 use crate::report::FileLocation;
 
@@ -53,11 +53,11 @@ pub(in crate::authoring) fn construct(
         .iter()
         .map(|storey| storey.rooms.len())
         .sum();
-    let most = dwell_scene::Room::MOST;
+    let most = dwell_scene::Room::MAX_PER_HOUSE;
     if building.storeys.len() > MOST_STOREYS || rooms > most || rooms == 0 {
         let found = format!("{} storeys with {rooms} rooms", building.storeys.len());
         let possible = format!("1 to {MOST_STOREYS} storeys with 1 to {most} rooms");
-        return Err(fault("storeys", found, possible));
+        return Err(invalid_field("storeys", found, possible));
     }
     let mut names = BTreeSet::new();
     for (level, storey) in building.storeys.iter().enumerate() {
@@ -67,7 +67,7 @@ pub(in crate::authoring) fn construct(
                 || !names.insert(&room.name)
             {
                 let field = format!("storeys[{level}].rooms[{k}].name");
-                return Err(fault(
+                return Err(invalid_field(
                     field,
                     format_args!("{:?}", room.name),
                     "a name that no other room has, not \"outside\"",
@@ -75,7 +75,7 @@ pub(in crate::authoring) fn construct(
             }
         }
     }
-    let outer = within("outer_wall_m", building.outer_wall_m, [0.05, 1.0], "m")?;
+    let outer = check_range("outer_wall_m", building.outer_wall_m, [0.05, 1.0], "m")?;
     let style = style(building.style.as_deref(), building.seed)?;
     let mut assembly = HouseAssembly::new(name, "plan@1");
     let mut floor_m = 0.0;
@@ -95,7 +95,7 @@ pub(in crate::authoring) fn construct(
         };
         floor_m += site
             .build(&mut assembly)
-            .map_err(inside(format_args!("storeys[{level}]")))?;
+            .map_err(prefix_field(format_args!("storeys[{level}]")))?;
     }
     let at = FileLocation::file("plan").field("building.daytime");
     assembly.data.sky = Some(Sky::at(&building.daytime).map_err(HousesError::scene(&at))?);
@@ -118,9 +118,9 @@ struct StoreyBuilder<'a> {
 impl StoreyBuilder<'_> {
     /// Adds the storey; returns the height of the next one above its floor.
     fn build(&self, assembly: &mut HouseAssembly) -> Result<f32, HousesError> {
-        let height = within("height_m", self.storey.height_m, [1.8, 20.0], "m")?;
+        let height = check_range("height_m", self.storey.height_m, [1.8, 20.0], "m")?;
         if self.top && self.storey.stairs.is_some() {
-            return Err(fault(
+            return Err(invalid_field(
                 "stairs",
                 "stairs on the highest storey",
                 "stairs to a storey",
@@ -129,35 +129,39 @@ impl StoreyBuilder<'_> {
         let wells = [self.well_below, self.storey.stairs.as_ref()];
         let mut cuts = Vec::new();
         for well in wells {
-            cuts.push(well.map(Self::well).transpose().map_err(inside("stairs"))?);
+            cuts.push(
+                well.map(Self::well)
+                    .transpose()
+                    .map_err(prefix_field("stairs"))?,
+            );
         }
         let flat: Vec<[Millimetres; 4]> = cuts.iter().flatten().copied().collect();
         let grid = PlanGrid::new(self.storey, self.outer, &flat)?;
         for cut in &flat {
-            Self::check_well(&grid, cut).map_err(inside("stairs"))?;
+            Self::check_well(&grid, cut).map_err(prefix_field("stairs"))?;
         }
-        let walls = stretches(&grid, 2 * self.outer);
-        let holes = holes(self.storey, &walls)?;
+        let walls = wall_segments(&grid, 2 * self.outer);
+        let holes = plan_openings(self.storey, &walls)?;
         let mut looks = Vec::new();
         for (k, room) in self.storey.rooms.iter().enumerate() {
             looks.push(
                 self.look(k, room)
-                    .map_err(inside(format_args!("rooms[{k}]")))?,
+                    .map_err(prefix_field(format_args!("rooms[{k}]")))?,
             );
         }
-        assembly.storey();
+        assembly.add_storey();
         let mut ids = Vec::new();
         for (k, room) in self.storey.rooms.iter().enumerate() {
             let wells = [cuts[0].as_ref(), cuts[1].as_ref()];
             let made = self.room(k, room, &grid, &walls, &holes, &looks[k], wells);
             ids.push(
-                made.map_err(inside(format_args!("rooms[{k}]")))?
+                made.map_err(prefix_field(format_args!("rooms[{k}]")))?
                     .build(assembly),
             );
         }
         self.walls(&walls, &holes, &looks, &ids, assembly);
         for hole in &holes {
-            self.fill(hole, &walls[hole.stretch], &ids, assembly)?;
+            self.fill(hole, &walls[hole.wall_segment], &ids, assembly)?;
         }
         let rise = height + CEILING_SLAB_M + FLOOR_SLAB_M;
         for (well, comes_up) in [
@@ -193,7 +197,7 @@ impl StoreyBuilder<'_> {
                 metres(across),
                 metres(along)
             );
-            return Err(fault(
+            return Err(invalid_field(
                 "rect",
                 found,
                 format!("at least {} by {} m", least[0], least[1]),
@@ -216,7 +220,7 @@ impl StoreyBuilder<'_> {
         if inside {
             return Ok(());
         }
-        Err(fault(
+        Err(invalid_field(
             "rect",
             "stairs that leave the floor of a room",
             "a rectangle within one room of both storeys",
@@ -233,7 +237,7 @@ impl StoreyBuilder<'_> {
             .child("look")
             .child(self.level as u64)
             .child(k as u64);
-        finishes::with_plan_finishes(room, look(kind, self.style, key))
+        finishes::with_plan_finishes(room, room_finishes(kind, self.style, key))
     }
 
     #[expect(
@@ -252,7 +256,7 @@ impl StoreyBuilder<'_> {
     ) -> Result<ShellRoom, HousesError> {
         let height = self.storey.height_m;
         let ceiling_m = match room.height_m {
-            Some(own) => within("height_m", own, [1.8, height], "m in this storey")?,
+            Some(own) => check_range("height_m", own, [1.8, height], "m in this storey")?,
             None => height,
         };
         let open = |well: Option<&[Millimetres; 4]>, i: usize, j: usize| {
@@ -263,7 +267,7 @@ impl StoreyBuilder<'_> {
         floor.extend(
             holes
                 .iter()
-                .filter_map(|hole| doorway(hole, &walls[hole.stretch], k)),
+                .filter_map(|hole| doorway(hole, &walls[hole.wall_segment], k)),
         );
         let slab = |well: Option<&[Millimetres; 4]>| {
             slab(&grid.rectangles(|i, j| grid.owner(i, j) == Some(k) && !open(well, i, j)))
@@ -294,7 +298,7 @@ impl StoreyBuilder<'_> {
                 },
             ],
             storey_m: height,
-            hung,
+            suspended_ceiling: hung,
             floor_finish: look.floor.clone(),
             ceiling_finish: look.ceiling.clone(),
         })
@@ -308,11 +312,11 @@ impl StoreyBuilder<'_> {
         ids: &[RoomId],
         assembly: &mut HouseAssembly,
     ) {
-        let outside = facade(self.key.child("facade"));
+        let outside = facade_finish(self.key.child("facade"));
         let face = |side: PlanCell| -> FinishBands {
             match side {
                 PlanCell::Room(room) => looks[room].walls.clone(),
-                PlanCell::Air | PlanCell::Wall => outside.clone(),
+                PlanCell::Outside | PlanCell::Wall => outside.clone(),
             }
         };
         for (k, stretch) in stretches.iter().enumerate() {
@@ -320,7 +324,7 @@ impl StoreyBuilder<'_> {
                 .sides
                 .iter()
                 .any(|side| matches!(side, PlanCell::Room(_)));
-            let own = holes.iter().filter(|hole| hole.stretch == k);
+            let own = holes.iter().filter(|hole| hole.wall_segment == k);
             let wall = ShellWall {
                 name: format!("{}_{k}", self.level),
                 room: ids[stretch.room],
@@ -334,9 +338,9 @@ impl StoreyBuilder<'_> {
                 },
                 front: face(stretch.sides[1]),
                 back: face(stretch.sides[0]),
-                edge: match outside.first() {
+                reveal_finish: match outside.first() {
                     Some((_, finish)) if !indoors => finish.clone(),
-                    _ => reveal(),
+                    _ => reveal_finish(),
                 },
                 openings: own.map(|hole| hole.opening).collect(),
             };
@@ -358,7 +362,7 @@ impl StoreyBuilder<'_> {
         } else {
             (across, middle)
         };
-        let turn = yaw(match (stretch.along_x, hole.inward) {
+        let turn = yaw_rotation(match (stretch.along_x, hole.room_on_positive_side) {
             (true, true) => 0.0,
             (true, false) => 180.0,
             (false, true) => 90.0,
@@ -380,7 +384,14 @@ impl StoreyBuilder<'_> {
                     ..DoorModel::default()
                 };
                 let pose = Pose::new(Vec3::new(x, self.floor_m, z), turn);
-                put_door(assembly, &model, hole.square, pose, room, door.open);
+                add_door(
+                    assembly,
+                    &model,
+                    hole.max_right_angle,
+                    pose,
+                    room,
+                    door.open,
+                );
                 &door.name
             }
             OpeningFill::Window(window) => {
@@ -388,7 +399,7 @@ impl StoreyBuilder<'_> {
                     width_m,
                     height_m: high - low,
                     wall_m,
-                    lights: if width_m > 1.0 { 2 } else { 1 },
+                    casements: if width_m > 1.0 { 2 } else { 1 },
                     pane: if window.frosted {
                         frosted_pane()
                     } else {
@@ -397,7 +408,7 @@ impl StoreyBuilder<'_> {
                     sill_m: 0.03,
                 };
                 let y = self.floor_m + 0.5 * (low + high);
-                put_window(assembly, &model, Pose::new(Vec3::new(x, y, z), turn), room);
+                add_window(assembly, &model, Pose::new(Vec3::new(x, y, z), turn), room);
                 &window.name
             }
         };
@@ -409,7 +420,7 @@ impl StoreyBuilder<'_> {
                 .any(|object| object.name == *name)
                 || name.trim().is_empty()
             {
-                return Err(fault(
+                return Err(invalid_field(
                     "doors, windows",
                     format_args!("the name {name:?}"),
                     "a name that nothing else has",
@@ -468,10 +479,10 @@ impl StoreyBuilder<'_> {
         };
         if comes_up {
             if self.storey.stairs.as_ref() != Some(plan) {
-                put_railing(assembly, &flights, self.style, room);
+                add_railing(assembly, &flights, self.style, room);
             }
         } else {
-            put_stairs(assembly, &flights, rise_m, false, self.style, room);
+            add_stairs(assembly, &flights, rise_m, false, self.style, room);
         }
     }
 }

@@ -3,10 +3,10 @@
 use dwell_furniture::finishes::Finish;
 use dwell_furniture::textures::Srgb;
 
-use super::super::edit_errors::{inside, substance};
+use super::super::edit_errors::{find_substance, prefix_field};
 use super::data::{RoomPlan, SurfaceFinish};
 use crate::error::HousesError;
-use crate::generate::room_finishes::{RoomFinishes, TOP_M};
+use crate::generate::room_finishes::{ABOVE_ALL_BANDS_M, RoomFinishes};
 
 /// Substances with an image: its recipe and the edge of one repeat, m.
 const IMAGES: [(&str, &str, f32); 21] = [
@@ -35,7 +35,7 @@ const IMAGES: [(&str, &str, f32); 21] = [
 
 /// A covering's finish.
 pub(super) fn finish(covering: &SurfaceFinish) -> Result<Finish, HousesError> {
-    let row = substance("substance", &covering.substance)?;
+    let row = find_substance("substance", &covering.substance)?;
     let base = covering.srgb.unwrap_or(row.default_color);
     let shade = |share: f32| -> Srgb { base.map(|c| (f32::from(c) * share) as u8) };
     let name = row.name.as_str();
@@ -61,13 +61,16 @@ pub(super) fn with_plan_finishes(
         mut ceiling,
     } = usual;
     if let Some(covering) = &room.floor {
-        floor = finish(covering).map_err(inside("floor"))?;
+        floor = finish(covering).map_err(prefix_field("floor"))?;
     }
     if let Some(covering) = &room.walls {
-        walls = vec![(TOP_M, finish(covering).map_err(inside("walls"))?)];
+        walls = vec![(
+            ABOVE_ALL_BANDS_M,
+            finish(covering).map_err(prefix_field("walls"))?,
+        )];
     }
     if let Some(covering) = &room.ceiling {
-        ceiling = finish(covering).map_err(inside("ceiling"))?;
+        ceiling = finish(covering).map_err(prefix_field("ceiling"))?;
     }
     Ok(RoomFinishes {
         floor,

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use super::super::edit_errors::{fault, inside, within};
+use super::super::edit_errors::{check_range, invalid_field, prefix_field};
 use super::data::{RoomPlan, StoreyPlan};
 use crate::error::HousesError;
 
@@ -21,7 +21,7 @@ pub(super) fn metres(mm: Millimetres) -> f32 {
 
 /// Whole millimetres of metres within 1 km.
 pub(super) fn millimetres(field: &str, metres: f32) -> Result<Millimetres, HousesError> {
-    Ok((within(field, metres, [-1000.0, 1000.0], "m")? * 1000.0).round() as Millimetres)
+    Ok((check_range(field, metres, [-1000.0, 1000.0], "m")? * 1000.0).round() as Millimetres)
 }
 
 /// The contents of a cell.
@@ -29,7 +29,7 @@ pub(super) fn millimetres(field: &str, metres: f32) -> Result<Millimetres, House
 pub(super) enum PlanCell {
     Room(usize),
     Wall,
-    Air,
+    Outside,
 }
 
 /// A storey cut into cells.
@@ -55,7 +55,7 @@ impl PlanGrid {
     ) -> Result<Self, HousesError> {
         let mut outlines = Vec::new();
         for (k, room) in storey.rooms.iter().enumerate() {
-            outlines.push(outline(room).map_err(inside(format_args!("rooms[{k}]")))?);
+            outlines.push(outline(room).map_err(prefix_field(format_args!("rooms[{k}]")))?);
         }
         let lines = |axis: usize| -> Result<Vec<Millimetres>, HousesError> {
             let corners = outlines.iter().flatten().map(|corner| corner[axis]);
@@ -67,7 +67,7 @@ impl PlanGrid {
             lines.dedup();
             if lines.len() > MAX_LINES {
                 let found = format!("{} different edges", lines.len());
-                return Err(fault(
+                return Err(invalid_field(
                     "rooms",
                     found,
                     format!("at most {MAX_LINES} along an axis"),
@@ -105,7 +105,7 @@ impl PlanGrid {
                     (Some(a), Some(b)) => return Err(overlap(storey, a, b)),
                     (Some(room), None) => PlanCell::Room(room),
                     _ if near.iter().any(|spans| holds(spans)) => PlanCell::Wall,
-                    _ => PlanCell::Air,
+                    _ => PlanCell::Outside,
                 };
                 grid.cells.push(cell);
             }
@@ -126,7 +126,7 @@ impl PlanGrid {
     /// Returns the cell at column and row; air beyond the grid.
     pub(super) fn cell(&self, i: usize, j: usize) -> PlanCell {
         if i >= self.columns() || j >= self.rows() {
-            return PlanCell::Air;
+            return PlanCell::Outside;
         }
         self.cells[j * self.columns() + i]
     }
@@ -164,7 +164,7 @@ impl PlanGrid {
                             last = Some((room, k));
                         }
                         (PlanCell::Room(room), _) => last = Some((room, k)),
-                        (PlanCell::Air, _) => last = None,
+                        (PlanCell::Outside, _) => last = None,
                         (PlanCell::Wall, _) => {}
                     }
                 }
@@ -243,7 +243,7 @@ impl PlanGrid {
 fn overlap(storey: &StoreyPlan, a: usize, b: usize) -> HousesError {
     let names = [a, b].map(|k| storey.rooms[k].name.as_str());
     let found = format!("rooms {:?} and {:?} that overlap", names[0], names[1]);
-    fault(
+    invalid_field(
         "rooms",
         found,
         "floors that do not overlap, with the thickness of a wall between them",
@@ -258,7 +258,7 @@ fn thin(storey: &StoreyPlan, a: usize, b: usize, gap: Millimetres) -> HousesErro
         names[0],
         names[1]
     );
-    fault(
+    invalid_field(
         "rooms",
         found,
         format!(
@@ -283,13 +283,13 @@ fn outline(room: &RoomPlan) -> Result<Vec<[Millimetres; 2]>, HousesError> {
     }
     if corners.len() < 4 || corners.len() > 200 {
         let found = format!("{} different corners", corners.len());
-        return Err(fault("outline", found, "4 to 200"));
+        return Err(invalid_field("outline", found, "4 to 200"));
     }
     for (k, a) in corners.iter().enumerate() {
         let b = corners[(k + 1) % corners.len()];
         if a[0] != b[0] && a[1] != b[1] {
             let found = format!("an edge from {:?} to {:?}", a.map(metres), b.map(metres));
-            return Err(fault("outline", found, "edges along x or along z"));
+            return Err(invalid_field("outline", found, "edges along x or along z"));
         }
     }
     for (k, a) in corners.iter().enumerate() {
@@ -301,7 +301,7 @@ fn outline(room: &RoomPlan) -> Result<Vec<[Millimetres; 2]>, HousesError> {
             let beside = l == k + 1 || (k == 0 && l + 1 == corners.len());
             if !beside && meet([*a, b], [*c, d]) {
                 let found = "an outline that meets itself";
-                return Err(fault(
+                return Err(invalid_field(
                     "outline",
                     found,
                     "edges that meet at their ends only",
@@ -317,7 +317,11 @@ fn outline(room: &RoomPlan) -> Result<Vec<[Millimetres; 2]>, HousesError> {
         .sum();
     if area.abs() < 2 * 100_000 {
         let found = format!("{} m2", area.abs() as f32 / 2e6);
-        return Err(fault("outline", found, "a floor of at least 0.1 m2"));
+        return Err(invalid_field(
+            "outline",
+            found,
+            "a floor of at least 0.1 m2",
+        ));
     }
     Ok(corners)
 }

@@ -1,6 +1,6 @@
 //! Positions of the doors and windows of a plan.
 
-use super::super::edit_errors::{fault, inside, unknown, within};
+use super::super::edit_errors::{check_range, invalid_field, prefix_field, unknown_name};
 use super::data::{CardinalDirection, DoorPlan, OUTSIDE, StoreyPlan, WindowPlan};
 use super::grid::{Millimetres, PlanCell, metres};
 use super::walls::WallSegment;
@@ -23,35 +23,36 @@ pub(super) enum OpeningFill<'a> {
 #[derive(Debug)]
 pub(super) struct PlanOpening<'a> {
     /// Index of the stretch.
-    pub(super) stretch: usize,
+    pub(super) wall_segment: usize,
     pub(super) opening: WallOpening,
     pub(super) filling: OpeningFill<'a>,
     /// The room into which it looks.
     pub(super) room: usize,
     /// True if that room lies at larger coordinates across the wall.
-    pub(super) inward: bool,
+    pub(super) room_on_positive_side: bool,
     /// True if a leaf opens to a right angle only.
-    pub(super) square: bool,
+    pub(super) max_right_angle: bool,
 }
 
 /// All holes of a storey.
 ///
 /// # Errors
 /// [`HousesError::Spec`] for rooms that are not there or share no wall, and for what does not fit into its wall.
-pub(super) fn holes<'a>(
+pub(super) fn plan_openings<'a>(
     storey: &'a StoreyPlan,
     stretches: &[WallSegment],
 ) -> Result<Vec<PlanOpening<'a>>, HousesError> {
     let mut holes: Vec<PlanOpening<'a>> = Vec::new();
     for (k, door) in storey.doors.iter().enumerate() {
-        let hole = of_door(storey, door, stretches).map_err(inside(format_args!("doors[{k}]")))?;
-        apart(&holes, &hole).map_err(inside(format_args!("doors[{k}]")))?;
+        let hole =
+            of_door(storey, door, stretches).map_err(prefix_field(format_args!("doors[{k}]")))?;
+        apart(&holes, &hole).map_err(prefix_field(format_args!("doors[{k}]")))?;
         holes.push(hole);
     }
     for (k, window) in storey.windows.iter().enumerate() {
-        let hole =
-            of_window(storey, window, stretches).map_err(inside(format_args!("windows[{k}]")))?;
-        apart(&holes, &hole).map_err(inside(format_args!("windows[{k}]")))?;
+        let hole = of_window(storey, window, stretches)
+            .map_err(prefix_field(format_args!("windows[{k}]")))?;
+        apart(&holes, &hole).map_err(prefix_field(format_args!("windows[{k}]")))?;
         holes.push(hole);
     }
     Ok(holes)
@@ -61,7 +62,7 @@ fn room(storey: &StoreyPlan, field: &str, name: &str) -> Result<usize, HousesErr
     let found = storey.rooms.iter().position(|room| room.name == name);
     found.ok_or_else(|| {
         let names = storey.rooms.iter().map(|room| room.name.as_str());
-        unknown(field, name, "rooms of the storey", names)
+        unknown_name(field, name, "rooms of the storey", names)
     })
 }
 
@@ -73,25 +74,25 @@ fn of_door<'a>(
     let [front, behind] = &door.rooms;
     let own = room(storey, "rooms[0]", front)?;
     let other = if behind == OUTSIDE {
-        PlanCell::Air
+        PlanCell::Outside
     } else {
         PlanCell::Room(room(storey, "rooms[1]", behind)?)
     };
     if other == PlanCell::Room(own) {
-        return Err(fault(
+        return Err(invalid_field(
             "rooms",
             format_args!("{front:?} twice"),
             format!("two rooms, or one and {OUTSIDE:?}"),
         ));
     }
-    let width = within("width_m", door.width_m, [0.5, 10.0], "m")?;
-    let height = within(
+    let width = check_range("width_m", door.width_m, [0.5, 10.0], "m")?;
+    let height = check_range(
         "height_m",
         door.height_m,
         [1.0, storey.height_m - REST_M],
         "m in this storey",
     )?;
-    within("open", door.open, [0.0, 1.0], "")?;
+    check_range("open", door.open, [0.0, 1.0], "")?;
     let between = match door.side {
         None => format!("{front:?} and {behind:?}"),
         Some(_) => format!("{front:?} and, on its {}side, {behind:?}", word(door.side)),
@@ -109,15 +110,15 @@ fn of_door<'a>(
         to - along[1]
     };
     Ok(PlanOpening {
-        stretch,
+        wall_segment: stretch,
         opening: WallOpening {
             along,
             up: [0.0, height],
         },
         filling: OpeningFill::Door(door),
         room: own,
-        inward,
-        square: beside < BESIDE_M,
+        room_on_positive_side: inward,
+        max_right_angle: beside < BESIDE_M,
     })
 }
 
@@ -127,33 +128,33 @@ fn of_window<'a>(
     stretches: &[WallSegment],
 ) -> Result<PlanOpening<'a>, HousesError> {
     let own = room(storey, "room", &window.room)?;
-    let width = within("width_m", window.width_m, [0.2, 20.0], "m")?;
-    let sill = within(
+    let width = check_range("width_m", window.width_m, [0.2, 20.0], "m")?;
+    let sill = check_range(
         "sill_m",
         window.sill_m,
         [0.05, storey.height_m - 0.3],
         "m in this storey",
     )?;
     let most = storey.height_m - REST_M - sill;
-    let height = within(
+    let height = check_range(
         "height_m",
         window.height_m,
         [0.2, most],
         "m above this sill",
     )?;
-    let fits = |stretch: &WallSegment| lies(stretch, own, PlanCell::Air, window.side);
+    let fits = |stretch: &WallSegment| lies(stretch, own, PlanCell::Outside, window.side);
     let between = format!("{:?} and its {}outside", window.room, word(window.side));
     let (stretch, along) = place(stretches, fits, (&between, window.at_m, width))?;
     Ok(PlanOpening {
-        stretch,
+        wall_segment: stretch,
         opening: WallOpening {
             along,
             up: [sill, sill + height],
         },
         filling: OpeningFill::Window(window),
         room: own,
-        inward: stretches[stretch].sides[1] == PlanCell::Room(own),
-        square: false,
+        room_on_positive_side: stretches[stretch].sides[1] == PlanCell::Room(own),
+        max_right_angle: false,
     })
 }
 
@@ -166,7 +167,7 @@ fn lies(
 ) -> bool {
     let own = PlanCell::Room(own);
     let Some(side) = side else {
-        return stretch.parts(own, other);
+        return stretch.separates(own, other);
     };
     let sides = match side {
         CardinalDirection::North | CardinalDirection::West => [other, own],
@@ -196,7 +197,7 @@ fn place(
     // The longest first; of equals the first.
     fitting.sort_by_key(|(k, [from, to])| (from - to, *k));
     let Some((longest, [from, to])) = fitting.first().copied() else {
-        return Err(fault(
+        return Err(invalid_field(
             "rooms",
             format_args!("no wall between {between}"),
             "rooms with a wall between them",
@@ -211,7 +212,7 @@ fn place(
     let widest = metres(to - from) - 2.0 * REST_M;
     if width_m > widest + 1e-5 {
         let possible = format!("at most {widest:.3} m in the wall between {between}");
-        return Err(fault("width_m", width_m, possible));
+        return Err(invalid_field("width_m", width_m, possible));
     }
     let Some(at_m) = at_m else {
         let middle = 0.5 * (metres(from) + metres(to));
@@ -227,7 +228,7 @@ fn place(
             "a place for {width_m} m in the wall between {between}: {}",
             spans()
         );
-        fault("at_m", at_m, possible)
+        invalid_field("at_m", at_m, possible)
     })
 }
 
@@ -235,7 +236,7 @@ fn place(
 fn apart(holes: &[PlanOpening<'_>], new: &PlanOpening<'_>) -> Result<(), HousesError> {
     let meets = |a: [f32; 2], b: [f32; 2]| a[0] < b[1] + REST_M && b[0] < a[1] + REST_M;
     let other = holes.iter().find(|other| {
-        other.stretch == new.stretch
+        other.wall_segment == new.wall_segment
             && meets(other.opening.along, new.opening.along)
             && meets(other.opening.up, new.opening.up)
     });
@@ -244,7 +245,7 @@ fn apart(holes: &[PlanOpening<'_>], new: &PlanOpening<'_>) -> Result<(), HousesE
         Some(other) => {
             let [from, to] = other.opening.along;
             let found = format!("an opening that meets another one, from {from:.3} to {to:.3} m");
-            Err(fault(
+            Err(invalid_field(
                 "at_m",
                 found,
                 format!("at least {REST_M} m of wall between them"),

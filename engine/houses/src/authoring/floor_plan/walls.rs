@@ -29,7 +29,7 @@ impl WallSegment {
     }
 
     /// Returns whether it separates these two.
-    pub(super) fn parts(&self, a: PlanCell, b: PlanCell) -> bool {
+    pub(super) fn separates(&self, a: PlanCell, b: PlanCell) -> bool {
         self.sides == [a, b] || self.sides == [b, a]
     }
 }
@@ -46,7 +46,7 @@ enum WallRun {
 }
 
 /// All stretches of a storey, those along x first. `thickest`: walls beyond that thickness have no other side.
-pub(super) fn stretches(grid: &PlanGrid, thickest: Millimetres) -> Vec<WallSegment> {
+pub(super) fn wall_segments(grid: &PlanGrid, thickest: Millimetres) -> Vec<WallSegment> {
     let (columns, rows) = (grid.columns(), grid.rows());
     let mut runs = Vec::with_capacity(columns * rows);
     for j in 0..rows {
@@ -109,7 +109,7 @@ pub(super) fn stretches(grid: &PlanGrid, thickest: Millimetres) -> Vec<WallSegme
             }
             let around = |dj: usize, up: bool| {
                 let j = if up { j.checked_sub(dj) } else { Some(j + dj) };
-                j.map_or(PlanCell::Air, |j| grid.cell(i, j))
+                j.map_or(PlanCell::Outside, |j| grid.cell(i, j))
             };
             found.push(WallSegment {
                 rect: grid.rect(i, j),
@@ -167,12 +167,12 @@ fn across(
     let below = if low > 0 {
         cell(low - 1)
     } else {
-        PlanCell::Air
+        PlanCell::Outside
     };
     let above = if high + 2 < lines.len() {
         cell(high + 1)
     } else {
-        PlanCell::Air
+        PlanCell::Outside
     };
     ([below, above], lines[high + 1] - lines[low])
 }

@@ -1,7 +1,9 @@
 //! Nothing interpenetrates, nothing floats, everything opens.
 
 use super::support::{apartment, building_boxes};
-use dwell_furniture::testing::overlap::{ConvexPiece, deepest, depth, object_pieces, part_pieces};
+use dwell_furniture::testing::overlap::{
+    ConvexPiece, max_depth, object_pieces, part_pieces, penetration_depth,
+};
 use dwell_scene::{Aabb, House, Mobility, ObjectId};
 use glam::Vec3;
 
@@ -36,7 +38,7 @@ fn nothing_reaches_into_anything_else() {
     let mut faults = Vec::new();
     for (k, (id, pieces)) in objects.iter().enumerate() {
         let name = &house.objects[*id].name;
-        let into = deepest(pieces, &shell, TOLERANCE_M);
+        let into = max_depth(pieces, &shell, TOLERANCE_M);
         if into > TOLERANCE_M {
             faults.push(format!(
                 "{name} reaches {:.1} mm into the building",
@@ -48,7 +50,7 @@ fn nothing_reaches_into_anything_else() {
             if !near.intersects(&around(others)) {
                 continue;
             }
-            let into = deepest(pieces, others, TOLERANCE_M);
+            let into = max_depth(pieces, others, TOLERANCE_M);
             if into > TOLERANCE_M {
                 faults.push(format!(
                     "{name} reaches {:.1} mm into {}",
@@ -89,7 +91,7 @@ fn nothing_floats() {
         for others in others.chain([shell.as_slice()]) {
             for other in others.iter().filter(|piece| near.intersects(&piece.bounds)) {
                 for (piece, still) in seekers.iter().zip(pieces) {
-                    if depth(piece, other, threshold) <= threshold {
+                    if penetration_depth(piece, other, threshold) <= threshold {
                         continue;
                     }
                     // The piece below holds it; a piece beside it is leant against.
@@ -173,7 +175,7 @@ fn everything_opens() {
                 .map(|(id, o)| (house.objects[*id].name.clone(), o))
                 .chain([building])
             {
-                let into = deepest(&pieces, others, TOLERANCE_M);
+                let into = max_depth(&pieces, others, TOLERANCE_M);
                 if into > TOLERANCE_M {
                     let owner = &house.objects[joint.object].name;
                     faults.push(format!(

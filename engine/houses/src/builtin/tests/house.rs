@@ -3,7 +3,7 @@
 use super::support::apartment;
 use crate::import::category;
 use dwell_furniture::testing::meshes::assert_closed;
-use dwell_furniture::testing::overlap::{ConvexPiece, depth, object_pieces};
+use dwell_furniture::testing::overlap::{ConvexPiece, object_pieces, penetration_depth};
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::material::library;
 use dwell_scene::rays::RayScene;
@@ -263,7 +263,9 @@ fn receptacles_have_a_floor_and_free_space() {
                 },
                 &dwell_scene::Pose::IDENTITY,
             );
-            pieces.iter().any(|piece| depth(&ball, piece, 0.0) > 0.0)
+            pieces
+                .iter()
+                .any(|piece| penetration_depth(&ball, piece, 0.0) > 0.0)
         };
         assert!(touches(-0.004), "{at}: nothing under its floor");
         assert!(!touches(0.004), "{at}: its floor is buried");

@@ -3,7 +3,7 @@
 use super::place::REST_GAP_M;
 use super::rules::SmallItemRule;
 use super::space::{PlacedFurniture, RoomLayout};
-use crate::building::yaw::yaw;
+use crate::building::yaw::yaw_rotation;
 use dwell_furniture::model_cache::{CachedModel, cached_model};
 use dwell_furniture::style::Style;
 use dwell_scene::random::{RandomKey, RandomStream};
@@ -19,7 +19,7 @@ const HIGHEST_M: f32 = 2.4;
 const EDGE_M: f32 = 0.01;
 
 /// Applies one rule to everything that stands in the room.
-pub(crate) fn scatter(
+pub(crate) fn place_small_items(
     space: &mut RoomLayout,
     rule: &SmallItemRule,
     amount: f32,
@@ -28,11 +28,11 @@ pub(crate) fn scatter(
 ) {
     let hosts = space.pieces.len();
     for host in 0..hosts {
-        let kind = space.pieces[host].stock.kind;
+        let kind = space.pieces[host].model.kind;
         if !rule.on.iter().any(|on| on == kind) {
             continue;
         }
-        let spaces = space.pieces[host].stock.model.spaces.len();
+        let spaces = space.pieces[host].model.model.spaces.len();
         for k in 0..spaces {
             let key = key.child(host as u64).child(k as u64);
             on_one(space, rule, [host, k], amount, style, key);
@@ -48,7 +48,7 @@ fn on_one(
     style: &Style,
     key: RandomKey,
 ) {
-    let top = &space.pieces[host].stock.model.spaces[k];
+    let top = &space.pieces[host].model.model.spaces[k];
     let wanted = if rule.inside {
         ReceptacleKind::In
     } else {
@@ -56,7 +56,7 @@ fn on_one(
     };
     let named = rule.spaces.is_empty() || rule.spaces.iter().any(|name| name == top.name);
     let mut draw = key.stream();
-    if top.holding != wanted || !named || draw.uniform_f32() >= rule.chance * amount {
+    if top.kind != wanted || !named || draw.uniform_f32() >= rule.chance * amount {
         return;
     }
     let count = rule.count[0] + draw.below(rule.count[1] - rule.count[0] + 1);
@@ -72,9 +72,9 @@ fn on_one(
             let Some(pose) = place(&space.pieces[host], k, &stock, rule.turn_deg, &mut draw) else {
                 break;
             };
-            let piece = PlacedFurniture::new(&stock, pose).of(host);
-            if piece.bounds.max.y < HIGHEST_M && space.rests(&piece, host, rule.inside) {
-                space.add_small(piece);
+            let piece = PlacedFurniture::new(&stock, pose).anchored_to(host);
+            if piece.bounds.max.y < HIGHEST_M && space.can_place_on(&piece, host, rule.inside) {
+                space.add_small_item(piece);
                 break;
             }
         }
@@ -89,8 +89,8 @@ fn place(
     turn_deg: f32,
     draw: &mut RandomStream,
 ) -> Option<Pose> {
-    let top = &host.stock.model.spaces[k];
-    let turn = yaw(draw.range(-turn_deg, turn_deg));
+    let top = &host.model.model.spaces[k];
+    let turn = yaw_rotation(draw.range(-turn_deg, turn_deg));
     let turned = stock
         .collider_bounds
         .transformed(&Pose::new(Vec3::ZERO, turn).to_affine());
@@ -107,6 +107,6 @@ fn place(
         free.min.y - turned.min.y + REST_GAP_M,
         free.min.z - turned.min.z + room.z * draw.uniform_f32(),
     );
-    let model_from_part = host.stock.model.model_from_part(top.part);
+    let model_from_part = host.model.model.model_from_part(top.part);
     Some(host.pose * model_from_part * Pose::new(at, turn))
 }

@@ -12,10 +12,10 @@ use std::sync::Arc;
 
 /// Kinds of furniture that are made to measure.
 #[cfg(test)]
-pub(crate) const SIZED: [&str; 2] = ["curtains", "radiator"];
+pub(crate) const WINDOW_SIZED_KINDS: [&str; 2] = ["curtains", "radiator"];
 
 /// A thing for a window, and the height of its origin; `None` when it is none of these or has no place there.
-pub(crate) fn sized(
+pub(crate) fn window_sized_model(
     kind: &str,
     hole: &WallHole,
     style: &Style,
@@ -29,7 +29,7 @@ pub(crate) fn sized(
             let rod_m = hole.high_m + 0.1;
             let cloth = Finish {
                 substance: "light_curtain",
-                ..style.cloth(&mut draw).clone()
+                ..style.random_cloth(&mut draw).clone()
             };
             let plain = Finish::plain("curtain_cloth", "light_curtain", [240; 3]);
             let curtains = Curtains {
@@ -43,7 +43,7 @@ pub(crate) fn sized(
             };
             // One cut for all cloths.
             let cut = built_to_size(format!("{curtains:?}"), || curtains.build());
-            let sewn = Model::clone(&cut).repainted("curtain_cloth", &cloth);
+            let sewn = Model::clone(&cut).with_finish_replaced("curtain_cloth", &cloth);
             Some((Arc::new(CachedModel::new("curtains", sewn)), rod_m))
         }
         "radiator" if hole.low_m > 0.45 && width_m > 0.5 => {

@@ -6,13 +6,13 @@ mod place;
 mod rules;
 mod space;
 
-pub(crate) use space::{PlacedFurniture, stands_in_the_way, zone};
+pub(crate) use space::{PlacedFurniture, is_walking_obstacle, zone_of_box};
 
 use super::openings::{HoleContents, WallHole};
 use super::plan::{GeneratedPlan, StoreyCells, metres};
 use super::rooms::GeneratedRoomKind;
 use super::spec::HouseSpec;
-use crate::building::yaw::yaw;
+use crate::building::yaw::yaw_rotation;
 use dwell_furniture::model_cache::{CachedModel, cached_model};
 use dwell_furniture::style::Style;
 use dwell_scene::Pose;
@@ -35,13 +35,13 @@ const UNLIKE_LOOKS: u64 = 24;
 pub(crate) struct RoomFurniture {
     pub(crate) pieces: Vec<PlacedFurniture>,
     /// Kinds that a room of its kind has and this one has not.
-    pub(crate) missing: Vec<String>,
+    pub(crate) missing_items: Vec<String>,
 }
 
 /// The inputs from which rooms are furnished.
 pub(crate) struct HouseFurnisher<'a> {
     pub(crate) plan: &'a GeneratedPlan,
-    pub(crate) holes: &'a [Vec<WallHole>],
+    pub(crate) wall_holes: &'a [Vec<WallHole>],
     pub(crate) style: &'a Style,
     pub(crate) spec: &'a HouseSpec,
     pub(crate) key: RandomKey,
@@ -80,14 +80,14 @@ impl HouseFurnisher<'_> {
             storey,
             cells,
             room,
-            &self.holes[level],
+            &self.wall_holes[level],
             stairs.map(|stairs| stairs.area.map(metres)),
             PATHS_M[0],
         );
         let mut path = 0;
-        while !space.is_joined() && path + 1 < PATHS_M.len() {
+        while !space.are_doors_connected() && path + 1 < PATHS_M.len() {
             path += 1;
-            space.walk(room, storey, PATHS_M[path]);
+            space.compute_walkable(room, storey, PATHS_M[path]);
         }
         let key = key.child(level as u64).child(room as u64);
         let mut furnishing = RoomFurnisher {
@@ -104,7 +104,7 @@ impl HouseFurnisher<'_> {
         let rules = rules();
         for (k, run) in rules.run.iter().enumerate() {
             if run.rooms.contains(&kind) && !furnishing.run(run, key.child("run").child(k as u64)) {
-                let name = kind.traits().name;
+                let name = kind.requirements().name;
                 missing.push(format!("{name}: no wall for fitted units ({})", run.reason));
             }
         }
@@ -116,13 +116,15 @@ impl HouseFurnisher<'_> {
             let key = key.child(rule.kinds[0].as_str()).child(k as u64);
             let mut done = furnishing.follow(rule, key);
             // Needed furniture may narrow the paths.
-            while !done && rule.needed && path + 1 < PATHS_M.len() {
+            while !done && rule.required && path + 1 < PATHS_M.len() {
                 path += 1;
-                furnishing.space.walk(room, storey, PATHS_M[path]);
+                furnishing
+                    .space
+                    .compute_walkable(room, storey, PATHS_M[path]);
                 done = furnishing.follow(rule, key.child(path as u64));
             }
-            if !done && rule.needed {
-                let (name, what) = (kind.traits().name, &rule.kinds[0]);
+            if !done && rule.required {
+                let (name, what) = (kind.requirements().name, &rule.kinds[0]);
                 missing.push(format!("{name}: no {what} ({})", rule.reason));
             }
         }
@@ -130,12 +132,12 @@ impl HouseFurnisher<'_> {
             if rule.rooms.is_empty() || rule.rooms.contains(&kind) {
                 let key = key.child("clutter").child(k as u64);
                 let amount = self.spec.clutter / 0.6;
-                clutter::scatter(&mut furnishing.space, rule, amount, self.style, key);
+                clutter::place_small_items(&mut furnishing.space, rule, amount, self.style, key);
             }
         }
         RoomFurniture {
             pieces: furnishing.space.pieces,
-            missing,
+            missing_items: missing,
         }
     }
 }
@@ -153,10 +155,10 @@ impl RoomFurnisher<'_> {
     fn follow(&mut self, rule: &FurnishingRule, key: RandomKey) -> bool {
         let mut draw = key.stream();
         let chance = rule.chance * (self.density / 0.8);
-        if self.area_m2 < rule.from_m2 || (!rule.needed && draw.uniform_f32() >= chance) {
+        if self.area_m2 < rule.from_m2 || (!rule.required && draw.uniform_f32() >= chance) {
             return true;
         }
-        let has = |piece: &PlacedFurniture| rule.kinds.iter().any(|kind| kind == piece.stock.kind);
+        let has = |piece: &PlacedFurniture| rule.kinds.iter().any(|kind| kind == piece.model.kind);
         if rule.once && self.space.pieces.iter().any(has) {
             return true;
         }
@@ -165,7 +167,7 @@ impl RoomFurnisher<'_> {
         }
         let mut anchors: Vec<Option<usize>> = (0..self.space.pieces.len())
             .filter(|k| {
-                let kind = self.space.pieces[*k].stock.kind;
+                let kind = self.space.pieces[*k].model.kind;
                 rule.of.iter().any(|of| of == kind)
             })
             .map(Some)
@@ -182,7 +184,7 @@ impl RoomFurnisher<'_> {
                 placed += usize::from(self.put(rule, *anchor, look, &mut draw));
             }
         }
-        placed > 0 || (anchors.is_empty() && !rule.needed)
+        placed > 0 || (anchors.is_empty() && !rule.required)
     }
 
     /// Puts one thing of a rule: the first of its kinds for which there is a place.
@@ -206,11 +208,14 @@ impl RoomFurnisher<'_> {
                 let host = anchor.map(|k| &self.space.pieces[k]);
                 let ideas = place::candidate_poses(rule, &self.space, &stock, host, draw);
                 for pose in ideas.into_iter().take(TRIES) {
-                    let mut piece = PlacedFurniture::new(&stock, pose).with_front(rule.front_m);
+                    let mut piece =
+                        PlacedFurniture::new(&stock, pose).with_front_clearance(rule.front_m);
                     piece.anchor = anchor;
                     let fits = match (rule.place, anchor) {
-                        (PlacementKind::On, Some(host)) => self.space.rests(&piece, host, false),
-                        _ => self.space.fits(&piece),
+                        (PlacementKind::On, Some(host)) => {
+                            self.space.can_place_on(&piece, host, false)
+                        }
+                        _ => self.space.can_place(&piece),
                     };
                     if fits {
                         self.space.add(piece);
@@ -225,26 +230,27 @@ impl RoomFurnisher<'_> {
     /// Returns whether a picture in the room shows this already.
     fn shows(&self, picture_id: Option<&'static str>) -> bool {
         let mut pieces = self.space.pieces.iter();
-        picture_id.is_some() && pieces.any(|piece| piece.stock.picture_id == picture_id)
+        picture_id.is_some() && pieces.any(|piece| piece.model.picture_id == picture_id)
     }
 
     fn at_windows(&mut self, rule: &FurnishingRule, key: RandomKey) -> bool {
         let holes = self.space.holes.clone();
         let windows = holes
             .iter()
-            .filter(|hole| matches!(hole.filling, HoleContents::Window { .. }));
+            .filter(|hole| matches!(hole.contents, HoleContents::Window { .. }));
         for hole in windows {
             for kind in &rule.kinds {
-                let Some((stock, height_m)) = fit_to_window::sized(kind, hole, self.style, key)
+                let Some((stock, height_m)) =
+                    fit_to_window::window_sized_model(kind, hole, self.style, key)
                 else {
                     continue;
                 };
-                let Some(place) = self.space.inner_face(hole) else {
+                let Some(place) = self.space.inner_face_point(hole) else {
                     continue;
                 };
-                let pose = Pose::new(place + Vec3::Y * height_m, yaw(hole.yaw_deg()));
-                let piece = PlacedFurniture::new(&stock, pose).at_window();
-                if self.space.fits(&piece) {
+                let pose = Pose::new(place + Vec3::Y * height_m, yaw_rotation(hole.yaw_deg()));
+                let piece = PlacedFurniture::new(&stock, pose).beside_window();
+                if self.space.can_place(&piece) {
                     self.space.add(piece);
                 }
             }
@@ -260,10 +266,10 @@ impl RoomFurnisher<'_> {
                 .iter()
                 .map(|kind| cached_model(kind, self.style, key.child(kind.as_str())))
                 .collect();
-            let mut spans: Vec<usize> = (0..self.space.spans.len()).collect();
+            let mut spans: Vec<usize> = (0..self.space.wall_spans.len()).collect();
             draw.shuffle(&mut spans);
             for span in spans {
-                let span = self.space.spans[span];
+                let span = self.space.wall_spans[span];
                 let spare = span.to_m - span.from_m - place::row_length(&units);
                 // From either end, and in steps between.
                 let steps = (spare / 0.1).max(0.0) as usize;
@@ -273,7 +279,7 @@ impl RoomFurnisher<'_> {
                     starts.reverse();
                 }
                 for start in starts {
-                    if let Some(poses) = place::row(&span, &units, start)
+                    if let Some(poses) = place::row_poses(&span, &units, start)
                         && self.row_fits(&units, &poses, run.front_m)
                     {
                         return true;
@@ -288,8 +294,8 @@ impl RoomFurnisher<'_> {
     fn row_fits(&mut self, row: &[Option<Arc<CachedModel>>], poses: &[Pose], front_m: f32) -> bool {
         let before = self.space.clone();
         for (stock, pose) in row.iter().flatten().zip(poses) {
-            let piece = PlacedFurniture::new(stock, *pose).with_front(front_m);
-            if !self.space.fits(&piece) {
+            let piece = PlacedFurniture::new(stock, *pose).with_front_clearance(front_m);
+            if !self.space.can_place(&piece) {
                 self.space = before;
                 return false;
             }
@@ -300,10 +306,10 @@ impl RoomFurnisher<'_> {
 }
 
 /// Returns the needed kinds of rooms that found no place in any form.
-pub(crate) fn missing(rooms: &[Vec<RoomFurniture>]) -> Vec<String> {
+pub(crate) fn missing_items(rooms: &[Vec<RoomFurniture>]) -> Vec<String> {
     rooms
         .iter()
         .flatten()
-        .flat_map(|room| room.missing.iter().cloned())
+        .flat_map(|room| room.missing_items.iter().cloned())
         .collect()
 }

@@ -3,7 +3,7 @@
 use super::rules::{FurnishingRule, PlacementKind};
 use super::space::{PlacedFurniture, RoomLayout, WallSpan};
 use crate::building::room::CEILING_M;
-use crate::building::yaw::yaw;
+use crate::building::yaw::yaw_rotation;
 use dwell_furniture::model_cache::CachedModel;
 use dwell_scene::random::RandomStream;
 use dwell_scene::{Aabb, Pose, ReceptacleKind};
@@ -53,7 +53,7 @@ pub(crate) fn candidate_poses(
         (PlacementKind::Centre, _) => centre(space, stream),
         (PlacementKind::Ceiling, anchor) => ceiling(space, anchor),
         (PlacementKind::Beside, Some(anchor)) => beside(stock, anchor, rule.gap_m[0], stream),
-        (PlacementKind::Before, Some(anchor)) => before(stock, anchor, rule.gap_m, 0.0, stream),
+        (PlacementKind::InFrontOf, Some(anchor)) => before(stock, anchor, rule.gap_m, 0.0, stream),
         (PlacementKind::Facing, Some(anchor)) => before(stock, anchor, rule.gap_m, 180.0, stream),
         (PlacementKind::Around, Some(anchor)) => around(stock, anchor),
         (PlacementKind::At, Some(anchor)) => at(stock, anchor, stream),
@@ -75,7 +75,7 @@ fn walls(
 ) -> Vec<CandidatePose> {
     let (half, back) = half_and_back(stock);
     let mut ideas = Vec::new();
-    for span in &space.spans {
+    for span in &space.wall_spans {
         let (low, high) = (
             span.from_m + half + WALL_GAP_M,
             span.to_m - half - WALL_GAP_M,
@@ -88,7 +88,10 @@ fn walls(
                 Some(y) => (y, 0.0),
                 None => (REST_GAP_M, back + WALL_GAP_M),
             };
-            let pose = Pose::new(span.point(along, off) + Vec3::Y * y, yaw(span.yaw_deg()));
+            let pose = Pose::new(
+                span.point(along, off) + Vec3::Y * y,
+                yaw_rotation(span.yaw_deg()),
+            );
             ideas.push((penalty + stream.uniform_f32(), pose));
         };
         idea(low, 0.2, stream);
@@ -108,7 +111,7 @@ fn walls(
 
 /// Those places within a hand's reach (`reach_m`) of the middle of an anchor's front, the nearest first.
 fn near(ideas: Vec<CandidatePose>, anchor: &PlacedFurniture, reach_m: f32) -> Vec<CandidatePose> {
-    let front = Vec3::Z * anchor.stock.collider_bounds.max.z;
+    let front = Vec3::Z * anchor.model.collider_bounds.max.z;
     let hand = anchor.pose.transform_point(front).with_y(0.0);
     let away = |pose: &Pose| pose.position.with_y(0.0).distance(hand);
     let ideas = ideas.into_iter().map(|(_, pose)| (away(&pose), pose));
@@ -135,7 +138,7 @@ fn centre(space: &RoomLayout, stream: &mut RandomStream) -> Vec<CandidatePose> {
             let off = Vec2::new(i as f32, j as f32) * 0.25;
             for (k, yaw_deg) in [turn, turn + 90.0].into_iter().enumerate() {
                 let at = middle + off;
-                let pose = Pose::new(Vec3::new(at.x, REST_GAP_M, at.y), yaw(yaw_deg));
+                let pose = Pose::new(Vec3::new(at.x, REST_GAP_M, at.y), yaw_rotation(yaw_deg));
                 let penalty = off.length() + 0.4 * k as f32 + 0.3 * stream.uniform_f32();
                 ideas.push((penalty, pose));
             }
@@ -145,7 +148,7 @@ fn centre(space: &RoomLayout, stream: &mut RandomStream) -> Vec<CandidatePose> {
 }
 
 fn ceiling(space: &RoomLayout, anchor: Option<&PlacedFurniture>) -> Vec<CandidatePose> {
-    let at = |x: f32, z: f32| Pose::new(Vec3::new(x, CEILING_M, z), yaw(0.0));
+    let at = |x: f32, z: f32| Pose::new(Vec3::new(x, CEILING_M, z), yaw_rotation(0.0));
     if let Some(anchor) = anchor {
         let middle = anchor.bounds.center();
         return vec![(0.0, at(middle.x, middle.z))];
@@ -178,13 +181,13 @@ fn beside(
     stream: &mut RandomStream,
 ) -> Vec<CandidatePose> {
     let (half, back) = half_and_back(stock);
-    let host = anchor.stock.collider_bounds;
+    let host = anchor.model.collider_bounds;
     let z = host.min.z + back;
     let mut ideas = Vec::new();
     for extra in [0.0, 0.1, 0.25] {
         let gap = gap_m.max(WALL_GAP_M) + extra;
         for x in [host.max.x + gap + half, host.min.x - gap - half] {
-            let pose = anchor.pose * Pose::new(Vec3::new(x, 0.0, z), yaw(0.0));
+            let pose = anchor.pose * Pose::new(Vec3::new(x, 0.0, z), yaw_rotation(0.0));
             ideas.push((extra + 0.05 * stream.uniform_f32(), pose));
         }
     }
@@ -209,8 +212,8 @@ fn before(
     for k in 0..=count {
         let gap = gap_m[0] + 0.1 * k as f32;
         for x in [0.0, 0.2, -0.2, 0.45, -0.45] {
-            let z = anchor.stock.collider_bounds.max.z + gap + depth;
-            let pose = anchor.pose * Pose::new(Vec3::new(x, 0.0, z), yaw(turn_deg));
+            let z = anchor.model.collider_bounds.max.z + gap + depth;
+            let pose = anchor.pose * Pose::new(Vec3::new(x, 0.0, z), yaw_rotation(turn_deg));
             ideas.push(((gap - liked).abs() + x.abs(), pose));
         }
     }
@@ -218,7 +221,7 @@ fn before(
 }
 
 fn around(stock: &CachedModel, anchor: &PlacedFurniture) -> Vec<CandidatePose> {
-    let host = anchor.stock.collider_bounds;
+    let host = anchor.model.collider_bounds;
     let size = host.size();
     let depth = stock.collider_bounds.max.z;
     let along = ((size.x - 0.1) / SEAT_M).max(1.0) as usize;
@@ -228,7 +231,7 @@ fn around(stock: &CachedModel, anchor: &PlacedFurniture) -> Vec<CandidatePose> {
     for (k, tuck) in [0.2, 0.1, 0.0, -0.08].into_iter().enumerate() {
         let penalty = 0.1 * k as f32;
         let mut seat = |x: f32, z: f32, turn_deg: f32, penalty: f32| {
-            let pose = anchor.pose * Pose::new(Vec3::new(x, 0.0, z), yaw(turn_deg));
+            let pose = anchor.pose * Pose::new(Vec3::new(x, 0.0, z), yaw_rotation(turn_deg));
             ideas.push((penalty, pose));
         };
         for slot in 0..along {
@@ -255,9 +258,9 @@ fn at(
     let mut ideas = Vec::new();
     for (k, tuck) in [0.25, 0.15, 0.05, -0.06, -0.15].into_iter().enumerate() {
         for x in [-0.2, 0.0, 0.2, -0.35] {
-            let z = anchor.stock.collider_bounds.max.z + stock.collider_bounds.max.z - tuck;
+            let z = anchor.model.collider_bounds.max.z + stock.collider_bounds.max.z - tuck;
             let aside = stream.range(-12.0, 12.0);
-            let pose = anchor.pose * Pose::new(Vec3::new(x, 0.0, z), yaw(180.0 + aside));
+            let pose = anchor.pose * Pose::new(Vec3::new(x, 0.0, z), yaw_rotation(180.0 + aside));
             ideas.push((0.3 * k as f32 + (x + 0.2_f32).abs(), pose));
         }
     }
@@ -269,10 +272,10 @@ fn on(
     anchor: &PlacedFurniture,
     stream: &mut RandomStream,
 ) -> Vec<CandidatePose> {
-    let tops = anchor.stock.model.spaces.iter();
+    let tops = anchor.model.model.spaces.iter();
     let area = |space: &Aabb| space.size().x * space.size().z;
     let largest = tops
-        .filter(|space| space.holding == ReceptacleKind::On)
+        .filter(|space| space.kind == ReceptacleKind::On)
         .max_by(|a, b| area(&a.space).total_cmp(&area(&b.space)));
     let Some(top) = largest else {
         return Vec::new();
@@ -294,7 +297,7 @@ fn on(
                 .cmple(top.space.size() + 0.06)
                 .all();
             if fits {
-                let part = anchor.stock.model.model_from_part(top.part);
+                let part = anchor.model.model.model_from_part(top.part);
                 let pose = anchor.pose * part * Pose::from_position(place);
                 ideas.push((share.abs() + deep.abs() + 0.1 * stream.uniform_f32(), pose));
             }
@@ -307,17 +310,17 @@ fn on(
 fn above(space: &RoomLayout, anchor: &PlacedFurniture, height_m: f32) -> Vec<CandidatePose> {
     let mut ideas = Vec::new();
     for x in [0.0, 0.2, -0.2] {
-        let behind = Vec3::new(x, height_m - REST_GAP_M, anchor.stock.collider_bounds.min.z);
+        let behind = Vec3::new(x, height_m - REST_GAP_M, anchor.model.collider_bounds.min.z);
         let at = anchor.pose.transform_point(behind);
         let facing = anchor.pose.rotation * Vec3::Z;
-        for span in &space.spans {
+        for span in &space.wall_spans {
             let (along, across) = if span.along_x {
                 (at.x, at.z)
             } else {
                 (at.z, at.x)
             };
-            let off = (across - span.face_m) * span.inward;
-            let turn = yaw(span.yaw_deg());
+            let off = (across - span.face_m) * span.inward_sign;
+            let turn = yaw_rotation(span.yaw_deg());
             let backs_it = facing.dot(turn * Vec3::Z) > 0.99
                 && (-0.01..BEHIND_M).contains(&off)
                 && (span.from_m..span.to_m).contains(&along);
@@ -345,7 +348,7 @@ pub(crate) fn row_length(row: &[Option<Arc<CachedModel>>]) -> f32 {
 
 /// The poses of a row of fitted units along a span, from left to right seen from the room, starting `start_m` from
 /// the left end; `None` when the row is longer than the span.
-pub(crate) fn row(
+pub(crate) fn row_poses(
     span: &WallSpan,
     row: &[Option<Arc<CachedModel>>],
     start_m: f32,
@@ -354,7 +357,7 @@ pub(crate) fn row(
         return None;
     }
     // Left, as one looks at the wall, is the larger coordinate of half of the walls.
-    let turn = yaw(span.yaw_deg());
+    let turn = yaw_rotation(span.yaw_deg());
     let right = turn * Vec3::X;
     let rightward = if span.along_x { right.x } else { right.z };
     let mut at = start_m + WALL_GAP_M;

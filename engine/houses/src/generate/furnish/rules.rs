@@ -17,7 +17,7 @@ pub(crate) enum PlacementKind {
     /// Beside its anchor, backs in line.
     Beside,
     /// Before its anchor, facing the same way.
-    Before,
+    InFrontOf,
     /// Before its anchor and facing it.
     Facing,
     /// At the sides of its anchor, facing it.
@@ -55,7 +55,7 @@ pub(crate) struct FurnishingRule {
     pub(crate) chance: f32,
     /// True if a room is none of its kind without it.
     #[serde(default)]
-    pub(crate) needed: bool,
+    pub(crate) required: bool,
     /// Free floor before it, m.
     #[serde(default)]
     pub(crate) front_m: f32,
@@ -154,13 +154,14 @@ pub(crate) fn rules() -> &'static FurnishingRules {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generate::furnish::fit_to_window::SIZED;
+    use crate::generate::furnish::fit_to_window::WINDOW_SIZED_KINDS;
     use dwell_furniture::catalogue::entries;
 
     #[test]
     fn every_rule_names_known_things_and_its_reason() {
         let known = |kind: &String| {
-            entries().iter().any(|entry| entry.kind == kind) || SIZED.contains(&kind.as_str())
+            entries().iter().any(|entry| entry.kind == kind)
+                || WINDOW_SIZED_KINDS.contains(&kind.as_str())
         };
         let rules = rules();
         for rule in &rules.rule {

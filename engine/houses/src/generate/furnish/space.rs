@@ -5,7 +5,7 @@
 
 use crate::generate::openings::{HoleContents, WallHole, ZoneXz, overlap};
 use crate::generate::plan::{GeneratedStorey, StoreyCells, metres};
-use crate::generate::shell::{covers, free_floor, half_wall};
+use crate::generate::shell::{floor_contains_zone, free_floor, half_wall_thickness_m};
 use dwell_furniture::model_cache::CachedModel;
 use dwell_scene::{Aabb, Pose};
 use glam::Vec3;
@@ -32,13 +32,13 @@ pub(crate) struct WallSpan {
     pub(crate) from_m: f32,
     pub(crate) to_m: f32,
     /// +1 when the room lies at larger coordinates across it, else -1.
-    pub(crate) inward: f32,
+    pub(crate) inward_sign: f32,
 }
 
 impl WallSpan {
     /// The yaw of a thing with its back to it, degrees.
     pub(crate) fn yaw_deg(&self) -> f32 {
-        match (self.along_x, self.inward > 0.0) {
+        match (self.along_x, self.inward_sign > 0.0) {
             (true, true) => 0.0,
             (true, false) => 180.0,
             (false, true) => 90.0,
@@ -48,7 +48,7 @@ impl WallSpan {
 
     /// The point `along_m` along it and `off_m` before it.
     pub(crate) fn point(&self, along_m: f32, off_m: f32) -> Vec3 {
-        let across = self.face_m + self.inward * off_m;
+        let across = self.face_m + self.inward_sign * off_m;
         if self.along_x {
             Vec3::new(along_m, 0.0, across)
         } else {
@@ -60,15 +60,15 @@ impl WallSpan {
 /// Something that stands in the room.
 #[derive(Clone, Debug)]
 pub(crate) struct PlacedFurniture {
-    pub(crate) stock: Arc<CachedModel>,
+    pub(crate) model: Arc<CachedModel>,
     pub(crate) pose: Pose,
     pub(crate) boxes: Vec<Aabb>,
     pub(crate) bounds: Aabb,
     pub(crate) swept_boxes: Vec<Aabb>,
     /// The box around all swings.
-    pub(crate) reach: Aabb,
+    pub(crate) swept_bounds: Aabb,
     /// Floor that must stay free for its use.
-    pub(crate) clear: Vec<ZoneXz>,
+    pub(crate) clearance_zones: Vec<ZoneXz>,
     /// The piece that it belongs to; the two may share free floor.
     pub(crate) anchor: Option<usize>,
     /// True if it hangs or stands before a window.
@@ -90,47 +90,47 @@ impl PlacedFurniture {
         let swept_boxes = moved(&stock.swept_boxes);
         Self {
             bounds: around(&boxes),
-            reach: around(&swept_boxes),
+            swept_bounds: around(&swept_boxes),
             boxes,
             swept_boxes,
-            stock: stock.clone(),
+            model: stock.clone(),
             pose,
-            clear: Vec::new(),
+            clearance_zones: Vec::new(),
             anchor: None,
             at_window: false,
         }
     }
 
     /// The same thing, which needs `front_m` of free floor before it.
-    pub(crate) fn with_front(mut self, front_m: f32) -> Self {
+    pub(crate) fn with_front_clearance(mut self, front_m: f32) -> Self {
         if front_m > 0.0 {
-            let collider_bounds = self.stock.collider_bounds;
+            let collider_bounds = self.model.collider_bounds;
             let (min, max) = (collider_bounds.min, collider_bounds.max);
             let front = Aabb::new(
                 Vec3::new(min.x, 0.0, max.z),
                 Vec3::new(max.x, 0.1, max.z + front_m),
             );
-            self.clear
-                .push(zone(&front.transformed(&self.pose.to_affine())));
+            self.clearance_zones
+                .push(zone_of_box(&front.transformed(&self.pose.to_affine())));
         }
         self
     }
 
     /// The same thing, made for a window.
-    pub(crate) fn at_window(mut self) -> Self {
+    pub(crate) fn beside_window(mut self) -> Self {
         self.at_window = true;
         self
     }
 
     /// The same thing as a part of another.
-    pub(crate) fn of(mut self, anchor: usize) -> Self {
+    pub(crate) fn anchored_to(mut self, anchor: usize) -> Self {
         self.anchor = Some(anchor);
         self
     }
 }
 
 /// The floor under a box.
-pub(crate) fn zone(bounds: &Aabb) -> ZoneXz {
+pub(crate) fn zone_of_box(bounds: &Aabb) -> ZoneXz {
     [bounds.min.x, bounds.min.z, bounds.max.x, bounds.max.z]
 }
 
@@ -138,7 +138,7 @@ fn meets(a: &Aabb, b: &Aabb) -> bool {
     a.min.cmplt(b.max - TOUCH_M).all() && b.min.cmplt(a.max - TOUCH_M).all()
 }
 
-pub(crate) fn stands_in_the_way(bounds: &Aabb) -> bool {
+pub(crate) fn is_walking_obstacle(bounds: &Aabb) -> bool {
     bounds.max.y > STEP_M && bounds.min.y < HEAD_M
 }
 
@@ -146,7 +146,7 @@ pub(crate) fn stands_in_the_way(bounds: &Aabb) -> bool {
 #[derive(Clone, Debug)]
 pub(crate) struct RoomLayout {
     pub(crate) floor: Vec<ZoneXz>,
-    pub(crate) spans: Vec<WallSpan>,
+    pub(crate) wall_spans: Vec<WallSpan>,
     /// The holes of its walls; those of doors into it or out of it, too.
     pub(crate) holes: Vec<WallHole>,
     pub(crate) pieces: Vec<PlacedFurniture>,
@@ -189,11 +189,11 @@ impl RoomLayout {
         let own: Vec<WallHole> = holes
             .iter()
             .copied()
-            .filter(|hole| hole.room == room || hole.behind == Some(room))
+            .filter(|hole| hole.room == room || hole.other_room == Some(room))
             .collect();
         let mut space = Self {
             floor,
-            spans: spans(storey, cells, room),
+            wall_spans: spans(storey, cells, room),
             holes: Vec::new(),
             pieces: Vec::new(),
             openings: Vec::new(),
@@ -204,22 +204,24 @@ impl RoomLayout {
         for hole in &own {
             let side = if hole.room == room { 1.0 } else { -1.0 };
             let wall = 0.5 * hole.wall_m(storey);
-            if matches!(hole.filling, HoleContents::Window { .. }) {
-                let [x0, z0, x1, z1] = hole.front(side, wall + 0.06, 0.0);
+            if matches!(hole.contents, HoleContents::Window { .. }) {
+                let [x0, z0, x1, z1] = hole.zone_in_front(side, wall + 0.06, 0.0);
                 space.openings.push(Aabb::new(
                     Vec3::new(x0, hole.low_m - 0.03, z0),
                     Vec3::new(x1, hole.high_m, z1),
                 ));
                 continue;
             }
-            space.keep.push(hole.front(side, wall + DOOR_FRONT_M, 0.0));
-            let [x0, z0, x1, z1] = hole.front(side, wall + 0.06, 0.07);
+            space
+                .keep
+                .push(hole.zone_in_front(side, wall + DOOR_FRONT_M, 0.0));
+            let [x0, z0, x1, z1] = hole.zone_in_front(side, wall + 0.06, 0.07);
             space.openings.push(Aabb::new(
                 Vec3::new(x0, 0.0, z0),
                 Vec3::new(x1, hole.high_m + 0.07, z1),
             ));
             if side > 0.0 {
-                space.keep.extend(hole.sweep());
+                space.keep.extend(hole.swept_zone());
             }
         }
         if let Some([x0, z0, x1, z1]) = void {
@@ -231,12 +233,17 @@ impl RoomLayout {
         }
         space.holes = own;
         space.void = void;
-        space.walk(room, storey, radius_m);
+        space.compute_walkable(room, storey, radius_m);
         space
     }
 
     /// Computes the walkable floor for paths of another width.
-    pub(crate) fn walk(&mut self, room: usize, storey: &GeneratedStorey, radius_m: f32) {
+    pub(crate) fn compute_walkable(
+        &mut self,
+        room: usize,
+        storey: &GeneratedStorey,
+        radius_m: f32,
+    ) {
         let corner = [0, 1].map(|k| self.floor.iter().map(|z| z[k]).fold(f32::MAX, f32::min));
         let far = [2, 3].map(|k| self.floor.iter().map(|z| z[k]).fold(f32::MIN, f32::max));
         let cells = |k: usize| ((far[k] - corner[k]) / CELL_M).ceil().max(0.0) as usize;
@@ -253,15 +260,15 @@ impl RoomLayout {
         for cell in 0..grid.free.len() {
             let [x, z] = grid.place(cell);
             let r = radius_m;
-            grid.free[cell] = self.covers(&[x - r, z - r, x + r, z + r]);
+            grid.free[cell] = self.contains_zone(&[x - r, z - r, x + r, z + r]);
         }
         for piece in &self.pieces {
-            for bounds in piece.boxes.iter().filter(|b| stands_in_the_way(b)) {
-                grid.block(&zone(bounds));
+            for bounds in piece.boxes.iter().filter(|b| is_walking_obstacle(b)) {
+                grid.block(&zone_of_box(bounds));
             }
         }
         let leaves = self.holes.iter().filter(|hole| hole.room == room);
-        for leaf in leaves.filter_map(WallHole::open_leaf) {
+        for leaf in leaves.filter_map(WallHole::open_leaf_zone) {
             grid.block(&leaf);
         }
         if let Some([x0, z0, x1, z1]) = self.void {
@@ -269,17 +276,17 @@ impl RoomLayout {
             grid.doors.extend(grid.nearest_free(middle, f32::MAX));
         }
         for hole in &self.holes {
-            if matches!(hole.filling, HoleContents::Window { .. }) {
+            if matches!(hole.contents, HoleContents::Window { .. }) {
                 continue;
             }
             let side = if hole.room == room { 1.0 } else { -1.0 };
             let off = 0.5 * hole.wall_m(storey) + radius_m;
-            let [x0, z0, x1, z1] = hole.front(side, off, 0.0);
+            let [x0, z0, x1, z1] = hole.zone_in_front(side, off, 0.0);
             let at = if hole.along_x {
-                let across = hole.at_m + hole.inward * side * off;
+                let across = hole.at_m + hole.inward_sign * side * off;
                 [0.5 * (x0 + x1), across]
             } else {
-                [hole.at_m + hole.inward * side * off, 0.5 * (z0 + z1)]
+                [hole.at_m + hole.inward_sign * side * off, 0.5 * (z0 + z1)]
             };
             match grid.nearest_free(at, 0.8) {
                 Some(cell) => grid.doors.push(cell),
@@ -290,19 +297,19 @@ impl RoomLayout {
     }
 
     /// Returns whether all doors of the room are joined by paths of the chosen width.
-    pub(crate) fn is_joined(&self) -> bool {
+    pub(crate) fn are_doors_connected(&self) -> bool {
         !self.grid.shut && self.grid.is_joined(&[])
     }
 
     /// Returns whether a rectangle lies over the floor entirely.
-    pub(crate) fn covers(&self, rect: &ZoneXz) -> bool {
-        covers(&self.floor, rect)
+    pub(crate) fn contains_zone(&self, rect: &ZoneXz) -> bool {
+        floor_contains_zone(&self.floor, rect)
     }
 
     /// Returns whether a thing fits there: it touches nothing and blocks nothing.
-    pub(crate) fn fits(&self, piece: &PlacedFurniture) -> bool {
-        let own = zone(&piece.bounds);
-        if !self.covers(&own) {
+    pub(crate) fn can_place(&self, piece: &PlacedFurniture) -> bool {
+        let own = zone_of_box(&piece.bounds);
+        if !self.contains_zone(&own) {
             return false;
         }
         let hits = |boxes: &[Aabb], around: &Aabb, bounds: &Aabb| {
@@ -315,21 +322,25 @@ impl RoomLayout {
         // A thing above head height blocks no door.
         let low = piece.boxes.iter().filter(|b| b.min.y < 2.1);
         for bounds in low {
-            if self.keep.iter().any(|keep| overlap(keep, &zone(bounds))) {
+            if self
+                .keep
+                .iter()
+                .any(|keep| overlap(keep, &zone_of_box(bounds)))
+            {
                 return false;
             }
         }
         if !piece.swept_boxes.is_empty() {
-            let swept = zone(&piece.reach);
-            if !self.covers(&swept) || self.keep.iter().any(|keep| overlap(keep, &swept)) {
+            let swept = zone_of_box(&piece.swept_bounds);
+            if !self.contains_zone(&swept) || self.keep.iter().any(|keep| overlap(keep, &swept)) {
                 return false;
             }
-            if open().any(|o| hits(&piece.swept_boxes, &piece.reach, o)) {
+            if open().any(|o| hits(&piece.swept_boxes, &piece.swept_bounds, o)) {
                 return false;
             }
         }
-        for zone in &piece.clear {
-            if !self.covers(zone) {
+        for zone in &piece.clearance_zones {
+            if !self.contains_zone(zone) {
                 return false;
             }
         }
@@ -345,14 +356,14 @@ impl RoomLayout {
         let blocking: Vec<ZoneXz> = piece
             .boxes
             .iter()
-            .filter(|b| stands_in_the_way(b))
-            .map(zone)
+            .filter(|b| is_walking_obstacle(b))
+            .map(zone_of_box)
             .collect();
         blocking.is_empty() || (!self.grid.shut && self.grid.is_joined(&blocking))
     }
 
     /// Returns whether a small thing can lie there, on or (`inside`) in its host.
-    pub(crate) fn rests(&self, piece: &PlacedFurniture, host: usize, inside: bool) -> bool {
+    pub(crate) fn can_place_on(&self, piece: &PlacedFurniture, host: usize, inside: bool) -> bool {
         self.pieces.iter().enumerate().all(|(k, other)| {
             let boxes = meets(&piece.bounds, &other.bounds)
                 && piece
@@ -361,14 +372,14 @@ impl RoomLayout {
                     .any(|b| other.boxes.iter().any(|o| meets(b, o)));
             let own = inside && k == host;
             let swept_boxes = !own
-                && meets(&piece.bounds, &other.reach)
+                && meets(&piece.bounds, &other.swept_bounds)
                 && piece
                     .boxes
                     .iter()
                     .any(|b| other.swept_boxes.iter().any(|o| meets(b, o)));
             // Its own lid or door opens as well.
             let opens = k == host
-                || !meets(&piece.reach, &other.bounds)
+                || !meets(&piece.swept_bounds, &other.bounds)
                 || !piece
                     .swept_boxes
                     .iter()
@@ -378,14 +389,14 @@ impl RoomLayout {
     }
 
     /// Adds a small thing, which blocks nothing.
-    pub(crate) fn add_small(&mut self, piece: PlacedFurniture) {
+    pub(crate) fn add_small_item(&mut self, piece: PlacedFurniture) {
         self.pieces.push(piece);
     }
 
     /// The point on the wall's inner face below the middle of a window, at the height of the floor.
-    pub(crate) fn inner_face(&self, hole: &WallHole) -> Option<Vec3> {
+    pub(crate) fn inner_face_point(&self, hole: &WallHole) -> Option<Vec3> {
         let middle = 0.5 * (hole.from_m + hole.to_m);
-        let span = self.spans.iter().find(|span| {
+        let span = self.wall_spans.iter().find(|span| {
             span.along_x == hole.along_x
                 && (span.face_m - hole.at_m).abs() < 0.15
                 && (span.from_m..span.to_m).contains(&middle)
@@ -395,8 +406,8 @@ impl RoomLayout {
 
     /// Adds a thing.
     pub(crate) fn add(&mut self, piece: PlacedFurniture) -> usize {
-        for bounds in piece.boxes.iter().filter(|b| stands_in_the_way(b)) {
-            self.grid.block(&zone(bounds));
+        for bounds in piece.boxes.iter().filter(|b| is_walking_obstacle(b)) {
+            self.grid.block(&zone_of_box(bounds));
         }
         self.pieces.push(piece);
         self.pieces.len() - 1
@@ -412,14 +423,18 @@ fn apart(a: &PlacedFurniture, b: &PlacedFurniture, together: bool) -> bool {
                 .any(|one| q.iter().any(|other| meets(one, other)))
     };
     if touch(&a.boxes, &a.bounds, &b.boxes, &b.bounds)
-        || touch(&a.swept_boxes, &a.reach, &b.boxes, &b.bounds)
-        || touch(&a.boxes, &a.bounds, &b.swept_boxes, &b.reach)
+        || touch(&a.swept_boxes, &a.swept_bounds, &b.boxes, &b.bounds)
+        || touch(&a.boxes, &a.bounds, &b.swept_boxes, &b.swept_bounds)
     {
         return false;
     }
     let blocks = |p: &PlacedFurniture, q: &PlacedFurniture| {
-        let mut low = p.boxes.iter().filter(|b| stands_in_the_way(b));
-        low.any(|b| q.clear.iter().any(|clear| overlap(clear, &zone(b))))
+        let mut low = p.boxes.iter().filter(|b| is_walking_obstacle(b));
+        low.any(|b| {
+            q.clearance_zones
+                .iter()
+                .any(|clear| overlap(clear, &zone_of_box(b)))
+        })
     };
     together || (!blocks(a, b) && !blocks(b, a))
 }
@@ -518,7 +533,7 @@ impl ClearanceGrid {
 /// The walls around a room, those that go on straight joined.
 fn spans(storey: &GeneratedStorey, cells: &StoreyCells, room: usize) -> Vec<WallSpan> {
     let mut spans: Vec<WallSpan> = Vec::new();
-    for run in cells.runs() {
+    for run in cells.boundaries() {
         let inward = match run.sides {
             [_, Some(own)] if own == room => 1.0,
             [Some(own), _] if own == room => -1.0,
@@ -533,17 +548,17 @@ fn spans(storey: &GeneratedStorey, cells: &StoreyCells, room: usize) -> Vec<Wall
         if other.is_none() && storey.rooms[room].kind.is_outside() {
             continue;
         }
-        let half = half_wall(storey, room, other);
+        let half = half_wall_thickness_m(storey, room, other);
         let span = WallSpan {
             along_x: run.along_x,
             face_m: metres(run.at) + inward * half,
             from_m: metres(run.from),
             to_m: metres(run.to),
-            inward,
+            inward_sign: inward,
         };
         let goes_on = spans.last_mut().filter(|last| {
             last.along_x == span.along_x
-                && last.inward.total_cmp(&span.inward).is_eq()
+                && last.inward_sign.total_cmp(&span.inward_sign).is_eq()
                 && (last.face_m - span.face_m).abs() < 1e-3
                 && (last.to_m - span.from_m).abs() < 1e-3
         });
@@ -559,7 +574,7 @@ fn spans(storey: &GeneratedStorey, cells: &StoreyCells, room: usize) -> Vec<Wall
         let near = |at: f32, side: f32| {
             faces
                 .iter()
-                .filter(|f| f.along_x != span.along_x && f.inward.total_cmp(&side).is_eq())
+                .filter(|f| f.along_x != span.along_x && f.inward_sign.total_cmp(&side).is_eq())
                 .map(|f| f.face_m)
                 .find(|face| (face - at).abs() < 0.11)
         };

@@ -17,7 +17,7 @@ pub(crate) struct RoomBoundary {
 
 impl RoomBoundary {
     /// Returns whether it separates these two.
-    pub(crate) fn parts(&self, a: Option<usize>, b: Option<usize>) -> bool {
+    pub(crate) fn separates(&self, a: Option<usize>, b: Option<usize>) -> bool {
         self.sides == [a, b] || self.sides == [b, a]
     }
 }
@@ -75,7 +75,7 @@ impl StoreyCells {
     }
 
     /// The cells of a room, each with the rooms to its west, north, east and south.
-    pub(crate) fn of(&self, room: usize) -> Vec<(GridRect, [Option<usize>; 4])> {
+    pub(crate) fn cells_of_room(&self, room: usize) -> Vec<(GridRect, [Option<usize>; 4])> {
         let mut found = Vec::new();
         for (cell, owner) in self.rooms.iter().enumerate() {
             if *owner != Some(room) {
@@ -95,7 +95,7 @@ impl StoreyCells {
     }
 
     /// All stretches, those along x first, from north to south and west to east.
-    pub(crate) fn runs(&self) -> Vec<RoomBoundary> {
+    pub(crate) fn boundaries(&self) -> Vec<RoomBoundary> {
         let mut runs = Vec::new();
         for along_x in [true, false] {
             let (along, across) = if along_x { (0, 1) } else { (1, 0) };

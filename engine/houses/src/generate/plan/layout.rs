@@ -1,7 +1,7 @@
 //! Layout of rooms: the best of many drawn plans.
 
-use super::links::{join, score_links};
-use super::storey::{STAIRS_DEPTH, STAIRS_WIDTH, StoreyFrame, StripLayout, draw, end_width};
+use super::links::{connect_rooms, score_links};
+use super::storey::{STAIRS_DEPTH, STAIRS_WIDTH, StoreyFrame, StripLayout, draw_storey, end_width};
 use super::{
     GeneratedPlan, GeneratedRoom, GeneratedStorey, GridRect, GridSteps, StairwellPlan, metres,
     steps,
@@ -17,7 +17,7 @@ const DRAWN: u64 = 96;
 const AT_MOST: u64 = 1600;
 
 /// The best plan of a bounded number of drawn ones; `None` when none fits.
-pub(crate) fn lay_out(
+pub(crate) fn best_plan(
     programme: &RoomProgram,
     adjacency: &[[GeneratedRoomKind; 2]],
     key: RandomKey,
@@ -62,10 +62,13 @@ fn attempt(
     let mut storeys = Vec::new();
     let mut score = 0.0;
     for (k, (arrangement, wanted)) in arrangements.iter().zip(&programme.storeys).enumerate() {
-        let rooms = draw(&frame, arrangement, k == 0, stream)?;
+        let rooms = draw_storey(&frame, arrangement, k == 0, stream)?;
         score += faults(&rooms, wanted)?;
-        let links = join(&rooms, k == 0, adjacency)?;
-        storeys.push(GeneratedStorey { rooms, links });
+        let links = connect_rooms(&rooms, k == 0, adjacency)?;
+        storeys.push(GeneratedStorey {
+            rooms,
+            connections: links,
+        });
     }
     let missing_connections = score_links(&storeys, adjacency);
     score += 3.0 * missing_connections.len() as f32;
@@ -110,7 +113,7 @@ fn arrange(
             for kind in [Kitchen, DiningRoom] {
                 let found = rest.iter().position(|room| room.kind == kind);
                 if let Some(k) = found.filter(|_| stream.below(5) < 2) {
-                    arrangement.carved.push(rest.remove(k));
+                    arrangement.corridor_rooms.push(rest.remove(k));
                 }
             }
         }
@@ -187,7 +190,7 @@ fn frame(
             } else {
                 0
             };
-            let wish = arrangement.wish(k, strips[k]) + extra + leg;
+            let wish = arrangement.preferred_width(k, strips[k]) + extra + leg;
             floor[k] = metres(wish) * metres(strips[k]);
             if strips[k] > 0 {
                 widest = widest.max(wish);
@@ -231,7 +234,7 @@ fn faults(rooms: &[GeneratedRoom], wanted: &[RoomRequirement]) -> Option<f32> {
                 far(*a).total_cmp(&far(*b))
             })?;
         let target = open.remove(nearest).area_m2;
-        let traits = room.kind.traits();
+        let traits = room.kind.requirements();
         if area_m2 < 0.9 * traits.area_m2[0] || area_m2 > 2.0 * traits.area_m2[2] {
             return None;
         }
@@ -241,7 +244,7 @@ fn faults(rooms: &[GeneratedRoom], wanted: &[RoomRequirement]) -> Option<f32> {
         let (w, d) = (metres(x1 - x0), metres(z1 - z0));
         let (short, long) = (w.min(d), w.max(d));
         let aspect = long / short;
-        if short < traits.least_width_m - 0.01 || aspect > 3.2 {
+        if short < traits.min_width_m - 0.01 || aspect > 3.2 {
             return None;
         }
         score += (aspect - 1.5).max(0.0);
@@ -273,7 +276,7 @@ fn add_outside(
             _ => 0,
         }
     };
-    let runs = cells.runs();
+    let runs = cells.boundaries();
     let outer = runs.iter().filter_map(|run| {
         let (room, outward) = match run.sides {
             [Some(room), None] => (room, 1),
@@ -310,7 +313,7 @@ fn add_outside(
         kind,
         areas: vec![area],
     });
-    storey.links.push(super::RoomConnection {
+    storey.connections.push(super::RoomConnection {
         into: room,
         from: Some(storey.rooms.len() - 1),
         kind: super::ConnectionKind::Door,

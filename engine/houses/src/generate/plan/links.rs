@@ -13,18 +13,18 @@ const OPEN_RUN: GridSteps = 40;
 
 /// The longest stretch between two rooms.
 fn shared(runs: &[RoomBoundary], a: usize, b: Option<usize>) -> GridSteps {
-    let between = runs.iter().filter(|run| run.parts(Some(a), b));
+    let between = runs.iter().filter(|run| run.separates(Some(a), b));
     between.map(|run| run.to - run.from).max().unwrap_or(0)
 }
 
 /// Connects the rooms of a storey; `None` when one cannot be reached.
-pub(super) fn join(
+pub(super) fn connect_rooms(
     rooms: &[GeneratedRoom],
     ground: bool,
     adjacency: &[[GeneratedRoomKind; 2]],
 ) -> Option<Vec<RoomConnection>> {
     use GeneratedRoomKind::{DiningRoom, Hallway, Kitchen, LivingRoom, Lobby, Studio};
-    let runs = StoreyCells::new(rooms).runs();
+    let runs = StoreyCells::new(rooms).boundaries();
     let of =
         |wanted: fn(GeneratedRoomKind) -> bool| rooms.iter().position(|room| wanted(room.kind));
     let hallway = of(|kind| kind == Hallway);
@@ -93,7 +93,7 @@ pub(super) fn score_links(
 ) -> Vec<[GeneratedRoomKind; 2]> {
     let joined = |[a, b]: &[GeneratedRoomKind; 2]| {
         storeys.iter().any(|storey| {
-            storey.links.iter().any(|link| {
+            storey.connections.iter().any(|link| {
                 let kinds = [
                     Some(storey.rooms[link.into].kind),
                     link.from.map(|from| storey.rooms[from].kind),

@@ -10,7 +10,7 @@ mod links;
 mod storey;
 
 pub(crate) use cells::{RoomBoundary, StoreyCells};
-pub(crate) use layout::lay_out;
+pub(crate) use layout::best_plan;
 
 use super::rooms::GeneratedRoomKind;
 
@@ -64,7 +64,7 @@ pub(crate) struct RoomConnection {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct GeneratedStorey {
     pub(crate) rooms: Vec<GeneratedRoom>,
-    pub(crate) links: Vec<RoomConnection>,
+    pub(crate) connections: Vec<RoomConnection>,
 }
 
 /// The stairs from every storey to the next: two flights beside each other with a landing at the far end.

@@ -42,7 +42,7 @@ pub(super) struct StripLayout {
     pub(super) strips: [Vec<RoomRequirement>; 2],
     /// A room over the full depth at the east end, and rooms carved from it.
     pub(super) east: Option<RoomRequirement>,
-    pub(super) carved: Vec<RoomRequirement>,
+    pub(super) corridor_rooms: Vec<RoomRequirement>,
     /// A room over the full depth at the west end; the way in then crosses the southern strip.
     pub(super) west: Option<RoomRequirement>,
 }
@@ -50,12 +50,12 @@ pub(super) struct StripLayout {
 impl StripLayout {
     /// Floor of the rooms at the east end, m².
     pub(super) fn east_m2(&self) -> f32 {
-        let rooms = self.east.iter().chain(&self.carved);
+        let rooms = self.east.iter().chain(&self.corridor_rooms);
         rooms.map(|room| room.area_m2).sum()
     }
 
     /// Returns the preferred width of a strip.
-    pub(super) fn wish(&self, strip: usize, depth: GridSteps) -> GridSteps {
+    pub(super) fn preferred_width(&self, strip: usize, depth: GridSteps) -> GridSteps {
         let rooms = self.strips[strip].iter();
         rooms.map(|room| width_of(room, depth)).sum()
     }
@@ -63,7 +63,7 @@ impl StripLayout {
 
 /// The width of a room in a strip.
 pub(super) fn width_of(room: &RoomRequirement, depth: GridSteps) -> GridSteps {
-    let least = steps(room.kind.traits().least_width_m);
+    let least = steps(room.kind.requirements().min_width_m);
     let depth_m = metres(depth).max(0.5);
     steps(room.area_m2 / depth_m).max(least)
 }
@@ -84,12 +84,12 @@ fn fill(rooms: &[RoomRequirement], depth: GridSteps, length: GridSteps) -> Optio
     let fits = rooms
         .iter()
         .zip(&widths)
-        .all(|(room, width)| *width >= steps(room.kind.traits().least_width_m));
+        .all(|(room, width)| *width >= steps(room.kind.requirements().min_width_m));
     fits.then_some(widths)
 }
 
 /// The rooms of a storey; the hallway is the last one if there is any. `None` when they do not fit the frame.
-pub(super) fn draw(
+pub(super) fn draw_storey(
     frame: &StoreyFrame,
     arrangement: &StripLayout,
     way_in: bool,
@@ -175,7 +175,7 @@ pub(super) fn draw(
             kind: room.kind,
             areas,
         };
-        for (k, carved) in arrangement.carved.iter().enumerate() {
+        for (k, carved) in arrangement.corridor_rooms.iter().enumerate() {
             rooms.push(carve(&mut living, block, carved, k == 0, [north, south])?);
         }
         rooms.push(living);
@@ -208,7 +208,7 @@ fn carve(
     aisle: [GridSteps; 2],
 ) -> Option<GeneratedRoom> {
     let [x0, z0, x1, z1] = block;
-    let least = steps(carved.kind.traits().least_width_m);
+    let least = steps(carved.kind.requirements().min_width_m);
     let width = x1 - x0;
     // All of the block's width, unless that makes a corridor of it.
     let mut wide = width;

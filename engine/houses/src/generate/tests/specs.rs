@@ -136,7 +136,7 @@ fn a_spec_is_kept() {
         let generated = generate(seed, &spec).unwrap();
         let house = &generated.house;
         for kind in &spec.rooms {
-            let word = kind.traits().words[0];
+            let word = kind.requirements().everyday_names[0];
             let count = house.rooms.iter().filter(|r| r.kinds[0] == word).count();
             assert_eq!(count, 1, "seed {seed}: {word}");
         }

@@ -117,6 +117,6 @@ fn joint<'a>(
         "armature": joint.armature,
         "servo": joint.servo,
         "mimic": mimic,
-        "switches": joint.switches,
+        "switches": joint.toggles_switch,
     })
 }

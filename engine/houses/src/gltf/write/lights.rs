@@ -89,7 +89,7 @@ pub(super) fn sun(sky: &Sky, index: usize) -> WrittenLamp {
 }
 
 /// Adds what the extension cannot say of lights; extras say it.
-pub(super) fn losses(house: &HouseData, losses: &mut ExportLosses) {
+pub(super) fn add_light_losses(house: &HouseData, losses: &mut ExportLosses) {
     let count = |is: fn(&Light) -> bool| house.lights.iter().filter(|light| is(light)).count();
     losses.add(
         "glowing lines; they shine from their middles",

@@ -48,8 +48,8 @@ pub(super) fn store(binary: &mut BinaryChunk, mesh: &Mesh) -> MeshInFile {
             .iter()
             .flat_map(|slot| slot.to_le_bytes())
             .collect();
-        let view = binary.view(&bytes);
-        binary.accessor(view, 0, UNSIGNED_SHORT, mesh.slots.len(), "SCALAR")
+        let view = binary.add_buffer_view(&bytes);
+        binary.add_accessor(view, 0, UNSIGNED_SHORT, mesh.slots.len(), "SCALAR")
     });
     let groups = groups(mesh);
     let by_slot = match (groups.len(), triangles) {
@@ -77,8 +77,8 @@ pub(super) fn store(binary: &mut BinaryChunk, mesh: &Mesh) -> MeshInFile {
 
 fn indices(binary: &mut BinaryChunk, triangles: impl Iterator<Item = [u32; 3]>) -> usize {
     let bytes: Vec<u8> = triangles.flatten().flat_map(u32::to_le_bytes).collect();
-    let view = binary.view(&bytes);
-    binary.accessor(view, 0, UNSIGNED_INT, bytes.len() / 4, "SCALAR")
+    let view = binary.add_buffer_view(&bytes);
+    binary.add_accessor(view, 0, UNSIGNED_INT, bytes.len() / 4, "SCALAR")
 }
 
 /// The triangles of each slot in use.

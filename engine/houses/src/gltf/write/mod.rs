@@ -26,7 +26,7 @@ use meshes::MeshTable;
 pub(crate) struct WrittenGlb {
     pub(crate) file: Vec<u8>,
     /// Files beside it that its URIs name: what several houses share.
-    pub(crate) beside: Vec<SidecarFile>,
+    pub(crate) sidecars: Vec<SidecarFile>,
     pub(crate) meshes: Vec<MeshAccessors>,
 }
 
@@ -43,9 +43,9 @@ pub(crate) enum Storage {
 /// Writes a house as a GLB file, as it stands at the start, and returns what the file does not hold.
 ///
 /// # Errors
-/// [`HousesError::Unwritable`] beyond the format's 4 GiB, [`HousesError::Io`] when the system refuses.
+/// [`HousesError::NotRepresentable`] beyond the format's 4 GiB, [`HousesError::Io`] when the system refuses.
 pub fn write(house: &House, path: &Path) -> Result<Vec<ExportLoss>, HousesError> {
-    let unwritable = |message: String| HousesError::Unwritable {
+    let unwritable = |message: String| HousesError::NotRepresentable {
         path: path.to_owned(),
         message,
     };
@@ -82,7 +82,7 @@ fn losses(house: &HouseData) -> Vec<ExportLoss> {
         "sound, friction and density of materials; told in extras, which our reader reads",
         house.materials.len(),
     );
-    lights::losses(house, &mut losses);
+    lights::add_light_losses(house, &mut losses);
     losses.add(
         "sound emitters; told in extras, which our reader reads",
         house.emitters.len(),
@@ -111,7 +111,7 @@ pub(crate) fn encode(house: &HouseData, storage: Storage) -> Result<WrittenGlb, 
         .iter_ids()
         .map(|(id, mesh)| {
             let apart = storage == Storage::Shared && !of_building[id.index()];
-            binary.part("object", apart, |binary| meshes::store(binary, mesh))
+            binary.append_bytes("object", apart, |binary| meshes::store(binary, mesh))
         })
         .collect();
     let images: Vec<Value> = house
@@ -121,8 +121,10 @@ pub(crate) fn encode(house: &HouseData, storage: Storage) -> Result<WrittenGlb, 
             let bytes = encode_png(texture)?;
             let mut image = json!({"mimeType": "image/png", "name": texture.name});
             match storage {
-                Storage::Inside => image["bufferView"] = json!(binary.view(&bytes)),
-                Storage::Shared => image["uri"] = json!(binary.beside("texture", "png", bytes)),
+                Storage::Inside => image["bufferView"] = json!(binary.add_buffer_view(&bytes)),
+                Storage::Shared => {
+                    image["uri"] = json!(binary.add_sidecar("texture", "png", bytes));
+                }
             }
             Ok(image)
         })
@@ -167,7 +169,7 @@ pub(crate) fn encode(house: &HouseData, storage: Storage) -> Result<WrittenGlb, 
     let (file, beside) = binary.into_glb(document)?;
     Ok(WrittenGlb {
         file,
-        beside,
+        sidecars: beside,
         meshes: stored.into_iter().map(|stored| stored.accessors).collect(),
     })
 }

@@ -27,7 +27,7 @@ pub(super) struct MeshHinge {
 
 impl MeshHinge {
     /// The same hinge seen from the other state.
-    pub(super) fn back(self) -> Self {
+    pub(super) fn reversed(self) -> Self {
         Self {
             turn_rad: -self.turn_rad,
             ..self

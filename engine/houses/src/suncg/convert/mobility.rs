@@ -16,7 +16,7 @@ const HAND_VOLUME_M3: f32 = 0.05;
 /// Returns whether this kind of thing is movable.
 ///
 /// Things of unknown kind are fixed: a house without tables must not fall apart.
-pub(super) fn kind_moves(row: Option<&CategoryRow>, entry: Option<&CategoryEntry>) -> bool {
+pub(super) fn is_movable_kind(row: Option<&CategoryRow>, entry: Option<&CategoryEntry>) -> bool {
     row.is_some_and(|row| row.is_movable() && !row.is_mounted())
         && entry.is_none_or(|entry| entry.structure != 1)
 }
@@ -40,7 +40,7 @@ pub(super) fn is_supported(
 }
 
 /// Returns whether a hand can take a thing of this size.
-pub(super) fn is_handy(bounds: &Aabb) -> bool {
+pub(super) fn is_hand_sized(bounds: &Aabb) -> bool {
     bounds.size().max_element() <= HAND_SIDE_M && bounds.volume() <= HAND_VOLUME_M3
 }
 

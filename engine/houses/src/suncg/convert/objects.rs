@@ -31,7 +31,7 @@ impl<'a> Converter<'a> {
                 }
             }
         }
-        self.settle();
+        self.fix_floating_objects();
     }
 
     fn object(&mut self, key: NodeKey, node: &'a NodeFile, room: Option<RoomId>) {
@@ -42,7 +42,7 @@ impl<'a> Converter<'a> {
             };
             return self.report.warn(at.field("modelId"), damage);
         };
-        if let Some(damage) = paths::refusal(model) {
+        if let Some(damage) = paths::invalid_id_reason(model) {
             return self.report.warn(at.field("modelId"), damage);
         }
         let Some((pose, part_from_mesh)) = self.placement(node, &at) else {
@@ -69,7 +69,7 @@ impl<'a> Converter<'a> {
                 },
             );
         }
-        let moves = mobility::kind_moves(row, entry);
+        let moves = mobility::is_movable_kind(row, entry);
         let plan = ObjectPlan {
             key,
             at,
@@ -109,7 +109,7 @@ impl<'a> Converter<'a> {
             let reason = "it flattens space".to_owned();
             self.report.warn(at, WarningKind::BadTransform { reason });
         }
-        split.map(|(pose, rest)| (pose, place::snapped(rest)))
+        split.map(|(pose, rest)| (pose, place::without_rotation_rounding(rest)))
     }
 
     /// The OBJ file of a node's state: `_0` for state 1 where it exists.
@@ -145,10 +145,10 @@ impl<'a> Converter<'a> {
         };
         let slots = shape.slots.clone();
         let hinge = shape
-            .swing
+            .hinged
             .as_ref()
             .and_then(|swing| hinge_on_part(&swing.hinge, &plan.part_from_mesh));
-        let meshes = match (&mut shape.swing, hinge) {
+        let meshes = match (&mut shape.hinged, hinge) {
             (Some(swing), Some(_)) => {
                 let frame = swing
                     .frame
@@ -157,7 +157,7 @@ impl<'a> Converter<'a> {
                 let leaf = ("leaf", swing.leaf.id(&mut self.data.meshes));
                 frame.into_iter().chain([leaf]).collect()
             }
-            _ => vec![("body", shape.whole.id(&mut self.data.meshes))],
+            _ => vec![("body", shape.full_mesh.id(&mut self.data.meshes))],
         };
         let two_states = self
             .files

@@ -78,7 +78,7 @@ impl Converter<'_> {
             .into_iter()
             .find(|name| !name.is_empty())
             .unwrap_or("thing");
-        let name = self.object_names.counted(coarse);
+        let name = self.object_names.numbered(coarse);
         let center = Vec3::new(bounds.center().x, bounds.center().y, bounds.center().z);
         let room = plan.room.or_else(|| self.room_around(center));
         let lit = self.lights(plan.model, id, first_part, &plan.at);
@@ -104,7 +104,7 @@ impl Converter<'_> {
             level,
             room,
             mobility,
-            pickable: plan.moves && hinge.is_none() && mobility::is_handy(&bounds),
+            pickable: plan.moves && hinge.is_none() && mobility::is_hand_sized(&bounds),
             switch,
             first_part,
             part_count,
@@ -155,7 +155,7 @@ impl Converter<'_> {
     }
 
     /// Makes movable things fixed that stand on nothing: they would only fall.
-    pub(super) fn settle(&mut self) {
+    pub(super) fn fix_floating_objects(&mut self) {
         for (k, object) in self.data.objects.iter_mut().enumerate() {
             let (first_part, bounds) = self.stands[k];
             let others = self.stands.iter().filter(|(part, _)| *part != first_part);

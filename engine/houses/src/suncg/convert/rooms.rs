@@ -12,7 +12,7 @@ use crate::import::room_kind;
 use crate::limits::MAX_CORNERS_SHOWN;
 use crate::obj::MeshFiles;
 use crate::obj::file::FaceGroup;
-use crate::obj::{MaterialSlots, PartShape, shape_of};
+use crate::obj::{MaterialSlots, PartShape, mesh_of_shape};
 use crate::report::FileLocation;
 use crate::warning_kind::{UnmappedKind, WarningKind};
 
@@ -95,7 +95,7 @@ impl<'a> Converter<'a> {
                 );
             }
             Some(id) => {
-                if let Some(damage) = paths::refusal(id) {
+                if let Some(damage) = paths::invalid_id_reason(id) {
                     self.report.warn(at.field("modelId"), damage);
                     return None;
                 }
@@ -166,7 +166,7 @@ impl<'a> Converter<'a> {
         let slots = MaterialSlots::of(&files.obj, &files.mtl, &mesh_at, self.report);
         // A group may be interrupted by others: pieces are gathered by name, in the order of their first faces.
         let mut groups: Vec<(&str, Vec<&FaceGroup>)> = Vec::new();
-        for run in &files.obj.runs {
+        for run in &files.obj.face_groups {
             let name = if run.object.is_empty() {
                 run.group.as_str()
             } else {
@@ -352,10 +352,10 @@ fn piece_mesh(
         in_file.is_some_and(|i| files.textures[i].is_some())
     });
     (
-        shape_of(
+        mesh_of_shape(
             &PartShape {
                 obj: &files.obj,
-                runs: own,
+                face_groups: own,
                 box_mapping,
             },
             at,

@@ -11,16 +11,16 @@ use super::super::read::{SuncgFiles, paths};
 use super::hinge::{self, MeshHinge};
 use crate::import::{components, submesh};
 use crate::obj::MeshFiles;
-use crate::obj::{MaterialSlots, PartShape, shape_of};
+use crate::obj::{MaterialSlots, PartShape, mesh_of_shape};
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
 
 /// The mesh of one OBJ file of a model.
 pub(super) struct ModelShape {
     pub(super) slots: MaterialSlots,
-    pub(super) whole: SharedMesh,
+    pub(super) full_mesh: SharedMesh,
     /// Its leaf and hinge, when a hinge explains its two states.
-    pub(super) swing: Option<HingedModel>,
+    pub(super) hinged: Option<HingedModel>,
 }
 
 /// A mesh that becomes part of the house at its first use.
@@ -134,8 +134,8 @@ fn of_model(
             path,
             ModelShape {
                 slots,
-                whole: SharedMesh::new(mesh),
-                swing: None,
+                full_mesh: SharedMesh::new(mesh),
+                hinged: None,
             },
         ));
     }
@@ -155,14 +155,14 @@ fn model_mesh(
     let box_mapping = textured || files.textures.iter().any(Option::is_some);
     let runs = files
         .obj
-        .runs
+        .face_groups
         .iter()
         .map(|run| (slots.of_run(run), run))
         .collect();
-    shape_of(
+    mesh_of_shape(
         &PartShape {
             obj: &files.obj,
-            runs,
+            face_groups: runs,
             box_mapping,
         },
         at,
@@ -173,18 +173,18 @@ fn model_mesh(
 /// Finds the hinge between the two states of a model and splits both meshes at it.
 fn take_apart(first: &mut ModelShape, second: &mut ModelShape) {
     let pieces = [
-        components(&first.whole.mesh),
-        components(&second.whole.mesh),
+        components(&first.full_mesh.mesh),
+        components(&second.full_mesh.mesh),
     ];
-    let Some(found) = hinge::fit([&first.whole.mesh, &second.whole.mesh], &pieces) else {
+    let Some(found) = hinge::fit([&first.full_mesh.mesh, &second.full_mesh.mesh], &pieces) else {
         return;
     };
     for ((shape, moving), hinge) in [first, second]
         .into_iter()
         .zip(found.moving)
-        .zip([found.hinge, found.hinge.back()])
+        .zip([found.hinge, found.hinge.reversed()])
     {
-        let mesh = &shape.whole.mesh;
+        let mesh = &shape.full_mesh.mesh;
         let mut is_moving = vec![false; mesh.triangles.len()];
         for k in &moving {
             is_moving[*k as usize] = true;
@@ -193,7 +193,7 @@ fn take_apart(first: &mut ModelShape, second: &mut ModelShape) {
             .filter(|k| !is_moving[*k as usize])
             .collect();
         let frame = (!still.is_empty()).then(|| SharedMesh::new(submesh(mesh, &still)));
-        shape.swing = Some(HingedModel {
+        shape.hinged = Some(HingedModel {
             frame,
             leaf: SharedMesh::new(submesh(mesh, &moving)),
             hinge,

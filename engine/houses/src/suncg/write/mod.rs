@@ -26,7 +26,7 @@ use crate::obj::mtl_material;
 /// Writes `house` as a new SUNCG data root at `path`, as it stands at the start, and returns what it does not hold.
 ///
 /// # Errors
-/// [`HousesError::Unwritable`] when something stands at `path` already or a texture cannot be written,
+/// [`HousesError::NotRepresentable`] when something stands at `path` already or a texture cannot be written,
 /// [`HousesError::Io`] when the system refuses.
 pub fn write(house: &House, path: &Path) -> Result<Vec<ExportLoss>, HousesError> {
     let mut losses = losses::of_house(house);
@@ -43,10 +43,10 @@ pub fn write(house: &House, path: &Path) -> Result<Vec<ExportLoss>, HousesError>
 }
 
 /// Writes `house` into the data root at `root` as `house/NAME/house.json`; models and textures are named by their content,
-/// so that all houses of the root share them. [`finish`] then writes the tables. Returns the house's file.
+/// so that all houses of the root share them. [`write_shared_tables`] then writes the tables. Returns the house's file.
 ///
 /// # Errors
-/// [`HousesError::Unwritable`] when a texture cannot be written, [`HousesError::Io`] when the system refuses.
+/// [`HousesError::NotRepresentable`] when a texture cannot be written, [`HousesError::Io`] when the system refuses.
 pub fn write_into(
     house: &House,
     root: &Path,
@@ -98,7 +98,7 @@ fn move_all(from: &Path, to: &Path, is_shared: bool) -> Result<(), HousesError> 
 /// # Errors
 /// [`HousesError::Syntax`] when something stands beside a model that is no row of a table, [`HousesError::Io`] when the
 /// system refuses.
-pub fn finish(root: &Path) -> Result<(), HousesError> {
+pub fn write_shared_tables(root: &Path) -> Result<(), HousesError> {
     let root_of = DataRoot::new(root)?;
     let mut rows = tables::read_rows(&root_of)?;
     loop {
@@ -172,7 +172,7 @@ impl<'a> SuncgWriter<'a> {
         let mut names = UniqueNames::default();
         for (id, texture) in self.house.textures.iter_ids() {
             let plain = plain_name(&texture.name);
-            let bytes = encode_png(texture).map_err(|message| HousesError::Unwritable {
+            let bytes = encode_png(texture).map_err(|message| HousesError::NotRepresentable {
                 path: self.folder.join(format!("texture/{plain}.png")),
                 message,
             })?;
@@ -224,7 +224,7 @@ impl<'a> SuncgWriter<'a> {
             .house
             .structure
             .iter()
-            .any(|piece| rooms::is_homeless(piece, level))
+            .any(|piece| rooms::needs_own_room(piece, level))
         {
             nodes.push(self.room_node(level, nodes.len(), None)?);
         }
@@ -265,10 +265,11 @@ impl<'a> SuncgWriter<'a> {
             materials: Vec::new(),
         };
         let path = format!("house/{}/house.json", self.scene_id);
-        let text = serde_json::to_vec_pretty(&file).map_err(|error| HousesError::Unwritable {
-            path: self.folder.join(&path),
-            message: error.to_string(),
-        })?;
+        let text =
+            serde_json::to_vec_pretty(&file).map_err(|error| HousesError::NotRepresentable {
+                path: self.folder.join(&path),
+                message: error.to_string(),
+            })?;
         self.file(&path, &text)
     }
 }

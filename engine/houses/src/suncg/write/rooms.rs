@@ -9,7 +9,7 @@ use crate::error::HousesError;
 use crate::obj::ObjWriter;
 
 /// Returns whether a piece of `level` needs a room of its own: it is in none and is no ground.
-pub(super) fn is_homeless(piece: &Structure, level: LevelId) -> bool {
+pub(super) fn needs_own_room(piece: &Structure, level: LevelId) -> bool {
     piece.level == level && piece.room.is_none() && piece.kind != StructureKind::Ground
 }
 
@@ -51,7 +51,7 @@ impl SuncgWriter<'_> {
         let id = room.map(|(id, _)| id);
         let belongs = |piece: &Structure| match id {
             Some(id) => piece.room == Some(id),
-            None => is_homeless(piece, level),
+            None => needs_own_room(piece, level),
         };
         let mut node = NodeFile {
             id: Some(format!("{}_{index}", level.0)),

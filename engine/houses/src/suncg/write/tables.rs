@@ -34,7 +34,7 @@ impl SuncgWriter<'_> {
     /// Writes the table row of a shared model beside it.
     pub(super) fn row_file(&self, row: &ModelRow) -> Result<(), HousesError> {
         let path = format!("object/{}/{ROW}", row.id);
-        let text = serde_json::to_vec(row).map_err(|error| HousesError::Unwritable {
+        let text = serde_json::to_vec(row).map_err(|error| HousesError::NotRepresentable {
             path: self.folder.join(&path),
             message: crate::plain_parse_error(&error),
         })?;
@@ -76,7 +76,7 @@ pub(super) fn read_rows(root: &DataRoot) -> Result<Vec<ModelRow>, HousesError> {
 /// # Errors
 /// [`HousesError::Io`] when the system refuses.
 pub(super) fn write_tables(folder: &Path, models: &[ModelRow]) -> Result<(), HousesError> {
-    let unwritable = |path: &str, message: String| HousesError::Unwritable {
+    let unwritable = |path: &str, message: String| HousesError::NotRepresentable {
         path: folder.join(path),
         message,
     };

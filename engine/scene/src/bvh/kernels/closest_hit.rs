@@ -18,7 +18,7 @@ const GRAZING: f32 = 32.0;
 
 /// The smallest distance of a nearest hit with which a hit is coincident. `cosine` is that between ray and normal, >= 0.
 #[inline(always)]
-pub(in super::super) fn reach(distance: f32, cosine: f32) -> f32 {
+pub(in super::super) fn coincidence_min_distance(distance: f32, cosine: f32) -> f32 {
     let slope = 1.0 / cosine;
     let slope = if slope < GRAZING { slope } else { GRAZING };
     distance - (TOLERANCE_M + TOLERANCE_PER_M * distance) * slope
@@ -26,7 +26,7 @@ pub(in super::super) fn reach(distance: f32, cosine: f32) -> f32 {
 
 /// The largest distance of a hit that may be coincident with a nearest hit at `distance`.
 #[inline(always)]
-pub(in super::super) fn horizon(distance: f32) -> f32 {
+pub(in super::super) fn coincidence_max_distance(distance: f32) -> f32 {
     (distance + GRAZING * TOLERANCE_M) * (1.0 + 2.0 * GRAZING * TOLERANCE_PER_M)
 }
 
@@ -47,7 +47,7 @@ impl HitIndex {
 /// The order among coincident hits.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct TieBreak {
-    /// See [`reach`].
+    /// See [`coincidence_min_distance`].
     pub(in super::super) reach: f32,
     pub(in super::super) id: i32,
     /// Position of the triangle in its input.
@@ -62,9 +62,9 @@ pub(in super::super) struct ClosestHit {
     /// Boxes and hits beyond this distance cannot matter.
     pub(in super::super) limit: f32,
     /// The winner so far.
-    pub(in super::super) best: HitIndex,
+    pub(in super::super) closest: HitIndex,
     /// The smallest reach of any other hit since the last clear win; stale values lie beyond `distance`.
-    pub(in super::super) others: f32,
+    pub(in super::super) nearest_other_reach: f32,
     /// The distance at which the winner became unknown; forgotten once beyond the horizon.
     pub(in super::super) ambiguous_at: f32,
 }
@@ -76,8 +76,8 @@ impl ClosestHit {
         Self {
             distance: infinite,
             limit: far,
-            best: HitIndex::NONE,
-            others: infinite,
+            closest: HitIndex::NONE,
+            nearest_other_reach: infinite,
             ambiguous_at: infinite,
         }
     }
@@ -89,15 +89,16 @@ impl ClosestHit {
         again
     }
 
-    /// Returns whether [`Self::best`] must be found by a second pass from [`Self::second_pass`], which is never ambiguous.
+    /// Returns whether [`Self::closest`] must be found by a second pass from [`Self::second_pass`], which is never ambiguous.
     #[inline(always)]
     pub(in super::super) fn is_ambiguous(&self) -> bool {
-        self.ambiguous_at < f32::INFINITY && self.ambiguous_at <= horizon(self.distance)
+        self.ambiguous_at < f32::INFINITY
+            && self.ambiguous_at <= coincidence_max_distance(self.distance)
     }
 
     #[inline(always)]
     fn shorten(&mut self, distance: f32) {
-        let horizon = horizon(distance);
+        let horizon = coincidence_max_distance(distance);
         self.distance = distance;
         self.limit = if horizon < self.limit {
             horizon
@@ -108,24 +109,24 @@ impl ClosestHit {
 
     /// Takes a hit within [`Self::limit`] into account; `claim` gives the tie-break of this one and earlier ones.
     #[inline(always)]
-    pub(in super::super) fn offer(
+    pub(in super::super) fn consider(
         &mut self,
         distance: f32,
         hit: HitIndex,
         claim: impl Fn(HitIndex) -> TieBreak,
     ) {
-        if horizon(distance) < self.distance {
+        if coincidence_max_distance(distance) < self.distance {
             // Clearly nearer than all before: none of them can be coincident with it.
-            self.best = hit;
+            self.closest = hit;
             self.shorten(distance);
         } else {
-            self.weigh(distance, hit, &claim);
+            self.consider_coincident(distance, hit, &claim);
         }
     }
 
-    /// As [`Self::offer`], when hits may be coincident.
+    /// As [`Self::consider`], when hits may be coincident.
     #[cold]
-    pub(in super::super) fn weigh(
+    pub(in super::super) fn consider_coincident(
         &mut self,
         distance: f32,
         hit: HitIndex,
@@ -137,21 +138,21 @@ impl ClosestHit {
         }
         let shorter = distance < self.distance;
         let nearest = if shorter { distance } else { self.distance };
-        if self.best == HitIndex::NONE {
-            self.best = hit;
+        if self.closest == HitIndex::NONE {
+            self.closest = hit;
         } else {
-            let old = claim(self.best);
-            if (new.id, hit.source, new.triangle) < (old.id, self.best.source, old.triangle) {
-                self.others = self.others.min(old.reach);
-                self.best = hit;
+            let old = claim(self.closest);
+            if (new.id, hit.source, new.triangle) < (old.id, self.closest.source, old.triangle) {
+                self.nearest_other_reach = self.nearest_other_reach.min(old.reach);
+                self.closest = hit;
             } else if old.reach <= nearest {
-                self.others = self.others.min(new.reach);
+                self.nearest_other_reach = self.nearest_other_reach.min(new.reach);
             } else {
                 // The winner fell back; a hit that lost to it may win over this one.
-                if self.others <= nearest {
+                if self.nearest_other_reach <= nearest {
                     self.ambiguous_at = nearest;
                 }
-                self.best = hit;
+                self.closest = hit;
             }
         }
         if shorter {
@@ -181,7 +182,7 @@ mod tests {
             // Traversal skips what lies beyond the limit.
             if hits[k].0 <= nearest.limit {
                 let place = |slot| HitIndex { source: 0, slot };
-                nearest.offer(hits[k].0, place(k as u32), |p| hits[p.slot as usize].1);
+                nearest.consider(hits[k].0, place(k as u32), |p| hits[p.slot as usize].1);
             }
         }
     }
@@ -196,7 +197,7 @@ mod tests {
                     let distance = 3.0 + stream.below(12) as f32 * 0.7e-5;
                     let cosine = [1.0, 0.5, 0.1, 0.001][stream.below(4)];
                     let id = stream.below(6) as i32;
-                    (distance, TieBreak { reach: reach(distance, cosine), id, triangle: k as u32 })
+                    (distance, TieBreak { reach: coincidence_min_distance(distance, cosine), id, triangle: k as u32 })
                 })
                 .collect();
             let expected = plainly(&hits);
@@ -211,7 +212,7 @@ mod tests {
                     offer_all(&mut nearest, &hits, &order);
                     prop_assert!(!nearest.is_ambiguous());
                 }
-                let found = (nearest.best != HitIndex::NONE).then_some(nearest.best.slot as usize);
+                let found = (nearest.closest != HitIndex::NONE).then_some(nearest.closest.slot as usize);
                 prop_assert_eq!(found, expected);
             }
         }
@@ -221,9 +222,12 @@ mod tests {
     fn nothing_beyond_the_horizon_is_coincident() {
         for k in 0..2000 {
             let distance = 1.01_f32.powi(k % 1000) * 1e-3;
-            let beyond = f32::from_bits(horizon(distance).to_bits() + 1);
-            assert!(reach(beyond, 0.0) > distance, "{distance}");
-            assert!(reach(distance, 1.0) < distance);
+            let beyond = f32::from_bits(coincidence_max_distance(distance).to_bits() + 1);
+            assert!(
+                coincidence_min_distance(beyond, 0.0) > distance,
+                "{distance}"
+            );
+            assert!(coincidence_min_distance(distance, 1.0) < distance);
         }
     }
 }

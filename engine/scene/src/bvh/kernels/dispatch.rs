@@ -12,7 +12,7 @@ pub(in super::super) struct ClosestPacket<'a, 'b, const N: usize> {
     pub(in super::super) scene: &'a SceneBvh<'b>,
     pub(in super::super) rays: &'a RayPacket<N>,
     pub(in super::super) filter: &'a HitFilter,
-    pub(in super::super) answers: &'a mut PacketClosestHits<N>,
+    pub(in super::super) hits: &'a mut PacketClosestHits<N>,
 }
 
 impl<const N: usize> SimdKernel for ClosestPacket<'_, '_, N> {
@@ -20,7 +20,7 @@ impl<const N: usize> SimdKernel for ClosestPacket<'_, '_, N> {
 
     #[inline(always)]
     fn run(self) {
-        closest(self.scene, self.rays, self.filter, self.answers);
+        closest(self.scene, self.rays, self.filter, self.hits);
     }
 }
 
@@ -91,12 +91,12 @@ mod tests {
                 for k in 0..N {
                     let ray = &rays.ray(k);
                     let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
-                    let claim = |place| scene.claim(origin, direction, place);
+                    let claim = |place| scene.tie_break(origin, direction, place);
                     let mut nearest = ClosestHit::new(ray.far_m);
                     let filter = &filter;
                     let hits_of_one = &mut ClosestHitVisitor {
                         nearest: &mut nearest,
-                        claim,
+                        tie_break: claim,
                     };
                     level.run(SceneRayQuery {
                         scene,
@@ -111,9 +111,9 @@ mod tests {
                         hits: &mut AnyHitVisitor,
                     });
                     assert_eq!(met, blocked >> k & 1 == 1);
-                    assert_eq!(nearest.best != HitIndex::NONE, hits.is_hit(k));
+                    assert_eq!(nearest.closest != HitIndex::NONE, hits.is_hit(k));
                     if hits.is_hit(k) && !nearest.is_ambiguous() {
-                        let found = (nearest.best.source, nearest.best.slot);
+                        let found = (nearest.closest.source, nearest.closest.slot);
                         assert_eq!(found, (hits.source[k], hits.slot[k]));
                         assert_eq!(nearest.distance.to_bits(), hits.distance_m[k].to_bits());
                     }

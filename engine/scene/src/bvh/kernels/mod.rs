@@ -41,7 +41,7 @@ impl HitFilter {
 
     /// The filter for the triangles of an instance that passed: they have no ids of their own.
     #[inline(always)]
-    pub(super) fn within(&self) -> Self {
+    pub(super) fn for_instance_triangles(&self) -> Self {
         Self {
             hidden: i64::MAX,
             ..*self
@@ -49,13 +49,13 @@ impl HitFilter {
     }
 
     #[inline(always)]
-    pub(super) fn admits(&self, id: i32, mask: RayMask) -> bool {
-        self.mask.meets(mask) && i64::from(id) != self.hidden
+    pub(super) fn accepts(&self, id: i32, mask: RayMask) -> bool {
+        self.mask.intersects(mask) && i64::from(id) != self.hidden
     }
 
     #[inline(always)]
     fn admits_surface(&self, surface: &TriangleInfo) -> bool {
-        self.admits(surface.id, surface.mask)
+        self.accepts(surface.id, surface.mask)
     }
 }
 

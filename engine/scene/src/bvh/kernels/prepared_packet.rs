@@ -3,9 +3,11 @@
 use glam::Vec4;
 
 use super::super::node::Node;
-use super::slab::{LARGEST_INVERSE, PaddedOrigin, crossing, inverse, least, margin, most};
+use super::slab::{
+    LARGEST_INVERSE, PaddedOrigin, box_margin, max_f32, min_f32, safe_inverse, slab_range,
+};
 use super::three;
-use super::triangle::{OriginTriangles, dot, inside, settled};
+use super::triangle::{OriginTriangles, clamped_hit_distance, dot, is_inside};
 use crate::bounds::Aabb;
 
 /// Rays with one origin in the space of a tree, prepared; lanes side by side.
@@ -18,16 +20,16 @@ pub(in super::super) struct PreparedPacket<const N: usize> {
     /// Hits beyond do not matter; minus infinity for an inactive lane.
     pub(in super::super) limit: [f32; N],
     pub(in super::super) origin: [f32; 3],
-    pub(super) wide: PaddedOrigin,
+    pub(super) padded_origin: PaddedOrigin,
     margin: f32,
     /// See [`EdgePlanes::new`].
-    pub(super) longest: f32,
+    pub(super) max_direction_component: f32,
     /// Bounds of the range over all active rays.
     nearest: f32,
-    pub(in super::super) furthest: f32,
+    pub(in super::super) max_limit: f32,
     /// Bounds of the direction. Shape (axis,).
-    pub(super) lowest: [f32; 3],
-    pub(super) highest: [f32; 3],
+    pub(super) min_direction: [f32; 3],
+    pub(super) max_direction: [f32; 3],
     /// Bounds of the inverse direction; infinite where it has both signs.
     slow: [f32; 3],
     fast: [f32; 3],
@@ -56,7 +58,7 @@ impl<const N: usize> PreparedPacket<N> {
             for k in 0..N {
                 let value = direction[axis][k];
                 let used = near[k] <= far[k];
-                inverses[axis][k] = inverse(value);
+                inverses[axis][k] = safe_inverse(value);
                 low[k] = if used { value } else { f32::INFINITY };
                 high[k] = if used { value } else { f32::NEG_INFINITY };
             }
@@ -68,7 +70,7 @@ impl<const N: usize> PreparedPacket<N> {
             limit[k] = if used { far[k] } else { f32::NEG_INFINITY };
             start[k] = if used { near[k] } else { f32::INFINITY };
         }
-        let margin = margin(origin, all);
+        let margin = box_margin(origin, all);
         let mixed = three(|axis| lowest[axis] <= 0.0 && highest[axis] >= 0.0);
         let up = three(|axis| lowest[axis] > 0.0);
         Self {
@@ -77,25 +79,25 @@ impl<const N: usize> PreparedPacket<N> {
             near: start,
             limit,
             origin,
-            wide: PaddedOrigin::new(origin, margin),
+            padded_origin: PaddedOrigin::new(origin, margin),
             margin,
-            longest,
+            max_direction_component: longest,
             nearest: lowest_of(start),
-            furthest: highest_of(limit),
-            lowest,
-            highest,
+            max_limit: highest_of(limit),
+            min_direction: lowest,
+            max_direction: highest,
             slow: three(|axis| {
                 if mixed[axis] {
                     -LARGEST_INVERSE
                 } else {
-                    inverse(highest[axis])
+                    safe_inverse(highest[axis])
                 }
             }),
             fast: three(|axis| {
                 if mixed[axis] {
                     LARGEST_INVERSE
                 } else {
-                    inverse(lowest[axis])
+                    safe_inverse(lowest[axis])
                 }
             }),
             leave_at_least: three(|axis| {
@@ -113,48 +115,50 @@ impl<const N: usize> PreparedPacket<N> {
 
     /// Prepares for another tree in the same space.
     #[inline(always)]
-    pub(in super::super) fn retarget(&mut self, all: &Aabb) {
-        self.margin = margin(self.origin, all);
-        self.wide = PaddedOrigin::new(self.origin, self.margin);
+    pub(in super::super) fn prepare_for_tree(&mut self, all: &Aabb) {
+        self.margin = box_margin(self.origin, all);
+        self.padded_origin = PaddedOrigin::new(self.origin, self.margin);
     }
 
     /// Returns whether no ray is active.
     #[inline(always)]
     pub(in super::super) fn is_done(&self) -> bool {
-        self.furthest == f32::NEG_INFINITY
+        self.max_limit == f32::NEG_INFINITY
     }
 
     /// Updates the bounds after a change of `limit`.
     #[inline(always)]
-    pub(in super::super) fn limits_changed(&mut self) {
-        self.furthest = highest_of(self.limit);
+    pub(in super::super) fn update_limit_bounds(&mut self) {
+        self.max_limit = highest_of(self.limit);
     }
 
     /// Returns the interval of each ray inside a box, within its own range.
     #[inline(always)]
-    pub(in super::super) fn range_in(&self, bounds: &Aabb) -> ([f32; N], [f32; N]) {
-        let (min, max) = self.wide.corners(bounds.min.as_ref(), bounds.max.as_ref());
+    pub(in super::super) fn range_in_box(&self, bounds: &Aabb) -> ([f32; N], [f32; N]) {
+        let (min, max) = self
+            .padded_origin
+            .corners(bounds.min.as_ref(), bounds.max.as_ref());
         let [ix, iy, iz] = &self.inverse;
         let (mut start, mut end) = ([0.0; N], [0.0; N]);
         for k in 0..N {
-            let (enter, leave) = crossing(&min, &max, [ix[k], iy[k], iz[k]]);
-            start[k] = most(enter, self.near[k]);
-            end[k] = least(leave, self.limit[k]);
+            let (enter, leave) = slab_range(&min, &max, [ix[k], iy[k], iz[k]]);
+            start[k] = max_f32(enter, self.near[k]);
+            end[k] = min_f32(leave, self.limit[k]);
         }
         (start, end)
     }
 
     /// Returns the children whose boxes some ray enters before its limit, as bits, and a lower bound of the entry.
     #[inline(always)]
-    pub(super) fn enters(&self, node: &Node) -> (u32, Vec4) {
+    pub(super) fn intersect_children(&self, node: &Node) -> (u32, Vec4) {
         // All rays at once by the bounds of their directions; this loses nothing, as rounding is monotone.
         let mut enter = Vec4::splat(self.nearest);
-        let mut leave = Vec4::splat(self.furthest);
+        let mut leave = Vec4::splat(self.max_limit);
         let mut planes = [[0.0; 4]; 6];
         for axis in 0..3 {
             let (first, last) = (self.first[axis], self.last[axis]);
-            let first = node.planes[first] - Vec4::splat(self.wide.0[first]);
-            let last = node.planes[last] - Vec4::splat(self.wide.0[last]);
+            let first = node.planes[first] - Vec4::splat(self.padded_origin.0[first]);
+            let last = node.planes[last] - Vec4::splat(self.padded_origin.0[last]);
             let (slow, fast) = (Vec4::splat(self.slow[axis]), Vec4::splat(self.fast[axis]));
             enter = enter.max((first * slow).min(first * fast));
             leave = leave.min(
@@ -185,17 +189,20 @@ impl<const N: usize> PreparedPacket<N> {
         let mut any = 0_u32;
         if self.mixed {
             for k in 0..N {
-                let (enter, leave) = crossing(first, last, [ix[k], iy[k], iz[k]]);
-                any |= u32::from(most(enter, self.nearest) <= least(leave, self.limit[k]));
+                let (enter, leave) = slab_range(first, last, [ix[k], iy[k], iz[k]]);
+                any |= u32::from(max_f32(enter, self.nearest) <= min_f32(leave, self.limit[k]));
             }
         } else {
             for k in 0..N {
-                let enter = most(
-                    most(most(first[0] * ix[k], first[1] * iy[k]), first[2] * iz[k]),
+                let enter = max_f32(
+                    max_f32(
+                        max_f32(first[0] * ix[k], first[1] * iy[k]),
+                        first[2] * iz[k],
+                    ),
                     self.nearest,
                 );
-                let leave = least(
-                    least(least(last[0] * ix[k], last[1] * iy[k]), last[2] * iz[k]),
+                let leave = min_f32(
+                    min_f32(min_f32(last[0] * ix[k], last[1] * iy[k]), last[2] * iz[k]),
                     self.limit[k],
                 );
                 any |= u32::from(enter <= leave);
@@ -206,20 +213,24 @@ impl<const N: usize> PreparedPacket<N> {
 
     /// Returns the distances at which the rays hit one of four triangles, NaN for those that do not within their range; `None` for no hit.
     #[inline(always)]
-    pub(super) fn meet(&self, facets: &OriginTriangles, lane: usize) -> Option<[f32; N]> {
+    pub(super) fn intersect_triangle(
+        &self,
+        facets: &OriginTriangles,
+        lane: usize,
+    ) -> Option<[f32; N]> {
         if self.mixed {
             self.intersect_ordered(facets, lane, |first, last, inverse| {
-                crossing(first, last, inverse)
+                slab_range(first, last, inverse)
             })
         } else {
             self.intersect_ordered(facets, lane, |first, last, inverse| {
                 (
-                    most(
-                        most(first[0] * inverse[0], first[1] * inverse[1]),
+                    max_f32(
+                        max_f32(first[0] * inverse[0], first[1] * inverse[1]),
                         first[2] * inverse[2],
                     ),
-                    least(
-                        least(last[0] * inverse[0], last[1] * inverse[1]),
+                    min_f32(
+                        min_f32(last[0] * inverse[0], last[1] * inverse[1]),
                         last[2] * inverse[2],
                     ),
                 )
@@ -250,9 +261,9 @@ impl<const N: usize> PreparedPacket<N> {
             let sides = [dot(u, x, y, z), dot(v, x, y, z), dot(w, x, y, z)];
             let slope = dot(normal, x, y, z);
             let range = cross(&first, &last, [ix[k], iy[k], iz[k]]);
-            let distance = settled(height / slope, slope, range, self.margin);
+            let distance = clamped_hit_distance(height / slope, slope, range, self.margin);
             let in_range = (distance >= self.near[k]) & (distance <= self.limit[k]);
-            let counts = inside(sides, tolerances) & in_range;
+            let counts = is_inside(sides, tolerances) & in_range;
             distances[k] = if counts { distance } else { f32::NAN };
             any |= u32::from(counts);
         }
@@ -265,7 +276,7 @@ fn lowest_of<const N: usize>(mut values: [f32; N]) -> f32 {
     let mut half = N / 2;
     while half > 0 {
         for k in 0..half {
-            values[k] = least(values[k], values[k + half]);
+            values[k] = min_f32(values[k], values[k + half]);
         }
         half /= 2;
     }
@@ -277,7 +288,7 @@ fn highest_of<const N: usize>(mut values: [f32; N]) -> f32 {
     let mut half = N / 2;
     while half > 0 {
         for k in 0..half {
-            values[k] = most(values[k], values[k + half]);
+            values[k] = max_f32(values[k], values[k + half]);
         }
         half /= 2;
     }

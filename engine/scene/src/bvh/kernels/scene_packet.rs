@@ -4,9 +4,9 @@ use super::super::instances::{InstanceSet, PreparedInstance};
 use super::super::packet::RayPacket;
 use super::super::scene::SceneBvh;
 use super::HitFilter;
-use super::closest_hit::{HitIndex, TieBreak, horizon};
+use super::closest_hit::{HitIndex, TieBreak, coincidence_max_distance};
 use super::prepared_packet::PreparedPacket;
-use super::slab::least;
+use super::slab::min_f32;
 use super::tree_packet::{
     ClosestLeafVisitor, OccludedLeafVisitor, PacketClosestHits, PacketLeafVisitor, traverse,
 };
@@ -19,9 +19,10 @@ pub(super) fn closest<const N: usize>(
     filter: &HitFilter,
     answers: &mut PacketClosestHits<N>,
 ) {
-    let (origin, far) = (rays.origin.to_array(), rays.usable_far());
-    let claim =
-        |k: usize, place: HitIndex| scene.claim(origin, rays.ray(k).direction.to_array(), place);
+    let (origin, far) = (rays.origin.to_array(), rays.effective_far());
+    let claim = |k: usize, place: HitIndex| {
+        scene.tie_break(origin, rays.ray(k).direction.to_array(), place)
+    };
     let bvh = scene.fixed;
     let mut fan = PreparedPacket::new(
         &bvh.tree.bounds,
@@ -37,12 +38,12 @@ pub(super) fn closest<const N: usize>(
             bvh,
             source: 0,
             filter: *filter,
-            answers,
-            claim,
+            hits: answers,
+            tie_break: claim,
         },
     );
     if !scene.moving.is_empty() {
-        fan.retarget(&scene.moving.tree.bounds);
+        fan.prepare_for_tree(&scene.moving.tree.bounds);
         let mut moving = ClosestInstances {
             set: scene.moving,
             filter,
@@ -60,7 +61,7 @@ pub(super) fn occluded<const N: usize>(
     rays: &RayPacket<N>,
     filter: &HitFilter,
 ) -> u64 {
-    let (origin, far) = (rays.origin.to_array(), rays.usable_far());
+    let (origin, far) = (rays.origin.to_array(), rays.effective_far());
     let bvh = scene.fixed;
     let mut fan = PreparedPacket::new(
         &bvh.tree.bounds,
@@ -78,7 +79,7 @@ pub(super) fn occluded<const N: usize>(
         },
     );
     if !scene.moving.is_empty() {
-        fan.retarget(&scene.moving.tree.bounds);
+        fan.prepare_for_tree(&scene.moving.tree.bounds);
         traverse(
             &scene.moving.tree,
             &mut fan,
@@ -100,10 +101,10 @@ fn enter<const N: usize>(
     fan: &PreparedPacket<N>,
     filter: &HitFilter,
 ) -> Option<PreparedPacket<N>> {
-    if placed.is_hidden() || !filter.admits(placed.id, placed.mask) {
+    if placed.is_hidden() || !filter.accepts(placed.id, placed.mask) {
         return None;
     }
-    let (start, mut end) = fan.range_in(&placed.bounds);
+    let (start, mut end) = fan.range_in_box(&placed.bounds);
     let map = &placed.mesh_from_world;
     let origin = map.point(fan.origin);
     let mut direction = [[0.0; N]; 3];
@@ -119,7 +120,7 @@ fn enter<const N: usize>(
         origin,
         &direction,
         (&start, &end),
-        map.longest,
+        map.max_component,
     );
     let finite = origin[0].is_finite() && origin[1].is_finite() && origin[2].is_finite();
     (finite && !local.is_done()).then_some(local)
@@ -137,7 +138,7 @@ impl<const N: usize, C: Fn(usize, HitIndex) -> TieBreak + Copy> PacketLeafVisito
     for ClosestInstances<'_, N, C>
 {
     #[inline(always)]
-    fn leaf(&mut self, fan: &mut PreparedPacket<N>, instance: usize) -> bool {
+    fn visit_leaf(&mut self, fan: &mut PreparedPacket<N>, instance: usize) -> bool {
         let placed = &self.set.placed[instance];
         if let Some(mut local) = enter(placed, fan, self.filter) {
             let (bvh, source) = (&*placed.mesh, instance as u32 + 1);
@@ -145,15 +146,18 @@ impl<const N: usize, C: Fn(usize, HitIndex) -> TieBreak + Copy> PacketLeafVisito
             let mut visit = ClosestLeafVisitor {
                 bvh,
                 source,
-                filter: self.filter.within(),
-                answers,
-                claim,
+                filter: self.filter.for_instance_triangles(),
+                hits: answers,
+                tie_break: claim,
             };
             traverse(&bvh.tree, &mut local, &mut visit);
             for k in 0..N {
-                fan.limit[k] = least(horizon(self.answers.distance[k]), fan.limit[k]);
+                fan.limit[k] = min_f32(
+                    coincidence_max_distance(self.answers.distance[k]),
+                    fan.limit[k],
+                );
             }
-            fan.limits_changed();
+            fan.update_limit_bounds();
         }
         false
     }
@@ -167,7 +171,7 @@ struct OccludedInstances<'a> {
 
 impl<const N: usize> PacketLeafVisitor<N> for OccludedInstances<'_> {
     #[inline(always)]
-    fn leaf(&mut self, fan: &mut PreparedPacket<N>, instance: usize) -> bool {
+    fn visit_leaf(&mut self, fan: &mut PreparedPacket<N>, instance: usize) -> bool {
         let placed = &self.set.placed[instance];
         if let Some(mut local) = enter(placed, fan, self.filter) {
             let before = local.limit;
@@ -176,7 +180,7 @@ impl<const N: usize> PacketLeafVisitor<N> for OccludedInstances<'_> {
                 &mut local,
                 &mut OccludedLeafVisitor {
                     bvh: &placed.mesh,
-                    filter: self.filter.within(),
+                    filter: self.filter.for_instance_triangles(),
                 },
             );
             for k in 0..N {
@@ -187,7 +191,7 @@ impl<const N: usize> PacketLeafVisitor<N> for OccludedInstances<'_> {
                     fan.limit[k]
                 };
             }
-            fan.limits_changed();
+            fan.update_limit_bounds();
         }
         fan.is_done()
     }

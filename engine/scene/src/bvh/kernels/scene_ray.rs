@@ -5,8 +5,8 @@ use super::super::ray::Ray;
 use super::super::scene::SceneBvh;
 use super::HitFilter;
 use super::closest_hit::{ClosestHit, HitIndex, TieBreak};
-use super::slab::least;
-use super::tree_ray::{HitVisitor, PreparedRay, RayLeafVisitor, meet, traverse};
+use super::slab::min_f32;
+use super::tree_ray::{HitVisitor, PreparedRay, RayLeafVisitor, intersect_tree, traverse};
 use crate::bounds::Aabb;
 use crate::simd_dispatch::SimdKernel;
 
@@ -25,7 +25,7 @@ impl<H: HitVisitor> SimdKernel for SceneRayQuery<'_, '_, H> {
     fn run(self) -> bool {
         let (scene, filter) = (self.scene, self.filter);
         let probe = probe(self.ray, &scene.fixed.tree.bounds);
-        if meet(scene.fixed, &probe, filter, 0, self.hits) {
+        if intersect_tree(scene.fixed, &probe, filter, 0, self.hits) {
             return true;
         }
         let set = scene.moving;
@@ -33,7 +33,7 @@ impl<H: HitVisitor> SimdKernel for SceneRayQuery<'_, '_, H> {
             return false;
         }
         let probe = &self::probe(self.ray, &set.tree.bounds);
-        let limit = least(self.hits.limit(), probe.far);
+        let limit = min_f32(self.hits.limit(), probe.far);
         let hits = self.hits;
         let mut moving = InstanceLeafVisitor {
             set,
@@ -61,11 +61,11 @@ struct InstanceLeafVisitor<'a, H> {
 
 impl<H: HitVisitor> RayLeafVisitor for InstanceLeafVisitor<'_, H> {
     #[inline(always)]
-    fn leaf(&mut self, instance: usize, limit: &mut f32) -> bool {
+    fn visit_leaf(&mut self, instance: usize, limit: &mut f32) -> bool {
         let placed = &self.set.placed[instance];
-        let (start, end) = self.probe.range_in(&placed.bounds);
-        let apart = placed.is_hidden() || start > least(end, *limit);
-        if apart || !self.filter.admits(placed.id, placed.mask) {
+        let (start, end) = self.probe.range_in_box(&placed.bounds);
+        let apart = placed.is_hidden() || start > min_f32(end, *limit);
+        if apart || !self.filter.accepts(placed.id, placed.mask) {
             return false;
         }
         // The ray in the space of the instance, where it lies in the instance's box.
@@ -73,13 +73,13 @@ impl<H: HitVisitor> RayLeafVisitor for InstanceLeafVisitor<'_, H> {
         let [x, y, z] = self.probe.direction;
         let direction = map.vector(x, y, z);
         let (bounds, origin) = (&placed.mesh.tree.bounds, map.point(self.probe.origin));
-        let local = PreparedRay::new(bounds, origin, direction, (start, end), map.longest);
+        let local = PreparedRay::new(bounds, origin, direction, (start, end), map.max_component);
         if !local.is_usable() {
             return false;
         }
-        let (filter, source) = (self.filter.within(), instance as u32 + 1);
-        let enough = meet(&placed.mesh, &local, &filter, source, self.hits);
-        *limit = least(self.hits.limit(), *limit);
+        let (filter, source) = (self.filter.for_instance_triangles(), instance as u32 + 1);
+        let enough = intersect_tree(&placed.mesh, &local, &filter, source, self.hits);
+        *limit = min_f32(self.hits.limit(), *limit);
         enough
     }
 }
@@ -87,14 +87,14 @@ impl<H: HitVisitor> RayLeafVisitor for InstanceLeafVisitor<'_, H> {
 /// Offers every hit that may matter to `nearest`.
 pub(in super::super) struct ClosestHitVisitor<'a, C> {
     pub(in super::super) nearest: &'a mut ClosestHit,
-    pub(in super::super) claim: C,
+    pub(in super::super) tie_break: C,
 }
 
 impl<C: Fn(HitIndex) -> TieBreak> HitVisitor for ClosestHitVisitor<'_, C> {
     #[inline(always)]
-    fn found(&mut self, place: HitIndex, distance: f32) -> bool {
+    fn visit_hit(&mut self, place: HitIndex, distance: f32) -> bool {
         if distance <= self.nearest.limit {
-            self.nearest.offer(distance, place, &self.claim);
+            self.nearest.consider(distance, place, &self.tie_break);
         }
         false
     }
@@ -110,7 +110,7 @@ pub(in super::super) struct AnyHitVisitor;
 
 impl HitVisitor for AnyHitVisitor {
     #[inline(always)]
-    fn found(&mut self, _: HitIndex, _: f32) -> bool {
+    fn visit_hit(&mut self, _: HitIndex, _: f32) -> bool {
         true
     }
 
@@ -125,7 +125,7 @@ pub(in super::super) struct AllHitsVisitor<F>(pub(in super::super) F);
 
 impl<F: FnMut(HitIndex, f32)> HitVisitor for AllHitsVisitor<F> {
     #[inline(always)]
-    fn found(&mut self, place: HitIndex, distance: f32) -> bool {
+    fn visit_hit(&mut self, place: HitIndex, distance: f32) -> bool {
         (self.0)(place, distance);
         false
     }

@@ -15,7 +15,7 @@ pub(in super::super) const LARGEST_INVERSE: f32 = 1e24;
 
 /// The margin of boxes seen from `origin`, m: 2^-20 of the distance to the far corner of the whole tree.
 #[inline]
-pub(in super::super) fn margin(origin: [f32; 3], bounds: &Aabb) -> f32 {
+pub(in super::super) fn box_margin(origin: [f32; 3], bounds: &Aabb) -> f32 {
     let mut reach = 0.0_f32;
     for k in 0..3 {
         reach = reach
@@ -27,7 +27,7 @@ pub(in super::super) fn margin(origin: [f32; 3], bounds: &Aabb) -> f32 {
 
 /// The inverse of a component of a direction, limited, never zero or NaN for finite input.
 #[inline(always)]
-pub(in super::super) fn inverse(component: f32) -> f32 {
+pub(in super::super) fn safe_inverse(component: f32) -> f32 {
     let inverse = 1.0 / component;
     let inverse = if inverse < LARGEST_INVERSE {
         inverse
@@ -72,30 +72,34 @@ impl PaddedOrigin {
 }
 
 #[inline(always)]
-pub(in super::super) fn least(a: f32, b: f32) -> f32 {
+pub(in super::super) fn min_f32(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
 #[inline(always)]
-pub(in super::super) fn most(a: f32, b: f32) -> f32 {
+pub(in super::super) fn max_f32(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
 /// Distances at which a ray enters and leaves a box given by its corners as seen from the origin; it misses the box when
 /// it leaves before it enters.
 #[inline(always)]
-pub(in super::super) fn crossing(min: &[f32; 3], max: &[f32; 3], inverse: [f32; 3]) -> (f32, f32) {
+pub(in super::super) fn slab_range(
+    min: &[f32; 3],
+    max: &[f32; 3],
+    inverse: [f32; 3],
+) -> (f32, f32) {
     let (x0, x1) = (min[0] * inverse[0], max[0] * inverse[0]);
     let (y0, y1) = (min[1] * inverse[1], max[1] * inverse[1]);
     let (z0, z1) = (min[2] * inverse[2], max[2] * inverse[2]);
-    let enter = most(most(least(x0, x1), least(y0, y1)), least(z0, z1));
-    let leave = least(least(most(x0, x1), most(y0, y1)), most(z0, z1));
+    let enter = max_f32(max_f32(min_f32(x0, x1), min_f32(y0, y1)), min_f32(z0, z1));
+    let leave = min_f32(min_f32(max_f32(x0, x1), max_f32(y0, y1)), max_f32(z0, z1));
     (enter, leave)
 }
 
-/// As [`crossing`] for the children of a node and a ray with `wide` origin.
+/// As [`slab_range`] for the children of a node and a ray with `wide` origin.
 #[inline(always)]
-pub(in super::super) fn crossing4(
+pub(in super::super) fn slab_range4(
     node: &Node,
     wide: &PaddedOrigin,
     inverse: &[Vec4; 3],

@@ -4,16 +4,16 @@ use super::super::node::{NodeLink, STACK};
 use super::super::triangles::TriangleBvh;
 use super::super::wide::WideBvh;
 use super::HitFilter;
-use super::closest_hit::{ClosestHit, HitIndex, TieBreak, horizon};
+use super::closest_hit::{ClosestHit, HitIndex, TieBreak, coincidence_max_distance};
 use super::prepared_packet::PreparedPacket;
-use super::slab::least;
+use super::slab::min_f32;
 use super::triangle::{EdgePlanes, OriginTriangles};
 
 /// A visitor of a tree's leaves. A trait, not a closure: closures cannot be made to compile inline, and code that is not
 /// inline does not use the instructions of the function around it.
 pub(in super::super) trait PacketLeafVisitor<const N: usize> {
     /// May lower limits; returns whether to stop.
-    fn leaf(&mut self, fan: &mut PreparedPacket<N>, index: usize) -> bool;
+    fn visit_leaf(&mut self, fan: &mut PreparedPacket<N>, index: usize) -> bool;
 }
 
 /// Visits the leaves that some ray enters before its limit, nearer ones first, until the visitor stops it.
@@ -25,19 +25,19 @@ pub(in super::super) fn traverse<const N: usize>(
 ) {
     let mut stack = [(0.0_f32, NodeLink::NONE); STACK];
     let mut top = 0;
-    let mut link = tree.top;
+    let mut link = tree.root;
     if link == NodeLink::NONE || fan.is_done() {
         return;
     }
     loop {
         let (is_leaf, index) = link.parts();
         if is_leaf {
-            if visit.leaf(fan, index) {
+            if visit.visit_leaf(fan, index) {
                 return;
             }
         } else {
             let node = &tree.nodes[index];
-            let (hits, enter) = fan.enters(node);
+            let (hits, enter) = fan.intersect_children(node);
             if hits != 0 {
                 link = super::push_further(node, hits, enter, &mut stack, &mut top);
                 continue;
@@ -48,7 +48,7 @@ pub(in super::super) fn traverse<const N: usize>(
                 return;
             }
             top -= 1;
-            if stack[top].0 <= fan.furthest {
+            if stack[top].0 <= fan.max_limit {
                 link = stack[top].1;
                 break;
             }
@@ -88,8 +88,8 @@ impl<const N: usize> PacketClosestHits<N> {
         ClosestHit {
             distance: self.distance[k],
             limit,
-            best,
-            others: self.others[k],
+            closest: best,
+            nearest_other_reach: self.others[k],
             ambiguous_at: self.ambiguous_at[k],
         }
     }
@@ -105,12 +105,12 @@ impl<const N: usize> PacketClosestHits<N> {
         claim: &dyn Fn(HitIndex) -> TieBreak,
     ) {
         let mut nearest = self.lane(k, *limit);
-        nearest.weigh(distance, hit, claim);
+        nearest.consider_coincident(distance, hit, claim);
         *limit = nearest.limit;
         self.distance[k] = nearest.distance;
-        self.others[k] = nearest.others;
+        self.others[k] = nearest.nearest_other_reach;
         self.ambiguous_at[k] = nearest.ambiguous_at;
-        self.set(k, nearest.best);
+        self.set(k, nearest.closest);
     }
 
     pub(in super::super) fn is_ambiguous(&self, k: usize) -> bool {
@@ -126,16 +126,16 @@ impl<const N: usize> PacketClosestHits<N> {
 macro_rules! for_each_hit {
     ($bvh:expr, $fan:expr, $filter:expr, $block:expr, |$slot:ident, $distances:ident| $take:expr) => {
         let block = &$bvh.blocks[$block];
-        let planes = EdgePlanes::new(block, $fan.origin, $fan.longest);
-        let mut candidates = planes.inside_any($fan.lowest, $fan.highest);
+        let planes = EdgePlanes::new(block, $fan.origin, $fan.max_direction_component);
+        let mut candidates = planes.triangles_hit_by_any($fan.min_direction, $fan.max_direction);
         if candidates != 0 {
-            let facets = OriginTriangles::new(block, &planes, $fan.origin, &$fan.wide);
+            let facets = OriginTriangles::new(block, &planes, $fan.origin, &$fan.padded_origin);
             while candidates != 0 {
                 let lane = candidates.trailing_zeros() as usize;
                 candidates &= candidates - 1;
                 let $slot = $block * 4 + lane;
                 if $filter.admits_surface(&$bvh.surfaces[$slot])
-                    && let Some($distances) = $fan.meet(&facets, lane)
+                    && let Some($distances) = $fan.intersect_triangle(&facets, lane)
                 {
                     $take;
                 }
@@ -149,16 +149,16 @@ pub(in super::super) struct ClosestLeafVisitor<'a, const N: usize, C> {
     pub(in super::super) bvh: &'a TriangleBvh,
     pub(in super::super) source: u32,
     pub(in super::super) filter: HitFilter,
-    pub(in super::super) answers: &'a mut PacketClosestHits<N>,
+    pub(in super::super) hits: &'a mut PacketClosestHits<N>,
     /// The order among coincident hits, by lane.
-    pub(in super::super) claim: C,
+    pub(in super::super) tie_break: C,
 }
 
 impl<const N: usize, C: Fn(usize, HitIndex) -> TieBreak> PacketLeafVisitor<N>
     for ClosestLeafVisitor<'_, N, C>
 {
     #[inline(always)]
-    fn leaf(&mut self, fan: &mut PreparedPacket<N>, block: usize) -> bool {
+    fn visit_leaf(&mut self, fan: &mut PreparedPacket<N>, block: usize) -> bool {
         for_each_hit!(self.bvh, fan, &self.filter, block, |slot, distances| self
             .take(fan, slot as u32, &distances));
         false
@@ -173,7 +173,7 @@ pub(in super::super) struct OccludedLeafVisitor<'a> {
 
 impl<const N: usize> PacketLeafVisitor<N> for OccludedLeafVisitor<'_> {
     #[inline(always)]
-    fn leaf(&mut self, fan: &mut PreparedPacket<N>, block: usize) -> bool {
+    fn visit_leaf(&mut self, fan: &mut PreparedPacket<N>, block: usize) -> bool {
         for_each_hit!(self.bvh, fan, &self.filter, block, |_slot, distances| {
             for k in 0..N {
                 fan.limit[k] = if distances[k].is_nan() {
@@ -182,7 +182,7 @@ impl<const N: usize> PacketLeafVisitor<N> for OccludedLeafVisitor<'_> {
                     f32::NEG_INFINITY
                 };
             }
-            fan.limits_changed();
+            fan.update_limit_bounds();
         });
         fan.is_done()
     }
@@ -193,11 +193,11 @@ impl<const N: usize, C: Fn(usize, HitIndex) -> TieBreak> ClosestLeafVisitor<'_, 
     #[inline(always)]
     fn take(&mut self, fan: &mut PreparedPacket<N>, slot: u32, distances: &[f32; N]) {
         // From copies into new arrays and without branches, so that the loop becomes vector instructions.
-        let (before, slots, limits) = (self.answers.distance, self.answers.slot, fan.limit);
+        let (before, slots, limits) = (self.hits.distance, self.hits.slot, fan.limit);
         let (mut new_distance, mut new_slot, mut new_limit) = ([0.0; N], [0_u32; N], [0.0; N]);
         let (mut any_close, mut close) = (0_u32, [0_u32; N]);
         for k in 0..N {
-            let horizon = horizon(distances[k]);
+            let horizon = coincidence_max_distance(distances[k]);
             let clear = u32::from(horizon < before[k]);
             let closes = u32::from(distances[k] <= limits[k]) & !clear;
             close[k] = closes;
@@ -208,7 +208,7 @@ impl<const N: usize, C: Fn(usize, HitIndex) -> TieBreak> ClosestLeafVisitor<'_, 
             new_slot[k] = (slot & chosen) | (slots[k] & !chosen);
             // NaN without a hit keeps the old limit; an ambiguous hit is beyond it or lowers it below.
             new_limit[k] = if horizon < before[k] {
-                least(horizon, limits[k])
+                min_f32(horizon, limits[k])
             } else {
                 limits[k]
             };
@@ -216,11 +216,10 @@ impl<const N: usize, C: Fn(usize, HitIndex) -> TieBreak> ClosestLeafVisitor<'_, 
         if self.source != 0 {
             for k in 0..N {
                 let chosen = u32::from(new_distance[k] < before[k]).wrapping_neg();
-                self.answers.source[k] =
-                    (self.source & chosen) | (self.answers.source[k] & !chosen);
+                self.hits.source[k] = (self.source & chosen) | (self.hits.source[k] & !chosen);
             }
         }
-        (self.answers.distance, self.answers.slot, fan.limit) = (new_distance, new_slot, new_limit);
+        (self.hits.distance, self.hits.slot, fan.limit) = (new_distance, new_slot, new_limit);
         if any_close != 0 {
             for k in 0..N {
                 if close[k] != 0 {
@@ -228,13 +227,13 @@ impl<const N: usize, C: Fn(usize, HitIndex) -> TieBreak> ClosestLeafVisitor<'_, 
                         source: self.source,
                         slot,
                     };
-                    self.answers
+                    self.hits
                         .weigh(k, &mut fan.limit[k], distances[k], hit, &|place| {
-                            (self.claim)(k, place)
+                            (self.tie_break)(k, place)
                         });
                 }
             }
         }
-        fan.limits_changed();
+        fan.update_limit_bounds();
     }
 }

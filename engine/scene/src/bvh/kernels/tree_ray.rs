@@ -6,8 +6,10 @@ use super::super::node::{Node, NodeLink, STACK, TriangleBlock};
 use super::super::triangles::TriangleBvh;
 use super::super::wide::WideBvh;
 use super::closest_hit::HitIndex;
-use super::slab::{PaddedOrigin, crossing, crossing4, inverse, least, margin, most};
-use super::triangle::{EdgePlanes, bounds, dot, height_of, settled};
+use super::slab::{
+    PaddedOrigin, box_margin, max_f32, min_f32, safe_inverse, slab_range, slab_range4,
+};
+use super::triangle::{EdgePlanes, bounds, clamped_hit_distance, dot, plane_distance};
 use super::{HitFilter, three};
 use crate::bounds::Aabb;
 
@@ -35,9 +37,9 @@ impl PreparedRay {
         (near, far): (f32, f32),
         longest: f32,
     ) -> Self {
-        let margin = margin(origin, all);
+        let margin = box_margin(origin, all);
         let wide = PaddedOrigin::new(origin, margin);
-        let inverse = three(|axis| inverse(direction[axis]));
+        let inverse = three(|axis| safe_inverse(direction[axis]));
         Self {
             origin,
             direction,
@@ -59,16 +61,16 @@ impl PreparedRay {
 
     /// Returns the interval of the ray inside a box, within its own range.
     #[inline(always)]
-    pub(super) fn range_in(&self, bounds: &Aabb) -> (f32, f32) {
+    pub(super) fn range_in_box(&self, bounds: &Aabb) -> (f32, f32) {
         let (min, max) = self.wide.corners(bounds.min.as_ref(), bounds.max.as_ref());
-        let (enter, leave) = crossing(&min, &max, self.inverse);
-        (most(enter, self.near), least(leave, self.far))
+        let (enter, leave) = slab_range(&min, &max, self.inverse);
+        (max_f32(enter, self.near), min_f32(leave, self.far))
     }
 
     /// Returns the children whose boxes the ray enters up to `limit`, as bits, and the entry distances.
     #[inline(always)]
     fn enters(&self, node: &Node, limit: f32) -> (u32, Vec4) {
-        let (enter, leave) = crossing4(
+        let (enter, leave) = slab_range4(
             node,
             &self.wide,
             &three(|axis| Vec4::splat(self.inverse[axis])),
@@ -85,18 +87,18 @@ impl PreparedRay {
     fn distance(&self, triangles: &TriangleBlock, lane: usize) -> f32 {
         let [x, y, z] = self.direction;
         let slope = dot(triangles.normal_of(lane), x, y, z);
-        let distance = height_of(triangles, lane, self.origin) / slope;
+        let distance = plane_distance(triangles, lane, self.origin) / slope;
         let (min, max) = bounds(triangles, lane);
         let (min, max) = self.wide.corners(&min, &max);
-        let crossing = crossing(&min, &max, self.inverse);
-        settled(distance, slope, crossing, self.margin)
+        let crossing = slab_range(&min, &max, self.inverse);
+        clamped_hit_distance(distance, slope, crossing, self.margin)
     }
 }
 
 /// A visitor of a tree's leaves.
 pub(super) trait RayLeafVisitor {
     /// Visits a leaf; may lower the limit beyond which nothing matters. Returns whether to stop.
-    fn leaf(&mut self, index: usize, limit: &mut f32) -> bool;
+    fn visit_leaf(&mut self, index: usize, limit: &mut f32) -> bool;
 }
 
 /// Visits the leaves that a ray enters before `limit`, nearer ones first, until the visitor stops it.
@@ -109,14 +111,14 @@ pub(super) fn traverse(
 ) -> bool {
     let mut stack = [(0.0_f32, NodeLink::NONE); STACK];
     let mut top = 0;
-    let mut link = tree.top;
+    let mut link = tree.root;
     if link == NodeLink::NONE {
         return false;
     }
     loop {
         let (is_leaf, index) = link.parts();
         if is_leaf {
-            if visit.leaf(index, &mut limit) {
+            if visit.visit_leaf(index, &mut limit) {
                 return true;
             }
         } else {
@@ -143,7 +145,7 @@ pub(super) fn traverse(
 /// A visitor of hits.
 pub(in super::super) trait HitVisitor {
     /// Takes a hit. Returns whether to stop.
-    fn found(&mut self, place: HitIndex, distance: f32) -> bool;
+    fn visit_hit(&mut self, place: HitIndex, distance: f32) -> bool;
 
     /// Returns the distance beyond which no hit matters.
     fn limit(&self) -> f32;
@@ -151,14 +153,14 @@ pub(in super::super) trait HitVisitor {
 
 /// Passes the hits with the triangles of a tree to `hits`, until it stops; `source` as in [`HitIndex`].
 #[inline(always)]
-pub(super) fn meet<H: HitVisitor>(
+pub(super) fn intersect_tree<H: HitVisitor>(
     bvh: &TriangleBvh,
     probe: &PreparedRay,
     filter: &HitFilter,
     source: u32,
     hits: &mut H,
 ) -> bool {
-    let limit = least(hits.limit(), probe.far);
+    let limit = min_f32(hits.limit(), probe.far);
     let mut triangles = TriangleLeafVisitor {
         bvh,
         probe,
@@ -180,11 +182,11 @@ struct TriangleLeafVisitor<'a, H> {
 
 impl<H: HitVisitor> RayLeafVisitor for TriangleLeafVisitor<'_, H> {
     #[inline(always)]
-    fn leaf(&mut self, block: usize, limit: &mut f32) -> bool {
+    fn visit_leaf(&mut self, block: usize, limit: &mut f32) -> bool {
         let (probe, source) = (self.probe, self.source);
         let triangles = &self.bvh.blocks[block];
         let planes = EdgePlanes::new(triangles, probe.origin, probe.longest);
-        let mut candidates = planes.inside(probe.direction);
+        let mut candidates = planes.triangles_hit(probe.direction);
         while candidates != 0 {
             let lane = candidates.trailing_zeros() as usize;
             candidates &= candidates - 1;
@@ -195,11 +197,11 @@ impl<H: HitVisitor> RayLeafVisitor for TriangleLeafVisitor<'_, H> {
                 continue;
             }
             let slot = slot as u32;
-            if self.hits.found(HitIndex { source, slot }, distance) {
+            if self.hits.visit_hit(HitIndex { source, slot }, distance) {
                 return true;
             }
         }
-        *limit = least(self.hits.limit(), *limit);
+        *limit = min_f32(self.hits.limit(), *limit);
         false
     }
 }

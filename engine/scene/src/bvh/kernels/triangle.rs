@@ -10,7 +10,7 @@
 use glam::Vec4;
 
 use super::super::node::TriangleBlock;
-use super::slab::{PaddedOrigin, least, most};
+use super::slab::{PaddedOrigin, max_f32, min_f32};
 use super::three;
 
 /// Four triangles as seen from an origin.
@@ -84,7 +84,7 @@ impl EdgePlanes {
 
     /// Edge functions of a direction, proportional to the weights of the second, third and first corner at the hit.
     #[inline(always)]
-    pub(in super::super) fn sides(&self, direction: [f32; 3]) -> [Vec4; 3] {
+    pub(in super::super) fn edge_functions(&self, direction: [f32; 3]) -> [Vec4; 3] {
         [
             dot4(&self.normals[0], direction),
             dot4(&self.normals[1], direction),
@@ -94,8 +94,8 @@ impl EdgePlanes {
 
     /// Returns the triangles that a ray may pass inside, as bits, from either side.
     #[inline(always)]
-    pub(in super::super) fn inside(&self, direction: [f32; 3]) -> u32 {
-        let ([u, v, w], [tu, tv, tw]) = (self.sides(direction), self.tolerances);
+    pub(in super::super) fn triangles_hit(&self, direction: [f32; 3]) -> u32 {
+        let ([u, v, w], [tu, tv, tw]) = (self.edge_functions(direction), self.tolerances);
         let lowest = (u + tu).min(v + tv).min(w + tw);
         let highest = (u - tu).max(v - tv).max(w - tw);
         (lowest.cmpge(Vec4::ZERO) | highest.cmple(Vec4::ZERO)).bitmask()
@@ -103,7 +103,7 @@ impl EdgePlanes {
 
     /// Returns the triangles that some ray whose direction lies between `low` and `high` may pass inside, as bits.
     #[inline(always)]
-    pub(in super::super) fn inside_any(&self, low: [f32; 3], high: [f32; 3]) -> u32 {
+    pub(in super::super) fn triangles_hit_by_any(&self, low: [f32; 3], high: [f32; 3]) -> u32 {
         let bounds = |n: &[Vec4; 3]| {
             let least = three(|k| (n[k] * low[k]).min(n[k] * high[k]));
             let most = three(|k| (n[k] * low[k]).max(n[k] * high[k]));
@@ -165,28 +165,32 @@ impl OriginTriangles {
 
 /// Distance of the plane of one triangle of a block from an origin, along its normal.
 #[inline(always)]
-pub(in super::super) fn height_of(block: &TriangleBlock, lane: usize, origin: [f32; 3]) -> f32 {
+pub(in super::super) fn plane_distance(
+    block: &TriangleBlock,
+    lane: usize,
+    origin: [f32; 3],
+) -> f32 {
     let [x, y, z] = three(|axis| block.a[axis][lane] - origin[axis]);
     dot(block.normal_of(lane), x, y, z)
 }
 
 /// Returns whether the edge functions allow the ray to pass inside, from either side.
 #[inline(always)]
-pub(in super::super) fn inside([u, v, w]: [f32; 3], [tu, tv, tw]: [f32; 3]) -> bool {
-    let lowest = least(least(u + tu, v + tv), w + tw);
-    let highest = most(most(u - tu, v - tv), w - tw);
+pub(in super::super) fn is_inside([u, v, w]: [f32; 3], [tu, tv, tw]: [f32; 3]) -> bool {
+    let lowest = min_f32(min_f32(u + tu, v + tv), w + tw);
+    let highest = max_f32(max_f32(u - tu, v - tv), w - tw);
     (lowest >= 0.0) | (highest <= 0.0)
 }
 
 /// Weights of the second and third corner from the edge functions of a ray that passes inside; at least 0, at most 1 in all.
 #[inline]
-pub(in super::super) fn weights([u, v, w]: [f32; 3]) -> (f32, f32) {
+pub(in super::super) fn barycentric_weights([u, v, w]: [f32; 3]) -> (f32, f32) {
     let front = ((u + v) + w) >= 0.0;
     let sign = if front { 1.0 } else { -1.0 };
     let (u, v, w) = (
-        most(sign * u, 0.0),
-        most(sign * v, 0.0),
-        most(sign * w, 0.0),
+        max_f32(sign * u, 0.0),
+        max_f32(sign * v, 0.0),
+        max_f32(sign * w, 0.0),
     );
     let sum = (u + v) + w;
     if sum > 0.0 {
@@ -203,15 +207,15 @@ pub(in super::super) fn weights([u, v, w]: [f32; 3]) -> (f32, f32) {
 /// angles. There it counts as far as the plane is within the margin. So hits always lie in the boxes of their triangles,
 /// and no box can be skipped wrongly.
 #[inline(always)]
-pub(in super::super) fn settled(
+pub(in super::super) fn clamped_hit_distance(
     distance: f32,
     slope: f32,
     (enter, leave): (f32, f32),
     margin: f32,
 ) -> f32 {
-    let inside = least(most(distance, enter), leave);
+    let inside = min_f32(max_f32(distance, enter), leave);
     let off = (distance - inside) * slope;
-    let counts = (slope != 0.0) & (enter <= leave) & (most(off, -off) <= margin);
+    let counts = (slope != 0.0) & (enter <= leave) & (max_f32(off, -off) <= margin);
     if counts { inside } else { f32::NAN }
 }
 
@@ -222,14 +226,14 @@ pub(in super::super) fn bounds(block: &TriangleBlock, lane: usize) -> ([f32; 3],
     let ((ax, bx, cx), (ay, by, cy), (az, bz, cz)) = (corner(0), corner(1), corner(2));
     (
         [
-            least(least(ax, bx), cx),
-            least(least(ay, by), cy),
-            least(least(az, bz), cz),
+            min_f32(min_f32(ax, bx), cx),
+            min_f32(min_f32(ay, by), cy),
+            min_f32(min_f32(az, bz), cz),
         ],
         [
-            most(most(ax, bx), cx),
-            most(most(ay, by), cy),
-            most(most(az, bz), cz),
+            max_f32(max_f32(ax, bx), cx),
+            max_f32(max_f32(ay, by), cy),
+            max_f32(max_f32(az, bz), cz),
         ],
     )
 }
