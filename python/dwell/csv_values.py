@@ -113,4 +113,20 @@ class TimeParser:
                 "stands twice, and give every recording an episode's name of its own"
             )
         self._last[episode] = (told, at)
+        stamp = self._told(told)
+        if told > before > -math.inf and float(stamp) <= float(self._told(before)):
+            raise ValueError(
+                f"{at}: column {self.column!r} is {told:g} after {before:g} (row "
+                f"{there.rpartition(' ')[2]}), and both are {stamp} s at seconds_per_unit "
+                f"{self.seconds_per_unit:g}; times rise within an episode by 1e-9 s or more: "
+                "correct seconds_per_unit in the map"
+            )
+        if not math.isfinite(float(stamp)):
+            raise ValueError(
+                f"{at}: column {self.column!r} is {told:g}, which is no finite number of seconds "
+                f"at seconds_per_unit {self.seconds_per_unit:g}; correct one of them"
+            )
+        return stamp
+
+    def _told(self, told: float) -> str:
         return f"{told * self.seconds_per_unit:.9f}"

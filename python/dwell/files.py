@@ -331,13 +331,17 @@ def open_exclusive(path: Path) -> IO[bytes]:
 
     Raises:
         ValueError: Another process has it.
-        OSError: The system refuses, or it is no regular file.
+        OSError: The system refuses, or it is no regular file; a link to one is none either.
     """
+    flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_CLOEXEC", 0)
     while True:
+        if path.is_symlink():
+            # Nobody named it, so nobody knows what would be written through it.
+            raise OSError(errno.ELOOP, "is a link; remove it, or give another --out", str(path))
         if os.path.lexists(path):
             # Refuses what is no regular file.
             open_file(path).close()
-        file = os.fdopen(os.open(path, os.O_RDWR | os.O_CREAT, 0o644), "r+b")
+        file = os.fdopen(os.open(path, flags, 0o644), "r+b")
         if lock(file) is False:
             file.close()
             raise ValueError(

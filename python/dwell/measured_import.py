@@ -225,6 +225,17 @@ def unit_scale(part: CsvRow, key: str, at: str) -> float:
     return found
 
 
+def seconds_per_unit(part: CsvRow, at: str) -> float:
+    """The seconds of one unit of a clock's column; clocks go forwards."""
+    found = unit_scale(part, "seconds_per_unit", at)
+    if found < 0:
+        raise ValueError(
+            f"{at}: seconds_per_unit is {part['seconds_per_unit']!r}; a finite number above 0 is "
+            "needed"
+        )
+    return found
+
+
 def to_y_up(vector: list[float], up: str) -> list[float]:
     """A vector of a world whose vertical is ``up`` in the engine's, whose is y."""
     x, y, z = vector
@@ -307,7 +318,7 @@ def pose_bundle(
     episode, clock = require_columns(part, "episode", here), require_columns(part, "t_s", here)
     group = part.get("split_group") or episode
     table.has([episode, group, clock, *place, *quaternion, *rates[0], *rates[1]])
-    times = csv_values.TimeParser(clock, unit_scale(part, "seconds_per_unit", here))
+    times = csv_values.TimeParser(clock, seconds_per_unit(part, here))
     metres = unit_scale(part, "metres_per_unit", here)
     radians = unit_scale(part, "radians_per_unit", here)
     in_body = form.get("angular_velocity") == "body"
@@ -436,7 +447,7 @@ def flight_bundle(
     episode, clock = require_columns(part, "episode", here), require_columns(part, "t_s", here)
     group = part.get("split_group") or episode
     table.has([episode, group, clock, *channels.values()])
-    times = csv_values.TimeParser(clock, unit_scale(part, "seconds_per_unit", here))
+    times = csv_values.TimeParser(clock, seconds_per_unit(part, here))
     metres = unit_scale(part, "metres_per_unit", here)
     groups: dict[str, str] = {}
     left_out: dict[str, None] = {}
@@ -511,7 +522,7 @@ def drive_bundle(
     wheels = [require_columns(part, key, here) for key in ("ticks_left", "ticks_right")]
     episode = require_columns(part, "episode", here)
     table.has([episode, clock, *place, heading, *wheels])
-    times = csv_values.TimeParser(clock, unit_scale(part, "seconds_per_unit", here))
+    times = csv_values.TimeParser(clock, seconds_per_unit(part, here))
     metres = unit_scale(part, "metres_per_unit", here)
     radians = unit_scale(part, "radians_per_unit", here)
     groups: dict[str, str] = {}

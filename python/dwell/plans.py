@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from PIL import Image, ImageColor, ImageDraw, ImageFont
@@ -34,6 +34,8 @@ _SQUARE_ALPHA = 190
 #: Lengths that a scale may show, m.
 _SCALES_M = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 _MAX_PIXELS = 8192
+#: Pictures in a row of a sheet.
+MAX_COLUMNS = 64
 _PATHS_EXPECTED = "expected a colour and positions (x, y, z) in metres for each"
 _SQUARES_EXPECTED = "expected (x, z, edge, colour) for each, the edge in metres"
 
@@ -188,7 +190,7 @@ def sheet(
         tile: Pixels across and down for each.
     """
     across, down = (integer_in_range("tile", edge, low=8, high=_MAX_PIXELS) for edge in tile)
-    columns = min(integer_in_range("columns", columns, low=1, high=64), max(len(pictures), 1))
+    columns = min(integer_in_range("columns", columns, low=1, high=MAX_COLUMNS), max(len(pictures), 1))
     gap, foot = 10, 24
     rows = math.ceil(len(pictures) / columns)
     size = (columns * (across + gap) + gap, rows * (down + foot + gap) + gap)
@@ -203,17 +205,42 @@ def sheet(
     return canvas
 
 
-def house_sheet(world: World, *, columns: int = 4, preset: Preset = "lit") -> Image.Image:
-    """One house: the doll's house, the plan of each storey, a view of each room."""
+def house_sheet(
+    world: World,
+    *,
+    columns: int = 4,
+    preset: Preset = "lit",
+    progress: Callable[[float, str], None] | None = None,
+) -> Image.Image:
+    """One house: the doll's house, the plan of each storey, a view of each room.
+
+    Args:
+        world: The house as it stands.
+        columns: Pictures in a row, from 1 to 64.
+        preset: How the rooms are lit.
+        progress: Is told the share that is done, 0 to 1, and the picture that comes next.
+    """
     house = instance_of("world", world, World).house
-    levels = range(levels_of(house))
-    pictures = [(house.name, dollhouse(world, width=720))]
+    # Before pictures are made for nothing.
+    columns = integer_in_range("columns", columns, low=1, high=MAX_COLUMNS)
+    levels, rooms = range(levels_of(house)), house.rooms()
+    pictures: list[tuple[str, Image.Image]] = []
+
+    def show_progress(title: str) -> None:
+        if progress is not None:
+            progress(len(pictures) / (1 + len(levels) + len(rooms)), title)
+
+    show_progress("doll's house")
+    pictures.append((house.name, dollhouse(world, width=720)))
     for level in levels:
         title = f"storey {level + 1}" if len(levels) > 1 else "plan"
+        show_progress(title)
         pictures.append((title, floor_plan(world, level, longest_edge=720)))
-    for room in house.rooms():
+    for room in rooms:
+        show_progress(_room_title(room))
         image = room_view(world, room, Camera(720, 540, preset=preset))
         pictures.append((f"{_room_title(room)}, {room['area_m2']:.1f} m²", image))
+    show_progress(f"{len(pictures)} pictures")
     return sheet(pictures, columns=columns)
 
 
@@ -224,6 +251,8 @@ def houses_sheet(houses: Sequence[str], *, columns: int = 4) -> Image.Image:
         houses: HOUSE strings, each of one house.
         columns: Pictures in a row.
     """
+    # Before pictures are made for nothing.
+    columns = integer_in_range("columns", columns, low=1, high=MAX_COLUMNS)
     return sheet([house_tile(name) for name in houses], columns=columns)
 
 

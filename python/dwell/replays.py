@@ -243,7 +243,7 @@ class Replay:
                 f"this episode was played with {[*self.parts] or 'no parts in Python'}, given are "
                 f"{given or 'none'}; task= and reward= take them"
             )
-        config = self._settings()
+        config = _without_pictures(self._settings())
         if renderer is not None:
             config["world"] = {**config.get("world", {}), "renderer": renderer}
         opened = House.open(self.house) if house is None else instance_of("house", house, House)
@@ -325,6 +325,34 @@ class Replay:
                 )
         if moment.success != self.success:
             yield f"success: the file states {self.success}, played it is {moment.success}"
+
+
+def _without_pictures(config: dict[str, Any]) -> dict[str, Any]:
+    """The settings without sensors of pictures: no bit of a world depends on them.
+
+    What remains is heard or felt. Who plays an episode again looks at the world itself.
+    """
+    pictures = {row["name"] for row in _native.sensors() if row["picture_style"] is not None}
+
+    def kept(row: object) -> object:
+        if not isinstance(row, dict) or not isinstance(row.get("sensors"), list):
+            return row
+        return row | {"sensors": [own for own in row["sensors"] if not shown(own)]}
+
+    def shown(row: object) -> bool:
+        return isinstance(row, dict) and row.get("kind") in pictures
+
+    agents = config.get("agents")
+    own_tasks = isinstance(agents, list) and any("task" in row for row in agents)
+    if config.get("sensors") is None and not own_tasks:
+        name = config.get("task", "InstructionFollowing")
+        tasks = [row for row in _native.tasks() if row["name"] == name]
+        usual = [{"kind": kind} for row in tasks for kind in row["sensors"]]
+        config = config | ({"sensors": usual} if tasks else {})
+    if isinstance(agents, list):
+        config = config | {"agents": [kept(row) for row in agents]}
+    result = kept(config)
+    return result if isinstance(result, dict) else config
 
 
 #: The fields of a file.

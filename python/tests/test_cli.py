@@ -313,6 +313,36 @@ def test_an_interrupted_describe_goes_on_where_it_stopped(
     assert journal.read_bytes() == left
 
 
+def test_an_interrupted_describe_refuses_a_house_that_has_changed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from dwell.cli import describe, main
+    from dwell.house import House
+
+    house, out = tmp_path / "a.dwell", tmp_path / "lines.jsonl"
+    House.open(HOUSE).write(house, "dwell")
+    command = ["describe", str(house), HOUSE, "--out", str(out)]
+    real = describe._describe
+
+    def stopped(name: str, *rest: object) -> object:
+        if name == HOUSE:
+            raise KeyboardInterrupt
+        return real(name, *rest)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(describe, "_describe", stopped)
+    assert main(command) == 130
+    monkeypatch.setattr(describe, "_describe", real)
+    journal = tmp_path / ".lines.jsonl.part"
+    left = journal.read_bytes()
+    House.open("builtin:studio").write(house, "dwell")
+    capsys.readouterr()
+    assert main(command) == 1
+    assert f"{house} has changed since {journal} kept" in capsys.readouterr().err
+    assert journal.read_bytes() == left
+    House.open(HOUSE).write(house, "dwell")
+    assert main(command) == 0
+
+
 def test_what_the_demo_cannot_walk_through_is_refused(tmp_path: Path) -> None:
     thing = tmp_path / "thing.obj"
     thing.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "utf-8")

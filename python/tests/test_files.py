@@ -287,6 +287,31 @@ def test_rows_of_another_job_are_not_discarded(
     assert not out.exists()
 
 
+def test_what_stands_where_a_journal_would_is_left_as_it_is(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out, kept = tmp_path / "lines", tmp_path / ".lines.part"
+    command = ["describe", "builtin:studio", "--out", str(out)]
+    for foreign in (b"dear diary\n", b'{"text": "dear"}\n', b"\xff\x00"):
+        kept.write_bytes(foreign)
+        assert cli.main(command) == 1
+        assert ".lines.part" in capsys.readouterr().err
+        assert kept.read_bytes() == foreign
+    out.write_text("whole")
+    assert cli.main(command) == 1
+    assert kept.read_bytes() == foreign
+    out.unlink()
+    kept.unlink()
+    for aim in ("mine", "nothing"):
+        (tmp_path / "mine").write_text("dear")
+        kept.symlink_to(tmp_path / aim)
+        assert cli.main(command) == 1
+        assert "is a link" in capsys.readouterr().err
+        kept.unlink()
+    assert (tmp_path / "mine").read_text() == "dear"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["mine"]
+
+
 def test_a_result_may_have_the_longest_name_that_there_is(tmp_path: Path) -> None:
     from dwell.cli.job_journal import Journal
 

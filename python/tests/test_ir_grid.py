@@ -198,6 +198,19 @@ def test_a_stopped_run_goes_on_and_gives_the_same_data(
     assert _grid(out, "--format", "hdf5", "--sources", "4") == 1
 
 
+@pytest.mark.parametrize("form", ["sofa", "hdf5"])
+def test_a_file_of_a_house_that_has_changed_is_made_again(tmp_path: Path, form: str) -> None:
+    pytest.importorskip("h5py", reason="both need h5py")
+    house, out = tmp_path / "a.dwell", tmp_path / "out"
+    options = ["--grid", "3", "--format", form, "--out", str(out), *FEW]
+    command = ["ir", str(house), *options]
+    for name, makes in ((HOUSE, True), (HOUSE, False), ("seed:5?home=studio", True)):
+        dwell.House.open(name).write(house, "dwell")
+        before = [path.read_bytes() for path in out.glob("*.*")]
+        assert main(command) == 0
+        assert ([path.read_bytes() for path in out.glob("*.*")] != before) is makes
+
+
 def test_without_the_extra_it_says_what_to_install(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

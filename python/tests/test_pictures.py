@@ -117,6 +117,36 @@ def test_render_writes_plans_and_sheets(tmp_path: Path) -> None:
     assert "--sheet" in refused.stderr
 
 
+@pytest.mark.parametrize("columns", [0, 65, 100])
+def test_columns_are_refused_before_a_picture_is_made(
+    columns: int,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    from dwell import cli, plans
+
+    monkeypatch.setattr(plans, "dollhouse", None)
+    for houses in (["builtin:studio"], ["builtin:studio", "seed:1"]):
+        options = ["--sheet", "--columns", str(columns), "--out", str(tmp_path / "out")]
+        assert cli.main(["render", *houses, *options]) == 1
+        told = capsys.readouterr().err
+        assert f"--columns is {columns}; allowed are whole numbers from 1 to 64" in told
+    with pytest.raises(dwell.ConfigError, match="columns"):
+        plans.houses_sheet(["builtin:studio"], columns=columns)
+
+
+def test_a_sheet_says_how_far_it_is() -> None:
+    from dwell import plans
+
+    told: list[tuple[float, str]] = []
+    world = dwell.World("builtin:studio", agents=0)
+    plans.house_sheet(world, progress=lambda share, what: told.append((share, what)))
+    assert told[0] == (0.0, "doll's house")
+    assert told[-1] == (1.0, f"{len(world.house.rooms()) + 2} pictures")
+    assert [share for share, _ in told] == sorted(share for share, _ in told)
+
+
 def test_the_command_line_takes_any_intrinsics(tmp_path: Path, shoebox: dwell.House) -> None:
     house = "builtin:studio"
     world = dwell.World(house, agents=0)

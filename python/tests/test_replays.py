@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 from pathlib import Path
 from typing import Any
@@ -66,6 +67,24 @@ def test_a_change_is_found_at_its_step(file: Path, tmp_path: Path) -> None:
     assert dwell.Replay.read(changed).first_difference() == 0
     assert cli.main(["replay", str(changed), "--verify"]) == 1
     assert cli.main(["replay", str(file), "--verify"]) == 0
+
+
+@pytest.mark.parametrize("at", ["sensors", "agents", "task"])
+def test_pictures_that_no_bit_depends_on_are_not_made(at: str, tmp_path: Path) -> None:
+    big = {"width": 16384, "height": 16384}
+    own = None if at == "task" else ["gps", "audio"]
+    replay = dwell.Replay.read(recorded(tmp_path, houses="builtin:studio", sensors=own))
+    config = json.loads(replay.config)
+    sensors = [{"kind": "rgb", "settings": big}, {"kind": "gps"}, {"kind": "audio"}]
+    if at == "sensors":
+        config["sensors"] = sensors
+    elif at == "agents":
+        config["agents"] = [{"agent": 0, "sensors": sensors}]
+    with_pictures = dataclasses.replace(replay, config=json.dumps(config))
+    runner = with_pictures._runner(None, None, None, None)
+    assert "rgb" not in {spec.name for spec in runner.specs}
+    assert [spec.name for spec in runner.specs if spec.name == "audio"] or at == "task"
+    assert with_pictures.first_difference() is None
 
 
 def test_it_is_seen_and_heard_again(file: Path, tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+from dwell.csv_values import TimeParser
 from dwell.measured_import import import_files
 
 Rows = list[list[Any]]
@@ -364,6 +365,14 @@ def test_maps_and_lists_of_bodies_are_told_with_what_to_change(tmp_path: Path) -
     assert '"up": "z" in the map' in refused(tmp_path, up)
     told = refused(tmp_path, with_table(FLIGHT, seconds_per_unit=0))
     assert "table: seconds_per_unit is 0; a finite number other than 0" in told
+    for mapping in (FLIGHT, POSES, DRIVE):
+        told = refused(tmp_path, with_table(mapping, seconds_per_unit=-1))
+        assert "table: seconds_per_unit is -1; a finite number above 0 is needed" in told
+    told = refused(tmp_path, with_table(FLIGHT, seconds_per_unit=1e-12))
+    assert "data.csv row 2: column 't_s' is" in told
+    assert "both are 0.000000000 s at seconds_per_unit 1e-12" in told
+    with pytest.raises(ValueError, match=r"is 1e\+300, which is no finite number of seconds"):
+        TimeParser("t", 1e38).stamp("data.csv row 1", "e0", 1e300)
     half = {**POSES, "poses": {**POSES["poses"], "rate_hz": 50.0}}
     assert "write 100.000000 for rate_hz" in refused(tmp_path, half)
 

@@ -8,7 +8,7 @@ import sys
 from typing import Any
 
 from dwell.cli.common import ProgressBar, count, path
-from dwell.cli.job_journal import Journal
+from dwell.cli.job_journal import Journal, contents_of
 from dwell.files import open_file
 
 _LEVELS = ("object", "room", "house", "graph", "instructions")
@@ -39,13 +39,16 @@ def run(args: argparse.Namespace) -> int:
     told, failed = set() if journal is None else set(journal.done), 0
     bar = ProgressBar()
     try:
+        if journal is not None:
+            journal.refuse_changed(contents_of)
         for k, name in enumerate(houses):
             if name not in told:
                 told.add(name)
+                contents = None if journal is None else contents_of(name)
                 rows = _describe(name, args.level, args.seed)
                 failed += rows is None
                 if journal is not None and rows is not None:
-                    journal.add(name, rows)
+                    journal.add(name, rows, contents)
                 elif journal is None:
                     for row in rows or []:
                         (printer or _say)(row)

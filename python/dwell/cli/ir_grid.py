@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell.cli.common import ProgressBar, number, print_json
-from dwell.cli.job_journal import claim, refuse_other
+from dwell.cli.job_journal import claim, is_of_files, refuse_other
 from dwell.files import atomic_write, open_exclusive, open_file, read, read_json, save_array
 from dwell.listening import Receiver
 
@@ -67,9 +67,9 @@ def run(args: argparse.Namespace) -> int:
     refuse_other(args.out, dataset)
     made, failed, started = 0, [], time.perf_counter()
     for house, file in files.items():
-        if file.exists() and _is_whole(file, hdf5):
-            continue
         try:
+            if file.exists() and _is_whole(file, hdf5) and _is_of(file, house, hdf5):
+                continue
             made += _house(args, house, file, job, dataset)
         except DwellError as error:
             failed.append((house, str(error)))
@@ -201,6 +201,20 @@ def _is_whole(file: Path, hdf5: Any) -> bool:  # noqa: ANN401 - the module h5py
     except OSError:
         return False
     return True
+
+
+def _is_of(file: Path, house: str, hdf5: Any) -> bool:  # noqa: ANN401 - the module h5py
+    """Whether a finished file is of the house as it is now; else it is made again."""
+    from dwell.house import House
+
+    if not is_of_files(house):
+        return True
+    with hdf5.File(file, "r") as found:
+        said = found.attrs.get("house_fingerprint", found.attrs.get("Origin"))
+    if said is None:
+        return True
+    told = said.decode(errors="replace") if isinstance(said, bytes) else str(said)
+    return told.endswith(str(House.open(house).info()["fingerprint"]))
 
 
 def _begin(parts: Path, job: dict[str, Any]) -> None:

@@ -7,7 +7,7 @@ import errno
 import json
 import os
 import zlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import IO, Any
 
@@ -21,7 +21,7 @@ from dwell.files import (
     read_json,
 )
 
-_JOB, _DONE = "job", "done"
+_JOB, _DONE, _OF = "job", "done", "of"
 #: Of a result's name, in that of its journal; file systems have names of up to 255 bytes.
 _NAME_BYTES = 230
 #: What is the same for a whole folder; it stands there from the beginning.
@@ -73,6 +73,33 @@ def _hidden_name(name: str) -> str:
     return f".{whole[:_NAME_BYTES].decode(errors='ignore')}-{zlib.crc32(whole):08x}.part"
 
 
+def _line(row: object) -> bytes:
+    return (json.dumps(row, ensure_ascii=False) + "\n").encode()
+
+
+def _is_mark(row: object) -> bool:
+    """Returns whether a row of a journal says that those above it are whole."""
+    return isinstance(row, dict) and _DONE in row and set(row) <= {_DONE, _OF}
+
+
+def is_of_files(house: str) -> bool:
+    """Returns whether files are read for a house, which may change while a job is stopped."""
+    return not house.startswith(("builtin:", "seed:")) or "?map=" in house
+
+
+def contents_of(house: str) -> str | None:
+    """What a house of files holds, in short; ``None`` for one that no file is read for."""
+    from dwell import DwellError
+    from dwell.house import House
+
+    if not is_of_files(house):
+        return None
+    try:
+        return f"{hash(House.open(house)):x}"
+    except (DwellError, OSError):
+        return "nothing that can be opened"
+
+
 class Journal:
     """A file beside the result: rows of each item, then a mark that they are whole."""
 
@@ -93,14 +120,16 @@ class Journal:
         self._out = out
         self._path = out.with_name(_hidden_name(out.name))
         out.parent.mkdir(parents=True, exist_ok=True)
-        #: Items whose rows are there, in the order they came.
-        self.done: dict[str, None] = {}
+        #: Items whose rows are there, in the order they came, with what they were made of.
+        self.done: dict[str, str | None] = {}
+        is_new = not os.path.lexists(self._path)
         self._file: IO[bytes] = open_exclusive(self._path)
         try:
             keep = self._read(job)
             if not keep and os.path.lexists(out):
                 # Nothing was begun for it here: it is somebody else's, or whole.
-                os.unlink(self._path)
+                if is_new:
+                    os.unlink(self._path)
                 why = "is there already; name a new file, or remove it first"
                 raise FileExistsError(errno.EEXIST, why, os.fspath(out))
             self._file.seek(keep)
@@ -119,32 +148,49 @@ class Journal:
             try:
                 row = parse_json(line, str(self._path))
             except ValueError:
+                if k == 0 and not _line({_JOB: job}).startswith(line):
+                    raise ValueError(
+                        f"{self._path} is no journal of {self._out}, and stays as it is; remove "
+                        "it, or give another --out"
+                    ) from None
                 break
             if k == 0 and row != {_JOB: job}:
                 raise ValueError(
                     f"{self._path} keeps what another job has done for {self._out}; run that one "
                     f"again to its end, give another --out, or remove {self._path}"
                 )
-            if k == 0 or (isinstance(row, dict) and set(row) == {_DONE}):
+            if k == 0 or _is_mark(row):
                 keep = at
                 if k:
-                    self.done[str(row[_DONE])] = None
+                    self.done[str(row[_DONE])] = row.get(_OF)
         return keep
 
     def _write(self, rows: Sequence[object]) -> None:
-        text = "".join(json.dumps(row, ensure_ascii=False) + "\n" for row in rows)
         try:
-            self._file.write(text.encode())
+            self._file.write(b"".join(map(_line, rows)))
             self._file.flush()
         except OSError as error:
             # People know the result by its name; the journal is where there is no room.
             error.filename = error.filename or os.fspath(self._path)
             raise
 
-    def add(self, item: str, rows: Sequence[object]) -> None:
-        """Keeps the rows of an item."""
-        self._write([*rows, {_DONE: item}])
-        self.done[item] = None
+    def add(self, item: str, rows: Sequence[object], of: str | None = None) -> None:
+        """Keeps the rows of an item; ``of`` says what they were made of."""
+        self._write([*rows, {_DONE: item} if of is None else {_DONE: item, _OF: of}])
+        self.done[item] = of
+
+    def refuse_changed(self, of: Callable[[str], str | None]) -> None:
+        """Refuses rows of an item that is made of something else now, by what ``of`` says of it.
+
+        Raises:
+            ValueError: There are such rows, which stay.
+        """
+        for item, before in self.done.items():
+            if before is not None and of(item) != before:
+                raise ValueError(
+                    f"{item} has changed since {self._path} kept what was done of it; remove "
+                    f"{self._path}, so that all is done anew, or give another --out"
+                )
 
     def finish(self) -> None:
         """Writes the rows of all items into the result, and forgets the journal."""
@@ -166,5 +212,5 @@ class Journal:
         with open_file(self._path) as file:
             next(file)
             for line in file:
-                if set(json.loads(line)) != {_DONE}:
+                if not _is_mark(json.loads(line)):
                     yield line

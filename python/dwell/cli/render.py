@@ -97,12 +97,17 @@ def run(args: argparse.Namespace) -> int:
     """Renders, writes PNG (pictures) and NPY (exact depth and ids), and names the files."""
     from dwell.house import House
     from dwell.house_list import HouseList
+    from dwell.plans import MAX_COLUMNS
     from dwell.world import World
 
     pictured, refused = args.map or args.dollhouse or args.sheet, 0
     if args.sensors is None and not (pictured and args.at is None):
         args.sensors = "rgb"
     channels = [] if args.sensors is None else [_sensor(name) for name in args.sensors.split(",")]
+    if args.sheet and not 1 <= args.columns <= MAX_COLUMNS:
+        raise ValueError(
+            f"--columns is {args.columns}; allowed are whole numbers from 1 to {MAX_COLUMNS}"
+        )
     houses = HouseList(args.house)
     refuse_unused(args, _used(args, bool(channels), len(houses)), "this picture")
     files: list[str] = []
@@ -190,7 +195,9 @@ def _whole(args: argparse.Namespace, world: World) -> list[str]:
         doll = plans.dollhouse(world, width=width, yaw_deg=yaw_deg, cut_m=args.cut_m)
         files.append(save_picture(args.out / "dollhouse.png", doll))
     if args.sheet:
-        sheet = plans.house_sheet(world, columns=args.columns, preset=args.preset)
+        sheet = plans.house_sheet(
+            world, columns=args.columns, preset=args.preset, progress=ProgressBar()
+        )
         files.append(save_picture(args.out / "sheet.png", sheet))
     return files
 
