@@ -7,7 +7,9 @@ import dwell
 house = dwell.House.open("builtin:apartment")
 print(house.describe("house")[0].splitlines()[0])
 print(house.describe("room")[0])
-print("\n".join(house.describe("object")[:3]))
+caption = house.describe("object")[0]
+for span in caption.spans:
+    print(caption[span["start"] : span["end"]], span["ids"], span["rooms"])
 
 graph = json.loads(house.describe("graph")[0])
 print({name: len(rows) for name, rows in graph.items() if isinstance(rows, list)})

@@ -10,7 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError, _native
-from dwell.arguments import integer_in_range, plain_settings, point, quoted
+from dwell.arguments import (
+    boolean,
+    finite_number,
+    integer_in_range,
+    plain_settings,
+    point,
+    sequence_items,
+)
 from dwell.configs import checked
 from dwell.echogram import Echogram
 from dwell.engine_types import AcousticSettings
@@ -22,6 +29,10 @@ from dwell.world_settings import Laws, found
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
+
+
+#: The attributes that a pickle's arguments make again.
+_OWN = ("house", "_native", "_config", "_laws")
 
 
 class AcousticScene:
@@ -49,19 +60,17 @@ class AcousticScene:
         """
         self.house = house if isinstance(house, House) else House.open(house)
         rows, values = found(laws)
-        settings = checked("AcousticConfig", config)
+        settings = plain_settings(checked("AcousticConfig", config))
         self._native = _native.AcousticScene(
-            self.house.native,
-            plain_settings(settings),
-            plain_settings(rows),
-            plain_settings(values),
+            self.house.native, settings, plain_settings(rows), plain_settings(values)
         )
         self._config = settings
         self._laws = {"laws": rows, "parameters": values}
 
-    def __reduce__(self) -> tuple[Any, tuple[House, dict[str, Any], dict[str, Any]]]:
-        """House, laws and settings."""
-        return _rebuild, (self.house, self._laws, self._config)
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...], dict[str, Any]]:
+        """House, laws and settings; and what else a subclass holds."""
+        own = {name: value for name, value in vars(self).items() if name not in _OWN}
+        return _rebuild, (type(self), self.house, self._laws, self._config), own
 
     def __repr__(self) -> str:
         """The house and the rate."""
@@ -93,18 +102,30 @@ class AcousticScene:
         Args:
             source: What sounds, or the point (m) from which sound goes equally to all sides.
             mic: What hears, or the point (m) of a microphone or of the middle of a head.
-            ears: At a point: two ears on a spherical head (left first) instead of a microphone.
+            ears: Only at a point: two ears on a spherical head, left first, not a microphone.
             yaw_deg: Where that head faces.
-            head: At a point: the head that the ears are on, or the path of its SOFA file; by
+            head: Only at a point: the head that the ears are on, or the path of its SOFA file; by
                 default, with ``ears``, a sphere of ``head_radius_m``.
             seed: The seed of the rays and of the tail's details.
             threads: How many threads to use; the result does not depend on it.
 
         Returns:
             Shape (channels, samples). The first sample is the moment of the impulse.
+
+        Raises:
+            ConfigError: ``ears``, ``yaw_deg`` or ``head`` is given beside a receiver, which has its
+                own.
         """
-        if not isinstance(mic, Receiver):
-            if ears or head is not None:
+        given = {"ears": boolean("ears", ears), "head": head is not None}
+        given["yaw_deg"] = finite_number("yaw_deg", yaw_deg) != 0.0
+        if isinstance(mic, Receiver):
+            for name in (name for name, is_given in given.items() if is_given):
+                raise ConfigError(
+                    f"mic, {name}: found both; a receiver has what it hears with, as "
+                    "Receiver.binaural makes it"
+                )
+        else:
+            if given["ears"] or given["head"]:
                 mic = Receiver.binaural(mic, yaw_deg=yaw_deg, head=head)
             else:
                 mic = Receiver.omni(mic)
@@ -225,14 +246,17 @@ class AcousticScene:
 
 def _receivers(name: str, given: object) -> list[Receiver]:
     """Receivers; points become microphones."""
-    if isinstance(given, str | bytes) or not isinstance(given, Sequence | np.ndarray):
-        raise ConfigError(f"{name} is {quoted(given)}; expected a list of receivers or points")
-    return [one if isinstance(one, Receiver) else Receiver.omni(one) for one in given]
+    rows = sequence_items(name, given, "expected a list of receivers or points")
+    return [one if isinstance(one, Receiver) else Receiver.omni(one) for one in rows]
 
 
 def _threads(threads: int | None) -> int | None:
     return None if threads is None else integer_in_range("threads", threads, low=1)
 
 
-def _rebuild(house: House, laws: dict[str, Any], config: dict[str, Any]) -> AcousticScene:
-    return AcousticScene(house, laws=laws, **config)
+def _rebuild(
+    kind: type[AcousticScene], house: House, laws: dict[str, Any], config: dict[str, Any]
+) -> AcousticScene:
+    scene = kind.__new__(kind)
+    AcousticScene.__init__(scene, house, laws=laws, **config)
+    return scene

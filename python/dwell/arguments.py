@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import dataclasses
 import difflib
+import itertools
 import json
 import math
 import operator
 import os
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence, ValuesView
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, ValuesView
 from collections.abc import Set as AbstractSet
 from typing import Any, TypeVar
 
@@ -25,6 +26,8 @@ _MAX_UINT64 = 2**64 - 1
 _MAX_FLOAT32 = float(np.finfo(np.float32).max)
 #: How deep lists and mappings lie in each other at most, as the native side reads them.
 _MAX_DEPTH = 100
+#: More than anybody lists; what never ends is told by it.
+_MOST_LISTED = 1_000_000
 #: The first whole number that is not read back from JSON.
 _FIRST_UNREADABLE_INTEGER = 10**MAX_DIGITS
 
@@ -101,6 +104,14 @@ def number_in_range(name: str, value: object, low: float, high: float, unit: str
     return number
 
 
+def above_zero(name: str, value: object) -> float:
+    """A finite number above 0."""
+    number = finite_number(name, value)
+    if number <= 0.0:
+        raise ConfigError(f"{name} is {number:g}; allowed are numbers above 0")
+    return number
+
+
 def instance_of(name: str, value: object, kind: type[_Kind]) -> _Kind:
     """What is of a class of dwell."""
     if not isinstance(value, kind):
@@ -114,6 +125,38 @@ def hashable(value: object) -> object:
         return frozenset((key, hashable(part)) for key, part in value.items())
     if isinstance(value, list | tuple | np.ndarray):
         return tuple(hashable(part) for part in value)
+    return value
+
+
+def kept(value: object) -> Any:  # noqa: ANN401 - of the same kind
+    """A copy to keep: who gave lists, mappings or arrays may change them later.
+
+    What can be gone through once becomes a list. Other values stay the same, and so does what is
+    nested too deep, which those refuse that read it.
+    """
+    return _kept(value, 0, {})
+
+
+def _kept(value: object, depth: int, made: dict[int, Any]) -> Any:  # noqa: ANN401 - of the same kind
+    """A copy; ``made``: those that there are: a value may hold another, or itself, many times."""
+    if depth > _MAX_DEPTH or id(value) in made:
+        return made.get(id(value), value)
+    if isinstance(value, dict):
+        mapped = made[id(value)] = {}
+        mapped.update((key, _kept(part, depth + 1, made)) for key, part in value.items())
+        return mapped
+    if type(value) is list:
+        listed = made[id(value)] = []
+        listed.extend(_kept(part, depth + 1, made) for part in value)
+        return listed
+    if type(value) is tuple:
+        parts = made[id(value)] = tuple(_kept(part, depth + 1, made) for part in value)
+        return parts
+    if isinstance(value, np.ndarray):
+        return value.copy()
+    if isinstance(value, Iterator):
+        # Too many are refused by those who read them.
+        return [*itertools.islice(value, _MOST_LISTED + 1)]
     return value
 
 
@@ -131,25 +174,43 @@ def real_array(name: str, values: object, dtype: type[np.floating[Any]]) -> NDAr
         return np.ascontiguousarray(found, dtype)
 
 
-def sequence_items(name: str, values: object, expected: str) -> list[Any]:
+def finite_row(name: str, row: NDArray[np.float64]) -> NDArray[np.float32]:
+    """A row of finite numbers of 32 bits; the first that is none is told by its place."""
+    if row.ndim != 1:
+        raise ConfigError(f"{name}: expected one row of numbers, found the shape {row.shape}")
+    wrong = np.flatnonzero(~(np.abs(row) <= _MAX_FLOAT32))
+    if wrong.size:
+        finite_number(f"{name}[{wrong[0]}]", row[wrong[0]])
+    return row.astype(np.float32)
+
+
+def sequence_items(
+    name: str, values: object, expected: str, *, most: int = _MOST_LISTED
+) -> list[Any]:
     """The elements of a list, an array or what else has an order and is no text.
 
     A set has none: what came first would differ from one process to the next.
 
     Raises:
-        ConfigError: It has none, or no elements; the message says what was ``expected``.
+        ConfigError: It has none, or no elements, or more than ``most`` (some have no end); the
+            message says what was ``expected``.
     """
-    rows = _ordered(values)
+    rows = _ordered(values, most)
     if rows is None:
         raise ConfigError(f"{name} is {_found(values)}; {expected}")
+    if len(rows) > most:
+        raise ConfigError(
+            f"{name} is {quoted(values)}, which has more than {most} elements; {expected}"
+        )
     return rows
 
 
-def _ordered(values: object) -> list[Any] | None:
+def _ordered(values: object, most: int) -> list[Any] | None:
+    """The elements, if there are any; at most one more than ``most`` are looked at."""
     if isinstance(values, AbstractSet | ValuesView | str | bytes | bytearray | Mapping):
         return None
     try:
-        found: list[Any] = list(values)  # type: ignore[call-overload] # what this finds out
+        found = [*itertools.islice(values, most + 1)]  # type: ignore[call-overload] # this finds out
     except TypeError:
         return None
     return found
@@ -176,15 +237,24 @@ def text(name: str, value: object) -> str:
 
 def choice(name: str, value: object, allowed: Sequence[str]) -> str:
     """One of several words."""
-    if value not in allowed:
+    # Before they are compared: an array compares each of its elements.
+    if not isinstance(value, str) or value not in allowed:
         raise ConfigError(f"{name} is {quoted(value)}; allowed are {', '.join(allowed)}")
-    return text(name, value)
+    return value
 
 
 def text_list(name: str, values: object) -> list[str]:
     """A list of text; one text alone is none."""
     rows = sequence_items(name, values, "expected a list of text")
     return [text(f"{name}[{k}]", row) for k, row in enumerate(rows)]
+
+
+def file_path(name: str, value: object) -> str:
+    """The path of a file or folder, as text that is not empty."""
+    found = path(name, value)
+    if not found:
+        raise ConfigError(f"{name} is ''; expected the path of a file or folder")
+    return found
 
 
 def path(name: str, value: object) -> str:
@@ -273,7 +343,7 @@ def three_numbers(name: str, value: Sequence[float]) -> tuple[float, float, floa
 
 
 def _three(name: str, value: object, expected: str) -> tuple[float, float, float]:
-    parts = _ordered(value)
+    parts = _ordered(value, 3)
     if parts is None or len(parts) != 3:
         raise ConfigError(f"{name}: {expected}, found {_found(value)}")
     x, y, z = (finite_number(f"{name}[{k}]", part) for k, part in enumerate(parts))
@@ -283,7 +353,8 @@ def _three(name: str, value: object, expected: str) -> tuple[float, float, float
 def unit_quaternion(name: str, value: Sequence[float]) -> tuple[float, ...]:
     """A rotation (x, y, z, w), from four finite numbers that are not all 0, made of unit length."""
     expected = "expected a rotation (x, y, z, w)"
-    parts = [finite_number(f"{name}[{k}]", part) for k, part in enumerate(_ordered(value) or ())]
+    given = _ordered(value, 4) or ()
+    parts = [finite_number(f"{name}[{k}]", part) for k, part in enumerate(given)]
     length = math.hypot(*parts)
     if len(parts) != 4 or length == 0.0 or not math.isfinite(length):
         raise ConfigError(f"{name}: {expected}, found {_found(value)}")
@@ -292,9 +363,10 @@ def unit_quaternion(name: str, value: Sequence[float]) -> tuple[float, ...]:
 
 def two_numbers(name: str, value: object) -> tuple[float, float]:
     """Two finite numbers."""
-    if isinstance(value, str | bytes) or not isinstance(value, Sequence) or len(value) != 2:
-        raise ConfigError(f"{name}: expected two numbers, found {quoted(value)}")
-    first, second = (finite_number(f"{name}[{k}]", part) for k, part in enumerate(value))
+    parts = _ordered(value, 2)
+    if parts is None or len(parts) != 2:
+        raise ConfigError(f"{name}: expected two numbers, found {_found(value)}")
+    first, second = (finite_number(f"{name}[{k}]", part) for k, part in enumerate(parts))
     return first, second
 
 
@@ -339,13 +411,17 @@ def _plain(at: str, value: object, depth: int = 0) -> Any:  # noqa: ANN401 - any
     raise ConfigError(f"{at} is {quoted(value)}; expected numbers, text, lists or mappings")
 
 
-def plain_settings(settings: Mapping[str, object] | Sequence[object]) -> Any:  # noqa: ANN401 - of the settings
+def plain_settings(settings: Mapping[str, Any] | Sequence[Any], at: str = "") -> Any:  # noqa: ANN401 - of the settings
     """Settings as the native side takes them: numbers, text, lists and mappings.
+
+    Args:
+        settings: The settings.
+        at: What the places begin with.
 
     Raises:
         ConfigError: They hold something else, or numbers that are not finite, told by its place.
     """
-    return _plain("", settings)
+    return _plain(at, settings)
 
 
 def to_json(settings: Mapping[str, object] | Sequence[object], at: str = "") -> str:

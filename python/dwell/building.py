@@ -11,6 +11,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+import numpy as np
+
 from dwell import ConfigError, _native, arguments
 from dwell.arguments import (
     boolean,
@@ -18,11 +20,12 @@ from dwell.arguments import (
     finite_number,
     integer_in_range,
     path,
+    quoted,
     sequence_items,
     text,
     two_numbers,
 )
-from dwell.edit_fields import Rgb, rgb
+from dwell.edit_fields import Rgb, optional_text, rgb
 from dwell.editing import EditList
 from dwell.files import atomic_write
 from dwell.house import House
@@ -62,7 +65,7 @@ class HouseBuilder(EditList):
         super().__init__()
         self._name = text("name", name)
         self._building: dict[str, Any] = {
-            "style": style,
+            "style": optional_text("style", style),
             "seed": integer_in_range("seed", seed),
             "outer_wall_m": finite_number("outer_wall_m", outer_wall_m),
             "daytime": {"hour_h": finite_number("hour_h", hour_h)},
@@ -113,7 +116,7 @@ class HouseBuilder(EditList):
             {
                 "name": text("name", name),
                 "outline": _outline(floor_plan),
-                "kind": kind,
+                "kind": optional_text("kind", kind),
                 "height_m": None if height_m is None else finite_number("height_m", height_m),
                 "floor": _covering("floor", floor),
                 "walls": _covering("walls", walls),
@@ -161,7 +164,7 @@ class HouseBuilder(EditList):
                 "leaf": choice("leaf", leaf, ("panel", "glazed", "none")),
                 "hinge": choice("hinge", hinge, ("left", "right")),
                 "open": finite_number("opened", opened),
-                "name": name,
+                "name": optional_text("name", name),
             }
         )
         return self
@@ -199,7 +202,7 @@ class HouseBuilder(EditList):
                 "height_m": finite_number("height_m", height_m),
                 "sill_m": finite_number("sill_m", sill_m),
                 "frosted": boolean("frosted", frosted),
-                "name": name,
+                "name": optional_text("name", name),
             }
         )
         return self
@@ -267,9 +270,12 @@ def _side(side: str | None) -> str | None:
 
 def _covering(name: str, covering: Covering | None) -> dict[str, Any] | None:
     if covering is None or isinstance(covering, str):
-        return None if covering is None else {"substance": covering}
-    substance, color = covering
-    return {"substance": text(name, substance), "srgb": rgb(name, color)}
+        return None if covering is None else {"substance": text(name, covering)}
+    expected = 'expected a substance, or that with a colour, as ("carpet", (90, 90, 120))'
+    parts = sequence_items(name, covering, expected, most=2)
+    if len(parts) != 2:
+        raise ConfigError(f"{name} is {quoted(covering)}; {expected}")
+    return {"substance": text(f"{name}[0]", parts[0]), "srgb": rgb(f"{name}[1]", parts[1])}
 
 
 def _outline(
@@ -278,7 +284,7 @@ def _outline(
     rows = sequence_items(
         "floor_plan", floor_plan, "expected four numbers or corners (x, z) in metres"
     )
-    if len(rows) == 4 and not any(isinstance(row, Sequence) for row in rows):
+    if len(rows) == 4 and not any(isinstance(row, Sequence | np.ndarray) for row in rows):
         x0, z0, x1, z1 = (finite_number(f"floor_plan[{k}]", at) for k, at in enumerate(rows))
         return [(x0, z0), (x1, z0), (x1, z1), (x0, z1)]
     return [two_numbers(f"floor_plan[{k}]", corner) for k, corner in enumerate(rows)]

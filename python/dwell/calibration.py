@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from dwell import ConfigError, _native
-from dwell.arguments import integer_in_range, path, quoted, sequence_items, text
+from dwell.arguments import file_path, integer_in_range, path, quoted, sequence_items, text
 
 
 def calibrate(
@@ -40,7 +40,7 @@ def calibrate(
     if progress is not None and not callable(progress):
         raise ConfigError(f"progress is {quoted(progress)}; expected a function or None")
     named = None if house is None else text("house", house)
-    told = _native.calibrate(path("measured", measured), named, progress, names)
+    told = _native.calibrate(file_path("measured", measured), named, progress, names)
     report: dict[str, Any] = json.loads(told)
     return report
 
@@ -55,4 +55,4 @@ def write_example(folder: str | os.PathLike[str], seed: int = 0) -> str:
     Returns:
         What is hidden, in a sentence: what :func:`calibrate` should find.
     """
-    return _native.calibration_example(path("folder", folder), integer_in_range("seed", seed))
+    return _native.calibration_example(file_path("folder", folder), integer_in_range("seed", seed))

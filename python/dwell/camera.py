@@ -94,8 +94,11 @@ class Camera:
     classes: Classes = "coarse"
 
     def __post_init__(self) -> None:
-        """Checks the fields."""
-        camera_settings("camera", self)
+        """Checks the fields, and keeps numbers and copies of what the caller may change."""
+        found = camera_settings("camera", self)
+        found["position_m"] = tuple(found["position_m"])
+        for name, value in found.items():
+            object.__setattr__(self, name, value)
 
     def __hash__(self) -> int:
         """Equal for equal cameras."""

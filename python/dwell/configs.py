@@ -37,7 +37,10 @@ def _locomotion(name: str, value: object) -> object:
 def bodies(agents: object) -> list[dict[str, Any]]:
     """A body for each agent, from a count or from mappings of what differs from the default."""
     if isinstance(agents, str | bytes) or not isinstance(agents, Sequence):
-        return [{} for _ in range(integer_in_range("agents", agents, high=64))]
+        try:
+            return [{} for _ in range(integer_in_range("agents", agents, high=64))]
+        except ConfigError as error:
+            raise ConfigError(f"{error}, and lists of a mapping for each body") from None
     known = {**setting_checks("AgentBody"), "locomotion": _locomotion}
     rows = []
     for k, body in enumerate(agents):

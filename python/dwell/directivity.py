@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dwell._native import ConfigError
-from dwell.arguments import finite_number, quoted, real_array
+from dwell.arguments import choice, finite_number, quoted, real_array
 
 #: Octave bands, 63 Hz to 8 kHz.
 BANDS = 8
@@ -32,6 +32,22 @@ class Directivity:
 
     form: str
     values: tuple[Any, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Checks the numbers, and keeps copies of them."""
+        form = choice("form", self.form, ("first_order", "sphere", "polar"))
+        found = real_array("values", self.values, np.float64)
+        is_right = found.shape == {"first_order": (BANDS,), "sphere": (1,)}.get(form, found.shape)
+        if form == "polar":
+            is_right = found.ndim == 2 and found.shape[1] == BANDS and 2 <= len(found) <= 361
+        if not is_right or not np.isfinite(found).all():
+            raise ConfigError(
+                f"values of the form {form} are {quoted(self.values)}; expected finite numbers as "
+                f"Directivity.{form} makes them"
+            )
+        rows = found.tolist()
+        own = tuple(map(tuple, rows)) if form == "polar" else tuple(rows)
+        object.__setattr__(self, "values", own)
 
     @classmethod
     def first_order(cls, gradient: float | Sequence[float]) -> Directivity:

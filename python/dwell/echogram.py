@@ -8,14 +8,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from dwell.arguments import finite_number, number_in_range
+from dwell.array_record import ArrayRecord
+
 #: Nominal centres of the eight octave bands of an echogram, Hz.
 CENTRES_HZ = (62.5, 125.0, 250.0, 500.0, 1000.0, 2000.0, 4000.0, 8000.0)
 #: Rows of equal height from straight down to straight up, and eighths of a turn from +X towards +Z.
 CELL_ROWS, CELL_COLUMNS = 6, 8
 
 
-@dataclass(frozen=True)
-class Echogram:
+@dataclass(frozen=True, eq=False)
+class Echogram(ArrayRecord):
     """Exact early paths and the traced tail, without any noise.
 
     Energy is re the same source at 1 m in the free field: 1/d² for a free path of d metres.
@@ -63,7 +66,12 @@ class Echogram:
         )
 
     def over_time(self, step_s: float = 0.001) -> NDArray[np.float64]:
-        """Energy of paths and tail in steps from the moment of the impulse, shape (step, 8)."""
+        """Energy of paths and tail in steps from the moment of the impulse, shape (step, 8).
+
+        Raises:
+            ConfigError: ``step_s`` is none from 5e-6 to 10 s.
+        """
+        step_s = number_in_range("step_s", step_s, 5e-6, 10.0, "s")
         last = max(float(self.path_s.max(initial=0.0)) + step_s, self.bin_s * len(self.tail_energy))
         edges = np.arange(int(np.ceil(last / step_s)) + 1) * step_s
         energy = np.zeros((len(edges), len(CENTRES_HZ)))
@@ -92,7 +100,14 @@ class Echogram:
 
         Returns:
             Shape (6, 8): rows from down to up, columns from +X towards +Z.
+
+        Raises:
+            ConfigError: A time is no number; ``to_s`` may be infinite.
         """
+        from_s = finite_number("from_s", from_s)
+        given: object = to_s
+        is_open = isinstance(given, float | np.floating) and given == np.inf
+        to_s = np.inf if is_open else finite_number("to_s", to_s)
         cells = np.zeros(CELL_ROWS * CELL_COLUMNS)
         for at, energy, arrival in zip(
             self.path_s, self.path_energy, self.path_arrival, strict=True

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 from dwell import ConfigError
 from dwell.arguments import (
@@ -46,7 +46,7 @@ def traits_field(
     """Category, mobility, mass and use as stated; ``None`` where nothing is."""
     traits = {
         "category": optional_text("category", category),
-        "mobility": optional_text("mobility", mobility),
+        "mobility": None if mobility is None else choice("mobility", mobility, get_args(Mobility)),
         "mass_kg": None if mass_kg is None else finite_number("mass_kg", mass_kg),
         "density_kg_m3": None
         if density_kg_m3 is None
@@ -80,7 +80,6 @@ def optional_text(name: str, value: object) -> str | None:
 def rgb(name: str, color: Sequence[int]) -> list[int]:
     """A colour: three whole numbers, 0 to 255."""
     rows = sequence_items(name, color, "expected three whole numbers, 0 to 255")
-    parts = [integer_in_range(f"{name}[{k}]", value, high=255) for k, value in enumerate(rows)]
-    if len(parts) != 3:
-        raise ConfigError(f"{name} has {len(parts)} numbers; expected 3")
-    return parts
+    if len(rows) != 3:
+        raise ConfigError(f"{name} has {len(rows)} numbers; expected 3")
+    return [integer_in_range(f"{name}[{k}]", value, high=255) for k, value in enumerate(rows)]

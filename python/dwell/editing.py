@@ -402,6 +402,7 @@ class EditList:
             srgb: The light's colour, 0 to 255; without it warm white.
             lit: Whether it starts switched on.
         """
+        seed = integer_in_range("seed", seed)
         given = {"at": at, "on": on, "yaw_deg": yaw_deg, "anchor": anchor, "name": name}
         given |= {"style": style, "kind": kind, "seed": seed or None}
         beside = [key for key, value in given.items() if value is not None]
@@ -418,9 +419,11 @@ class EditList:
                 "object": optional_text("thing", thing),
                 "kind": kind,
                 "style": optional_text("style", style),
-                "seed": integer_in_range("seed", seed),
+                "seed": seed,
                 "name": optional_text("name", name),
-                "place": place_field(at, on, yaw_deg, anchor or ("top" if hangs else "foot")),
+                "place": place_field(
+                    at, on, yaw_deg, ("top" if hangs else "foot") if anchor is None else anchor
+                ),
                 "power_w": None if power_w is None else finite_number("power_w", power_w),
                 "srgb": None if srgb is None else rgb("srgb", srgb),
                 "on": boolean("lit", lit),

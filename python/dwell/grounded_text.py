@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
 
 __all__ = ["Text"]
 
@@ -42,7 +45,7 @@ class Text(str):
         claims: Sequence[dict[str, Any]] = (),
         ids: Sequence[int] = (),
         rooms: Sequence[int] = (),
-    ) -> Text:
+    ) -> Self:
         """A text with the attributes of the same names."""
         made = super().__new__(cls, text)
         made.spans, made.claims = list(spans), list(claims)

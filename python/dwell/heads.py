@@ -88,7 +88,7 @@ class Head:
         """
         from dwell.sofa import read_head
 
-        name = arguments.path("path", path)
+        name = arguments.file_path("path", path)
         found = read_head(name)
         try:
             return cls.measured(

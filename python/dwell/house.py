@@ -83,12 +83,14 @@ class House:
         """
         name = arguments.path("house", house)
         if map is not None:
-            name = f"{name}?map={arguments.path('map', map)}"
+            name = f"{name}?map={arguments.file_path('map', map)}"
         return cls.open_by(name, None)
 
     @classmethod
     def open_by(cls, name: str, threads: int | None) -> House:
         """Opens a HOUSE string by so many threads; ``None``: as many as there are."""
+        name = text("name", name)
+        threads = None if threads is None else integer_in_range("threads", threads, low=1)
         return cls(_native.House.open(name, threads), (House.open, (name,)))
 
     @staticmethod
@@ -299,10 +301,7 @@ class House:
         Returns:
             What the form cannot hold, in sentences.
         """
-        target = arguments.path("path", path)
-        if not target:
-            raise ConfigError("path is ''; expected the path of a file or folder")
-        return self._native.write(target, text("form", form))
+        return self._native.write(arguments.file_path("path", path), text("form", form))
 
     def write_into(
         self, root: str | os.PathLike[str], name: str, form: Form
@@ -318,13 +317,13 @@ class House:
         Returns:
             Where the house is, as :meth:`open` takes it, and what the form cannot hold.
         """
-        root, form_name = arguments.path("root", root), text("form", form)
+        root, form_name = arguments.file_path("root", root), text("form", form)
         return self._native.write_into(root, file_name("name", name), form_name)
 
     @staticmethod
     def finish_folder(root: str | os.PathLike[str], form: Form) -> None:
         """Writes the common files of a folder of :meth:`write_into`: at the end, or again."""
-        _native.House.finish_folder(arguments.path("root", root), text("form", form))
+        _native.House.finish_folder(arguments.file_path("root", root), text("form", form))
 
     def __eq__(self, other: object) -> bool:
         """Returns whether both hold the same: rooms, things, materials, meshes, images."""

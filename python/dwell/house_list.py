@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import overload
 
 from dwell import ConfigError, _native
-from dwell.arguments import sequence_items, text
+from dwell.arguments import quoted, sequence_items, text
 
 
 class HouseList(Sequence[str]):
@@ -73,8 +73,10 @@ class HouseList(Sequence[str]):
     def __getitem__(self, index: int | slice) -> str | list[str]:
         """A name; a slice is a list."""
         if isinstance(index, slice):
-            return [self[k] for k in range(*index.indices(len(self)))]
-        at = operator.index(index)
+            parts = (index.start, index.stop, index.step)
+            whole = (None if part is None else _whole("house", part) for part in parts)
+            return [self[k] for k in range(*slice(*whole).indices(len(self)))]
+        at = _whole("house", index)
         at += len(self) if at < 0 else 0
         if not 0 <= at < len(self):
             raise IndexError(f"house {index} of {len(self)}")
@@ -86,27 +88,43 @@ class HouseList(Sequence[str]):
 
     def __contains__(self, name: object) -> bool:
         """Returns whether a house of this name is among them; none is made to find it."""
-        return self._find(name) is not None
+        return next(self._places(name), None) is not None
 
     def index(self, name: object, start: int = 0, stop: int | None = None) -> int:
-        """The first place of a name.
+        """The first place of a name from ``start`` on and before ``stop``, which count as a list's.
 
         Raises:
             ValueError: It is not there.
         """
-        found = self._find(name)
-        if found is None or not start <= found < (len(self) if stop is None else stop):
-            raise ValueError(f"no house {name!r}")
-        return found
+        begin = _whole("start", start)
+        end = len(self) if stop is None else _whole("stop", stop)
+        begin, end, _ = slice(begin, end).indices(len(self))
+        for place in self._places(name):
+            if begin <= place < end:
+                return place
+        raise ValueError(f"no house {name!r}")
 
-    def _find(self, name: object) -> int | None:
-        wanted = re.fullmatch(r"seed:(0|[1-9][0-9]{0,19})((?s:\?.*)?)", str(name))
+    def count(self, name: object) -> int:
+        """How many times a name is among them."""
+        return sum(1 for _ in self._places(name))
+
+    def _places(self, name: object) -> Iterator[int]:
+        """The places of a name in order; none is made to find them."""
+        if not isinstance(name, str):
+            return
+        wanted = re.fullmatch(r"seed:(0|[1-9][0-9]{0,19})((?s:\?.*)?)", name)
         begin = 0
         for part, end in zip(self._parts, self._ends, strict=True):
             if isinstance(part, str):
                 if part == name:
-                    return begin
+                    yield begin
             elif wanted and wanted[2] == part[1] and int(wanted[1]) in part[0]:
-                return begin + part[0].index(int(wanted[1]))
+                yield begin + part[0].index(int(wanted[1]))
             begin = end
-        return None
+
+
+def _whole(name: str, value: object) -> int:
+    try:
+        return operator.index(value)  # type: ignore[arg-type] # what this finds out
+    except TypeError:
+        raise ConfigError(f"{name} is {quoted(value)}; expected a whole number") from None

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from dwell import ConfigError, _native
-from dwell.arguments import integer_in_range, quoted, text
+from dwell.arguments import integer_in_range, plain_settings, quoted, text
 
 __all__ = ["read", "say"]
 
@@ -45,10 +45,13 @@ def say(form: Mapping[str, Any], *, seed: int | None = None) -> str:
         >>> say(form), say(form, seed=5) == say(form, seed=5)
         ('Go to the kitchen.', True)
     """
-    if not isinstance(form, Mapping):
+    given: object = form
+    if not isinstance(given, Mapping) or len(given) != 1:
         raise ConfigError(
-            f"form is {quoted(form)}; allowed are mappings as dwell.language.read gives"
+            f"form is {quoted(form)}; allowed are mappings as dwell.language.read gives, of one "
+            "field each"
         )
+    form = plain_settings(form, "form")
     drawn = None if seed is None else integer_in_range("seed", seed, high=2**64 - 1)
     said = _native.language_say(form, drawn)
     if said is None:

@@ -13,6 +13,7 @@ from dwell.arguments import (
     finite_number,
     hashable,
     integer_in_range,
+    kept,
     mapping,
     point,
     sequence_items,
@@ -34,12 +35,19 @@ class Source:
         pitch_deg: How far its front is raised.
         directivity: ``omni``, ``cardioid``, ``figure_of_eight``, ``talker``, ``loudspeaker``, or a
             :class:`dwell.Directivity`. Its level is that in front of it.
+
+    Raises:
+        ConfigError: A field is of another type, or not finite_number.
     """
 
     position: Point
     yaw_deg: float = 0.0
     pitch_deg: float = 0.0
     directivity: str | Directivity = "omni"
+
+    def __post_init__(self) -> None:
+        """Checks the fields, and keeps numbers."""
+        _keep_placed("position", self)
 
     def to_json(self) -> dict[str, Any]:
         """The engine's form."""
@@ -58,12 +66,19 @@ class Microphone:
         yaw_deg: Where its front points, in the array.
         pitch_deg: How far its front is raised, in the array.
         directivity: As that of a :class:`Source`.
+
+    Raises:
+        ConfigError: A field is of another type, or not finite_number.
     """
 
     position: Point
     yaw_deg: float = 0.0
     pitch_deg: float = 0.0
     directivity: str | Directivity = "omni"
+
+    def __post_init__(self) -> None:
+        """Checks the fields, and keeps numbers."""
+        _keep_placed("position", self)
 
 
 @dataclass(frozen=True)
@@ -75,15 +90,23 @@ class Receiver:
     head: Head | None = None
 
     def __post_init__(self) -> None:
-        """Checks that it stands somewhere."""
+        """Checks that it stands somewhere, and keeps copies."""
         pose = mapping("pose", self.pose, "position and rotation")
         if set(pose) != {"position", "rotation"}:
             raise ConfigError(
                 f"pose has {', '.join(sorted(pose)) or 'nothing'}; expected position and rotation, "
                 "as Receiver.omni and kin make it"
             )
-        point("pose.position", pose["position"])
-        unit_quaternion("pose.rotation", pose["rotation"])
+        rotation = sequence_items(
+            "pose.rotation", pose["rotation"], "expected a rotation (x, y, z, w)"
+        )
+        unit_quaternion("pose.rotation", rotation)
+        own = {
+            "position": [*point("pose.position", pose["position"])],
+            "rotation": [finite_number("pose.rotation", part) for part in rotation],
+        }
+        object.__setattr__(self, "pose", own)
+        object.__setattr__(self, "kind", kept(self.kind))
 
     def __hash__(self) -> int:
         """Equal for equal receivers."""
@@ -133,7 +156,7 @@ class Receiver:
             pitch_deg: How far its front is raised.
         """
         expected = "expected 1 to 128 microphones or points"
-        given = sequence_items("microphones", microphones, expected)
+        given = sequence_items("microphones", microphones, expected, most=128)
         items = [
             item if isinstance(item, Microphone) else Microphone(point(f"microphones[{k}]", item))
             for k, item in enumerate(given)
@@ -170,6 +193,13 @@ class Receiver:
     def to_json(self) -> dict[str, Any]:
         """The engine's form."""
         return {"pose": self.pose, "kind": self.kind}
+
+
+def _keep_placed(name: str, placed: Source | Microphone) -> None:
+    object.__setattr__(placed, name, point(name, placed.position))
+    for angle in ("yaw_deg", "pitch_deg"):
+        object.__setattr__(placed, angle, finite_number(angle, getattr(placed, angle)))
+    directivity_json(placed.directivity)
 
 
 def source_of(source: Source | Sequence[float]) -> Source:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError, _native
-from dwell.arguments import choice, finite_number, real_array, refuse_masked
+from dwell.arguments import choice, finite_number, finite_row, real_array
 
 #: How wide bands are: eight octaves from 62.5 Hz, or 24 third octaves from 50 Hz (IEC 61260-1).
 Bands = Literal["octave", "third_octave"]
@@ -41,9 +41,8 @@ def response_metrics(
     Raises:
         ConfigError: The response is not one row of finite numbers, or the rate is out of range.
     """
-    refuse_masked("response", response)
-    given = np.asarray(response)
-    samples = _channel("response", given[0] if given.ndim == 2 and len(given) == 1 else given)
+    given = real_array("response", response, np.float64).reshape(np.shape(response))
+    samples = finite_row("response", given[0] if given.ndim == 2 and len(given) == 1 else given)
     rate = _rate(rate_hz)
     rows = _native.response_metrics(samples, rate, _width(bands))
     return [{key: row[key] for key in row if key != "lf"} for row in rows]
@@ -71,19 +70,8 @@ def binaural_metrics(
     rows = real_array("ears", ears, np.float64)
     if rows.ndim != 2 or rows.shape[0] != 2:
         raise ConfigError(f"ears: expected shape (2, samples), found {rows.shape}")
-    left, right = _channel("ears[0]", rows[0]), _channel("ears[1]", rows[1])
+    left, right = finite_row("ears[0]", rows[0]), finite_row("ears[1]", rows[1])
     return _native.ear_metrics(left, right, _rate(rate_hz), _width(bands))
-
-
-def _channel(name: str, samples: object) -> NDArray[np.float32]:
-    refuse_masked(name, samples)
-    row = np.asarray(samples)
-    if row.ndim != 1 or row.dtype.kind not in "fiu":
-        raise ConfigError(f"{name}: expected one row of numbers, found {row.dtype} {row.shape}")
-    row = np.ascontiguousarray(row, np.float32)
-    if not np.isfinite(row).all():
-        raise ConfigError(f"{name}: allowed are finite numbers")
-    return row
 
 
 def _rate(rate_hz: object) -> float:

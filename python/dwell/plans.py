@@ -13,6 +13,7 @@ from dwell.arguments import (
     finite_number,
     instance_of,
     integer_in_range,
+    mapping,
     point,
     quoted,
     sequence_items,
@@ -37,6 +38,9 @@ _MAX_PIXELS = 8192
 #: Pictures in a row of a sheet.
 MAX_COLUMNS = 64
 _PATHS_EXPECTED = "expected a colour and positions (x, y, z) in metres for each"
+_TITLED = "expected a title and a picture of Pillow for each"
+#: More pictures than a sheet can hold.
+_MOST_PICTURES = 10_000
 _SQUARES_EXPECTED = "expected (x, z, edge, colour) for each, the edge in metres"
 
 _Font = ImageFont.FreeTypeFont | ImageFont.ImageFont
@@ -189,20 +193,34 @@ def sheet(
         columns: Pictures in a row, from 1.
         tile: Pixels across and down for each.
     """
-    across, down = (integer_in_range("tile", edge, low=8, high=_MAX_PIXELS) for edge in tile)
-    columns = min(integer_in_range("columns", columns, low=1, high=MAX_COLUMNS), max(len(pictures), 1))
+    edges = sequence_items("tile", tile, "expected pixels across and down", most=2)
+    if len(edges) != 2:
+        raise ConfigError(f"tile is {quoted(tile)}; expected pixels across and down")
+    across, down = (integer_in_range("tile", edge, low=8, high=_MAX_PIXELS) for edge in edges)
+    given = sequence_items("pictures", pictures, _TITLED, most=_MOST_PICTURES)
+    titled = [_picture(f"pictures[{k}]", row) for k, row in enumerate(given)]
+    columns = integer_in_range("columns", columns, low=1, high=MAX_COLUMNS)
+    columns = min(columns, max(len(titled), 1))
     gap, foot = 10, 24
-    rows = math.ceil(len(pictures) / columns)
+    rows = math.ceil(len(titled) / columns)
     size = (columns * (across + gap) + gap, rows * (down + foot + gap) + gap)
     canvas = Image.new("RGB", size, _BACKGROUND_COLOR)
     draw = ImageDraw.Draw(canvas)
-    for k, (title, picture) in enumerate(pictures):
+    for k, (title, picture) in enumerate(titled):
         x, y = gap + k % columns * (across + gap), gap + k // columns * (down + foot + gap)
         small = picture.convert("RGB")
         small.thumbnail((across, down), Image.Resampling.LANCZOS)
         canvas.paste(small, (x + (across - small.width) // 2, y + (down - small.height) // 2))
         _text(draw, (x + 2, y + down + 18), title, 15, _TEXT_COLOR)
     return canvas
+
+
+def _picture(name: str, row: object) -> tuple[str, Image.Image]:
+    """A title and a picture."""
+    parts = sequence_items(name, row, _TITLED, most=2)
+    if len(parts) != 2 or not isinstance(parts[1], Image.Image):
+        raise ConfigError(f"{name} is {quoted(row)}; {_TITLED}")
+    return text(f"{name}[0]", parts[0]), parts[1]
 
 
 def house_sheet(
@@ -253,7 +271,8 @@ def houses_sheet(houses: Sequence[str], *, columns: int = 4) -> Image.Image:
     """
     # Before pictures are made for nothing.
     columns = integer_in_range("columns", columns, low=1, high=MAX_COLUMNS)
-    return sheet([house_tile(name) for name in houses], columns=columns)
+    names = sequence_items("houses", houses, "expected HOUSE strings", most=_MOST_PICTURES)
+    return sheet([house_tile(name) for name in names], columns=columns)
 
 
 def house_tile(name: str) -> tuple[str, Image.Image]:
@@ -265,9 +284,20 @@ def house_tile(name: str) -> tuple[str, Image.Image]:
 
 
 def room_view(world: World, room: dict[str, Any], camera: Camera) -> Image.Image:
-    """The view of a room from its viewpoint, a row of ``House.rooms()``."""
+    """The view of a room from its viewpoint, a row of ``House.rooms()``.
+
+    Raises:
+        ConfigError: It is none, or ``world`` or ``camera`` is of another type.
+    """
+    world = instance_of("world", world, World)
+    row = mapping("room", room, "a row of House.rooms()")
+    if missing := sorted({"eye", "yaw_deg"} - set(row)):
+        raise ConfigError(f"room has no {missing[0]}; expected a row of House.rooms()")
     seen = world.render(
-        position=room["eye"], yaw_deg=room["yaw_deg"], pitch_deg=-6.0, camera=camera
+        position=point("room.eye", row["eye"]),
+        yaw_deg=finite_number("room.yaw_deg", row["yaw_deg"]),
+        pitch_deg=-6.0,
+        camera=instance_of("camera", camera, Camera),
     )
     return Image.fromarray(seen["rgb"])
 

@@ -21,8 +21,9 @@ class PluginPart:
     Attributes:
         state: What the part remembers within an episode, by name; empty at each start. It goes into
             the environment's snapshots, so it holds what JSON holds: numbers, text, lists, and
-            dicts with text for keys. Taking a snapshot refuses arrays and tuples, which would come
-            back as lists.
+            dicts with text for keys, all of Python's own kinds. Taking a snapshot refuses arrays
+            and tuples, which would come back as lists, and NumPy's numbers and enumerations, which
+            would come back as plain ones.
         agent: Which of the world's agents the environment is about: ``world.agents()[self.agent]``.
     """
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -10,7 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError, _native
-from dwell.arguments import finite_number, integer_in_range, point, quoted, text, text_list
+from dwell.arguments import (
+    finite_number,
+    integer_in_range,
+    point,
+    quoted,
+    sequence_items,
+    text,
+    text_list,
+)
 from dwell.object_state_api import StateApi
 
 #: A thing by its name or its id in instance images; ``"room:NAME"``, ``"storey:0"``,
@@ -134,7 +143,8 @@ class RelationApi(StateApi):
             >>> world.select("largest", ["radio_1", "refrigerator_1"])
             'refrigerator_1'
         """
-        named = [_thing("things", thing) for thing in things]
+        rows = sequence_items("things", things, "expected a list of names or ids of things")
+        named = [_thing("things", thing) for thing in rows]
         compared = None if reference is None else _thing("reference", reference)
         place = integer_in_range("n", n, low=1, high=2**31 - 1)
         found: tuple[str | None, str | None] = _native.world_select(
@@ -198,11 +208,20 @@ def _thing(name: str, thing: object) -> Thing:
     Raises:
         ConfigError: It is neither.
     """
-    return (
-        text(name, thing)
-        if isinstance(thing, str)
-        else integer_in_range(name, thing, high=2**31 - 1)
-    )
+    if not isinstance(thing, str):
+        return _whole_or(name, thing, "names")
+    kind, colon, number = text(name, thing).partition(":")
+    if colon and kind in ("agent", "storey") and not re.fullmatch("0|[1-9][0-9]{0,8}", number):
+        raise ConfigError(f"{name} is {quoted(thing)}; expected a number from 0, as {kind}:0")
+    return thing
+
+
+def _whole_or(name: str, value: object, other: str) -> int:
+    """An id or a number; what else is allowed stands in the error, too."""
+    try:
+        return integer_in_range(name, value, high=2**31 - 1)
+    except ConfigError as error:
+        raise ConfigError(f"{error}, and {other}") from None
 
 
 def viewer_argument(viewer: object) -> int | dict[str, Any] | None:
@@ -214,11 +233,12 @@ def viewer_argument(viewer: object) -> int | dict[str, Any] | None:
     if viewer is None:
         return None
     if not isinstance(viewer, Mapping):
-        return integer_in_range("viewer", viewer, high=2**31 - 1)
+        return _whole_or("viewer", viewer, "mappings with position, yaw_deg and pitch_deg")
     unknown = [key for key in viewer if key not in ("position", "yaw_deg", "pitch_deg")]
     if unknown or "position" not in viewer:
         raise ConfigError(
-            f"viewer is {quoted(dict(viewer))}; expected position, and yaw_deg and pitch_deg"
+            f"viewer is {quoted(dict(viewer))}; expected an agent's number, or a mapping with "
+            "position, and if wanted yaw_deg and pitch_deg"
         )
     return {
         "position": list(point("viewer position", viewer["position"])),

@@ -11,11 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError, _native
-from dwell.arguments import integer_in_range
+from dwell.arguments import integer_in_range, mapping, point, quoted
 
 if TYPE_CHECKING:
     import networkx
 
+#: The lists of a scene graph.
+_LISTS = ("storeys", "rooms", "objects", "agents", "relations")
 #: The kinds of nodes in arrays, by their numbers.
 NODE_KINDS = ("storey", "room", "object", "agent", "structure")
 
@@ -69,12 +71,11 @@ def graph_arrays(
         -1 (zeros of places).
 
     Raises:
-        ConfigError: The graph has more nodes or edges than there are rows.
+        ConfigError: It is no scene graph, or has more nodes or edges than there are rows.
     """
     room = integer_in_range("nodes", nodes, low=1, high=10**6)
     wide = integer_in_range("edges", edges, low=1, high=10**8)
-    rows, index = _nodes(graph)
-    found = _edges(graph, index)
+    rows, found = _parts(graph)
     for name, count, most in (("nodes", len(rows), room), ("edges", len(found), wide)):
         if count > most:
             raise ConfigError(f"{name} is {most}; this graph has {count}")
@@ -104,10 +105,11 @@ def to_networkx(graph: Mapping[str, Any]) -> networkx.MultiDiGraph[str]:
 
     Raises:
         ImportError: NetworkX is not installed.
+        ConfigError: It is no scene graph.
     """
     import networkx
 
-    rows, index = _nodes(graph)
+    rows, edges = _parts(graph)
     made: networkx.MultiDiGraph[str] = networkx.MultiDiGraph()
     names = [str(row["name"]) for row in rows]
     told = (*graph["storeys"], *graph["rooms"], *graph["objects"], *graph["agents"])
@@ -115,9 +117,31 @@ def to_networkx(graph: Mapping[str, Any]) -> networkx.MultiDiGraph[str]:
         attributes = told[k] if k < len(told) else {}
         made.add_node(name, kind=NODE_KINDS[row["kind"]], **attributes)
     labels = [row["name"] for row in predicates()]
-    for subject, code, target in _edges(graph, index):
+    for subject, code, target in edges:
         made.add_edge(names[subject], names[target], key=labels[code])
     return made
+
+
+def _parts(graph: object) -> tuple[list[dict[str, Any]], list[tuple[int, int, int]]]:
+    """The nodes of a graph, and its edges by the places of their nodes and predicates.
+
+    Raises:
+        ConfigError: It is no scene graph.
+    """
+    expected = "a scene graph as World.scene_graph gives it"
+    found = mapping("graph", graph, expected)
+    for name in _LISTS:
+        rows = found.get(name)
+        if not isinstance(rows, list) or not all(isinstance(row, Mapping) for row in rows):
+            raise ConfigError(f"graph.{name} is {quoted(rows)}; expected {expected}")
+    try:
+        nodes, index = _nodes(found)
+        return nodes, _edges(found, index)
+    except (KeyError, TypeError, ValueError) as error:
+        if isinstance(error, ConfigError):
+            raise
+        told = f"no {error}" if isinstance(error, KeyError) else str(error)
+        raise ConfigError(f"graph: {told}; expected {expected}") from None
 
 
 def _nodes(graph: Mapping[str, Any]) -> tuple[list[dict[str, Any]], dict[tuple[int, int], int]]:
@@ -138,8 +162,8 @@ def _nodes(graph: Mapping[str, Any]) -> tuple[list[dict[str, Any]], dict[tuple[i
             "room": row["room"],
             "storey": row["storey"],
             "nyu40": row["nyu40_id"],
-            "center": row["center"],
-            "size": row["extents"],
+            "center": point(f"graph: center of {quoted(row['name'])}", row["center"]),
+            "size": point(f"graph: extents of {quoted(row['name'])}", row["extents"]),
         }
         for row in graph["objects"]
     ]
@@ -150,7 +174,7 @@ def _nodes(graph: Mapping[str, Any]) -> tuple[list[dict[str, Any]], dict[tuple[i
             "name": f"agent:{row['agent']}",
             "room": row["room"],
             "storey": row["storey"],
-            "center": row["position"],
+            "center": point("graph: position of an agent", row["position"]),
         }
         for row in graph["agents"]
     ]

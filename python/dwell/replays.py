@@ -6,7 +6,7 @@ import dataclasses
 import hashlib
 import json
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
@@ -100,7 +100,7 @@ class Replay:
             MeasuredDataError: It is no replay, of another version, or its numbers do not fit.
             ConfigError: ``path`` is no path.
         """
-        path = arguments.path("path", path)
+        path = arguments.file_path("path", path)
         try:
             row = read_json(path)
         except OSError as error:
@@ -141,11 +141,18 @@ class Replay:
         return "replay" if self.path is None else self.path
 
     def check(self) -> None:
-        """Refuses actions that do not exist, and hashes that are not one more than actions.
+        """Refuses fields of other types, unknown actions, and hashes that are not one more.
 
         Raises:
             MeasuredDataError: The message begins with the file, where there is one.
         """
+        try:
+            for name, check in _CHECKS.items():
+                check(name, getattr(self, name))
+            if self.sums is not None:
+                mapping("sums", self.sums)
+        except ConfigError as error:
+            raise MeasuredDataError(f"{self._at()}: {error}") from None
         names = _native.actions()
         for k, action in enumerate(self.actions):
             if action not in names:
@@ -180,11 +187,14 @@ class Replay:
         Raises:
             FileExistsError: It shall be new and is not.
             OSError: The system refuses.
-            ConfigError: A field holds what no file can.
+            ConfigError: The settings are none.
+            MeasuredDataError: Another field is of another type, or they do not fit each other.
         """
+        self.check()
+        is_new = boolean("new", new)
         row = self._stated()
         row["sums"] = {name: _sum(value) for name, value in row.items()}
-        with atomic_write(path, new=new) as draft:
+        with atomic_write(arguments.file_path("path", path), new=is_new) as draft:
             draft.write_text(json.dumps(row, indent=1) + "\n", "utf-8")
 
     def play(
@@ -206,9 +216,11 @@ class Replay:
         Raises:
             HouseError: The house cannot be opened.
             UsageError: It was played with parts in Python that are not given.
+            MeasuredDataError: A field is wrong, as :meth:`check` says.
         """
         from dwell.world import World
 
+        self.check()
         with self._named():
             runner = self._runner(task, reward, renderer, house)
             runner.reset([self.seed])
@@ -294,6 +306,7 @@ class Replay:
         Returns:
             Nothing where all holds.
         """
+        self.check()
         told = []
         if self.sums is not None:
             stated = self._stated()
@@ -362,6 +375,20 @@ _FIELDS = (
     *(field.name for field in dataclasses.fields(Replay) if field.name not in ("path", "sums")),
     "sums",
 )
+
+
+#: What the fields of a replay may be.
+_CHECKS: dict[str, Callable[[str, object], Any]] = {
+    "house": text,
+    "seed": integer_in_range,
+    "config": text,
+    "parts": text_list,
+    "actions": text_list,
+    "hashes": text_list,
+    "instruction": text,
+    "success": boolean,
+    "made_by": text,
+}
 
 
 def _sum(value: object) -> str:

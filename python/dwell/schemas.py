@@ -14,6 +14,7 @@ from dwell.arguments import (
     finite_number,
     integer_in_range,
     mapping,
+    plain_settings,
     point,
     quoted,
     text,
@@ -120,7 +121,8 @@ def _as_is(_name: str, value: object) -> object:
 def _text_or_mapping(name: str, value: object) -> str | dict[str, Any]:
     if isinstance(value, str):
         return text(name, value)
-    return mapping(name, value, "text or a mapping")
+    found: dict[str, Any] = plain_settings(mapping(name, value, "text or a mapping"), name)
+    return found
 
 
 def _name_or_number(number: Check, name: str, value: object) -> Any:  # noqa: ANN401 - either

@@ -12,7 +12,7 @@ from PIL import Image, ImageDraw
 
 from dwell import ConfigError
 from dwell.acoustics import AcousticScene
-from dwell.arguments import choice, instance_of
+from dwell.arguments import above_zero, choice, instance_of, integer_in_range, quoted, real_array
 from dwell.array_record import ArrayRecord
 from dwell.charts import BACKGROUND_COLOR, TEXT_COLOR, font
 from dwell.false_color import scale_colors
@@ -87,6 +87,8 @@ def sound_map(
     """
     scene = instance_of("scene", scene, AcousticScene)
     field = MEASURES[choice("measure", measure, tuple(MEASURES))][0]
+    if not callable(progress):
+        raise ConfigError(f"progress is {quoted(progress)}; expected a function")
     places = receiver_grid(scene.house, spacing_m, height_m)
     values: list[float] = []
     for first in range(0, len(places), _AT_ONCE):
@@ -95,7 +97,7 @@ def sound_map(
             values.append(_single(rows, field))
         progress(len(values) / len(places), f"{len(values)} of {len(places)} places")
     found = np.array(values) - (_TEN_METRES_DB if measure == "level" else 0.0)
-    return SoundMap(measure, source_of(source), places, found, spacing_m)
+    return SoundMap(measure, source_of(source), places, found, float(spacing_m))
 
 
 def _single(rows: list[dict[str, Any]], field: str) -> float:
@@ -115,10 +117,12 @@ def draw_map(
         longest_edge: Pixels of the plan's longer edge.
 
     Raises:
-        ConfigError: There is no value on this storey.
+        ConfigError: There is no value on this storey, or a field of the map is wrong.
     """
     world = instance_of("world", world, World)
-    _, title, unit = MEASURES[instance_of("found", found, SoundMap).measure]
+    found = _checked(instance_of("found", found, SoundMap))
+    level = integer_in_range("level", level)
+    _, title, unit = MEASURES[found.measure]
     here = _on_storey(found.places, world, level)
     there = here & np.isfinite(found.values)
     if not there.any():
@@ -134,6 +138,24 @@ def draw_map(
     plan = floor_plan(world, level, longest_edge=longest_edge, ways=ways, squares=squares)
     words = f"{title}, 500 Hz and 1 kHz" + (f", {unit}" if unit else "")
     return _with_scale(plan, words, low, high)
+
+
+def _checked(found: SoundMap) -> SoundMap:
+    """A map whose fields are of their types and fit each other."""
+    places = real_array("found.places", found.places, np.float64)
+    values = real_array("found.values", found.values, np.float64)
+    if places.ndim != 2 or places.shape[1] != 3 or values.shape != places.shape[:1]:
+        raise ConfigError(
+            f"found: places of shape {places.shape} and values of shape {values.shape}; expected "
+            "(node, 3) and (node,)"
+        )
+    return SoundMap(
+        choice("found.measure", found.measure, tuple(MEASURES)),
+        instance_of("found.source", found.source, Source),
+        places,
+        values,
+        above_zero("found.spacing_m", found.spacing_m),
+    )
 
 
 def _on_storey(places: NDArray[np.float64], world: World, level: int) -> NDArray[np.bool_]:

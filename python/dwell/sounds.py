@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError, MeasuredDataError, _native, arguments
-from dwell.arguments import finite_number, integer_in_range, real_array
+from dwell.arguments import above_zero, integer_in_range, real_array
 from dwell.files import atomic_write, read
 
 #: A sound file that is read has at most so many bytes.
@@ -57,11 +57,10 @@ def write_wav(
         if sound.size and np.abs(sound).max() > np.finfo(np.float32).max:
             raise ConfigError(f"sound: found {np.abs(sound).max():g} Pa; 32 bits hold up to 3e38")
         form, samples = _FLOAT, sound.T.astype("<f4")
-    elif finite_number("full_scale_pa", full_scale_pa) > 0.0:
-        scaled = np.clip(sound.T / full_scale_pa, -1.0, 1.0) * 32767.0
-        form, samples = _PCM, np.rint(scaled).astype("<i2")
     else:
-        raise ConfigError(f"full_scale_pa is {full_scale_pa}; allowed are numbers above 0")
+        full = above_zero("full_scale_pa", full_scale_pa)
+        scaled = np.clip(sound.T / full, -1.0, 1.0) * 32767.0
+        form, samples = _PCM, np.rint(scaled).astype("<i2")
     if samples.nbytes > _MAX_WAV_BYTES:
         raise ConfigError(f"sound: {samples.nbytes} bytes; a WAV file holds {_MAX_WAV_BYTES}")
     channels, width = sound.shape[0], samples.itemsize
@@ -79,7 +78,7 @@ def write_wav(
     body = b"WAVE" + b"".join(
         name + struct.pack("<I", len(content)) + content for name, content in chunks
     )
-    with atomic_write(arguments.path("path", path)) as draft:
+    with atomic_write(arguments.file_path("path", path)) as draft:
         draft.write_bytes(b"RIFF" + struct.pack("<I", len(body)) + body)
 
 
@@ -90,18 +89,20 @@ def read_wav(
 
     Args:
         path: The file.
-        full_scale_pa: Of 16 bits, the pressure at full scale, Pa; 1: fractions of it.
+        full_scale_pa: Of 16 bits, the pressure at full scale, Pa, above 0; 1: fractions of it.
 
     Returns:
         The sound, shape (channel, sample), Pa, and the samples a second.
 
     Raises:
+        ConfigError: ``full_scale_pa`` is no number above 0.
         MeasuredDataError: The file is no WAV, holds samples of another form, or has more than
             512 MiB.
         OSError: The system refuses, or it is no regular file.
     """
+    full_scale_pa = above_zero("full_scale_pa", full_scale_pa)
     try:
-        file = read(arguments.path("path", path), _MAX_READ_BYTES)
+        file = read(arguments.file_path("path", path), _MAX_READ_BYTES)
     except ConfigError:
         raise
     except ValueError as error:

@@ -43,6 +43,8 @@ if TYPE_CHECKING:
 
 #: How steeply an agent looks up or down at most, the engine's 1.5 rad.
 _STEEPEST_DEG = 85.9
+#: The attributes that a pickle's arguments make again.
+_OWN = ("house", "_native", "_config", "_seed", "_heads")
 #: Ids have 32 bits.
 _MAX_ID = 2**32 - 1
 
@@ -124,10 +126,11 @@ class World(ActionApi, GuideApi, SoundApi):
         world._config, world._seed = to_json(native.config()), 0
         return world
 
-    def __reduce__(self) -> tuple[Any, tuple[House, str, int, tuple[Head, ...], bytes]]:
-        """House, settings, heads and a snapshot."""
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...], dict[str, Any]]:
+        """House, settings, heads and a snapshot; and what else a subclass holds."""
         again = (self.house, self._config, self._seed, self._heads, self.snapshot())
-        return World._rebuild, again
+        own = {name: value for name, value in vars(self).items() if name not in _OWN}
+        return type(self)._rebuild, again, own
 
     def __repr__(self) -> str:
         """The house, the time, and the number of agents."""

@@ -91,7 +91,7 @@ def test_pictures_that_overlap_with_steps_are_the_same(
 
 
 def test_whether_pictures_overlap_is_a_bool(apartment: dwell.House) -> None:
-    with pytest.raises(dwell.ConfigError, match="overlap: found 1"):
+    with pytest.raises(dwell.ConfigError, match="overlap is 1"):
         DwellVectorEnv(1, houses=apartment, overlap=1)  # type: ignore[arg-type] # the point
 
 

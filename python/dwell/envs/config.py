@@ -9,12 +9,14 @@ import re
 import weakref
 from collections import OrderedDict
 from collections.abc import Mapping, Sequence
+from copy import deepcopy
 from typing import Any, TypedDict
 
 from dwell import ConfigError
 from dwell.arguments import (
     checked_fields,
     integer_in_range,
+    kept,
     mapping,
     quoted,
     sequence_items,
@@ -91,6 +93,12 @@ def agent_number(agent: object) -> int:
     return integer_in_range("agent", agent, high=2**32 - 1)
 
 
+def kept_houses(houses: Houses) -> Houses:
+    """A copy of the houses of an environment; those of a range of seeds are not made for it."""
+    found: Houses = deepcopy(houses) if isinstance(houses, HouseList) else kept(houses)
+    return found
+
+
 class HouseCache:
     """Houses by number.
 
@@ -102,8 +110,9 @@ class HouseCache:
         """Keeps the houses, one house counting as a list of one; opens nothing."""
         alone = isinstance(houses, str | os.PathLike | House)
         expected = "expected HOUSE strings or Houses"
-        given = [houses] if alone else sequence_items("houses", houses, expected)
-        if not given:
+        is_list = isinstance(houses, HouseList)
+        given = [houses] if alone else [] if is_list else sequence_items("houses", houses, expected)
+        if not (houses if is_list else given):
             raise ConfigError("houses: expected at least one HOUSE string or House, found none")
         self._given: dict[str, House] = {}
         #: The latest last.
@@ -111,7 +120,7 @@ class HouseCache:
         #: All that are open, whoever keeps them.
         self._alive: weakref.WeakValueDictionary[str, House] = weakref.WeakValueDictionary()
         #: HOUSE strings; for a house that was handed over, its name, numbered where that is taken.
-        self.names = HouseList()
+        self.names = deepcopy(houses) if isinstance(houses, HouseList) else HouseList()
         for k, row in enumerate(given):
             if isinstance(row, House):
                 is_taken = row.name in self.names

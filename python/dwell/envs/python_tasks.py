@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import binascii
 import dataclasses
 import functools
 import json
@@ -20,6 +22,7 @@ from dwell.arguments import (
     from_json,
     mapping,
     quoted,
+    refuse_masked,
     sequence_items,
     text,
     to_json,
@@ -47,6 +50,8 @@ NativeSensors = Sequence[str] | Mapping[str, Mapping[str, Any]] | None
 
 #: Streams of random numbers of an episode: the task's, and from the next number on the sensors'.
 _TASK_STREAM = 0
+#: What a snapshot calls the latest observations beside the states of parts.
+_OBSERVED = "observed"
 #: The spaces that sensors can have, each with arrays or text as elements.
 _SPACES = (spaces.Box, spaces.Discrete, spaces.MultiDiscrete, spaces.MultiBinary, spaces.Text)
 
@@ -138,6 +143,10 @@ class PythonEpisode:
         self._reward = None if custom.reward is None else custom.reward()
         self.sensors = [make() for make in custom.sensors]
         self._seed = 0
+        #: What was observed last; ``None`` where something has happened since.
+        self._seen: dict[str, Any] | None = None
+        #: Whether that came with a snapshot and nobody has been given it.
+        self._is_restored = False
         if agent := batch.agents()[0]:
             for part in self._parts().values():
                 part.agent = agent
@@ -159,6 +168,7 @@ class PythonEpisode:
     def begin(self, seed: int) -> None:
         """Begins the episode of a seed, after the engine has."""
         self._seed = seed
+        self._seen, self._is_restored = None, False
         for part in self._parts().values():
             part.state = {}
         if self._task is not None:
@@ -190,6 +200,7 @@ class PythonEpisode:
     def judge(self, action: str, answer: dict[str, Any]) -> Mapping[str, Any]:
         """Judges a step in place of the engine, whose ``answer`` it changes; gives further info."""
         k = self._env
+        self._seen, self._is_restored = None, False
         if self._task is None and self._reward is None:
             return {}
         distance_m = float(answer["distance_to_goal"][k])
@@ -261,9 +272,15 @@ class PythonEpisode:
         return found
 
     def observe(self) -> dict[str, Any]:
-        """The observations of task and sensors now, by name, each in its space."""
+        """The observations of task and sensors now, by name, each in its space.
+
+        Those of a snapshot are given again: looking once more might change what a part remembers.
+        """
+        if self._is_restored and self._seen is not None:
+            self._is_restored = False
+            return self._seen
         step = self._world.native.step_count
-        seen = {}
+        self._seen, seen = None, {}
         if self._task is not None and self._task.spaces:
             at, rng = f"{self._name()}.observe", self._rng(_TASK_STREAM, step)
             values = mapping(at, self._task.observe(self._world, rng))
@@ -275,10 +292,16 @@ class PythonEpisode:
         for stream, sensor in enumerate(self.sensors, _TASK_STREAM + 1):
             value = sensor.observe(self._world, self._rng(stream, step))
             seen[sensor.name] = _element(f"sensor {sensor.name}", sensor.space, value)
+        self._seen = seen
         return seen
 
+    def _own_spaces(self) -> dict[str, Any]:
+        """The spaces of :meth:`observe`, by name."""
+        of_task = {} if self._task is None else self._task.spaces
+        return {**of_task, **{sensor.name: sensor.space for sensor in self.sensors}}
+
     def save(self) -> bytes:
-        """The states of the parts.
+        """The states of the parts, and what was observed last.
 
         Raises:
             ConfigError: It would come back as something else.
@@ -288,11 +311,13 @@ class PythonEpisode:
             at = f"{name}.state"
             saved[name] = to_json(part.state, at)
             _refuse_what_changes(at, part.state)
+        if self._seen is not None:
+            saved[_OBSERVED] = json.dumps({name: _packed(one) for name, one in self._seen.items()})
         rows = (f"{json.dumps(name)}: {state}" for name, state in saved.items())
         return f"{{{', '.join(rows)}}}".encode()
 
     def loaded(self, saved: bytes) -> dict[str, dict[str, Any]]:
-        """The states that :meth:`save` wrote, by part.
+        """The states that :meth:`save` wrote, by part, and what was observed.
 
         Raises:
             ConfigError: It is of other parts, or was cut.
@@ -300,34 +325,70 @@ class PythonEpisode:
         at = "snapshot refused: its parts"
         states = mapping(at, from_json(at, saved))
         names = [*self._parts()]
+        seen = states.pop(_OBSERVED, None)
         if set(states) != set(names):
             raise ConfigError(f"{at} are {[*states]}; expected {names}")
-        return {name: mapping(f"{at}: {name}", state) for name, state in states.items()}
+        found = {name: mapping(f"{at}: {name}", state) for name, state in states.items()}
+        if seen is not None:
+            at, own = f"{at}: {_OBSERVED}", self._own_spaces()
+            rows = mapping(at, seen)
+            if set(rows) != set(own):
+                raise ConfigError(f"{at} has {sorted(rows)}; expected {sorted(own)}")
+            found[_OBSERVED] = {
+                name: _unpacked(f"{at}: {name}", space, rows[name]) for name, space in own.items()
+            }
+        return found
 
     def load(self, states: Mapping[str, dict[str, Any]], seed: int) -> None:
         """Restores the state that :meth:`save` wrote, in an episode of ``seed``."""
         self._seed = seed
         for name, part in self._parts().items():
             part.state = states[name]
+        self._seen = states.get(_OBSERVED)
+        self._is_restored = self._seen is not None
 
 
 def _refuse_what_changes(at: str, value: object) -> None:
     """Refuses values that JSON returns as another kind."""
-    if isinstance(value, dict):
-        for key, part in value.items():
-            if not isinstance(key, str):
+    kind = type(value)
+    if kind is dict:
+        for key, part in value.items():  # type: ignore[attr-defined] # of a dict
+            if type(key) is not str:
                 raise ConfigError(f"{at} has the key {quoted(key)}; a snapshot holds keys of text")
             _refuse_what_changes(f"{at}[{key!r:.60}]", part)
-    elif isinstance(value, list):
-        for k, part in enumerate(value):
+    elif kind is list:
+        for k, part in enumerate(value):  # type: ignore[arg-type] # a list
             _refuse_what_changes(f"{at}[{k}]", part)
-    elif isinstance(value, str):
+    elif kind is str:
         text(at, value)
-    elif not (value is None or isinstance(value, int | float | np.number | np.bool_)):
+    elif value is not None and kind not in (bool, int, float):
         raise ConfigError(
-            f"{at} is {quoted(value)}; a snapshot holds numbers, text, lists and dicts: of "
-            "an array, keep its tolist(), of a tuple a list"
+            f"{at} is {quoted(value)}; a snapshot holds numbers, text, lists and dicts of Python's "
+            "own kinds: of an array or a number of NumPy keep its tolist(), of a tuple a list"
         )
+
+
+def _packed(observed: object) -> str | dict[str, str]:
+    """An observation as JSON holds it: text, or an array's bytes."""
+    if isinstance(observed, str):
+        return observed
+    return {"bytes": base64.b64encode(np.ascontiguousarray(observed).tobytes()).decode()}
+
+
+def _unpacked(at: str, space: spaces.Space[Any], packed: object) -> Any:  # noqa: ANN401 - of the space
+    """The observation that :func:`_packed` wrote.
+
+    Raises:
+        ConfigError: It is none of this space.
+    """
+    if isinstance(space, spaces.Text):
+        return _element(at, space, packed)
+    try:
+        raw = base64.b64decode(text(at, mapping(at, packed).get("bytes")), validate=True)
+        array = np.frombuffer(raw, space.dtype).reshape(space.shape or ())
+    except (ValueError, binascii.Error) as error:
+        raise ConfigError(f"{at}: expected an element of {space}: {error}") from None
+    return _element(at, space, array)
 
 
 def _checked(task: str, verdict: object) -> StepResult:
@@ -359,6 +420,7 @@ def _element(at: str, space: spaces.Space[Any], value: object) -> Any:  # noqa: 
     form = ""
     if not isinstance(space, spaces.Text):
         try:
+            refuse_masked(f"{at}: what it observed", value)
             given = np.asarray(value)
             form = (
                 f"; found {given.dtype} of shape {given.shape}"
@@ -366,6 +428,8 @@ def _element(at: str, space: spaces.Space[Any], value: object) -> Any:  # noqa: 
                 else ""
             )
             element = _converted(given, np.dtype(space.dtype))
+        except ConfigError:
+            raise
         except (TypeError, ValueError):
             element = None
     # A Discrete space wants its elements as scalars.
@@ -377,6 +441,11 @@ def _element(at: str, space: spaces.Space[Any], value: object) -> Any:  # noqa: 
 
 def _converted(given: NDArray[Any], dtype: np.dtype[Any]) -> NDArray[Any] | None:
     """Numbers as another type, where that holds them: whole ones exactly; ``None`` elsewhere."""
+    if given.dtype.kind == "f" and dtype.kind == "f":
+        # What is too large for the type becomes infinite there.
+        with np.errstate(over="ignore"):
+            narrow = given.astype(dtype)
+        return narrow if (np.isfinite(narrow) | ~np.isfinite(given)).all() else None
     if given.dtype.kind in "iu" and dtype.kind in "iu":
         whole = given.astype(dtype)
         return whole if (whole == given).all() else None

@@ -17,7 +17,7 @@ from gymnasium.wrappers import TimeLimit
 from numpy.typing import NDArray
 
 from dwell import ConfigError, UsageError, _native
-from dwell.arguments import integer_in_range, mapping, quoted, refuse_unknown, text
+from dwell.arguments import integer_in_range, kept, mapping, quoted, refuse_unknown, text
 from dwell.camera import Camera, camera_settings
 from dwell.envs.config import (
     CACHED_HOUSES,
@@ -26,6 +26,7 @@ from dwell.envs.config import (
     agent_number,
     arguments_of,
     env_json,
+    kept_houses,
     step_limit,
 )
 from dwell.envs.native_batch import GOAL_KEYS, INFO_KEYS, NativeBatch
@@ -97,6 +98,10 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
             **unknown: There are no others; such are refused with the nearest names.
         """
         refuse_unknown("DwellEnv", unknown, arguments_of(DwellEnv))
+        # Copies: a pickle makes this environment anew, whatever the caller does with his own.
+        houses, sensors, laws = kept_houses(houses), kept(sensors), kept(laws)
+        parameters, task_settings = kept(parameters), kept(task_settings)
+        stride, world = kept(stride), kept(world)
         EzPickle.__init__(
             self,
             task,
@@ -138,6 +143,9 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         self._house = 0
         self._episode = 0
         self._seed = 0
+        #: Whether there is no episode to go on with: none has begun, or a call did not come to its
+        #: end that began, restored or stepped one.
+        self._stopped = True
         self._alone = np.ones(1, np.bool_)
         self.observation_space = self._runner.space
         self.action_space = action_space()
@@ -145,6 +153,11 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
     def _refuse_closed(self) -> None:
         if self._closed:
             raise UsageError("this environment is closed; make a new one")
+
+    def _refuse_stopped(self, call: str) -> None:
+        self._refuse_closed()
+        if self._stopped:
+            raise UsageError(f"{call}: no episode has begun; call reset first")
 
     @property
     def _runner(self) -> NativeBatch:
@@ -173,10 +186,29 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
             seed: Seeds this and all following episodes.
             options: ``house``: the number of the house to play in; else it is drawn.
                 ``episode_id``: that of an earlier ``info``, to play the same episode again.
+
+        Raises:
+            ConfigError: There is no such option, house or episode; nothing has changed then.
+            DwellError: The episode cannot begin; the one before is over.
         """
         self._refuse_closed()
+        number = None if seed is None else integer_in_range("seed", seed)
+        house, episode = self._asked(options)
         self._counters = _counters_around(self)
-        super().reset(seed=None if seed is None else integer_in_range("seed", seed))
+        self._stopped = True
+        super().reset(seed=number)
+        # Both are drawn whatever is asked for, so that the episodes that follow are the same.
+        drawn = int(self.np_random.integers(len(self._shelf.names)))
+        self._house = drawn if house is None else house
+        drawn = int(self.np_random.integers(2**63))
+        self._seed = drawn if episode is None else episode
+        self._runner.reset([self._seed])
+        observation = self._observation()
+        self._stopped = False
+        return observation, self._info()
+
+    def _asked(self, options: dict[str, Any] | None) -> tuple[int | None, int | None]:
+        """House and seed of the episode that is requested, each where it is."""
         options = {} if options is None else mapping("options", options)
         if unknown := sorted(set(options) - {"house", "episode_id"}):
             raise ConfigError(f"options: no {unknown[0]!r}; allowed are house and episode_id")
@@ -184,17 +216,12 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
             raise ConfigError(
                 "options: house and episode_id; an episode has its own house, give one"
             )
-        house = int(self.np_random.integers(len(self._shelf.names)))
-        if "house" in options:
-            house = integer_in_range(
-                "options: house, an index,", options["house"], high=len(self._shelf.names) - 1
-            )
-        episode = int(self.np_random.integers(2**63))
         if "episode_id" in options:
-            house, episode = self._shelf.episode(options["episode_id"])
-        self._house, self._seed = house, episode
-        self._runner.reset([self._seed])
-        return self._observation(), self._info()
+            return self._shelf.episode(options["episode_id"])
+        if "house" in options:
+            last = len(self._shelf.names) - 1
+            return integer_in_range("options: house, an index,", options["house"], high=last), None
+        return None, None
 
     def step(
         self, action: np.int64 | int
@@ -203,8 +230,12 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
 
         ``info`` has no ``distance_to_goal``, ``spl`` and ``soft_spl`` where the task has no goal.
         """
+        self._refuse_stopped("step")
         number = integer_in_range("action", action, high=len(_native.actions()) - 1)
+        # A step that the task did not judge to its end is none.
+        self._stopped = True
         answer, further = self._runner.step(np.array([number], np.int64))
+        self._stopped = False
         info: dict[str, Any] = {key: np.asarray(answer[key])[0].item() for key in INFO_KEYS}
         info = {k: value for k, value in info.items() if k not in GOAL_KEYS or not isnan(value)}
         info["action_error"] = answer["action_error"][0]
@@ -243,6 +274,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
 
     def expert_action(self) -> int:
         """The action of the task's scripted expert now."""
+        self._refuse_stopped("expert_action")
         return int(self._runner.expert_actions()[0])
 
     def state_hash(self) -> int:
@@ -254,7 +286,9 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
 
         Raises:
             ConfigError: A part's state holds what would come back as another kind.
+            UsageError: No episode has begun.
         """
+        self._refuse_stopped("snapshot")
         episode_id = str(self._info()["episode_id"])
         parts = self._runner.saved_parts(0)
         return with_checksum(
@@ -269,6 +303,10 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
 
         Returns:
             Observation and info of that moment.
+
+        Raises:
+            ConfigError: It is of something else, or was damaged. Nothing has changed then, unless
+                it is the engine that refuses it: the episode is over then.
         """
         self._refuse_closed()
         given: object = snapshot
@@ -284,12 +322,16 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
             raise ConfigError(f"snapshot refused: {error}") from None
         # Nothing changes before it was accepted.
         runner = self._runner_of(house)
+        runner.loaded(0, parts)
+        self._stopped = True
         runner.restore(rest, parts, seed)
         self._house, self._seed = house, seed
         for counter in self._counters:
             if (wrapper := counter()) is not None:
                 wrapper._elapsed_steps = self._steps()  # type: ignore[assignment] # None first
-        return self._observation(), self._info()
+        observation = self._observation()
+        self._stopped = False
+        return observation, self._info()
 
     def instruction(self) -> str:
         """The instruction of the episode."""

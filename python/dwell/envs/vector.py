@@ -15,7 +15,9 @@ from numpy.typing import NDArray
 from dwell import ConfigError, UsageError, _native
 from dwell.arguments import (
     abbreviated_list,
+    boolean,
     integer_in_range,
+    kept,
     mapping,
     quoted,
     refuse_masked,
@@ -30,6 +32,7 @@ from dwell.envs.config import (
     agent_number,
     arguments_of,
     env_json,
+    kept_houses,
     step_limit,
 )
 from dwell.envs.env_pool import EnvPool
@@ -139,6 +142,10 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             **unknown: There are no others; such are refused with the nearest names.
         """
         refuse_unknown("DwellVectorEnv", unknown, arguments_of(DwellVectorEnv))
+        # Copies: a pickle makes these environments anew, whatever the caller does with his own.
+        houses, sensors, laws = kept_houses(houses), kept(sensors), kept(laws)
+        parameters, task_settings = kept(parameters), kept(task_settings)
+        stride, world = kept(stride), kept(world)
         EzPickle.__init__(
             self,
             num_envs,
@@ -161,6 +168,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             render_mode=render_mode,
         )
         num_envs = integer_in_range("num_envs", num_envs, low=1, high=65_536)
+        self._copy, overlap = boolean("copy", copy), boolean("overlap", overlap)
         self.num_envs = num_envs
         self.render_mode = checked_render_mode(render_mode)
         self.autoreset_mode = _autoreset_mode(autoreset_mode)
@@ -179,8 +187,6 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         )
         shelf = HouseCache(houses)
         threads = None if threads is None else integer_in_range("threads", threads, low=1)
-        if not isinstance(overlap, bool):
-            raise ConfigError(f"overlap: found {overlap!r}, allowed are True and False")
         self._shelf = shelf
         self._config, self._custom, self._heads = config, custom, heads
         self._playing = NativeBatch(
@@ -189,14 +195,13 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         self._places = HouseAssignment(
             self._playing, EnvPool(shelf, config, heads, threads), load_ahead
         )
-        self._copy = copy
         self._streams: list[np.random.Generator | None] = [None] * num_envs
         #: The seed of every environment's episode, once it has one.
         self._seeds: list[int | None] = [None] * num_envs
         self._done = np.ones(num_envs, np.bool_)
         #: Who writes down what is played.
         self._recorders: list[Recorder] = []
-        #: Whose latest reset did not come to its end.
+        #: Whose latest reset, restoring or step did not come to its end.
         self._stopped = np.zeros(num_envs, np.bool_)
         self.single_observation_space = self._runner.space
         self.single_action_space = action_space()
@@ -277,9 +282,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         options = {} if options is None else mapping("options", options)
         if unknown := sorted(set(options) - {"reset_mask", "episode_id"}):
             raise ConfigError(f"options: no {unknown[0]!r}; allowed are reset_mask and episode_id")
-        mask = options.get("reset_mask")
-        refuse_masked("reset_mask", mask)
-        which = np.ones(self.num_envs, np.bool_) if mask is None else np.asarray(mask)
+        which = self._reset_mask(options.get("reset_mask"))
         if which.shape != (self.num_envs,) or which.dtype != np.bool_ or not which.any():
             raise ConfigError(
                 f"reset_mask: expected bool of shape ({self.num_envs},) with a true element, "
@@ -299,8 +302,21 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             if seeds[k] is not None or self._streams[k] is None:
                 self._streams[k] = np.random.default_rng(seeds[k])
         self._start(which, asked)
+        self._stopped[which] = True
         self._runner.observe(which)
+        self._stopped[which] = False
         return self._observation(), self._ids()
+
+    def _reset_mask(self, mask: object) -> NDArray[Any]:
+        """The environments to reset, as C has them; all of them by default."""
+        refuse_masked("reset_mask", mask)
+        if mask is None:
+            return np.ones(self.num_envs, np.bool_)
+        try:
+            return np.asarray(mask, order="C")
+        except ValueError:
+            expected = f"expected bool of shape ({self.num_envs},)"
+            raise ConfigError(f"reset_mask is {quoted(mask)}; {expected}") from None
 
     def _asked(
         self, episodes: object, which: NDArray[np.bool_]
@@ -378,7 +394,10 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         for recorder in self._recorders:
             recorder.check()
         numbers = np.where(begins, -1, numbers.astype(np.int64))
+        # Steps that the tasks did not judge to their end are none.
+        self._stopped[~begins] = True
         answer, further = self._runner.step(numbers)
+        self._stopped[~begins] = False
         rewards = np.asarray(answer["reward"], np.float64)
         terminated = np.asarray(answer["terminated"], np.bool_)
         truncated = np.zeros(self.num_envs, np.bool_)
@@ -494,9 +513,9 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         for k, (saved, _, seed) in rows.items():
             self._runner.restore(saved.world, saved.parts, seed, env=k)
             self._seeds[k], self._streams[k], self._done[k] = seed, saved.stream, saved.done
-        self._stopped[which] = False
         self._look_ahead(which)
         self._runner.observe(which)
+        self._stopped[which] = False
         return self._observation(), self._ids()
 
     def _refuse_closed(self) -> None:

@@ -30,15 +30,12 @@ impl Paraphrases {
         let mut rest = &apart[..];
         while let Some((first, others)) = rest.split_first() {
             let found = self.phrases.iter().find(|[from, _]| rest.starts_with(from));
-            match found {
-                Some([from, to]) => {
-                    replaced.extend_from_slice(to);
-                    rest = &rest[from.len()..];
-                }
-                None => {
-                    replaced.push(first.clone());
-                    rest = others;
-                }
+            if let Some([from, to]) = found {
+                replaced.extend_from_slice(to);
+                rest = &rest[from.len()..];
+            } else {
+                replaced.push(first.clone());
+                rest = others;
             }
         }
         replaced

@@ -228,11 +228,7 @@ fn added<'a>(function: &str, arguments: &'a [Tree]) -> Option<Added<'a>> {
             modifiers: vec![Modifier::new("in_room", [room(place)?])],
             items,
         },
-        ("whether_seen", [items]) => Added {
-            modifiers: vec![seen()],
-            items,
-        },
-        ("see" | "see_list", [items]) => Added {
+        ("see" | "see_list" | "whether_seen", [items]) => Added {
             modifiers: vec![seen()],
             items,
         },
@@ -275,16 +271,12 @@ pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Clause> {
 }
 
 fn collect(items: &Tree, modifiers: &[Modifier], into: &mut Vec<Phrase>) -> Option<()> {
-    match parts(items)? {
-        ("list_pair" | "list_more", [first, rest]) => {
-            collect(first, modifiers, into)?;
-            collect(rest, modifiers, into)
-        }
-        _ => {
-            into.push(with_modifiers(item_from_tree(items)?, modifiers)?);
-            Some(())
-        }
+    if let ("list_pair" | "list_more", [first, rest]) = parts(items)? {
+        collect(first, modifiers, into)?;
+        return collect(rest, modifiers, into);
     }
+    into.push(with_modifiers(item_from_tree(items)?, modifiers)?);
+    Some(())
 }
 
 fn with_modifiers(item: Phrase, modifiers: &[Modifier]) -> Option<Phrase> {
@@ -340,20 +332,17 @@ pub(super) fn item_phrases(clause: &Tree, path: &[usize]) -> Vec<(Vec<usize>, Ph
             longer.push(k);
             longer
         };
-        match parts(tree) {
-            Some(("list_pair" | "list_more", [first, rest])) => {
-                open.push((step(0), first));
-                open.push((step(1), rest));
-            }
-            _ => {
-                let phrase = item_from_tree(tree).and_then(|item| with_modifiers(item, &modifiers));
-                // The item and the noun phrase in it have the same text.
-                if matches!(parts(tree), Some(("item" | "item_room", _))) {
-                    found.extend(phrase.clone().map(|phrase| (step(0), phrase)));
-                }
-                found.extend(phrase.map(|phrase| (path, phrase)));
-            }
+        if let Some(("list_pair" | "list_more", [first, rest])) = parts(tree) {
+            open.push((step(0), first));
+            open.push((step(1), rest));
+            continue;
         }
+        let phrase = item_from_tree(tree).and_then(|item| with_modifiers(item, &modifiers));
+        // The item and the noun phrase in it have the same text.
+        if matches!(parts(tree), Some(("item" | "item_room", _))) {
+            found.extend(phrase.clone().map(|phrase| (step(0), phrase)));
+        }
+        found.extend(phrase.map(|phrase| (path, phrase)));
     }
     found
 }

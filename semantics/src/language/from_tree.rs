@@ -90,10 +90,10 @@ fn simple(tree: &Tree) -> Option<Clause> {
 
 fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
     Some(match (function, arguments) {
-        ("holds" | "holds_verb" | "whether_holds", [subject, word, object]) => {
+        ("holds" | "holds_verb" | "whether_holds" | "whether_verb", [subject, word, object]) => {
             holds(&id(word)?, vec![phrase(subject)?, phrase(object)?])
         }
-        ("holds_between", [subject, a, b]) => {
+        ("holds_between" | "whether_between", [subject, a, b]) => {
             holds("between", vec![phrase(subject)?, phrase(a)?, phrase(b)?])
         }
         ("holds_place" | "whether_place", [subject, place]) => {
@@ -124,27 +124,18 @@ fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
             };
             holds(&id(word)?, vec![phrase(subject)?, items])
         }
-        ("whether_verb", [subject, word, object]) => {
-            holds(&id(word)?, vec![phrase(subject)?, phrase(object)?])
-        }
         ("same_color" | "whether_same_color", [a, b]) => {
             holds("same_color", vec![phrase(a)?, phrase(b)?])
         }
         ("same_material" | "whether_same_material", [a, b]) => {
             holds("same_material", vec![phrase(a)?, phrase(b)?])
         }
-        ("whether_between", [subject, a, b]) => {
-            holds("between", vec![phrase(subject)?, phrase(a)?, phrase(b)?])
-        }
-        ("whether_side", [subject, side]) => {
-            holds_of(phrase(subject)?, places::side_from_tree(side)?)
-        }
         ("holds_mount" | "whether_mount", [subject, mount]) => holds(
             "hangs_on",
             vec![phrase(subject)?, places::mount_from_tree(mount)?],
         ),
         ("leads", [door, passage]) => holds_of(phrase(door)?, places::passage_from_tree(passage)?),
-        ("holds_side", [subject, side]) => {
+        ("holds_side" | "whether_side", [subject, side]) => {
             holds_of(phrase(subject)?, places::side_from_tree(side)?)
         }
         ("list_holds", [items, word, object]) => {
@@ -347,8 +338,8 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
             let (predicate, place) = place_of(place)?;
             that(Quantifier::Some, noun, predicate, place)
         }
-        ("nth", [place, noun, order]) => selected(noun, order, number(place)?, None),
-        ("superlative", [order, noun]) => selected(noun, order, 1, None),
+        ("nth" | "i_nth", [place, noun, order]) => selected(noun, order, number(place)?, None),
+        ("superlative" | "i_superlative", [order, noun]) => selected(noun, order, 1, None),
         ("selected_to", [noun, order, reference]) => {
             selected(noun, order, 1, Some(phrase(reference)?))
         }
@@ -361,15 +352,12 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
         }
         ("np_nothing" | "np_something", [inner]) => nothing(inner).map(Phrase::from),
         ("at_least_two" | "i_at_least_two", [noun]) => of(Quantifier::AtLeast(2), noun),
-        ("both", [noun]) => of(Quantifier::Exactly(2), noun),
         ("i_something", []) => {
             let noun = Noun::Object(Noun::ANY_OBJECT.to_owned());
             Some(Description::new(Quantifier::Some, noun).into())
         }
         ("nth_left" | "i_nth_left", [noun]) => first_in(noun, "from_left"),
         ("nth_right" | "i_nth_right", [noun]) => first_in(noun, "from_right"),
-        ("i_superlative", [order, noun]) => selected(noun, order, 1, None),
-        ("i_nth", [place, noun, order]) => selected(noun, order, number(place)?, None),
         ("i_with", [noun, added]) => {
             let noun = described(noun)?.with_quantifier(Quantifier::The);
             Some(noun.with_modifier(modifier(added)?).into())

@@ -119,8 +119,11 @@ impl TreeBuilder<'_> {
                 square_metres,
             } if !negated => self.area(room, *square_metres)?,
             Clause::HasSurfaces { room, surfaces } if !negated => self.surfaces(room, surfaces)?,
-            Clause::Area { .. } | Clause::HasSurfaces { .. } => return None,
-            Clause::Not(_) | Clause::All(_) | Clause::Any(_) => return None,
+            Clause::Area { .. }
+            | Clause::HasSurfaces { .. }
+            | Clause::Not(_)
+            | Clause::All(_)
+            | Clause::Any(_) => return None,
         })
     }
 
