@@ -198,11 +198,55 @@ def test_houses_that_were_deleted_are_made_again(tmp_path: Path) -> None:
     # What this version does not make is not passed off as what the manifest names.
     manifest = out / "manifest.jsonl"
     other = [{**row, "hash": "0"} for row in rows(manifest)]
+    for row in other:
+        del row["check"]
     manifest.write_text("".join(json.dumps(row) + "\n" for row in other), "utf-8")
     shutil.rmtree(first)
     refused = generate(*two)
     assert refused.returncode == 1
     assert "gives another house now than the manifest says" in refused.stderr
+
+
+@pytest.mark.parametrize("form", ["dwell", "suncg"])
+def test_models_and_images_that_are_gone_or_cut_are_made_again(tmp_path: Path, form: str) -> None:
+    out = tmp_path / "many"
+    one = ("--count", "1", "--spec", "home=studio", "--format", form, "--out", out, "--json")
+    assert generate(*one).returncode == 0
+    before = content(out)
+
+    def files(folder: str, ending: str) -> list[Path]:
+        return sorted((out / folder).rglob(f"*{ending}"))
+
+    for path in (
+        files("object", ".bin" if form == "dwell" else ".obj")[0],
+        files("texture", ".png")[0],
+        *([] if form == "dwell" else [files("room", ".mtl")[0], files("object", ".mtl")[-1]]),
+    ):
+        for change in (Path.unlink, lambda path: path.write_bytes(b"")):
+            change(path)
+            again = generate(*one)
+            assert json.loads(again.stdout)["made_now"] == 1, (path, again.stderr)
+            assert content(out) == before
+    assert json.loads(generate(*one).stdout)["made_now"] == 0
+
+
+def test_a_manifest_that_was_changed_is_refused_by_its_line(tmp_path: Path) -> None:
+    out = tmp_path / "many"
+    two = ("--count", "2", "--spec", "home=studio", "--out", out)
+    assert generate(*two).returncode == 0
+    manifest = out / "manifest.jsonl"
+    first, second = lines = manifest.read_text("utf-8").splitlines()
+    other = json.dumps({**json.loads(second), "hash": "0000000000000000"})
+    for changed, told in (
+        ([first, other], "manifest.jsonl line 2: changed since it was written: its check is"),
+        ([*lines, first], "manifest.jsonl line 3: seed 0 stands in line 1 already"),
+    ):
+        manifest.write_text("\n".join(changed) + "\n", "utf-8")
+        refused = generate(*two)
+        assert refused.returncode == 1
+        assert told in refused.stderr
+    manifest.write_text("\n".join(lines) + "\n", "utf-8")
+    assert generate(*two).returncode == 0
 
 
 @pytest.mark.parametrize(

@@ -5,10 +5,12 @@ from __future__ import annotations
 import argparse
 import contextlib
 import itertools
+import json
 import os
 import re
 import sys
 import time
+import zlib
 from collections import Counter, deque
 from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -19,9 +21,11 @@ from dwell import _native
 from dwell.arguments import integer_in_range
 from dwell.cli.common import ProgressBar, count, count_from_1, path, print_json
 from dwell.cli.job_journal import Journal, claim
-from dwell.files import lines, open_file, parse_json
+from dwell.files import MOST_TEXT_BYTES, lines, open_file, parse_json, read, read_json
 
 _FORMS = ("dwell", "suncg", "glb")
+#: Letters of the files of a room of SUNCG, and what says that there is none.
+_ROOM_PARTS = (("c", "hideCeiling"), ("f", "hideFloor"), ("w", "hideWalls"))
 #: Houses that failed and are told of on standard error.
 _MAX_LISTED_FAILURES = 10
 
@@ -153,7 +157,10 @@ def _regenerate_missing(args: argparse.Namespace, manifest: Path) -> int:
     """
     from dwell.house import House
 
-    missing = (row for row in _rows(manifest) if "error" not in row and not _is_there(args, row))
+    models: set[Path] = set()
+    missing = (
+        row for row in _rows(manifest) if "error" not in row and not _is_there(args, row, models)
+    )
     made = 0
     with ThreadPoolExecutor(args.workers or os.cpu_count() or 1) as pool:
         while some := list(itertools.islice(missing, 64)):
@@ -177,10 +184,65 @@ def _regenerate_house(args: argparse.Namespace, row: dict[str, Any]) -> dict[str
     return _house(args, integer_in_range(f"{args.out}: seed", row.get("seed")))
 
 
-def _is_there(args: argparse.Namespace, row: dict[str, Any]) -> bool:
-    """Returns whether the house is at the row's path, with as many bytes."""
+def _is_there(args: argparse.Namespace, row: dict[str, Any], whole_models: set[Path]) -> bool:
+    """Returns whether the house is at the row's path, with as many bytes, and all that it shows.
+
+    Models that are whole are added to ``whole_models`` and not looked at again.
+    """
     path = Path(args.out, str(row.get("path")))
-    return path.exists() and row.get("bytes", _bytes(path)) == _bytes(path)
+    if not path.exists() or row.get("bytes", _bytes(path)) != _bytes(path):
+        return False
+    try:
+        return all(map(_is_whole, _shown(path, whole_models)))
+    except (OSError, ValueError, LookupError, TypeError, AttributeError):
+        # What is no table of a house was changed since.
+        return False
+
+
+def _is_whole(file: tuple[Path, int]) -> bool:
+    """Returns whether a regular file has as many bytes, or more."""
+    path, least = file
+    return path.is_file() and path.stat().st_size >= least
+
+
+def _shown(path: Path, whole_models: set[Path]) -> Iterator[tuple[Path, int]]:
+    """The files that a house shows beside its own, each with the bytes that it has at least."""
+    if path.suffix == ".dwell":
+        with open_file(path / "house.glb") as file:
+            # The length of the tables stands in the header of a GLB.
+            length = int.from_bytes(file.read(20)[12:16], "little")
+            tables = parse_json(file.read(min(length, MOST_TEXT_BYTES)), f"{path}/house.glb")
+        for row in (*tables.get("buffers", ()), *tables.get("images", ())):
+            if "uri" in row and not row["uri"].startswith("data:"):
+                yield path / row["uri"], row.get("byteLength", 1)
+    elif path.name == "house.json":
+        root = path.parents[2]
+        house = read_json(path)
+        nodes = [node for level in house["levels"] for node in level["nodes"]]
+        parts = [
+            root / "room" / house["id"] / f"{node['modelId']}{letter}"
+            for node in nodes
+            if _has(node, "Room")
+            for letter, hidden in _ROOM_PARTS
+            if not node.get(hidden)
+        ]
+        objects = {node["modelId"] for node in nodes if _has(node, "Object")}
+        models = [*parts, *(root / "object" / name / name for name in sorted(objects))]
+        for model in models:
+            if model in whole_models:
+                continue
+            files = [model.with_name(model.name + ending) for ending in (".obj", ".mtl")]
+            if model.parent.name in objects:
+                files.append(model.with_name("row.json"))
+            yield from ((file, 1) for file in files)
+            for line in read(files[1]).decode("utf-8", "replace").splitlines():
+                if line.startswith("map_"):
+                    yield model.parent / line.partition(" ")[2].strip(), 1
+            whole_models.add(model)
+
+
+def _has(node: dict[str, Any], kind: str) -> bool:
+    return node.get("type") == kind and "modelId" in node
 
 
 def _bytes(path: Path) -> int:
@@ -192,13 +254,43 @@ def _bytes(path: Path) -> int:
 
 
 def _rows(manifest: Path) -> Iterator[dict[str, Any]]:
-    """The rows of a manifest."""
+    """The rows of a manifest.
+
+    Raises:
+        ValueError: A line is no row, was changed since it was written, or has the seed of another.
+    """
+    line_of: dict[int, int] = {}
     with open_file(manifest) as file:
         for number, line in enumerate(lines(file, manifest), start=1):
-            row = parse_json(line, f"{manifest} line {number}")
+            at = f"{manifest} line {number}"
+            row = parse_json(line, at)
             if not isinstance(row, dict):
-                raise ValueError(f"{manifest} line {number}: expected an object, found {row!r:.60}")
+                raise ValueError(f"{at}: expected an object, found {row!r:.60}")
+            # Older manifests have none.
+            if "check" in row and row["check"] != _check(row):
+                raise ValueError(
+                    f"{at}: changed since it was written: its check is {row['check']!r:.60}, and "
+                    f"that of its other fields is {_check(row)!r}; put it back, or remove "
+                    f"{manifest} and run again"
+                )
+            seed = whole(f"{at}: seed", row.get("seed"))
+            before = line_of.setdefault(seed, number)
+            if before != number:
+                raise ValueError(
+                    f"{at}: seed {seed} stands in line {before} already; a manifest has each seed "
+                    "once: remove one of them"
+                )
             yield row
+
+
+def _check(row: dict[str, Any]) -> str:
+    """The check sum of a row's other fields."""
+    written = json.dumps({name: row[name] for name in row if name != "check"}, sort_keys=True)
+    return f"{zlib.crc32(written.encode()):08x}"
+
+
+def _checked(row: dict[str, Any]) -> dict[str, Any]:
+    return {**row, "check": _check(row)}
 
 
 def _house(args: argparse.Namespace, seed: int) -> dict[str, Any]:
@@ -214,21 +306,17 @@ def _house(args: argparse.Namespace, seed: int) -> dict[str, Any]:
     split = split_of_seed(seed)
     fields = [f"split={split}", *args.spec]
     name = f"seed:{seed}?{'&'.join(fields)}"
+    row: dict[str, Any] = {"seed": seed, "split": split, "house": name}
     try:
         house = House.open(name)
         path, _ = house.write_into(args.out, f"seed_{seed}", args.format)
     except OSError:
         raise
     except HouseError as error:
-        return {"seed": seed, "split": split, "house": name, "error": str(error)}
-    return {
-        "seed": seed,
-        "split": split,
-        "house": name,
-        "path": Path(path).relative_to(args.out).as_posix(),
-        "bytes": _bytes(path),
-        **_statistics(house.info()),
-    }
+        return _checked({**row, "error": str(error)})
+    row["path"] = Path(path).relative_to(args.out).as_posix()
+    row["bytes"] = _bytes(path)
+    return _checked({**row, **_statistics(house.info())})
 
 
 def _statistics(info: dict[str, Any]) -> dict[str, Any]:

@@ -92,8 +92,9 @@ fn write_as(house: &House, path: &Path, storage: Storage) -> Result<(), HousesEr
     if let Some(root) = path.parent().and_then(Path::parent) {
         for beside in &written.sidecars {
             let path = root.join(&beside.path);
-            // The name is the content's, so an existing file is the same.
-            if !path.exists() {
+            // The name is the content's, so an existing file is the same, unless it was cut.
+            let is_whole = |found: fs::Metadata| found.len() == beside.bytes.len() as u64;
+            if !fs::metadata(&path).is_ok_and(is_whole) {
                 crate::atomic::write_file(&path, &beside.bytes)?;
             }
         }

@@ -69,7 +69,7 @@ pub fn write_into(
     Ok((file, losses.into_vec()))
 }
 
-/// Moves everything in folder `from` into folder `to`; existing files stay if they are shared, else they are replaced.
+/// Moves everything in folder `from` into folder `to`; existing files stay if they are shared and whole, else they are replaced.
 fn move_all(from: &Path, to: &Path, is_shared: bool) -> Result<(), HousesError> {
     if !from.exists() {
         return Ok(());
@@ -79,10 +79,12 @@ fn move_all(from: &Path, to: &Path, is_shared: bool) -> Result<(), HousesError> 
         let entry = entry.map_err(HousesError::io(from))?;
         let target = to.join(entry.file_name());
         if target.exists() {
-            if is_shared {
+            if is_shared && is_whole(&entry.path(), &target) {
                 continue;
             }
-            fs::remove_dir_all(&target).map_err(HousesError::io(&target))?;
+            if target.is_dir() {
+                fs::remove_dir_all(&target).map_err(HousesError::io(&target))?;
+            }
         }
         let moved = fs::rename(entry.path(), &target);
         // Another process may have written the same model in between.
@@ -91,6 +93,17 @@ fn move_all(from: &Path, to: &Path, is_shared: bool) -> Result<(), HousesError> 
         }
     }
     Ok(())
+}
+
+/// Returns whether all that a file or folder has is there with as many bytes: its name is the content's.
+fn is_whole(made: &Path, there: &Path) -> bool {
+    let Ok(entries) = fs::read_dir(made) else {
+        let bytes = |path: &Path| fs::metadata(path).ok().map(|found| found.len());
+        return there.is_file() && bytes(made) == bytes(there);
+    };
+    entries
+        .flatten()
+        .all(|entry| is_whole(&entry.path(), &there.join(entry.file_name())))
 }
 
 /// Writes the tables of a data root that [`write_into`] filled: once, after the last house, or again at any time.
