@@ -21,7 +21,7 @@ from dwell import _native
 from dwell.arguments import integer_in_range
 from dwell.cli.common import ProgressBar, count, count_from_1, path, print_json
 from dwell.cli.job_journal import Journal, claim
-from dwell.files import MOST_TEXT_BYTES, lines, open_file, parse_json, read, read_json
+from dwell.files import MAX_TEXT_BYTES, lines, open_file, parse_json, read, read_json
 
 _FORMS = ("dwell", "suncg", "glb")
 #: Letters of the files of a room of SUNCG, and what says that there is none.
@@ -211,7 +211,7 @@ def _shown(path: Path, whole_models: set[Path]) -> Iterator[tuple[Path, int]]:
         with open_file(path / "house.glb") as file:
             # The length of the tables stands in the header of a GLB.
             length = int.from_bytes(file.read(20)[12:16], "little")
-            tables = parse_json(file.read(min(length, MOST_TEXT_BYTES)), f"{path}/house.glb")
+            tables = parse_json(file.read(min(length, MAX_TEXT_BYTES)), f"{path}/house.glb")
         for row in (*tables.get("buffers", ()), *tables.get("images", ())):
             if "uri" in row and not row["uri"].startswith("data:"):
                 yield path / row["uri"], row.get("byteLength", 1)
@@ -273,7 +273,7 @@ def _rows(manifest: Path) -> Iterator[dict[str, Any]]:
                     f"that of its other fields is {_check(row)!r}; put it back, or remove "
                     f"{manifest} and run again"
                 )
-            seed = whole(f"{at}: seed", row.get("seed"))
+            seed = integer_in_range(f"{at}: seed", row.get("seed"))
             before = line_of.setdefault(seed, number)
             if before != number:
                 raise ValueError(
