@@ -3,6 +3,7 @@
 mod annotated;
 mod components;
 mod convex_pieces;
+mod floor_faces;
 mod lamps;
 mod materials;
 mod merge_meshes;
@@ -15,6 +16,7 @@ pub(crate) use components::{Component, components, submesh};
 pub(crate) use convex_pieces::{MeshPieces, convex_pieces};
 pub(crate) use dwell_furniture::shapes::triangulate;
 pub(crate) use dwell_furniture::tables::{CategoryRow, category, room_kind, substance_of};
+pub(crate) use floor_faces::{FloorFaces, floor_faces, floor_without_level_faces};
 pub(crate) use lamps::ImportedLamp;
 pub(crate) use materials::{ImportedMaterial, MaterialTableBuilder};
 pub(crate) use merge_meshes::merge_meshes;
