@@ -8,6 +8,7 @@ mod lamps;
 mod materials;
 mod merge_meshes;
 mod names;
+mod rooms_check;
 mod scene;
 mod textures;
 
@@ -21,6 +22,7 @@ pub(crate) use lamps::ImportedLamp;
 pub(crate) use materials::{ImportedMaterial, MaterialTableBuilder};
 pub(crate) use merge_meshes::merge_meshes;
 pub(crate) use names::UniqueNames;
+pub(crate) use rooms_check::{drop_rooms_without_floor, report_covered_rooms};
 pub(crate) use scene::{
     ImportedScene, NamedRoom, NodeRole, SceneNode, category_of, room_over_floors, structure_kind,
 };

@@ -16,6 +16,7 @@ use super::CategoryRow;
 use super::annotated::{AnnotatedObject, ImportedObject};
 use super::floor_faces::{FloorFaces, floor_faces, floor_without_level_faces};
 use super::lamps::{self, ImportedLamp};
+use super::rooms_check::report_covered_rooms;
 use super::{MaterialTableBuilder, UniqueNames, category, convex_pieces};
 use crate::error::HousesError;
 use crate::report::{FileLocation, LoadReport};
@@ -166,7 +167,9 @@ impl ImportedScene {
         if builder.data.structure.is_empty() && builder.data.objects.is_empty() {
             return Err(HousesError::empty(at, report));
         }
-        House::new(builder.data).map_err(HousesError::scene(at))
+        let house = House::new(builder.data).map_err(HousesError::scene(at))?;
+        report_covered_rooms(&house, at, report);
+        Ok(house)
     }
 }
 
