@@ -27,7 +27,7 @@ pub(crate) fn map<'py>(
     let (rgb, map) = world.get().look(py, |running| {
         let world = &running.world;
         let map = StoreyMap::new(world.house(), LevelId(level), longest_edge)?;
-        let (renderer, threads) = (world.engines().renderer(), Threads::requested(None)?);
+        let (renderer, threads) = (world.engines().renderer()?, Threads::requested(None)?);
         Ok((
             map.picture(renderer, world.rays(), world.state(), threads)?,
             map,
@@ -50,7 +50,7 @@ pub(crate) fn dollhouse<'py>(
         let world = &running.world;
         let config: DollhouseConfig = config.read()?;
         let doll = Dollhouse::new(world.house(), LevelId(level), &config)?;
-        let (renderer, threads) = (world.engines().renderer(), Threads::requested(None)?);
+        let (renderer, threads) = (world.engines().renderer()?, Threads::requested(None)?);
         let rgb = doll.picture(renderer, world.rays(), world.state(), threads)?;
         Ok((rgb, (doll.view.camera.height(), doll.view.camera.width())))
     })?;
@@ -79,7 +79,7 @@ pub(crate) fn floor_plan(
 pub(crate) fn fixtures(py: Python<'_>, world: &Bound<'_, PyWorld>) -> PyResult<Answer> {
     world
         .get()
-        .look(py, |running| Answer::of(&dwell::fixtures(running.world)))
+        .look(py, |running| Answer::of(&dwell::fixtures(running.world)?))
 }
 
 /// The triangles of each room and material as they stand, a mapping each.

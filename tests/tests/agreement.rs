@@ -256,7 +256,7 @@ fn faulty(stage: &Stage, fault: &Fault) -> Vec<Vec<u8>> {
         };
         let render = |view: View, channels: ImageChannels| {
             let mut frame = Frame::new(&view.camera, channels);
-            let cpu = stage.engines.renderer();
+            let cpu = stage.engines.renderer().unwrap();
             let frames = &mut [frame.as_mut()];
             cpu.render(&scene, &state, &[view], frames, Threads::exactly(2))
                 .unwrap();
