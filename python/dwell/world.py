@@ -104,6 +104,8 @@ class World(ActionApi, GuideApi, SoundApi):
         settings = {"agents": bodies(agents), **world_settings(laws, parameters, further)}
         self._config, self._seed = to_json(settings), integer_in_range("seed", seed)
         self._native = _native.World(self.house.native, self._config, self._seed)
+        for agent in self.agents():
+            warn_outside_rooms(self.house, "an agent", agent["position"])
 
     @classmethod
     def _rebuild(

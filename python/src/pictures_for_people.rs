@@ -27,7 +27,7 @@ pub(crate) fn map<'py>(
     let (rgb, map) = world.get().look(py, |running| {
         let world = &running.world;
         let map = StoreyMap::new(world.house(), LevelId(level), longest_edge)?;
-        let (renderer, threads) = (world.engines().cpu_renderer(), Threads::requested(None)?);
+        let (renderer, threads) = (world.engines().cpu_renderer()?, Threads::requested(None)?);
         Ok((
             map.render(renderer, world.rays(), world.state(), threads)?,
             map,
@@ -50,7 +50,7 @@ pub(crate) fn dollhouse<'py>(
         let world = &running.world;
         let config: DollhouseConfig = config.read()?;
         let doll = Dollhouse::new(world.house(), LevelId(level), &config)?;
-        let (renderer, threads) = (world.engines().cpu_renderer(), Threads::requested(None)?);
+        let (renderer, threads) = (world.engines().cpu_renderer()?, Threads::requested(None)?);
         let rgb = doll.render(renderer, world.rays(), world.state(), threads)?;
         Ok((rgb, (doll.view.camera.height(), doll.view.camera.width())))
     })?;
@@ -78,7 +78,7 @@ pub(crate) fn floor_plan(
 #[pyfunction]
 pub(crate) fn fixtures(py: Python<'_>, world: &Bound<'_, PyWorld>) -> PyResult<Answer> {
     world.get().look(py, |running| {
-        Answer::of(&dwell::scene_overlay(running.world))
+        Answer::of(&dwell::scene_overlay(running.world)?)
     })
 }
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import random
+import subprocess
+import sys
 import threading
 from collections.abc import Callable
 from pathlib import Path
@@ -371,3 +373,36 @@ def test_a_chain_of_more_joints_than_a_world_holds_is_refused(tmp_path: Path) ->
     said = 'object "chain": joints that act on each other, from "joint_0" on: 300'
     with pytest.raises(dwell.ConfigError, match=said):
         dwell.World(house)
+
+
+#: Opens a house with little memory left, and takes a picture of it.
+SHORT_OF_MEMORY = """
+import re, resource, sys
+import dwell
+house = dwell.House.open(sys.argv[1])
+used = int(re.search("VmSize:\\s*([0-9]+)", open("/proc/self/status").read())[1]) * 1024
+resource.setrlimit(resource.RLIMIT_AS, (used + 150 * 2**20, resource.RLIM_INFINITY))
+try:
+    dwell.World(house, agents=0).render(position=(1.0, 1.0, 1.0), camera=dwell.Camera(16, 12))
+except dwell.ConfigError as error:
+    print(error)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems do not say how much is free")
+def test_images_that_the_memory_does_not_hold_are_refused_by_a_sentence(tmp_path: Path) -> None:
+    from PIL import Image
+
+    # A few KiB of file, and some 190 MiB in a renderer.
+    image = Image.new("1", (4096, 4096))
+    image.putpixel((7, 7), 1)
+    image.save(tmp_path / "big.png")
+    (tmp_path / "a.mtl").write_text("newmtl big\nmap_Kd big.png\n")
+    corners = "v 0 0 0\nv 4 0 0\nv 4 0 3\nv 0 0 3\n"
+    (tmp_path / "a.obj").write_text(f"mtllib a.mtl\n{corners}o floor\nusemtl big\nf 4 3 2 1\n")
+    command = [sys.executable, "-c", SHORT_OF_MEMORY, str(tmp_path / "a.obj")]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
+    assert done.returncode == 0, done.stderr
+    told = "the house is one whose images have 16777216 pixels; allowed is what the memory of this"
+    assert told in done.stdout
+    assert "are free; take smaller images" in done.stdout

@@ -135,6 +135,20 @@ def test_things_outside_stand_in_the_report() -> None:
     assert any("chair" in row["sentence"] for row in moved.info()["report"]["warnings"][1:])
 
 
+def test_agents_that_start_outside_are_told(caplog: pytest.LogCaptureFixture) -> None:
+    edit = dwell.House.shoebox(SIZE).edit().agent_start(at=(2.0, 0.0, 1.5))
+    with caplog.at_level(logging.WARNING, "dwell"):
+        dwell.World(edit.done())
+        assert not caplog.records
+        house = edit.agent_start(at=(100.0, 0.0, 100.0), agent=0).done()
+        dwell.World(house)
+        dwell.World(house)
+    told = [record.getMessage().split(" m;")[0] for record in caplog.records]
+    assert told == [f"an agent stands outside of every room of {house.name!r}, at (100, 0, 100)"]
+    (row,) = [row["sentence"] for row in house.info()["report"]["warnings"]]
+    assert row == "edits: agent_starts[0]: stands outside of every room"
+
+
 def test_no_goal_has_no_distance() -> None:
     env = gymnasium.make("dwell/Free-v0", sensors=["gps"])
     env.reset(seed=1)

@@ -253,7 +253,7 @@ fn faulty(stage: &Stage, fault: &Fault) -> Vec<Vec<u8>> {
         };
         let render = |view: View, channels: ImageChannels| {
             let mut frame = Frame::new(&view.camera, channels);
-            let cpu = stage.engines.cpu_renderer();
+            let cpu = stage.engines.cpu_renderer().unwrap();
             let frames = &mut [frame.as_mut()];
             cpu.render(&scene, &state, &[view], frames, Threads::new(2))
                 .unwrap();

@@ -79,7 +79,11 @@ fn pictures_are_the_golden_ones() {
 fn plans(golden: &mut Golden) {
     let world = views::world("builtin:house");
     let house = world.house();
-    let (renderer, rays, state) = (world.engines().cpu_renderer(), world.rays(), world.state());
+    let (renderer, rays, state) = (
+        world.engines().cpu_renderer().unwrap(),
+        world.rays(),
+        world.state(),
+    );
     let config = DollhouseConfig {
         width: 128,
         ..DollhouseConfig::default()

@@ -63,7 +63,7 @@ fn eyes_see_the_links_where_kinematics_say() {
             world.step(&[]).unwrap();
         }
         let mut frame = Frame::new(&camera, ImageChannels::ALL);
-        let renderer = world.engines().cpu_renderer();
+        let renderer = world.engines().cpu_renderer().unwrap();
         let (views, mut frames) = ([View::new(camera, eye)], [frame.as_mut()]);
         renderer
             .render(

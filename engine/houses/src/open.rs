@@ -96,6 +96,13 @@ fn open_mapped(house: &str, map: &str, threads: Threads) -> Opened {
             possible: "one".to_owned(),
         });
     }
+    if map.is_empty() {
+        return Err(HousesError::Spec {
+            field: "map".to_owned(),
+            found: "nothing".to_owned(),
+            possible: "HOUSE?map=FILE with the name of a file".to_owned(),
+        });
+    }
     let mapping = NameMapping::read(Path::new(map))?;
     let (house, mut report) = open_with(house, threads)?;
     let house = mapping
@@ -128,6 +135,15 @@ mod tests {
         // An impossible value for every house is reported before any of them is made.
         let told = seed_range("seed:0..3?home=studio&storeys=99").unwrap_err();
         assert_eq!(told.to_string(), "storeys: found 99; possible: 1 to 3");
+    }
+
+    #[test]
+    fn a_map_without_a_name_says_what_is_needed() {
+        let told = open("builtin:studio?map=").unwrap_err().to_string();
+        assert_eq!(
+            told,
+            "map: found nothing; possible: HOUSE?map=FILE with the name of a file"
+        );
     }
 
     #[test]

@@ -81,6 +81,31 @@ fn floors_become_rooms_and_walls_the_building() {
 }
 
 #[test]
+fn a_floor_that_leans_is_a_room_and_one_that_stands_upright_is_reported() {
+    let kitchen = r#"<body name="floor_kitchen">"#;
+    assert!(HOUSE.contains(kitchen));
+    // 1 degree about X, then 45.
+    let leaning = r#"<body name="floor_kitchen" quat="0.99996 0.00873 0 0">"#;
+    let (house, _) = opened(&HOUSE.replacen(kitchen, leaning, 1)).unwrap();
+    assert_eq!(house.rooms.len(), 2);
+    assert!((house.rooms.as_slice()[0].area_m2() - 12.0).abs() < 0.02);
+    let (house, report) = opened(&HOUSE.replacen(
+        kitchen,
+        r#"<body name="floor_kitchen" quat="0.924 0.383 0 0">"#,
+        1,
+    ))
+    .unwrap();
+    assert_eq!(house.rooms.len(), 1);
+    let told = sentences(&report);
+    assert!(
+        told.iter()
+            .any(|row| row.contains("worldbody.floor_kitchen")
+                && row.contains("no face that is level")),
+        "{told:?}"
+    );
+}
+
+#[test]
 fn bodies_become_objects_that_stand_move_and_open_as_the_file_says() {
     let (house, report) = opened(HOUSE).unwrap();
     let state = State::new(&house);

@@ -102,6 +102,24 @@ const SCENE: &str = "mtllib scene.mtl\n\
 const SCENE_MTL: &str = "newmtl oak\nKd 0.5 0.4 0.3\nmap_Kd oak.png\nnewmtl plain\nnewmtl red\nKd 1 0 0\nd 0.5\nmap_Kd ../../secret.png\n";
 
 #[test]
+fn a_floor_with_a_lip_one_that_leans_and_one_turned_around_are_rooms() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("floor.obj");
+    let flat = "v 0 0 0\nv 4 0 0\nv 4 0 3\nv 0 0 3\n";
+    for text in [
+        format!("{flat}v 0 .02 0\nv 4 .02 0\no floor\nf 4 3 2 1\nf 1 2 6 5\n"),
+        "v 0 0 0\nv 4 0 0\nv 4 .05 3\nv 0 .05 3\no floor\nf 4 3 2 1\n".to_owned(),
+        format!("{flat}o floor\nf 1 2 3 4\n"),
+    ] {
+        std::fs::write(&path, &text).unwrap();
+        let (house, report) = open(&path.to_string_lossy()).unwrap();
+        let areas: Vec<f32> = house.rooms.iter().map(dwell_scene::Room::area_m2).collect();
+        assert_eq!(areas, [12.0], "{text}");
+        assert!(report.warnings().is_empty(), "{report}");
+    }
+}
+
+#[test]
 fn a_scene_of_named_things_becomes_a_house() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.obj");

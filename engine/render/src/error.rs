@@ -111,6 +111,15 @@ pub enum RenderError {
         /// The adapter.
         adapter: String,
     },
+    /// Images of a house whose memory the system refuses.
+    #[error(
+        "the images of the house: the {:.1} MiB that a renderer takes for them are not free; take smaller images",
+        *.needed as f64 / f64::from(1 << 20)
+    )]
+    Memory {
+        /// The memory, bytes.
+        needed: u64,
+    },
     /// A view that only the `cpu` back end renders.
     #[error(
         "view {view}: its preset is one of the `cpu` back end; a batch under way allows flat and lit"

@@ -64,4 +64,5 @@ pub use gpu::{
 pub use laws::{Optics, Shutter};
 pub use map::{Dollhouse, DollhouseConfig, StoreyMap};
 pub use semantic::{ClassSet, EntityClasses, semantic_classes};
+pub use texture::texture_bytes;
 pub use visible_objects::{OrientedBox, VisibleObject, visible_objects};

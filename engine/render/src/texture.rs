@@ -6,11 +6,13 @@
 )]
 
 use crate::color::SrgbTables;
+use crate::error::RenderError;
 use dwell_scene::bvh::flat::PackedRow;
 use dwell_scene::interrupt::{self, PollEvery};
 use dwell_scene::parallel::Threads;
 use dwell_scene::{House, Id, Texture, TextureId};
 use glam::{Vec2, Vec4};
+use std::borrow::Cow;
 
 /// Texels between checks for cancellation.
 const TEXELS_PER_CHECK: usize = 1 << 14;
@@ -41,36 +43,101 @@ pub(crate) struct MipImage {
     clear: bool,
 }
 
+/// Memory that a renderer takes for the images of a house, bytes, with what it needs while it prepares them.
+///
+/// An image of one colour takes nothing. One that is not painted yet counts with its pixels, too, and is not painted for this.
+pub fn texture_bytes(house: &House) -> u64 {
+    let textures: Vec<&Texture> = house.textures.iter().map(|texture| &**texture).collect();
+    let each = Threads::default().map(textures.len(), |k| {
+        let texture = textures[k];
+        if !texture.is_loaded() {
+            let pixels = u64::from(texture.width) * u64::from(texture.height);
+            return (level_texels(image_size(texture, None)), pixels * 4);
+        }
+        (level_texels(image_size(texture, one_color(texture))), 0)
+    });
+    // While the largest is prepared, its next two levels are held as bytes, too: 5/4 bytes a pixel.
+    let largest = each.iter().map(|(texels, _)| *texels).max().unwrap_or(0);
+    let held: u64 = each
+        .iter()
+        .map(|(texels, painted)| texels * 8 + painted)
+        .sum();
+    held + largest
+}
+
+/// The one colour of all texels of an image.
+fn one_color(texture: &Texture) -> Option<[u8; 4]> {
+    let texels = texture.rgba().as_chunks::<4>().0;
+    let first = texels.first().copied().unwrap_or([255; 4]);
+    let mut rows = texels.chunks(TEXELS_PER_CHECK);
+    let same = rows.all(|row| {
+        interrupt::check();
+        row.iter().all(|texel| *texel == first)
+    });
+    same.then_some(first)
+}
+
+/// Texels across and down of the largest level that is held.
+fn image_size(texture: &Texture, uniform: Option<[u8; 4]>) -> (usize, usize) {
+    match uniform {
+        Some(_) => (1, 1),
+        None => (texture.width as usize, texture.height as usize),
+    }
+}
+
+/// Texels of all levels of an image.
+fn level_texels((mut width, mut height): (usize, usize)) -> u64 {
+    let mut all = 0;
+    loop {
+        all += width as u64 * height as u64;
+        if width <= 1 && height <= 1 {
+            return all;
+        }
+        (width, height) = ((width / 2).max(1), (height / 2).max(1));
+    }
+}
+
+/// An empty vector with room for so many elements.
+fn reserved<T>(count: u64) -> Result<Vec<T>, RenderError> {
+    let mut all = Vec::new();
+    all.try_reserve_exact(usize::try_from(count).unwrap_or(usize::MAX))
+        .map_err(|_| RenderError::Memory {
+            needed: count.saturating_mul(size_of::<T>() as u64),
+        })?;
+    Ok(all)
+}
+
 impl Textures {
     /// Prepares every texture of a house.
-    pub(crate) fn new(house: &House) -> Self {
+    ///
+    /// # Errors
+    /// [`RenderError::Memory`] where the system refuses the memory.
+    pub(crate) fn new(house: &House) -> Result<Self, RenderError> {
+        // What is not painted yet is painted now, on all threads.
+        let painted: Vec<&Texture> = house.textures.iter().map(|texture| &**texture).collect();
+        let uniform = Threads::default().map(painted.len(), |k| one_color(painted[k]));
+        let sizes = painted.iter().zip(&uniform);
+        let texels = sizes.map(|(texture, uniform)| level_texels(image_size(texture, *uniform)));
         let mut all = Self {
-            texels: Vec::new(),
+            texels: reserved(texels.sum())?,
             offsets: Vec::new(),
             images: Vec::new(),
         };
-        // What is not painted yet is painted now, on all threads.
-        let painted: Vec<&Texture> = house.textures.iter().map(|texture| &**texture).collect();
-        Threads::default().map(painted.len(), |k| painted[k].rgba().len());
-        for texture in painted {
-            all.add(texture);
+        for (texture, uniform) in painted.into_iter().zip(uniform) {
+            all.add(texture, uniform)?;
         }
-        all
+        Ok(all)
     }
 
-    fn add(&mut self, texture: &Texture) {
+    fn add(&mut self, texture: &Texture, uniform: Option<[u8; 4]>) -> Result<(), RenderError> {
         let srgb = SrgbTables::tables();
         let first_level = self.offsets.len() as u32;
-        let texels: Vec<[u8; 4]> = texture.rgba().as_chunks::<4>().0.to_vec();
-        let first = texels.first().copied().unwrap_or([255; 4]);
-        let uniform = texels.iter().all(|texel| *texel == first).then_some(first);
+        let texels = texture.rgba().as_chunks::<4>().0;
         let clear = texels.iter().any(|texel| texel[3] < 255);
-        let mut size = (texture.width as usize, texture.height as usize);
-        let mut current = if uniform.is_some() {
-            size = (1, 1);
-            vec![first]
-        } else {
-            texels
+        let mut size = image_size(texture, uniform);
+        let mut current = match uniform {
+            Some(color) => Cow::Owned(vec![color]),
+            None => Cow::Borrowed(texels),
         };
         let (width, height) = (size.0 as u32, size.1 as u32);
         loop {
@@ -83,7 +150,8 @@ impl Textures {
             if size == (1, 1) {
                 break;
             }
-            (current, size) = next_mip_level(&current, size);
+            let (halved, smaller) = next_mip_level(&current, size)?;
+            (current, size) = (Cow::Owned(halved), smaller);
         }
         let last_level = self.offsets.len() as u32 - 1 - first_level;
         self.images.push(MipImage {
@@ -94,6 +162,7 @@ impl Textures {
             uniform,
             clear,
         });
+        Ok(())
     }
 
     /// The one colour of a texture that has only one.
@@ -272,10 +341,10 @@ fn neighbours(coordinate: f32, size: u32) -> (u32, u32, f32) {
 fn next_mip_level(
     texels: &[[u8; 4]],
     (width, height): (usize, usize),
-) -> (Vec<[u8; 4]>, (usize, usize)) {
+) -> Result<(Vec<[u8; 4]>, (usize, usize)), RenderError> {
     let srgb = SrgbTables::tables();
     let size = ((width / 2).max(1), (height / 2).max(1));
-    let mut halved = Vec::with_capacity(size.0 * size.1);
+    let mut halved = reserved(size.0 as u64 * size.1 as u64)?;
     // An odd edge gives its last row to its neighbours.
     let covers =
         |k: usize, from: usize, to: usize| (k * from / to, ((k + 1) * from).div_ceil(to).min(from));
@@ -308,7 +377,7 @@ fn next_mip_level(
             halved.push([r, g, b, (alpha / count * 255.0 + 0.5) as u8]);
         }
     }
-    (halved, size)
+    Ok((halved, size))
 }
 
 #[cfg(test)]
@@ -321,7 +390,8 @@ mod tests {
             offsets: Vec::new(),
             images: Vec::new(),
         };
-        all.add(&Texture::new("t".into(), width, height, rgba));
+        let texture = Texture::new("t".into(), width, height, rgba);
+        all.add(&texture, one_color(&texture)).unwrap();
         all
     }
 
@@ -348,6 +418,34 @@ mod tests {
         assert_eq!(bytes(&all, Vec2::new(-0.75, 5.75), 0.0), [255, 0, 0]);
         // Half way between red and green, in linear light.
         assert_eq!(bytes(&all, Vec2::new(0.5, 0.75), 0.0), [188, 188, 0]);
+    }
+
+    #[test]
+    fn memory_that_is_not_there_is_an_error_and_what_is_needed_is_told_before() {
+        let error = reserved::<[u16; 4]>(1 << 58).unwrap_err().to_string();
+        assert!(error.contains("2199023255552.0 MiB"), "{error}");
+        let materials = dwell_scene::ShoeboxMaterials::default();
+        let house = |textures: Vec<Vec<u8>>| {
+            let house = House::shoebox([4.0, 3.0, 5.0], &materials).unwrap();
+            let texture = |rgba| std::sync::Arc::new(Texture::new("t".to_owned(), 64, 32, rgba));
+            let mut data = house.data().clone();
+            data.textures = textures.into_iter().map(texture).collect();
+            House::new(data).unwrap()
+        };
+        let (plain, noise) = (
+            vec![9; 64 * 32 * 4],
+            (0..64 * 32 * 4_u32).map(|k| (k * 7) as u8).collect(),
+        );
+        assert_eq!(texture_bytes(&house(vec![])), 0);
+        assert_eq!(texture_bytes(&house(vec![plain.clone()])), 9);
+        let house = house(vec![plain, noise]);
+        // 64 x 32, 32 x 16, and on to 2 x 1 and 1 x 1.
+        let texels = (2048 * 4 - 2) / 3 + 1;
+        assert_eq!(level_texels((64, 32)), texels);
+        assert_eq!(texture_bytes(&house), 8 + texels * 9);
+        let all = Textures::new(&house).unwrap();
+        assert_eq!(all.bytes() as u64, 8 + texels * 8);
+        assert_eq!(all.texels.capacity(), all.texels.len());
     }
 
     #[test]

@@ -445,7 +445,7 @@ mod tests {
     #[test]
     fn a_room_has_one_texture_unit_a_metre_and_normals_to_the_inside() {
         let house = House::shoebox([4.0, 3.0, 5.0], &ShoeboxMaterials::default()).unwrap();
-        let mut looks = ShadingMaterial::all(&house, &Textures::new(&house));
+        let mut looks = ShadingMaterial::all(&house, &Textures::new(&house).unwrap());
         looks.push(ShadingMaterial::agent_body());
         let surfaces = TriangleTable::new(&house, &looks);
         assert_eq!(surfaces.bodies[0], 12);

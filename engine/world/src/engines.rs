@@ -6,6 +6,7 @@ use crate::error::WorldError;
 use crate::initial_state::InitialWorld;
 use crate::recordings::Recordings;
 use crate::release_memory::ReleaseOnDrop;
+use crate::texture_memory;
 use dwell_acoustics::signals::Signal;
 use dwell_acoustics::{AcousticConfig, AcousticScene, Head, HeadId};
 use dwell_physics::PhysicsModel;
@@ -25,6 +26,8 @@ const KEPT_GRIDS: usize = 8;
 pub struct Engines {
     house: Arc<House>,
     renderer: OnceLock<Arc<CpuRenderer>>,
+    /// Held while the renderer is made.
+    making: Mutex<()>,
     /// Renderers by back end.
     pictures: Mutex<BTreeMap<BackEnd, Arc<Renderer>>>,
     semantics: OnceLock<Semantics>,
@@ -49,6 +52,7 @@ impl Engines {
         Arc::new(Self {
             house,
             renderer: OnceLock::new(),
+            making: Mutex::default(),
             pictures: Mutex::default(),
             semantics: OnceLock::new(),
             physics: OnceLock::new(),
@@ -67,26 +71,36 @@ impl Engines {
         &self.house
     }
 
-    /// The renderer with the house's textures and tables.
-    pub fn cpu_renderer(&self) -> &CpuRenderer {
-        self.tables()
+    /// The renderer with the house's textures and tables, made at first use.
+    ///
+    /// # Errors
+    /// [`WorldError::Config`] or [`WorldError::Render`] for images that the free memory does not hold.
+    pub fn cpu_renderer(&self) -> Result<&CpuRenderer, WorldError> {
+        self.tables().map(|tables| &**tables)
     }
 
-    fn tables(&self) -> &Arc<CpuRenderer> {
-        self.renderer
-            .get_or_init(|| Arc::new(CpuRenderer::new(&self.house)))
+    fn tables(&self) -> Result<&Arc<CpuRenderer>, WorldError> {
+        // One thread makes it; the others wait, as twice the memory may not be there.
+        let _made = self.making.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(tables) = self.renderer.get() {
+            return Ok(tables);
+        }
+        texture_memory::check(&self.house)?;
+        let tables = Arc::new(CpuRenderer::try_new(&self.house)?);
+        Ok(self.renderer.get_or_init(|| tables))
     }
 
     /// A back end over the house, made at first use.
     ///
     /// # Errors
-    /// [`WorldError::Render`] for a graphics adapter that is not there, fails, or is too small for the house.
+    /// [`WorldError::Render`] for a graphics adapter that is not there, fails, or is too small for the house; as
+    /// [`Engines::cpu_renderer`].
     pub fn image_renderer(&self, back_end: &BackEnd) -> Result<Arc<Renderer>, WorldError> {
         let mut made = self.pictures.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(renderer) = made.get(back_end) {
             return Ok(renderer.clone());
         }
-        let renderer = Arc::new(Renderer::new(back_end, self.tables().clone())?);
+        let renderer = Arc::new(Renderer::new(back_end, self.tables()?.clone())?);
         made.insert(back_end.clone(), renderer.clone());
         Ok(renderer)
     }

@@ -1,5 +1,6 @@
 //! Lamps, sources of sound, joints and boxes of a world as they stand, for programs that show them.
 
+use crate::error::WorldError;
 use crate::world::World;
 use dwell_scene::{JointKind, LightShape, Pose};
 use serde::Serialize;
@@ -82,7 +83,10 @@ pub struct ObjectBox {
 }
 
 /// Lamps, sources of sound, joints and boxes as they stand.
-pub fn scene_overlay(world: &World) -> SceneOverlay {
+///
+/// # Errors
+/// As [`Engines::cpu_renderer`](crate::Engines::cpu_renderer).
+pub fn scene_overlay(world: &World) -> Result<SceneOverlay, WorldError> {
     let (house, state) = (world.house(), world.state());
     let lamps = house.lights.iter().map(|light| {
         let middle = match light.shape {
@@ -123,7 +127,7 @@ pub fn scene_overlay(world: &World) -> SceneOverlay {
             value: state.joint_position[id],
         }
     });
-    let renderer = world.engines().cpu_renderer();
+    let renderer = world.engines().cpu_renderer()?;
     let boxes = house.objects.iter_ids().filter_map(|(id, object)| {
         let entity = house.entity_of_object(id);
         let found = renderer.oriented_box(state, entity)?;
@@ -140,10 +144,10 @@ pub fn scene_overlay(world: &World) -> SceneOverlay {
             rotation: found.world_from_box.rotation.to_array(),
         })
     });
-    SceneOverlay {
+    Ok(SceneOverlay {
         lamps: lamps.collect(),
         sources: sources.collect(),
         joints: joints.collect(),
         boxes: boxes.collect(),
-    }
+    })
 }

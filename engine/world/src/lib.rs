@@ -42,6 +42,7 @@ mod sensor_requests;
 pub mod sensors;
 mod sound;
 pub mod tasks;
+mod texture_memory;
 mod world;
 mod world_snapshot;
 mod world_sounds;

@@ -88,9 +88,14 @@ impl Checker<'_> {
         let size = description.size.map(Quality::Size);
         let state = description.state.iter().cloned().map(Quality::State);
         for own in color.chain(material).chain(size).chain(state) {
-            // Nobody calls glass or a mirror by a colour: "the brown table" is not the one of glass.
+            // Nobody calls glass by a colour, or a sofa closed: "the brown table" is not the one of glass.
             truth = truth.and(match quality(own) {
-                Truth::Undecided(UndecidedReason::NoColor) => Truth::False,
+                Truth::Undecided(
+                    UndecidedReason::NoColor
+                    | UndecidedReason::NoSwitch
+                    | UndecidedReason::DoesNotOpen
+                    | UndecidedReason::NoContainer,
+                ) => Truth::False,
                 decided => decided,
             });
         }

@@ -1,7 +1,7 @@
 //! Clauses of existence: "there is a chair", "on the table there are a cup and two plates", "on your left you see a lamp".
 
 use super::from_tree::{Parts, number, parts, phrase, place_of, room};
-use super::lexicon::{RELATION, ROOM_NOUN};
+use super::lexicon::ROOM_NOUN;
 use super::places;
 use super::to_tree::{Position, TreeBuilder, count};
 use crate::form::{Clause, Description, Modifier, Noun, Phrase, Quantifier};
@@ -137,7 +137,7 @@ impl TreeBuilder<'_> {
                 Tree::apply("front_between", [free(a)?, free(b)?])
             }
             (predicate, [landmark]) => {
-                let relation = self.known(RELATION, predicate)?;
+                let relation = self.relation_word(predicate, landmark)?;
                 let landmark = self.phrase(landmark, Position::Free)?;
                 Tree::apply("front_relation", [relation, landmark])
             }
@@ -172,6 +172,10 @@ impl TreeBuilder<'_> {
             (Noun::Storey, Quantifier::Exactly(number)) if is_bare(own) => {
                 Some(Tree::apply("item_storeys", [count(number)]))
             }
+            (Noun::Room(noun), Quantifier::Exactly(1)) if is_bare(own) => {
+                Some(Tree::apply("item_one_room", [self.known(ROOM_NOUN, noun)?]))
+            }
+            (Noun::Room(_), Quantifier::AtLeast(1)) => None,
             (Noun::Room(noun), Quantifier::Exactly(number) | Quantifier::AtLeast(number))
                 if is_bare(own) =>
             {
@@ -306,6 +310,9 @@ pub(super) fn item_from_tree(tree: &Tree) -> Option<Phrase> {
             Quantifier::AtLeast(number(number_of)?),
             Noun::Room(id.clone()),
         ),
+        ("item_one_room", [Tree::Entry { id, .. }]) => {
+            bare(Quantifier::Exactly(1), Noun::Room(id.clone()))
+        }
         ("item_storey", []) => bare(Quantifier::Exactly(1), Noun::Storey),
         ("item_storeys", [number_of]) => {
             bare(Quantifier::Exactly(number(number_of)?), Noun::Storey)

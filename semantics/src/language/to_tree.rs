@@ -127,6 +127,18 @@ impl TreeBuilder<'_> {
         })
     }
 
+    /// The word of a relation to `landmark`; "on the wall" means hanging there.
+    pub(super) fn relation_word(&self, predicate: &str, landmark: &Phrase) -> Option<Tree> {
+        let hung = |own: &Description| match &own.noun {
+            Noun::Structure(noun) => noun == "wall" || noun == "ceiling",
+            _ => false,
+        };
+        match landmark {
+            Phrase::Described(own) if predicate == "on" && hung(own) => None,
+            _ => self.known(RELATION, predicate),
+        }
+    }
+
     /// The function of a clause with a relation, and its arguments.
     fn relation(&self, predicate: &str, arguments: &[Phrase]) -> Option<(&'static str, Vec<Tree>)> {
         let free = |phrase: &Phrase| self.phrase(phrase, Position::Free);
@@ -155,7 +167,7 @@ impl TreeBuilder<'_> {
             )),
             (side, [subject]) => Some(("holds_side", vec![free(subject)?, places::side_of(side)?])),
             (_, [Phrase::List(items), object]) => {
-                let word = self.known(RELATION, predicate)?;
+                let word = self.relation_word(predicate, object)?;
                 Some((
                     "list_holds",
                     vec![self.subjects(items)?, word, free(object)?],
@@ -164,9 +176,9 @@ impl TreeBuilder<'_> {
             ("between", [subject, a, b]) => {
                 Some(("holds_between", vec![free(subject)?, free(a)?, free(b)?]))
             }
-            (_, [subject, object]) => {
-                let (subject, object) = (free(subject)?, free(object)?);
-                if let Some(word) = self.known(RELATION, predicate) {
+            (_, [subject, landmark]) => {
+                let (subject, object) = (free(subject)?, free(landmark)?);
+                if let Some(word) = self.relation_word(predicate, landmark) {
                     return Some(("holds", vec![subject, word, object]));
                 }
                 let word = self.known(VERB_RELATION, predicate)?;
@@ -420,7 +432,7 @@ impl TreeBuilder<'_> {
                 [landmark(a)?, landmark(b)?],
             )),
             (predicate, [other]) => {
-                if let Some(word) = self.known(RELATION, predicate) {
+                if let Some(word) = self.relation_word(predicate, other) {
                     return Some(Tree::apply("modifier", [word, landmark(other)?]));
                 }
                 let word = self.known(VERB_RELATION, predicate)?;

@@ -83,6 +83,13 @@ pub fn edit(
             report.warn(at.field(named(*id)), WarningKind::InWall);
         }
     }
+    for (k, start) in edited.agent_starts.iter().enumerate() {
+        let is_new = house.agent_starts.get(k) != Some(start);
+        if is_new && edited.is_outside(start.position) {
+            let at = at.field(format_args!("agent_starts[{k}]"));
+            report.warn(at, WarningKind::OutsideRooms);
+        }
+    }
     for (one, other) in overlapping_pairs(&edited, &put) {
         let other = named(other).clone();
         report.warn(at.field(named(one)), WarningKind::Overlap { other });

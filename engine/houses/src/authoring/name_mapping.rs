@@ -214,7 +214,7 @@ impl NameMapping {
     pub fn apply(&self, house: &House, report: &mut LoadReport) -> Result<House, HousesError> {
         let mut data = house.data().clone();
         self.materials_of(&mut data)?;
-        self.nodes_of(&mut data)?;
+        self.nodes_of(&mut data, report)?;
         for room in &mut data.rooms {
             let names = room
                 .kinds
@@ -274,7 +274,7 @@ impl NameMapping {
         Ok(())
     }
 
-    fn nodes_of(&self, data: &mut HouseData) -> Result<(), HousesError> {
+    fn nodes_of(&self, data: &mut HouseData, report: &mut LoadReport) -> Result<(), HousesError> {
         let mut taken: BTreeSet<String> = data
             .objects
             .iter()
@@ -351,7 +351,7 @@ impl NameMapping {
         if !walls.is_empty() {
             remove_objects::remove(data, &walls);
             if data.rooms.is_empty() {
-                room_over_floors(data);
+                room_over_floors(data, &FileLocation::file("map"), report);
                 for k in 0..data.objects.len() {
                     place::update_room_and_level(data, ObjectId(k as u32));
                 }

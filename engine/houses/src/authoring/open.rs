@@ -11,7 +11,7 @@ use super::edit_errors::{invalid_field, prefix_field};
 use super::edits::Edit;
 use super::files::FileAccess;
 use super::floor_plan::{BuildingPlan, construct};
-use crate::data_root::UserFile;
+use crate::data_root::{UserFile, is_json_with};
 use crate::error::HousesError;
 use crate::formats::{FORMATS, open_by};
 use crate::json;
@@ -160,13 +160,14 @@ fn build_with(
     Ok((house, report))
 }
 
-/// Returns whether `path` names a plan.
+/// Returns whether `path` names a plan: by its ending, or as a `.json` that says so.
 pub(crate) fn recognizes(path: &Path) -> bool {
-    path.file_name().is_some_and(|name| {
+    let named = path.file_name().is_some_and(|name| {
         name.to_string_lossy()
             .to_ascii_lowercase()
             .ends_with(ENDING)
-    })
+    });
+    named || is_json_with(path, &[&["\"dwell-plan\""]])
 }
 
 /// Opens a plan file; the files that it names are read below its folder.

@@ -3,10 +3,12 @@
 mod annotated;
 mod components;
 mod convex_pieces;
+mod floor_faces;
 mod lamps;
 mod materials;
 mod merge_meshes;
 mod names;
+mod rooms_check;
 mod scene;
 mod textures;
 
@@ -15,10 +17,12 @@ pub(crate) use components::{Component, components, submesh};
 pub(crate) use convex_pieces::{MeshPieces, convex_pieces};
 pub(crate) use dwell_furniture::shapes::triangulate;
 pub(crate) use dwell_furniture::tables::{CategoryRow, category, room_kind, substance_of};
+pub(crate) use floor_faces::{FloorFaces, floor_faces, floor_without_level_faces};
 pub(crate) use lamps::ImportedLamp;
 pub(crate) use materials::{ImportedMaterial, MaterialTableBuilder};
 pub(crate) use merge_meshes::merge_meshes;
 pub(crate) use names::UniqueNames;
+pub(crate) use rooms_check::{drop_rooms_without_floor, report_covered_rooms};
 pub(crate) use scene::{
     ImportedScene, NamedRoom, NodeRole, SceneNode, category_of, room_over_floors, structure_kind,
 };

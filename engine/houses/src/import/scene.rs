@@ -14,7 +14,9 @@ use glam::{Affine3A, Vec2, Vec3};
 
 use super::CategoryRow;
 use super::annotated::{AnnotatedObject, ImportedObject};
+use super::floor_faces::{FloorFaces, floor_faces, floor_without_level_faces};
 use super::lamps::{self, ImportedLamp};
+use super::rooms_check::report_covered_rooms;
 use super::{MaterialTableBuilder, UniqueNames, category, convex_pieces};
 use crate::error::HousesError;
 use crate::report::{FileLocation, LoadReport};
@@ -151,7 +153,7 @@ impl ImportedScene {
             builder.structure(thing);
         }
         if !named {
-            room_over_floors(&mut builder.data);
+            room_over_floors(&mut builder.data, at, report);
         }
         for object in given {
             builder.given(object);
@@ -165,7 +167,9 @@ impl ImportedScene {
         if builder.data.structure.is_empty() && builder.data.objects.is_empty() {
             return Err(HousesError::empty(at, report));
         }
-        House::new(builder.data).map_err(HousesError::scene(at))
+        let house = House::new(builder.data).map_err(HousesError::scene(at))?;
+        report_covered_rooms(&house, at, report);
+        Ok(house)
     }
 }
 
@@ -246,27 +250,23 @@ pub(crate) fn category_of(name: &str) -> Option<&'static CategoryRow> {
         .find_map(|candidate| category([candidate.as_str()]))
 }
 
-/// One room over all floors of the first storey, to which all pieces of the building belong.
-pub(crate) fn room_over_floors(data: &mut HouseData) {
+/// One room over all floors of the first storey, to which all pieces of the building belong; floors of which none can be made are
+/// reported.
+pub(crate) fn room_over_floors(data: &mut HouseData, at: &FileLocation, report: &mut LoadReport) {
     let of = |kind: StructureKind| {
         let pieces = data.structure.iter();
         let pieces = pieces.filter(move |piece| piece.kind == kind);
         pieces.map(|piece| &data.meshes[piece.mesh])
     };
-    let top = of(StructureKind::Floor)
-        .map(|mesh| mesh.bounds().max.y)
-        .reduce(f32::max);
-    let Some(floor_y) = top else { return };
-    let mut footprint = Vec::new();
-    for mesh in of(StructureKind::Floor) {
-        for k in 0..mesh.triangles.len() {
-            let [a, b, c] = mesh.corners(k);
-            let up = (b - a).cross(c - a).normalize_or_zero().y > 0.7;
-            if up && [a, b, c].iter().all(|p| p.y > floor_y - 0.02) {
-                footprint.push([a, b, c].map(|p| Vec2::new(p.x, p.z)));
-            }
+    let Some(FloorFaces { footprint, floor_y }) =
+        floor_faces(of(StructureKind::Floor).map(|mesh| &**mesh))
+    else {
+        let floor = |piece: &&Structure| piece.kind == StructureKind::Floor;
+        if let Some(piece) = data.structure.iter().find(floor) {
+            report.warn(at.field(&piece.name), floor_without_level_faces());
         }
-    }
+        return;
+    };
     let bounds = data.levels[LEVEL].bounds;
     let ceiling_y = of(StructureKind::Ceiling)
         .map(|mesh| mesh.bounds().min.y)
@@ -283,6 +283,9 @@ pub(crate) fn room_over_floors(data: &mut HouseData) {
         bounds,
     };
     room.repair();
+    if room.footprint.is_empty() {
+        return;
+    }
     let id = data.rooms.push(room);
     data.structure
         .iter_mut()

@@ -17,7 +17,8 @@ use super::geoms::BodyGeom;
 use super::read::{MjcfSource, name_of, pose};
 use crate::error::HousesError;
 use crate::import::{
-    CategoryRow, UniqueNames, category_of, room_kind, structure_kind, substance_of,
+    CategoryRow, FloorFaces, UniqueNames, category_of, floor_faces, floor_without_level_faces,
+    room_kind, structure_kind, substance_of,
 };
 use crate::report::LoadReport;
 use crate::robot;
@@ -252,19 +253,12 @@ impl MjcfHouseReader {
             }
             let mesh = &self.data.meshes[piece.mesh];
             let bounds = mesh.bounds();
-            let floor_y = bounds.max.y;
-            let up = |triangle: &usize| {
-                let [a, b, c] = mesh.corners(*triangle);
-                let flat = (b - a).cross(c - a).normalize_or_zero().y > 0.7;
-                flat && [a, b, c].iter().all(|p| p.y > floor_y - 0.02)
-            };
-            let footprint: Vec<[Vec2; 3]> = (0..mesh.triangles.len())
-                .filter(up)
-                .map(|k| mesh.corners(k).map(|p| Vec2::new(p.x, p.z)))
-                .collect();
-            if footprint.is_empty() {
+            let found = floor_faces(std::iter::once(&**mesh));
+            let Some(FloorFaces { footprint, floor_y }) = found else {
+                let at = source.at.field(format_args!("worldbody.{}", piece.name));
+                report.warn(at, floor_without_level_faces());
                 continue;
-            }
+            };
             let over = |other: &&Aabb| {
                 other.min.x < bounds.max.x
                     && other.max.x > bounds.min.x

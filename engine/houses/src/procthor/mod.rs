@@ -17,6 +17,7 @@ use glam::{DVec2, Quat, Vec2, Vec3};
 use crate::building::assembly::HouseAssembly;
 use crate::data_root::{DataRoot, is_json_with};
 use crate::error::HousesError;
+use crate::import::{drop_rooms_without_floor, report_covered_rooms};
 use crate::json;
 use crate::limits::{MAX_NODES, MAX_TEXT_BYTES};
 use crate::report::{FileLocation, LoadReport};
@@ -91,7 +92,10 @@ fn convert(
     }
     reader.objects(&file.objects);
     reader.lamps(&file.procedural_parameters.lights);
-    let house = House::new(reader.assembly.finish()).map_err(HousesError::scene(&at))?;
+    let mut data = reader.assembly.finish();
+    drop_rooms_without_floor(&mut data, &at, &mut report);
+    let house = House::new(data).map_err(HousesError::scene(&at))?;
+    report_covered_rooms(&house, &at, &mut report);
     Ok((house, report))
 }
 

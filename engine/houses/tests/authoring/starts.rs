@@ -52,6 +52,28 @@ fn agents_start_where_they_are_told_or_near_the_middle_of_a_room() {
 }
 
 #[test]
+fn a_start_outside_of_every_room_is_reported() {
+    let plan = json!({
+        "format": "dwell-plan", "version": 1,
+        "building": {"storeys": [{"rooms": [{"name": "study", "outline": [[0, 0], [4, 0], [4, 3], [0, 3]]}]}]},
+        "edits": [start(json!({"at": [1, 0, 1]})), start(json!({"at": [100, 0, 100]}))],
+    });
+    let folder = tempfile::tempdir().unwrap();
+    // A plan says what it is, whatever its name.
+    for name in ["flat.plan.json", "flat.json"] {
+        let path = folder.path().join(name);
+        std::fs::write(&path, plan.to_string()).unwrap();
+        let (house, report) = open(&path.to_string_lossy()).unwrap();
+        assert_eq!(house.agent_starts.len(), 2);
+        let told: Vec<String> = report.warnings().iter().map(ToString::to_string).collect();
+        assert_eq!(
+            told,
+            ["edits: agent_starts[1]: stands outside of every room"]
+        );
+    }
+}
+
+#[test]
 fn starts_that_cannot_be_are_refused_with_their_field() {
     let house = house();
     let full = json!({"add": {"what": {"box": {"size_m": [3.8, 1, 2.9]}}, "place": {"at": [6.05, 0, 1.5]},

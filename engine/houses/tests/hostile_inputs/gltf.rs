@@ -69,6 +69,14 @@ pub(crate) const CASES: &[Case] = &[
         &["a.glb", "asset.minVersion", "version \"2.1\" is not read"],
     ),
     fails(
+        "a room without a floor",
+        |d| {
+            let room = json!({"dwell": {"room": "hall", "ceiling_y": 2.5, "footprint": []}});
+            put_glb(d, &with(triangle(), "/nodes/0/extras", room))
+        },
+        &["a.glb", "rooms[0] \"hall\"", "footprint", "no triangle"],
+    ),
+    fails(
         "a mesh of 2^32",
         |d| put_glb(d, &with(triangle(), "/nodes/0/mesh", json!(1_u64 << 32))),
         &["a.glb", "4294967296; allowed are 0 to 4294967295"],

@@ -71,6 +71,11 @@ pub(crate) const CASES: &[Case] = &[
         &["house.json:1", "unknown field `cellar`"],
     ),
     fails(
+        "a room without a floor",
+        |d| native(d, |file| with(file, "/house/rooms/0/footprint", json!([]))),
+        &["house.json", "rooms[0]", "footprint", "no triangle"],
+    ),
+    fails(
         "no geometry",
         |d| {
             let path = native(d, |file| file);

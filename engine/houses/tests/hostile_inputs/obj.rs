@@ -20,6 +20,14 @@ pub(crate) const CASES: &[Case] = &[
         |d| put(d, "a.obj", obj_of("a.mtl").replace("v 1 0 0", "v 1e30 0 0")),
         &["a.obj", "structure[0] \"floor\"", "32768 m"],
     ),
+    warns(
+        "a floor that stands upright",
+        |d| {
+            let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\no floor_hall\nf 1 2 3\n";
+            put(d, "a.obj", text)
+        },
+        &["a.obj: floor_hall", "no face that is level"],
+    ),
     fails(
         "50,001 things",
         |d| {

@@ -174,6 +174,25 @@ pub(crate) const HABITAT: &[Case] = &[
         &[REGIONS, "region_annotations[0]", "0 corners"],
     ),
     warns(
+        "two regions on one polygon",
+        |d| {
+            let (hall, bedroom) = (
+                "[[3,0,0],[6,0,0],[6,0,4],[3,0,4]]",
+                "[[0,0,0],[3,0,0],[3,0,4],[0,0,4]]",
+            );
+            habitat(d, REGIONS, hall, bedroom)
+        },
+        &[REGIONS, "\"hall_0\" lies in room \"bedroom_0\"", "0 m2"],
+    ),
+    warns(
+        "a region of three corners in a line",
+        |d| {
+            let flat = "[[3,0,0],[4,0,0],[6,0,0]]";
+            habitat(d, REGIONS, "[[3,0,0],[6,0,0],[6,0,4],[3,0,4]]", flat)
+        },
+        &[REGIONS, "\"hall_0\" has a floor without area"],
+    ),
+    warns(
         "a region of 60,000 corners",
         |d| habitat(d, REGIONS, "[0,0,0]", &vec!["[0,0,0]"; 60_000].join(",")),
         &[REGIONS, "region_annotations[0]", "60003 corners"],

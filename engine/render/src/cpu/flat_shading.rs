@@ -193,7 +193,7 @@ mod tests {
             let texture = Texture::new(name, *width, *height, bytes.collect());
             data.textures.push(Arc::new(texture));
         }
-        Textures::new(&House::new(data).unwrap())
+        Textures::new(&House::new(data).unwrap()).unwrap()
     }
 
     #[test]

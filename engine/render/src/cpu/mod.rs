@@ -109,9 +109,21 @@ impl<'a> RenderJob<'a> {
 }
 
 impl CpuRenderer {
-    /// Prepares textures, colours and the tables of all triangles of a house, to be shared by all worlds over it.
+    /// As [`Self::try_new`], for houses that are known to fit.
+    ///
+    /// # Panics
+    /// Where the memory does not hold the house's images.
     pub fn new(house: &Arc<House>) -> Self {
-        let textures = Textures::new(house);
+        Self::try_new(house).unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    /// Prepares textures, colours and the tables of all triangles of a house, to be shared by all worlds over it.
+    /// [`texture_bytes`](crate::texture_bytes) says before what its images take.
+    ///
+    /// # Errors
+    /// [`RenderError::Memory`] where the system refuses the memory of the house's images.
+    pub fn try_new(house: &Arc<House>) -> Result<Self, RenderError> {
+        let textures = Textures::new(house)?;
         let mut looks = ShadingMaterial::all(house, &textures);
         looks.push(ShadingMaterial::agent_body());
         let surfaces = TriangleTable::new(house, &looks);
@@ -121,7 +133,7 @@ impl CpuRenderer {
             materials = looks.len(),
             "cpu renderer prepared"
         );
-        Self {
+        Ok(Self {
             classes: ClassSet::ALL.map(|table| EntityClasses::new(house, table)),
             part_bounds: OnceLock::new(),
             house: house.clone(),
@@ -131,7 +143,7 @@ impl CpuRenderer {
             light: OnceLock::new(),
             lightings: Mutex::default(),
             trees: house.meshes.iter().map(|_| OnceLock::new()).collect(),
-        }
+        })
     }
 
     /// The house.

@@ -49,6 +49,13 @@ fn heights_and_floor(at: &str, room: &Room) -> Result<(), SceneError> {
         format!("{} with floor_y {}", room.ceiling_y, room.floor_y),
         "at least floor_y",
     )?;
+    range(
+        at,
+        "footprint",
+        !room.footprint.is_empty(),
+        "no triangle",
+        "one triangle with an area, or more",
+    )?;
     let flat = room.footprint.iter().position(|t| !has_area(t));
     range(
         at,

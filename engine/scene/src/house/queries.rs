@@ -13,7 +13,8 @@ impl Room {
         self.footprint
             .iter()
             .map(|[a, b, c]| (*b - *a).perp_dot(*c - *a).abs() * 0.5)
-            .sum()
+            // The sum of nothing is -0.
+            .fold(0.0, std::ops::Add::add)
     }
 
     /// Returns whether the point (x, z) lies over the floor, border included. Degenerate triangles contain nothing.

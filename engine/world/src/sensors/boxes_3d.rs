@@ -45,8 +45,11 @@ fn write(look: ImageContext<'_>, out: ObservationBuffer<'_>) {
     };
     let world = look.world;
     let camera_from_world = look.view().world_from_camera.inverse();
+    // The picture was taken with it.
+    let Ok(renderer) = world.engines().cpu_renderer() else {
+        return;
+    };
     object_list::fill(&look, out, |sighting| {
-        let renderer = world.engines().cpu_renderer();
         let mut row = [0.0; 11];
         row[0] = sighting.entity.0 as f32;
         if let Some(bounds) = renderer.oriented_box(world.state(), sighting.entity) {

@@ -132,8 +132,10 @@ impl ImageContext<'_> {
 
     /// The class of what each pixel shows.
     pub(super) fn write_classes(&self, classes: ClassSet, out: ObservationBuffer<'_>) {
-        if let ObservationBuffer::Int32(out) = out {
-            let renderer = self.world.engines().cpu_renderer();
+        // The picture was taken with the renderer.
+        if let (ObservationBuffer::Int32(out), Ok(renderer)) =
+            (out, self.world.engines().cpu_renderer())
+        {
             let classes = renderer.classes(classes);
             for (class, id) in out.iter_mut().zip(&self.frame.instance) {
                 *class = classes.of(*id);

@@ -45,8 +45,11 @@ fn write(look: ImageContext<'_>, out: ObservationBuffer<'_>) {
     };
     let world = look.world;
     let view = look.view();
+    // The picture was taken with it.
+    let Ok(renderer) = world.engines().cpu_renderer() else {
+        return;
+    };
     object_list::fill(&look, out, |sighting| {
-        let renderer = world.engines().cpu_renderer();
         let (scene, state) = (world.rays(), world.state());
         let alone = renderer.unoccluded_pixels(scene, state, &view, sighting.entity);
         let hidden = 1.0 - sighting.pixels as f32 / alone.max(sighting.pixels) as f32;

@@ -22,7 +22,9 @@ use tracing::debug_span;
 
 use super::read::SuncgFiles;
 use crate::error::HousesError;
-use crate::import::{MaterialTableBuilder, UniqueNames};
+use crate::import::{
+    MaterialTableBuilder, UniqueNames, drop_rooms_without_floor, report_covered_rooms,
+};
 use crate::report::{FileLocation, LoadReport};
 
 /// Converts the files into a house.
@@ -167,6 +169,9 @@ impl Converter<'_> {
             return Err(HousesError::empty(&self.at, self.report));
         }
         let _span = debug_span!("check").entered();
-        House::new(self.data).map_err(HousesError::scene(&self.at))
+        drop_rooms_without_floor(&mut self.data, &self.at, self.report);
+        let house = House::new(self.data).map_err(HousesError::scene(&self.at))?;
+        report_covered_rooms(&house, &self.at, self.report);
+        Ok(house)
     }
 }
