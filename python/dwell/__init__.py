@@ -92,6 +92,7 @@ _MODULES = {
     "echogram",
     "editing",
     "envs",
+    "grounded_text",
     "heads",
     "house",
     "listening",

@@ -54,12 +54,12 @@ __all__ = [
     "map",
     "max_text_length",
     "predicates_json",
+    "prepared_envs",
     "response_metrics",
     "seed_range",
     "sensors",
     "settings",
     "signals",
-    "spares",
     "surfaces",
     "synthesize",
     "tasks",
@@ -385,7 +385,7 @@ class AcousticScene:
     @property
     def rate_hz(self) -> int: ...
 
-def spares(
+def prepared_envs(
     houses: Sequence[House],
     config_json: str,
     seeds: Sequence[int | None],

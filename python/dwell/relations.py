@@ -34,7 +34,7 @@ def predicates() -> list[dict[str, Any]]:
     Examples:
         >>> import dwell.relations
         >>> [row["name"] for row in dwell.relations.predicates()][:3]
-        ['in_room', 'on_storey', 'in']
+        ['in_room', 'room_contains', 'on_storey']
     """
     rows: list[dict[str, Any]] = json.loads(_native.predicates_json())["predicates"]
     return rows

@@ -297,10 +297,6 @@ def test_what_stands_where_a_journal_would_is_left_as_it_is(
         assert cli.main(command) == 1
         assert ".lines.part" in capsys.readouterr().err
         assert kept.read_bytes() == foreign
-    out.write_text("whole")
-    assert cli.main(command) == 1
-    assert kept.read_bytes() == foreign
-    out.unlink()
     kept.unlink()
     for aim in ("mine", "nothing"):
         (tmp_path / "mine").write_text("dear")

@@ -119,4 +119,4 @@ def test_what_travels_is_the_same_afterwards(apartment: dwell.House) -> None:
         assert again.doors() == navigation.doors()
         assert again.update(world) == copy.copy(navigation).update(world)
     with pytest.raises(dwell.SceneError):
-        Navigation._again(apartment, "{}", b"dwst")
+        Navigation._rebuild(apartment, "{}", b"dwst")

@@ -39,20 +39,22 @@ impl Facts<'_> {
         noun == "thing" || names.any(|name| name == noun || name.ends_with(&format!(" {noun}")))
     }
 
-    /// The room that a phrase names, by its name in the graph.
-    fn room_called(&self, phrase: &Phrase) -> Option<u32> {
+    /// Returns whether a room, by its number in the graph, is one that a phrase means.
+    fn is_room(&self, phrase: &Phrase, number: Option<u32>) -> bool {
         let Phrase::Described(room) = phrase else {
             panic!("a room: {phrase:?}");
         };
         let Noun::Room(noun) = &room.noun else {
             panic!("a room: {phrase:?}");
         };
-        let name = match &room.selection {
-            Some(selection) => format!("{} {noun}", ordinal(selection.place as usize)),
-            None => noun.clone(),
+        let Some(number) = number else {
+            return false;
         };
-        let found = self.graph.rooms.iter().find(|room| room.name == name);
-        found.map(|room| room.room)
+        let name = &self.graph.rooms[number as usize].name;
+        match &room.selection {
+            Some(selection) => *name == format!("{} {noun}", ordinal(selection.place as usize)),
+            None => name == noun || name.ends_with(&format!(" {noun}")),
+        }
     }
 
     fn mount_is(&self, id: i32, noun: &Noun) -> bool {
@@ -103,10 +105,7 @@ impl Facts<'_> {
                 let other = &modifier.arguments[0];
                 let mut edges = self.graph.of(node.id);
                 match (modifier.predicate.as_str(), other) {
-                    ("in_room", room) => {
-                        let room = self.room_called(room);
-                        room.is_some() && node.room == room
-                    }
+                    ("in_room", room) => self.is_room(room, node.room),
                     ("hangs_on", Phrase::Described(mount)) => edges.any(|edge| {
                         edge.predicate == "hangs_on" && self.mount_is(edge.object, &mount.noun)
                     }),

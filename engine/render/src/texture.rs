@@ -337,11 +337,14 @@ fn neighbours(coordinate: f32, size: u32) -> (u32, u32, f32) {
     (wrap(first), wrap(first.wrapping_add(1)), place - below)
 }
 
+/// Texels of a level, and how many there are across and down.
+type MipLevel = (Vec<[u8; 4]>, (usize, usize));
+
 /// Half the size in either direction, each texel the mean of those that it covers, in linear light and weighted by alpha.
 fn next_mip_level(
     texels: &[[u8; 4]],
     (width, height): (usize, usize),
-) -> Result<(Vec<[u8; 4]>, (usize, usize)), RenderError> {
+) -> Result<MipLevel, RenderError> {
     let srgb = SrgbTables::tables();
     let size = ((width / 2).max(1), (height / 2).max(1));
     let mut halved = reserved(size.0 as u64 * size.1 as u64)?;

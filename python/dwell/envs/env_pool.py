@@ -41,7 +41,9 @@ class EnvPool:
         for house in houses:
             add_heads(house, self.heads)
         seeds = [seed for _, seed in episodes]
-        made = _native.spares([house.native for house in houses], self.config, seeds, threads)
+        made = _native.prepared_envs(
+            [house.native for house in houses], self.config, seeds, threads
+        )
         return [PreparedEnv(house, native) for house, native in zip(houses, made, strict=True)]
 
     def make_behind(self, wanted: tuple[int, int, int]) -> PreparedEnv:

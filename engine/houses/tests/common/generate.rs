@@ -246,7 +246,7 @@ pub(crate) fn house(numbers: &[u32]) -> HouseData {
             name: n.name(k),
             level: LevelId(n.below(levels) as u32),
             kinds: (0..n.below(3)).map(|k| n.name(k)).collect(),
-            footprint: (0..n.below(3)).map(|_| n.triangle()).collect(),
+            footprint: (0..=n.below(2)).map(|_| n.triangle()).collect(),
             floor_y: n.float(),
             ceiling_y: n.float(),
             bounds: n.aabb(),
