@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Builder, Corners};
+use common::{Builder, Corners, fix};
 use dwell_scene::{
     AgentBody, AgentId, AgentState, Material, MaterialId, Mesh, Mobility, ObjectId, RoomId, State,
     StructureKind, Texture,
@@ -56,13 +56,6 @@ impl Told {
         let said = self.semantics.language().say(&form, None);
         said.expect("the language has words for it").text
     }
-}
-
-fn fix(b: &mut Builder, thing: ObjectId) {
-    b.data.objects[thing].mobility = Mobility::Fixed;
-    b.data.objects[thing].pickable = false;
-    let part = b.data.objects[thing].first_part;
-    b.data.parts[part].fixed = true;
 }
 
 /// A material with an image of 48 by 48 pixels.

@@ -1,10 +1,9 @@
 //! Trees to forms: the meanings of the grammar's functions.
 
-use super::lexicon::RELATION;
 use super::{existence, places, questions, rooms, several};
 use crate::form::{
-    AttributeKind, Clause, Description, Form, Modifier, Noun, Phrase, PlaceInOrder, Quality,
-    Quantifier, Question, Request, RequestStep,
+    Clause, Description, Form, Modifier, Noun, Phrase, PlaceInOrder, Quality, Quantifier, Question,
+    Request, RequestStep,
 };
 use crate::grammar::Tree;
 use crate::size::SizeClass;
@@ -43,7 +42,7 @@ pub(super) fn form(tree: &Tree) -> Option<Form> {
     Some(match parts(tree)? {
         ("claim", [inner]) => Form::Claim(clause(inner)?),
         ("request", [inner]) => Form::Request(plan(inner)?),
-        ("ask", [inner]) => Form::Question(question(inner)?),
+        ("ask", [inner]) => Form::Question(questions::question(inner)?),
         ("ask_clause", [inner]) => Form::Question(Question::Whether(simple(inner)?)),
         ("phrase", [inner]) => Form::NounPhrase(phrase(inner)?),
         ("phrase_room", [inner]) => Form::NounPhrase(room(inner)?),
@@ -88,7 +87,7 @@ fn simple(tree: &Tree) -> Option<Clause> {
     affirmed(function, arguments)
 }
 
-fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
+pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
     Some(match (function, arguments) {
         ("holds" | "holds_verb" | "whether_holds" | "whether_verb", [subject, word, object]) => {
             holds(&id(word)?, vec![phrase(subject)?, phrase(object)?])
@@ -564,63 +563,4 @@ fn step(tree: &Tree) -> Option<RequestStep> {
         },
         _ => return None,
     })
-}
-
-fn question(tree: &Tree) -> Option<Question> {
-    let (function, arguments) = parts(tree)?;
-    let attribute = |kind, of: &Tree| {
-        let of = phrase(of)?;
-        Some(Question::Attribute { kind, of })
-    };
-    let which = |kind: Option<&Tree>, clause: Clause| {
-        let kind = match kind {
-            Some(kind) => Some(Box::new(described(kind)?)),
-            None => None,
-        };
-        Some(Question::Which { kind, clause })
-    };
-    if let Some(other) = questions::from_tree(function, arguments) {
-        return Some(other);
-    }
-    match (function, arguments) {
-        ("how_many", [what]) => Some(Question::HowMany(Box::new(described(what)?))),
-        ("how_many_rooms", [noun]) => {
-            let noun = Noun::Room(id(noun)?);
-            let what = Description::new(Quantifier::Some, noun);
-            Some(Question::HowMany(Box::new(what)))
-        }
-        ("how_many_storeys", []) => {
-            let what = Description::new(Quantifier::Some, Noun::Storey);
-            Some(Question::HowMany(Box::new(what)))
-        }
-        ("how_many_of", [what, added]) => {
-            let mut description = described(what)?;
-            description.modifiers.push(modifier(added)?);
-            Some(Question::HowMany(Box::new(description)))
-        }
-        ("what_holds", [relation @ Tree::Entry { class, .. }, object]) if class == RELATION => {
-            which(
-                None,
-                holds(&id(relation)?, vec![Phrase::Hole, phrase(object)?]),
-            )
-        }
-        ("which_holds", [kind, relation, object]) => {
-            let clause = holds(&id(relation)?, vec![Phrase::Hole, phrase(object)?]);
-            which(Some(kind), clause)
-        }
-        ("which_place", [kind, place]) => {
-            let (predicate, place) = place_of(place)?;
-            which(Some(kind), holds(&predicate, vec![Phrase::Hole, place]))
-        }
-        ("which_is", [kind, quality]) => {
-            let quality = quality_of(quality)?;
-            let subject = Phrase::Hole;
-            which(Some(kind), Clause::Is { subject, quality })
-        }
-        ("where", [of]) => attribute(AttributeKind::Place, of),
-        ("which_room", [of]) => attribute(AttributeKind::Room, of),
-        ("what_color", [of]) => attribute(AttributeKind::Color, of),
-        ("what_material", [of]) => attribute(AttributeKind::Material, of),
-        _ => Some(Question::Whether(affirmed(function, arguments)?)),
-    }
 }

@@ -1,15 +1,20 @@
-//! Questions as people put them; those of the first wordings are in [`super::from_tree`].
+//! Questions: forms to trees, and trees to forms.
 
-use super::from_tree::{described, holds, id, modifier, phrase, place_of, quality_of, room};
+use super::existence::is_bare;
+use super::from_tree::{
+    affirmed, described, holds, id, modifier, parts, phrase, place_of, quality_of, room,
+};
+use super::lexicon::{RELATION, ROOM_NOUN};
+use super::to_tree::{Position, TreeBuilder};
 use super::{places, several};
 use crate::form::{
-    AttributeKind, Clause, Description, Modifier, Phrase, PlaceInOrder, Quality, Quantifier,
+    AttributeKind, Clause, Description, Modifier, Noun, Phrase, PlaceInOrder, Quality, Quantifier,
     Question,
 };
 use crate::grammar::Tree;
 
-/// The question of a tree; `None` for other trees.
-pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Question> {
+/// The question of a tree that is only read, never said; `None` for other trees.
+fn paraphrased(function: &str, arguments: &[Tree]) -> Option<Question> {
     let count = |description: Description| Question::HowMany(Box::new(description));
     let which = |kind: Option<Description>, clause: Clause| Question::Which {
         kind: kind.map(Box::new),
@@ -115,5 +120,155 @@ pub(super) fn selected(
             reference: reference.map(Box::new),
         }),
         ..description.with_quantifier(Quantifier::The)
+    }
+}
+
+/// The question of a tree; `None` for other trees.
+pub(super) fn question(tree: &Tree) -> Option<Question> {
+    let (function, arguments) = parts(tree)?;
+    let attribute = |kind, of: &Tree| {
+        let of = phrase(of)?;
+        Some(Question::Attribute { kind, of })
+    };
+    let which = |kind: Option<&Tree>, clause: Clause| {
+        let kind = match kind {
+            Some(kind) => Some(Box::new(described(kind)?)),
+            None => None,
+        };
+        Some(Question::Which { kind, clause })
+    };
+    if let Some(other) = paraphrased(function, arguments) {
+        return Some(other);
+    }
+    match (function, arguments) {
+        ("how_many", [what]) => Some(Question::HowMany(Box::new(described(what)?))),
+        ("how_many_rooms", [noun]) => {
+            let noun = Noun::Room(id(noun)?);
+            let what = Description::new(Quantifier::Some, noun);
+            Some(Question::HowMany(Box::new(what)))
+        }
+        ("how_many_storeys", []) => {
+            let what = Description::new(Quantifier::Some, Noun::Storey);
+            Some(Question::HowMany(Box::new(what)))
+        }
+        ("how_many_of", [what, added]) => {
+            let mut description = described(what)?;
+            description.modifiers.push(modifier(added)?);
+            Some(Question::HowMany(Box::new(description)))
+        }
+        ("what_holds", [relation @ Tree::Entry { class, .. }, object]) if class == RELATION => {
+            which(
+                None,
+                holds(&id(relation)?, vec![Phrase::Hole, phrase(object)?]),
+            )
+        }
+        ("which_holds", [kind, relation, object]) => {
+            let clause = holds(&id(relation)?, vec![Phrase::Hole, phrase(object)?]);
+            which(Some(kind), clause)
+        }
+        ("which_place", [kind, place]) => {
+            let (predicate, place) = place_of(place)?;
+            which(Some(kind), holds(&predicate, vec![Phrase::Hole, place]))
+        }
+        ("which_is", [kind, quality]) => {
+            let quality = quality_of(quality)?;
+            let subject = Phrase::Hole;
+            which(Some(kind), Clause::Is { subject, quality })
+        }
+        ("where", [of]) => attribute(AttributeKind::Place, of),
+        ("which_room", [of]) => attribute(AttributeKind::Room, of),
+        ("what_color", [of]) => attribute(AttributeKind::Color, of),
+        ("what_material", [of]) => attribute(AttributeKind::Material, of),
+        _ => Some(Question::Whether(affirmed(function, arguments)?)),
+    }
+}
+
+impl TreeBuilder<'_> {
+    /// The tree of a question.
+    pub(super) fn question(&self, question: &Question) -> Option<Tree> {
+        Some(match question {
+            Question::Whether(clause) => self.whether(clause)?,
+            Question::HowMany(what) => match &what.noun {
+                Noun::Room(noun) if is_bare(what) => {
+                    Tree::apply("how_many_rooms", [self.known(ROOM_NOUN, noun)?])
+                }
+                Noun::Storey if is_bare(what) => Tree::apply("how_many_storeys", []),
+                _ => Tree::apply("how_many", [self.with_modifiers(what)?]),
+            },
+            Question::Which { kind, clause } => self.which(kind.as_deref(), clause)?,
+            Question::Attribute { kind, of } => {
+                let function = match kind {
+                    AttributeKind::Color => "what_color",
+                    AttributeKind::Material => "what_material",
+                    AttributeKind::Place => "where",
+                    AttributeKind::Room => "which_room",
+                };
+                Tree::apply(function, [self.phrase(of, Position::Free)?])
+            }
+        })
+    }
+
+    fn whether(&self, clause: &Clause) -> Option<Tree> {
+        let (function, arguments) = match clause {
+            Clause::Holds {
+                predicate,
+                arguments,
+            } => {
+                let (name, arguments) = self.relation(predicate, arguments)?;
+                let function = match name {
+                    "holds" => "whether_holds",
+                    "holds_place" => "whether_place",
+                    "holds_mount" => "whether_mount",
+                    _ => return None,
+                };
+                (function, arguments)
+            }
+            Clause::Is { subject, quality } => {
+                let subject = self.phrase(subject, Position::Free)?;
+                ("whether_is", vec![subject, self.quality(quality)?])
+            }
+            Clause::Exists(what) => ("whether_exists", vec![self.item(what)?]),
+            _ => return None,
+        };
+        Some(Tree::apply(function, arguments))
+    }
+
+    fn which(&self, kind: Option<&Description>, clause: &Clause) -> Option<Tree> {
+        let kind = match kind {
+            Some(kind) if kind.modifiers.is_empty() && kind.selection.is_none() => {
+                Some(self.adjectives(kind)?)
+            }
+            Some(_) => return None,
+            None => None,
+        };
+        match (kind, clause) {
+            (
+                kind,
+                Clause::Holds {
+                    predicate,
+                    arguments,
+                },
+            ) => {
+                let [Phrase::Hole, object] = &arguments[..] else {
+                    return None;
+                };
+                if let Some(word) = self.known(RELATION, predicate) {
+                    let object = self.phrase(object, Position::Free)?;
+                    return Some(match kind {
+                        Some(kind) => Tree::apply("which_holds", [kind, word, object]),
+                        None => Tree::apply("what_holds", [word, object]),
+                    });
+                }
+                Some(Tree::apply("which_place", [kind?, self.place(object)?]))
+            }
+            (
+                Some(kind),
+                Clause::Is {
+                    subject: Phrase::Hole,
+                    quality,
+                },
+            ) => Some(Tree::apply("which_is", [kind, self.quality(quality)?])),
+            _ => None,
+        }
     }
 }

@@ -2,13 +2,13 @@
 
 use super::existence::is_bare;
 use super::lexicon::{
-    ADJECTIVE_STATE, GATHERED, GATHERING, NOUN, ORDER, ORDER_TO, RELATION, ROOM, ROOM_NOUN,
-    ROOM_SPOT, STRUCTURE, SUPERLATIVE, VERB, VERB_RELATION,
+    ADJECTIVE_STATE, GATHERED, GATHERING, NOUN, ORDER, ORDER_TO, RELATION, ROOM, ROOM_SPOT,
+    STRUCTURE, SUPERLATIVE, VERB, VERB_RELATION,
 };
 use super::places;
 use crate::form::{
-    AttributeKind, Clause, Description, Form, Modifier, Noun, Phrase, PlaceInOrder, Quality,
-    Quantifier, Question, Request, RequestStep,
+    Clause, Description, Form, Modifier, Noun, Phrase, PlaceInOrder, Quality, Quantifier, Request,
+    RequestStep,
 };
 use crate::grammar::{Lexicon, Tree};
 use crate::size::SizeClass;
@@ -140,7 +140,11 @@ impl TreeBuilder<'_> {
     }
 
     /// The function of a clause with a relation, and its arguments.
-    fn relation(&self, predicate: &str, arguments: &[Phrase]) -> Option<(&'static str, Vec<Tree>)> {
+    pub(super) fn relation(
+        &self,
+        predicate: &str,
+        arguments: &[Phrase],
+    ) -> Option<(&'static str, Vec<Tree>)> {
         let free = |phrase: &Phrase| self.phrase(phrase, Position::Free);
         match (predicate, arguments) {
             ("in_room" | "on_storey", [Phrase::List(items), place]) => Some((
@@ -213,7 +217,7 @@ impl TreeBuilder<'_> {
         Some(Tree::apply("place_spot", [word, self.room(place)?]))
     }
 
-    fn quality(&self, quality: &Quality) -> Option<Tree> {
+    pub(super) fn quality(&self, quality: &Quality) -> Option<Tree> {
         Some(match quality {
             Quality::Color(word) => Tree::apply("quality_color", [self.known("color", word)?]),
             Quality::Material(word) => {
@@ -406,7 +410,7 @@ impl TreeBuilder<'_> {
     }
 
     /// The noun with its adjectives and modifiers, in their order.
-    fn with_modifiers(&self, description: &Description) -> Option<Tree> {
+    pub(super) fn with_modifiers(&self, description: &Description) -> Option<Tree> {
         let mut noun = Tree::apply("plain", [self.adjectives(description)?]);
         for modifier in &description.modifiers {
             let function = if modifier.negated { "but_not" } else { "with" };
@@ -444,7 +448,7 @@ impl TreeBuilder<'_> {
 
     /// Size, state, colours, material and noun, in this order; of groups ("pair of black shoes") colours and material stand after
     /// the "of".
-    fn adjectives(&self, description: &Description) -> Option<Tree> {
+    pub(super) fn adjectives(&self, description: &Description) -> Option<Tree> {
         let Noun::Object(noun) = &description.noun else {
             return None;
         };
@@ -522,92 +526,5 @@ impl TreeBuilder<'_> {
                 None => Tree::apply("bring", [free(object)?, free(to)?]),
             },
         })
-    }
-
-    fn question(&self, question: &Question) -> Option<Tree> {
-        Some(match question {
-            Question::Whether(clause) => self.whether(clause)?,
-            Question::HowMany(what) => match &what.noun {
-                Noun::Room(noun) if is_bare(what) => {
-                    Tree::apply("how_many_rooms", [self.known(ROOM_NOUN, noun)?])
-                }
-                Noun::Storey if is_bare(what) => Tree::apply("how_many_storeys", []),
-                _ => Tree::apply("how_many", [self.with_modifiers(what)?]),
-            },
-            Question::Which { kind, clause } => self.which(kind.as_deref(), clause)?,
-            Question::Attribute { kind, of } => {
-                let function = match kind {
-                    AttributeKind::Color => "what_color",
-                    AttributeKind::Material => "what_material",
-                    AttributeKind::Place => "where",
-                    AttributeKind::Room => "which_room",
-                };
-                Tree::apply(function, [self.phrase(of, Position::Free)?])
-            }
-        })
-    }
-
-    fn whether(&self, clause: &Clause) -> Option<Tree> {
-        let (function, arguments) = match clause {
-            Clause::Holds {
-                predicate,
-                arguments,
-            } => {
-                let (name, arguments) = self.relation(predicate, arguments)?;
-                let function = match name {
-                    "holds" => "whether_holds",
-                    "holds_place" => "whether_place",
-                    "holds_mount" => "whether_mount",
-                    _ => return None,
-                };
-                (function, arguments)
-            }
-            Clause::Is { subject, quality } => {
-                let subject = self.phrase(subject, Position::Free)?;
-                ("whether_is", vec![subject, self.quality(quality)?])
-            }
-            Clause::Exists(what) => ("whether_exists", vec![self.item(what)?]),
-            _ => return None,
-        };
-        Some(Tree::apply(function, arguments))
-    }
-
-    fn which(&self, kind: Option<&Description>, clause: &Clause) -> Option<Tree> {
-        let kind = match kind {
-            Some(kind) if kind.modifiers.is_empty() && kind.selection.is_none() => {
-                Some(self.adjectives(kind)?)
-            }
-            Some(_) => return None,
-            None => None,
-        };
-        match (kind, clause) {
-            (
-                kind,
-                Clause::Holds {
-                    predicate,
-                    arguments,
-                },
-            ) => {
-                let [Phrase::Hole, object] = &arguments[..] else {
-                    return None;
-                };
-                if let Some(word) = self.known(RELATION, predicate) {
-                    let object = self.phrase(object, Position::Free)?;
-                    return Some(match kind {
-                        Some(kind) => Tree::apply("which_holds", [kind, word, object]),
-                        None => Tree::apply("what_holds", [word, object]),
-                    });
-                }
-                Some(Tree::apply("which_place", [kind?, self.place(object)?]))
-            }
-            (
-                Some(kind),
-                Clause::Is {
-                    subject: Phrase::Hole,
-                    quality,
-                },
-            ) => Some(Tree::apply("which_is", [kind, self.quality(quality)?])),
-            _ => None,
-        }
     }
 }

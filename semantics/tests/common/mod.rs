@@ -315,3 +315,11 @@ pub(crate) fn small_house() -> Small {
         bedroom_b,
     }
 }
+
+/// Fixes a thing in its place.
+pub(crate) fn fix(b: &mut Builder, thing: ObjectId) {
+    b.data.objects[thing].mobility = Mobility::Fixed;
+    b.data.objects[thing].pickable = false;
+    let part = b.data.objects[thing].first_part;
+    b.data.parts[part].fixed = true;
+}
