@@ -3,7 +3,7 @@
 //! `cargo run -p dwell-semantics --example read_sentences GRAMMAR.toml LEXICON.toml < SENTENCES.txt`
 
 use dwell_semantics::language::Language;
-use std::io::BufRead;
+use std::io::{BufRead, Write};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let files: Vec<String> = std::env::args().skip(1).collect();
@@ -14,6 +14,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         &std::fs::read_to_string(grammar)?,
         &std::fs::read_to_string(lexicon)?,
     )?;
+    let mut out = std::io::stdout().lock();
     let (mut read, mut all) = (0, 0);
     for line in std::io::stdin().lock().lines() {
         let line = line?;
@@ -23,11 +24,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 read += 1;
                 let said = language.say(&reading.forms[0], None);
                 let said = said.map_or_else(|| format!("{:?}", reading.forms[0]), |said| said.text);
-                println!("+ {line}\n    {said}");
+                writeln!(out, "+ {line}\n    {said}")?;
             }
-            Err(error) => println!("- {line}\n    {error}"),
+            Err(error) => writeln!(out, "- {line}\n    {error}")?,
         }
     }
-    println!("{read} of {all} are read");
+    writeln!(out, "{read} of {all} are read")?;
     Ok(())
 }

@@ -4,7 +4,7 @@ mod common;
 
 use common::{Builder, Corners, fix};
 use dwell_scene::{
-    AgentBody, AgentId, AgentState, Material, MaterialId, Mesh, Mobility, ObjectId, RoomId, State,
+    AgentBody, AgentId, AgentState, Material, MaterialId, Mesh, ObjectId, RoomId, State,
     StructureKind, Texture,
 };
 use dwell_semantics::check::{Checker, Listener};
