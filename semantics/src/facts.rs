@@ -2,7 +2,7 @@
 
 use crate::category::{SemanticCategory, categories};
 use crate::color::{ColorVocabulary, MaterialColors, SurfacePatch, color_words};
-use crate::english::{counted_noun, plural};
+use crate::english::counted_noun;
 use crate::form::{Description, Noun};
 use crate::geometry::mapped_area_m2;
 use crate::size::SizeClass;
@@ -46,15 +46,13 @@ impl ObjectFacts {
         let category = categories().of(&object.category);
         let (noun, plural) = category.map_or_else(
             || unknown_noun(&object.category),
-            |row| match row.name {
-                // An object, as opposed to a piece of the building.
-                "wall" | "floor" | "ceiling" => {
-                    let piece = format!("{} piece", row.singular);
-                    (piece.clone(), plural(&piece))
-                }
-                _ => (row.singular.to_owned(), row.plural.to_owned()),
-            },
+            |row| (row.singular.to_owned(), row.plural.to_owned()),
         );
+        let (noun, plural) = match noun.as_str() {
+            // An object, as opposed to a piece of the building.
+            "wall" | "floor" | "ceiling" => counted_noun(&format!("{noun} piece")),
+            _ => (noun, plural),
+        };
         let areas = areas_m2(house, id);
         let shown: &[(MaterialId, f32)] = if seen.is_empty() { &areas } else { seen };
         let patches = patches(house, paints, &without_screen(house, category, shown));

@@ -9,7 +9,7 @@ use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::material::library;
 use dwell_scene::math;
 use dwell_scene::rays::RayScene;
-use dwell_scene::{Aabb, House, IdVec, MaterialId, RoomId, StructureKind, SurfaceOwner};
+use dwell_scene::{Aabb, House, Id, IdVec, MaterialId, RoomId, StructureKind, SurfaceOwner};
 use glam::Vec3;
 use std::collections::BTreeMap;
 
@@ -33,6 +33,8 @@ pub struct RoomProperties {
     pub names: Vec<String>,
     /// A name of its own in the house, without article: "kitchen", "second bedroom".
     pub label: String,
+    /// Its place among the rooms that may be called by its noun, in the house's order, counted from 1; `None` for the only one.
+    pub number: Option<u32>,
     /// Area of the floor that lies in no smaller room (as rooms of some files do), m².
     pub area_m2: f32,
     /// The adjective of most of its floor: "tiled".
@@ -63,22 +65,20 @@ impl RoomProperties {
             room.passages.clone_from(open);
         }
         // As a description with an order counts them: among all rooms that may be called so.
-        let labels: Vec<String> = rooms
-            .iter()
-            .enumerate()
-            .map(|(k, room)| {
-                let called = rooms.iter().map(|other| other.is_called(&room.noun));
-                let called: Vec<bool> = called.collect();
-                let before = called[..k].iter().filter(|own| **own).count();
-                if called.iter().filter(|own| **own).count() > 1 {
-                    format!("{} {}", english::ordinal(before + 1), room.noun)
-                } else {
-                    room.noun.clone()
-                }
-            })
-            .collect();
-        for (room, label) in rooms.iter_mut().zip(labels) {
-            room.label = label;
+        let mut called: BTreeMap<String, Vec<RoomId>> = BTreeMap::new();
+        for (id, room) in rooms.iter_ids() {
+            for name in &room.names {
+                called.entry(name.clone()).or_default().push(id);
+            }
+        }
+        called.insert(Noun::ANY_ROOM.to_owned(), rooms.ids().collect());
+        for (id, room) in rooms.iter_mut().enumerate() {
+            let alike = &called[&room.noun];
+            if alike.len() > 1 {
+                let before = alike.partition_point(|other| other.index() < id);
+                room.number = Some(before as u32 + 1);
+                room.label = format!("{} {}", english::ordinal(before + 1), room.noun);
+            }
         }
         rooms
     }
@@ -91,7 +91,9 @@ impl RoomProperties {
             .map(|kind| room_kinds().get(kind))
             .collect();
         let kind = kinds.first().copied().flatten();
-        let said = room.kinds.first().map_or("room", String::as_str);
+        let said = room.kinds.first().map(String::as_str);
+        let said = said.filter(|kind| kind.chars().any(char::is_alphanumeric));
+        let said = said.unwrap_or(Noun::ANY_ROOM);
         let (noun, plural) = kind.map_or_else(
             || (said.to_owned(), english::plural(said)),
             |kind| (kind.singular.to_owned(), kind.plural.to_owned()),
@@ -105,6 +107,7 @@ impl RoomProperties {
         Self {
             kind,
             label: noun.clone(),
+            number: None,
             noun,
             plural,
             names,

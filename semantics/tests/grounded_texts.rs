@@ -1,6 +1,9 @@
 //! Texts of the engine's own: every claim is true, reads back as it was meant, and names the things that it is about.
 #![allow(clippy::unwrap_used, reason = "tests stop at the first surprise")]
 
+mod common;
+
+use common::Builder;
 use dwell_houses::open;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{House, State};
@@ -87,5 +90,56 @@ fn examine_house(name: &str) {
 fn texts_are_true_and_read_back_as_they_were_meant() {
     for name in houses() {
         examine_house(&name);
+    }
+}
+
+/// Nouns that files may hold: those of pieces of the building and of rooms, marks, words of the grammar, nothing.
+#[test]
+fn odd_nouns_are_said_and_their_texts_are_true() {
+    let odd = [
+        "wall?",
+        "ceiling!",
+        "floor 1",
+        "kitchen?",
+        "room",
+        "thing",
+        "it",
+        "you",
+        "nothing",
+        "object 7",
+        "stack of",
+        "pair of walls",
+        "the",
+        "on the wall",
+        "?",
+        "\u{e9}t\u{e9}",
+        "left",
+        "two",
+        "12",
+    ];
+    for noun in odd {
+        let mut b = Builder::new("odd");
+        b.room(noun, [0.05, 0.05], [3.95, 3.95]);
+        let room = b.room("kitchen", [4.05, 0.05], [7.95, 3.95]);
+        let wood = b.material("wood", [150, 111, 72]);
+        for x in [0.5, 1.5, 4.5] {
+            b.thing(noun, &[([x, 0.0, 1.0], [x + 0.4, 0.6, 1.4])], wood);
+        }
+        let house = b.build();
+        let semantics = Semantics::new(&house);
+        let state = State::new(&house);
+        let scene = semantics.scene(&state);
+        let mut texts = captions(&scene, None);
+        texts.extend(describe_rooms(&scene, Some(RandomKey::root(3))));
+        texts.push(describe_house(&scene, None));
+        assert!(house.rooms.get(room).is_some());
+        let checker = Checker::new(&scene, Listener::default());
+        for text in texts {
+            assert!(!text.claims.is_empty(), "{noun:?}");
+            for claim in &text.claims {
+                let verdict = checker.check_form(&claim.form).unwrap();
+                assert_eq!(verdict.truth, Truth::True, "{noun:?}: {}", text.text);
+            }
+        }
     }
 }

@@ -18,7 +18,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Adds the options."""
     parser.add_argument("houses", metavar="HOUSE", nargs="+")
     parser.add_argument("--level", choices=_LEVELS, default="house")
-    parser.add_argument("--seed", type=count, help="draws the wording of instructions")
+    parser.add_argument("--seed", type=count, help="draws the wordings, with the name of the house")
     parser.add_argument(
         "--out",
         type=path,

@@ -12,7 +12,7 @@ pub(super) struct NounGroup {
     pub(super) objects: Vec<ObjectId>,
 }
 
-/// The states of joints that a description names, with a test whether it is worth a word.
+/// The states of joints: a thing that opens is in one of them.
 const JOINT_STATES: [&str; 3] = ["open", "half_open", "closed"];
 
 /// The state of a thing that a description names: how far it is open, of doors also that it is closed.

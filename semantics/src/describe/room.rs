@@ -82,7 +82,7 @@ fn contents(scene: &SemanticScene<'_>, room: RoomId, objects: &[ObjectId]) -> Ro
 }
 
 /// Largest number of carriers of one noun that no description tells apart of which each has its own sentence.
-const MOST_UNTOLD_APART: usize = 8;
+const MAX_SEPARATE_CARRIERS: usize = 8;
 
 /// Things on or in a carrier, or on or in carriers that no description tells apart.
 struct CarrierGroup {
@@ -153,7 +153,7 @@ fn carrier_groups(
             .filter(|other| scene.room_of(*other) == Some(room))
             .collect();
         let all = carried_by(scene, predicate, &here);
-        if own.len() > MOST_UNTOLD_APART {
+        if own.len() > MAX_SEPARATE_CARRIERS {
             let rest: Vec<ObjectId> = own[1..]
                 .iter()
                 .flat_map(|k| std::mem::take(&mut groups[*k].objects))
@@ -225,19 +225,20 @@ pub(super) fn say_room(writer: &mut TextWriter<'_>, scene: &SemanticScene<'_>, r
         let carrier = Phrase::from(group.carrier);
         writer.there_are(&items, &[Modifier::new(group.predicate, [carrier])]);
     }
+    if hanging.is_empty() {
+        return;
+    }
+    // With those whose nouns say it: a wall lamp is a lamp on the wall.
+    let mounted = all
+        .iter()
+        .filter_map(|object| MountedObject::of(scene, *object));
+    let mounted: Vec<MountedObject> = mounted.collect();
     for mount in MountKind::ALL {
-        let here = |one: &&MountedObject| one.mount == mount;
-        let objects = hanging.iter().filter(here).map(|one| one.object);
-        let objects: Vec<ObjectId> = objects.collect();
-        let hung = all.iter().filter(|object| {
-            MountedObject::of(scene, **object).is_some_and(|one| one.mount == mount)
-        });
-        let candidates: Vec<ObjectId> = if objects.is_empty() {
-            Vec::new()
-        } else {
-            hung.copied().collect()
+        let on_mount = |all: &[MountedObject]| -> Vec<ObjectId> {
+            let own = all.iter().filter(|one| one.mount == mount);
+            own.map(|one| one.object).collect()
         };
-        let items = items(scene, &objects, &candidates);
+        let items = items(scene, &on_mount(&hanging), &on_mount(&mounted));
         writer.there_are(&items, &[mount.modifier(), in_room.clone()]);
     }
 }

@@ -7,7 +7,7 @@ use dwell_scene::interrupt;
 use dwell_scene::random::RandomKey;
 
 /// Largest number of items in one sentence.
-const MOST_ITEMS: usize = 6;
+const MAX_ITEMS: usize = 6;
 
 /// A claim of a text.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,9 +52,9 @@ impl<'a> TextWriter<'a> {
         }
     }
 
-    /// Says that there are `items` with common modifiers, in sentences of at most [`MOST_ITEMS`]; nothing where there are none.
+    /// Says that there are `items` with common modifiers, in sentences of at most [`MAX_ITEMS`]; nothing where there are none.
     pub(super) fn there_are(&mut self, items: &[Description], place: &[Modifier]) {
-        for items in items.chunks(MOST_ITEMS) {
+        for items in items.chunks(MAX_ITEMS) {
             self.say_list(items.to_vec(), place);
         }
     }

@@ -131,7 +131,7 @@ fn with_antecedents<'a>(
 }
 
 /// Largest number of meanings of a request that are kept.
-const MOST_MEANINGS: usize = 8;
+const MAX_MEANINGS: usize = 8;
 
 fn bound_steps(steps: &[RequestStep]) -> Vec<Vec<RequestStep>> {
     let mut plans: Vec<Vec<RequestStep>> = vec![Vec::new()];
@@ -149,7 +149,7 @@ fn bound_steps(steps: &[RequestStep]) -> Vec<Vec<RequestStep>> {
                 longer.push(next);
             }
         }
-        longer.truncate(MOST_MEANINGS);
+        longer.truncate(MAX_MEANINGS);
         plans = longer;
     }
     plans

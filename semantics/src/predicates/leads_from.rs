@@ -1,7 +1,6 @@
 //! The predicate `leads_from`.
 
-use super::doors::doorway_of;
-use super::{OBJECT, Predicate, ROOM};
+use super::{OBJECT, Predicate, ROOM, leads_to::LeadsTo};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::Truth;
 
@@ -25,7 +24,7 @@ impl Predicate for LeadsFrom {
         "Chosen here; the sides of a door are looked up 0.35 m beyond its frame."
     }
 
-    fn decide(&self, scene: &SemanticScene<'_>, args: &[Term], _: Option<&Viewer>) -> Truth {
-        doorway_of(scene, args[0], |doorway| doorway.has_side(args[1]))
+    fn decide(&self, scene: &SemanticScene<'_>, args: &[Term], viewer: Option<&Viewer>) -> Truth {
+        LeadsTo.decide(scene, args, viewer)
     }
 }

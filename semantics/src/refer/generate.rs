@@ -1,7 +1,6 @@
 //! The shortest description that fits exactly one thing.
 
 use super::distractors::{TELLING, common};
-use super::room::noun_quantifier;
 use crate::form::{Description, Modifier, Noun, Quantifier};
 use crate::predicates;
 use crate::scene::{ObjectList, SemanticScene};
@@ -119,12 +118,14 @@ pub fn refer(scene: &SemanticScene<'_>, target: ObjectId) -> Option<Description>
     let alike = scene.distractors(&facts.noun);
     let unique = |description: &Description| *alike.matching(scene, description) == [target];
     let room = scene.room_of(target).map(|room| {
-        let noun = scene.semantics.room(room).noun.clone();
-        let quantifier = noun_quantifier(scene, &noun);
-        Modifier::new(
-            "in_room",
-            [Description::new(quantifier, Noun::Room(noun)).into()],
-        )
+        let facts = scene.semantics.room(room);
+        // "A bedroom" of several: no list of the house's own numbers them for whoever reads it.
+        let quantifier = match facts.number {
+            None => Quantifier::The,
+            Some(_) => Quantifier::Some,
+        };
+        let room = Description::new(quantifier, Noun::Room(facts.noun.clone()));
+        Modifier::new("in_room", [room.into()])
     });
     let own = by_properties(scene, target);
     let in_room: Vec<Description> = match &room {

@@ -6,36 +6,19 @@ use dwell_scene::RoomId;
 use dwell_scene::interrupt;
 use std::collections::BTreeMap;
 
-fn called(scene: &SemanticScene<'_>, noun: &str) -> Vec<RoomId> {
-    let rooms = scene.house().rooms.ids();
-    rooms
-        .filter(|room| scene.semantics.room(*room).is_called(noun))
-        .collect()
-}
-
-/// "The" for the noun of one room of the house, "a" for that of several.
-pub(crate) fn noun_quantifier(scene: &SemanticScene<'_>, noun: &str) -> Quantifier {
-    if called(scene, noun).len() == 1 {
-        Quantifier::The
-    } else {
-        Quantifier::Some
-    }
-}
-
 /// The phrase that fits `room` and no other by noun and place in the house's own list: "the kitchen", "the second bedroom".
 pub fn room_phrase(scene: &SemanticScene<'_>, room: RoomId) -> Phrase {
-    let noun = &scene.semantics.room(room).noun;
-    let alike = called(scene, noun);
-    let mut description = Description::new(Quantifier::The, Noun::Room(noun.clone()));
-    if alike.len() > 1 {
-        let before = alike.iter().filter(|other| **other < room).count();
-        description.selection = Some(PlaceInOrder {
+    let facts = scene.semantics.room(room);
+    let noun = Noun::Room(facts.noun.clone());
+    Description {
+        selection: facts.number.map(|place| PlaceInOrder {
             order: PlaceInOrder::OF_HOUSE.to_owned(),
-            place: before as u32 + 1,
+            place,
             reference: None,
-        });
+        }),
+        ..Description::new(Quantifier::The, noun)
     }
-    description.into()
+    .into()
 }
 
 /// The shortest description of `room` that fits no other: its noun, and a kind of thing that it alone holds where there are
@@ -45,11 +28,13 @@ pub fn room_phrase(scene: &SemanticScene<'_>, room: RoomId) -> Phrase {
 pub fn refer_to_room(scene: &SemanticScene<'_>, room: RoomId) -> Option<Description> {
     let facts = scene.semantics.room(room);
     let unnamed = facts.kind.is_none_or(|kind| kind.name == Noun::ANY_ROOM);
-    let alike = called(scene, &facts.noun);
     let plain = Description::new(Quantifier::The, Noun::Room(facts.noun.clone()));
-    if !unnamed && alike == [room] {
+    if !unnamed && facts.number.is_none() {
         return Some(plain);
     }
+    let rooms = scene.house().rooms.ids();
+    let alike = rooms.filter(|other| scene.semantics.room(*other).is_called(&facts.noun));
+    let alike: Vec<RoomId> = alike.collect();
     let mut things: BTreeMap<&str, f32> = BTreeMap::new();
     for object in scene.objects_in(room).iter().copied() {
         let worth_naming = |row: &crate::category::SemanticCategory| {
