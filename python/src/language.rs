@@ -66,6 +66,7 @@ impl WorldAccess<'_> {
             Answer::Truth(verdict) => self.verdict(verdict),
             Answer::Things(terms) => json!({"things": self.terms_told(terms)}),
             Answer::Number(number) => json!({"number": number}),
+            Answer::Alternatives(numbers) => json!({"alternatives": numbers}),
             Answer::Words(words) => json!({"words": words}),
             Answer::None(reason) => json!({"reason": reason.sentence()}),
         }
@@ -129,11 +130,16 @@ pub(crate) fn world_check_text(
             phrases.collect::<Vec<Value>>()
         });
         let phrases: Vec<Value> = phrases.collect();
+        let ambiguous = checker.ambiguities(&checked.form);
+        let ambiguities = ambiguous.iter().map(|found| {
+            json!({"things": running.terms_told(&found.terms), "question": found.question})
+        });
         answers::Answer::of(&json!({
             "form": serde_json::to_value(&checked.form)?,
             "other_forms": serde_json::to_value(&checked.others)?,
             "said": said.map(|said| said.text),
             "phrases": phrases,
+            "ambiguities": ambiguities.collect::<Vec<Value>>(),
             "answer": checked.answer.map(|answer| running.answer(&answer)),
         }))
     })

@@ -42,6 +42,16 @@ impl RoomOutline {
         }
     }
 
+    /// Returns where a point lies along the longer edge of the rectangle around the floor, -1 to 1 from end to end.
+    pub(crate) fn lengthwise_share(&self, point: Vec2) -> f32 {
+        let share = self.share(point);
+        if self.half_m.x >= self.half_m.y {
+            share.x
+        } else {
+            share.y
+        }
+    }
+
     /// Returns where a point lies in the rectangle around the floor: -1 to 1 along and across the longest border.
     pub(crate) fn share(&self, point: Vec2) -> Vec2 {
         (turned(self.along, point) - self.middle) / self.half_m.max(Vec2::splat(1e-6))

@@ -4,7 +4,7 @@
 use dwell_houses::open;
 use dwell_scene::{House, ObjectId, State};
 use dwell_semantics::check::{Answer, CheckResult, Checker, Listener};
-use dwell_semantics::form::{Clause, Form, Question};
+use dwell_semantics::form::{Clause, Form, Phrase, Question};
 use dwell_semantics::language::Language;
 use dwell_semantics::{SemanticScene, Semantics, Term, Truth, UndecidedReason, Viewer};
 use std::collections::{BTreeMap, BTreeSet};
@@ -262,4 +262,55 @@ fn sentences_are_checked_and_their_phrases_grounded() {
             [Term::Room(scene.room_of(sofa).unwrap())]
         );
     }
+}
+
+#[test]
+fn ambiguous_nouns_ask_which_thing_is_meant() {
+    let house = house("builtin:apartment");
+    let semantics = Semantics::new(&house);
+    let state = State::new(&house);
+    let scene = semantics.scene(&state);
+    let checker = Checker::new(&scene, Listener::default());
+    let language = semantics.language();
+    let asked = |text: &str| {
+        let form = language.read(text).unwrap().forms.remove(0);
+        checker.ambiguities(&form)
+    };
+    assert!(asked("Is there a bed?").is_empty());
+    let mut named = 0;
+    for noun in ["bed", "door", "window", "chair", "lamp", "picture", "plant"] {
+        let found = asked(&format!("Find the {noun}."));
+        let things = language.read(&format!("a {noun}")).unwrap();
+        let Form::NounPhrase(Phrase::Described(what)) = &things.forms[0] else {
+            panic!("{:?}", things.forms[0]);
+        };
+        let fitting = checker.fitting(what);
+        if fitting.len() < 2 {
+            assert!(found.is_empty(), "{noun}: {found:?}");
+            continue;
+        }
+        let [only] = &found[..] else {
+            panic!("{noun}: {found:?}");
+        };
+        assert_eq!(only.terms, fitting);
+        let question = only.question.as_deref().unwrap();
+        assert!(question.starts_with("Which "), "{question}");
+        let Some((_, rest)) = question.trim_end_matches('?').split_once("do you mean, ") else {
+            continue;
+        };
+        // Each of the phrases of the answer fits one of the things alone.
+        let mut told: Vec<_> = rest
+            .split(", ")
+            .flat_map(|part| part.split(" or "))
+            .map(|phrase| match &language.read(phrase).unwrap().forms[0] {
+                Form::NounPhrase(phrase) => checker.denoted(phrase),
+                other => panic!("{other:?}"),
+            })
+            .collect();
+        assert!(told.iter().all(|terms| terms.len() == 1), "{question}");
+        told.sort();
+        assert_eq!(told.concat(), fitting, "{question}");
+        named += 1;
+    }
+    assert!(named > 0);
 }

@@ -46,9 +46,15 @@ def run(args: argparse.Namespace) -> int:
         rows.append({"text": sentence, **found})
         if not args.json:
             print(f"{sentence} {_answer(found['answer'])}")
+            for ambiguity in found["ambiguities"]:
+                names = ", ".join(thing["name"] for thing in ambiguity["things"][:10])
+                print(f"  {ambiguity['question'] or 'Which one do you mean?'} ({names})")
     if args.json:
         print_json({"house": args.house, "rows": rows})
     return 1 if any("error" in row for row in rows) else 0
+
+
+_ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
 
 
 def _answer(answer: dict[str, Any] | None) -> str:
@@ -65,6 +71,8 @@ def _answer(answer: dict[str, Any] | None) -> str:
         return ", ".join(thing["name"] for thing in answer["things"]) or "nothing"
     if "number" in answer:
         return str(answer["number"])
+    if "alternatives" in answer:
+        return " and ".join(f"the {_ORDINALS[k]}" for k in answer["alternatives"]) or "neither"
     if "words" in answer:
         return " and ".join(answer["words"])
     return f"undecided: {answer['reason']}"

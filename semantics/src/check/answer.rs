@@ -17,6 +17,8 @@ pub enum Answer {
     Number(usize),
     /// Words: colours, the adjective of a substance.
     Words(Vec<String>),
+    /// The numbers of the clauses of [`Question::Alternatives`] that are true, from 0, ascending; may be empty.
+    Alternatives(Vec<usize>),
     /// No answer, with the reason.
     None(UndecidedReason),
 }
@@ -26,6 +28,23 @@ impl Checker<'_> {
     pub fn answer(&self, question: &Question) -> Answer {
         match question {
             Question::Whether(clause) => Answer::Truth(self.check(clause)),
+            Question::Alternatives(clauses) => {
+                let verdicts: Vec<Truth> =
+                    clauses.iter().map(|one| self.judge(one).truth).collect();
+                let fits = verdicts
+                    .iter()
+                    .enumerate()
+                    .filter(|(_, truth)| truth.is_true());
+                let fits: Vec<usize> = fits.map(|(k, _)| k).collect();
+                let undecided = verdicts.iter().find_map(|truth| match truth {
+                    Truth::Undecided(reason) => Some(*reason),
+                    Truth::True | Truth::False => None,
+                });
+                match undecided {
+                    Some(reason) if fits.is_empty() => Answer::None(reason),
+                    _ => Answer::Alternatives(fits),
+                }
+            }
             Question::HowMany(what) => {
                 let extension = self.extension(what);
                 let undecided = extension.undecided.first().map(|(_, reason)| *reason);
@@ -94,7 +113,7 @@ impl Answer {
         match self {
             Self::None(_) => false,
             Self::Truth(verdict) => !matches!(verdict.truth, Truth::Undecided(_)),
-            Self::Things(_) | Self::Number(_) | Self::Words(_) => true,
+            Self::Things(_) | Self::Number(_) | Self::Words(_) | Self::Alternatives(_) => true,
         }
     }
 }

@@ -53,10 +53,29 @@ impl Checker<'_> {
                 Truth::Undecided(reason) => found.undecided.push((term, reason)),
             }
         }
+        if matches!(description.noun, Noun::SameNoun | Noun::SameThings) {
+            found.fault = Some(UndecidedReason::NoAntecedent);
+        }
         if let Some(selection) = &description.selection {
             return self.selected(selection, &found.fits);
         }
         found
+    }
+
+    /// The comparison of the numbers of two kinds of things; undecided where those that are undecided could turn it.
+    pub(super) fn has_more(&self, more: &Description, than: &Description) -> Judged {
+        let (more, than) = (self.extension(more), self.extension(than));
+        if let Some(reason) = more.fault.or(than.fault) {
+            return Judged::undecided(reason);
+        }
+        let undecided = more.undecided.iter().chain(&than.undecided);
+        let least = more.fits.len() > than.fits.len() + than.undecided.len();
+        let most = more.fits.len() + more.undecided.len() > than.fits.len();
+        let reason = undecided.map(|(_, reason)| *reason).next();
+        match reason {
+            Some(reason) if least != most => Judged::undecided(reason),
+            _ => Judged::plain(Truth::from(least)),
+        }
     }
 
     /// The things that a noun can name.
@@ -71,6 +90,8 @@ impl Checker<'_> {
                 let own = pieces.filter(|(_, piece)| structure_noun(piece.kind) == Some(noun));
                 own.map(|(id, _)| Term::Structure(id)).collect()
             }
+            // Antecedents stand in their places where there are any.
+            Noun::SameNoun | Noun::SameThings => Vec::new(),
             Noun::Storey => self.scene.house().levels.ids().map(Term::Storey).collect(),
             Noun::Room(noun) => {
                 let rooms = self.scene.house().rooms.ids();

@@ -8,6 +8,7 @@
 //! truth-value gaps, and free logic", Journal of Philosophy 63(17), 481 (1966), for those that several things fit; J. Barwise and
 //! R. Cooper, "Generalized quantifiers and natural language", Linguistics and Philosophy 4, 159 (1981), for quantifiers.
 
+mod ambiguity;
 mod answer;
 mod description;
 mod quantify;
@@ -15,6 +16,7 @@ mod room;
 mod text;
 mod witness;
 
+pub use ambiguity::Ambiguity;
 pub use answer::Answer;
 pub(crate) use room::spoken_area_m2;
 pub use text::{CheckedText, GroundedPhrase};
@@ -97,7 +99,7 @@ impl<'a> Checker<'a> {
         match form {
             Form::Claim(clause) => Some(self.check(clause)),
             Form::NounPhrase(phrase) => Some(self.check(&Clause::Exists(phrase.clone()))),
-            Form::Request(_) | Form::Question(_) => None,
+            Form::Request(_) | Form::Question(_) | Form::Several(_) => None,
         }
     }
 
@@ -131,6 +133,7 @@ impl<'a> Checker<'a> {
                 let body = |terms: &[Term]| Judged::fact("exists", terms, Truth::True);
                 self.quantify(std::slice::from_ref(what), &mut Vec::new(), &body)
             }
+            Clause::More { more, than } => self.has_more(more, than),
             Clause::Area {
                 room,
                 square_metres,

@@ -43,17 +43,24 @@ impl Checker<'_> {
             .forms
             .into_iter();
         let form = readings.next().ok_or(ReadError::Empty)?;
-        let answer = match &form {
-            Form::Claim(clause) => Some(Answer::Truth(self.check(clause))),
-            Form::Question(question) => Some(self.answer(question)),
-            Form::NounPhrase(phrase) => Some(Answer::Things(self.denoted(phrase))),
-            Form::Request(_) => None,
-        };
+        let answer = self.answer_form(&form);
         Ok(CheckedText {
             form,
             others: readings.collect(),
             answer,
         })
+    }
+
+    /// The verdict on a claim, the answer to a question, or the things of a noun phrase. Of several forms the answer to the last one
+    /// that has one; `None` for requests.
+    fn answer_form(&self, form: &Form) -> Option<Answer> {
+        match form {
+            Form::Claim(clause) => Some(Answer::Truth(self.check(clause))),
+            Form::Question(question) => Some(self.answer(question)),
+            Form::NounPhrase(phrase) => Some(Answer::Things(self.denoted(phrase))),
+            Form::Request(_) => None,
+            Form::Several(forms) => forms.iter().rev().find_map(|form| self.answer_form(form)),
+        }
     }
 
     /// Grounds the noun phrases of a text: finds the things that each denotes in the scene. Of a landmark ("a lamp on a table")

@@ -1,6 +1,8 @@
 //! Pronouns and their antecedents.
 
-use super::{Clause, Form, Modifier, Phrase, Question, Request, RequestStep};
+use super::visit::{Role, visit_clause, visit_form, visit_step};
+use super::{Clause, Description, Form, Noun, Phrase, Quality, Quantifier, Question, RequestStep};
+use crate::category::categories;
 
 impl Form {
     /// The phrase that "it" in the next sentence stands for: the subject of a claim, where that is one thing. `None` where a
@@ -13,8 +15,13 @@ impl Form {
             Clause::Holds { arguments, .. } => arguments.first()?,
             Clause::Is { subject, .. } => subject,
             Clause::Area { room, .. } | Clause::HasSurfaces { room, .. } => room,
-            Clause::Exists(what) => Self::shared_landmark(what)?,
-            Clause::Not(_) | Clause::All(_) | Clause::Any(_) => return None,
+            // "There is a chair in the hall. It is red." A list has no one thing but its place: "On the table there is a cup and a
+            // plate. It is wooden."
+            Clause::Exists(what) => match what {
+                Phrase::Described(own) if own.quantifier == Quantifier::Some => return Some(what),
+                what => Self::shared_landmark(what)?,
+            },
+            Clause::More { .. } | Clause::Not(_) | Clause::All(_) | Clause::Any(_) => return None,
         };
         is_singular(subject).then_some(subject)
     }
@@ -34,210 +41,326 @@ impl Form {
         shared.then_some(first)
     }
 
-    /// Returns the same form with `antecedent` in place of every pronoun; `None` where there is a pronoun and no antecedent.
-    pub fn with_antecedent(&self, antecedent: Option<&Phrase>) -> Option<Self> {
-        let mut form = self.clone();
-        let mut replace = |phrase: &mut Phrase| match (&*phrase, antecedent) {
-            (Phrase::Pronoun, Some(antecedent)) => {
-                *phrase = antecedent.clone();
-                true
+    /// Returns the forms that this one may mean after the sentence `before`, the preferred one first: with what was named before in
+    /// place of pronouns, of "one" and of "them". Those for which nothing was named stay.
+    ///
+    /// "It" stands for the subject of `before`, or for a thing that an earlier clause or step of the same sentence is about: the
+    /// last one that the verb suits, by the table of categories. "One" has the noun of the last thing in the same role: a landmark after a
+    /// landmark, else a subject or object.
+    pub fn readings_after(&self, before: Option<&Self>) -> Vec<Self> {
+        let mut forms = Vec::new();
+        let mut open = vec![Vec::new()];
+        while let Some(choices) = open.pop() {
+            let mut form = self.clone();
+            let mut resolver = Resolver::after(before, choices);
+            resolver.form(&mut form);
+            if !forms.contains(&form) {
+                forms.push(form);
             }
-            (Phrase::Pronoun, None) => false,
-            _ => true,
-        };
-        visit_form(&mut form, &mut replace).then_some(form)
+            // Every other candidate for each pronoun that has not been varied yet.
+            let first = resolver.choices.len();
+            for (at, count) in resolver.counts.iter().enumerate().skip(first) {
+                for other in 1..*count {
+                    let mut varied = resolver.choices.clone();
+                    varied.resize(at, 0);
+                    varied.push(other);
+                    open.insert(0, varied);
+                }
+            }
+            if forms.len() >= MAX_MEANINGS {
+                break;
+            }
+        }
+        forms
     }
 
-    /// Returns the forms that a request may mean whose later steps say "it": that stands for a thing that a step before is about, the
-    /// last one first. Other forms mean themselves.
-    pub fn with_own_antecedents(&self) -> Vec<Self> {
-        match self {
-            Self::Request(Request::Sequence(steps)) => {
-                let plans = bound_steps(steps).into_iter();
-                plans
-                    .map(|steps| Self::Request(Request::Sequence(steps)))
-                    .collect()
+    /// Returns whether nothing in the form stands for what was named before.
+    pub fn is_complete(&self) -> bool {
+        let mut complete = true;
+        visit_form(&mut self.clone(), &mut |phrase, _| {
+            complete &= match phrase {
+                Phrase::Pronoun => false,
+                Phrase::Described(own) => !matches!(own.noun, Noun::SameNoun | Noun::SameThings),
+                _ => true,
             }
-            Self::Request(Request::If(clause, step)) => {
-                let subject = Self::Claim(clause.clone());
-                let subject = subject.subject().or(existing(clause));
-                let steps = with_antecedents(step, subject.into_iter());
-                let steps = steps.into_iter();
-                steps
-                    .map(|step| Self::Request(Request::If(clause.clone(), step)))
-                    .collect()
-            }
-            other => vec![other.clone()],
-        }
+        });
+        complete
     }
 
     /// Returns the same form with "it" in place of `antecedent`, where that stands as subject or landmark.
     #[must_use]
     pub fn with_pronoun(&self, antecedent: &Phrase) -> Self {
         let mut form = self.clone();
-        let mut replace = |phrase: &mut Phrase| {
+        visit_form(&mut form, &mut |phrase, _| {
             if phrase == antecedent {
                 *phrase = Phrase::Pronoun;
             }
-            true
-        };
-        visit_form(&mut form, &mut replace);
+        });
         form
     }
 }
 
-/// The thing that a clause says to exist.
-fn existing(clause: &Clause) -> Option<&Phrase> {
-    match clause {
-        Clause::Exists(what @ Phrase::Described(_)) => Some(what),
-        _ => None,
-    }
-}
-
-/// The things that a step is about, the last one first; a thing and no pronoun.
-fn things_of(step: &RequestStep) -> Vec<&Phrase> {
-    let all = match step {
-        RequestStep::GoTo(_) => Vec::new(),
-        RequestStep::Do { object, .. } | RequestStep::DoNot { object, .. } => vec![object],
-        RequestStep::Put { object, to, .. } | RequestStep::Bring { object, to } => vec![object, to],
-    };
-    let things = all.into_iter().filter(|phrase| **phrase != Phrase::Pronoun);
-    things.collect()
-}
-
-/// The step with each of the antecedents in place of its pronouns; itself where it has none or there is no antecedent.
-fn with_antecedents<'a>(
-    step: &RequestStep,
-    antecedents: impl Iterator<Item = &'a Phrase>,
-) -> Vec<RequestStep> {
-    let mut found = Vec::new();
-    for antecedent in antecedents {
-        let mut bound = step.clone();
-        visit_step(&mut bound, &mut |phrase| {
-            if *phrase == Phrase::Pronoun {
-                *phrase = antecedent.clone();
-            }
-            true
-        });
-        if bound == *step {
-            break;
-        }
-        found.push(bound);
-    }
-    if found.is_empty() {
-        found.push(step.clone());
-    }
-    found
-}
-
-/// Largest number of meanings of a request that are kept.
+/// Largest number of meanings of a sentence that are kept.
 const MAX_MEANINGS: usize = 8;
 
-fn bound_steps(steps: &[RequestStep]) -> Vec<Vec<RequestStep>> {
-    let mut plans: Vec<Vec<RequestStep>> = vec![Vec::new()];
-    for step in steps {
-        let mut longer = Vec::new();
-        for plan in &plans {
-            let things = plan
-                .iter()
-                .rev()
-                .map(things_of)
-                .find(|things| !things.is_empty());
-            for bound in with_antecedents(step, things.into_iter().flatten()) {
-                let mut next = plan.clone();
-                next.push(bound);
-                longer.push(next);
+/// A thing that was named.
+struct Mention {
+    phrase: Phrase,
+    role: Role,
+    /// The clause or step that named it.
+    unit: usize,
+    /// Whether another phrase contains it.
+    nested: bool,
+}
+
+/// Puts antecedents in place of what stands for them, clause by clause and step by step.
+struct Resolver {
+    mentions: Vec<Mention>,
+    /// The only thing that "it" stands for in the first clause.
+    subject: Option<Phrase>,
+    unit: usize,
+    /// The number of the candidate to take for each pronoun; the first one beyond its end.
+    choices: Vec<usize>,
+    /// The number of candidates of each pronoun.
+    counts: Vec<usize>,
+}
+
+impl Resolver {
+    fn after(before: Option<&Form>, choices: Vec<usize>) -> Self {
+        let mut resolver = Self {
+            mentions: Vec::new(),
+            subject: before.and_then(Form::subject).cloned(),
+            unit: 0,
+            choices,
+            counts: Vec::new(),
+        };
+        if let Some(before) = before {
+            visit_form(&mut before.clone(), &mut |phrase, role| {
+                resolver.mention(phrase, role, false);
+            });
+            // After a claim "it" is its subject or nothing.
+            resolver.unit = usize::from(!matches!(before, Form::Claim(_)));
+        }
+        resolver
+    }
+
+    fn mention(&mut self, phrase: &Phrase, role: Role, nested: bool) {
+        if matches!(phrase, Phrase::Described(_) | Phrase::Id(_)) {
+            self.mentions.push(Mention {
+                phrase: phrase.clone(),
+                role,
+                unit: self.unit,
+                nested,
+            });
+        }
+    }
+
+    fn form(&mut self, form: &mut Form) {
+        match form {
+            Form::Claim(clause) => self.clause(clause),
+            Form::Request(steps) => steps.iter_mut().for_each(|step| self.step(step)),
+            Form::Question(Question::Whether(clause)) => self.clause(clause),
+            Form::Question(Question::Alternatives(clauses)) => {
+                clauses.iter_mut().for_each(|clause| self.clause(clause));
+            }
+            Form::Several(forms) => forms.iter_mut().for_each(|form| self.form(form)),
+            Form::Question(_) | Form::NounPhrase(_) => {
+                self.unit(None, |visit| visit_form(form, visit));
             }
         }
-        longer.truncate(MAX_MEANINGS);
-        plans = longer;
     }
-    plans
+
+    fn clause(&mut self, clause: &mut Clause) {
+        match clause {
+            Clause::All(clauses) | Clause::Any(clauses) => {
+                clauses.iter_mut().for_each(|clause| self.clause(clause));
+            }
+            Clause::Not(inner) => self.clause(inner),
+            one => {
+                let verb = match &*one {
+                    Clause::Is {
+                        quality: Quality::State(state),
+                        ..
+                    } => Some(state.clone()),
+                    _ => None,
+                };
+                self.unit(verb.as_deref(), |visit| visit_clause(one, visit));
+            }
+        }
+    }
+
+    fn step(&mut self, step: &mut RequestStep) {
+        let verb = match &*step {
+            RequestStep::Do { verb, .. } | RequestStep::DoNot { verb, .. } => Some(verb.clone()),
+            RequestStep::Put { .. } | RequestStep::Bring { .. } => Some("pick_up".to_owned()),
+            RequestStep::GoTo(_) | RequestStep::If { .. } => None,
+        };
+        let RequestStep::If {
+            condition,
+            then,
+            otherwise,
+        } = step
+        else {
+            self.unit(verb.as_deref(), |visit| visit_step(step, visit));
+            return;
+        };
+        // "Close the door if it is open": the door is named by the step.
+        let topic = topic_of(then);
+        let named = matches!(topic, Some(Phrase::Described(_) | Phrase::Id(_)));
+        if let Some(topic) = topic.filter(|_| named && self.mentions.is_empty()) {
+            let topic = topic.clone();
+            self.mention(&topic, Role::Topic, false);
+            self.unit += 1;
+        }
+        self.clause(condition);
+        self.step(then);
+        if let Some(otherwise) = otherwise {
+            self.step(otherwise);
+        }
+    }
+
+    /// Resolves what a clause or a step says of things before it.
+    fn unit(&mut self, verb: Option<&str>, visit: impl FnOnce(&mut dyn FnMut(&mut Phrase, Role))) {
+        let mut depth = 0;
+        visit(&mut |phrase, role| {
+            // The first phrase of a role is no part of another; which later ones are does not matter.
+            let nested = depth > 0 && role == Role::Landmark;
+            depth += 1;
+            self.resolve(phrase, role, verb);
+            self.mention(phrase, role, nested);
+        });
+        self.unit += 1;
+        self.subject = None;
+    }
+
+    fn resolve(&mut self, phrase: &mut Phrase, role: Role, verb: Option<&str>) {
+        match phrase {
+            Phrase::Pronoun => {
+                let candidates = self.candidates(verb);
+                let choice = self.choices.get(self.counts.len()).copied().unwrap_or(0);
+                self.counts.push(candidates.len());
+                if let Some(found) = candidates.into_iter().nth(choice) {
+                    *phrase = found;
+                }
+            }
+            Phrase::Described(own) if own.noun == Noun::SameNoun => {
+                if let Some(noun) = self.noun_in_role(role) {
+                    own.noun = noun;
+                }
+            }
+            Phrase::Described(own) if own.noun == Noun::SameThings => {
+                let same = self
+                    .mentions
+                    .iter()
+                    .rev()
+                    .find_map(|mention| match &mention.phrase {
+                        Phrase::Described(named) if mention.role == Role::Topic => Some(named),
+                        _ => None,
+                    });
+                if let Some(named) = same {
+                    let (quantifier, selection) = (own.quantifier, own.selection.take());
+                    **own = Description::clone(named).with_quantifier(quantifier);
+                    if selection.is_some() {
+                        own.selection = selection;
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// The noun of the last object in a role, else of the last one.
+    fn noun_in_role(&self, role: Role) -> Option<Noun> {
+        let noun = |mention: &Mention| match &mention.phrase {
+            Phrase::Described(own) if matches!(own.noun, Noun::Object(_)) => Some(own.noun.clone()),
+            _ => None,
+        };
+        let mentions = || self.mentions.iter().rev();
+        let same = mentions()
+            .filter(|mention| mention.role == role)
+            .find_map(noun);
+        same.or_else(|| mentions().find_map(noun))
+    }
+
+    /// The things that "it" may stand for, the preferred one first.
+    fn candidates(&self, verb: Option<&str>) -> Vec<Phrase> {
+        if let Some(subject) = &self.subject {
+            return vec![subject.clone()];
+        }
+        let earlier = self
+            .mentions
+            .iter()
+            .filter(|mention| mention.unit < self.unit);
+        let mut earlier: Vec<&Mention> = earlier.collect();
+        // The last step first; of one step what it is about before its landmarks.
+        earlier.sort_by_key(|mention| {
+            let suits = verb.is_none_or(|verb| suits(verb, &mention.phrase));
+            let landmark = mention.role == Role::Landmark;
+            (!suits, mention.nested, usize::MAX - mention.unit, landmark)
+        });
+        let mut phrases: Vec<Phrase> = Vec::new();
+        for mention in earlier {
+            let is_room = matches!(
+                &mention.phrase,
+                Phrase::Described(own) if matches!(own.noun, Noun::Room(_))
+            );
+            // "The hood is above it": not above itself.
+            let mut own = self.mentions.iter();
+            let is_own = own.any(|own| own.unit == self.unit && own.phrase == mention.phrase);
+            if !is_room && !is_own && !phrases.contains(&mention.phrase) {
+                phrases.push(mention.phrase.clone());
+            }
+        }
+        if phrases.is_empty() {
+            // "The cup is larger than the tray that supports it": a thing of the same clause, not the one described.
+            let own = self
+                .mentions
+                .iter()
+                .filter(|mention| mention.unit == self.unit && mention.role == Role::Topic);
+            let own: Vec<&Mention> = own.collect();
+            if let [first, .., _] = own[..] {
+                phrases.push(first.phrase.clone());
+            }
+        }
+        phrases
+    }
+}
+
+/// The thing that a step is about.
+fn topic_of(step: &RequestStep) -> Option<&Phrase> {
+    match step {
+        RequestStep::GoTo(_) => None,
+        RequestStep::Do { object, .. }
+        | RequestStep::DoNot { object, .. }
+        | RequestStep::Put { object, .. }
+        | RequestStep::Bring { object, .. } => Some(object),
+        RequestStep::If { then, .. } => topic_of(then),
+    }
+}
+
+/// Returns whether things of a noun are acted on by a verb, as far as the table of categories knows.
+fn suits(verb: &str, phrase: &Phrase) -> bool {
+    let Phrase::Described(own) = phrase else {
+        return true;
+    };
+    let Noun::Object(noun) = &own.noun else {
+        return false;
+    };
+    let mut rows = categories().rows().iter();
+    let named = rows.find(|row| row.singular == noun || row.synonyms.contains(&noun.as_str()));
+    named.is_none_or(|row| match verb {
+        "open" | "close" | "closed" | "half_open" => row.openable,
+        "switch_on" | "switch_off" | "switched_on" | "switched_off" => row.switchable,
+        "pick_up" | "drop" | "bring_me" => row.movable,
+        "empty" | "full" => row.contains || row.supports,
+        _ => true,
+    })
 }
 
 fn is_singular(phrase: &Phrase) -> bool {
-    use super::Quantifier;
     match phrase {
         Phrase::Described(description) => description.quantifier == Quantifier::The,
         Phrase::Id(_) => true,
         _ => false,
-    }
-}
-
-/// Calls `visit` for every phrase, the outer before the inner; false as soon as a call returns that.
-type Visit<'a> = &'a mut dyn FnMut(&mut Phrase) -> bool;
-
-fn visit_form(form: &mut Form, visit: Visit<'_>) -> bool {
-    match form {
-        Form::Claim(clause) => visit_clause(clause, visit),
-        Form::Request(Request::Sequence(steps)) => {
-            steps.iter_mut().all(|step| visit_step(step, visit))
-        }
-        Form::Request(Request::If(clause, step)) => {
-            visit_clause(clause, visit) && visit_step(step, visit)
-        }
-        Form::Question(question) => match question {
-            Question::Whether(clause) => visit_clause(clause, visit),
-            Question::Which { kind, clause } => {
-                let mut kinds = kind.iter_mut();
-                kinds.all(|kind| visit_modifiers(&mut kind.modifiers, visit))
-                    && visit_clause(clause, visit)
-            }
-            Question::HowMany(what) => visit_modifiers(&mut what.modifiers, visit),
-            Question::Attribute { of, .. } => visit_phrase(of, visit),
-        },
-        Form::NounPhrase(phrase) => visit_phrase(phrase, visit),
-    }
-}
-
-fn visit_clause(clause: &mut Clause, visit: Visit<'_>) -> bool {
-    match clause {
-        Clause::Holds { arguments, .. } => arguments
-            .iter_mut()
-            .all(|phrase| visit_phrase(phrase, visit)),
-        Clause::Is { subject, .. } => visit_phrase(subject, visit),
-        Clause::Exists(what) => visit_phrase(what, visit),
-        Clause::Area { room, .. } | Clause::HasSurfaces { room, .. } => visit_phrase(room, visit),
-        Clause::Not(inner) => visit_clause(inner, visit),
-        Clause::All(clauses) | Clause::Any(clauses) => {
-            clauses.iter_mut().all(|clause| visit_clause(clause, visit))
-        }
-    }
-}
-
-fn visit_step(step: &mut RequestStep, visit: Visit<'_>) -> bool {
-    match step {
-        RequestStep::GoTo(phrase)
-        | RequestStep::Do { object: phrase, .. }
-        | RequestStep::DoNot { object: phrase, .. } => visit_phrase(phrase, visit),
-        RequestStep::Put { object, to, .. } | RequestStep::Bring { object, to } => {
-            visit_phrase(object, visit) && visit_phrase(to, visit)
-        }
-    }
-}
-
-fn visit_modifiers(modifiers: &mut [Modifier], visit: Visit<'_>) -> bool {
-    let mut phrases = modifiers
-        .iter_mut()
-        .flat_map(|modifier| &mut modifier.arguments);
-    phrases.all(|phrase| visit_phrase(phrase, visit))
-}
-
-fn visit_phrase(phrase: &mut Phrase, visit: Visit<'_>) -> bool {
-    if !visit(phrase) {
-        return false;
-    }
-    match phrase {
-        Phrase::Described(description) => {
-            let reference = description.selection.as_mut();
-            let reference = reference.and_then(|selection| selection.reference.as_deref_mut());
-            let mut reference = reference.into_iter();
-            reference.all(|phrase| visit_phrase(phrase, visit))
-                && visit_modifiers(&mut description.modifiers, visit)
-        }
-        Phrase::List(items) => items.iter_mut().all(|item| visit_phrase(item, visit)),
-        Phrase::Id(_) | Phrase::Listener | Phrase::Storey(_) | Phrase::Hole | Phrase::Pronoun => {
-            true
-        }
     }
 }

@@ -1,6 +1,6 @@
 //! Clauses: forms that are true or false of a scene.
 
-use super::phrase::Phrase;
+use super::phrase::{Description, Phrase};
 use crate::size::SizeClass;
 use serde::{Deserialize, Serialize};
 
@@ -59,6 +59,13 @@ pub enum Clause {
     },
     /// The existence of things: "there are two chairs in the kitchen".
     Exists(Phrase),
+    /// A greater number of one kind of things than of another, whatever their quantifiers: "there are more chairs than tables".
+    More {
+        /// The things of which there are more.
+        more: Box<Description>,
+        /// The things of which there are fewer.
+        than: Box<Description>,
+    },
     /// A room's floor area, rounded to whole square metres and at least 1: "the kitchen is about 12 square metres".
     Area {
         /// The room.

@@ -8,11 +8,12 @@ mod clause;
 mod phrase;
 mod question;
 mod request;
+mod visit;
 
 pub use clause::{Clause, Quality, RoomSurface, RoomSurfaceKind};
 pub use phrase::{Description, Modifier, Noun, Phrase, PlaceInOrder, Quantifier};
 pub use question::{AttributeKind, Question};
-pub use request::{Request, RequestStep};
+pub use request::RequestStep;
 
 use serde::{Deserialize, Serialize};
 
@@ -22,10 +23,12 @@ use serde::{Deserialize, Serialize};
 pub enum Form {
     /// A clause that is asserted.
     Claim(Clause),
-    /// A plan to carry out.
-    Request(Request),
+    /// Steps to carry out one after the other.
+    Request(Vec<RequestStep>),
     /// A question to answer.
     Question(Question),
     /// A noun phrase on its own: a caption or a referring expression. True of a scene that has what it describes.
     NounPhrase(Phrase),
+    /// Several forms in one sentence: "find the lamp and tell me whether it is on".
+    Several(Vec<Form>),
 }

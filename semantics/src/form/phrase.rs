@@ -33,6 +33,10 @@ pub enum Noun {
     Structure(String),
     /// A storey.
     Storey,
+    /// The noun of a thing that was named before: "the red one". [`crate::form::Form::readings_after`] puts that in its place.
+    SameNoun,
+    /// All that was said of things that were named before: "both of them". As [`Self::SameNoun`].
+    SameThings,
 }
 
 impl Noun {
@@ -144,7 +148,7 @@ pub enum Phrase {
     Storey(u32),
     /// A list of which a clause holds one by one: "a table and two chairs".
     List(Vec<Phrase>),
-    /// "It": the subject of the sentence before. [`crate::form::Form::with_antecedent`] puts that in its place.
+    /// "It": a thing that was named before. [`crate::form::Form::readings_after`] puts that in its place.
     Pronoun,
     /// The open argument of a question.
     Hole,

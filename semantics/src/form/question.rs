@@ -24,6 +24,8 @@ pub enum AttributeKind {
 pub enum Question {
     /// A yes-no question: is the clause true? Answered by a truth value.
     Whether(Clause),
+    /// A question for those of several clauses that are true: "is the cup on the table or in the sink?" Answered by their numbers.
+    Alternatives(Vec<Clause>),
     /// A question for things that make the clause true in place of [`Phrase::Hole`]. Answered by ids.
     Which {
         /// A description of the candidates, whose quantifier is ignored; `None` for "what".

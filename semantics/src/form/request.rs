@@ -4,7 +4,7 @@ use super::clause::Clause;
 use super::phrase::Phrase;
 use serde::{Deserialize, Serialize};
 
-/// A step of a plan.
+/// A step of a request.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RequestStep {
@@ -40,14 +40,13 @@ pub enum RequestStep {
         /// The destination.
         to: Phrase,
     },
-}
-
-/// Steps in order, or a conditional step.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Request {
-    /// One after the other.
-    Sequence(Vec<RequestStep>),
-    /// A step to carry out if a clause is true at the time of the request.
-    If(Clause, RequestStep),
+    /// A step to carry out if a clause is true when its turn comes, and possibly another one if not.
+    If {
+        /// The condition.
+        condition: Clause,
+        /// The step if it is true.
+        then: Box<RequestStep>,
+        /// The step if it is not.
+        otherwise: Option<Box<RequestStep>>,
+    },
 }

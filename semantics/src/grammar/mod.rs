@@ -105,7 +105,11 @@ impl Grammar {
 
     /// Linearizes a tree: its text, with the spans of its parts; `None` if the grammar has no wording for it.
     pub fn linearize(&self, tree: &Tree, choose: ChooseWording<'_>) -> Option<(String, Vec<Span>)> {
-        let phrases = (self.start.iter()).find_map(|start| self.phrases(tree, *start, choose))?;
+        let own = self.productions.of_function.keys();
+        let own = own.filter(|(name, _)| tree.function() == Some(name.as_str()));
+        let own = own.map(|(_, category)| category);
+        let phrases = (self.start.iter().chain(own))
+            .find_map(|category| self.phrases(tree, *category, choose))?;
         Some(text::write(&phrases))
     }
 

@@ -26,24 +26,33 @@ fn distance(a: &str, b: &str) -> usize {
 }
 
 impl Grammar {
-    /// The known words nearest to `word`, the nearest first; at most `most`, none that differs in more than a third of its letters.
+    /// The known words nearest to `word`, the nearest first; at most `most`, none that differs in more than a third of its letters. Of
+    /// those equally near the ones that begin alike come first, and nouns and their like before words of rules.
     pub fn nearest_words(&self, word: &str, most: usize) -> Vec<String> {
         let length = word.chars().count();
         // Longer strings are not words.
         if length > 40 {
             return Vec::new();
         }
-        let known = self.words.iter().map(String::as_str);
-        let known = known.chain(self.lexicon.all_words());
-        let mut found: Vec<(usize, &str)> = known
-            .filter(|known| known.chars().count().abs_diff(length) <= length.div_ceil(3))
-            .map(|known| (distance(word, known), known))
-            .filter(|(distance, _)| *distance <= length.div_ceil(3))
+        let rules = self.words.iter().map(|known| (true, known.as_str()));
+        let known = rules.chain(self.lexicon.all_words().map(|known| (false, known)));
+        let mut found: Vec<(usize, usize, bool, &str)> = known
+            .filter(|(_, known)| known.chars().count().abs_diff(length) <= length.div_ceil(3))
+            .map(|(of_rule, known)| {
+                let pairs = word.chars().zip(known.chars());
+                let alike = pairs.take_while(|(a, b)| a == b).count();
+                (distance(word, known), usize::MAX - alike, of_rule, known)
+            })
+            .filter(|(distance, ..)| *distance <= length.div_ceil(3))
             .collect();
         found.sort_unstable();
-        found.dedup();
-        let found = found.into_iter().take(most);
-        found.map(|(_, word)| word.to_owned()).collect()
+        let mut words: Vec<String> = Vec::new();
+        for (.., word) in found {
+            if words.len() < most && !words.iter().any(|known| known == word) {
+                words.push(word.to_owned());
+            }
+        }
+        words
     }
 }
 

@@ -28,6 +28,14 @@ pub enum Tree {
 }
 
 impl Tree {
+    /// The function at the root; `None` for words and numbers.
+    pub fn function(&self) -> Option<&str> {
+        match self {
+            Self::Apply { function, .. } => Some(function),
+            Self::Entry { .. } | Self::Number { .. } => None,
+        }
+    }
+
     /// Returns a function applied to arguments.
     pub fn apply(function: &str, arguments: impl Into<Vec<Self>>) -> Self {
         Self::Apply {

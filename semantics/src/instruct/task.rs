@@ -3,7 +3,7 @@
 use super::{CHARSET, MAX_TEXT_LEN};
 use crate::check::{Checker, GroundedPhrase, Listener};
 use crate::error::SemanticsError;
-use crate::form::{Form, Request, RequestStep};
+use crate::form::{Form, RequestStep};
 use crate::language::{Language, PhraseSpan, Sentence};
 use crate::line_of_sight::is_in_line_of_sight;
 use crate::scene::{SemanticScene, Viewer};
@@ -102,7 +102,7 @@ impl Instruction {
         step: RequestStep,
         goal: InstructionGoal,
     ) -> Option<Self> {
-        let form = Form::Request(Request::Sequence(vec![step]));
+        let form = Form::Request(vec![step]);
         let Sentence { text, phrases } = say(language, &form, None)?;
         Some(Self {
             kind,

@@ -1,7 +1,8 @@
 //! Clauses of existence: "there is a chair", "on the table there are a cup and two plates", "on your left you see a lamp".
 
-use super::from_tree::{Parts, number, parts, phrase, place_of, room};
+use super::from_tree::{Parts, holds, number, parts, place_of, room};
 use super::lexicon::ROOM_NOUN;
+use super::phrases::phrase;
 use super::places;
 use super::to_tree::{Position, TreeBuilder, count};
 use crate::form::{Clause, Description, Modifier, Noun, Phrase, Quantifier};
@@ -232,6 +233,10 @@ fn added<'a>(function: &str, arguments: &'a [Tree]) -> Option<Added<'a>> {
             modifiers: vec![Modifier::new("in_room", [room(place)?])],
             items,
         },
+        ("see_from" | "whether_see_from", [place, items]) => Added {
+            modifiers: vec![Modifier::new("visible_from_room", [room(place)?])],
+            items,
+        },
         ("see" | "see_list" | "whether_seen", [items]) => Added {
             modifiers: vec![seen()],
             items,
@@ -244,7 +249,7 @@ fn added<'a>(function: &str, arguments: &'a [Tree]) -> Option<Added<'a>> {
     })
 }
 
-fn front_from_tree(tree: &Tree) -> Option<Vec<Modifier>> {
+pub(super) fn front_from_tree(tree: &Tree) -> Option<Vec<Modifier>> {
     Some(match parts(tree)? {
         ("front_place", [place]) => {
             let (predicate, place) = place_of(place)?;
@@ -268,10 +273,50 @@ pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Clause> {
     let Added { modifiers, items } = added(function, arguments)?;
     let mut found = Vec::new();
     collect(items, &modifiers, &mut found)?;
-    if found.len() == 1 {
-        return Some(Clause::Exists(found.remove(0)));
+    // "You can see the sofa from the kitchen" is about the sofa.
+    if let ([Phrase::Described(one)], [seen]) = (&found[..], &modifiers[..])
+        && seen.predicate == "visible_from_room"
+        && one.quantifier == Quantifier::The
+    {
+        let mut subject = Description::clone(one);
+        subject.modifiers.pop();
+        let mut arguments = vec![Phrase::from(subject)];
+        arguments.extend(seen.arguments.iter().cloned());
+        return Some(holds(&seen.predicate, arguments));
     }
-    Some(Clause::Exists(Phrase::List(found)))
+    // "Two mats, a gray one and an orange one": the first is the sum of the others.
+    if found.len() > 2 && is_several(&found[0]) && found[1..].iter().all(is_same_noun) {
+        let whole = Clause::Exists(found.remove(0));
+        let each = found.into_iter().map(Clause::Exists);
+        return Some(Clause::All(std::iter::once(whole).chain(each).collect()));
+    }
+    Some(Clause::Exists(one_or_list(found)))
+}
+
+fn one_or_list(mut items: Vec<Phrase>) -> Phrase {
+    match items.len() {
+        1 => items.remove(0),
+        _ => Phrase::List(items),
+    }
+}
+
+fn is_several(phrase: &Phrase) -> bool {
+    matches!(
+        phrase,
+        Phrase::Described(own)
+            if matches!(own.quantifier, Quantifier::Exactly(2..) | Quantifier::AtLeast(2..))
+    )
+}
+
+fn is_same_noun(phrase: &Phrase) -> bool {
+    matches!(phrase, Phrase::Described(own) if own.noun == Noun::SameNoun)
+}
+
+/// The phrase of an item or of a list of items.
+pub(super) fn items_from_tree(items: &Tree) -> Option<Phrase> {
+    let mut found = Vec::new();
+    collect(items, &[], &mut found)?;
+    Some(one_or_list(found))
 }
 
 fn collect(items: &Tree, modifiers: &[Modifier], into: &mut Vec<Phrase>) -> Option<()> {

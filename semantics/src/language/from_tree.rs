@@ -1,12 +1,11 @@
 //! Trees to forms: the meanings of the grammar's functions.
 
-use super::{existence, places, questions, rooms, several};
+use super::phrases::{described, phrase, relation_to, size};
+use super::{existence, numbers, places, questions, requests, rooms, several};
 use crate::form::{
     Clause, Description, Form, Modifier, Noun, Phrase, PlaceInOrder, Quality, Quantifier, Question,
-    Request, RequestStep,
 };
 use crate::grammar::Tree;
-use crate::size::SizeClass;
 use std::collections::BTreeMap;
 
 /// The function of a tree with its arguments.
@@ -41,9 +40,18 @@ pub(super) fn number(tree: &Tree) -> Option<u32> {
 pub(super) fn form(tree: &Tree) -> Option<Form> {
     Some(match parts(tree)? {
         ("claim", [inner]) => Form::Claim(clause(inner)?),
-        ("request", [inner]) => Form::Request(plan(inner)?),
+        ("request", [inner]) => Form::Request(requests::plan(inner)?),
         ("ask", [inner]) => Form::Question(questions::question(inner)?),
-        ("ask_clause", [inner]) => Form::Question(Question::Whether(simple(inner)?)),
+        ("ask_that", [inner]) => Form::Question(Question::Whether(clause(inner)?)),
+        ("ask_indirect", [inner]) => Form::Question(questions::indirect(inner)?),
+        ("request_ask", [first, inner]) => Form::Several(vec![
+            Form::Request(requests::plan(first)?),
+            Form::Question(questions::indirect(inner)?),
+        ]),
+        ("several_questions", [first, second]) => Form::Several(vec![
+            Form::Question(questions::question(first)?),
+            Form::Question(questions::question(second)?),
+        ]),
         ("phrase", [inner]) => Form::NounPhrase(phrase(inner)?),
         ("phrase_room", [inner]) => Form::NounPhrase(room(inner)?),
         _ => return None,
@@ -78,7 +86,7 @@ pub(super) fn holds(predicate: &str, arguments: Vec<Phrase>) -> Clause {
     }
 }
 
-fn simple(tree: &Tree) -> Option<Clause> {
+pub(super) fn simple(tree: &Tree) -> Option<Clause> {
     let (function, arguments) = parts(tree)?;
     if let Some(plain) = function.strip_suffix("_not") {
         let inner = affirmed(plain, arguments)?;
@@ -90,7 +98,16 @@ fn simple(tree: &Tree) -> Option<Clause> {
 pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
     Some(match (function, arguments) {
         ("holds" | "holds_verb" | "whether_holds" | "whether_verb", [subject, word, object]) => {
-            holds(&id(word)?, vec![phrase(subject)?, phrase(object)?])
+            let (subject, object) = (phrase(subject)?, phrase(object)?);
+            let predicate = relation_to(id(word)?, &subject, &object);
+            holds(&predicate, vec![subject, object])
+        }
+        ("holds_closer" | "whether_closer", [subject, near, far]) => holds(
+            "closer_to",
+            vec![phrase(subject)?, phrase(near)?, phrase(far)?],
+        ),
+        ("see_room_from" | "whether_see_room_from", [from, to]) => {
+            holds("visible_from_room", vec![room(to)?, room(from)?])
         }
         ("holds_between" | "whether_between", [subject, a, b]) => {
             holds("between", vec![phrase(subject)?, phrase(a)?, phrase(b)?])
@@ -99,10 +116,7 @@ pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
             let (predicate, place) = place_of(place)?;
             holds(&predicate, vec![phrase(subject)?, place])
         }
-        ("is" | "whether_is", [subject, quality]) => Clause::Is {
-            subject: phrase(subject)?,
-            quality: quality_of(quality)?,
-        },
+        ("is" | "whether_is", [subject, quality]) => is(phrase(subject)?, quality)?,
         ("vps" | "whether_vps", [subject, rest]) => several::clause(phrase(subject)?, rest)?,
         ("exists_vps", [subject, rest]) => several::existing(phrase(subject)?, rest)?,
         ("holds_converse" | "whether_converse", [subject, word, object]) => {
@@ -116,12 +130,78 @@ pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
             holds("hangs_on", vec![phrase(subject)?, phrase(mount)?])
         }
         ("holds_verb_list", [subject, word, items]) => {
-            let Clause::Exists(items) =
-                existence::from_tree("exists_list", std::slice::from_ref(items))?
-            else {
+            let items = existence::items_from_tree(items)?;
+            let subject = phrase(subject)?;
+            let predicate = relation_to(id(word)?, &subject, &items);
+            holds(&predicate, vec![subject, items])
+        }
+        (
+            "holds_carries" | "holds_carries_list" | "holds_content" | "holds_content_list"
+            | "whether_carries" | "whether_content",
+            [subject, items],
+        ) => {
+            let inside = function.contains("content");
+            let predicate = if inside { "contains" } else { "supports" };
+            holds(
+                predicate,
+                vec![phrase(subject)?, existence::items_from_tree(items)?],
+            )
+        }
+        ("fronted", [front, inner]) => fronted(existence::front_from_tree(front)?, simple(inner)?)?,
+        ("holds_is_a" | "whether_is_a", [subject, noun]) => {
+            holds("identical", vec![phrase(subject)?, described(noun)?.into()])
+        }
+        ("exists_all", [items, quality]) => {
+            let all = Description::new(Quantifier::Every, Noun::SameThings);
+            Clause::All(vec![
+                Clause::Exists(existence::items_from_tree(items)?),
+                is(all.into(), quality)?,
+            ])
+        }
+        ("not_but", [subject, quality, other]) => {
+            let subject = phrase(subject)?;
+            Clause::All(vec![
+                Clause::Not(Box::new(is(subject.clone(), quality)?)),
+                is(subject, other)?,
+            ])
+        }
+        ("with_around", [subject, said, other, relation]) => {
+            let (subject, other) = (phrase(subject)?, phrase(other)?);
+            let said = several::said(said)?;
+            Clause::All(vec![
+                several::clause_of(subject.clone(), (said, false)),
+                holds(&id(relation)?, vec![other, subject]),
+            ])
+        }
+        ("see_none", [items]) => {
+            let Phrase::Described(own) = existence::items_from_tree(items)? else {
                 return None;
             };
-            holds(&id(word)?, vec![phrase(subject)?, items])
+            let seen = own.with_modifier(Modifier::new("visible", []));
+            Clause::Not(Box::new(Clause::Exists(seen.into())))
+        }
+        ("whether_vp", [subject, said]) => {
+            several::clause_of(phrase(subject)?, (several::said(said)?, false))
+        }
+        ("more_where" | "whether_more_where", [what, one, other]) => {
+            numbers::more_where(what, one, other)?
+        }
+        ("as_many" | "whether_as_many", [one, other]) => numbers::as_many(one, other)?,
+        ("so_is", [one, quality, other]) => Clause::All(vec![
+            is(phrase(one)?, quality)?,
+            is(phrase(other)?, quality)?,
+        ]),
+        ("but_is", [one, quality, other]) => Clause::All(vec![
+            Clause::Not(Box::new(is(phrase(one)?, quality)?)),
+            is(phrase(other)?, quality)?,
+        ]),
+        ("more" | "whether_more", [more, than]) => numbers::more(more, than)?,
+        ("has_more" | "whether_has_more", [one, what, other]) => {
+            numbers::has_more(one, what, other)?
+        }
+        ("same_color_all" | "whether_same_color_all", [noun]) => {
+            let all: Phrase = described(noun)?.with_quantifier(Quantifier::Every).into();
+            holds("same_color", vec![all.clone(), all])
         }
         ("same_color" | "whether_same_color", [a, b]) => {
             holds("same_color", vec![phrase(a)?, phrase(b)?])
@@ -155,8 +235,27 @@ pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
     })
 }
 
+fn is(subject: Phrase, quality: &Tree) -> Option<Clause> {
+    let quality = quality_of(quality)?;
+    Some(Clause::Is { subject, quality })
+}
+
+/// "On the table, a lamp is between two cups": the place belongs to the subject.
+fn fronted(modifiers: Vec<Modifier>, mut clause: Clause) -> Option<Clause> {
+    let subject = match &mut clause {
+        Clause::Holds { arguments, .. } => arguments.first_mut()?,
+        Clause::Is { subject, .. } => subject,
+        _ => return None,
+    };
+    let Phrase::Described(own) = subject else {
+        return None;
+    };
+    own.modifiers.extend(modifiers);
+    Some(clause)
+}
+
 /// The clause that a modifier ascribes to a subject.
-fn holds_of(subject: Phrase, modifier: Modifier) -> Clause {
+pub(super) fn holds_of(subject: Phrase, modifier: Modifier) -> Clause {
     let mut arguments = vec![subject];
     arguments.extend(modifier.arguments);
     holds(&modifier.predicate, arguments)
@@ -190,13 +289,6 @@ pub(super) fn quality_of(tree: &Tree) -> Option<Quality> {
     })
 }
 
-fn size(tree: &Tree) -> Option<SizeClass> {
-    let word = id(tree)?;
-    SizeClass::ALL
-        .into_iter()
-        .find(|size| size.word() == Some(&word))
-}
-
 pub(super) fn place_of(tree: &Tree) -> Option<(String, Phrase)> {
     let any_room = || {
         let noun = Noun::Room(Noun::ANY_ROOM.to_owned());
@@ -206,6 +298,10 @@ pub(super) fn place_of(tree: &Tree) -> Option<(String, Phrase)> {
     Some(match parts(tree)? {
         ("place", [room]) => of("in_room", self::room(room)?),
         ("place_spot", [spot, room]) => (id(spot)?, self::room(room)?),
+        ("place_room_corner", [noun]) => {
+            let room = Description::new(Quantifier::The, Noun::Room(id(noun)?));
+            of("in_corner_of", room.into())
+        }
         ("place_corner", []) => of("in_corner_of", any_room()),
         ("place_middle", []) => of("in_middle_of", any_room()),
         ("on_storey", [place]) => of("on_storey", Phrase::Storey(number(place)?)),
@@ -273,294 +369,4 @@ pub(super) fn noun_phrases(tree: &Tree) -> BTreeMap<Vec<usize>, Phrase> {
         }
     }
     found
-}
-
-pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
-    let (function, arguments) = parts(tree)?;
-    let of = |quantifier, noun: &Tree| -> Option<Phrase> {
-        Some(described(noun)?.with_quantifier(quantifier).into())
-    };
-    let selected =
-        |noun: &Tree, order: &Tree, place, reference: Option<Phrase>| -> Option<Phrase> {
-            let selection = PlaceInOrder {
-                order: id(order)?,
-                place,
-                reference: reference.map(Box::new),
-            };
-            let description = Description {
-                selection: Some(selection),
-                ..described(noun)?.with_quantifier(Quantifier::The)
-            };
-            Some(description.into())
-        };
-    let first_in = |noun: &Tree, order: &str| -> Option<Phrase> {
-        let selection = PlaceInOrder {
-            order: order.to_owned(),
-            place: 1,
-            reference: None,
-        };
-        let description = Description {
-            selection: Some(selection),
-            ..described(noun)?.with_quantifier(Quantifier::The)
-        };
-        Some(description.into())
-    };
-    let that = |quantifier, noun: &Tree, predicate: String, other: Phrase| -> Option<Phrase> {
-        let mut description = described(noun)?.with_quantifier(quantifier);
-        description.modifiers.push(Modifier {
-            negated: false,
-            predicate,
-            arguments: vec![other],
-        });
-        Some(description.into())
-    };
-    match (function, arguments) {
-        ("the" | "i_the", [noun]) => of(Quantifier::The, noun),
-        ("some" | "i_some", [noun]) => of(Quantifier::Some, noun),
-        ("every" | "i_every", [noun]) => of(Quantifier::Every, noun),
-        ("no", [noun]) => of(Quantifier::No, noun),
-        ("exactly_one", [noun]) => of(Quantifier::Exactly(1), noun),
-        ("exactly" | "i_exactly", [count, noun]) => of(Quantifier::Exactly(number(count)?), noun),
-        ("at_least_one", [noun]) => of(Quantifier::AtLeast(1), noun),
-        ("at_least", [count, noun]) => of(Quantifier::AtLeast(number(count)?), noun),
-        ("i_the_that" | "i_the_that_verb", [noun, relation, other]) => {
-            that(Quantifier::The, noun, id(relation)?, phrase(other)?)
-        }
-        ("i_some_that" | "i_some_that_verb", [noun, relation, other]) => {
-            that(Quantifier::Some, noun, id(relation)?, phrase(other)?)
-        }
-        ("i_the_that_place", [noun, place]) => {
-            let (predicate, place) = place_of(place)?;
-            that(Quantifier::The, noun, predicate, place)
-        }
-        ("i_some_that_place", [noun, place]) => {
-            let (predicate, place) = place_of(place)?;
-            that(Quantifier::Some, noun, predicate, place)
-        }
-        ("nth" | "i_nth", [place, noun, order]) => selected(noun, order, number(place)?, None),
-        ("superlative" | "i_superlative", [order, noun]) => selected(noun, order, 1, None),
-        ("selected_to", [noun, order, reference]) => {
-            selected(noun, order, 1, Some(phrase(reference)?))
-        }
-        ("by_id" | "i_by_id", [own]) => Some(Phrase::Id(number(own)?)),
-        ("you" | "i_you", []) => Some(Phrase::Listener),
-        ("it" | "i_it", []) => Some(Phrase::Pronoun),
-        ("structure_np" | "i_structure", [noun]) => {
-            let noun = Noun::Structure(id(noun)?);
-            Some(Description::new(Quantifier::Some, noun).into())
-        }
-        ("np_nothing" | "np_something", [inner]) => nothing(inner).map(Phrase::from),
-        ("at_least_two" | "i_at_least_two", [noun]) => of(Quantifier::AtLeast(2), noun),
-        ("i_something", []) => {
-            let noun = Noun::Object(Noun::ANY_OBJECT.to_owned());
-            Some(Description::new(Quantifier::Some, noun).into())
-        }
-        ("nth_left" | "i_nth_left", [noun]) => first_in(noun, "from_left"),
-        ("nth_right" | "i_nth_right", [noun]) => first_in(noun, "from_right"),
-        ("i_with", [noun, added]) => {
-            let noun = described(noun)?.with_quantifier(Quantifier::The);
-            Some(noun.with_modifier(modifier(added)?).into())
-        }
-        ("i_some_with", [noun, added]) => {
-            Some(described(noun)?.with_modifier(modifier(added)?).into())
-        }
-        _ => None,
-    }
-}
-
-fn nothing(tree: &Tree) -> Option<Description> {
-    match parts(tree)? {
-        ("nothing", []) => {
-            let noun = Noun::Object(Noun::ANY_OBJECT.to_owned());
-            Some(Description::new(Quantifier::No, noun))
-        }
-        ("something", []) => {
-            let noun = Noun::Object(Noun::ANY_OBJECT.to_owned());
-            Some(Description::new(Quantifier::Some, noun))
-        }
-        ("nothing_with" | "something_with", [inner, added]) => {
-            Some(nothing(inner)?.with_modifier(modifier(added)?))
-        }
-        _ => None,
-    }
-}
-
-/// Returns whether a noun names doors and archways, which lead from room to room.
-fn is_way(noun: &Noun) -> bool {
-    let ways = ["door", "arch", "archway", "doorway", "gate", "thing"];
-    matches!(noun, Noun::Object(noun) if ways.iter().any(|way| noun.ends_with(way)))
-}
-
-/// The description of a noun with its adjectives and modifiers; the caller sets its quantifier.
-pub(super) fn described(tree: &Tree) -> Option<Description> {
-    let (function, arguments) = parts(tree)?;
-    let plain = |noun: String| Description::new(Quantifier::Some, Noun::Object(noun));
-    Some(match (function, arguments) {
-        ("plain", [inner]) => described(inner)?,
-        ("with" | "but_not", [noun, added]) => {
-            let mut description = described(noun)?;
-            let added = modifier(added)?;
-            if added.predicate.starts_with("leads_") && !is_way(&description.noun) {
-                return None;
-            }
-            description.modifiers.push(Modifier {
-                negated: function == "but_not",
-                ..added
-            });
-            description
-        }
-        ("noun" | "tail", [word]) => plain(id(word)?),
-        ("gathered", [head, tail]) => {
-            let mut description = described(tail)?;
-            let Noun::Object(tail) = &description.noun else {
-                return None;
-            };
-            description.noun = Noun::Object(format!("{} of {tail}", id(head)?));
-            description
-        }
-        ("room_compound", [room, noun]) => {
-            let (room, noun) = (id(room)?, id(noun)?);
-            // "The balcony door" leads there, "the kitchen table" stands there.
-            let predicate = if noun.ends_with("door") {
-                "leads_to"
-            } else {
-                "in_room"
-            };
-            let room = Description::new(Quantifier::The, Noun::Room(room));
-            plain(noun).with_modifier(Modifier::new(predicate, [room.into()]))
-        }
-        ("color" | "color_tail", [word, inner]) => {
-            let mut description = described(inner)?;
-            description.colors.insert(0, id(word)?);
-            (description.colors.len() == 1).then_some(description)?
-        }
-        ("two_colors" | "two_colors_tail", [one, two, inner]) => {
-            let mut description = described(inner)?;
-            if !description.colors.is_empty() {
-                return None;
-            }
-            description.colors = vec![id(one)?, id(two)?];
-            description
-        }
-        ("material" | "material_tail", [word, inner]) => {
-            let mut description = described(inner)?;
-            let before = description.material.replace(id(word)?);
-            before.is_none().then_some(description)?
-        }
-        ("size" | "size_tail", [word, inner]) => {
-            let mut description = described(inner)?;
-            let before = description.size.replace(size(word)?);
-            before.is_none().then_some(description)?
-        }
-        ("state", [word, inner]) => {
-            let mut description = described(inner)?;
-            let before = description.state.replace(id(word)?);
-            before.is_none().then_some(description)?
-        }
-        _ => return None,
-    })
-}
-
-pub(super) fn modifier(tree: &Tree) -> Option<Modifier> {
-    let (predicate, arguments) = match parts(tree)? {
-        ("modifier_state", [state]) => (id(state)?, Vec::new()),
-        ("modifier_state_not", [state]) => {
-            return Some(Modifier {
-                negated: true,
-                ..Modifier::new(&id(state)?, [])
-            });
-        }
-        ("modifier_source", [source]) => ("in_or_on".to_owned(), vec![phrase(source)?]),
-        ("modifier_carries", [load]) => ("supports".to_owned(), vec![phrase(load)?]),
-        ("modifier_holds_inside", [content]) => ("contains".to_owned(), vec![phrase(content)?]),
-        ("modifier" | "modifier_verb", [word, other]) => (id(word)?, vec![phrase(other)?]),
-        ("modifier_between", [a, b]) => ("between".to_owned(), vec![phrase(a)?, phrase(b)?]),
-        ("modifier_place", [place]) => {
-            let (predicate, place) = place_of(place)?;
-            (predicate, vec![place])
-        }
-        (function, arguments) => return places::modifier_from_tree(function, arguments),
-    };
-    Some(Modifier {
-        negated: false,
-        predicate,
-        arguments,
-    })
-}
-
-fn plan(tree: &Tree) -> Option<Request> {
-    match parts(tree)? {
-        ("one_step", [only]) => Some(Request::Sequence(vec![step(only)?])),
-        ("unless", [condition, then]) => Some(Request::If(
-            Clause::Not(Box::new(simple(condition)?)),
-            step(then)?,
-        )),
-        ("then" | "steps", [first, rest]) => {
-            let Request::Sequence(rest) = plan(rest)? else {
-                return None;
-            };
-            let mut steps = vec![step(first)?];
-            steps.extend(rest);
-            Some(Request::Sequence(steps))
-        }
-        ("if", [condition, then]) => Some(Request::If(simple(condition)?, step(then)?)),
-        _ => None,
-    }
-}
-
-fn step(tree: &Tree) -> Option<RequestStep> {
-    let act = |verb: &str, object: &Tree| {
-        Some(RequestStep::Do {
-            verb: verb.to_owned(),
-            object: phrase(object)?,
-        })
-    };
-    Some(match parts(tree)? {
-        ("go_to", [to]) => RequestStep::GoTo(room(to)?),
-        ("do_from_room", [verb, object, from]) => {
-            let Phrase::Described(description) = phrase(object)? else {
-                return None;
-            };
-            let in_room = Modifier::new("in_room", [room(from)?]);
-            RequestStep::Do {
-                verb: id(verb)?,
-                object: description.with_modifier(in_room).into(),
-            }
-        }
-        ("do_on", [object]) => act("switch_on", object)?,
-        ("do_off", [object]) => act("switch_off", object)?,
-        ("do_pick_up", [object]) => act("pick_up", object)?,
-        ("do_drop", [object]) => act("drop", object)?,
-        ("do_bring_me", [object]) => act("bring_me", object)?,
-        ("do", [verb, object]) => RequestStep::Do {
-            verb: id(verb)?,
-            object: phrase(object)?,
-        },
-        ("do_not", [verb, object]) => RequestStep::DoNot {
-            verb: id(verb)?,
-            object: phrase(object)?,
-        },
-        ("put" | "put_modified", [object, relation, to]) => RequestStep::Put {
-            object: phrase(object)?,
-            predicate: id(relation)?,
-            to: phrase(to)?,
-        },
-        ("put_in_place" | "put_modified_in_place", [object, place]) => {
-            let (predicate, to) = place_of(place)?;
-            RequestStep::Put {
-                object: phrase(object)?,
-                predicate,
-                to,
-            }
-        }
-        ("bring", [object, to]) => RequestStep::Bring {
-            object: phrase(object)?,
-            to: phrase(to)?,
-        },
-        ("bring_to_place", [object, to]) => RequestStep::Bring {
-            object: phrase(object)?,
-            to: room(to)?,
-        },
-        _ => return None,
-    })
 }

@@ -38,9 +38,15 @@ struct LexiconFile {
     #[serde(default)]
     converse: Texts,
     #[serde(default)]
+    comparative: Texts,
+    #[serde(default)]
+    comparative_less: Texts,
+    #[serde(default)]
     room_spot: Texts,
     verb_relation: TextPairs,
     noun: TextPairs,
+    #[serde(default)]
+    noun_synonym: Texts,
     structure: TextPairs,
     state: Texts,
     adjective_state: Texts,
@@ -108,6 +114,8 @@ pub(super) fn english(file: &str) -> Result<Lexicon, GrammarError> {
     let single = [
         (RELATION, &file.relation),
         ("converse", &file.converse),
+        ("comparative", &file.comparative),
+        ("comparative_less", &file.comparative_less),
         (ROOM_SPOT, &file.room_spot),
         ("state", &file.state),
         (ADJECTIVE_STATE, &file.adjective_state),
@@ -139,6 +147,15 @@ pub(super) fn english(file: &str) -> Result<Lexicon, GrammarError> {
         add_noun(&mut lexicon, row.singular, row.plural);
         for synonym in &row.synonyms {
             add_noun(&mut lexicon, synonym, &plural(synonym));
+        }
+    }
+    for (noun, synonyms) in &file.noun_synonym {
+        for one in synonyms {
+            if one.ends_with('s') {
+                lexicon.add_texts(NOUN, noun, &[&[], &[one]]);
+            } else {
+                lexicon.add_texts(NOUN, noun, &[&[one], &[&plural(one)]]);
+            }
         }
     }
     for row in categories().rows() {

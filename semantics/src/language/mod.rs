@@ -3,12 +3,16 @@
 //! A text that a [`Language`] makes of a form reads back as that form, the preferred one of its readings; `docs/words.md` describes
 //! the grammar.
 
+mod alternatives;
 mod existence;
 mod from_tree;
 mod lexicon;
+mod numbers;
+mod phrases;
 mod places;
 mod questions;
 mod read;
+mod requests;
 mod rooms;
 mod say;
 mod several;

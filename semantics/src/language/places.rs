@@ -1,7 +1,9 @@
 //! Places that need no landmark phrase of their own: mounts, ways through doors, sides of the viewer.
 
-use super::from_tree::{parts, room};
-use super::to_tree::TreeBuilder;
+use super::existence::is_bare;
+use super::from_tree::{id, parts, room};
+use super::lexicon::STRUCTURE;
+use super::to_tree::{Position, TreeBuilder};
 use crate::form::{Description, Modifier, Noun, Phrase, Quantifier};
 use crate::grammar::Tree;
 
@@ -20,6 +22,13 @@ fn mounts() -> [(&'static str, Noun); 3] {
     ]
 }
 
+/// A piece of the building: any of its kind, or of those that a modifier holds of.
+pub(super) fn structure(noun: &Tree, modifier: Option<Modifier>) -> Option<Phrase> {
+    let mut own = Description::new(Quantifier::Some, Noun::Structure(id(noun)?));
+    own.modifiers.extend(modifier);
+    Some(own.into())
+}
+
 fn some(noun: Noun) -> Phrase {
     Description::new(Quantifier::Some, noun).into()
 }
@@ -28,11 +37,28 @@ pub(super) fn mount_to_tree(mount: &Phrase) -> Option<Tree> {
     let found = mounts()
         .into_iter()
         .find(|(_, noun)| *mount == some(noun.clone()));
-    found.map(|(function, _)| Tree::apply(function, []))
+    if let Some((function, _)) = found {
+        return Some(Tree::apply(function, []));
+    }
+    let Phrase::Described(own) = mount else {
+        return None;
+    };
+    let [side] = &own.modifiers[..] else {
+        return None;
+    };
+    let wall = Noun::Structure("wall".to_owned());
+    let any = Description::new(Quantifier::Some, wall).with_modifier(side.clone());
+    (**own == any).then_some(())?;
+    Some(Tree::apply("mount_flank", [flank_to_tree(side)?]))
 }
 
 pub(super) fn mount_from_tree(tree: &Tree) -> Option<Phrase> {
-    let (function, _) = parts(tree)?;
+    let (function, arguments) = parts(tree)?;
+    if let ("mount_side" | "mount_flank", [side]) = (function, arguments) {
+        let wall = Noun::Structure("wall".to_owned());
+        let wall = Description::new(Quantifier::Some, wall);
+        return Some(wall.with_modifier(side_from_tree(side)?).into());
+    }
     let found = mounts().into_iter().find(|(own, _)| *own == function);
     found.map(|(_, noun)| some(noun))
 }
@@ -44,6 +70,13 @@ pub(super) fn side_to_tree(modifier: &Modifier) -> Option<Tree> {
     side_of(&modifier.predicate)
 }
 
+/// The tree of a side before a noun: "the left wall".
+fn flank_to_tree(modifier: &Modifier) -> Option<Tree> {
+    let side = side_to_tree(modifier)?;
+    let (function, _) = parts(&side)?;
+    Some(Tree::apply(&function.replace("side_", "flank_"), []))
+}
+
 /// The tree of a side by its predicate.
 pub(super) fn side_of(predicate: &str) -> Option<Tree> {
     let found = SIDES.iter().find(|(_, own)| *own == predicate);
@@ -52,7 +85,11 @@ pub(super) fn side_of(predicate: &str) -> Option<Tree> {
 
 pub(super) fn side_from_tree(tree: &Tree) -> Option<Modifier> {
     let (function, _) = parts(tree)?;
-    let found = SIDES.iter().find(|(own, _)| *own == function);
+    // "The left wall" is the one on your left.
+    let side = function.strip_prefix("flank_");
+    let found = SIDES
+        .iter()
+        .find(|(own, _)| *own == function || side.is_some_and(|side| own.ends_with(side)));
     found.map(|(_, predicate)| Modifier::new(predicate, []))
 }
 
@@ -67,6 +104,45 @@ pub(super) fn passage_from_tree(tree: &Tree) -> Option<Modifier> {
 }
 
 impl TreeBuilder<'_> {
+    /// The tree of "the wall", which means any of that kind, with a side or a room.
+    pub(super) fn structure(&self, own: &Description, position: Position) -> Option<Tree> {
+        let Noun::Structure(noun) = &own.noun else {
+            return None;
+        };
+        let bare = Description {
+            modifiers: Vec::new(),
+            ..own.clone()
+        };
+        if own.quantifier != Quantifier::Some || !is_bare(&bare) {
+            return None;
+        }
+        let noun = self.known(STRUCTURE, noun)?;
+        let prefix = if position == Position::Landmark {
+            "i_"
+        } else {
+            ""
+        };
+        let named = |name: &str| format!("{prefix}{name}");
+        Some(match &own.modifiers[..] {
+            [] if position == Position::Landmark => Tree::apply("i_structure", [noun]),
+            [] => Tree::apply("structure_np", [noun]),
+            [side] if flank_to_tree(side).is_some() => {
+                Tree::apply(&named("structure_flank"), [flank_to_tree(side)?, noun])
+            }
+            [
+                Modifier {
+                    negated: false,
+                    predicate,
+                    arguments,
+                },
+            ] if predicate == "in_room" => {
+                let room = self.room(arguments.first()?)?;
+                Tree::apply(&named("structure_of"), [noun, room])
+            }
+            _ => return None,
+        })
+    }
+
     pub(super) fn passage(&self, predicate: &str, others: &[Phrase]) -> Option<Tree> {
         match (predicate, others) {
             ("leads_to", [to]) => Some(Tree::apply("passage_to", [self.room(to)?])),

@@ -1,15 +1,13 @@
 //! Questions: forms to trees, and trees to forms.
 
 use super::existence::is_bare;
-use super::from_tree::{
-    affirmed, described, holds, id, modifier, parts, phrase, place_of, quality_of, room,
-};
+use super::from_tree::{affirmed, holds, id, parts, place_of, quality_of, room, simple};
 use super::lexicon::{RELATION, ROOM_NOUN};
+use super::phrases::{described, modifier, phrase};
 use super::to_tree::{Position, TreeBuilder};
-use super::{places, several};
+use super::{alternatives, numbers, places, several};
 use crate::form::{
-    AttributeKind, Clause, Description, Modifier, Noun, Phrase, PlaceInOrder, Quality, Quantifier,
-    Question,
+    AttributeKind, Clause, Description, Modifier, Noun, Phrase, PlaceInOrder, Quantifier, Question,
 };
 use crate::grammar::Tree;
 
@@ -31,18 +29,6 @@ fn paraphrased(function: &str, arguments: &[Tree]) -> Option<Question> {
             several::add_quality(&mut description, quality_of(quality)?)?;
             count(description)
         }
-        ("whether_color_or", [subject, _, _]) => Question::Attribute {
-            kind: AttributeKind::Color,
-            of: phrase(subject)?,
-        },
-        ("whether_material_or", [subject, _, _]) => Question::Attribute {
-            kind: AttributeKind::Material,
-            of: phrase(subject)?,
-        },
-        ("whether_state_or", [subject, state, _]) => Question::Whether(Clause::Is {
-            subject: phrase(subject)?,
-            quality: Quality::State(id(state)?),
-        }),
         ("how_many_seen_of", [noun, added]) => {
             let noun = described(noun)?.with_modifier(modifier(added)?);
             count(noun.with_modifier(Modifier::new("visible", [])))
@@ -50,6 +36,50 @@ fn paraphrased(function: &str, arguments: &[Tree]) -> Option<Question> {
         ("how_many_of_two", [noun, one, other]) => {
             let noun = described(noun)?.with_modifier(modifier(one)?);
             count(noun.with_modifier(modifier(other)?))
+        }
+        ("which_are_more", [one, other]) => {
+            Question::Alternatives(vec![numbers::more(one, other)?, numbers::more(other, one)?])
+        }
+        ("which_count", [one, other, what]) => {
+            Question::Alternatives(numbers::counts(one, other, what)?)
+        }
+        ("which_verb", [kind, verb, object]) => which(
+            Some(described(kind)?),
+            holds(&id(verb)?, vec![Phrase::Hole, phrase(object)?]),
+        ),
+        ("what_verb", [verb, object]) => {
+            which(None, holds(&id(verb)?, vec![Phrase::Hole, phrase(object)?]))
+        }
+        ("what_has", [subject]) => which(
+            None,
+            holds("belongs_to", vec![Phrase::Hole, phrase(subject)?]),
+        ),
+        ("what_seen_from", [place]) => which(
+            None,
+            holds("visible_from_room", vec![Phrase::Hole, room(place)?]),
+        ),
+        ("how_many_verb" | "how_many_verb_not", [kind, verb, object]) => {
+            count(described(kind)?.with_modifier(Modifier {
+                negated: function == "how_many_verb_not",
+                ..Modifier::new(&id(verb)?, [phrase(object)?])
+            }))
+        }
+        ("how_many_has", [noun, subject]) => {
+            let within = Modifier::new("belongs_to", [phrase(subject)?]);
+            count(described(noun)?.with_modifier(within))
+        }
+        ("any_of_two", [one, other, added]) => {
+            let added = modifier(added)?;
+            let exists = |noun: &Tree| {
+                let noun = described(noun)?.with_modifier(added.clone());
+                Some(Clause::Exists(noun.into()))
+            };
+            Question::Whether(Clause::Any(vec![exists(one)?, exists(other)?]))
+        }
+        ("which_of_is_closer", [noun, reference]) => {
+            let reference = Some(phrase(reference)?);
+            let kind = selected(described(noun)?, "closest_to", reference);
+            which(Some(kind), Clause::Exists(Phrase::Hole))
         }
         ("which_carries", [kind, load]) => which(
             Some(described(kind)?),
@@ -80,6 +110,31 @@ fn paraphrased(function: &str, arguments: &[Tree]) -> Option<Question> {
                 holds("hangs_on", vec![Phrase::Hole, mount]),
             )
         }
+        ("which_is_most" | "which_is_least" | "which_is_superlative", [word]) => {
+            let order = match (function, id(word)?.as_str()) {
+                ("which_is_superlative", order) => order.to_owned(),
+                ("which_is_least", "larger_than") => "smallest".to_owned(),
+                ("which_is_most", "larger_than") => "largest".to_owned(),
+                ("which_is_most", "taller_than") => "tallest".to_owned(),
+                ("which_is_most", "wider_than") => "widest".to_owned(),
+                _ => return None,
+            };
+            let kind = Description::new(Quantifier::The, Noun::SameThings);
+            which(
+                Some(selected(kind, &order, None)),
+                Clause::Exists(Phrase::Hole),
+            )
+        }
+        ("what_is", [subject]) => {
+            let Phrase::Described(kind) = phrase(subject)? else {
+                return None;
+            };
+            which(Some(*kind), Clause::Exists(Phrase::Hole))
+        }
+        ("what_there", [relation, landmark]) => which(
+            None,
+            holds(&id(relation)?, vec![Phrase::Hole, phrase(landmark)?]),
+        ),
         ("what_between", [a, b]) => which(
             None,
             holds("between", vec![Phrase::Hole, phrase(a)?, phrase(b)?]),
@@ -137,6 +192,9 @@ pub(super) fn question(tree: &Tree) -> Option<Question> {
         };
         Some(Question::Which { kind, clause })
     };
+    if let Some(clauses) = alternatives::from_tree(function, arguments) {
+        return Some(Question::Alternatives(clauses));
+    }
     if let Some(other) = paraphrased(function, arguments) {
         return Some(other);
     }
@@ -183,6 +241,24 @@ pub(super) fn question(tree: &Tree) -> Option<Question> {
     }
 }
 
+/// A question within another sentence: "tell me whether the lamp is on".
+pub(super) fn indirect(tree: &Tree) -> Option<Question> {
+    let attribute = |kind, of: &Tree| {
+        let of = phrase(of)?;
+        Some(Question::Attribute { kind, of })
+    };
+    match parts(tree)? {
+        ("indirect_whether", [inner]) => Some(Question::Whether(simple(inner)?)),
+        ("indirect_question", [inner]) => question(inner),
+        ("indirect_where", [of]) => attribute(AttributeKind::Place, of),
+        ("indirect_color", [of]) => attribute(AttributeKind::Color, of),
+        ("indirect_material", [of]) => attribute(AttributeKind::Material, of),
+        ("indirect_room", [of]) => attribute(AttributeKind::Room, of),
+        ("indirect_stranded", arguments) => paraphrased("what_stranded", arguments),
+        _ => None,
+    }
+}
+
 impl TreeBuilder<'_> {
     /// The tree of a question.
     pub(super) fn question(&self, question: &Question) -> Option<Tree> {
@@ -195,6 +271,7 @@ impl TreeBuilder<'_> {
                 Noun::Storey if is_bare(what) => Tree::apply("how_many_storeys", []),
                 _ => Tree::apply("how_many", [self.with_modifiers(what)?]),
             },
+            Question::Alternatives(clauses) => self.alternatives(clauses)?,
             Question::Which { kind, clause } => self.which(kind.as_deref(), clause)?,
             Question::Attribute { kind, of } => {
                 let function = match kind {
@@ -208,7 +285,7 @@ impl TreeBuilder<'_> {
         })
     }
 
-    fn whether(&self, clause: &Clause) -> Option<Tree> {
+    pub(super) fn whether(&self, clause: &Clause) -> Option<Tree> {
         let (function, arguments) = match clause {
             Clause::Holds {
                 predicate,
@@ -219,6 +296,8 @@ impl TreeBuilder<'_> {
                     "holds" => "whether_holds",
                     "holds_place" => "whether_place",
                     "holds_mount" => "whether_mount",
+                    "holds_closer" => "whether_closer",
+                    "see_room_from" => "whether_see_room_from",
                     _ => return None,
                 };
                 (function, arguments)
@@ -228,6 +307,10 @@ impl TreeBuilder<'_> {
                 ("whether_is", vec![subject, self.quality(quality)?])
             }
             Clause::Exists(what) => ("whether_exists", vec![self.item(what)?]),
+            Clause::More { more, than } => {
+                let (more, than) = self.compared(more, than)?;
+                ("whether_more", vec![more, than])
+            }
             _ => return None,
         };
         Some(Tree::apply(function, arguments))

@@ -42,7 +42,7 @@ pub enum ReadError {
     #[error("unknown {}", list_unknown(.0))]
     UnknownWords(Vec<UnknownWord>),
     /// A pronoun stands for nothing that was named before.
-    #[error("\"it\" stands for nothing that the sentence before is about")]
+    #[error("\"it\" or \"one\" stands for nothing that the sentence before is about")]
     NoAntecedent,
     /// All words are known, but they form no sentence of the grammar.
     #[error(
@@ -142,10 +142,10 @@ impl Language {
             };
             let found = self.read(&text[start..end]).map_err(fault)?;
             let before = read.last().and_then(|last| last.forms.first());
-            let antecedent = before.and_then(Form::subject);
             let forms = found.forms.iter();
             let forms: Vec<Form> = forms
-                .filter_map(|form| form.with_antecedent(antecedent))
+                .flat_map(|form| form.readings_after(before))
+                .filter(Form::is_complete)
                 .collect();
             if forms.is_empty() {
                 return Err(fault(ReadError::NoAntecedent));
@@ -176,13 +176,25 @@ impl Language {
         if words.len() > MAX_WORDS {
             return Err(too_long("words", words.len(), MAX_WORDS));
         }
-        self.read_words(&words).or_else(|error| {
-            let paraphrase = self.grammar.paraphrase(&words);
-            if paraphrase == words || paraphrase.is_empty() {
-                return Err(error);
-            }
-            self.read_words(&paraphrase)
-        })
+        let read = self.read_words(&words);
+        // "The lamp stands on the floor" is no plural of "lamp stand".
+        let is_sentence = |read: &Result<Readings, ReadError>| {
+            let first = read.as_ref().ok().and_then(|read| read.forms.first());
+            first.is_some_and(|form| !matches!(form, Form::NounPhrase(_)))
+        };
+        if is_sentence(&read) {
+            return read;
+        }
+        let paraphrase = self.grammar.paraphrase(&words);
+        if paraphrase == words || paraphrase.is_empty() {
+            return read;
+        }
+        let other = self.read_words(&paraphrase);
+        if read.is_err() || is_sentence(&other) {
+            other
+        } else {
+            read
+        }
     }
 
     fn read_words(&self, words: &[String]) -> Result<Readings, ReadError> {
@@ -197,15 +209,20 @@ impl Language {
             return Err(ReadError::UnknownWords(unknown));
         }
         let parse = self.grammar.parse(words);
+        // "The chair near the table larger than the bed" compares the chair: few describe a landmark by a comparison.
+        let forms = parse.trees.iter().filter_map(|(cost, tree)| {
+            let form = from_tree::form(tree)?;
+            Some((*cost as usize + form.described_comparisons(), form))
+        });
+        let mut ranked: Vec<(usize, Form)> = forms.collect();
+        ranked.sort_by_key(|(cost, _)| *cost);
         let mut forms: Vec<Form> = Vec::new();
-        for (_, tree) in &parse.trees {
-            for form in from_tree::form(tree)
-                .iter()
-                .flat_map(Form::with_own_antecedents)
-            {
-                if !forms.contains(&form) {
-                    forms.push(form);
-                }
+        for form in ranked
+            .iter()
+            .flat_map(|(_, form)| form.readings_after(None))
+        {
+            if !forms.contains(&form) {
+                forms.push(form);
             }
         }
         if forms.is_empty() {

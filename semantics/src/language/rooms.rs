@@ -2,7 +2,7 @@
 
 use super::from_tree::{number, parts, room};
 use super::to_tree::{TreeBuilder, digits};
-use crate::form::{Clause, Phrase, RoomSurface, RoomSurfaceKind};
+use crate::form::{Clause, Description, Noun, Phrase, Quantifier, RoomSurface, RoomSurfaceKind};
 use crate::grammar::Tree;
 
 fn entry(tree: &Tree) -> Option<String> {
@@ -138,6 +138,32 @@ pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Clause> {
             Clause::HasSurfaces {
                 room: room(own)?,
                 surfaces: surfaces?,
+            }
+        }
+        ("walls_are" | "room_walls_are" | "floor_is", [place, look]) => {
+            let place = match entry(place) {
+                Some(noun) => Description::new(Quantifier::The, Noun::Room(noun)).into(),
+                None => room(place)?,
+            };
+            let surface = match (entry(look), parts(look)) {
+                (Some(color), _) => RoomSurface {
+                    kind: RoomSurfaceKind::Walls,
+                    color: Some(color),
+                    material: None,
+                },
+                (_, Some((function, [word]))) => {
+                    let is_color = function == "floor_look_color";
+                    RoomSurface {
+                        kind: RoomSurfaceKind::Floor,
+                        color: entry(word).filter(|_| is_color),
+                        material: entry(word).filter(|_| !is_color),
+                    }
+                }
+                _ => return None,
+            };
+            Clause::HasSurfaces {
+                room: place,
+                surfaces: vec![surface],
             }
         }
         ("open_to", [from, to]) => Clause::Holds {

@@ -2,9 +2,9 @@
 
 use super::Language;
 use super::from_tree;
-use super::to_tree::TreeBuilder;
-use crate::form::{Form, Phrase};
-use crate::grammar::Span;
+use super::to_tree::{TreeBuilder, count};
+use crate::form::{Description, Form, Noun, Phrase};
+use crate::grammar::{Span, Tree};
 use dwell_scene::random::RandomKey;
 use serde::{Deserialize, Serialize};
 
@@ -29,15 +29,46 @@ pub struct Sentence {
 }
 
 impl Language {
+    /// Returns the question which of the things that `named` describes is meant by `kind`: "Which chair do you mean, the red chair or
+    /// the chair next to the bed?" `None` where the grammar has no wording for it.
+    pub fn ask_which(&self, kind: &Description, named: &[Phrase]) -> Option<String> {
+        let builder = self.builder();
+        let tree = Tree::apply(
+            "which_meant",
+            [builder.adjectives(kind)?, builder.any_of(named)?],
+        );
+        Some(self.grammar.linearize(&tree, &mut |_| 0)?.0)
+    }
+
+    /// Returns the question which of `number` things is meant by `kind`: "Which of the five chairs do you mean?"
+    pub fn ask_which_of(&self, kind: &Description, number: usize) -> Option<String> {
+        let builder = self.builder();
+        let number = count(u32::try_from(number).ok()?);
+        let noun = builder.noun_of(kind)?;
+        let (counted, uncounted) = match kind.noun {
+            Noun::Room(_) => ("which_room_of_meant", "which_room_meant"),
+            _ => ("which_of_meant", "which_of_many_meant"),
+        };
+        let said = |tree: Tree| self.grammar.linearize(&tree, &mut |_| 0);
+        // Larger numbers have no words.
+        let (text, _) = said(Tree::apply(counted, [number, noun.clone()]))
+            .or_else(|| said(Tree::apply(uncounted, [noun])))?;
+        Some(text)
+    }
+
+    fn builder(&self) -> TreeBuilder<'_> {
+        TreeBuilder {
+            lexicon: self.grammar.lexicon(),
+        }
+    }
+
     /// Returns the text of `form`; `None` if the grammar has no wording for it: an unknown noun, a modifier where none is allowed.
     /// Without a key every rule uses its first wording; with one, wordings are drawn.
     ///
     /// # Determinism
     /// Equal forms and keys give equal texts.
     pub fn say(&self, form: &Form, key: Option<RandomKey>) -> Option<Sentence> {
-        let builder = TreeBuilder {
-            lexicon: self.grammar.lexicon(),
-        };
+        let builder = self.builder();
         let tree = builder.form(form)?;
         let mut stream = key.map(|key| key.child("wording").stream());
         let mut choose = |count: usize| {

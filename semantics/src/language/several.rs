@@ -1,6 +1,7 @@
 //! Several things said of one subject: "the cup is red, on the table and not near the door".
 
-use super::from_tree::{holds, id, parts, phrase, place_of, quality_of};
+use super::from_tree::{holds, id, parts, place_of, quality_of};
+use super::phrases::phrase;
 use super::places;
 use crate::form::{Clause, Description, Modifier, Phrase, Quality, Quantifier};
 use crate::grammar::Tree;
@@ -11,7 +12,7 @@ pub(super) enum Said {
     Quality(Quality),
 }
 
-fn said(tree: &Tree) -> Option<Said> {
+pub(super) fn said(tree: &Tree) -> Option<Said> {
     Some(match parts(tree)? {
         ("vp_relation", [word, object]) => {
             Said::Relation(Modifier::new(&id(word)?, [phrase(object)?]))

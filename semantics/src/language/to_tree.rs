@@ -2,13 +2,12 @@
 
 use super::existence::is_bare;
 use super::lexicon::{
-    ADJECTIVE_STATE, GATHERED, GATHERING, NOUN, ORDER, ORDER_TO, RELATION, ROOM, ROOM_SPOT,
-    STRUCTURE, SUPERLATIVE, VERB, VERB_RELATION,
+    ADJECTIVE_STATE, GATHERED, GATHERING, NOUN, ORDER, ORDER_TO, RELATION, ROOM, ROOM_NOUN,
+    ROOM_SPOT, SUPERLATIVE, VERB_RELATION,
 };
 use super::places;
 use crate::form::{
-    Clause, Description, Form, Modifier, Noun, Phrase, PlaceInOrder, Quality, Quantifier, Request,
-    RequestStep,
+    Clause, Description, Form, Modifier, Noun, Phrase, PlaceInOrder, Quality, Quantifier, Question,
 };
 use crate::grammar::{Lexicon, Tree};
 use crate::size::SizeClass;
@@ -54,13 +53,31 @@ impl TreeBuilder<'_> {
     pub(super) fn form(&self, form: &Form) -> Option<Tree> {
         Some(match form {
             Form::Claim(clause) => Tree::apply("claim", [self.clause(clause)?]),
-            Form::Request(plan) => Tree::apply("request", [self.plan(plan)?]),
+            Form::Request(steps) => Tree::apply("request", [self.plan(steps)?]),
+            Form::Several(forms) => self.several(forms)?,
             Form::Question(question) => Tree::apply("ask", [self.question(question)?]),
             Form::NounPhrase(phrase) => match self.room(phrase) {
                 Some(room) => Tree::apply("phrase_room", [room]),
                 None => Tree::apply("phrase", [self.phrase(phrase, Position::Free)?]),
             },
         })
+    }
+
+    fn several(&self, forms: &[Form]) -> Option<Tree> {
+        match forms {
+            [Form::Question(first), Form::Question(second)] => Some(Tree::apply(
+                "several_questions",
+                [self.question(first)?, self.question(second)?],
+            )),
+            [
+                Form::Request(steps),
+                Form::Question(Question::Whether(clause)),
+            ] => {
+                let whether = Tree::apply("indirect_whether", [self.simple(clause)?]);
+                Some(Tree::apply("request_ask", [self.plan(steps)?, whether]))
+            }
+            _ => None,
+        }
     }
 
     fn clause(&self, clause: &Clause) -> Option<Tree> {
@@ -86,7 +103,7 @@ impl TreeBuilder<'_> {
         }
     }
 
-    fn simple(&self, clause: &Clause) -> Option<Tree> {
+    pub(super) fn simple(&self, clause: &Clause) -> Option<Tree> {
         let (clause, negated) = match clause {
             Clause::Not(inner) => (&**inner, true),
             clause => (clause, false),
@@ -114,12 +131,17 @@ impl TreeBuilder<'_> {
                 ],
             ),
             Clause::Exists(what) => self.existence(what, negated)?,
+            Clause::More { more, than } if !negated => {
+                let (more, than) = self.compared(more, than)?;
+                Tree::apply("more", [more, than])
+            }
             Clause::Area {
                 room,
                 square_metres,
             } if !negated => self.area(room, *square_metres)?,
             Clause::HasSurfaces { room, surfaces } if !negated => self.surfaces(room, surfaces)?,
             Clause::Area { .. }
+            | Clause::More { .. }
             | Clause::HasSurfaces { .. }
             | Clause::Not(_)
             | Clause::All(_)
@@ -154,12 +176,18 @@ impl TreeBuilder<'_> {
             ("in_room" | "on_storey", [subject, place]) => {
                 Some(("holds_place", vec![free(subject)?, self.place(place)?]))
             }
-            ("in_corner_of" | "in_middle_of", [subject, place]) if self.room(place).is_some() => {
-                Some((
-                    "holds_place",
-                    vec![free(subject)?, self.spot(predicate, place)?],
-                ))
-            }
+            ("visible_from_room", [subject, place]) if self.room(subject).is_some() => Some((
+                "see_room_from",
+                vec![self.room(place)?, self.room(subject)?],
+            )),
+            ("closer_to", [subject, near, far]) => Some((
+                "holds_closer",
+                vec![free(subject)?, free(near)?, free(far)?],
+            )),
+            (_, [subject, place]) if self.spot(predicate, place).is_some() => Some((
+                "holds_place",
+                vec![free(subject)?, self.spot(predicate, place)?],
+            )),
             ("open_to", [from, to]) => self.open_to(from, to),
             ("leads_to" | "leads_from" | "leads_outside", [door, others @ ..]) => {
                 let passage = self.passage(predicate, others)?;
@@ -189,6 +217,26 @@ impl TreeBuilder<'_> {
                 Some(("holds_verb", vec![subject, word, object]))
             }
             _ => None,
+        }
+    }
+
+    /// "The red chair, the white chair or the chair next to the bed".
+    pub(super) fn any_of(&self, items: &[Phrase]) -> Option<Tree> {
+        let free = |phrase: &Phrase| self.phrase(phrase, Position::Free);
+        match items {
+            [first, last] => Some(Tree::apply("any_pair", [free(first)?, free(last)?])),
+            [first, rest @ ..] if rest.len() > 1 => {
+                Some(Tree::apply("any_more", [free(first)?, self.any_of(rest)?]))
+            }
+            _ => None,
+        }
+    }
+
+    /// The noun of a description alone.
+    pub(super) fn noun_of(&self, kind: &Description) -> Option<Tree> {
+        match &kind.noun {
+            Noun::Room(noun) => self.known(ROOM_NOUN, noun),
+            _ => self.adjectives(kind),
         }
     }
 
@@ -281,12 +329,7 @@ impl TreeBuilder<'_> {
         Some(match phrase {
             Phrase::Pronoun => Tree::apply(if landmark { "i_it" } else { "it" }, []),
             Phrase::Described(description) if matches!(description.noun, Noun::Structure(_)) => {
-                let function = if landmark {
-                    "i_structure"
-                } else {
-                    "structure_np"
-                };
-                Tree::apply(function, [self.structure(description)?])
+                self.structure(description, position)?
             }
             Phrase::Id(id) => {
                 Tree::apply(if landmark { "i_by_id" } else { "by_id" }, [digits(*id)])
@@ -296,15 +339,6 @@ impl TreeBuilder<'_> {
             Phrase::Described(description) => self.described(description)?,
             Phrase::Storey(_) | Phrase::Hole | Phrase::List(_) => return None,
         })
-    }
-
-    /// The noun of "the wall", which means any of that kind.
-    fn structure(&self, description: &Description) -> Option<Tree> {
-        let Noun::Structure(noun) = &description.noun else {
-            return None;
-        };
-        let is_any = description.quantifier == Quantifier::Some && is_bare(description);
-        is_any.then(|| self.known(STRUCTURE, noun)).flatten()
     }
 
     /// "Nothing", with modifiers.
@@ -402,11 +436,14 @@ impl TreeBuilder<'_> {
             let order = self.known(ORDER_TO, order)?;
             return (*place == 1).then(|| Tree::apply("selected_to", [noun, order, reference]));
         }
-        if let Some(order) = self.known(ORDER, order) {
+        let superlative = self.known(SUPERLATIVE, order);
+        if let Some(order) = self.known(ORDER, order).filter(|_| superlative.is_none()) {
             return Some(Tree::apply("nth", [ordinal(*place), noun, order]));
         }
-        let order = self.known(SUPERLATIVE, order)?;
-        (*place == 1).then(|| Tree::apply("superlative", [order, noun]))
+        Some(match place {
+            1 => Tree::apply("superlative", [superlative?, noun]),
+            place => Tree::apply("nth_superlative", [ordinal(*place), superlative?, noun]),
+        })
     }
 
     /// The noun with its adjectives and modifiers, in their order.
@@ -428,9 +465,13 @@ impl TreeBuilder<'_> {
             ("in_room" | "on_storey", [place]) => {
                 Some(Tree::apply("modifier_place", [self.place(place)?]))
             }
-            ("in_corner_of" | "in_middle_of", [place]) if self.room(place).is_some() => Some(
-                Tree::apply("modifier_place", [self.spot(&modifier.predicate, place)?]),
-            ),
+            (spot, [place]) if self.spot(spot, place).is_some() => {
+                Some(Tree::apply("modifier_place", [self.spot(spot, place)?]))
+            }
+            ("closer_to", [near, far]) => Some(Tree::apply(
+                "modifier_closer",
+                [landmark(near)?, landmark(far)?],
+            )),
             ("between", [a, b]) => Some(Tree::apply(
                 "modifier_between",
                 [landmark(a)?, landmark(b)?],
@@ -480,51 +521,5 @@ impl TreeBuilder<'_> {
             tree = Tree::apply("size", [self.known("size", word?)?, tree]);
         }
         Some(tree)
-    }
-
-    fn plan(&self, plan: &Request) -> Option<Tree> {
-        match plan {
-            Request::Sequence(steps) => match &steps[..] {
-                [] => None,
-                [only] => Some(Tree::apply("one_step", [self.step(only)?])),
-                [first, rest @ ..] => {
-                    let rest = self.plan(&Request::Sequence(rest.to_vec()))?;
-                    Some(Tree::apply("then", [self.step(first)?, rest]))
-                }
-            },
-            Request::If(clause, step) => {
-                Some(Tree::apply("if", [self.simple(clause)?, self.step(step)?]))
-            }
-        }
-    }
-
-    fn step(&self, step: &RequestStep) -> Option<Tree> {
-        let free = |phrase: &Phrase| self.phrase(phrase, Position::Free);
-        Some(match step {
-            RequestStep::GoTo(room) => Tree::apply("go_to", [self.room(room)?]),
-            RequestStep::Do { verb, object } => {
-                Tree::apply("do", [self.known(VERB, verb)?, free(object)?])
-            }
-            RequestStep::DoNot { verb, object } => {
-                Tree::apply("do_not", [self.known(VERB, verb)?, free(object)?])
-            }
-            RequestStep::Put {
-                object,
-                predicate,
-                to,
-            } => {
-                let object = self.phrase(object, Position::Landmark)?;
-                if predicate == "in_room" {
-                    Tree::apply("put_in_place", [object, self.place(to)?])
-                } else {
-                    let relation = self.known(RELATION, predicate)?;
-                    Tree::apply("put", [object, relation, free(to)?])
-                }
-            }
-            RequestStep::Bring { object, to } => match self.room(to) {
-                Some(room) => Tree::apply("bring_to_place", [free(object)?, room]),
-                None => Tree::apply("bring", [free(object)?, free(to)?]),
-            },
-        })
     }
 }

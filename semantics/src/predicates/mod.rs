@@ -5,12 +5,15 @@
 mod above;
 mod against;
 mod at_back_of;
+mod at_end_of;
 mod at_front_of;
 mod attached_to;
 mod behind;
+mod belongs_to;
 mod below;
 mod between;
 mod closed;
+mod closer_to;
 mod container;
 mod contains;
 mod doors;
@@ -21,6 +24,7 @@ mod front;
 mod full;
 mod half_open;
 mod hangs_on;
+mod has;
 mod held;
 mod held_by;
 mod holds;
@@ -28,7 +32,6 @@ mod identical;
 mod in_corner_of;
 mod in_front_of;
 mod in_middle_of;
-mod in_or_on;
 mod in_room;
 mod inside;
 mod larger_than;
@@ -65,6 +68,7 @@ mod under;
 mod view;
 mod visible;
 mod visible_from;
+mod visible_from_room;
 mod wider_than;
 
 pub use crate::scene::SurfaceSupport;
@@ -222,13 +226,15 @@ pub fn all() -> &'static [&'static dyn Predicate] {
         &contains::Contains,
         &on::On,
         &supports::Supports,
-        &in_or_on::InOrOn,
+        &belongs_to::BelongsTo,
+        &has::Has,
         &hangs_on::HangsOn,
         &attached_to::AttachedTo,
         &touching::Touching,
         &against::Against,
         &next_to::NextTo,
         &near::Near,
+        &closer_to::CloserTo,
         &far::Far,
         &above::Above,
         &below::Below,
@@ -236,6 +242,7 @@ pub fn all() -> &'static [&'static dyn Predicate] {
         &between::Between,
         &in_corner_of::InCornerOf,
         &in_middle_of::InMiddleOf,
+        &at_end_of::AtEndOf,
         &left_of::LeftOf,
         &right_of::RightOf,
         &in_front_of::InFrontOf,
@@ -248,6 +255,7 @@ pub fn all() -> &'static [&'static dyn Predicate] {
         &facing::Facing,
         &visible::Visible,
         &visible_from::VisibleFrom,
+        &visible_from_room::VisibleFromRoom,
         &reachable::Reachable,
         &holds::Holds,
         &held_by::HeldBy,

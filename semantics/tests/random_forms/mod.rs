@@ -1,9 +1,13 @@
 //! Random logical forms of every kind that the language has words for.
 
+mod requests_and_questions;
+
+pub(crate) use requests_and_questions::form;
+
 use dwell_semantics::SizeClass;
 use dwell_semantics::form::{
     AttributeKind, Clause, Description, Form, Modifier, Noun, Phrase, PlaceInOrder, Quality,
-    Quantifier, Question, Request, RequestStep, RoomSurface, RoomSurfaceKind,
+    Quantifier, Question, RequestStep, RoomSurface, RoomSurfaceKind,
 };
 use proptest::prelude::*;
 
@@ -519,77 +523,6 @@ fn simple() -> BoxedStrategy<Clause> {
         3 => affirmed(),
         3 => affirmed_only(),
         1 => affirmed().prop_map(|clause| Clause::Not(Box::new(clause))),
-    ]
-    .boxed()
-}
-
-fn step() -> BoxedStrategy<RequestStep> {
-    let verb = || word(&["find", "pick_up", "open", "switch_off", "bring_me"]);
-    prop_oneof![
-        room().prop_map(RequestStep::GoTo),
-        (verb(), phrase()).prop_map(|(verb, object)| RequestStep::Do { verb, object }),
-        (verb(), phrase()).prop_map(|(verb, object)| RequestStep::DoNot { verb, object }),
-        (phrase(), room()).prop_map(|(object, to)| RequestStep::Bring { object, to }),
-        (phrase(), phrase()).prop_map(|(object, to)| RequestStep::Bring { object, to }),
-        (landmark(), room()).prop_map(|(object, to)| RequestStep::Put {
-            object,
-            predicate: "in_room".to_owned(),
-            to,
-        }),
-        (landmark(), word(&["on", "in"]), reference()).prop_map(|(object, predicate, to)| {
-            RequestStep::Put {
-                object,
-                predicate,
-                to,
-            }
-        }),
-    ]
-    .boxed()
-}
-
-pub(crate) fn form() -> BoxedStrategy<Form> {
-    prop_oneof![
-        4 => simple().prop_map(Form::Claim),
-        2 => proptest::collection::vec(step(), 1..4)
-            .prop_map(|steps| Form::Request(Request::Sequence(steps))),
-        1 => (simple(), step()).prop_map(|(clause, step)| Form::Request(Request::If(clause, step))),
-        1 => described().prop_map(|what| {
-            let what = what.with_quantifier(Quantifier::Some);
-            Form::Question(Question::HowMany(Box::new(what)))
-        }),
-        1 => (phrase(), quality()).prop_map(|(subject, quality)| {
-            Form::Question(Question::Whether(Clause::Is { subject, quality }))
-        }),
-        1 => proptest::collection::vec(simple(), 2..4)
-            .prop_map(|clauses| Form::Claim(Clause::All(clauses))),
-        1 => (adjectives(Quantifier::Some), relation(), reference()).prop_map(|(kind, predicate, to)| {
-            let arguments = vec![Phrase::Hole, to];
-            let clause = Clause::Holds { predicate, arguments };
-            let kind = Some(Box::new(kind));
-            Form::Question(Question::Which { kind, clause })
-        }),
-        1 => phrase().prop_map(|of| {
-            let kind = AttributeKind::Color;
-            Form::Question(Question::Attribute { kind, of })
-        }),
-        1 => pronominal().prop_map(Form::Claim),
-        1 => counted().prop_map(|what| {
-            let what = what.with_quantifier(Quantifier::Some);
-            Form::Question(Question::HowMany(Box::new(what)))
-        }),
-        1 => item().prop_map(|what| Form::Question(Question::Whether(Clause::Exists(what)))),
-        // "Is a chair between the bed and a lamp on the wall?" is a question with two readings: the subject has no modifiers.
-        1 => (quantifier().prop_flat_map(adjectives), mount()).prop_map(|(subject, mount)| {
-            let predicate = "hangs_on".to_owned();
-            let arguments = vec![subject.into(), mount];
-            Form::Question(Question::Whether(Clause::Holds { predicate, arguments }))
-        }),
-        3 => prop_oneof![
-            6 => phrase(),
-            1 => nothing().prop_map(Phrase::from),
-            2 => room(),
-        ]
-        .prop_map(Form::NounPhrase),
     ]
     .boxed()
 }

@@ -1,27 +1,27 @@
-//! The predicate `in_or_on`.
+//! The predicate `has`.
 
-use super::{OBJECT, OBJECT_OR_STRUCTURE, Predicate, RelationProperties, inside::Inside, on::On};
+use super::{OBJECT, Predicate, RelationProperties, belongs_to::BelongsTo};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::Truth;
 
-/// See [`Predicate::definition`]; "the cup from the cupboard".
-pub(super) struct InOrOn;
+/// See [`Predicate::definition`]; "the table with a lamp", "the window has a curtain".
+pub(super) struct Has;
 
-impl Predicate for InOrOn {
+impl Predicate for Has {
     fn name(&self) -> &'static str {
-        "in_or_on"
+        "has"
     }
 
     fn places(&self) -> &'static [&'static [TermKind]] {
-        &[OBJECT, OBJECT_OR_STRUCTURE]
+        &[OBJECT, OBJECT]
     }
 
     fn definition(&self) -> &'static str {
-        "The thing is `in` or `on` the other: where it is taken from."
+        "The second thing belongs to the first: the converse of `belongs_to` between objects."
     }
 
     fn source(&self) -> &'static str {
-        "As of `in` and `on`."
+        "As of `belongs_to`."
     }
 
     fn properties(&self) -> RelationProperties {
@@ -32,8 +32,6 @@ impl Predicate for InOrOn {
     }
 
     fn decide(&self, scene: &SemanticScene<'_>, args: &[Term], viewer: Option<&Viewer>) -> Truth {
-        Inside
-            .holds(scene, args, viewer)
-            .or(On.decide(scene, args, viewer))
+        BelongsTo.decide(scene, &[args[1], args[0]], viewer)
     }
 }

@@ -1,0 +1,170 @@
+//! Visits of the phrases of a form, in the order of the text.
+
+use super::{Clause, Description, Form, Modifier, Phrase, Question, RequestStep};
+
+/// The role of a phrase.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Role {
+    /// What a clause or a step is about: a subject, an object, a thing that is compared.
+    Topic,
+    /// What others stand in relation to: the table of "on the table".
+    Landmark,
+}
+
+/// A call for each phrase with its role, the outer before the inner.
+pub(super) type Visit<'a> = &'a mut dyn FnMut(&mut Phrase, Role);
+
+/// Predicates that compare two things of which none is the landmark of the other.
+const COMPARISONS: [&str; 7] = [
+    "larger_than",
+    "taller_than",
+    "wider_than",
+    "same_color",
+    "same_material",
+    "same_kind",
+    "identical",
+];
+
+impl Form {
+    /// Returns its noun phrases in the order of the text, the outer before the inner.
+    pub fn phrases(&self) -> Vec<Phrase> {
+        let mut found = Vec::new();
+        visit_form(&mut self.clone(), &mut |phrase, _| {
+            found.push(phrase.clone())
+        });
+        found
+    }
+
+    /// Returns the number of its descriptions with a comparison: "the cabinet larger than the table".
+    pub(crate) fn described_comparisons(&self) -> usize {
+        let mut number = 0;
+        visit_form(&mut self.clone(), &mut |phrase, _| {
+            if let Phrase::Described(own) = phrase {
+                let compares = |added: &&Modifier| COMPARISONS.contains(&added.predicate.as_str());
+                number += own.modifiers.iter().filter(compares).count();
+            }
+        });
+        number
+    }
+}
+
+pub(super) fn visit_form(form: &mut Form, visit: Visit<'_>) {
+    match form {
+        Form::Claim(clause) => visit_clause(clause, visit),
+        Form::Request(steps) => steps.iter_mut().for_each(|step| visit_step(step, visit)),
+        Form::Question(question) => visit_question(question, visit),
+        Form::NounPhrase(phrase) => visit_phrase(phrase, Role::Topic, visit),
+        Form::Several(forms) => forms.iter_mut().for_each(|form| visit_form(form, visit)),
+    }
+}
+
+fn visit_question(question: &mut Question, visit: Visit<'_>) {
+    match question {
+        Question::Whether(clause) => visit_clause(clause, visit),
+        Question::Alternatives(clauses) => {
+            clauses
+                .iter_mut()
+                .for_each(|clause| visit_clause(clause, visit));
+        }
+        Question::Which { kind, clause } => {
+            if let Some(kind) = kind {
+                visit_description(kind, visit);
+            }
+            visit_clause(clause, visit);
+        }
+        Question::HowMany(what) => visit_description(what, visit),
+        Question::Attribute { of, .. } => visit_phrase(of, Role::Topic, visit),
+    }
+}
+
+pub(super) fn visit_clause(clause: &mut Clause, visit: Visit<'_>) {
+    match clause {
+        Clause::Holds {
+            predicate,
+            arguments,
+        } => {
+            let is_comparison = COMPARISONS.contains(&predicate.as_str());
+            for (k, phrase) in arguments.iter_mut().enumerate() {
+                let role = if k == 0 || is_comparison {
+                    Role::Topic
+                } else {
+                    Role::Landmark
+                };
+                visit_phrase(phrase, role, visit);
+            }
+        }
+        Clause::Is {
+            subject: phrase, ..
+        }
+        | Clause::Exists(phrase)
+        | Clause::Area { room: phrase, .. }
+        | Clause::HasSurfaces { room: phrase, .. } => visit_phrase(phrase, Role::Topic, visit),
+        Clause::More { more, than } => {
+            visit_description(more, visit);
+            visit_description(than, visit);
+        }
+        Clause::Not(inner) => visit_clause(inner, visit),
+        Clause::All(clauses) | Clause::Any(clauses) => {
+            clauses
+                .iter_mut()
+                .for_each(|clause| visit_clause(clause, visit));
+        }
+    }
+}
+
+pub(super) fn visit_step(step: &mut RequestStep, visit: Visit<'_>) {
+    match step {
+        RequestStep::GoTo(phrase)
+        | RequestStep::Do { object: phrase, .. }
+        | RequestStep::DoNot { object: phrase, .. } => visit_phrase(phrase, Role::Topic, visit),
+        RequestStep::Put { object, to, .. } | RequestStep::Bring { object, to } => {
+            visit_phrase(object, Role::Topic, visit);
+            visit_phrase(to, Role::Landmark, visit);
+        }
+        RequestStep::If {
+            condition,
+            then,
+            otherwise,
+        } => {
+            visit_clause(condition, visit);
+            visit_step(then, visit);
+            if let Some(otherwise) = otherwise {
+                visit_step(otherwise, visit);
+            }
+        }
+    }
+}
+
+/// Visits a description that is no phrase of its own.
+fn visit_description(description: &mut Box<Description>, visit: Visit<'_>) {
+    let mut phrase = Phrase::Described(description.clone());
+    visit_phrase(&mut phrase, Role::Topic, visit);
+    if let Phrase::Described(visited) = phrase {
+        *description = visited;
+    }
+}
+
+fn visit_modifiers(modifiers: &mut [Modifier], visit: Visit<'_>) {
+    for modifier in modifiers {
+        for phrase in &mut modifier.arguments {
+            visit_phrase(phrase, Role::Landmark, visit);
+        }
+    }
+}
+
+pub(super) fn visit_phrase(phrase: &mut Phrase, role: Role, visit: Visit<'_>) {
+    visit(phrase, role);
+    match phrase {
+        Phrase::Described(description) => {
+            let reference = description.selection.as_mut();
+            if let Some(reference) = reference.and_then(|place| place.reference.as_deref_mut()) {
+                visit_phrase(reference, Role::Landmark, visit);
+            }
+            visit_modifiers(&mut description.modifiers, visit);
+        }
+        Phrase::List(items) => items
+            .iter_mut()
+            .for_each(|item| visit_phrase(item, role, visit)),
+        Phrase::Id(_) | Phrase::Listener | Phrase::Storey(_) | Phrase::Hole | Phrase::Pronoun => {}
+    }
+}

@@ -1,0 +1,137 @@
+//! Questions for those of several clauses that are true: forms to trees, and trees to forms.
+
+use super::from_tree::{holds, id};
+use super::phrases::{described, phrase};
+use super::questions::question;
+use super::several::{self, clause_of};
+use super::to_tree::TreeBuilder;
+use crate::form::{Clause, Description, Noun, Phrase, Question};
+use crate::grammar::Tree;
+
+/// The clauses of a tree that asks which is true; `None` for other trees.
+pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Vec<Clause>> {
+    Some(match (function, arguments) {
+        ("alternatives", [first, second]) => {
+            let mut all = whether(first)?;
+            all.extend(whether(second)?);
+            all
+        }
+        ("alternatives_of", [subject, one, other]) => {
+            let subject = phrase(subject)?;
+            let one = several::said(one)?;
+            let other = several::said(other)?;
+            vec![
+                clause_of(subject.clone(), (one, false)),
+                clause_of(subject, (other, false)),
+            ]
+        }
+        ("alternatives_landmark", [subject, relation, one, other]) => {
+            related(subject, [relation; 2], [one, other])?
+        }
+        ("alternatives_relation", [subject, one, other, landmark]) => {
+            related(subject, [one, other], [landmark; 2])?
+        }
+        ("alternatives_left_right", [subject, landmark]) => {
+            let (subject, landmark) = (phrase(subject)?, phrase(landmark)?);
+            let side = |name| holds(name, vec![subject.clone(), landmark.clone()]);
+            vec![side("left_of"), side("right_of")]
+        }
+        ("alternatives_subject", [kind, said, one, other]) => {
+            let kind = described(kind)?;
+            of_kind(&kind, said, [phrase(one)?, phrase(other)?])?
+        }
+        ("alternatives_bare", [said, one, other]) => {
+            subjects(said, [phrase(one)?, phrase(other)?])?
+        }
+        ("which_compared", [word, one, other]) => compared(word, one, other)?,
+        ("which_compared_less", [word, one, other]) => {
+            let mut clauses = compared(word, one, other)?;
+            // The smaller of two is the one that the other is larger than.
+            clauses.reverse();
+            clauses
+        }
+        ("which_closer_or", [subject, one, other]) => closer(subject, one, other)?,
+        ("which_is_closer", [reference, one, other]) => closer(reference, one, other)?,
+        _ => return None,
+    })
+}
+
+fn whether(tree: &Tree) -> Option<Vec<Clause>> {
+    match question(tree)? {
+        Question::Whether(clause) => Some(vec![clause]),
+        Question::Alternatives(clauses) => Some(clauses),
+        _ => None,
+    }
+}
+
+fn related(subject: &Tree, relations: [&Tree; 2], landmarks: [&Tree; 2]) -> Option<Vec<Clause>> {
+    let subject = phrase(subject)?;
+    let mut clauses = Vec::with_capacity(2);
+    for (relation, landmark) in relations.into_iter().zip(landmarks) {
+        clauses.push(holds(
+            &id(relation)?,
+            vec![subject.clone(), phrase(landmark)?],
+        ));
+    }
+    Some(clauses)
+}
+
+/// "Which door is open, the left one or the right one?" "One" is a door.
+fn of_kind(
+    kind: &Description,
+    said: &Tree,
+    mut subjects_named: [Phrase; 2],
+) -> Option<Vec<Clause>> {
+    for subject in &mut subjects_named {
+        if let Phrase::Described(own) = subject
+            && own.noun == Noun::SameNoun
+        {
+            own.noun.clone_from(&kind.noun);
+        }
+    }
+    subjects(said, subjects_named)
+}
+
+fn subjects(said: &Tree, subjects: [Phrase; 2]) -> Option<Vec<Clause>> {
+    let mut clauses = Vec::with_capacity(2);
+    for subject in subjects {
+        clauses.push(clause_of(subject, (several::said(said)?, false)));
+    }
+    Some(clauses)
+}
+
+fn compared(word: &Tree, one: &Tree, other: &Tree) -> Option<Vec<Clause>> {
+    let (name, one, other) = (id(word)?, phrase(one)?, phrase(other)?);
+    Some(vec![
+        holds(&name, vec![one.clone(), other.clone()]),
+        holds(&name, vec![other, one]),
+    ])
+}
+
+fn closer(subject: &Tree, one: &Tree, other: &Tree) -> Option<Vec<Clause>> {
+    let (subject, one, other) = (phrase(subject)?, phrase(one)?, phrase(other)?);
+    let to = |near: &Phrase, far: &Phrase| {
+        holds(
+            "closer_to",
+            vec![subject.clone(), near.clone(), far.clone()],
+        )
+    };
+    Some(vec![to(&one, &other), to(&other, &one)])
+}
+
+impl TreeBuilder<'_> {
+    /// "Is the cup on the table, or is the cup in the sink?"
+    pub(super) fn alternatives(&self, clauses: &[Clause]) -> Option<Tree> {
+        match clauses {
+            [first, second] => Some(Tree::apply(
+                "alternatives",
+                [self.whether(first)?, self.whether(second)?],
+            )),
+            [first, rest @ ..] if rest.len() > 1 => Some(Tree::apply(
+                "alternatives",
+                [self.whether(first)?, self.alternatives(rest)?],
+            )),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! Numbers compared: forms to trees, and trees to forms.
+
+use super::from_tree::number;
+use super::phrases::{described, modifier, phrase};
+use super::to_tree::TreeBuilder;
+use crate::form::{Clause, Description, Modifier, Phrase, Quantifier};
+use crate::grammar::Tree;
+
+/// More of one than of the other. What is said of the second alone is said of both: "more chairs than tables in the kitchen".
+pub(super) fn more(more: &Tree, than: &Tree) -> Option<Clause> {
+    let (mut more, than) = (described(more)?, described(than)?);
+    if more.modifiers.is_empty() {
+        more.modifiers.clone_from(&than.modifiers);
+    }
+    Some(clause(more, than))
+}
+
+fn clause(more: Description, than: Description) -> Clause {
+    Clause::More {
+        more: Box::new(more),
+        than: Box::new(than),
+    }
+}
+
+/// More of a kind in or on one thing than in or on another.
+pub(super) fn has_more(one: &Tree, what: &Tree, other: &Tree) -> Option<Clause> {
+    let what = described(what)?;
+    let within = |place: &Tree| {
+        let place = phrase(place)?;
+        Some(
+            what.clone()
+                .with_modifier(Modifier::new("belongs_to", [place])),
+        )
+    };
+    Some(clause(within(one)?, within(other)?))
+}
+
+/// More of a kind of which one modifier holds than of which another does.
+pub(super) fn more_where(what: &Tree, one: &Tree, other: &Tree) -> Option<Clause> {
+    let what = described(what)?;
+    let there = |place: &Tree| Some(what.clone().with_modifier(modifier(place)?));
+    Some(clause(there(one)?, there(other)?))
+}
+
+/// Equal numbers: more of neither.
+pub(super) fn as_many(one: &Tree, other: &Tree) -> Option<Clause> {
+    let not = |clause: Clause| Clause::Not(Box::new(clause));
+    Some(Clause::All(vec![
+        not(more(one, other)?),
+        not(more(other, one)?),
+    ]))
+}
+
+/// The clauses of "two or three chairs".
+pub(super) fn counts(one: &Tree, other: &Tree, what: &Tree) -> Option<Vec<Clause>> {
+    let exactly = |count: &Tree| {
+        let what = described(what)?;
+        let what = what.with_quantifier(Quantifier::Exactly(number(count)?));
+        Some(Clause::Exists(Phrase::from(what)))
+    };
+    Some(vec![exactly(one)?, exactly(other)?])
+}
+
+impl TreeBuilder<'_> {
+    /// The nouns of "more chairs than tables in the kitchen".
+    pub(super) fn compared(&self, more: &Description, than: &Description) -> Option<(Tree, Tree)> {
+        let plain = |description: &Description| {
+            description.quantifier == Quantifier::Some && description.selection.is_none()
+        };
+        if !plain(more) || !plain(than) {
+            return None;
+        }
+        let bare = Description {
+            modifiers: Vec::new(),
+            ..more.clone()
+        };
+        let first = match (&more.modifiers[..], &than.modifiers[..]) {
+            (own, other) if own == other => &bare,
+            ([], _) => return None,
+            _ => more,
+        };
+        Some((self.with_modifiers(first)?, self.with_modifiers(than)?))
+    }
+}

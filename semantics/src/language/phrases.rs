@@ -1,0 +1,312 @@
+//! Noun phrases: the meanings of the grammar's functions that make them.
+
+use super::from_tree::{id, number, parts, place_of, quality_of, room};
+use super::{existence, places, several};
+use crate::form::{Description, Modifier, Noun, Phrase, PlaceInOrder, Quantifier};
+use crate::grammar::Tree;
+use crate::size::SizeClass;
+
+pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
+    let (function, arguments) = parts(tree)?;
+    let of = |quantifier, noun: &Tree| -> Option<Phrase> {
+        Some(described(noun)?.with_quantifier(quantifier).into())
+    };
+    let selected =
+        |noun: &Tree, order: &Tree, place, reference: Option<Phrase>| -> Option<Phrase> {
+            let selection = PlaceInOrder {
+                order: id(order)?,
+                place,
+                reference: reference.map(Box::new),
+            };
+            let description = Description {
+                selection: Some(selection),
+                ..described(noun)?.with_quantifier(Quantifier::The)
+            };
+            Some(description.into())
+        };
+    let first_in = |noun: &Tree, order: &str| -> Option<Phrase> {
+        let selection = PlaceInOrder {
+            order: order.to_owned(),
+            place: 1,
+            reference: None,
+        };
+        let description = Description {
+            selection: Some(selection),
+            ..described(noun)?.with_quantifier(Quantifier::The)
+        };
+        Some(description.into())
+    };
+    let that = |quantifier, noun: &Tree, predicate: String, other: Phrase| -> Option<Phrase> {
+        let mut description = described(noun)?.with_quantifier(quantifier);
+        description.modifiers.push(Modifier {
+            negated: false,
+            predicate,
+            arguments: vec![other],
+        });
+        Some(description.into())
+    };
+    match (function, arguments) {
+        ("the" | "i_the", [noun]) => of(Quantifier::The, noun),
+        ("some" | "i_some", [noun]) => of(Quantifier::Some, noun),
+        ("every" | "i_every", [noun]) => of(Quantifier::Every, noun),
+        ("no", [noun]) => of(Quantifier::No, noun),
+        ("exactly_one", [noun]) => of(Quantifier::Exactly(1), noun),
+        ("exactly" | "i_exactly", [count, noun]) => of(Quantifier::Exactly(number(count)?), noun),
+        ("at_least_one", [noun]) => of(Quantifier::AtLeast(1), noun),
+        ("at_least", [count, noun]) => of(Quantifier::AtLeast(number(count)?), noun),
+        ("i_the_that" | "i_the_that_verb", [noun, relation, other]) => {
+            that(Quantifier::The, noun, id(relation)?, phrase(other)?)
+        }
+        ("i_some_that" | "i_some_that_verb", [noun, relation, other]) => {
+            that(Quantifier::Some, noun, id(relation)?, phrase(other)?)
+        }
+        ("i_the_that_place", [noun, place]) => {
+            let (predicate, place) = place_of(place)?;
+            that(Quantifier::The, noun, predicate, place)
+        }
+        ("i_some_that_place", [noun, place]) => {
+            let (predicate, place) = place_of(place)?;
+            that(Quantifier::Some, noun, predicate, place)
+        }
+        ("nth" | "i_nth", [place, noun, order])
+        | ("nth_superlative" | "i_nth_superlative", [place, order, noun]) => {
+            selected(noun, order, number(place)?, None)
+        }
+        ("superlative" | "i_superlative", [order, noun]) => selected(noun, order, 1, None),
+        ("selected_to" | "i_selected_to", [noun, order, reference]) => {
+            selected(noun, order, 1, Some(phrase(reference)?))
+        }
+        ("by_id" | "i_by_id", [own]) => Some(Phrase::Id(number(own)?)),
+        ("you" | "i_you", []) => Some(Phrase::Listener),
+        ("it" | "i_it", []) => Some(Phrase::Pronoun),
+        ("structure_np" | "i_structure", [noun]) => places::structure(noun, None),
+        ("structure_at" | "i_structure_at", [noun, side])
+        | ("structure_flank" | "i_structure_flank", [side, noun]) => {
+            places::structure(noun, Some(places::side_from_tree(side)?))
+        }
+        ("structure_of" | "i_structure_of", [noun, place]) => {
+            places::structure(noun, Some(Modifier::new("in_room", [room(place)?])))
+        }
+        ("structure_in" | "i_structure_in", [place, noun]) => {
+            let room = Description::new(Quantifier::The, Noun::Room(id(place)?));
+            places::structure(noun, Some(Modifier::new("in_room", [room.into()])))
+        }
+        ("some_same" | "i_some_same" | "one_same", []) => named_before(Quantifier::Some, function),
+        ("every_same", []) => named_before(Quantifier::Every, function),
+        ("no_same", []) => named_before(Quantifier::No, function),
+        ("others", [count]) => {
+            let others = Description::new(Quantifier::Exactly(number(count)?), Noun::SameNoun);
+            Some(others.into())
+        }
+        ("one_colored", [color]) => {
+            let mut own = Description::new(Quantifier::Some, Noun::SameNoun);
+            own.colors.push(id(color)?);
+            Some(own.into())
+        }
+        ("exactly_same", [count]) => named_before(Quantifier::Exactly(number(count)?), function),
+        ("np_nothing" | "np_something", [inner]) => nothing(inner).map(Phrase::from),
+        ("at_least_two" | "i_at_least_two", [noun]) => of(Quantifier::AtLeast(2), noun),
+        ("i_something", []) => {
+            let noun = Noun::Object(Noun::ANY_OBJECT.to_owned());
+            Some(Description::new(Quantifier::Some, noun).into())
+        }
+        ("i_something_quality", [quality]) => {
+            let noun = Noun::Object(Noun::ANY_OBJECT.to_owned());
+            let mut own = Description::new(Quantifier::Some, noun);
+            several::add_quality(&mut own, quality_of(quality)?)?;
+            Some(own.into())
+        }
+        ("nth_left" | "i_nth_left", [noun]) => first_in(noun, "from_left"),
+        ("nth_right" | "i_nth_right", [noun]) => first_in(noun, "from_right"),
+        ("i_with", [noun, added]) => {
+            let noun = described(noun)?.with_quantifier(Quantifier::The);
+            Some(noun.with_modifier(modifier(added)?).into())
+        }
+        ("i_some_with", [noun, added]) => {
+            Some(described(noun)?.with_modifier(modifier(added)?).into())
+        }
+        _ => None,
+    }
+}
+
+/// Things that were named before: "one" by their noun, "one of them" by all that was said of them.
+fn named_before(quantifier: Quantifier, function: &str) -> Option<Phrase> {
+    let noun = match function {
+        "some_same" | "i_some_same" => Noun::SameNoun,
+        _ => Noun::SameThings,
+    };
+    Some(Description::new(quantifier, noun).into())
+}
+
+fn nothing(tree: &Tree) -> Option<Description> {
+    match parts(tree)? {
+        ("nothing", []) => {
+            let noun = Noun::Object(Noun::ANY_OBJECT.to_owned());
+            Some(Description::new(Quantifier::No, noun))
+        }
+        ("something", []) => {
+            let noun = Noun::Object(Noun::ANY_OBJECT.to_owned());
+            Some(Description::new(Quantifier::Some, noun))
+        }
+        ("nothing_with" | "something_with", [inner, added]) => {
+            Some(nothing(inner)?.with_modifier(modifier(added)?))
+        }
+        ("nothing_quality" | "something_quality", [inner, quality]) => {
+            let mut description = nothing(inner)?;
+            several::add_quality(&mut description, quality_of(quality)?)?;
+            Some(description)
+        }
+        _ => None,
+    }
+}
+
+/// Returns whether a noun names doors and archways, which lead from room to room.
+fn is_way(noun: &Noun) -> bool {
+    let ways = ["door", "arch", "archway", "doorway", "gate", "thing"];
+    matches!(noun, Noun::Object(noun) if ways.iter().any(|way| noun.ends_with(way)))
+}
+
+/// The description of a noun with its adjectives and modifiers; the caller sets its quantifier.
+pub(super) fn described(tree: &Tree) -> Option<Description> {
+    let (function, arguments) = parts(tree)?;
+    let plain = |noun: String| Description::new(Quantifier::Some, Noun::Object(noun));
+    Some(match (function, arguments) {
+        ("plain", [inner]) => described(inner)?,
+        ("with" | "but_not", [noun, added]) => {
+            let mut description = described(noun)?;
+            let added = modifier(added)?;
+            if added.predicate.starts_with("leads_") && !is_way(&description.noun) {
+                return None;
+            }
+            description.modifiers.push(Modifier {
+                negated: function == "but_not",
+                ..added
+            });
+            description
+        }
+        ("noun" | "tail", [word]) => plain(id(word)?),
+        ("same_noun", []) => Description::new(Quantifier::Some, Noun::SameNoun),
+        ("gathered", [head, tail]) => {
+            let mut description = described(tail)?;
+            let Noun::Object(tail) = &description.noun else {
+                return None;
+            };
+            description.noun = Noun::Object(format!("{} of {tail}", id(head)?));
+            description
+        }
+        ("room_compound", [room, noun]) => {
+            let (room, noun) = (id(room)?, id(noun)?);
+            // "The balcony door" leads there, "the kitchen table" stands there.
+            let predicate = if noun.ends_with("door") {
+                "leads_to"
+            } else {
+                "in_room"
+            };
+            let room = Description::new(Quantifier::The, Noun::Room(room));
+            plain(noun).with_modifier(Modifier::new(predicate, [room.into()]))
+        }
+        ("color" | "color_tail", [word, inner]) => {
+            let mut description = described(inner)?;
+            description.colors.insert(0, id(word)?);
+            (description.colors.len() == 1).then_some(description)?
+        }
+        ("two_colors" | "two_colors_tail", [one, two, inner]) => {
+            let mut description = described(inner)?;
+            if !description.colors.is_empty() {
+                return None;
+            }
+            description.colors = vec![id(one)?, id(two)?];
+            description
+        }
+        ("material" | "material_tail", [word, inner]) => {
+            let mut description = described(inner)?;
+            let before = description.material.replace(id(word)?);
+            before.is_none().then_some(description)?
+        }
+        ("size" | "size_tail", [word, inner]) => {
+            let mut description = described(inner)?;
+            let before = description.size.replace(size(word)?);
+            before.is_none().then_some(description)?
+        }
+        ("state", [word, inner]) => {
+            let mut description = described(inner)?;
+            let before = description.state.replace(id(word)?);
+            before.is_none().then_some(description)?
+        }
+        _ => return None,
+    })
+}
+
+pub(super) fn modifier(tree: &Tree) -> Option<Modifier> {
+    let (predicate, arguments) = match parts(tree)? {
+        ("modifier_state", [state]) => (id(state)?, Vec::new()),
+        ("modifier_state_not", [state]) => {
+            return Some(Modifier {
+                negated: true,
+                ..Modifier::new(&id(state)?, [])
+            });
+        }
+        ("modifier_carries_list", [load]) => (
+            "supports".to_owned(),
+            vec![existence::items_from_tree(load)?],
+        ),
+        ("modifier_holds_inside_list", [content]) => (
+            "contains".to_owned(),
+            vec![existence::items_from_tree(content)?],
+        ),
+        ("modifier_of_room", [place]) => ("in_room".to_owned(), vec![room(place)?]),
+        ("modifier_source" | "modifier_of", [source]) => {
+            ("belongs_to".to_owned(), vec![phrase(source)?])
+        }
+        ("modifier_carries", [load]) => ("supports".to_owned(), vec![phrase(load)?]),
+        ("modifier_holds_inside", [content]) => ("contains".to_owned(), vec![phrase(content)?]),
+        ("modifier_with", [content]) => ("has".to_owned(), vec![phrase(content)?]),
+        ("modifier_without", [content]) => {
+            return Some(Modifier {
+                negated: true,
+                ..Modifier::new("has", [described(content)?.into()])
+            });
+        }
+        ("modifier_closer", [near, far]) => {
+            ("closer_to".to_owned(), vec![phrase(near)?, phrase(far)?])
+        }
+        ("modifier" | "modifier_verb", [word, other]) => {
+            let other = phrase(other)?;
+            let thing: Phrase =
+                Description::new(Quantifier::Some, Noun::Object(Noun::ANY_OBJECT.to_owned()))
+                    .into();
+            (relation_to(id(word)?, &thing, &other), vec![other])
+        }
+        ("modifier_between", [a, b]) => ("between".to_owned(), vec![phrase(a)?, phrase(b)?]),
+        ("modifier_place", [place]) => {
+            let (predicate, place) = place_of(place)?;
+            (predicate, vec![place])
+        }
+        (function, arguments) => return places::modifier_from_tree(function, arguments),
+    };
+    Some(Modifier {
+        negated: false,
+        predicate,
+        arguments,
+    })
+}
+
+/// The predicate of a relation word between two things: what is on a wall hangs there, and a thing that "holds" another has it.
+pub(super) fn relation_to(word: String, subject: &Phrase, landmark: &Phrase) -> String {
+    let hung = |own: &Description| match &own.noun {
+        Noun::Structure(noun) => noun == "wall" || noun == "ceiling",
+        _ => false,
+    };
+    match (word.as_str(), subject, landmark) {
+        ("on", _, Phrase::Described(own)) if hung(own) => "hangs_on".to_owned(),
+        ("holds", Phrase::Described(_), _) => "has".to_owned(),
+        _ => word,
+    }
+}
+
+pub(super) fn size(tree: &Tree) -> Option<SizeClass> {
+    let word = id(tree)?;
+    SizeClass::ALL
+        .into_iter()
+        .find(|size| size.word() == Some(&word))
+}

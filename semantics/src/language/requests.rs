@@ -1,0 +1,242 @@
+//! Requests: forms to trees, and trees to forms.
+
+use super::from_tree::{id, parts, place_of, room, simple};
+use super::lexicon::{RELATION, VERB};
+use super::phrases::phrase;
+use super::places;
+use super::to_tree::{Position, TreeBuilder};
+use crate::form::{Clause, Modifier, Phrase, RequestStep};
+use crate::grammar::Tree;
+
+pub(super) fn plan(tree: &Tree) -> Option<Vec<RequestStep>> {
+    Some(match parts(tree)? {
+        ("one_step", [only]) => vec![step(only)?],
+        ("unless", [condition, then]) => {
+            vec![conditional(
+                Clause::Not(Box::new(simple(condition)?)),
+                then,
+                None,
+            )?]
+        }
+        ("if", [condition, then]) => vec![conditional(simple(condition)?, then, None)?],
+        ("if_else", [condition, then, otherwise]) => {
+            vec![conditional(simple(condition)?, then, Some(otherwise))?]
+        }
+        ("then" | "steps", [first, rest]) => {
+            let mut steps = vec![step(first)?];
+            steps.extend(plan(rest)?);
+            steps
+        }
+        ("do_rather", [verb, object, other]) => {
+            let (verb, object) = (id(verb)?, phrase(object)?);
+            let not = RequestStep::DoNot {
+                verb: verb.clone(),
+                object: phrase(other)?,
+            };
+            vec![RequestStep::Do { verb, object }, not]
+        }
+        ("do_two", [verb, one, other]) => vec![act(verb, one)?, act(verb, other)?],
+        ("do_two_then", [verb, one, other, rest]) => {
+            let mut steps = vec![act(verb, one)?, act(verb, other)?];
+            steps.extend(plan(rest)?);
+            steps
+        }
+        ("put_both", [object, one, first, other, second]) => {
+            vec![put(object, one, first)?, put(object, other, second)?]
+        }
+        ("put_both_structure", [object, one, structure, other, second]) => {
+            let floor = RequestStep::Put {
+                object: phrase(object)?,
+                predicate: id(one)?,
+                to: places::structure(structure, None)?,
+            };
+            vec![floor, put(object, other, second)?]
+        }
+        ("put_two", [one, first, to, other, second, there]) => {
+            vec![put(one, first, to)?, put(other, second, there)?]
+        }
+        ("without_touching", [first, object]) => {
+            let not = RequestStep::DoNot {
+                verb: "touch".to_owned(),
+                object: phrase(object)?,
+            };
+            vec![step(first)?, not]
+        }
+        ("go_along", [along, to]) => {
+            let to = RequestStep::Do {
+                verb: "approach".to_owned(),
+                object: phrase(to)?,
+            };
+            vec![RequestStep::GoTo(room(along)?), to]
+        }
+        ("go_around_to", [around, to]) => {
+            let step = |verb: &str, object: &Tree| {
+                Some(RequestStep::Do {
+                    verb: verb.to_owned(),
+                    object: phrase(object)?,
+                })
+            };
+            vec![step("go_around", around)?, step("approach", to)?]
+        }
+        ("go_through", [to, way]) => {
+            let way = RequestStep::Do {
+                verb: "go_through".to_owned(),
+                object: phrase(way)?,
+            };
+            vec![way, RequestStep::GoTo(room(to)?)]
+        }
+        _ => return None,
+    })
+}
+
+fn act(verb: &Tree, object: &Tree) -> Option<RequestStep> {
+    Some(RequestStep::Do {
+        verb: id(verb)?,
+        object: phrase(object)?,
+    })
+}
+
+fn put(object: &Tree, relation: &Tree, to: &Tree) -> Option<RequestStep> {
+    Some(RequestStep::Put {
+        object: phrase(object)?,
+        predicate: id(relation)?,
+        to: phrase(to)?,
+    })
+}
+
+fn conditional(condition: Clause, then: &Tree, otherwise: Option<&Tree>) -> Option<RequestStep> {
+    let otherwise = match otherwise {
+        Some(otherwise) => Some(Box::new(step(otherwise)?)),
+        None => None,
+    };
+    Some(RequestStep::If {
+        condition,
+        then: Box::new(step(then)?),
+        otherwise,
+    })
+}
+
+fn step(tree: &Tree) -> Option<RequestStep> {
+    let verb_of = |verb: &str, object: &Tree| {
+        Some(RequestStep::Do {
+            verb: verb.to_owned(),
+            object: phrase(object)?,
+        })
+    };
+    Some(match parts(tree)? {
+        ("go_to", [to]) => RequestStep::GoTo(room(to)?),
+        ("do_from_room", [verb, object, from]) => {
+            let Phrase::Described(description) = phrase(object)? else {
+                return None;
+            };
+            let in_room = Modifier::new("in_room", [room(from)?]);
+            RequestStep::Do {
+                verb: id(verb)?,
+                object: description.with_modifier(in_room).into(),
+            }
+        }
+        ("leave", [object]) => RequestStep::DoNot {
+            verb: "pick_up".to_owned(),
+            object: phrase(object)?,
+        },
+        ("leave_state", [object, state]) => {
+            let verb = match id(state)?.as_str() {
+                "open" | "half_open" => "close",
+                "closed" => "open",
+                "switched_on" => "switch_off",
+                "switched_off" => "switch_on",
+                _ => return None,
+            };
+            RequestStep::DoNot {
+                verb: verb.to_owned(),
+                object: phrase(object)?,
+            }
+        }
+        ("do_on", [object]) => verb_of("switch_on", object)?,
+        ("do_off", [object]) => verb_of("switch_off", object)?,
+        ("do_pick_up", [object]) => verb_of("pick_up", object)?,
+        ("do_drop", [object]) => verb_of("drop", object)?,
+        ("do_bring_here", [object]) => verb_of("bring_me", object)?,
+        ("do_bring_me", [object]) => verb_of("bring_me", object)?,
+        ("do", [verb, object]) => act(verb, object)?,
+        ("do_not", [verb, object]) => RequestStep::DoNot {
+            verb: id(verb)?,
+            object: phrase(object)?,
+        },
+        ("put" | "put_modified", [object, relation, to]) => put(object, relation, to)?,
+        ("put_in_place" | "put_modified_in_place", [object, place]) => {
+            let (predicate, to) = place_of(place)?;
+            RequestStep::Put {
+                object: phrase(object)?,
+                predicate,
+                to,
+            }
+        }
+        ("bring", [object, to]) => RequestStep::Bring {
+            object: phrase(object)?,
+            to: phrase(to)?,
+        },
+        ("bring_to_place", [object, to]) => RequestStep::Bring {
+            object: phrase(object)?,
+            to: room(to)?,
+        },
+        _ => return None,
+    })
+}
+
+impl TreeBuilder<'_> {
+    pub(super) fn plan(&self, steps: &[RequestStep]) -> Option<Tree> {
+        Some(match steps {
+            [] => return None,
+            [
+                RequestStep::If {
+                    condition,
+                    then,
+                    otherwise,
+                },
+            ] => {
+                let (condition, then) = (self.simple(condition)?, self.step(then)?);
+                match otherwise {
+                    None => Tree::apply("if", [condition, then]),
+                    Some(otherwise) => {
+                        Tree::apply("if_else", [condition, then, self.step(otherwise)?])
+                    }
+                }
+            }
+            [only] => Tree::apply("one_step", [self.step(only)?]),
+            [first, rest @ ..] => Tree::apply("then", [self.step(first)?, self.plan(rest)?]),
+        })
+    }
+
+    fn step(&self, step: &RequestStep) -> Option<Tree> {
+        let free = |phrase: &Phrase| self.phrase(phrase, Position::Free);
+        Some(match step {
+            RequestStep::GoTo(room) => Tree::apply("go_to", [self.room(room)?]),
+            RequestStep::Do { verb, object } => {
+                Tree::apply("do", [self.known(VERB, verb)?, free(object)?])
+            }
+            RequestStep::DoNot { verb, object } => {
+                Tree::apply("do_not", [self.known(VERB, verb)?, free(object)?])
+            }
+            RequestStep::Put {
+                object,
+                predicate,
+                to,
+            } => {
+                let object = self.phrase(object, Position::Landmark)?;
+                if predicate == "in_room" {
+                    Tree::apply("put_in_place", [object, self.place(to)?])
+                } else {
+                    let relation = self.known(RELATION, predicate)?;
+                    Tree::apply("put", [object, relation, free(to)?])
+                }
+            }
+            // A condition has commas of its own: it stands alone or at the end.
+            RequestStep::If { .. } => return None,
+            RequestStep::Bring { object, to } => match self.room(to) {
+                Some(room) => Tree::apply("bring_to_place", [free(object)?, room]),
+                None => Tree::apply("bring", [free(object)?, free(to)?]),
+            },
+        })
+    }
+}

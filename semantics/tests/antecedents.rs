@@ -1,0 +1,161 @@
+//! What stands for things that were named before: "it", "one", "both of them".
+#![allow(clippy::unwrap_used, reason = "tests stop at the first surprise")]
+
+use dwell_semantics::form::{Description, Form, Noun, Phrase, RequestStep};
+use dwell_semantics::language::{Language, ReadError};
+
+fn preferred(text: &str) -> Form {
+    let mut reading = Language::english()
+        .read(text)
+        .unwrap_or_else(|error| panic!("{text}: {error}"));
+    reading.forms.remove(0)
+}
+
+fn said(text: &str) -> String {
+    let said = Language::english().say(&preferred(text), None);
+    said.unwrap_or_else(|| panic!("{text}: {:?}", preferred(text)))
+        .text
+}
+
+#[test]
+fn one_has_the_noun_of_a_thing_in_the_same_role() {
+    for (text, meant) in [
+        (
+            "Take the red cup and not the blue one.",
+            "Pick up the red cup, then do not pick up the blue cup.",
+        ),
+        (
+            "Is the chair near the door larger than the one near the bed?",
+            "Is the chair near the door larger than the chair near the bed?",
+        ),
+        (
+            "There are more red chairs than blue ones.",
+            "There are more red chairs than blue chairs.",
+        ),
+        (
+            "Which door is open, the left one or the right one?",
+            "Is the first door from the left open, or is the first door from the right open?",
+        ),
+        (
+            "If there is no towel on the rail, get one.",
+            "If there is no towel on the rail, pick up a towel.",
+        ),
+        (
+            "There are two mats in the bathroom, a gray one and an orange one.",
+            "There are two mats in the bathroom, there is a gray mat, and there is an orange mat.",
+        ),
+    ] {
+        assert_eq!(said(text), meant, "{text}");
+    }
+    // A landmark after a landmark: the second shelf, not a second plant.
+    let Form::Request(steps) =
+        preferred("Take the plant from the lowest shelf and put it on the highest one.")
+    else {
+        panic!("no request");
+    };
+    let RequestStep::Put { object, to, .. } = &steps[1] else {
+        panic!("{steps:?}");
+    };
+    assert_eq!(noun_of(object), "plant");
+    assert_eq!(noun_of(to), "shelf");
+}
+
+fn noun_of(phrase: &Phrase) -> &str {
+    match phrase {
+        Phrase::Described(own) => match &own.noun {
+            Noun::Object(noun) => noun,
+            other => panic!("{other:?}"),
+        },
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn it_is_the_last_thing_that_the_verb_suits() {
+    for (text, meant) in [
+        (
+            "Open the fridge, take the bottle and close it.",
+            "Open the fridge, then pick up the bottle, then close the fridge.",
+        ),
+        (
+            "Open the wardrobe next to the bed, get a pillow and put it on the bed.",
+            "Open the wardrobe next to the bed, then pick up a pillow, then put a pillow on the bed.",
+        ),
+        (
+            "Close the door if it is open.",
+            "If the door is open, close the door.",
+        ),
+        (
+            "Are there books on the shelf or is it empty?",
+            "Are there at least two books on the shelf, or is the shelf empty?",
+        ),
+        (
+            "Is the cooker under the hood or next to it?",
+            "Is the cooker under the hood, or is the cooker next to the hood?",
+        ),
+        (
+            "Find the coffee machine and tell me whether it's on.",
+            "Find the coffee machine, then tell me whether the coffee machine is on.",
+        ),
+        (
+            "The television is larger than the TV stand that supports it.",
+            "The television is larger than the TV stand that supports the television.",
+        ),
+        (
+            "There are two chairs near the bed and both are red.",
+            "There are two chairs near the bed, and every chair near the bed is red.",
+        ),
+    ] {
+        assert_eq!(said(text), meant, "{text}");
+    }
+    // Every other thing is a further reading.
+    let forms = Language::english()
+        .read("Open the fridge, take the bottle and close it.")
+        .unwrap()
+        .forms;
+    let closes = |form: &Form, noun: &str| match form {
+        Form::Request(steps) => matches!(
+            &steps[2],
+            RequestStep::Do { object, .. } if noun_of(object) == noun
+        ),
+        _ => false,
+    };
+    assert!(forms.iter().any(|form| closes(form, "bottle")), "{forms:?}");
+}
+
+#[test]
+fn a_sentence_may_say_it_of_the_one_before() {
+    let english = Language::english();
+    let texts = |text: &str| {
+        let read = english.read_text(text).unwrap();
+        let texts = read
+            .iter()
+            .map(|one| english.say(&one.forms[0], None).unwrap().text);
+        texts.collect::<Vec<_>>()
+    };
+    assert_eq!(
+        texts("Find the red cup. Pick it up. The blue one is in the sink."),
+        [
+            "Find the red cup.",
+            "Pick up the red cup.",
+            "The blue cup is in the sink."
+        ]
+    );
+    assert_eq!(
+        texts("There is a red chair in the hall. It is near the blue one.")[1],
+        "A red chair in the hall is near the blue chair."
+    );
+}
+
+#[test]
+fn what_nothing_stands_for_stays() {
+    for text in [
+        "The red one is on the table.",
+        "It is red.",
+        "Both of them are open.",
+    ] {
+        assert!(!preferred(text).is_complete(), "{text}");
+        let error = Language::english().read_text(text).unwrap_err();
+        assert_eq!(error.error, ReadError::NoAntecedent, "{text}");
+    }
+}
