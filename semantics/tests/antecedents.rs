@@ -159,3 +159,15 @@ fn what_nothing_stands_for_stays() {
         assert_eq!(error.error, ReadError::NoAntecedent, "{text}");
     }
 }
+
+#[test]
+fn nothing_stands_for_itself() {
+    for text in [
+        "The chair next to it is larger than the table near it.",
+        "Put the cup next to it on the tray next to it and take it.",
+        "The red one next to it is near the blue one next to it.",
+        "It is on it, it is on it, and it is on it.",
+    ] {
+        assert!(!preferred(text).phrases().is_empty(), "{text}");
+    }
+}

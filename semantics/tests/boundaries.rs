@@ -421,3 +421,80 @@ fn a_thing_hangs_on_one_mount_and_doors_and_windows_are_set_in_walls() {
             .is_true()
     );
 }
+
+#[test]
+fn closer_differs_from_a_tenth() {
+    let closer = |near: f32, far: f32| {
+        let mut stage = Stage::new();
+        let thing = stage.block("box", [3.0, 0.0, 2.0], [0.4, 0.4, 0.4]);
+        let left = stage.block("box", [2.6 - near, 0.0, 2.0], [0.4, 0.4, 0.4]);
+        let right = stage.block("box", [3.4 + far, 0.0, 2.0], [0.4, 0.4, 0.4]);
+        let terms = [thing, left, right].map(Term::Object);
+        let asked = stage.ask();
+        let [a, b, c] = terms;
+        assert!(!asked.truth("closer_to", &[a, c, b]).is_true());
+        assert!(!asked.truth("closer_to", &[a, a, b]).is_true());
+        asked.truth("closer_to", &[a, b, c]).is_true()
+    };
+    assert!(closer(1.0, 1.11) && !closer(1.0, 1.09));
+    assert!(closer(0.0, 0.1) && !closer(0.0, 0.0), "contact");
+}
+
+#[test]
+fn the_end_of_a_room_is_the_quarter_far_from_the_viewer() {
+    let mut stage = Stage::new();
+    let room = Term::Room(stage.room);
+    // The room is 8 m long; its last quarters begin at 2 m and 6 m.
+    let ids = [1.95, 2.05, 5.95, 6.05].map(|x| {
+        let id = stage.block("box", [x - 0.1, 0.0, 3.0], [0.2, 0.4, 0.2]);
+        Term::Object(id)
+    });
+    let mut asked = stage.ask();
+    let ends = |asked: &Asked| ids.map(|id| asked.truth("at_end_of", &[id, room]).is_true());
+    assert_eq!(ends(&asked), [true, false, false, true]);
+    asked.look([1.0, 1.5, 3.0], 0.0);
+    assert_eq!(ends(&asked), [false, false, false, true]);
+    asked.look([7.0, 1.5, 3.0], 0.0);
+    assert_eq!(ends(&asked), [true, false, false, false]);
+}
+
+#[test]
+fn a_thing_has_what_is_on_it_and_in_it() {
+    let mut stage = Stage::new();
+    let table = stage.block("table", [2.0, 0.0, 2.0], [1.0, 0.7, 1.0]);
+    let cup = stage.block("cup", [2.4, 0.7, 2.4], [0.1, 0.1, 0.1]);
+    let chair = stage.block("chair", [3.2, 0.0, 2.2], [0.5, 0.9, 0.5]);
+    let asked = stage.ask();
+    assert!(asked.holds("has", table, cup) && asked.holds("belongs_to", cup, table));
+    assert!(!asked.holds("has", cup, table) && !asked.holds("belongs_to", table, cup));
+    assert!(!asked.holds("has", table, chair) && !asked.holds("belongs_to", chair, table));
+}
+
+#[test]
+fn walls_hide_a_room_from_another() {
+    let house = common::small_house().house;
+    let (semantics, state) = (Semantics::new(&house), State::new(&house));
+    let scene = semantics.scene(&state);
+    let predicate = find("visible_from_room").expect("it exists");
+    let mut both = [0, 0];
+    for room in house.rooms.ids() {
+        for id in house.objects.ids() {
+            let seen = predicate.holds(&scene, &[Term::Object(id), Term::Room(room)], None);
+            let own = scene.room_of(id) == Some(room);
+            // What stands in the open is seen from its own room.
+            if own && !semantics.facts(id).noun.contains("cup") {
+                both[usize::from(seen.is_true())] += 1;
+            }
+        }
+        let itself = predicate.holds(&scene, &[Term::Room(room), Term::Room(room)], None);
+        assert!(itself.is_true());
+    }
+    assert!(both[1] > 5 * both[0], "{both:?}");
+    let rooms: Vec<Term> = house.rooms.ids().map(Term::Room).collect();
+    for a in &rooms {
+        for b in &rooms {
+            let [to, back] = [[*a, *b], [*b, *a]].map(|pair| predicate.holds(&scene, &pair, None));
+            assert_eq!(to, back, "{a:?} {b:?}");
+        }
+    }
+}

@@ -1,6 +1,7 @@
 //! The colours of a thing.
 
 use super::{ColorVocabulary, Oklab};
+use dwell_scene::parallel::Threads;
 use dwell_scene::units::linear_from_srgb;
 use dwell_scene::{House, IdVec, MaterialId, Texture, TextureId};
 
@@ -29,15 +30,16 @@ pub(crate) struct MaterialColors {
 /// The colours of every material of a house. Shape (material,).
 pub(crate) fn paints(house: &House) -> IdVec<MaterialId, MaterialColors> {
     let decoded = decoded();
-    let means: IdVec<TextureId, [f32; 3]> = house
-        .textures
-        .iter()
-        .map(|texture| texture.mean_linear())
-        .collect();
-    house
-        .materials
-        .iter()
-        .map(|material| {
+    let threads = Threads::resolve(None);
+    // Many textures are painted when first asked for their pixels, here.
+    let textures = house.textures.as_slice();
+    let means: IdVec<TextureId, [f32; 3]> = threads
+        .map(textures.len(), |k| textures[k].mean_linear())
+        .into();
+    let materials = house.materials.as_slice();
+    threads
+        .map(materials.len(), |k| {
+            let material = &materials[k];
             let base = material.base_color;
             let Some(texture) = material.texture else {
                 return MaterialColors {
@@ -51,7 +53,7 @@ pub(crate) fn paints(house: &House) -> IdVec<MaterialId, MaterialColors> {
                 dominant: dominant(&house.textures[texture], base, &decoded),
             }
         })
-        .collect()
+        .into()
 }
 
 /// The mean of the sort of colour that at least [`DOMINANT_SHARE`] of an image has, times `base`.

@@ -50,7 +50,10 @@ impl Form {
     pub fn readings_after(&self, before: Option<&Self>) -> Vec<Self> {
         let mut forms = Vec::new();
         let mut open = vec![Vec::new()];
-        while let Some(choices) = open.pop() {
+        for _ in 0..MAX_TRIES {
+            let Some(choices) = open.pop() else {
+                break;
+            };
             let mut form = self.clone();
             let mut resolver = Resolver::after(before, choices);
             resolver.form(&mut form);
@@ -102,6 +105,8 @@ impl Form {
 
 /// Largest number of meanings of a sentence that are kept.
 const MAX_MEANINGS: usize = 8;
+/// Largest number of choices of antecedents that are tried.
+const MAX_TRIES: usize = 64;
 
 /// A thing that was named.
 struct Mention {
@@ -254,7 +259,12 @@ impl Resolver {
                     .iter()
                     .rev()
                     .find_map(|mention| match &mention.phrase {
-                        Phrase::Described(named) if mention.role == Role::Topic => Some(named),
+                        Phrase::Described(named)
+                            if mention.role == Role::Topic
+                                && Form::NounPhrase(mention.phrase.clone()).is_complete() =>
+                        {
+                            Some(named)
+                        }
                         _ => None,
                     });
                 if let Some(named) = same {
@@ -284,6 +294,13 @@ impl Resolver {
 
     /// The things that "it" may stand for, the preferred one first.
     fn candidates(&self, verb: Option<&str>) -> Vec<Phrase> {
+        let mut found = self.named_before(verb);
+        // What stands for something itself is no antecedent.
+        found.retain(|phrase| Form::NounPhrase(phrase.clone()).is_complete());
+        found
+    }
+
+    fn named_before(&self, verb: Option<&str>) -> Vec<Phrase> {
         if let Some(subject) = &self.subject {
             return vec![subject.clone()];
         }

@@ -15,7 +15,8 @@ pub(super) enum Role {
 pub(super) type Visit<'a> = &'a mut dyn FnMut(&mut Phrase, Role);
 
 /// Predicates that compare two things of which none is the landmark of the other.
-const COMPARISONS: [&str; 7] = [
+const COMPARISONS: [&str; 8] = [
+    "closer_to",
     "larger_than",
     "taller_than",
     "wider_than",

@@ -31,7 +31,7 @@ pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Vec<Clause
         ("alternatives_relation", [subject, one, other, landmark]) => {
             related(subject, [one, other], [landmark; 2])?
         }
-        ("alternatives_left_right", [subject, landmark]) => {
+        ("alternatives_left_right" | "alternatives_stand", [subject, landmark]) => {
             let (subject, landmark) = (phrase(subject)?, phrase(landmark)?);
             let side = |name| holds(name, vec![subject.clone(), landmark.clone()]);
             vec![side("left_of"), side("right_of")]

@@ -106,6 +106,10 @@ pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
             "closer_to",
             vec![phrase(subject)?, phrase(near)?, phrase(far)?],
         ),
+        ("closer_than" | "whether_closer_than", [subject, reference, other]) => holds(
+            "closer_to",
+            vec![phrase(reference)?, phrase(subject)?, phrase(other)?],
+        ),
         ("see_room_from" | "whether_see_room_from", [from, to]) => {
             holds("visible_from_room", vec![room(to)?, room(from)?])
         }
@@ -191,6 +195,10 @@ pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
             is(phrase(one)?, quality)?,
             is(phrase(other)?, quality)?,
         ]),
+        ("is_but_not", [one, quality, other]) => Clause::All(vec![
+            is(phrase(one)?, quality)?,
+            Clause::Not(Box::new(is(phrase(other)?, quality)?)),
+        ]),
         ("but_is", [one, quality, other]) => Clause::All(vec![
             Clause::Not(Box::new(is(phrase(one)?, quality)?)),
             is(phrase(other)?, quality)?,
@@ -202,6 +210,10 @@ pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
         ("same_color_all" | "whether_same_color_all", [noun]) => {
             let all: Phrase = described(noun)?.with_quantifier(Quantifier::Every).into();
             holds("same_color", vec![all.clone(), all])
+        }
+        ("same_material_all" | "whether_same_material_all", [noun]) => {
+            let all: Phrase = described(noun)?.with_quantifier(Quantifier::Every).into();
+            holds("same_material", vec![all.clone(), all])
         }
         ("same_color" | "whether_same_color", [a, b]) => {
             holds("same_color", vec![phrase(a)?, phrase(b)?])

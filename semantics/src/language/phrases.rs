@@ -94,6 +94,17 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
         ("some_same" | "i_some_same" | "one_same", []) => named_before(Quantifier::Some, function),
         ("every_same", []) => named_before(Quantifier::Every, function),
         ("no_same", []) => named_before(Quantifier::No, function),
+        ("structure_flank_of" | "i_structure_flank_of", [side, noun, place]) => {
+            let wall = places::structure(noun, Some(places::side_from_tree(side)?))?;
+            match wall {
+                Phrase::Described(own) => {
+                    let there = Modifier::new("in_room", [room(place)?]);
+                    Some(own.with_modifier(there).into())
+                }
+                _ => None,
+            }
+        }
+        ("all_others", []) => Some(Description::new(Quantifier::Every, Noun::SameNoun).into()),
         ("others", [count]) => {
             let others = Description::new(Quantifier::Exactly(number(count)?), Noun::SameNoun);
             Some(others.into())

@@ -131,6 +131,20 @@ fn paraphrased(function: &str, arguments: &[Tree]) -> Option<Question> {
             };
             which(Some(*kind), Clause::Exists(Phrase::Hole))
         }
+        ("where_leads", [door]) => {
+            let any = Description::new(Quantifier::Some, Noun::Room(Noun::ANY_ROOM.to_owned()));
+            which(
+                Some(any),
+                holds("leads_to", vec![phrase(door)?, Phrase::Hole]),
+            )
+        }
+        ("what_seen_there", [relation, landmark]) => which(
+            None,
+            Clause::All(vec![
+                holds("visible", vec![Phrase::Hole]),
+                holds(&id(relation)?, vec![Phrase::Hole, phrase(landmark)?]),
+            ]),
+        ),
         ("what_there", [relation, landmark]) => which(
             None,
             holds(&id(relation)?, vec![Phrase::Hole, phrase(landmark)?]),

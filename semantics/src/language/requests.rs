@@ -27,6 +27,19 @@ pub(super) fn plan(tree: &Tree) -> Option<Vec<RequestStep>> {
             steps.extend(plan(rest)?);
             steps
         }
+        ("group", [only]) => group(only)?,
+        ("group_then", [first, rest]) => {
+            let mut steps = group(first)?;
+            steps.extend(plan(rest)?);
+            steps
+        }
+        _ => return None,
+    })
+}
+
+/// Steps in one clause: "switch off the lamp and the radio".
+fn group(tree: &Tree) -> Option<Vec<RequestStep>> {
+    Some(match parts(tree)? {
         ("do_rather", [verb, object, other]) => {
             let (verb, object) = (id(verb)?, phrase(object)?);
             let not = RequestStep::DoNot {
@@ -36,11 +49,6 @@ pub(super) fn plan(tree: &Tree) -> Option<Vec<RequestStep>> {
             vec![RequestStep::Do { verb, object }, not]
         }
         ("do_two", [verb, one, other]) => vec![act(verb, one)?, act(verb, other)?],
-        ("do_two_then", [verb, one, other, rest]) => {
-            let mut steps = vec![act(verb, one)?, act(verb, other)?];
-            steps.extend(plan(rest)?);
-            steps
-        }
         ("put_both", [object, one, first, other, second]) => {
             vec![put(object, one, first)?, put(object, other, second)?]
         }
@@ -138,6 +146,11 @@ fn step(tree: &Tree) -> Option<RequestStep> {
         ("leave", [object]) => RequestStep::DoNot {
             verb: "pick_up".to_owned(),
             object: phrase(object)?,
+        },
+        ("put_near", [object, to]) => RequestStep::Put {
+            object: phrase(object)?,
+            predicate: "near".to_owned(),
+            to: phrase(to)?,
         },
         ("leave_state", [object, state]) => {
             let verb = match id(state)?.as_str() {

@@ -131,7 +131,7 @@ pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Clause> {
             room: room(own)?,
             square_metres: 1,
         },
-        ("surfaces", [own, surfaces]) => {
+        ("surfaces" | "whether_surfaces", [own, surfaces]) => {
             let (_, surfaces) = parts(surfaces)?;
             let surfaces: Option<Vec<RoomSurface>> =
                 surfaces.iter().map(surface_from_tree).collect();
