@@ -146,20 +146,18 @@ class AcousticScene:
         Returns:
             One array of shape (channels, samples) for each receiver; their lengths differ.
         """
-        given = _receivers("receivers", receivers)
-        self._tell_outside(source, given)
+        given, sounding = _receivers("receivers", receivers), source_of(source)
+        self._tell_outside(sounding, given)
         return self._native.impulse_responses(
-            plain_settings(source_of(source).to_json()),
+            plain_settings(sounding.to_json()),
             plain_settings([receiver.to_json() for receiver in given]),
             heads=[receiver.head.native for receiver in given if receiver.head is not None],
             seed=integer_in_range("seed", seed),
             threads=_threads(threads),
         )
 
-    def _tell_outside(
-        self, source: Source | Sequence[float], receivers: Sequence[Receiver]
-    ) -> None:
-        warn_outside_rooms(self.house, "a source", source_of(source).position)
+    def _tell_outside(self, source: Source, receivers: Sequence[Receiver]) -> None:
+        warn_outside_rooms(self.house, "a source", point("source", source.position))
         for receiver in receivers:
             warn_outside_rooms(self.house, "a microphone", receiver.pose["position"])
 
@@ -193,10 +191,10 @@ class AcousticScene:
         threads: int | None = None,
     ) -> list[list[dict[str, Any]]]:
         """As :meth:`metrics` at many places, which share the source's rays."""
-        receivers = _receivers("mics", mics)
-        self._tell_outside(source, receivers)
+        receivers, sounding = _receivers("mics", mics), source_of(source)
+        self._tell_outside(sounding, receivers)
         return self._native.metrics(
-            plain_settings(source_of(source).to_json()),
+            plain_settings(sounding.to_json()),
             plain_settings([receiver.to_json() for receiver in receivers]),
             seed=integer_in_range("seed", seed),
             threads=_threads(threads),
@@ -212,9 +210,10 @@ class AcousticScene:
     ) -> Echogram:
         """The echogram at the middle of a receiver, from which responses are made."""
         receiver = mic if isinstance(mic, Receiver) else Receiver.omni(mic)
-        self._tell_outside(source, [receiver])
+        sounding = source_of(source)
+        self._tell_outside(sounding, [receiver])
         found = self._native.echogram(
-            plain_settings(source_of(source).to_json()),
+            plain_settings(sounding.to_json()),
             plain_settings(receiver.to_json()),
             seed=integer_in_range("seed", seed),
             threads=_threads(threads),

@@ -28,6 +28,9 @@ def controls_of(controls: object) -> NDArray[np.float32] | list[dict[str, Any]]:
             raise TypeError
     except (TypeError, ValueError):
         raise ConfigError(f"controls is {quoted(controls)}; {expected}") from None
+    if table.shape == (0,):
+        # An empty list tells no number of columns: nobody is given controls.
+        table = table.reshape(0, 4)
     if table.ndim != 2 or table.shape[1] != 4:
         raise ConfigError(f"controls has the shape {table.shape}; {expected}")
     # What float32 does not hold becomes infinite, and is refused by its place.

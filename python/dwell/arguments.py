@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell._native import ConfigError
-from dwell.files import MAX_DIGITS, parse_json
+from dwell.files import MAX_DIGITS, open_file, parse_json
 
 #: What the border holds: seeds and counts are unsigned and have 64 bits.
 _MAX_UINT64 = 2**64 - 1
@@ -193,8 +193,9 @@ def sequence_items(
 
     Raises:
         ConfigError: It has none, or no elements, or more than ``most`` (some have no end); the
-            message says what was ``expected``.
+            message says what was ``expected``. Or a mask hides some of them.
     """
+    refuse_masked(name, values)
     rows = _ordered(values, most)
     if rows is None:
         raise ConfigError(f"{name} is {_found(values)}; {expected}")
@@ -263,6 +264,21 @@ def path(name: str, value: object) -> str:
         return text(name, os.fspath(value))  # type: ignore[call-overload] # what this finds out
     except TypeError:
         raise ConfigError(f"{name} is {quoted(value)}; expected text or a path") from None
+
+
+def openable_file(name: str, value: object) -> str:
+    """The path of a file that can be read, for those who open it later.
+
+    Raises:
+        ConfigError: It is no path.
+        OSError: The system refuses to open it, or it is no regular file.
+    """
+    found = file_path(name, value)
+    try:
+        open_file(found).close()
+    except ValueError as error:
+        raise ConfigError(f"{name}: {error}") from None
+    return found
 
 
 def boolean(name: str, value: object) -> bool:
@@ -343,6 +359,7 @@ def three_numbers(name: str, value: Sequence[float]) -> tuple[float, float, floa
 
 
 def _three(name: str, value: object, expected: str) -> tuple[float, float, float]:
+    refuse_masked(name, value)
     parts = _ordered(value, 3)
     if parts is None or len(parts) != 3:
         raise ConfigError(f"{name}: {expected}, found {_found(value)}")
@@ -353,6 +370,7 @@ def _three(name: str, value: object, expected: str) -> tuple[float, float, float
 def unit_quaternion(name: str, value: Sequence[float]) -> tuple[float, ...]:
     """A rotation (x, y, z, w), from four finite numbers that are not all 0, made of unit length."""
     expected = "expected a rotation (x, y, z, w)"
+    refuse_masked(name, value)
     given = _ordered(value, 4) or ()
     parts = [finite_number(f"{name}[{k}]", part) for k, part in enumerate(given)]
     length = math.hypot(*parts)
@@ -363,6 +381,7 @@ def unit_quaternion(name: str, value: Sequence[float]) -> tuple[float, ...]:
 
 def two_numbers(name: str, value: object) -> tuple[float, float]:
     """Two finite numbers."""
+    refuse_masked(name, value)
     parts = _ordered(value, 2)
     if parts is None or len(parts) != 2:
         raise ConfigError(f"{name}: expected two numbers, found {_found(value)}")

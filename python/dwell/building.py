@@ -83,9 +83,11 @@ class HouseBuilder(EditList):
         Args:
             height_m: From the floor to the ceiling, 1.8 to 20 m.
         """
+        # Before anything is taken away: what is refused changes nothing.
+        storey = _storey(finite_number("height_m", height_m))
         if not self._storeys[-1]["rooms"]:
             self._storeys.pop()
-        self._storeys.append(_storey(finite_number("height_m", height_m)))
+        self._storeys.append(storey)
         return self
 
     def room(
@@ -222,7 +224,7 @@ class HouseBuilder(EditList):
         ]
         if len(corners) != 4:
             raise ConfigError(f"rect has {len(corners)} numbers; expected 4")
-        self._storeys[-1]["stairs"] = {"rect": corners, "climb": _side(climb)}
+        self._storeys[-1]["stairs"] = {"rect": corners, "climb": _compass("climb", climb)}
         return self
 
     def plan(self) -> dict[str, Any]:
@@ -265,7 +267,11 @@ def _built(plan: str) -> House:
 
 
 def _side(side: str | None) -> str | None:
-    return None if side is None else choice("side", side, ("north", "east", "south", "west"))
+    return None if side is None else _compass("side", side)
+
+
+def _compass(name: str, direction: str) -> str:
+    return choice(name, direction, ("north", "east", "south", "west"))
 
 
 def _covering(name: str, covering: Covering | None) -> dict[str, Any] | None:

@@ -5,10 +5,19 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any
 
 from dwell import ConfigError, _native
-from dwell.arguments import file_path, integer_in_range, path, quoted, sequence_items, text
+from dwell.arguments import (
+    file_path,
+    integer_in_range,
+    openable_file,
+    quoted,
+    sequence_items,
+    text,
+)
+from dwell.files import make_folder
 
 
 def calibrate(
@@ -33,10 +42,12 @@ def calibrate(
         page.
 
     Raises:
-        MeasuredDataError: The bundle cannot be used; the message names file, line and field.
+        MeasuredDataError: The bundle or a table cannot be used; the message names file, line and
+            field. Also where the bundle or a file of it is missing.
+        OSError: The system refuses to read a table of ``peers``.
     """
     tables = sequence_items("peers", peers, "expected paths of tables")
-    names = [path(f"peers[{k}]", peer) for k, peer in enumerate(tables)]
+    names = [openable_file(f"peers[{k}]", peer) for k, peer in enumerate(tables)]
     if progress is not None and not callable(progress):
         raise ConfigError(f"progress is {quoted(progress)}; expected a function or None")
     named = None if house is None else text("house", house)
@@ -54,5 +65,9 @@ def write_example(folder: str | os.PathLike[str], seed: int = 0) -> str:
 
     Returns:
         What is hidden, in a sentence: what :func:`calibrate` should find.
+
+    Raises:
+        OSError: The folder cannot be made, or something else stands there.
     """
+    make_folder(Path(file_path("folder", folder)))
     return _native.calibration_example(file_path("folder", folder), integer_in_range("seed", seed))

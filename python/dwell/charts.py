@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
+from dwell.arguments import instance_of, integer_in_range
 from dwell.echogram import CELL_COLUMNS, CELL_ROWS, CENTRES_HZ, Echogram
 from dwell.false_color import scale_colors
 
@@ -15,8 +16,14 @@ _SECONDARY_COLOR = (215, 214, 208)
 _SUPERSAMPLING = 2
 #: Decays are shown down to here, dB.
 _LOWEST_DB = -60
+#: Pixels across of a chart.
+_MIN_WIDTH, _MAX_WIDTH = 64, 8192
 #: Spans of an echogram by direction, s after the first arrival, and their names.
 _SPANS = ((0.0, 0.005, "0 to 5 ms"), (0.005, 0.08, "5 to 80 ms"), (0.08, np.inf, "from 80 ms"))
+
+
+def _width(width: int) -> int:
+    return integer_in_range("width", width, low=_MIN_WIDTH, high=_MAX_WIDTH)
 
 
 def font(size: float) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
@@ -32,8 +39,12 @@ def decay_chart(echogram: Echogram, *, width: int = 800) -> Image.Image:
 
     Args:
         echogram: What to draw.
-        width: Pixels across, from 200.
+        width: Pixels across, 64 to 8192; names are legible from 200 on.
+
+    Raises:
+        ConfigError: ``echogram`` is none, or ``width`` out of range.
     """
+    echogram, width = instance_of("echogram", echogram, Echogram), _width(width)
     wide, high = _SUPERSAMPLING * width, _SUPERSAMPLING * width * 5 // 8
     size = wide // 55
     left, right, top, bottom = 4 * size, wide - 7 * size, 2 * size, high - 4 * size
@@ -90,8 +101,12 @@ def direction_chart(echogram: Echogram, *, width: int = 800) -> Image.Image:
 
     Args:
         echogram: What to draw.
-        width: Pixels across, from 200.
+        width: Pixels across, 64 to 8192; names are legible from 200 on.
+
+    Raises:
+        ConfigError: ``echogram`` is none, or ``width`` out of range.
     """
+    echogram, width = instance_of("echogram", echogram, Echogram), _width(width)
     wide = _SUPERSAMPLING * width
     size = wide // 55
     panel = (wide - 8 * size) // 3

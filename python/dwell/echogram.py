@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dwell.arguments import finite_number, number_in_range
+from dwell import ConfigError
+from dwell.arguments import finite_number, mapping, number_in_range
 from dwell.array_record import ArrayRecord
 
 #: Nominal centres of the eight octave bands of an echogram, Hz.
@@ -44,7 +45,22 @@ class Echogram(ArrayRecord):
 
     @classmethod
     def from_json(cls, found: dict[str, Any]) -> Echogram:
-        """As the engine writes it."""
+        """As the engine writes it.
+
+        Raises:
+            ConfigError: A field is missing or of another form.
+        """
+        try:
+            return cls._read(mapping("echogram", found))
+        except KeyError as error:
+            raise ConfigError(f"echogram: field {error} is missing") from None
+        except ConfigError:
+            raise
+        except (TypeError, ValueError, IndexError) as error:
+            raise ConfigError(f"echogram: no echogram of the engine: {error}") from None
+
+    @classmethod
+    def _read(cls, found: dict[str, Any]) -> Echogram:
         paths, tail = found["paths"], found["tail"]
 
         def rows(values: list[Any], *shape: int) -> NDArray[np.float64]:

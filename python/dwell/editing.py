@@ -12,7 +12,16 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, Literal
 
 from dwell import ConfigError, UsageError, _native, arguments
-from dwell.arguments import boolean, choice, finite_number, integer_in_range, path, point, text
+from dwell.arguments import (
+    boolean,
+    choice,
+    finite_number,
+    instance_of,
+    integer_in_range,
+    path,
+    point,
+    text,
+)
 from dwell.edit_fields import (
     Anchor,
     Mobility,
@@ -540,9 +549,13 @@ class HouseEdit(EditList):
     """
 
     def __init__(self, house: House) -> None:
-        """Use :meth:`dwell.House.edit`."""
+        """Use :meth:`dwell.House.edit`.
+
+        Raises:
+            ConfigError: ``house`` is none, as a HOUSE string.
+        """
         super().__init__()
-        self._base = house
+        self._base = instance_of("house", house, House)
         self._made: House | None = None
 
     def __repr__(self) -> str:

@@ -50,7 +50,16 @@ class House:
         Args:
             native: The built half.
             again: A function and its arguments that give the house again, in another process too.
+
+        Raises:
+            ConfigError: ``native`` is something else, as a HOUSE string.
         """
+        given: object = native
+        if not isinstance(given, _native.House):
+            raise ConfigError(
+                f"House is made of a native house, not of {arguments.quoted(given)}; "
+                "House.open(...) opens a house by its name"
+            )
         self._native = native
         self._reopen_state = again
         self._hash: int | None = None

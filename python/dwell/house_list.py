@@ -11,6 +11,9 @@ from typing import overload
 from dwell import ConfigError, _native
 from dwell.arguments import quoted, sequence_items, text
 
+#: One house of a seed, as ranges name theirs.
+_SEED = re.compile(r"seed:(0|[1-9][0-9]{0,19})((?s:\?.*)?)")
+
 
 class HouseList(Sequence[str]):
     """HOUSE strings in order; ``seed:A..B`` stands for its houses and takes no memory for them.
@@ -86,6 +89,27 @@ class HouseList(Sequence[str]):
             return part
         return f"seed:{part[0][at - self._ends[which]]}{part[1]}"
 
+    def __eq__(self, other: object) -> bool:
+        """Returns whether both have the same names in order, however they were given."""
+        return self._runs() == other._runs() if isinstance(other, HouseList) else NotImplemented
+
+    __hash__ = None  # type: ignore[assignment] # houses may be appended
+
+    def _runs(self) -> list[str | tuple[range, str]]:
+        """The names in the fewest parts: seeds that follow each other as one range."""
+        runs: list[str | tuple[range, str]] = []
+        for part in self._parts:
+            if isinstance(part, str) and (one := _SEED.fullmatch(part)):
+                part = range(int(one[1]), int(one[1]) + 1), one[2]
+            last = runs[-1] if runs else ""
+            if isinstance(part, str) or isinstance(last, str):
+                runs.append(part)
+            elif last[1] == part[1] and last[0].stop == part[0].start:
+                runs[-1] = range(last[0].start, part[0].stop), part[1]
+            else:
+                runs.append(part)
+        return runs
+
     def __contains__(self, name: object) -> bool:
         """Returns whether a house of this name is among them; none is made to find it."""
         return next(self._places(name), None) is not None
@@ -112,7 +136,7 @@ class HouseList(Sequence[str]):
         """The places of a name in order; none is made to find them."""
         if not isinstance(name, str):
             return
-        wanted = re.fullmatch(r"seed:(0|[1-9][0-9]{0,19})((?s:\?.*)?)", name)
+        wanted = _SEED.fullmatch(name)
         begin = 0
         for part, end in zip(self._parts, self._ends, strict=True):
             if isinstance(part, str):

@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from dwell import _native
-from dwell.arguments import integer_in_range, text
+import numpy as np
+
+from dwell import ConfigError, _native
+from dwell.arguments import integer_in_range, quoted, text
 
 
 class StateApi:
@@ -72,12 +74,13 @@ class StateApi:
             >>> radio["on"], radio["room"], world.object(radio["id"]) == radio
             (False, 'child_room', True)
         """
-        named = (
-            text("name", name)
-            if isinstance(name, str)
-            else integer_in_range("name", name, high=2**31 - 1)
-        )
-        found = self._native.object(named)
+        named: object = name
+        if isinstance(named, str):
+            found = self._native.object(text("name", named))
+        elif isinstance(named, int | np.integer) and not isinstance(named, bool):
+            found = self._native.object(integer_in_range("name", named, high=2**31 - 1))
+        else:
+            raise ConfigError(f"name is {quoted(named)}; expected the name of an object, or its id")
         return found
 
 

@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
 
-from dwell.arguments import point
 from dwell.house import House
 
 _LOG = logging.getLogger("dwell.outside")
 
 
-def warn_outside_rooms(house: House, what: str, position: Sequence[float]) -> None:
+def warn_outside_rooms(house: House, what: str, position: tuple[float, float, float]) -> None:
     """Logs a warning when a point lies in no room; in a house without rooms: beyond all walls.
 
-    Once for a house and a kind of thing: cameras that fly around a house would fill the log.
+    Once for a house and a kind of thing: cameras that fly around a house would fill the log. The
+    point is a checked one: what a caller gave can perhaps be read only once.
     """
     told = house._told_outside
     if what in told:
         return
-    x, y, z = point("position", position)
+    x, y, z = position
     if house.native.is_outside((x, y, z)):
         told.add(what)
         _LOG.warning(

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError
-from dwell.arguments import integer_in_range, number_in_range
+from dwell.arguments import instance_of, integer_in_range, number_in_range
 from dwell.house import House
 
 # How far a node may be, in x and z, from the middle of a cell of the floor, m: half and more.
@@ -25,8 +25,9 @@ def receiver_grid(house: House, spacing_m: float, height_m: float = 1.2) -> NDAr
         Shape (node, 3), m, by floor, then z, then x.
 
     Raises:
-        ConfigError: A number is out of range, or there is no such node.
+        ConfigError: ``house`` is none, a number is out of range, or there is no such node.
     """
+    house = instance_of("house", house, House)
     spacing = number_in_range("spacing_m", spacing_m, 0.1, 10.0)
     height = number_in_range("height_m", height_m, 0.1, 2.0)
     stands = house.navigation().points().astype(np.float64)
@@ -57,8 +58,9 @@ def random_sources(
         Shape (count, 3), m.
 
     Raises:
-        ConfigError: A number is out of range, or nobody can stand anywhere.
+        ConfigError: ``house`` is none, a number is out of range, or nobody can stand anywhere.
     """
+    house = instance_of("house", house, House)
     number = integer_in_range("count", count, low=1, high=10_000)
     height = number_in_range("height_m", height_m, 0.1, 2.0)
     places = house.navigation().sample(integer_in_range("seed", seed), number).astype(np.float64)

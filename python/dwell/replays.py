@@ -49,8 +49,9 @@ class ReplayStep:
         world: The world as it is, to look at and listen to; the same object at every step.
         instruction: What the episode asks.
         success: Whether it is done after the last step.
-        is_same: Whether its bits are those that were recorded; not once somebody has listened to
-            ``world``, since the sound that ears keep is among them.
+        is_same: Whether its bits are those that were recorded. Not once somebody has listened to
+            ``world`` whose ears no sensor had opened when it was recorded: the sound that ears keep
+            is among the bits, though nothing else changes by it.
     """
 
     step: int
@@ -99,12 +100,11 @@ class Replay:
         Raises:
             MeasuredDataError: It is no replay, of another version, or its numbers do not fit.
             ConfigError: ``path`` is no path.
+            OSError: The system refuses, or it is no regular file.
         """
         path = arguments.file_path("path", path)
         try:
             row = read_json(path)
-        except OSError as error:
-            raise MeasuredDataError(f"{path}: {error.strerror or error}") from error
         except ValueError as error:
             raise MeasuredDataError(str(error)) from None
         if not isinstance(row, dict) or row.get("format") != _FORMAT:

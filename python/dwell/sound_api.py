@@ -106,9 +106,9 @@ class SoundApi(LanguageApi):
             A handle for :meth:`stop_sound` and kin. No other sound of the world has it.
 
         Raises:
-            ConfigError: There is no such signal, object or agent, a number is out of range, or a
-                file is asked for without ``sound_root``.
-            DwellError: The file cannot be read or is no sound.
+            ConfigError: There is no such signal, object or agent, a number is out of range, a file
+                is asked for without ``sound_root`` or outside of it, or it is no sound.
+            OSError: The system refuses to read the file, as where there is none.
 
         Examples:
             >>> import dwell

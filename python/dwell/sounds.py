@@ -96,8 +96,8 @@ def read_wav(
 
     Raises:
         ConfigError: ``full_scale_pa`` is no number above 0.
-        MeasuredDataError: The file is no WAV, holds samples of another form, or has more than
-            512 MiB.
+        MeasuredDataError: The file is no WAV, is shorter than its header says, holds samples of
+            another form, or has more than 512 MiB.
         OSError: The system refuses, or it is no regular file.
     """
     full_scale_pa = above_zero("full_scale_pa", full_scale_pa)
@@ -120,19 +120,34 @@ def read_wav(
         )
     kind, scale = kinds[form, bits]
     frame = channels * bits // 8
-    frames = np.frombuffer(data[: len(data) // frame * frame], kind).reshape(-1, channels)
+    if len(data) % frame:
+        raise MeasuredDataError(
+            f"{path}: its data has {len(data)} bytes; expected a multiple of {frame}, as one "
+            f"sample of {channels} channels of {bits} bits has"
+        )
+    frames = np.frombuffer(data, kind).reshape(-1, channels)
     return (frames.T * np.float64(scale)).astype(np.float32), rate_hz
 
 
 def _chunks(name: str, file: bytes) -> dict[bytes, bytes]:
-    """The first chunk of each name."""
+    """The first chunk of each name.
+
+    Raises:
+        MeasuredDataError: The file is no WAV, or ends within one that is read.
+    """
     if file[:4] != b"RIFF" or file[8:12] != b"WAVE":
         raise MeasuredDataError(f"{name}: no WAV file: it does not begin with RIFF and WAVE")
     chunks: dict[bytes, bytes] = {}
     at = 12
     while at + 8 <= len(file):
         length = int.from_bytes(file[at + 4 : at + 8], "little")
-        chunks.setdefault(file[at : at + 4], file[at + 8 : at + 8 + length])
+        kind, content = file[at : at + 4], file[at + 8 : at + 8 + length]
+        if len(content) < length and kind in (b"fmt ", b"data") and kind not in chunks:
+            raise MeasuredDataError(
+                f"{name}: its chunk {kind.decode()!r} has {len(content)} bytes, and its header "
+                f"says {length}: the file was cut short or damaged"
+            )
+        chunks.setdefault(kind, content)
         # Chunks begin at even places.
         at += 8 + length + length % 2
     return chunks

@@ -229,8 +229,7 @@ class World(ActionApi, GuideApi, SoundApi):
                 level velocity and a rate of turn.
 
         Raises:
-            ConfigError: For what is no finite number.
-            UsageError: There is no such agent.
+            ConfigError: For what is no finite number, and an agent that there is not.
             DwellError: Its body cannot have the numbers. Nothing has changed then.
 
         Examples:
@@ -241,8 +240,9 @@ class World(ActionApi, GuideApi, SoundApi):
             >>> world.agents()[0]["velocity"]
             [0.5, 0.0, 0.0]
         """
+        place = point("position", position)
         row = {
-            "position": point("position", position),
+            "position": place,
             "yaw_deg": finite_number("yaw_deg", yaw_deg),
             "pitch_deg": number_in_range(
                 "pitch_deg", pitch_deg, -_STEEPEST_DEG, _STEEPEST_DEG, "degrees"
@@ -253,7 +253,7 @@ class World(ActionApi, GuideApi, SoundApi):
             "wheel_rad_s": None if wheel_rad_s is None else two_numbers("wheel_rad_s", wheel_rad_s),
         }
         self._native.place_agent(integer_in_range("agent", agent), row)
-        warn_outside_rooms(self.house, "an agent", position)
+        warn_outside_rooms(self.house, "an agent", place)
 
     def events(self) -> list[dict[str, Any]]:
         """The contacts of the last step: impacts, scrapes and rolling.
@@ -315,8 +315,9 @@ class World(ActionApi, GuideApi, SoundApi):
                     )
             view["agent"] = 0 if agent is None else integer_in_range("agent", agent)
         else:
-            view["position"] = list(point("position", position))
-            warn_outside_rooms(self.house, "a camera", view["position"])
+            place = point("position", position)
+            view["position"] = list(place)
+            warn_outside_rooms(self.house, "a camera", place)
             view["yaw_deg"] = finite_number("yaw_deg", yaw_deg)
             view["pitch_deg"] = finite_number("pitch_deg", pitch_deg)
         return self._native.render(view, text_list("channels", channels))
@@ -373,8 +374,8 @@ class World(ActionApi, GuideApi, SoundApi):
             value: The number.
 
         Raises:
-            ConfigError: For a kind that does not exist or a number that is not finite.
-            UsageError: There is no such joint, or it cannot obey.
+            ConfigError: For a kind or a joint that does not exist, or a number that is not finite.
+            UsageError: The joint cannot obey.
         """
         joint = integer_in_range("joint", joint, high=_MAX_ID)
         self._native.command_joint(joint, text("kind", kind), finite_number("value", value))
@@ -386,8 +387,7 @@ class World(ActionApi, GuideApi, SoundApi):
             joints: By id, as in :meth:`joints`: (rad or m, and per second).
 
         Raises:
-            ConfigError: For what is no pair of finite numbers.
-            UsageError: There is no such joint.
+            ConfigError: For what is no pair of finite numbers, and a joint that there is not.
             DwellError: A position is beyond the joint's limits, or a speed beyond 1000 rad/s or
                 m/s. Nothing has changed then.
         """

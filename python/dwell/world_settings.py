@@ -46,8 +46,6 @@ def _laws() -> dict[str, dict[str, Any]]:
 def _read(path: str | os.PathLike[str]) -> Any:  # noqa: ANN401 - any JSON value
     try:
         return read_json(path)
-    except OSError as error:
-        raise ConfigError(f"laws: {os.fspath(path)}: {error.strerror or error}") from error
     except ValueError as error:
         raise ConfigError(f"laws: {error}") from error
 
@@ -63,6 +61,7 @@ def found(laws: Laws) -> tuple[list[dict[str, Any]], dict[str, float]]:
 
     Raises:
         ConfigError: It is none of them, or a law, a parameter or a number that there is not.
+        OSError: It is the path of a file that the system refuses to read.
     """
     at = "laws"
     if isinstance(laws, os.PathLike) or (isinstance(laws, str) and _is_path(laws)):

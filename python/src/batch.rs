@@ -34,7 +34,7 @@ enum BorrowedBuffer<'py> {
 }
 
 /// The error of an array that cannot be written in place.
-fn refused(sensor: &str, dtype: Dtype) -> PyErr {
+fn refused(sensor: &str, dtype: Dtype, found: &str) -> PyErr {
     let dtype = match dtype {
         Dtype::Uint8 => "uint8",
         Dtype::Float32 => "float32",
@@ -42,8 +42,16 @@ fn refused(sensor: &str, dtype: Dtype) -> PyErr {
         Dtype::Text => "text",
     };
     crate::errors::to_python(PyFault::Config(format!(
-        "{sensor}: expected a writeable C-contiguous {dtype} array"
+        "{sensor}: expected a writeable C-contiguous {dtype} array, found {found}"
     )))
+}
+
+/// What was given in place of an array to write into, for errors.
+fn form_of(out: &Bound<'_, PyAny>) -> String {
+    match out.getattr("dtype") {
+        Ok(dtype) => format!("one of {dtype}"),
+        Err(_) => format!("a {}", out.get_type()),
+    }
 }
 
 /// An array of the caller to write into.
@@ -54,16 +62,16 @@ fn borrow_buffers<'py, T: numpy::Element>(
 ) -> PyResult<PyReadwriteArrayDyn<'py, T>> {
     let array = out
         .cast::<PyArrayDyn<T>>()
-        .map_err(|_| refused(sensor, dtype))?;
+        .map_err(|_| refused(sensor, dtype, &form_of(out)))?;
     // A slice also exists of an array in Fortran's order, but would be filled in the wrong one.
     if !array.is_c_contiguous() {
-        return Err(refused(sensor, dtype));
+        return Err(refused(sensor, dtype, "one that is not C-contiguous"));
     }
     array.try_readwrite().map_err(|error| match error {
         BorrowError::AlreadyBorrowed => crate::errors::to_python(PyFault::Usage(format!(
             "{sensor}: its buffer is in use by another call; one thread at a time steps an environment"
         ))),
-        _ => refused(sensor, dtype),
+        _ => refused(sensor, dtype, "one that is read-only"),
     })
 }
 
@@ -271,7 +279,7 @@ impl PyBatch {
         let mut slices = Vec::new();
         for (array, spec) in lent.iter_mut().zip(&specs) {
             let name = &spec.name;
-            let refuse = |_| refused(name, spec.dtype);
+            let refuse = |_| refused(name, spec.dtype, "one that is not C-contiguous");
             slices.push(match array {
                 BorrowedBuffer::Uint8(array) => {
                     ObservationBuffer::Uint8(array.as_slice_mut().map_err(refuse)?)

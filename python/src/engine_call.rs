@@ -41,6 +41,8 @@ impl EngineCall for Python<'_> {
         }
         logs::set_level(self);
         let hears_signals = fork_safety::is_main_thread(self);
+        // A call that begins while the interpreter ends is of the thread that ends it.
+        let may_outlive_python = is_python_running();
         let call = fork_safety::EngineCallGuard::begin(self);
         let outcome = self.detach(|| {
             // Values that a panic leaves half done are never used again: the object that raised is poisoned by its mutex.
@@ -60,6 +62,9 @@ impl EngineCall for Python<'_> {
             }
             // Before the GIL is acquired: a forking thread holds it, and waits for calls to end.
             drop(call);
+            if may_outlive_python {
+                park_without_python();
+            }
             outcome
         });
         // Before logs are delivered: code of Python runs there, a handler of signals too, and what that calls must not find it.
@@ -75,6 +80,23 @@ impl EngineCall for Python<'_> {
             (None, Ok(Err(fault))) => Err(to_python(fault)),
         }
     }
+}
+
+/// Parks a thread for ever whose call has outlived the interpreter, as a daemon thread's may: the process ends under it.
+///
+/// `CPython` before 3.14 ends such a thread when it asks for the GIL, by unwinding, which Rust's frames do not take. One that waits
+/// for the GIL at that moment is parked by pyo3.
+fn park_without_python() {
+    while !is_python_running() {
+        std::thread::park();
+    }
+}
+
+/// Returns whether the interpreter has not begun to end. Functions of `atexit` still run before.
+#[expect(unsafe_code, reason = "pyo3 has no safe name for it")]
+fn is_python_running() -> bool {
+    // SAFETY: it reads a number, and may be called at any time, with and without the GIL.
+    unsafe { pyo3::ffi::Py_IsInitialized() != 0 }
 }
 
 /// Runs handlers of signals and of logs; returns whether one of a signal raised. They cannot call engines: the call that they

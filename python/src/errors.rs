@@ -8,12 +8,13 @@ use dwell_calibration::CalibrationError;
 use dwell_houses::HousesError;
 use dwell_scene::SceneError;
 use dwell_scene::interrupt::Interrupted;
-use pyo3::exceptions::PyException;
+use pyo3::exceptions::{PyException, PyOSError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyTuple, PyType};
 use pyo3::{PyTypeInfo, create_exception};
 use std::fmt::Write as _;
+use std::path::PathBuf;
 
 create_exception!(
     dwell,
@@ -33,6 +34,11 @@ pub(crate) enum PyFault {
     Config(String),
     Usage(String),
     Measured(String),
+    /// The system refused to read or write a file of the caller's own: the `OSError` that Python raises for it.
+    File {
+        path: PathBuf,
+        source: std::io::Error,
+    },
     /// The call was stopped: a handler of signals has raised, and Python gets that exception.
     Interrupted,
 }
@@ -175,6 +181,15 @@ impl EngineBug {
 /// The exception of a fault.
 pub(crate) fn to_python(fault: PyFault) -> PyErr {
     let (name, message) = match fault {
+        // `OSError` itself chooses its class by the number.
+        PyFault::File { path, source } => {
+            let Some(number) = source.raw_os_error() else {
+                return PyOSError::new_err(format!("{}: {source}", path.display()));
+            };
+            let told = source.to_string();
+            let told = told.split(" (os error ").next().unwrap_or_default();
+            return PyOSError::new_err((number, told.to_owned(), path));
+        }
         PyFault::Scene(message) => ("SceneError", message),
         PyFault::House(message) => ("HouseError", message),
         PyFault::HouseNotFound(message) => ("HouseNotFoundError", message),

@@ -137,8 +137,8 @@ fn place(world: &World, settings: &PictureSettings) -> Result<CameraMount, PyFau
     if let Some(number) = settings.agent {
         let count = world.state().agents.len();
         if number as usize >= count {
-            return Err(PyFault::Usage(format!(
-                "no agent {number}; there are {count}"
+            return Err(PyFault::Config(format!(
+                "no agent {number}; there are {count}, counted from 0"
             )));
         }
         return Ok(CameraMount::Agent(AgentId(number), mount));

@@ -13,11 +13,12 @@ use crate::picture;
 use crate::values::Data;
 use crate::world_access::{ActiveGuide, WorldAccess};
 use dwell::{ActionRequest, DiscreteAction, ShortestPathFollower, World, WorldConfig};
-use dwell::{PlayRequest, SoundPlace};
+use dwell::{PlayRequest, SoundPlace, WorldError};
+use dwell_houses::HousesError;
 use dwell_physics::{AgentControl, AgentPlacement, BodyState};
 use dwell_scene::interrupt;
 use dwell_scene::random::RandomKey;
-use dwell_scene::{Address, IdVec, JointCommand, JointId, Pose, Velocity};
+use dwell_scene::{Address, IdVec, JointCommand, Pose, Velocity};
 use glam::{Quat, Vec3};
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -102,6 +103,15 @@ impl PyWorld {
 
 fn stopped() -> PyFault {
     PyFault::Usage("a bug of the engine stopped this world; make a new one".to_owned())
+}
+
+/// The fault of a sound that cannot be played: its file is one of the caller's own, and no house.
+fn sound_fault(error: WorldError) -> PyFault {
+    match error {
+        WorldError::Houses(HousesError::Io { path, source }) => PyFault::File { path, source },
+        WorldError::Houses(error) => PyFault::Config(error.to_string()),
+        other => other.into(),
+    }
 }
 
 #[pymethods]
@@ -302,12 +312,13 @@ impl PyWorld {
                 let message = "level_db is missing; a file does not say how loud it was";
                 return Err(PyFault::Config(message.to_owned()));
             };
-            Ok(running.world.play(PlayRequest {
+            let request = PlayRequest {
                 sound: row.sound,
                 place,
                 level_db,
                 loops: row.loops,
-            })?)
+            };
+            running.world.play(request).map_err(sound_fault)
         })
     }
 
@@ -455,7 +466,8 @@ impl PyWorld {
                     )));
                 }
             };
-            Ok(running.world.command_joint(JointId(joint), command)?)
+            let joint = running.joint(joint)?;
+            Ok(running.world.command_joint(joint, command)?)
         })
     }
 
@@ -463,8 +475,8 @@ impl PyWorld {
         self.with(py, |running| {
             let joints: Vec<_> = joints
                 .into_iter()
-                .map(|(joint, position, velocity)| (JointId(joint), position, velocity))
-                .collect();
+                .map(|(joint, position, velocity)| Ok((running.joint(joint)?, position, velocity)))
+                .collect::<Result<_, PyFault>>()?;
             Ok(running.world.set_joints(&joints)?)
         })
     }

@@ -3,7 +3,7 @@
 use crate::errors::PyFault;
 use dwell::{ShortestPathFollower, StepSizes, World};
 use dwell_physics::ActionOutcome;
-use dwell_scene::{AgentId, Entity, Id, IdVec, ObjectId, PartId};
+use dwell_scene::{AgentId, Entity, Id, IdVec, JointId, ObjectId, PartId};
 use serde_json::json;
 
 /// Number of names that an error lists, the nearest first.
@@ -69,8 +69,20 @@ impl WorldAccess<'_> {
         if agent < count {
             Ok(AgentId::from_index(agent))
         } else {
-            Err(PyFault::Usage(format!(
-                "no agent {agent}; there are {count}"
+            Err(PyFault::Config(format!(
+                "no agent {agent}; there are {count}, counted from 0"
+            )))
+        }
+    }
+
+    pub(crate) fn joint(&self, joint: u32) -> Result<JointId, PyFault> {
+        let count = self.world.house().joints.len();
+        let id = JointId(joint);
+        if id.index() < count {
+            Ok(id)
+        } else {
+            Err(PyFault::Config(format!(
+                "no joint {joint}; there are {count}, counted from 0"
             )))
         }
     }

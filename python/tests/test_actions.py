@@ -71,7 +71,7 @@ def test_wrong_actions_are_refused_with_a_reason(world: dwell.World) -> None:
         world.act("fly")
     with pytest.raises(dwell.ConfigError, match="no field"):
         world.act("pick", colour="red")
-    with pytest.raises(dwell.UsageError, match="no agent 7"):
+    with pytest.raises(dwell.ConfigError, match="no agent 7; there are 2, counted from 0"):
         world.act("drop", agent=7)
 
 

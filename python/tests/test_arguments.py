@@ -129,7 +129,7 @@ def test_files_of_laws_that_are_none_are_refused_by_name(
     with pytest.raises(dwell.ConfigError, match=said) as caught:
         dwell.World(apartment, laws=path)
     assert str(path) in str(caught.value)
-    with pytest.raises(dwell.ConfigError, match=r"nothing\.json"):
+    with pytest.raises(FileNotFoundError, match=r"nothing\.json"):
         dwell.World(apartment, laws=tmp_path / "nothing.json")
 
 

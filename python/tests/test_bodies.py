@@ -117,9 +117,9 @@ def test_wrong_joints_and_commands_are_refused(apartment: dwell.House) -> None:
     world = dwell.World(apartment)
     lid = next(j["id"] for j in world.joints() if j["name"] == "lid")
     before = world.state_hash()
-    with pytest.raises(dwell.UsageError, match="no joint 9999; there are"):
+    with pytest.raises(dwell.ConfigError, match="no joint 9999; there are"):
         world.command_joint(9999, "off")
-    with pytest.raises(dwell.UsageError, match="no joint 9999; there are"):
+    with pytest.raises(dwell.ConfigError, match="no joint 9999; there are"):
         world.set_joints({9999: (0.0, 0.0)})
     with pytest.raises(dwell.ConfigError, match="allowed are off, position, velocity, effort"):
         world.command_joint(lid, "wave", 1.0)  # type: ignore[arg-type]

@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import gymnasium
 import numpy as np
 import pytest
 
@@ -15,9 +16,17 @@ import dwell
 import dwell.house_list
 import dwell.measures
 import dwell.sounds
-from dwell import plans, relations, sound_maps
+from dwell import charts, places, plans, relations, sound_maps
 from dwell.envs import DwellEnv, DwellVectorEnv
 from dwell.language import say
+
+
+class Blank(dwell.Sensor):
+    space = gymnasium.spaces.Discrete(2)
+
+    def observe(self, world: dwell.World, rng: np.random.Generator) -> int:
+        return 0
+
 
 #: A call, and how its error begins or what it holds.
 CALLS = [
@@ -165,6 +174,39 @@ CALLS = [
     ("ECHOGRAM.decay_db(nan)", "step_s is nan; allowed are finite numbers"),
     ('ECHOGRAM.by_direction("x")', "from_s is 'x'; expected a number"),
     ("ECHOGRAM.by_direction(0.0, nan)", "to_s is nan; allowed are finite numbers"),
+    # Names and mappings in place of what they stand for.
+    ('dwell.House("builtin:studio")', "not of 'builtin:studio'; House.open(...) opens a house"),
+    ('dwell.HouseEdit("builtin:studio")', "house is 'builtin:studio'; expected a dwell.House"),
+    ('places.receiver_grid("builtin:studio", 1.0)', "house is 'builtin:studio'; expected a dwell."),
+    ('places.random_sources("builtin:studio", 1)', "house is 'builtin:studio'; expected a dwell."),
+    ('charts.decay_chart("x")', "echogram is 'x'; expected a dwell.Echogram"),
+    ('charts.direction_chart("x")', "echogram is 'x'; expected a dwell.Echogram"),
+    (
+        "charts.decay_chart(ECHOGRAM, width=0)",
+        "width is 0; allowed are whole numbers from 64 to 81",
+    ),
+    ("charts.direction_chart(ECHOGRAM, width=9000)", "width is 9000; allowed are whole numbers fr"),
+    ("type(ECHOGRAM).from_json({})", "echogram: field 'paths' is missing"),
+    ('type(ECHOGRAM).from_json("x")', "echogram is 'x'; expected values by name"),
+    ('type(ECHOGRAM).from_json({"paths": 5, "tail": 5})', "echogram: no echogram of the engine"),
+    ("W.object(None)", "name is None; expected the name of an object, or its id"),
+    ("W.object(True)", "name is True; expected the name of an object, or its id"),
+    ('DwellEnv("Free", sensors=[("rgb", {})])', "expected names of sensors, subclasses of dwell."),
+    ('DwellEnv("Free", sensors=[("rgb", {})])', "sensors={'rgb': {'width': 64}}"),
+    ('DwellEnv("Free", sensors={"": Blank})', "Blank.name is ''; expected a name for what it"),
+    ('BUILDER.stairs((0, 0, 3, 3), "up")', "climb is 'up'; allowed are north, east, south, west"),
+    # What a mask hides.
+    ("W.place_agent(MASKED)", "position has masked elements"),
+    ("dwell.Source(MASKED)", "position has masked elements"),
+    ('W.set_body("radio_1", rotation=np.ma.array([0, 0, 0, 1], mask=[1, 0, 0, 0]))', "has masked"),
+    # Numbers of what there is not.
+    ("W.listen(agent=9)", "no agent 9; there are 1, counted from 0"),
+    ('W.act("drop", agent=9)', "no agent 9; there are 1, counted from 0"),
+    ("W.render(agent=9)", "no agent 9; there are 1, counted from 0"),
+    ("W.place_agent((1, 0, 1), agent=9)", "no agent 9; there are 1, counted from 0"),
+    ('W.play("phone", at=9)', "no agent 9; there are 1, counted from 0"),
+    ('W.command_joint(9999, "off")', "no joint 9999; there are"),
+    ("W.set_joints({9999: (0.0, 0.0)})", "no joint 9999; there are"),
 ]
 
 
@@ -208,7 +250,12 @@ def names(apartment: dwell.House, tmp_path_factory: pytest.TempPathFactory) -> d
         "plans": plans,
         "relations": relations,
         "sound_maps": sound_maps,
+        "charts": charts,
+        "places": places,
         "SUR": "\ud800",
+        "BUILDER": dwell.HouseBuilder(),
+        "MASKED": np.ma.array([1.0, 0.0, 1.0], mask=[False, True, False]),
+        "Blank": Blank,
     }
 
 
@@ -219,6 +266,7 @@ def test_an_odd_argument_is_named(names: dict[str, Any], call: str, said: str) -
     with pytest.raises(dwell.DwellError) as caught:
         eval(call, names)
     assert said in str(caught.value)
+    assert isinstance(caught.value, ValueError)
     assert names["W"].state_hash() == before
     assert not Path(names["NEVER"]).exists()
 

@@ -50,7 +50,7 @@ def test_sides_are_meant_from_somebody(world: dwell.World) -> None:
     for other in refused:
         with pytest.raises(dwell.ConfigError, match="viewer is "):
             world.holds("left_of", *things, viewer=other)
-    with pytest.raises(dwell.UsageError, match="no agent 7"):
+    with pytest.raises(dwell.ConfigError, match="no agent 7"):
         world.holds("left_of", *things, viewer=7)
 
 

@@ -281,7 +281,7 @@ def test_forged_check_sums_do_not_help(
 def test_errors_name_the_file(file: Path, tmp_path: Path) -> None:
     nowhere = tmp_path / "nowhere.replay"
     for path in (nowhere, tmp_path):
-        with pytest.raises(dwell.MeasuredDataError, match=str(path)):
+        with pytest.raises(OSError, match=str(path)):
             dwell.Replay.read(path)
     faults = [
         ("house", "nowhere.glb", "nowhere.glb"),
@@ -305,3 +305,21 @@ def test_a_folder_that_is_none_is_refused_when_a_recorder_is_made(tmp_path: Path
         with pytest.raises(NotADirectoryError):
             ReplayRecorder(env, folder)
     assert (tmp_path / "file").read_text() == "mine"
+
+
+def test_listening_changes_a_recording_only_where_no_ears_were_open(tmp_path: Path) -> None:
+    """As docs/replays.md says: the sound that ears keep is part of the state."""
+    for sensors, is_heard in (["gps"], False), (["gps", "audio"], True):
+        folder = tmp_path / "_".join(sensors)
+        env = ReplayRecorder(DwellEnv("Free", houses="builtin:studio", sensors=sensors), folder)
+        env.reset(seed=1)
+        for _ in range(3):
+            env.step(np.int64(1))
+        env.close()
+        replay = dwell.Replay.read(folder / "episode_0000.replay")
+        same = []
+        for moment in replay.play():
+            same.append(moment.is_same)
+            moment.world.listen(100)
+        assert same == [True, is_heard, is_heard, is_heard]
+        assert replay.first_difference() is None

@@ -48,6 +48,11 @@ Sensors = (
 #: Names of the engine's sensors, or their settings by name.
 NativeSensors = Sequence[str] | Mapping[str, Mapping[str, Any]] | None
 
+_SENSORS_EXPECTED = (
+    "expected names of sensors, subclasses of dwell.Sensor or 'module:Name' of one; settings are "
+    "given by name, as sensors={'rgb': {'width': 64}}"
+)
+
 #: Streams of random numbers of an episode: the task's, and from the next number on the sensors'.
 _TASK_STREAM = 0
 #: What a snapshot calls the latest observations beside the states of parts.
@@ -112,9 +117,11 @@ def _sensors(
         return settings, tuple(own)
     if isinstance(sensors, str):
         return sensors, ()
-    rows = sequence_items("sensors", sensors, "expected names or classes")
+    rows = sequence_items("sensors", sensors, _SENSORS_EXPECTED)
     names = []
     for k, row in enumerate(rows):
+        if not isinstance(row, str) and not callable(row) and not isinstance(row, Sensor):
+            raise ConfigError(f"sensors[{k}] is {quoted(row)}; {_SENSORS_EXPECTED}")
         if not isinstance(row, str) or ":" in row:
             own.append(factory(f"sensors[{k}]", row, Sensor))  # type: ignore[type-abstract]
         else:
@@ -267,7 +274,10 @@ class PythonEpisode:
                     "observes, as spaces = {'goal': gymnasium.spaces.Box(...)}"
                 )
         for sensor in self.sensors:
-            name = text(f"{type(sensor).__name__}.name", getattr(sensor, "name", None))
+            at = f"{type(sensor).__name__}.name"
+            name = text(at, getattr(sensor, "name", None))
+            if not name:
+                raise ConfigError(f"{at} is ''; expected a name for what it observes")
             _add(found, native, f"sensor {name}: space", name, getattr(sensor, "space", None))
         return found
 
@@ -320,8 +330,13 @@ class PythonEpisode:
         """The states that :meth:`save` wrote, by part, and what was observed.
 
         Raises:
-            ConfigError: It is of other parts, or was cut.
+            ConfigError: It is of other parts or of none, or was cut.
         """
+        if not saved:
+            raise ConfigError(
+                "snapshot refused: it is of an environment without parts in Python; expected "
+                f"{[*self._parts()]}"
+            )
         at = "snapshot refused: its parts"
         states = mapping(at, from_json(at, saved))
         names = [*self._parts()]

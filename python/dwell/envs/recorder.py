@@ -14,7 +14,7 @@ from gymnasium.vector import VectorEnv, VectorWrapper
 from numpy.typing import NDArray
 
 from dwell import ConfigError, UsageError, __version__, _native
-from dwell.arguments import path
+from dwell.arguments import file_path
 from dwell.envs.single import DwellEnv
 from dwell.envs.vector import DwellVectorEnv
 from dwell.files import make_folder
@@ -57,8 +57,9 @@ class _EpisodeInProgress:
         """
         if f"{state_hash:016x}" != self._hashes[-1]:
             raise UsageError(
-                f"{what} was changed since the last step by something else than an action; its "
-                "episode cannot be recorded further; reset begins another"
+                f"{what} was changed since the last step by something else than an action (also by "
+                "listen, which opens ears: name the sensor audio instead); its episode cannot be "
+                "recorded further; reset begins another"
             )
 
     def stepped(self, action: int, state_hash: int, success: bool) -> None:
@@ -150,7 +151,7 @@ class ReplayRecorder(gymnasium.Wrapper[dict[str, Any], np.int64, dict[str, Any],
             raise ConfigError(f"env is {env!r}; expected an environment of dwell")
         self._env = env.unwrapped
         _refuse_what_files_cannot_name(self._env)
-        self._folder = Path(path("folder", folder))
+        self._folder = Path(file_path("folder", folder))
         make_folder(self._folder)
         self._running: _EpisodeInProgress | None = None
 
@@ -240,7 +241,7 @@ class VectorReplayRecorder(
         super().__init__(env)
         self._envs = env.unwrapped
         _refuse_what_files_cannot_name(self._envs)
-        self._folder = Path(path("folder", folder))
+        self._folder = Path(file_path("folder", folder))
         make_folder(self._folder)
         self._running: dict[int, _EpisodeInProgress] = {}
         self._envs._recorders.append(self)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import sys
 import weakref
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from math import isnan
 from types import FrameType
 from typing import Any, NoReturn
@@ -146,7 +147,10 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         #: Whether there is no episode to go on with: none has begun, or a call did not come to its
         #: end that began, restored or stepped one.
         self._stopped = True
+        #: The call that plays the episode at this moment.
+        self._call: str | None = None
         self._alone = np.ones(1, np.bool_)
+        self.metadata = {**self.metadata, "render_fps": steps_a_second(self._runner.batch)}
         self.observation_space = self._runner.space
         self.action_space = action_space()
 
@@ -156,8 +160,20 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
 
     def _refuse_stopped(self, call: str) -> None:
         self._refuse_closed()
+        if self._call is not None:
+            raise UsageError(f"{call}: {another_call(self._call)}")
         if self._stopped:
             raise UsageError(f"{call}: no episode has begun; call reset first")
+
+    @contextlib.contextmanager
+    def _playing(self, call: str) -> Iterator[None]:
+        """There is no episode to go on with until ``call`` has come to its end."""
+        self._stopped, self._call = True, call
+        try:
+            yield
+            self._stopped = False
+        finally:
+            self._call = None
 
     @property
     def _runner(self) -> NativeBatch:
@@ -195,16 +211,15 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         number = None if seed is None else integer_in_range("seed", seed)
         house, episode = self._asked(options)
         self._counters = _counters_around(self)
-        self._stopped = True
-        super().reset(seed=number)
-        # Both are drawn whatever is asked for, so that the episodes that follow are the same.
-        drawn = int(self.np_random.integers(len(self._shelf.names)))
-        self._house = drawn if house is None else house
-        drawn = int(self.np_random.integers(2**63))
-        self._seed = drawn if episode is None else episode
-        self._runner.reset([self._seed])
-        observation = self._observation()
-        self._stopped = False
+        with self._playing("reset"):
+            super().reset(seed=number)
+            # Both are drawn whatever is asked for, so that the episodes that follow are the same.
+            drawn = int(self.np_random.integers(len(self._shelf.names)))
+            self._house = drawn if house is None else house
+            drawn = int(self.np_random.integers(2**63))
+            self._seed = drawn if episode is None else episode
+            self._runner.reset([self._seed])
+            observation = self._observation()
         return observation, self._info()
 
     def _asked(self, options: dict[str, Any] | None) -> tuple[int | None, int | None]:
@@ -233,9 +248,8 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         self._refuse_stopped("step")
         number = integer_in_range("action", action, high=len(_native.actions()) - 1)
         # A step that the task did not judge to its end is none.
-        self._stopped = True
-        answer, further = self._runner.step(np.array([number], np.int64))
-        self._stopped = False
+        with self._playing("step"):
+            answer, further = self._runner.step(np.array([number], np.int64))
         info: dict[str, Any] = {key: np.asarray(answer[key])[0].item() for key in INFO_KEYS}
         info = {k: value for k, value in info.items() if k not in GOAL_KEYS or not isnan(value)}
         info["action_error"] = answer["action_error"][0]
@@ -323,14 +337,13 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         # Nothing changes before it was accepted.
         runner = self._runner_of(house)
         runner.loaded(0, parts)
-        self._stopped = True
-        runner.restore(rest, parts, seed)
-        self._house, self._seed = house, seed
-        for counter in self._counters:
-            if (wrapper := counter()) is not None:
-                wrapper._elapsed_steps = self._steps()  # type: ignore[assignment] # None first
-        observation = self._observation()
-        self._stopped = False
+        with self._playing("restore"):
+            runner.restore(rest, parts, seed)
+            self._house, self._seed = house, seed
+            for counter in self._counters:
+                if (wrapper := counter()) is not None:
+                    wrapper._elapsed_steps = self._steps()  # type: ignore[assignment] # None first
+            observation = self._observation()
         return observation, self._info()
 
     def instruction(self) -> str:
@@ -363,6 +376,20 @@ def _run(
 ) -> NativeBatch:
     """The runner in a house of a shelf."""
     return NativeBatch([shelf[house]], config, threads, custom=custom, heads=heads)
+
+
+def another_call(call: str) -> str:
+    """Why a call is refused while another one plays the episode."""
+    return (
+        f"another call ({call}) of this environment is running, in another thread or further up in "
+        "this one; an environment does one call at a time"
+    )
+
+
+def steps_a_second(batch: _native.Batch) -> float:
+    """Control steps in a second of simulated time, which is also how fast pictures follow."""
+    rate_hz = float(_native.World.of_env(batch, 0).config()["control_rate_hz"])
+    return int(rate_hz) if rate_hz.is_integer() else rate_hz
 
 
 def checked_render_mode(mode: object) -> str | None:

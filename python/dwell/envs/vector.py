@@ -39,7 +39,13 @@ from dwell.envs.env_pool import EnvPool
 from dwell.envs.house_assignment import HouseAssignment
 from dwell.envs.native_batch import INFO_KEYS, NativeBatch
 from dwell.envs.python_tasks import RewardChoice, Sensors, TaskChoice, split
-from dwell.envs.single import RENDER_CAMERA, DwellEnv, checked_render_mode
+from dwell.envs.single import (
+    RENDER_CAMERA,
+    DwellEnv,
+    another_call,
+    checked_render_mode,
+    steps_a_second,
+)
 from dwell.envs.snapshots import BatchSnapshot
 from dwell.envs.spaces import action_space
 from dwell.world_settings import Laws, with_head
@@ -172,7 +178,6 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         self.num_envs = num_envs
         self.render_mode = checked_render_mode(render_mode)
         self.autoreset_mode = _autoreset_mode(autoreset_mode)
-        self.metadata = {**self.metadata, "autoreset_mode": self.autoreset_mode}
         self._limit = step_limit(max_episode_steps)
         load_ahead = integer_in_range("load_ahead", load_ahead)
         world, heads = with_head(world)
@@ -195,6 +200,9 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         self._places = HouseAssignment(
             self._playing, EnvPool(shelf, config, heads, threads), load_ahead
         )
+        rate_hz = steps_a_second(self._playing.batch)
+        own = {"autoreset_mode": self.autoreset_mode, "render_fps": rate_hz}
+        self.metadata = {**self.metadata, **own}
         self._streams: list[np.random.Generator | None] = [None] * num_envs
         #: The seed of every environment's episode, once it has one.
         self._seeds: list[int | None] = [None] * num_envs
@@ -203,6 +211,8 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         self._recorders: list[Recorder] = []
         #: Whose latest reset, restoring or step did not come to its end.
         self._stopped = np.zeros(num_envs, np.bool_)
+        #: The call that plays episodes at this moment.
+        self._call: str | None = None
         self.single_observation_space = self._runner.space
         self.single_action_space = action_space()
         self.observation_space = batch_space(self.single_observation_space, num_envs)
@@ -362,6 +372,8 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         self._refuse_closed()
         if any(stream is None for stream in self._streams):
             raise UsageError("step: no episode has begun; call reset first")
+        if self._call is not None:
+            raise UsageError(f"step: {another_call(self._call)}")
         if self._stopped.any():
             which = abbreviated_list(np.flatnonzero(self._stopped).tolist())
             raise UsageError(f"step: no episode of environments {which} has begun; reset them")
@@ -395,8 +407,11 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             recorder.check()
         numbers = np.where(begins, -1, numbers.astype(np.int64))
         # Steps that the tasks did not judge to their end are none.
-        self._stopped[~begins] = True
-        answer, further = self._runner.step(numbers)
+        self._stopped[~begins], self._call = True, "step"
+        try:
+            answer, further = self._runner.step(numbers)
+        finally:
+            self._call = None
         self._stopped[~begins] = False
         rewards = np.asarray(answer["reward"], np.float64)
         terminated = np.asarray(answer["terminated"], np.bool_)

@@ -1,0 +1,81 @@
+"""An environment that is called while another of its calls plays the episode."""
+
+from __future__ import annotations
+
+import threading
+from typing import Any
+
+import numpy as np
+import pytest
+
+import dwell
+from dwell.envs import DwellEnv, DwellVectorEnv
+
+#: What a task calls in the middle of a step.
+NESTED: list[Any] = []
+
+
+class Nesting(dwell.Task):
+    sensors = ("gps",)
+
+    def judge(self, world: dwell.World, action: str, verdict: dwell.StepResult) -> dwell.StepResult:
+        for call in NESTED:
+            call()
+        return verdict
+
+
+@pytest.fixture(autouse=True)
+def no_calls() -> Any:  # noqa: ANN401 - of pytest
+    NESTED.clear()
+    yield
+    NESTED.clear()
+
+
+def test_a_step_within_a_step_is_told_as_one() -> None:
+    env = DwellEnv(Nesting, houses="builtin:studio")
+    env.reset(seed=1)
+    for call in (lambda: env.step(1), env.snapshot, env.expert_action):
+        NESTED[:] = [call]
+        with pytest.raises(dwell.UsageError, match=r"another call \(step\) .* is running"):
+            env.step(1)
+        NESTED.clear()
+        # The step that a task does not judge to its end is none, as before.
+        with pytest.raises(dwell.UsageError, match="no episode has begun"):
+            env.step(1)
+        env.reset(seed=1)
+    env.step(1)
+
+
+def test_a_step_of_a_vector_within_a_step_is_told_as_one() -> None:
+    envs = DwellVectorEnv(2, Nesting, houses="builtin:studio")
+    envs.reset(seed=1)
+    NESTED[:] = [lambda: envs.step(np.array([1, 1]))]
+    with pytest.raises(dwell.UsageError, match=r"another call \(step\) .* is running"):
+        envs.step(np.array([1, 1]))
+
+
+def test_a_step_beside_one_of_another_thread_is_told_as_one() -> None:
+    env = DwellEnv(Nesting, houses="builtin:studio")
+    env.reset(seed=1)
+    inside, over = threading.Event(), threading.Event()
+    NESTED[:] = [inside.set, over.wait]
+    thread = threading.Thread(target=env.step, args=(1,))
+    thread.start()
+    inside.wait()
+    try:
+        with pytest.raises(dwell.UsageError, match=r"another call \(step\) .* in another thread"):
+            env.step(1)
+    finally:
+        over.set()
+        thread.join()
+    NESTED.clear()
+    env.step(1)
+
+
+def test_pictures_follow_as_fast_as_steps() -> None:
+    for rate_hz, told in ((10.0, 10), (None, 20)):
+        world = {} if rate_hz is None else {"control_rate_hz": rate_hz}
+        env = DwellEnv("Free", houses="builtin:studio", sensors=["gps"], world=world)
+        envs = DwellVectorEnv(1, "Free", houses="builtin:studio", sensors=["gps"], world=world)
+        assert env.metadata["render_fps"] == envs.metadata["render_fps"] == told
+    assert DwellEnv.metadata["render_fps"] == 20
