@@ -240,8 +240,11 @@ def test_a_manifest_that_was_changed_is_refused_by_its_line(tmp_path: Path) -> N
     for changed, told in (
         ([first, other], "manifest.jsonl line 2: changed since it was written: its check is"),
         ([*lines, first], "manifest.jsonl line 3: seed 0 stands in line 1 already"),
+        ([first], "manifest.jsonl: is at its end where this job has seed 1"),
+        ([second], "manifest.jsonl: has seed 1 where this job has seed 0"),
+        ([], "manifest.jsonl: is at its end where this job has seed 0"),
     ):
-        manifest.write_text("\n".join(changed) + "\n", "utf-8")
+        manifest.write_text("".join(f"{line}\n" for line in changed), "utf-8")
         refused = generate(*two)
         assert refused.returncode == 1
         assert told in refused.stderr

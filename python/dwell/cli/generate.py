@@ -84,6 +84,7 @@ def run(args: argparse.Namespace) -> int:
         # Another process of this job may have ended it since.
         with contextlib.suppress(FileExistsError):
             made = _make(args, manifest, {**dataset, "shard": [shard, shards]})
+    _check_seeds(args, manifest)
     made += _regenerate_missing(args, manifest)
     seconds = time.perf_counter() - start
     rows, failed, told = 0, 0, []
@@ -117,9 +118,8 @@ def _make(args: argparse.Namespace, manifest: Path, job: dict[str, Any]) -> int:
     journal = Journal(manifest, job)
     first, step = args.shard
     all_seeds = len(range(first, args.count, step))
-    seeds = itertools.islice(_seeds(args.seed, args.split), first, args.count, step)
     # Seeds are many, and drawn one by one.
-    left = (seed for seed in seeds if str(seed) not in journal.done)
+    left = (seed for seed in _job_seeds(args) if str(seed) not in journal.done)
     made = 0
     workers = args.workers or os.cpu_count() or 1
     bar = ProgressBar()
@@ -147,6 +147,29 @@ def _make(args: argparse.Namespace, manifest: Path, job: dict[str, Any]) -> int:
     finally:
         pool.shutdown(cancel_futures=True)
     return made
+
+
+def _job_seeds(args: argparse.Namespace) -> Iterator[int]:
+    """The seeds of the shard, ascending."""
+    first, step = args.shard
+    return itertools.islice(_seeds(args.seed, args.split), first, args.count, step)
+
+
+def _check_seeds(args: argparse.Namespace, manifest: Path) -> None:
+    """Compares the seeds of a finished manifest with those of the job.
+
+    Raises:
+        ValueError: One is missing, or is none of the job.
+    """
+    seeds = (row["seed"] for row in _rows(manifest))
+    for found, seed in itertools.zip_longest(seeds, _job_seeds(args)):
+        if found != seed:
+            what = "is at its end" if found is None else f"has seed {found}"
+            expected = "no more" if seed is None else f"seed {seed}"
+            raise ValueError(
+                f"{manifest}: {what} where this job has {expected}; put its lines back, or remove "
+                f"{manifest} and run again"
+            )
 
 
 def _regenerate_missing(args: argparse.Namespace, manifest: Path) -> int:
