@@ -1,7 +1,7 @@
 //! What stands for things that were named before: "it", "one", "both of them".
 #![allow(clippy::unwrap_used, reason = "tests stop at the first surprise")]
 
-use dwell_semantics::form::{Description, Form, Noun, Phrase, RequestStep};
+use dwell_semantics::form::{Form, Noun, Phrase, RequestStep};
 use dwell_semantics::language::{Language, ReadError};
 
 fn preferred(text: &str) -> Form {

@@ -162,13 +162,22 @@ impl Resolver {
 
     fn form(&mut self, form: &mut Form) {
         match form {
-            Form::Claim(clause) => self.clause(clause),
-            Form::Request(steps) => steps.iter_mut().for_each(|step| self.step(step)),
-            Form::Question(Question::Whether(clause)) => self.clause(clause),
-            Form::Question(Question::Alternatives(clauses)) => {
-                clauses.iter_mut().for_each(|clause| self.clause(clause));
+            Form::Claim(clause) | Form::Question(Question::Whether(clause)) => self.clause(clause),
+            Form::Request(steps) => {
+                for step in steps {
+                    self.step(step);
+                }
             }
-            Form::Several(forms) => forms.iter_mut().for_each(|form| self.form(form)),
+            Form::Question(Question::Alternatives(clauses)) => {
+                for clause in clauses {
+                    self.clause(clause);
+                }
+            }
+            Form::Several(forms) => {
+                for form in forms {
+                    self.form(form);
+                }
+            }
             Form::Question(_) | Form::NounPhrase(_) => {
                 self.unit(None, |visit| visit_form(form, visit));
             }
@@ -178,7 +187,9 @@ impl Resolver {
     fn clause(&mut self, clause: &mut Clause) {
         match clause {
             Clause::All(clauses) | Clause::Any(clauses) => {
-                clauses.iter_mut().for_each(|clause| self.clause(clause));
+                for clause in clauses {
+                    self.clause(clause);
+                }
             }
             Clause::Not(inner) => self.clause(inner),
             one => {

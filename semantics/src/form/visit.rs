@@ -31,7 +31,7 @@ impl Form {
     pub fn phrases(&self) -> Vec<Phrase> {
         let mut found = Vec::new();
         visit_form(&mut self.clone(), &mut |phrase, _| {
-            found.push(phrase.clone())
+            found.push(phrase.clone());
         });
         found
     }
@@ -52,10 +52,18 @@ impl Form {
 pub(super) fn visit_form(form: &mut Form, visit: Visit<'_>) {
     match form {
         Form::Claim(clause) => visit_clause(clause, visit),
-        Form::Request(steps) => steps.iter_mut().for_each(|step| visit_step(step, visit)),
+        Form::Request(steps) => {
+            for step in steps {
+                visit_step(step, visit);
+            }
+        }
         Form::Question(question) => visit_question(question, visit),
         Form::NounPhrase(phrase) => visit_phrase(phrase, Role::Topic, visit),
-        Form::Several(forms) => forms.iter_mut().for_each(|form| visit_form(form, visit)),
+        Form::Several(forms) => {
+            for form in forms {
+                visit_form(form, visit);
+            }
+        }
     }
 }
 
@@ -63,9 +71,9 @@ fn visit_question(question: &mut Question, visit: Visit<'_>) {
     match question {
         Question::Whether(clause) => visit_clause(clause, visit),
         Question::Alternatives(clauses) => {
-            clauses
-                .iter_mut()
-                .for_each(|clause| visit_clause(clause, visit));
+            for clause in clauses {
+                visit_clause(clause, visit);
+            }
         }
         Question::Which { kind, clause } => {
             if let Some(kind) = kind {
@@ -106,9 +114,9 @@ pub(super) fn visit_clause(clause: &mut Clause, visit: Visit<'_>) {
         }
         Clause::Not(inner) => visit_clause(inner, visit),
         Clause::All(clauses) | Clause::Any(clauses) => {
-            clauses
-                .iter_mut()
-                .for_each(|clause| visit_clause(clause, visit));
+            for clause in clauses {
+                visit_clause(clause, visit);
+            }
         }
     }
 }
@@ -163,9 +171,11 @@ pub(super) fn visit_phrase(phrase: &mut Phrase, role: Role, visit: Visit<'_>) {
             }
             visit_modifiers(&mut description.modifiers, visit);
         }
-        Phrase::List(items) => items
-            .iter_mut()
-            .for_each(|item| visit_phrase(item, role, visit)),
+        Phrase::List(items) => {
+            for item in items {
+                visit_phrase(item, role, visit);
+            }
+        }
         Phrase::Id(_) | Phrase::Listener | Phrase::Storey(_) | Phrase::Hole | Phrase::Pronoun => {}
     }
 }

@@ -91,9 +91,11 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
             let room = Description::new(Quantifier::The, Noun::Room(id(place)?));
             places::structure(noun, Some(Modifier::new("in_room", [room.into()])))
         }
-        ("some_same" | "i_some_same" | "one_same", []) => named_before(Quantifier::Some, function),
-        ("every_same", []) => named_before(Quantifier::Every, function),
-        ("no_same", []) => named_before(Quantifier::No, function),
+        ("some_same" | "i_some_same" | "one_same", []) => {
+            Some(named_before(Quantifier::Some, function))
+        }
+        ("every_same", []) => Some(named_before(Quantifier::Every, function)),
+        ("no_same", []) => Some(named_before(Quantifier::No, function)),
         ("structure_flank_of" | "i_structure_flank_of", [side, noun, place]) => {
             let wall = places::structure(noun, Some(places::side_from_tree(side)?))?;
             match wall {
@@ -114,7 +116,9 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
             own.colors.push(id(color)?);
             Some(own.into())
         }
-        ("exactly_same", [count]) => named_before(Quantifier::Exactly(number(count)?), function),
+        ("exactly_same", [count]) => {
+            Some(named_before(Quantifier::Exactly(number(count)?), function))
+        }
         ("np_nothing" | "np_something", [inner]) => nothing(inner).map(Phrase::from),
         ("at_least_two" | "i_at_least_two", [noun]) => of(Quantifier::AtLeast(2), noun),
         ("i_something", []) => {
@@ -141,12 +145,12 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
 }
 
 /// Things that were named before: "one" by their noun, "one of them" by all that was said of them.
-fn named_before(quantifier: Quantifier, function: &str) -> Option<Phrase> {
+fn named_before(quantifier: Quantifier, function: &str) -> Phrase {
     let noun = match function {
         "some_same" | "i_some_same" => Noun::SameNoun,
         _ => Noun::SameThings,
     };
-    Some(Description::new(quantifier, noun).into())
+    Description::new(quantifier, noun).into()
 }
 
 fn nothing(tree: &Tree) -> Option<Description> {

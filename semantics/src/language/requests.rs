@@ -169,8 +169,7 @@ fn step(tree: &Tree) -> Option<RequestStep> {
         ("do_off", [object]) => verb_of("switch_off", object)?,
         ("do_pick_up", [object]) => verb_of("pick_up", object)?,
         ("do_drop", [object]) => verb_of("drop", object)?,
-        ("do_bring_here", [object]) => verb_of("bring_me", object)?,
-        ("do_bring_me", [object]) => verb_of("bring_me", object)?,
+        ("do_bring_here" | "do_bring_me", [object]) => verb_of("bring_me", object)?,
         ("do", [verb, object]) => act(verb, object)?,
         ("do_not", [verb, object]) => RequestStep::DoNot {
             verb: id(verb)?,
