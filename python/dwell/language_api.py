@@ -84,11 +84,12 @@ class LanguageApi(RelationApi):
             own words, and ``phrases`` of that text: ``start``, ``end`` and the ``things`` that
             fit, each with ``kind``, ``id`` (of instance images; a number for rooms and storeys)
             and ``name``; ``ambiguities``, the definite noun phrases that several things fit: the
-            ``things`` and the ``question`` that tells them apart. ``answer`` of a claim or a yes-no question: ``truth`` (``None`` where it
-            is undecided, with a ``reason``) and the ``witnesses`` that decided; of other
-            questions ``things``, ``number``, ``words`` or, of "is it A or B?", ``alternatives``: the
-            numbers of those that are true; or the ``reason`` why there is none. ``None`` for a
-            request; of several forms in one sentence the answer to the last one that has one.
+            ``things`` and the ``question`` that tells them apart. ``answer`` of a claim or a yes-no
+            question: ``truth`` (``None`` where it is undecided, with a ``reason``) and the
+            ``witnesses`` that decided; of other questions ``things``, ``number``, ``words`` or, of
+            "is it A or B?", ``alternatives``: the numbers of those that are true; or the
+            ``reason`` why there is none. ``None`` for a request; of several forms in one sentence
+            the answer to the last one that has one.
 
         Raises:
             ConfigError: The sentence is not understood; the message says where, and which words

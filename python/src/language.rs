@@ -131,9 +131,9 @@ pub(crate) fn world_check_text(
         });
         let phrases: Vec<Value> = phrases.collect();
         let ambiguous = checker.ambiguities(&checked.form);
-        let ambiguities = ambiguous.iter().map(|found| {
-            json!({"things": running.terms_told(&found.terms), "question": found.question})
-        });
+        let ambiguities = ambiguous.iter().map(
+            |found| json!({"things": running.terms_told(&found.terms), "question": found.question}),
+        );
         answers::Answer::of(&json!({
             "form": serde_json::to_value(&checked.form)?,
             "other_forms": serde_json::to_value(&checked.others)?,
