@@ -84,7 +84,6 @@ def run(args: argparse.Namespace) -> int:
         # Another process of this job may have ended it since.
         with contextlib.suppress(FileExistsError):
             made = _make(args, manifest, {**dataset, "shard": [shard, shards]})
-    _check_seeds(args, manifest)
     made += _regenerate_missing(args, manifest)
     seconds = time.perf_counter() - start
     rows, failed, told = 0, 0, []
@@ -155,21 +154,22 @@ def _job_seeds(args: argparse.Namespace) -> Iterator[int]:
     return itertools.islice(_seeds(args.seed, args.split), first, args.count, step)
 
 
-def _check_seeds(args: argparse.Namespace, manifest: Path) -> None:
-    """Compares the seeds of a finished manifest with those of the job.
+def _job_rows(args: argparse.Namespace, manifest: Path) -> Iterator[dict[str, Any]]:
+    """The rows of a finished manifest, one for each seed of the job.
 
     Raises:
-        ValueError: One is missing, or is none of the job.
+        ValueError: As of :func:`_rows`; a seed is missing, or is none of the job.
     """
-    seeds = (row["seed"] for row in _rows(manifest))
-    for found, seed in itertools.zip_longest(seeds, _job_seeds(args)):
-        if found != seed:
+    for row, seed in itertools.zip_longest(_rows(manifest), _job_seeds(args)):
+        found = None if row is None else row["seed"]
+        if row is None or found != seed:
             what = "is at its end" if found is None else f"has seed {found}"
             expected = "no more" if seed is None else f"seed {seed}"
             raise ValueError(
                 f"{manifest}: {what} where this job has {expected}; put its lines back, or remove "
                 f"{manifest} and run again"
             )
+        yield row
 
 
 def _regenerate_missing(args: argparse.Namespace, manifest: Path) -> int:
@@ -182,7 +182,9 @@ def _regenerate_missing(args: argparse.Namespace, manifest: Path) -> int:
 
     models: set[Path] = set()
     missing = (
-        row for row in _rows(manifest) if "error" not in row and not _is_there(args, row, models)
+        row
+        for row in _job_rows(args, manifest)
+        if "error" not in row and not _is_there(args, row, models)
     )
     made = 0
     with ThreadPoolExecutor(args.workers or os.cpu_count() or 1) as pool:

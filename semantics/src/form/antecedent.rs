@@ -3,6 +3,7 @@
 use super::visit::{Role, visit_clause, visit_form, visit_step};
 use super::{Clause, Description, Form, Noun, Phrase, Quality, Quantifier, Question, RequestStep};
 use crate::category::categories;
+use std::collections::VecDeque;
 
 impl Form {
     /// The phrase that "it" in the next sentence stands for: the subject of a claim, where that is one thing. `None` where a
@@ -49,9 +50,9 @@ impl Form {
     /// landmark, else a subject or object.
     pub fn readings_after(&self, before: Option<&Self>) -> Vec<Self> {
         let mut forms = Vec::new();
-        let mut open = vec![Vec::new()];
+        let mut open = VecDeque::from([Vec::new()]);
         for _ in 0..MAX_TRIES {
-            let Some(choices) = open.pop() else {
+            let Some(choices) = open.pop_front() else {
                 break;
             };
             let mut form = self.clone();
@@ -67,7 +68,7 @@ impl Form {
                     let mut varied = resolver.choices.clone();
                     varied.resize(at, 0);
                     varied.push(other);
-                    open.insert(0, varied);
+                    open.push_back(varied);
                 }
             }
             if forms.len() >= MAX_MEANINGS {
@@ -114,8 +115,6 @@ struct Mention {
     role: Role,
     /// The clause or step that named it.
     unit: usize,
-    /// Whether another phrase contains it.
-    nested: bool,
 }
 
 /// Puts antecedents in place of what stands for them, clause by clause and step by step.
@@ -141,7 +140,7 @@ impl Resolver {
         };
         if let Some(before) = before {
             visit_form(&mut before.clone(), &mut |phrase, role| {
-                resolver.mention(phrase, role, false);
+                resolver.mention(phrase, role);
             });
             // After a claim "it" is its subject or nothing.
             resolver.unit = usize::from(!matches!(before, Form::Claim(_)));
@@ -149,13 +148,12 @@ impl Resolver {
         resolver
     }
 
-    fn mention(&mut self, phrase: &Phrase, role: Role, nested: bool) {
+    fn mention(&mut self, phrase: &Phrase, role: Role) {
         if matches!(phrase, Phrase::Described(_) | Phrase::Id(_)) {
             self.mentions.push(Mention {
                 phrase: phrase.clone(),
                 role,
                 unit: self.unit,
-                nested,
             });
         }
     }
@@ -221,11 +219,8 @@ impl Resolver {
             return;
         };
         // "Close the door if it is open": the door is named by the step.
-        let topic = topic_of(then);
-        let named = matches!(topic, Some(Phrase::Described(_) | Phrase::Id(_)));
-        if let Some(topic) = topic.filter(|_| named && self.mentions.is_empty()) {
-            let topic = topic.clone();
-            self.mention(&topic, Role::Topic, false);
+        if let Some(topic) = topic_of(then).filter(|_| self.mentions.is_empty()) {
+            self.mention(topic, Role::Topic);
             self.unit += 1;
         }
         self.clause(condition);
@@ -237,13 +232,9 @@ impl Resolver {
 
     /// Resolves what a clause or a step says of things before it.
     fn unit(&mut self, verb: Option<&str>, visit: impl FnOnce(&mut dyn FnMut(&mut Phrase, Role))) {
-        let mut depth = 0;
         visit(&mut |phrase, role| {
-            // The first phrase of a role is no part of another; which later ones are does not matter.
-            let nested = depth > 0 && role == Role::Landmark;
-            depth += 1;
             self.resolve(phrase, role, verb);
-            self.mention(phrase, role, nested);
+            self.mention(phrase, role);
         });
         self.unit += 1;
         self.subject = None;
@@ -320,11 +311,11 @@ impl Resolver {
             .iter()
             .filter(|mention| mention.unit < self.unit);
         let mut earlier: Vec<&Mention> = earlier.collect();
-        // The last step first; of one step what it is about before its landmarks.
+        // What a step is about before landmarks, of either the last one first.
         earlier.sort_by_key(|mention| {
             let suits = verb.is_none_or(|verb| suits(verb, &mention.phrase));
             let landmark = mention.role == Role::Landmark;
-            (!suits, mention.nested, usize::MAX - mention.unit, landmark)
+            (!suits, landmark, usize::MAX - mention.unit)
         });
         let mut phrases: Vec<Phrase> = Vec::new();
         for mention in earlier {

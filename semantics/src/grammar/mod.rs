@@ -103,7 +103,7 @@ impl Grammar {
         }
     }
 
-    /// Linearizes a tree: its text, with the spans of its parts; `None` if the grammar has no wording for it.
+    /// Linearizes a tree of any category: its text, with the spans of its parts; `None` if the grammar has no wording for it.
     pub fn linearize(&self, tree: &Tree, choose: ChooseWording<'_>) -> Option<(String, Vec<Span>)> {
         let own = self.productions.of_function.keys();
         let own = own.filter(|(name, _)| tree.function() == Some(name.as_str()));

@@ -41,14 +41,13 @@ pub(super) fn plan(tree: &Tree) -> Option<Vec<RequestStep>> {
 fn group(tree: &Tree) -> Option<Vec<RequestStep>> {
     Some(match parts(tree)? {
         ("do_rather", [verb, object, other]) => {
-            let (verb, object) = (id(verb)?, phrase(object)?);
-            let not = RequestStep::DoNot {
-                verb: verb.clone(),
-                object: phrase(other)?,
-            };
-            vec![RequestStep::Do { verb, object }, not]
+            let verb = id(verb)?;
+            vec![act(&verb, object)?, refrain(&verb, other)?]
         }
-        ("do_two", [verb, one, other]) => vec![act(verb, one)?, act(verb, other)?],
+        ("do_two", [verb, one, other]) => {
+            let verb = id(verb)?;
+            vec![act(&verb, one)?, act(&verb, other)?]
+        }
         ("put_both", [object, one, first, other, second]) => {
             vec![put(object, one, first)?, put(object, other, second)?]
         }
@@ -64,42 +63,31 @@ fn group(tree: &Tree) -> Option<Vec<RequestStep>> {
             vec![put(one, first, to)?, put(other, second, there)?]
         }
         ("without_touching", [first, object]) => {
-            let not = RequestStep::DoNot {
-                verb: "touch".to_owned(),
-                object: phrase(object)?,
-            };
-            vec![step(first)?, not]
+            vec![step(first)?, refrain("touch", object)?]
         }
         ("go_along", [along, to]) => {
-            let to = RequestStep::Do {
-                verb: "approach".to_owned(),
-                object: phrase(to)?,
-            };
-            vec![RequestStep::GoTo(room(along)?), to]
+            vec![RequestStep::GoTo(room(along)?), act("approach", to)?]
         }
         ("go_around_to", [around, to]) => {
-            let step = |verb: &str, object: &Tree| {
-                Some(RequestStep::Do {
-                    verb: verb.to_owned(),
-                    object: phrase(object)?,
-                })
-            };
-            vec![step("go_around", around)?, step("approach", to)?]
+            vec![act("go_around", around)?, act("approach", to)?]
         }
         ("go_through", [to, way]) => {
-            let way = RequestStep::Do {
-                verb: "go_through".to_owned(),
-                object: phrase(way)?,
-            };
-            vec![way, RequestStep::GoTo(room(to)?)]
+            vec![act("go_through", way)?, RequestStep::GoTo(room(to)?)]
         }
         _ => return None,
     })
 }
 
-fn act(verb: &Tree, object: &Tree) -> Option<RequestStep> {
+fn act(verb: &str, object: &Tree) -> Option<RequestStep> {
     Some(RequestStep::Do {
-        verb: id(verb)?,
+        verb: verb.to_owned(),
+        object: phrase(object)?,
+    })
+}
+
+fn refrain(verb: &str, object: &Tree) -> Option<RequestStep> {
+    Some(RequestStep::DoNot {
+        verb: verb.to_owned(),
         object: phrase(object)?,
     })
 }
@@ -125,12 +113,6 @@ fn conditional(condition: Clause, then: &Tree, otherwise: Option<&Tree>) -> Opti
 }
 
 fn step(tree: &Tree) -> Option<RequestStep> {
-    let verb_of = |verb: &str, object: &Tree| {
-        Some(RequestStep::Do {
-            verb: verb.to_owned(),
-            object: phrase(object)?,
-        })
-    };
     Some(match parts(tree)? {
         ("go_to", [to]) => RequestStep::GoTo(room(to)?),
         ("do_from_room", [verb, object, from]) => {
@@ -143,10 +125,7 @@ fn step(tree: &Tree) -> Option<RequestStep> {
                 object: description.with_modifier(in_room).into(),
             }
         }
-        ("leave", [object]) => RequestStep::DoNot {
-            verb: "pick_up".to_owned(),
-            object: phrase(object)?,
-        },
+        ("leave", [object]) => refrain("pick_up", object)?,
         ("put_near", [object, to]) => RequestStep::Put {
             object: phrase(object)?,
             predicate: "near".to_owned(),
@@ -160,21 +139,15 @@ fn step(tree: &Tree) -> Option<RequestStep> {
                 "switched_off" => "switch_on",
                 _ => return None,
             };
-            RequestStep::DoNot {
-                verb: verb.to_owned(),
-                object: phrase(object)?,
-            }
+            refrain(verb, object)?
         }
-        ("do_on", [object]) => verb_of("switch_on", object)?,
-        ("do_off", [object]) => verb_of("switch_off", object)?,
-        ("do_pick_up", [object]) => verb_of("pick_up", object)?,
-        ("do_drop", [object]) => verb_of("drop", object)?,
-        ("do_bring_here" | "do_bring_me", [object]) => verb_of("bring_me", object)?,
-        ("do", [verb, object]) => act(verb, object)?,
-        ("do_not", [verb, object]) => RequestStep::DoNot {
-            verb: id(verb)?,
-            object: phrase(object)?,
-        },
+        ("do_on", [object]) => act("switch_on", object)?,
+        ("do_off", [object]) => act("switch_off", object)?,
+        ("do_pick_up", [object]) => act("pick_up", object)?,
+        ("do_drop", [object]) => act("drop", object)?,
+        ("do_bring_here" | "do_bring_me", [object]) => act("bring_me", object)?,
+        ("do", [verb, object]) => act(&id(verb)?, object)?,
+        ("do_not", [verb, object]) => refrain(&id(verb)?, object)?,
         ("put" | "put_modified", [object, relation, to]) => put(object, relation, to)?,
         ("put_in_place" | "put_modified_in_place", [object, place]) => {
             let (predicate, to) = place_of(place)?;

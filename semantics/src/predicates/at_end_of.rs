@@ -1,9 +1,6 @@
 //! The predicate `at_end_of`.
 
-use super::{
-    OBJECT_OR_AGENT, Predicate, ROOM, RelationProperties,
-    shape::{room_of, shape_of},
-};
+use super::{OBJECT_OR_AGENT, Predicate, ROOM, RelationProperties, shape::shape_in_room};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::Truth;
 
@@ -46,9 +43,7 @@ impl Predicate for AtEndOf {
         let Term::Room(room) = args[1] else {
             return Truth::False;
         };
-        let Some(shape) =
-            shape_of(scene, args[0]).filter(|_| room_of(scene, args[0]) == Some(room))
-        else {
+        let Some(shape) = shape_in_room(scene, args[0], room) else {
             return Truth::False;
         };
         let outline = scene.semantics.room_outline(room);

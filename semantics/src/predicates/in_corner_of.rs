@@ -3,7 +3,7 @@
 use super::{
     OBJECT_OR_AGENT, Predicate, ROOM, RelationProperties,
     in_middle_of::CENTRAL,
-    shape::{room_of, shape_of},
+    shape::{room_of, shape_in_room},
 };
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::Truth;
@@ -51,9 +51,7 @@ impl Predicate for InCornerOf {
         let Term::Room(room) = args[1] else {
             return Truth::False;
         };
-        let Some(shape) =
-            shape_of(scene, args[0]).filter(|_| room_of(scene, args[0]) == Some(room))
-        else {
+        let Some(shape) = shape_in_room(scene, args[0], room) else {
             return Truth::False;
         };
         let outline = scene.semantics.room_outline(room);

@@ -2,7 +2,7 @@
 
 use super::{
     OBJECT_OR_AGENT, Predicate, ROOM, RelationProperties,
-    shape::{room_of, shape_of},
+    shape::{room_of, shape_in_room},
 };
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::Truth;
@@ -49,9 +49,7 @@ impl Predicate for InMiddleOf {
         let Term::Room(room) = args[1] else {
             return Truth::False;
         };
-        let Some(shape) =
-            shape_of(scene, args[0]).filter(|_| room_of(scene, args[0]) == Some(room))
-        else {
+        let Some(shape) = shape_in_room(scene, args[0], room) else {
             return Truth::False;
         };
         let share = scene.semantics.room_outline(room).share(shape.middle_xz());

@@ -79,6 +79,15 @@ pub(super) fn least_gap_m(p: &Aabb, q: &Aabb) -> f32 {
     apart.length()
 }
 
+/// The shape of a thing whose middle is in a room.
+pub(super) fn shape_in_room<'a>(
+    scene: &'a SemanticScene<'_>,
+    term: Term,
+    room: RoomId,
+) -> Option<Shape<'a>> {
+    shape_of(scene, term).filter(|_| room_of(scene, term) == Some(room))
+}
+
 /// The room of a thing; `None` outside of rooms and for storeys.
 pub(super) fn room_of(scene: &SemanticScene<'_>, term: Term) -> Option<RoomId> {
     match term {
