@@ -5,6 +5,7 @@ use crate::color::{ColorVocabulary, MaterialColors, SurfacePatch, color_words};
 use crate::english::counted_noun;
 use crate::form::{Description, Noun};
 use crate::geometry::mapped_area_m2;
+use crate::material_family::family_of;
 use crate::size::SizeClass;
 use dwell_scene::material::{Substance, library};
 use dwell_scene::{Aabb, House, IdVec, MaterialId, ObjectId};
@@ -146,6 +147,19 @@ impl ObjectFacts {
             .then_some(substance.adjective.as_str())
     }
 
+    /// The words for what it is made of: its adjectives and the families of these, each once.
+    pub(crate) fn material_words(&self) -> impl Iterator<Item = &'static str> {
+        let mut words: Vec<&'static str> = Vec::new();
+        for word in self.adjectives() {
+            for word in std::iter::once(word).chain(family_of(word)) {
+                if !words.contains(&word) {
+                    words.push(word);
+                }
+            }
+        }
+        words.into_iter()
+    }
+
     /// The adjectives of the substances on at least a fifth of its surface, largest share first.
     pub(crate) fn adjectives(&self) -> impl Iterator<Item = &'static str> {
         let large = self.substances.iter().filter(|(_, share)| *share >= 0.2);
@@ -158,7 +172,7 @@ impl ObjectFacts {
             return false;
         };
         let shows = |color: &String| self.colors.iter().any(|(word, _)| word == color);
-        let made_of = |word: &String| self.adjectives().any(|adjective| adjective == *word);
+        let made_of = |word: &String| self.material_words().any(|own| own == *word);
         self.is_called(noun)
             && description.colors.iter().all(shows)
             && description.material.as_ref().is_none_or(made_of)

@@ -171,3 +171,67 @@ fn nothing_stands_for_itself() {
         assert!(!preferred(text).phrases().is_empty(), "{text}");
     }
 }
+
+#[test]
+fn the_other_is_not_the_one_that_was_named() {
+    for (text, meant) in [
+        (
+            "The bed near the door is larger than the other bed.",
+            "The bed near the door is larger than the bed other than the bed that is near the door.",
+        ),
+        // The other one is named first where the comparison is turned around.
+        (
+            "The bed near the door is smaller than the other bed.",
+            "The bed other than the bed that is near the door is larger than the bed near the door.",
+        ),
+        // It shares the place of the first, and is told from it by what was said of that.
+        (
+            "One of the mats in the hall is red and the other is gray.",
+            "A mat in the hall is red, and the mat in the hall other than the red mat that is in the hall is gray.",
+        ),
+    ] {
+        let form = preferred(text);
+        assert!(form.is_complete(), "{text}: {form:?}");
+        let said = Language::english().say(&form, None).map(|said| said.text);
+        assert_eq!(said.as_deref(), Some(meant), "{text}: {form:?}");
+    }
+    for text in [
+        "The other chair is red.",
+        "Put the cup on the other table.",
+        "Does the other bathroom have a window?",
+        "Is there another sofa?",
+    ] {
+        let error = Language::english().read_text(text).unwrap_err();
+        assert_eq!(error.error, ReadError::NoAntecedent, "{text}");
+    }
+}
+
+#[test]
+fn they_are_what_the_sentence_was_about() {
+    for (text, meant) in [
+        (
+            "Three cups are on the shelf, and all of them are red.",
+            "Three cups are on the shelf, and every cup on the shelf is red.",
+        ),
+        (
+            "There are three mugs on the table, and they are red.",
+            "There are three mugs on the table, and every mug on the table is red.",
+        ),
+        (
+            "Open the curtains and then close them.",
+            "Open every curtain, then close every curtain.",
+        ),
+        (
+            "Put the purple vase on the shelf next to the yellow one.",
+            "Put the purple vase on the shelf next to the yellow vase.",
+        ),
+        (
+            "Is the plant in the yellow pot in front of the desk or behind it?",
+            "Is the plant in the yellow pot in front of the desk, or is the plant in the yellow pot behind the desk?",
+        ),
+    ] {
+        let form = preferred(text);
+        assert!(form.is_complete(), "{text}: {form:?}");
+        assert_eq!(said(text), meant, "{text}");
+    }
+}

@@ -106,6 +106,138 @@ fn quantifiers_agree_with_counting() {
     }
 }
 
+/// "A lamp in every room" is one lamp in each, not one lamp in all of them.
+#[test]
+fn each_landmark_has_its_own_thing() {
+    for name in ["builtin:apartment", "seed:7", "seed:12"] {
+        let house = house(name);
+        let semantics = Semantics::new(&house);
+        let state = State::new(&house);
+        let scene = semantics.scene(&state);
+        let rooms: Vec<_> = scene.house().rooms.ids().collect();
+        for (noun, things) in called(&scene) {
+            let has = |room| things.iter().any(|id| scene.room_of(*id) == Some(room));
+            let having = rooms.iter().filter(|room| has(**room)).count();
+            for (text, expected) in [
+                (
+                    format!("There is a {noun} in every room."),
+                    having == rooms.len(),
+                ),
+                (format!("Every room has a {noun}."), having == rooms.len()),
+                (format!("None of the rooms has a {noun}."), having == 0),
+                (format!("Two of the rooms have a {noun}."), having == 2),
+                (format!("There are at most 3 {noun}s."), things.len() <= 3),
+                (format!("There are fewer than 3 {noun}s."), things.len() < 3),
+                (format!("There are more than 3 {noun}s."), things.len() > 3),
+            ] {
+                // Not every plural has an "s".
+                let Ok(read) = Language::english().read(&text) else {
+                    assert!(text.ends_with("s."), "{text}");
+                    continue;
+                };
+                let Form::Claim(clause) = &read.forms[0] else {
+                    panic!("{text}: {read:?}");
+                };
+                let verdict = Checker::new(&scene, Listener::default()).check(clause);
+                assert_eq!(
+                    verdict.truth,
+                    Truth::from(expected),
+                    "{name}: {text} {clause:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn rooms_and_pieces_of_the_building_have_colors_and_substances() {
+    use dwell_scene::material::library;
+    use dwell_semantics::color::ColorVocabulary;
+    let mut decided = [0, 0];
+    for name in ["builtin:apartment", "seed:7", "seed:12"] {
+        let house = house(name);
+        let semantics = Semantics::new(&house);
+        let state = State::new(&house);
+        let scene = semantics.scene(&state);
+        for room in house.rooms.ids() {
+            let facts = semantics.room(room);
+            for color in ["white", "blue", "green", "gray", "beige", "pink"] {
+                let own = house
+                    .rooms
+                    .ids()
+                    .filter(|id| semantics.room(*id).noun == facts.noun);
+                let mut own = own.map(|id| semantics.room(id).wall_color);
+                let expected = own.any(|own| own == Some(color));
+                let text = format!("There is a {color} {}.", facts.noun);
+                assert_eq!(
+                    check(&scene, &text).truth,
+                    expected.into(),
+                    "{name}: {text}"
+                );
+            }
+        }
+        // A piece of one material has its colour and substance, and no other.
+        for (id, piece) in house.structure.iter_ids() {
+            let [only] = piece.materials[..] else {
+                continue;
+            };
+            let own = ColorVocabulary::Plain.word(semantics.material_color(only));
+            let substance = library().get(&house.materials[only].substance);
+            let kinds = dwell_semantics::form::Quality::Color;
+            let asks = |quality| Clause::Is {
+                subject: Phrase::Id(house.entity_of_structure(id).0.unsigned_abs()),
+                quality,
+            };
+            let checker = Checker::new(&scene, Listener::default());
+            for word in ["white", "blue", "gray", own] {
+                let verdict = checker.check(&asks(kinds(word.to_owned())));
+                assert_eq!(
+                    verdict.truth,
+                    Truth::from(word == own),
+                    "{name}: {}",
+                    piece.name
+                );
+                decided[usize::from(word == own)] += 1;
+            }
+            if let Some(substance) = substance {
+                let quality = dwell_semantics::form::Quality::Material(substance.adjective.clone());
+                assert!(
+                    checker.check(&asks(quality)).truth.is_true(),
+                    "{name}: {}",
+                    piece.name
+                );
+            }
+        }
+    }
+    assert!(decided.iter().all(|number| *number > 50), "{decided:?}");
+}
+
+#[test]
+fn oak_is_wooden_and_steel_is_metal() {
+    let mut found = BTreeSet::new();
+    for name in ["builtin:apartment", "seed:7", "seed:12", "seed:13"] {
+        let house = house(name);
+        let semantics = Semantics::new(&house);
+        let state = State::new(&house);
+        let scene = semantics.scene(&state);
+        for noun in called(&scene).into_keys() {
+            for (member, family) in [
+                ("oak", "wooden"),
+                ("pine", "wooden"),
+                ("steel", "metal"),
+                ("brass", "metal"),
+            ] {
+                let is = |word: &str| check(&scene, &format!("There is a {word} {noun}.")).truth;
+                if is(member).is_true() {
+                    assert!(is(family).is_true(), "{name}: {member} {noun}");
+                    found.insert(family);
+                }
+            }
+        }
+    }
+    assert!(found.contains("metal"), "{found:?}");
+}
+
 #[test]
 fn relations_of_descriptions_agree_with_those_of_things() {
     let house = house("builtin:apartment");

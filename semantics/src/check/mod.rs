@@ -22,9 +22,10 @@ pub(crate) use room::spoken_area_m2;
 pub use text::{CheckedText, GroundedPhrase};
 pub use witness::Witness;
 
-use crate::form::{Clause, Description, Form, Phrase, Quality};
+use crate::form::{Clause, Description, Form, Modifier, Phrase, Quality, Quantifier};
 use crate::predicates;
 use crate::scene::{SemanticScene, Term, Viewer};
+use crate::structure_facts;
 use crate::truth::{Truth, UndecidedReason};
 use description::Extension;
 use dwell_scene::AgentId;
@@ -129,6 +130,9 @@ impl<'a> Checker<'a> {
                 let body = |terms: &[Term]| self.has_quality(terms[0], quality);
                 self.quantify(std::slice::from_ref(subject), &mut Vec::new(), &body)
             }
+            Clause::Exists(Phrase::Described(what)) if wide_landmark(what).is_some() => {
+                self.exists_for_each(what)
+            }
             Clause::Exists(what) => {
                 let body = |terms: &[Term]| Judged::fact("exists", terms, Truth::True);
                 self.quantify(std::slice::from_ref(what), &mut Vec::new(), &body)
@@ -151,9 +155,44 @@ impl<'a> Checker<'a> {
         }
     }
 
+    /// "There is a lamp on every desk": each desk has its own.
+    fn exists_for_each(&self, what: &Description) -> Judged {
+        let mut thing = what.clone();
+        let Some(at) = wide_landmark(what) else {
+            return Judged::undecided(UndecidedReason::UnknownPredicate);
+        };
+        let Modifier {
+            predicate,
+            arguments,
+            ..
+        } = thing.modifiers.remove(at);
+        let Ok(found) = predicates::find(&predicate) else {
+            return Judged::undecided(UndecidedReason::UnknownPredicate);
+        };
+        let body = |terms: &[Term]| {
+            let swapped = [terms[1], terms[0]];
+            let truth = found.holds(self.scene, &swapped, self.listener.viewer.as_ref());
+            Judged::fact(&predicate, &swapped, truth)
+        };
+        let mut ordered = arguments;
+        ordered.push(thing.into());
+        self.quantify(&ordered, &mut Vec::new(), &body)
+    }
+
     fn has_quality(&self, term: Term, quality: &Quality) -> Judged {
-        let Some(object) = term.object() else {
-            return Judged::undecided(UndecidedReason::WrongKind);
+        let object = match (term, quality) {
+            (Term::Object(object), _) => object,
+            // A blue bedroom has blue walls.
+            (Term::Room(_), Quality::Color(word)) => return self.has_walls(term, word),
+            (Term::Structure(piece), Quality::Color(word)) => {
+                let truth = structure_facts::has_color(self.scene.semantics, piece, word);
+                return Judged::fact(word, &[term], truth.into());
+            }
+            (Term::Structure(piece), Quality::Material(word)) => {
+                let truth = structure_facts::has_material(self.scene.semantics, piece, word);
+                return Judged::fact(word, &[term], truth.into());
+            }
+            _ => return Judged::undecided(UndecidedReason::WrongKind),
         };
         let facts = self.scene.facts(object);
         let (name, truth) = match quality {
@@ -166,7 +205,7 @@ impl<'a> Checker<'a> {
             ),
             Quality::Material(word) => (
                 word.as_str(),
-                facts.adjectives().any(|own| own == word).into(),
+                facts.material_words().any(|own| own == word).into(),
             ),
             Quality::Size(size) => (
                 size.word().unwrap_or("normal"),
@@ -204,8 +243,21 @@ impl<'a> Checker<'a> {
                 .map(Term::Storey)
                 .ok_or(UndecidedReason::UnknownTerm),
             Phrase::Hole => self.hole.get().ok_or(UndecidedReason::UnknownTerm),
-            Phrase::Pronoun => Err(UndecidedReason::NoAntecedent),
+            Phrase::Speaker => Err(UndecidedReason::UnknownTerm),
+            Phrase::Pronoun | Phrase::NamedBefore => Err(UndecidedReason::NoAntecedent),
             Phrase::Described(_) | Phrase::List(_) => return None,
         })
     }
+}
+
+/// The modifier with a landmark that has a wider scope than the thing that exists: "every desk", "no desk", "two desks".
+fn wide_landmark(what: &Description) -> Option<usize> {
+    let is_wide = |modifier: &Modifier| match &modifier.arguments[..] {
+        [Phrase::Described(own)] => !matches!(own.quantifier, Quantifier::The | Quantifier::Some),
+        _ => false,
+    };
+    let modifiers = what.modifiers.iter();
+    let is_plain = what.selection.is_none();
+    let mut wide = modifiers.map(|one| is_plain && !one.negated && is_wide(one));
+    wide.position(|wide| wide)
 }

@@ -93,6 +93,16 @@ impl Checker<'_> {
                     }
                 })
             }
+            Quantifier::AtMost(number) => {
+                let bounds = CountBounds::of(&mut fitting, with);
+                bounds.judged(|low, high| {
+                    if low > number {
+                        Some(false)
+                    } else {
+                        (high <= number).then_some(true)
+                    }
+                })
+            }
             Quantifier::AtLeast(number) => {
                 let bounds = CountBounds::of(&mut fitting, with);
                 bounds.judged(|low, high| {

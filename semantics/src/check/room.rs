@@ -21,6 +21,16 @@ impl Checker<'_> {
         Judged::fact("area", &[term], truth)
     }
 
+    /// A room's walls have a colour.
+    pub(super) fn has_walls(&self, term: Term, color: &str) -> Judged {
+        let walls = RoomSurface {
+            kind: RoomSurfaceKind::Walls,
+            color: Some(color.to_owned()),
+            material: None,
+        };
+        self.has_surfaces(term, &[walls])
+    }
+
     pub(super) fn has_surfaces(&self, term: Term, surfaces: &[RoomSurface]) -> Judged {
         let Term::Room(room) = term else {
             return Judged::undecided(UndecidedReason::WrongKind);

@@ -1,7 +1,9 @@
 //! Pronouns and their antecedents.
 
 use super::visit::{Role, visit_clause, visit_form, visit_step};
-use super::{Clause, Description, Form, Noun, Phrase, Quality, Quantifier, Question, RequestStep};
+use super::{
+    Clause, Description, Form, Modifier, Noun, Phrase, Quality, Quantifier, Question, RequestStep,
+};
 use crate::category::categories;
 use std::collections::VecDeque;
 
@@ -83,7 +85,7 @@ impl Form {
         let mut complete = true;
         visit_form(&mut self.clone(), &mut |phrase, _| {
             complete &= match phrase {
-                Phrase::Pronoun => false,
+                Phrase::Pronoun | Phrase::NamedBefore => false,
                 Phrase::Described(own) => !matches!(own.noun, Noun::SameNoun | Noun::SameThings),
                 _ => true,
             }
@@ -115,6 +117,10 @@ struct Mention {
     role: Role,
     /// The clause or step that named it.
     unit: usize,
+    /// With what its clause says of it, where its number is indefinite: "three cups are on the table".
+    with_said: Option<Description>,
+    /// False for what only describes another thing: the pot of "the plant in the pot is on the table".
+    is_argument: bool,
 }
 
 /// Puts antecedents in place of what stands for them, clause by clause and step by step.
@@ -154,6 +160,8 @@ impl Resolver {
                 phrase: phrase.clone(),
                 role,
                 unit: self.unit,
+                with_said: None,
+                is_argument: true,
             });
         }
     }
@@ -198,7 +206,16 @@ impl Resolver {
                     } => Some(state.clone()),
                     _ => None,
                 };
+                let first = self.mentions.len();
                 self.unit(verb.as_deref(), |visit| visit_clause(one, visit));
+                if let Clause::Holds { arguments, .. } = &*one {
+                    for mention in &mut self.mentions[first..] {
+                        mention.is_argument = arguments.contains(&mention.phrase);
+                    }
+                }
+                if let Some(subject) = self.mentions.get_mut(first) {
+                    subject.with_said = subject_with_said(one);
+                }
             }
         }
     }
@@ -216,25 +233,53 @@ impl Resolver {
         } = step
         else {
             self.unit(verb.as_deref(), |visit| visit_step(step, visit));
+            // "Bring another cup": where none was named, any cup.
+            visit_step(step, &mut |phrase, _| {
+                if let Phrase::Described(own) = phrase
+                    && own.quantifier == Quantifier::Some
+                {
+                    own.modifiers
+                        .retain(|modifier| !modifier.arguments.contains(&Phrase::NamedBefore));
+                }
+            });
             return;
         };
         // "Close the door if it is open": the door is named by the step.
-        if let Some(topic) = topic_of(then).filter(|_| self.mentions.is_empty()) {
+        let topic = then.first().and_then(topic_of);
+        if let Some(topic) = topic.filter(|_| self.mentions.is_empty()) {
             self.mention(topic, Role::Topic);
             self.unit += 1;
         }
         self.clause(condition);
-        self.step(then);
-        if let Some(otherwise) = otherwise {
-            self.step(otherwise);
+        for step in then.iter_mut().chain(otherwise) {
+            self.step(step);
         }
     }
 
     /// Resolves what a clause or a step says of things before it.
-    fn unit(&mut self, verb: Option<&str>, visit: impl FnOnce(&mut dyn FnMut(&mut Phrase, Role))) {
+    fn unit(
+        &mut self,
+        verb: Option<&str>,
+        mut visit: impl FnMut(&mut dyn FnMut(&mut Phrase, Role)),
+    ) {
         visit(&mut |phrase, role| {
             self.resolve(phrase, role, verb);
             self.mention(phrase, role);
+        });
+        // "The other bed is wider than this one" names the one after the other, "smaller than the stand that supports it", too.
+        visit(&mut |phrase, _| match phrase {
+            Phrase::Described(own) => self.resolve_other(own),
+            Phrase::Pronoun => {
+                let topics = self.mentions.iter().rev().filter(|mention| {
+                    mention.unit == self.unit
+                        && mention.role == Role::Topic
+                        && Form::NounPhrase(mention.phrase.clone()).is_complete()
+                });
+                if let Some(topic) = topics.map(|mention| &mention.phrase).next() {
+                    *phrase = topic.clone();
+                }
+            }
+            _ => {}
         });
         self.unit += 1;
         self.subject = None;
@@ -251,8 +296,14 @@ impl Resolver {
                 }
             }
             Phrase::Described(own) if own.noun == Noun::SameNoun => {
-                if let Some(noun) = self.noun_in_role(role) {
+                if let Some(noun) = self.contrasted(own).or_else(|| self.noun_in_role(role)) {
                     own.noun = noun;
+                }
+            }
+            Phrase::Described(own) if role == Role::Landmark && is_any_room(own) => {
+                // "Go to the hall and open the door at the end": of the hall.
+                if let Some(room) = self.room_before() {
+                    *phrase = room;
                 }
             }
             Phrase::Described(own) if own.noun == Noun::SameThings => {
@@ -265,13 +316,13 @@ impl Resolver {
                             if mention.role == Role::Topic
                                 && Form::NounPhrase(mention.phrase.clone()).is_complete() =>
                         {
-                            Some(named)
+                            Some(mention.with_said.as_ref().unwrap_or(named))
                         }
                         _ => None,
                     });
                 if let Some(named) = same {
                     let (quantifier, selection) = (own.quantifier, own.selection.take());
-                    **own = Description::clone(named).with_quantifier(quantifier);
+                    **own = named.clone().with_quantifier(quantifier);
                     if selection.is_some() {
                         own.selection = selection;
                     }
@@ -279,6 +330,79 @@ impl Resolver {
             }
             _ => {}
         }
+    }
+
+    /// Puts the last thing of the same noun in place of what a description is other than.
+    fn resolve_other(&self, own: &mut Description) {
+        let noun = own.noun.clone();
+        let mut shared: Vec<Modifier> = Vec::new();
+        let others = own
+            .modifiers
+            .iter_mut()
+            .flat_map(|modifier| &mut modifier.arguments);
+        for other in others.filter(|other| **other == Phrase::NamedBefore) {
+            let mut named = self.mentions.iter().rev().filter_map(|mention| {
+                let Phrase::Described(named) = &mention.phrase else {
+                    return None;
+                };
+                let is_one = matches!(
+                    named.quantifier,
+                    Quantifier::The | Quantifier::Some | Quantifier::Exactly(1)
+                );
+                let is_complete = Form::NounPhrase(mention.phrase.clone()).is_complete();
+                (named.noun == noun && is_one && is_complete).then_some((named, mention))
+            });
+            if let Some((named, mention)) = named.next() {
+                if named.quantifier != Quantifier::The {
+                    // "One of the mats in the hall is orange, and the other is gray": the other mat in the hall.
+                    shared.clone_from(&named.modifiers);
+                }
+                let named = mention.with_said.as_ref().unwrap_or(named);
+                *other = named.clone().with_quantifier(Quantifier::The).into();
+            }
+        }
+        if own.modifiers.len() == 1 {
+            own.modifiers.splice(0..0, shared);
+        }
+    }
+
+    /// The last room that an earlier clause or step is about.
+    fn room_before(&self) -> Option<Phrase> {
+        let mut rooms = self.mentions.iter().rev().filter(|mention| {
+            mention.unit < self.unit
+                && matches!(
+                    &mention.phrase,
+                    Phrase::Described(own)
+                        if matches!(own.noun, Noun::Room(_)) && own.quantifier == Quantifier::The
+                )
+        });
+        rooms.next().map(|mention| mention.phrase.clone())
+    }
+
+    /// The noun of the last object that differs from `own` in a quality of the same kind: "the purple vase on the shelf next to the
+    /// yellow one" is next to a yellow vase.
+    fn contrasted(&self, own: &Description) -> Option<Noun> {
+        let differs = |named: &Description| {
+            let colors = !own.colors.is_empty() && !named.colors.is_empty();
+            let sizes = own.size.is_some() && named.size.is_some();
+            let states = own.state.is_some() && named.state.is_some();
+            let materials = own.material.is_some() && named.material.is_some();
+            colors && own.colors != named.colors
+                || sizes && own.size != named.size
+                || states && own.state != named.state
+                || materials && own.material != named.material
+        };
+        self.mentions
+            .iter()
+            .rev()
+            .find_map(|mention| match &mention.phrase {
+                Phrase::Described(named)
+                    if matches!(named.noun, Noun::Object(_)) && differs(named) =>
+                {
+                    Some(named.noun.clone())
+                }
+                _ => None,
+            })
     }
 
     /// The noun of the last object in a role, else of the last one.
@@ -315,7 +439,12 @@ impl Resolver {
         earlier.sort_by_key(|mention| {
             let suits = verb.is_none_or(|verb| suits(verb, &mention.phrase));
             let landmark = mention.role == Role::Landmark;
-            (!suits, landmark, usize::MAX - mention.unit)
+            (
+                !suits,
+                landmark,
+                usize::MAX - mention.unit,
+                !mention.is_argument,
+            )
         });
         let mut phrases: Vec<Phrase> = Vec::new();
         for mention in earlier {
@@ -345,6 +474,48 @@ impl Resolver {
     }
 }
 
+/// A subject of indefinite number with what its clause says of it, which "they" then stands for: "three cups are on the table".
+fn subject_with_said(clause: &Clause) -> Option<Description> {
+    let subject = match clause {
+        Clause::Holds { arguments, .. } => arguments.first()?,
+        Clause::Is { subject, .. } => subject,
+        _ => return None,
+    };
+    let Phrase::Described(subject) = subject else {
+        return None;
+    };
+    let is_indefinite = matches!(
+        subject.quantifier,
+        Quantifier::Some | Quantifier::Exactly(_) | Quantifier::AtLeast(_)
+    );
+    is_indefinite.then_some(())?;
+    let mut subject = Description::clone(subject);
+    match clause {
+        Clause::Holds {
+            predicate,
+            arguments,
+        } => subject
+            .modifiers
+            .push(Modifier::new(predicate, arguments.get(1..)?)),
+        Clause::Is {
+            quality: Quality::Color(word),
+            ..
+        } => subject.colors.push(word.clone()),
+        Clause::Is {
+            quality: Quality::State(state),
+            ..
+        } => subject.state = Some(state.clone()),
+        _ => return None,
+    }
+    Some(subject)
+}
+
+/// Returns whether a description is of any room: that of "in the corner".
+fn is_any_room(own: &Description) -> bool {
+    let any = Noun::Room(Noun::ANY_ROOM.to_owned());
+    *own == Description::new(Quantifier::Some, any)
+}
+
 /// The thing that a step is about.
 fn topic_of(step: &RequestStep) -> Option<&Phrase> {
     match step {
@@ -353,7 +524,7 @@ fn topic_of(step: &RequestStep) -> Option<&Phrase> {
         | RequestStep::DoNot { object, .. }
         | RequestStep::Put { object, .. }
         | RequestStep::Bring { object, .. } => Some(object),
-        RequestStep::If { then, .. } => topic_of(then),
+        RequestStep::If { then, .. } => topic_of(then.first()?),
     }
 }
 

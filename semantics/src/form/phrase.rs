@@ -19,6 +19,8 @@ pub enum Quantifier {
     Exactly(u32),
     /// This number or more: "at least two chairs".
     AtLeast(u32),
+    /// This number or fewer: "at most two chairs".
+    AtMost(u32),
 }
 
 /// The noun of a description, singular.
@@ -58,6 +60,9 @@ pub struct Modifier {
 }
 
 impl Modifier {
+    /// The predicate of being one and the same thing.
+    pub const IDENTICAL: &'static str = "identical";
+
     /// Returns a modifier that is not negated.
     pub fn new(predicate: &str, arguments: impl Into<Vec<Phrase>>) -> Self {
         Self {
@@ -127,6 +132,15 @@ impl Description {
         self
     }
 
+    /// Returns the same description for another thing than the one of its noun that was named before: "the other chair".
+    #[must_use]
+    pub fn other(self) -> Self {
+        self.with_modifier(Modifier {
+            negated: true,
+            ..Modifier::new(Modifier::IDENTICAL, [Phrase::NamedBefore])
+        })
+    }
+
     /// Returns the same description with another quantifier.
     #[must_use]
     pub fn with_quantifier(self, quantifier: Quantifier) -> Self {
@@ -148,6 +162,11 @@ pub enum Phrase {
     Storey(u32),
     /// A list of which a clause holds one by one: "a table and two chairs".
     List(Vec<Phrase>),
+    /// The thing that "the other lamp" is other than: one with the same noun that was named before.
+    /// [`crate::form::Form::readings_after`] puts that in its place.
+    NamedBefore,
+    /// The speaker: "me". Undecided in clauses: a scene does not know who speaks.
+    Speaker,
     /// "It": a thing that was named before. [`crate::form::Form::readings_after`] puts that in its place.
     Pronoun,
     /// The open argument of a question.

@@ -24,13 +24,13 @@ pub enum RequestStep {
         /// The thing.
         object: Phrase,
     },
-    /// Make a relation true of a thing: "put the cup on the table".
+    /// Make a relation true of a thing, or of the listener: "put the cup on the table", "stand next to the table".
     Put {
         /// The thing.
         object: Phrase,
         /// The predicate's name.
         predicate: String,
-        /// Its second argument.
+        /// Its second argument; of "between" a list of both landmarks.
         to: Phrase,
     },
     /// Carry a thing to a thing or room.
@@ -40,13 +40,13 @@ pub enum RequestStep {
         /// The destination.
         to: Phrase,
     },
-    /// A step to carry out if a clause is true when its turn comes, and possibly another one if not.
+    /// Steps to carry out if a clause is true when their turn comes, and others if it is not.
     If {
         /// The condition.
         condition: Clause,
-        /// The step if it is true.
-        then: Box<RequestStep>,
-        /// The step if it is not.
-        otherwise: Option<Box<RequestStep>>,
+        /// The steps if it is true; at least one.
+        then: Vec<RequestStep>,
+        /// The steps if it is not.
+        otherwise: Vec<RequestStep>,
     },
 }

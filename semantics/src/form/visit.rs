@@ -36,6 +36,27 @@ impl Form {
         found
     }
 
+    /// Returns the numbers of modifiers of what its clauses relate their subjects to, and of all its phrases.
+    pub(crate) fn modifiers(&self) -> (usize, usize) {
+        let of_landmarks = match self {
+            Self::Claim(clause)
+            | Self::Question(Question::Whether(clause) | Question::Which { clause, .. }) => {
+                landmark_modifiers(clause)
+            }
+            Self::Question(Question::Alternatives(clauses)) => {
+                clauses.iter().map(landmark_modifiers).sum()
+            }
+            _ => 0,
+        };
+        let mut all = 0;
+        visit_form(&mut self.clone(), &mut |phrase, _| {
+            if let Phrase::Described(own) = phrase {
+                all += own.modifiers.len();
+            }
+        });
+        (of_landmarks, all)
+    }
+
     /// Returns the number of its descriptions with a comparison: "the cabinet larger than the table".
     pub(crate) fn described_comparisons(&self) -> usize {
         let mut number = 0;
@@ -46,6 +67,22 @@ impl Form {
             }
         });
         number
+    }
+}
+
+fn landmark_modifiers(clause: &Clause) -> usize {
+    match clause {
+        Clause::Holds { arguments, .. } => {
+            let landmarks = arguments.iter().skip(1);
+            let modifiers = landmarks.map(|landmark| match landmark {
+                Phrase::Described(own) => own.modifiers.len(),
+                _ => 0,
+            });
+            modifiers.sum()
+        }
+        Clause::Not(inner) => landmark_modifiers(inner),
+        Clause::All(clauses) | Clause::Any(clauses) => clauses.iter().map(landmark_modifiers).sum(),
+        _ => 0,
     }
 }
 
@@ -136,9 +173,8 @@ pub(super) fn visit_step(step: &mut RequestStep, visit: Visit<'_>) {
             otherwise,
         } => {
             visit_clause(condition, visit);
-            visit_step(then, visit);
-            if let Some(otherwise) = otherwise {
-                visit_step(otherwise, visit);
+            for step in then.iter_mut().chain(otherwise) {
+                visit_step(step, visit);
             }
         }
     }
@@ -176,6 +212,12 @@ pub(super) fn visit_phrase(phrase: &mut Phrase, role: Role, visit: Visit<'_>) {
                 visit_phrase(item, role, visit);
             }
         }
-        Phrase::Id(_) | Phrase::Listener | Phrase::Storey(_) | Phrase::Hole | Phrase::Pronoun => {}
+        Phrase::Id(_)
+        | Phrase::Listener
+        | Phrase::Speaker
+        | Phrase::Storey(_)
+        | Phrase::Hole
+        | Phrase::NamedBefore
+        | Phrase::Pronoun => {}
     }
 }

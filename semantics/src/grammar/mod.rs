@@ -14,6 +14,7 @@ mod file;
 mod lexicon;
 mod linearize;
 mod nearest;
+mod nodes;
 mod paraphrase;
 mod parse;
 mod template;
@@ -121,6 +122,12 @@ impl Grammar {
     /// Returns normalized words with endings set apart and phrases replaced by others that mean the same.
     pub fn paraphrase(&self, words: &[String]) -> Vec<String> {
         self.paraphrases.apply(words, |word| self.has_word(word))
+    }
+
+    /// Returns normalized words with endings set apart: "what's" as "what is".
+    pub fn endings_apart(&self, words: &[String]) -> Vec<String> {
+        self.paraphrases
+            .endings_apart(words, |word| self.has_word(word))
     }
 
     /// The words of the rules and of the lexicon, in lower case; a word in both comes twice.

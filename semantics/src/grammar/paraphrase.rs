@@ -24,8 +24,7 @@ impl Paraphrases {
 
     /// Returns the words with phrases replaced from left to right, each once. Words of the language keep their endings.
     pub(super) fn apply(&self, text: &[String], is_word: impl Fn(&str) -> bool) -> Vec<String> {
-        let apart = text.iter().flat_map(|word| self.apart(word, &is_word));
-        let apart: Vec<String> = apart.collect();
+        let apart = self.endings_apart(text, is_word);
         let mut replaced = Vec::with_capacity(apart.len());
         let mut rest = &apart[..];
         while let Some((first, others)) = rest.split_first() {
@@ -39,6 +38,16 @@ impl Paraphrases {
             }
         }
         replaced
+    }
+
+    /// Returns the words with endings set apart; words of the language keep theirs.
+    pub(super) fn endings_apart(
+        &self,
+        text: &[String],
+        is_word: impl Fn(&str) -> bool,
+    ) -> Vec<String> {
+        let apart = text.iter().flat_map(|word| self.apart(word, &is_word));
+        apart.collect()
     }
 
     fn apart(&self, word: &str, is_word: &impl Fn(&str) -> bool) -> Vec<String> {

@@ -4,6 +4,7 @@
 //! J. Earley, "An efficient context-free parsing algorithm", Communications of the ACM 13(2), 94 (1970).
 
 use super::compile::{ArgumentKind, NonTerminal, Symbol};
+use super::nodes::{NodeId, Nodes};
 use super::{Grammar, Tree};
 use dwell_scene::interrupt;
 use std::collections::BTreeMap;
@@ -44,6 +45,8 @@ struct ItemSet {
     steps: BTreeMap<Item, Vec<Step>>,
     /// Items with their dot before a category, by that category.
     waiting: BTreeMap<NonTerminal, Vec<Item>>,
+    /// Items with nothing after their dot, by category and origin.
+    complete: BTreeMap<(NonTerminal, usize), Vec<Item>>,
 }
 
 impl ItemSet {
@@ -70,8 +73,18 @@ pub struct Parse {
     pub expected: Vec<String>,
 }
 
-/// The readings of categories over spans, from the first word to that behind the last.
-type KnownReadings = BTreeMap<(NonTerminal, usize, usize), Vec<(u32, Tree)>>;
+/// A reading: its cost and its tree.
+type Reading = (u32, NodeId);
+/// Arguments that were read, by their number, with their cost.
+type PartReading = (u32, Vec<Option<NodeId>>);
+
+/// What was read of each category over each span, and of each item, each worked out once.
+#[derive(Default)]
+struct Known {
+    nodes: Nodes,
+    spans: BTreeMap<(NonTerminal, usize, usize), Vec<Reading>>,
+    items: BTreeMap<(Item, usize), Vec<PartReading>>,
+}
 
 struct Parser<'a> {
     grammar: &'a Grammar,
@@ -161,6 +174,11 @@ impl Parser<'_> {
                 Some(symbol) => self.scan(item, at, symbol),
                 None => {
                     let result = production.result;
+                    let complete = &mut self.sets[at].complete;
+                    complete
+                        .entry((result, item.origin))
+                        .or_default()
+                        .push(item);
                     let waiting = self.sets[item.origin].waiting.get(&result);
                     for parent in waiting.cloned().unwrap_or_default() {
                         let child = Child::Span(result, item.origin);
@@ -177,62 +195,52 @@ impl Parser<'_> {
         category: NonTerminal,
         origin: usize,
         end: usize,
-        known: &mut KnownReadings,
-    ) -> Vec<(u32, Tree)> {
-        if let Some(found) = known.get(&(category, origin, end)) {
+        known: &mut Known,
+    ) -> Vec<Reading> {
+        if let Some(found) = known.spans.get(&(category, origin, end)) {
             return found.clone();
         }
-        let mut found: Vec<(u32, Tree)> = Vec::new();
-        for item in self.sets[end].steps.keys() {
+        let mut found: Vec<Reading> = Vec::new();
+        let complete = self.sets[end].complete.get(&(category, origin));
+        for item in complete.into_iter().flatten() {
             let production = &self.grammar.productions.all[item.production];
-            if item.origin != origin
-                || item.dot != production.symbols.len()
-                || production.result != category
-            {
-                continue;
-            }
             for (cost, arguments) in self.arguments(*item, end, known) {
-                let complete = (0..production.arity).map(|at| arguments.get(&at).cloned());
-                let Some(arguments) = complete.collect::<Option<Vec<Tree>>>() else {
+                let Some(arguments) = arguments.into_iter().collect::<Option<Vec<NodeId>>>() else {
                     continue;
                 };
-                let tree = Tree::Apply {
-                    function: production.function.clone(),
-                    arguments,
-                };
-                found.push((cost + production.cost, tree));
+                let node = known.nodes.apply(&production.function, arguments);
+                found.push((cost + production.cost, node));
             }
         }
-        found.sort();
-        found.dedup_by(|p, q| p.1 == q.1);
+        let nodes = &known.nodes;
+        found.sort_by(|p, q| p.0.cmp(&q.0).then_with(|| nodes.compare(p.1, q.1)));
+        found.dedup_by_key(|reading| reading.1);
         found.truncate(MOST_READINGS);
-        known.insert((category, origin, end), found.clone());
+        known.spans.insert((category, origin, end), found.clone());
         found
     }
 
     /// The arguments that were read before the dot of an item, with their cost.
-    fn arguments(
-        &self,
-        item: Item,
-        set: usize,
-        known: &mut KnownReadings,
-    ) -> Vec<(u32, BTreeMap<usize, Tree>)> {
-        if item.dot == 0 {
-            return vec![(0, BTreeMap::new())];
-        }
+    fn arguments(&self, item: Item, set: usize, known: &mut Known) -> Vec<PartReading> {
         let production = &self.grammar.productions.all[item.production];
+        if item.dot == 0 {
+            return vec![(0, vec![None; production.arity])];
+        }
+        if let Some(found) = known.items.get(&(item, set)) {
+            return found.clone();
+        }
         let symbol = &production.symbols[item.dot - 1];
-        let mut found = Vec::new();
+        let mut found: Vec<PartReading> = Vec::new();
         for step in &self.sets[set].steps[&item] {
-            let last = self.trees_of(symbol, step.child, set, known);
+            let last = self.nodes_of(symbol, step.child, set, known);
             for (before_cost, before) in self.arguments(step.before, step.set, known) {
-                for (cost, tree) in &last {
+                for (cost, node) in &last {
                     let mut arguments = before.clone();
                     // An argument that occurs twice in a wording is the same both times.
-                    if let (Symbol::Argument(at, _), Some(tree)) = (symbol, tree)
-                        && arguments
-                            .insert(*at, tree.clone())
-                            .is_some_and(|earlier| earlier != *tree)
+                    if let (Symbol::Argument(at, _), Some(node)) = (symbol, node)
+                        && arguments[*at]
+                            .replace(*node)
+                            .is_some_and(|earlier| earlier != *node)
                     {
                         continue;
                     }
@@ -240,23 +248,29 @@ impl Parser<'_> {
                 }
             }
         }
-        found.sort();
+        let nodes = &known.nodes;
+        found.sort_by(|p, q| {
+            p.0.cmp(&q.0)
+                .then_with(|| nodes.compare_all(p.1.iter().flatten(), q.1.iter().flatten()))
+        });
         found.truncate(MOST_READINGS);
+        known.items.insert((item, set), found.clone());
         found
     }
 
-    fn trees_of(
+    fn nodes_of(
         &self,
         symbol: &Symbol,
         child: Child,
         end: usize,
-        known: &mut KnownReadings,
-    ) -> Vec<(u32, Option<Tree>)> {
+        known: &mut Known,
+    ) -> Vec<(u32, Option<NodeId>)> {
         match child {
             Child::Word => vec![(0, None)],
             Child::Entry(entry, cost) => {
                 let entry = self.grammar.lexicon.entry(entry);
-                vec![(cost, Some(Tree::entry(&entry.class, &entry.id)))]
+                let leaf = Tree::entry(&entry.class, &entry.id);
+                vec![(cost, Some(known.nodes.leaf(leaf)))]
             }
             Child::Number(value) => {
                 let class = match symbol {
@@ -265,11 +279,12 @@ impl Parser<'_> {
                     _ => super::compile::COUNT,
                 };
                 let class = class.to_owned();
-                vec![(0, Some(Tree::Number { class, value }))]
+                let leaf = Tree::Number { class, value };
+                vec![(0, Some(known.nodes.leaf(leaf)))]
             }
             Child::Span(category, origin) => {
                 let readings = self.readings(category, origin, end, known).into_iter();
-                readings.map(|(cost, tree)| (cost, Some(tree))).collect()
+                readings.map(|(cost, node)| (cost, Some(node))).collect()
             }
         }
     }
@@ -318,10 +333,12 @@ impl Grammar {
         }
         let filled = parser.sets.iter().rposition(|set| !set.order.is_empty());
         let understood = filled.unwrap_or(0);
-        let mut known = BTreeMap::new();
+        let mut known = Known::default();
         let mut trees: Vec<(u32, Tree)> = Vec::new();
         for start in &self.start {
-            trees.extend(parser.readings(*start, 0, words.len(), &mut known));
+            let readings = parser.readings(*start, 0, words.len(), &mut known);
+            let readings = readings.into_iter();
+            trees.extend(readings.map(|(cost, node)| (cost, known.nodes.tree(node))));
         }
         trees.sort();
         trees.dedup_by(|p, q| p.1 == q.1);

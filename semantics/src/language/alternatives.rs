@@ -3,8 +3,8 @@
 use super::from_tree::{holds, id};
 use super::phrases::{described, phrase};
 use super::questions::question;
-use super::several::{self, clause_of};
 use super::to_tree::TreeBuilder;
+use super::verb_phrases::clause;
 use crate::form::{Clause, Description, Noun, Phrase, Question};
 use crate::grammar::Tree;
 
@@ -18,12 +18,7 @@ pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Vec<Clause
         }
         ("alternatives_of", [subject, one, other]) => {
             let subject = phrase(subject)?;
-            let one = several::said(one)?;
-            let other = several::said(other)?;
-            vec![
-                clause_of(subject.clone(), (one, false)),
-                clause_of(subject, (other, false)),
-            ]
+            vec![clause(subject.clone(), one)?, clause(subject, other)?]
         }
         ("alternatives_landmark", [subject, relation, one, other]) => {
             related(subject, [relation; 2], [one, other])?
@@ -95,7 +90,7 @@ fn of_kind(
 fn subjects(said: &Tree, subjects: [Phrase; 2]) -> Option<Vec<Clause>> {
     let mut clauses = Vec::with_capacity(2);
     for subject in subjects {
-        clauses.push(clause_of(subject, (several::said(said)?, false)));
+        clauses.push(clause(subject, said)?);
     }
     Some(clauses)
 }

@@ -2,7 +2,7 @@
 
 use super::from_tree::{Parts, holds, number, parts, place_of, room};
 use super::lexicon::ROOM_NOUN;
-use super::phrases::phrase;
+use super::phrases::{between_two, phrase};
 use super::places;
 use super::to_tree::{Position, TreeBuilder, count};
 use crate::form::{Clause, Description, Modifier, Noun, Phrase, Quantifier};
@@ -225,7 +225,8 @@ fn added<'a>(function: &str, arguments: &'a [Tree]) -> Option<Added<'a>> {
             modifiers: Vec::new(),
             items,
         },
-        ("exists_front" | "exists_front_list", [front, items]) => Added {
+        ("exists_front" | "exists_front_list", [front, items])
+        | ("front_stands", [front, _, items]) => Added {
             modifiers: front_from_tree(front)?,
             items,
         },
@@ -258,6 +259,7 @@ pub(super) fn front_from_tree(tree: &Tree) -> Option<Vec<Modifier>> {
         ("front_relation", [Tree::Entry { id, .. }, landmark]) => {
             vec![Modifier::new(id, [phrase(landmark)?])]
         }
+        ("front_between_two", [both]) => vec![Modifier::new("between", between_two(both)?)],
         ("front_between", [a, b]) => vec![Modifier::new("between", [phrase(a)?, phrase(b)?])],
         ("front_mount", [mount, place]) => vec![
             Modifier::new("hangs_on", [places::mount_from_tree(mount)?]),

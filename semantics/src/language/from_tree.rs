@@ -1,7 +1,7 @@
 //! Trees to forms: the meanings of the grammar's functions.
 
-use super::phrases::{described, phrase, relation_to, size};
-use super::{existence, numbers, places, questions, requests, rooms, several};
+use super::phrases::{modifier, phrase, relation_to, size};
+use super::{existence, numbers, places, questions, requests, rooms, sets, verb_phrases};
 use crate::form::{
     Clause, Description, Form, Modifier, Noun, Phrase, PlaceInOrder, Quality, Quantifier, Question,
 };
@@ -121,14 +121,40 @@ pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
             holds(&predicate, vec![phrase(subject)?, place])
         }
         ("is" | "whether_is", [subject, quality]) => is(phrase(subject)?, quality)?,
-        ("vps" | "whether_vps", [subject, rest]) => several::clause(phrase(subject)?, rest)?,
-        ("exists_vps", [subject, rest]) => several::existing(phrase(subject)?, rest)?,
-        ("holds_converse" | "whether_converse", [subject, word, object]) => {
-            holds(&id(word)?, vec![phrase(object)?, phrase(subject)?])
+        ("says" | "whether_says", [subject, said]) => verb_phrases::clause(phrase(subject)?, said)?,
+        ("says_list" | "whether_says_list", [items, said]) => {
+            verb_phrases::clause(subjects(items)?, said)?
         }
-        ("holds_superlative", [subject, order, noun]) => {
-            let selected = questions::selected(described(noun)?, &id(order)?, None);
-            holds("identical", vec![phrase(subject)?, selected.into()])
+        ("stands_list", [items, posture, said]) => {
+            verb_phrases::clause(subjects(items)?, &questions::standing(posture, said))?
+        }
+        ("stands" | "whether_stands", [subject, posture, said]) => {
+            verb_phrases::clause(phrase(subject)?, &questions::standing(posture, said))?
+        }
+        ("says_and_has_thing", [subject, said, thing]) => Clause::All(vec![
+            verb_phrases::clause(phrase(subject)?, said)?,
+            holds(
+                "has",
+                vec![phrase(subject)?, existence::items_from_tree(thing)?],
+            ),
+        ]),
+        ("surfaces_and_has", [place, surfaces, items]) => {
+            let surfaces = Tree::apply("surfaces", [place.clone(), surfaces.clone()]);
+            let has = Tree::apply("room_has", [place.clone(), items.clone()]);
+            Clause::All(vec![simple(&surfaces)?, simple(&has)?])
+        }
+        ("says_and_has", [subject, said, load]) => Clause::All(vec![
+            verb_phrases::clause(phrase(subject)?, said)?,
+            holds(
+                "supports",
+                vec![phrase(subject)?, existence::items_from_tree(load)?],
+            ),
+        ]),
+        ("exists_says", [subject, said]) => {
+            let Phrase::Described(own) = phrase(subject)? else {
+                return None;
+            };
+            Clause::Exists(verb_phrases::with_said(*own, said)?.into())
         }
         ("holds_hang", [subject, mount]) => {
             holds("hangs_on", vec![phrase(subject)?, phrase(mount)?])
@@ -152,9 +178,6 @@ pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
             )
         }
         ("fronted", [front, inner]) => fronted(existence::front_from_tree(front)?, simple(inner)?)?,
-        ("holds_is_a" | "whether_is_a", [subject, noun]) => {
-            holds("identical", vec![phrase(subject)?, described(noun)?.into()])
-        }
         ("exists_all", [items, quality]) => {
             let all = Description::new(Quantifier::Every, Noun::SameThings);
             Clause::All(vec![
@@ -169,11 +192,11 @@ pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
                 is(subject, other)?,
             ])
         }
-        ("with_around", [subject, said, other, relation]) => {
+        ("with_around", [subject, said, other, relation])
+        | ("stands_with_around", [subject, _, said, other, relation]) => {
             let (subject, other) = (phrase(subject)?, phrase(other)?);
-            let said = several::said(said)?;
             Clause::All(vec![
-                several::clause_of(subject.clone(), (said, false)),
+                verb_phrases::clause(subject.clone(), said)?,
                 holds(&id(relation)?, vec![other, subject]),
             ])
         }
@@ -184,18 +207,31 @@ pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
             let seen = own.with_modifier(Modifier::new("visible", []));
             Clause::Not(Box::new(Clause::Exists(seen.into())))
         }
-        ("whether_vp", [subject, said]) => {
-            several::clause_of(phrase(subject)?, (several::said(said)?, false))
-        }
         ("more_where" | "whether_more_where", [what, one, other]) => {
             numbers::more_where(what, one, other)?
         }
         ("as_many" | "whether_as_many", [one, other]) => numbers::as_many(one, other)?,
+        ("absolute", [first, subject, said]) => Clause::All(vec![
+            simple(first)?,
+            verb_phrases::clause(phrase(subject)?, said)?,
+        ]),
+        ("nothing_but", [added, exception]) => {
+            let added = modifier(added)?;
+            let any = Noun::Object(Noun::ANY_OBJECT.to_owned());
+            let only = Description::new(Quantifier::Exactly(1), any).with_modifier(added.clone());
+            let Phrase::Described(exception) = phrase(exception)? else {
+                return None;
+            };
+            Clause::All(vec![
+                Clause::Exists(exception.with_modifier(added).into()),
+                Clause::Exists(only.into()),
+            ])
+        }
         ("so_is", [one, quality, other]) => Clause::All(vec![
             is(phrase(one)?, quality)?,
             is(phrase(other)?, quality)?,
         ]),
-        ("is_but_not", [one, quality, other]) => Clause::All(vec![
+        ("is_unlike", [one, quality, other]) => Clause::All(vec![
             is(phrase(one)?, quality)?,
             Clause::Not(Box::new(is(phrase(other)?, quality)?)),
         ]),
@@ -207,12 +243,12 @@ pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
         ("has_more" | "whether_has_more", [one, what, other]) => {
             numbers::has_more(one, what, other)?
         }
-        ("same_color_all" | "whether_same_color_all", [noun]) => {
-            let all: Phrase = described(noun)?.with_quantifier(Quantifier::Every).into();
+        ("same_color_all" | "whether_same_color_all", [set]) => {
+            let all: Phrase = sets::set(set)?.with_quantifier(Quantifier::Every).into();
             holds("same_color", vec![all.clone(), all])
         }
-        ("same_material_all" | "whether_same_material_all", [noun]) => {
-            let all: Phrase = described(noun)?.with_quantifier(Quantifier::Every).into();
+        ("same_material_all" | "whether_same_material_all", [set]) => {
+            let all: Phrase = sets::set(set)?.with_quantifier(Quantifier::Every).into();
             holds("same_material", vec![all.clone(), all])
         }
         ("same_color" | "whether_same_color", [a, b]) => {
@@ -273,7 +309,7 @@ pub(super) fn holds_of(subject: Phrase, modifier: Modifier) -> Clause {
     holds(&modifier.predicate, arguments)
 }
 
-fn subjects(tree: &Tree) -> Option<Phrase> {
+pub(super) fn subjects(tree: &Tree) -> Option<Phrase> {
     let mut items = Vec::new();
     let mut rest = tree;
     loop {
@@ -314,6 +350,7 @@ pub(super) fn place_of(tree: &Tree) -> Option<(String, Phrase)> {
             let room = Description::new(Quantifier::The, Noun::Room(id(noun)?));
             of("in_corner_of", room.into())
         }
+        ("place_end", []) => of("at_end_of", any_room()),
         ("place_corner", []) => of("in_corner_of", any_room()),
         ("place_middle", []) => of("in_middle_of", any_room()),
         ("on_storey", [place]) => of("on_storey", Phrase::Storey(number(place)?)),
@@ -321,13 +358,27 @@ pub(super) fn place_of(tree: &Tree) -> Option<(String, Phrase)> {
     })
 }
 
+/// A room's noun with the colour of its walls; the caller sets the quantifier.
+fn room_kind(tree: &Tree) -> Option<Description> {
+    match parts(tree)? {
+        ("room_kind", [word]) => Some(Description::new(Quantifier::Some, Noun::Room(id(word)?))),
+        ("room_colored", [color, inner]) => {
+            let mut room = room_kind(inner)?;
+            room.colors.push(id(color)?);
+            Some(room)
+        }
+        _ => None,
+    }
+}
+
 pub(super) fn room(tree: &Tree) -> Option<Phrase> {
     let (function, arguments) = parts(tree)?;
-    let kind = |tree: &Tree, quantifier| match parts(tree)? {
-        ("room_kind", [word]) => Some(Description::new(quantifier, Noun::Room(id(word)?))),
-        _ => None,
-    };
+    let kind = |tree: &Tree, quantifier| Some(room_kind(tree)?.with_quantifier(quantifier));
     match (function, arguments) {
+        ("room_of_set", [inner]) => {
+            let (function, arguments) = parts(inner)?;
+            return sets::phrase_of_set(function.strip_prefix("room_")?, arguments);
+        }
         ("room_it", []) => return Some(Phrase::Pronoun),
         ("room_subject", [inner]) => return room(inner),
         _ => {}
@@ -335,6 +386,26 @@ pub(super) fn room(tree: &Tree) -> Option<Phrase> {
     let description = match (function, arguments) {
         ("room_the", [own]) => kind(own, Quantifier::The)?,
         ("room_a", [own]) => kind(own, Quantifier::Some)?,
+        ("room_with_walls", [own, color]) => {
+            let mut room = kind(own, Quantifier::The)?;
+            room.colors.push(id(color)?);
+            room
+        }
+        ("room_other_than", [own, other]) => {
+            let mut own = kind(own, Quantifier::Some)?;
+            own.modifiers.push(Modifier {
+                negated: true,
+                ..Modifier::new(Modifier::IDENTICAL, [room(other)?])
+            });
+            own
+        }
+        ("room_another", [own]) => kind(own, Quantifier::Some)?.other(),
+        ("room_other", [own]) => kind(own, Quantifier::The)?.other(),
+        ("room_every_of", [noun]) => Description::new(Quantifier::Every, Noun::Room(id(noun)?)),
+        ("room_exactly", [count, noun]) => {
+            let noun = Noun::Room(id(noun)?);
+            Description::new(Quantifier::Exactly(number(count)?), noun)
+        }
         ("room_every", [own]) => kind(own, Quantifier::Every)?,
         ("room_no", [own]) => kind(own, Quantifier::No)?,
         ("room_nth", [place, own]) => Description {

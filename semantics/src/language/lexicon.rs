@@ -4,6 +4,7 @@ use crate::category::categories;
 use crate::color::ColorVocabulary;
 use crate::english::{GATHERING_WORDS, plural};
 use crate::grammar::{GrammarError, Lexicon};
+use crate::material_family::families;
 use crate::room_kind::room_kinds;
 use dwell_scene::material::library;
 use serde::Deserialize;
@@ -67,8 +68,13 @@ pub(super) fn add_noun(lexicon: &mut Lexicon, one: &str, several: &str) {
         && GATHERING_WORDS.contains(&head)
     {
         lexicon.add_texts(GATHERED, tail, &[&[tail]]);
-        // "The shoes", of which nobody counts the pairs.
-        lexicon.add_texts(NOUN, tail, &[&[], &[tail]]);
+        // "The shoes", of which nobody counts the pairs; "the toilet paper".
+        let texts: [&[&str]; 2] = if tail.ends_with('s') {
+            [&[], &[tail]]
+        } else {
+            [&[tail], &[]]
+        };
+        lexicon.add_texts(NOUN, tail, &texts);
         return;
     }
     lexicon.add_texts(NOUN, one, &[&[one], &[several]]);
@@ -178,8 +184,9 @@ pub(super) fn english(file: &str) -> Result<Lexicon, GrammarError> {
         };
         lexicon.add_texts("color", word, &[texts]);
     }
-    for substance in library().iter() {
-        let word = substance.adjective.as_str();
+    let substances = library().iter();
+    let substances = substances.map(|substance| substance.adjective.as_str());
+    for word in substances.chain(families()) {
         lexicon.add_texts("material", word, &[&[word]]);
     }
     Ok(lexicon)

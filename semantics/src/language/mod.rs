@@ -15,8 +15,9 @@ mod read;
 mod requests;
 mod rooms;
 mod say;
-mod several;
+mod sets;
 mod to_tree;
+mod verb_phrases;
 
 pub use read::{
     MAX_TEXT_BYTES, MAX_WORDS, ReadError, Readings, SentenceError, SentenceReadings, UnknownWord,

@@ -1,8 +1,8 @@
 //! Noun phrases: the meanings of the grammar's functions that make them.
 
 use super::from_tree::{id, number, parts, place_of, quality_of, room};
-use super::{existence, places, several};
-use crate::form::{Description, Modifier, Noun, Phrase, PlaceInOrder, Quantifier};
+use super::{existence, places, questions, sets, verb_phrases};
+use crate::form::{Description, Modifier, Noun, Phrase, PlaceInOrder, Quality, Quantifier};
 use crate::grammar::Tree;
 use crate::size::SizeClass;
 
@@ -48,10 +48,63 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
     match (function, arguments) {
         ("the" | "i_the", [noun]) => of(Quantifier::The, noun),
         ("some" | "i_some", [noun]) => of(Quantifier::Some, noun),
-        ("every" | "i_every", [noun]) => of(Quantifier::Every, noun),
+        ("every" | "i_every", [noun]) | ("every_counted" | "i_every_counted", [_, noun]) => {
+            of(Quantifier::Every, noun)
+        }
         ("no", [noun]) => of(Quantifier::No, noun),
         ("exactly_one", [noun]) => of(Quantifier::Exactly(1), noun),
         ("exactly" | "i_exactly", [count, noun]) => of(Quantifier::Exactly(number(count)?), noun),
+        ("at_most", [count, noun]) => of(Quantifier::AtMost(number(count)?), noun),
+        ("more_than", [count, noun]) => of(sets::more_than(count)?, noun),
+        ("fewer_than", [count, noun]) => of(sets::fewer_than(count)?, noun),
+        ("another" | "i_another", [noun]) => Some(described(noun)?.other().into()),
+        ("another_same", []) => {
+            let same = Description::new(Quantifier::Some, Noun::SameNoun);
+            Some(same.other().into())
+        }
+        ("nth_with", [place, noun, order, added]) => {
+            let noun = Tree::apply("with", [noun.clone(), added.clone()]);
+            selected(&noun, order, number(place)?, None)
+        }
+        ("nth_at_side", [place, noun, side]) => {
+            let side = places::side_from_tree(side)?;
+            let selection = PlaceInOrder {
+                order: "nearest".to_owned(),
+                place: number(place)?,
+                reference: None,
+            };
+            let description = Description {
+                selection: Some(selection),
+                ..described(noun)?.with_modifier(side)
+            };
+            Some(description.with_quantifier(Quantifier::The).into())
+        }
+        ("every_piece", [noun]) => quantified_piece(Quantifier::Every, noun, None),
+        ("every_piece_of", [noun, place]) => quantified_piece(Quantifier::Every, noun, Some(place)),
+        ("no_piece_of", [noun, place]) => quantified_piece(Quantifier::No, noun, Some(place)),
+        ("closer_one", [noun, reference]) => {
+            let reference = Some(phrase(reference)?);
+            Some(questions::selected(described(noun)?, "closest_to", reference).into())
+        }
+        ("other" | "i_other", [noun]) => {
+            let other = described(noun)?.with_quantifier(Quantifier::The).other();
+            Some(other.into())
+        }
+        (
+            "comparative" | "i_comparative" | "comparative_less" | "i_comparative_less",
+            [word, noun],
+        ) => {
+            let order = questions::superlative_of(&id(word)?, function.ends_with("_less"))?;
+            Some(questions::selected(described(noun)?, order, None).into())
+        }
+        ("superlative_of", [order, of]) => {
+            Some(questions::selected(sets::set(of)?, &id(order)?, None).into())
+        }
+        ("comparative_of" | "comparative_less_of", [word, of]) => {
+            let order = questions::superlative_of(&id(word)?, function == "comparative_less_of")?;
+            Some(questions::selected(sets::set(of)?, order, None).into())
+        }
+        ("me", []) => Some(Phrase::Speaker),
         ("at_least_one", [noun]) => of(Quantifier::AtLeast(1), noun),
         ("at_least", [count, noun]) => of(Quantifier::AtLeast(number(count)?), noun),
         ("i_the_that" | "i_the_that_verb", [noun, relation, other]) => {
@@ -60,6 +113,18 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
         ("i_some_that" | "i_some_that_verb", [noun, relation, other]) => {
             that(Quantifier::Some, noun, id(relation)?, phrase(other)?)
         }
+        ("i_the_from", [noun, source]) => that(
+            Quantifier::The,
+            noun,
+            "belongs_to".to_owned(),
+            phrase(source)?,
+        ),
+        ("i_some_from", [noun, source]) => that(
+            Quantifier::Some,
+            noun,
+            "belongs_to".to_owned(),
+            phrase(source)?,
+        ),
         ("i_the_that_place", [noun, place]) => {
             let (predicate, place) = place_of(place)?;
             that(Quantifier::The, noun, predicate, place)
@@ -73,28 +138,32 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
             selected(noun, order, number(place)?, None)
         }
         ("superlative" | "i_superlative", [order, noun]) => selected(noun, order, 1, None),
-        ("selected_to" | "i_selected_to", [noun, order, reference]) => {
+        ("selected_to" | "i_selected_to" | "selected_apposed", [noun, order, reference]) => {
             selected(noun, order, 1, Some(phrase(reference)?))
         }
         ("by_id" | "i_by_id", [own]) => Some(Phrase::Id(number(own)?)),
         ("you" | "i_you", []) => Some(Phrase::Listener),
         ("it" | "i_it", []) => Some(Phrase::Pronoun),
-        ("structure_np" | "i_structure", [noun]) => places::structure(noun, None),
+        ("structure_np" | "i_structure" | "piece_np" | "i_piece_np", [noun]) => {
+            places::structure(noun, None)
+        }
         ("structure_at" | "i_structure_at", [noun, side])
         | ("structure_flank" | "i_structure_flank", [side, noun]) => {
             places::structure(noun, Some(places::side_from_tree(side)?))
         }
-        ("structure_of" | "i_structure_of", [noun, place]) => {
+        ("structure_of" | "i_structure_of" | "piece_of" | "i_piece_of", [noun, place]) => {
             places::structure(noun, Some(Modifier::new("in_room", [room(place)?])))
         }
         ("structure_in" | "i_structure_in", [place, noun]) => {
             let room = Description::new(Quantifier::The, Noun::Room(id(place)?));
             places::structure(noun, Some(Modifier::new("in_room", [room.into()])))
         }
-        ("some_same" | "i_some_same" | "one_same", []) => {
-            Some(named_before(Quantifier::Some, function))
+        ("some_same" | "one_same", []) => Some(named_before(Quantifier::Some, function)),
+        ("other_same" | "i_other_same", []) => {
+            let same = Description::new(Quantifier::The, Noun::SameNoun);
+            Some(same.other().into())
         }
-        ("every_same", []) => Some(named_before(Quantifier::Every, function)),
+        ("every_same" | "i_every_same", []) => Some(named_before(Quantifier::Every, function)),
         ("no_same", []) => Some(named_before(Quantifier::No, function)),
         ("structure_flank_of" | "i_structure_flank_of", [side, noun, place]) => {
             let wall = places::structure(noun, Some(places::side_from_tree(side)?))?;
@@ -106,10 +175,13 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
                 _ => None,
             }
         }
-        ("all_others", []) => Some(Description::new(Quantifier::Every, Noun::SameNoun).into()),
         ("others", [count]) => {
             let others = Description::new(Quantifier::Exactly(number(count)?), Noun::SameNoun);
             Some(others.into())
+        }
+        ("all_others", []) => {
+            let same = Description::new(Quantifier::Every, Noun::SameNoun);
+            Some(same.other().into())
         }
         ("one_colored", [color]) => {
             let mut own = Description::new(Quantifier::Some, Noun::SameNoun);
@@ -120,7 +192,9 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
             Some(named_before(Quantifier::Exactly(number(count)?), function))
         }
         ("np_nothing" | "np_something", [inner]) => nothing(inner).map(Phrase::from),
-        ("at_least_two" | "i_at_least_two", [noun]) => of(Quantifier::AtLeast(2), noun),
+        ("at_least_two" | "i_at_least_two", [noun]) | ("gathering_of", [_, noun]) => {
+            of(Quantifier::AtLeast(2), noun)
+        }
         ("i_something", []) => {
             let noun = Noun::Object(Noun::ANY_OBJECT.to_owned());
             Some(Description::new(Quantifier::Some, noun).into())
@@ -128,7 +202,7 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
         ("i_something_quality", [quality]) => {
             let noun = Noun::Object(Noun::ANY_OBJECT.to_owned());
             let mut own = Description::new(Quantifier::Some, noun);
-            several::add_quality(&mut own, quality_of(quality)?)?;
+            verb_phrases::add_quality(&mut own, quality_of(quality)?)?;
             Some(own.into())
         }
         ("nth_left" | "i_nth_left", [noun]) => first_in(noun, "from_left"),
@@ -140,6 +214,25 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
         ("i_some_with", [noun, added]) => {
             Some(described(noun)?.with_modifier(modifier(added)?).into())
         }
+        ("i_with_relative", [noun, added]) => {
+            let noun = described(noun)?.with_quantifier(Quantifier::The);
+            Some(verb_phrases::with_relative(noun, added)?.into())
+        }
+        ("i_some_with_relative", [noun, added]) => {
+            Some(verb_phrases::with_relative(described(noun)?, added)?.into())
+        }
+        _ => sets::phrase_of_set(function.strip_prefix("i_").unwrap_or(function), arguments),
+    }
+}
+
+/// Every piece of the building of a kind, or none of them.
+fn quantified_piece(quantifier: Quantifier, noun: &Tree, place: Option<&Tree>) -> Option<Phrase> {
+    let there = match place {
+        Some(place) => Some(Modifier::new("in_room", [room(place)?])),
+        None => None,
+    };
+    match places::structure(noun, there)? {
+        Phrase::Described(own) => Some(own.with_quantifier(quantifier).into()),
         _ => None,
     }
 }
@@ -147,7 +240,7 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
 /// Things that were named before: "one" by their noun, "one of them" by all that was said of them.
 fn named_before(quantifier: Quantifier, function: &str) -> Phrase {
     let noun = match function {
-        "some_same" | "i_some_same" => Noun::SameNoun,
+        "some_same" => Noun::SameNoun,
         _ => Noun::SameThings,
     };
     Description::new(quantifier, noun).into()
@@ -166,19 +259,32 @@ fn nothing(tree: &Tree) -> Option<Description> {
         ("nothing_with" | "something_with", [inner, added]) => {
             Some(nothing(inner)?.with_modifier(modifier(added)?))
         }
+        ("nothing_with_relative" | "something_with_relative", [inner, added]) => {
+            verb_phrases::with_relative(nothing(inner)?, added)
+        }
         ("nothing_quality" | "something_quality", [inner, quality]) => {
             let mut description = nothing(inner)?;
-            several::add_quality(&mut description, quality_of(quality)?)?;
+            verb_phrases::add_quality(&mut description, quality_of(quality)?)?;
             Some(description)
         }
         _ => None,
     }
 }
 
+/// The landmarks of "between two chairs": one and another.
+pub(super) fn between_two(noun: &Tree) -> Option<[Phrase; 2]> {
+    let one: Phrase = described(noun)?.into();
+    Some([one.clone(), one])
+}
+
 /// Returns whether a noun names doors and archways, which lead from room to room.
 fn is_way(noun: &Noun) -> bool {
     let ways = ["door", "arch", "archway", "doorway", "gate", "thing"];
-    matches!(noun, Noun::Object(noun) if ways.iter().any(|way| noun.ends_with(way)))
+    match noun {
+        Noun::Object(noun) => ways.iter().any(|way| noun.ends_with(way)),
+        Noun::SameNoun => true,
+        _ => false,
+    }
 }
 
 /// The description of a noun with its adjectives and modifiers; the caller sets its quantifier.
@@ -194,12 +300,27 @@ pub(super) fn described(tree: &Tree) -> Option<Description> {
                 return None;
             }
             description.modifiers.push(Modifier {
-                negated: function == "but_not",
+                negated: added.negated != (function == "but_not"),
                 ..added
             });
             description
         }
+        ("with_relative", [noun, added]) => verb_phrases::with_relative(described(noun)?, added)?,
+        ("with_material", [noun, word]) => {
+            let mut description = described(noun)?;
+            verb_phrases::add_quality(&mut description, Quality::Material(id(word)?))?;
+            description
+        }
+        ("with_apposition", [noun, added]) => described(noun)?.with_modifier(modifier(added)?),
+        ("with_apposed_color", [noun, color]) => {
+            let mut description = described(noun)?;
+            verb_phrases::add_quality(&mut description, Quality::Color(id(color)?))?;
+            description
+        }
         ("noun" | "tail", [word]) => plain(id(word)?),
+        ("front_door", []) => {
+            plain("door".to_owned()).with_modifier(Modifier::new("leads_outside", []))
+        }
         ("same_noun", []) => Description::new(Quantifier::Some, Noun::SameNoun),
         ("gathered", [head, tail]) => {
             let mut description = described(tail)?;
@@ -276,6 +397,12 @@ pub(super) fn modifier(tree: &Tree) -> Option<Modifier> {
         ("modifier_carries", [load]) => ("supports".to_owned(), vec![phrase(load)?]),
         ("modifier_holds_inside", [content]) => ("contains".to_owned(), vec![phrase(content)?]),
         ("modifier_with", [content]) => ("has".to_owned(), vec![phrase(content)?]),
+        ("modifier_other", [of]) => {
+            return Some(Modifier {
+                negated: true,
+                ..Modifier::new(Modifier::IDENTICAL, [phrase(of)?])
+            });
+        }
         ("modifier_without", [content]) => {
             return Some(Modifier {
                 negated: true,
@@ -292,6 +419,8 @@ pub(super) fn modifier(tree: &Tree) -> Option<Modifier> {
                     .into();
             (relation_to(id(word)?, &thing, &other), vec![other])
         }
+        ("modifier_between_two", [both]) => ("between".to_owned(), between_two(both)?.into()),
+        ("modifier_from", [word, other]) => (id(word)?, vec![phrase(other)?]),
         ("modifier_between", [a, b]) => ("between".to_owned(), vec![phrase(a)?, phrase(b)?]),
         ("modifier_place", [place]) => {
             let (predicate, place) = place_of(place)?;

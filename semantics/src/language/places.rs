@@ -24,9 +24,33 @@ fn mounts() -> [(&'static str, Noun); 3] {
 
 /// A piece of the building: any of its kind, or of those that a modifier holds of.
 pub(super) fn structure(noun: &Tree, modifier: Option<Modifier>) -> Option<Phrase> {
-    let mut own = Description::new(Quantifier::Some, Noun::Structure(id(noun)?));
+    let mut own = piece(noun)?;
     own.modifiers.extend(modifier);
     Some(own.into())
+}
+
+/// A piece of the building with its colour and substance: "the white brick wall".
+fn piece(noun: &Tree) -> Option<Description> {
+    let plain = |noun: &Tree| {
+        Some(Description::new(
+            Quantifier::Some,
+            Noun::Structure(id(noun)?),
+        ))
+    };
+    match parts(noun) {
+        Some(("piece", [noun])) => plain(noun),
+        Some(("piece_color", [color, inner])) => {
+            let mut own = piece(inner)?;
+            own.colors.insert(0, id(color)?);
+            (own.colors.len() == 1).then_some(own)
+        }
+        Some(("piece_material", [material, inner])) => {
+            let mut own = piece(inner)?;
+            let before = own.material.replace(id(material)?);
+            before.is_none().then_some(own)
+        }
+        _ => plain(noun),
+    }
 }
 
 fn some(noun: Noun) -> Phrase {
@@ -111,12 +135,17 @@ impl TreeBuilder<'_> {
         };
         let bare = Description {
             modifiers: Vec::new(),
+            colors: Vec::new(),
+            material: None,
             ..own.clone()
         };
         if own.quantifier != Quantifier::Some || !is_bare(&bare) {
             return None;
         }
         let noun = self.known(STRUCTURE, noun)?;
+        if !own.colors.is_empty() || own.material.is_some() {
+            return self.piece(own, noun, position);
+        }
         let prefix = if position == Position::Landmark {
             "i_"
         } else {
@@ -141,6 +170,34 @@ impl TreeBuilder<'_> {
             }
             _ => return None,
         })
+    }
+
+    /// The tree of a piece with its colour and substance.
+    fn piece(&self, own: &Description, noun: Tree, position: Position) -> Option<Tree> {
+        let mut tree = Tree::apply("piece", [noun]);
+        if let Some(word) = &own.material {
+            tree = Tree::apply("piece_material", [self.known("material", word)?, tree]);
+        }
+        match &own.colors[..] {
+            [] => {}
+            [color] => {
+                tree = Tree::apply("piece_color", [self.known("color", color)?, tree]);
+            }
+            _ => return None,
+        }
+        match (&own.modifiers[..], position) {
+            ([], Position::Landmark) => Some(Tree::apply("i_piece_np", [tree])),
+            ([], Position::Free) => Some(Tree::apply("piece_np", [tree])),
+            ([there], position) if there.predicate == "in_room" && !there.negated => {
+                let function = match position {
+                    Position::Landmark => "i_piece_of",
+                    Position::Free => "piece_of",
+                };
+                let room = self.room(there.arguments.first()?)?;
+                Some(Tree::apply(function, [tree, room]))
+            }
+            _ => None,
+        }
     }
 
     pub(super) fn passage(&self, predicate: &str, others: &[Phrase]) -> Option<Tree> {

@@ -1,11 +1,11 @@
 //! Questions: forms to trees, and trees to forms.
 
-use super::existence::is_bare;
+use super::existence::{self, is_bare};
 use super::from_tree::{affirmed, holds, id, parts, place_of, quality_of, room, simple};
 use super::lexicon::{RELATION, ROOM_NOUN};
 use super::phrases::{described, modifier, phrase};
 use super::to_tree::{Position, TreeBuilder};
-use super::{alternatives, numbers, places, several};
+use super::{alternatives, numbers, places, sets, verb_phrases};
 use crate::form::{
     AttributeKind, Clause, Description, Modifier, Noun, Phrase, PlaceInOrder, Quantifier, Question,
 };
@@ -19,23 +19,9 @@ fn paraphrased(function: &str, arguments: &[Tree]) -> Option<Question> {
         clause,
     };
     Some(match (function, arguments) {
-        ("how_many_quality", [noun, quality]) => {
-            let mut description = described(noun)?;
-            several::add_quality(&mut description, quality_of(quality)?)?;
-            count(description)
-        }
-        ("how_many_quality_of", [noun, quality, added]) => {
-            let mut description = described(noun)?.with_modifier(modifier(added)?);
-            several::add_quality(&mut description, quality_of(quality)?)?;
-            count(description)
-        }
         ("how_many_seen_of", [noun, added]) => {
             let noun = described(noun)?.with_modifier(modifier(added)?);
             count(noun.with_modifier(Modifier::new("visible", [])))
-        }
-        ("how_many_of_two", [noun, one, other]) => {
-            let noun = described(noun)?.with_modifier(modifier(one)?);
-            count(noun.with_modifier(modifier(other)?))
         }
         ("which_are_more", [one, other]) => {
             Question::Alternatives(vec![numbers::more(one, other)?, numbers::more(other, one)?])
@@ -67,6 +53,25 @@ fn paraphrased(function: &str, arguments: &[Tree]) -> Option<Question> {
         ("how_many_has", [noun, subject]) => {
             let within = Modifier::new("belongs_to", [phrase(subject)?]);
             count(described(noun)?.with_modifier(within))
+        }
+        ("what_inside", []) => which(None, holds("in", vec![Phrase::Hole, Phrase::Pronoun])),
+        ("either_exists", [one, other]) => {
+            let one = existence::items_from_tree(one)?;
+            let mut other = existence::items_from_tree(other)?;
+            // "A shower in the bathroom or a bathtub": there, too.
+            if let (Phrase::Described(one), Phrase::Described(other)) = (&one, &mut other)
+                && other.modifiers.is_empty()
+            {
+                other.modifiers.clone_from(&one.modifiers);
+            }
+            Question::Alternatives(vec![Clause::Exists(one), Clause::Exists(other)])
+        }
+        ("whether_either_seen", [one, other]) => {
+            let seen = |noun: &Tree| {
+                let noun = described(noun)?.with_modifier(Modifier::new("visible", []));
+                Some(Clause::Exists(noun.into()))
+            };
+            Question::Whether(Clause::Any(vec![seen(one)?, seen(other)?]))
         }
         ("any_of_two", [one, other, added]) => {
             let added = modifier(added)?;
@@ -111,17 +116,14 @@ fn paraphrased(function: &str, arguments: &[Tree]) -> Option<Question> {
             )
         }
         ("which_is_most" | "which_is_least" | "which_is_superlative", [word]) => {
-            let order = match (function, id(word)?.as_str()) {
-                ("which_is_superlative", order) => order.to_owned(),
-                ("which_is_least", "larger_than") => "smallest".to_owned(),
-                ("which_is_most", "larger_than") => "largest".to_owned(),
-                ("which_is_most", "taller_than") => "tallest".to_owned(),
-                ("which_is_most", "wider_than") => "widest".to_owned(),
-                _ => return None,
+            let word = id(word)?;
+            let order = match function {
+                "which_is_superlative" => &word,
+                _ => superlative_of(&word, function == "which_is_least")?,
             };
             let kind = Description::new(Quantifier::The, Noun::SameThings);
             which(
-                Some(selected(kind, &order, None)),
+                Some(selected(kind, order, None)),
                 Clause::Exists(Phrase::Hole),
             )
         }
@@ -145,25 +147,75 @@ fn paraphrased(function: &str, arguments: &[Tree]) -> Option<Question> {
                 holds(&id(relation)?, vec![Phrase::Hole, phrase(landmark)?]),
             ]),
         ),
-        ("what_there", [relation, landmark]) => which(
-            None,
-            holds(&id(relation)?, vec![Phrase::Hole, phrase(landmark)?]),
-        ),
         ("what_between", [a, b]) => which(
             None,
             holds("between", vec![Phrase::Hole, phrase(a)?, phrase(b)?]),
         ),
+        ("where_stands", [of, _]) => Question::Attribute {
+            kind: AttributeKind::Place,
+            of: phrase(of)?,
+        },
         ("which_stranded", [kind, subject, word]) => which(
             Some(described(kind)?),
             holds(&id(word)?, vec![phrase(subject)?, Phrase::Hole]),
         ),
-        ("what_stranded", [subject, word]) => which(
-            None,
-            holds(&id(word)?, vec![phrase(subject)?, Phrase::Hole]),
+        ("what_stranded", [subject, word]) | ("what_stranded_standing", [subject, _, word]) => {
+            which(
+                None,
+                holds(&id(word)?, vec![phrase(subject)?, Phrase::Hole]),
+            )
+        }
+        ("what_says", [said]) => which(None, verb_phrases::clause(Phrase::Hole, said)?),
+        ("which_says", [kind, said]) => which(
+            Some(described(kind)?),
+            verb_phrases::clause(Phrase::Hole, said)?,
         ),
-        ("what_vps", [rest]) => which(None, several::clause(Phrase::Hole, rest)?),
-        ("which_vps", [kind, rest]) => {
-            which(Some(described(kind)?), several::clause(Phrase::Hole, rest)?)
+        ("what_stands", [posture, said]) => which(
+            None,
+            verb_phrases::clause(Phrase::Hole, &standing(posture, said))?,
+        ),
+        ("which_stands", [kind, posture, said]) => which(
+            Some(described(kind)?),
+            verb_phrases::clause(Phrase::Hole, &standing(posture, said))?,
+        ),
+        ("which_of_says", [set, said]) => which(
+            Some(sets::set(set)?),
+            verb_phrases::clause(Phrase::Hole, said)?,
+        ),
+        ("which_of_stands", [set, posture, said]) => which(
+            Some(sets::set(set)?),
+            verb_phrases::clause(Phrase::Hole, &standing(posture, said))?,
+        ),
+        ("which_of_is", [set, order]) => which(
+            Some(selected(sets::set(set)?, &id(order)?, None)),
+            Clause::Exists(Phrase::Hole),
+        ),
+        ("which_of_is_more" | "which_of_is_less", [set, word]) => {
+            let order = superlative_of(&id(word)?, function == "which_of_is_less")?;
+            which(
+                Some(selected(sets::set(set)?, order, None)),
+                Clause::Exists(Phrase::Hole),
+            )
+        }
+        ("how_many_say", [kind, said]) => count(verb_phrases::with_said(described(kind)?, said)?),
+        ("how_many_of_say", [set, said]) => count(verb_phrases::with_said(sets::set(set)?, said)?),
+        ("how_many_stand", [kind, posture, said]) => count(verb_phrases::with_said(
+            described(kind)?,
+            &standing(posture, said),
+        )?),
+        ("how_many_carry", [kind, load]) => {
+            count(described(kind)?.with_modifier(Modifier::new("supports", [phrase(load)?])))
+        }
+        ("how_many_hold_inside", [kind, content]) => {
+            count(described(kind)?.with_modifier(Modifier::new("contains", [phrase(content)?])))
+        }
+        ("which_room_has", [set, thing]) => which(
+            Some(sets::set(set)?),
+            holds("room_contains", vec![Phrase::Hole, phrase(thing)?]),
+        ),
+        ("how_many_rooms_have", [noun, thing]) => {
+            let rooms = Description::new(Quantifier::Some, Noun::Room(id(noun)?));
+            count(rooms.with_modifier(Modifier::new("room_contains", [phrase(thing)?])))
         }
         ("which_superlative", [noun, order]) => {
             let kind = selected(described(noun)?, &id(order)?, None);
@@ -175,6 +227,11 @@ fn paraphrased(function: &str, arguments: &[Tree]) -> Option<Question> {
         }
         _ => return None,
     })
+}
+
+/// "Stands next to the door".
+pub(super) fn standing(posture: &Tree, said: &Tree) -> Tree {
+    Tree::apply("vp_standing", [posture.clone(), said.clone()])
 }
 
 pub(super) fn selected(
@@ -189,6 +246,17 @@ pub(super) fn selected(
             reference: reference.map(Box::new),
         }),
         ..description.with_quantifier(Quantifier::The)
+    }
+}
+
+/// The order whose first thing is more so than all others, or less.
+pub(super) fn superlative_of(comparative: &str, less: bool) -> Option<&'static str> {
+    match (comparative, less) {
+        ("larger_than", false) => Some("largest"),
+        ("larger_than", true) => Some("smallest"),
+        ("taller_than", false) => Some("tallest"),
+        ("wider_than", false) => Some("widest"),
+        _ => None,
     }
 }
 
@@ -269,6 +337,9 @@ pub(super) fn indirect(tree: &Tree) -> Option<Question> {
         ("indirect_material", [of]) => attribute(AttributeKind::Material, of),
         ("indirect_room", [of]) => attribute(AttributeKind::Room, of),
         ("indirect_stranded", arguments) => paraphrased("what_stranded", arguments),
+        ("indirect_stranded_standing", arguments) => {
+            paraphrased("what_stranded_standing", arguments)
+        }
         _ => None,
     }
 }
@@ -339,6 +410,19 @@ impl TreeBuilder<'_> {
             None => None,
         };
         match (kind, clause) {
+            (
+                None,
+                Clause::Holds {
+                    predicate,
+                    arguments,
+                },
+            ) if predicate == "between" => {
+                let [Phrase::Hole, one, other] = &arguments[..] else {
+                    return None;
+                };
+                let free = |phrase| self.phrase(phrase, Position::Free);
+                Some(Tree::apply("what_between", [free(one)?, free(other)?]))
+            }
             (
                 kind,
                 Clause::Holds {

@@ -185,16 +185,23 @@ impl Language {
         if is_sentence(&read) {
             return read;
         }
+        // "What's" apart, then phrases replaced, too.
+        let apart = self.grammar.endings_apart(&words);
         let paraphrase = self.grammar.paraphrase(&words);
-        if paraphrase == words || paraphrase.is_empty() {
-            return read;
+        let mut best = read;
+        for other in [apart, paraphrase] {
+            if other == words || other.is_empty() {
+                continue;
+            }
+            let other = self.read_words(&other);
+            if is_sentence(&other) {
+                return other;
+            }
+            if best.is_err() {
+                best = other;
+            }
         }
-        let other = self.read_words(&paraphrase);
-        if read.is_err() || is_sentence(&other) {
-            other
-        } else {
-            read
-        }
+        best
     }
 
     fn read_words(&self, words: &[String]) -> Result<Readings, ReadError> {
@@ -212,10 +219,14 @@ impl Language {
         // "The chair near the table larger than the bed" compares the chair: few describe a landmark by a comparison.
         let forms = parse.trees.iter().filter_map(|(cost, tree)| {
             let form = from_tree::form(tree)?;
-            Some((*cost as usize + form.described_comparisons(), form))
+            // "The TV stands in front of the window" is no plural of "TV stand".
+            let phrase = usize::from(matches!(form, Form::NounPhrase(_)));
+            let penalty = form.described_comparisons() + 2 * phrase;
+            Some((*cost as usize + penalty, form))
         });
         let mut ranked: Vec<(usize, Form)> = forms.collect();
-        ranked.sort_by_key(|(cost, _)| *cost);
+        // "Is the plant in the pot in front of the desk?" is about the plant in the pot.
+        ranked.sort_by_cached_key(|(cost, form)| (*cost, form.modifiers()));
         let mut forms: Vec<Form> = Vec::new();
         for form in ranked
             .iter()

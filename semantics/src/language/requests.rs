@@ -1,26 +1,41 @@
 //! Requests: forms to trees, and trees to forms.
 
-use super::from_tree::{id, parts, place_of, room, simple};
+use super::from_tree::{id, parts, place_of, room, simple, subjects};
 use super::lexicon::{RELATION, VERB};
-use super::phrases::phrase;
+use super::phrases::{between_two, phrase};
 use super::places;
 use super::to_tree::{Position, TreeBuilder};
-use crate::form::{Clause, Modifier, Phrase, RequestStep};
+use crate::form::{Clause, Description, Modifier, Noun, Phrase, Quantifier, RequestStep};
 use crate::grammar::Tree;
 
 pub(super) fn plan(tree: &Tree) -> Option<Vec<RequestStep>> {
     Some(match parts(tree)? {
         ("one_step", [only]) => vec![step(only)?],
-        ("unless", [condition, then]) => {
-            vec![conditional(
-                Clause::Not(Box::new(simple(condition)?)),
-                then,
-                None,
-            )?]
+        ("unless" | "step_unless", [condition, then]) => {
+            let not = Clause::Not(Box::new(simple(condition)?));
+            vec![conditional(not, plan_or_step(then)?, Vec::new())]
         }
-        ("if", [condition, then]) => vec![conditional(simple(condition)?, then, None)?],
+        ("if" | "step_if", [condition, then]) => {
+            vec![conditional(
+                simple(condition)?,
+                plan_or_step(then)?,
+                Vec::new(),
+            )]
+        }
         ("if_else", [condition, then, otherwise]) => {
-            vec![conditional(simple(condition)?, then, Some(otherwise))?]
+            vec![conditional(
+                simple(condition)?,
+                plan(then)?,
+                plan(otherwise)?,
+            )]
+        }
+        // "If the door is closed, open it, otherwise come to me", as people put it.
+        ("step_if_else", [then, condition, otherwise]) => {
+            vec![conditional(
+                simple(condition)?,
+                vec![step(then)?],
+                plan(otherwise)?,
+            )]
         }
         ("then" | "steps", [first, rest]) => {
             let mut steps = vec![step(first)?];
@@ -100,16 +115,20 @@ fn put(object: &Tree, relation: &Tree, to: &Tree) -> Option<RequestStep> {
     })
 }
 
-fn conditional(condition: Clause, then: &Tree, otherwise: Option<&Tree>) -> Option<RequestStep> {
-    let otherwise = match otherwise {
-        Some(otherwise) => Some(Box::new(step(otherwise)?)),
-        None => None,
-    };
-    Some(RequestStep::If {
+fn conditional(
+    condition: Clause,
+    then: Vec<RequestStep>,
+    otherwise: Vec<RequestStep>,
+) -> RequestStep {
+    RequestStep::If {
         condition,
-        then: Box::new(step(then)?),
+        then,
         otherwise,
-    })
+    }
+}
+
+fn plan_or_step(tree: &Tree) -> Option<Vec<RequestStep>> {
+    plan(tree).or_else(|| Some(vec![step(tree)?]))
 }
 
 fn step(tree: &Tree) -> Option<RequestStep> {
@@ -126,6 +145,7 @@ fn step(tree: &Tree) -> Option<RequestStep> {
             }
         }
         ("leave", [object]) => refrain("pick_up", object)?,
+        ("do_close_behind", [object]) => act("close", object)?,
         ("put_near", [object, to]) => RequestStep::Put {
             object: phrase(object)?,
             predicate: "near".to_owned(),
@@ -141,6 +161,86 @@ fn step(tree: &Tree) -> Option<RequestStep> {
             };
             refrain(verb, object)?
         }
+        ("put_by", [_, object, relation, to]) | ("leave_at", [object, relation, to]) => {
+            put(object, relation, to)?
+        }
+        ("stand_in_place", [place]) => {
+            let (predicate, to) = place_of(place)?;
+            RequestStep::Put {
+                object: Phrase::Listener,
+                predicate,
+                to,
+            }
+        }
+        ("stand_between_two", [both]) => RequestStep::Put {
+            object: Phrase::Listener,
+            predicate: "between".to_owned(),
+            to: Phrase::List(between_two(both)?.into()),
+        },
+        ("put_by_between_two", [_, object, both]) => RequestStep::Put {
+            object: phrase(object)?,
+            predicate: "between".to_owned(),
+            to: Phrase::List(between_two(both)?.into()),
+        },
+        ("stand_between", [one, other]) => RequestStep::Put {
+            object: Phrase::Listener,
+            predicate: "between".to_owned(),
+            to: Phrase::List(vec![phrase(one)?, phrase(other)?]),
+        },
+        ("put_between" | "put_by_between", [.., object, one, other]) => RequestStep::Put {
+            object: phrase(object)?,
+            predicate: "between".to_owned(),
+            to: Phrase::List(vec![phrase(one)?, phrase(other)?]),
+        },
+        ("put_list", [_, items, relation, to]) => RequestStep::Put {
+            object: subjects(items)?,
+            predicate: id(relation)?,
+            to: phrase(to)?,
+        },
+        ("put_list_in_place", [_, items, place]) => {
+            let (predicate, to) = place_of(place)?;
+            RequestStep::Put {
+                object: subjects(items)?,
+                predicate,
+                to,
+            }
+        }
+        ("bring_list", [items, to]) => RequestStep::Bring {
+            object: subjects(items)?,
+            to: phrase(to)?,
+        },
+        ("bring_list_to_place", [items, to]) => RequestStep::Bring {
+            object: subjects(items)?,
+            to: room(to)?,
+        },
+        ("carry_out", [object, from]) => {
+            let Phrase::Described(object) = phrase(object)? else {
+                return None;
+            };
+            let from = room(from)?;
+            let elsewhere =
+                Description::new(Quantifier::Some, Noun::Room(Noun::ANY_ROOM.to_owned()));
+            RequestStep::Bring {
+                object: object
+                    .with_modifier(Modifier::new("in_room", [from.clone()]))
+                    .into(),
+                to: elsewhere
+                    .with_modifier(Modifier {
+                        negated: true,
+                        ..Modifier::new(Modifier::IDENTICAL, [from])
+                    })
+                    .into(),
+            }
+        }
+        ("stand_at", [relation, landmark]) => RequestStep::Put {
+            object: Phrase::Listener,
+            predicate: id(relation)?,
+            to: phrase(landmark)?,
+        },
+        ("come", []) => RequestStep::Do {
+            verb: "approach".to_owned(),
+            object: Phrase::Speaker,
+        },
         ("do_on", [object]) => act("switch_on", object)?,
         ("do_off", [object]) => act("switch_off", object)?,
         ("do_pick_up", [object]) => act("pick_up", object)?,
@@ -149,7 +249,8 @@ fn step(tree: &Tree) -> Option<RequestStep> {
         ("do", [verb, object]) => act(&id(verb)?, object)?,
         ("do_not", [verb, object]) => refrain(&id(verb)?, object)?,
         ("put" | "put_modified", [object, relation, to]) => put(object, relation, to)?,
-        ("put_in_place" | "put_modified_in_place", [object, place]) => {
+        ("put_in_place" | "put_modified_in_place" | "leave_in_place", [object, place])
+        | ("put_by_place", [_, object, place]) => {
             let (predicate, to) = place_of(place)?;
             RequestStep::Put {
                 object: phrase(object)?,
@@ -157,9 +258,12 @@ fn step(tree: &Tree) -> Option<RequestStep> {
                 to,
             }
         }
-        ("bring", [object, to]) => RequestStep::Bring {
-            object: phrase(object)?,
-            to: phrase(to)?,
+        ("bring", [object, to]) => match phrase(to)? {
+            Phrase::Speaker => act("bring_me", object)?,
+            to => RequestStep::Bring {
+                object: phrase(object)?,
+                to,
+            },
         },
         ("bring_to_place", [object, to]) => RequestStep::Bring {
             object: phrase(object)?,
@@ -180,12 +284,18 @@ impl TreeBuilder<'_> {
                     otherwise,
                 },
             ] => {
-                let (condition, then) = (self.simple(condition)?, self.step(then)?);
-                match otherwise {
-                    None => Tree::apply("if", [condition, then]),
-                    Some(otherwise) => {
-                        Tree::apply("if_else", [condition, then, self.step(otherwise)?])
-                    }
+                let condition = self.simple(condition)?;
+                // A condition within another one would be taken for the next step.
+                let nested = |step: &RequestStep| matches!(step, RequestStep::If { .. });
+                if then.iter().chain(otherwise).any(nested) {
+                    return None;
+                }
+                match &otherwise[..] {
+                    [] => Tree::apply("if", [condition, self.plan(then)?]),
+                    otherwise => Tree::apply(
+                        "if_else",
+                        [condition, self.plan(then)?, self.plan(otherwise)?],
+                    ),
                 }
             }
             [only] => Tree::apply("one_step", [self.step(only)?]),
@@ -208,8 +318,28 @@ impl TreeBuilder<'_> {
                 predicate,
                 to,
             } => {
+                if let (Phrase::Listener, "between", Phrase::List(landmarks)) =
+                    (object, predicate.as_str(), to)
+                {
+                    let [one, other] = &landmarks[..] else {
+                        return None;
+                    };
+                    return Some(Tree::apply("stand_between", [free(one)?, free(other)?]));
+                }
+                if *object == Phrase::Listener && predicate == "in_room" {
+                    return Some(Tree::apply("stand_in_place", [self.place(to)?]));
+                }
+                if *object == Phrase::Listener {
+                    let relation = self.known(RELATION, predicate)?;
+                    return Some(Tree::apply("stand_at", [relation, free(to)?]));
+                }
                 let object = self.phrase(object, Position::Landmark)?;
-                if predicate == "in_room" {
+                if let ("between", Phrase::List(landmarks)) = (predicate.as_str(), to) {
+                    let [one, other] = &landmarks[..] else {
+                        return None;
+                    };
+                    Tree::apply("put_between", [object, free(one)?, free(other)?])
+                } else if predicate == "in_room" {
                     Tree::apply("put_in_place", [object, self.place(to)?])
                 } else {
                     let relation = self.known(RELATION, predicate)?;

@@ -310,13 +310,21 @@ impl TreeBuilder<'_> {
                     [kind, self.phrase(thing, Position::Landmark)?],
                 ))
             }
+            (None, [other], Quantifier::Some)
+                if other.predicate == Modifier::IDENTICAL && other.negated =>
+            {
+                let other = self.room(other.arguments.first()?)?;
+                Some(Tree::apply("room_other_than", [kind, other]))
+            }
             (None, [], quantifier) => {
                 let function = match quantifier {
                     Quantifier::The => "room_the",
                     Quantifier::Some => "room_a",
                     Quantifier::Every => "room_every",
                     Quantifier::No => "room_no",
-                    Quantifier::Exactly(_) | Quantifier::AtLeast(_) => return None,
+                    Quantifier::Exactly(_) | Quantifier::AtLeast(_) | Quantifier::AtMost(_) => {
+                        return None;
+                    }
                 };
                 Some(Tree::apply(function, [kind]))
             }
@@ -337,7 +345,12 @@ impl TreeBuilder<'_> {
             Phrase::Listener => Tree::apply(if landmark { "i_you" } else { "you" }, []),
             Phrase::Described(description) if landmark => self.landmark(description)?,
             Phrase::Described(description) => self.described(description)?,
-            Phrase::Storey(_) | Phrase::Hole | Phrase::List(_) => return None,
+            Phrase::Speaker if !landmark => Tree::apply("me", []),
+            Phrase::Storey(_)
+            | Phrase::Speaker
+            | Phrase::Hole
+            | Phrase::NamedBefore
+            | Phrase::List(_) => return None,
         })
     }
 
@@ -387,6 +400,9 @@ impl TreeBuilder<'_> {
                     return Some(Tree::apply(&named("_place"), [own, self.place(other)?]));
                 }
                 let other = self.phrase(other, Position::Landmark)?;
+                if only.predicate == "belongs_to" {
+                    return Some(Tree::apply(&format!("i_{article}_from"), [own, other]));
+                }
                 if let Some(word) = self.known(RELATION, &only.predicate) {
                     return Some(Tree::apply(&named(""), [own, word, other]));
                 }
@@ -412,6 +428,7 @@ impl TreeBuilder<'_> {
             Quantifier::No => Tree::apply("no", [noun]),
             Quantifier::Exactly(1) => Tree::apply("exactly_one", [noun]),
             Quantifier::Exactly(number) => Tree::apply("exactly", [count(number), noun]),
+            Quantifier::AtMost(number) => Tree::apply("at_most", [count(number), noun]),
             Quantifier::AtLeast(1) => Tree::apply("at_least_one", [noun]),
             Quantifier::AtLeast(number) => Tree::apply("at_least", [count(number), noun]),
         })
@@ -450,10 +467,24 @@ impl TreeBuilder<'_> {
     pub(super) fn with_modifiers(&self, description: &Description) -> Option<Tree> {
         let mut noun = Tree::apply("plain", [self.adjectives(description)?]);
         for modifier in &description.modifiers {
+            if let Some(other) = self.other_than(modifier) {
+                noun = Tree::apply("with", [noun, other]);
+                continue;
+            }
             let function = if modifier.negated { "but_not" } else { "with" };
             noun = Tree::apply(function, [noun, self.modifier(modifier)?]);
         }
         Some(noun)
+    }
+
+    /// "Other than the red chair"; `None` for other modifiers.
+    fn other_than(&self, modifier: &Modifier) -> Option<Tree> {
+        let [of] = &modifier.arguments[..] else {
+            return None;
+        };
+        (modifier.negated && modifier.predicate == Modifier::IDENTICAL).then_some(())?;
+        let of = self.phrase(of, Position::Landmark)?;
+        Some(Tree::apply("modifier_other", [of]))
     }
 
     fn modifier(&self, modifier: &Modifier) -> Option<Tree> {
@@ -468,6 +499,7 @@ impl TreeBuilder<'_> {
             (spot, [place]) if self.spot(spot, place).is_some() => {
                 Some(Tree::apply("modifier_place", [self.spot(spot, place)?]))
             }
+            ("belongs_to", [source]) => Some(Tree::apply("modifier_source", [landmark(source)?])),
             ("closer_to", [near, far]) => Some(Tree::apply(
                 "modifier_closer",
                 [landmark(near)?, landmark(far)?],

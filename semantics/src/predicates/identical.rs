@@ -1,6 +1,6 @@
 //! The predicate `identical`.
 
-use super::{OBJECT, Predicate, RelationProperties};
+use super::{OBJECT_OR_ROOM, Predicate, RelationProperties};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::Truth;
 
@@ -13,11 +13,11 @@ impl Predicate for Identical {
     }
 
     fn places(&self) -> &'static [&'static [TermKind]] {
-        &[OBJECT, OBJECT]
+        &[OBJECT_OR_ROOM, OBJECT_OR_ROOM]
     }
 
     fn definition(&self) -> &'static str {
-        "Both are one thing: \"the sofa is the largest thing in the room\"."
+        "Both are one thing, or one room: \"the sofa is the largest thing in the room\"."
     }
 
     fn source(&self) -> &'static str {

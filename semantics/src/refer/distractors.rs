@@ -95,7 +95,7 @@ impl DistractorSet {
                 for (word, _) in &facts.colors {
                     push(&mut lists, Attribute::Color((*word).to_owned()), id);
                 }
-                for word in facts.adjectives() {
+                for word in facts.material_words() {
                     push(&mut lists, Attribute::Material(word.to_owned()), id);
                 }
                 let Some(room) = scene.room_of(id) else {

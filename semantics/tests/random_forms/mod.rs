@@ -84,8 +84,16 @@ fn some(noun: Noun) -> Phrase {
 
 /// A piece of the building. "On the wall" is said of what hangs there, so that no thing is `on` these but on the floor.
 fn structure(words: &'static [&'static str]) -> BoxedStrategy<Phrase> {
-    word(words)
-        .prop_map(|word| some(Noun::Structure(word)))
+    let look = || proptest::option::weighted(0.2, word(&["white", "brick", "green"]));
+    (word(words), look())
+        .prop_map(|(word, look)| {
+            let mut own = Description::new(Quantifier::Some, Noun::Structure(word));
+            match look {
+                Some(material) if material == "brick" => own.material = Some(material),
+                color => own.colors.extend(color),
+            }
+            own.into()
+        })
         .boxed()
 }
 
@@ -102,7 +110,7 @@ fn structure_relation() -> BoxedStrategy<(String, Phrase)> {
 /// A mount of hanging things.
 fn mount() -> BoxedStrategy<Phrase> {
     prop_oneof![
-        structure(&["wall", "ceiling"]),
+        word(&["wall", "ceiling"]).prop_map(|word| some(Noun::Structure(word))),
         Just(some(Noun::Object("window".to_owned()))),
     ]
     .boxed()
@@ -138,6 +146,11 @@ fn landmark() -> BoxedStrategy<Phrase> {
         to_thing.prop_map(move |(outer, name, inner)| of(outer, name, inner.into())),
         by_verb.prop_map(move |(outer, name, inner)| of(outer, name, inner.into())),
         (plain(), room()).prop_map(move |(outer, inner)| of(outer, "in_room".to_owned(), inner)),
+        (plain(), plain()).prop_map(move |(outer, inner)| of(
+            outer,
+            "belongs_to".to_owned(),
+            inner.into()
+        )),
     ];
     prop_oneof![
         4 => plain().prop_map(Phrase::from),
@@ -150,7 +163,7 @@ fn landmark() -> BoxedStrategy<Phrase> {
 
 fn room() -> BoxedStrategy<Phrase> {
     let noun = word(&["kitchen", "bedroom", "living room", "balcony", "hall"]);
-    let kinds = (0..6_u8, noun, 1..15_u32, adjectives(Quantifier::Some));
+    let kinds = (0..7_u8, noun, 1..15_u32, adjectives(Quantifier::Some));
     kinds
         .prop_map(|(kind, noun, place, thing)| {
             let plain = |quantifier| Description::new(quantifier, Noun::Room(noun.clone()));
@@ -173,6 +186,13 @@ fn room() -> BoxedStrategy<Phrase> {
                     }],
                     ..plain(Quantifier::The)
                 },
+                4 => plain(Quantifier::Some).with_modifier(Modifier {
+                    negated: true,
+                    ..Modifier::new(
+                        Modifier::IDENTICAL,
+                        [Description::new(Quantifier::The, Noun::Room("hall".to_owned())).into()],
+                    )
+                }),
                 _ => plain(Quantifier::The),
             };
             description.into()
@@ -195,6 +215,11 @@ fn modifier() -> BoxedStrategy<Modifier> {
         mount().prop_map(move |mount| made("hangs_on".to_owned(), vec![mount])),
         passage().prop_map(move |(name, to)| made(name, to)),
         side().prop_map(move |side| made(side, Vec::new())),
+        landmark().prop_map(move |source| made("belongs_to".to_owned(), vec![source])),
+        landmark().prop_map(|named| Modifier {
+            negated: true,
+            ..Modifier::new(Modifier::IDENTICAL, [named])
+        }),
         word(&["visible", "held"]).prop_map(move |name| made(name, Vec::new())),
     ]
     .boxed()
@@ -208,6 +233,7 @@ fn quantifier() -> BoxedStrategy<Quantifier> {
         Just(Quantifier::No),
         (1..30_u32).prop_map(Quantifier::Exactly),
         (1..30_u32).prop_map(Quantifier::AtLeast),
+        (1..30_u32).prop_map(Quantifier::AtMost),
     ]
     .boxed()
 }

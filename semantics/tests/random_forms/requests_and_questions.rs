@@ -15,6 +15,20 @@ fn step() -> BoxedStrategy<RequestStep> {
             predicate: "in_room".to_owned(),
             to,
         }),
+        (landmark(), phrase(), phrase()).prop_map(|(object, one, other)| RequestStep::Put {
+            object,
+            predicate: "between".to_owned(),
+            to: Phrase::List(vec![one, other]),
+        }),
+        (relation(), reference()).prop_map(|(predicate, to)| RequestStep::Put {
+            object: Phrase::Listener,
+            predicate,
+            to,
+        }),
+        Just(RequestStep::Do {
+            verb: "find".to_owned(),
+            object: Phrase::Speaker,
+        }),
         (landmark(), word(&["on", "in"]), reference()).prop_map(|(object, predicate, to)| {
             RequestStep::Put {
                 object,
@@ -31,12 +45,17 @@ pub(crate) fn form() -> BoxedStrategy<Form> {
         4 => simple().prop_map(Form::Claim),
         2 => proptest::collection::vec(step(), 1..4)
             .prop_map(Form::Request),
-        1 => (simple(), step(), proptest::option::of(step()), proptest::option::of(step()))
+        1 => (
+            simple(),
+            proptest::collection::vec(step(), 1..3),
+            proptest::collection::vec(step(), 0..3),
+            proptest::option::of(step()),
+        )
             .prop_map(|(condition, then, otherwise, first)| {
                 let conditional = RequestStep::If {
                     condition,
-                    then: Box::new(then),
-                    otherwise: otherwise.map(Box::new),
+                    then,
+                    otherwise,
                 };
                 Form::Request(first.into_iter().chain([conditional]).collect())
             }),

@@ -1,0 +1,101 @@
+//! Trees with shared branches: the readings of a text, of which most differ in few places.
+
+use super::Tree;
+use std::cmp::Ordering;
+use std::collections::BTreeMap;
+
+/// A tree in [`Nodes`]; equal trees have equal ids.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct NodeId(usize);
+
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Node {
+    /// A function, by its number.
+    Apply(usize, Vec<NodeId>),
+    Leaf(Tree),
+}
+
+/// Trees, each once.
+#[derive(Default)]
+pub(super) struct Nodes {
+    all: Vec<Node>,
+    ids: BTreeMap<Node, NodeId>,
+    functions: Vec<String>,
+    numbers: BTreeMap<String, usize>,
+}
+
+impl Nodes {
+    fn add(&mut self, node: Node) -> NodeId {
+        if let Some(known) = self.ids.get(&node) {
+            return *known;
+        }
+        let id = NodeId(self.all.len());
+        self.all.push(node.clone());
+        self.ids.insert(node, id);
+        id
+    }
+
+    /// Adds a word or a number.
+    pub(super) fn leaf(&mut self, leaf: Tree) -> NodeId {
+        self.add(Node::Leaf(leaf))
+    }
+
+    /// Adds a function of trees.
+    pub(super) fn apply(&mut self, function: &str, arguments: Vec<NodeId>) -> NodeId {
+        let number = self.numbers.get(function).copied().unwrap_or_else(|| {
+            let number = self.functions.len();
+            self.functions.push(function.to_owned());
+            self.numbers.insert(function.to_owned(), number);
+            number
+        });
+        self.add(Node::Apply(number, arguments))
+    }
+
+    /// Compares two trees as [`Tree`] does.
+    pub(super) fn compare(&self, a: NodeId, b: NodeId) -> Ordering {
+        if a == b {
+            return Ordering::Equal;
+        }
+        match (&self.all[a.0], &self.all[b.0]) {
+            (Node::Apply(f, of), Node::Apply(g, to)) => self.functions[*f]
+                .cmp(&self.functions[*g])
+                .then_with(|| self.compare_all(of.iter(), to.iter())),
+            (Node::Apply(..), Node::Leaf(_)) => Ordering::Less,
+            (Node::Leaf(_), Node::Apply(..)) => Ordering::Greater,
+            (Node::Leaf(a), Node::Leaf(b)) => a.cmp(b),
+        }
+    }
+
+    /// Compares two lists of trees, the first difference deciding.
+    pub(super) fn compare_all<'a>(
+        &self,
+        a: impl Iterator<Item = &'a NodeId>,
+        b: impl Iterator<Item = &'a NodeId>,
+    ) -> Ordering {
+        let mut b = b;
+        for one in a {
+            let Some(other) = b.next() else {
+                return Ordering::Greater;
+            };
+            let order = self.compare(*one, *other);
+            if order.is_ne() {
+                return order;
+            }
+        }
+        match b.next() {
+            Some(_) => Ordering::Less,
+            None => Ordering::Equal,
+        }
+    }
+
+    /// Returns the tree of a node.
+    pub(super) fn tree(&self, node: NodeId) -> Tree {
+        match &self.all[node.0] {
+            Node::Apply(function, arguments) => Tree::Apply {
+                function: self.functions[*function].clone(),
+                arguments: arguments.iter().map(|one| self.tree(*one)).collect(),
+            },
+            Node::Leaf(leaf) => leaf.clone(),
+        }
+    }
+}

@@ -1,0 +1,48 @@
+//! Things of a set: "one of the chairs", "the two cups", "none of them", "both bedrooms".
+
+use super::from_tree::{id, number, parts};
+use super::phrases::described;
+use crate::form::{Description, Noun, Phrase, Quantifier};
+use crate::grammar::Tree;
+
+/// The phrase of some, all or none of a set; `None` for other trees.
+pub(super) fn phrase_of_set(function: &str, arguments: &[Tree]) -> Option<Phrase> {
+    let (quantifier, of) = match (function, arguments) {
+        ("one_of", [of]) => (Quantifier::Some, of),
+        ("only_one_of", [of]) => (Quantifier::Exactly(1), of),
+        ("all_of", [of]) => (Quantifier::Every, of),
+        ("none_of", [of]) => (Quantifier::No, of),
+        ("several_of", [of]) => (Quantifier::AtLeast(2), of),
+        ("number_of", [count, of]) => (Quantifier::Exactly(number(count)?), of),
+        ("at_least_of", [count, of]) => (Quantifier::AtLeast(number(count)?), of),
+        ("at_most_of", [count, of]) => (Quantifier::AtMost(number(count)?), of),
+        ("more_than_of", [count, of]) => (more_than(count)?, of),
+        ("fewer_than_of", [count, of]) => (fewer_than(count)?, of),
+        _ => return None,
+    };
+    Some(set(of)?.with_quantifier(quantifier).into())
+}
+
+/// "More than three" is at least four.
+pub(super) fn more_than(count: &Tree) -> Option<Quantifier> {
+    Some(Quantifier::AtLeast(number(count)?.checked_add(1)?))
+}
+
+/// "Fewer than three" is at most two.
+pub(super) fn fewer_than(count: &Tree) -> Option<Quantifier> {
+    Some(Quantifier::AtMost(number(count)?.checked_sub(1)?))
+}
+
+/// The description of the members of a set; the caller sets its quantifier.
+pub(super) fn set(tree: &Tree) -> Option<Description> {
+    let room = |noun: &Tree| Some(Description::new(Quantifier::Some, Noun::Room(id(noun)?)));
+    match parts(tree)? {
+        // How many there are is what the speaker takes for granted, as with "the chair".
+        ("set" | "set_counted", [.., noun]) => described(noun),
+        ("set_other", [noun]) => Some(described(noun)?.other()),
+        ("set_same", []) => Some(Description::new(Quantifier::Some, Noun::SameThings)),
+        ("room_set" | "room_set_counted", [.., noun]) => room(noun),
+        ("room_set_other", [noun]) => Some(room(noun)?.other()),
+        _ => None,
+    }
+}

@@ -1,0 +1,321 @@
+//! What is said of a subject: "is red", "stands next to the door but is not open".
+
+use super::from_tree::{holds, id, parts, place_of, quality_of, subjects};
+use super::phrases::{between_two, described, phrase, relation_to};
+use super::{places, questions};
+use crate::form::{Clause, Description, Modifier, Noun, Phrase, Quality, Quantifier};
+use crate::grammar::Tree;
+
+/// One thing that is said of a subject.
+#[derive(Clone)]
+pub(super) enum Said {
+    /// A relation, or a place.
+    Relation(Modifier),
+    /// A relation of another thing to the subject: "smaller than the table" of a table that is larger.
+    Converse(String, Phrase),
+    /// A quality.
+    Quality(Quality),
+    /// One to the left and one to the right of a landmark.
+    BothSides(Phrase),
+    /// A relation of each of several to another of them.
+    EachOther(String),
+    /// A relation of one of several to another of them: "one above the other".
+    OneTheOther(String),
+    /// Being the only thing that a description fits.
+    Only(Description),
+}
+
+/// What is said, each with whether it is denied.
+pub(super) type SaidList = Vec<(Said, bool)>;
+
+fn relation(predicate: &str, arguments: impl Into<Vec<Phrase>>) -> SaidList {
+    affirmed(Said::Relation(Modifier::new(predicate, arguments)))
+}
+
+fn affirmed(said: Said) -> SaidList {
+    vec![(said, false)]
+}
+
+/// The reading of a verb phrase; `None` for other trees.
+pub(super) fn said(tree: &Tree) -> Option<SaidList> {
+    Some(match parts(tree)? {
+        ("vp_relation", [word, object]) => {
+            let object = phrase(object)?;
+            relation(&relation_to(id(word)?, &any_thing(), &object), [object])
+        }
+        ("vp_relation_list", [word, items]) => {
+            let items = subjects(items)?;
+            // "Two coats hang on the wall, one red and one brown": those are no landmarks.
+            let Phrase::List(all) = &items else {
+                return None;
+            };
+            let stands_for = |item: &Phrase| matches!(item, Phrase::Described(own) if own.noun == Noun::SameNoun);
+            if all.iter().any(stands_for) {
+                return None;
+            }
+            relation(&id(word)?, [items])
+        }
+        ("vp_between", [a, b]) => relation("between", [phrase(a)?, phrase(b)?]),
+        ("vp_between_two", [both]) => relation("between", between_two(both)?),
+        ("vp_closer", [near, far]) => relation("closer_to", [phrase(near)?, phrase(far)?]),
+        ("vp_place", [place]) => {
+            let (predicate, place) = place_of(place)?;
+            relation(&predicate, [place])
+        }
+        ("vp_mount", [mount]) => relation("hangs_on", [places::mount_from_tree(mount)?]),
+        ("vp_side", [side]) => affirmed(Said::Relation(places::side_from_tree(side)?)),
+        ("vp_passage", [passage]) => affirmed(Said::Relation(places::passage_from_tree(passage)?)),
+        ("vp_side_corner", [side]) if parts(side)?.0 != "flank_ahead" => {
+            let mut all = relation("in_corner_of", [any_room()]);
+            all.extend(affirmed(Said::Relation(places::side_from_tree(side)?)));
+            all
+        }
+        ("vp_converse", [word, object]) => affirmed(Said::Converse(id(word)?, phrase(object)?)),
+        ("vp_superlative", [order, noun]) => {
+            let selected = questions::selected(described(noun)?, &id(order)?, None);
+            relation("identical", [selected.into()])
+        }
+        ("vp_any_other" | "vp_less_any_other", [word, noun]) => {
+            let order = questions::superlative_of(&id(word)?, tree_is_less(tree))?;
+            let selected = questions::selected(described(noun)?, order, None);
+            relation("identical", [selected.into()])
+        }
+        ("vp_is_a", [noun]) => relation("identical", [described(noun)?.into()]),
+        ("vp_both_sides", [landmark]) => affirmed(Said::BothSides(phrase(landmark)?)),
+        ("vp_one_the_other", [word]) => affirmed(Said::OneTheOther(id(word)?)),
+        ("vp_only", [noun]) => affirmed(Said::Only(described(noun)?)),
+        ("vp_same_color", [other]) => relation("same_color", [phrase(other)?]),
+        ("vp_same_material", [other]) => relation("same_material", [phrase(other)?]),
+        ("vp_side_by_side", []) => affirmed(Said::EachOther("next_to".to_owned())),
+        ("vp_each_other", [word]) => affirmed(Said::EachOther(id(word)?)),
+        ("vp_color_material", [color, material]) | ("vp_material_color", [material, color]) => {
+            vec![
+                (Said::Quality(Quality::Color(id(color)?)), false),
+                (Said::Quality(Quality::Material(id(material)?)), false),
+            ]
+        }
+        ("vp_quality", [quality]) => affirmed(Said::Quality(quality_of(quality)?)),
+        ("vp_standing", [posture, inner]) => {
+            let mut all = said(inner)?;
+            // "Standing on" does not say that something is switched on.
+            if all.iter().any(|(said, _)| matches!(said, Said::Quality(_))) {
+                return None;
+            }
+            if hangs(posture) {
+                hang(&mut all);
+            }
+            all
+        }
+        ("vps_single" | "vps_several", [inner]) => said(inner)?,
+        ("vps_pair" | "vps_beside", [first, last]) => {
+            let mut all = said(first)?;
+            match parts(last)? {
+                ("vps_one", [one]) => all.extend(said(one)?),
+                ("vps_not", [one]) => all.extend(denied(said(one)?)?),
+                _ => all.extend(said(last)?),
+            }
+            // "Visible in the mirror" is not what is visible and in the mirror.
+            let is = |at: usize, found: fn(&Said) -> bool| {
+                all.get(at).is_some_and(|(said, _)| found(said))
+            };
+            if is(
+                0,
+                |said| matches!(said, Said::Quality(Quality::State(state)) if state == "visible"),
+            ) && is(
+                1,
+                |said| matches!(said, Said::Relation(place) if place.predicate == "in"),
+            ) {
+                return None;
+            }
+            all
+        }
+        ("vps_more", [first, rest]) => {
+            let mut all = said(first)?;
+            all.extend(said(rest)?);
+            all
+        }
+        _ => return None,
+    })
+}
+
+fn hangs(posture: &Tree) -> bool {
+    parts(posture).is_some_and(|(function, _)| function.starts_with("hang"))
+}
+
+/// What hangs "on" a thing is mounted on it.
+fn hang(all: &mut SaidList) {
+    for (said, _) in all {
+        if let Said::Relation(modifier) = said
+            && modifier.predicate == "on"
+        {
+            "hangs_on".clone_into(&mut modifier.predicate);
+        }
+    }
+}
+
+fn tree_is_less(tree: &Tree) -> bool {
+    matches!(parts(tree), Some(("vp_less_any_other", _)))
+}
+
+fn denied(mut all: SaidList) -> Option<SaidList> {
+    // "Not in the left corner" denies both together, which no list of two denials does.
+    let [(_, negated)] = &mut all[..] else {
+        return None;
+    };
+    *negated = !*negated;
+    Some(all)
+}
+
+fn any_thing() -> Phrase {
+    let noun = Noun::Object(Noun::ANY_OBJECT.to_owned());
+    Description::new(Quantifier::Some, noun).into()
+}
+
+fn any_room() -> Phrase {
+    let noun = Noun::Room(Noun::ANY_ROOM.to_owned());
+    Description::new(Quantifier::Some, noun).into()
+}
+
+/// The clause that says one thing of `subject`.
+fn clause_of(subject: Phrase, (said, negated): (Said, bool)) -> Option<Clause> {
+    let clause = match said {
+        Said::Relation(modifier) => {
+            let mut arguments = vec![subject];
+            arguments.extend(modifier.arguments);
+            holds(&modifier.predicate, arguments)
+        }
+        Said::Converse(predicate, other) => holds(&predicate, vec![other, subject]),
+        Said::Quality(quality) => Clause::Is { subject, quality },
+        Said::BothSides(landmark) => {
+            let Phrase::Described(own) = &subject else {
+                return None;
+            };
+            let one = own.clone().with_quantifier(Quantifier::Some);
+            let side = |name| holds(name, vec![one.clone().into(), landmark.clone()]);
+            Clause::All(vec![side("left_of"), side("right_of")])
+        }
+        Said::OneTheOther(predicate) => {
+            let Phrase::Described(own) = subject else {
+                return None;
+            };
+            let one: Phrase = own.with_quantifier(Quantifier::Some).into();
+            holds(&predicate, vec![one.clone(), one])
+        }
+        Said::Only(only) => Clause::All(vec![
+            holds("identical", vec![subject, only.clone().into()]),
+            Clause::Exists(only.with_quantifier(Quantifier::Exactly(1)).into()),
+        ]),
+        Said::EachOther(predicate) => match &subject {
+            Phrase::List(items) => {
+                let [one, other] = &items[..] else {
+                    return None;
+                };
+                holds(&predicate, vec![one.clone(), other.clone()])
+            }
+            Phrase::Described(own) => {
+                let another = own.clone().with_quantifier(Quantifier::Some).into();
+                holds(&predicate, vec![subject, another])
+            }
+            _ => return None,
+        },
+    };
+    Some(if negated {
+        Clause::Not(Box::new(clause))
+    } else {
+        clause
+    })
+}
+
+/// The clause that says all of a verb phrase of a subject. Of "a lamp" it must be one lamp of which all of it is true: that one exists.
+pub(super) fn clause(subject: Phrase, tree: &Tree) -> Option<Clause> {
+    let mut all = said(tree)?;
+    if let [_] = all[..] {
+        return clause_of(subject, all.remove(0));
+    }
+    match &subject {
+        Phrase::Described(description)
+            if !matches!(description.quantifier, Quantifier::The | Quantifier::Every)
+                && all.iter().all(|(said, _)| describes(said)) =>
+        {
+            let mut description = Description::clone(description);
+            add_said(&mut description, all)?;
+            Some(Clause::Exists(description.into()))
+        }
+        _ => {
+            let all = all.into_iter();
+            let clauses: Option<Vec<Clause>> =
+                all.map(|one| clause_of(subject.clone(), one)).collect();
+            Some(Clause::All(clauses?))
+        }
+    }
+}
+
+/// Returns whether it can be said within a description.
+fn describes(said: &Said) -> bool {
+    matches!(said, Said::Relation(_) | Said::Quality(_))
+}
+
+/// Adds to a description what a verb phrase says.
+pub(super) fn add_said(description: &mut Description, all: SaidList) -> Option<()> {
+    let mut predicates: Vec<String> = Vec::new();
+    for (said, negated) in all {
+        match (said, negated) {
+            // "There is bread on the table and on the shelf": not one bread on both.
+            (Said::Relation(modifier), false) if predicates.contains(&modifier.predicate) => {
+                return None;
+            }
+            (Said::Relation(modifier), negated) => {
+                predicates.push(modifier.predicate.clone());
+                description.modifiers.push(Modifier {
+                    negated,
+                    ..modifier
+                });
+            }
+            (Said::Quality(quality), false) => add_quality(description, quality)?,
+            (Said::Quality(Quality::State(state)), true) => description.modifiers.push(Modifier {
+                negated: true,
+                ..Modifier::new(&state, [])
+            }),
+            _ => return None,
+        }
+    }
+    Some(())
+}
+
+/// The description with what a verb phrase says added.
+pub(super) fn with_said(mut description: Description, tree: &Tree) -> Option<Description> {
+    add_said(&mut description, said(tree)?)?;
+    Some(description)
+}
+
+/// The description with what a relative clause says: "that is not on the table", "standing by the door".
+pub(super) fn with_relative(mut description: Description, tree: &Tree) -> Option<Description> {
+    let all = match parts(tree)? {
+        ("relative", [inner]) => said(inner)?,
+        ("relative_not", [inner]) => denied(said(inner)?)?,
+        ("relative_stands" | "relative_standing", [posture, inner]) => {
+            let mut all = said(inner)?;
+            if hangs(posture) {
+                hang(&mut all);
+            }
+            all
+        }
+        _ => return None,
+    };
+    add_said(&mut description, all)?;
+    Some(description)
+}
+
+/// Adds a quality to a description that does not have one of its kind.
+pub(super) fn add_quality(description: &mut Description, quality: Quality) -> Option<()> {
+    match quality {
+        Quality::Color(word) if description.colors.len() < 2 => description.colors.push(word),
+        Quality::Material(word) if description.material.is_none() => {
+            description.material = Some(word);
+        }
+        Quality::Size(size) if description.size.is_none() => description.size = Some(size),
+        Quality::State(state) if description.state.is_none() => description.state = Some(state),
+        _ => return None,
+    }
+    Some(())
+}
