@@ -15,7 +15,7 @@ pub fn triangulate(points: &[DVec2]) -> Vec<[usize; 3]> {
         return Vec::new();
     }
     let mut corners: Vec<usize> = Vec::new();
-    Earcut::new().earcut(points.iter().map(|p| p.to_array()), &[], &mut corners);
+    Earcut::new().earcut(points.iter().map(DVec2::to_array), &[], &mut corners);
     corners.as_chunks().0.to_vec()
 }
 
