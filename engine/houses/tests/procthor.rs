@@ -244,7 +244,7 @@ fn unknown_walls_missing_numbers_and_openness_beyond_1_are_reported() {
     let places = |file: &Value| -> Vec<String> {
         let (_, report) = opened(file, true);
         let warnings = report.warnings().iter();
-        warnings.map(|warning| warning.to_string()).collect()
+        warnings.map(ToString::to_string).collect()
     };
     let known = places(&file());
     let remove = |pointer: &str| {

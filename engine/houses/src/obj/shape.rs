@@ -272,6 +272,7 @@ fn box_uv(point: Vec3, normal: Vec3) -> Vec2 {
 mod tests {
     use super::*;
     use crate::obj::{read_mtl, read_obj};
+    use std::fmt::Write as _;
 
     fn mesh(text: &str, box_mapping: bool) -> (Mesh, LoadReport) {
         let mut report = LoadReport::new();
@@ -328,7 +329,7 @@ mod tests {
                 let mut text = String::new();
                 for [x, y] in corners {
                     let p = lean * Vec3::new(x, y, 0.0);
-                    text += &format!("v {} {} {}\n", p.x, p.y, p.z);
+                    writeln!(text, "v {} {} {}", p.x, p.y, p.z).unwrap();
                 }
                 let (mesh, report) = mesh(&format!("{text}f 1 2 3 4 5 6\n"), false);
                 let normal = lean * if reversed { Vec3::NEG_Z } else { Vec3::Z };
@@ -353,8 +354,8 @@ mod tests {
         assert_eq!(report.count(|d| *d == WarningKind::UnfilledFaces), 1);
         let (mut comb, mut face) = (String::new(), "f".to_owned());
         for k in 0..5000 {
-            comb += &format!("v {k} {} 0\n", if k % 2 == 0 { 0 } else { 9 });
-            face += &format!(" {}", k + 1);
+            writeln!(comb, "v {k} {} 0", if k % 2 == 0 { 0 } else { 9 }).unwrap();
+            write!(face, " {}", k + 1).unwrap();
         }
         let (_, report) = mesh(
             &format!("{comb}v 5000 -1 0\nv 0 -1 0\n{face} 5001 5002\n"),
