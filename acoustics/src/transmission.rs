@@ -5,6 +5,7 @@ use crate::propagation_data::PropagationData;
 use crate::ray_margin::ray_offset_m;
 use dwell_scene::SurfaceOwner;
 use dwell_scene::bvh::{Hit, Ray, RayMask};
+use dwell_scene::interrupt;
 use dwell_scene::rays::RayScene;
 use glam::Vec3;
 
@@ -36,6 +37,7 @@ pub(crate) fn transmitted_path(
     let mut near_m = 0.0;
     let mut walls: Vec<TransmittingWall> = Vec::new();
     for _ in 0..MOST_SURFACES {
+        interrupt::check();
         let Some(hit) = rays.closest(&whole.with_range(near_m, whole.far_m), RayMask::EAR) else {
             let fractions = walls.iter().fold([1.0; BAND_COUNT], |product, wall| {
                 std::array::from_fn(|band| product[band] * wall.passed[band])
@@ -78,6 +80,7 @@ pub(crate) fn exit_behind_wall(
     let mut wall = TransmittingWall::new(data, rays, hit);
     let mut last_m = hit.distance_m;
     for _ in 0..MOST_SURFACES {
+        interrupt::check();
         if wall.passed.iter().all(|passed| *passed <= 0.0) {
             return None;
         }
@@ -127,5 +130,28 @@ impl TransmittingWall {
             }
             _ => false,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::AcousticConfig;
+    use dwell_scene::{House, HouseData};
+    use std::sync::Arc;
+
+    #[test]
+    fn a_call_is_stopped_at_every_surface() {
+        let house = Arc::new(House::new(HouseData::default()).unwrap());
+        let rays = RayScene::new(house.clone());
+        let data = PropagationData::new(house, AcousticConfig::full());
+        let stopped = interrupt::interruptible(
+            || true,
+            || {
+                std::thread::sleep(interrupt::INTERVAL);
+                transmitted_path(&data, &rays, Vec3::ZERO, Vec3::ONE)
+            },
+        );
+        assert!(stopped.is_err());
     }
 }

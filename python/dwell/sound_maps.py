@@ -53,6 +53,7 @@ class SoundMap(ArrayRecord):
         places: Where it was taken (node, 3), m.
         values: Shape (node,), in the measure's unit; NaN where it does not exist.
         spacing_m: Distance of neighbours, m.
+        house_hash: ``hash()`` of the :class:`~dwell.House`; ``None``: not known.
     """
 
     measure: str
@@ -60,6 +61,7 @@ class SoundMap(ArrayRecord):
     places: NDArray[np.float64]
     values: NDArray[np.float64]
     spacing_m: float
+    house_hash: int | None = None
 
 
 def sound_map(
@@ -97,7 +99,7 @@ def sound_map(
             values.append(_single(rows, field))
         progress(len(values) / len(places), f"{len(values)} of {len(places)} places")
     found = np.array(values) - (_TEN_METRES_DB if measure == "level" else 0.0)
-    return SoundMap(measure, source_of(source), places, found, float(spacing_m))
+    return SoundMap(measure, source_of(source), places, found, float(spacing_m), hash(scene.house))
 
 
 def _single(rows: list[dict[str, Any]], field: str) -> float:
@@ -117,10 +119,15 @@ def draw_map(
         longest_edge: Pixels of the plan's longer edge.
 
     Raises:
-        ConfigError: There is no value on this storey, or a field of the map is wrong.
+        ConfigError: There is no value on this storey, a field of the map is wrong, or the map is of
+            another house.
     """
     world = instance_of("world", world, World)
     found = _checked(instance_of("found", found, SoundMap))
+    if found.house_hash is not None and found.house_hash != hash(world.house):
+        raise ConfigError(
+            f"found is the map of another house than {quoted(world.house.name)}, that of the world"
+        )
     level = integer_in_range("level", level)
     _, title, unit = MEASURES[found.measure]
     here = _on_storey(found.places, world, level)
@@ -155,6 +162,9 @@ def _checked(found: SoundMap) -> SoundMap:
         places,
         values,
         above_zero("found.spacing_m", found.spacing_m),
+        None
+        if found.house_hash is None
+        else integer_in_range("found.house_hash", found.house_hash, low=-(2**63)),
     )
 
 

@@ -147,6 +147,7 @@ CALLS = [
     ("sound_maps.draw_map(replace(MAP, measure=np.zeros(2)), W)", "found.measure is array([0., "),
     ("sound_maps.draw_map(replace(MAP, places=5), W)", "found: places of shape (1,) and values"),
     ("sound_maps.draw_map(replace(MAP, source=5), W)", "found.source is 5; expected a dwell.Sou"),
+    ("sound_maps.draw_map(replace(MAP, house_hash=5), W)", "found is the map of another house"),
     ('sound_maps.draw_map(MAP, W, level="x")', "level is 'x'; allowed are whole numbers from 0"),
     # Replays whose fields were replaced.
     ('next(replace(REPLAY, actions=["fly"]).play())', "replay: actions[0] is 'fly'; allowed are"),

@@ -224,6 +224,10 @@ def test_bad_files_and_numbers_get_a_sentence(tmp_path: Path) -> None:
     assert f"{path}: view 0: forward is 0" in done.stderr
     path.write_text("[]", "utf-8")
     assert "JSON object" in dwell("bench", "physics", HOUSE, "--boxes", path).stderr
+    rows = {"fixed": [], "dynamic": [{"position": [0, 0, 0]}], "density_kg_m3": 1}
+    path.write_text(json.dumps({**rows, "physics_rate_hz": 100}))
+    told = dwell("bench", "physics", HOUSE, "--boxes", path).stderr
+    assert f"{path}: dynamic[0]: expected center and half_extents, [x, y, z] in metres" in told
     none = {"fixed": [], "dynamic": [], "density_kg_m3": 400, "physics_rate_hz": 0}
     path.write_text(json.dumps(none), "utf-8")
     told = dwell("bench", "physics", HOUSE, "--boxes", path).stderr

@@ -207,6 +207,27 @@ def test_houses_that_were_deleted_are_made_again(tmp_path: Path) -> None:
     assert "gives another house now than the manifest says" in refused.stderr
 
 
+def test_a_house_that_could_not_be_written_is_tried_again(tmp_path: Path) -> None:
+    out, whole = tmp_path / "many", tmp_path / "whole"
+    three = ("--count", "3", "--spec", "home=studio")
+    assert generate(*three, "--out", whole).returncode == 0
+    shutil.copytree(whole, out)
+    manifest = out / "manifest.jsonl"
+    manifest.unlink()
+    in_the_way = out / rows(whole / "manifest.jsonl")[1]["path"]
+    shutil.rmtree(in_the_way)
+    in_the_way.mkdir()
+    (in_the_way / "letter").write_text("dear")
+    refused = generate(*three, "--out", out)
+    assert refused.returncode == 1
+    assert "something else stands there already" in refused.stderr
+    assert "1 of 3 are kept; run again" in refused.stderr
+    assert not manifest.exists()
+    shutil.rmtree(in_the_way)
+    assert generate(*three, "--out", out).returncode == 0
+    assert content(out) == content(whole)
+
+
 @pytest.mark.parametrize("form", ["dwell", "suncg"])
 def test_models_and_images_that_are_gone_or_cut_are_made_again(tmp_path: Path, form: str) -> None:
     out = tmp_path / "many"
@@ -257,6 +278,7 @@ def test_a_manifest_that_was_changed_is_refused_by_its_line(tmp_path: Path) -> N
     [
         (("--count", "0"), "expected a whole number from 1"),
         (("--count", "1", "--workers", "0"), "expected a whole number from 1"),
+        (("--count", "1", "--spec", "split=val"), "--split chooses seeds"),
         (("--count", "1", "--spec", "storeys=99"), "storeys: found 99; possible: 1 to 3"),
     ],
 )

@@ -69,6 +69,7 @@ def test_some_pairs_are_those_of_all(tmp_path: Path) -> None:
         ({"receivers": [{"id": "R1", "pos": [1, 2, "x"]}]}, "receivers[0].pos"),
         ({"sources": [{"pos": [1, 2, 3]}]}, "sources[0].id"),
         ({"fs": 0}, "fs"),
+        ({"receivers": None, "recievers": []}, "receivers: missing; 'recievers' is nearly its"),
         ({"duration_s": -1}, "scene.json: duration_s is -1; allowed is 0.02 to 20 s"),
         ({"air": {"temperature_c": 99}}, "temperature_c"),
         ({"walls": {}}, "walls.x0"),

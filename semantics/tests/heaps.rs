@@ -6,6 +6,7 @@ use common::Builder;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{House, State};
 use dwell_semantics::check::{Checker, Listener};
+use dwell_semantics::form::{Description, Modifier, Noun, Quantifier};
 use dwell_semantics::graph::scene_graph;
 use dwell_semantics::predicates::find;
 use dwell_semantics::refer::refer;
@@ -85,6 +86,37 @@ fn relations_in_a_heap_keep_their_laws() {
     let told = edges.filter(|edge| edge.predicate == "next_to").count();
     assert_eq!(told, held);
     assert!(held > 300 * 20, "{held}");
+}
+
+#[test]
+fn what_is_at_some_landmark_is_what_has_the_relation_to_one_of_them() {
+    for nested in [false, true] {
+        let house = heap(150, nested);
+        let semantics = Semantics::new(&house);
+        let state = State::new(&house);
+        let scene = semantics.scene(&state);
+        let checker = Checker::new(&scene, Listener::default());
+        let some = |noun: &str| Description::new(Quantifier::Some, Noun::Object(noun.to_owned()));
+        let red = Description {
+            colors: vec!["red".to_owned()],
+            ..some("bowl")
+        };
+        for name in ["in", "next_to", "on", "above"] {
+            let predicate = find(name).unwrap();
+            for landmark in [some("bowl"), red.clone(), some("thing")] {
+                let marks = checker.fitting(&landmark);
+                assert!(!marks.is_empty());
+                let phrase = some("cup").with_modifier(Modifier::new(name, [landmark.into()]));
+                let cups = checker.fitting(&some("cup")).into_iter();
+                let holds = |cup: &Term| {
+                    let mut of = marks.iter();
+                    of.any(|mark| predicate.holds(&scene, &[*cup, *mark], None).is_true())
+                };
+                let expected: Vec<Term> = cups.filter(holds).collect();
+                assert_eq!(checker.fitting(&phrase), expected, "{name}");
+            }
+        }
+    }
 }
 
 #[test]

@@ -12,9 +12,9 @@ use crate::sphere_sequences::direction_in_sequence;
 use crate::surface::ReflectedEnergy;
 use crate::transmission;
 use dwell_scene::bvh::{Hit, Ray, RayMask};
-use dwell_scene::math::sin_cos;
 use dwell_scene::random::{RandomKey, RandomStream};
 use dwell_scene::rays::RayScene;
+use dwell_scene::{interrupt, math::sin_cos};
 use glam::{Quat, Vec3};
 use std::f32::consts::TAU;
 use std::ops::Range;
@@ -171,6 +171,7 @@ impl RayTracer<'_> {
     ) -> Option<TracedRay> {
         let images = self.data.config().image_order;
         while one.travelled_m < end_m {
+            interrupt::check();
             if one.reflections == MOST_REFLECTIONS {
                 return None;
             }

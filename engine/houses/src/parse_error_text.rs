@@ -28,6 +28,10 @@ const EXPECTED: &str = "expected ";
 /// The sentence of an error, with the expected value in plain words.
 pub fn plain_parse_error(error: impl Display) -> String {
     let text = error.to_string();
+    let text = text.replace(
+        "recursion limit exceeded",
+        "recursion limit exceeded: more than 127 lists and objects lie in each other",
+    );
     let mut told = String::new();
     let mut rest = text.as_str();
     while let Some(at) = rest.find(EXPECTED) {
@@ -82,6 +86,10 @@ mod tests {
                 "invalid type: map, expected a number\nexpected a whole number",
             ),
             ("expected `,` or `}`", "expected `,` or `}`"),
+            (
+                "recursion limit exceeded at line 1",
+                "recursion limit exceeded: more than 127 lists and objects lie in each other at line 1",
+            ),
             ("expected f321", "expected f321"),
         ] {
             assert_eq!(plain_parse_error(text), told);

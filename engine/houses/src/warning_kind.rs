@@ -104,6 +104,11 @@ pub enum WarningKind {
     /// Triangles without area; kept, no ray hits them.
     #[error("triangles without area; kept, nothing can hit them")]
     DegenerateTriangles,
+    /// Faces that cross themselves, or concave ones of more than 4096 corners; each a fan of triangles, which may cover more than it.
+    #[error(
+        "faces that cross themselves, or concave ones of more than 4096 corners; they may cover more than they should"
+    )]
+    UnfilledFaces,
     /// A face that cannot be a polygon; left out.
     #[error("a face is left out: {reason}")]
     BadFace {

@@ -119,6 +119,19 @@ fn other_names_are_the_users_own() {
 }
 
 #[test]
+fn a_name_one_letter_off_a_short_one_is_told() {
+    let text = BOX.replace(r#""fs""#, r#""fz""#);
+    assert_ne!(text, BOX);
+    let path = written("fz", &[("scene.json", &text)]);
+    let (_, report) = open(&path.to_string_lossy()).unwrap();
+    let told = report.to_string();
+    assert!(
+        told.contains("\"fz (nearly fs)\" is not understood"),
+        "{told}"
+    );
+}
+
+#[test]
 fn what_cannot_be_is_refused_by_its_field() {
     let refused = |name: &str, from: &str, to: &str, word: &str| {
         let text = BOX.replace(from, to);

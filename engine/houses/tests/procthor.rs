@@ -240,6 +240,67 @@ fn without_a_table_of_assets_things_have_their_usual_size_and_stand_on_the_floor
 }
 
 #[test]
+fn unknown_walls_missing_numbers_and_openness_beyond_1_are_reported() {
+    let places = |file: &Value| -> Vec<String> {
+        let (_, report) = opened(file, true);
+        let warnings = report.warnings().iter();
+        warnings.map(ToString::to_string).collect()
+    };
+    let known = places(&file());
+    let remove = |pointer: &str| {
+        let mut changed = file();
+        let point = changed.pointer_mut(pointer).unwrap();
+        point.as_object_mut().unwrap().remove("y").unwrap();
+        changed
+    };
+    let set = |pointer: &str, value: Value| {
+        let mut changed = file();
+        *changed.pointer_mut(pointer).unwrap() = value;
+        changed
+    };
+    for (changed, expected) in [
+        (
+            set("/doors/0/wall1", json!("wall99")),
+            "doors[0].wall1: found \"wall99\"",
+        ),
+        (
+            set("/windows/0/wall1", json!("wall99")),
+            "windows[0].wall1: found \"wall99\"",
+        ),
+        (
+            set("/doors/0/openness", json!(50)),
+            "doors[0].openness: found 50, expected 0 (shut) to 1",
+        ),
+        (
+            set("/doors/0/openness", json!(-0.1)),
+            "doors[0].openness: found -0.1",
+        ),
+        (
+            remove("/rooms/0/floorPolygon/0"),
+            "rooms[0]: a face is left out",
+        ),
+        (remove("/walls/1/polygon/2"), "walls[1]: a face is left out"),
+        (
+            remove("/doors/0/holePolygon/1"),
+            "doors[0]: a face is left out",
+        ),
+        (remove("/objects/0/position"), "objects[0]"),
+        (remove("/objects/0/rotation"), "objects[0]"),
+        (
+            remove("/proceduralParameters/lights/1/position"),
+            "proceduralParameters.lights[1]",
+        ),
+    ] {
+        let told = places(&changed);
+        let mut new = told.iter().filter(|sentence| !known.contains(sentence));
+        assert!(
+            new.any(|sentence| sentence.contains(expected)),
+            "{expected}: {told:?}"
+        );
+    }
+}
+
+#[test]
 fn damaged_files_are_reported_or_refused_and_never_crash() {
     let folder = tempfile::tempdir().unwrap();
     let mut broken = file();

@@ -302,6 +302,10 @@ mod tests {
     struct RefusingTask;
 
     impl Task for RefusingTask {
+        fn settings(&self) -> serde_json::Value {
+            serde_json::Value::Null
+        }
+
         fn reset(
             &mut self,
             world: &mut World,

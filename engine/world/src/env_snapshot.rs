@@ -1,5 +1,6 @@
 //! An environment at one moment, as bytes.
 
+use crate::actions::StepSizes;
 use crate::env::Env;
 use crate::env_agent::EnvAgent;
 use crate::episode::Episode;
@@ -9,7 +10,7 @@ use dwell_scene::{AgentId, IdVec, Pose};
 use serde::{Deserialize, Serialize};
 
 /// The first bytes of an [`Env::snapshot`]: its kind and version.
-const MAGIC: &[u8] = b"dwenv5";
+const MAGIC: &[u8] = b"dwenv6";
 
 /// Episodes at one moment. Their goals come from the seed again.
 #[derive(Serialize, Deserialize)]
@@ -27,6 +28,9 @@ struct EnvSnapshot {
 struct AgentSnapshot {
     agent: u32,
     task: String,
+    /// The task's settings, as JSON.
+    settings: String,
+    step_sizes: StepSizes,
     done: bool,
     success: bool,
     instruction: String,
@@ -39,12 +43,42 @@ impl AgentSnapshot {
         Self {
             agent: agent.id.0,
             task: agent.kind.name.to_owned(),
+            settings: agent.task.settings().to_string(),
+            step_sizes: agent.step_sizes,
             done: agent.done,
             success: agent.success,
             instruction: episode.instruction.clone(),
             start: episode.start,
             progress: episode.progress,
         }
+    }
+
+    /// Returns why this moment does not fit an agent, if it does not.
+    fn misfit(&self, own: &EnvAgent) -> Option<String> {
+        let settings = own.task.settings().to_string();
+        let sizes = |sizes: &StepSizes| {
+            let (forward, turn, look) = (sizes.forward_m, sizes.turn_deg, sizes.look_deg);
+            format!("forward_m {forward}, turn_deg {turn}, look_deg {look}")
+        };
+        if self.agent != own.id.0 {
+            let (found, allowed) = (self.agent, own.id.0);
+            return Some(format!(
+                "agent {found} acts in it where agent {allowed} does in the environment"
+            ));
+        }
+        if self.task != own.kind.name {
+            return Some(format!("it is of the task {}", self.task));
+        }
+        if self.settings != settings {
+            let found = &self.settings;
+            return Some(format!(
+                "its task_settings are {found}, and those of the environment {settings}"
+            ));
+        }
+        (self.step_sizes != own.step_sizes).then(|| {
+            let (found, allowed) = (sizes(&self.step_sizes), sizes(&own.step_sizes));
+            format!("its stride is {found}, and that of the environment {allowed}")
+        })
     }
 
     /// Puts an episode of the same seed to this moment.
@@ -84,16 +118,18 @@ impl Env {
         Ok([MAGIC, &body].concat())
     }
 
-    /// Goes to where [`Self::snapshot`] was taken in an environment of the same make; the next steps give the same bits as
+    /// Goes to where [`Self::snapshot`] was taken in an environment of the same house, world, agents, tasks with their settings, and
+    /// step sizes; the next steps give the same bits as
     /// they did then. Only scripted experts forget manoeuvres that they were about.
     ///
     /// # Errors
-    /// [`WorldError::Snapshot`] with the reason; no episode runs then.
+    /// [`WorldError::Snapshot`] with the reason. No episode runs then, except after one that names another task, settings or step sizes:
+    /// the environment stays as it was.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
         let refuse = |why: String| WorldError::Snapshot(why);
         let body = bytes
             .strip_prefix(MAGIC)
-            .ok_or_else(|| refuse("it does not begin with \"dwenv5\"".to_owned()))?;
+            .ok_or_else(|| refuse("it does not begin with \"dwenv6\"".to_owned()))?;
         let moment: EnvSnapshot =
             postcard::from_bytes(body).map_err(|error| refuse(error.to_string()))?;
         if moment.agents.len() != self.agents.len() {
@@ -103,14 +139,8 @@ impl Env {
             )));
         }
         for (own, saved) in self.agents.iter().zip(&moment.agents) {
-            if saved.task != own.kind.name {
-                return Err(refuse(format!("it is of the task {}", saved.task)));
-            }
-            if saved.agent != own.id.0 {
-                let (found, allowed) = (saved.agent, own.id.0);
-                return Err(refuse(format!(
-                    "agent {found} acts in it where agent {allowed} does in the environment"
-                )));
+            if let Some(why) = saved.misfit(own) {
+                return Err(refuse(why));
             }
         }
         self.reset(moment.seed)?;
@@ -150,9 +180,12 @@ mod tests {
     use std::sync::Arc;
 
     fn env() -> Env {
+        env_with(r#"{"sensors": [{"kind": "compass"}]}"#)
+    }
+
+    fn env_with(config: &str) -> Env {
         let (house, _) = dwell_houses::open("builtin:apartment").unwrap();
-        let config: EnvConfig =
-            serde_json::from_str(r#"{"sensors": [{"kind": "compass"}]}"#).unwrap();
+        let config: EnvConfig = serde_json::from_str(config).unwrap();
         Env::new(Engines::new(Arc::new(house)), &config).unwrap()
     }
 
@@ -188,5 +221,33 @@ mod tests {
         for cut in [0, 5, 30, saved.len() / 2, saved.len() - 1] {
             assert!(other.restore(&saved[..cut]).is_err(), "{cut}");
         }
+    }
+
+    #[test]
+    fn a_snapshot_of_other_settings_is_refused_and_changes_nothing() {
+        let config = |more: &str| {
+            format!(r#"{{"task": "Free", "sensors": [], {more} "world": {{"settle_s": 0}}}}"#)
+        };
+        let mut env = env_with(&config(""));
+        env.reset(3).unwrap();
+        let saved = env.snapshot().unwrap();
+        for (more, told) in [
+            (
+                r#""stride": {"forward_m": 0.3},"#,
+                "stride is forward_m 0.1",
+            ),
+            (
+                r#""task_settings": {"start": "anywhere"},"#,
+                r#"task_settings are {"start":"house"}"#,
+            ),
+        ] {
+            let mut other = env_with(&config(more));
+            other.reset(8).unwrap();
+            let error = other.restore(&saved).unwrap_err().to_string();
+            assert!(error.contains(told), "{error}");
+            assert!(other.episode(0).is_ok());
+        }
+        let named = r#""task_settings": {"start": "house"}, "stride": {"forward_m": 0.1},"#;
+        env_with(&config(named)).restore(&saved).unwrap();
     }
 }

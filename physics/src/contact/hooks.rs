@@ -101,6 +101,7 @@ impl PhysicsHooks for ContactHooks<'_> {
     }
 
     fn modify_solver_contacts(&self, context: &mut ContactModificationContext) {
+        interrupt::check();
         let colliders = context.colliders;
         let (one, two) = (&colliders[context.collider1], &colliders[context.collider2]);
         let (a, b) = (entry_index(one), entry_index(two));

@@ -39,6 +39,7 @@ _STAGES = {
 }
 #: Fields of ``--boxes``, and of each box.
 _BOXES = ("fixed", "dynamic", "density_kg_m3", "physics_rate_hz")
+_BOX = ("center", "half_extents")
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -116,6 +117,8 @@ def run(args: argparse.Namespace) -> int:
             raise ValueError(
                 f"{args.boxes}: {', '.join(missing)} missing; expected are {', '.join(_BOXES)}"
             )
+        for field in _BOXES[:2]:
+            _check_boxes(f"{args.boxes}: {field}", options["boxes"][field])
     figures = _native.bench(args.stage, args.house, options, ProgressBar())
     if args.json:
         print_json(figures)
@@ -134,6 +137,18 @@ def _counts(text: str) -> list[int]:
 
 def _word(value: object) -> str:
     return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def _check_boxes(at: str, rows: object) -> None:
+    """Refuses what is no list of boxes."""
+    if not isinstance(rows, list):
+        raise ValueError(f"{at}: expected a list of boxes, found {rows!r:.60}")
+    for k, row in enumerate(rows):
+        if not isinstance(row, dict) or {*row} != {*_BOX} or not all(map(_is_point, row.values())):
+            raise ValueError(
+                f"{at}[{k}]: expected {' and '.join(_BOX)}, [x, y, z] in metres each, "
+                f"found {row!r:.200}"
+            )
 
 
 def _views(path: Path) -> list[dict[str, Any]]:

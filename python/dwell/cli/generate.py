@@ -322,8 +322,10 @@ def _house(args: argparse.Namespace, seed: int) -> dict[str, Any]:
     """Makes and writes one house; returns its row of the manifest.
 
     Raises:
-        OSError: There is no room for it, or the system refuses for another reason. That is no
-            fault of the house, which the next run tries again.
+        OSError: There is no room for it, or the system refuses for another reason.
+        HouseError: It cannot be written, because something else stands in its place.
+
+    What was not written is no fault of the house: it has no row, and the next run tries again.
     """
     from dwell import HouseError
     from dwell.house import House, split_of_seed
@@ -334,11 +336,11 @@ def _house(args: argparse.Namespace, seed: int) -> dict[str, Any]:
     row: dict[str, Any] = {"seed": seed, "split": split, "house": name}
     try:
         house = House.open(name)
-        path, _ = house.write_into(args.out, f"seed_{seed}", args.format)
     except OSError:
         raise
     except HouseError as error:
         return _checked({**row, "error": str(error)})
+    path, _ = house.write_into(args.out, f"seed_{seed}", args.format)
     row["path"] = Path(path).relative_to(args.out).as_posix()
     row["bytes"] = _bytes(path)
     return _checked({**row, **_statistics(house.info())})
@@ -372,6 +374,10 @@ def _field(text: str) -> str:
     """A field of the spec as it stands in a HOUSE string."""
     if not re.fullmatch(r"[a-z0-9_]+=[^&]*", text):
         raise ValueError(f"--spec: expected FIELD=VALUE, found {text!r}")
+    if text.startswith("split="):
+        raise ValueError(
+            f"--spec {text}: each seed has the looks of its own split; --split chooses seeds"
+        )
     return text
 
 

@@ -42,7 +42,8 @@ def run(args: argparse.Namespace) -> int:
     from dwell.acoustics import AcousticScene
 
     if args.out is None or args.out.suffix.lower() not in (".png", ".jpg", ".jpeg"):
-        raise ValueError("--out is needed: FILE.png or FILE.jpg")
+        found = "nothing" if args.out is None else repr(str(args.out))
+        raise ValueError(f"--out: expected FILE.png or FILE.jpg, found {found}")
     if args.source is None or (args.plot and args.mic is None):
         raise ValueError("--source is needed, and --mic for --plot: points X,Y,Z in metres")
     if not 200 <= args.width <= 4096:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import difflib
 import math
 import time
 from dataclasses import dataclass
@@ -217,6 +218,9 @@ def _object(path: Path, field: str, value: object) -> dict[str, Any]:
 def _places(path: Path, field: str, file: dict[str, Any]) -> dict[str, tuple[float, float, float]]:
     """Places by id in the house's axes: (x, y, z) with z up becomes (x, z, -y)."""
     rows = file.get(field)
+    near = difflib.get_close_matches(field, [name for name in file if name != field], 1)
+    if rows is None and near:
+        raise ValueError(f"{path}: {field}: missing; {near[0]!r} is nearly its name")
     if not isinstance(rows, list) or not rows:
         raise ValueError(f"{path}: {field}: expected a list of id and pos, found {rows!r:.60}")
     places: dict[str, tuple[float, float, float]] = {}

@@ -2,13 +2,17 @@
 
 use super::Checker;
 use super::witness::Judged;
-use crate::form::{Description, Modifier, Noun, Phrase, PlaceInOrder, Quality};
-use crate::predicates;
+use crate::form::{Description, Modifier, Noun, Phrase, PlaceInOrder, Quality, Quantifier};
+use crate::predicates::{self, Predicate};
 use crate::scene::Term;
 use crate::selections;
 use crate::truth::{Truth, UndecidedReason};
 use dwell_scene::StructureKind;
+use dwell_scene::interrupt::PollEvery;
 use std::rc::Rc;
+
+/// Things between checks for cancellation.
+const THINGS_PER_CHECK: usize = 16;
 
 /// The extension of a description: the things that it fits.
 #[derive(Clone, Debug, Default)]
@@ -46,7 +50,9 @@ impl Checker<'_> {
 
     fn find(&self, description: &Description) -> Extension {
         let mut found = Extension::default();
+        let mut poll = PollEvery::new(THINGS_PER_CHECK);
         for term in self.things_named(&description.noun) {
+            poll.turn();
             match self.fits(description, term) {
                 Truth::True => found.fits.push(term),
                 Truth::False => {}
@@ -137,10 +143,55 @@ impl Checker<'_> {
             let truth = predicate.holds(self.scene, terms, self.listener.viewer.as_ref());
             Judged::plain(truth)
         };
-        let truth = self
-            .quantify(&modifier.arguments, &mut vec![term], &body)
-            .truth;
+        let among_related = match &modifier.arguments[..] {
+            [Phrase::Described(landmark)] if landmark.quantifier == Quantifier::Some => {
+                self.is_related_to_some(predicate, term, landmark)
+            }
+            _ => None,
+        };
+        let truth = among_related.unwrap_or_else(|| {
+            self.quantify(&modifier.arguments, &mut vec![term], &body)
+                .truth
+        });
         if modifier.negated { !truth } else { truth }
+    }
+
+    /// Returns whether `term` has a listed relation to something that a landmark fits, without a test of each of these: of few things
+    /// there is one, and of the landmark there may be thousands. `None` for other relations, and where it does not take such things.
+    fn is_related_to_some(
+        &self,
+        predicate: &dyn Predicate,
+        term: Term,
+        landmark: &Description,
+    ) -> Option<Truth> {
+        if !predicate.is_listed() || !predicate.takes(0, term.kind()) {
+            return None;
+        }
+        let marks = self.extension(landmark);
+        let undecided = marks.undecided.iter().map(|(mark, _)| mark);
+        let mut all = marks.fits.iter().chain(undecided);
+        if marks.fault.is_some() || !all.all(|mark| predicate.takes(1, mark.kind())) {
+            return None;
+        }
+        let mut related = predicate.related(self.scene, term);
+        related.sort_unstable();
+        if related
+            .iter()
+            .any(|mark| marks.fits.binary_search(mark).is_ok())
+        {
+            return Some(Truth::True);
+        }
+        let place = |mark: &Term| {
+            marks
+                .undecided
+                .binary_search_by_key(mark, |(known, _)| *known)
+        };
+        let reasons = related
+            .iter()
+            .filter_map(|mark| Some(marks.undecided[place(mark).ok()?].1));
+        Some(reasons.fold(Truth::False, |truth, reason| {
+            truth.or(Truth::Undecided(reason))
+        }))
     }
 
     fn selected(&self, selection: &PlaceInOrder, fits: &[Term]) -> Extension {

@@ -6,6 +6,11 @@ use crate::language::{PhraseSpan, ReadError, Sentence};
 use crate::predicates;
 use crate::scene::Term;
 use crate::truth::Truth;
+use dwell_scene::interrupt::PollEvery;
+use std::collections::BTreeSet;
+
+/// Things between checks for cancellation.
+const THINGS_PER_CHECK: usize = 16;
 
 /// A sentence with its readings, checked.
 #[derive(Clone, Debug, PartialEq)]
@@ -128,16 +133,27 @@ impl Checker<'_> {
         let Ok(predicate) = predicates::find(&modifier.predicate) else {
             return;
         };
-        let viewer = self.listener.viewer.as_ref();
-        let related = |term: &Term| {
-            let mut holds = subjects
-                .iter()
-                .map(|subject| predicate.holds(self.scene, &[*subject, *term], viewer));
-            holds.any(Truth::is_true)
-        };
         // Where the phrase is of no things at all its landmark stands for all that it fits.
-        if !subjects.is_empty() {
-            terms.retain(related);
+        if subjects.is_empty() {
+            return;
         }
+        let mut poll = PollEvery::new(THINGS_PER_CHECK);
+        if predicate.is_listed() {
+            let mut related: BTreeSet<Term> = BTreeSet::new();
+            for subject in subjects.iter().filter(|s| predicate.takes(0, s.kind())) {
+                poll.turn();
+                related.extend(predicate.related(self.scene, *subject));
+            }
+            terms.retain(|term| predicate.takes(1, term.kind()) && related.contains(term));
+            return;
+        }
+        let viewer = self.listener.viewer.as_ref();
+        terms.retain(|term| {
+            let mut holds = subjects.iter().map(|subject| {
+                poll.turn();
+                predicate.holds(self.scene, &[*subject, *term], viewer)
+            });
+            holds.any(Truth::is_true)
+        });
     }
 }

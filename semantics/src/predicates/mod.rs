@@ -162,8 +162,8 @@ pub trait Predicate: Sync {
         false
     }
 
-    /// Returns whether tables of relations list it by default: a thing has it to few others, and [`Self::related`] finds these
-    /// without a test of each pair.
+    /// Returns whether tables of relations list it by default: it takes two arguments and no viewer, a thing has it to few others,
+    /// [`Self::related`] finds these without a test of each pair, and it is decided of all arguments of the kinds in [`Self::places`].
     fn is_listed(&self) -> bool {
         false
     }
@@ -189,6 +189,12 @@ pub trait Predicate: Sync {
             return Truth::Undecided(UndecidedReason::NoViewer);
         }
         self.decide(scene, args, viewer)
+    }
+
+    /// Returns whether it takes a thing of kind `kind` at a place, from 0.
+    fn takes(&self, place: usize, kind: TermKind) -> bool {
+        let kinds = self.places().get(place);
+        kinds.is_some_and(|kinds| kinds.contains(&kind))
     }
 
     /// Returns the objects, structure pieces, rooms, storeys and agents b for which it holds of (`subject`, b), each once. A

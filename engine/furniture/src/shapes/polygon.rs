@@ -1,58 +1,22 @@
 //! Triangles of a simple polygon.
 
+use earcut::Earcut;
 use glam::DVec2;
 
-/// Triangles, as indices, that fill a simple polygon (ear clipping); they turn as the polygon turns when counter-clockwise,
-/// the other way round otherwise, so that all are counter-clockwise. What crosses itself is filled as far as ears are found.
+/// Triangles, as indices, that fill a simple polygon, convex or not; they turn as the polygon turns when counter-clockwise,
+/// the other way round otherwise, so that all are counter-clockwise. What crosses itself is filled as far as ears are found; a
+/// polygon with a coordinate that is not finite has no triangles.
 ///
 /// # Source
-/// G. H. Meisters, American Mathematical Monthly 82, 648 (1975): every simple polygon has two ears.
+/// G. H. Meisters, American Mathematical Monthly 82, 648 (1975): every simple polygon has two ears. They are found by Mapbox's
+/// earcut.
 pub fn triangulate(points: &[DVec2]) -> Vec<[usize; 3]> {
-    let turn =
-        |a: usize, b: usize, c: usize| (points[b] - points[a]).perp_dot(points[c] - points[a]);
-    let area: f64 = (0..points.len())
-        .map(|k| points[k].perp_dot(points[(k + 1) % points.len()]))
-        .sum();
-    let mut left: Vec<usize> = (0..points.len()).collect();
-    if area < 0.0 {
-        left.reverse();
+    if !points.iter().all(|p| p.is_finite()) {
+        return Vec::new();
     }
-    let mut triangles = Vec::new();
-    while left.len() > 3 {
-        let count = left.len();
-        let around = |k: usize| {
-            [
-                left[(k + count - 1) % count],
-                left[k],
-                left[(k + 1) % count],
-            ]
-        };
-        let is_ear = |k: usize| {
-            let [a, b, c] = around(k);
-            let holds =
-                |p: usize| turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0;
-            turn(a, b, c) > 0.0 && left.iter().all(|p| [a, b, c].contains(p) || !holds(*p))
-        };
-        // Corners on a straight line and leftovers of a crossing have no area: they go without a triangle.
-        let flat = |k: usize| {
-            let [a, b, c] = around(k);
-            turn(a, b, c).abs() < 1e-12
-        };
-        if let Some(ear) = (0..count).find(|k| is_ear(*k)) {
-            triangles.push(around(ear));
-            left.remove(ear);
-        } else if let Some(corner) = (0..count).find(|k| flat(*k)) {
-            left.remove(corner);
-        } else {
-            return triangles;
-        }
-    }
-    if let [a, b, c] = left[..]
-        && turn(a, b, c) > 0.0
-    {
-        triangles.push([a, b, c]);
-    }
-    triangles
+    let mut corners: Vec<usize> = Vec::new();
+    Earcut::new().earcut(points.iter().map(DVec2::to_array), &[], &mut corners);
+    corners.as_chunks().0.to_vec()
 }
 
 #[cfg(test)]

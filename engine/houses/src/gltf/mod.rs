@@ -99,6 +99,9 @@ pub(crate) fn read_scene(
     read(bytes, root, name, true, threads, report)
 }
 
+/// Extensions that compress meshes; none is read.
+const MESH_COMPRESSIONS: [&str; 2] = ["KHR_draco_mesh_compression", "EXT_meshopt_compression"];
+
 /// `trusted`: whether `extras` of objects and materials count.
 fn read(
     bytes: &[u8],
@@ -116,16 +119,27 @@ fn read(
     let (json, blob) = container::split_glb(bytes).map_err(syntax)?;
     check_version(&json.asset, &at)?;
     check_positions(&json, &at)?;
+    let compression = mesh_compression(&json);
     // The crate's document checks every index and required field.
-    let document = ::gltf::Document::from_json(json).map_err(|error| {
-        syntax(format!(
+    let document = ::gltf::Document::from_json(json).map_err(|error| match &compression {
+        Some(name) => syntax(format!(
+            "its meshes are compressed ({name}), which is not read; decompress them, for example with gltf-transform"
+        )),
+        None => syntax(format!(
             "no valid glTF 2.0: {}",
             faults::error_sentence(&error, bytes)
-        ))
+        )),
     })?;
     let json = document.into_json();
     let buffers = buffers::Buffers::load(&json, blob, root, &at, report)?;
     convert::convert(&json, &buffers, root, name, trusted, threads, report)
+}
+
+/// The extension that compresses meshes of the file, if one does.
+fn mesh_compression(json: &::gltf::json::Root) -> Option<String> {
+    let mut used = json.extensions_required.iter().chain(&json.extensions_used);
+    used.find(|name| MESH_COMPRESSIONS.contains(&name.as_str()))
+        .cloned()
 }
 
 /// Checks that the asset is one of glTF 2: by the version that it requires of readers, else by its own.

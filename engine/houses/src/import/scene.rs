@@ -4,11 +4,12 @@
 //! floors and ceilings become structure, one room lies over the floors (unless the file names its rooms), everything else
 //! is an object of the category that its name means.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use dwell_scene::{
     Aabb, Category, Collider, House, HouseData, Id, Level, LevelId, Mesh, MeshId, Mobility, Object,
-    ObjectId, Part, PartId, Room, RoomId, Sky, Structure, StructureKind, Texture, space,
+    ObjectId, Part, PartId, Room, RoomId, Sky, Structure, StructureKind, Texture, interrupt, space,
 };
 use glam::{Affine3A, Vec2, Vec3};
 
@@ -131,7 +132,7 @@ impl ImportedScene {
             structure_names: UniqueNames::default(),
             room_names: UniqueNames::default(),
             bounds: Vec::new(),
-            meshes: Vec::new(),
+            meshes: BTreeMap::new(),
         };
         let one = (self.levels.is_empty()).then(|| "0".to_owned());
         for name in one.into_iter().chain(self.levels) {
@@ -160,6 +161,7 @@ impl ImportedScene {
         }
         let known = builder.data.objects.len();
         for thing in objects {
+            interrupt::check();
             builder.object(thing, alone, at, report);
         }
         builder.settle(alone, known);
@@ -300,8 +302,8 @@ struct HouseBuilder {
     room_names: UniqueNames,
     /// The box of each object.
     bounds: Vec<Aabb>,
-    /// Meshes already part of the house.
-    meshes: Vec<Arc<Mesh>>,
+    /// Meshes of objects that are part of the house already, by address.
+    meshes: BTreeMap<usize, MeshId>,
 }
 
 const LEVEL: LevelId = LevelId(0);
@@ -356,16 +358,11 @@ impl HouseBuilder {
     }
 
     /// Returns the id of an object's mesh, which several may share.
-    fn mesh(meshes: &mut Vec<Arc<Mesh>>, data: &mut HouseData, mesh: Arc<Mesh>) -> MeshId {
-        let known = meshes.iter().position(|other| Arc::ptr_eq(other, &mesh));
-        known.map_or_else(
-            || {
-                meshes.push(mesh.clone());
-                data.meshes.push(mesh)
-            },
-            // Structure meshes come first and are never shared.
-            |k| MeshId((data.structure.len() + k) as u32),
-        )
+    fn mesh(meshes: &mut BTreeMap<usize, MeshId>, data: &mut HouseData, mesh: Arc<Mesh>) -> MeshId {
+        let address = Arc::as_ptr(&mesh).addr();
+        *meshes
+            .entry(address)
+            .or_insert_with(|| data.meshes.push(mesh))
     }
 
     fn given(&mut self, object: ImportedObject) {

@@ -42,6 +42,10 @@ pub(super) fn check(
     for name in file.other_fields.keys() {
         if !there.contains(&&**name) {
             refuse_slip(at, name, &absent)?;
+            if let Some(field) = absent.iter().find(|field| is_one_letter_off(name, field)) {
+                let found = format!("{name} (nearly {field})");
+                report.warn(at.clone(), WarningKind::BadStatement { found });
+            }
         }
     }
     for (material, values) in &file.materials {
@@ -66,6 +70,20 @@ fn refuse_slip(at: &FileLocation, name: &str, fields: &[&'static str]) -> Result
             found: format!("nearly {field:?}"),
         })
     })
+}
+
+/// Returns whether a name differs from a short one, of which too many are another word to refuse it, by one letter but the first.
+fn is_one_letter_off(name: &str, field: &str) -> bool {
+    let differ = name
+        .chars()
+        .zip(field.chars())
+        .filter(|(a, b)| a != b)
+        .count();
+    let lengths = [name, field].map(|text| text.chars().count());
+    field.len() <= SHORT
+        && lengths[0] == lengths[1]
+        && differ == 1
+        && name.chars().next() == field.chars().next()
 }
 
 /// Returns whether a name is a short one in other case, or with one letter too many.

@@ -1,4 +1,4 @@
-//! Numbers of MJCF: finite, wherever they stand.
+//! Numbers of MJCF: finite, and with spaces between them, wherever they stand.
 //!
 //! `mjcf-rs` reads `nan` and `inf` as any other number, and their effect on the root spreads to every pose below.
 
@@ -47,7 +47,7 @@ const FINITE: [&str; 34] = [
 /// Attributes whose ends may be infinite.
 const RANGES: [&str; 4] = ["range", "ctrlrange", "forcerange", "actfrcrange"];
 
-/// Refuses an element with a number that is not finite; `at` is its file.
+/// Refuses an element with a number that is not finite, or with commas between numbers; `at` is its file.
 ///
 /// # Errors
 /// [`HousesError::Field`] names line, element and attribute.
@@ -58,17 +58,36 @@ pub(super) fn check(node: Node<'_, '_>, at: &FileLocation) -> Result<(), HousesE
         if !finite && !RANGES.contains(&name) {
             continue;
         }
+        if attribute.value().contains(',') {
+            return refuse(
+                node,
+                name,
+                at,
+                "numbers with spaces between them, no commas",
+                attribute.value(),
+            );
+        }
         let is_bad = |x: f64| x.is_nan() || (finite && x.is_infinite());
         let mut words = attribute.value().split_ascii_whitespace();
         if let Some(word) = words.find(|word| word.parse().is_ok_and(is_bad)) {
-            let row = node.document().text_pos_at(node.range().start).row;
-            let field = format!("{}.{name}", node.tag_name().name());
-            return Err(HousesError::Field {
-                at: at.line(row).field(field),
-                expected: "finite numbers",
-                found: word.to_owned(),
-            });
+            return refuse(node, name, at, "finite numbers", word);
         }
     }
     Ok(())
+}
+
+fn refuse(
+    node: Node<'_, '_>,
+    name: &str,
+    at: &FileLocation,
+    expected: &'static str,
+    found: &str,
+) -> Result<(), HousesError> {
+    let row = node.document().text_pos_at(node.range().start).row;
+    let field = format!("{}.{name}", node.tag_name().name());
+    Err(HousesError::Field {
+        at: at.line(row).field(field),
+        expected,
+        found: format!("{found:.200?}"),
+    })
 }

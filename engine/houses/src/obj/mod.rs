@@ -10,6 +10,7 @@ mod load;
 mod read_mtl;
 mod read_obj;
 mod shape;
+mod triangles;
 mod write;
 
 pub(crate) use convert::mesh_without_materials;

@@ -3,9 +3,11 @@
 use std::collections::BTreeMap;
 
 use dwell_scene::Mesh;
+use dwell_scene::interrupt::PollEvery;
 use glam::{Vec2, Vec3, Vec3Swizzles as _};
 
 use super::file::{FaceCorner, FaceGroup, MtlFile, NONE, ObjFile};
+use super::triangles::FaceTriangles;
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
 
@@ -91,7 +93,7 @@ pub(crate) struct PartShape<'a> {
     pub(crate) box_mapping: bool,
 }
 
-/// Fans polygons into triangles, merges corners into vertices, replaces numbers that are not finite.
+/// Cuts polygons into triangles, merges corners into vertices, replaces numbers that are not finite.
 pub(crate) fn mesh_of_shape(
     shape: &PartShape<'_>,
     at: &FileLocation,
@@ -119,20 +121,26 @@ pub(crate) fn mesh_of_shape(
     };
     builder.mesh.triangles.reserve(triangle_count);
     let mut degenerate = 0;
-    let mut ring = Vec::new();
+    let (mut points, mut ring) = (Vec::new(), Vec::new());
+    let mut cutter = FaceTriangles::default();
+    let mut poll = PollEvery::new(100_000);
     for (slot, face) in faces() {
         let face = obj.face(face);
-        let flat = face_normal(obj, face);
+        poll.count_many(face.len());
+        points.clear();
+        points.extend(face.iter().map(|corner| position(obj, *corner)));
+        let flat = face_normal(&points);
         ring.clear();
         ring.extend(face.iter().map(|corner| builder.vertex(*corner, flat)));
-        for k in 1..ring.len() - 1 {
-            builder.mesh.triangles.push([ring[0], ring[k], ring[k + 1]]);
+        for triangle in cutter.cut(&points, flat) {
+            builder.mesh.triangles.push(triangle.map(|k| ring[k]));
             builder.mesh.slots.push(slot);
             let [a, b, c] = builder.mesh.corners(builder.mesh.triangles.len() - 1);
             degenerate += u64::from((b - a).cross(c - a) == Vec3::ZERO);
         }
     }
     report.warn_times(at.clone(), WarningKind::DegenerateTriangles, degenerate);
+    report.warn_times(at.clone(), WarningKind::UnfilledFaces, cutter.unfilled);
     builder.mesh
 }
 
@@ -142,14 +150,11 @@ fn position(obj: &ObjFile, corner: FaceCorner) -> Vec3 {
 }
 
 /// The unit normal of a polygon (Newell's method); up for one without area.
-fn face_normal(obj: &ObjFile, face: &[FaceCorner]) -> Vec3 {
+fn face_normal(points: &[Vec3]) -> Vec3 {
     let mut sum = Vec3::ZERO;
-    for (k, corner) in face.iter().enumerate() {
-        let (p, q) = (
-            position(obj, *corner),
-            position(obj, face[(k + 1) % face.len()]),
-        );
-        sum += (p - q).yzx() * (p + q).zxy();
+    for (k, p) in points.iter().enumerate() {
+        let q = points[(k + 1) % points.len()];
+        sum += (*p - q).yzx() * (*p + q).zxy();
     }
     sum.try_normalize().unwrap_or(Vec3::Y)
 }
@@ -267,6 +272,7 @@ fn box_uv(point: Vec3, normal: Vec3) -> Vec2 {
 mod tests {
     use super::*;
     use crate::obj::{read_mtl, read_obj};
+    use std::fmt::Write as _;
 
     fn mesh(text: &str, box_mapping: bool) -> (Mesh, LoadReport) {
         let mut report = LoadReport::new();
@@ -299,6 +305,63 @@ mod tests {
             (mesh.positions.len(), mesh.normals.len(), mesh.uvs.len()),
             (4, 0, 0)
         );
+    }
+
+    #[test]
+    fn a_concave_face_covers_its_own_area_from_any_first_corner() {
+        // An L of 4 by 4 m with arms of 1 m: 7 m², in a plane that leans.
+        let outline = [
+            [0.0, 0.0],
+            [4.0, 0.0],
+            [4.0, 1.0],
+            [1.0, 1.0],
+            [1.0, 4.0],
+            [0.0, 4.0],
+        ];
+        let lean = glam::Quat::from_rotation_x(0.7) * glam::Quat::from_rotation_z(2.0);
+        for first in 0..outline.len() {
+            for reversed in [false, true] {
+                let mut corners = outline;
+                corners.rotate_left(first);
+                if reversed {
+                    corners.reverse();
+                }
+                let mut text = String::new();
+                for [x, y] in corners {
+                    let p = lean * Vec3::new(x, y, 0.0);
+                    writeln!(text, "v {} {} {}", p.x, p.y, p.z).unwrap();
+                }
+                let (mesh, report) = mesh(&format!("{text}f 1 2 3 4 5 6\n"), false);
+                let normal = lean * if reversed { Vec3::NEG_Z } else { Vec3::Z };
+                let areas = (0..mesh.triangles.len()).map(|k| {
+                    let [a, b, c] = mesh.corners(k);
+                    let cross = (b - a).cross(c - a);
+                    assert!(cross.dot(normal) > 0.0, "{first} {reversed}: turned around");
+                    cross.length() / 2.0
+                });
+                assert!((areas.sum::<f32>() - 7.0).abs() < 1e-4, "{first}");
+                assert_eq!(mesh.triangles.len(), 4);
+                assert!(report.warnings().is_empty(), "{report}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_face_that_crosses_itself_or_has_too_many_corners_is_reported() {
+        let bow = "v 0 0 0\nv 3 3 0\nv 3 0 0\nv 0 2 0\n";
+        let (mesh_of_bow, report) = mesh(&format!("{bow}f 1 2 3 4\n"), false);
+        assert_eq!(mesh_of_bow.triangles, [[0, 1, 2], [0, 2, 3]]);
+        assert_eq!(report.count(|d| *d == WarningKind::UnfilledFaces), 1);
+        let (mut comb, mut face) = (String::new(), "f".to_owned());
+        for k in 0..5000 {
+            writeln!(comb, "v {k} {} 0", if k % 2 == 0 { 0 } else { 9 }).unwrap();
+            write!(face, " {}", k + 1).unwrap();
+        }
+        let (_, report) = mesh(
+            &format!("{comb}v 5000 -1 0\nv 0 -1 0\n{face} 5001 5002\n"),
+            false,
+        );
+        assert_eq!(report.count(|d| *d == WarningKind::UnfilledFaces), 1);
     }
 
     #[test]

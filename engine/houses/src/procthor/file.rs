@@ -26,13 +26,20 @@ pub(super) struct ProcThorHouse {
     pub(super) procedural_parameters: ParametersFile,
 }
 
-/// A point, m, or Euler angles, degrees; in Unity's left-handed axes: x right, y up, z forward.
+/// A point, m, or Euler angles, degrees; in Unity's left-handed axes: x right, y up, z forward. A number that the file lacks is
+/// NaN: no place, no angle.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
-#[serde(default)]
 pub(super) struct Vector3 {
+    #[serde(default = "missing")]
     pub(super) x: f32,
+    #[serde(default = "missing")]
     pub(super) y: f32,
+    #[serde(default = "missing")]
     pub(super) z: f32,
+}
+
+fn missing() -> f32 {
+    f32::NAN
 }
 
 #[derive(Debug, Default, Deserialize)]

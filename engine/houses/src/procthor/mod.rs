@@ -155,6 +155,11 @@ impl ProcThorReader<'_> {
     fn warn(&mut self, field: &str, damage: WarningKind) {
         self.report.warn(self.at.field(field), damage);
     }
+
+    fn bad_field(&mut self, field: &str, found: String, expected: &str) {
+        let expected = expected.to_owned();
+        self.warn(field, WarningKind::BadField { found, expected });
+    }
 }
 
 /// Converts a point of the file to our axes: +Z is backwards here, forwards there.

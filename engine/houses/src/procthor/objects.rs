@@ -99,7 +99,9 @@ impl ProcThorReader<'_> {
         };
         let (middle, turned) = (point(position), rotation(object.rotation));
         if !is_place(middle) || !turned.is_finite() {
-            let reason = "it is no place in a house".to_owned();
+            let reason =
+                "it is no place in a house: position (m) and rotation (degrees) need x, y and z"
+                    .to_owned();
             return self.warn(at, WarningKind::BadTransform { reason });
         }
         let Some(room) = self.room_at(middle).map(|room| room.id) else {
@@ -205,9 +207,15 @@ impl ProcThorReader<'_> {
         };
         let kind = self.assembly.add_model(Arc::clone(&lamp.model));
         let top = lamp.model.bounds().max.y;
-        for light in lights.iter().filter(|light| light.kind == "point") {
+        for (k, light) in lights.iter().enumerate() {
+            if light.kind != "point" {
+                continue;
+            }
             let at = point(light.position);
             if !is_place(at) {
+                let field = format!("proceduralParameters.lights[{k}]");
+                let reason = "its position (m) needs x, y and z".to_owned();
+                self.warn(&field, WarningKind::BadTransform { reason });
                 continue;
             }
             if let Some(room) = self.room_at(at) {

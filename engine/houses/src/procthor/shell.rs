@@ -1,6 +1,6 @@
 //! Rooms, walls with their holes, doors and windows.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use dwell_furniture::finishes::Finish;
 use dwell_furniture::models::doors::Door;
@@ -160,12 +160,14 @@ impl ProcThorReader<'_> {
                 Err(reason) => self.warn(&at, WarningKind::BadFace { reason }),
             }
         }
+        let ids: BTreeSet<&str> = file.walls.iter().map(|wall| wall.id.as_str()).collect();
         let kinds = [("doors", &file.doors), ("windows", &file.windows)];
         for (field, rows) in kinds {
             for (k, row) in rows.iter().enumerate() {
                 let at = format!("{field}[{k}]");
                 let Some(hole) = rectangle(row) else {
-                    let reason = "its hole is no rectangle".to_owned();
+                    let reason =
+                        "its hole is no rectangle of corners with x and y in metres".to_owned();
                     self.warn(&at, WarningKind::BadFace { reason });
                     continue;
                 };
@@ -183,6 +185,10 @@ impl ProcThorReader<'_> {
                 };
                 wall.holes.push(hole);
                 self.filling(row, &wall.face, hole, &at, field == "windows");
+                if !row.wall1.is_empty() && !ids.contains(row.wall1.as_str()) {
+                    let expected = "the id of a wall, or null";
+                    self.bad_field(&format!("{at}.wall1"), format!("{:?}", row.wall1), expected);
+                }
                 if let Some(other) = walls.get_mut(row.wall1.as_str()) {
                     // The wall behind runs the other way.
                     let [from, to] = hole.along.map(|a| other.face.width_m - a);
@@ -245,7 +251,9 @@ impl ProcThorReader<'_> {
             || !corners.iter().all(|p| is_place(*p))
             || area.abs() < 1e-3
         {
-            let reason = format!("its floor is no polygon of 3 to {MAX_OUTLINE} corners");
+            let reason = format!(
+                "its floor is no polygon of 3 to {MAX_OUTLINE} corners with x, y and z in metres"
+            );
             return self.warn(&at, WarningKind::BadFace { reason });
         }
         // Seen from above with z downwards: what turns clockwise there is counter-clockwise in (x, z).
@@ -344,7 +352,7 @@ impl ProcThorReader<'_> {
     fn face(&self, wall: &WallFile) -> Result<Option<WallFace>, String> {
         let mut corners: Vec<Vec3> = wall.polygon.iter().copied().map(point).collect();
         if !corners.iter().all(|p| is_place(*p)) {
-            return Err("a corner is no place".to_owned());
+            return Err("a corner is no place of x, y and z in metres".to_owned());
         }
         // As AI2-THOR does: of the corners by height, the first two are the wall's foot, in the order of the file.
         corners.sort_by(|a, b| a.y.total_cmp(&b.y));
@@ -388,6 +396,16 @@ impl ProcThorReader<'_> {
         is_window: bool,
     ) {
         let [width_m, height_m] = [hole.along, hole.up].map(|[low, high]| high - low);
+        let odd = !is_window && !(0.0..=1.0).contains(&row.openness);
+        if odd {
+            let expected = "0 (shut) to 1 (open)";
+            self.bad_field(
+                &format!("{at}.openness"),
+                row.openness.to_string(),
+                expected,
+            );
+        }
+        let openness = if is_window || odd { 0.0 } else { row.openness };
         if width_m < LEAST_M || height_m < LEAST_M {
             return;
         }
@@ -428,11 +446,6 @@ impl ProcThorReader<'_> {
         };
         let kind = self.assembly.add_model(model);
         let turn = glam::Quat::from_rotation_arc(Vec3::Z, face.normal);
-        let openness = if is_window {
-            0.0
-        } else {
-            row.openness.clamp(0.0, 1.0)
-        };
         self.assembly
             .add_instance(&kind, Pose::new(place, turn), room, openness);
         self.rename_last_object(&row.id, &row.asset_id, at);

@@ -240,6 +240,19 @@ pub(crate) const CASES: &[Case] = &[
         },
         &["a.glb", "objects[0] \"chair\"", "32768 m"],
     ),
+    fails(
+        "meshes that Draco compressed",
+        |d| {
+            let draco = json!(["KHR_draco_mesh_compression"]);
+            put_glb(d, &with(triangle(), "/extensionsRequired", draco))
+        },
+        &[
+            "a.glb",
+            "KHR_draco_mesh_compression",
+            "decompress",
+            "gltf-transform",
+        ],
+    ),
     warns(
         "coordinates that are no numbers",
         |d| {

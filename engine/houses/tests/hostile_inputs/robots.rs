@@ -313,6 +313,11 @@ pub(crate) const MJCF_CASES: &[Case] = &[
         &["m.xml:6", "body.pos", "finite numbers", "nan"],
     ),
     fails(
+        "a place with commas",
+        |d| mjcf(d, "<body name=\"b\">", "<body name=\"b\" pos=\"1, 0, 0\">"),
+        &["m.xml:6", "body.pos", "no commas", "\"1, 0, 0\""],
+    ),
+    fails(
         "a place of nan in the root's geom",
         |d| mjcf(d, "size=\"4 4 1\"", "size=\"4 4 1\" pos=\"0 nan 0\""),
         &["m.xml:4", "geom.pos", "finite numbers"],

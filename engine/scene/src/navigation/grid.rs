@@ -160,7 +160,8 @@ impl NavGrid {
             self.layers
                 .set_standing_heights(column, spans, &self.config);
             if self.layers.height.len() >= MAX_CELLS {
-                let allowed = "a walker so tall that there are fewer than 2^25 surfaces";
+                let allowed = "0.1 to 3 m, and so tall that there are fewer than 2^25 surfaces to stand on; a house this large may be in centimetres or \
+                     millimetres where metres are meant";
                 return Err(range("height_m", self.config.height_m, allowed));
             }
         }

@@ -53,7 +53,8 @@ impl StaticGrid {
             .fold(Aabb::EMPTY, |all, (_, bounds)| all.union(bounds));
         let size = bounds.size() / config.cell_m;
         if (size.x + 3.0) * (size.z + 3.0) >= MAX_CELLS as f32 {
-            let allowed = "a cell size that gives fewer than 2^25 cells";
+            let allowed = "a cell size that gives fewer than 2^25 cells; a house this large may be in centimetres or millimetres where metres \
+                 are meant";
             return Err(range("cell_m", config.cell_m, allowed));
         }
         let lowest = levels.iter().map(|(_, b)| b.min.y);

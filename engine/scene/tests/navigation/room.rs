@@ -258,3 +258,21 @@ fn settings_out_of_range_are_refused_by_name() {
     }
     assert!(ROOM[0] > 0.0 && build(ok).is_ok());
 }
+
+#[test]
+fn a_house_in_centimetres_is_refused_with_that_as_a_reason() {
+    let mut data = furnished(&[]).data().clone();
+    for mesh in data.meshes.as_mut_slice() {
+        let mut large = Mesh::clone(mesh);
+        large.positions.iter_mut().for_each(|p| *p *= 200.0);
+        *mesh = std::sync::Arc::new(large);
+    }
+    for level in &mut data.levels {
+        level.bounds.max *= 200.0;
+    }
+    let house = House::new(data).unwrap();
+    let state = dwell_scene::State::new(&house);
+    let config = NavConfig::default();
+    let error = dwell_scene::navigation::NavGrid::build(&house, &state, &config).unwrap_err();
+    assert!(error.to_string().contains("in centimetres"), "{error}");
+}

@@ -9,12 +9,15 @@ use super::{FIRST_PLAYED_ID, WorldSound};
 use crate::config::WorldConfig;
 use crate::engines::Engines;
 use crate::error::WorldError;
+use dwell_acoustics::HeadId;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, State};
 use serde::{Deserialize, Serialize};
 
 #[derive(Serialize, Deserialize)]
 struct SoundSnapshot {
+    preset: String,
+    head: Option<HeadId>,
     rate_hz: u32,
     /// Samples a control step.
     block: usize,
@@ -38,6 +41,8 @@ impl WorldSound {
             )
         });
         let memory = SoundSnapshot {
+            preset: self.preset.clone(),
+            head: self.head,
             rate_hz: self.rate_hz,
             block: self.block,
             blocks: self.blocks,
@@ -67,6 +72,16 @@ impl WorldSound {
                 "its sound has {} Hz in blocks of {} samples, that of the world {} Hz in blocks of {}",
                 memory.rate_hz, memory.block, sound.rate_hz, sound.block
             )));
+        }
+        if memory.preset != config.sound_preset {
+            return Err(WorldError::Snapshot(format!(
+                "its sound_preset is {:?}, and that of the world {:?}",
+                memory.preset, config.sound_preset
+            )));
+        }
+        if memory.head != config.sound_head {
+            let why = "its sound_head is another than the world's";
+            return Err(WorldError::Snapshot(why.to_owned()));
         }
         if memory.blocks == 0 {
             return Err(WorldError::Snapshot("no block of sound is over".to_owned()));

@@ -114,6 +114,10 @@ impl FreeTask {
 }
 
 impl Task for FreeTask {
+    fn settings(&self) -> serde_json::Value {
+        serde_json::json!(self.settings)
+    }
+
     fn reset(
         &mut self,
         world: &mut World,

@@ -223,6 +223,10 @@ fn goal_cells(
 }
 
 impl Task for InstructionFollowing {
+    fn settings(&self) -> serde_json::Value {
+        serde_json::json!(self.settings)
+    }
+
     fn prepare_house(&mut self, world: &World) -> Result<(), WorldError> {
         if self.offers.is_empty() {
             let grid = world.engines().nav_grid(&self.body(world)?)?;

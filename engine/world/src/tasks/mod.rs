@@ -17,6 +17,9 @@ use std::fmt::Debug;
 
 /// A task of one agent. One value plays one episode after another in one world.
 pub trait Task: Debug + Send + Sync {
+    /// Returns its settings, those that were not given with their defaults.
+    fn settings(&self) -> serde_json::Value;
+
     /// Finds out what the house offers at its start, before an episode begins and anybody is placed.
     ///
     /// # Errors
