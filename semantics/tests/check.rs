@@ -213,6 +213,44 @@ fn rooms_and_pieces_of_the_building_have_colors_and_substances() {
 }
 
 #[test]
+fn each_of_several_is_next_to_another() {
+    let house = house("seed:7");
+    let semantics = Semantics::new(&house);
+    let state = State::new(&house);
+    let scene = semantics.scene(&state);
+    let next_to = dwell_semantics::predicates::find("next_to").unwrap();
+    let mut verdicts = BTreeSet::new();
+    for (noun, things) in called(&scene) {
+        let plural = &scene.facts(things[0]).plural;
+        if scene.facts(things[0]).noun != noun || things.len() < 2 || noun.contains(" of ") {
+            continue;
+        }
+        let beside = |a: &ObjectId| {
+            let mut others = things.iter().filter(|b| *b != a);
+            others.any(|b| {
+                let pair = [Term::Object(*a), Term::Object(*b)];
+                next_to.holds(&scene, &pair, None).is_true()
+            })
+        };
+        let number = things.iter().filter(|thing| beside(thing)).count();
+        for (text, expected) in [
+            (
+                format!("All {plural} are next to each other."),
+                number == things.len(),
+            ),
+            (
+                format!("At least two {plural} are next to each other."),
+                number >= 2,
+            ),
+        ] {
+            assert_eq!(check(&scene, &text).truth, expected.into(), "{text}");
+            verdicts.insert(expected);
+        }
+    }
+    assert_eq!(verdicts.len(), 2);
+}
+
+#[test]
 fn oak_is_wooden_and_steel_is_metal() {
     let mut found = BTreeSet::new();
     for name in ["builtin:apartment", "seed:7", "seed:12", "seed:13"] {

@@ -116,6 +116,9 @@ impl<'a> Checker<'a> {
                 predicate,
                 arguments,
             } => match predicates::find(predicate) {
+                Ok(_) if matches!(&arguments[..], [_, Phrase::EachOther]) => {
+                    self.each_other(predicate, &arguments[0])
+                }
                 Ok(found) => {
                     let body = |terms: &[Term]| {
                         let viewer = self.listener.viewer.as_ref();
@@ -153,6 +156,34 @@ impl<'a> Checker<'a> {
             Clause::All(clauses) => Judged::all(clauses.iter().map(|clause| self.judge(clause))),
             Clause::Any(clauses) => Judged::any(clauses.iter().map(|clause| self.judge(clause))),
         }
+    }
+
+    /// "The chairs are next to each other": each is next to another one of them.
+    fn each_other(&self, predicate: &str, subject: &Phrase) -> Judged {
+        if let Phrase::List(items) = subject {
+            let others = |at: usize| items.iter().enumerate().filter(move |(k, _)| *k != at);
+            return Judged::all(items.iter().enumerate().map(|(at, item)| {
+                Judged::any(others(at).map(|(_, other)| {
+                    self.judge(&Clause::Holds {
+                        predicate: predicate.to_owned(),
+                        arguments: vec![item.clone(), other.clone()],
+                    })
+                }))
+            }));
+        }
+        let (Phrase::Described(own), Ok(found)) = (subject, predicates::find(predicate)) else {
+            return Judged::undecided(UndecidedReason::UnknownTerm);
+        };
+        let extension = self.extension(own);
+        let body = |terms: &[Term]| {
+            let others = extension.fits.iter().filter(|other| **other != terms[0]);
+            Judged::any(others.map(|other| {
+                let pair = [terms[0], *other];
+                let truth = found.holds(self.scene, &pair, self.listener.viewer.as_ref());
+                Judged::fact(predicate, &pair, truth)
+            }))
+        };
+        self.quantify(std::slice::from_ref(subject), &mut Vec::new(), &body)
     }
 
     /// "There is a lamp on every desk": each desk has its own.
@@ -243,7 +274,7 @@ impl<'a> Checker<'a> {
                 .map(Term::Storey)
                 .ok_or(UndecidedReason::UnknownTerm),
             Phrase::Hole => self.hole.get().ok_or(UndecidedReason::UnknownTerm),
-            Phrase::Speaker => Err(UndecidedReason::UnknownTerm),
+            Phrase::Speaker | Phrase::EachOther => Err(UndecidedReason::UnknownTerm),
             Phrase::Pronoun | Phrase::NamedBefore => Err(UndecidedReason::NoAntecedent),
             Phrase::Described(_) | Phrase::List(_) => return None,
         })

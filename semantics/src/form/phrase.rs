@@ -165,6 +165,8 @@ pub enum Phrase {
     /// The thing that "the other lamp" is other than: one with the same noun that was named before.
     /// [`crate::form::Form::readings_after`] puts that in its place.
     NamedBefore,
+    /// The others of several: "the chairs are next to each other", each to another one.
+    EachOther,
     /// The speaker: "me". Undecided in clauses: a scene does not know who speaks.
     Speaker,
     /// "It": a thing that was named before. [`crate::form::Form::readings_after`] puts that in its place.

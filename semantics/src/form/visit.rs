@@ -215,6 +215,7 @@ pub(super) fn visit_phrase(phrase: &mut Phrase, role: Role, visit: Visit<'_>) {
         Phrase::Id(_)
         | Phrase::Listener
         | Phrase::Speaker
+        | Phrase::EachOther
         | Phrase::Storey(_)
         | Phrase::Hole
         | Phrase::NamedBefore

@@ -113,6 +113,12 @@ pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
         ("see_room_from" | "whether_see_room_from", [from, to]) => {
             holds("visible_from_room", vec![room(to)?, room(from)?])
         }
+        ("holds_each_other" | "whether_each_other", [subject, word]) => {
+            holds(&id(word)?, vec![phrase(subject)?, Phrase::EachOther])
+        }
+        ("list_holds_each_other", [items, word]) => {
+            holds(&id(word)?, vec![subjects(items)?, Phrase::EachOther])
+        }
         ("holds_between" | "whether_between", [subject, a, b]) => {
             holds("between", vec![phrase(subject)?, phrase(a)?, phrase(b)?])
         }

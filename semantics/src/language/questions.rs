@@ -381,6 +381,7 @@ impl TreeBuilder<'_> {
                     "holds" => "whether_holds",
                     "holds_place" => "whether_place",
                     "holds_mount" => "whether_mount",
+                    "holds_each_other" => "whether_each_other",
                     "holds_closer" => "whether_closer",
                     "see_room_from" => "whether_see_room_from",
                     _ => return None,

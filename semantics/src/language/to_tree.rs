@@ -197,6 +197,14 @@ impl TreeBuilder<'_> {
                 "holds_mount",
                 vec![free(subject)?, places::mount_to_tree(mount)?],
             )),
+            (_, [Phrase::List(items), Phrase::EachOther]) => Some((
+                "list_holds_each_other",
+                vec![self.subjects(items)?, self.known(RELATION, predicate)?],
+            )),
+            (_, [subject, Phrase::EachOther]) => Some((
+                "holds_each_other",
+                vec![free(subject)?, self.known(RELATION, predicate)?],
+            )),
             (side, [subject]) => Some(("holds_side", vec![free(subject)?, places::side_of(side)?])),
             (_, [Phrase::List(items), object]) => {
                 let word = self.relation_word(predicate, object)?;
@@ -348,6 +356,7 @@ impl TreeBuilder<'_> {
             Phrase::Speaker if !landmark => Tree::apply("me", []),
             Phrase::Storey(_)
             | Phrase::Speaker
+            | Phrase::EachOther
             | Phrase::Hole
             | Phrase::NamedBefore
             | Phrase::List(_) => return None,

@@ -206,15 +206,8 @@ fn clause_of(subject: Phrase, (said, negated): (Said, bool)) -> Option<Clause> {
             Clause::Exists(only.with_quantifier(Quantifier::Exactly(1)).into()),
         ]),
         Said::EachOther(predicate) => match &subject {
-            Phrase::List(items) => {
-                let [one, other] = &items[..] else {
-                    return None;
-                };
-                holds(&predicate, vec![one.clone(), other.clone()])
-            }
-            Phrase::Described(own) => {
-                let another = own.clone().with_quantifier(Quantifier::Some).into();
-                holds(&predicate, vec![subject, another])
+            Phrase::List(_) | Phrase::Described(_) => {
+                holds(&predicate, vec![subject, Phrase::EachOther])
             }
             _ => return None,
         },

@@ -473,6 +473,10 @@ fn affirmed() -> BoxedStrategy<Clause> {
         (phrase(), phrase(), phrase())
             .prop_map(move |(a, b, c)| holds("between".to_owned(), vec![a, b, c])),
         (phrase(), quality()).prop_map(|(subject, quality)| Clause::Is { subject, quality }),
+        (described(), relation(), 2..9_u32).prop_map(move |(what, name, n)| {
+            let several = what.with_quantifier(Quantifier::Exactly(n)).into();
+            holds(name, vec![several, Phrase::EachOther])
+        }),
         described().prop_map(|what| Clause::Exists(what.into())),
         nothing().prop_map(|what| Clause::Exists(what.into())),
         counted().prop_map(|what| Clause::Exists(what.into())),
@@ -499,6 +503,8 @@ fn affirmed_only() -> BoxedStrategy<Clause> {
         }),
         1 => (list(), relation(), reference()).prop_map(move |(a, name, b)| holds(name, vec![a, b])),
         1 => (list(), room()).prop_map(move |(a, b)| holds("in_room".to_owned(), vec![a, b])),
+        1 => (list(), relation())
+            .prop_map(move |(a, name)| holds(name, vec![a, Phrase::EachOther])),
         1 => (list(), 1..9_u32)
             .prop_map(move |(a, n)| holds("on_storey".to_owned(), vec![a, Phrase::Storey(n)])),
         1 => (list(), quality()).prop_map(|(subject, quality)| Clause::Is { subject, quality }),
