@@ -3,6 +3,7 @@
 use super::from_tree::{holds, id};
 use super::phrases::{described, phrase};
 use super::questions::question;
+use super::sets;
 use super::to_tree::TreeBuilder;
 use super::verb_phrases::clause;
 use crate::form::{Clause, Description, Noun, Phrase, Question};
@@ -38,9 +39,14 @@ pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Vec<Clause
         ("alternatives_bare", [said, one, other]) => {
             subjects(said, [phrase(one)?, phrase(other)?])?
         }
-        ("which_compared", [word, one, other]) => compared(word, one, other)?,
+        ("which_compared", [word, one, other]) => compared(word, phrase(one)?, phrase(other)?)?,
+        ("which_of_compared", [set, word, one, other]) => {
+            let kind = sets::set(set)?;
+            let [one, other] = with_noun_of(&kind, [phrase(one)?, phrase(other)?]);
+            compared(word, one, other)?
+        }
         ("which_compared_less", [word, one, other]) => {
-            let mut clauses = compared(word, one, other)?;
+            let mut clauses = compared(word, phrase(one)?, phrase(other)?)?;
             // The smaller of two is the one that the other is larger than.
             clauses.reverse();
             clauses
@@ -72,19 +78,19 @@ fn related(subject: &Tree, relations: [&Tree; 2], landmarks: [&Tree; 2]) -> Opti
 }
 
 /// "Which door is open, the left one or the right one?" "One" is a door.
-fn of_kind(
-    kind: &Description,
-    said: &Tree,
-    mut subjects_named: [Phrase; 2],
-) -> Option<Vec<Clause>> {
-    for subject in &mut subjects_named {
+fn of_kind(kind: &Description, said: &Tree, named: [Phrase; 2]) -> Option<Vec<Clause>> {
+    subjects(said, with_noun_of(kind, named))
+}
+
+fn with_noun_of(kind: &Description, mut named: [Phrase; 2]) -> [Phrase; 2] {
+    for subject in &mut named {
         if let Phrase::Described(own) = subject
             && own.noun == Noun::SameNoun
         {
             own.noun.clone_from(&kind.noun);
         }
     }
-    subjects(said, subjects_named)
+    named
 }
 
 fn subjects(said: &Tree, subjects: [Phrase; 2]) -> Option<Vec<Clause>> {
@@ -95,8 +101,8 @@ fn subjects(said: &Tree, subjects: [Phrase; 2]) -> Option<Vec<Clause>> {
     Some(clauses)
 }
 
-fn compared(word: &Tree, one: &Tree, other: &Tree) -> Option<Vec<Clause>> {
-    let (name, one, other) = (id(word)?, phrase(one)?, phrase(other)?);
+fn compared(word: &Tree, one: Phrase, other: Phrase) -> Option<Vec<Clause>> {
+    let name = id(word)?;
     Some(vec![
         holds(&name, vec![one.clone(), other.clone()]),
         holds(&name, vec![other, one]),

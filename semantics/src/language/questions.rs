@@ -55,6 +55,16 @@ fn paraphrased(function: &str, arguments: &[Tree]) -> Option<Question> {
             count(described(noun)?.with_modifier(within))
         }
         ("what_inside", []) => which(None, holds("in", vec![Phrase::Hole, Phrase::Pronoun])),
+        ("either_room_has", [place, one, other]) => {
+            let there = |item: &Tree| {
+                let Phrase::Described(own) = existence::items_from_tree(item)? else {
+                    return None;
+                };
+                let there = Modifier::new("in_room", [room(place)?]);
+                Some(Clause::Exists(own.with_modifier(there).into()))
+            };
+            Question::Alternatives(vec![there(one)?, there(other)?])
+        }
         ("either_exists", [one, other]) => {
             let one = existence::items_from_tree(one)?;
             let mut other = existence::items_from_tree(other)?;

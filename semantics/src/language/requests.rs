@@ -66,7 +66,8 @@ fn group(tree: &Tree) -> Option<Vec<RequestStep>> {
         ("put_both", [object, one, first, other, second]) => {
             vec![put(object, one, first)?, put(object, other, second)?]
         }
-        ("put_both_structure", [object, one, structure, other, second]) => {
+        ("put_both_structure", [object, one, structure, other, second])
+        | ("put_by_floor", [_, object, one, structure, other, second]) => {
             let floor = RequestStep::Put {
                 object: phrase(object)?,
                 predicate: id(one)?,

@@ -225,20 +225,30 @@ pub(super) fn clause(subject: Phrase, tree: &Tree) -> Option<Clause> {
     if let [_] = all[..] {
         return clause_of(subject, all.remove(0));
     }
-    match &subject {
-        Phrase::Described(description)
-            if !matches!(description.quantifier, Quantifier::The | Quantifier::Every)
-                && all.iter().all(|(said, _)| describes(said)) =>
-        {
-            let mut description = Description::clone(description);
-            add_said(&mut description, all)?;
-            Some(Clause::Exists(description.into()))
+    let (mut own, others): (SaidList, SaidList) =
+        all.into_iter().partition(|(said, _)| describes(said));
+    let conjunction = |subject: &Phrase, all: SaidList| -> Option<Vec<Clause>> {
+        let all = all.into_iter();
+        all.map(|one| clause_of(subject.clone(), one)).collect()
+    };
+    let is_indefinite =
+        |own: &Description| !matches!(own.quantifier, Quantifier::The | Quantifier::Every);
+    match subject {
+        Phrase::Described(description) if is_indefinite(&description) => {
+            let mut description = *description;
+            add_said(&mut description, own)?;
+            let subject: Phrase = description.into();
+            // "Two chairs are on the balcony side by side": those on the balcony are.
+            let mut clauses = conjunction(&subject, others)?;
+            Some(match clauses.len() {
+                0 => Clause::Exists(subject),
+                1 => clauses.remove(0),
+                _ => Clause::All(clauses),
+            })
         }
-        _ => {
-            let all = all.into_iter();
-            let clauses: Option<Vec<Clause>> =
-                all.map(|one| clause_of(subject.clone(), one)).collect();
-            Some(Clause::All(clauses?))
+        subject => {
+            own.extend(others);
+            Some(Clause::All(conjunction(&subject, own)?))
         }
     }
 }
