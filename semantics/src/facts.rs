@@ -8,7 +8,7 @@ use crate::geometry::mapped_area_m2;
 use crate::material_family::family_of;
 use crate::size::SizeClass;
 use dwell_scene::material::{Substance, library};
-use dwell_scene::{Aabb, House, IdVec, MaterialId, ObjectId};
+use dwell_scene::{Aabb, House, MaterialId, ObjectId};
 use glam::Vec3;
 
 /// Share of the surface from which a substance gives a thing its adjective.
@@ -39,7 +39,7 @@ pub struct ObjectFacts {
 impl ObjectFacts {
     pub(crate) fn gather(
         house: &House,
-        paints: &IdVec<MaterialId, MaterialColors>,
+        paints: &MaterialColors,
         seen: &[(MaterialId, f32)],
         id: ObjectId,
     ) -> Self {
@@ -295,7 +295,7 @@ fn without_screen(
 /// Materials by opacity-weighted share of `areas`, largest first.
 fn patches(
     house: &House,
-    paints: &IdVec<MaterialId, MaterialColors>,
+    paints: &MaterialColors,
     areas: &[(MaterialId, f32)],
 ) -> Vec<SurfacePatch> {
     let weight =
@@ -305,7 +305,7 @@ fn patches(
         .iter()
         .map(|area| SurfacePatch {
             material: area.0,
-            linear: paints[area.0].dominant,
+            linear: paints[area.0],
             share: weight(area) / total,
         })
         .collect();

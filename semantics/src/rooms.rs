@@ -8,6 +8,7 @@ use crate::room_kind::{RoomCategory, preposition, room_kinds};
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::material::library;
 use dwell_scene::math;
+use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{Aabb, House, Id, IdVec, MaterialId, RoomId, StructureKind, SurfaceOwner};
 use glam::Vec3;
@@ -50,7 +51,7 @@ pub struct RoomProperties {
 impl RoomProperties {
     pub(crate) fn gather(
         rays: &RayScene,
-        paints: &IdVec<MaterialId, MaterialColors>,
+        paints: &MaterialColors,
         doors: &[Aabb],
     ) -> IdVec<RoomId, Self> {
         let house = rays.house();
@@ -138,7 +139,7 @@ struct RoomSurfaces {
 }
 
 impl RoomSurfaces {
-    fn gather(rays: &RayScene, paints: &IdVec<MaterialId, MaterialColors>) -> Self {
+    fn gather(rays: &RayScene, paints: &MaterialColors) -> Self {
         let house = rays.house();
         let count = house.rooms.len();
         let mut floors = IdVec::filled(BTreeMap::new(), count);
@@ -159,7 +160,7 @@ impl RoomSurfaces {
                     (StructureKind::Floor, Some(room)) if out.y > 0.5 => {
                         let substance = house.materials[*id].substance.clone();
                         *floors[room].entry(substance).or_insert(0.0) += area_m2;
-                        add(&mut floor_paints[room], *id, paints[*id].dominant, area_m2);
+                        add(&mut floor_paints[room], *id, paints[*id], area_m2);
                     }
                     _ => {}
                 }
@@ -168,19 +169,14 @@ impl RoomSurfaces {
         for patches in &mut floor_paints {
             shares(patches);
         }
-        let points: IdVec<RoomId, Vec<Vec3>> = house
-            .rooms
-            .ids()
-            .map(|room| house.points_in_room(room, POINTS))
-            .collect();
-        let walls = points
-            .iter()
-            .map(|points| visible_wall_areas(rays, paints, points))
-            .collect();
+        let walls = Threads::resolve(None).map(count, |k| {
+            let points = house.points_in_room(RoomId::from_index(k), POINTS);
+            visible_wall_areas(rays, paints, &points)
+        });
         Self {
             floors,
             floor_paints,
-            walls,
+            walls: walls.into(),
         }
     }
 
@@ -215,7 +211,7 @@ fn shares(patches: &mut [SurfacePatch]) {
 /// Walls have two shells and rooms may overlap, so a room's own surfaces are not those seen in it.
 fn visible_wall_areas(
     rays: &RayScene,
-    paints: &IdVec<MaterialId, MaterialColors>,
+    paints: &MaterialColors,
     points: &[Vec3],
 ) -> Vec<SurfacePatch> {
     let mut patches = Vec::new();
@@ -234,7 +230,7 @@ fn visible_wall_areas(
                 add(
                     &mut patches,
                     surface.material,
-                    paints[surface.material].dominant,
+                    paints[surface.material],
                     1.0,
                 );
             }

@@ -1,6 +1,6 @@
 //! The entry point: a house with its semantics.
 
-use crate::color::{MaterialColors, paints};
+use crate::color::material_colors;
 use crate::doorways::RoomDoorway;
 use crate::extent_cache::ExtentCache;
 use crate::facts::ObjectFacts;
@@ -14,10 +14,9 @@ use crate::rooms::RoomProperties;
 use crate::visible_area::visible_surface_areas;
 use dwell_scene::bvh::BoxTree;
 use dwell_scene::interrupt;
+use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
-use dwell_scene::{
-    Aabb, AgentId, House, Id, IdVec, MaterialId, ObjectId, RoomId, State, StructureId,
-};
+use dwell_scene::{Aabb, AgentId, House, Id, IdVec, ObjectId, RoomId, State, StructureId};
 use glam::Vec2;
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
@@ -36,7 +35,6 @@ pub struct Semantics {
     outlines: IdVec<RoomId, RoomOutline>,
     walkers: NavGridPool,
     doorways: BTreeMap<ObjectId, RoomDoorway>,
-    paints: IdVec<MaterialId, MaterialColors>,
     language: OnceLock<Language>,
 }
 
@@ -44,26 +42,27 @@ impl Semantics {
     /// Computes the facts of `house`.
     pub fn new(house: &Arc<House>) -> Self {
         let state = State::new(house);
-        let paints = paints(house);
-        let objects = || house.objects.ids();
-        let structure = house.structure.iter().map(|piece| {
-            let mesh = &house.meshes[piece.mesh];
-            let outline = mesh.positions.iter().map(|p| Vec2::new(p.x, p.z));
-            interrupt::check();
-            (mesh.bounds(), Hull::around(outline))
-        });
-        let structure: IdVec<StructureId, (Aabb, Hull)> = structure.collect();
-        let rest_extents: IdVec<ObjectId, Extent> = objects()
-            .map(|id| {
-                interrupt::check();
-                Extent::measure(house, &state, id)
-            })
-            .collect();
+        let threads = Threads::resolve(None);
+        // The triangles are baked at first use: by one thread, so that whoever else asks for them waits for no other work.
+        let ((), (paints, structure, rest_extents)) = threads.join(
+            || {
+                house.geometry();
+            },
+            || {
+                (
+                    material_colors(house),
+                    structure_outlines(house),
+                    rest_extents(house, &state),
+                )
+            },
+        );
         let rays = RayScene::new(house.clone());
         let bounds: IdVec<ObjectId, Aabb> =
             rest_extents.iter().map(|extent| extent.bounds).collect();
         let seen = visible_surface_areas(&rays, &bounds);
-        let facts: IdVec<ObjectId, ObjectFacts> = objects()
+        let facts: IdVec<ObjectId, ObjectFacts> = house
+            .objects
+            .ids()
             .map(|id| {
                 interrupt::check();
                 ObjectFacts::gather(house, &paints, &seen[id], id)
@@ -85,7 +84,6 @@ impl Semantics {
             facts,
             rest_extents,
             moved_extents: ExtentCache::new(house),
-            paints,
             language: OnceLock::new(),
             house: house.clone(),
         }
@@ -145,11 +143,6 @@ impl Semantics {
         self.doorways.iter().map(|(door, doorway)| (*door, doorway))
     }
 
-    /// Mean colour of a material in linear light: texture times base colour.
-    pub fn material_color(&self, material: MaterialId) -> [f32; 3] {
-        self.paints[material].mean
-    }
-
     pub(crate) fn rest_extent(&self, object: ObjectId) -> &Extent {
         &self.rest_extents[object]
     }
@@ -181,4 +174,25 @@ impl Semantics {
     pub(crate) fn kinds_called(&self, noun: &str) -> Vec<u32> {
         self.kinds.with_noun(&self.facts, noun)
     }
+}
+
+/// The box around each structure piece and its outline from above.
+fn structure_outlines(house: &House) -> IdVec<StructureId, (Aabb, Hull)> {
+    let pieces = house.structure.as_slice();
+    Threads::resolve(None)
+        .map(pieces.len(), |k| {
+            let mesh = &house.meshes[pieces[k].mesh];
+            let outline = mesh.positions.iter().map(|p| Vec2::new(p.x, p.z));
+            (mesh.bounds(), Hull::around(outline))
+        })
+        .into()
+}
+
+/// The extent of each object in the initial state.
+fn rest_extents(house: &House, state: &State) -> IdVec<ObjectId, Extent> {
+    Threads::resolve(None)
+        .map(house.objects.len(), |k| {
+            Extent::measure(house, state, ObjectId::from_index(k))
+        })
+        .into()
 }

@@ -2,11 +2,12 @@
 
 use crate::error::SceneError;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 
-/// Function that makes the pixels of a texture.
-type TexturePainter = Arc<dyn Fn() -> Vec<u8> + Send + Sync>;
+/// Function that makes every so many-th pixel of a texture.
+type TexturePainter = Arc<dyn Fn(usize) -> Vec<u8> + Send + Sync>;
 
 /// An image for materials, sRGB-encoded with straight alpha.
 ///
@@ -85,11 +86,13 @@ impl Texture {
 
     /// A texture whose pixels `painter` makes at first use; it must always make the same. Missing pixels are transparent
     /// black, surplus ones are dropped.
+    ///
+    /// `painter(step)` makes every `step`-th pixel from the first, rows from the top, four bytes each; all of them for 1.
     pub fn lazy(
         name: String,
         width: u32,
         height: u32,
-        painter: impl Fn() -> Vec<u8> + Send + Sync + 'static,
+        painter: impl Fn(usize) -> Vec<u8> + Send + Sync + 'static,
     ) -> Self {
         Self {
             name,
@@ -102,11 +105,30 @@ impl Texture {
 
     /// Returns rows from the top, four bytes a pixel (R, G, B, A). Shape (height, width, 4).
     pub fn rgba(&self) -> &[u8] {
-        self.pixels.get_or_init(|| {
-            let mut rgba = self.painter.as_ref().map_or_else(Vec::new, |paint| paint());
-            rgba.resize(self.size_bytes(), 0);
-            rgba
-        })
+        self.pixels.get_or_init(|| self.paint(1))
+    }
+
+    /// Returns every `step`-th pixel (each, for 0) of [`rgba`](Self::rgba), from the first. Shape (pixel, 4).
+    ///
+    /// Of a texture that is not painted yet, only these are painted, and not kept.
+    pub fn sampled_rgba(&self, step: usize) -> Cow<'_, [u8]> {
+        match self.pixels.get() {
+            Some(rgba) if step <= 1 => Cow::Borrowed(rgba),
+            Some(rgba) => {
+                let pixels = rgba.chunks_exact(4).step_by(step);
+                Cow::Owned(pixels.flatten().copied().collect())
+            }
+            None => Cow::Owned(self.paint(step.max(1))),
+        }
+    }
+
+    fn paint(&self, step: usize) -> Vec<u8> {
+        let mut rgba = self
+            .painter
+            .as_ref()
+            .map_or_else(Vec::new, |paint| paint(step));
+        rgba.resize((self.size_bytes() / 4).div_ceil(step) * 4, 0);
+        rgba
     }
 
     /// Returns whether the pixels are in memory.
@@ -181,7 +203,7 @@ mod tests {
     fn pixels_are_painted_once_and_only_when_asked_for() {
         let painted = Arc::new(AtomicUsize::new(0));
         let count = painted.clone();
-        let later = Texture::lazy("later".to_owned(), 2, 1, move || {
+        let later = Texture::lazy("later".to_owned(), 2, 1, move |_| {
             count.fetch_add(1, Ordering::SeqCst);
             vec![9; 8]
         });
@@ -194,10 +216,29 @@ mod tests {
     }
 
     #[test]
+    fn a_sample_is_every_so_many_th_pixel_and_paints_no_other() {
+        let painted = Arc::new(AtomicUsize::new(0));
+        let count = painted.clone();
+        let later = Texture::lazy("later".to_owned(), 5, 3, move |step| {
+            let pixels = (0..15).step_by(step);
+            count.fetch_add(pixels.len(), Ordering::SeqCst);
+            pixels.flat_map(|k| [k; 4]).collect()
+        });
+        let sample: Vec<u8> = [0, 4, 8, 12].into_iter().flat_map(|k| [k; 4]).collect();
+        assert_eq!(*later.sampled_rgba(4), sample);
+        assert_eq!(painted.load(Ordering::SeqCst), 4);
+        assert!(!later.is_loaded());
+        later.rgba();
+        assert_eq!(*later.sampled_rgba(4), sample);
+        assert_eq!(*later.sampled_rgba(0), *later.rgba());
+        assert_eq!(painted.load(Ordering::SeqCst), 4 + 15);
+    }
+
+    #[test]
     fn a_painter_of_another_size_is_cut_or_filled_up() {
-        let short = Texture::lazy("short".to_owned(), 2, 1, || vec![9; 5]);
+        let short = Texture::lazy("short".to_owned(), 2, 1, |_| vec![9; 5]);
         assert_eq!(short.rgba(), [9, 9, 9, 9, 9, 0, 0, 0]);
-        let long = Texture::lazy("long".to_owned(), 1, 1, || vec![9; 5]);
+        let long = Texture::lazy("long".to_owned(), 1, 1, |_| vec![9; 5]);
         assert_eq!(long.rgba(), [9; 4]);
         assert!(
             Texture::new("bad".to_owned(), 1, 1, vec![9; 5])

@@ -6,5 +6,5 @@ mod vocabulary;
 
 pub use oklab::Oklab;
 pub use paint::{MENTION_SHARE, SurfacePatch, color_words};
-pub(crate) use paint::{MaterialColors, paints};
+pub(crate) use paint::{MaterialColors, material_colors};
 pub use vocabulary::ColorVocabulary;

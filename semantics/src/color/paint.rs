@@ -3,7 +3,7 @@
 use super::{ColorVocabulary, Oklab};
 use dwell_scene::parallel::Threads;
 use dwell_scene::units::linear_from_srgb;
-use dwell_scene::{House, IdVec, MaterialId, Texture, TextureId};
+use dwell_scene::{House, IdVec, MaterialId, Texture};
 
 /// Share of the visible surface below which a colour is not worth a word.
 pub const MENTION_SHARE: f32 = 0.2;
@@ -18,39 +18,21 @@ const PIXELS: usize = 1024;
 /// Number of times that the middle of a sort is moved to the mean of its shades.
 const ROUNDS: usize = 4;
 
-/// The colours of a material, in linear light.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct MaterialColors {
-    /// Mean over the texture, times base colour.
-    pub(crate) mean: [f32; 3],
-    /// The mean of the sort of colour that most of it has; `None` for pictures and patterns of several sorts.
-    pub(crate) dominant: Option<[f32; 3]>,
-}
+/// The colour that most of each material of a house has, in linear light: the mean of that sort of colour, times base colour; `None`
+/// for pictures and patterns of several sorts. Shape (material,).
+pub(crate) type MaterialColors = IdVec<MaterialId, Option<[f32; 3]>>;
 
-/// The colours of every material of a house. Shape (material,).
-pub(crate) fn paints(house: &House) -> IdVec<MaterialId, MaterialColors> {
+/// The colours of every material of a house.
+pub(crate) fn material_colors(house: &House) -> MaterialColors {
     let decoded = decoded();
-    let threads = Threads::resolve(None);
-    // Many textures are painted when first asked for their pixels, here.
-    let textures = house.textures.as_slice();
-    let means: IdVec<TextureId, [f32; 3]> = threads
-        .map(textures.len(), |k| textures[k].mean_linear())
-        .into();
     let materials = house.materials.as_slice();
-    threads
+    Threads::resolve(None)
         .map(materials.len(), |k| {
             let material = &materials[k];
             let base = material.base_color;
-            let Some(texture) = material.texture else {
-                return MaterialColors {
-                    mean: base,
-                    dominant: Some(base),
-                };
-            };
-            let mean = means[texture];
-            MaterialColors {
-                mean: std::array::from_fn(|k| base[k] * mean[k]),
-                dominant: dominant(&house.textures[texture], base, &decoded),
+            match material.texture {
+                Some(texture) => dominant(&house.textures[texture], base, &decoded),
+                None => Some(base),
             }
         })
         .into()
@@ -63,14 +45,13 @@ pub(crate) fn paints(house: &House) -> IdVec<MaterialId, MaterialColors> {
 /// `decoded`: linear light of every byte. Shape (256,).
 fn dominant(texture: &Texture, base: [f32; 3], decoded: &[f32; 256]) -> Option<[f32; 3]> {
     let solid = |pixel: &&[u8]| pixel[3] > 0;
-    let count = texture.rgba().len() / 4;
+    let count = texture.width as usize * texture.height as usize;
     let step = (count / PIXELS).max(1);
     // Strides that share a factor with the width would look at a few columns only.
     let step = step | 1;
     let shades: Vec<([f32; 3], Oklab)> = texture
-        .rgba()
+        .sampled_rgba(step)
         .chunks_exact(4)
-        .step_by(step)
         .filter(solid)
         .map(|pixel| {
             let linear = std::array::from_fn(|k| base[k] * decoded[usize::from(pixel[k])]);

@@ -50,13 +50,18 @@ impl Dresser {
                 tapered_leg([a * 1.02, 0.0, b], [a, LEG_M, b], 0.026, 0.042),
             );
         }
-        // Runners between the rows.
+        // Runners between the rows, on both sides of the wall in the middle.
         let step = (top - LEG_M) / self.rows as f32;
         for k in 1..self.rows {
             let y = LEG_M + step * k as f32;
-            body = body.with(
+            let runner =
+                |left: f32, right: f32| block([left, y - 0.006, z - 0.03], [right, y + 0.006, z]);
+            body = body.with_all(
                 &self.wood,
-                block([-x + 0.03, y - 0.006, z - 0.03], [x - 0.03, y + 0.006, z]),
+                [
+                    runner(-x + 0.03, -0.5 * BOARD_M),
+                    runner(0.5 * BOARD_M, x - 0.03),
+                ],
             );
         }
         let mut model = Model::articulated("dresser", "dresser")

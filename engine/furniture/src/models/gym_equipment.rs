@@ -37,13 +37,19 @@ fn treadmill(_style: &Style, key: RandomKey) -> Model {
         2,
     )
     .emissive([0.04, 0.08, 0.08]);
+    // The hood is a little wider than the rails, and a little above the floor that they stand on.
+    let rail = x - 0.004;
     let mut body = PartBuilder::new("body")
         .with_fill_fraction(
             &frame,
-            block([-x, 0.0, -z + 0.2], [-x + 0.08, 0.16, z]),
+            block([-rail, 0.0, -z + 0.2], [-x + 0.08, 0.16, z]),
             0.12,
         )
-        .with_fill_fraction(&frame, block([x - 0.08, 0.0, -z + 0.2], [x, 0.16, z]), 0.12)
+        .with_fill_fraction(
+            &frame,
+            block([x - 0.08, 0.0, -z + 0.2], [rail, 0.16, z]),
+            0.12,
+        )
         .with_fill_fraction(
             &belt,
             block([-x + 0.08, 0.05, -z + 0.2], [x - 0.08, 0.14, z - 0.02]),
@@ -51,7 +57,7 @@ fn treadmill(_style: &Style, key: RandomKey) -> Model {
         )
         .with_fill_fraction(
             &black(),
-            rounded_block([-x, 0.0, -z], [x, 0.24, -z + 0.3], 0.04, 2),
+            rounded_block([-x, 0.005, -z], [x, 0.24, -z + 0.3], 0.04, 2),
             0.25,
         );
     for side in [-1.0_f32, 1.0] {

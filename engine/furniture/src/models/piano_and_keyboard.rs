@@ -61,13 +61,13 @@ fn piano(style: &Style, key: RandomKey) -> Model {
         _ => style.wood.clone(),
     };
     let front = -z + 0.36;
-    let (bed, board) = (0.6, 0.68);
+    let (bed, bed_top, board) = (0.6, 0.65, 0.68);
     let half = x - 0.12;
     let key_front = z - 0.05;
     let [white, dark] = keys(half, 0.655, key_front, 0.15);
     let cheek = |side: f32| {
         let (a, b) = (side * half, side * (x - 0.03));
-        block([a.min(b), bed, front], [a.max(b), board + 0.04, z])
+        block([a.min(b), bed_top, front], [a.max(b), board + 0.04, z])
     };
     let pedal = |a: f32| block([a - 0.012, 0.05, front], [a + 0.012, 0.06, front + 0.09]);
     let side = |s: f32| {
@@ -107,7 +107,7 @@ fn piano(style: &Style, key: RandomKey) -> Model {
         )
         .with(
             &lacquer,
-            block([-x + 0.03, bed, front], [x - 0.03, 0.65, z]),
+            block([-x + 0.03, bed, front], [x - 0.03, bed_top, z]),
         )
         .with(
             &lacquer,

@@ -29,15 +29,17 @@ fn room_divider(style: &Style, key: RandomKey) -> Model {
         style.random_cloth(&mut d.stream("cloth")).clone()
     };
     let t = 0.022;
-    let run = (w - t) / 3.0;
-    let rise = depth - t;
+    let run = w / 3.0;
+    // The corners of the ends reach about half a thickness further.
+    let rise = depth - 0.5 * t;
     let leaf_m = (run * run + rise * rise).sqrt();
     let angle = dwell_scene::math::atan2(rise, run);
     let mut body = PartBuilder::new("body");
     for k in 0..3 {
         let spin = if k % 2 == 0 { angle } else { -angle };
-        let middle = -0.5 * w + 0.5 * t + run * (k as f32 + 0.5);
-        let half = 0.5 * leaf_m - 0.5 * t * 0.6;
+        let middle = -0.5 * w + run * (k as f32 + 0.5);
+        // Neighbours meet at the edges of their ends.
+        let half = 0.5 * (leaf_m - t * rise / run);
         let place =
             |solid: crate::shapes::SolidMesh| solid.rotated_y(spin).translated(middle, 0.0, 0.0);
         let (a, bar) = (half, 0.035);

@@ -144,9 +144,10 @@ impl Sofa {
                 let roll = cylinder(radius, front - back, 18)
                     .rotated_x(std::f32::consts::FRAC_PI_2)
                     .translated(0.5 * (left + right), top - radius, back);
+                // Into the back, and short of the roll's end: faces in one plane would show through each other.
                 let panel = [
-                    [left + 0.02, 0.28, back],
-                    [right - 0.02, top - radius, front],
+                    [left + 0.02, 0.28, back - 0.02],
+                    [right - 0.02, top - radius, front - 0.01],
                 ];
                 body.with_padding(&self.cover, block(panel[0], panel[1]))
                     .with_padding(&self.cover, roll)

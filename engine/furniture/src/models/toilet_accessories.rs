@@ -77,7 +77,7 @@ fn toilet_brush(style: &Style, key: RandomKey) -> Model {
                 .translated(0.0, 0.02, 0.0)
                 .visual_only(),
         )
-        .with(&holder, rod([0.0, 0.02, 0.0], [0.0, h - 0.02, 0.0], 0.007))
+        .with(&holder, rod([0.0, 0.03, 0.0], [0.0, h - 0.02, 0.0], 0.007))
         .with(&black(), ball(0.012, 10).translated(0.0, h - 0.012, 0.0));
     Model::movable("toilet_brush", "toiletries").part(body)
 }

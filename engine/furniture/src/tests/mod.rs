@@ -6,3 +6,4 @@ mod built_to_measure;
 mod cases;
 mod joints;
 mod sizes;
+mod surfaces;

@@ -26,20 +26,26 @@ pub(super) fn smooth_step(low: f32, high: f32, x: f32) -> f32 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Rows of pixels from the top.
+/// Number of pixels between two looks whether to stop.
+const CHECK_PIXELS: usize = 256;
+
+/// Rows of pixels from the top, or every so many-th of them.
 pub(super) struct PixelCanvas {
     width: u32,
     height: u32,
+    /// From one pixel to the next: 1 for a whole picture.
+    step: usize,
     pixels: Vec<EncodedColor>,
 }
 
 impl PixelCanvas {
-    /// A black picture.
-    pub(super) fn new(width: u32, height: u32) -> Self {
+    /// A black picture, of which every `step`-th pixel from the first is drawn.
+    pub(super) fn new(width: u32, height: u32, step: usize) -> Self {
         Self {
             width,
             height,
-            pixels: vec![[0.0; 3]; (width * height) as usize],
+            step,
+            pixels: vec![[0.0; 3]; ((width * height) as usize).div_ceil(step)],
         }
     }
 
@@ -54,15 +60,18 @@ impl PixelCanvas {
         mut color: impl FnMut(f32, f32, EncodedColor) -> EncodedColor,
     ) {
         let (du, dv) = (1.0 / self.width as f32, 1.0 / self.height as f32);
-        for (row, pixels) in self
-            .pixels
-            .chunks_exact_mut(self.width as usize)
-            .enumerate()
-        {
+        let width = self.width as usize;
+        let (mut row, mut column) = (0, 0);
+        for pixels in self.pixels.chunks_mut(CHECK_PIXELS) {
             interrupt::check();
-            let v = 1.0 - (row as f32 + 0.5) * dv;
-            for (column, pixel) in pixels.iter_mut().enumerate() {
+            for pixel in pixels {
+                let v = 1.0 - (row as f32 + 0.5) * dv;
                 *pixel = color((column as f32 + 0.5) * du, v, *pixel);
+                column += self.step;
+                while column >= width {
+                    column -= width;
+                    row += 1;
+                }
             }
         }
     }

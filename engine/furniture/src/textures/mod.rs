@@ -103,8 +103,8 @@ fn recipes() -> &'static [TextureGenerator] {
 }
 
 impl TexturePattern {
-    /// The pixels of the image.
-    fn paint(&self) -> Vec<u8> {
+    /// Every `step`-th pixel of the image, from the first; all of them for 1.
+    fn paint(&self, step: usize) -> Vec<u8> {
         let key = RandomKey::root(self.seed)
             .child("texture")
             .child(self.generator);
@@ -116,7 +116,7 @@ impl TexturePattern {
         };
         let generator = self.recipe();
         let [width, height] = generator.map_or([1, 1], |generator| generator.size_px);
-        let mut canvas = PixelCanvas::new(width, height);
+        let mut canvas = PixelCanvas::new(width, height, step);
         if let Some(generator) = generator {
             (generator.draw)(&mut canvas, &paint);
         }
@@ -126,8 +126,8 @@ impl TexturePattern {
     /// The image as a texture that is painted when someone first looks at it; mid-grey for a recipe that does not exist.
     pub fn texture(self) -> Texture {
         let [width, height] = self.recipe().map_or([1, 1], |generator| generator.size_px);
-        Texture::lazy(self.generator.to_owned(), width, height, move || {
-            self.paint()
+        Texture::lazy(self.generator.to_owned(), width, height, move |step| {
+            self.paint(step)
         })
     }
 
@@ -186,6 +186,17 @@ mod tests {
                 "{}",
                 generator.name
             );
+        }
+    }
+
+    #[test]
+    fn a_sample_of_an_image_has_its_pixels() {
+        for generator in recipes() {
+            let texture = pattern(generator.name).texture();
+            let sample = texture.sampled_rgba(65).into_owned();
+            let all = texture.rgba().chunks_exact(4);
+            let expected: Vec<u8> = all.step_by(65).flatten().copied().collect();
+            assert_eq!(sample, expected, "{}", generator.name);
         }
     }
 
