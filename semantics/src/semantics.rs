@@ -1,6 +1,6 @@
 //! The entry point: a house with its semantics.
 
-use crate::color::material_colors;
+use crate::color::{MaterialColors, material_colors};
 use crate::doorways::RoomDoorway;
 use crate::extent_cache::ExtentCache;
 use crate::facts::ObjectFacts;
@@ -35,6 +35,7 @@ pub struct Semantics {
     outlines: IdVec<RoomId, RoomOutline>,
     walkers: NavGridPool,
     doorways: BTreeMap<ObjectId, RoomDoorway>,
+    colors: MaterialColors,
     language: OnceLock<Language>,
 }
 
@@ -84,6 +85,7 @@ impl Semantics {
             facts,
             rest_extents,
             moved_extents: ExtentCache::new(house),
+            colors: paints,
             language: OnceLock::new(),
             house: house.clone(),
         }
@@ -141,6 +143,11 @@ impl Semantics {
     /// The doors and archways with their rooms, ascending.
     pub(crate) fn doorways(&self) -> impl Iterator<Item = (ObjectId, &RoomDoorway)> {
         self.doorways.iter().map(|(door, doorway)| (*door, doorway))
+    }
+
+    /// The colour that most of each material has.
+    pub(crate) fn material_colors(&self) -> &MaterialColors {
+        &self.colors
     }
 
     pub(crate) fn rest_extent(&self, object: ObjectId) -> &Extent {

@@ -39,7 +39,7 @@ pub(crate) fn has_color(semantics: &Semantics, piece: StructureId, word: &str) -
     let patches: Vec<SurfacePatch> = patches
         .map(|(material, share)| SurfacePatch {
             material,
-            linear: Some(semantics.material_color(material)),
+            linear: semantics.material_colors()[material],
             share,
         })
         .collect();

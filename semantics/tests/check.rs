@@ -2,8 +2,11 @@
 #![allow(clippy::unwrap_used, reason = "tests stop at the first surprise")]
 
 use dwell_houses::open;
-use dwell_scene::{House, ObjectId, State};
+use dwell_scene::material::library;
+use dwell_scene::units::linear_from_srgb;
+use dwell_scene::{House, MaterialId, ObjectId, State};
 use dwell_semantics::check::{Answer, CheckResult, Checker, Listener};
+use dwell_semantics::color::ColorVocabulary;
 use dwell_semantics::form::{Clause, Form, Phrase, Question};
 use dwell_semantics::language::Language;
 use dwell_semantics::{SemanticScene, Semantics, Term, Truth, UndecidedReason, Viewer};
@@ -149,10 +152,28 @@ fn each_landmark_has_its_own_thing() {
     }
 }
 
+/// The colour word of nine tenths of the pixels of a material, where it has one.
+fn only_color(house: &House, material: MaterialId) -> Option<&'static str> {
+    let material = &house.materials[material];
+    let word = |linear: [f32; 3]| ColorVocabulary::Plain.word(linear);
+    let Some(texture) = material.texture else {
+        return Some(word(material.base_color));
+    };
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    let pixels = house.textures[texture].rgba().chunks_exact(4).step_by(97);
+    for pixel in pixels {
+        let linear = std::array::from_fn(|k| {
+            material.base_color[k] * linear_from_srgb(f32::from(pixel[k]) / 255.0)
+        });
+        *counts.entry(word(linear)).or_default() += 1;
+    }
+    let all: usize = counts.values().sum();
+    let (own, count) = counts.into_iter().max_by_key(|(_, count)| *count)?;
+    (10 * count >= 9 * all).then_some(own)
+}
+
 #[test]
 fn rooms_and_pieces_of_the_building_have_colors_and_substances() {
-    use dwell_scene::material::library;
-    use dwell_semantics::color::ColorVocabulary;
     let mut decided = [0, 0];
     for name in ["builtin:apartment", "seed:7", "seed:12"] {
         let house = house(name);
@@ -181,7 +202,9 @@ fn rooms_and_pieces_of_the_building_have_colors_and_substances() {
             let [only] = piece.materials[..] else {
                 continue;
             };
-            let own = ColorVocabulary::Plain.word(semantics.material_color(only));
+            let Some(own) = only_color(&house, only) else {
+                continue;
+            };
             let substance = library().get(&house.materials[only].substance);
             let kinds = dwell_semantics::form::Quality::Color;
             let asks = |quality| Clause::Is {
@@ -209,7 +232,7 @@ fn rooms_and_pieces_of_the_building_have_colors_and_substances() {
             }
         }
     }
-    assert!(decided.iter().all(|number| *number > 50), "{decided:?}");
+    assert!(decided.iter().all(|number| *number > 20), "{decided:?}");
 }
 
 #[test]
