@@ -102,7 +102,10 @@ def test_a_source_outside_of_a_measured_room_is_told(
     [
         ({"air": {"temperature_c": -400}}, "room.json: air.temperature_c is -400"),
         ({"duration_s": 1e9}, "room.json: duration_s is 1e+09; allowed is 0.02 to 20 s"),
-        ({"receivers": None, "recievers": []}, "room.json: receivers: expected a list"),
+        (
+            {"receivers": None, "recievers": []},
+            "room.json: receivers: missing; 'recievers' is nearly its name",
+        ),
     ],
 )
 def test_what_a_measured_room_cannot_be_names_its_file(
