@@ -1,5 +1,6 @@
 //! Calibration for Python.
 
+use crate::callbacks;
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use dwell_calibration::rollout::study::OtherSimulator;
@@ -35,9 +36,9 @@ pub(crate) fn calibrate(
             &peers?,
             &mut |fraction, what| {
                 Python::attach(|py| {
-                    let called = progress
-                        .as_ref()
-                        .map_or(Ok(()), |call| call.call1(py, (fraction, what)).map(drop));
+                    let called = progress.as_ref().map_or(Ok(()), |call| {
+                        callbacks::call(call.bind(py), (fraction, what)).map(drop)
+                    });
                     raised = called
                         .and_then(|()| py.check_signals())
                         .err()
