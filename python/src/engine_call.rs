@@ -85,8 +85,8 @@ impl EngineCall for Python<'_> {
 /// Parks a thread for ever whose call has outlived the interpreter, as a daemon thread's may: the process ends under it.
 ///
 /// `CPython` before 3.14 ends such a thread when it asks for the GIL, by unwinding, which Rust's frames do not take. One that waits
-/// for the GIL when the interpreter begins to end is parked by pyo3, where the extension unwinds by the system's `libgcc_s`. Wheels
-/// have an unwinder of their own, of the linker, and there such a thread still ends the process by a fault.
+/// for the GIL when the interpreter begins to end is parked by pyo3, where the unwinding reaches Rust, and one in Python's code by
+/// [`crate::callbacks`]. Both need the extension to unwind by the system's `libgcc_s`, as Python does: see `xtask/sh/wheel.sh`.
 fn park_without_python() {
     while !is_python_running() {
         std::thread::park();
