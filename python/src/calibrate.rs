@@ -1,7 +1,7 @@
 //! Calibration for Python.
 
 use crate::callbacks;
-use crate::engine_call::EngineCall;
+use crate::engine_call::{EngineCall, attach};
 use crate::errors::PyFault;
 use dwell_calibration::rollout::study::OtherSimulator;
 use dwell_scene::parallel::Threads;
@@ -35,7 +35,7 @@ pub(crate) fn calibrate(
             &options,
             &peers?,
             &mut |fraction, what| {
-                Python::attach(|py| {
+                attach(|py| {
                     let called = progress.as_ref().map_or(Ok(()), |call| {
                         callbacks::call(call.bind(py), (fraction, what)).map(drop)
                     });

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import platform
 import subprocess
 import sys
 
@@ -90,12 +91,30 @@ CALLS_OF_PYTHON = {
     ),
 }
 
+#: The thread asks for the GIL when there is no interpreter any more: glibc sleeps for a second.
+WITHOUT_PYTHON = """
+import ctypes, sys, threading
+from dwell import _native
 
-def ended(script: str) -> str:
-    """What a process of its own printed that runs the script; it ends well."""
+begun = threading.Event()
+
+def work():
+    while True:
+        _native.bench("load", "builtin:studio", {}, lambda *_: begun.set())
+
+threading.Thread(target=work, daemon=True).start()
+begun.wait()
+libc = ctypes.CDLL(None)
+libc.on_exit(libc.sleep, None)  # called with the status
+sys.exit(1)
+"""
+
+
+def ended(script: str, status: int = 0) -> str:
+    """What a process of its own printed that runs the script; it ends well, with this status."""
     command = [sys.executable, "-c", script]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
-    assert (done.returncode, done.stderr) == (0, "")
+    assert (done.returncode, done.stderr) == (status, "")
     return done.stdout
 
 
@@ -110,6 +129,11 @@ def test_a_process_ends_well_while_a_daemon_thread_works(call: str, first: str) 
 def test_a_process_ends_well_while_a_daemon_threads_call_runs_python(what: str) -> None:
     prepare, call = CALLS_OF_PYTHON[what]
     ended(IN_PYTHON.format(prepare=prepare, call=call))
+
+
+@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="on_exit is of glibc")
+def test_a_process_ends_well_whose_daemon_thread_calls_python_after_its_end() -> None:
+    ended(WITHOUT_PYTHON, status=1)
 
 
 def test_at_exit_a_thread_that_works_can_be_waited_for() -> None:
