@@ -64,6 +64,22 @@ except KeyboardInterrupt:
 print("stopped", flush=True)
 """
 
+#: Python ends daemon threads by unwinding, too: those that wait for the GIL when it ends. The last
+#: function of atexit holds it.
+DAEMONS = """
+import atexit, threading
+atexit.register(sum, range(5_000_000))
+import dwell
+world, begun = dwell.World("builtin:studio"), threading.Event()
+def work():
+    while True:
+        world.step()
+        begun.set()
+threading.Thread(target=work, daemon=True).start()
+begun.wait()
+print("begun", flush=True)
+"""
+
 
 class Failed(Exception):
     """A check that failed, with what was found."""
@@ -147,6 +163,13 @@ def unwinds() -> str:
     return "Ctrl-C stops at the border"
 
 
+def daemons() -> str:
+    """A program ends well in the middle of its daemon threads' calls."""
+    for _ in range(RUNS):
+        timed(DAEMONS)
+    return f"{RUNS} programs ended well"
+
+
 def doctor() -> str:
     """The doctor speaks of this machine and this version."""
     facts = json.loads(command("doctor", "--json"))
@@ -180,6 +203,7 @@ CHECKS: dict[str, Callable[[], str]] = {
     "first observation": lambda: median_below(OBSERVATION, OBSERVATION_S),
     "check_env": clean_env,
     "signals": unwinds,
+    "daemon threads": daemons,
     "dwell doctor": doctor,
     "dwell demo": demo,
 }

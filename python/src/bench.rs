@@ -1,7 +1,8 @@
 //! Throughput of every stage, measured without Python.
 
 use crate::answers::Answer;
-use crate::engine_call::EngineCall;
+use crate::callbacks;
+use crate::engine_call::{EngineCall, attach};
 use crate::errors::PyFault;
 use crate::values::Data;
 use pyo3::prelude::*;
@@ -22,7 +23,7 @@ pub(crate) fn bench(
         let options = options.read()?;
         let mut listener = |fraction: f64, part: &str| {
             let Some(call) = &progress else { return true };
-            raised = Python::attach(|py| call.call1(py, (fraction, part)).err());
+            raised = attach(|py| callbacks::call(call.bind(py), (fraction, part)).err());
             raised.is_none()
         };
         Answer::of(&dwell::bench::run(what, house, &options, &mut listener)?)

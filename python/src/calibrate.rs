@@ -1,6 +1,7 @@
 //! Calibration for Python.
 
-use crate::engine_call::EngineCall;
+use crate::callbacks;
+use crate::engine_call::{EngineCall, attach};
 use crate::errors::PyFault;
 use dwell_calibration::rollout::study::OtherSimulator;
 use dwell_scene::parallel::Threads;
@@ -34,10 +35,10 @@ pub(crate) fn calibrate(
             &options,
             &peers?,
             &mut |fraction, what| {
-                Python::attach(|py| {
-                    let called = progress
-                        .as_ref()
-                        .map_or(Ok(()), |call| call.call1(py, (fraction, what)).map(drop));
+                attach(|py| {
+                    let called = progress.as_ref().map_or(Ok(()), |call| {
+                        callbacks::call(call.bind(py), (fraction, what)).map(drop)
+                    });
                     raised = called
                         .and_then(|()| py.check_signals())
                         .err()

@@ -14,6 +14,8 @@ thread_local! {
     static RAISED: RefCell<Option<PyErr>> = const { RefCell::new(None) };
     /// True while this thread is in the middle of a call and runs handlers.
     static IS_ASKING: Cell<bool> = const { Cell::new(false) };
+    /// True in the thread that ends the interpreter, where it calls engines meanwhile: it keeps the GIL to the end.
+    static ENDS_PYTHON: Cell<bool> = const { Cell::new(false) };
 }
 
 /// Runs engine code for Python.
@@ -42,7 +44,7 @@ impl EngineCall for Python<'_> {
         logs::set_level(self);
         let hears_signals = fork_safety::is_main_thread(self);
         // A call that begins while the interpreter ends is of the thread that ends it.
-        let may_outlive_python = is_python_running();
+        ENDS_PYTHON.set(!is_python_running());
         let call = fork_safety::EngineCallGuard::begin(self);
         let outcome = self.detach(|| {
             // Values that a panic leaves half done are never used again: the object that raised is poisoned by its mutex.
@@ -62,9 +64,7 @@ impl EngineCall for Python<'_> {
             }
             // Before the GIL is acquired: a forking thread holds it, and waits for calls to end.
             drop(call);
-            if may_outlive_python {
-                park_without_python();
-            }
+            park_without_python();
             outcome
         });
         // Before logs are delivered: code of Python runs there, a handler of signals too, and what that calls must not find it.
@@ -82,13 +82,20 @@ impl EngineCall for Python<'_> {
     }
 }
 
+/// Acquires the GIL in the middle of a call, for Python's code; without an interpreter the thread is parked for ever.
+pub(crate) fn attach<T>(work: impl FnOnce(Python<'_>) -> T) -> T {
+    // What pyo3 does of itself is a fault: it goes on without one.
+    park_without_python();
+    Python::attach(work)
+}
+
 /// Parks a thread for ever whose call has outlived the interpreter, as a daemon thread's may: the process ends under it.
 ///
 /// `CPython` before 3.14 ends such a thread when it asks for the GIL, by unwinding, which Rust's frames do not take. One that waits
-/// for the GIL when the interpreter begins to end is parked by pyo3, where the extension unwinds by the system's `libgcc_s`. Wheels
-/// have an unwinder of their own, of the linker, and there such a thread still ends the process by a fault.
+/// for the GIL when the interpreter begins to end is parked by pyo3, where the unwinding reaches Rust, and one in Python's code by
+/// [`crate::callbacks`]. Both need the extension to unwind by the system's `libgcc_s`, as Python does: see `xtask/sh/wheel.sh`.
 fn park_without_python() {
-    while !is_python_running() {
+    while !is_python_running() && !ENDS_PYTHON.get() {
         std::thread::park();
     }
 }

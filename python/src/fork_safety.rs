@@ -4,6 +4,7 @@
 //! no other thread is in a call of the engines, and meanwhile no call begins. It holds the GIL from then on, and calls begin
 //! with the GIL: none can begin before the fork is done.
 
+use crate::callbacks;
 use pyo3::prelude::*;
 use pyo3::types::{PyCFunction, PyDict};
 use std::cell::Cell;
@@ -67,7 +68,7 @@ pub(crate) fn is_main_thread(py: Python<'_>) -> bool {
 
 fn is_registered(py: Python<'_>) -> PyResult<bool> {
     let threading = py.import("threading")?;
-    let main = threading.call_method0("main_thread")?.getattr("ident")?;
+    let main = callbacks::call(&threading.getattr("main_thread")?, ())?.getattr("ident")?;
     main.eq(threading.call_method0("get_ident")?)
 }
 

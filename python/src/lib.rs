@@ -13,6 +13,7 @@ mod batch;
 mod bench;
 mod build_info;
 mod calibrate;
+mod callbacks;
 mod descriptions;
 mod engine_call;
 mod errors;

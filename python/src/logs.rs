@@ -5,6 +5,7 @@
 //! in long calls on the main thread, every 25 ms. The level of the logger `dwell` (or of the root, where it has none) says
 //! decides what is recorded at all; it is read when a call begins. Loggers below can only record less.
 
+use crate::callbacks;
 use crate::errors::printable;
 use pyo3::exceptions::PyException;
 use pyo3::intern;
@@ -167,7 +168,7 @@ fn loggers(py: Python<'_>) -> Option<&'static (Py<PyAny>, Py<PyAny>)> {
     }
     let modules = py.import("sys").and_then(|sys| sys.getattr("modules"));
     let logging = modules.and_then(|all| all.get_item("logging")).ok()?;
-    let own = logging.call_method1("getLogger", ("dwell",)).ok()?;
+    let own = callbacks::call(&logging.getattr("getLogger").ok()?, ("dwell",)).ok()?;
     let both = (own.unbind(), logging.getattr("root").ok()?.unbind());
     Some(LOGGERS.get_or_init(py, || both))
 }
@@ -204,8 +205,8 @@ pub(crate) fn deliver(py: Python<'_>) -> Option<PyErr> {
     let told = (|| -> PyResult<()> {
         let logging = py.import("logging")?;
         let tell = |logger: &str, level: i64, text: &str| -> PyResult<()> {
-            let logger = logging.call_method1("getLogger", (logger,))?;
-            logger.call_method1("log", (level, "%s", text)).map(drop)
+            let logger = callbacks::call(&logging.getattr("getLogger")?, (logger,))?;
+            callbacks::call(&logger.getattr("log")?, (level, "%s", text)).map(drop)
         };
         for line in &records {
             tell(&line.logger, line.level, &line.text)?;

@@ -21,6 +21,18 @@ build() {
     CARGO_ENCODED_RUSTFLAGS="$flags" "$bin/maturin" build --release --manifest-path python/Cargo.toml --out dist "$@"
 }
 
+# For Linux. Threads that Python ends are unwound by the system's libgcc_s (docs/python-border.md), so the extension must unwind by it,
+# too: zig would link an unwinder of its own, and each reads the other's memory as its own.
+build_for_linux() {
+    target=$1
+    shift
+    folder="$here/target/libgcc_s/$target"
+    mkdir -p "$folder"
+    "$bin/python" -m ziglang cc -target "${target%%-*}-linux-gnu.2.28" -shared -nostdlib -Wl,-soname,libgcc_s.so.1 \
+        -o "$folder/libgcc_s.so" xtask/libgcc_s.c
+    build --zig --compatibility "$glibc" --target "$target" "$@" -- -C link-arg="$folder/libgcc_s.so"
+}
+
 rm -f dist/dwell-*.whl
 "$bin/python" -m pip install --quiet "$ziglang" || {
     echo "the wheel needs $ziglang from the Python package registry, and pip cannot install it (see above)." >&2
@@ -33,11 +45,11 @@ if [ "$(uname -s)" != Linux ]; then
     exit 0
 fi
 own=$(rustc -vV | sed -n 's/^host: //p')
-build --zig --compatibility "$glibc" "$@"
+build_for_linux "$own" "$@"
 for target in x86_64-unknown-linux-gnu aarch64-unknown-linux-gnu; do
     [ "$target" != "$own" ] || continue
     if [ -d "$(rustc --print target-libdir --target "$target" 2>/dev/null)" ]; then
-        build --zig --compatibility "$glibc" --target "$target" "$@"
+        build_for_linux "$target" "$@"
         echo "wheel: the one for ${target%%-*} is built here and run nowhere."
     else
         echo "wheel: none for ${target%%-*}: the toolchain lacks $target (rustup target add $target)."

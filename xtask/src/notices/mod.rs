@@ -123,24 +123,12 @@ fn of_zig(root: &Path) -> Result<Vec<IncludedWork>, String> {
     let folder = ziglang(root).ok_or(
         "ziglang, the wheel's linker, is not in .venv; `make wheel` installs it and calls this",
     )?;
-    let work =
-        |title: &str, licence: &str, origin: &str, file: &str| -> Result<IncludedWork, String> {
-            Ok(IncludedWork {
-                title: title.to_owned(),
-                licence: licence.to_owned(),
-                origin: origin.to_owned(),
-                texts: vec![archives::read(&folder.join(file))?],
-            })
-        };
-    Ok(vec![
-        work(
-            "LLVM libunwind, as zig builds it",
-            "Apache-2.0 WITH LLVM-exception",
-            "https://github.com/llvm/llvm-project",
-            "lib/libunwind/LICENSE.TXT",
-        )?,
-        work("zig compiler-rt", "MIT", "https://ziglang.org", "LICENSE")?,
-    ])
+    Ok(vec![IncludedWork {
+        title: "zig compiler-rt".to_owned(),
+        licence: "MIT".to_owned(),
+        origin: "https://ziglang.org".to_owned(),
+        texts: vec![archives::read(&folder.join("LICENSE"))?],
+    }])
 }
 
 fn ziglang(root: &Path) -> Option<PathBuf> {
