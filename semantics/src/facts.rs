@@ -23,7 +23,7 @@ pub struct ObjectFacts {
     pub noun: String,
     /// Spoken noun, for several.
     pub plural: String,
-    /// Its materials by share of what is seen of it where it stands at the start, from around and a little above (below, for
+    /// Its sorts of colour by share of what is seen of it where it stands at the start, from around and a little above (below, for
     /// what hangs), largest first; by share of its whole surface where nothing of it is seen. Screens are left out.
     pub patches: Vec<SurfacePatch>,
     /// Its colours in plain words with their shares, largest first; empty for things that are mostly glass or mirror.
@@ -104,7 +104,7 @@ impl ObjectFacts {
     pub fn spoken_colors(&self) -> &[(&'static str, f32)] {
         match self.colors[..] {
             [(_, share), ..] if share >= 0.6 => &self.colors[..1],
-            [(_, p), (_, q), ..] if p + q >= 0.6 => &self.colors[..2],
+            [(_, p), (_, q), ..] if p + q >= 0.75 => &self.colors[..2],
             [(_, share)] if share >= 0.5 => &self.colors[..1],
             _ => &[],
         }
@@ -292,29 +292,14 @@ fn without_screen(
     frame.filter(|(id, _)| !(screened && shows(*id))).collect()
 }
 
-/// Materials by opacity-weighted share of `areas`, largest first.
+/// The sorts of colour by opacity-weighted share of `areas`, largest first.
 fn patches(
     house: &House,
     paints: &MaterialColors,
     areas: &[(MaterialId, f32)],
 ) -> Vec<SurfacePatch> {
-    let weight =
-        |(material, area): &(MaterialId, f32)| area * house.materials[*material].opacity.max(0.02);
-    let total: f32 = areas.iter().map(weight).sum();
-    let mut patches: Vec<SurfacePatch> = areas
-        .iter()
-        .map(|area| SurfacePatch {
-            material: area.0,
-            linear: paints[area.0],
-            share: weight(area) / total,
-        })
-        .collect();
-    patches.sort_by(|p, q| {
-        q.share
-            .total_cmp(&p.share)
-            .then(p.material.cmp(&q.material))
-    });
-    patches
+    let opaque = |id: MaterialId| house.materials[id].opacity.max(0.02);
+    paints.patches(areas.iter().map(|(id, area)| (*id, area * opaque(*id))))
 }
 
 /// Substances by share of `areas`, largest first.

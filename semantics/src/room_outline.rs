@@ -52,6 +52,11 @@ impl RoomOutline {
         }
     }
 
+    /// Returns the direction of the longest border, unit length; zero for a room without a floor.
+    pub(crate) fn along(&self) -> Vec2 {
+        self.along
+    }
+
     /// Returns where a point lies in the rectangle around the floor: -1 to 1 along and across the longest border.
     pub(crate) fn share(&self, point: Vec2) -> Vec2 {
         (turned(self.along, point) - self.middle) / self.half_m.max(Vec2::splat(1e-6))

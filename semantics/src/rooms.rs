@@ -143,7 +143,7 @@ impl RoomSurfaces {
         let house = rays.house();
         let count = house.rooms.len();
         let mut floors = IdVec::filled(BTreeMap::new(), count);
-        let mut floor_paints = IdVec::filled(Vec::new(), count);
+        let mut floor_areas = IdVec::filled(BTreeMap::new(), count);
         for piece in &house.structure {
             let mesh = &house.meshes[piece.mesh];
             for triangle in 0..mesh.triangles.len() {
@@ -160,22 +160,24 @@ impl RoomSurfaces {
                     (StructureKind::Floor, Some(room)) if out.y > 0.5 => {
                         let substance = house.materials[*id].substance.clone();
                         *floors[room].entry(substance).or_insert(0.0) += area_m2;
-                        add(&mut floor_paints[room], *id, paints[*id], area_m2);
+                        *floor_areas[room].entry(*id).or_insert(0.0) += area_m2;
                     }
                     _ => {}
                 }
             }
         }
-        for patches in &mut floor_paints {
-            shares(patches);
-        }
         let walls = Threads::resolve(None).map(count, |k| {
             let points = house.points_in_room(RoomId::from_index(k), POINTS);
-            visible_wall_areas(rays, paints, &points)
+            paints.patches(visible_wall_areas(rays, &points))
         });
         Self {
             floors,
-            floor_paints,
+            floor_paints: floor_areas
+                .iter()
+                .map(|areas: &BTreeMap<MaterialId, f32>| {
+                    paints.patches(areas.iter().map(|(id, area_m2)| (*id, *area_m2)))
+                })
+                .collect(),
             walls: walls.into(),
         }
     }
@@ -198,23 +200,11 @@ fn most(patches: &[SurfacePatch]) -> Option<&'static str> {
     Some(word)
 }
 
-/// Makes areas shares of their sum.
-fn shares(patches: &mut [SurfacePatch]) {
-    let whole: f32 = patches.iter().map(|patch| patch.share).sum();
-    for patch in patches {
-        patch.share /= whole;
-    }
-}
-
-/// The visible wall materials of a room, by share of the horizontal directions.
+/// The visible wall materials of a room, by number of horizontal directions.
 ///
 /// Walls have two shells and rooms may overlap, so a room's own surfaces are not those seen in it.
-fn visible_wall_areas(
-    rays: &RayScene,
-    paints: &MaterialColors,
-    points: &[Vec3],
-) -> Vec<SurfacePatch> {
-    let mut patches = Vec::new();
+fn visible_wall_areas(rays: &RayScene, points: &[Vec3]) -> BTreeMap<MaterialId, f32> {
+    let mut areas = BTreeMap::new();
     let step = (points.len() / LOOKS).max(1);
     for eye in points.iter().step_by(step) {
         for k in 0..DIRECTIONS {
@@ -227,31 +217,9 @@ fn visible_wall_areas(
             if let SurfaceOwner::Structure(piece) = surface.owner
                 && rays.house().structure[piece].kind == StructureKind::Wall
             {
-                add(
-                    &mut patches,
-                    surface.material,
-                    paints[surface.material],
-                    1.0,
-                );
+                *areas.entry(surface.material).or_insert(0.0) += 1.0;
             }
         }
     }
-    shares(&mut patches);
-    patches
-}
-
-fn add(
-    patches: &mut Vec<SurfacePatch>,
-    material: MaterialId,
-    linear: Option<[f32; 3]>,
-    share: f32,
-) {
-    match patches.iter_mut().find(|patch| patch.material == material) {
-        Some(patch) => patch.share += share,
-        None => patches.push(SurfacePatch {
-            material,
-            linear,
-            share,
-        }),
-    }
+    areas
 }

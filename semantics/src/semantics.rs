@@ -1,6 +1,6 @@
 //! The entry point: a house with its semantics.
 
-use crate::color::{MaterialColors, material_colors};
+use crate::color::MaterialColors;
 use crate::doorways::RoomDoorway;
 use crate::extent_cache::ExtentCache;
 use crate::facts::ObjectFacts;
@@ -51,7 +51,7 @@ impl Semantics {
             },
             || {
                 (
-                    material_colors(house),
+                    MaterialColors::gather(house),
                     structure_outlines(house),
                     rest_extents(house, &state),
                 )

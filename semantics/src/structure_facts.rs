@@ -1,6 +1,6 @@
 //! Colours and substances of walls, floors and ceilings.
 
-use crate::color::{ColorVocabulary, SurfacePatch, color_words};
+use crate::color::{ColorVocabulary, color_words};
 use crate::material_family::family_of;
 use crate::semantics::Semantics;
 use dwell_scene::material::library;
@@ -35,14 +35,7 @@ fn shares(semantics: &Semantics, piece: StructureId) -> BTreeMap<MaterialId, f32
 
 /// Returns whether a piece of the building shows a plain colour.
 pub(crate) fn has_color(semantics: &Semantics, piece: StructureId, word: &str) -> bool {
-    let patches = shares(semantics, piece).into_iter();
-    let patches: Vec<SurfacePatch> = patches
-        .map(|(material, share)| SurfacePatch {
-            material,
-            linear: semantics.material_colors()[material],
-            share,
-        })
-        .collect();
+    let patches = semantics.material_colors().patches(shares(semantics, piece));
     let words = color_words(&patches, ColorVocabulary::Plain);
     let mut large = words.iter().filter(|(_, share)| *share >= LEAST_SHARE);
     large.any(|(own, _)| *own == word)

@@ -249,6 +249,38 @@ fn fronts_are_those_of_things_and_sides_those_of_viewers() {
 }
 
 #[test]
+fn what_lies_ahead_of_a_front_is_opposite() {
+    // A sofa with its face at z = 1.9 and its width from x = 3 to 5.
+    let opposite = |category: &str, x: f32, z: f32| {
+        let mut stage = Stage::new();
+        let sofa = stage.block("sofa", [3.0, 0.0, 1.0], [2.0, 0.8, 0.9]);
+        let other = stage.block(category, [x, 0.0, z], [1.0, 0.4, 0.6]);
+        let asked = stage.ask();
+        let holds = asked.holds("opposite", other, sofa);
+        assert_eq!(holds, asked.holds("opposite", sofa, other));
+        holds
+    };
+    // A table has no front: the gap and the common half of its width decide.
+    assert!(opposite("coffee_table", 3.5, 2.41) && !opposite("coffee_table", 3.5, 2.39));
+    assert!(opposite("coffee_table", 4.49, 3.0) && !opposite("coffee_table", 4.51, 3.0));
+    assert!(!opposite("coffee_table", 3.5, 0.0));
+    // A second sofa looks along +Z, too: away from the first.
+    assert!(!opposite("sofa", 3.5, 3.0));
+}
+
+#[test]
+fn without_fronts_the_halves_of_a_room_are_opposite() {
+    // The middle of the room lies at z = 3.
+    let opposite = |z: f32| {
+        let mut stage = Stage::new();
+        let a = stage.block("box", [3.5, 0.0, z - 0.2], [1.0, 0.4, 0.4]);
+        let b = stage.block("box", [3.5, 0.0, 5.0], [1.0, 0.4, 0.4]);
+        stage.ask().holds("opposite", a, b)
+    };
+    assert!(opposite(1.0) && opposite(2.99) && !opposite(3.01));
+}
+
+#[test]
 fn an_agent_faces_what_is_within_30_degrees() {
     let faces = |degrees: f32| {
         let mut stage = Stage::new();

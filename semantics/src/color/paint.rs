@@ -13,81 +13,140 @@ pub const MENTION_SHARE: f32 = 0.2;
 const SHADE: f32 = 0.15;
 /// Share of an image from which one sort of colour is that of the whole.
 const DOMINANT_SHARE: f32 = 0.6;
+/// Share of an image from which a sort of colour is one of a pattern.
+const SORT_SHARE: f32 = 0.2;
 /// Approximate number of pixels by which an image is sampled.
 const PIXELS: usize = 1024;
 /// Number of times that the middle of a sort is moved to the mean of its shades.
 const ROUNDS: usize = 4;
+/// Number of pixels from which the largest sort is sought.
+const SEEDS: usize = 16;
 
-/// The colour that most of each material of a house has, in linear light: the mean of that sort of colour, times base colour; `None`
-/// for pictures and patterns of several sorts. Shape (material,).
-pub(crate) type MaterialColors = IdVec<MaterialId, Option<[f32; 3]>>;
+/// A sort of colour of a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfacePatch {
+    /// Its colour, in linear light; `None` for the part of pictures and patterns that is of no sort.
+    pub linear: Option<[f32; 3]>,
+    /// Its fraction of the surface, weighted by opacity; the patches of a thing sum to 1.
+    pub share: f32,
+}
 
-/// The colours of every material of a house.
-pub(crate) fn material_colors(house: &House) -> MaterialColors {
-    let decoded = decoded();
-    let materials = house.materials.as_slice();
-    Threads::resolve(None)
-        .map(materials.len(), |k| {
+/// The sorts of colour of each material of a house.
+#[derive(Debug)]
+pub(crate) struct MaterialColors(IdVec<MaterialId, Vec<SurfacePatch>>);
+
+impl MaterialColors {
+    /// Finds the sorts of colour of every material of a house.
+    pub(crate) fn gather(house: &House) -> Self {
+        let decoded = decoded();
+        let materials = house.materials.as_slice();
+        let sorts = Threads::resolve(None).map(materials.len(), |k| {
             let material = &materials[k];
             let base = material.base_color;
             match material.texture {
-                Some(texture) => dominant(&house.textures[texture], base, &decoded),
-                None => Some(base),
+                Some(texture) => sorts(&house.textures[texture], base, &decoded),
+                None => vec![SurfacePatch {
+                    linear: Some(base),
+                    share: 1.0,
+                }],
             }
-        })
-        .into()
+        });
+        Self(sorts.into())
+    }
+
+    /// The sorts of colour of a surface by the areas of its materials, m² or any other unit, the largest first.
+    pub(crate) fn patches(
+        &self,
+        areas: impl IntoIterator<Item = (MaterialId, f32)>,
+    ) -> Vec<SurfacePatch> {
+        let areas: Vec<(MaterialId, f32)> = areas.into_iter().collect();
+        let whole: f32 = areas.iter().map(|(_, area)| area).sum();
+        let mut patches: Vec<SurfacePatch> = areas
+            .iter()
+            .flat_map(|(material, area)| {
+                self.0[*material].iter().map(move |sort| SurfacePatch {
+                    share: sort.share * area / whole,
+                    ..*sort
+                })
+            })
+            .collect();
+        patches.sort_by(|p, q| q.share.total_cmp(&p.share));
+        patches
+    }
 }
 
-/// The mean of the sort of colour that at least [`DOMINANT_SHARE`] of an image has, times `base`.
+/// The sorts of colour of an image times `base`: the one that at least [`DOMINANT_SHARE`] of it has, or those of at least
+/// [`SORT_SHARE`] and what is left.
 ///
-/// A sort is what lies within [`SHADE`] of its own mean. It is sought from the image's mean and from each of its pixels that
-/// lies in no sort found before, so that neither a pattern's ground nor a grain about its mean is missed.
+/// A sort is what lies within [`SHADE`] of its own mean. The largest is sought from some of the pixels that lie in no sort found
+/// before, so that neither a pattern's ground nor a grain about its mean is missed.
 /// `decoded`: linear light of every byte. Shape (256,).
-fn dominant(texture: &Texture, base: [f32; 3], decoded: &[f32; 256]) -> Option<[f32; 3]> {
-    let solid = |pixel: &&[u8]| pixel[3] > 0;
+fn sorts(texture: &Texture, base: [f32; 3], decoded: &[f32; 256]) -> Vec<SurfacePatch> {
     let count = texture.width as usize * texture.height as usize;
-    let step = (count / PIXELS).max(1);
     // Strides that share a factor with the width would look at a few columns only.
-    let step = step | 1;
-    let shades: Vec<([f32; 3], Oklab)> = texture
+    let step = (count / PIXELS).max(1) | 1;
+    let mut left: Vec<([f32; 3], Oklab)> = texture
         .sampled_rgba(step)
         .chunks_exact(4)
-        .filter(solid)
+        .filter(|pixel| pixel[3] > 0)
         .map(|pixel| {
             let linear = std::array::from_fn(|k| base[k] * decoded[usize::from(pixel[k])]);
             (linear, Oklab::from_linear(linear))
         })
         .collect();
-    let needed = DOMINANT_SHARE * shades.len() as f32;
-    let mut middle = mean(shades.iter().map(|(linear, _)| *linear))?;
-    let mut left: Vec<Oklab> = shades.iter().map(|(_, lab)| *lab).collect();
-    loop {
-        let mut near = Vec::new();
+    let whole = left.len() as f32;
+    let mut found = Vec::new();
+    while left.len() as f32 >= (SORT_SHARE * whole).max(1.0) {
+        let middle = largest_sort(&left);
+        let lab = Oklab::from_linear(middle);
+        let before = left.len();
+        left.retain(|(_, shade)| shade.distance(lab) > SHADE);
+        let share = (before - left.len()) as f32 / whole;
+        if share < SORT_SHARE {
+            break;
+        }
+        let linear = Some(middle);
+        if share >= DOMINANT_SHARE {
+            return vec![SurfacePatch { linear, share: 1.0 }];
+        }
+        found.push(SurfacePatch { linear, share });
+    }
+    let share = 1.0 - found.iter().map(|sort| sort.share).sum::<f32>();
+    found.push(SurfacePatch {
+        linear: None,
+        share,
+    });
+    found
+}
+
+/// The mean of the largest sort of colour among `shades`, which are some.
+fn largest_sort(shades: &[([f32; 3], Oklab)]) -> [f32; 3] {
+    let mut best = ([0.0; 3], 0);
+    // From pixels alone: the mean of two sorts may lie near enough to both.
+    for k in 0..SEEDS {
+        let mut middle = shades[shades.len() * k / SEEDS].0;
+        let mut size = 0;
         for _ in 0..ROUNDS {
             let lab = Oklab::from_linear(middle);
-            near = shades
-                .iter()
-                .filter(|(_, shade)| shade.distance(lab) <= SHADE)
-                .map(|(linear, _)| *linear)
-                .collect();
-            let Some(moved) = mean(near.iter().copied()) else {
+            let near = || {
+                let near = shades.iter().filter(|(_, s)| s.distance(lab) <= SHADE);
+                near.map(|(linear, _)| *linear)
+            };
+            size = near().count();
+            let Some(moved) = mean(near()) else {
                 break;
             };
             middle = moved;
         }
-        if near.len() as f32 >= needed {
-            return Some(middle);
+        if size > best.1 {
+            best = (middle, size);
         }
-        let found = Oklab::from_linear(middle);
-        let before = left.len();
-        left.retain(|shade| shade.distance(found) > SHADE);
-        // What is left is too little to be most of it, or nothing was taken away.
-        if (left.len() as f32) < needed || left.len() == before {
-            return None;
+        // No other can be larger.
+        if 2 * size > shades.len() {
+            break;
         }
-        let start = left[left.len() / 2];
-        middle = shades.iter().find(|(_, lab)| *lab == start)?.0;
     }
+    best.0
 }
 
 fn mean(colors: impl Iterator<Item = [f32; 3]>) -> Option<[f32; 3]> {
@@ -104,17 +163,6 @@ fn mean(colors: impl Iterator<Item = [f32; 3]>) -> Option<[f32; 3]> {
 /// Linear light of every byte of an image.
 fn decoded() -> [f32; 256] {
     std::array::from_fn(|byte| linear_from_srgb(byte as f32 / 255.0))
-}
-
-/// One material's part of a thing's surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SurfacePatch {
-    /// The material.
-    pub material: MaterialId,
-    /// The colour that most of it has, in linear light; `None` for pictures and patterns of several sorts of colour.
-    pub linear: Option<[f32; 3]>,
-    /// Its fraction of the surface, weighted by opacity; the patches of a thing sum to 1.
-    pub share: f32,
 }
 
 /// The words for the colours of `patches`, the largest share first.
@@ -152,7 +200,6 @@ mod tests {
 
     fn patch(linear: [f32; 3], share: f32) -> SurfacePatch {
         SurfacePatch {
-            material: MaterialId(0),
             linear: Some(linear),
             share,
         }
@@ -200,14 +247,16 @@ mod tests {
         Texture::new("image".to_owned(), 64, 64, pixels.collect())
     }
 
-    fn word(texture: &Texture) -> Option<&'static str> {
-        dominant(texture, [1.0; 3], &decoded()).map(|linear| ColorVocabulary::Plain.word(linear))
+    /// The words for the colours of an image.
+    fn words(texture: &Texture) -> Vec<&'static str> {
+        let words = color_words(&sorts(texture, [1.0; 3], &decoded()), ColorVocabulary::Plain);
+        words.into_iter().map(|(word, _)| word).collect()
     }
 
     #[test]
-    fn a_sort_of_colour_is_found_where_it_prevails() {
+    fn the_sorts_of_colour_of_an_image_are_found() {
         let grain = |x: usize, _| [150 + (x % 5) as u8 * 5, 111 + (x % 5) as u8 * 4, 72];
-        assert_eq!(word(&image(grain)), Some("brown"));
+        assert_eq!(words(&image(grain)), ["brown"]);
         // Red dots on white; the mean is pink.
         let dots = |x: usize, y: usize| {
             if x.is_multiple_of(4) || y.is_multiple_of(8) {
@@ -216,7 +265,7 @@ mod tests {
                 [250; 3]
             }
         };
-        assert_eq!(word(&image(dots)), Some("white"));
+        assert_eq!(words(&image(dots)), ["white"]);
         let stripes = |x: usize, _| {
             if x % 16 < 8 {
                 [190, 20, 25]
@@ -224,13 +273,22 @@ mod tests {
                 [30, 60, 150]
             }
         };
-        assert_eq!(word(&image(stripes)), None);
-        let thirds = |_, y: usize| [[188, 212, 226], [72, 110, 52], [176, 40, 44]][y * 3 / 64];
-        assert_eq!(word(&image(thirds)), None);
+        assert_eq!(words(&image(stripes)), ["blue", "red"]);
+        // Seven sorts, each of a seventh of the image.
+        let palette = [
+            [188, 212, 226],
+            [72, 110, 52],
+            [176, 40, 44],
+            [240, 220, 60],
+            [20, 20, 22],
+            [30, 60, 140],
+            [230, 150, 180],
+        ];
+        let picture = |_, y: usize| palette[y * 7 / 64];
+        assert!(words(&image(picture)).is_empty());
+        let thirds = |_, y: usize| [[150, 190, 230], [40, 110, 50], [180, 30, 30]][y * 3 / 64];
+        assert_eq!(words(&image(thirds)), ["blue", "green", "red"]);
         // All of it see-through.
-        assert_eq!(
-            word(&Texture::new("none".to_owned(), 1, 1, vec![0; 4])),
-            None
-        );
+        assert!(words(&Texture::new("none".to_owned(), 1, 1, vec![0; 4])).is_empty());
     }
 }

@@ -49,6 +49,7 @@ mod on_storey;
 mod open;
 mod open_to;
 mod openness;
+mod opposite;
 mod reachable;
 mod right_of;
 mod room_contains;
@@ -259,6 +260,7 @@ pub fn all() -> &'static [&'static dyn Predicate] {
         &at_front_of::AtFrontOf,
         &at_back_of::AtBackOf,
         &facing::Facing,
+        &opposite::Opposite,
         &visible::Visible,
         &visible_from::VisibleFrom,
         &visible_from_room::VisibleFromRoom,
