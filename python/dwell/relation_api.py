@@ -158,7 +158,8 @@ class RelationApi(StateApi):
         Returns:
             ``id``, ``name``, ``noun``; ``category``, its row in the table of categories, with
             ``synset`` (a name of WordNet 3.0), ``nyu40_id`` and ``nyu40_name``; ``colors`` (plain
-            words) and ``substances`` with their shares, largest first; ``size`` for its kind:
+            words) and ``substances`` with their shares, largest first; ``pattern``: ``striped``,
+            ``checked``, ``patterned`` or ``None``; ``size`` for its kind:
             ``tiny``, ``small``, ``normal``, ``large`` or ``huge``; ``center`` and ``extents`` of
             its box, m; ``room`` and ``storey``, counted from 0; ``openness`` (0 to 1),
             ``switched_on`` and ``held_by``, or ``None``.

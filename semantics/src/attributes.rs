@@ -1,5 +1,6 @@
 //! The attributes of objects, as data.
 
+use crate::color::Pattern;
 use crate::scene::{SemanticScene, Term};
 use crate::size::SizeClass;
 use dwell_scene::ObjectId;
@@ -24,6 +25,8 @@ pub struct ObjectAttributes {
     pub nyu40_name: String,
     /// Plain colour words with their shares of what is seen of it, largest first.
     pub colors: Vec<(String, f32)>,
+    /// The pattern of most of it, by its predicate's name; `None` for plain things.
+    pub pattern: Option<Pattern>,
     /// Substances by name with their shares of its surface, largest first.
     pub substances: Vec<(String, f32)>,
     /// Its size for its kind.
@@ -63,6 +66,7 @@ pub fn object_attributes(scene: &SemanticScene<'_>, id: ObjectId) -> ObjectAttri
         colors: colors
             .map(|(word, share)| ((*word).to_owned(), *share))
             .collect(),
+        pattern: facts.pattern,
         substances: substances
             .map(|(substance, share)| (substance.name.clone(), *share))
             .collect(),

@@ -1,7 +1,7 @@
 //! State-independent facts about an object: kind, colours, substances, size.
 
 use crate::category::{SemanticCategory, categories};
-use crate::color::{ColorVocabulary, MaterialColors, SurfacePatch, color_words};
+use crate::color::{ColorVocabulary, MaterialColors, Pattern, SurfacePatch, color_words};
 use crate::english::counted_noun;
 use crate::form::{Description, Noun};
 use crate::geometry::mapped_area_m2;
@@ -13,6 +13,10 @@ use glam::Vec3;
 
 /// Share of the surface from which a substance gives a thing its adjective.
 const MADE_OF_SHARE: f32 = 0.5;
+/// Opacity below which a material has no colour of its own.
+const CLEAR_OPACITY: f32 = 0.6;
+/// Share of what is seen of a thing from which its frame gives it its colour, where the rest is clear.
+const FRAME_SHARE: f32 = 0.1;
 
 /// The lasting facts about an object.
 #[derive(Clone, Debug)]
@@ -24,10 +28,12 @@ pub struct ObjectFacts {
     /// Spoken noun, for several.
     pub plural: String,
     /// Its sorts of colour by share of what is seen of it where it stands at the start, from around and a little above (below, for
-    /// what hangs), largest first; by share of its whole surface where nothing of it is seen. Screens are left out.
+    /// what hangs), largest first; by share of its whole surface where nothing of it is seen. Screens, clear glass, mirrors and the pots of plants are left out.
     pub patches: Vec<SurfacePatch>,
     /// Its colours in plain words with their shares, largest first; empty for things that are mostly glass or mirror.
     pub colors: Vec<(&'static str, f32)>,
+    /// The pattern of most of it; `None` for plain things, and for pictures, screens and books.
+    pub pattern: Option<Pattern>,
     /// Its substances with their shares of the surface, largest first.
     pub substances: Vec<(&'static Substance, f32)>,
     /// Edges of the box around it in the axes of its root part, m.
@@ -56,26 +62,19 @@ impl ObjectFacts {
         };
         let areas = areas_m2(house, id);
         let shown: &[(MaterialId, f32)] = if seen.is_empty() { &areas } else { seen };
-        let patches = patches(house, paints, &without_screen(house, category, shown));
+        let named = named_surfaces(house, category, shown);
+        let patches = patches(house, paints, &named);
+        let pattern = pattern(paints, category, &named);
         let substances = substances(house, &areas);
         let extents_m = own_box(house, id).size();
-        // Glass and mirrors have the colour of what lies behind or before them.
-        let clear = ["glass", "double_glazing", "mirror"];
-        let mostly = substances
-            .first()
-            .filter(|(_, share)| *share >= MADE_OF_SHARE);
-        let colors =
-            if mostly.is_some_and(|(substance, _)| clear.contains(&substance.name.as_str())) {
-                Vec::new()
-            } else {
-                color_words(&patches, ColorVocabulary::Plain)
-            };
+        let colors = color_words(&patches, ColorVocabulary::Plain);
         Self {
             category,
             noun,
             plural,
             colors,
             patches,
+            pattern,
             substances,
             extents_m,
             size: SizeClass::of(extents_m, category),
@@ -102,7 +101,10 @@ impl ObjectFacts {
     /// The colours a speaker would use: the one of most of the surface, else the two largest; none without a surface,
     /// or when no two cover most of it.
     pub fn spoken_colors(&self) -> &[(&'static str, f32)] {
+        // "A white picture" leaves open whether paper, mat or frame is meant.
+        let is_picture = self.category.is_some_and(|row| row.nyu40_name == "picture");
         match self.colors[..] {
+            [(_, share), ..] if is_picture && share < 0.9 => &[],
             [(_, share), ..] if share >= 0.6 => &self.colors[..1],
             [(_, p), (_, q), ..] if p + q >= 0.75 => &self.colors[..2],
             [(_, share)] if share >= 0.5 => &self.colors[..1],
@@ -275,8 +277,8 @@ fn areas_m2(house: &House, id: ObjectId) -> Vec<(MaterialId, f32)> {
     rounded.filter(|(_, area)| *area > 0.0).collect()
 }
 
-/// `areas` without the picture of a screen: a television has the colour of its frame, whatever is on.
-fn without_screen(
+/// The part of `areas` after which a thing's colour is named; none of what is nearly all glass or mirror.
+fn named_surfaces(
     house: &House,
     category: Option<&SemanticCategory>,
     areas: &[(MaterialId, f32)],
@@ -284,12 +286,34 @@ fn without_screen(
     let screened = category.is_some_and(|row| {
         row.nyu40_name == "television" || ["tablet", "cellphone"].contains(&row.name)
     });
-    let shows = |id: MaterialId| {
+    // A television has the colour of its frame, whatever is on.
+    let is_screen = |id: MaterialId| {
         let material = &house.materials[id];
         material.texture.is_some() || material.emission.iter().any(|light| *light > 0.0)
     };
-    let frame = areas.iter().copied();
-    frame.filter(|(id, _)| !(screened && shows(*id))).collect()
+    // Clear glass and mirrors have the colour of what lies behind or before them.
+    let is_clear = |id: MaterialId| {
+        let material = &house.materials[id];
+        material.opacity < CLEAR_OPACITY || material.substance == "mirror"
+    };
+    let area_m2 = |of: &[(MaterialId, f32)]| of.iter().map(|(_, area_m2)| area_m2).sum::<f32>();
+    let own = areas.iter().copied();
+    let own: Vec<_> = own
+        .filter(|(id, _)| !(screened && is_screen(*id) || is_clear(*id)))
+        .collect();
+    if area_m2(&own) < FRAME_SHARE * area_m2(areas) {
+        return Vec::new();
+    }
+    // A plant has the colour of its leaves or flowers, not of its pot.
+    let is_leaf = |id: MaterialId| house.materials[id].substance == "leaves";
+    let leaves = own.iter().copied();
+    let leaves: Vec<_> = leaves.filter(|(id, _)| is_leaf(*id)).collect();
+    let is_plant = category.is_some_and(|row| row.substances.first() == Some(&"leaves"));
+    if is_plant && !leaves.is_empty() {
+        leaves
+    } else {
+        own
+    }
 }
 
 /// The sorts of colour by opacity-weighted share of `areas`, largest first.
@@ -300,6 +324,22 @@ fn patches(
 ) -> Vec<SurfacePatch> {
     let opaque = |id: MaterialId| house.materials[id].opacity.max(0.02);
     paints.patches(areas.iter().map(|(id, area)| (*id, area * opaque(*id))))
+}
+
+/// The pattern of the material on most of `areas`.
+fn pattern(
+    paints: &MaterialColors,
+    category: Option<&SemanticCategory>,
+    areas: &[(MaterialId, f32)],
+) -> Option<Pattern> {
+    const SHOWING: [&str; 5] = ["picture", "television", "books", "paper", "clock"];
+    if category.is_none_or(|row| SHOWING.contains(&row.nyu40_name) || SHOWING.contains(&row.name)) {
+        return None;
+    }
+    let whole: f32 = areas.iter().map(|(_, area_m2)| area_m2).sum();
+    let mut most = areas.iter();
+    let (material, _) = most.find(|(_, area_m2)| *area_m2 >= MADE_OF_SHARE * whole)?;
+    paints.pattern(*material)
 }
 
 /// Substances by share of `areas`, largest first.

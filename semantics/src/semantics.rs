@@ -13,7 +13,6 @@ use crate::room_outline::RoomOutline;
 use crate::rooms::RoomProperties;
 use crate::visible_area::visible_surface_areas;
 use dwell_scene::bvh::BoxTree;
-use dwell_scene::interrupt;
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{Aabb, AgentId, House, Id, IdVec, ObjectId, RoomId, State, StructureId};
@@ -60,15 +59,14 @@ impl Semantics {
         let rays = RayScene::new(house.clone());
         let bounds: IdVec<ObjectId, Aabb> =
             rest_extents.iter().map(|extent| extent.bounds).collect();
-        let seen = visible_surface_areas(&rays, &bounds);
-        let facts: IdVec<ObjectId, ObjectFacts> = house
-            .objects
-            .ids()
-            .map(|id| {
-                interrupt::check();
+        // Whoever asks for facts goes on to say them: the grammar is compiled meanwhile.
+        let (seen, _) = threads.join(|| visible_surface_areas(&rays, &bounds), Language::english);
+        let facts: IdVec<ObjectId, ObjectFacts> = threads
+            .map(house.objects.len(), |k| {
+                let id = ObjectId::from_index(k);
                 ObjectFacts::gather(house, &paints, &seen[id], id)
             })
-            .collect();
+            .into();
         let doors = facts.iter_ids().filter(|(_, facts)| facts.is_door());
         let doorways: BTreeMap<ObjectId, RoomDoorway> = doors
             .map(|(id, _)| (id, RoomDoorway::gather(&rays, &state, id, bounds[id])))

@@ -35,7 +35,9 @@ fn shares(semantics: &Semantics, piece: StructureId) -> BTreeMap<MaterialId, f32
 
 /// Returns whether a piece of the building shows a plain colour.
 pub(crate) fn has_color(semantics: &Semantics, piece: StructureId, word: &str) -> bool {
-    let patches = semantics.material_colors().patches(shares(semantics, piece));
+    let patches = semantics
+        .material_colors()
+        .patches(shares(semantics, piece));
     let words = color_words(&patches, ColorVocabulary::Plain);
     let mut large = words.iter().filter(|(_, share)| *share >= LEAST_SHARE);
     large.any(|(own, _)| *own == word)

@@ -91,6 +91,9 @@ impl Facts<'_> {
                 .openness
                 .is_some_and(|share| share > 0.02 && share <= 0.5),
             "switched_on" => node.switched_on == Some(true),
+            "striped" | "checked" | "patterned" => attributes
+                .pattern
+                .is_some_and(|own| state == "patterned" || own.name() == state),
             other => panic!("state {other}"),
         };
         self.is_called(node.id, noun)

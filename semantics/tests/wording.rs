@@ -422,7 +422,7 @@ fn pictures_have_no_colour_and_televisions_that_of_their_frame() {
         (picture, "a picture on the wall in the living room"),
         (table, "a brown wooden table in the living room"),
         (rug, "a white rug in the living room"),
-        (motley_rug, "a rug in the living room"),
+        (motley_rug, "a patterned rug in the living room"),
     ];
     for (thing, text) in captions {
         assert_eq!(told.caption(thing), text);

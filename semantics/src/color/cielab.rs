@@ -1,6 +1,5 @@
 //! CIELAB: the space in which names of colours were counted.
 
-use dwell_scene::math;
 use glam::{Mat3, Vec3};
 
 /// A colour in CIELAB under D65, as (L*, a*, b*): lightness 0 to 100, then green to red and blue to yellow, about -100 to 100.
@@ -24,7 +23,7 @@ pub(super) fn cielab_from_linear(linear: [f32; 3]) -> Vec3 {
     const WHITE: Vec3 = Vec3::new(0.950_47, 1.0, 1.088_83);
     let root = |t: f32| {
         if t > 216.0 / 24_389.0 {
-            math::pow(t, 1.0 / 3.0)
+            libm::cbrtf(t)
         } else {
             (24_389.0 / 27.0 * t + 16.0) / 116.0
         }

@@ -1,11 +1,14 @@
 //! Colours and their words.
 
 mod cielab;
+mod naming;
 mod oklab;
 mod paint;
+mod pattern;
 mod vocabulary;
 
 pub use oklab::Oklab;
 pub(crate) use paint::MaterialColors;
 pub use paint::{MENTION_SHARE, SurfacePatch, color_words};
+pub use pattern::Pattern;
 pub use vocabulary::ColorVocabulary;

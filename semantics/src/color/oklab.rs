@@ -1,6 +1,5 @@
 //! Distance between colours.
 
-use dwell_scene::math;
 use dwell_scene::units::linear_from_srgb;
 
 /// A colour in `OKLab`: lightness 0 to 1, then green to red and blue to yellow, about -0.4 to 0.4.
@@ -21,7 +20,7 @@ impl Oklab {
     /// B. Ottosson, *A perceptual color space for image processing* (2020), matrices of 2021-01-25.
     #[expect(clippy::excessive_precision, reason = "the matrices are printed so")]
     pub fn from_linear([r, g, b]: [f32; 3]) -> Self {
-        let root = |x: f32| math::pow(x.max(0.0), 1.0 / 3.0);
+        let root = |x: f32| libm::cbrtf(x.max(0.0));
         let l = root(0.412_221_470_8 * r + 0.536_332_536_3 * g + 0.051_445_992_9 * b);
         let m = root(0.211_903_498_2 * r + 0.680_699_545_1 * g + 0.107_396_956_6 * b);
         let s = root(0.088_302_461_9 * r + 0.281_718_837_6 * g + 0.629_978_700_5 * b);

@@ -1,5 +1,6 @@
 //! The colours of a thing.
 
+use super::pattern::{Pattern, pattern};
 use super::{ColorVocabulary, Oklab};
 use dwell_scene::parallel::Threads;
 use dwell_scene::units::linear_from_srgb;
@@ -31,27 +32,44 @@ pub struct SurfacePatch {
     pub share: f32,
 }
 
-/// The sorts of colour of each material of a house.
+/// The colours of a material.
+#[derive(Clone, Debug, PartialEq)]
+struct Paint {
+    /// Its sorts of colour.
+    sorts: Vec<SurfacePatch>,
+    /// How they lie on it, where it has several.
+    pattern: Option<Pattern>,
+}
+
+/// The colours of each material of a house.
 #[derive(Debug)]
-pub(crate) struct MaterialColors(IdVec<MaterialId, Vec<SurfacePatch>>);
+pub(crate) struct MaterialColors(IdVec<MaterialId, Paint>);
 
 impl MaterialColors {
-    /// Finds the sorts of colour of every material of a house.
+    /// Finds the colours of every material of a house.
     pub(crate) fn gather(house: &House) -> Self {
         let decoded = decoded();
         let materials = house.materials.as_slice();
-        let sorts = Threads::resolve(None).map(materials.len(), |k| {
+        let paints = Threads::resolve(None).map(materials.len(), |k| {
             let material = &materials[k];
             let base = material.base_color;
             match material.texture {
-                Some(texture) => sorts(&house.textures[texture], base, &decoded),
-                None => vec![SurfacePatch {
-                    linear: Some(base),
-                    share: 1.0,
-                }],
+                Some(texture) => paint(&house.textures[texture], base, &decoded),
+                None => Paint {
+                    sorts: vec![SurfacePatch {
+                        linear: Some(base),
+                        share: 1.0,
+                    }],
+                    pattern: None,
+                },
             }
         });
-        Self(sorts.into())
+        Self(paints.into())
+    }
+
+    /// How the colours of a material lie on it, where it has several.
+    pub(crate) fn pattern(&self, material: MaterialId) -> Option<Pattern> {
+        self.0[material].pattern
     }
 
     /// The sorts of colour of a surface by the areas of its materials, m² or any other unit, the largest first.
@@ -64,10 +82,13 @@ impl MaterialColors {
         let mut patches: Vec<SurfacePatch> = areas
             .iter()
             .flat_map(|(material, area)| {
-                self.0[*material].iter().map(move |sort| SurfacePatch {
-                    share: sort.share * area / whole,
-                    ..*sort
-                })
+                self.0[*material]
+                    .sorts
+                    .iter()
+                    .map(move |sort| SurfacePatch {
+                        share: sort.share * area / whole,
+                        ..*sort
+                    })
             })
             .collect();
         patches.sort_by(|p, q| q.share.total_cmp(&p.share));
@@ -75,27 +96,40 @@ impl MaterialColors {
     }
 }
 
-/// The sorts of colour of an image times `base`: the one that at least [`DOMINANT_SHARE`] of it has, or those of at least
-/// [`SORT_SHARE`] and what is left.
+/// The colours of an image times `base`: the sort that at least [`DOMINANT_SHARE`] of it has, or those of at least [`SORT_SHARE`] and
+/// what is left.
 ///
 /// A sort is what lies within [`SHADE`] of its own mean. The largest is sought from some of the pixels that lie in no sort found
 /// before, so that neither a pattern's ground nor a grain about its mean is missed.
 /// `decoded`: linear light of every byte. Shape (256,).
-fn sorts(texture: &Texture, base: [f32; 3], decoded: &[f32; 256]) -> Vec<SurfacePatch> {
+fn paint(texture: &Texture, base: [f32; 3], decoded: &[f32; 256]) -> Paint {
     let count = texture.width as usize * texture.height as usize;
-    // Strides that share a factor with the width would look at a few columns only.
-    let step = (count / PIXELS).max(1) | 1;
-    let mut left: Vec<([f32; 3], Oklab)> = texture
-        .sampled_rgba(step)
+    // A stride that shares a factor with the width would look at some of the columns only.
+    let mut step = (count / PIXELS).max(1);
+    while step > 1 && common_factor(step, texture.width as usize) > 1 {
+        step += 1;
+    }
+    let edges = [texture.width as usize, texture.height as usize];
+    let sampled = texture.sampled_rgba(step);
+    let solid = sampled
         .chunks_exact(4)
-        .filter(|pixel| pixel[3] > 0)
-        .map(|pixel| {
+        .enumerate()
+        .filter(|(_, pixel)| pixel[3] > 0);
+    let (places, mut left): (Vec<[f32; 2]>, Vec<([f32; 3], Oklab)>) = solid
+        .map(|(k, pixel)| {
+            let (column, row) = (k * step % edges[0], k * step / edges[0]);
+            let place = [
+                column as f32 / edges[0] as f32,
+                row as f32 / edges[1] as f32,
+            ];
             let linear = std::array::from_fn(|k| base[k] * decoded[usize::from(pixel[k])]);
-            (linear, Oklab::from_linear(linear))
+            (place, (linear, Oklab::from_linear(linear)))
         })
-        .collect();
+        .unzip();
+    let shades = places.into_iter().zip(left.iter().map(|(_, shade)| *shade));
+    let shades: Vec<_> = shades.collect();
     let whole = left.len() as f32;
-    let mut found = Vec::new();
+    let mut found: Vec<SurfacePatch> = Vec::new();
     while left.len() as f32 >= (SORT_SHARE * whole).max(1.0) {
         let middle = largest_sort(&left);
         let lab = Oklab::from_linear(middle);
@@ -106,17 +140,24 @@ fn sorts(texture: &Texture, base: [f32; 3], decoded: &[f32; 256]) -> Vec<Surface
             break;
         }
         let linear = Some(middle);
-        if share >= DOMINANT_SHARE {
-            return vec![SurfacePatch { linear, share: 1.0 }];
-        }
         found.push(SurfacePatch { linear, share });
     }
-    let share = 1.0 - found.iter().map(|sort| sort.share).sum::<f32>();
-    found.push(SurfacePatch {
-        linear: None,
-        share,
-    });
-    found
+    let pattern = (found.len() > 1).then(|| pattern(&shades));
+    let sorts = match found.iter().find(|sort| sort.share >= DOMINANT_SHARE) {
+        Some(sort) => vec![SurfacePatch {
+            share: 1.0,
+            ..*sort
+        }],
+        None => {
+            let share = 1.0 - found.iter().map(|sort| sort.share).sum::<f32>();
+            found.push(SurfacePatch {
+                linear: None,
+                share,
+            });
+            found
+        }
+    };
+    Paint { sorts, pattern }
 }
 
 /// The mean of the largest sort of colour among `shades`, which are some.
@@ -147,6 +188,11 @@ fn largest_sort(shades: &[([f32; 3], Oklab)]) -> [f32; 3] {
         }
     }
     best.0
+}
+
+/// The greatest common divisor (Euclid).
+fn common_factor(p: usize, q: usize) -> usize {
+    if q == 0 { p } else { common_factor(q, p % q) }
 }
 
 fn mean(colors: impl Iterator<Item = [f32; 3]>) -> Option<[f32; 3]> {
@@ -249,7 +295,10 @@ mod tests {
 
     /// The words for the colours of an image.
     fn words(texture: &Texture) -> Vec<&'static str> {
-        let words = color_words(&sorts(texture, [1.0; 3], &decoded()), ColorVocabulary::Plain);
+        let words = color_words(
+            &paint(texture, [1.0; 3], &decoded()).sorts,
+            ColorVocabulary::Plain,
+        );
         words.into_iter().map(|(word, _)| word).collect()
     }
 

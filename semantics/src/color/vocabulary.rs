@@ -1,5 +1,6 @@
 //! Words for colours.
 
+use super::naming;
 use super::oklab::Oklab;
 use crate::csv_table::CsvTable;
 use crate::error::SemanticsError;
@@ -21,38 +22,6 @@ pub enum ColorVocabulary {
     /// The 949 names of the xkcd colour survey.
     Xkcd,
 }
-
-/// Everyday words and the last words of survey names that count for them.
-const HEADS: &[(&str, &[&str])] = &[
-    ("gray", &["grey", "gray"]),
-    ("brown", &["brown"]),
-    (
-        "beige",
-        &["beige", "tan", "cream", "sand", "ivory", "khaki"],
-    ),
-    ("red", &["red", "maroon"]),
-    ("orange", &["orange", "terracotta"]),
-    ("yellow", &["yellow", "gold", "golden", "mustard", "ochre"]),
-    ("green", &["green", "olive", "lime"]),
-    (
-        "blue",
-        &[
-            "blue",
-            "navy",
-            "teal",
-            "turquoise",
-            "cyan",
-            "aqua",
-            "bluegrey",
-            "greyblue",
-        ],
-    ),
-    (
-        "purple",
-        &["purple", "violet", "lavender", "lilac", "mauve", "indigo"],
-    ),
-    ("pink", &["pink", "magenta", "rose"]),
-];
 
 /// A named colour.
 #[derive(Clone, Copy, Debug)]
@@ -86,47 +55,6 @@ fn parse(file: &'static str, text: &'static str) -> Result<Vec<NamedColor>, Sema
     Ok(entries)
 }
 
-/// Parts of survey names that give a grey a hue.
-const TINTS: [&str; 15] = [
-    "blu", "green", "purpl", "pink", "red", "orang", "yellow", "brown", "tan", "teal", "violet",
-    "rose", "rosy", "olive", "lavender",
-];
-
-/// Parts of survey names that make a brown half a yellow.
-const GILT: [&str; 3] = ["yellow", "gold", "mustard"];
-
-/// Chroma from which a colour has a hue, so that nobody calls it gray, and from which a pale yellow is no beige. Chosen by
-/// looking: a slate-blue sofa has 0.039, a turquoise rug 0.049, concrete and steel up to 0.03; a yellow curtain has 0.121,
-/// the survey's tan 0.093, light oak up to 0.09.
-const HUED: f32 = 0.035;
-const GILDED: f32 = 0.105;
-/// Lightness from which a colour of such chroma is no brown either: brown is dark orange. Terracotta lacquer has 0.62, cherry
-/// wood 0.54.
-const LIT: f32 = 0.57;
-
-/// "Very dark brown" counts for brown. Names of very light colours are left out: people call them after the tint, a room
-/// calls them white or beige; and so are tinted greys and yellow browns, which lie between two words.
-fn plain_from_survey(survey: &[NamedColor]) -> Vec<NamedColor> {
-    let mut plain = Vec::new();
-    for entry in survey {
-        let last = entry.name.rsplit([' ', '/']).next().unwrap_or_default();
-        let word = HEADS.iter().find(|(_, heads)| heads.contains(&last));
-        let says = |tints: &[&str]| tints.iter().any(|tint| entry.name.contains(tint));
-        let tinted = |word: &str| match word {
-            "gray" => says(&TINTS),
-            "brown" => says(&GILT),
-            _ => false,
-        };
-        if let Some((name, _)) = word
-            && !entry.name.starts_with("very light")
-            && !tinted(name)
-        {
-            plain.push(NamedColor { name, ..*entry });
-        }
-    }
-    plain
-}
-
 impl ColorVocabulary {
     /// The vocabulary with so many different colours: 12 plain ones, 16, 139 or 949.
     pub fn of_size(size: usize) -> Option<Self> {
@@ -142,18 +70,15 @@ impl ColorVocabulary {
     /// All lists, from the shortest.
     pub const ALL: [Self; 4] = [Self::Plain, Self::Basic, Self::Web, Self::Xkcd];
 
+    /// The named colours; none for plain words, which name regions.
     fn entries(self) -> &'static [NamedColor] {
         static TABLES: OnceLock<[Vec<NamedColor>; 4]> = OnceLock::new();
         let tables = TABLES.get_or_init(|| {
             let read = |file, text| {
                 parse(file, text).expect("the colour tables are checked by this crate's tests")
             };
-            let xkcd = read(
-                "colors/xkcd.csv",
-                include_str!("../../../assets/colors/xkcd.csv"),
-            );
             [
-                plain_from_survey(&xkcd),
+                Vec::new(),
                 read(
                     "colors/basic.csv",
                     include_str!("../../../assets/colors/basic.csv"),
@@ -162,32 +87,21 @@ impl ColorVocabulary {
                     "colors/web.csv",
                     include_str!("../../../assets/colors/web.csv"),
                 ),
-                xkcd,
+                read(
+                    "colors/xkcd.csv",
+                    include_str!("../../../assets/colors/xkcd.csv"),
+                ),
             ]
         });
         &tables[self as usize]
     }
 
-    /// The number of colours in the list; for [`ColorVocabulary::Plain`] the number of survey colours it rests on.
-    pub fn len(self) -> usize {
-        self.entries().len()
-    }
-
-    /// Never: every list has colours.
-    pub fn is_empty(self) -> bool {
-        self.entries().is_empty()
-    }
-
     /// The words, each once, in file order.
     pub fn words(self) -> Vec<&'static str> {
-        let mut words: Vec<&'static str> = Vec::new();
-        if self == Self::Plain {
-            words.extend(["black", "white"]);
-            words.extend(HEADS.iter().map(|(word, _)| *word));
-        } else {
-            words.extend(self.entries().iter().map(|entry| entry.name));
+        match self {
+            Self::Plain => naming::WORDS.to_vec(),
+            _ => self.entries().iter().map(|entry| entry.name).collect(),
         }
-        words
     }
 
     /// The sRGB value of a word, 0 to 255; `None` for a word outside the list, and for plain words, which name regions.
@@ -200,40 +114,14 @@ impl ColorVocabulary {
 
     /// The word for a colour given in linear light, each 0 to 1.
     ///
-    /// The nearest entry in `OKLab`, the first of equals. CIEDE2000 is a formula for small differences (it is no metric
-    /// and jumps at opposite hues); names lie far apart, and `OKLab` is uniform there and cheap. Plain words: nearly
-    /// grey colours are black, gray or white by lightness, the others take the word of the nearest survey colour that is not
-    /// of an opposite hue; clear hues are never gray, clear yellows never beige, and
-    /// clear light oranges never brown.
+    /// Plain words: the one that most people give. Else the nearest entry in `OKLab`, the first of equals: CIEDE2000 is a
+    /// formula for small differences (it is no metric and jumps at opposite hues), names lie far apart, and `OKLab` is uniform
+    /// there and cheap.
     pub fn word(self, linear: [f32; 3]) -> &'static str {
-        let color = Oklab::from_linear(linear);
         if self == Self::Plain {
-            if color.l < 0.32 && color.chroma() < 0.035 {
-                return "black";
-            }
-            if color.l > 0.89 && color.chroma() < 0.03 {
-                return "white";
-            }
-            if color.chroma() < 0.015 {
-                return "gray";
-            }
-            // A pale colour lies near many others; the word at least keeps to its side of the circle of hues.
-            let chroma = color.chroma();
-            return nearest(self.entries(), |entry| {
-                let (p, q) = (entry.lab, color);
-                let excluded = match entry.name {
-                    "gray" => chroma >= HUED,
-                    "beige" if chroma >= GILDED => true,
-                    "brown" if chroma >= GILDED && q.l >= LIT => true,
-                    _ => p.a * q.a + p.b * q.b <= 0.0,
-                };
-                if excluded {
-                    f32::INFINITY
-                } else {
-                    p.distance(q)
-                }
-            });
+            return naming::common_word(linear);
         }
+        let color = Oklab::from_linear(linear);
         nearest(self.entries(), |entry| entry.lab.distance(color))
     }
 
@@ -273,17 +161,9 @@ mod tests {
 
     #[test]
     fn the_lists_have_the_published_lengths() {
-        assert_eq!(ColorVocabulary::Basic.len(), 16);
-        assert_eq!(ColorVocabulary::Web.len(), 148);
-        assert_eq!(ColorVocabulary::Xkcd.len(), 949);
-        assert_eq!(ColorVocabulary::Plain.words().len(), 12);
-        for list in [
-            ColorVocabulary::Basic,
-            ColorVocabulary::Web,
-            ColorVocabulary::Xkcd,
-        ] {
+        for (list, length) in ColorVocabulary::ALL.into_iter().zip([12, 16, 148, 949]) {
             let unique: BTreeSet<_> = list.words().into_iter().collect();
-            assert_eq!(unique.len(), list.len());
+            assert_eq!((list.words().len(), unique.len()), (length, length));
         }
     }
 
@@ -371,20 +251,5 @@ mod tests {
                 "{srgb:?}"
             );
         }
-    }
-
-    #[test]
-    fn plain_words_agree_with_the_survey_names_they_come_from() {
-        let mut agree = 0;
-        let entries = ColorVocabulary::Plain.entries();
-        for entry in entries {
-            agree += usize::from(ColorVocabulary::Plain.word(linear(entry.srgb)) == entry.name);
-        }
-        // The rest are greys with a tint that the rule for neutral colours takes.
-        assert!(
-            agree * 100 >= entries.len() * 96,
-            "{agree} of {}",
-            entries.len()
-        );
     }
 }

@@ -1,5 +1,6 @@
 //! Things of one kind as an item of a list: "four brown wooden chairs".
 
+use crate::color::Pattern;
 use crate::form::{Description, Noun, Quantifier};
 use crate::predicates;
 use crate::scene::{SemanticScene, Term};
@@ -38,7 +39,9 @@ pub(super) fn appearance(scene: &SemanticScene<'_>, object: ObjectId) -> Descrip
     let colors = facts.spoken_colors().iter();
     Description {
         size: facts.size.word().map(|_| facts.size),
-        state: joint_state(scene, object).map(str::to_owned),
+        state: joint_state(scene, object)
+            .or_else(|| facts.pattern.map(Pattern::name))
+            .map(str::to_owned),
         colors: colors.map(|(word, _)| (*word).to_owned()).collect(),
         material: facts.material_word().map(str::to_owned),
         ..Description::new(Quantifier::Some, Noun::Object(facts.noun.clone()))

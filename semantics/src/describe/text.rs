@@ -1,7 +1,7 @@
 //! Texts made of forms: what is said, where it is said, and of which things.
 
 use crate::check::{Checker, GroundedPhrase};
-use crate::form::{Clause, Description, Form, Modifier, Noun, Phrase};
+use crate::form::{Clause, Description, Form, Modifier, Noun, Phrase, Quantifier};
 use crate::scene::Term;
 use dwell_scene::interrupt;
 use dwell_scene::random::RandomKey;
@@ -118,7 +118,10 @@ impl<'a> TextWriter<'a> {
         }
         terms.sort_unstable();
         terms.dedup();
-        self.antecedent = form.subject().filter(|_| !ends_in_landmark(&form)).cloned();
+        self.antecedent = form
+            .subject()
+            .filter(|_| !has_other_antecedent(&form))
+            .cloned();
         self.written.claims.push(TextClaim {
             start,
             end: self.written.text.len(),
@@ -142,10 +145,17 @@ impl<'a> TextWriter<'a> {
     }
 }
 
-/// Returns whether a form is said with its landmark at the end: in "there is a towel in the dresser" the towel is what a reader
-/// takes for "it".
-fn ends_in_landmark(form: &Form) -> bool {
-    matches!(form, Form::Claim(Clause::Exists(Phrase::Described(_))))
+/// Returns whether a form names something else that a reader may take for "it": in "there is a towel in the dresser" and "in the dresser
+/// there are two books and a towel" the towel.
+fn has_other_antecedent(form: &Form) -> bool {
+    let Form::Claim(Clause::Exists(what)) = form else {
+        return false;
+    };
+    let is_one = |item: &Phrase| matches!(item, Phrase::Described(own) if own.quantifier == Quantifier::Some);
+    match what {
+        Phrase::List(items) => items.iter().any(is_one),
+        _ => true,
+    }
 }
 
 /// Returns whether "it" may stand for `antecedent` in `form`: as its subject, or as the landmark of a list.

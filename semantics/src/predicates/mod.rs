@@ -12,6 +12,7 @@ mod behind;
 mod belongs_to;
 mod below;
 mod between;
+mod checked;
 mod closed;
 mod closer_to;
 mod container;
@@ -50,6 +51,7 @@ mod open;
 mod open_to;
 mod openness;
 mod opposite;
+mod patterned;
 mod reachable;
 mod right_of;
 mod room_contains;
@@ -58,6 +60,7 @@ mod same_kind;
 mod same_material;
 mod shape;
 mod straight_ahead;
+mod striped;
 mod support;
 mod supports;
 mod switched_off;
@@ -282,6 +285,9 @@ pub fn all() -> &'static [&'static dyn Predicate] {
         &switched_off::SwitchedOff,
         &full::Full,
         &empty::Empty,
+        &striped::Striped,
+        &checked::Checked,
+        &patterned::Patterned,
     ]
 }
 
