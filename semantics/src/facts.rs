@@ -5,6 +5,7 @@ use crate::color::{ColorVocabulary, MaterialColors, Pattern, SurfacePatch, color
 use crate::english::counted_noun;
 use crate::form::{Description, Noun};
 use crate::geometry::mapped_area_m2;
+use crate::kind_noun::{KindNoun, kind_nouns};
 use crate::material_family::family_of;
 use crate::size::SizeClass;
 use dwell_scene::material::{Substance, library};
@@ -23,6 +24,8 @@ const FRAME_SHARE: f32 = 0.1;
 pub struct ObjectFacts {
     /// Its category, if the table knows it.
     pub category: Option<&'static SemanticCategory>,
+    /// The words for its kind within the category, where it has any.
+    pub(crate) kind: Option<&'static KindNoun>,
     /// Spoken noun, for one.
     pub noun: String,
     /// Spoken noun, for several.
@@ -51,10 +54,12 @@ impl ObjectFacts {
     ) -> Self {
         let object = &house.objects[id];
         let category = categories().of(&object.category);
-        let (noun, plural) = category.map_or_else(
-            || unknown_noun(&object.category),
-            |row| (row.singular.to_owned(), row.plural.to_owned()),
-        );
+        let kind = kind_nouns().get(object.category.fine.as_str());
+        let (noun, plural) = match (kind, category) {
+            (Some(kind), _) => (kind.singular.to_owned(), kind.plural.to_owned()),
+            (None, Some(row)) => (row.singular.to_owned(), row.plural.to_owned()),
+            (None, None) => unknown_noun(&object.category),
+        };
         let (noun, plural) = match noun.as_str() {
             // An object, as opposed to a piece of the building.
             "wall" | "floor" | "ceiling" => counted_noun(&format!("{noun} piece")),
@@ -70,6 +75,7 @@ impl ObjectFacts {
         let colors = color_words(&patches, ColorVocabulary::Plain);
         Self {
             category,
+            kind,
             noun,
             plural,
             colors,
@@ -206,10 +212,10 @@ impl ObjectFacts {
                     .strip_suffix(noun)
                     .is_some_and(|rest| rest.ends_with(' '))
         };
-        matches(&self.noun)
-            || self
-                .category
-                .is_some_and(|row| row.synonyms.iter().any(|name| matches(name)))
+        let kind = self.kind.into_iter().flat_map(|kind| &kind.synonyms);
+        let row = self.category.into_iter();
+        let row = row.flat_map(|row| &row.synonyms);
+        matches(&self.noun) || kind.chain(row).any(|name| matches(name))
     }
 }
 

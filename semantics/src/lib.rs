@@ -16,6 +16,7 @@ pub mod geometry;
 pub mod grammar;
 pub mod graph;
 pub mod instruct;
+mod kind_noun;
 pub mod language;
 mod line_of_sight;
 mod material_family;

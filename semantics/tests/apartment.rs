@@ -108,12 +108,7 @@ fn words_say_what_one_sees() {
         let about_it = pair[1].starts_with("On it ") || pair[1].starts_with("In it ");
         assert!(!(about_it && pair[0].starts_with("There ")), "{pair:?}");
     }
-    for wrong in [
-        "n the sofa there",
-        "clothes",
-        "small kitchen",
-        "large kitchen",
-    ] {
+    for wrong in ["n the sofa there", "small kitchen", "large kitchen"] {
         let right = wrong == "n the sofa there" && text.contains("On the sofa there");
         assert!(right || !text.contains(wrong), "{wrong}: {text}");
     }

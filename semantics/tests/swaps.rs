@@ -32,8 +32,13 @@ impl Facts<'_> {
         let Some(Entity::Object(object)) = self.house.entity(EntityId(id)) else {
             return false;
         };
-        let row = dwell_semantics::category::categories().of(&self.house.objects[object].category);
+        let category = &self.house.objects[object].category;
+        let row = dwell_semantics::category::categories().of(category);
+        let kinds = include_str!("../../assets/kind_nouns.csv").lines();
+        let mut kinds = kinds.filter_map(|line| line.strip_prefix(category.fine.as_str()));
+        let kind = kinds.find_map(|rest| rest.strip_prefix(',')?.rsplit(',').next());
         let synonyms = row.into_iter().flat_map(|row| row.synonyms.iter().copied());
+        let synonyms = synonyms.chain(kind.into_iter().flat_map(|words| words.split(';')));
         let own = self.graph.object(id).unwrap().noun.as_str();
         let mut names = synonyms.chain([own]);
         noun == "thing" || names.any(|name| name == noun || name.ends_with(&format!(" {noun}")))

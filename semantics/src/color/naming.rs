@@ -25,9 +25,9 @@ const CELL: f32 = 10.0;
 const SIZE: [usize; 3] = [12, 22, 24];
 const FIRST: [i32; 3] = [0, -10, -12];
 /// Distance in CIELAB over which the names of things count: the standard deviation of a Gaussian.
-const REACH: f32 = 5.0;
+const REACH: f32 = 4.0;
 /// The number of names of things at a colour that count as much as the survey.
-const SURVEY_NAMES: f32 = 4.0;
+const SURVEY_NAMES: f32 = 2.0;
 
 /// What people call colours: in a survey of patches on screens, and of things in rooms.
 struct Naming {

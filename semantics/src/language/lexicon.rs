@@ -4,6 +4,7 @@ use crate::category::categories;
 use crate::color::ColorVocabulary;
 use crate::english::{GATHERING_WORDS, plural};
 use crate::grammar::{GrammarError, Lexicon};
+use crate::kind_noun::kind_nouns;
 use crate::material_family::families;
 use crate::room_kind::room_kinds;
 use dwell_scene::material::library;
@@ -153,6 +154,14 @@ pub(super) fn english(file: &str) -> Result<Lexicon, GrammarError> {
         add_noun(&mut lexicon, row.singular, row.plural);
         for synonym in &row.synonyms {
             add_noun(&mut lexicon, synonym, &plural(synonym));
+        }
+    }
+    for noun in kind_nouns().values() {
+        add_noun(&mut lexicon, noun.singular, noun.plural);
+        for synonym in &noun.synonyms {
+            if lexicon.find(NOUN, synonym).is_none() {
+                add_noun(&mut lexicon, synonym, &plural(synonym));
+            }
         }
     }
     for (noun, synonyms) in &file.noun_synonym {
