@@ -1,0 +1,66 @@
+//! Colours of things against the words that readers gave them who saw pictures alone.
+#![allow(clippy::unwrap_used, reason = "tests stop at the first surprise")]
+
+use dwell_semantics::Semantics;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+const NAMES: &str = include_str!("color_names_of_people.tsv");
+
+/// What a reader said: the words that people would name, the main one first, and what it could as well be called.
+fn words(cell: &str) -> (Vec<&str>, Vec<&str>) {
+    let (named, other) = cell.split_once(" (").unwrap_or((cell, ""));
+    let other = other.trim_end_matches(')');
+    (
+        named.split_whitespace().collect(),
+        other.split_whitespace().collect(),
+    )
+}
+
+#[test]
+fn colours_are_those_that_people_name() {
+    let mut houses: BTreeMap<&str, Vec<Vec<&str>>> = BTreeMap::new();
+    for line in NAMES.lines().filter(|line| !line.starts_with('#')) {
+        let cells: Vec<&str> = line.split('\t').collect();
+        houses.entry(cells[0]).or_default().push(cells);
+    }
+    let (mut asked, mut main, mut close) = (0, 0, 0);
+    for (name, rows) in houses {
+        let house = Arc::new(dwell_houses::open(name).unwrap().0);
+        let semantics = Semantics::new(&house);
+        for row in rows {
+            let id = house
+                .objects
+                .ids()
+                .find(|id| house.objects[*id].name == row[1]);
+            let spoken = semantics.facts(id.unwrap()).spoken_colors();
+            let readers: Vec<_> = row[2..].iter().map(|cell| words(cell)).collect();
+            let is_colored = |word: &str| word != "clear" && word != "patterned";
+            let Some((word, _)) = spoken.first() else {
+                continue;
+            };
+            if !readers.iter().all(|(named, _)| is_colored(named[0])) {
+                continue;
+            }
+            asked += 1;
+            // One of two main words, or both words of a reader in the other order.
+            let both = |named: &[&str]| {
+                spoken.len() > 1 && spoken.iter().all(|(word, _)| named.contains(word))
+            };
+            main += u32::from(
+                readers
+                    .iter()
+                    .any(|(named, _)| named[0] == *word || both(named)),
+            );
+            close += u32::from(
+                readers
+                    .iter()
+                    .any(|(named, other)| named.contains(word) || other.contains(word)),
+            );
+        }
+    }
+    println!("{asked} things: {main} by their main word, {close} by any that was given");
+    assert!(asked >= 250);
+    assert!(main * 100 >= asked * 88, "{main} of {asked}");
+    assert!(close * 100 >= asked * 94, "{close} of {asked}");
+}
