@@ -24,7 +24,7 @@ fn colours_are_those_that_people_name() {
         let cells: Vec<&str> = line.split('\t').collect();
         houses.entry(cells[0]).or_default().push(cells);
     }
-    let (mut asked, mut main, mut close) = (0, 0, 0);
+    let (mut asked, mut silent, mut main, mut close) = (0, 0, 0, 0);
     for (name, rows) in houses {
         let house = Arc::new(dwell_houses::open(name).unwrap().0);
         let semantics = Semantics::new(&house);
@@ -35,23 +35,21 @@ fn colours_are_those_that_people_name() {
                 .find(|id| house.objects[*id].name == row[1]);
             let spoken = semantics.facts(id.unwrap()).spoken_colors();
             let readers: Vec<_> = row[2..].iter().map(|cell| words(cell)).collect();
-            let is_colored = |word: &str| word != "clear" && word != "patterned";
+            let main_words = || readers.iter().map(|(named, _)| named[0]);
+            let votes = |word: &str| main_words().filter(|other| *other == word).count();
+            let majority = main_words().find(|word| 2 * votes(word) > readers.len());
+            let Some(majority) = majority.filter(|word| !["clear", "patterned"].contains(word))
+            else {
+                continue;
+            };
             let Some((word, _)) = spoken.first() else {
+                silent += 1;
                 continue;
             };
-            if !readers.iter().all(|(named, _)| is_colored(named[0])) {
-                continue;
-            }
             asked += 1;
-            // One of two main words, or both words of a reader in the other order.
-            let both = |named: &[&str]| {
-                spoken.len() > 1 && spoken.iter().all(|(word, _)| named.contains(word))
-            };
-            main += u32::from(
-                readers
-                    .iter()
-                    .any(|(named, _)| named[0] == *word || both(named)),
-            );
+            // Things of two colours are named by both.
+            let both = spoken.len() > 1 && spoken[1].0 == majority;
+            main += u32::from(*word == majority || both);
             close += u32::from(
                 readers
                     .iter()
@@ -59,8 +57,10 @@ fn colours_are_those_that_people_name() {
             );
         }
     }
-    println!("{asked} things: {main} by their main word, {close} by any that was given");
+    println!(
+        "{asked} things: {main} by the word of the majority, {close} by any that was given; {silent} without a colour"
+    );
     assert!(asked >= 250);
-    assert!(main * 100 >= asked * 88, "{main} of {asked}");
-    assert!(close * 100 >= asked * 94, "{close} of {asked}");
+    assert!(main * 100 >= asked * 87, "{main} of {asked}");
+    assert!(close * 100 >= asked * 96, "{close} of {asked}");
 }
