@@ -32,6 +32,9 @@ pub struct SurfacePatch {
     pub share: f32,
 }
 
+/// A colour in linear light and in `OKLab`.
+type Shade = ([f32; 3], Oklab);
+
 /// The colours of a material.
 #[derive(Clone, Debug, PartialEq)]
 struct Paint {
@@ -115,7 +118,7 @@ fn paint(texture: &Texture, base: [f32; 3], decoded: &[f32; 256]) -> Paint {
         .chunks_exact(4)
         .enumerate()
         .filter(|(_, pixel)| pixel[3] > 0);
-    let (places, mut left): (Vec<[f32; 2]>, Vec<([f32; 3], Oklab)>) = solid
+    let (places, mut left): (Vec<[f32; 2]>, Vec<Shade>) = solid
         .map(|(k, pixel)| {
             let (column, row) = (k * step % edges[0], k * step / edges[0]);
             let place = [
@@ -143,25 +146,23 @@ fn paint(texture: &Texture, base: [f32; 3], decoded: &[f32; 256]) -> Paint {
         found.push(SurfacePatch { linear, share });
     }
     let pattern = (found.len() > 1).then(|| pattern(&shades));
-    let sorts = match found.iter().find(|sort| sort.share >= DOMINANT_SHARE) {
-        Some(sort) => vec![SurfacePatch {
-            share: 1.0,
-            ..*sort
-        }],
-        None => {
-            let share = 1.0 - found.iter().map(|sort| sort.share).sum::<f32>();
-            found.push(SurfacePatch {
-                linear: None,
-                share,
-            });
-            found
-        }
+    let dominant = found.iter().find(|sort| sort.share >= DOMINANT_SHARE);
+    let sorts = if let Some(sort) = dominant {
+        let share = 1.0;
+        vec![SurfacePatch { share, ..*sort }]
+    } else {
+        let share = 1.0 - found.iter().map(|sort| sort.share).sum::<f32>();
+        found.push(SurfacePatch {
+            linear: None,
+            share,
+        });
+        found
     };
     Paint { sorts, pattern }
 }
 
 /// The mean of the largest sort of colour among `shades`, which are some.
-fn largest_sort(shades: &[([f32; 3], Oklab)]) -> [f32; 3] {
+fn largest_sort(shades: &[Shade]) -> [f32; 3] {
     let mut best = ([0.0; 3], 0);
     // From pixels alone: the mean of two sorts may lie near enough to both.
     for k in 0..SEEDS {
