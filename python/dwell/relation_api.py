@@ -183,7 +183,7 @@ class RelationApi(StateApi):
                 that CSS names, or the 949 names of the xkcd colour survey.
 
         Returns:
-            The largest share first; empty for what is mostly glass or mirror.
+            The largest share first; empty for what is nearly all clear glass or mirror.
         """
         count = integer_in_range("vocabulary", vocabulary)
         return _native.world_color_names(self._native, _thing("thing", thing), count)

@@ -33,7 +33,7 @@ pub struct ObjectFacts {
     /// Its sorts of colour by share of what is seen of it where it stands at the start, from around and a little above (below, for
     /// what hangs), largest first; by share of its whole surface where nothing of it is seen. Screens, clear glass, mirrors and the pots of plants are left out.
     pub patches: Vec<SurfacePatch>,
-    /// Its colours in plain words with their shares, largest first; empty for things that are mostly glass or mirror.
+    /// Its colours in plain words with their shares, largest first; empty for things that are nearly all clear glass or mirror.
     pub colors: Vec<(&'static str, f32)>,
     /// The pattern of most of it; `None` for plain things, and for pictures, screens and books.
     pub pattern: Option<Pattern>,
@@ -87,8 +87,8 @@ impl ObjectFacts {
         }
     }
 
-    /// The words for its colours in `vocabulary` with their shares of what is seen of it, largest first; none for what is mostly
-    /// glass or mirror.
+    /// The words for its colours in `vocabulary` with their shares of what is seen of it, largest first; none for what is
+    /// nearly all clear glass or mirror.
     pub fn color_shares(&self, vocabulary: ColorVocabulary) -> Vec<(&'static str, f32)> {
         if self.colors.is_empty() {
             return Vec::new();
@@ -105,7 +105,7 @@ impl ObjectFacts {
     }
 
     /// The colours a speaker would use: the one of most of the surface, else the two largest; none without a surface,
-    /// or when no two cover most of it.
+    /// when no two cover most of it, and for pictures that are not nearly all of one.
     pub fn spoken_colors(&self) -> &[(&'static str, f32)] {
         // "A white picture" leaves open whether paper, mat or frame is meant.
         let is_picture = self.category.is_some_and(|row| row.nyu40_name == "picture");

@@ -16,7 +16,7 @@ pub(crate) struct KindNoun {
     pub(crate) synonyms: Vec<&'static str>,
 }
 
-/// The nouns by kind: the fine name of a thing's category, such as `"teddy_bear"`.
+/// The nouns by kind: the fine name of a thing's category, that of its model, such as `"teddy_bear"`.
 pub(crate) fn kind_nouns() -> &'static BTreeMap<&'static str, KindNoun> {
     static TABLE: LazyLock<BTreeMap<&'static str, KindNoun>> = LazyLock::new(|| {
         parse(include_str!("../../assets/kind_nouns.csv"))

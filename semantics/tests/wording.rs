@@ -4,8 +4,7 @@ mod common;
 
 use common::{Builder, Corners, fix};
 use dwell_scene::{
-    AgentBody, AgentId, AgentState, Material, MaterialId, Mesh, ObjectId, RoomId, State,
-    StructureKind, Texture,
+    AgentBody, AgentId, AgentState, MaterialId, Mesh, ObjectId, RoomId, State, StructureKind,
 };
 use dwell_semantics::check::{Checker, Listener};
 use dwell_semantics::describe::{caption, describe_house, describe_room, describe_view};
@@ -56,29 +55,6 @@ impl Told {
         let said = self.semantics.language().say(&form, None);
         said.expect("the language has words for it").text
     }
-}
-
-/// A material with an image of 48 by 48 pixels.
-fn textured(
-    b: &mut Builder,
-    substance: &str,
-    color: impl Fn(usize, usize) -> [u8; 3],
-) -> MaterialId {
-    let pixels = (0..48 * 48).flat_map(|k| {
-        let [red, green, blue] = color(k % 48, k / 48);
-        [red, green, blue, 255]
-    });
-    let name = format!("image {}", b.data.textures.len());
-    let texture = Texture::new(name.clone(), 48, 48, pixels.collect());
-    let texture = b.data.textures.push(Arc::new(texture));
-    let row = dwell_scene::material::library()
-        .get(substance)
-        .expect("a substance of the library");
-    let material = Material {
-        texture: Some(texture),
-        ..Material::of(name, row).with_srgb([255; 3])
-    };
-    b.data.materials.push(material)
 }
 
 /// Sky, leaves and a red roof, a third each.
@@ -387,11 +363,11 @@ fn pictures_have_no_colour_and_televisions_that_of_their_frame() {
     let mut b = Builder::new("images");
     let room = b.room("living_room", [0.05, 0.05], [7.95, 7.95]);
     let black = b.material("electronics", [20, 20, 22]);
-    let image = textured(&mut b, "paper", motley);
-    let screen = textured(&mut b, "glass", |_, _| [110, 40, 140]);
+    let image = b.textured("paper", motley);
+    let screen = b.textured("glass", |_, _| [110, 40, 140]);
     let tv: Corners = ([1.0, 0.0, 1.0], [2.1, 0.7, 1.08]);
     let television = with_front(&mut b, "television", tv, black, screen);
-    let all_picture = textured(&mut b, "electronics", motley);
+    let all_picture = b.textured("electronics", motley);
     let other: Corners = ([4.0, 0.0, 1.0], [5.1, 0.7, 1.08]);
     let flat = b.thing("television", &[other], all_picture);
     let picture = b.thing(
@@ -401,12 +377,12 @@ fn pictures_have_no_colour_and_televisions_that_of_their_frame() {
     );
     fix(&mut b, picture);
     // One sort of colour in many shades, and spots on a ground: these have their word.
-    let grain = textured(&mut b, "wood", |x, y| {
+    let grain = b.textured("wood", |x, y| {
         let shade = ((x * 7 + y) % 5) as u8 * 6;
         [140 + shade, 102 + shade, 66 + shade]
     });
     let table = b.table([3.0, 4.0], [4.4, 4.9], 0.75, grain);
-    let spots = textured(&mut b, "textile", |x, y| {
+    let spots = b.textured("textile", |x, y| {
         if x.is_multiple_of(6) && y.is_multiple_of(2) {
             [180, 20, 25]
         } else {
@@ -509,7 +485,7 @@ fn surfaces_are_told_where_one_prevails() {
     let plain = b.room("kitchen", [0.05, 0.05], [3.95, 3.95]);
     let before = b.data.structure.len();
     let motley_room = b.room("bedroom", [4.05, 0.05], [7.95, 3.95]);
-    let image = textured(&mut b, "parquet", motley);
+    let image = b.textured("parquet", motley);
     let paints = [[180, 20, 25], [30, 60, 150], [40, 110, 50], [240, 220, 60]];
     let paints = paints.map(|srgb| b.material("painted_plaster", srgb));
     let mut walls = paints.into_iter();

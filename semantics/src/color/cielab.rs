@@ -38,7 +38,7 @@ mod tests {
     use super::*;
     use dwell_scene::units::linear_from_srgb;
 
-    /// Values as B. Lindbloom's calculator of colours (brucelindbloom.com, D65) gives them.
+    /// Values of the same equations in double precision (NumPy): a check of arithmetic and constants, not of the equations.
     #[test]
     fn known_colours_have_their_coordinates() {
         let cases: [([u8; 3], [f32; 3]); 6] = [

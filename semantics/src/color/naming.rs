@@ -1,4 +1,4 @@
-//! The everyday word for a colour, as people give it.
+//! The everyday word for a colour, by the shares of answers.
 
 use super::cielab::cielab_from_linear;
 use crate::csv_table::CsvTable;
@@ -29,7 +29,7 @@ const REACH: f32 = 4.0;
 /// The number of names of things at a colour that count as much as the survey.
 const SURVEY_NAMES: f32 = 2.0;
 
-/// What people call colours: in a survey of patches on screens, and of things in rooms.
+/// What colours are called: patches on screens by the people of a survey, things in rooms by readers (`assets/colors/README.md`).
 struct Naming {
     /// The shares of the survey's answers by corner of a cell.
     survey: Vec<Shares>,
@@ -91,7 +91,7 @@ impl Naming {
         shares
     }
 
-    /// The shares of people who give each word: a mean of the survey and of the names of things nearby (Nadaraya-Watson).
+    /// The shares of answers that give each word: a mean of the survey and of the names of things nearby (Nadaraya-Watson).
     fn shares(&self, lab: Vec3) -> Shares {
         let mut sums = self.survey_shares(lab).map(|share| SURVEY_NAMES * share);
         for (at, counts) in &self.things {
@@ -118,10 +118,10 @@ fn corner(at: [i32; 3]) -> Option<usize> {
     Some(place)
 }
 
-/// The word that most people give to a colour in linear light, each component 0 to 1, of a surface under white light.
+/// The word that most answers give to a colour in linear light, each component 0 to 1, of a surface under white light.
 ///
 /// # Source
-/// The survey: R. Munroe, *Color Survey Results*, xkcd 2010 (its data are in the public domain), as counted by cells of
+/// The survey: R. Munroe, *Color Survey Results*, xkcd 2010, as counted by cells of
 /// CIELAB in J. Heer and M. Stone, *Color Naming Models for Color Selection, Image Editing and Palette Design*, CHI 2012.
 pub(super) fn common_word(linear: [f32; 3]) -> &'static str {
     let shares = Naming::shared().shares(cielab_from_linear(linear));

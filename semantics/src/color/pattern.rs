@@ -45,8 +45,7 @@ impl Pattern {
 /// # Source
 /// R. A. Fisher, *Statistical Methods for Research Workers*, 1925, chapters 7 and 8.
 pub(super) fn pattern(shades: &[([f32; 2], Oklab)]) -> Pattern {
-    let all = shades.iter().map(|(_, shade)| shade);
-    let whole = Sum::of(all.clone());
+    let whole = Sum::of(shades.iter().map(|(_, shade)| shade));
     let total = whole.squares - whole.between();
     let explained = |axis: usize| {
         let mut bands = [Sum::default(); BANDS];

@@ -114,7 +114,7 @@ impl ColorVocabulary {
 
     /// The word for a colour given in linear light, each 0 to 1.
     ///
-    /// Plain words: the one that most people give. Else the nearest entry in `OKLab`, the first of equals: CIEDE2000 is a
+    /// Plain words: the one that most answers give. Else the nearest entry in `OKLab`, the first of equals: CIEDE2000 is a
     /// formula for small differences (it is no metric and jumps at opposite hues), names lie far apart, and `OKLab` is uniform
     /// there and cheap.
     pub fn word(self, linear: [f32; 3]) -> &'static str {
@@ -221,7 +221,7 @@ mod tests {
             ([170, 20, 25], "red"),
             ([240, 220, 60], "yellow"),
             ([240, 130, 20], "orange"),
-            // Fronts of a kitchen, a terracotta pot; cherry wood and a loaf stay brown.
+            // Fronts of a kitchen, a terracotta pot; a loaf stays brown.
             ([190, 112, 82], "orange"),
             ([186, 104, 76], "orange"),
             ([178, 118, 62], "brown"),

@@ -27,10 +27,11 @@ impl Predicate for Opposite {
     }
 
     fn definition(&self) -> &'static str {
-        "In one room, seen from above, each lies straight ahead of the front of the other, where \
-         it has one: at least 0.5 m beyond it, with at least half the width of the narrower one in \
-         common across the front. Where neither has a front, they lie so along an edge of the \
-         rectangle around the floor, their middles in different halves of it."
+        "In a room that both are in (a door is in two), seen from above, each lies straight ahead \
+         of the front of the other, where it has one: at least 0.5 m beyond it, with at least half \
+         the width of the narrower one in common across the front; two fronts are more than 90 \
+         degrees apart. Where neither has a front, they lie so along an edge of the rectangle \
+         around the floor, their middles in different halves of it."
     }
 
     fn source(&self) -> &'static str {

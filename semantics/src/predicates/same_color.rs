@@ -26,7 +26,7 @@ impl Predicate for SameColor {
 
     fn definition(&self) -> &'static str {
         "Two things have the same plain words for their colours: the one of at least 60 % of what \
-         is seen of each, else its two largest. Undecided for what is mostly glass or mirror, and \
+         is seen of each, else its two largest. Undecided for what is nearly all clear glass or mirror, and \
          for what shows many colours."
     }
 

@@ -16,7 +16,7 @@
 use dwell_scene::material::library;
 use dwell_scene::{
     Aabb, Category, Collider, House, HouseData, Level, LevelId, Material, MaterialId, Mesh,
-    Mobility, Object, ObjectId, Part, Pose, Room, RoomId, Structure, StructureKind,
+    Mobility, Object, ObjectId, Part, Pose, Room, RoomId, Structure, StructureKind, Texture,
 };
 use glam::{Affine3A, Vec2, Vec3};
 use std::sync::Arc;
@@ -40,6 +40,29 @@ impl Builder {
             bounds,
         });
         builder
+    }
+
+    /// A material with an image of 48 by 48 pixels.
+    pub(crate) fn textured(
+        &mut self,
+        substance: &str,
+        color: impl Fn(usize, usize) -> [u8; 3],
+    ) -> MaterialId {
+        let pixels = (0..48 * 48).flat_map(|k| {
+            let [red, green, blue] = color(k % 48, k / 48);
+            [red, green, blue, 255]
+        });
+        let name = format!("image {}", self.data.textures.len());
+        let texture = Texture::new(name.clone(), 48, 48, pixels.collect());
+        let texture = self.data.textures.push(Arc::new(texture));
+        let row = library()
+            .get(substance)
+            .expect("a substance of the library");
+        let material = Material {
+            texture: Some(texture),
+            ..Material::of(name, row).with_srgb([255; 3])
+        };
+        self.data.materials.push(material)
     }
 
     /// The material of a substance in a colour; made once.
