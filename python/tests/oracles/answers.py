@@ -26,6 +26,11 @@ def negated(answer: Answer) -> Answer:
     return turned.get(answer, answer)
 
 
+def any_of(*answers: Answer) -> Answer:
+    """Whether one of them holds, at least."""
+    return negated(all_of(*(negated(answer) for answer in answers)))
+
+
 def at_most(value: float, limit: float, margin: float) -> Answer:
     """Whether a value is at most a limit."""
     return "grey" if abs(value - limit) < margin else "yes" if value < limit else "no"

@@ -1,4 +1,4 @@
-"""Distances by clouds: what is near, far, above, next to and between others."""
+"""Distances by clouds: what is near, far, closer, above, next to and between others."""
 
 from __future__ import annotations
 
@@ -29,6 +29,17 @@ def far(scene: Scene, a: str, b: str) -> Answer:
     if not clear(scene, a, b):
         return "grey"
     return at_least(_apart(scene.cloud(a), scene.cloud(b)), 3.7, 0.05)
+
+
+def closer_to(scene: Scene, a: str, near: str, far: str) -> Answer:
+    """Gaps of outlines, of which the ratio decides; margin of each 0.03 m and half a pixel."""
+    if not clear(scene, a, near, far):
+        return "grey"
+    one = scene.cloud(a)
+    others = [scene.cloud(name) for name in (near, far)]
+    close, wide = (_apart(one, other) for other in others)
+    margins = [0.03 + (one.spacing + other.spacing) / 2 for other in others]
+    return at_least(wide - 1.1 * close, 0.0, margins[1] + 1.1 * margins[0])
 
 
 def above(scene: Scene, a: str, b: str) -> Answer:

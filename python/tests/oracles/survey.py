@@ -10,10 +10,13 @@ import numpy as np
 
 import dwell
 from oracles.answers import Answer, Viewer
+from oracles.belonging import belongs_to, belongs_to_building, hangs_at_window
 from oracles.contacts import against, touching, under
-from oracles.distances import above, between, far, near, next_to
+from oracles.distances import above, between, closer_to, far, near, next_to
+from oracles.fronts import is_known, opposite, opposite_agent
 from oracles.openness import openness
-from oracles.places import in_middle_of, in_room, larger_room, on_storey
+from oracles.outlook import Outlook
+from oracles.places import at_end_of, in_middle_of, in_room, larger_room, on_storey
 from oracles.reach import Walk
 from oracles.removal import Physics, on_and_in
 from oracles.scene import Scene
@@ -198,6 +201,109 @@ class Survey:
             done += 1
             self.ask("between", "cloud", (a, b, c), between(scene, a, b, c))
 
+    def _in_rooms(self, predicate: str, viewer: Viewer | None = None) -> list[Pair]:
+        """Things and rooms: some for which a predicate holds, and as many others."""
+        asked = None if viewer is None else viewer.asked
+        held = [
+            (a, room[5:])
+            for a, _, room in self.world.relations([predicate], viewer=asked)
+            if a in self.places
+        ]
+        names = [room["name"] for room in self.scene.rooms]
+        others = [
+            (name, self.scene.rows[name]["room"] if k % 3 else str(self.rng.choice(names)))
+            for k, name in enumerate(self.chosen(self.things, 6 * self.each))
+        ]
+        known = set(held)
+        found = self.chosen(held, self.each)
+        return found + [pair for pair in others if pair not in known][: self.each]
+
+    def ends(self, count: int = 2) -> None:
+        """What is at ends of rooms, with and without somebody who looks from within them."""
+        for viewer in (None, *self.viewers(count)):
+            # Whoever looks is in one room; ends of others are as for nobody.
+            pairs = self._in_rooms("at_end_of", viewer)
+            if viewer is not None:
+                here = next(
+                    room["name"] for room in self.scene.rooms if tuple(room["eye"]) == viewer.eye
+                )
+                known: dict[bool, list[Pair]] = {True: [], False: []}
+                for name in self.things:
+                    if self.scene.rows[name]["room"] == here:
+                        truth = self.world.holds(
+                            "at_end_of", name, f"room:{here}", viewer=viewer.asked
+                        )
+                        known[truth is True].append((name, here))
+                pairs = [pair for k in known for pair in self.chosen(known[k], self.each)]
+            for name, room in pairs:
+                answer = at_end_of(self.scene, name, room, viewer)
+                way = "floor" if viewer is None else "floor, viewer"
+                self.ask("at_end_of", way, (name, f"room:{room}"), answer, viewer)
+
+    def closer(self) -> None:
+        """What is closer to one thing than to another."""
+        for k in range(2 * self.each if len(self.things) > 3 else 0):
+            for _ in range(20):
+                a = self.things[int(self.rng.integers(len(self.things)))]
+                close = sorted(
+                    (name for name in self.things if name != a),
+                    key=lambda b: float(np.linalg.norm(self.places[b] - self.places[a])),
+                )[:25]
+                b, c = self.chosen(close if self.rng.random() < 0.8 else self.things, 2)
+                if a in (b, c):
+                    continue
+                # Half of what is asked holds.
+                if (self.world.holds("closer_to", a, b, c) is True) == (k % 2 == 0):
+                    self.ask("closer_to", "cloud", (a, b, c), closer_to(self.scene, a, b, c))
+                    break
+
+    def across(self) -> None:
+        """What is opposite to what, of kinds of which it is known if they have a front."""
+        known = {name for name in self.things if is_known(name)}
+        held = [
+            (a, b)
+            for a, _, b in self.world.relations(["opposite"])
+            if a in known and b in known and a < b
+        ]
+        found = self.chosen(held, 2 * self.each)
+        taken = set(held)
+        for a in self.chosen(sorted(known), 12 * self.each):
+            if len(found) >= 4 * self.each:
+                break
+            room = self.scene.rows[a]["room"]
+            there = [b for b in sorted(known) if self.scene.rows[b]["room"] == room and b != a]
+            for b in self.chosen(there, 1):
+                if (min(a, b), max(a, b)) not in taken:
+                    found.append((a, b))
+        for k, (a, b) in enumerate(found):
+            pair = (a, b) if k % 2 else (b, a)
+            self.ask("opposite", "cloud", pair, opposite(self.scene, *pair))
+
+    def outlooks(self) -> None:
+        """What is seen from rooms, things and other rooms."""
+        scene, outlook = self.scene, Outlook(self.scene)
+        names = [room["name"] for room in scene.rooms]
+        own: dict[str, str] = {name: scene.rows[name]["room"] for name in self.things}
+        known: dict[tuple[bool, bool], list[Pair]] = {}
+        for name in self.chosen(self.things, 40):
+            for room in names:
+                truth = self.world.holds("visible_from_room", name, f"room:{room}") is True
+                known.setdefault((truth, own[name] == room), []).append((name, room))
+        for key in ((True, True), (True, False), (False, True), (False, False)):
+            # What is in a room is mostly seen from there: through doors is harder.
+            for name, room in self.chosen(known.get(key, []), self.each if key[1] ^ key[0] else 1):
+                answer = outlook.thing(name, room)
+                self.ask("visible_from_room", "pixels", (name, f"room:{room}"), answer)
+        rooms: dict[bool, list[Pair]] = {True: [], False: []}
+        for a in names:
+            for b in names:
+                if a != b:
+                    there = self.world.holds("visible_from_room", f"room:{a}", f"room:{b}")
+                    rooms[there is True].append((a, b))
+        for a, b in (*self.chosen(rooms[True], self.each), *self.chosen(rooms[False], self.each)):
+            answer = outlook.room(a, b)
+            self.ask("visible_from_room", "lines", (f"room:{a}", f"room:{b}"), answer)
+
     def viewers(self, count: int) -> list[Viewer]:
         """Places in rooms, looking anywhere."""
         found = []
@@ -288,6 +394,20 @@ class Survey:
                     here = room["name"]
                     answer = facing(scene, viewer, name, here)
                     self.ask(predicate, "cloud", ("agent:0", name), answer, world=world)
+        # Turned to something, it is opposite to more.
+        inside = [n for n in close if is_known(n) and scene.rows[n]["room"] == room["name"]]
+        for name in self.chosen(inside, 1):
+            way = self.places[name] - eye
+            yaw = float(np.round(np.rad2deg(np.arctan2(-way[0], -way[2])), 1))
+            world.place_agent(room["stand"], yaw)
+            viewer = Viewer(viewer.eye, yaw, 0.0)
+        known = {True: [], False: []}
+        for name in inside:
+            known[world.holds("opposite", "agent:0", name) is True].append(name)
+        for name in (*self.chosen(known[True], self.each), *self.chosen(known[False], self.each)):
+            radius = float(agent["body"]["radius_m"])
+            answer = opposite_agent(scene, viewer, radius, name, room["name"])
+            self.ask("opposite", "cloud, agent", ("agent:0", name), answer, world=world)
         if not reach:
             return
         walk = Walk(scene, agent)
@@ -341,6 +461,54 @@ class Survey:
                 else:
                     self.ask("supports", "removal", (b, a), carried)
                     self.ask("contains", "removal", (b, a), within)
+                belongs = belongs_to(self.scene, physics, a, b, moves)
+                if self.rng.random() < 0.5:
+                    self.ask("belongs_to", "removal", (a, b), belongs)
+                else:
+                    self.ask("has", "removal", (b, a), belongs)
+        self.fixtures(physics)
+
+    def fixtures(self, physics: Physics) -> None:
+        """What belongs to walls, floors and ceilings, and cloth to windows."""
+        names = {row["id"]: name for name, row in self.scene.rows.items()}
+        held = [
+            (names[a], b)
+            for a, _, b in self.world.relation_array(["belongs_to"]).tolist()
+            if a in names and b not in names
+        ]
+        hung = [(a, b) for a, b in held if a not in physics.movable]
+        put = [(a, b) for a, b in held if a in physics.movable]
+        picked = [*self.chosen(hung, 2 * self.each), *self.chosen(put, self.each)]
+        pieces = sorted({b for _, b in held})
+        known = set(held)
+        for a, _ in picked[:]:
+            b = pieces[int(self.rng.integers(len(pieces)))]
+            if (a, b) not in known:
+                picked.append((a, b))
+        # What stands along a wall does not belong to it.
+        beside = [
+            (names[a], b)
+            for a, _, b in self.world.relation_array(["against"]).tolist()
+            if a in names and b not in names and (names[a], b) not in known
+        ]
+        for a, b in (*picked, *self.chosen(beside, self.each)):
+            answer = belongs_to_building(self.scene, physics, a, b)
+            self.ask("belongs_to", "building", (a, f"structure:{b}"), answer)
+        windows = [name for name in self.scene.rows if name.startswith("window")]
+        cloths = [name for name in self.things if name.startswith(("curtain", "blind"))]
+        for a in self.chosen(cloths, 1):
+            close = sorted(
+                windows,
+                key=lambda name: float(
+                    np.linalg.norm(np.array(self.scene.rows[name]["center"]) - self.places[a])
+                ),
+            )
+            for window in close[:2]:
+                answer = hangs_at_window(self.scene, a, window)
+                if self.rng.random() < 0.5:
+                    self.ask("belongs_to", "window", (a, window), answer)
+                else:
+                    self.ask("has", "window", (window, a), answer)
 
     def doors(self) -> None:
         """Open and closed, by scans of all places of a joint."""
@@ -390,6 +558,10 @@ class Survey:
         self.two()
         self.beside_walls()
         self.rooms()
+        self.ends(viewers)
+        self.closer()
+        self.across()
+        self.outlooks()
         self.sides(viewers)
         self.support(viewers)
         self.doors()

@@ -35,7 +35,11 @@ impl Predicate for BelongsTo {
     }
 
     fn decide(&self, scene: &SemanticScene<'_>, args: &[Term], viewer: Option<&Viewer>) -> Truth {
-        let inside = Inside.holds(scene, args, viewer);
+        // `in` says nothing of pieces of the building.
+        let inside = match args[1] {
+            Term::Structure(_) => Truth::False,
+            _ => Inside.holds(scene, args, viewer),
+        };
         let on = On.decide(scene, args, viewer);
         inside.or(on).or(AttachedTo.decide(scene, args, viewer))
     }
