@@ -207,7 +207,17 @@ impl Resolver {
                     _ => None,
                 };
                 let first = self.mentions.len();
+                let is_part_of_several = matches!(
+                    &*one,
+                    Clause::Exists(Phrase::Described(own))
+                        if own.noun == Noun::SameNoun && own.modifiers.is_empty()
+                );
                 self.unit(verb.as_deref(), |visit| visit_clause(one, visit));
+                if let Clause::Exists(Phrase::Described(own)) = &mut *one
+                    && is_part_of_several
+                {
+                    self.place_of_several(own, first);
+                }
                 if let Clause::Holds { arguments, .. } = &*one {
                     for mention in &mut self.mentions[first..] {
                         mention.is_argument = arguments.contains(&mention.phrase);
@@ -292,7 +302,7 @@ impl Resolver {
                 let choice = self.choices.get(self.counts.len()).copied().unwrap_or(0);
                 self.counts.push(candidates.len());
                 if let Some(found) = candidates.into_iter().nth(choice) {
-                    *phrase = found;
+                    *phrase = the_one(found);
                 }
             }
             Phrase::Described(own) if own.noun == Noun::SameNoun => {
@@ -363,6 +373,24 @@ impl Resolver {
         }
         if own.modifiers.len() == 1 {
             own.modifiers.splice(0..0, shared);
+        }
+    }
+
+    /// "There are two chairs in the kitchen, one red and one blue": both are in the kitchen.
+    fn place_of_several(&self, own: &mut Description, before: usize) {
+        let named = self.mentions[..before].iter().rev().find_map(|mention| {
+            let Phrase::Described(named) = &mention.phrase else {
+                return None;
+            };
+            let are_several = match named.quantifier {
+                Quantifier::Exactly(count) | Quantifier::AtLeast(count) => count > 1,
+                _ => false,
+            };
+            (mention.role == Role::Topic && are_several && named.noun == own.noun)
+                .then(|| mention.with_said.as_ref().unwrap_or(named))
+        });
+        if let Some(named) = named {
+            own.modifiers.clone_from(&named.modifiers);
         }
     }
 
@@ -508,6 +536,16 @@ fn subject_with_said(clause: &Clause) -> Option<Description> {
         _ => return None,
     }
     Some(subject)
+}
+
+/// "There is exactly one bottle in the hall, and it is green": the bottle.
+fn the_one(phrase: Phrase) -> Phrase {
+    match phrase {
+        Phrase::Described(own) if own.quantifier == Quantifier::Exactly(1) => {
+            own.with_quantifier(Quantifier::The).into()
+        }
+        other => other,
+    }
 }
 
 /// Returns whether a description is of any room: that of "in the corner".

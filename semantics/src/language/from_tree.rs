@@ -68,15 +68,27 @@ fn clause(tree: &Tree) -> Option<Clause> {
 }
 
 fn list(tree: &Tree) -> Option<Vec<Clause>> {
-    match parts(tree)? {
-        ("and_pair" | "or_pair", [a, b]) => Some(vec![simple(a)?, simple(b)?]),
-        ("and_more" | "or_more", [first, rest]) => {
-            let mut all = vec![simple(first)?];
-            all.extend(list(rest)?);
-            Some(all)
+    let mut trees = Vec::new();
+    let mut rest = tree;
+    loop {
+        match parts(rest)? {
+            ("and_pair" | "or_pair", [a, b]) => {
+                trees.extend([a, b]);
+                break;
+            }
+            ("and_more" | "or_more", [first, more]) => {
+                trees.push(first);
+                rest = more;
+            }
+            _ => return None,
         }
-        _ => None,
     }
+    let mut clauses: Vec<Clause> = trees
+        .iter()
+        .map(|tree| simple(tree))
+        .collect::<Option<_>>()?;
+    places::with_landmark_before(&mut clauses, &trees);
+    Some(clauses)
 }
 
 pub(super) fn holds(predicate: &str, arguments: Vec<Phrase>) -> Clause {
@@ -221,13 +233,17 @@ pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
             simple(first)?,
             verb_phrases::clause(phrase(subject)?, said)?,
         ]),
-        ("nothing_but", [added, exception]) => {
+        ("nothing_but" | "only_exists", [added, exception]) => {
             let added = modifier(added)?;
             let any = Noun::Object(Noun::ANY_OBJECT.to_owned());
             let only = Description::new(Quantifier::Exactly(1), any).with_modifier(added.clone());
             let Phrase::Described(exception) = phrase(exception)? else {
                 return None;
             };
+            if function == "only_exists" && matches!(exception.quantifier, Quantifier::Exactly(_)) {
+                // "There is only one bottle in the hall" counts bottles.
+                return Some(Clause::Exists(exception.with_modifier(added).into()));
+            }
             Clause::All(vec![
                 Clause::Exists(exception.with_modifier(added).into()),
                 Clause::Exists(only.into()),
@@ -357,7 +373,7 @@ pub(super) fn place_of(tree: &Tree) -> Option<(String, Phrase)> {
             of("in_corner_of", room.into())
         }
         ("place_end", []) => of("at_end_of", any_room()),
-        ("place_corner", []) => of("in_corner_of", any_room()),
+        ("place_corner" | "destination_corner", []) => of("in_corner_of", any_room()),
         ("place_middle", []) => of("in_middle_of", any_room()),
         ("on_storey", [place]) => of("on_storey", Phrase::Storey(number(place)?)),
         _ => return None,

@@ -10,6 +10,7 @@ mod lexicon;
 mod numbers;
 mod phrases;
 mod places;
+mod plurals;
 mod questions;
 mod read;
 mod requests;

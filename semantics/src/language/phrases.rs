@@ -48,9 +48,8 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
     match (function, arguments) {
         ("the" | "i_the", [noun]) => of(Quantifier::The, noun),
         ("some" | "i_some", [noun]) => of(Quantifier::Some, noun),
-        ("every" | "i_every", [noun]) | ("every_counted" | "i_every_counted", [_, noun]) => {
-            of(Quantifier::Every, noun)
-        }
+        ("every" | "i_every" | "the_plural", [noun])
+        | ("every_counted" | "i_every_counted", [_, noun]) => of(Quantifier::Every, noun),
         ("no", [noun]) => of(Quantifier::No, noun),
         ("exactly_one", [noun]) => of(Quantifier::Exactly(1), noun),
         ("exactly" | "i_exactly", [count, noun]) => of(Quantifier::Exactly(number(count)?), noun),
@@ -151,9 +150,11 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
         | ("structure_flank" | "i_structure_flank", [side, noun]) => {
             places::structure(noun, Some(places::side_from_tree(side)?))
         }
-        ("structure_of" | "i_structure_of" | "piece_of" | "i_piece_of", [noun, place]) => {
-            places::structure(noun, Some(Modifier::new("in_room", [room(place)?])))
-        }
+        (
+            "structure_of" | "i_structure_of" | "piece_of" | "i_piece_of" | "pieces_of"
+            | "structures_of",
+            [noun, place],
+        ) => places::structure(noun, Some(Modifier::new("in_room", [room(place)?]))),
         ("structure_in" | "i_structure_in", [place, noun]) => {
             let room = Description::new(Quantifier::The, Noun::Room(id(place)?));
             places::structure(noun, Some(Modifier::new("in_room", [room.into()])))
@@ -192,9 +193,8 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
             Some(named_before(Quantifier::Exactly(number(count)?), function))
         }
         ("np_nothing" | "np_something", [inner]) => nothing(inner).map(Phrase::from),
-        ("at_least_two" | "i_at_least_two", [noun]) | ("gathering_of", [_, noun]) => {
-            of(Quantifier::AtLeast(2), noun)
-        }
+        ("at_least_two" | "i_at_least_two" | "bare_plural" | "i_bare_plural", [noun])
+        | ("gathering_of", [_, noun]) => of(Quantifier::AtLeast(2), noun),
         ("i_something", []) => {
             let noun = Noun::Object(Noun::ANY_OBJECT.to_owned());
             Some(Description::new(Quantifier::Some, noun).into())

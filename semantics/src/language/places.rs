@@ -4,7 +4,7 @@ use super::existence::is_bare;
 use super::from_tree::{id, parts, room};
 use super::lexicon::STRUCTURE;
 use super::to_tree::{Position, TreeBuilder};
-use crate::form::{Description, Modifier, Noun, Phrase, Quantifier};
+use crate::form::{Clause, Description, Modifier, Noun, Phrase, Quantifier};
 use crate::grammar::Tree;
 
 /// Sides of the viewer: grammar function and predicate.
@@ -13,6 +13,9 @@ const SIDES: [(&str, &str); 3] = [
     ("side_ahead", "straight_ahead"),
     ("side_right", "on_right"),
 ];
+
+/// The end of the functions of sides that do not say of what: "to the left".
+const ANY_LANDMARK: &str = "_of_any";
 
 fn mounts() -> [(&'static str, Noun); 3] {
     [
@@ -107,8 +110,38 @@ pub(super) fn side_of(predicate: &str) -> Option<Tree> {
     found.map(|(function, _)| Tree::apply(function, []))
 }
 
+/// Puts the landmark that a clause has on a side in place of the listener in those after it: "The bin is to the left of the
+/// toilet, and the basket is to the right."
+pub(super) fn with_landmark_before(clauses: &mut [Clause], trees: &[&Tree]) {
+    let mut before: Option<Phrase> = None;
+    for (clause, tree) in clauses.iter_mut().zip(trees) {
+        let Clause::Holds {
+            predicate,
+            arguments,
+        } = clause
+        else {
+            continue;
+        };
+        match (predicate.as_str(), &arguments[..], &before) {
+            ("left_of" | "right_of", [_, landmark], _) => before = Some(landmark.clone()),
+            ("on_left" | "on_right", [_], Some(landmark)) if says_any_side(tree) => {
+                *predicate = predicate.replace("on_", "") + "_of";
+                arguments.push(landmark.clone());
+            }
+            _ => {}
+        }
+    }
+}
+
+fn says_any_side(tree: &Tree) -> bool {
+    parts(tree).is_some_and(|(function, arguments)| {
+        function.ends_with(ANY_LANDMARK) || arguments.iter().any(says_any_side)
+    })
+}
+
 pub(super) fn side_from_tree(tree: &Tree) -> Option<Modifier> {
     let (function, _) = parts(tree)?;
+    let function = function.strip_suffix(ANY_LANDMARK).unwrap_or(function);
     // "The left wall" is the one on your left.
     let side = function.strip_prefix("flank_");
     let found = SIDES
@@ -139,10 +172,14 @@ impl TreeBuilder<'_> {
             material: None,
             ..own.clone()
         };
+        let noun = self.known(STRUCTURE, noun)?;
+        if own.quantifier == Quantifier::Every && position == Position::Free {
+            let any = bare.with_quantifier(Quantifier::Some);
+            return is_bare(&any).then(|| self.every_piece(own, noun))?;
+        }
         if own.quantifier != Quantifier::Some || !is_bare(&bare) {
             return None;
         }
-        let noun = self.known(STRUCTURE, noun)?;
         if !own.colors.is_empty() || own.material.is_some() {
             return self.piece(own, noun, position);
         }
@@ -172,8 +209,21 @@ impl TreeBuilder<'_> {
         })
     }
 
+    /// The tree of every piece of a kind, of a room or of all.
+    fn every_piece(&self, own: &Description, noun: Tree) -> Option<Tree> {
+        let piece = self.looks_of_piece(own, noun)?;
+        match &own.modifiers[..] {
+            [] => Some(Tree::apply("every_piece", [piece])),
+            [there] if there.predicate == "in_room" && !there.negated => {
+                let room = self.room(there.arguments.first()?)?;
+                Some(Tree::apply("every_piece_of", [piece, room]))
+            }
+            _ => None,
+        }
+    }
+
     /// The tree of a piece with its colour and substance.
-    fn piece(&self, own: &Description, noun: Tree, position: Position) -> Option<Tree> {
+    fn looks_of_piece(&self, own: &Description, noun: Tree) -> Option<Tree> {
         let mut tree = Tree::apply("piece", [noun]);
         if let Some(word) = &own.material {
             tree = Tree::apply("piece_material", [self.known("material", word)?, tree]);
@@ -185,6 +235,12 @@ impl TreeBuilder<'_> {
             }
             _ => return None,
         }
+        Some(tree)
+    }
+
+    /// The tree of any piece with its colour and substance.
+    fn piece(&self, own: &Description, noun: Tree, position: Position) -> Option<Tree> {
+        let tree = self.looks_of_piece(own, noun)?;
         match (&own.modifiers[..], position) {
             ([], Position::Landmark) => Some(Tree::apply("i_piece_np", [tree])),
             ([], Position::Free) => Some(Tree::apply("piece_np", [tree])),

@@ -1,6 +1,6 @@
 //! Text to forms.
 
-use super::{Language, from_tree};
+use super::{Language, from_tree, plurals};
 use crate::form::Form;
 use crate::grammar::words;
 use dwell_scene::interrupt;
@@ -218,7 +218,7 @@ impl Language {
         let parse = self.grammar.parse(words);
         // "The chair near the table larger than the bed" compares the chair: few describe a landmark by a comparison.
         let forms = parse.trees.iter().filter_map(|(cost, tree)| {
-            let form = from_tree::form(tree)?;
+            let form = from_tree::form(&plurals::by_place(tree.clone()))?;
             // "The TV stands in front of the window" is no plural of "TV stand".
             let phrase = usize::from(matches!(form, Form::NounPhrase(_)));
             let penalty = form.described_comparisons() + 2 * phrase;

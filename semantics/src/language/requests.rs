@@ -38,9 +38,11 @@ pub(super) fn plan(tree: &Tree) -> Option<Vec<RequestStep>> {
             )]
         }
         ("then" | "steps", [first, rest]) => {
-            let mut steps = vec![step(first)?];
-            steps.extend(plan(rest)?);
-            steps
+            let mut rest = plan(rest)?;
+            if !fetched_for(first, &mut rest)? {
+                rest.insert(0, step(first)?);
+            }
+            rest
         }
         ("group", [only]) => group(only)?,
         ("group_then", [first, rest]) => {
@@ -49,6 +51,36 @@ pub(super) fn plan(tree: &Tree) -> Option<Vec<RequestStep>> {
             steps
         }
         _ => return None,
+    })
+}
+
+/// Puts what is fetched, or any thing that is picked up, in place of "it" in the step after it, which says where it goes: "Fetch
+/// the cup and put it on the table", "Take one of the cups and bring it to me". Returns whether it did.
+fn fetched_for(tree: &Tree, rest: &mut [RequestStep]) -> Option<bool> {
+    let fetched = match step(tree)? {
+        RequestStep::Do { verb, object } => {
+            let is_any =
+                matches!(&object, Phrase::Described(own) if own.quantifier == Quantifier::Some);
+            let takes = parts(tree)?.0 == "do_fetch" || verb == "pick_up" && is_any;
+            takes.then_some(object)
+        }
+        _ => None,
+    };
+    Some(match (fetched, rest.first_mut()) {
+        (
+            Some(fetched),
+            Some(RequestStep::Put { object, .. } | RequestStep::Bring { object, .. }),
+        ) if *object == Phrase::Pronoun => {
+            *object = fetched;
+            true
+        }
+        (Some(fetched), Some(RequestStep::Do { verb, object }))
+            if verb == "bring_me" && *object == Phrase::Pronoun =>
+        {
+            *object = fetched;
+            true
+        }
+        _ => false,
     })
 }
 
@@ -102,9 +134,14 @@ fn act(verb: &str, object: &Tree) -> Option<RequestStep> {
 }
 
 fn refrain(verb: &str, object: &Tree) -> Option<RequestStep> {
+    let object = match (parts(object)?.0, phrase(object)?) {
+        // "Do not touch the chairs" denies touching any, "every chair" only touching all.
+        ("the_plural", Phrase::Described(own)) => own.with_quantifier(Quantifier::Some).into(),
+        (_, object) => object,
+    };
     Some(RequestStep::DoNot {
         verb: verb.to_owned(),
-        object: phrase(object)?,
+        object,
     })
 }
 
@@ -246,11 +283,14 @@ fn step(tree: &Tree) -> Option<RequestStep> {
         ("do_off", [object]) => act("switch_off", object)?,
         ("do_pick_up", [object]) => act("pick_up", object)?,
         ("do_drop", [object]) => act("drop", object)?,
-        ("do_bring_here" | "do_bring_me", [object]) => act("bring_me", object)?,
+        ("do_bring_here" | "do_bring_me" | "do_fetch", [object]) => act("bring_me", object)?,
         ("do", [verb, object]) => act(&id(verb)?, object)?,
         ("do_not", [verb, object]) => refrain(&id(verb)?, object)?,
         ("put" | "put_modified", [object, relation, to]) => put(object, relation, to)?,
-        ("put_in_place" | "put_modified_in_place" | "leave_in_place", [object, place])
+        (
+            "put_in_place" | "put_modified_in_place" | "put_in_destination" | "leave_in_place",
+            [object, place],
+        )
         | ("put_by_place", [_, object, place]) => {
             let (predicate, to) = place_of(place)?;
             RequestStep::Put {
@@ -342,6 +382,8 @@ impl TreeBuilder<'_> {
                     Tree::apply("put_between", [object, free(one)?, free(other)?])
                 } else if predicate == "in_room" {
                     Tree::apply("put_in_place", [object, self.place(to)?])
+                } else if let Some(spot) = self.spot(predicate, to) {
+                    Tree::apply("put_in_place", [object, spot])
                 } else {
                     let relation = self.known(RELATION, predicate)?;
                     Tree::apply("put", [object, relation, free(to)?])

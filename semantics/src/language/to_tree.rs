@@ -268,7 +268,7 @@ impl TreeBuilder<'_> {
     }
 
     /// A place within a room: "in the corner of the kitchen".
-    fn spot(&self, predicate: &str, place: &Phrase) -> Option<Tree> {
+    pub(super) fn spot(&self, predicate: &str, place: &Phrase) -> Option<Tree> {
         let word = self.known(ROOM_SPOT, predicate)?;
         Some(Tree::apply("place_spot", [word, self.room(place)?]))
     }

@@ -6,7 +6,7 @@ use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::Truth;
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::{Pose, RoomId};
-use glam::Vec3;
+use glam::{Vec3, Vec3Swizzles};
 
 /// Height of eyes above the floor, m.
 const EYES_M: f32 = 1.5;
@@ -26,8 +26,8 @@ impl Predicate for VisibleFromRoom {
     }
 
     fn definition(&self) -> &'static str {
-        "From one of 32 places spread over the room's floor, at eyes 1.5 m above it, one of nine \
-         rays to the thing meets it first, as in `visible_from`; another room where a straight \
+        "From one of 32 places spread over the room's floor, at eyes 1.5 m above it and in no \
+         thing, one of nine rays to the thing meets it first, as in `visible_from`; another room where a straight \
          line joins such places of both."
     }
 
@@ -61,12 +61,20 @@ impl Predicate for VisibleFromRoom {
     }
 }
 
+/// Places of eyes that lie in no thing; all of them where furniture fills the room.
 fn eyes_in(scene: &SemanticScene<'_>, room: RoomId) -> Vec<Vec3> {
     let height = Vec3::Y * (scene.house().rooms[room].floor_y + EYES_M);
     let points = scene.house().points_in_room(room, PLACES).into_iter();
-    points
-        .map(|point| point * Vec3::new(1.0, 0.0, 1.0) + height)
-        .collect()
+    let eyes = points.map(|point| point * Vec3::new(1.0, 0.0, 1.0) + height);
+    let (free, within): (Vec<Vec3>, Vec<Vec3>) = eyes.partition(|eye| {
+        let mut things = scene.objects_in(room).iter();
+        !things.any(|thing| {
+            let extent = scene.extent(*thing);
+            let (low, high) = (extent.bounds.min.y, extent.bounds.max.y);
+            (low..=high).contains(&eye.y) && extent.footprint.contains(eye.xz())
+        })
+    });
+    if free.is_empty() { within } else { free }
 }
 
 fn is_clear(scene: &SemanticScene<'_>, from: Vec3, to: Vec3) -> bool {

@@ -1,0 +1,75 @@
+//! Plurals whose number depends on where they stand.
+//!
+//! A bare plural says "two or more" of what a sentence is about, and only "some" under a plural or a denial: "plants in white
+//! pots" have one pot each, and "none of the windows has curtains" is not true of a window with one (Zweig, "Number-neutral
+//! bare plurals and the multiplicity implicature", 2009).
+
+use super::from_tree::{number, parts};
+use crate::grammar::Tree;
+
+/// Returns the tree with each bare plural as "some" where a plural or a denial goes before, and with "the walls of the
+/// kitchen" as every wall of it where something is said of them.
+pub(super) fn by_place(tree: Tree) -> Tree {
+    distributed(tree, false)
+}
+
+fn distributed(tree: Tree, under_plural: bool) -> Tree {
+    let Tree::Apply {
+        function,
+        arguments,
+    } = tree
+    else {
+        return tree;
+    };
+    let function = match function.as_str() {
+        "bare_plural" if under_plural => "some".to_owned(),
+        "i_bare_plural" if under_plural => "i_some".to_owned(),
+        _ => function,
+    };
+    let is_said = ["is", "says", "whether_is", "whether_says"].contains(&function.as_str());
+    let mut under = under_plural || is_plural(&function, &arguments) || function.ends_with("_not");
+    let mut distributed_arguments = Vec::with_capacity(arguments.len());
+    for (at, argument) in arguments.into_iter().enumerate() {
+        let subject_is_plural =
+            parts(&argument).is_some_and(|(function, of)| is_plural(function, of));
+        let mut argument = distributed(argument, under);
+        if at == 0 {
+            under |= subject_is_plural;
+            if is_said {
+                argument = every_piece(argument);
+            }
+        }
+        distributed_arguments.push(argument);
+    }
+    Tree::Apply {
+        function,
+        arguments: distributed_arguments,
+    }
+}
+
+/// Returns whether what a noun phrase says holds of each of several things, or of none.
+fn is_plural(function: &str, arguments: &[Tree]) -> bool {
+    match function.strip_prefix("i_").unwrap_or(function) {
+        "no" | "none_of" | "every" | "the_plural" | "every_counted" | "all_of" | "at_least"
+        | "at_least_two" | "bare_plural" | "several_of" | "number_of" | "at_least_of"
+        | "more_than" => true,
+        "exactly" => arguments
+            .first()
+            .and_then(number)
+            .is_some_and(|count| count > 1),
+        _ => false,
+    }
+}
+
+fn every_piece(tree: Tree) -> Tree {
+    match tree {
+        Tree::Apply {
+            function,
+            arguments,
+        } if ["pieces_of", "structures_of"].contains(&function.as_str()) => Tree::Apply {
+            function: "every_piece_of".to_owned(),
+            arguments,
+        },
+        other => other,
+    }
+}
