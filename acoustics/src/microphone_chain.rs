@@ -55,7 +55,7 @@ impl ChainStage {
         })
     }
 
-    fn hear(&mut self, listener: &StageContext<'_>, whole: bool, samples: &mut [f32]) {
+    fn process(&mut self, listener: &StageContext<'_>, whole: bool, samples: &mut [f32]) {
         self.stage.process(&mut SampleBlock {
             context: listener,
             samples,
@@ -100,7 +100,7 @@ impl MicrophoneChain {
         let same = there.eq(acting());
         if same {
             for link in &mut self.chain {
-                link.hear(listener, false, samples);
+                link.process(listener, false, samples);
             }
             return;
         }
@@ -109,7 +109,7 @@ impl MicrophoneChain {
         let mut before = std::mem::replace(&mut self.chain, chain);
         if !amid {
             for link in &mut self.chain {
-                link.hear(listener, false, samples);
+                link.process(listener, false, samples);
             }
             return;
         }
@@ -118,7 +118,7 @@ impl MicrophoneChain {
         let mut memories: Vec<StageState> = Vec::with_capacity(before.len());
         for link in &mut before {
             memories.push(link.stage.state());
-            link.hear(listener, false, &mut old);
+            link.process(listener, false, &mut old);
         }
         let predecessors = LawSpec::predecessor_indices(&before, &self.chain);
         for (link, predecessor) in self.chain.iter_mut().zip(predecessors) {
@@ -127,7 +127,7 @@ impl MicrophoneChain {
             } else if link.stage.needs_fade_in() {
                 samples.chunks_exact_mut(size.max(1)).for_each(fade_in);
             }
-            link.hear(listener, false, samples);
+            link.process(listener, false, samples);
         }
         for (old, new) in old.chunks_exact(size).zip(samples.chunks_exact_mut(size)) {
             for ((old, new), weight) in old.iter().zip(new).zip(fade_in_weights(size)) {
@@ -161,7 +161,7 @@ impl MicrophoneChain {
             {
                 out[..length].copy_from_slice(channel);
             }
-            link.hear(listener, true, &mut out);
+            link.process(listener, true, &mut out);
             samples = out;
         }
         samples

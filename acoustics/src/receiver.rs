@@ -51,7 +51,7 @@ impl SoundSourcePose {
     /// Checks that its position is finite and its directivity in range.
     pub(crate) fn check(&self) -> Result<(), AcousticsError> {
         finite("the source", self.pose.position)?;
-        turned("the source", self.pose.rotation)?;
+        check_unit_rotation("the source", self.pose.rotation)?;
         self.directivity.check()
     }
 }
@@ -208,7 +208,7 @@ impl Receiver {
     pub(crate) fn check(&self) -> Result<(), AcousticsError> {
         const AT: &str = "receiver";
         finite("the receiver", self.pose.position)?;
-        turned("the receiver", self.pose.rotation)?;
+        check_unit_rotation("the receiver", self.pose.rotation)?;
         match &self.kind {
             ReceiverKind::Omni | ReceiverKind::Binaural | ReceiverKind::Head(_) => Ok(()),
             ReceiverKind::Ambisonics { order } => range(
@@ -224,7 +224,7 @@ impl Receiver {
                 range(AT, "microphones", count, (1.0, most), "1 to 128")?;
                 microphones.iter().try_for_each(|microphone| {
                     finite("a microphone", microphone.array_from_microphone.position)?;
-                    turned("a microphone", microphone.array_from_microphone.rotation)?;
+                    check_unit_rotation("a microphone", microphone.array_from_microphone.rotation)?;
                     microphone.directivity.check()
                 })
             }
@@ -233,7 +233,7 @@ impl Receiver {
 }
 
 /// Checks that a rotation is one.
-fn turned(what: &'static str, rotation: Quat) -> Result<(), AcousticsError> {
+fn check_unit_rotation(what: &'static str, rotation: Quat) -> Result<(), AcousticsError> {
     if rotation.is_finite() && (rotation.length_squared() - 1.0).abs() < 1e-2 {
         return Ok(());
     }

@@ -45,7 +45,7 @@ impl Reflection {
 
     /// The reflection with a random-incidence `absorption` (from 0 to 1).
     pub(crate) fn angle_dependent(absorption: &BandValues) -> Self {
-        let highest = from_all_sides(HIGHEST_ADMITTANCE);
+        let highest = random_incidence_absorption(HIGHEST_ADMITTANCE);
         let rest = |a: f32| (1.0 - f64::from(a)) / (1.0 - highest);
         Self {
             admittance: absorption.map(|a| admittance(f64::from(a).min(highest)) as f32),
@@ -66,7 +66,7 @@ impl Reflection {
 }
 
 /// Returns the random-incidence absorption of an admittance.
-fn from_all_sides(admittance: f64) -> f64 {
+fn random_incidence_absorption(admittance: f64) -> f64 {
     8.0 * admittance * admittance * bracket(admittance)
 }
 
@@ -87,7 +87,8 @@ fn admittance(absorption: f64) -> f64 {
         if slope <= 1e-9 {
             break;
         }
-        b = (b + (absorption - from_all_sides(b)) / slope).clamp(0.0, HIGHEST_ADMITTANCE);
+        b = (b + (absorption - random_incidence_absorption(b)) / slope)
+            .clamp(0.0, HIGHEST_ADMITTANCE);
     }
     b
 }

@@ -34,7 +34,7 @@ fn questions(scene: &SemanticScene<'_>, count: usize, seed: u64) -> Vec<Question
         .map(|k| {
             let code = asked[k % asked.len()];
             let mut args = [terms[0]; 3];
-            for (arg, kinds) in args.iter_mut().zip(all()[code].places()) {
+            for (arg, kinds) in args.iter_mut().zip(all()[code].argument_kinds()) {
                 let fitting = || terms.iter().filter(|term| kinds.contains(&term.kind()));
                 let number = fitting().count().max(1);
                 let found = fitting().nth(stream.below(number));

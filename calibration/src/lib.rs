@@ -56,7 +56,7 @@ pub fn calibrate(
     options.check()?;
     let progress = CallbackProgress::new(progress);
     progress.stage(0.0, "reading the measured data")?;
-    explain(&bundle::read(path)?, options, &progress)
+    find_missing_causes(&bundle::read(path)?, options, &progress)
 }
 
 /// The outcome of a calibration, by the bundle's kind.
@@ -117,7 +117,7 @@ pub fn calibrate_any(
         let report = rollout::series::run(&drives, &rollout::drive::models(), &settings, progress)?;
         return Ok(CalibrationOutcome::DriveStudy(Box::new(report)));
     }
-    let report = explain(&bundle, options, &CallbackProgress::new(progress))?;
+    let report = find_missing_causes(&bundle, options, &CallbackProgress::new(progress))?;
     Ok(CalibrationOutcome::Causes(Box::new(report)))
 }
 
@@ -130,7 +130,7 @@ pub fn check(path: &Path) -> Result<(BundleKind, usize), CalibrationError> {
     Ok((bundle.kind(), bundle.episodes.len()))
 }
 
-fn explain(
+fn find_missing_causes(
     bundle: &bundle::Bundle,
     options: &Options,
     progress: &CallbackProgress<'_>,

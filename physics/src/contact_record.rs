@@ -3,7 +3,7 @@
 use crate::articulation::JointSystem;
 use crate::contact::{
     BodyMotion, ContactCollector, ContactEvent, ContactHooks, ContactReport, ContactTracker,
-    MergedEvents, RestitutionContext, RestitutionResult, bound, record_motion,
+    MergedEvents, RestitutionContext, RestitutionResult, merge_excess, record_motion,
 };
 use crate::dynamics::Dynamics;
 use crate::joints::JointCoordinate;
@@ -99,6 +99,6 @@ impl ContactRecord {
         let config = &dynamics.settings.config;
         self.tracker
             .emit_events(dynamics.tick, config, &dynamics.table, events);
-        self.merged_events = bound(events, first, config.max_events_per_step);
+        self.merged_events = merge_excess(events, first, config.max_events_per_step);
     }
 }

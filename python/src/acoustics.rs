@@ -1,6 +1,6 @@
 //! Impulse responses for Python.
 
-use crate::answers::Answer;
+use crate::answers::PyValue;
 use crate::arrays;
 use crate::engine_call::EngineCall;
 use crate::errors::{PyFault, to_python};
@@ -54,12 +54,12 @@ impl PyAcousticScene {
         })
     }
 
-    fn early_paths(&self, py: Python<'_>, source: Data, mic: [f32; 3]) -> PyResult<Answer> {
+    fn early_paths(&self, py: Python<'_>, source: Data, mic: [f32; 3]) -> PyResult<PyValue> {
         py.engine(|| -> Result<_, PyFault> {
             let source: SoundSourcePose = source.read()?;
             let mic = Vec3::from_array(mic);
             let paths = self.scene.early_paths(&self.rays, &source, mic)?;
-            Answer::of(&paths)
+            PyValue::of(&paths)
         })
     }
 
@@ -100,7 +100,7 @@ impl PyAcousticScene {
         receivers: Data,
         seed: u64,
         threads: Option<usize>,
-    ) -> PyResult<Answer> {
+    ) -> PyResult<PyValue> {
         py.engine(|| -> Result<_, PyFault> {
             let source: SoundSourcePose = source.read()?;
             let receivers: Vec<Receiver> = receivers.read()?;
@@ -120,7 +120,7 @@ impl PyAcousticScene {
                 }
                 all.push(rows);
             }
-            Answer::of(&all)
+            PyValue::of(&all)
         })
     }
 
@@ -132,21 +132,21 @@ impl PyAcousticScene {
         receiver: Data,
         seed: u64,
         threads: Option<usize>,
-    ) -> PyResult<Answer> {
+    ) -> PyResult<PyValue> {
         py.engine(|| -> Result<_, PyFault> {
             let source: SoundSourcePose = source.read()?;
             let receiver: Receiver = receiver.read()?;
             let found = self.echograms(&source, &[receiver], seed, threads)?;
-            Answer::of(&found[0])
+            PyValue::of(&found[0])
         })
     }
 
-    fn material_report(&self, py: Python<'_>) -> PyResult<Answer> {
-        py.engine(|| Answer::of(&self.scene.material_report()))
+    fn material_report(&self, py: Python<'_>) -> PyResult<PyValue> {
+        py.engine(|| PyValue::of(&self.scene.material_report()))
     }
 
-    fn config(&self, py: Python<'_>) -> PyResult<Answer> {
-        py.engine(|| Answer::of(self.scene.config()))
+    fn config(&self, py: Python<'_>) -> PyResult<PyValue> {
+        py.engine(|| PyValue::of(self.scene.config()))
     }
 
     #[getter]
@@ -180,12 +180,12 @@ pub(crate) fn response_metrics(
     samples: PyReadonlyArray1<'_, f32>,
     rate_hz: f64,
     width: Data,
-) -> PyResult<Answer> {
+) -> PyResult<PyValue> {
     let samples = arrays::row("samples", &samples)?;
     py.engine(|| -> Result<_, PyFault> {
         let width: BandWidth = width.read()?;
         let found = metrics::impulse_response_metrics(samples, rate_hz, width);
-        Answer::of(&named_bands(serde_json::to_value(found)?, width))
+        PyValue::of(&named_bands(serde_json::to_value(found)?, width))
     })
 }
 
@@ -197,14 +197,14 @@ pub(crate) fn ear_metrics(
     right: PyReadonlyArray1<'_, f32>,
     rate_hz: f64,
     width: Data,
-) -> PyResult<Answer> {
+) -> PyResult<PyValue> {
     let (left, right) = (arrays::row("left", &left)?, arrays::row("right", &right)?);
     py.engine(|| -> Result<_, PyFault> {
         let width: BandWidth = width.read()?;
         let found = metrics::binaural_metrics(left, right, rate_hz, width);
         let mut found = serde_json::to_value(found)?;
         found["bands"] = named_bands(found["bands"].take(), width);
-        Answer::of(&found)
+        PyValue::of(&found)
     })
 }
 
@@ -236,7 +236,7 @@ pub(crate) fn synthesize<'py>(
 
 /// The built-in signals: `[{name, description, loop_s, usual_level_db, level_source}, ...]`.
 #[pyfunction]
-pub(crate) fn signals() -> PyResult<Answer> {
+pub(crate) fn signals() -> PyResult<PyValue> {
     let rows = dwell_acoustics::signals::list().iter().map(|signal| {
         serde_json::json!({
             "name": signal.name,
@@ -246,5 +246,5 @@ pub(crate) fn signals() -> PyResult<Answer> {
             "level_source": signal.level_source,
         })
     });
-    Answer::of(&rows.collect::<Vec<_>>()).map_err(to_python)
+    PyValue::of(&rows.collect::<Vec<_>>()).map_err(to_python)
 }

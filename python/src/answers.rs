@@ -17,7 +17,7 @@ type Name = Cow<'static, str>;
 /// An answer that is put together without Python, and becomes Python's own when the call returns. Fields keep their order;
 /// numbers that are not finite become `None`.
 #[derive(Debug, PartialEq)]
-pub(crate) enum Answer {
+pub(crate) enum PyValue {
     Nothing,
     Flag(bool),
     Signed(i64),
@@ -28,7 +28,7 @@ pub(crate) enum Answer {
     Fields(Vec<(Name, Self)>),
 }
 
-impl Answer {
+impl PyValue {
     /// An answer of what the engine says.
     pub(crate) fn of(value: &(impl Serialize + ?Sized)) -> Result<Self, PyFault> {
         Ok(value.serialize(AnswerSerializer)?)
@@ -51,7 +51,7 @@ impl Answer {
     }
 }
 
-impl<'py> IntoPyObject<'py> for Answer {
+impl<'py> IntoPyObject<'py> for PyValue {
     type Target = PyAny;
     type Output = Bound<'py, PyAny>;
     type Error = PyErr;
@@ -88,7 +88,7 @@ struct AnswerSerializer;
 /// Rows that are being put together, of an enum's variant where they have one.
 struct RowsSerializer {
     variant: Option<&'static str>,
-    rows: Vec<Answer>,
+    rows: Vec<PyValue>,
 }
 
 /// Fields that are being put together, of an enum's variant where they have one.
@@ -96,7 +96,7 @@ struct FieldsSerializer {
     variant: Option<&'static str>,
     /// Of the value that comes next.
     name: Option<Name>,
-    fields: Vec<(Name, Answer)>,
+    fields: Vec<(Name, PyValue)>,
 }
 
 fn rows(variant: Option<&'static str>, count: usize) -> RowsSerializer {
@@ -120,8 +120,8 @@ impl RowsSerializer {
         Ok(())
     }
 
-    fn finish(self) -> Answer {
-        Answer::Rows(self.rows).of_variant(self.variant)
+    fn finish(self) -> PyValue {
+        PyValue::Rows(self.rows).of_variant(self.variant)
     }
 }
 
@@ -136,22 +136,22 @@ impl FieldsSerializer {
         Ok(())
     }
 
-    fn finish(self) -> Answer {
-        Answer::Fields(self.fields).of_variant(self.variant)
+    fn finish(self) -> PyValue {
+        PyValue::Fields(self.fields).of_variant(self.variant)
     }
 }
 
 /// Whole numbers of all lengths are kept as the longest.
 macro_rules! whole_numbers {
     ($($serialize:ident: $Number:ty = $Kind:ident,)+) => {$(
-        fn $serialize(self, value: $Number) -> Result<Answer, Error> {
-            Ok(Answer::$Kind(value.into()))
+        fn $serialize(self, value: $Number) -> Result<PyValue, Error> {
+            Ok(PyValue::$Kind(value.into()))
         }
     )+};
 }
 
 impl Serializer for AnswerSerializer {
-    type Ok = Answer;
+    type Ok = PyValue;
     type Error = Error;
     type SerializeSeq = RowsSerializer;
     type SerializeTuple = RowsSerializer;
@@ -161,8 +161,8 @@ impl Serializer for AnswerSerializer {
     type SerializeStruct = FieldsSerializer;
     type SerializeStructVariant = FieldsSerializer;
 
-    fn serialize_bool(self, value: bool) -> Result<Answer, Error> {
-        Ok(Answer::Flag(value))
+    fn serialize_bool(self, value: bool) -> Result<PyValue, Error> {
+        Ok(PyValue::Flag(value))
     }
 
     whole_numbers! {
@@ -170,43 +170,43 @@ impl Serializer for AnswerSerializer {
         serialize_u8: u8 = Unsigned, serialize_u16: u16 = Unsigned, serialize_u32: u32 = Unsigned, serialize_u64: u64 = Unsigned,
     }
 
-    fn serialize_f32(self, value: f32) -> Result<Answer, Error> {
+    fn serialize_f32(self, value: f32) -> Result<PyValue, Error> {
         // 0.1, not 0.10000000149011612: of all numbers that are this one in 32 bits the one with the fewest digits.
         let shortest = value.to_string().parse().map_err(Error::custom)?;
-        Ok(Answer::number(shortest))
+        Ok(PyValue::number(shortest))
     }
 
-    fn serialize_f64(self, value: f64) -> Result<Answer, Error> {
-        Ok(Answer::number(value))
+    fn serialize_f64(self, value: f64) -> Result<PyValue, Error> {
+        Ok(PyValue::number(value))
     }
 
-    fn serialize_char(self, value: char) -> Result<Answer, Error> {
-        Ok(Answer::Text(value.to_string()))
+    fn serialize_char(self, value: char) -> Result<PyValue, Error> {
+        Ok(PyValue::Text(value.to_string()))
     }
 
-    fn serialize_str(self, value: &str) -> Result<Answer, Error> {
-        Ok(Answer::Text(value.to_owned()))
+    fn serialize_str(self, value: &str) -> Result<PyValue, Error> {
+        Ok(PyValue::Text(value.to_owned()))
     }
 
-    fn serialize_bytes(self, value: &[u8]) -> Result<Answer, Error> {
-        let bytes = value.iter().map(|byte| Answer::Unsigned((*byte).into()));
-        Ok(Answer::Rows(bytes.collect()))
+    fn serialize_bytes(self, value: &[u8]) -> Result<PyValue, Error> {
+        let bytes = value.iter().map(|byte| PyValue::Unsigned((*byte).into()));
+        Ok(PyValue::Rows(bytes.collect()))
     }
 
-    fn serialize_none(self) -> Result<Answer, Error> {
-        Ok(Answer::Nothing)
+    fn serialize_none(self) -> Result<PyValue, Error> {
+        Ok(PyValue::Nothing)
     }
 
-    fn serialize_some<T: Serialize + ?Sized>(self, value: &T) -> Result<Answer, Error> {
+    fn serialize_some<T: Serialize + ?Sized>(self, value: &T) -> Result<PyValue, Error> {
         value.serialize(self)
     }
 
-    fn serialize_unit(self) -> Result<Answer, Error> {
-        Ok(Answer::Nothing)
+    fn serialize_unit(self) -> Result<PyValue, Error> {
+        Ok(PyValue::Nothing)
     }
 
-    fn serialize_unit_struct(self, _: &'static str) -> Result<Answer, Error> {
-        Ok(Answer::Nothing)
+    fn serialize_unit_struct(self, _: &'static str) -> Result<PyValue, Error> {
+        Ok(PyValue::Nothing)
     }
 
     fn serialize_unit_variant(
@@ -214,15 +214,15 @@ impl Serializer for AnswerSerializer {
         _: &'static str,
         _: u32,
         variant: &'static str,
-    ) -> Result<Answer, Error> {
-        Ok(Answer::Text(variant.to_owned()))
+    ) -> Result<PyValue, Error> {
+        Ok(PyValue::Text(variant.to_owned()))
     }
 
     fn serialize_newtype_struct<T: Serialize + ?Sized>(
         self,
         _: &'static str,
         value: &T,
-    ) -> Result<Answer, Error> {
+    ) -> Result<PyValue, Error> {
         value.serialize(self)
     }
 
@@ -232,7 +232,7 @@ impl Serializer for AnswerSerializer {
         _: u32,
         variant: &'static str,
         value: &T,
-    ) -> Result<Answer, Error> {
+    ) -> Result<PyValue, Error> {
         Ok(value.serialize(self)?.of_variant(Some(variant)))
     }
 
@@ -285,14 +285,14 @@ impl Serializer for AnswerSerializer {
 macro_rules! rows_are_pushed {
     ($($Kind:ident::$push:ident,)+) => {$(
         impl $Kind for RowsSerializer {
-            type Ok = Answer;
+            type Ok = PyValue;
             type Error = Error;
 
             fn $push<T: Serialize + ?Sized>(&mut self, value: &T) -> Result<(), Error> {
                 self.push(value)
             }
 
-            fn end(self) -> Result<Answer, Error> {
+            fn end(self) -> Result<PyValue, Error> {
                 Ok(self.finish())
             }
         }
@@ -310,7 +310,7 @@ rows_are_pushed! {
 macro_rules! fields_are_pushed {
     ($($Kind:ident,)+) => {$(
         impl $Kind for FieldsSerializer {
-            type Ok = Answer;
+            type Ok = PyValue;
             type Error = Error;
 
             fn serialize_field<T: Serialize + ?Sized>(
@@ -321,7 +321,7 @@ macro_rules! fields_are_pushed {
                 self.push(name, value)
             }
 
-            fn end(self) -> Result<Answer, Error> {
+            fn end(self) -> Result<PyValue, Error> {
                 Ok(self.finish())
             }
         }
@@ -331,14 +331,14 @@ macro_rules! fields_are_pushed {
 fields_are_pushed! { SerializeStruct, SerializeStructVariant, }
 
 impl SerializeMap for FieldsSerializer {
-    type Ok = Answer;
+    type Ok = PyValue;
     type Error = Error;
 
     fn serialize_key<T: Serialize + ?Sized>(&mut self, key: &T) -> Result<(), Error> {
         self.name = Some(match key.serialize(AnswerSerializer)? {
-            Answer::Text(name) => name.into(),
-            Answer::Signed(number) => number.to_string().into(),
-            Answer::Unsigned(number) => number.to_string().into(),
+            PyValue::Text(name) => name.into(),
+            PyValue::Signed(number) => number.to_string().into(),
+            PyValue::Unsigned(number) => number.to_string().into(),
             _ => return Err(Error::custom("a name must be text or a whole number")),
         });
         Ok(())
@@ -350,7 +350,7 @@ impl SerializeMap for FieldsSerializer {
         self.push(name, value)
     }
 
-    fn end(self) -> Result<Answer, Error> {
+    fn end(self) -> Result<PyValue, Error> {
         Ok(self.finish())
     }
 }

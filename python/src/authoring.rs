@@ -1,6 +1,6 @@
 //! Authoring of houses for Python: plans and edits come as JSON.
 
-use crate::answers::Answer;
+use crate::answers::PyValue;
 use crate::errors::PyFault;
 use dwell::Engines;
 use dwell_acoustics::{Recording, signals};
@@ -66,10 +66,10 @@ fn unmapped(house: &House, report: &Value) -> UnmappedNames {
 }
 
 /// Counts, rooms and categories, with what stayed unmapped.
-pub(crate) fn info(engines: &Engines, report: &Value) -> Result<Answer, PyFault> {
+pub(crate) fn info(engines: &Engines, report: &Value) -> Result<PyValue, PyFault> {
     let mut info = dwell::info(engines, report);
     info["unmapped"] = serde_json::to_value(unmapped(engines.house(), report))?;
-    Answer::of(&info)
+    PyValue::of(&info)
 }
 
 /// A map file for the unmapped names.

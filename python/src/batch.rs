@@ -1,6 +1,6 @@
 //! Environments stepped together.
 
-use crate::answers::Answer;
+use crate::answers::PyValue;
 use crate::arrays;
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
@@ -176,8 +176,8 @@ impl PyBatch {
         self.with(py, |batch| Ok(batch.agent_of_sensors()))
     }
 
-    fn specs(&self, py: Python<'_>) -> PyResult<Answer> {
-        self.with(py, |batch| Answer::of(&batch.specs()))
+    fn specs(&self, py: Python<'_>) -> PyResult<PyValue> {
+        self.with(py, |batch| PyValue::of(&batch.specs()))
     }
 
     fn reset(&self, py: Python<'_>, seeds: Vec<Option<u64>>) -> PyResult<()> {
@@ -185,7 +185,12 @@ impl PyBatch {
     }
 
     /// Replaces environment `env`, whose episode goes on where it has one.
-    fn put(&self, py: Python<'_>, env: usize, spare: &Bound<'_, PyPreparedEnv>) -> PyResult<()> {
+    fn replace_env(
+        &self,
+        py: Python<'_>,
+        env: usize,
+        spare: &Bound<'_, PyPreparedEnv>,
+    ) -> PyResult<()> {
         let spare = spare.get();
         self.with(py, |batch| {
             batch.replace_env(env, spare.take()?)?;
@@ -304,7 +309,7 @@ impl PyBatch {
     }
 
     #[pyo3(signature = (env, instruction=None, distance_m=None, agent=0))]
-    fn ask(
+    fn set_goal(
         &self,
         py: Python<'_>,
         env: usize,
@@ -320,7 +325,13 @@ impl PyBatch {
 
     /// Gives back `{distance_to_goal, spl, soft_spl}`; a task without a goal has no distance.
     #[pyo3(signature = (env, ruling, agent=0))]
-    fn rule(&self, py: Python<'_>, env: usize, ruling: Data, agent: usize) -> PyResult<Answer> {
+    fn set_step_result(
+        &self,
+        py: Python<'_>,
+        env: usize,
+        ruling: Data,
+        agent: usize,
+    ) -> PyResult<PyValue> {
         self.with(py, |batch| {
             let ruling: ExternalVerdict = ruling.read()?;
             let verdict = StepResult {
@@ -332,7 +343,7 @@ impl PyBatch {
                 batch
                     .env_mut(env)?
                     .set_step_result(agent, verdict, ruling.distance_m)?;
-            Answer::of(&serde_json::json!({
+            PyValue::of(&serde_json::json!({
                 "distance_to_goal": progress.distance_m,
                 "spl": progress.spl(verdict.success),
                 "soft_spl": progress.soft_spl(),
@@ -396,9 +407,9 @@ impl PyBatch {
     }
 
     /// Returns the states of all agents of a world, whether they act or not.
-    fn agent_states(&self, py: Python<'_>, env: usize) -> PyResult<Answer> {
+    fn agent_states(&self, py: Python<'_>, env: usize) -> PyResult<PyValue> {
         self.with(py, |batch| {
-            Answer::of(&dwell::effective_agents(batch.env(env)?.world()))
+            PyValue::of(&dwell::effective_agents(batch.env(env)?.world()))
         })
     }
 }

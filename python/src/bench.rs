@@ -1,6 +1,6 @@
 //! Throughput of every stage, measured without Python.
 
-use crate::answers::Answer;
+use crate::answers::PyValue;
 use crate::callbacks;
 use crate::engine_call::{EngineCall, attach};
 use crate::errors::PyFault;
@@ -17,16 +17,16 @@ pub(crate) fn bench(
     house: &str,
     options: Data,
     progress: Option<Py<PyAny>>,
-) -> PyResult<Answer> {
+) -> PyResult<PyValue> {
     let mut raised = None;
-    let figures = py.engine(|| -> Result<Answer, PyFault> {
+    let figures = py.engine(|| -> Result<PyValue, PyFault> {
         let options = options.read()?;
         let mut listener = |fraction: f64, part: &str| {
             let Some(call) = &progress else { return true };
             raised = attach(|py| callbacks::call(call.bind(py), (fraction, part)).err());
             raised.is_none()
         };
-        Answer::of(&dwell::bench::run(what, house, &options, &mut listener)?)
+        PyValue::of(&dwell::bench::run(what, house, &options, &mut listener)?)
     });
     raised.map_or(figures, Err)
 }

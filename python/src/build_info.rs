@@ -1,6 +1,6 @@
 //! Contents of this build: actions, tasks, sensors, laws, words, and the machine it runs on.
 
-use crate::answers::Answer;
+use crate::answers::PyValue;
 use crate::engine_call::EngineCall;
 use crate::errors::{PyFault, to_python};
 use dwell::{DiscreteAction, schema};
@@ -10,8 +10,8 @@ use serde_json::{Value, json};
 use std::sync::Arc;
 
 /// A table of constants.
-fn table(rows: &Value) -> PyResult<Answer> {
-    Answer::of(rows).map_err(to_python)
+fn table(rows: &Value) -> PyResult<PyValue> {
+    PyValue::of(rows).map_err(to_python)
 }
 
 /// The discrete actions, in the order of their numbers.
@@ -24,7 +24,7 @@ pub(crate) fn actions() -> Vec<&'static str> {
 /// in the order of their numbers. A field is `{name, about, required, schema}`; a kind's `target` describes its target, and is null
 /// without one; the fields that name a target are listed once.
 #[pyfunction]
-pub(crate) fn action_table() -> PyResult<Answer> {
+pub(crate) fn action_table() -> PyResult<PyValue> {
     let kinds = dwell::actions::all().iter().map(|kind| {
         json!({
             "name": kind.name,
@@ -42,7 +42,7 @@ pub(crate) fn action_table() -> PyResult<Answer> {
 
 /// The tasks: `[{name, version, about, asks, max_steps, sensors, settings}]`.
 #[pyfunction]
-pub(crate) fn tasks() -> PyResult<Answer> {
+pub(crate) fn tasks() -> PyResult<PyValue> {
     let tasks = dwell::tasks::all().iter().map(|kind| {
         json!({
             "name": kind.name,
@@ -59,7 +59,7 @@ pub(crate) fn tasks() -> PyResult<Answer> {
 
 /// The sensors: `[{name, about, settings, picture_style}]`; the style is null where a sensor is not one of pictures.
 #[pyfunction]
-pub(crate) fn sensors() -> PyResult<Answer> {
+pub(crate) fn sensors() -> PyResult<PyValue> {
     let sensors = dwell::sensors::all().iter();
     let rows = sensors.map(|kind| {
         json!({
@@ -74,7 +74,7 @@ pub(crate) fn sensors() -> PyResult<Answer> {
 
 /// The fields of other settings by the name of their type: `{type: [{name, about, required, schema}]}`.
 #[pyfunction]
-pub(crate) fn settings() -> PyResult<Answer> {
+pub(crate) fn settings() -> PyResult<PyValue> {
     table(&json!({
         "AcousticConfig": schema::fields_of::<dwell_acoustics::AcousticConfig>(),
         "AgentBody": schema::fields_of::<dwell_scene::AgentBody>(),
@@ -88,7 +88,7 @@ pub(crate) fn settings() -> PyResult<Answer> {
 
 /// The laws with their equations, units, bounds and rivals, and as `usual` the numbers of those installed by name alone.
 #[pyfunction]
-pub(crate) fn laws() -> PyResult<Answer> {
+pub(crate) fn laws() -> PyResult<PyValue> {
     let row = |info| -> Result<Value, serde_json::Error> {
         let mut row = serde_json::to_value(info)?;
         let usual = dwell::laws::DEFAULT_VALUES
@@ -141,13 +141,13 @@ pub(crate) fn seed_range(py: Python<'_>, house: &str) -> PyResult<Option<(u64, u
 
 /// Versions, threads and features: what `dwell doctor` prints.
 #[pyfunction]
-pub(crate) fn doctor(py: Python<'_>) -> PyResult<Answer> {
+pub(crate) fn doctor(py: Python<'_>) -> PyResult<PyValue> {
     py.engine(machine)
 }
 
-fn machine() -> Result<Answer, PyFault> {
+fn machine() -> Result<PyValue, PyFault> {
     let threads = Threads::requested(None)?.count();
-    Answer::of(&json!({
+    PyValue::of(&json!({
         "version": env!("CARGO_PKG_VERSION"),
         "target": format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
         "threads": threads,

@@ -1,6 +1,6 @@
 //! Texts about houses for Python, with the things that they are about.
 
-use crate::answers::Answer;
+use crate::answers::PyValue;
 use crate::errors::PyFault;
 use dwell_scene::House;
 use dwell_scene::random::RandomKey;
@@ -127,7 +127,7 @@ pub(crate) fn describe_level(
     listener: Listener,
     level: &str,
     seed: Option<u64>,
-) -> Result<Answer, PyFault> {
+) -> Result<PyValue, PyFault> {
     let house = scene.house();
     // One seed does not choose the same wordings in every house.
     let wording = seed.map(|seed| RandomKey::root(seed).child(house.name.as_str()));
@@ -143,7 +143,7 @@ pub(crate) fn describe_level(
         "view" => vec![describe_view(scene, listener, wording)],
         "graph" => {
             let text = serde_json::to_string(&scene_graph(scene, None))?;
-            return Answer::of(&[json!({ "text": text })]);
+            return PyValue::of(&[json!({ "text": text })]);
         }
         "instructions" => {
             let mut rows = Vec::new();
@@ -156,7 +156,7 @@ pub(crate) fn describe_level(
                     rows.push(instruction_row(scene, &worded.unwrap_or(instruction))?);
                 }
             }
-            return Answer::of(&rows);
+            return PyValue::of(&rows);
         }
         other => {
             return Err(PyFault::Config(format!(
@@ -166,5 +166,5 @@ pub(crate) fn describe_level(
     };
     let rows: Result<Vec<Value>, PyFault> =
         texts.iter().map(|text| text_row(house, text)).collect();
-    Answer::of(&rows?)
+    PyValue::of(&rows?)
 }

@@ -50,7 +50,7 @@ impl EngineCall for Python<'_> {
             // Values that a panic leaves half done are never used again: the object that raised is poisoned by its mutex.
             let outcome = catch_unwind(AssertUnwindSafe(|| {
                 let outcome = if hears_signals {
-                    interrupt::interruptible(ask, work)
+                    interrupt::interruptible(run_pending_handlers, work)
                 } else {
                     Ok(work())
                 };
@@ -109,7 +109,7 @@ fn is_python_running() -> bool {
 
 /// Runs handlers of signals and of logs; returns whether one of a signal raised. They cannot call engines: the call that they
 /// run in may hold any lock.
-fn ask() -> bool {
+fn run_pending_handlers() -> bool {
     IS_ASKING.set(true);
     let stop = Python::attach(|py| {
         let raised = logs::deliver(py);

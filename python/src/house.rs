@@ -1,6 +1,6 @@
 //! Houses for Python.
 
-use crate::answers::Answer;
+use crate::answers::PyValue;
 use crate::authoring;
 use crate::descriptions::describe_level;
 use crate::engine_call::EngineCall;
@@ -181,16 +181,16 @@ impl PyHouse {
         &self.house().name
     }
 
-    fn info(&self, py: Python<'_>) -> PyResult<Answer> {
+    fn info(&self, py: Python<'_>) -> PyResult<PyValue> {
         py.engine(|| authoring::info(&self.engines, &self.report))
     }
 
-    fn rooms(&self, py: Python<'_>) -> PyResult<Answer> {
-        py.engine(|| Answer::of(&dwell::viewpoints(&self.engines)?))
+    fn rooms(&self, py: Python<'_>) -> PyResult<PyValue> {
+        py.engine(|| PyValue::of(&dwell::viewpoints(&self.engines)?))
     }
 
     #[pyo3(signature = (level, key=None))]
-    fn describe(&self, py: Python<'_>, level: &str, key: Option<u64>) -> PyResult<Answer> {
+    fn describe(&self, py: Python<'_>, level: &str, key: Option<u64>) -> PyResult<PyValue> {
         py.engine(|| {
             let state = State::new(self.house());
             let scene = self.engines.semantics().scene(&state);

@@ -1,6 +1,6 @@
 //! Heads for Python.
 
-use crate::answers::Answer;
+use crate::answers::PyValue;
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use dwell_acoustics::Head;
@@ -76,7 +76,7 @@ impl PyHead {
     }
 
     /// Returns what was found in the measurement, a mapping; `None` for a sphere.
-    fn summary(&self, py: Python<'_>) -> PyResult<Answer> {
-        py.engine(|| Answer::of(&self.head.summary()))
+    fn summary(&self, py: Python<'_>) -> PyResult<PyValue> {
+        py.engine(|| PyValue::of(&self.head.summary()))
     }
 }

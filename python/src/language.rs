@@ -29,7 +29,7 @@ impl WorldAccess<'_> {
     }
 
     /// A term by its kind, the sensors' id or its number, and its name.
-    fn told(&self, term: Term) -> Value {
+    fn term_json(&self, term: Term) -> Value {
         let house = self.world.house();
         let (kind, id) = match term {
             Term::Object(id) => ("object", house.entity_of_object(id).0),
@@ -42,15 +42,15 @@ impl WorldAccess<'_> {
         json!({"kind": kind, "id": id, "name": self.name_of(term)})
     }
 
-    fn terms_told(&self, terms: &[Term]) -> Value {
-        terms.iter().map(|term| self.told(*term)).collect()
+    fn terms_json(&self, terms: &[Term]) -> Value {
+        terms.iter().map(|term| self.term_json(*term)).collect()
     }
 
     fn verdict(&self, verdict: &CheckResult) -> Value {
         let witnesses = verdict.witnesses.iter().map(|witness| {
             json!({
                 "predicate": witness.predicate,
-                "things": self.terms_told(&witness.terms),
+                "things": self.terms_json(&witness.terms),
                 "truth": truth(witness.truth),
             })
         });
@@ -64,7 +64,7 @@ impl WorldAccess<'_> {
     fn answer(&self, answer: &Answer) -> Value {
         match answer {
             Answer::Truth(verdict) => self.verdict(verdict),
-            Answer::Things(terms) => json!({"things": self.terms_told(terms)}),
+            Answer::Things(terms) => json!({"things": self.terms_json(terms)}),
             Answer::Number(number) => json!({"number": number}),
             Answer::Alternatives(numbers) => json!({"alternatives": numbers}),
             Answer::Words(words) => json!({"words": words}),
@@ -83,10 +83,10 @@ fn unread(error: dwell_semantics::language::ReadError) -> PyFault {
 
 /// The forms that a sentence may stand for, the preferred one first.
 #[pyfunction]
-pub(crate) fn language_read(py: Python<'_>, text: &str) -> PyResult<answers::Answer> {
+pub(crate) fn language_read(py: Python<'_>, text: &str) -> PyResult<answers::PyValue> {
     py.engine(|| {
         let reading = Language::english().read(text).map_err(unread)?;
-        answers::Answer::of(&reading.forms)
+        answers::PyValue::of(&reading.forms)
     })
 }
 
@@ -112,8 +112,8 @@ pub(crate) fn world_check_text(
     text: &str,
     viewer: Data,
     agent: Option<usize>,
-) -> PyResult<answers::Answer> {
-    world.get().look(py, |running| {
+) -> PyResult<answers::PyValue> {
+    world.get().read_interruptible(py, |running| {
         let scene = running.scene();
         let checker = Checker::new(&scene, running.listener(viewer, agent)?);
         let checked = checker.check_text(text).map_err(unread)?;
@@ -124,7 +124,7 @@ pub(crate) fn world_check_text(
                 json!({
                     "start": letters(&said.text, phrase.start),
                     "end": letters(&said.text, phrase.end),
-                    "things": running.terms_told(&phrase.terms),
+                    "things": running.terms_json(&phrase.terms),
                 })
             });
             phrases.collect::<Vec<Value>>()
@@ -132,9 +132,9 @@ pub(crate) fn world_check_text(
         let phrases: Vec<Value> = phrases.collect();
         let ambiguous = checker.ambiguities(&checked.form);
         let ambiguities = ambiguous.iter().map(
-            |found| json!({"things": running.terms_told(&found.terms), "question": found.question}),
+            |found| json!({"things": running.terms_json(&found.terms), "question": found.question}),
         );
-        answers::Answer::of(&json!({
+        answers::PyValue::of(&json!({
             "form": serde_json::to_value(&checked.form)?,
             "other_forms": serde_json::to_value(&checked.others)?,
             "said": said.map(|said| said.text),

@@ -1,6 +1,6 @@
 //! Navigation for Python.
 
-use crate::answers::Answer;
+use crate::answers::PyValue;
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use crate::house::PyHouse;
@@ -222,7 +222,7 @@ impl PyNavigation {
         Ok((free, x, z, map.cell_m))
     }
 
-    fn doors(&self, py: Python<'_>) -> PyResult<Answer> {
+    fn doors(&self, py: Python<'_>) -> PyResult<PyValue> {
         py.engine(|| {
             let doors = self.with(NavGrid::doors)?;
             let doors = doors.into_iter().map(|door| {
@@ -231,7 +231,7 @@ impl PyNavigation {
                 json!({"name": self.house.objects[object].name, "openness": door.openness,
                     "is_open": door.is_open, "cells": cells, "islands": door.islands})
             });
-            Answer::of(&doors.collect::<Vec<_>>())
+            PyValue::of(&doors.collect::<Vec<_>>())
         })
     }
 }

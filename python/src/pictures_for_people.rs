@@ -1,6 +1,6 @@
 //! Pictures and shapes of worlds for people: maps, doll's houses, meshes for viewers.
 
-use crate::answers::Answer;
+use crate::answers::PyValue;
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use crate::house::PyHouse;
@@ -24,7 +24,7 @@ pub(crate) fn map<'py>(
     level: u32,
     longest_edge: u32,
 ) -> PyResult<(RgbArray<'py>, f32, f32, f32)> {
-    let (rgb, map) = world.get().look(py, |running| {
+    let (rgb, map) = world.get().read_interruptible(py, |running| {
         let world = &running.world;
         let map = StoreyMap::new(world.house(), LevelId(level), longest_edge)?;
         let (renderer, threads) = (world.engines().cpu_renderer()?, Threads::requested(None)?);
@@ -46,7 +46,7 @@ pub(crate) fn dollhouse<'py>(
     level: u32,
     config: Data,
 ) -> PyResult<RgbArray<'py>> {
-    let (rgb, size) = world.get().look(py, |running| {
+    let (rgb, size) = world.get().read_interruptible(py, |running| {
         let world = &running.world;
         let config: DollhouseConfig = config.read()?;
         let doll = Dollhouse::new(world.house(), LevelId(level), &config)?;
@@ -68,17 +68,17 @@ pub(crate) fn floor_plan(
     py: Python<'_>,
     world: &Bound<'_, PyWorld>,
     level: u32,
-) -> PyResult<Answer> {
-    world.get().look(py, |running| {
-        Answer::of(&dwell::floor_plan(running.world, LevelId(level)))
+) -> PyResult<PyValue> {
+    world.get().read_interruptible(py, |running| {
+        PyValue::of(&dwell::floor_plan(running.world, LevelId(level)))
     })
 }
 
 /// Lamps, sources of sound, joints and boxes as they stand.
 #[pyfunction]
-pub(crate) fn fixtures(py: Python<'_>, world: &Bound<'_, PyWorld>) -> PyResult<Answer> {
-    world.get().look(py, |running| {
-        Answer::of(&dwell::scene_overlay(running.world)?)
+pub(crate) fn fixtures(py: Python<'_>, world: &Bound<'_, PyWorld>) -> PyResult<PyValue> {
+    world.get().read_interruptible(py, |running| {
+        PyValue::of(&dwell::scene_overlay(running.world)?)
     })
 }
 
@@ -88,7 +88,7 @@ pub(crate) fn surfaces<'py>(
     py: Python<'py>,
     world: &Bound<'py, PyWorld>,
 ) -> PyResult<Vec<Bound<'py, PyDict>>> {
-    let (house, surfaces) = world.get().look(py, |running| {
+    let (house, surfaces) = world.get().read_interruptible(py, |running| {
         let world = &running.world;
         Ok((world.house().clone(), dwell::room_surfaces(world)))
     })?;

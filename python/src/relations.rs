@@ -1,6 +1,6 @@
 //! Predicates, relations and attributes for Python.
 
-use crate::answers::Answer;
+use crate::answers::PyValue;
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use crate::values::Data;
@@ -217,7 +217,7 @@ pub(crate) fn world_holds(
     things: Data,
     viewer: Data,
 ) -> PyResult<(Option<bool>, Option<&'static str>)> {
-    world.get().look(py, |running| {
+    world.get().read_interruptible(py, |running| {
         let predicate = predicate_called(name)?;
         let (terms, viewer) = (running.terms(things)?, running.viewer(viewer)?);
         let truth = predicate.holds(&running.scene(), &terms, viewer.as_ref());
@@ -237,7 +237,7 @@ pub(crate) fn world_select(
     reference: Data,
     viewer: Data,
 ) -> PyResult<(Option<String>, Option<&'static str>)> {
-    world.get().look(py, |running| {
+    world.get().read_interruptible(py, |running| {
         let selection = selection_called(name)?;
         let (terms, viewer) = (running.terms(things)?, running.viewer(viewer)?);
         let reference: Value = reference.read()?;
@@ -263,7 +263,7 @@ pub(crate) fn world_relations(
     names: Option<Vec<String>>,
     viewer: Data,
 ) -> PyResult<Vec<(String, &'static str, String)>> {
-    world.get().look(py, |running| {
+    world.get().read_interruptible(py, |running| {
         let viewer = running.viewer(viewer)?;
         let found = running.related(names, viewer.as_ref())?.into_iter();
         let named = found.map(|(subject, code, object)| {
@@ -282,7 +282,7 @@ pub(crate) fn world_relation_array<'py>(
     names: Option<Vec<String>>,
     viewer: Data,
 ) -> PyResult<Bound<'py, PyArray2<i32>>> {
-    let (rows, count) = world.get().look(py, |running| {
+    let (rows, count) = world.get().read_interruptible(py, |running| {
         let viewer = running.viewer(viewer)?;
         let found = running.related(names, viewer.as_ref())?;
         let house = running.world.house();
@@ -304,10 +304,10 @@ pub(crate) fn world_attributes(
     py: Python<'_>,
     world: &Bound<'_, PyWorld>,
     named: Data,
-) -> PyResult<Answer> {
-    world.get().look(py, |running| {
+) -> PyResult<PyValue> {
+    world.get().read_interruptible(py, |running| {
         let id = running.object(&named.read()?)?;
-        Answer::of(&object_attributes(&running.scene(), id))
+        PyValue::of(&object_attributes(&running.scene(), id))
     })
 }
 
@@ -319,7 +319,7 @@ pub(crate) fn world_color_names(
     named: Data,
     vocabulary: usize,
 ) -> PyResult<Vec<(&'static str, f32)>> {
-    world.get().look(py, |running| {
+    world.get().read_interruptible(py, |running| {
         let id = running.object(&named.read()?)?;
         let known = ColorVocabulary::of_size(vocabulary).ok_or_else(|| {
             PyFault::Config(format!(
@@ -338,7 +338,7 @@ pub(crate) fn world_graph_json(
     world: &Bound<'_, PyWorld>,
     viewer: Data,
 ) -> PyResult<String> {
-    world.get().look(py, |running| {
+    world.get().read_interruptible(py, |running| {
         let viewer = running.viewer(viewer)?;
         let graph = scene_graph(&running.scene(), viewer.as_ref());
         Ok(serde_json::to_string(&graph)?)
@@ -353,7 +353,7 @@ pub(crate) fn predicates_json(py: Python<'_>) -> PyResult<String> {
             let kinds = |kinds: &&[dwell_semantics::TermKind]| -> Vec<&str> {
                 kinds.iter().map(|kind| kind.name()).collect()
             };
-            let places: Vec<Vec<&str>> = predicate.places().iter().map(kinds).collect();
+            let places: Vec<Vec<&str>> = predicate.argument_kinds().iter().map(kinds).collect();
             json!({
                 "name": predicate.name(),
                 "places": places,

@@ -1,6 +1,6 @@
 //! Worlds for Python.
 
-use crate::answers::Answer;
+use crate::answers::PyValue;
 use crate::arrays;
 use crate::batch::PyBatch;
 use crate::descriptions::describe_level;
@@ -64,7 +64,7 @@ impl PyWorld {
     }
 
     /// Reads the world, which may take its time: a signal ends it, and the world is as it was.
-    pub(crate) fn look<T: Send>(
+    pub(crate) fn read_interruptible<T: Send>(
         &self,
         py: Python<'_>,
         work: impl FnOnce(&WorldAccess<'_>) -> Result<T, PyFault> + Send,
@@ -180,16 +180,16 @@ impl PyWorld {
         })
     }
 
-    fn act(&self, py: Python<'_>, agent: usize, action: Data) -> PyResult<Answer> {
+    fn act(&self, py: Python<'_>, agent: usize, action: Data) -> PyResult<PyValue> {
         self.with(py, |running| {
             let agent = running.agent(agent)?;
             let request: ActionRequest = action.read()?;
             let outcome = running.world.act_on(agent, &request)?;
-            Answer::of(&running.outcome(&outcome)?)
+            PyValue::of(&running.outcome(&outcome)?)
         })
     }
 
-    fn act_discrete(&self, py: Python<'_>, agent: usize, action: usize) -> PyResult<Answer> {
+    fn act_discrete(&self, py: Python<'_>, agent: usize, action: usize) -> PyResult<PyValue> {
         self.with(py, |running| {
             let agent = running.agent(agent)?;
             let last = DiscreteAction::ALL.len() - 1;
@@ -199,19 +199,19 @@ impl PyWorld {
             })?;
             let stride = running.stride(agent);
             let outcome = running.world.act_discrete(agent, action, &stride)?;
-            Answer::of(&running.outcome(&outcome)?)
+            PyValue::of(&running.outcome(&outcome)?)
         })
     }
 
-    fn delayed_outcomes(&self, py: Python<'_>) -> PyResult<Answer> {
-        self.look(py, |running| {
+    fn delayed_outcomes(&self, py: Python<'_>) -> PyResult<PyValue> {
+        self.read_interruptible(py, |running| {
             let mut notices = Vec::new();
             for notice in running.world.notices() {
                 let outcome = running.outcome(&notice.outcome)?;
                 let agent = notice.agent.map(|agent| agent.0);
                 notices.push(json!({"agent": agent, "outcome": outcome}));
             }
-            Answer::of(&notices)
+            PyValue::of(&notices)
         })
     }
 
@@ -232,32 +232,32 @@ impl PyWorld {
         })
     }
 
-    fn agents(&self, py: Python<'_>) -> PyResult<Answer> {
-        self.look(py, |running| {
-            Answer::of(&dwell::effective_agents(running.world))
+    fn agents(&self, py: Python<'_>) -> PyResult<PyValue> {
+        self.read_interruptible(py, |running| {
+            PyValue::of(&dwell::effective_agents(running.world))
         })
     }
 
-    fn objects(&self, py: Python<'_>) -> PyResult<Answer> {
-        self.look(py, |running| {
-            Answer::of(&dwell::object_states(running.world))
+    fn objects(&self, py: Python<'_>) -> PyResult<PyValue> {
+        self.read_interruptible(py, |running| {
+            PyValue::of(&dwell::object_states(running.world))
         })
     }
 
     /// One object, by its name or the sensors' id.
-    fn object(&self, py: Python<'_>, named: Data) -> PyResult<Answer> {
-        self.look(py, |running| {
+    fn object(&self, py: Python<'_>, named: Data) -> PyResult<PyValue> {
+        self.read_interruptible(py, |running| {
             let id = running.object(&named.read()?)?;
-            Answer::of(&dwell::object_state(running.world, id))
+            PyValue::of(&dwell::object_state(running.world, id))
         })
     }
 
-    fn events(&self, py: Python<'_>) -> PyResult<Answer> {
-        self.look(py, |running| Answer::of(running.world.events()))
+    fn events(&self, py: Python<'_>) -> PyResult<PyValue> {
+        self.read_interruptible(py, |running| PyValue::of(running.world.events()))
     }
 
-    fn start_report(&self, py: Python<'_>) -> PyResult<Answer> {
-        self.look(py, |running| Answer::of(running.world.start_report()))
+    fn start_report(&self, py: Python<'_>) -> PyResult<PyValue> {
+        self.read_interruptible(py, |running| PyValue::of(running.world.start_report()))
     }
 
     fn render<'py>(
@@ -266,7 +266,7 @@ impl PyWorld {
         view: Data,
         channels: Vec<String>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let seen = self.look(py, |running| {
+        let seen = self.read_interruptible(py, |running| {
             picture::render(running.world, view, &channels)
         })?;
         let images = PyDict::new(py);
@@ -336,12 +336,12 @@ impl PyWorld {
         })
     }
 
-    fn sounds(&self, py: Python<'_>) -> PyResult<Answer> {
-        self.look(py, |running| Answer::of(&running.world.sounds()))
+    fn sounds(&self, py: Python<'_>) -> PyResult<PyValue> {
+        self.read_interruptible(py, |running| PyValue::of(&running.world.sounds()))
     }
 
     fn navigation(&self, py: Python<'_>, walker: Data) -> PyResult<PyNavigation> {
-        self.look(py, |running| {
+        self.read_interruptible(py, |running| {
             let world = &running.world;
             PyNavigation::build(world.house(), world.state(), walker)
         })
@@ -349,11 +349,11 @@ impl PyWorld {
 
     fn follow(&self, py: Python<'_>, navigation: &Bound<'_, PyNavigation>) -> PyResult<usize> {
         let navigation = navigation.get();
-        self.look(py, |running| navigation.follow(running.world.state()))
+        self.read_interruptible(py, |running| navigation.follow(running.world.state()))
     }
 
-    fn merged_events(&self, py: Python<'_>) -> PyResult<Answer> {
-        self.look(py, |running| Answer::of(&running.world.merged_events()))
+    fn merged_events(&self, py: Python<'_>) -> PyResult<PyValue> {
+        self.read_interruptible(py, |running| PyValue::of(&running.world.merged_events()))
     }
 
     fn path(
@@ -362,7 +362,7 @@ impl PyWorld {
         agent: usize,
         goal: [f32; 3],
     ) -> PyResult<Option<Vec<[f32; 3]>>> {
-        self.look(py, |running| {
+        self.read_interruptible(py, |running| {
             let agent = running.agent(agent)?;
             let state = &running.world.state().agents[agent];
             let grid = running.world.engines().nav_grid(&state.body)?;
@@ -412,7 +412,7 @@ impl PyWorld {
     }
 
     fn face(&self, py: Python<'_>, agent: usize, object: &str) -> PyResult<Option<usize>> {
-        self.look(py, |running| {
+        self.read_interruptible(py, |running| {
             let agent = running.agent(agent)?;
             let object = running.object(&json!(object))?;
             Ok(
@@ -423,14 +423,14 @@ impl PyWorld {
     }
 
     fn gaze_target(&self, py: Python<'_>, agent: usize) -> PyResult<Option<String>> {
-        self.look(py, |running| {
+        self.read_interruptible(py, |running| {
             let target = running.world.object_in_view_centre(running.agent(agent)?);
             Ok(target.map(|object| running.world.house().objects[object].name.clone()))
         })
     }
 
-    fn joints(&self, py: Python<'_>) -> PyResult<Answer> {
-        self.look(py, |running| {
+    fn joints(&self, py: Python<'_>) -> PyResult<PyValue> {
+        self.read_interruptible(py, |running| {
             let (house, state) = (running.world.house(), running.world.state());
             let rows: Vec<_> = house
                 .joints
@@ -449,7 +449,7 @@ impl PyWorld {
                     })
                 })
                 .collect();
-            Answer::of(&rows)
+            PyValue::of(&rows)
         })
     }
 
@@ -481,12 +481,12 @@ impl PyWorld {
         })
     }
 
-    fn body(&self, py: Python<'_>, object: &str, part: Option<&str>) -> PyResult<Answer> {
-        self.look(py, |running| {
+    fn body(&self, py: Python<'_>, object: &str, part: Option<&str>) -> PyResult<PyValue> {
+        self.read_interruptible(py, |running| {
             let id = running.part(object, part)?;
             let state = running.world.state();
             let (pose, velocity) = (state.part_pose[id], state.part_velocity[id]);
-            Answer::of(&json!({
+            PyValue::of(&json!({
                 "position": pose.position.to_array(),
                 "rotation": pose.rotation.to_array(),
                 "linear_m_s": velocity.linear.to_array(),
@@ -515,15 +515,15 @@ impl PyWorld {
         })
     }
 
-    fn parameter(&self, py: Python<'_>, address: &str) -> PyResult<Answer> {
-        self.look(py, |running| {
+    fn parameter(&self, py: Python<'_>, address: &str) -> PyResult<PyValue> {
+        self.read_interruptible(py, |running| {
             let address: Address = address.parse()?;
-            Answer::of(&running.world.parameter(&address)?)
+            PyValue::of(&running.world.parameter(&address)?)
         })
     }
 
-    fn parameters(&self, py: Python<'_>) -> PyResult<Answer> {
-        self.look(py, |running| Answer::of(&running.world.parameters()))
+    fn parameters(&self, py: Python<'_>) -> PyResult<PyValue> {
+        self.read_interruptible(py, |running| PyValue::of(&running.world.parameters()))
     }
 
     fn set_parameters(&self, py: Python<'_>, values: Vec<(String, f64)>) -> PyResult<()> {
@@ -544,15 +544,15 @@ impl PyWorld {
         viewer: Data,
         agent: Option<usize>,
         key: Option<u64>,
-    ) -> PyResult<Answer> {
-        self.look(py, |running| {
+    ) -> PyResult<PyValue> {
+        self.read_interruptible(py, |running| {
             let listener = running.listener(viewer, agent)?;
             describe_level(&running.scene(), listener, level, key)
         })
     }
 
     fn snapshot<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let bytes = self.look(py, |running| Ok(running.world.snapshot()))?;
+        let bytes = self.read_interruptible(py, |running| Ok(running.world.snapshot()))?;
         Ok(PyBytes::new(py, &bytes))
     }
 
@@ -569,21 +569,21 @@ impl PyWorld {
         self.with(py, |running| Ok(running.world.restore(snapshot)?))
     }
 
-    fn config(&self, py: Python<'_>) -> PyResult<Answer> {
-        self.with(py, |running| Answer::of(running.world.config()))
+    fn config(&self, py: Python<'_>) -> PyResult<PyValue> {
+        self.with(py, |running| PyValue::of(running.world.config()))
     }
 
     fn hash(&self, py: Python<'_>) -> PyResult<u64> {
-        self.look(py, |running| Ok(running.world.hash()))
+        self.read_interruptible(py, |running| Ok(running.world.hash()))
     }
 
     #[getter]
     fn time_s(&self, py: Python<'_>) -> PyResult<f64> {
-        self.look(py, |running| Ok(running.world.state().time_s))
+        self.read_interruptible(py, |running| Ok(running.world.state().time_s))
     }
 
     #[getter]
     fn step_count(&self, py: Python<'_>) -> PyResult<u64> {
-        self.look(py, |running| Ok(running.world.state().step))
+        self.read_interruptible(py, |running| Ok(running.world.state().step))
     }
 }

@@ -310,7 +310,12 @@ fn every_predicate_says_what_it_is() {
         let plain = |c: char| c.is_ascii_lowercase() || c == '_';
         assert!(predicate.name().chars().all(plain), "{}", predicate.name());
         assert!((1..=3).contains(&predicate.arity()), "{}", predicate.name());
-        assert!(predicate.places().iter().all(|kinds| !kinds.is_empty()));
+        assert!(
+            predicate
+                .argument_kinds()
+                .iter()
+                .all(|kinds| !kinds.is_empty())
+        );
         for text in [predicate.definition(), predicate.source()] {
             assert!(
                 text.ends_with('.') && !text.contains("  "),

@@ -49,7 +49,7 @@ fn row(cells: &[String]) -> String {
 }
 
 fn kinds(predicate: &dyn Predicate) -> String {
-    let places = predicate.places().iter().map(|kinds| {
+    let places = predicate.argument_kinds().iter().map(|kinds| {
         let names: Vec<&str> = kinds.iter().map(|kind| kind.name()).collect();
         names.join(" or ")
     });

@@ -248,7 +248,7 @@ fn the_graph_holds_exactly_what_the_predicates_say() {
                     predicate: predicate.name().to_owned(),
                     object: s.house.entity_of_object(b).0,
                 };
-                let kinds = predicate.places()[1];
+                let kinds = predicate.argument_kinds()[1];
                 let things = kinds.contains(&dwell_semantics::TermKind::Object);
                 let in_graph = things && graph.relations.contains(&edge);
                 assert_eq!(holds, in_graph, "{edge:?}");

@@ -72,7 +72,7 @@ impl EdgeFrame {
         }
     }
 
-    fn see(&self, point: DVec3) -> EdgeCoordinates {
+    fn to_local(&self, point: DVec3) -> EdgeCoordinates {
         let from_start = point - self.start;
         EdgeCoordinates {
             along_m: from_start.dot(self.along),
@@ -103,7 +103,7 @@ impl EdgeFrame {
 
     /// Returns the path from `a` to `b` over this edge; `None` for points on its line.
     pub(super) fn diffracted_path(&self, a: DVec3, b: DVec3) -> Option<EdgePath> {
-        let (p, q) = (self.see(a), self.see(b));
+        let (p, q) = (self.to_local(a), self.to_local(b));
         let (r, s) = (p.across.length(), q.across.length());
         if r < 1e-6 || s < 1e-6 {
             return None;
@@ -142,8 +142,8 @@ impl EdgeFrame {
         a: DVec3,
         b: DVec3,
     ) -> Option<DoubleEdgePath> {
-        let (p, q) = (self.see(a), self.see(b));
-        let there = self.see(other.start);
+        let (p, q) = (self.to_local(a), self.to_local(b));
+        let there = self.to_local(other.start);
         let (r, m, s) = (
             p.across.length(),
             there.across.length(),
@@ -155,7 +155,7 @@ impl EdgeFrame {
         let rise = (q.along_m - p.along_m) / (r + m + s);
         let first = self.at(p.along_m + rise * r);
         let on_other = self.on_line(p.along_m + rise * (r + m));
-        let second = other.at(other.see(on_other).along_m);
+        let second = other.at(other.to_local(on_other).along_m);
         let (here, then) = (
             self.diffracted_path(a, second)?,
             other.diffracted_path(first, b)?,
@@ -180,7 +180,7 @@ impl EdgeFrame {
 impl EdgePath {
     /// Returns the effect of an edge of this length over that of an infinite one. `n_per_m`: Fresnel number of a metre.
     pub(super) fn finite_length_factor(&self, n_per_m: f64) -> f64 {
-        reach(self.end_detours_m, n_per_m)
+        finite_edge_factor(self.end_detours_m, n_per_m)
     }
 
     /// Returns the fraction of a free path's energy that is diffracted. Shape (band,).
@@ -200,14 +200,14 @@ impl DoubleEdgePath {
             let n = n_per_m * self.detour_m;
             let bends = self.local_m.map(|detour_m| n_per_m * detour_m);
             let thick = insertion_loss::second_edge_factor(n, 2.0 / n_per_m, apart_m, bends);
-            insertion_loss::transmitted_energy(n) * thick * reach(self.ends_m, n_per_m)
+            insertion_loss::transmitted_energy(n) * thick * finite_edge_factor(self.ends_m, n_per_m)
         })
     }
 }
 
 /// An edge's end acts on the path around it as a screen: where the path passes far from the end, nothing is lost. The power
 /// makes the four sides of a plate that is small against the wavelength together pass all of it.
-fn reach(ends_m: [f64; 2], n_per_m: f64) -> f64 {
+fn finite_edge_factor(ends_m: [f64; 2], n_per_m: f64) -> f64 {
     let [a, b] = ends_m.map(|end_m| insertion_loss::transmitted_energy(-end_m * n_per_m));
     libm::pow(a * b, 0.7)
 }

@@ -134,7 +134,7 @@ pub(crate) fn diffracted_paths(
         return Vec::new();
     }
     let touched: Vec<EdgePoint> = ways.iter().flat_map(|way| way.touches.clone()).collect();
-    let kept = beside_edges(data, rays, source, receiver, &touched);
+    let kept = grazing_edge_transmission(data, rays, source, receiver, &touched);
     unite(&mut ways, &n_per_m);
     for way in &mut ways {
         for (amplitude, kept) in way.amplitude.iter_mut().zip(kept) {
@@ -171,12 +171,12 @@ pub(crate) fn unobstructed_share(
     source: Vec3,
     receiver: Vec3,
 ) -> [f64; BAND_COUNT] {
-    beside_edges(data, rays, source, receiver, &[])
+    grazing_edge_transmission(data, rays, source, receiver, &[])
 }
 
 /// Returns the share of the sound that edges close to the straight line pass that hide nothing, except those of profiles
 /// that are `touched` anyway. Shape (band,).
-fn beside_edges(
+fn grazing_edge_transmission(
     data: &PropagationData,
     rays: &RayScene,
     source: Vec3,

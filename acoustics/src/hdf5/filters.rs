@@ -77,8 +77,8 @@ impl FilterPipeline {
             bytes = match filter {
                 // A checksum may follow the values.
                 ChunkFilter::Deflate => inflate(&bytes, size as u64 + 64)?,
-                ChunkFilter::Shuffle(width) => in_order(&bytes, *width),
-                ChunkFilter::Fletcher32 => checked(bytes)?,
+                ChunkFilter::Shuffle(width) => unshuffle(&bytes, *width),
+                ChunkFilter::Fletcher32 => verify_checksum(bytes)?,
             };
         }
         if bytes.len() != size {
@@ -111,7 +111,7 @@ fn inflate(bytes: &[u8], most: u64) -> Hdf5Result<Vec<u8>> {
 }
 
 /// Reverses the shuffle filter: first bytes of all values, then second bytes, and so on; the remainder at the end stays.
-fn in_order(bytes: &[u8], width: usize) -> Vec<u8> {
+fn unshuffle(bytes: &[u8], width: usize) -> Vec<u8> {
     let count = bytes.len() / width.max(1);
     if width < 2 || count < 2 {
         return bytes.to_vec();
@@ -128,7 +128,7 @@ fn in_order(bytes: &[u8], width: usize) -> Vec<u8> {
 }
 
 /// Returns the bytes before their checksum, if it is valid.
-fn checked(mut bytes: Vec<u8>) -> Hdf5Result<Vec<u8>> {
+fn verify_checksum(mut bytes: Vec<u8>) -> Hdf5Result<Vec<u8>> {
     let Some(at) = bytes.len().checked_sub(4) else {
         return unsupported("damaged: a chunk without its check sum");
     };

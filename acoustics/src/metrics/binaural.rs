@@ -81,7 +81,7 @@ pub fn binaural_metrics(
         };
         // Ringing before the start belongs to the early sound.
         let end = heard[0].len() - filters.leading_samples();
-        let [l, r] = heard.map(|ear| in_time(&ear, end));
+        let [l, r] = heard.map(|ear| unwrap_pre_ringing(&ear, end));
         let early = (early + filters.leading_samples()).min(l.len());
         let iacc = |l: &[f32], r: &[f32]| peak(l, r, lags, rate_hz, true).map(|found| found.1);
         found.iacc_early = iacc(&l[..early], &r[..early]);
@@ -89,7 +89,7 @@ pub fn binaural_metrics(
         found.iacc = iacc(&l, &r);
         if let Some([l, r]) = pair(&mut filters, &first) {
             found.ild_db = super::decibels(energy(&l), energy(&r));
-            let [l, r] = [l, r].map(|ear| in_time(&ear, end));
+            let [l, r] = [l, r].map(|ear| unwrap_pre_ringing(&ear, end));
             found.itd_s = peak(&l, &r, lags, rate_hz, false).map(|found| found.0);
         }
     }
@@ -97,13 +97,13 @@ pub fn binaural_metrics(
     metrics.ild_db = super::decibels(cut(left), cut(right));
     let [l, r] = first.map(|ear| filters.low_pass(&ear, FINE_HZ));
     let end = l.len() - filters.leading_samples();
-    let (l, r) = (in_time(&l, end), in_time(&r, end));
+    let (l, r) = (unwrap_pre_ringing(&l, end), unwrap_pre_ringing(&r, end));
     metrics.itd_s = peak(&l, &r, lags, rate_hz, false).map(|found| found.0);
     metrics
 }
 
 /// Returns a filtered signal with its ringing before the first sample, which was at the end from `end` on, moved to the front.
-fn in_time(samples: &[f32], end: usize) -> Vec<f32> {
+fn unwrap_pre_ringing(samples: &[f32], end: usize) -> Vec<f32> {
     [&samples[end..], &samples[..end]].concat()
 }
 
@@ -126,7 +126,7 @@ fn peak(
         .map(|k| correlation(left, right, k as isize - beyond as isize) / norm)
         .collect();
     let value = |place: usize| {
-        let between = between(&at, SINC as f64 + place as f64 / FINER as f64);
+        let between = sinc_interpolate(&at, SINC as f64 + place as f64 / FINER as f64);
         if by_magnitude { between.abs() } else { between }
     };
     let values: Vec<f64> = (0..=2 * lags * FINER).map(value).collect();
@@ -157,7 +157,7 @@ fn correlation(left: &[f32], right: &[f32], lag: isize) -> f64 {
 }
 
 /// Returns the value of a band-limited row between its samples, by a sinc under von Hann's window.
-fn between(row: &[f64], place: f64) -> f64 {
+fn sinc_interpolate(row: &[f64], place: f64) -> f64 {
     let below = place as usize;
     if place - below as f64 == 0.0 {
         return row[below];

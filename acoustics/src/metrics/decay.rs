@@ -155,9 +155,9 @@ impl EnergyCurve {
             .map(|(start, end, energy)| energy * (0.5 * (start + end) - arrival_s).max(0.0))
             .sum();
         BandMetrics {
-            edt_s: slope(&curve, 0.0, -10.0),
-            t20_s: slope(&curve, -5.0, -25.0),
-            t30_s: slope(&curve, -5.0, -35.0),
+            edt_s: reverberation_time_s(&curve, 0.0, -10.0),
+            t20_s: reverberation_time_s(&curve, -5.0, -25.0),
+            t30_s: reverberation_time_s(&curve, -5.0, -35.0),
             c50_db: clarity(0.05),
             c80_db: clarity(0.08),
             d50: Some(1.0 - late(0.05) / all),
@@ -204,7 +204,7 @@ fn energy_beyond(slots: &[f64]) -> Option<f64> {
 }
 
 /// Returns the time for 60 dB along the line fitted to the levels between `high` and `low` (least squares), s.
-fn slope(curve: &[(f64, f64)], high: f64, low: f64) -> Option<f64> {
+fn reverberation_time_s(curve: &[(f64, f64)], high: f64, low: f64) -> Option<f64> {
     // The curve must continue below, or its own end bends the line.
     curve.last().filter(|(_, level)| *level < low)?;
     let inside = || {

@@ -63,14 +63,20 @@ pub fn lateral_fraction(echogram: &Echogram, axis: Vec3) -> [Option<f64>; BAND_C
             }
             let share = |from: f64| ((end.min(UP_TO_S) - start.max(from)) / (end - start)).max(0.0);
             all += bin[band] * share(0.0);
-            lateral += bin[band] * share(FROM_S) * from_the_side(echogram, k, band, &squares);
+            lateral +=
+                bin[band] * share(FROM_S) * mean_square_lateral_cosine(echogram, k, band, &squares);
         }
         (all > 0.0).then(|| lateral / all)
     })
 }
 
 /// Returns the mean square of the cosine to the axis of the energy in a bin; 1/3 where directions are unknown.
-fn from_the_side(echogram: &Echogram, bin: usize, band: usize, squares: &[f64]) -> f64 {
+fn mean_square_lateral_cosine(
+    echogram: &Echogram,
+    bin: usize,
+    band: usize,
+    squares: &[f64],
+) -> f64 {
     let Some(directions) = echogram.tail.directions_at(bin) else {
         return 1.0 / 3.0;
     };

@@ -58,7 +58,7 @@ struct FaceRim {
 /// # Determinism
 /// Equal input, equal output.
 pub(super) fn find_edges(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Vec<DiffractionEdge> {
-    let kept = two_of_each(corners);
+    let kept = at_most_two_duplicates(corners);
     let of_triangle: Vec<u32> = kept.iter().map(|k| of_triangle[*k]).collect();
     let corners: Vec<[Vec3; 3]> = kept.into_iter().map(|k| corners[k]).collect();
     let sides = sides(&corners, &of_triangle);
@@ -89,7 +89,7 @@ pub(super) fn find_edges(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Vec<Diff
 
 /// Returns the triangles to test: of equal ones the first two. Whether a side is shared or open needs no third, and
 /// thousands of coincident objects are not compared with each other.
-fn two_of_each(corners: &[[Vec3; 3]]) -> Vec<usize> {
+fn at_most_two_duplicates(corners: &[[Vec3; 3]]) -> Vec<usize> {
     let mut counts: HashMap<[[u32; 3]; 3], u8> = HashMap::with_capacity(corners.len());
     let mut kept = Vec::with_capacity(corners.len());
     for (k, triangle) in corners.iter().enumerate() {

@@ -175,18 +175,18 @@ impl PlaneTable {
 
     /// Returns the plane of a hit; [`NO_PLANE`] where it has none.
     pub(crate) fn plane_of_hit(&self, house: &House, hit: &Hit) -> u32 {
-        let place = self.place_of(house, hit);
+        let place = self.triangle_index(house, hit);
         place.map_or(NO_PLANE, |place| self.of_triangle[place])
     }
 
     /// Returns the panel of a hit.
     pub(crate) fn panel(&self, house: &House, hit: &Hit) -> ReflectorPanel {
-        let place = self.place_of(house, hit);
+        let place = self.triangle_index(house, hit);
         place.map_or(ReflectorPanel::NONE, |place| self.panels[place])
     }
 
     /// Returns the index of a hit's triangle in the tables.
-    fn place_of(&self, house: &House, hit: &Hit) -> Option<usize> {
+    fn triangle_index(&self, house: &House, hit: &Hit) -> Option<usize> {
         let geometry = house.geometry();
         let (placed, triangle) = if let Some(instance) = hit.instance {
             let part = geometry.movable.get(instance as usize)?;

@@ -169,7 +169,7 @@ impl BitReader<'_> {
         let mut value = 0;
         for k in 0..count {
             let byte = self.bytes.get((self.at / 8) as usize);
-            let byte = byte.ok_or_else(cut)?;
+            let byte = byte.ok_or_else(truncated_codebook)?;
             value |= u64::from(byte >> (self.at % 8) & 1) << k;
             self.at += 1;
         }
@@ -179,13 +179,13 @@ impl BitReader<'_> {
     fn skip(&mut self, count: u64) -> Result<(), String> {
         self.at += count;
         if self.at > 8 * self.bytes.len() as u64 {
-            return Err(cut());
+            return Err(truncated_codebook());
         }
         Ok(())
     }
 }
 
-fn cut() -> String {
+fn truncated_codebook() -> String {
     "a codebook is longer than its header".to_owned()
 }
 

@@ -426,11 +426,11 @@ impl AcousticScene {
         paths: &[PropagationPath],
         receiver: &Receiver,
     ) -> Vec<Vec<PathFilter>> {
-        let hearing = self.hearing(receiver);
+        let hearing = self.receiver_context(receiver);
         self.synthesizer.path_filters(speed_m_s, paths, &hearing)
     }
 
-    fn hearing<'a>(&'a self, receiver: &'a Receiver) -> ReceiverContext<'a> {
+    fn receiver_context<'a>(&'a self, receiver: &'a Receiver) -> ReceiverContext<'a> {
         ReceiverContext {
             receiver,
             heads: &self.heads,
@@ -461,7 +461,7 @@ impl AcousticScene {
         early: Option<&[Vec<PropagationPath>]>,
         key: RandomKey,
     ) -> ImpulseResponse {
-        self.arrive_with(CachedGains::default(), echogram, receiver, early, key)
+        self.render_response(CachedGains::default(), echogram, receiver, early, key)
     }
 
     /// Returns the same response for a receiver that has rotated in place; `key` as before.
@@ -472,10 +472,10 @@ impl AcousticScene {
         key: RandomKey,
     ) -> ImpulseResponse {
         let (levels, echogram) = (response.noise_gains.clone(), response.echogram.clone());
-        self.arrive_with(levels, echogram, receiver, None, key)
+        self.render_response(levels, echogram, receiver, None, key)
     }
 
-    fn arrive_with(
+    fn render_response(
         &self,
         mut levels: CachedGains,
         echogram: Echogram,
@@ -483,7 +483,7 @@ impl AcousticScene {
         early: Option<&[Vec<PropagationPath>]>,
         key: RandomKey,
     ) -> ImpulseResponse {
-        let (hearing, key) = (self.hearing(receiver), key.child("noise"));
+        let (hearing, key) = (self.receiver_context(receiver), key.child("noise"));
         let synthesizer = &self.synthesizer;
         let samples = synthesizer.render(&echogram, &hearing, early, &mut levels, key);
         ImpulseResponse {

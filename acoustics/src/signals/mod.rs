@@ -63,7 +63,7 @@ pub(crate) fn check_rate(rate_hz: u32) -> Result<(), AcousticsError> {
 type SharedLoop = Arc<OnceLock<Arc<[f32]>>>;
 
 /// Returns the slot of a loop.
-fn made(info: &SignalInfo, rate_hz: u32) -> SharedLoop {
+fn shared_loop(info: &SignalInfo, rate_hz: u32) -> SharedLoop {
     static LOOPS: Mutex<BTreeMap<(&'static str, u32), SharedLoop>> = Mutex::new(BTreeMap::new());
     let mut loops = LOOPS.lock().unwrap_or_else(PoisonError::into_inner);
     loops.entry((info.name, rate_hz)).or_default().clone()
@@ -71,7 +71,7 @@ fn made(info: &SignalInfo, rate_hz: u32) -> SharedLoop {
 
 /// Returns whether a signal exists and has not been opened yet: opening it takes up to a second.
 pub fn needs_synthesis(name: &str, rate_hz: u32) -> bool {
-    info(name).is_ok_and(|info| made(info, rate_hz).get().is_none())
+    info(name).is_ok_and(|info| shared_loop(info, rate_hz).get().is_none())
 }
 
 /// Makes loops before they are opened, several at once; unknown names are ignored.
@@ -93,7 +93,7 @@ impl Signal {
     pub fn open(name: &str, rate_hz: u32) -> Result<Self, AcousticsError> {
         let info = info(name)?;
         check_rate(rate_hz)?;
-        let made = made(info, rate_hz);
+        let made = shared_loop(info, rate_hz);
         // Not under the lock, so that several are made at once.
         let samples = made.get_or_init(|| {
             let key = RandomKey::root(0).child("signals").child(info.name);

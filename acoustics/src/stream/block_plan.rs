@@ -90,7 +90,7 @@ impl Stream {
         };
         let wants = all
             .iter()
-            .filter_map(|one| self.want(&around, one, state, &parts));
+            .filter_map(|one| self.update_request(&around, one, state, &parts));
         let mut wants: Vec<UpdateRequest<'_>> = wants.collect();
         self.update_responses(&around, &mut wants, report)?;
         let planned = wants.into_iter().map(|want| {
@@ -131,7 +131,7 @@ impl Stream {
     }
 
     /// Returns the change of a source's situation; `None` for a source that was never heard.
-    fn want(
+    fn update_request(
         &self,
         around: &BlockContext<'_>,
         one: &SoundingSource,

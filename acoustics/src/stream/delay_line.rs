@@ -58,7 +58,7 @@ impl<'a> DelayedSegment<'a> {
     /// Returns the filtered segment. `response`: shape (tap,).
     pub(super) fn filtered(&self, response: &[f32], amplitude: f32) -> Vec<f32> {
         let mut filtered = vec![0.0; self.count.next_multiple_of(LANES)];
-        let met = self.met(response.len(), filtered.len());
+        let met = self.filter_input(response.len(), filtered.len());
         SimdLevel::best_available().run(ConvolutionKernel {
             met: &met,
             response,
@@ -70,7 +70,7 @@ impl<'a> DelayedSegment<'a> {
 
     /// Returns the input of a filter of `taps` for the first `count` samples of the segment, and as many samples before
     /// them; silence where there is no history.
-    fn met(&self, taps: usize, count: usize) -> Vec<f32> {
+    fn filter_input(&self, taps: usize, count: usize) -> Vec<f32> {
         let mut met = vec![0.0; taps + count];
         let (first, length) = (self.first - taps as i64, self.history.len() as i64);
         let (from, to) = (
@@ -263,7 +263,7 @@ mod tests {
             let answer = |level: SimdLevel| {
                 let parts = responses.each_ref().map(|response| {
                     let mut out = vec![0.0; passage.count.next_multiple_of(LANES)];
-                    let met = passage.met(response.len(), out.len());
+                    let met = passage.filter_input(response.len(), out.len());
                     level.run(ConvolutionKernel {
                         met: &met,
                         response,

@@ -271,7 +271,8 @@ impl Stream {
                     voice.input.convolve(&mut self.fft, &voice.filter, &mut old);
                 }
                 let most = followed.as_ref().map(|_| self.config.tracked_reflections);
-                let samples = without_followed(&self.scene, situation, response, most);
+                let samples =
+                    response_without_tracked_paths(&self.scene, situation, response, most);
                 let channels = response.channels;
                 voice.set_filter(&mut self.fft, &samples, channels, self.partitions);
                 voice.input.convolve(&mut self.fft, &voice.filter, &mut new);
@@ -293,7 +294,7 @@ impl Stream {
                     .map(|(path, wavelets)| TrackedPath { path, wavelets })
                     .collect();
                 let before = before.filter(|_| same_channels).unwrap_or_default();
-                let glide = glide(&self.scene, &self.fade, voice);
+                let glide = delay_interpolation(&self.scene, &self.fade, voice);
                 if fresh {
                     glide.add(&now, &now, out);
                 } else if jumps {
@@ -304,7 +305,7 @@ impl Stream {
                 }
                 voice.tracked.paths = Some(now);
             } else if let Some(before) = before.filter(|_| same_channels && !fresh) {
-                glide(&self.scene, &self.fade, voice).add(&before, &[], out);
+                delay_interpolation(&self.scene, &self.fade, voice).add(&before, &[], out);
             }
             voice.tracked.last_positions = Some(place);
             voice.pending_update.due_block = since;
@@ -389,14 +390,14 @@ impl Stream {
         let rate_hz = f64::from(self.scene.config().rate_hz);
         self.microphones = MicrophoneChain::restore(rate_hz, snapshot.microphones)?;
         let voices = snapshot.voices.into_iter();
-        self.voices = voices.map(|memory| self.voice(memory)).collect();
+        self.voices = voices.map(|memory| self.restore_source(memory)).collect();
         self.parts = snapshot.parts;
         self.block = snapshot.block;
         Ok(())
     }
 
     /// Returns a source from its stored state.
-    fn voice(&mut self, memory: source_state::SourceSnapshot) -> SourceState {
+    fn restore_source(&mut self, memory: source_state::SourceSnapshot) -> SourceState {
         let mut voice = SourceState::restore(&mut self.fft, memory, self.partitions);
         let Some((situation, mut response)) = voice.current_response.take() else {
             return voice;
@@ -413,7 +414,7 @@ impl Stream {
         }
         let most = voice.tracked.paths.as_ref();
         let most = most.map(|_| self.config.tracked_reflections);
-        let samples = without_followed(&scene, &situation, &response, most);
+        let samples = response_without_tracked_paths(&scene, &situation, &response, most);
         voice.set_filter(&mut self.fft, &samples, response.channels, self.partitions);
         voice.current_response = Some((situation, response));
         voice
@@ -431,7 +432,7 @@ impl Stream {
 }
 
 /// Returns the glide of a source's early paths through its block.
-fn glide<'a>(
+fn delay_interpolation<'a>(
     scene: &AcousticScene,
     fade: &'a [f32],
     voice: &'a SourceState,
@@ -444,7 +445,7 @@ fn glide<'a>(
 }
 
 /// Returns the samples of a response without its tracked paths, at `most` this many.
-fn without_followed(
+fn response_without_tracked_paths(
     scene: &AcousticScene,
     situation: &ListeningSituation,
     response: &ImpulseResponse,

@@ -46,7 +46,7 @@ impl ResponseUpdater<'_> {
             echogram = self.echogram(config.rays, again.child("all"))?;
             known = true;
         }
-        Ok((self.arrive(echogram), known))
+        Ok((self.render_echogram(echogram), known))
     }
 
     /// Returns a response traced with `count` rays.
@@ -55,7 +55,7 @@ impl ResponseUpdater<'_> {
     /// As [`AcousticScene::echogram`].
     pub(super) fn trace_with_rays(&self, count: usize) -> Result<ImpulseResponse, AcousticsError> {
         let echogram = self.echogram(count, self.key.child("roughly"))?;
-        Ok(self.arrive(echogram))
+        Ok(self.render_echogram(echogram))
     }
 
     /// Traces up to `most` more rays of a response; returns it when all are traced, the same to the bit in whatever pieces.
@@ -87,7 +87,9 @@ impl ResponseUpdater<'_> {
         let late = trace.finish(progress.clone()).into_iter();
         let echograms = late
             .map(|late| scene.join_paths_and_tail(paths.clone(), late, source.position(), centre));
-        Ok(echograms.map(|echogram| self.arrive(echogram)).next())
+        Ok(echograms
+            .map(|echogram| self.render_echogram(echogram))
+            .next())
     }
 
     fn check(&self) -> Result<(), AcousticsError> {
@@ -105,7 +107,7 @@ impl ResponseUpdater<'_> {
         Ok(echograms.into_iter().next().unwrap_or_default())
     }
 
-    fn arrive(&self, echogram: Echogram) -> ImpulseResponse {
+    fn render_echogram(&self, echogram: Echogram) -> ImpulseResponse {
         let (scene, receiver) = (self.scene, self.receiver);
         let early = scene.early_paths_per_microphone(self.rays, &self.source, receiver);
         scene.response_before_microphones(echogram, receiver, early.as_deref(), self.noise)

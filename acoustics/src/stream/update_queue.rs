@@ -246,7 +246,7 @@ impl Stream {
             update: self.block,
         };
         let all = budget.holds(self.scene.config().rays);
-        let way = self.way(around, want.id, &want.now);
+        let way = self.response_updater(around, want.id, &want.now);
         let (response, known) = way.update_from_history(&memory, all)?;
         report.traced_responses += 1;
         report.rays += response.echogram.ray_statistics.rays as usize;
@@ -272,7 +272,7 @@ impl Stream {
                 .min(budget.left.unwrap_or(all))
                 .clamp(MIN_RAYS.min(all), all);
             budget.spend(rays + RESPONSE_COST_RAYS);
-            let way = self.way(around, want.id, &want.now);
+            let way = self.response_updater(around, want.id, &want.now);
             let response = way.trace_with_rays(rays)?;
             report.traced_responses += 1;
             report.rays += rays;
@@ -305,7 +305,7 @@ impl Stream {
         // It is rendered with the head's present rotation.
         job.situation.receiver.pose.rotation = want.now.receiver.pose.rotation;
         let before = job.progress.rays();
-        let way = self.way(around, want.id, &job.situation);
+        let way = self.response_updater(around, want.id, &job.situation);
         let response = way.trace_incrementally(&mut job.progress, most)?;
         let rays = job.progress.rays() - before;
         report.rays += rays;
@@ -322,7 +322,7 @@ impl Stream {
         Ok(())
     }
 
-    fn way<'a>(
+    fn response_updater<'a>(
         &'a self,
         around: &BlockContext<'a>,
         id: u64,

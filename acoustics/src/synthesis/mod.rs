@@ -253,7 +253,7 @@ impl Synthesizer {
         let length = out.len() / listening.channels.len();
         let mut fft = self.filters.fft();
         for path in strongest(paths) {
-            let wavelets = self.heard(&mut fft, echogram.speed_m_s, path, listening);
+            let wavelets = self.channel_filters(&mut fft, echogram.speed_m_s, path, listening);
             for (wavelet, out) in wavelets.zip(out.chunks_exact_mut(length)) {
                 let taps = FractionalDelay::new(wavelet.delay_s * self.rate_hz);
                 taps.add(
@@ -267,7 +267,7 @@ impl Synthesizer {
     }
 
     /// Returns the filters of a path at each channel. Shape (channel,).
-    fn heard<'a>(
+    fn channel_filters<'a>(
         &'a self,
         fft: &'a mut RealFft,
         speed_m_s: f64,
@@ -329,7 +329,7 @@ impl Synthesizer {
         };
         let mut fft = self.filters.fft();
         let mut hear = |path: &PropagationPath| -> Vec<PathFilter> {
-            let wavelets = self.heard(&mut fft, speed_m_s, path, &listening);
+            let wavelets = self.channel_filters(&mut fft, speed_m_s, path, &listening);
             wavelets.map(|wavelet| self.shorten(wavelet)).collect()
         };
         paths.iter().map(&mut hear).collect()

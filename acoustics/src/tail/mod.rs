@@ -115,7 +115,7 @@ impl TraceProgress {
     pub(crate) fn new(config: &AcousticConfig, receivers: usize) -> Self {
         let sums = ReceiverSums {
             energy: vec![[0.0; BAND_COUNT]; config.bin_count()],
-            directions: vec![[0.0; BAND_COUNT]; times(config) * CELL_COUNT],
+            directions: vec![[0.0; BAND_COUNT]; direction_bin_count(config) * CELL_COUNT],
             moments: [[0.0; BAND_COUNT]; 2],
             scatter: SpanVariance::default(),
         };
@@ -140,7 +140,7 @@ impl TraceProgress {
         let sums = |sums: &ReceiverSums| {
             let directions = sums.directions.iter().flatten();
             sums.energy.len() == config.bin_count()
-                && sums.directions.len() == times(config) * CELL_COUNT
+                && sums.directions.len() == direction_bin_count(config) * CELL_COUNT
                 && sums.energy.iter().flatten().all(energy)
                 && directions.map(|e| f64::from(*e)).all(|e| energy(&e))
                 && sums.moments.iter().flatten().all(energy)
@@ -162,7 +162,7 @@ fn bins_per_direction(config: &AcousticConfig) -> usize {
 }
 
 /// Returns the entries of directions over time.
-fn times(config: &AcousticConfig) -> usize {
+fn direction_bin_count(config: &AcousticConfig) -> usize {
     config.bin_count().div_ceil(bins_per_direction(config))
 }
 
@@ -231,7 +231,7 @@ impl<'a> TailTrace<'a> {
     pub(crate) fn advance(&self, progress: &mut TraceProgress, most: usize) -> bool {
         let (config, key) = (self.data.config(), self.key);
         let speed = config.air.speed_of_sound_m_s();
-        let (bin_count, times) = (config.bin_count(), times(config));
+        let (bin_count, times) = (config.bin_count(), direction_bin_count(config));
         let hidden = self.listeners.iter().any(|listener| listener.is_occluded);
         let mut start = key.child("turn").stream();
         let (axis, pattern) = self.data.effects().radiation(self.source, speed);

@@ -179,7 +179,7 @@ impl RayTracer<'_> {
             // Image sources are not transmitted.
             if one.mirrored && (one.scattered || one.order > images || one.walls > 0) {
                 let reach_m = hit.map_or(f32::INFINITY, |hit| hit.distance_m);
-                self.cross(&one, reach_m, random.of(&one), chunk);
+                self.record_crossings(&one, reach_m, random.of(&one), chunk);
             }
             let Some(hit) = hit else {
                 // Behind an outer wall is the open air.
@@ -198,7 +198,7 @@ impl RayTracer<'_> {
             let surface = self.rays.surface(&hit);
             let material = self.data.surface(surface.material);
             if self.wall_probability > 0.0 && material.transmitted.iter().any(|p| *p > 0.0) {
-                self.pass(&one, &hit, random.aside, beyond);
+                self.spawn_transmitted(&one, &hit, random.aside, beyond);
             }
             let point = one.ray.point_at(hit.distance_m);
             let cosine = surface.normal.dot(one.ray.direction);
@@ -216,7 +216,7 @@ impl RayTracer<'_> {
                 self.add_diffuse_rain(start, normal, &one, &parts.scattered, random.aside, chunk);
             }
             let stream = random.of(&one);
-            if !one.turn(start, normal, &parts, worth, stream) {
+            if !one.reflect(start, normal, &parts, worth, stream) {
                 return None;
             }
         }
@@ -276,7 +276,7 @@ impl RayTracer<'_> {
     }
 
     /// With a small probability, lets the transmitted sound go on behind a wall.
-    fn pass(
+    fn spawn_transmitted(
         &self,
         one: &TracedRay,
         hit: &Hit,
@@ -309,7 +309,7 @@ impl RayTracer<'_> {
     }
 
     /// Counts a ray where it crosses the detection spheres of receivers.
-    fn cross(
+    fn record_crossings(
         &self,
         one: &TracedRay,
         reach_m: f32,
@@ -460,7 +460,7 @@ impl TracedRay {
     ///
     /// The scattered fraction of this ray's reflected energy is the probability: with it, both branches keep the sum over
     /// the bands, and no band's weight can grow from reflection to reflection.
-    fn turn(
+    fn reflect(
         &mut self,
         start: Vec3,
         normal: Vec3,

@@ -123,7 +123,7 @@ impl WheelAndTrackerPaths {
         let ratio = self.wheels_m / self.tracker_m;
         if self.wheels_m.abs() > TELLING_WAY_M && !is_right(ratio) {
             let hint = if is_right(self.wheels_m / self.by_degrees_m) {
-                unit_checks::degrees("headings", unit_checks::DEGREES)
+                unit_checks::degrees_hint("headings", unit_checks::DEGREES)
             } else if is_right(self.since_start_m / self.tracker_m) {
                 Some("are turns of the wheels counted since the start? They are meant since the sample before".into())
             } else if is_right(-ratio) {
@@ -132,7 +132,7 @@ impl WheelAndTrackerPaths {
                         .into(),
                 )
             } else {
-                unit_checks::lengths("positions", 1.0 / ratio.abs())
+                unit_checks::length_unit_hint("positions", 1.0 / ratio.abs())
             };
             let hint = hint.unwrap_or_else(|| "check units, signs and wheel_radius_m".into());
             return Err(CalibrationError::field(
@@ -146,7 +146,7 @@ impl WheelAndTrackerPaths {
         if self.turned < TELLING_TURN_RAD2 {
             return Ok(());
         }
-        if let Some(hint) = unit_checks::degrees("headings", turns) {
+        if let Some(hint) = unit_checks::degrees_hint("headings", turns) {
             let field = "the turns of the heading over those by the wheels";
             return Err(CalibrationError::field(
                 at,

@@ -255,7 +255,8 @@ fn velocities(
     if let Some(share) = angular.share().filter(|share| *share > WRONG_SHARE) {
         let hint = if angular.other_left < 0.25 * angular.left {
             "; they agree in the other frame: angular_velocity is wrong".to_owned()
-        } else if let Some(hint) = unit_checks::degrees("angular velocities", angular.factor()) {
+        } else if let Some(hint) = unit_checks::degrees_hint("angular velocities", angular.factor())
+        {
             format!("; {hint}")
         } else {
             "; check units, the quaternion's order (x, y, z, w) and rate_hz".to_owned()

@@ -53,13 +53,13 @@ fn convert(what: &str, unit: UnitScale, key: &str) -> String {
 }
 
 /// Returns the remedy for angles that are larger by `factor` than radians; empty where degrees do not explain it.
-pub(super) fn degrees(what: &str, factor: f64) -> Option<String> {
+pub(super) fn degrees_hint(what: &str, factor: f64) -> Option<String> {
     is_near(factor, DEGREES, FACTOR_TOLERANCE)
         .then(|| convert(what, ("degrees", DEGREES), "radians_per_unit"))
 }
 
 /// Returns the remedy for lengths that are larger by `factor` than metres; empty where no unit explains it.
-pub(super) fn lengths(what: &str, factor: f64) -> Option<String> {
+pub(super) fn length_unit_hint(what: &str, factor: f64) -> Option<String> {
     let unit = LENGTHS
         .iter()
         .find(|unit| is_near(factor, unit.1, FACTOR_TOLERANCE))?;

@@ -108,7 +108,7 @@ impl FitTask<'_> {
             loss: total(&now.residuals, loss),
             data: now.residuals.iter().map(Vec::len).sum(),
             parameters: global.len(),
-            inverse: normal::inverse(&normal::reduced(&blocks)),
+            inverse: normal::inverse(&normal::schur_complement(&blocks)),
             point,
             residuals: now.residuals,
             slots: global,

@@ -66,7 +66,7 @@ fn solve(matrix: &DMatrix<f64>, right: &DMatrix<f64>) -> DMatrix<f64> {
 }
 
 /// The matrix of the shared parameters with the own nuisances eliminated (Schur's complement).
-pub(super) fn reduced(blocks: &[NormalBlock]) -> DMatrix<f64> {
+pub(super) fn schur_complement(blocks: &[NormalBlock]) -> DMatrix<f64> {
     let size = blocks.first().map_or(0, |block| block.global.nrows());
     let mut sum = DMatrix::zeros(size, size);
     for block in blocks {
@@ -182,7 +182,7 @@ mod tests {
             }
         }
         let covariance = (whole.transpose() * &whole).try_inverse().unwrap();
-        let reduced = inverse(&reduced(&blocks));
+        let reduced = inverse(&schur_complement(&blocks));
         assert!(
             (reduced[(1, 1)] - covariance[(episodes * own + 1, episodes * own + 1)]).abs() < 1e-6
         );

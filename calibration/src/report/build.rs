@@ -26,8 +26,8 @@ pub(crate) fn build(bundle: &Bundle, twin: &dyn Twin, findings: &Findings) -> Ca
     } else {
         &findings.base
     };
-    let (set_before, before) = together(findings, &findings.base);
-    let (set_after, after) = together(findings, chosen);
+    let (set_before, before) = all_residuals(findings, &findings.base);
+    let (set_after, after) = all_residuals(findings, chosen);
     let name = |set: &[usize]| {
         set.iter()
             .map(|k| twin.episodes()[*k].name.clone())
@@ -73,7 +73,7 @@ pub(crate) fn build(bundle: &Bundle, twin: &dyn Twin, findings: &Findings) -> Ca
 }
 
 /// Residuals of all episodes, fitted ones first.
-fn together(findings: &Findings, judged: &ScoredModel) -> (Vec<usize>, Vec<Vec<f64>>) {
+fn all_residuals(findings: &Findings, judged: &ScoredModel) -> (Vec<usize>, Vec<Vec<f64>>) {
     let set = findings
         .split
         .train

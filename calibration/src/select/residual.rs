@@ -60,7 +60,7 @@ fn autocorrelation(sequences: &[&[f64]]) -> f64 {
 ///
 /// # Source
 /// G. V. Bayley, J. M. Hammersley, Suppl. J. R. Stat. Soc. 8, 184 (1946), for an autoregression of first order.
-pub(super) fn effective(count: usize, autocorrelation: f64) -> f64 {
+pub(super) fn effective_sample_size(count: usize, autocorrelation: f64) -> f64 {
     let rho = autocorrelation.clamp(0.0, 0.98);
     // Correlations within chance count as none.
     if rho < 2.0 / (count.max(1) as f64).sqrt() {
@@ -142,7 +142,7 @@ pub(crate) fn by_channel(
             channel: info.name.clone(),
             unit: info.unit.to_owned(),
             count: values.len(),
-            effective_count: effective(values.len(), rho),
+            effective_count: effective_sample_size(values.len(), rho),
             autocorrelation: rho,
             bias: values.iter().sum::<f64>() / n,
             rms: (values.iter().map(|r| r * r).sum::<f64>() / n).sqrt(),
@@ -161,7 +161,7 @@ pub(super) fn effective_count(twin: &dyn Twin, set: &[usize], residuals: &[Vec<f
             let all = by_sequence(twin, set, residuals);
             let counted = all.values().map(|sequences| {
                 let count = sequences.iter().map(|sequence| sequence.len()).sum();
-                effective(count, autocorrelation(sequences))
+                effective_sample_size(count, autocorrelation(sequences))
             });
             counted.sum()
         }
@@ -294,10 +294,10 @@ mod tests {
             .collect();
         let rho = autocorrelation(&[&correlated]);
         assert!((rho - 0.9).abs() < 0.05, "{rho}");
-        let worth = effective(2000, rho);
+        let worth = effective_sample_size(2000, rho);
         assert!(worth > 50.0 && worth < 250.0, "{worth}");
         let white: Vec<f64> = (0..2000).map(|_| stream.normal()).collect();
-        assert!(effective(2000, autocorrelation(&[&white])) > 1900.0);
+        assert!(effective_sample_size(2000, autocorrelation(&[&white])) > 1900.0);
     }
 
     #[test]

@@ -248,7 +248,7 @@ fn decide(
     let causes = all.twin.causes();
     let Some(best) = passing.first() else {
         let decision = if remainder.is_structured() {
-            Decision::Unexplained(nearest(all, singles))
+            Decision::Unexplained(rejection_reason(all, singles))
         } else {
             Decision::NoEffect
         };
@@ -280,7 +280,7 @@ fn decide(
 }
 
 /// The reason why no cause passes, with the one that comes nearest.
-fn nearest(all: &CauseComparison<'_>, singles: &[SingleCause]) -> String {
+fn rejection_reason(all: &CauseComparison<'_>, singles: &[SingleCause]) -> String {
     let best = singles
         .iter()
         .max_by(|a, b| a.advantage.delta_bic.total_cmp(&b.advantage.delta_bic));

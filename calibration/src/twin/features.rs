@@ -116,7 +116,7 @@ impl FilterRingingModel {
     }
 
     /// The share of an impulse's energy that has come `t_s` after it.
-    fn until(&self, band: usize, t_s: f64) -> f64 {
+    fn cumulative_energy(&self, band: usize, t_s: f64) -> f64 {
         let shares = &self.shares[band];
         let place = (t_s + SMEAR_S) * f64::from(self.rate_hz);
         if place <= 0.0 {
@@ -152,9 +152,9 @@ impl FilterRingingModel {
                 if energy[band] == 0.0 || *t_s > EDGES_S[WINDOWS] + SMEAR_S {
                     continue;
                 }
-                let mut before = self.until(band, EDGES_S[0] - t_s);
+                let mut before = self.cumulative_energy(band, EDGES_S[0] - t_s);
                 for (window, edge) in EDGES_S[1..].iter().enumerate() {
-                    let after = self.until(band, edge - t_s);
+                    let after = self.cumulative_energy(band, edge - t_s);
                     energies[window] += energy[band] * (after - before);
                     before = after;
                 }

@@ -79,7 +79,7 @@ impl ClassSet {
             return TABLE.nyu40.clone();
         }
         let mut names = TABLE.names.clone();
-        names.extend(self.strange(house).into_keys());
+        names.extend(self.unlisted_classes(house).into_keys());
         names
     }
 
@@ -104,7 +104,7 @@ impl ClassSet {
     }
 
     /// Names that the file does not know, with their classes.
-    fn strange(self, house: &House) -> BTreeMap<String, i32> {
+    fn unlisted_classes(self, house: &House) -> BTreeMap<String, i32> {
         let mut names: BTreeMap<String, i32> = house
             .objects
             .iter()
@@ -153,7 +153,7 @@ pub struct EntityClasses {
 
 impl EntityClasses {
     pub(crate) fn new(house: &House, table: ClassSet) -> Self {
-        let strange = table.strange(house);
+        let strange = table.unlisted_classes(house);
         let named = |name: &str| {
             let row = TABLE.class.get(name).copied().unwrap_or(VOID);
             match table {

@@ -75,7 +75,7 @@ pub fn read(path: &Path, max_bytes: u64) -> Result<Vec<u8>, ReadError> {
 /// # Errors
 /// When the system refuses, and where the path is no regular file; it is then left as it is.
 pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let place = place(path)?;
+    let place = resolve_write_target(path)?;
     let mut draft = StagedPath::file(&place)?;
     draft.handle.write_all(bytes)?;
     fs::rename(&draft.path, &place)
@@ -85,7 +85,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
 ///
 /// # Errors
 /// When the path is no regular file, or a dangling link.
-fn place(path: &Path) -> io::Result<PathBuf> {
+fn resolve_write_target(path: &Path) -> io::Result<PathBuf> {
     let meta = match fs::symlink_metadata(path) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(path.to_owned()),
         meta => meta?,
@@ -149,7 +149,7 @@ impl StagedPath {
             let made = match make(&path) {
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
                     // The lock is held until it is removed, so that nobody removes its successor.
-                    let Some(held) = left_behind(&path) else {
+                    let Some(held) = lock_abandoned_draft(&path) else {
                         continue;
                     };
                     if remove(&path).is_err() {
@@ -202,7 +202,7 @@ fn draft_name(place: &Path, number: usize) -> PathBuf {
 }
 
 /// Returns the lock of a draft whose process has ended.
-fn left_behind(path: &Path) -> Option<File> {
+fn lock_abandoned_draft(path: &Path) -> Option<File> {
     let meta = fs::symlink_metadata(path).ok()?;
     if !meta.is_file() && !meta.is_dir() {
         return None;

@@ -142,7 +142,7 @@ impl Batch {
     pub fn restore(&mut self, index: usize, bytes: &[u8]) -> Result<(), WorldError> {
         self.env(index)?;
         let active: Vec<bool> = (0..self.envs.len()).map(|k| k == index).collect();
-        self.or_over(&active, |batch| batch.env_mut(index)?.restore(bytes))
+        self.end_episodes_on_interrupt(&active, |batch| batch.env_mut(index)?.restore(bytes))
     }
 
     /// Returns what each agent's scripted expert would do now. Shape (environment, agent).
@@ -171,7 +171,7 @@ impl Batch {
     }
 
     /// Does `work` in the environments of `active`; then, where that is asked for, their pictures are under way.
-    fn change<R: Send>(
+    fn run_active_and_render<R: Send>(
         &mut self,
         active: &[bool],
         work: impl Fn(usize, &mut Env) -> Result<R, WorldError> + Sync,
@@ -282,7 +282,7 @@ impl Batch {
 
     /// Does `work` in the environments of `active`. Where it is stopped, some have done it, some half and some not at all:
     /// then the episodes of all of them are over (a reset sets all of a world anew), and what was under way is forgotten.
-    fn or_over<R>(
+    fn end_episodes_on_interrupt<R>(
         &mut self,
         active: &[bool],
         work: impl FnOnce(&mut Self) -> Result<R, WorldError>,
@@ -308,16 +308,18 @@ impl Batch {
         let reset =
             |k: usize, env: &mut Env| env.reset_with_listeners(seeds[k].unwrap_or_default());
         let (names, rate_hz) = self.signals_to_make(&active);
-        self.or_over(&active, |batch| {
+        self.end_episodes_on_interrupt(&active, |batch| {
             if names.is_empty() {
-                batch.change(&active, reset)?;
+                batch.run_active_and_render(&active, reset)?;
                 return Ok(());
             }
             // The first time: loops of sound take longest, and need nothing of the world.
             let threads = batch.threads;
             let names: Vec<&str> = names.iter().map(String::as_str).collect();
             let make = || signals::presynthesize(&names, rate_hz, threads);
-            threads.join(make, || batch.change(&active, reset)).1?;
+            threads
+                .join(make, || batch.run_active_and_render(&active, reset))
+                .1?;
             Ok(())
         })
     }
@@ -369,8 +371,8 @@ impl Batch {
         {
             env.check_can_step(own)?;
         }
-        let infos = self.or_over(&active, |batch| {
-            batch.change(&active, |k, env| {
+        let infos = self.end_episodes_on_interrupt(&active, |batch| {
+            batch.run_active_and_render(&active, |k, env| {
                 let infos = env.step(own[k])?;
                 env.enable_listeners()?;
                 Ok(infos)
@@ -406,7 +408,7 @@ impl Batch {
             )));
         }
         // Episodes go on whatever stops this: worlds are only read.
-        self.or_over(&vec![false; self.envs.len()], |batch| {
+        self.end_episodes_on_interrupt(&vec![false; self.envs.len()], |batch| {
             batch.finish_pictures()?;
             let chosen = batch.envs.iter_mut().enumerate();
             let chosen = chosen.filter(|(number, _)| which[*number] && !batch.is_started[*number]);

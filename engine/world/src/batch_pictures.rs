@@ -133,7 +133,7 @@ fn jobs<'a>(taking: &'a mut [PictureInProgress<'_>]) -> Vec<RenderJob<'a>> {
 }
 
 /// Develops the pictures that were exposed.
-fn develop<'a>(
+fn average_exposures<'a>(
     pairs: impl Iterator<Item = (&'a mut ImageExposure, &'a mut RenderedImage)>,
     threads: Threads,
 ) {
@@ -159,7 +159,7 @@ pub(crate) fn render_images<'a>(
             }
             renderer.render_batch(&mut jobs(&mut taking), threads)?;
             let pairs = taking.iter_mut();
-            develop(
+            average_exposures(
                 pairs.map(|taking| (&mut taking.take, &mut *taking.picture)),
                 threads,
             );
@@ -239,7 +239,7 @@ impl PendingImages {
         }
         renderer.collect(submitted, &mut frames, threads)?;
         drop(frames);
-        develop(pairs.into_iter(), threads);
+        average_exposures(pairs.into_iter(), threads);
         Ok(())
     }
 }

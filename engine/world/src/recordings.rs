@@ -32,7 +32,7 @@ pub(crate) struct Recordings {
     are_sounds: OnceLock<()>,
 }
 
-fn print(samples: &[f32]) -> u64 {
+fn hash_samples(samples: &[f32]) -> u64 {
     let mut sum = Xxh3::new();
     for sample in samples {
         sum.update(&sample.to_le_bytes());
@@ -68,7 +68,7 @@ impl Recordings {
         })?;
         let bytes = root.read(&path, MAX_FILE_BYTES)?;
         let signal = Recording::decode(name, &bytes)?.signal(rate_hz)?;
-        let found = (signal.clone(), print(signal.samples()));
+        let found = (signal.clone(), hash_samples(signal.samples()));
         let kept: usize = known.values().map(|(s, _)| s.samples().len()).sum();
         if kept + signal.samples().len() > MOST_KEPT {
             known.clear();

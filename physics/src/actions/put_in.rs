@@ -198,7 +198,7 @@ impl ActionContext<'_> {
                     search.in_reach = true;
                     let inner = bounds_on(&stance, foot);
                     let gets_in = if loose_with_lid {
-                        self.gets_in(eye, middle, space.object, &outer, &world_from_part)
+                        self.can_hand_enter(eye, middle, space.object, &outer, &world_from_part)
                     } else {
                         self.dynamics.first_reach_obstacle(eye, middle).is_none()
                     };
@@ -220,7 +220,7 @@ impl ActionContext<'_> {
     /// Returns whether a hand gets to a point inside a loose object with a lid or a door, whose walls would otherwise be
     /// reached around: on some side the straight path out of it is free of its parts, and the path from there to the eye of
     /// all else.
-    fn gets_in(
+    fn can_hand_enter(
         &self,
         eye: Vec3,
         inside: Vec3,

@@ -76,11 +76,11 @@ impl ActionContext<'_> {
                     );
                     return Err(Box::new(fail(OutcomeCode::BadNumber, sentence, None)));
                 }
-                self.meet(state, actor, origin, direction)
+                self.first_hit(state, actor, origin, direction)
             }
             Target::Gaze => {
                 let eye = actor.body.world_from_eye();
-                self.meet(
+                self.first_hit(
                     state,
                     actor,
                     eye.position,
@@ -124,7 +124,7 @@ impl ActionContext<'_> {
     }
 
     /// Returns the first thing on a ray, ignoring the agent's own body and its held object.
-    fn meet(
+    fn first_hit(
         &self,
         state: &State,
         actor: Actor<'_>,
@@ -140,7 +140,8 @@ impl ActionContext<'_> {
             .map_or(EntityId::VOID, |held| house.entity_of_object(held));
         let hit = actor.rays.closest_excluding(&ray, RayMask::EYE, held);
         let until = hit.map_or(MAX_RAY_M, |hit| hit.distance_m);
-        if let Some((agent, distance)) = self.meet_agent(state, actor.id, origin, direction, until)
+        if let Some((agent, distance)) =
+            self.first_agent_hit(state, actor.id, origin, direction, until)
         {
             return Ok(ResolvedTarget {
                 entity: Entity::Agent(agent),
@@ -166,7 +167,7 @@ impl ActionContext<'_> {
     }
 
     /// Returns the nearest other agent's body on a ray.
-    fn meet_agent(
+    fn first_agent_hit(
         &self,
         state: &State,
         own: AgentId,

@@ -73,7 +73,7 @@ impl CharacterController<'_> {
                 let longest = 0.5 * self.probe.core_radius_m();
                 let pieces = (motion.length() / longest).ceil().clamp(1.0, MOST_PIECES);
                 for _ in 0..pieces as u32 {
-                    feet = self.piece(feet, motion / pieces, agent.grounded);
+                    feet = self.move_substep(feet, motion / pieces, agent.grounded);
                 }
             }
         }
@@ -88,14 +88,15 @@ impl CharacterController<'_> {
     }
 
     /// Makes one short piece of a movement.
-    fn piece(&mut self, feet: Vec3, motion: Vec3, grounded: bool) -> Vec3 {
+    fn move_substep(&mut self, feet: Vec3, motion: Vec3, grounded: bool) -> Vec3 {
         let mut target = self.slide(feet, motion);
         if target == feet || self.probe.is_inside_something(target) {
             return feet;
         }
         let step = self.probe.body.step_height_m;
         if !grounded {
-            let leaves = self.probe.ground(target, step).is_none() && self.leaves(feet, target);
+            let leaves =
+                self.probe.ground(target, step).is_none() && self.walks_off_floor(feet, target);
             return if leaves { feet } else { target };
         }
         if let Some(ground) = self.probe.ground(target, step) {
@@ -113,14 +114,14 @@ impl CharacterController<'_> {
                 }
             }
             target.y = ground;
-        } else if self.leaves(feet, target) {
+        } else if self.walks_off_floor(feet, target) {
             return feet;
         }
         target
     }
 
     /// Returns whether a movement leads from above some surface to above none: out of the house.
-    fn leaves(&self, feet: Vec3, target: Vec3) -> bool {
+    fn walks_off_floor(&self, feet: Vec3, target: Vec3) -> bool {
         !self.probe.is_above_something(target) && self.probe.is_above_something(feet)
     }
 

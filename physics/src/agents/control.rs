@@ -90,7 +90,7 @@ impl AgentControl {
     }
 
     /// Turns an agent by this control for `dt_s` seconds. Returns the angle, rad.
-    pub(crate) fn turn(&self, agent: &mut AgentState, dt_s: f32) -> f32 {
+    pub(crate) fn apply_yaw(&self, agent: &mut AgentState, dt_s: f32) -> f32 {
         let turn = self.yaw_rate_rad_s * dt_s;
         if self.yaw_rate_rad_s != 0.0 {
             agent.yaw_rad = dwell_scene::math::wrap_angle(agent.yaw_rad + turn);

@@ -65,7 +65,7 @@ impl Agents {
                     motion.displacement
                 }
                 (None, Locomotion::Walking(gait)) => {
-                    way.turned_rad += control.turn(&mut agent, dt_s);
+                    way.turned_rad += control.apply_yaw(&mut agent, dt_s);
                     if first {
                         let crouch = control.crouch;
                         let told = self.set_stance(dynamics, state, id, &mut agent, &gait, crouch);

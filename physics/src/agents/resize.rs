@@ -7,7 +7,7 @@ use crate::error::PhysicsError;
 use dwell_scene::{AgentBody, AgentState, Id, State};
 
 /// Returns whether two bodies occupy the same space.
-fn same_room(a: &AgentBody, b: &AgentBody) -> bool {
+fn has_same_extents(a: &AgentBody, b: &AgentBody) -> bool {
     let room = |body: &AgentBody| (body.radius_m, body.height_m, body.step_height_m);
     room(a) == room(b)
 }
@@ -23,7 +23,7 @@ impl Agents {
         for ((id, agent), known) in state.agents.iter_ids().zip(&self.list) {
             let (now, was) = (current_body(agent), known.stands);
             agent.body.check()?;
-            if same_room(&now, &was) {
+            if has_same_extents(&now, &was) {
                 continue;
             }
             let others = other_agents(state, id);
@@ -56,7 +56,7 @@ impl Agents {
     ) -> bool {
         let agent: &mut Agent = &mut self.list[index];
         let now = current_body(state);
-        let same = same_room(&now, &agent.stands);
+        let same = has_same_extents(&now, &agent.stands);
         agent.stands = now;
         if !same {
             resize_capsule(&mut dynamics.engine, agent, state);

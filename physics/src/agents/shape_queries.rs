@@ -80,7 +80,7 @@ pub(crate) struct AgentQueries<'a> {
 
 impl AgentQueries<'_> {
     /// Returns the kind of obstacle that a collider is.
-    fn sees(&self, collider: &Collider) -> ObstacleKind {
+    fn obstacle_kind(&self, collider: &Collider) -> ObstacleKind {
         let Some(entry) = self.entries.get(entry_index(collider)) else {
             return ObstacleKind::Ignored;
         };
@@ -138,7 +138,8 @@ impl AgentQueries<'_> {
     }
 
     fn cast_kind(&self, feet: Vec3, motion: Vec3, light: bool) -> Option<SweepHit> {
-        let predicate = |_: ColliderHandle, collider: &Collider| match self.sees(collider) {
+        let predicate = |_: ColliderHandle, collider: &Collider| match self.obstacle_kind(collider)
+        {
             ObstacleKind::Ignored => false,
             ObstacleKind::Immovable => !light,
             ObstacleKind::Pushable(_) => light,
@@ -160,7 +161,7 @@ impl AgentQueries<'_> {
             fraction: hit.time_of_impact.clamp(0.0, 1.0),
             normal: hit.normal1,
             point: hit.witness1,
-            pushable_body: match self.sees(collider) {
+            pushable_body: match self.obstacle_kind(collider) {
                 ObstacleKind::Pushable(body) => Some(body),
                 _ => None,
             },
@@ -242,8 +243,9 @@ impl AgentQueries<'_> {
     }
 
     fn overlaps(&self, feet: Vec3, (cylinder, center): (Cylinder, f32)) -> bool {
-        let predicate =
-            |_: ColliderHandle, collider: &Collider| self.sees(collider) == ObstacleKind::Immovable;
+        let predicate = |_: ColliderHandle, collider: &Collider| {
+            self.obstacle_kind(collider) == ObstacleKind::Immovable
+        };
         let queries = self
             .engine
             .queries(QueryFilter::default().predicate(&predicate));
@@ -254,8 +256,9 @@ impl AgentQueries<'_> {
     /// Returns the push, at most `most_m` long and horizontal, that leads out of an overlap of the core; `None` if a
     /// surface is in the way.
     pub(crate) fn exit_displacement(&self, feet: Vec3, most_m: f32) -> Option<Vec3> {
-        let predicate =
-            |_: ColliderHandle, collider: &Collider| self.sees(collider) == ObstacleKind::Immovable;
+        let predicate = |_: ColliderHandle, collider: &Collider| {
+            self.obstacle_kind(collider) == ObstacleKind::Immovable
+        };
         let queries = self
             .engine
             .queries(QueryFilter::default().predicate(&predicate));
@@ -293,8 +296,9 @@ impl AgentQueries<'_> {
 
     /// Returns the height of the ground under the feet, between the highest step above them and `down_m` below, m.
     pub(crate) fn ground(&self, feet: Vec3, down_m: f32) -> Option<f32> {
-        let predicate =
-            |_: ColliderHandle, collider: &Collider| self.sees(collider) != ObstacleKind::Ignored;
+        let predicate = |_: ColliderHandle, collider: &Collider| {
+            self.obstacle_kind(collider) != ObstacleKind::Ignored
+        };
         let queries = self
             .engine
             .queries(QueryFilter::default().predicate(&predicate));
@@ -318,7 +322,7 @@ impl AgentQueries<'_> {
         let predicate = |_: ColliderHandle, collider: &Collider| {
             let entry = self.entries.get(entry_index(collider));
             entry.is_some_and(|entry| entry.contact_entity.is_some())
-                && self.sees(collider) != ObstacleKind::Ignored
+                && self.obstacle_kind(collider) != ObstacleKind::Ignored
         };
         let queries = self
             .engine
@@ -331,8 +335,9 @@ impl AgentQueries<'_> {
 
     /// Returns the unit normal of the surface directly under the middle, on its upper side; `None` without one near `height_m`.
     pub(crate) fn surface(&self, feet: Vec3, height_m: f32) -> Option<Vec3> {
-        let predicate =
-            |_: ColliderHandle, collider: &Collider| self.sees(collider) != ObstacleKind::Ignored;
+        let predicate = |_: ColliderHandle, collider: &Collider| {
+            self.obstacle_kind(collider) != ObstacleKind::Ignored
+        };
         let queries = self
             .engine
             .queries(QueryFilter::default().predicate(&predicate));

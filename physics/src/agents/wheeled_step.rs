@@ -35,7 +35,7 @@ pub(crate) fn drive(
                 agent.base.wheel_rotation_rad[side] += rolling.rate_rad_s[side] * seconds;
             }
             let believed = WheelGeometry::from(&nominal).twist(rolling.rate_rad_s);
-            agent.base.twist = narrow(&believed);
+            agent.base.twist = to_f32_array(&believed);
             laws(&mut rolling);
             (believed, rolling.twist())
         }
@@ -52,7 +52,7 @@ pub(crate) fn drive(
                 yaw_rate_rad_s,
             };
             let (end, mean) = follow_twist(truth, now, wanted, seconds);
-            agent.base.twist = narrow(&end);
+            agent.base.twist = to_f32_array(&end);
             (mean, mean)
         }
         _ => return None,
@@ -84,7 +84,7 @@ pub(crate) fn drive(
     })
 }
 
-fn narrow(twist: &PlanarTwist) -> [f32; 3] {
+fn to_f32_array(twist: &PlanarTwist) -> [f32; 3] {
     [twist.forward_m_s, twist.left_m_s, twist.yaw_rate_rad_s].map(|value| value as f32)
 }
 

@@ -10,7 +10,7 @@ const MIN_SUPPORT_NORMAL_Y: f32 = 0.5;
 
 /// Returns all pairs of parts, and of parts with the structure, that are at most `distance_m` apart, with their bodies; for
 /// each pair of pieces that touch.
-pub(crate) fn touching(
+pub(crate) fn contacts_within(
     narrow_phase: &NarrowPhase,
     colliders: &ColliderSet,
     entries: &[ColliderEntry],

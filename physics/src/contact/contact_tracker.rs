@@ -126,10 +126,10 @@ impl ContactTracker {
                 .map(|report| report.approach_speed_m_s)
                 .fold(0.0, f32::max);
             if speed >= config.event_min_speed_m_s {
-                self.hit(pair, group, tick as f64 * dt_s, dt_s as f32);
+                self.accumulate_impact(pair, group, tick as f64 * dt_s, dt_s as f32);
                 hit.push(pair);
             } else {
-                self.touch(pair, group, tick, dt_s as f32);
+                self.accumulate_contact(pair, group, tick, dt_s as f32);
             }
         }
         self.impacts.retain(|pair, impact| {
@@ -141,7 +141,13 @@ impl ContactTracker {
         });
     }
 
-    fn hit(&mut self, pair: ContactPair, group: &[ContactReport], begin_s: f64, dt_s: f32) {
+    fn accumulate_impact(
+        &mut self,
+        pair: ContactPair,
+        group: &[ContactReport],
+        begin_s: f64,
+        dt_s: f32,
+    ) {
         // The solver may stop a body shortly before it touches, or after a step in which it penetrated a little.
         let fastest = group
             .iter()
@@ -173,7 +179,13 @@ impl ContactTracker {
         }
     }
 
-    fn touch(&mut self, pair: ContactPair, group: &[ContactReport], tick: u64, dt_s: f32) {
+    fn accumulate_contact(
+        &mut self,
+        pair: ContactPair,
+        group: &[ContactReport],
+        tick: u64,
+        dt_s: f32,
+    ) {
         let impulse: f32 = group.iter().map(|report| report.impulse).sum();
         let moment: Vec3 = group
             .iter()

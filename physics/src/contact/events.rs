@@ -100,7 +100,11 @@ pub struct MergedEvents {
 
 /// Sorts the events from `first` on by time and pair, and keeps at most `most` of them: impacts before sliding and rolling,
 /// the strongest impulse first.
-pub(crate) fn bound(events: &mut Vec<ContactEvent>, first: usize, most: usize) -> MergedEvents {
+pub(crate) fn merge_excess(
+    events: &mut Vec<ContactEvent>,
+    first: usize,
+    most: usize,
+) -> MergedEvents {
     let new = &mut events[first..];
     let mut merged = MergedEvents::default();
     if new.len() > most {

@@ -30,7 +30,7 @@ pub(crate) struct CollisionExclusions {
 }
 
 impl CollisionExclusions {
-    fn meets(&self, entries: &[ColliderEntry], a: usize, b: usize) -> bool {
+    fn can_collide(&self, entries: &[ColliderEntry], a: usize, b: usize) -> bool {
         let one_way = |a: usize, b: usize| {
             let Some(body) = entries.get(a).and_then(|entry| entry.body) else {
                 return true;
@@ -96,7 +96,7 @@ impl PhysicsHooks for ContactHooks<'_> {
         let a = entry_index(&context.colliders[context.collider1]);
         let b = entry_index(&context.colliders[context.collider2]);
         self.excluded
-            .meets(self.entries, a, b)
+            .can_collide(self.entries, a, b)
             .then(SolverFlags::default)
     }
 
@@ -144,7 +144,7 @@ impl PhysicsHooks for ContactHooks<'_> {
                 .map_or(Quat::IDENTITY, |rigid| *rigid.rotation()),
         };
         let sides = (side(a, class_a, body_a), side(b, class_b, body_b));
-        self.shape(manifold, bodies, (body_a, body_b), sides);
+        self.apply_contact_laws(manifold, bodies, (body_a, body_b), sides);
     }
 }
 
@@ -170,7 +170,7 @@ fn merge_coincident_points(contacts: &mut SolverContacts) {
 
 impl ContactHooks<'_> {
     /// Lets the laws change a plane's values.
-    fn shape(
+    fn apply_contact_laws(
         &self,
         plane: &mut ModifiableManifold<'_>,
         bodies: &RigidBodySet,

@@ -107,7 +107,7 @@ impl RestitutionContext<'_> {
             // For two bodies in free flight that hit each other, the second one counts the points.
             let later = &landed[index + 1..];
             let Some(mut landing) =
-                self.landing(engine, *body, later, (&mut struck, joint_coordinates))
+                self.collect_impacts(engine, *body, later, (&mut struck, joint_coordinates))
             else {
                 continue;
             };
@@ -127,7 +127,7 @@ impl RestitutionContext<'_> {
     }
 
     /// Returns the impacts of a body, apart from those with `later`; `None` where nothing bounces.
-    fn landing(
+    fn collect_impacts(
         &self,
         engine: &RapierWorld,
         body: RigidBodyHandle,
@@ -189,7 +189,8 @@ impl RestitutionContext<'_> {
                     // Position of the other one when they meet; rapier applied its impulse at its position when the step began.
                     let ahead = other.center_after(meets_s) - other.center;
                     let joined = bodies[side].and_then(|body| {
-                        let tree = self.struck(engine, body, (&mut *struck, joint_coordinates))?;
+                        let tree =
+                            self.find_or_add_tree(engine, body, (&mut *struck, joint_coordinates))?;
                         let tree_of = &mut struck[tree];
                         let [point, pushed_at] = [ahead, Vec3::ZERO]
                             .map(|ahead| tree_of.point(body, approach.midpoint + ahead, way));
@@ -218,7 +219,7 @@ impl RestitutionContext<'_> {
                     sides,
                     // 1/m_eff is the sum of both sides'.
                     mass_kg: yields.recip(),
-                    parting: self.parting(
+                    parting: self.target_separation_speed(
                         engine,
                         plane,
                         &approach,
@@ -232,7 +233,7 @@ impl RestitutionContext<'_> {
     }
 
     /// Returns the index of a body's tree among those of the impact; `None` for a body without a joint.
-    fn struck(
+    fn find_or_add_tree(
         &self,
         engine: &RapierWorld,
         body: RigidBodyHandle,
@@ -254,7 +255,7 @@ impl RestitutionContext<'_> {
     }
 
     /// Returns the separation speed of two surfaces after the step, m/s; 0 for those that were in contact before.
-    fn parting(
+    fn target_separation_speed(
         &self,
         engine: &RapierWorld,
         plane: &ContactManifold,
@@ -298,7 +299,7 @@ impl FreeFlightImpact {
         let (linear, angular) = (rigid.linvel(), rigid.angvel());
         self.shift(struck);
         let trees: Vec<Vec<f64>> = struck.iter().map(ImpulseDynamics::velocities).collect();
-        self.part(engine, struck, 1.0);
+        self.apply_sequential_impulses(engine, struck, 1.0);
         let Some(max_energy_j) = self.max_energy_j else {
             return;
         };
@@ -323,7 +324,7 @@ impl FreeFlightImpact {
             } else {
                 0.5 * (low + high)
             };
-            self.part(engine, struck, share);
+            self.apply_sequential_impulses(engine, struck, share);
             if self.energy_j(engine) <= max_energy_j {
                 low = share;
             } else {
@@ -344,7 +345,12 @@ impl FreeFlightImpact {
     }
 
     /// Iterates over the points until they part with a share of their speeds.
-    fn part(&mut self, engine: &mut RapierWorld, struck: &mut [ImpulseDynamics], share: f32) {
+    fn apply_sequential_impulses(
+        &mut self,
+        engine: &mut RapierWorld,
+        struck: &mut [ImpulseDynamics],
+        share: f32,
+    ) {
         for _ in 0..SWEEPS {
             for hit in &mut self.hits {
                 hit.solve(engine, struck, share);

@@ -2,7 +2,7 @@
 
 use super::Dynamics;
 use crate::body::{BodyHandle, BodyStatus};
-use crate::contact::touching;
+use crate::contact::contacts_within;
 use dwell_scene::{Contact, State, SupportRelation};
 use rapier3d::dynamics::RigidBodyHandle;
 
@@ -58,7 +58,7 @@ impl Dynamics {
 
     /// Returns the contacts among the pairs that rapier has.
     fn current_contacts(&self) -> Vec<([RigidBodyHandle; 2], Contact)> {
-        touching(
+        contacts_within(
             &self.engine.narrow_phase,
             &self.engine.colliders,
             &self.entries,

@@ -194,7 +194,7 @@ impl RapierWorld {
     }
 
     /// Adds a share of a substep's gravity to the velocities of bodies.
-    fn fall(&mut self, flying: &[RigidBodyHandle], share: f32) {
+    fn apply_gravity(&mut self, flying: &[RigidBodyHandle], share: f32) {
         let change = self.gravity * (self.substep_s() * share);
         for handle in flying {
             if let Some(body) = self.bodies.get_mut(*handle) {
@@ -217,7 +217,7 @@ impl RapierWorld {
         events: &dyn EventHandler,
     ) -> Vec<RigidBodyHandle> {
         let awake: Vec<RigidBodyHandle> = self.islands.active_bodies().collect();
-        self.fall(&flying, -0.5);
+        self.apply_gravity(&flying, -0.5);
         self.advance(hooks, events);
         let hit = |handle: &RigidBodyHandle| {
             let body = self.bodies.get(*handle);
@@ -225,7 +225,7 @@ impl RapierWorld {
         };
         let (landed, flew): (Vec<RigidBodyHandle>, Vec<RigidBodyHandle>) =
             flying.into_iter().partition(hit);
-        self.fall(&flew, 0.5);
+        self.apply_gravity(&flew, 0.5);
         self.shrink_sleeping_bounds(&awake);
         self.workspace.shrink_to_fit(awake.len());
         landed

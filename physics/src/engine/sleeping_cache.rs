@@ -231,7 +231,7 @@ impl RapierWorld {
             .colliders()
             .iter()
             .filter_map(|collider| self.colliders.get(*collider))
-            .map(|collider| (collider, grown(&collider.compute_aabb(), reach_m)))
+            .map(|collider| (collider, loosened(&collider.compute_aabb(), reach_m)))
             .collect();
         let Some(around) = own
             .iter()
@@ -369,7 +369,7 @@ impl RapierWorld {
     }
 }
 
-fn grown(aabb: &Aabb, by_m: f32) -> Aabb {
+fn loosened(aabb: &Aabb, by_m: f32) -> Aabb {
     let by = Vector::splat(by_m);
     Aabb::new(aabb.mins - by, aabb.maxs + by)
 }

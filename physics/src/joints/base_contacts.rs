@@ -33,7 +33,7 @@ pub(super) enum SupportState {
 
 impl SupportState {
     /// Returns the directions in which it holds.
-    fn holds(self) -> [bool; 3] {
+    fn constrained_directions(self) -> [bool; 3] {
         match self {
             Self::Sticking => [true; 3],
             Self::Sliding(_) => [false, true, false],
@@ -156,7 +156,11 @@ impl ReducedProblem {
                 }
             }
             // h b J^T J.
-            for (row, _) in rows.iter().zip(hold.holds()).filter(|(_, holds)| *holds) {
+            for (row, _) in rows
+                .iter()
+                .zip(hold.constrained_directions())
+                .filter(|(_, holds)| *holds)
+            {
                 for k in 0..6 {
                     for j in 0..=k {
                         own.add(k, j, strength * row.root[k] * row.root[j]);
@@ -236,7 +240,7 @@ impl BaseContactSolver {
         let force = |(rows, hold): (&[PointJacobian; 3], &SupportState)| {
             let along = |k: usize| {
                 let moves = dot(&rows[k].root, &root) + dot(&rows[k].joints, velocities);
-                if hold.holds()[k] {
+                if hold.constrained_directions()[k] {
                     // -b J v.
                     -self.brake * moves
                 } else {

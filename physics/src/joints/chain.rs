@@ -197,7 +197,7 @@ impl Chain {
         }
         let (pushes, root_push) = match &pushed {
             Some(pushed) => (
-                self.pushes(pushed, (&axes, &masses, &angular)),
+                self.law_wrenches(pushed, (&axes, &masses, &angular)),
                 self.root_push(pushed),
             ),
             None => (Vec::new(), ExternalWrench::default()),
@@ -248,7 +248,7 @@ impl Chain {
     }
 
     /// Returns the wrenches of laws on each joint's body. Shape (freedom,).
-    fn pushes(
+    fn law_wrenches(
         &self,
         pushed: &LawWrenchQuery<'_>,
         (axes, masses, angular): (&[JointAxisState], &[LumpedBody], &[DVec3]),

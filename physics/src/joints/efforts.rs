@@ -80,7 +80,7 @@ pub(crate) fn apply_efforts(
         drivers,
     };
     let course = freedoms.integrate(&standing.chain, &positions, &velocities);
-    carry(engine, tree, &joints, &course);
+    apply_body_wrenches(engine, tree, &joints, &course);
     let loose =
         course.base_response.is_some() || !course.midpoint_dynamics.external_contacts.is_empty();
     let going = |(k, place): (usize, &usize)| PredictedJoint {
@@ -100,7 +100,7 @@ pub(crate) fn apply_efforts(
 
 /// Applies to every body all forces on it, the reactions of its joints included: rapier's rows, which are solved in turn
 /// and would give way under a long chain, then have nothing left to do.
-fn carry(
+fn apply_body_wrenches(
     engine: &mut RapierWorld,
     tree: &KinematicTree,
     joints: &[&PhysicsJoint],

@@ -100,7 +100,7 @@ impl ImpulseDynamics {
         for (k, joint) in own.iter().enumerate() {
             inertia.add(k, k, f64::from(joint.values.armature).max(0.0));
         }
-        link(&mut inertia, tree, &standing.free, &own);
+        couple_mimic_joints(&mut inertia, tree, &standing.free, &own);
         if let Some(floating) = &floating {
             inertia = with_root(&inertia, floating, n);
             velocities.extend(floating.base_velocity(&motion.root, motion.root_velocity));
@@ -184,7 +184,7 @@ impl ImpulseDynamics {
             root_velocity_along =
                 (self.root_velocity + self.root.angular.cross(arm)).dot(direction);
         }
-        let answer = self.answer(&row);
+        let answer = self.unit_impulse_response(&row);
         Some(ImpulsePoint {
             row,
             answer,
@@ -193,7 +193,7 @@ impl ImpulseDynamics {
     }
 
     /// Returns the velocity change by 1 N·s. Joints at a stop are not moved through it.
-    fn answer(&mut self, row: &[f64]) -> Vec<f64> {
+    fn unit_impulse_response(&mut self, row: &[f64]) -> Vec<f64> {
         let mut inertia = self.inertia.clone();
         // H^-1 J^T.
         let mut answer = inertia.cholesky().solve(row);
@@ -274,7 +274,7 @@ impl ImpulseDynamics {
 }
 
 /// Couples mimic joints: they move only as their leaders do.
-fn link(
+fn couple_mimic_joints(
     inertia: &mut SymmetricMatrix,
     tree: &KinematicTree,
     free: &[usize],

@@ -139,14 +139,14 @@ impl TreeSolver<'_> {
             let SubstepResult {
                 mut gained,
                 answer: of_root,
-            } = self.part(&chain.dynamics_at(&q, &v, at(false)), &q, &v, part_s);
+            } = self.solve_substep(&chain.dynamics_at(&q, &v, at(false)), &q, &v, part_s);
             answer = of_root;
             for _ in 0..if moves { MIDPOINT_ITERATIONS } else { 0 } {
                 // The implicit midpoint rule, by fixed-point iteration: a = a(q + h/2 v_m, v_m) with v_m = v + h/2 a.
                 let between = plus(&v, &gained, 0.5 * part_s);
                 let middle =
                     chain.dynamics_at(&plus(&q, &between, 0.5 * part_s), &between, at(true));
-                gained = self.part(&middle, &q, &v, part_s).gained;
+                gained = self.solve_substep(&middle, &q, &v, part_s).gained;
             }
             // q' = q + h v_m and v' = v + h a.
             let next = plus(&q, &plus(&v, &gained, 0.5 * part_s), part_s);
@@ -192,7 +192,7 @@ impl TreeSolver<'_> {
 
     /// Returns the accelerations in a part of a step that begins with positions `from` and velocities `now`, with inertia
     /// and loads as in `motion`.
-    fn part(
+    fn solve_substep(
         &self,
         motion: &TreeDynamics<'_>,
         from: &[f64],

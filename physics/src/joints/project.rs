@@ -57,7 +57,8 @@ impl TreeStep {
         let floating = motion.floating_base();
         let inertia = motion.joint_space_inertia();
         let held = held_by_stops(&joints, &positions, &inertia);
-        let (velocity, root) = motion.allowed(floating.as_ref(), momenta, (inertia, held));
+        let (velocity, root) =
+            motion.velocities_from_momenta(floating.as_ref(), momenta, (inertia, held));
         if let (Some((linear, angular)), Some(body)) = (root, engine.bodies.get_mut(tree.root)) {
             body.set_linvel(linear.as_vec3(), false);
             body.set_angvel(angular.as_vec3(), false);
@@ -65,7 +66,7 @@ impl TreeStep {
         let arrived: Vec<f64> = joints
             .iter()
             .zip(positions.iter().zip(ends))
-            .map(|(joint, (position, end))| arrives(joint, *position, *end))
+            .map(|(joint, (position, end))| snap_to_limit(joint, *position, *end))
             .collect();
         if floating.is_some() && arrived != positions {
             let shift =
@@ -86,7 +87,7 @@ impl TreeStep {
 }
 
 /// Returns the position of a joint at `position` that would come to `end` undisturbed: at the stop that it reached, and not short of it.
-fn arrives(joint: &PhysicsJoint, position: f64, end: Option<f64>) -> f64 {
+fn snap_to_limit(joint: &PhysicsJoint, position: f64, end: Option<f64>) -> f64 {
     let [low, high] = joint.stops();
     match end {
         Some(end) if end <= low || end >= high => end,
@@ -144,7 +145,7 @@ impl TreeDynamics<'_> {
 
     /// Returns the joints' velocities, and those of a free root's centre of mass and its rotation, that have these momenta
     /// about the origin, less those taken by stops: of the joints' bodies, shape (freedom,), and of the root.
-    fn allowed(
+    fn velocities_from_momenta(
         &self,
         floating: Option<&FloatingBase>,
         mut momenta: Vec<Wrench>,

@@ -71,7 +71,7 @@ pub(crate) fn trees(
         let sharing = (joint.parent_handle != anchor)
             .then(|| *first_on.entry(key(joint.parent_handle)).or_insert(k));
         for other in [above(joint), leader(joint), sharing].into_iter().flatten() {
-            groups.join(k, other);
+            groups.union(k, other);
         }
     }
     // Number of joints between each and the root; a part comes after its parent.
@@ -83,7 +83,7 @@ pub(crate) fn trees(
     }
     let mut orders: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for k in 0..joints.len() {
-        orders.entry(groups.first(k)).or_default().push(k);
+        orders.entry(groups.find(k)).or_default().push(k);
     }
     let mut places = vec![0_usize; joints.len()];
     let tree = |mut order: Vec<usize>| {
@@ -123,7 +123,7 @@ impl UnionFind {
         }
     }
 
-    fn first(&mut self, mut k: usize) -> usize {
+    fn find(&mut self, mut k: usize) -> usize {
         while self.before[k] != k {
             // Paths are compressed with each use.
             self.before[k] = self.before[self.before[k]];
@@ -132,8 +132,8 @@ impl UnionFind {
         k
     }
 
-    fn join(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.first(a), self.first(b));
+    fn union(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.find(a), self.find(b));
         self.before[a.max(b)] = a.min(b);
     }
 }

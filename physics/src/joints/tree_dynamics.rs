@@ -167,7 +167,7 @@ pub(super) struct TreeDynamics<'a> {
 
 impl TreeDynamics<'_> {
     /// Returns the mass that each joint moves, and its momentum for each unit of the joint's velocity. Shape (freedom,) each.
-    fn carried(&self) -> (Vec<LumpedBody>, Vec<(DVec3, DVec3)>) {
+    fn composite_bodies(&self) -> (Vec<LumpedBody>, Vec<(DVec3, DVec3)>) {
         let mut carried = self.masses.clone();
         for k in (0..carried.len()).rev() {
             if let Some(parent) = self.axes[k].parent {
@@ -196,7 +196,7 @@ impl TreeDynamics<'_> {
     /// Returns the same while the root is held. Shape (freedom, freedom).
     pub(super) fn fixed_base_inertia(&self) -> SymmetricMatrix {
         let n = self.axes.len();
-        let (carried, momenta) = self.carried();
+        let (carried, momenta) = self.composite_bodies();
         let mut inertia = SymmetricMatrix::zero(n);
         for (k, momentum) in momenta.iter().enumerate() {
             let mut other = Some(k);
@@ -213,7 +213,7 @@ impl TreeDynamics<'_> {
     /// Returns the floating base; `None` for a root that is not free.
     pub(super) fn floating_base(&self) -> Option<FloatingBase> {
         let root = self.free_root.as_ref()?;
-        let (carried, momenta) = self.carried();
+        let (carried, momenta) = self.composite_bodies();
         Some(FloatingBase::of(root, &self.axes, &carried, &momenta))
     }
 

@@ -94,7 +94,7 @@ impl LawSet {
 
     /// Notes that a joint was set to `position` (rad or m) from outside.
     pub(crate) fn joint_set(&mut self, joint: JointId, position: f32) {
-        for (_, effect) in self.remembering() {
+        for (_, effect) in self.stateful_laws() {
             effect.joint_set(joint, position);
         }
     }
@@ -113,14 +113,14 @@ impl LawSet {
 
     /// Restores a law's state.
     pub(crate) fn restore_law_state(&mut self, law: usize, memory: &[f32]) {
-        for (owner, effect) in self.remembering() {
+        for (owner, effect) in self.stateful_laws() {
             if owner == law {
                 effect.restore_state(memory);
             }
         }
     }
 
-    fn remembering(&mut self) -> impl Iterator<Item = (usize, &mut dyn LawState)> {
+    fn stateful_laws(&mut self) -> impl Iterator<Item = (usize, &mut dyn LawState)> {
         let motors = self.motors.iter_mut().map(|motor| {
             let effect: &mut dyn LawState = &mut *motor.effect;
             (motor.law, effect)

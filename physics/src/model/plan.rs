@@ -117,7 +117,7 @@ fn mesh_key(mesh: MeshId, part_from_mesh: &Affine3A) -> MeshKey {
 }
 
 /// Returns one material, or one for each triangle where substances differ.
-fn cover(
+fn assign_materials(
     house: &House,
     mesh: MeshId,
     materials: &[MaterialId],
@@ -163,7 +163,7 @@ fn part_pieces(
                     shape,
                     pose: RapierPose::IDENTITY,
                     density_kg_m3: 0.0,
-                    materials: cover(house, part.mesh, &part.materials, &triangles),
+                    materials: assign_materials(house, part.mesh, &part.materials, &triangles),
                 });
             }
         } else if let Some(shaped) = shapes::convex(collider) {
@@ -218,7 +218,7 @@ fn set_part_density(pieces: &mut [CollisionPiece], part: &Part) {
 
 /// Returns the stated mass properties of a part, in the body's frame: its mass and moments times `factor`. `inertial`: its
 /// centre of mass and moments.
-fn given(
+fn stated_mass_properties(
     house: &House,
     (id, body_from_part): &(PartId, Pose),
     inertial: Option<Inertial>,
@@ -307,8 +307,9 @@ pub(super) fn plan(house: Arc<House>) -> PhysicsModel {
                 body.pieces = stand_in_pieces(&house, &mut meshes, body);
                 stand_ins.push(object_id);
             }
-            let stated =
-                |part: &(PartId, Pose)| given(&house, part, house.parts[part.0].inertial, 1.0);
+            let stated = |part: &(PartId, Pose)| {
+                stated_mass_properties(&house, part, house.parts[part.0].inertial, 1.0)
+            };
             let mass = |part: &(PartId, Pose)| {
                 let own = body
                     .pieces
@@ -353,7 +354,12 @@ fn structure_pieces(house: &House, meshes: &mut ShapeCache) -> Vec<CollisionPiec
                 shape,
                 pose: RapierPose::IDENTITY,
                 density_kg_m3: 0.0,
-                materials: cover(house, structure.mesh, &structure.materials, &triangles),
+                materials: assign_materials(
+                    house,
+                    structure.mesh,
+                    &structure.materials,
+                    &triangles,
+                ),
             });
         }
     }
@@ -461,7 +467,7 @@ impl BodyPlan {
     ) -> Option<MassProperties> {
         let parts = self.parts.iter().zip(factors);
         let stated = parts.filter_map(|(part, factor)| {
-            given(house, part, state.part_inertial(house, part.0), *factor)
+            stated_mass_properties(house, part, state.part_inertial(house, part.0), *factor)
         });
         stated.reduce(|all, one| all + one)
     }

@@ -34,7 +34,7 @@ pub(super) fn cover_pieces(house: &House, part: PartId, pieces: &mut [CollisionP
         .map(|piece| shapes::bounds(&piece.shape, &piece.pose))
         .collect();
     let mut areas = vec![vec![0.0; materials.len()]; pieces.len()];
-    for spot in spots(house, part) {
+    for spot in sample_faces(house, part) {
         let mut distances = vec![f32::INFINITY; pieces.len()];
         let mut least = f32::INFINITY;
         for (k, piece) in pieces.iter().enumerate() {
@@ -85,7 +85,7 @@ fn most(materials: &[MaterialId], areas: &[f64]) -> Option<MaterialId> {
 }
 
 /// Returns samples all over the largest faces of a part, in part space.
-fn spots(house: &House, part: PartId) -> Vec<SurfaceSample> {
+fn sample_faces(house: &House, part: PartId) -> Vec<SurfaceSample> {
     let part = &house.parts[part];
     let mesh = &house.meshes[part.mesh];
     let mut faces: Vec<(f64, usize, [Vec3; 3])> = (0..mesh.triangles.len())

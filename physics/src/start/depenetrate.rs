@@ -152,7 +152,7 @@ impl StartResolver<'_> {
         let plan = &self.model.bodies[index];
         let start = resolved[index].pose;
         let mut others: Vec<(PlacedBody, Penetration)> = Vec::new();
-        for one in placed.near(&plan.bounds(&start)) {
+        for one in placed.intersecting(&plan.bounds(&start)) {
             let other = one.body as usize;
             let movable = self.model.bodies[other].joint.is_none()
                 && resolved[other].status == BodyStatus::Free;
@@ -169,7 +169,7 @@ impl StartResolver<'_> {
         for (other, _) in &others {
             placed.remove(other.body as usize);
         }
-        let ways = self.ways(index, start, &others, placed);
+        let ways = self.separating_poses(index, start, &others, placed);
         placed.remove(index);
         for (other, _) in &others {
             placed.reinsert(*other);
@@ -189,7 +189,7 @@ impl StartResolver<'_> {
     }
 
     /// Returns the displacement of a body from `start`, and of the bodies that it overlaps there, each out of the way of those before.
-    fn ways(
+    fn separating_poses(
         &self,
         index: usize,
         start: RapierPose,

@@ -108,7 +108,7 @@ impl StartResolver<'_> {
 
     /// Returns whether a body overlaps too many others to be freed.
     fn is_crowded(&self, plan: &BodyPlan, place: &RapierPose, placed: &PlacedBodies) -> bool {
-        let near = placed.near(&plan.bounds(place));
+        let near = placed.intersecting(&plan.bounds(place));
         let found = near
             .iter()
             .filter_map(|other| self.overlap_of_two(plan, place, other));

@@ -55,7 +55,7 @@ impl StartResolver<'_> {
                 ));
             }
         }
-        for other in placed.near(&plan.bounds(place)) {
+        for other in placed.intersecting(&plan.bounds(place)) {
             found.extend(self.overlap_of_two(plan, place, &other));
         }
         deepest(found.into_iter())

@@ -57,7 +57,7 @@ impl PlacedBodies {
     }
 
     /// Returns the bodies whose boxes intersect a box, in order of placement.
-    pub(super) fn near(&self, bounds: &Aabb) -> Vec<PlacedBody> {
+    pub(super) fn intersecting(&self, bounds: &Aabb) -> Vec<PlacedBody> {
         let around = to_parry(bounds);
         let found = self.tree.intersect_aabb(&around);
         let mut near: Vec<PlacedBody> = found
@@ -120,7 +120,7 @@ mod tests {
                 .copied()
                 .collect();
             assert_eq!(
-                bodies(&standing.near(&asked)),
+                bodies(&standing.intersecting(&asked)),
                 bodies(&by_hand),
                 "turn {turn}"
             );

@@ -110,7 +110,7 @@ impl AgentPlacement {
     }
 
     /// Returns the placed agent, and its velocity that is not commanded. `truth`: its locomotion in this world.
-    fn put(
+    fn to_agent_state(
         &self,
         before: &AgentState,
         truth: &Locomotion,
@@ -263,7 +263,8 @@ impl PhysicsWorld {
                     count: self.agents.list.len(),
                 });
             };
-            let (agent, passive_velocities) = placement.put(before, &state.locomotion(id))?;
+            let (agent, passive_velocities) =
+                placement.to_agent_state(before, &state.locomotion(id))?;
             put.push((id, agent, passive_velocities));
         }
         for (id, agent, passive_velocities) in put {

@@ -66,7 +66,7 @@ impl Checker<'_> {
                 self.hole.set(None);
                 Answer::Things(things)
             }
-            Question::Attribute { kind, of } => match self.only(of) {
+            Question::Attribute { kind, of } => match self.unique_referent(of) {
                 Ok(term) => self.attribute(*kind, term),
                 Err(reason) => Answer::None(reason),
             },

@@ -1,8 +1,8 @@
 //! The extensions of descriptions.
 
 use super::Checker;
-use super::witness::Judged;
-use crate::form::{Description, Modifier, Noun, Phrase, PlaceInOrder, Quality, Quantifier};
+use super::witness::WitnessedTruth;
+use crate::form::{Description, Modifier, Noun, OrdinalSelection, Phrase, Quality, Quantifier};
 use crate::predicates::{self, Predicate};
 use crate::scene::Term;
 use crate::selections;
@@ -69,18 +69,18 @@ impl Checker<'_> {
     }
 
     /// The comparison of the numbers of two kinds of things; undecided where those that are undecided could turn it.
-    pub(super) fn has_more(&self, more: &Description, than: &Description) -> Judged {
+    pub(super) fn has_more(&self, more: &Description, than: &Description) -> WitnessedTruth {
         let (more, than) = (self.extension(more), self.extension(than));
         if let Some(reason) = more.fault.or(than.fault) {
-            return Judged::undecided(reason);
+            return WitnessedTruth::undecided(reason);
         }
         let undecided = more.undecided.iter().chain(&than.undecided);
         let least = more.fits.len() > than.fits.len() + than.undecided.len();
         let most = more.fits.len() + more.undecided.len() > than.fits.len();
         let reason = undecided.map(|(_, reason)| *reason).next();
         match reason {
-            Some(reason) if least != most => Judged::undecided(reason),
-            _ => Judged::plain(Truth::from(least)),
+            Some(reason) if least != most => WitnessedTruth::undecided(reason),
+            _ => WitnessedTruth::plain(Truth::from(least)),
         }
     }
 
@@ -141,7 +141,7 @@ impl Checker<'_> {
         };
         let body = |terms: &[Term]| {
             let truth = predicate.holds(self.scene, terms, self.listener.viewer.as_ref());
-            Judged::plain(truth)
+            WitnessedTruth::plain(truth)
         };
         let among_related = match &modifier.arguments[..] {
             [Phrase::Described(landmark)] if landmark.quantifier == Quantifier::Some => {
@@ -194,7 +194,7 @@ impl Checker<'_> {
         }))
     }
 
-    fn selected(&self, selection: &PlaceInOrder, fits: &[Term]) -> Extension {
+    fn selected(&self, selection: &OrdinalSelection, fits: &[Term]) -> Extension {
         let fault = |reason| Extension {
             fault: Some(reason),
             ..Extension::default()
@@ -204,7 +204,7 @@ impl Checker<'_> {
             ..Extension::default()
         };
         let place = selection.place as usize;
-        if selection.order == PlaceInOrder::OF_HOUSE {
+        if selection.order == OrdinalSelection::OF_HOUSE {
             return place
                 .checked_sub(1)
                 .and_then(|at| fits.get(at))
@@ -215,7 +215,7 @@ impl Checker<'_> {
         };
         let reference = match selection.reference.as_deref() {
             None => None,
-            Some(phrase) => match self.only(phrase) {
+            Some(phrase) => match self.unique_referent(phrase) {
                 Ok(term) => Some(term),
                 Err(reason) => return fault(reason),
             },
@@ -229,7 +229,7 @@ impl Checker<'_> {
     }
 
     /// The one thing that a phrase denotes.
-    pub(super) fn only(&self, phrase: &Phrase) -> Result<Term, UndecidedReason> {
+    pub(super) fn unique_referent(&self, phrase: &Phrase) -> Result<Term, UndecidedReason> {
         if let Some(named) = self.named(phrase) {
             return named;
         }

@@ -33,7 +33,7 @@ use dwell_scene::interrupt;
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::rc::Rc;
-use witness::Judged;
+use witness::WitnessedTruth;
 
 /// The listener of a form: the agent that "you" denotes, and the viewer of left and right.
 #[derive(Clone, Copy, Debug, Default)]
@@ -90,7 +90,7 @@ impl<'a> Checker<'a> {
 
     /// Returns the verdict on a clause.
     pub fn check(&self, clause: &Clause) -> CheckResult {
-        let Judged { truth, witnesses } = self.judge(clause);
+        let WitnessedTruth { truth, witnesses } = self.judge(clause);
         CheckResult { truth, witnesses }
     }
 
@@ -109,7 +109,7 @@ impl<'a> Checker<'a> {
         self.extension(description).fits.clone()
     }
 
-    fn judge(&self, clause: &Clause) -> Judged {
+    fn judge(&self, clause: &Clause) -> WitnessedTruth {
         interrupt::check();
         match clause {
             Clause::Holds {
@@ -123,11 +123,11 @@ impl<'a> Checker<'a> {
                     let body = |terms: &[Term]| {
                         let viewer = self.listener.viewer.as_ref();
                         let truth = found.holds(self.scene, terms, viewer);
-                        Judged::fact(predicate, terms, truth)
+                        WitnessedTruth::fact(predicate, terms, truth)
                     };
                     self.quantify(arguments, &mut Vec::new(), &body)
                 }
-                Err(_) => Judged::undecided(UndecidedReason::UnknownPredicate),
+                Err(_) => WitnessedTruth::undecided(UndecidedReason::UnknownPredicate),
             },
             Clause::Is { subject, quality } => {
                 let body = |terms: &[Term]| self.has_quality(terms[0], quality);
@@ -137,7 +137,7 @@ impl<'a> Checker<'a> {
                 self.exists_for_each(what)
             }
             Clause::Exists(what) => {
-                let body = |terms: &[Term]| Judged::fact("exists", terms, Truth::True);
+                let body = |terms: &[Term]| WitnessedTruth::fact("exists", terms, Truth::True);
                 self.quantify(std::slice::from_ref(what), &mut Vec::new(), &body)
             }
             Clause::More { more, than } => self.has_more(more, than),
@@ -153,17 +153,21 @@ impl<'a> Checker<'a> {
                 self.quantify(std::slice::from_ref(room), &mut Vec::new(), &body)
             }
             Clause::Not(inner) => self.judge(inner).negated(),
-            Clause::All(clauses) => Judged::all(clauses.iter().map(|clause| self.judge(clause))),
-            Clause::Any(clauses) => Judged::any(clauses.iter().map(|clause| self.judge(clause))),
+            Clause::All(clauses) => {
+                WitnessedTruth::all(clauses.iter().map(|clause| self.judge(clause)))
+            }
+            Clause::Any(clauses) => {
+                WitnessedTruth::any(clauses.iter().map(|clause| self.judge(clause)))
+            }
         }
     }
 
     /// "The chairs are next to each other": each is next to another one of them.
-    fn each_other(&self, predicate: &str, subject: &Phrase) -> Judged {
+    fn each_other(&self, predicate: &str, subject: &Phrase) -> WitnessedTruth {
         if let Phrase::List(items) = subject {
             let others = |at: usize| items.iter().enumerate().filter(move |(k, _)| *k != at);
-            return Judged::all(items.iter().enumerate().map(|(at, item)| {
-                Judged::any(others(at).map(|(_, other)| {
+            return WitnessedTruth::all(items.iter().enumerate().map(|(at, item)| {
+                WitnessedTruth::any(others(at).map(|(_, other)| {
                     self.judge(&Clause::Holds {
                         predicate: predicate.to_owned(),
                         arguments: vec![item.clone(), other.clone()],
@@ -172,25 +176,25 @@ impl<'a> Checker<'a> {
             }));
         }
         let (Phrase::Described(own), Ok(found)) = (subject, predicates::find(predicate)) else {
-            return Judged::undecided(UndecidedReason::UnknownTerm);
+            return WitnessedTruth::undecided(UndecidedReason::UnknownTerm);
         };
         let extension = self.extension(own);
         let body = |terms: &[Term]| {
             let others = extension.fits.iter().filter(|other| **other != terms[0]);
-            Judged::any(others.map(|other| {
+            WitnessedTruth::any(others.map(|other| {
                 let pair = [terms[0], *other];
                 let truth = found.holds(self.scene, &pair, self.listener.viewer.as_ref());
-                Judged::fact(predicate, &pair, truth)
+                WitnessedTruth::fact(predicate, &pair, truth)
             }))
         };
         self.quantify(std::slice::from_ref(subject), &mut Vec::new(), &body)
     }
 
     /// "There is a lamp on every desk": each desk has its own.
-    fn exists_for_each(&self, what: &Description) -> Judged {
+    fn exists_for_each(&self, what: &Description) -> WitnessedTruth {
         let mut thing = what.clone();
         let Some(at) = wide_landmark(what) else {
-            return Judged::undecided(UndecidedReason::UnknownPredicate);
+            return WitnessedTruth::undecided(UndecidedReason::UnknownPredicate);
         };
         let Modifier {
             predicate,
@@ -198,32 +202,32 @@ impl<'a> Checker<'a> {
             ..
         } = thing.modifiers.remove(at);
         let Ok(found) = predicates::find(&predicate) else {
-            return Judged::undecided(UndecidedReason::UnknownPredicate);
+            return WitnessedTruth::undecided(UndecidedReason::UnknownPredicate);
         };
         let body = |terms: &[Term]| {
             let swapped = [terms[1], terms[0]];
             let truth = found.holds(self.scene, &swapped, self.listener.viewer.as_ref());
-            Judged::fact(&predicate, &swapped, truth)
+            WitnessedTruth::fact(&predicate, &swapped, truth)
         };
         let mut ordered = arguments;
         ordered.push(thing.into());
         self.quantify(&ordered, &mut Vec::new(), &body)
     }
 
-    fn has_quality(&self, term: Term, quality: &Quality) -> Judged {
+    fn has_quality(&self, term: Term, quality: &Quality) -> WitnessedTruth {
         let object = match (term, quality) {
             (Term::Object(object), _) => object,
             // A blue bedroom has blue walls.
             (Term::Room(_), Quality::Color(word)) => return self.has_walls(term, word),
             (Term::Structure(piece), Quality::Color(word)) => {
                 let truth = structure_facts::has_color(self.scene.semantics, piece, word);
-                return Judged::fact(word, &[term], truth.into());
+                return WitnessedTruth::fact(word, &[term], truth.into());
             }
             (Term::Structure(piece), Quality::Material(word)) => {
                 let truth = structure_facts::has_material(self.scene.semantics, piece, word);
-                return Judged::fact(word, &[term], truth.into());
+                return WitnessedTruth::fact(word, &[term], truth.into());
             }
-            _ => return Judged::undecided(UndecidedReason::WrongKind),
+            _ => return WitnessedTruth::undecided(UndecidedReason::WrongKind),
         };
         let facts = self.scene.facts(object);
         let (name, truth) = match quality {
@@ -244,7 +248,7 @@ impl<'a> Checker<'a> {
             ),
             Quality::State(name) => (name.as_str(), self.state(name, term)),
         };
-        Judged::fact(name, &[term], truth)
+        WitnessedTruth::fact(name, &[term], truth)
     }
 
     fn state(&self, name: &str, term: Term) -> Truth {

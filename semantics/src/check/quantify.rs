@@ -1,13 +1,13 @@
 //! Evaluation of quantified phrases; the first of a clause has the widest scope.
 
 use super::Checker;
-use super::witness::{Judged, MOST_WITNESSES};
+use super::witness::{MOST_WITNESSES, WitnessedTruth};
 use crate::form::{Description, Phrase, Quantifier};
 use crate::scene::Term;
 use crate::truth::{Truth, UndecidedReason};
 
 /// A clause as a function of its arguments.
-type Body<'a> = &'a dyn Fn(&[Term]) -> Judged;
+type Body<'a> = &'a dyn Fn(&[Term]) -> WitnessedTruth;
 
 impl Checker<'_> {
     /// Evaluates `body` for the `chosen` terms followed by all that the `arguments` range over.
@@ -16,13 +16,13 @@ impl Checker<'_> {
         arguments: &[Phrase],
         chosen: &mut Vec<Term>,
         body: Body<'_>,
-    ) -> Judged {
+    ) -> WitnessedTruth {
         let Some((first, rest)) = arguments.split_first() else {
             return body(chosen);
         };
         if let Phrase::List(items) = first {
             // A list is decided item by item: each takes its place in turn.
-            return Judged::all(items.iter().map(|item| {
+            return WitnessedTruth::all(items.iter().map(|item| {
                 let mut arguments = vec![item.clone()];
                 arguments.extend_from_slice(rest);
                 self.quantify(&arguments, &mut chosen.clone(), body)
@@ -36,22 +36,22 @@ impl Checker<'_> {
         };
         match (self.named(first), first) {
             (Some(Ok(term)), _) => with(term),
-            (Some(Err(reason)), _) => Judged::undecided(reason),
+            (Some(Err(reason)), _) => WitnessedTruth::undecided(reason),
             (None, Phrase::Described(description)) => {
                 self.quantify_description(description, &mut with)
             }
-            (None, _) => Judged::undecided(UndecidedReason::UnknownTerm),
+            (None, _) => WitnessedTruth::undecided(UndecidedReason::UnknownTerm),
         }
     }
 
     fn quantify_description(
         &self,
         description: &Description,
-        with: &mut dyn FnMut(Term) -> Judged,
-    ) -> Judged {
+        with: &mut dyn FnMut(Term) -> WitnessedTruth,
+    ) -> WitnessedTruth {
         let extension = self.extension(description);
         if let Some(reason) = extension.fault {
-            return Judged::undecided(reason);
+            return WitnessedTruth::undecided(reason);
         }
         // Of a thing that may or may not fit the clause is undecided, except where the result is the same either way.
         let fitting = extension.fits.iter().map(|term| (*term, None));
@@ -61,21 +61,21 @@ impl Checker<'_> {
             .map(|(term, reason)| (*term, Some(*reason)));
         let mut fitting = fitting.chain(undecided);
         match description.quantifier {
-            Quantifier::Some => Judged::any(fitting.map(|(term, undecided)| {
+            Quantifier::Some => WitnessedTruth::any(fitting.map(|(term, undecided)| {
                 let mut judged = with(term);
                 if let Some(reason) = undecided {
                     judged.truth = judged.truth.and(Truth::Undecided(reason));
                 }
                 judged
             })),
-            Quantifier::Every => Judged::all(fitting.map(|(term, undecided)| {
+            Quantifier::Every => WitnessedTruth::all(fitting.map(|(term, undecided)| {
                 let mut judged = with(term);
                 if let Some(reason) = undecided {
                     judged.truth = judged.truth.or(Truth::Undecided(reason));
                 }
                 judged
             })),
-            Quantifier::No => Judged::all(fitting.map(|(term, undecided)| {
+            Quantifier::No => WitnessedTruth::all(fitting.map(|(term, undecided)| {
                 let mut judged = with(term).negated();
                 if let Some(reason) = undecided {
                     judged.truth = judged.truth.or(Truth::Undecided(reason));
@@ -121,18 +121,18 @@ impl Checker<'_> {
 fn quantify_definite(
     fits: &[Term],
     undecided: &[(Term, UndecidedReason)],
-    with: &mut dyn FnMut(Term) -> Judged,
-) -> Judged {
+    with: &mut dyn FnMut(Term) -> WitnessedTruth,
+) -> WitnessedTruth {
     // Every way in which what is undecided might turn out: where nothing fits the clause is false, else it is as of what fits.
     let possible = fits.iter().chain(undecided.iter().map(|(term, _)| term));
-    let all: Vec<Judged> = possible.map(|term| with(*term)).collect();
+    let all: Vec<WitnessedTruth> = possible.map(|term| with(*term)).collect();
     let nothing_may_fit = fits.is_empty().then_some(Truth::False);
     let mut values = all.iter().map(|judged| judged.truth).chain(nothing_may_fit);
     let first = values.next().unwrap_or(Truth::False);
     if values.all(|truth| truth == first) {
         return match first {
-            Truth::False if all.is_empty() => Judged::plain(first),
-            _ => Judged::all(all.into_iter()),
+            Truth::False if all.is_empty() => WitnessedTruth::plain(first),
+            _ => WitnessedTruth::all(all.into_iter()),
         };
     }
     let reason = match undecided.first() {
@@ -140,7 +140,7 @@ fn quantify_definite(
         None => UndecidedReason::SeveralFit,
     };
     let witnesses = all.into_iter().flat_map(|judged| judged.witnesses);
-    Judged {
+    WitnessedTruth {
         truth: Truth::Undecided(reason),
         witnesses: witnesses.take(MOST_WITNESSES).collect(),
     }
@@ -151,13 +151,13 @@ struct CountBounds {
     low: u32,
     high: u32,
     reason: Option<UndecidedReason>,
-    examples: Vec<Judged>,
+    examples: Vec<WitnessedTruth>,
 }
 
 impl CountBounds {
     fn of(
         things: &mut dyn Iterator<Item = (Term, Option<UndecidedReason>)>,
-        with: &mut dyn FnMut(Term) -> Judged,
+        with: &mut dyn FnMut(Term) -> WitnessedTruth,
     ) -> Self {
         let mut bounds = Self {
             low: 0,
@@ -182,7 +182,7 @@ impl CountBounds {
     }
 
     /// Evaluates `decide` on the lower and upper bound; `None` is undecided.
-    fn judged(self, decide: impl Fn(u32, u32) -> Option<bool>) -> Judged {
+    fn judged(self, decide: impl Fn(u32, u32) -> Option<bool>) -> WitnessedTruth {
         let reason = self.reason.unwrap_or(UndecidedReason::SeveralFit);
         let decided = decide(self.low, self.high);
         let truth = decided.map_or(Truth::Undecided(reason), Truth::from);
@@ -190,7 +190,7 @@ impl CountBounds {
             .examples
             .into_iter()
             .flat_map(|judged| judged.witnesses);
-        Judged {
+        WitnessedTruth {
             truth,
             witnesses: witnesses.take(MOST_WITNESSES).collect(),
         }

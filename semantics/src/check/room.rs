@@ -1,7 +1,7 @@
 //! Clauses about rooms: area and surfaces.
 
 use super::Checker;
-use super::witness::Judged;
+use super::witness::WitnessedTruth;
 use crate::form::{RoomSurface, RoomSurfaceKind};
 use crate::scene::Term;
 use crate::truth::{Truth, UndecidedReason};
@@ -12,17 +12,17 @@ pub(crate) fn spoken_area_m2(area_m2: f32) -> u32 {
 }
 
 impl Checker<'_> {
-    pub(super) fn has_area(&self, term: Term, square_metres: u32) -> Judged {
+    pub(super) fn has_area(&self, term: Term, square_metres: u32) -> WitnessedTruth {
         let Term::Room(room) = term else {
-            return Judged::undecided(UndecidedReason::WrongKind);
+            return WitnessedTruth::undecided(UndecidedReason::WrongKind);
         };
         let area_m2 = self.scene.semantics.room(room).area_m2;
         let truth = Truth::from(spoken_area_m2(area_m2) == square_metres);
-        Judged::fact("area", &[term], truth)
+        WitnessedTruth::fact("area", &[term], truth)
     }
 
     /// A room's walls have a colour.
-    pub(super) fn has_walls(&self, term: Term, color: &str) -> Judged {
+    pub(super) fn has_walls(&self, term: Term, color: &str) -> WitnessedTruth {
         let walls = RoomSurface {
             kind: RoomSurfaceKind::Walls,
             color: Some(color.to_owned()),
@@ -31,12 +31,12 @@ impl Checker<'_> {
         self.has_surfaces(term, &[walls])
     }
 
-    pub(super) fn has_surfaces(&self, term: Term, surfaces: &[RoomSurface]) -> Judged {
+    pub(super) fn has_surfaces(&self, term: Term, surfaces: &[RoomSurface]) -> WitnessedTruth {
         let Term::Room(room) = term else {
-            return Judged::undecided(UndecidedReason::WrongKind);
+            return WitnessedTruth::undecided(UndecidedReason::WrongKind);
         };
         let facts = self.scene.semantics.room(room);
-        Judged::all(surfaces.iter().map(|surface| {
+        WitnessedTruth::all(surfaces.iter().map(|surface| {
             let (name, color, material) = match surface.kind {
                 RoomSurfaceKind::Floor => ("floor", facts.floor_color, facts.floor_word),
                 RoomSurfaceKind::Walls => ("walls", facts.wall_color, None),
@@ -48,7 +48,7 @@ impl Checker<'_> {
                 (None, Some(_)) => Truth::False,
             };
             let truth = is(color, &surface.color).and(is(material, &surface.material));
-            Judged::fact(name, &[term], truth)
+            WitnessedTruth::fact(name, &[term], truth)
         }))
     }
 }

@@ -19,12 +19,12 @@ pub struct Witness {
 
 /// A truth value with the facts that suffice for it.
 #[derive(Clone, Debug)]
-pub(super) struct Judged {
+pub(super) struct WitnessedTruth {
     pub(super) truth: Truth,
     pub(super) witnesses: Vec<Witness>,
 }
 
-impl Judged {
+impl WitnessedTruth {
     pub(super) fn fact(predicate: &str, terms: &[Term], truth: Truth) -> Self {
         let witness = Witness {
             predicate: predicate.to_owned(),

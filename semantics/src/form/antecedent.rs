@@ -465,7 +465,8 @@ impl Resolver {
         let mut earlier: Vec<&Mention> = earlier.collect();
         // What a step is about before landmarks, of either the last one first.
         earlier.sort_by_key(|mention| {
-            let suits = verb.is_none_or(|verb| suits(verb, &mention.phrase));
+            let suits =
+                verb.is_none_or(|verb| meets_selectional_restriction(verb, &mention.phrase));
             let landmark = mention.role == Role::Landmark;
             (
                 !suits,
@@ -567,7 +568,7 @@ fn topic_of(step: &RequestStep) -> Option<&Phrase> {
 }
 
 /// Returns whether things of a noun are acted on by a verb, as far as the table of categories knows.
-fn suits(verb: &str, phrase: &Phrase) -> bool {
+fn meets_selectional_restriction(verb: &str, phrase: &Phrase) -> bool {
     let Phrase::Described(own) = phrase else {
         return true;
     };

@@ -11,7 +11,7 @@ mod request;
 mod visit;
 
 pub use clause::{Clause, Quality, RoomSurface, RoomSurfaceKind};
-pub use phrase::{Description, Modifier, Noun, Phrase, PlaceInOrder, Quantifier};
+pub use phrase::{Description, Modifier, Noun, OrdinalSelection, Phrase, Quantifier};
 pub use question::{AttributeKind, Question};
 pub use request::RequestStep;
 

@@ -75,7 +75,7 @@ impl Modifier {
 
 /// The choice of one of the things that a description fits, by its place in an order.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-pub struct PlaceInOrder {
+pub struct OrdinalSelection {
     /// The order's name: `"from_left"`, `"largest"`, `"closest_to"`.
     pub order: String,
     /// The place in it, counted from 1.
@@ -84,7 +84,7 @@ pub struct PlaceInOrder {
     pub reference: Option<Box<Phrase>>,
 }
 
-impl PlaceInOrder {
+impl OrdinalSelection {
     /// The order of rooms in the house's own list, as in "the second bedroom".
     pub const OF_HOUSE: &'static str = "house";
 }
@@ -107,7 +107,7 @@ pub struct Description {
     /// The modifiers, all of which hold.
     pub modifiers: Vec<Modifier>,
     /// The choice by an order; with one the quantifier is [`Quantifier::The`].
-    pub selection: Option<PlaceInOrder>,
+    pub selection: Option<OrdinalSelection>,
 }
 
 impl Description {

@@ -21,12 +21,12 @@ pub struct LexiconEntry {
 pub fn words(text: &str) -> Vec<String> {
     let mut words = split(text);
     for word in &mut words {
-        *word = compared(word);
+        *word = normalize_word(word);
     }
     words
 }
 
-fn compared(word: &str) -> String {
+fn normalize_word(word: &str) -> String {
     let lower = word.to_lowercase();
     if lower == "an" { "a".to_owned() } else { lower }
 }
@@ -110,7 +110,7 @@ impl Lexicon {
                 if form.is_empty() || known.contains(&form) {
                     continue;
                 }
-                let words: Vec<String> = form.iter().map(|word| compared(word)).collect();
+                let words: Vec<String> = form.iter().map(|word| normalize_word(word)).collect();
                 let starts = self.by_first_word.entry(words[0].clone()).or_default();
                 self.words.extend(words.iter().cloned());
                 starts.push(EntryForm {

@@ -80,7 +80,7 @@ type PartReading = (u32, Vec<Option<NodeId>>);
 
 /// What was read of each category over each span, and of each item, each worked out once.
 #[derive(Default)]
-struct Known {
+struct ParseMemo {
     nodes: Nodes,
     spans: BTreeMap<(NonTerminal, usize, usize), Vec<Reading>>,
     items: BTreeMap<(Item, usize), Vec<PartReading>>,
@@ -195,7 +195,7 @@ impl Parser<'_> {
         category: NonTerminal,
         origin: usize,
         end: usize,
-        known: &mut Known,
+        known: &mut ParseMemo,
     ) -> Vec<Reading> {
         if let Some(found) = known.spans.get(&(category, origin, end)) {
             return found.clone();
@@ -221,7 +221,7 @@ impl Parser<'_> {
     }
 
     /// The arguments that were read before the dot of an item, with their cost.
-    fn arguments(&self, item: Item, set: usize, known: &mut Known) -> Vec<PartReading> {
+    fn arguments(&self, item: Item, set: usize, known: &mut ParseMemo) -> Vec<PartReading> {
         let production = &self.grammar.productions.all[item.production];
         if item.dot == 0 {
             return vec![(0, vec![None; production.arity])];
@@ -263,7 +263,7 @@ impl Parser<'_> {
         symbol: &Symbol,
         child: Child,
         end: usize,
-        known: &mut Known,
+        known: &mut ParseMemo,
     ) -> Vec<(u32, Option<NodeId>)> {
         match child {
             Child::Word => vec![(0, None)],
@@ -333,7 +333,7 @@ impl Grammar {
         }
         let filled = parser.sets.iter().rposition(|set| !set.order.is_empty());
         let understood = filled.unwrap_or(0);
-        let mut known = Known::default();
+        let mut known = ParseMemo::default();
         let mut trees: Vec<(u32, Tree)> = Vec::new();
         for start in &self.start {
             let readings = parser.readings(*start, 0, words.len(), &mut known);

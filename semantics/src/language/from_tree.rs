@@ -3,7 +3,8 @@
 use super::phrases::{modifier, phrase, relation_to, size};
 use super::{existence, numbers, places, questions, requests, rooms, sets, verb_phrases};
 use crate::form::{
-    Clause, Description, Form, Modifier, Noun, Phrase, PlaceInOrder, Quality, Quantifier, Question,
+    Clause, Description, Form, Modifier, Noun, OrdinalSelection, Phrase, Quality, Quantifier,
+    Question,
 };
 use crate::grammar::Tree;
 use std::collections::BTreeMap;
@@ -431,8 +432,8 @@ pub(super) fn room(tree: &Tree) -> Option<Phrase> {
         ("room_every", [own]) => kind(own, Quantifier::Every)?,
         ("room_no", [own]) => kind(own, Quantifier::No)?,
         ("room_nth", [place, own]) => Description {
-            selection: Some(PlaceInOrder {
-                order: PlaceInOrder::OF_HOUSE.to_owned(),
+            selection: Some(OrdinalSelection {
+                order: OrdinalSelection::OF_HOUSE.to_owned(),
                 place: number(place)?,
                 reference: None,
             }),

@@ -2,7 +2,7 @@
 
 use super::from_tree::{id, number, parts, place_of, quality_of, room};
 use super::{existence, places, questions, sets, verb_phrases};
-use crate::form::{Description, Modifier, Noun, Phrase, PlaceInOrder, Quality, Quantifier};
+use crate::form::{Description, Modifier, Noun, OrdinalSelection, Phrase, Quality, Quantifier};
 use crate::grammar::Tree;
 use crate::size::SizeClass;
 
@@ -13,7 +13,7 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
     };
     let selected =
         |noun: &Tree, order: &Tree, place, reference: Option<Phrase>| -> Option<Phrase> {
-            let selection = PlaceInOrder {
+            let selection = OrdinalSelection {
                 order: id(order)?,
                 place,
                 reference: reference.map(Box::new),
@@ -25,7 +25,7 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
             Some(description.into())
         };
     let first_in = |noun: &Tree, order: &str| -> Option<Phrase> {
-        let selection = PlaceInOrder {
+        let selection = OrdinalSelection {
             order: order.to_owned(),
             place: 1,
             reference: None,
@@ -67,7 +67,7 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
         }
         ("nth_at_side", [place, noun, side]) => {
             let side = places::side_from_tree(side)?;
-            let selection = PlaceInOrder {
+            let selection = OrdinalSelection {
                 order: "nearest".to_owned(),
                 place: number(place)?,
                 reference: None,

@@ -7,7 +7,8 @@ use super::phrases::{described, modifier, phrase};
 use super::to_tree::{Position, TreeBuilder};
 use super::{alternatives, numbers, places, sets, verb_phrases};
 use crate::form::{
-    AttributeKind, Clause, Description, Modifier, Noun, Phrase, PlaceInOrder, Quantifier, Question,
+    AttributeKind, Clause, Description, Modifier, Noun, OrdinalSelection, Phrase, Quantifier,
+    Question,
 };
 use crate::grammar::Tree;
 
@@ -250,7 +251,7 @@ pub(super) fn selected(
     reference: Option<Phrase>,
 ) -> Description {
     Description {
-        selection: Some(PlaceInOrder {
+        selection: Some(OrdinalSelection {
             order: order.to_owned(),
             place: 1,
             reference: reference.map(Box::new),

@@ -7,7 +7,8 @@ use super::lexicon::{
 };
 use super::places;
 use crate::form::{
-    Clause, Description, Form, Modifier, Noun, Phrase, PlaceInOrder, Quality, Quantifier, Question,
+    Clause, Description, Form, Modifier, Noun, OrdinalSelection, Phrase, Quality, Quantifier,
+    Question,
 };
 use crate::grammar::{Lexicon, Tree};
 use crate::size::SizeClass;
@@ -304,7 +305,9 @@ impl TreeBuilder<'_> {
             &description.modifiers[..],
             description.quantifier,
         ) {
-            (Some(selection), [], Quantifier::The) if selection.order == PlaceInOrder::OF_HOUSE => {
+            (Some(selection), [], Quantifier::The)
+                if selection.order == OrdinalSelection::OF_HOUSE =>
+            {
                 Some(Tree::apply("room_nth", [ordinal(selection.place), kind]))
             }
             (None, [with], Quantifier::The)
@@ -445,14 +448,14 @@ impl TreeBuilder<'_> {
 
     fn selected(
         &self,
-        selection: &PlaceInOrder,
+        selection: &OrdinalSelection,
         quantifier: Quantifier,
         noun: Tree,
     ) -> Option<Tree> {
         if quantifier != Quantifier::The {
             return None;
         }
-        let PlaceInOrder {
+        let OrdinalSelection {
             order,
             place,
             reference,

@@ -8,7 +8,7 @@ use crate::grammar::Tree;
 
 /// One thing that is said of a subject.
 #[derive(Clone)]
-pub(super) enum Said {
+pub(super) enum Predication {
     /// A relation, or a place.
     Relation(Modifier),
     /// A relation of another thing to the subject: "smaller than the table" of a table that is larger.
@@ -26,13 +26,13 @@ pub(super) enum Said {
 }
 
 /// What is said, each with whether it is denied.
-pub(super) type SaidList = Vec<(Said, bool)>;
+pub(super) type SaidList = Vec<(Predication, bool)>;
 
 fn relation(predicate: &str, arguments: impl Into<Vec<Phrase>>) -> SaidList {
-    affirmed(Said::Relation(Modifier::new(predicate, arguments)))
+    affirmed(Predication::Relation(Modifier::new(predicate, arguments)))
 }
 
-fn affirmed(said: Said) -> SaidList {
+fn affirmed(said: Predication) -> SaidList {
     vec![(said, false)]
 }
 
@@ -63,14 +63,20 @@ pub(super) fn said(tree: &Tree) -> Option<SaidList> {
             relation(&predicate, [place])
         }
         ("vp_mount", [mount]) => relation("hangs_on", [places::mount_from_tree(mount)?]),
-        ("vp_side", [side]) => affirmed(Said::Relation(places::side_from_tree(side)?)),
-        ("vp_passage", [passage]) => affirmed(Said::Relation(places::passage_from_tree(passage)?)),
+        ("vp_side", [side]) => affirmed(Predication::Relation(places::side_from_tree(side)?)),
+        ("vp_passage", [passage]) => {
+            affirmed(Predication::Relation(places::passage_from_tree(passage)?))
+        }
         ("vp_side_corner", [side]) if parts(side)?.0 != "flank_ahead" => {
             let mut all = relation("in_corner_of", [any_room()]);
-            all.extend(affirmed(Said::Relation(places::side_from_tree(side)?)));
+            all.extend(affirmed(Predication::Relation(places::side_from_tree(
+                side,
+            )?)));
             all
         }
-        ("vp_converse", [word, object]) => affirmed(Said::Converse(id(word)?, phrase(object)?)),
+        ("vp_converse", [word, object]) => {
+            affirmed(Predication::Converse(id(word)?, phrase(object)?))
+        }
         ("vp_superlative", [order, noun]) => {
             let selected = questions::selected(described(noun)?, &id(order)?, None);
             relation("identical", [selected.into()])
@@ -81,24 +87,30 @@ pub(super) fn said(tree: &Tree) -> Option<SaidList> {
             relation("identical", [selected.into()])
         }
         ("vp_is_a", [noun]) => relation("identical", [described(noun)?.into()]),
-        ("vp_both_sides", [landmark]) => affirmed(Said::BothSides(phrase(landmark)?)),
-        ("vp_one_the_other", [word]) => affirmed(Said::OneTheOther(id(word)?)),
-        ("vp_only", [noun]) => affirmed(Said::Only(described(noun)?)),
+        ("vp_both_sides", [landmark]) => affirmed(Predication::BothSides(phrase(landmark)?)),
+        ("vp_one_the_other", [word]) => affirmed(Predication::OneTheOther(id(word)?)),
+        ("vp_only", [noun]) => affirmed(Predication::Only(described(noun)?)),
         ("vp_same_color", [other]) => relation("same_color", [phrase(other)?]),
         ("vp_same_material", [other]) => relation("same_material", [phrase(other)?]),
-        ("vp_side_by_side", []) => affirmed(Said::EachOther("next_to".to_owned())),
-        ("vp_each_other", [word]) => affirmed(Said::EachOther(id(word)?)),
+        ("vp_side_by_side", []) => affirmed(Predication::EachOther("next_to".to_owned())),
+        ("vp_each_other", [word]) => affirmed(Predication::EachOther(id(word)?)),
         ("vp_color_material", [color, material]) | ("vp_material_color", [material, color]) => {
             vec![
-                (Said::Quality(Quality::Color(id(color)?)), false),
-                (Said::Quality(Quality::Material(id(material)?)), false),
+                (Predication::Quality(Quality::Color(id(color)?)), false),
+                (
+                    Predication::Quality(Quality::Material(id(material)?)),
+                    false,
+                ),
             ]
         }
-        ("vp_quality", [quality]) => affirmed(Said::Quality(quality_of(quality)?)),
+        ("vp_quality", [quality]) => affirmed(Predication::Quality(quality_of(quality)?)),
         ("vp_standing", [posture, inner]) => {
             let mut all = said(inner)?;
             // "Standing on" does not say that something is switched on.
-            if all.iter().any(|(said, _)| matches!(said, Said::Quality(_))) {
+            if all
+                .iter()
+                .any(|(said, _)| matches!(said, Predication::Quality(_)))
+            {
                 return None;
             }
             if hangs(posture) {
@@ -115,15 +127,15 @@ pub(super) fn said(tree: &Tree) -> Option<SaidList> {
                 _ => all.extend(said(last)?),
             }
             // "Visible in the mirror" is not what is visible and in the mirror.
-            let is = |at: usize, found: fn(&Said) -> bool| {
+            let is = |at: usize, found: fn(&Predication) -> bool| {
                 all.get(at).is_some_and(|(said, _)| found(said))
             };
             if is(
                 0,
-                |said| matches!(said, Said::Quality(Quality::State(state)) if state == "visible"),
+                |said| matches!(said, Predication::Quality(Quality::State(state)) if state == "visible"),
             ) && is(
                 1,
-                |said| matches!(said, Said::Relation(place) if place.predicate == "in"),
+                |said| matches!(said, Predication::Relation(place) if place.predicate == "in"),
             ) {
                 return None;
             }
@@ -145,7 +157,7 @@ fn hangs(posture: &Tree) -> bool {
 /// What hangs "on" a thing is mounted on it.
 fn hang(all: &mut SaidList) {
     for (said, _) in all {
-        if let Said::Relation(modifier) = said
+        if let Predication::Relation(modifier) = said
             && modifier.predicate == "on"
         {
             "hangs_on".clone_into(&mut modifier.predicate);
@@ -177,16 +189,16 @@ fn any_room() -> Phrase {
 }
 
 /// The clause that says one thing of `subject`.
-fn clause_of(subject: Phrase, (said, negated): (Said, bool)) -> Option<Clause> {
+fn clause_of(subject: Phrase, (said, negated): (Predication, bool)) -> Option<Clause> {
     let clause = match said {
-        Said::Relation(modifier) => {
+        Predication::Relation(modifier) => {
             let mut arguments = vec![subject];
             arguments.extend(modifier.arguments);
             holds(&modifier.predicate, arguments)
         }
-        Said::Converse(predicate, other) => holds(&predicate, vec![other, subject]),
-        Said::Quality(quality) => Clause::Is { subject, quality },
-        Said::BothSides(landmark) => {
+        Predication::Converse(predicate, other) => holds(&predicate, vec![other, subject]),
+        Predication::Quality(quality) => Clause::Is { subject, quality },
+        Predication::BothSides(landmark) => {
             let Phrase::Described(own) = &subject else {
                 return None;
             };
@@ -194,18 +206,18 @@ fn clause_of(subject: Phrase, (said, negated): (Said, bool)) -> Option<Clause> {
             let side = |name| holds(name, vec![one.clone().into(), landmark.clone()]);
             Clause::All(vec![side("left_of"), side("right_of")])
         }
-        Said::OneTheOther(predicate) => {
+        Predication::OneTheOther(predicate) => {
             let Phrase::Described(own) = subject else {
                 return None;
             };
             let one: Phrase = own.with_quantifier(Quantifier::Some).into();
             holds(&predicate, vec![one.clone(), one])
         }
-        Said::Only(only) => Clause::All(vec![
+        Predication::Only(only) => Clause::All(vec![
             holds("identical", vec![subject, only.clone().into()]),
             Clause::Exists(only.with_quantifier(Quantifier::Exactly(1)).into()),
         ]),
-        Said::EachOther(predicate) => match &subject {
+        Predication::EachOther(predicate) => match &subject {
             Phrase::List(_) | Phrase::Described(_) => {
                 holds(&predicate, vec![subject, Phrase::EachOther])
             }
@@ -254,8 +266,8 @@ pub(super) fn clause(subject: Phrase, tree: &Tree) -> Option<Clause> {
 }
 
 /// Returns whether it can be said within a description.
-fn describes(said: &Said) -> bool {
-    matches!(said, Said::Relation(_) | Said::Quality(_))
+fn describes(said: &Predication) -> bool {
+    matches!(said, Predication::Relation(_) | Predication::Quality(_))
 }
 
 /// Adds to a description what a verb phrase says.
@@ -264,21 +276,25 @@ pub(super) fn add_said(description: &mut Description, all: SaidList) -> Option<(
     for (said, negated) in all {
         match (said, negated) {
             // "There is bread on the table and on the shelf": not one bread on both.
-            (Said::Relation(modifier), false) if predicates.contains(&modifier.predicate) => {
+            (Predication::Relation(modifier), false)
+                if predicates.contains(&modifier.predicate) =>
+            {
                 return None;
             }
-            (Said::Relation(modifier), negated) => {
+            (Predication::Relation(modifier), negated) => {
                 predicates.push(modifier.predicate.clone());
                 description.modifiers.push(Modifier {
                     negated,
                     ..modifier
                 });
             }
-            (Said::Quality(quality), false) => add_quality(description, quality)?,
-            (Said::Quality(Quality::State(state)), true) => description.modifiers.push(Modifier {
-                negated: true,
-                ..Modifier::new(&state, [])
-            }),
+            (Predication::Quality(quality), false) => add_quality(description, quality)?,
+            (Predication::Quality(Quality::State(state)), true) => {
+                description.modifiers.push(Modifier {
+                    negated: true,
+                    ..Modifier::new(&state, [])
+                })
+            }
             _ => return None,
         }
     }

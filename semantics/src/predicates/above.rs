@@ -20,7 +20,7 @@ impl Predicate for Above {
         "above"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[THING, THING]
     }
 

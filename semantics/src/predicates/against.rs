@@ -77,7 +77,7 @@ impl Predicate for Against {
         "against"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[OBJECT, OBJECT_OR_STRUCTURE]
     }
 

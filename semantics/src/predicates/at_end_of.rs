@@ -15,7 +15,7 @@ impl Predicate for AtEndOf {
         "at_end_of"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[OBJECT_OR_AGENT, ROOM]
     }
 

@@ -12,7 +12,7 @@ impl Predicate for AtFrontOf {
         "at_front_of"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[THING, OBJECT_OR_AGENT]
     }
 

@@ -49,7 +49,7 @@ impl Predicate for AttachedTo {
         "attached_to"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[ATTACHED, OBJECT_OR_STRUCTURE]
     }
 

@@ -12,7 +12,7 @@ impl Predicate for Behind {
         "behind"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[THING, THING]
     }
 

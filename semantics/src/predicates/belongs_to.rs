@@ -15,7 +15,7 @@ impl Predicate for BelongsTo {
         "belongs_to"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[OBJECT, OBJECT_OR_STRUCTURE]
     }
 

@@ -18,7 +18,7 @@ impl Predicate for Between {
         "between"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[THING, THING, THING]
     }
 

@@ -12,7 +12,7 @@ impl Predicate for CloserTo {
         "closer_to"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[THING, THING, THING]
     }
 

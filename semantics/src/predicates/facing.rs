@@ -19,7 +19,7 @@ impl Predicate for Facing {
         "facing"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[OBJECT_OR_AGENT, OBJECT_OR_AGENT]
     }
 

@@ -18,7 +18,7 @@ impl Predicate for Far {
         "far"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[THING, THING]
     }
 

@@ -13,7 +13,7 @@ impl Predicate for HalfOpen {
         "half_open"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[OBJECT]
     }
 

@@ -16,7 +16,7 @@ impl Predicate for HangsOn {
         "on"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[OBJECT, OBJECT_OR_STRUCTURE]
     }
 

@@ -12,7 +12,7 @@ impl Predicate for Holds {
         "holds"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[AGENT, OBJECT]
     }
 

@@ -12,7 +12,7 @@ impl Predicate for Identical {
         "identical"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[OBJECT_OR_ROOM, OBJECT_OR_ROOM]
     }
 

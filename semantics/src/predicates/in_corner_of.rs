@@ -19,7 +19,7 @@ impl Predicate for InCornerOf {
         "in_corner_of"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[OBJECT_OR_AGENT, ROOM]
     }
 

@@ -17,7 +17,7 @@ impl Predicate for InFrontOf {
         "in_front_of"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[THING, THING]
     }
 

@@ -18,7 +18,7 @@ impl Predicate for InMiddleOf {
         "in_middle_of"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[OBJECT_OR_AGENT, ROOM]
     }
 

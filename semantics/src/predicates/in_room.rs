@@ -16,7 +16,7 @@ impl Predicate for InRoom {
         "in"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[THING, ROOM]
     }
 

@@ -60,7 +60,7 @@ impl Predicate for Inside {
         "in"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[OBJECT, OBJECT]
     }
 

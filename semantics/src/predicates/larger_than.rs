@@ -18,7 +18,7 @@ impl Predicate for LargerThan {
         "larger_than"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[OBJECT_OR_ROOM, OBJECT_OR_ROOM]
     }
 

@@ -12,7 +12,7 @@ impl Predicate for LeadsFrom {
         "leads_from"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[OBJECT, ROOM]
     }
 

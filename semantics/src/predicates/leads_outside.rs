@@ -13,7 +13,7 @@ impl Predicate for LeadsOutside {
         "leads_outside"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[OBJECT]
     }
 

@@ -13,7 +13,7 @@ impl Predicate for LeadsTo {
         "leads_to"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[OBJECT, ROOM]
     }
 

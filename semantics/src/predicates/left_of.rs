@@ -19,7 +19,7 @@ impl Predicate for LeftOf {
         "to the left of"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[THING, THING]
     }
 

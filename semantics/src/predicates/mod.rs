@@ -143,11 +143,11 @@ pub trait Predicate: Sync {
     }
 
     /// The kinds of things that each argument takes, the subject first.
-    fn places(&self) -> &'static [&'static [TermKind]];
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]];
 
     /// The number of arguments, 1 to 3.
     fn arity(&self) -> usize {
-        self.places().len()
+        self.argument_kinds().len()
     }
 
     /// The definition: when it holds, in one sentence with thresholds and units.
@@ -181,7 +181,7 @@ pub trait Predicate: Sync {
         if args.len() != self.arity() {
             return Truth::Undecided(UndecidedReason::WrongCount);
         }
-        for (term, kinds) in args.iter().zip(self.places()) {
+        for (term, kinds) in args.iter().zip(self.argument_kinds()) {
             if !kinds.contains(&term.kind()) {
                 return Truth::Undecided(UndecidedReason::WrongKind);
             }
@@ -197,7 +197,7 @@ pub trait Predicate: Sync {
 
     /// Returns whether it takes a thing of kind `kind` at a place, from 0.
     fn takes(&self, place: usize, kind: TermKind) -> bool {
-        let kinds = self.places().get(place);
+        let kinds = self.argument_kinds().get(place);
         kinds.is_some_and(|kinds| kinds.contains(&kind))
     }
 

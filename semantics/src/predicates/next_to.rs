@@ -95,7 +95,7 @@ impl Predicate for NextTo {
         "next to"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[OBJECT, OBJECT]
     }
 

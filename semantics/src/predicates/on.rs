@@ -24,7 +24,7 @@ impl Predicate for On {
         "on"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[OBJECT, OBJECT_OR_STRUCTURE]
     }
 

@@ -13,7 +13,7 @@ impl Predicate for OnLeft {
         "on_left"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[THING]
     }
 

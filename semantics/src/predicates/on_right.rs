@@ -13,7 +13,7 @@ impl Predicate for OnRight {
         "on_right"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[THING]
     }
 

@@ -19,7 +19,7 @@ impl Predicate for OnStorey {
         "on_storey"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[PLACED, &[TermKind::Storey]]
     }
 

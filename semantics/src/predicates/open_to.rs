@@ -12,7 +12,7 @@ impl Predicate for OpenTo {
         "open_to"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[ROOM, ROOM]
     }
 

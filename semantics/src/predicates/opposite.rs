@@ -22,7 +22,7 @@ impl Predicate for Opposite {
         "opposite"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[OBJECT_OR_AGENT, OBJECT_OR_AGENT]
     }
 

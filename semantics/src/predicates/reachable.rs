@@ -14,7 +14,7 @@ impl Predicate for Reachable {
         "reachable"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[OBJECT_ROOM_STOREY, AGENT]
     }
 

@@ -12,7 +12,7 @@ impl Predicate for RoomContains {
         "room_contains"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[ROOM, THING]
     }
 

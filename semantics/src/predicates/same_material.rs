@@ -21,7 +21,7 @@ impl Predicate for SameMaterial {
         "same_material"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[OBJECT, OBJECT]
     }
 

@@ -13,7 +13,7 @@ impl Predicate for StraightAhead {
         "straight_ahead"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[THING]
     }
 

@@ -31,7 +31,7 @@ impl Predicate for Supports {
         "supports"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[OBJECT_OR_STRUCTURE, OBJECT]
     }
 

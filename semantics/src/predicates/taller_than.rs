@@ -12,7 +12,7 @@ impl Predicate for TallerThan {
         "taller_than"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[OBJECT, OBJECT]
     }
 

@@ -74,7 +74,7 @@ impl Predicate for Touching {
         "touching"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[OBJECT_OR_STRUCTURE, OBJECT_OR_STRUCTURE]
     }
 

@@ -40,7 +40,7 @@ impl Predicate for Under {
         "under"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[OBJECT, OBJECT]
     }
 

@@ -16,7 +16,7 @@ impl Predicate for Visible {
         "visible"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[OBJECT]
     }
 

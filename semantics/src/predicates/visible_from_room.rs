@@ -21,7 +21,7 @@ impl Predicate for VisibleFromRoom {
         "visible_from_room"
     }
 
-    fn places(&self) -> &'static [&'static [TermKind]] {
+    fn argument_kinds(&self) -> &'static [&'static [TermKind]] {
         &[OBJECT_OR_ROOM, ROOM]
     }
 

@@ -1,6 +1,6 @@
 //! Descriptions of rooms that fit exactly one.
 
-use crate::form::{Description, Modifier, Noun, Phrase, PlaceInOrder, Quantifier};
+use crate::form::{Description, Modifier, Noun, OrdinalSelection, Phrase, Quantifier};
 use crate::scene::SemanticScene;
 use dwell_scene::RoomId;
 use dwell_scene::interrupt;
@@ -11,8 +11,8 @@ pub fn room_phrase(scene: &SemanticScene<'_>, room: RoomId) -> Phrase {
     let facts = scene.semantics.room(room);
     let noun = Noun::Room(facts.noun.clone());
     Description {
-        selection: facts.number.map(|place| PlaceInOrder {
-            order: PlaceInOrder::OF_HOUSE.to_owned(),
+        selection: facts.number.map(|place| OrdinalSelection {
+            order: OrdinalSelection::OF_HOUSE.to_owned(),
             place,
             reference: None,
         }),

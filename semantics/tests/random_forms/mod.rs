@@ -6,7 +6,7 @@ pub(crate) use requests_and_questions::form;
 
 use dwell_semantics::SizeClass;
 use dwell_semantics::form::{
-    AttributeKind, Clause, Description, Form, Modifier, Noun, Phrase, PlaceInOrder, Quality,
+    AttributeKind, Clause, Description, Form, Modifier, Noun, OrdinalSelection, Phrase, Quality,
     Quantifier, Question, RequestStep, RoomSurface, RoomSurfaceKind,
 };
 use proptest::prelude::*;
@@ -171,7 +171,7 @@ fn room() -> BoxedStrategy<Phrase> {
                 0 => plain(Quantifier::Some),
                 1 => plain(Quantifier::Every),
                 2 => Description {
-                    selection: Some(PlaceInOrder {
+                    selection: Some(OrdinalSelection {
                         order: "house".to_owned(),
                         place,
                         reference: None,
@@ -416,7 +416,7 @@ fn selected() -> BoxedStrategy<Phrase> {
         .prop_map(|(description, order, place, reference)| {
             let counted = order.starts_with("from");
             let reference = (order == "closest_to").then(|| Box::new(reference));
-            let selection = PlaceInOrder {
+            let selection = OrdinalSelection {
                 order,
                 place: if counted { place } else { 1 },
                 reference,

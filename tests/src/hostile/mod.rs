@@ -11,4 +11,4 @@ mod targets;
 pub use bodies::{live_in, read};
 pub use mutate::mutated;
 pub use samples::{NAMES, Sample, sample};
-pub use targets::{OTHERS, fuzz, plant, seeds};
+pub use targets::{OTHERS, fuzz, seed_corpus, seeds};

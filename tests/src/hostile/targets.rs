@@ -249,7 +249,7 @@ pub fn seeds(name: &str) -> Vec<(String, Vec<u8>)> {
 ///
 /// # Panics
 /// When there is no target of that name, or the folder cannot be written to.
-pub fn plant(name: &str) {
+pub fn seed_corpus(name: &str) {
     let mut words = std::env::args().skip(1);
     let Some(corpus) = words.find(|word| !word.starts_with('-')) else {
         return;

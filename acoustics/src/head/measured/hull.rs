@@ -42,7 +42,7 @@ impl Triangulation {
         let lifted: Vec<DVec3> = points
             .iter()
             .enumerate()
-            .map(|(k, p)| *p * (1.0 + JITTER * unrelated(k)))
+            .map(|(k, p)| *p * (1.0 + JITTER * hash_jitter(k)))
             .collect();
         let faces = hull(&lifted)?;
         // Only the remaining faces, renumbered.
@@ -133,13 +133,13 @@ impl Triangulation {
 }
 
 /// Returns a number from -1 to 1 that is uncorrelated with those of `k`'s neighbours.
-fn unrelated(k: usize) -> f64 {
+fn hash_jitter(k: usize) -> f64 {
     let bits = xxhash_rust::xxh3::xxh3_64(&(k as u64).to_le_bytes());
     (bits >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
 }
 
 /// Returns six times the volume of a tetrahedron; positive where `d` is beyond the side from which a, b, c are anticlockwise.
-fn beyond(points: &[DVec3], [a, b, c]: [u32; 3], d: u32) -> f64 {
+fn orient3d(points: &[DVec3], [a, b, c]: [u32; 3], d: u32) -> f64 {
     let [a, b, c, d] = [a, b, c, d].map(|k| points[k as usize]);
     (b - a).cross(c - a).dot(d - a)
 }
@@ -164,7 +164,7 @@ fn first_four(points: &[DVec3]) -> Option<[u32; 4]> {
 fn hull(points: &[DVec3]) -> Option<Vec<HullFace>> {
     let [a, b, c, d] = first_four(points)?;
     // Turned so that d lies behind a, b, c.
-    let (b, c) = if beyond(points, [a, b, c], d) > 0.0 {
+    let (b, c) = if orient3d(points, [a, b, c], d) > 0.0 {
         (c, b)
     } else {
         (b, c)
@@ -192,7 +192,7 @@ fn hull(points: &[DVec3]) -> Option<Vec<HullFace>> {
         let alive = (0_u32..).zip(&faces).filter(|(_, face)| face.alive);
         visible.extend(
             alive
-                .filter(|(_, face)| beyond(points, face.corners, point) > 0.0)
+                .filter(|(_, face)| orient3d(points, face.corners, point) > 0.0)
                 .map(|(k, _)| k),
         );
         for k in &visible {
@@ -324,7 +324,7 @@ mod tests {
                     assert!(!other.corners.contains(&triangle.corners[side]));
                 }
                 for point in 0..points.len() as u32 {
-                    assert!(beyond(&points, triangle.corners, point) < 1e-7);
+                    assert!(orient3d(&points, triangle.corners, point) < 1e-7);
                 }
             }
         }

@@ -76,7 +76,7 @@ impl HeadResponses {
                 rest
             }));
         }
-        let bass = bass(&rests, &frequencies);
+        let bass = bass_equalizer(&rests, &frequencies);
         let common = common_phase(&rests, &bass);
         let mut rows: Vec<[DirectionRow; 2]> = Vec::with_capacity(self.directions.len());
         for ([left, right], delay_s) in rests.into_iter().zip(&self.delay_s) {
@@ -154,7 +154,7 @@ fn filled<'a>(
 
 /// Returns the minimum-phase filter that makes the mean energy of all responses 1 below [`BASS_HZ`] and leaves all as it is
 /// above. Shape (bin,).
-fn bass(rests: &[[Vec<Complex<f32>>; 2]], frequencies: &[f64]) -> Vec<Complex<f32>> {
+fn bass_equalizer(rests: &[[Vec<Complex<f32>>; 2]], frequencies: &[f64]) -> Vec<Complex<f32>> {
     let mut fft = RealFft::new(2 * (frequencies.len() - 1));
     let mut logs: Vec<Complex<f32>> = (0..fft.bins()).map(|_| Complex::default()).collect();
     let (low, high) = BASS_HZ;

@@ -65,7 +65,7 @@ pub struct ModelGain {
 }
 
 /// The measured motions after the start of whole roll-outs, beside the predicted ones.
-fn rolled<S: ModelledSubject>(
+fn paired_rollout<S: ModelledSubject>(
     subject: &S,
     rig: &S::Rig,
     episode: usize,
@@ -87,7 +87,7 @@ pub(super) fn error<S: ModelledSubject>(
     episode: usize,
     fold: usize,
 ) -> Result<EpisodeError, CalibrationError> {
-    let pairs = rolled(subject, rig, episode)?;
+    let pairs = paired_rollout(subject, rig, episode)?;
     let deviations: Vec<Deviation> = pairs
         .iter()
         .map(|(predicted, measured)| Deviation::between(predicted, measured))
@@ -115,7 +115,7 @@ pub(super) fn residuals<S: ModelledSubject>(
     rig: &S::Rig,
     episode: usize,
 ) -> Result<Vec<f64>, CalibrationError> {
-    let pairs = rolled(subject, rig, episode)?;
+    let pairs = paired_rollout(subject, rig, episode)?;
     let stride = pairs.len().div_ceil(FIT_SAMPLES).max(1);
     let seen: Vec<_> = pairs.iter().skip(stride - 1).step_by(stride).collect();
     let weight = 1e3 / (seen.len().max(1) as f64).sqrt();

@@ -36,7 +36,7 @@ fn coffee_table(style: &Style, key: RandomKey) -> Model {
             ..Table::coffee(wood)
         }
         .build(),
-        1 => drum_table(
+        1 => splayed_leg_table(
             SizeSampler::new("round_coffee_table", key).sample_m("width"),
             h,
             style,
@@ -47,7 +47,7 @@ fn coffee_table(style: &Style, key: RandomKey) -> Model {
 }
 
 /// A round top on four splayed legs.
-fn drum_table(width_m: f32, height_m: f32, style: &Style, wood: &Finish) -> Model {
+fn splayed_leg_table(width_m: f32, height_m: f32, style: &Style, wood: &Finish) -> Model {
     let (r, under) = (0.5 * width_m, height_m - 0.03);
     let mut body =
         PartBuilder::new("body").with(wood, cylinder(r, 0.03, 36).translated(0.0, under, 0.0));

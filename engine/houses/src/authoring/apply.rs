@@ -72,7 +72,7 @@ pub fn edit(
     let at = FileLocation::file("edits");
     let edited = House::new(session.data).map_err(HousesError::scene(&at))?;
     let mut report = session.report;
-    let put = put(house, &edited, edits);
+    let put = added_or_moved_objects(house, &edited, edits);
     let named = |id: ObjectId| &edited.objects[id].name;
     let state = State::new(&edited);
     for id in &put {
@@ -98,7 +98,7 @@ pub fn edit(
 }
 
 /// The objects that were added or moved.
-fn put(before: &House, after: &House, edits: &[Edit]) -> Vec<ObjectId> {
+fn added_or_moved_objects(before: &House, after: &House, edits: &[Edit]) -> Vec<ObjectId> {
     let known: BTreeSet<&str> = before.objects.iter().map(|o| o.name.as_str()).collect();
     let moved: BTreeSet<&str> = edits
         .iter()

@@ -101,7 +101,7 @@ impl ObjectCopier<'_> {
         let (from, into) = (self.from, &mut *self.into);
         *self.meshes.entry(id).or_insert_with(|| {
             let mesh = &from.meshes[id];
-            place_of(&mut into.meshes, mesh)
+            find_or_push(&mut into.meshes, mesh)
         })
     }
 
@@ -111,14 +111,14 @@ impl ObjectCopier<'_> {
             let mut material = from.materials[id].clone();
             material.texture = material
                 .texture
-                .map(|texture| place_of(&mut into.textures, &from.textures[texture]));
+                .map(|texture| find_or_push(&mut into.textures, &from.textures[texture]));
             material_of(&mut into.materials, material)
         })
     }
 }
 
 /// The id of something shared; it is there once.
-fn place_of<I: Id, T>(table: &mut IdVec<I, Arc<T>>, thing: &Arc<T>) -> I {
+fn find_or_push<I: Id, T>(table: &mut IdVec<I, Arc<T>>, thing: &Arc<T>) -> I {
     let known = table.iter().position(|other| Arc::ptr_eq(other, thing));
     known.map_or_else(|| table.push(thing.clone()), I::from_index)
 }

@@ -28,14 +28,14 @@ pub struct NodeHinge {
     #[serde(default)]
     pub at: Option<[f32; 3]>,
     /// Rotation when it is fully open, degrees, right-handed about the axis from the pose in the file; -360 to 360.
-    #[serde(default = "quarter")]
+    #[serde(default = "default_open_deg")]
     pub open_deg: f32,
     /// The same when it is closed.
     #[serde(default)]
     pub closed_deg: f32,
 }
 
-const fn quarter() -> f32 {
+const fn default_open_deg() -> f32 {
     90.0
 }
 

@@ -417,10 +417,10 @@ fn usual_mobility(data: &HouseData, id: ObjectId, unknown: bool, name: &str) -> 
     let row = category([name])?;
     let loose = unknown && row.is_movable() && !row.is_mounted();
     let rigid = object.part_count == 1 && object.mobility == Mobility::Fixed;
-    (loose && rigid && stands(data, id)).then_some(Mobility::Movable)
+    (loose && rigid && is_supported(data, id)).then_some(Mobility::Movable)
 }
 
-fn stands(data: &HouseData, id: ObjectId) -> bool {
+fn is_supported(data: &HouseData, id: ObjectId) -> bool {
     let own = place::world_bounds(data, id);
     let foot = own.center().with_y(own.min.y);
     let floors = data.rooms.iter().map(|room| room.floor_y);

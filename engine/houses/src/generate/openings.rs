@@ -201,7 +201,7 @@ fn doors(
 ) -> (Vec<WallHole>, usize) {
     let mut best: Option<(Vec<WallHole>, usize)> = None;
     for _ in 0..DEALS {
-        let mut dealt = deal(storey, runs, stairs.map(|stairs| stairs.area), stream);
+        let mut dealt = sample_doors(storey, runs, stairs.map(|stairs| stairs.area), stream);
         // Where no two doors meet, an open leaf may still block the way to a room.
         if dealt.1 == 0 {
             dealt.1 = unreachable_rooms_when_empty(storey, &dealt.0, stairs);
@@ -216,7 +216,7 @@ fn doors(
     best.unwrap_or_default()
 }
 
-fn deal(
+fn sample_doors(
     storey: &GeneratedStorey,
     runs: &[RoomBoundary],
     stairs: Option<GridRect>,

@@ -31,7 +31,7 @@ pub(crate) fn draw_room_program(spec: &HouseSpec, key: RandomKey) -> RoomProgram
     let home = home(spec, &mut draw);
     let mut outside = None;
     let mut storeys = if spec.rooms.is_empty() {
-        let (rooms, drawn) = usual(home, spec, &mut draw);
+        let (rooms, drawn) = sample_room_kinds(home, spec, &mut draw);
         outside = drawn;
         rooms
     } else {
@@ -86,7 +86,7 @@ fn home(spec: &HouseSpec, draw: &mut RandomStream) -> HomeKind {
 }
 
 /// The rooms that such a home usually has, and the outdoor one.
-fn usual(
+fn sample_room_kinds(
     home: HomeKind,
     spec: &HouseSpec,
     draw: &mut RandomStream,

@@ -55,7 +55,7 @@ pub(super) fn convert(
     let images = images(json, buffers, root, &at, threads, report);
     let material_ids = materials(json, &images, trusted, &mut looks, &at, report);
     let mut meshes: Vec<Option<(Arc<Mesh>, Vec<MaterialId>)>> = vec![None; json.meshes.len()];
-    let (mut read, mut shown) = (VertexWriter::default(), VertexWriter::default());
+    let (mut read, mut shown) = (VertexBudget::default(), VertexBudget::default());
     let mut things = Vec::new();
     let tree = node_tree(json, trusted, &at, report);
     for instance in tree.instances {
@@ -83,7 +83,7 @@ pub(super) fn convert(
             );
             continue;
         }
-        if let Err(reason) = shown.take(shape.positions.len(), 3 * shape.triangles.len()) {
+        if let Err(reason) = shown.reserve(shape.positions.len(), 3 * shape.triangles.len()) {
             report.warn(
                 at.field("nodes"),
                 WarningKind::UnreadableMesh {
@@ -121,14 +121,14 @@ pub(super) fn convert(
 
 /// Numbers of vertices and indices so far.
 #[derive(Default)]
-struct VertexWriter(u64);
+struct VertexBudget(u64);
 
-impl VertexWriter {
+impl VertexBudget {
     /// Counts those of a mesh.
     ///
     /// # Errors
     /// A sentence when they are more than what is left of [`MAX_CORNERS_SHOWN`].
-    fn take(&mut self, vertices: usize, indices: usize) -> Result<(), String> {
+    fn reserve(&mut self, vertices: usize, indices: usize) -> Result<(), String> {
         let all = self
             .0
             .saturating_add((vertices as u64).saturating_add(indices as u64));
@@ -145,7 +145,7 @@ impl VertexWriter {
     ///
     /// # Errors
     /// That of [`Self::take`].
-    fn of(&mut self, json: &Root, primitive: &Primitive) -> Result<(), String> {
+    fn reserve_primitive(&mut self, json: &Root, primitive: &Primitive) -> Result<(), String> {
         let count = |index: ::gltf::json::Index<_>| {
             let accessor: Option<&::gltf::json::Accessor> = json.accessors.get(index.value());
             let count = accessor.map_or(0, |accessor| accessor.count.0);
@@ -154,7 +154,7 @@ impl VertexWriter {
         let positions = primitive.attributes.values().map(|index| count(*index));
         let vertices = positions.max().unwrap_or(0);
         // A strip has nearly as many triangles as indices.
-        self.take(
+        self.reserve(
             vertices,
             primitive.indices.map_or(vertices, count).saturating_mul(3),
         )
@@ -167,7 +167,7 @@ fn merge(
     buffers: &Buffers<'_>,
     primitives: &[Primitive],
     material_ids: &[MaterialId],
-    corners: &mut VertexWriter,
+    corners: &mut VertexBudget,
     at: &FileLocation,
     report: &mut LoadReport,
 ) -> (Arc<Mesh>, Vec<MaterialId>) {
@@ -176,7 +176,7 @@ fn merge(
     for (k, primitive) in primitives.iter().enumerate() {
         let at = at.field(format_args!("primitives[{k}]"));
         let part = corners
-            .of(json, primitive)
+            .reserve_primitive(json, primitive)
             .and_then(|()| read(json, buffers, primitive, &at, report));
         let mut part = match part {
             Ok(part) => part,

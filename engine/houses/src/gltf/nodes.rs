@@ -183,7 +183,7 @@ pub(super) fn node_tree(
             report.warn(node_at, WarningKind::BadTransform { reason });
             continue;
         }
-        let known = known(node, &node_at, report);
+        let known = read_node_extras(node, &node_at, report);
         let said = LampExtras {
             power_w: known.power_w,
             on: known.on,
@@ -207,7 +207,7 @@ pub(super) fn node_tree(
         let top = top.unwrap_or(index);
         let of_object = of_object || known.object.is_some();
         let begun = (trusted && known.object.is_some())
-            .then(|| given::<AnnotatedObject>(node, &node_at, report))
+            .then(|| read_annotations::<AnnotatedObject>(node, &node_at, report))
             .flatten();
         let object = begun.map_or(object, |mut own| {
             (own.level, own.room) = (Some(top), room);
@@ -215,7 +215,7 @@ pub(super) fn node_tree(
             Some(found.objects.len() - 1)
         });
         let part = (object.is_some() && known.part.is_some())
-            .then(|| given::<AnnotatedPart>(node, &node_at, report))
+            .then(|| read_annotations::<AnnotatedPart>(node, &node_at, report))
             .flatten();
         let part_of = object.zip(part).map(|(object, mut part)| {
             part.world_from_node = world_from_mesh;
@@ -296,7 +296,7 @@ pub(super) fn node_tree(
 }
 
 /// Returns the annotations of an object or part in a node; unreadable ones are reported and ignored.
-fn given<T: DeserializeOwned>(
+fn read_annotations<T: DeserializeOwned>(
     node: &Node,
     at: &FileLocation,
     report: &mut LoadReport,
@@ -315,7 +315,7 @@ fn given<T: DeserializeOwned>(
 }
 
 /// Returns a node's annotations; `None` where `extras` are not ours.
-fn known(node: &Node, at: &FileLocation, report: &mut LoadReport) -> DwellNodeExtras {
+fn read_node_extras(node: &Node, at: &FileLocation, report: &mut LoadReport) -> DwellNodeExtras {
     dwell_extras(node.extras.as_ref().map(|extras| extras.get()), at, report)
 }
 

@@ -72,7 +72,7 @@ impl HabitatReader<'_> {
         if (factor, mass) != (1.0, 1.0) {
             robot = robot.scaled(factor, mass);
         }
-        begin_at(&mut robot, &instance.initial_joint_pose);
+        set_initial_positions(&mut robot, &instance.initial_joint_pose);
         let of_template = || {
             template
                 .base_type
@@ -128,7 +128,7 @@ impl HabitatReader<'_> {
 }
 
 /// Positions in order or by name, brought into the limits.
-fn begin_at(robot: &mut Robot, pose: &Value) {
+fn set_initial_positions(robot: &mut Robot, pose: &Value) {
     let moving = robot
         .joints
         .iter_mut()

@@ -103,7 +103,7 @@ pub(super) fn structure(
             (StructureKind::Ceiling, "ceiling"),
         ];
         for (kind, word) in kinds {
-            let of_kind = |k: &u32| faces(&mesh, *k as usize, &floors) == kind;
+            let of_kind = |k: &u32| triangle_structure_kind(&mesh, *k as usize, &floors) == kind;
             let own: Vec<u32> = (0..mesh.triangles.len() as u32).filter(of_kind).collect();
             if !own.is_empty() {
                 let name = format!("{word}_{}", piece.name);
@@ -114,7 +114,7 @@ pub(super) fn structure(
 }
 
 /// Returns the kind of structure of a triangle of an unnamed piece.
-fn faces(mesh: &Mesh, triangle: usize, floors: &[f32]) -> StructureKind {
+fn triangle_structure_kind(mesh: &Mesh, triangle: usize, floors: &[f32]) -> StructureKind {
     let [a, b, c] = mesh.corners(triangle);
     let up = (b - a).cross(c - a).normalize_or_zero().y;
     let y = (a.y + b.y + c.y) / 3.0;

@@ -157,7 +157,7 @@ pub(super) struct ImportedObject {
 impl AnnotatedPart {
     /// Returns its pose, and its mesh on it. A node that an editor moved or rotated takes the part along; `None` when it was
     /// scaled, which joints, masses and collision shapes do not follow.
-    fn place(&self) -> Option<(Pose, Affine3A)> {
+    fn part_transforms(&self) -> Option<(Pose, Affine3A)> {
         let was = self.world_from_part;
         if !was.is_valid() || !self.world_from_node.is_finite() {
             return None;
@@ -203,7 +203,11 @@ impl ImportedObject {
         mut object: AnnotatedObject,
         looks: Vec<Option<(Arc<Mesh>, Vec<MaterialId>)>>,
     ) -> Result<Self, String> {
-        let places: Option<Vec<_>> = object.parts.iter().map(AnnotatedPart::place).collect();
+        let places: Option<Vec<_>> = object
+            .parts
+            .iter()
+            .map(AnnotatedPart::part_transforms)
+            .collect();
         let Some(places) = places.filter(|places| !places.is_empty()) else {
             return Err(object.name);
         };

@@ -32,7 +32,7 @@ struct Face {
 }
 
 /// Faces of one floor.
-struct Storey {
+struct FloorLayer {
     faces: Vec<Face>,
     area_m2: f32,
     low: f32,
@@ -66,7 +66,7 @@ pub(crate) fn floor_faces<'a>(meshes: impl Iterator<Item = &'a Mesh>) -> Option<
         }
     }
     faces.sort_by(|a, b| b.high.total_cmp(&a.high));
-    let mut storeys: Vec<Storey> = Vec::new();
+    let mut storeys: Vec<FloorLayer> = Vec::new();
     for face in faces {
         let [a, b, c] = face.corners;
         let area_m2 = (b - a).cross(c - a).length() * 0.5;
@@ -76,7 +76,7 @@ pub(crate) fn floor_faces<'a>(meshes: impl Iterator<Item = &'a Mesh>) -> Option<
                 storey.area_m2 += area_m2;
                 storey.faces.push(face);
             }
-            _ => storeys.push(Storey {
+            _ => storeys.push(FloorLayer {
                 area_m2,
                 low: face.low,
                 faces: vec![face],

@@ -143,7 +143,7 @@ impl ImportedScene {
         for room in self.rooms {
             builder.named_room(room);
         }
-        let (given, things) = given_objects(self.objects, self.nodes, at, report);
+        let (given, things) = assemble_annotated_objects(self.objects, self.nodes, at, report);
         let (structure, objects): (Vec<_>, Vec<_>) = things
             .into_iter()
             .filter(|thing| !thing.mesh.triangles.is_empty())
@@ -157,14 +157,14 @@ impl ImportedScene {
             room_over_floors(&mut builder.data, at, report);
         }
         for object in given {
-            builder.given(object);
+            builder.add_annotated_object(object);
         }
         let known = builder.data.objects.len();
         for thing in objects {
             interrupt::check();
             builder.object(thing, alone, at, report);
         }
-        builder.settle(alone, known);
+        builder.fix_floating_objects(alone, known);
         lamps::attach_lamps(self.lamps, &mut builder.data, &builder.bounds);
         if builder.data.structure.is_empty() && builder.data.objects.is_empty() {
             return Err(HousesError::empty(at, report));
@@ -177,7 +177,7 @@ impl ImportedScene {
 
 /// Objects with the meshes of their parts, in the order of the house that was written, and the things that are left: those of
 /// objects that were scaled are things like any other.
-fn given_objects(
+fn assemble_annotated_objects(
     objects: Vec<AnnotatedObject>,
     things: Vec<SceneNode>,
     at: &FileLocation,
@@ -365,7 +365,7 @@ impl HouseBuilder {
             .or_insert_with(|| data.meshes.push(mesh))
     }
 
-    fn given(&mut self, object: ImportedObject) {
+    fn add_annotated_object(&mut self, object: ImportedObject) {
         let (level, _) = object.level_and_room();
         let level = level.filter(|k| *k < self.data.levels.len());
         let level = level.map_or(LEVEL, |k| LevelId(k as u32));
@@ -458,7 +458,7 @@ impl HouseBuilder {
     }
 
     /// Makes movable things fixed that float: they would only fall. The first `known` objects are as their file says.
-    fn settle(&mut self, alone: bool, known: usize) {
+    fn fix_floating_objects(&mut self, alone: bool, known: usize) {
         let floor_of = |level: LevelId| {
             let rooms = self.data.rooms.iter().filter(|room| room.level == level);
             let floor_y = rooms.map(|room| room.floor_y).reduce(f32::max);

@@ -55,10 +55,10 @@ fn each_once<'de, D: Deserializer<'de>>(
 #[derive(Debug, Deserialize)]
 pub(super) struct MeasuredMaterial {
     /// Absorption, 0 to 1.
-    #[serde(default = "little")]
+    #[serde(default = "default_absorption")]
     pub(super) absorption: BandCoefficient,
     /// Scattering, 0 to 1.
-    #[serde(default = "none")]
+    #[serde(default = "default_scattering")]
     pub(super) scattering: BandCoefficient,
     /// All other fields.
     #[serde(flatten)]
@@ -82,10 +82,10 @@ fn octaves() -> Vec<f32> {
     vec![125.0, 250.0, 500.0, 1000.0, 2000.0, 4000.0]
 }
 
-fn little() -> BandCoefficient {
+fn default_absorption() -> BandCoefficient {
     BandCoefficient::AllBands(0.1)
 }
 
-fn none() -> BandCoefficient {
+fn default_scattering() -> BandCoefficient {
     BandCoefficient::AllBands(0.0)
 }

@@ -51,7 +51,7 @@ pub(super) fn body_geoms(
         let name = geom.name.clone().unwrap_or(k.to_string());
         let at = at.field(format_args!("geom[{name}]"));
         if let Some(shape) = shape(model, geom, of_world, files, &at, report)? {
-            let touches = touches(geom);
+            let touches = is_collidable(geom);
             pieces.push(BodyGeom {
                 shape,
                 name: geom.name.clone(),
@@ -66,7 +66,7 @@ pub(super) fn body_geoms(
     Ok(pieces)
 }
 
-fn touches(geom: &Geom) -> bool {
+fn is_collidable(geom: &Geom) -> bool {
     geom.contype != 0 || geom.conaffinity != 0
 }
 

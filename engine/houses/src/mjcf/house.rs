@@ -75,7 +75,7 @@ pub(super) fn read(mut source: MjcfSource, report: &mut LoadReport) -> Result<Ho
     }
     for root in source.root_bodies() {
         if structure_kind(&name_of(&source.model, root)).is_some() {
-            reader.walls(&mut source, root, report);
+            reader.add_building_bodies(&mut source, root, report);
         } else {
             objects.push(root);
         }
@@ -113,7 +113,12 @@ struct MjcfHouseReader {
 
 impl MjcfHouseReader {
     /// Adds a body of the building and all below it.
-    fn walls(&mut self, source: &mut MjcfSource, root: BodyId, report: &mut LoadReport) {
+    fn add_building_bodies(
+        &mut self,
+        source: &mut MjcfSource,
+        root: BodyId,
+        report: &mut LoadReport,
+    ) {
         let mut open = vec![(root, Pose::IDENTITY)];
         while let Some((id, file_from_parent)) = open.pop() {
             let file_from_body = file_from_parent * pose(&source.model.bodies[id].body.pose);

@@ -139,7 +139,7 @@ impl MjcfSource {
                 taken.map(|piece| piece.shape.clone()).collect()
             };
             links.push(RobotLink {
-                inertial: weight(&self.model, &entry.body, &pieces, &at, report)?,
+                inertial: link_inertia(&self.model, &entry.body, &pieces, &at, report)?,
                 name,
                 visuals: of(|piece| piece.is_visible),
                 collisions: of(|piece| piece.has_contacts),
@@ -158,7 +158,7 @@ impl MjcfSource {
             joints.push(joint(&self.model, *id, [parent, place(*id)], &at)?);
         }
         for equality in &self.model.equality {
-            follow(equality, &mut joints, &self.at, report);
+            apply_joint_equality(equality, &mut joints, &self.at, report);
         }
         actuators::add(&self.model, &mut joints, &self.at, report);
         check(Robot {
@@ -323,7 +323,7 @@ fn joint(
 }
 
 /// Mass as stated, else that of the geoms.
-fn weight(
+fn link_inertia(
     model: &Model,
     body: &Body,
     pieces: &[BodyGeom],
@@ -334,7 +334,7 @@ fn weight(
     let from_geoms = model.compiler.inertia_from_geom;
     match &body.inertial {
         Some(stated) if from_geoms != InertiaFromGeom::True => {
-            let weight = stated_weight(stated);
+            let weight = stated_inertia(stated);
             if !(1e-6..=1e6).contains(&weight.mass) {
                 let at = at.field("inertial.mass");
                 return refuse_field(at, "a mass of 1e-6 to 1e6 kg", weight.mass.to_string());
@@ -346,7 +346,7 @@ fn weight(
     }
 }
 
-fn stated_weight(stated: &Inertial) -> LinkInertia {
+fn stated_inertia(stated: &Inertial) -> LinkInertia {
     let local = match stated.inertia {
         InertiaSpec::Diagonal(moments) => DMat3::from_diagonal(DVec3::from_array(moments)),
         InertiaSpec::Full([xx, yy, zz, xy, xz, yz]) => {
@@ -363,7 +363,7 @@ fn stated_weight(stated: &Inertial) -> LinkInertia {
 }
 
 /// Ties a joint to another by an equality.
-fn follow(
+fn apply_joint_equality(
     equality: &Equality,
     joints: &mut [RobotJoint],
     at: &FileLocation,

@@ -134,11 +134,11 @@ impl ProcThorReader<'_> {
         let pose = Pose::new(middle, facing) * Pose::from_position(-center);
         self.assembly.add_instance(kind, pose, room, 0.0);
         self.rename_last_object(&object.id, &object.asset_id, at);
-        self.check_last(room, middle, at);
+        self.unassign_room_if_outside(room, middle, at);
     }
 
     /// Takes the room from the object placed last where its middle lies outside of it, beyond walls, floor and ceiling.
-    fn check_last(&mut self, room: RoomId, middle: Vec3, at: &str) {
+    fn unassign_room_if_outside(&mut self, room: RoomId, middle: Vec3, at: &str) {
         let data = &mut self.assembly.data;
         let around = data.rooms[room].bounds;
         let margin = Vec3::splat(OUTSIDE_M);
@@ -187,7 +187,7 @@ impl ProcThorReader<'_> {
         {
             // Without a table a middle may be that of a thing on a shelf.
             if size.is_none() {
-                return Some(staying(model, stays));
+                return Some(with_fixed_base(model, stays));
             }
             let what = format!("{type_name} is our {} stretched by {by:.2}", model.name);
             self.warn(at, WarningKind::Simplified { what });
@@ -195,7 +195,7 @@ impl ProcThorReader<'_> {
         if by != Vec3::ONE {
             model = model.stretched(by);
         }
-        Some(staying(model, stays))
+        Some(with_fixed_base(model, stays))
     }
 
     /// A ceiling lamp below the ceiling wherever the file has a point of light.
@@ -228,7 +228,7 @@ impl ProcThorReader<'_> {
 }
 
 /// A model that is fixed, if `stays`; its doors and drawers still move.
-fn staying(mut model: Model, stays: bool) -> Model {
+fn with_fixed_base(mut model: Model, stays: bool) -> Model {
     if stays && model.mobility == Mobility::Movable {
         model.mobility = if model.joints.is_empty() {
             Mobility::Fixed

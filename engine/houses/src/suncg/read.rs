@@ -68,12 +68,12 @@ pub(super) mod paths {
     }
 
     /// The mesh of a model, or of its second state.
-    pub(in super::super) fn model(id: &str, second: bool) -> String {
+    pub(in super::super) fn model_mesh_path(id: &str, second: bool) -> String {
         format!("object/{id}/{id}{}.obj", if second { "_0" } else { "" })
     }
 
     /// The mesh of a room's ceiling (`c`), floor (`f`) or walls (`w`).
-    pub(in super::super) fn room(scene_id: &str, model: &str, part: char) -> String {
+    pub(in super::super) fn room_mesh_path(scene_id: &str, model: &str, part: char) -> String {
         format!("room/{scene_id}/{model}{part}.obj")
     }
 
@@ -89,16 +89,19 @@ pub(super) mod paths {
     }
 
     /// The meshes that a node may use.
-    pub(in super::super) fn of_node(scene_id: &str, node: &NodeFile) -> Vec<String> {
+    pub(in super::super) fn node_mesh_paths(scene_id: &str, node: &NodeFile) -> Vec<String> {
         let Some(model) = node.model_id.as_deref().filter(|id| is_plain(id)) else {
             return Vec::new();
         };
         match node.kind.as_deref() {
-            Some("Object") => vec![self::model(model, false), self::model(model, true)],
+            Some("Object") => vec![
+                self::model_mesh_path(model, false),
+                self::model_mesh_path(model, true),
+            ],
             Some("Room") => ['c', 'f', 'w']
-                .map(|part| room(scene_id, model, part))
+                .map(|part| room_mesh_path(scene_id, model, part))
                 .to_vec(),
-            Some("Ground") => vec![room(scene_id, model, 'f')],
+            Some("Ground") => vec![room_mesh_path(scene_id, model, 'f')],
             _ => Vec::new(),
         }
     }
@@ -206,7 +209,7 @@ fn read_meshes(
     report: &mut LoadReport,
 ) -> (BTreeMap<String, MeshFiles>, BTreeSet<String>) {
     let wanted: BTreeSet<String> = nodes(house)
-        .flat_map(|node| paths::of_node(scene_id, node))
+        .flat_map(|node| paths::node_mesh_paths(scene_id, node))
         .collect();
     let wanted: Vec<String> = wanted
         .into_iter()

@@ -189,7 +189,7 @@ impl UrdfReader<'_> {
 
     fn link(&mut self, node: Node<'_, '_>) -> Result<RobotLink, HousesError> {
         let weight = match first(node, "inertial") {
-            Some(inertial) => Some(self.weight(inertial)?),
+            Some(inertial) => Some(self.link_inertia(inertial)?),
             None => None,
         };
         let mut shapes = [Vec::new(), Vec::new()];
@@ -207,7 +207,7 @@ impl UrdfReader<'_> {
         })
     }
 
-    fn weight(&mut self, node: Node<'_, '_>) -> Result<LinkInertia, HousesError> {
+    fn link_inertia(&mut self, node: Node<'_, '_>) -> Result<LinkInertia, HousesError> {
         let Some(mass) = first(node, "mass") else {
             return self.fault(node, "mass", "a <mass>", "nothing");
         };

@@ -13,7 +13,7 @@ const RINGS: u8 = 24;
 pub(super) type Lens = [f32; 5];
 
 /// Returns the distorted point of a point of the plane at depth 1, y down, with the derivatives by x and by y.
-fn bend(lens: Lens, p: DVec2) -> (DVec2, DVec2, DVec2) {
+fn distort_with_jacobian(lens: Lens, p: DVec2) -> (DVec2, DVec2, DVec2) {
     let [k1, k2, k3, p1, p2] = lens.map(f64::from);
     let DVec2 { x, y } = p;
     let r2 = p.length_squared();
@@ -39,7 +39,7 @@ fn bend(lens: Lens, p: DVec2) -> (DVec2, DVec2, DVec2) {
 /// Returns whether the picture still grows outwards everywhere up to a point: further out the lens folds it back.
 fn is_before_fold(lens: Lens, p: DVec2) -> bool {
     (1..=RINGS).all(|ring| {
-        let (_, by_x, by_y) = bend(lens, p * (f64::from(ring) / f64::from(RINGS)));
+        let (_, by_x, by_y) = distort_with_jacobian(lens, p * (f64::from(ring) / f64::from(RINGS)));
         by_x.perp_dot(by_y) > 0.0 && by_x.x + by_y.y > 0.0
     })
 }
@@ -47,7 +47,7 @@ fn is_before_fold(lens: Lens, p: DVec2) -> bool {
 /// Returns the distorted point of a point of the plane at depth 1; `None` beyond its fold.
 pub(super) fn distort(lens: Lens, p: Vec2) -> Option<Vec2> {
     let p = p.as_dvec2();
-    is_before_fold(lens, p).then(|| bend(lens, p).0.as_vec2())
+    is_before_fold(lens, p).then(|| distort_with_jacobian(lens, p).0.as_vec2())
 }
 
 /// The point of the plane at depth 1 that the lens maps to `seen`; `None` where there is none before the fold.
@@ -55,7 +55,7 @@ pub(super) fn undistort(lens: Lens, seen: Vec2) -> Option<Vec2> {
     let seen = seen.as_dvec2();
     let mut p = seen;
     for _ in 0..STEPS {
-        let (bent, by_x, by_y) = bend(lens, p);
+        let (bent, by_x, by_y) = distort_with_jacobian(lens, p);
         let error = bent - seen;
         let area = by_x.perp_dot(by_y);
         if area.abs() < 1e-12 || !p.is_finite() {

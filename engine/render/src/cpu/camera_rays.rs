@@ -35,7 +35,7 @@ pub(super) struct CameraPacket {
     per_length: [f32; LANES],
     hits: PacketHits<LANES>,
     /// In place of the hits where rays do not start at one point.
-    beam: Option<Box<ScalarRays>>,
+    beam: Option<Box<OrthographicRays>>,
 }
 
 /// Rays from one point with their hits.
@@ -48,7 +48,7 @@ pub(super) struct RayPacketHits<'a> {
 }
 
 /// Rays side by side.
-struct ScalarRays {
+struct OrthographicRays {
     start: [Vec3; LANES],
     hits: [Option<Hit>; LANES],
 }
@@ -261,8 +261,8 @@ impl CameraRays {
             Projection::Pinhole { fx, fy, cx, cy } => {
                 self.aim(packet, (left as f32, top as f32), (fx, fy, cx, cy));
             }
-            Projection::Orthographic { .. } => self.spread(packet, (left, top)),
-            _ => self.bend(packet, (left, top)),
+            Projection::Orthographic { .. } => self.orthographic_rays(packet, (left, top)),
+            _ => self.distorted_rays(packet, (left, top)),
         }
         packet.trace(self, scene);
     }
@@ -296,7 +296,7 @@ impl CameraRays {
     }
 
     /// Directions through the middles of pixels of cameras that bend straight lines.
-    fn bend(&self, packet: &mut CameraPacket, (left, top): (usize, usize)) {
+    fn distorted_rays(&self, packet: &mut CameraPacket, (left, top): (usize, usize)) {
         let camera = &self.view.camera;
         let is_range = camera.projection().depth_is_range();
         for k in 0..LANES {
@@ -371,7 +371,7 @@ impl CameraRays {
     }
 
     /// Starts in the middles of pixels, all in one direction.
-    fn spread(&self, packet: &mut CameraPacket, (left, top): (usize, usize)) {
+    fn orthographic_rays(&self, packet: &mut CameraPacket, (left, top): (usize, usize)) {
         let start = std::array::from_fn(|k| {
             let image = Vec2::new(
                 (left + k % PACKET_COLUMNS) as f32 + 0.5,
@@ -383,7 +383,7 @@ impl CameraRays {
         for axis in 0..3 {
             packet.rays.direction[axis] = [-self.back[axis]; LANES];
         }
-        packet.beam = Some(Box::new(ScalarRays {
+        packet.beam = Some(Box::new(OrthographicRays {
             start,
             hits: [None; LANES],
         }));

@@ -15,7 +15,7 @@ pub(super) fn point_flow(
     was: Vec3,
 ) -> [f32; 2] {
     let eye = &before.world_from_camera;
-    moved(camera, image, eye.rotation.inverse() * (was - eye.position))
+    image_flow(camera, image, eye.rotation.inverse() * (was - eye.position))
 }
 
 /// As [`point_flow`] for a direction that is infinitely far away.
@@ -29,10 +29,10 @@ pub(super) fn direction_flow(
         return [0.0; 2];
     }
     let rotation = before.world_from_camera.rotation;
-    moved(camera, image, rotation.inverse() * direction)
+    image_flow(camera, image, rotation.inverse() * direction)
 }
 
-fn moved(camera: &Camera, (x, y): (f32, f32), was_in_camera: Vec3) -> [f32; 2] {
+fn image_flow(camera: &Camera, (x, y): (f32, f32), was_in_camera: Vec3) -> [f32; 2] {
     let Some((was, _)) = camera.project(was_in_camera) else {
         return [0.0; 2];
     };

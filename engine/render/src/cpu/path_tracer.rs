@@ -192,7 +192,7 @@ impl PathTracer<'_> {
                 }
                 sum += match source {
                     LightSource::RoomWalls => self.indirect_light(off, smooth, path, sampler),
-                    _ if self.arrives(source, (off, facing), smooth, sampler) => light,
+                    _ if self.is_source_visible(source, (off, facing), smooth, sampler) => light,
                     _ => Vec3::ZERO,
                 };
             });
@@ -260,7 +260,7 @@ impl PathTracer<'_> {
     }
 
     /// Returns whether light arrives from a point of its source.
-    fn arrives(
+    fn is_source_visible(
         &self,
         source: LightSource,
         (off, facing): (Vec3, Vec3),

@@ -280,7 +280,7 @@ impl ImageTile<'_> {
             }
         }
         if palette.open.count > 0 {
-            self.behind(renderer, packet, palette);
+            self.composite_transmitted(renderer, packet, palette);
         }
     }
 
@@ -320,7 +320,7 @@ impl ImageTile<'_> {
 
     /// All that is seen through surfaces, front to back.
     #[cold]
-    fn behind(
+    fn composite_transmitted(
         &self,
         renderer: &CpuRenderer,
         packet: &mut CameraPacket,
@@ -347,7 +347,7 @@ impl ImageTile<'_> {
                 let sent = self.surface(renderer, &sight, position, MAX_MIRROR_BOUNCES, || {
                     packet.weights(self.scene, lane)
                 });
-                let (more, opacity) = self.settle(renderer, &sent);
+                let (more, opacity) = self.shadowed_radiance(renderer, &sent);
                 if opacity >= OPAQUE_THRESHOLD || layer == MAX_TRANSPARENT_LAYERS {
                     bytes[lane] = self.encode(light + more * rest);
                     continue;
@@ -385,7 +385,7 @@ impl ImageTile<'_> {
     }
 
     /// The light that a surface sends to the camera, and its opacity, once its shadows are known.
-    fn settle(&self, renderer: &CpuRenderer, sent: &OutgoingLight) -> (Vec3, f32) {
+    fn shadowed_radiance(&self, renderer: &CpuRenderer, sent: &OutgoingLight) -> (Vec3, f32) {
         let light = self.light.map_or(sent.incoming.light, |(lighting, _)| {
             sent.incoming.total_arriving(|source| {
                 renderer.light_arrives(self.scene, lighting, source, (sent.off, sent.facing))
@@ -470,7 +470,7 @@ impl ImageTile<'_> {
             };
             let position = renderer.triangle_table.position(hit.instance, hit.triangle);
             let sent = self.surface(renderer, &sight, position, mirrors, || (hit.u, hit.v));
-            let (more, opacity) = self.settle(renderer, &sent);
+            let (more, opacity) = self.shadowed_radiance(renderer, &sent);
             if opacity >= OPAQUE_THRESHOLD || layer == MAX_TRANSPARENT_LAYERS {
                 return light + more * rest;
             }

@@ -248,7 +248,7 @@ impl GpuBatch {
         let (first_row, end) = job.row_range();
         let rows = (end - first_row) as u32;
         let pixels = rows as usize * camera.width() as usize;
-        let places = self.place(&job.frame, pixels);
+        let places = self.allocate_images(&job.frame, pixels);
         let bits = |numbers: [f32; 4]| numbers.map(f32::to_bits);
         let (kind, lens, bend, more) = lens_of(camera);
         let lens_rays = if kind == PINHOLE || kind == ORTHOGRAPHIC {
@@ -296,7 +296,7 @@ impl GpuBatch {
         self.has_geometry_images |= words_per_pixel(frame) > usize::from(frame.rgb.is_some());
     }
 
-    fn place(&mut self, frame: &FrameMut<'_>, pixels: usize) -> ImageOffsets {
+    fn allocate_images(&mut self, frame: &FrameMut<'_>, pixels: usize) -> ImageOffsets {
         let mut next = |wanted: bool, parts: usize| {
             let first = self.words;
             self.words += if wanted { pixels * parts } else { 0 };
@@ -331,7 +331,7 @@ impl GpuBatch {
             };
             self.rows.extend(flat_pose(&pose));
         }
-        for way in agents_back(job.state, before) {
+        for way in previous_agent_offsets(job.state, before) {
             for _ in 0..BODY_PIECES {
                 self.rows.extend(flat_pose(&Pose::from_position(way)));
             }
@@ -341,7 +341,7 @@ impl GpuBatch {
 }
 
 /// The displacement of each agent to its previous position, m.
-fn agents_back<'a>(
+fn previous_agent_offsets<'a>(
     state: &'a State,
     before: &'a PreviousFrame<'_>,
 ) -> impl Iterator<Item = Vec3> + 'a {

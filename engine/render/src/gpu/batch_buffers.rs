@@ -94,7 +94,7 @@ impl StagingBuffer {
     }
 
     /// Maps the memory again when the submitted batch is done.
-    fn recall(&self) {
+    fn remap(&self) {
         if let Some(buffer) = &self.buffer {
             let is_mapped = self.is_mapped.clone();
             buffer.map_async(wgpu::MapMode::Write, .., move |result| {
@@ -197,7 +197,7 @@ impl BatchBuffers {
 
     /// To be called when the batch has been submitted.
     pub(super) fn remap_upload_memory(&self) {
-        self.upload.recall();
+        self.upload.remap();
     }
 
     pub(super) fn group(&self) -> Option<&wgpu::BindGroup> {

@@ -53,9 +53,9 @@ fn rows_of_words(words: impl Iterator<Item = u32>) -> Vec<PackedRow> {
 }
 
 /// Tables one behind the other, after the header.
-struct TableOffsets(Vec<PackedRow>);
+struct PackedTables(Vec<PackedRow>);
 
-impl TableOffsets {
+impl PackedTables {
     /// Appends a table and returns its first row.
     fn add(&mut self, rows: impl IntoIterator<Item = PackedRow>) -> u32 {
         let first = self.0.len() as u32;
@@ -108,7 +108,7 @@ impl HouseBuffers {
             ranges.push(range);
         }
         debug_assert_eq!(trees.len(), geometry.movable.len() + BODY_PIECES);
-        let mut tables = TableOffsets(vec![[0; 4]; HEADER_ROWS]);
+        let mut tables = PackedTables(vec![[0; 4]; HEADER_ROWS]);
         let (levels, images, texels) = cpu.textures.to_rows();
         let levels = tables.add(levels);
         let images = tables.add(images);

@@ -118,7 +118,7 @@ impl GpuRenderer {
         jobs: &mut [RenderJob<'_>],
         threads: Threads,
     ) -> Result<(), RenderError> {
-        if jobs.iter().all(|job| is_ours(job)) {
+        if jobs.iter().all(|job| has_gpu_preset(job)) {
             let submitted = self.submit(jobs, threads)?;
             let frames = jobs.iter_mut().map(|job| &mut job.frame);
             // Work that an adapter has begun is waited for.
@@ -127,8 +127,8 @@ impl GpuRenderer {
         for (k, job) in jobs.iter().enumerate() {
             self.cpu.check(k, job)?;
         }
-        for run in jobs.chunk_by_mut(|a, b| is_ours(a) == is_ours(b)) {
-            if is_ours(&run[0]) {
+        for run in jobs.chunk_by_mut(|a, b| has_gpu_preset(a) == has_gpu_preset(b)) {
+            if has_gpu_preset(&run[0]) {
                 self.render_batch(run, threads)?;
             } else {
                 self.cpu.render_batch(run, threads)?;
@@ -150,7 +150,7 @@ impl GpuRenderer {
         self.gpu.check_process()?;
         for (k, job) in jobs.iter().enumerate() {
             self.cpu.check(k, job)?;
-            if !is_ours(job) {
+            if !has_gpu_preset(job) {
                 return Err(RenderError::OnlyCpu { view: k });
             }
         }
@@ -352,7 +352,7 @@ impl GpuRenderer {
 }
 
 /// Returns whether a view is one for the adapter.
-fn is_ours(job: &RenderJob<'_>) -> bool {
+fn has_gpu_preset(job: &RenderJob<'_>) -> bool {
     matches!(job.view.preset, Preset::Flat | Preset::Lit)
 }
 

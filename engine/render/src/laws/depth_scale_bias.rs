@@ -36,10 +36,10 @@ pub(super) const LAW: RenderLaw = RenderLaw {
         separating_experiment: "stand before a wall at three known distances: scale is the slope, bias the rest; a mount moved along \
                                 the axis looks like bias, and shifts things at the side as well; a focal length acts only sideways",
     },
-    effect: RenderStage::Depth(change),
+    effect: RenderStage::Depth(apply),
 };
 
-fn change(values: LawValues<'_>, scan: &DepthContext<'_>, _: RandomKey, image: &mut [f32]) {
+fn apply(values: LawValues<'_>, scan: &DepthContext<'_>, _: RandomKey, image: &mut [f32]) {
     let (scale, bias) = (values.get_f32("scale"), values.get_f32("bias_m"));
     let far = scan.camera.far_m();
     for depth in image

@@ -46,10 +46,10 @@ pub(super) const LAW: RenderLaw = RenderLaw {
         separating_experiment: "move slowly away from a wall: quantization is a saw-tooth over depth that comes back the same, noise \
                                 is not",
     },
-    effect: RenderStage::Depth(change),
+    effect: RenderStage::Depth(apply),
 };
 
-fn change(values: LawValues<'_>, scan: &DepthContext<'_>, _: RandomKey, image: &mut [f32]) {
+fn apply(values: LawValues<'_>, scan: &DepthContext<'_>, _: RandomKey, image: &mut [f32]) {
     let step = f64::from(values.get_f32("step_px"));
     if step == 0.0 {
         return;

@@ -45,10 +45,10 @@ pub(super) const LAW: RenderLaw = RenderLaw {
         separating_experiment: "switch a lamp: its light changes with place and throws shadows, exposure changes all pixels alike; \
                                 dark and bright patches together separate gamma from a factor",
     },
-    effect: RenderStage::Color(change),
+    effect: RenderStage::Color(apply),
 };
 
-fn change(values: LawValues<'_>, _: &Camera, _: RandomKey, light: &mut [Vec3]) {
+fn apply(values: LawValues<'_>, _: &Camera, _: RandomKey, light: &mut [Vec3]) {
     let gain = math::pow(2.0, values.get_f32("stops"));
     let gain = Vec3::new(values.get_f32("red"), 1.0, values.get_f32("blue")) * gain;
     let gamma = values.get_f32("gamma");

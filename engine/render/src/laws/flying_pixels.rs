@@ -47,10 +47,10 @@ pub(super) const LAW: RenderLaw = RenderLaw {
         separating_experiment: "look at the edge of a thing before a far wall: mixed pixels lie between the two depths on both sides \
                                 of the edge, lateral noise gives one or the other, an offset between cameras has a sign by side",
     },
-    effect: RenderStage::Depth(change),
+    effect: RenderStage::Depth(apply),
 };
 
-fn change(values: LawValues<'_>, scan: &DepthContext<'_>, key: RandomKey, image: &mut [f32]) {
+fn apply(values: LawValues<'_>, scan: &DepthContext<'_>, key: RandomKey, image: &mut [f32]) {
     let probability = values.get_f32("probability");
     if probability == 0.0 {
         return;

@@ -28,10 +28,10 @@ pub(super) const LAW: RenderLaw = RenderLaw {
                                 1/z, a focal length by the same part at both; look at straight edges in the corners: only a \
                                 lens bends them",
     },
-    effect: RenderStage::Lens(change),
+    effect: RenderStage::Lens(apply),
 };
 
-fn change(values: LawValues<'_>, camera: Camera) -> Camera {
+fn apply(values: LawValues<'_>, camera: Camera) -> Camera {
     let factor = 1.0 + values.get_f32("relative_error");
     camera.with_changed_intrinsics(|(fx, fy, cx, cy)| (fx * factor, fy * factor, cx, cy))
 }

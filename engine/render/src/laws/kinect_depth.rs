@@ -36,7 +36,7 @@ pub(super) const LAW: RenderLaw = RenderLaw {
         separating_experiment: "look at one wall frontally and at 70 degrees, at three distances: axial noise grows with z^2 and with \
                                 the angle, quantization not with the angle; an edge before a far wall shows the lateral noise",
     },
-    effect: RenderStage::DepthByNormals(change),
+    effect: RenderStage::DepthByNormals(apply),
 };
 
 /// Steepest angle that is measured, rad.
@@ -57,7 +57,7 @@ fn lateral_px(angle: f32) -> f32 {
     0.8 + 0.035 * angle / (FRAC_PI_2 - angle)
 }
 
-fn change(values: LawValues<'_>, scan: &DepthContext<'_>, key: RandomKey, image: &mut [f32]) {
+fn apply(values: LawValues<'_>, scan: &DepthContext<'_>, key: RandomKey, image: &mut [f32]) {
     let (axial, lateral) = (values.get_f32("axial"), values.get_f32("lateral"));
     let (width, height) = scan.size();
     let far = scan.camera.far_m();

@@ -39,10 +39,10 @@ pub(super) const LAW: RenderLaw = RenderLaw {
         separating_experiment: "fill the corners of the image: a focal length moves points by r, radial terms by r^3 and r^5, \
                                 tangential ones not evenly around the middle",
     },
-    effect: RenderStage::Lens(change),
+    effect: RenderStage::Lens(apply),
 };
 
-fn change(values: LawValues<'_>, camera: Camera) -> Camera {
+fn apply(values: LawValues<'_>, camera: Camera) -> Camera {
     let own = ["k1", "k2", "k3", "p1", "p2"].map(|name| values.get_f32(name));
     let (there, (fx, fy, cx, cy)) = match camera.projection() {
         Projection::Pinhole { fx, fy, cx, cy } => ([0.0; 5], (fx, fy, cx, cy)),

@@ -29,9 +29,9 @@ pub(super) const LAW: RenderLaw = RenderLaw {
         separating_experiment: "hold the camera still: defocus stays, motion blur goes; its width grows with speed and lies along \
                                 the movement",
     },
-    effect: RenderStage::Shutter(change),
+    effect: RenderStage::Shutter(apply),
 };
 
-fn change(values: LawValues<'_>, shutter: &mut Shutter) {
+fn apply(values: LawValues<'_>, shutter: &mut Shutter) {
     shutter.exposure_s = shutter.exposure_s.max(values.get_f32("exposure_s"));
 }

@@ -30,10 +30,10 @@ pub(super) const LAW: RenderLaw = RenderLaw {
         separating_experiment: "turn the camera about its axis: the shift stays in the image, that of a turned mount turns along; \
                                 near the corners a turned camera also changes shapes",
     },
-    effect: RenderStage::Lens(change),
+    effect: RenderStage::Lens(apply),
 };
 
-fn change(values: LawValues<'_>, camera: Camera) -> Camera {
+fn apply(values: LawValues<'_>, camera: Camera) -> Camera {
     let (right, down) = (values.get_f32("right_px"), values.get_f32("down_px"));
     camera.with_changed_intrinsics(|(fx, fy, cx, cy)| (fx, fy, cx + right, cy + down))
 }

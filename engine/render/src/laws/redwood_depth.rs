@@ -30,7 +30,7 @@ pub(super) const LAW: RenderLaw = RenderLaw {
         separating_experiment: "look at one wall frontally at several distances and draw the histogram of readings: this noise keeps \
                                 to the steps of 1/8 of a disparity, axial noise fills the gaps between them",
     },
-    effect: RenderStage::Depth(change),
+    effect: RenderStage::Depth(apply),
 };
 
 /// Disparity times depth of the device.
@@ -42,7 +42,7 @@ const SHUFFLE_PX: f64 = 0.25;
 /// Range from which on there is no reading, m.
 const FURTHEST_M: f32 = 10.0;
 
-fn change(values: LawValues<'_>, scan: &DepthContext<'_>, key: RandomKey, image: &mut [f32]) {
+fn apply(values: LawValues<'_>, scan: &DepthContext<'_>, key: RandomKey, image: &mut [f32]) {
     let strength = f64::from(values.get_f32("strength"));
     let (width, height) = scan.size();
     let seen = image.to_vec();

@@ -28,9 +28,9 @@ pub(super) const LAW: RenderLaw = RenderLaw {
         separating_experiment: "look at an upright edge at rest and while the camera turns: only rolling rows shear it, and the \
                                 other way round when it turns the other way; a time offset moves all rows alike",
     },
-    effect: RenderStage::Shutter(change),
+    effect: RenderStage::Shutter(apply),
 };
 
-fn change(values: LawValues<'_>, shutter: &mut Shutter) {
+fn apply(values: LawValues<'_>, shutter: &mut Shutter) {
     shutter.line_s += values.get_f32("line_s");
 }

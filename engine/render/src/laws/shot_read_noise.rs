@@ -41,13 +41,13 @@ pub(super) const LAW: RenderLaw = RenderLaw {
                                 transfer): shot noise is a slope, read noise the rest at black; noise of rendering goes when \
                                 samples are added",
     },
-    effect: RenderStage::Color(change),
+    effect: RenderStage::Color(apply),
 };
 
 /// Mean from which on rejection is faster than counting.
 const COUNTED: f64 = 12.0;
 
-fn change(values: LawValues<'_>, camera: &Camera, key: RandomKey, light: &mut [Vec3]) {
+fn apply(values: LawValues<'_>, camera: &Camera, key: RandomKey, light: &mut [Vec3]) {
     let (gain, read) = (
         f64::from(values.get_f32("gain")),
         f64::from(values.get_f32("read")),

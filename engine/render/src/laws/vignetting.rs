@@ -30,10 +30,10 @@ pub(super) const LAW: RenderLaw = RenderLaw {
         separating_experiment: "turn the camera so that one evenly lit wall wanders from the middle to a corner: only vignetting \
                                 darkens it there",
     },
-    effect: RenderStage::Color(change),
+    effect: RenderStage::Color(apply),
 };
 
-fn change(values: LawValues<'_>, camera: &Camera, _: RandomKey, light: &mut [Vec3]) {
+fn apply(values: LawValues<'_>, camera: &Camera, _: RandomKey, light: &mut [Vec3]) {
     if camera.projection().intrinsics().is_none() {
         return;
     }

@@ -224,7 +224,7 @@ impl Lighting {
             return self.lamp_illuminance(None, site, per_lx, tell);
         };
         let per_lx = exposure.per_lx;
-        let indirect = self.rooms[position].indirect * fill(normal);
+        let indirect = self.rooms[position].indirect * orientation_factor(normal);
         tell(LightSource::RoomWalls, indirect * per_lx);
         let mut sun = 0.0_f32;
         let first = fixed.window_starts[position];
@@ -299,7 +299,7 @@ pub(crate) fn room_lookup_point(point: Vec3, facing: Vec3, direction: Vec3) -> V
 
 /// Returns the share of a room's indirect light that reaches a surface by its orientation, about 1: floors face bright walls and
 /// ceilings, and walls that meet in a corner differ a little.
-fn fill(normal: Vec3) -> f32 {
+fn orientation_factor(normal: Vec3) -> f32 {
     0.95 + 0.08 * normal.y + 0.07 * normal.x + 0.03 * normal.z
 }
 

@@ -49,7 +49,7 @@ fn corner(point: Vec3, last: u32) -> PackedRow {
 }
 
 /// Returns a link in lists in which its tree starts at the given node and block.
-fn moved(link: NodeLink, first_node: usize, first_leaf: usize) -> u32 {
+fn rebase_link(link: NodeLink, first_node: usize, first_leaf: usize) -> u32 {
     if link == NodeLink::NONE {
         return NO_LINK;
     }
@@ -68,12 +68,12 @@ fn write_nodes(tree: &WideBvh, first_node: usize, first_leaf: usize, rows: &mut 
     } in &tree.nodes
     {
         rows.extend(planes.map(bits));
-        rows.push(links.map(|link| moved(link, first_node, first_leaf)));
+        rows.push(links.map(|link| rebase_link(link, first_node, first_leaf)));
     }
 }
 
 /// Returns the largest number of stacked links below a link.
-fn waiting(tree: &WideBvh, link: NodeLink) -> usize {
+fn max_stack_depth(tree: &WideBvh, link: NodeLink) -> usize {
     let (true, node) = (link != NodeLink::NONE, link.parts()) else {
         return 0;
     };
@@ -81,7 +81,7 @@ fn waiting(tree: &WideBvh, link: NodeLink) -> usize {
     let children = tree.nodes[index].links.iter();
     let children: Vec<usize> = children
         .filter(|link| **link != NodeLink::NONE)
-        .map(|link| waiting(tree, *link))
+        .map(|link| max_stack_depth(tree, *link))
         .collect();
     children.len().saturating_sub(1) + children.iter().max().copied().unwrap_or(0)
 }
@@ -110,9 +110,9 @@ impl TriangleBvh {
             }));
         }
         FlatBvh {
-            root: moved(self.tree.root, first_node, first_block),
+            root: rebase_link(self.tree.root, first_node, first_block),
             bounds: self.tree.bounds,
-            stack_size: waiting(&self.tree, self.tree.root),
+            stack_size: max_stack_depth(&self.tree, self.tree.root),
         }
     }
 }
@@ -122,7 +122,7 @@ impl InstanceSet {
     /// first of these rows, and from the first instance.
     pub fn flatten_tree(&self, nodes: &mut Vec<PackedRow>) -> u32 {
         write_nodes(&self.tree, 0, 0, nodes);
-        moved(self.tree.root, 0, 0)
+        rebase_link(self.tree.root, 0, 0)
     }
 
     /// Returns the rows of an instance; one that `mask` excludes is hidden.

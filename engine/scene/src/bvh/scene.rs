@@ -136,7 +136,7 @@ impl SceneBvh<'_> {
         for k in 0..N {
             if answers.is_ambiguous(k) {
                 let ray = rays.ray(k);
-                let settled = self.settle(&ray, filter, &answers.lane(k, ray.far_m));
+                let settled = self.resolve_ambiguous(&ray, filter, &answers.lane(k, ray.far_m));
                 answers.set(k, settled.closest);
             }
         }
@@ -145,7 +145,7 @@ impl SceneBvh<'_> {
         for k in 0..N {
             if hits.is_hit(k) {
                 let (source, slot) = (hits.source[k], hits.slot[k]);
-                (hits.id[k], hits.triangle[k]) = self.name(HitIndex { source, slot });
+                (hits.id[k], hits.triangle[k]) = self.triangle_identity(HitIndex { source, slot });
             } else {
                 (hits.id[k], hits.triangle[k]) = (0, 0);
             }
@@ -159,7 +159,7 @@ impl SceneBvh<'_> {
         let mut nearest = ClosestHit::new(ray.far_m);
         self.offer_all(ray, filter, &mut nearest);
         if nearest.is_ambiguous() {
-            nearest = self.settle(ray, filter, &nearest);
+            nearest = self.resolve_ambiguous(ray, filter, &nearest);
         }
         (nearest.closest != HitIndex::NONE)
             .then(|| self.hit(ray, nearest.closest, nearest.distance))
@@ -171,7 +171,7 @@ impl SceneBvh<'_> {
 
     /// The second pass of a ray whose first was ambiguous.
     #[cold]
-    fn settle(&self, ray: &Ray, filter: &HitFilter, first: &ClosestHit) -> ClosestHit {
+    fn resolve_ambiguous(&self, ray: &Ray, filter: &HitFilter, first: &ClosestHit) -> ClosestHit {
         let mut nearest = first.second_pass(ray.far_m);
         self.offer_all(ray, filter, &mut nearest);
         nearest
@@ -251,7 +251,7 @@ impl SceneBvh<'_> {
 
     /// The id and the triangle's position in its list.
     #[inline(always)]
-    fn name(&self, place: HitIndex) -> (i32, u32) {
+    fn triangle_identity(&self, place: HitIndex) -> (i32, u32) {
         if let Some(instance) = place.source.checked_sub(1) {
             let placed = &self.moving.placed[instance as usize];
             return (placed.id, placed.mesh.surfaces[place.slot as usize].index);
@@ -276,7 +276,7 @@ impl SceneBvh<'_> {
             .edge_functions(direction)
             .map(|side| side[slot % 4]);
         let (u, v) = barycentric_weights(sides);
-        let (id, triangle) = self.name(place);
+        let (id, triangle) = self.triangle_identity(place);
         Hit {
             distance_m,
             u,

@@ -35,14 +35,14 @@ impl WideBvh {
         let top = if tree.nodes.is_empty() {
             Some(NodeLink::NONE)
         } else {
-            self.below(tree, 0, 0, leaf)
+            self.collapse_subtree(tree, 0, 0, leaf)
         };
         self.root = top.unwrap_or(NodeLink::NONE);
         top.is_some()
     }
 
     /// Returns the link to node `k` of the binary tree, or `None` when it leads too deep.
-    fn below(
+    fn collapse_subtree(
         &mut self,
         tree: &BinaryBvh,
         k: usize,
@@ -74,7 +74,7 @@ impl WideBvh {
         let index = self.nodes.len();
         self.nodes.push(Node::EMPTY);
         for (place, &k) in children[..count].iter().enumerate() {
-            let link = self.below(tree, k, depth + 1, leaf)?;
+            let link = self.collapse_subtree(tree, k, depth + 1, leaf)?;
             self.nodes[index].set(place, &tree.nodes[k].bounds, link);
         }
         Some(NodeLink::node(index))

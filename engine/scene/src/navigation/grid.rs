@@ -79,9 +79,9 @@ impl NavGrid {
             ground,
         };
         grid.check_state(house, state)?;
-        grid.follow(house, state);
+        grid.update_obstacles(house, state);
         let all: Vec<usize> = (0..columns).collect();
-        grid.settle(house, &all, &all, &all)?;
+        grid.rebuild_columns(house, &all, &all, &all)?;
         Ok(grid)
     }
 
@@ -92,7 +92,7 @@ impl NavGrid {
     /// [`SceneError::Range`] for another house than the grid was built for.
     pub fn update(&mut self, house: &House, state: &State) -> Result<NavGridUpdate, SceneError> {
         self.check_state(house, state)?;
-        let moved = self.follow(house, state);
+        let moved = self.update_obstacles(house, state);
         let mut rebuilt = NavGridUpdate {
             moved_parts: moved.parts,
             changed_columns: moved.columns.len(),
@@ -106,7 +106,7 @@ impl NavGrid {
         let near = self.grown(&filled, self.config.radius_m);
         let linked = self.grown(&near, self.config.cell_m);
         rebuilt.rechecked_cells = near.len();
-        self.settle(house, &filled, &near, &linked)?;
+        self.rebuild_columns(house, &filled, &near, &linked)?;
         Ok(rebuilt)
     }
 
@@ -125,7 +125,11 @@ impl NavGrid {
     }
 
     /// Moves obstacles and doors to their poses in `state`.
-    fn follow(&mut self, house: &House, state: &State) -> super::obstacles::ObstacleChanges {
+    fn update_obstacles(
+        &mut self,
+        house: &House,
+        state: &State,
+    ) -> super::obstacles::ObstacleChanges {
         for (k, open) in self.openness.iter_mut().enumerate() {
             *open = openness(house, state, &self.ground, k);
         }
@@ -146,7 +150,7 @@ impl NavGrid {
     }
 
     /// Brings surfaces (`filled`), their clearance (`near`), their links (`linked`) and all islands up to date.
-    fn settle(
+    fn rebuild_columns(
         &mut self,
         house: &House,
         filled: &[usize],

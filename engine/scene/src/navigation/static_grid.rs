@@ -109,7 +109,7 @@ impl StaticGrid {
                 standing_heights(spans, config).any(|y| {
                     let in_the_way =
                         leaf.high > y + config.step_m && leaf.low < y + config.height_m;
-                    in_the_way && self.has_room(*column as usize, y, config)
+                    in_the_way && self.has_clearance(*column as usize, y, config)
                 })
             });
             if is_passage {
@@ -123,7 +123,7 @@ impl StaticGrid {
     }
 
     /// Returns whether no fixed thing stands within the radius between a step and the agent's height above `y`.
-    fn has_room(&self, column: usize, y: f32, config: &NavConfig) -> bool {
+    fn has_clearance(&self, column: usize, y: f32, config: &NavConfig) -> bool {
         columns_around(&self.frame, column, config.radius_m)
             .all(|(beside, _)| !is_standing_blocked(self.fixed.at(beside), y, config))
     }

@@ -46,7 +46,7 @@ impl RayScene {
     pub fn update(&mut self, state: &State) {
         let parts = self.house.geometry().movable.len();
         if self.world_from_mesh.len() != parts + state.agents.len() * BODY_PIECES {
-            self.admit(state);
+            self.rebuild_instances(state);
         }
         for (agent, pieces) in state
             .agents
@@ -64,7 +64,7 @@ impl RayScene {
     }
 
     /// Adapts to another number of agents.
-    fn admit(&mut self, state: &State) {
+    fn rebuild_instances(&mut self, state: &State) {
         let house = &self.house;
         let instances = parts(house).chain(state.agents.ids().flat_map(|id| {
             let entity = house.entity_of_agent(id).0;

@@ -170,12 +170,12 @@ pub(super) const FIELDS: [JointField; 18] = [
         name: "feed_forward",
         unit: "1",
         range: [0.0, 2.0],
-        get: |joint| joint.servo.map(|servo| carried(&servo)),
+        get: |joint| joint.servo.map(|servo| gravity_compensation(&servo)),
     },
 ];
 
 /// The share of the weight that a motor of the house compensates.
-fn carried(servo: &Servo) -> f32 {
+fn gravity_compensation(servo: &Servo) -> f32 {
     f32::from(u8::from(servo.feed_forward))
 }
 
@@ -201,7 +201,7 @@ impl State {
             damping: joint.damping,
             armature: joint.armature,
             servo: joint.servo,
-            feed_forward: joint.servo.as_ref().map_or(0.0, carried),
+            feed_forward: joint.servo.as_ref().map_or(0.0, gravity_compensation),
             mimic: joint.mimic,
             limits: joint.limits,
         };

@@ -51,7 +51,7 @@ impl State {
             return Vec::new();
         }
         let mut carriers: Vec<Option<ObjectId>> = self
-            .carried(house)
+            .support_pairs(house)
             .filter_map(|(carried, by)| (carried == object).then_some(by))
             .collect();
         carriers.sort_unstable();
@@ -62,7 +62,7 @@ impl State {
     /// Returns the supports of each object, as [`State::supports_of`] of one, in one pass over the contacts. Shape (object,).
     pub fn supports_of_all(&self, house: &House) -> Vec<Vec<Option<ObjectId>>> {
         let mut all = vec![Vec::new(); house.objects.len()];
-        for (carried, by) in self.carried(house) {
+        for (carried, by) in self.support_pairs(house) {
             if self.held_by[carried].is_none() {
                 all[carried.index()].push(by);
             }
@@ -75,7 +75,7 @@ impl State {
     }
 
     /// Returns the supported object and its support of each contact in which one thing supports another.
-    fn carried(&self, house: &House) -> impl Iterator<Item = (ObjectId, Option<ObjectId>)> {
+    fn support_pairs(&self, house: &House) -> impl Iterator<Item = (ObjectId, Option<ObjectId>)> {
         let owner = |part: PartId| house.parts[part].object;
         let pairs = self.contacts.iter().filter_map(move |contact| {
             let (a, b) = (owner(contact.a), contact.b.map(owner));

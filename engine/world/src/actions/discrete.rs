@@ -70,12 +70,12 @@ impl World {
         self.step(&controls)?;
         let outcomes = steps.iter().zip(hands);
         Ok(outcomes
-            .map(|(step, hand)| hand.unwrap_or_else(|| self.moved(step.agent)))
+            .map(|(step, hand)| hand.unwrap_or_else(|| self.movement_outcome(step.agent)))
             .collect())
     }
 
     /// Returns what became of an action of the feet or neck in the step that has just been made.
-    fn moved(&self, agent: AgentId) -> ActionOutcome {
+    fn movement_outcome(&self, agent: AgentId) -> ActionOutcome {
         if self.state().agents[agent].collided {
             let sentence = "Something is in the way. Turn or step aside.";
             ActionOutcome::failed(OutcomeCode::Blocked, sentence, None)

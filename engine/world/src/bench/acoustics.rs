@@ -27,9 +27,9 @@ pub(super) fn run(
         .map(|room| Vec3::new(room.stand[0], room.eye[1], room.stand[2]))
         .collect();
     let threads = Threads::requested(options.threads)?;
-    let rooms: Vec<WalkFigure> = spots
+    let rooms: Vec<WalkPaths> = spots
         .iter()
-        .filter_map(|spot| WalkFigure::free(&rays, *spot))
+        .filter_map(|spot| WalkPaths::free(&rays, *spot))
         .take(ROOMS.min(options.walks))
         .collect();
     let walk_count = if rooms.is_empty() { 0 } else { options.walks };
@@ -64,7 +64,7 @@ pub(super) fn run(
         .iter()
         .map(|figure| {
             progress.begin_part("the reference of a room")?;
-            wanted(&engines, &rays, *figure, threads)
+            reference_metrics(&engines, &rays, *figure, threads)
         })
         .collect::<Result<_, _>>()?;
     for preset in &options.presets {
@@ -120,7 +120,7 @@ struct WalkBench {
 
 /// The walks of a listener and a source in a room.
 #[derive(Clone, Copy)]
-struct WalkFigure {
+struct WalkPaths {
     /// The middle of the listener's path, m.
     spot: Vec3,
     /// Directions of that path and to the right of it; unit length, level.
@@ -128,7 +128,7 @@ struct WalkFigure {
     right: Vec3,
 }
 
-impl WalkFigure {
+impl WalkPaths {
     /// Turns of a figure that are tried.
     const TURNS: usize = 12;
     /// Half of the length of the listener's path, m.
@@ -181,10 +181,10 @@ impl WalkFigure {
 }
 
 /// Returns the reference's measures for the end of the walk.
-fn wanted(
+fn reference_metrics(
     engines: &Engines,
     rays: &RayScene,
-    figure: WalkFigure,
+    figure: WalkPaths,
     threads: Threads,
 ) -> Result<Metrics, WorldError> {
     let (position, head) = figure.place(BLOCKS - 1);
@@ -199,7 +199,7 @@ fn walk(
     engines: &Engines,
     rays: &RayScene,
     preset: &str,
-    figure: WalkFigure,
+    figure: WalkPaths,
     wanted: &Metrics,
     seed: u64,
 ) -> Result<WalkBench, WorldError> {

@@ -49,7 +49,7 @@ pub struct BoxBody {
 }
 
 /// The house with boxes instead of objects.
-fn boxed(house: &House, boxes: &BenchBoxes) -> Result<House, WorldError> {
+fn with_box_objects(house: &House, boxes: &BenchBoxes) -> Result<House, WorldError> {
     let mut data = HouseData::clone(house);
     data.objects = IdVec::new();
     data.parts = IdVec::new();
@@ -146,7 +146,7 @@ pub(super) fn run(
     let (mut opened, _) = dwell_houses::open(house)?;
     let mut config = PhysicsConfig::default();
     if let Some(boxes) = &options.boxes {
-        opened = boxed(&opened, boxes)?;
+        opened = with_box_objects(&opened, boxes)?;
         config.physics_rate_hz = boxes.physics_rate_hz;
         // As the scripts, which put a box on others until it is free, without a ceiling over it.
         config.max_start_shift_m = 1.0;

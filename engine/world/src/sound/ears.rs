@@ -27,7 +27,7 @@ pub(super) struct AgentListener {
 
 impl AgentListener {
     /// Hears the next block.
-    pub(super) fn hear(
+    pub(super) fn render_block(
         &mut self,
         house: &House,
         rays: &RayScene,

@@ -344,7 +344,7 @@ fn partners(step: &StepContext<'_>, event: &ContactEvent) -> [ContactPartner; 2]
                 step.house.structure[id].kind,
                 StructureKind::Floor | StructureKind::Ground
             );
-            leaf(substance, floor)
+            panel_partner(substance, floor)
         }
         ContactEntity::Part(id) => {
             let size = part_size_m(step.house, id);
@@ -358,7 +358,7 @@ fn partners(step: &StepContext<'_>, event: &ContactEvent) -> [ContactPartner; 2]
     ]
 }
 
-fn leaf(substance: &str, floor: bool) -> ContactPartner {
+fn panel_partner(substance: &str, floor: bool) -> ContactPartner {
     let own = library().get_or_default(substance).surface_density_kg_m2;
     let least = if floor { FLOOR_KG_M2 } else { WALL_KG_M2 };
     ContactPartner::panel(substance, own.max(least))
@@ -417,5 +417,8 @@ fn floor_at(step: &StepContext<'_>, foot: Vec3) -> Option<ContactPartner> {
     let ray = Ray::new(foot + Vec3::Y * 0.25, Vec3::NEG_Y).with_range(0.0, 0.6);
     let hit = step.rays.closest(&ray, RayMask::EAR)?;
     let material = step.rays.surface(&hit).material;
-    Some(leaf(&step.house.materials[material].substance, true))
+    Some(panel_partner(
+        &step.house.materials[material].substance,
+        true,
+    ))
 }

@@ -122,7 +122,7 @@ impl WorldSound {
         if !self.ears.is_empty() {
             let sources = self.sources(engines, rays, state, self.blocks)?;
             for ears in &mut self.ears {
-                ears.hear(engines.house(), rays, state, &sources)?;
+                ears.render_block(engines.house(), rays, state, &sources)?;
             }
         }
         self.blocks += 1;
@@ -158,7 +158,7 @@ impl WorldSound {
                 length,
             };
             let sources = self.sources(engines, rays, state, self.blocks - 1)?;
-            ears.hear(engines.house(), rays, state, &sources)?;
+            ears.render_block(engines.house(), rays, state, &sources)?;
             // In the order of agents, whichever began first.
             let place = self.ears.partition_point(|other| other.agent < *agent);
             self.ears.insert(place, ears);

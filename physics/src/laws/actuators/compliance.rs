@@ -59,7 +59,7 @@ fn install(
 
 impl MotorLaw for JointCompliance {
     fn modify_actuation(&self, joint: JointId, pull: &mut JointActuation) {
-        if !self.motors.hold(joint) {
+        if !self.motors.contains(joint) {
             return;
         }
         if let ActuationGain::Servo { stiffness, damping } = &mut pull.gain {

@@ -65,7 +65,7 @@ fn install(
 
 impl MotorLaw for Deadband {
     fn modify_command(&mut self, motor: &MotorStep, command: &mut JointCommand) {
-        if !self.motors.hold(motor.joint) {
+        if !self.motors.contains(motor.joint) {
             return;
         }
         let silent = match *command {

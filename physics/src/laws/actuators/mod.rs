@@ -55,7 +55,7 @@ impl TargetMotors {
         joints(values, model, kind, |joint| joint.servo.is_some()).map(Self)
     }
 
-    fn hold(&self, joint: JointId) -> bool {
+    fn contains(&self, joint: JointId) -> bool {
         self.0.binary_search(&joint).is_ok()
     }
 

@@ -121,7 +121,7 @@ fn install(
 
 impl MotorLaw for MotorConstants {
     fn modify_actuation(&self, joint: JointId, pull: &mut JointActuation) {
-        if !self.motors.hold(joint) {
+        if !self.motors.contains(joint) {
             return;
         }
         let scale = self.torque_scale;
@@ -149,7 +149,7 @@ impl ResistanceLaw for MotorConstants {
         load: &JointLoad,
         resistance: &mut JointResistance,
     ) {
-        if self.motors.hold(joint) {
+        if self.motors.contains(joint) {
             resistance.armature += self.armature;
             if load.is_driven {
                 resistance.damping += self.back_emf;

@@ -52,7 +52,7 @@ fn install(
 
 impl MotorLaw for Saturation {
     fn modify_actuation(&self, joint: JointId, pull: &mut JointActuation) {
-        if self.motors.hold(joint) {
+        if self.motors.contains(joint) {
             pull.max_effort = pull.max_effort.min(self.max_effort);
         }
     }

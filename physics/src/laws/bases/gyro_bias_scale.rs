@@ -65,7 +65,7 @@ fn install(
 
 impl BaseLaw for GyroBiasScale {
     fn gyro_reading(&self, agent: AgentId, rate_rad_s: f32) -> f32 {
-        if self.riders.holds(agent) {
+        if self.riders.contains(agent) {
             self.scale * rate_rad_s + self.bias_rad_s
         } else {
             rate_rad_s

@@ -76,7 +76,7 @@ impl TargetAgents {
         }
     }
 
-    fn holds(&self, agent: AgentId) -> bool {
+    fn contains(&self, agent: AgentId) -> bool {
         self.0.is_none_or(|named| named == agent)
     }
 }

@@ -71,7 +71,7 @@ fn install(
 
 impl BaseLaw for UnequalWheels {
     fn modify_wheel_motion(&self, agent: AgentId, rolling: &mut WheelMotion) {
-        if self.riders.holds(agent) {
+        if self.riders.contains(agent) {
             for (radius, factor) in rolling.wheels.radius_m.iter_mut().zip(self.radius_factors) {
                 *radius *= factor;
             }

@@ -56,7 +56,7 @@ fn install(
 
 impl BaseLaw for WheelSlip {
     fn modify_wheel_motion(&self, agent: AgentId, rolling: &mut WheelMotion) {
-        if !self.riders.holds(agent) {
+        if !self.riders.contains(agent) {
             return;
         }
         for side in 0..2 {

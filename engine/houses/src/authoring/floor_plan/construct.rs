@@ -145,7 +145,7 @@ impl StoreyBuilder<'_> {
         let mut looks = Vec::new();
         for (k, room) in self.storey.rooms.iter().enumerate() {
             looks.push(
-                self.look(k, room)
+                self.resolve_finishes(k, room)
                     .map_err(prefix_field(format_args!("rooms[{k}]")))?,
             );
         }
@@ -228,7 +228,7 @@ impl StoreyBuilder<'_> {
     }
 
     /// Returns the finishes of a room: as usual for its kind, where the plan does not state others.
-    fn look(&self, k: usize, room: &RoomPlan) -> Result<RoomFinishes, HousesError> {
+    fn resolve_finishes(&self, k: usize, room: &RoomPlan) -> Result<RoomFinishes, HousesError> {
         let word = kind_of(room).replace(' ', "_");
         let kind: GeneratedRoomKind =
             serde_json::from_value(word.into()).unwrap_or(GeneratedRoomKind::LivingRoom);

@@ -91,7 +91,7 @@ impl PlanGrid {
                 .collect();
             let near: Vec<Vec<Millimetres>> = outlines
                 .iter()
-                .map(|outline| grown(outline, z, outer))
+                .map(|outline| dilated_spans(outline, z, outer))
                 .collect();
             for i in 0..grid.columns() {
                 let x = grid.xs[i];
@@ -102,7 +102,7 @@ impl PlanGrid {
                 };
                 let mut rooms = (0..outlines.len()).filter(|k| holds(&spans[*k]));
                 let cell = match (rooms.next(), rooms.next()) {
-                    (Some(a), Some(b)) => return Err(overlap(storey, a, b)),
+                    (Some(a), Some(b)) => return Err(overlapping_rooms_error(storey, a, b)),
                     (Some(room), None) => PlanCell::Room(room),
                     _ if near.iter().any(|spans| holds(spans)) => PlanCell::Wall,
                     _ => PlanCell::Outside,
@@ -111,7 +111,7 @@ impl PlanGrid {
             }
         }
         grid.check_walls(storey)?;
-        grid.own();
+        grid.assign_wall_owners();
         Ok(grid)
     }
 
@@ -159,7 +159,7 @@ impl PlanGrid {
                         {
                             let gap = count[k] - count[end + 1];
                             if gap < LEAST_WALL {
-                                return Err(thin(storey, before, room, gap));
+                                return Err(thin_wall_error(storey, before, room, gap));
                             }
                             last = Some((room, k));
                         }
@@ -174,7 +174,7 @@ impl PlanGrid {
     }
 
     /// Assigns each cell of a wall to the nearest room, counted in cells.
-    fn own(&mut self) {
+    fn assign_wall_owners(&mut self) {
         let (columns, rows) = (self.columns(), self.rows());
         let owner = |cell: &PlanCell| match cell {
             PlanCell::Room(room) => Some(*room),
@@ -240,7 +240,7 @@ impl PlanGrid {
     }
 }
 
-fn overlap(storey: &StoreyPlan, a: usize, b: usize) -> HousesError {
+fn overlapping_rooms_error(storey: &StoreyPlan, a: usize, b: usize) -> HousesError {
     let names = [a, b].map(|k| storey.rooms[k].name.as_str());
     let found = format!("rooms {:?} and {:?} that overlap", names[0], names[1]);
     invalid_field(
@@ -250,7 +250,7 @@ fn overlap(storey: &StoreyPlan, a: usize, b: usize) -> HousesError {
     )
 }
 
-fn thin(storey: &StoreyPlan, a: usize, b: usize, gap: Millimetres) -> HousesError {
+fn thin_wall_error(storey: &StoreyPlan, a: usize, b: usize, gap: Millimetres) -> HousesError {
     let names = [a, b].map(|k| storey.rooms[k].name.as_str());
     let found = format!(
         "{:.3} m between rooms {:?} and {:?}",
@@ -354,7 +354,7 @@ fn crossings(outline: &[[Millimetres; 2]], z: Millimetres) -> Vec<Millimetres> {
 }
 
 /// Returns the part of the row of cells from `z` to `z` within `outer` of the outline's edges: pairs of x.
-fn grown(
+fn dilated_spans(
     outline: &[[Millimetres; 2]],
     [z0, z1]: [Millimetres; 2],
     outer: Millimetres,

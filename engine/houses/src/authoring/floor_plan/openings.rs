@@ -46,13 +46,13 @@ pub(super) fn plan_openings<'a>(
     for (k, door) in storey.doors.iter().enumerate() {
         let hole =
             of_door(storey, door, stretches).map_err(prefix_field(format_args!("doors[{k}]")))?;
-        apart(&holes, &hole).map_err(prefix_field(format_args!("doors[{k}]")))?;
+        check_no_overlap(&holes, &hole).map_err(prefix_field(format_args!("doors[{k}]")))?;
         holes.push(hole);
     }
     for (k, window) in storey.windows.iter().enumerate() {
         let hole = of_window(storey, window, stretches)
             .map_err(prefix_field(format_args!("windows[{k}]")))?;
-        apart(&holes, &hole).map_err(prefix_field(format_args!("windows[{k}]")))?;
+        check_no_overlap(&holes, &hole).map_err(prefix_field(format_args!("windows[{k}]")))?;
         holes.push(hole);
     }
     Ok(holes)
@@ -97,7 +97,7 @@ fn of_door<'a>(
         None => format!("{front:?} and {behind:?}"),
         Some(_) => format!("{front:?} and, on its {}side, {behind:?}", word(door.side)),
     };
-    let fits = |stretch: &WallSegment| lies(stretch, own, other, door.side);
+    let fits = |stretch: &WallSegment| is_wall_on_side(stretch, own, other, door.side);
     let (stretch, along) = place(stretches, fits, (&between, door.at_m, width))?;
     let inward = stretches[stretch].sides[1] == PlanCell::Room(own);
     // The model looks along +Z into the room; its left is where hinges are by default.
@@ -142,7 +142,8 @@ fn of_window<'a>(
         [0.2, most],
         "m above this sill",
     )?;
-    let fits = |stretch: &WallSegment| lies(stretch, own, PlanCell::Outside, window.side);
+    let fits =
+        |stretch: &WallSegment| is_wall_on_side(stretch, own, PlanCell::Outside, window.side);
     let between = format!("{:?} and its {}outside", window.room, word(window.side));
     let (stretch, along) = place(stretches, fits, (&between, window.at_m, width))?;
     Ok(PlanOpening {
@@ -159,7 +160,7 @@ fn of_window<'a>(
 }
 
 /// Returns whether a stretch separates a room from something else, on a side of the room.
-fn lies(
+fn is_wall_on_side(
     stretch: &WallSegment,
     own: usize,
     other: PlanCell,
@@ -233,7 +234,7 @@ fn place(
 }
 
 /// Refuses a hole in another one.
-fn apart(holes: &[PlanOpening<'_>], new: &PlanOpening<'_>) -> Result<(), HousesError> {
+fn check_no_overlap(holes: &[PlanOpening<'_>], new: &PlanOpening<'_>) -> Result<(), HousesError> {
     let meets = |a: [f32; 2], b: [f32; 2]| a[0] < b[1] + REST_M && b[0] < a[1] + REST_M;
     let other = holes.iter().find(|other| {
         other.wall_segment == new.wall_segment

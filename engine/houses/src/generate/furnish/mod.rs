@@ -280,7 +280,7 @@ impl RoomFurnisher<'_> {
                 }
                 for start in starts {
                     if let Some(poses) = place::row_poses(&span, &units, start)
-                        && self.row_fits(&units, &poses, run.front_m)
+                        && self.try_add_row(&units, &poses, run.front_m)
                     {
                         return true;
                     }
@@ -291,7 +291,12 @@ impl RoomFurnisher<'_> {
     }
 
     /// Adds the whole row, or nothing.
-    fn row_fits(&mut self, row: &[Option<Arc<CachedModel>>], poses: &[Pose], front_m: f32) -> bool {
+    fn try_add_row(
+        &mut self,
+        row: &[Option<Arc<CachedModel>>],
+        poses: &[Pose],
+        front_m: f32,
+    ) -> bool {
         let before = self.space.clone();
         for (stock, pose) in row.iter().flatten().zip(poses) {
             let piece = PlacedFurniture::new(stock, *pose).with_front_clearance(front_m);

@@ -56,7 +56,7 @@ pub(crate) fn candidate_poses(
         (PlacementKind::InFrontOf, Some(anchor)) => before(stock, anchor, rule.gap_m, 0.0, stream),
         (PlacementKind::Facing, Some(anchor)) => before(stock, anchor, rule.gap_m, 180.0, stream),
         (PlacementKind::Around, Some(anchor)) => around(stock, anchor),
-        (PlacementKind::At, Some(anchor)) => at(stock, anchor, stream),
+        (PlacementKind::At, Some(anchor)) => tucked_poses(stock, anchor, stream),
         (PlacementKind::On, Some(anchor)) => on(stock, anchor, stream),
         (PlacementKind::Above, Some(anchor)) => above(space, anchor, rule.height_m),
         _ => Vec::new(),
@@ -250,7 +250,7 @@ fn around(stock: &CachedModel, anchor: &PlacedFurniture) -> Vec<CandidatePose> {
     ideas
 }
 
-fn at(
+fn tucked_poses(
     stock: &CachedModel,
     anchor: &PlacedFurniture,
     stream: &mut RandomStream,

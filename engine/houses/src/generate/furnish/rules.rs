@@ -109,7 +109,7 @@ pub(crate) struct SmallItemRule {
     /// The smallest and the largest number on each.
     pub(crate) count: [usize; 2],
     /// Largest turn either way, degrees.
-    #[serde(default = "round")]
+    #[serde(default = "default_turn_deg")]
     pub(crate) turn_deg: f32,
     /// Its probability; `clutter` scales it.
     pub(crate) chance: f32,
@@ -122,7 +122,7 @@ const fn one() -> [usize; 2] {
     [1, 1]
 }
 
-const fn round() -> f32 {
+const fn default_turn_deg() -> f32 {
     180.0
 }
 

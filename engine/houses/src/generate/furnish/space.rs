@@ -451,11 +451,11 @@ impl ClearanceGrid {
     /// The cells whose middle lies in a rectangle grown by the radius.
     fn block(&mut self, zone: &ZoneXz) {
         let mut free = std::mem::take(&mut self.free);
-        self.blocked(zone, |cell| free[cell] = false);
+        self.for_each_blocked_cell(zone, |cell| free[cell] = false);
         self.free = free;
     }
 
-    fn blocked(&self, zone: &ZoneXz, mut each: impl FnMut(usize)) {
+    fn for_each_blocked_cell(&self, zone: &ZoneXz, mut each: impl FnMut(usize)) {
         let cell = |value: f32, k: usize, count: usize| {
             (((value - self.corner[k]) / CELL_M).max(0.0) as usize).min(count)
         };
@@ -490,7 +490,7 @@ impl ClearanceGrid {
     fn is_joined(&self, zones: &[ZoneXz]) -> bool {
         let mut free = self.free.clone();
         for zone in zones {
-            self.blocked(zone, |cell| free[cell] = false);
+            self.for_each_blocked_cell(zone, |cell| free[cell] = false);
         }
         let all = free.iter().filter(|free| **free).count();
         let Some(start) = self.doors.first().copied().or(free.iter().position(|f| *f)) else {
@@ -522,7 +522,7 @@ impl ClearanceGrid {
             free[*door]
                 || zones.iter().any(|zone| {
                     let mut inside = false;
-                    self.blocked(zone, |cell| inside |= cell == *door);
+                    self.for_each_blocked_cell(zone, |cell| inside |= cell == *door);
                     inside
                 })
         };

@@ -214,11 +214,11 @@ impl<'a> NodeTreeBuilder<'a> {
         }
         for piece in &house.structure {
             let mesh = self.shapes.mesh(piece.mesh, &piece.materials);
-            let node = shown(&piece.name, mesh, None, &extras::structure(piece));
-            self.add(node, Some(self.home(piece.level, piece.room)));
+            let node = mesh_node(&piece.name, mesh, None, &extras::structure(piece));
+            self.add(node, Some(self.parent_node(piece.level, piece.room)));
         }
         for (id, object) in house.objects.iter_ids() {
-            let home = self.home(object.level, object.room);
+            let home = self.parent_node(object.level, object.room);
             let about = extras::object(house, id, object);
             let node = self.add(json!({"name": object.name, "extras": about}), Some(home));
             for part in object.parts().map(|part| &house.parts[part]) {
@@ -230,7 +230,7 @@ impl<'a> NodeTreeBuilder<'a> {
                 let mesh = self.shapes.mesh(part.mesh, &part.materials);
                 let place = part.world_from_part.to_affine() * part.part_from_mesh;
                 self.add(
-                    shown(&name, mesh, Some(place), &extras::part(part)),
+                    mesh_node(&name, mesh, Some(place), &extras::part(part)),
                     Some(node),
                 );
             }
@@ -249,7 +249,7 @@ impl<'a> NodeTreeBuilder<'a> {
     }
 
     /// The node of a room, or of a storey.
-    fn home(&self, level: LevelId, room: Option<RoomId>) -> usize {
+    fn parent_node(&self, level: LevelId, room: Option<RoomId>) -> usize {
         room.map_or_else(
             || self.of_level[level.index()],
             |room| self.of_room[room.index()],
@@ -270,7 +270,7 @@ impl<'a> NodeTreeBuilder<'a> {
 }
 
 /// A node that shows a mesh.
-fn shown(
+fn mesh_node(
     name: &str,
     mesh: Option<usize>,
     world_from_mesh: Option<Affine3A>,

@@ -53,7 +53,9 @@ impl Converter<'_> {
         let position = part.part_from_mesh.transform_point3(mesh.bounds().center());
         let before = self.data.emitters.len();
         for (event, recording) in self.files.sounds.of(model, categories) {
-            let Some((signal, level_db)) = signal_of(recording).filter(|_| lasts(event)) else {
+            let Some((signal, level_db)) =
+                signal_of(recording).filter(|_| is_continuous_event(event))
+            else {
                 let what =
                     format!("the sound {recording:?} of {event:?} has no lasting signal; left out");
                 self.report
@@ -113,7 +115,7 @@ fn convert_light(
 }
 
 /// Returns whether an event lasts while a thing is on: `on`, `on_2`, and SUNCG's own words for it.
-fn lasts(event: &str) -> bool {
+fn is_continuous_event(event: &str) -> bool {
     event.starts_with("on") || ["music", "exhaust", "drop"].contains(&event)
 }
 
@@ -148,6 +150,10 @@ mod tests {
         );
         assert_eq!(signal_of("kettle.wav").map(|s| s.0), Some("kettle"));
         assert_eq!((signal_of("dog.wav"), signal_of(".wav")), (None, None));
-        assert!(lasts("on") && lasts("on_2") && !lasts("doorbell"));
+        assert!(
+            is_continuous_event("on")
+                && is_continuous_event("on_2")
+                && !is_continuous_event("doorbell")
+        );
     }
 }

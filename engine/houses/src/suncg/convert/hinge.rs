@@ -62,8 +62,8 @@ pub(super) fn fit(meshes: [&Mesh; 2], pieces: &[Vec<Component>; 2]) -> Option<Hi
         moving[1].extend(&piece.triangles);
     }
     let [first, second] = [
-        SurfaceOutline::of(meshes[0], &moving[0])?,
-        SurfaceOutline::of(meshes[1], &moving[1])?,
+        PlanMoments::of(meshes[0], &moving[0])?,
+        PlanMoments::of(meshes[1], &moving[1])?,
     ];
     // The states are meshed apart and may differ a little in hidden faces; the turned box below decides.
     if (first.area - second.area).abs() > 0.15 * first.area {
@@ -118,7 +118,7 @@ fn turned(point: Vec3, hinge: &MeshHinge) -> Vec3 {
 }
 
 /// A surface in plan view.
-struct SurfaceOutline {
+struct PlanMoments {
     /// m².
     area: f64,
     /// The area's centre, (x, z), m.
@@ -127,7 +127,7 @@ struct SurfaceOutline {
     direction_rad: f64,
 }
 
-impl SurfaceOutline {
+impl PlanMoments {
     fn of(mesh: &Mesh, triangles: &[u32]) -> Option<Self> {
         let (mut area, mut sum) = (0.0, DVec2::ZERO);
         let (mut xx, mut xz, mut zz) = (0.0, 0.0, 0.0);

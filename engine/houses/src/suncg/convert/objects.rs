@@ -115,11 +115,11 @@ impl<'a> Converter<'a> {
     /// The OBJ file of a node's state: `_0` for state 1 where it exists.
     fn mesh_of_state(&mut self, model: &str, node: &NodeFile, at: &FileLocation) -> Option<String> {
         let second = node.state.is_some_and(|state| (state - 1.0).abs() < 1e-9);
-        let path = paths::model(model, second);
+        let path = paths::model_mesh_path(model, second);
         if self.shapes.get_mut(&path).is_some() {
             return Some(path);
         }
-        let base = paths::model(model, false);
+        let base = paths::model_mesh_path(model, false);
         if second && self.shapes.get_mut(&base).is_some() {
             self.report.warn(
                 at.field("state"),
@@ -162,7 +162,7 @@ impl<'a> Converter<'a> {
         let two_states = self
             .files
             .meshes
-            .contains_key(&paths::model(plan.model, true));
+            .contains_key(&paths::model_mesh_path(plan.model, true));
         if two_states && hinge.is_none() {
             let what = format!(
                 "the two states of model {:?} are not one upright hinge; it does not move",
@@ -194,7 +194,7 @@ impl<'a> Converter<'a> {
                 materials: materials.clone(),
             })
             .collect();
-        let is_open = path == paths::model(plan.model, false);
+        let is_open = path == paths::model_mesh_path(plan.model, false);
         self.push_object(plan, shapes, hinge.map(|hinge| (hinge, is_open)));
     }
 

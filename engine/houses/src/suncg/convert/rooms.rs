@@ -52,7 +52,7 @@ impl<'a> Converter<'a> {
                 .into_iter()
                 .filter(|(_, kind)| !hidden.contains(&Some(*kind)))
             {
-                let path = paths::room(&self.files.scene_id, model, letter);
+                let path = paths::room_mesh_path(&self.files.scene_id, model, letter);
                 self.pieces_of(&path, kind, &name, level, Some(room_id), &at);
             }
         }
@@ -72,7 +72,7 @@ impl<'a> Converter<'a> {
             return self.arch_of_node(node, Self::level_id(key.0), None, &[]);
         }
         if let Some(model) = self.room_model(node, &at) {
-            let path = paths::room(&self.files.scene_id, model, 'f');
+            let path = paths::room_mesh_path(&self.files.scene_id, model, 'f');
             self.pieces_of(
                 &path,
                 StructureKind::Ground,

@@ -119,7 +119,7 @@ fn of_model(
 ) -> Vec<(String, ModelShape)> {
     let mut shapes = Vec::new();
     for second in [false, true] {
-        let path = paths::model(model, second);
+        let path = paths::model_mesh_path(model, second);
         let Some(mesh_files) = files.meshes.get(&path) else {
             continue;
         };

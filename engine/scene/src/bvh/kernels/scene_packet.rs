@@ -96,7 +96,7 @@ pub(super) fn occluded<const N: usize>(
 
 /// Returns the rays of a packet in the space of an instance, within its box; `None` when none can hit it.
 #[inline(always)]
-fn enter<const N: usize>(
+fn packet_in_instance<const N: usize>(
     placed: &PreparedInstance,
     fan: &PreparedPacket<N>,
     filter: &HitFilter,
@@ -140,7 +140,7 @@ impl<const N: usize, C: Fn(usize, HitIndex) -> TieBreak + Copy> PacketLeafVisito
     #[inline(always)]
     fn visit_leaf(&mut self, fan: &mut PreparedPacket<N>, instance: usize) -> bool {
         let placed = &self.set.placed[instance];
-        if let Some(mut local) = enter(placed, fan, self.filter) {
+        if let Some(mut local) = packet_in_instance(placed, fan, self.filter) {
             let (bvh, source) = (&*placed.mesh, instance as u32 + 1);
             let (answers, claim) = (&mut *self.answers, self.claim);
             let mut visit = ClosestLeafVisitor {
@@ -173,7 +173,7 @@ impl<const N: usize> PacketLeafVisitor<N> for OccludedInstances<'_> {
     #[inline(always)]
     fn visit_leaf(&mut self, fan: &mut PreparedPacket<N>, instance: usize) -> bool {
         let placed = &self.set.placed[instance];
-        if let Some(mut local) = enter(placed, fan, self.filter) {
+        if let Some(mut local) = packet_in_instance(placed, fan, self.filter) {
             let before = local.limit;
             traverse(
                 &placed.mesh.tree,
