@@ -321,3 +321,60 @@ fn a_bare_plural_is_two_or_more_of_what_is_told_and_any_under_a_plural() {
         assert_eq!(said(text), meant, "{text}");
     }
 }
+
+#[test]
+fn the_same_place_and_what_somebody_left() {
+    for (text, meant) in [
+        (
+            "The bed is in the same room as the curtain.",
+            "The bed is in a room with the curtain.",
+        ),
+        (
+            "The gray vase is on the same shelf as a purple book.",
+            "The gray vase is on a shelf that supports a purple book.",
+        ),
+        (
+            "Somebody left a tablet on the coffee table.",
+            "A tablet is on the coffee table.",
+        ),
+        ("No one is in the kitchen.", "No person is in the kitchen."),
+        (
+            "A black pan is standing on the stove, and it's empty.",
+            "A black pan is on the stove, and a black pan on the stove is empty.",
+        ),
+        ("Is anything on the shelves?", "Is a thing on a shelf?"),
+        (
+            "The room with the red sofas has a glass door.",
+            "There is a glass door in the room with at least two red sofas.",
+        ),
+        (
+            "There isn't any bottle or cup on the counter.",
+            "There is no bottle on the counter, and there is no cup on the counter.",
+        ),
+        (
+            "There are more jars on the shelf than there are mugs on the table.",
+            "There are more jars on the shelf than mugs on the table.",
+        ),
+        (
+            "Where's the nearest bin to the toilet?",
+            "Where is the bin closest to the toilet?",
+        ),
+        (
+            "Walk to the end of the corridor.",
+            "Stand at the end of the corridor.",
+        ),
+        ("Hand me the cup, would you?", "Bring me the cup."),
+    ] {
+        assert_eq!(said(text), meant, "{text}");
+    }
+    // What a picture shows is not what belongs to it, and a bed is no room with an end.
+    for text in [
+        "A picture of some blue bottles hangs on the wall.",
+        "Bring me the magazine that's lying at the end of the bed.",
+    ] {
+        assert!(matches!(
+            Language::english().read(text),
+            Err(ReadError::NotASentence { .. })
+        ));
+    }
+}

@@ -484,8 +484,13 @@ impl Resolver {
             // "The hood is above it": not above itself.
             let mut own = self.mentions.iter();
             let is_own = own.any(|own| own.unit == self.unit && own.phrase == mention.phrase);
-            if !is_room && !is_own && !phrases.contains(&mention.phrase) {
-                phrases.push(mention.phrase.clone());
+            // "A pan is on the stove, and it is empty": a pan on the stove.
+            let phrase = match &mention.with_said {
+                Some(said) if is_one(said) => said.clone().into(),
+                _ => mention.phrase.clone(),
+            };
+            if !is_room && !is_own && !phrases.contains(&phrase) {
+                phrases.push(phrase);
             }
         }
         if phrases.is_empty() {
@@ -537,6 +542,10 @@ fn subject_with_said(clause: &Clause) -> Option<Description> {
         _ => return None,
     }
     Some(subject)
+}
+
+fn is_one(own: &Description) -> bool {
+    matches!(own.quantifier, Quantifier::Some | Quantifier::Exactly(1))
 }
 
 /// "There is exactly one bottle in the hall, and it is green": the bottle.

@@ -1,6 +1,6 @@
 //! Trees to forms: the meanings of the grammar's functions.
 
-use super::phrases::{modifier, phrase, relation_to, size};
+use super::phrases::{described, modifier, phrase, relation_to, size};
 use super::{existence, numbers, places, questions, requests, rooms, sets, verb_phrases};
 use crate::form::{
     Clause, Description, Form, Modifier, Noun, OrdinalSelection, Phrase, Quality, Quantifier,
@@ -138,6 +138,24 @@ pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
         ("holds_place" | "whether_place", [subject, place]) => {
             let (predicate, place) = place_of(place)?;
             holds(&predicate, vec![phrase(subject)?, place])
+        }
+        ("left_at", [thing, relation, landmark]) => {
+            holds(&id(relation)?, vec![phrase(thing)?, phrase(landmark)?])
+        }
+        ("left_in_place", [thing, place]) => {
+            let (predicate, place) = place_of(place)?;
+            holds(&predicate, vec![phrase(thing)?, place])
+        }
+        ("exists_neither", [one, other, place]) => {
+            let place = modifier(place)?;
+            let no = |noun: &Tree| {
+                let noun = described(noun)?.with_modifier(place.clone());
+                Some(Clause::Exists(noun.with_quantifier(Quantifier::No).into()))
+            };
+            Clause::All(vec![no(one)?, no(other)?])
+        }
+        ("more_each", [more, there, than, elsewhere]) => {
+            numbers::more_each([more, there], [than, elsewhere])?
         }
         ("is" | "whether_is", [subject, quality]) => is(phrase(subject)?, quality)?,
         ("says" | "whether_says", [subject, said]) => verb_phrases::clause(phrase(subject)?, said)?,
@@ -373,6 +391,24 @@ pub(super) fn place_of(tree: &Tree) -> Option<(String, Phrase)> {
             let room = Description::new(Quantifier::The, Noun::Room(id(noun)?));
             of("in_corner_of", room.into())
         }
+        ("place_same_room", [other]) => {
+            let room = Description::new(Quantifier::Some, Noun::Room(Noun::ANY_ROOM.to_owned()));
+            let with = Modifier::new("room_contains", [phrase(other)?]);
+            of("in_room", room.with_modifier(with).into())
+        }
+        ("place_same_thing", [relation, noun, other]) => {
+            let relation = id(relation)?;
+            let converse = match relation.as_str() {
+                "on" => "supports",
+                "in" => "contains",
+                _ => return None,
+            };
+            let shared = described(noun)?.with_modifier(Modifier::new(converse, [phrase(other)?]));
+            (relation, shared.into())
+        }
+        ("destination_end", [room]) => of("at_end_of", self::room(room)?),
+        ("destination_middle", [room]) => of("in_middle_of", self::room(room)?),
+        ("destination_corner_of", [room]) => of("in_corner_of", self::room(room)?),
         ("place_end", []) => of("at_end_of", any_room()),
         ("place_corner" | "destination_corner", []) => of("in_corner_of", any_room()),
         ("place_middle", []) => of("in_middle_of", any_room()),
@@ -439,14 +475,14 @@ pub(super) fn room(tree: &Tree) -> Option<Phrase> {
             }),
             ..kind(own, Quantifier::The)?
         },
-        ("room_with", [own, thing]) => Description {
-            modifiers: vec![Modifier {
-                negated: false,
-                predicate: "room_contains".to_owned(),
-                arguments: vec![phrase(thing)?],
-            }],
-            ..kind(own, Quantifier::The)?
-        },
+        ("room_with" | "room_some_with", [own, thing]) => {
+            let quantifier = match function {
+                "room_with" => Quantifier::The,
+                _ => Quantifier::Some,
+            };
+            let with = Modifier::new("room_contains", [phrase(thing)?]);
+            kind(own, quantifier)?.with_modifier(with)
+        }
         _ => return None,
     };
     Some(description.into())

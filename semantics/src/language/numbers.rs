@@ -42,6 +42,12 @@ pub(super) fn more_where(what: &Tree, one: &Tree, other: &Tree) -> Option<Clause
     Some(clause(there(one)?, there(other)?))
 }
 
+/// More of a kind in one place than of another kind in another: "more jars on the shelf than mugs on the table".
+pub(super) fn more_each(more: [&Tree; 2], than: [&Tree; 2]) -> Option<Clause> {
+    let there = |[what, place]: [&Tree; 2]| Some(described(what)?.with_modifier(modifier(place)?));
+    Some(clause(there(more)?, there(than)?))
+}
+
 /// Equal numbers: more of neither.
 pub(super) fn as_many(one: &Tree, other: &Tree) -> Option<Clause> {
     let not = |clause: Clause| Clause::Not(Box::new(clause));

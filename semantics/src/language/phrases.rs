@@ -47,7 +47,7 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
     };
     match (function, arguments) {
         ("the" | "i_the", [noun]) => of(Quantifier::The, noun),
-        ("some" | "i_some", [noun]) => of(Quantifier::Some, noun),
+        ("some" | "i_some" | "i_the_plural", [noun]) => of(Quantifier::Some, noun),
         ("every" | "i_every" | "the_plural", [noun])
         | ("every_counted" | "i_every_counted", [_, noun]) => of(Quantifier::Every, noun),
         ("no", [noun]) => of(Quantifier::No, noun),
@@ -103,9 +103,13 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
             let order = questions::superlative_of(&id(word)?, function == "comparative_less_of")?;
             Some(questions::selected(sets::set(of)?, order, None).into())
         }
+        ("nobody", []) => {
+            let person = Noun::Object("person".to_owned());
+            Some(Description::new(Quantifier::No, person).into())
+        }
         ("me", []) => Some(Phrase::Speaker),
         ("at_least_one", [noun]) => of(Quantifier::AtLeast(1), noun),
-        ("at_least", [count, noun]) => of(Quantifier::AtLeast(number(count)?), noun),
+        ("at_least" | "i_at_least", [count, noun]) => of(Quantifier::AtLeast(number(count)?), noun),
         ("i_the_that" | "i_the_that_verb", [noun, relation, other]) => {
             that(Quantifier::The, noun, id(relation)?, phrase(other)?)
         }
@@ -287,6 +291,18 @@ fn is_way(noun: &Noun) -> bool {
     }
 }
 
+fn is_picture(noun: &Noun) -> bool {
+    let shows = [
+        "picture",
+        "painting",
+        "photo",
+        "photograph",
+        "poster",
+        "drawing",
+    ];
+    matches!(noun, Noun::Object(noun) if shows.contains(&noun.as_str()))
+}
+
 /// The description of a noun with its adjectives and modifiers; the caller sets its quantifier.
 pub(super) fn described(tree: &Tree) -> Option<Description> {
     let (function, arguments) = parts(tree)?;
@@ -295,8 +311,16 @@ pub(super) fn described(tree: &Tree) -> Option<Description> {
         ("plain", [inner]) => described(inner)?,
         ("with" | "but_not", [noun, added]) => {
             let mut description = described(noun)?;
+            let is_of = parts(added)?.0 == "modifier_of";
             let added = modifier(added)?;
             if added.predicate.starts_with("leads_") && !is_way(&description.noun) {
+                return None;
+            }
+            // What a picture shows is not its own, and "at the end of the bed" is no place in a room.
+            let ends = |last: &Modifier| last.predicate == "at_end_of";
+            if is_of
+                && (is_picture(&description.noun) || description.modifiers.last().is_some_and(ends))
+            {
                 return None;
             }
             description.modifiers.push(Modifier {
@@ -310,6 +334,12 @@ pub(super) fn described(tree: &Tree) -> Option<Description> {
             let mut description = described(noun)?;
             verb_phrases::add_quality(&mut description, Quality::Material(id(word)?))?;
             description
+        }
+        ("way_between", [noun, one, other]) => {
+            let way = described(noun)?;
+            is_way(&way.noun).then_some(())?;
+            let to = |place: &Tree| Some(Modifier::new("leads_to", [room(place)?]));
+            way.with_modifier(to(one)?).with_modifier(to(other)?)
         }
         ("with_apposition", [noun, added]) => described(noun)?.with_modifier(modifier(added)?),
         ("with_apposed_color", [noun, color]) => {

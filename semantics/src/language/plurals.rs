@@ -4,11 +4,14 @@
 //! pots" have one pot each, and "none of the windows has curtains" is not true of a window with one (Zweig, "Number-neutral
 //! bare plurals and the multiplicity implicature", 2009).
 
-use super::from_tree::{number, parts};
+use super::from_tree::{id, number, parts};
 use crate::grammar::Tree;
 
-/// Returns the tree with each bare plural as "some" where a plural or a denial goes before, and with "the walls of the
-/// kitchen" as every wall of it where something is said of them.
+/// Returns the tree with
+///
+/// - a bare plural as "some" where a plural or a denial goes before;
+/// - "on the shelves" as on any of them, "with the green chairs" as with several;
+/// - "the walls of the kitchen" as every wall of it where something is said of them.
 pub(super) fn by_place(tree: Tree) -> Tree {
     distributed(tree, false)
 }
@@ -28,10 +31,21 @@ fn distributed(tree: Tree, under_plural: bool) -> Tree {
     };
     let is_said = ["is", "says", "whether_is", "whether_says"].contains(&function.as_str());
     let mut under = under_plural || is_plural(&function, &arguments) || function.ends_with("_not");
-    let mut distributed_arguments = Vec::with_capacity(arguments.len());
+    let is_possession =
+        ["modifier_with", "room_with", "room_some_with"].contains(&function.as_str());
+    let mut distributed_arguments: Vec<Tree> = Vec::with_capacity(arguments.len());
     for (at, argument) in arguments.into_iter().enumerate() {
         let subject_is_plural =
             parts(&argument).is_some_and(|(function, of)| is_plural(function, of));
+        let is_supported = distributed_arguments
+            .last()
+            .and_then(id)
+            .is_some_and(|word| word == "on" || word == "in");
+        let argument = match parts(&argument) {
+            Some(("the_plural", _)) if is_supported => renamed(argument, "some"),
+            Some(("i_the_plural", _)) if is_possession => renamed(argument, "i_at_least_two"),
+            _ => argument,
+        };
         let mut argument = distributed(argument, under);
         if at == 0 {
             under |= subject_is_plural;
@@ -62,12 +76,16 @@ fn is_plural(function: &str, arguments: &[Tree]) -> bool {
 }
 
 fn every_piece(tree: Tree) -> Tree {
+    match parts(&tree) {
+        Some(("pieces_of" | "structures_of", _)) => renamed(tree, "every_piece_of"),
+        _ => tree,
+    }
+}
+
+fn renamed(tree: Tree, name: &str) -> Tree {
     match tree {
-        Tree::Apply {
-            function,
-            arguments,
-        } if ["pieces_of", "structures_of"].contains(&function.as_str()) => Tree::Apply {
-            function: "every_piece_of".to_owned(),
+        Tree::Apply { arguments, .. } => Tree::Apply {
+            function: name.to_owned(),
             arguments,
         },
         other => other,

@@ -27,6 +27,14 @@ fn paraphrased(function: &str, arguments: &[Tree]) -> Option<Question> {
         ("which_are_more", [one, other]) => {
             Question::Alternatives(vec![numbers::more(one, other)?, numbers::more(other, one)?])
         }
+        ("which_has_more", [what, one, other]) => Question::Alternatives(vec![
+            numbers::has_more(one, what, other)?,
+            numbers::has_more(other, what, one)?,
+        ]),
+        ("where_are_more", [what, one, other]) => Question::Alternatives(vec![
+            numbers::more_where(what, one, other)?,
+            numbers::more_where(what, other, one)?,
+        ]),
         ("which_count", [one, other, what]) => {
             Question::Alternatives(numbers::counts(one, other, what)?)
         }

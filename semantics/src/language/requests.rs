@@ -202,7 +202,7 @@ fn step(tree: &Tree) -> Option<RequestStep> {
         ("put_by", [_, object, relation, to]) | ("leave_at", [object, relation, to]) => {
             put(object, relation, to)?
         }
-        ("stand_in_place", [place]) => {
+        ("stand_in_place" | "stand_in_destination", [place]) => {
             let (predicate, to) = place_of(place)?;
             RequestStep::Put {
                 object: Phrase::Listener,
@@ -369,6 +369,11 @@ impl TreeBuilder<'_> {
                 }
                 if *object == Phrase::Listener && predicate == "in_room" {
                     return Some(Tree::apply("stand_in_place", [self.place(to)?]));
+                }
+                if *object == Phrase::Listener
+                    && let Some(spot) = self.spot(predicate, to)
+                {
+                    return Some(Tree::apply("stand_in_place", [spot]));
                 }
                 if *object == Phrase::Listener {
                     let relation = self.known(RELATION, predicate)?;

@@ -310,16 +310,18 @@ impl TreeBuilder<'_> {
             {
                 Some(Tree::apply("room_nth", [ordinal(selection.place), kind]))
             }
-            (None, [with], Quantifier::The)
+            (None, [with], quantifier @ (Quantifier::The | Quantifier::Some))
                 if with.predicate == "room_contains" && !with.negated =>
             {
                 let [thing] = &with.arguments[..] else {
                     return None;
                 };
-                Some(Tree::apply(
-                    "room_with",
-                    [kind, self.phrase(thing, Position::Landmark)?],
-                ))
+                let function = match quantifier {
+                    Quantifier::The => "room_with",
+                    _ => "room_some_with",
+                };
+                let thing = self.phrase(thing, Position::Landmark)?;
+                Some(Tree::apply(function, [kind, thing]))
             }
             (None, [other], Quantifier::Some)
                 if other.predicate == Modifier::IDENTICAL && other.negated =>
@@ -397,6 +399,9 @@ impl TreeBuilder<'_> {
             (Quantifier::Every, []) => Some(Tree::apply("i_every", [own])),
             (Quantifier::Exactly(number), []) if number != 1 => {
                 Some(Tree::apply("i_exactly", [count(number), own]))
+            }
+            (Quantifier::AtLeast(number), []) if number > 1 => {
+                Some(Tree::apply("i_at_least", [count(number), own]))
             }
             (quantifier @ (Quantifier::The | Quantifier::Some), [only]) if !only.negated => {
                 let [other] = &only.arguments[..] else {

@@ -106,11 +106,13 @@ pub(super) fn said(tree: &Tree) -> Option<SaidList> {
         ("vp_quality", [quality]) => affirmed(Predication::Quality(quality_of(quality)?)),
         ("vp_standing", [posture, inner]) => {
             let mut all = said(inner)?;
-            // "Standing on" does not say that something is switched on.
-            if all
-                .iter()
-                .any(|(said, _)| matches!(said, Predication::Quality(_)))
-            {
+            // "Standing on" does not say that something is switched on, and nothing "stands" being a chair.
+            let is_no_place = |said: &Predication| match said {
+                Predication::Quality(_) => true,
+                Predication::Relation(modifier) => modifier.predicate == Modifier::IDENTICAL,
+                _ => false,
+            };
+            if all.iter().any(|(said, _)| is_no_place(said)) {
                 return None;
             }
             if hangs(posture) {
