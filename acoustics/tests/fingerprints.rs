@@ -412,8 +412,13 @@ fn hide(id: &str, random: &mut Random) -> LawSpec {
 #[test]
 fn every_law_is_found_by_its_fingerprint() {
     let hall = room();
-    for info in laws::all() {
+    // A seed for each law in turn; all of three with all tests.
+    let every = std::env::var_os("DWELL_TEST_ALL").is_some();
+    for (k, info) in laws::all().iter().enumerate() {
         for seed in 0..3 {
+            if !every && seed != k as u64 % 3 {
+                continue;
+            }
             let mut random = RandomKey::root(seed).child(info.id).stream();
             let hidden = hide(info.id, &mut random);
             let found = verdict(&hall, std::slice::from_ref(&hidden), seed);

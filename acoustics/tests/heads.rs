@@ -7,7 +7,8 @@ mod common;
 use common::{Hall, dry, material, pieces};
 use dwell_acoustics::head::HrirMeasurement;
 use dwell_acoustics::{
-    AcousticConfig, ActiveSource, Head, Receiver, SoundSourcePose, Stream, StreamConfig, metrics,
+    AcousticConfig, AcousticScene, ActiveSource, Head, Receiver, SoundSourcePose, Stream,
+    StreamConfig, metrics,
 };
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
@@ -34,6 +35,11 @@ fn nowhere(rate_hz: u32) -> Hall {
 fn heard(hall: &Hall, head: &Head, in_head: Vec3) -> [Vec<f32>; 2] {
     let mut scene = hall.scene.clone();
     scene.add_head(head);
+    heard_in(&scene, hall, head, in_head)
+}
+
+/// The same in the scene of a place that has the head already.
+fn heard_in(scene: &AcousticScene, hall: &Hall, head: &Head, in_head: Vec3) -> [Vec<f32>; 2] {
     let pose = Pose::from_position_yaw(Vec3::new(3.0, 1.5, -2.0), 0.7);
     let source = SoundSourcePose::omni(pose.transform_point(in_head * FAR_M));
     let receiver = Receiver::with_head(head.id(), pose);
@@ -47,6 +53,8 @@ fn heard(hall: &Hall, head: &Head, in_head: Vec3) -> [Vec<f32>; 2] {
 fn measure(count: usize) -> HrirMeasurement {
     let hall = nowhere(MEASURED_HZ as u32);
     let head = Head::spherical(RADIUS_M).unwrap();
+    let mut scene = hall.scene.clone();
+    scene.add_head(&head);
     let samples = 700;
     let mut measured = HrirMeasurement {
         sources: Vec::new(),
@@ -60,7 +68,7 @@ fn measure(count: usize) -> HrirMeasurement {
         let across = (1.0 - y * y).sqrt();
         let direction = Vec3::new(across * angle.cos(), y, across * angle.sin());
         measured.sources.push((direction * FAR_M).as_dvec3());
-        for mut response in heard(&hall, &head, direction) {
+        for mut response in heard_in(&scene, &hall, &head, direction) {
             // A loudspeaker with a gain of its own.
             for x in &mut response {
                 *x *= 0.2;

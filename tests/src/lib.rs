@@ -13,6 +13,11 @@ use dwell_scene::{LawInfo, LawSpec};
 use serde_json::json;
 use std::sync::{Arc, OnceLock};
 
+/// Returns whether the long variants of tests run, too: `make test-all` sets `DWELL_TEST_ALL=1`.
+pub fn runs_all() -> bool {
+    std::env::var_os("DWELL_TEST_ALL").is_some()
+}
+
 /// The built-in apartment with its shared engines, made once a process.
 ///
 /// # Panics

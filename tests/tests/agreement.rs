@@ -56,11 +56,12 @@ fn stage(name: &str, most: usize) -> Stage {
     }
 }
 
-/// Views of the sample house and of each generated one: 16 and 10, or 200 and 100 with `DWELL_TEST_ALL=1`.
+/// Views of the sample house and of each generated one: 8 and 5, or 200 and 100 with `DWELL_TEST_ALL=1`.
 fn stages() -> Vec<Stage> {
-    let (of_sample, of_seed) = match std::env::var_os("DWELL_TEST_ALL") {
-        Some(_) => (200, 100),
-        None => (16, 10),
+    let (of_sample, of_seed) = if dwell_tests::runs_all() {
+        (200, 100)
+    } else {
+        (8, 5)
     };
     let mut all: Vec<Stage> = ["seed:3", "seed:12"]
         .map(|seed| stage(seed, of_seed))

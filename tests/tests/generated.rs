@@ -7,9 +7,9 @@ use dwell_tests::validity::{CheckCounts, CheckDepth, look, of_other_bytes};
 use std::collections::BTreeMap;
 
 /// Seeds that are looked at in every run.
-const SEEDS: u64 = 300;
+const SEEDS: u64 = 120;
 /// Of these, seeds whose houses settle for two seconds.
-const SETTLED: u64 = 30;
+const SETTLED: u64 = 15;
 
 fn assert_valid(all: &[CheckCounts]) {
     let mut faults = Vec::new();

@@ -112,8 +112,12 @@ fn shutters_in_a_batch_give_the_bits_of_worlds_alone() {
     for renderer in back_ends() {
         let still = observe(&mut batch(0..2, &renderer, &[]));
         let laws = [vec![rolls()], vec![blurs()], vec![rolls(), blurs()]];
-        // Rolling alone is a part of both; software adapters are slow.
-        let first = usize::from(renderer != BackEnd::Cpu);
+        // Each alone is a part of both; software adapters are slow.
+        let first = match renderer {
+            BackEnd::Cpu => 0,
+            _ if dwell_tests::runs_all() => 0,
+            _ => 2,
+        };
         for laws in laws.into_iter().skip(first) {
             let seen = observe(&mut batch(0..2, &renderer, &laws));
             let rolling = laws.contains(&rolls());

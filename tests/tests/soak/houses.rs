@@ -1,7 +1,7 @@
 //! Episodes in several houses, begun again and again, with every sensor read once in a while: memory stays flat, and a fresh
 //! process that plays the same ends with the same bits.
 //!
-//! 20,000 physics steps in 200 episodes in 5 houses; 1,000,000 in 10,000 in 20 with `DWELL_TEST_ALL=1`.
+//! 10,000 physics steps in 100 episodes in 5 houses; 1,000,000 in 10,000 in 20 with `DWELL_TEST_ALL=1`.
 
 use crate::memory::{LOOKS, Watch};
 use crate::{AGAIN, HASH, Other, SUBSTEPS, steps};

@@ -5,7 +5,7 @@
 //!
 //! `houses` begins episodes in many houses over and over.
 //!
-//! 20,000 physics steps in the apartment; 1,000,000 with `DWELL_TEST_ALL=1`, and in a real house, too.
+//! 10,000 physics steps in the apartment; 1,000,000 with `DWELL_TEST_ALL=1`, and in a real house, too.
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 #![expect(clippy::print_stdout, reason = "a long test tells its figures")]
@@ -42,10 +42,10 @@ const AGAIN: &str = "DWELL_SOAK_AGAIN";
 const HASH: &str = "hash ";
 
 fn steps() -> usize {
-    if std::env::var_os("DWELL_TEST_ALL").is_some() {
+    if dwell_tests::runs_all() {
         1_000_000
     } else {
-        20_000
+        10_000
     }
 }
 
