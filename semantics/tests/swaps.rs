@@ -241,8 +241,8 @@ fn swap_in(name: &str) -> usize {
         .map(|room| dwell_semantics::refer::room_phrase(&scene, room))
         .collect();
     let mut stream = RandomKey::root(11).child(name).stream();
-    let (mut swaps, mut wrong) = (0, 0);
-    while swaps < swaps() {
+    let (wanted, mut swaps, mut wrong) = (swaps(), 0, 0);
+    while swaps < wanted {
         let description = stream.choose(&all).unwrap();
         assert!(facts.exists(description), "{name}: {description:?}");
         let Some(other) = swapped(description, &nouns, &rooms, &mut stream) else {
