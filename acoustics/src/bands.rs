@@ -128,7 +128,9 @@ impl FilterBank {
         });
         Self {
             slow: slow.collect(),
-            blended: (0..BAND_COUNT).map(|band| blended(&shares, band)).collect(),
+            blended: (0..BAND_COUNT)
+                .map(|band| pulse_energy_matrix(&shares, band))
+                .collect(),
             fft,
             spans,
             shares,
@@ -242,7 +244,7 @@ fn stride(span: &Range<usize>, bins: usize) -> usize {
 }
 
 /// See [`FilterBank::blended`].
-fn blended(shares: &[Vec<f32>], band: usize) -> [[f64; BAND_COUNT]; BAND_COUNT] {
+fn pulse_energy_matrix(shares: &[Vec<f32>], band: usize) -> [[f64; BAND_COUNT]; BAND_COUNT] {
     let mut sums = [[0.0; BAND_COUNT]; BAND_COUNT];
     let last = shares[band].len() - 1;
     let mut poll = PollEvery::new(4096);

@@ -138,7 +138,7 @@ impl MicrophoneChain {
 
     /// Returns the output of microphones in their initial state for `samples` and the silence after it, until they are
     /// silent themselves. Shape (channel, sample), flat.
-    pub(crate) fn record(
+    pub(crate) fn record_until_silent(
         installed: &[LawSpec],
         rate_hz: f64,
         listener: &StageContext<'_>,

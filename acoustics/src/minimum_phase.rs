@@ -22,7 +22,7 @@ fn transform_length(rate_hz: f64, span_s: f64) -> usize {
 /// The logarithm of a minimum-phase spectrum is linear in the logarithm of the gain, so that a spectrum is one
 /// exponential of a sum of eight tabulated rows.
 #[derive(Debug)]
-pub(crate) struct PathFilters {
+pub(crate) struct MinimumPhaseDesigner {
     fft: RealFft,
     rate_hz: f64,
     /// Logarithmic spectrum of a band whose gain is e, others 1. Shape (band, bin).
@@ -33,7 +33,7 @@ pub(crate) struct PathFilters {
     fade: Vec<f32>,
 }
 
-impl PathFilters {
+impl MinimumPhaseDesigner {
     /// Filters for `rate_hz`; their transforms span 32 ms.
     pub(crate) fn new(rate_hz: f64) -> Self {
         Self::with_min_span(rate_hz, SPAN_S)
@@ -181,7 +181,7 @@ mod tests {
 
     #[test]
     fn equal_energies_are_one_sample() {
-        let filters = PathFilters::new(16_000.0);
+        let filters = MinimumPhaseDesigner::new(16_000.0);
         let (mut spectrum, amplitude) = filters.spectrum(&[0.25; 8], None);
         let response = filters.impulse_response(&mut filters.fft(), &mut spectrum);
         assert!((amplitude - 0.5).abs() < 1e-7);
@@ -192,7 +192,7 @@ mod tests {
     #[test]
     fn energies_are_met_at_the_centres_and_nothing_comes_early() {
         let rate_hz = 16_000.0;
-        let filters = PathFilters::new(rate_hz);
+        let filters = MinimumPhaseDesigner::new(rate_hz);
         let energy = [1.0, 0.9, 0.8, 0.7, 0.5, 0.3, 0.1, 0.03];
         let (mut spectrum, amplitude) = filters.spectrum(&energy, None);
         let response = filters.impulse_response(&mut filters.fft(), &mut spectrum);

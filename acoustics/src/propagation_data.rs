@@ -68,13 +68,13 @@ impl PropagationData {
                 .collect();
         }
         if self.table.update(&mut self.planes, &mut self.poses, state) {
-            self.moving_edges = self.table.edges().edges_in_state(&self.house, state);
+            self.moving_edges = self.table.edges().moving_edges_in_state(&self.house, state);
         }
     }
 
     /// Applies laws' effects on air and sources; `stated`: the original settings.
     pub(crate) fn apply_effects(&mut self, effects: PathEffects, stated: &AcousticConfig) {
-        self.config = effects.config(stated);
+        self.config = effects.effective_config(stated);
         self.effects = effects;
     }
 

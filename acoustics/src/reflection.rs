@@ -67,11 +67,11 @@ impl Reflection {
 
 /// Returns the random-incidence absorption of an admittance.
 fn random_incidence_absorption(admittance: f64) -> f64 {
-    8.0 * admittance * admittance * bracket(admittance)
+    8.0 * admittance * admittance * paris_bracket(admittance)
 }
 
 /// Returns the bracket of the equation.
-fn bracket(b: f64) -> f64 {
+fn paris_bracket(b: f64) -> f64 {
     1.0 + 1.0 / b - b / (1.0 + b) + 2.0 * libm::log(b / (1.0 + b))
 }
 
@@ -83,7 +83,7 @@ fn admittance(absorption: f64) -> f64 {
         return 0.0;
     }
     for _ in 0..STEPS {
-        let slope = 16.0 * b * bracket(b) - 8.0 / ((1.0 + b) * (1.0 + b));
+        let slope = 16.0 * b * paris_bracket(b) - 8.0 / ((1.0 + b) * (1.0 + b));
         if slope <= 1e-9 {
             break;
         }

@@ -293,9 +293,9 @@ fn every_pair_of_places_has_arrivals_of_its_own() {
             .scene
             .impulse_response(&hall.rays, &source, &receiver, key, threads)
             .unwrap();
-        let again = hall
-            .scene
-            .impulse_response_of(heard.echogram.clone(), &receiver, key);
+        let again =
+            hall.scene
+                .impulse_response_from_echogram(heard.echogram.clone(), &receiver, key);
         assert_eq!(heard.samples, again.samples);
         heard.samples[1600..6400].to_vec()
     };

@@ -66,7 +66,7 @@ fn the_tail_is_as_coherent_as_a_diffuse_field() {
         let size = 512;
         let mut sums = vec![(0.0, 0.0, Complex::default()); frequencies_hz.len()];
         for seed in 0..4 {
-            let heard = hall.scene.impulse_response_of(
+            let heard = hall.scene.impulse_response_from_echogram(
                 echogram(directions.clone()),
                 &receiver,
                 RandomKey::root(seed),

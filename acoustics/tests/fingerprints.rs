@@ -101,7 +101,7 @@ fn recording(hall: &Hall, hidden: &[LawSpec], at: Vec3, seed: u64, signal: &[f32
         }];
         let mut out = vec![0.0; BLOCK];
         stream
-            .block(&hall.rays, &state, &sources, &Receiver::omni(at), &mut out)
+            .render_block(&hall.rays, &state, &sources, &Receiver::omni(at), &mut out)
             .unwrap();
         heard.extend_from_slice(&out);
     }

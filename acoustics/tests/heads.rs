@@ -433,7 +433,7 @@ fn streams_wear_heads() {
             let mut out = vec![0.0; 2 * block];
             let state = State::new(&hall.house);
             stream
-                .block(&hall.rays, &state, &[source], &listener(), &mut out)
+                .render_block(&hall.rays, &state, &[source], &listener(), &mut out)
                 .unwrap();
             for (all, channel) in heard.iter_mut().zip(out.chunks_exact(block)) {
                 all.extend_from_slice(channel);

@@ -105,7 +105,7 @@ fn play(
         };
         let mut out = vec![0.0; 2 * BLOCK];
         stream
-            .block(&hall.rays, &state, &[source], &head(), &mut out)
+            .render_block(&hall.rays, &state, &[source], &head(), &mut out)
             .unwrap();
         for (all, channel) in heard.iter_mut().zip(out.chunks_exact(BLOCK)) {
             all.extend_from_slice(channel);

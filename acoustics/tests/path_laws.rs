@@ -299,7 +299,7 @@ fn streams_follow_changes_of_air_and_sources() {
         };
         let mut out = vec![0.0; 800];
         let ear = Receiver::omni(EAR);
-        let report = stream.block(&hall.rays, &state, &[source], &ear, &mut out);
+        let report = stream.render_block(&hall.rays, &state, &[source], &ear, &mut out);
         report.unwrap().traced_responses
     };
     let warm = law("temperature_error", &[("offset_k", 5.0)]);

@@ -86,7 +86,7 @@ impl Walk {
             };
             let receiver = Receiver::omni(Self::ear(x_m));
             stream
-                .block(&hall.rays, &state, &[source], &receiver, &mut out)
+                .render_block(&hall.rays, &state, &[source], &receiver, &mut out)
                 .unwrap();
         }
         stream.echograms().next().unwrap().1

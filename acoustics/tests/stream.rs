@@ -63,7 +63,7 @@ fn play(
         };
         let mut out = vec![0.0; channels * BLOCK];
         stream
-            .block(&hall.rays, &state, &[source], &receiver, &mut out)
+            .render_block(&hall.rays, &state, &[source], &receiver, &mut out)
             .unwrap();
         for (all, channel) in heard.iter_mut().zip(out.chunks_exact(BLOCK)) {
             all.extend_from_slice(channel);
@@ -131,14 +131,14 @@ fn a_source_that_stops_rings_out_and_is_forgotten() {
     };
     let mut out = vec![0.0; BLOCK];
     let report = stream
-        .block(&hall.rays, &state, &[source], &receiver, &mut out)
+        .render_block(&hall.rays, &state, &[source], &receiver, &mut out)
         .unwrap();
     assert_eq!((report.traced_responses, report.audible_sources), (1, 1));
     let silent = stream.hash();
     let mut levels = Vec::new();
     for _ in 0..20 {
         stream
-            .block(&hall.rays, &state, &[], &receiver, &mut out)
+            .render_block(&hall.rays, &state, &[], &receiver, &mut out)
             .unwrap();
         levels.push(out.iter().map(|x| x * x).sum::<f32>());
     }
@@ -146,7 +146,7 @@ fn a_source_that_stops_rings_out_and_is_forgotten() {
     assert!(levels[19] <= 0.0);
     assert_ne!(stream.hash(), silent);
     let report = stream
-        .block(&hall.rays, &state, &[], &receiver, &mut out)
+        .render_block(&hall.rays, &state, &[], &receiver, &mut out)
         .unwrap();
     assert_eq!(report.audible_sources, 0);
 }
@@ -337,7 +337,7 @@ fn turning_the_head_needs_no_rays_and_swaps_the_ears() {
         };
         let mut out = vec![0.0; 2 * BLOCK];
         let report = stream
-            .block(&hall.rays, &state, &[source], &head(place, yaw), &mut out)
+            .render_block(&hall.rays, &state, &[source], &head(place, yaw), &mut out)
             .unwrap();
         assert_eq!(report.traced_responses, usize::from(k == 0));
         assert_eq!(report.rotated, usize::from(k == 6));
@@ -436,7 +436,7 @@ fn responses_come_back_to_the_bit() {
             again.restore(&bytes).unwrap();
             let hear = |stream: &mut Stream| {
                 let mut out = vec![0.0; receiver.channels() * BLOCK];
-                let report = stream.block(&hall.rays, &state, sources, &receiver, &mut out);
+                let report = stream.render_block(&hall.rays, &state, sources, &receiver, &mut out);
                 (out, report.unwrap())
             };
             assert_eq!(hear(&mut through), hear(&mut again), "{kind}, block {k}");
@@ -452,7 +452,7 @@ fn microphones_are_silent_unless_a_law_says_otherwise() {
     let mut stream = stream(&hall, StreamConfig::rl());
     let mut out = vec![1.0; BLOCK];
     stream
-        .block(
+        .render_block(
             &hall.rays,
             &state,
             &[],
@@ -466,7 +466,7 @@ fn microphones_are_silent_unless_a_law_says_otherwise() {
     let mut blocks = Vec::new();
     for k in 0..3 {
         stream
-            .block(
+            .render_block(
                 &hall.rays,
                 &state,
                 &[],
@@ -500,12 +500,12 @@ fn wrong_buffers_are_refused_and_change_nothing() {
     let ear = Receiver::omni(Vec3::ZERO);
     let mut out = vec![0.0; BLOCK];
     let message = stream
-        .block(&hall.rays, &state, &[source], &ear, &mut out)
+        .render_block(&hall.rays, &state, &[source], &ear, &mut out)
         .unwrap_err()
         .to_string();
     assert_eq!(message, "a source's signal: expected 800 samples, found 10");
     let message = stream
-        .block(&hall.rays, &state, &[], &head(Vec3::ZERO, 0.0), &mut out)
+        .render_block(&hall.rays, &state, &[], &head(Vec3::ZERO, 0.0), &mut out)
         .unwrap_err()
         .to_string();
     assert_eq!(message, "out: expected 1600 samples, found 800");
@@ -549,7 +549,7 @@ fn a_source_that_is_left_out_rings_out_and_is_not_fed() {
             };
             let rays = &hall.rays;
             let report = stream
-                .block(rays, &state, &sources, &listener, &mut out)
+                .render_block(rays, &state, &sources, &listener, &mut out)
                 .unwrap();
             assert_eq!(report.dropped_sources, usize::from(block > 0));
             heard.extend_from_slice(&out);

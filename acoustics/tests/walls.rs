@@ -186,7 +186,7 @@ fn a_door_that_swings_is_heard_on_its_way_and_exactly_where_it_rests() {
     let hear = |stream: &mut Stream, hall: &Hall, state: &State| -> (usize, Echogram) {
         let mut out = vec![0.0; 800];
         let sources = [source];
-        let report = stream.block(&hall.rays, state, &sources, &receiver, &mut out);
+        let report = stream.render_block(&hall.rays, state, &sources, &receiver, &mut out);
         let (_, echogram) = stream.echograms().next().unwrap();
         (report.unwrap().traced_responses, echogram)
     };
@@ -257,7 +257,7 @@ fn a_door_with_many_sounds_takes_little_in_each_block() {
         .collect();
     let hear = |stream: &mut Stream, hall: &Hall, state: &State| {
         let mut out = vec![0.0; 1600];
-        let report = stream.block(&hall.rays, state, &sources, &receiver, &mut out);
+        let report = stream.render_block(&hall.rays, state, &sources, &receiver, &mut out);
         (report.unwrap(), out)
     };
     let (mut stream, mut other) = (new(&hall, 1), new(&hall, 2));

@@ -161,7 +161,7 @@ fn stream_rl(bencher: Bencher<'_, '_>, name: &str) {
             signal: &signal,
         };
         step += 1;
-        stream.block(
+        stream.render_block(
             &rays,
             &state,
             &[source],

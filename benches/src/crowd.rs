@@ -1,8 +1,8 @@
 //! Houses of very many things: what grows with their number.
 
 use dwell_scene::{
-    Articulation, Category, Collider, House, HouseData, Id, JointKind, LevelId, MaterialId, Mesh,
-    MeshId, Mobility, Object, ObjectId, Part, PartId, Pose, RoomId, ShoeboxMaterials,
+    Category, Collider, House, HouseData, Id, Joint, JointKind, LevelId, MaterialId, Mesh, MeshId,
+    Mobility, Object, ObjectId, Part, PartId, Pose, RoomId, ShoeboxMaterials,
 };
 use glam::{Affine3A, Vec3};
 use std::fmt;
@@ -94,7 +94,7 @@ impl Crowd {
             let part = add_part(&mut data, object, (mesh, place, k));
             if one {
                 let parent = (self == Self::Chained && k > 0).then(|| PartId::from_index(k - 1));
-                let mut joint = Articulation::new(
+                let mut joint = Joint::new(
                     &format!("joint_{k}"),
                     object,
                     part,

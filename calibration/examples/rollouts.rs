@@ -9,7 +9,7 @@ use dwell_calibration::bundle::file::BundleKind;
 use dwell_calibration::rollout::drive::{self, DriveRecordings};
 use dwell_calibration::rollout::drop::BallDrops;
 use dwell_calibration::rollout::series::{self, ModelledSubject, SimulationModel};
-use dwell_calibration::rollout::study::{self, OtherSimulator};
+use dwell_calibration::rollout::study::{self, PeerScores};
 use dwell_calibration::rollout::{PoseTracks, study::StudyOptions};
 use std::error::Error;
 use std::path::Path;
@@ -67,9 +67,9 @@ fn tosses(
     let mut models = study::models();
     models.extend(study::further_models());
     models.retain(|model| wanted(model.name));
-    let peers: Result<Vec<OtherSimulator>, _> = peers
+    let peers: Result<Vec<PeerScores>, _> = peers
         .iter()
-        .map(|p| OtherSimulator::read(Path::new(p)))
+        .map(|p| PeerScores::read(Path::new(p)))
         .collect();
     let tracks = PoseTracks::read(measured)?;
     let report = study::run(&tracks, &models, &peers?, &options, &mut told)?;

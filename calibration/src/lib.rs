@@ -31,7 +31,7 @@ pub use report::{
     CalibrationReport, CalibrationVerdict, CandidateCause, FittedParameter, FoundEffects,
     NamedEffect, NuisanceParameter, ResidualPlot,
 };
-pub use select::{Agreement, ChannelResidual, HeldOutGain, UnexplainedResidual};
+pub use select::{ChannelResidual, HeldOutGain, ResidualNoiseTest, SplitHalfAgreement};
 
 use bundle::file::BundleKind;
 use progress::{CallbackProgress, ProgressReporter as _};
@@ -67,7 +67,7 @@ pub enum CalibrationOutcome {
     /// Prediction errors of roll-outs of tosses, with contact parameters by cross-validation.
     ContactStudy(Box<rollout::study::StudyReport>),
     /// Prediction errors of roll-outs of drives, with parameters of the base by cross-validation.
-    DriveStudy(Box<rollout::series::SeriesReport>),
+    DriveStudy(Box<rollout::series::ModelComparisonReport>),
 }
 
 impl CalibrationOutcome {
@@ -89,7 +89,7 @@ impl CalibrationOutcome {
 pub fn calibrate_any(
     path: &Path,
     options: &Options,
-    peers: &[rollout::study::OtherSimulator],
+    peers: &[rollout::study::PeerScores],
     progress: &mut dyn FnMut(f32, &str) -> bool,
 ) -> Result<CalibrationOutcome, CalibrationError> {
     options.check()?;

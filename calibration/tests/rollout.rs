@@ -6,11 +6,12 @@
 )]
 
 use dwell_calibration::rollout::study::{
-    ContactModel, ContactParameter, OtherSimulator, StudyOptions, run,
+    ContactModel, ContactParameter, PeerScores, StudyOptions, run,
 };
 use dwell_calibration::rollout::{
-    BoardRig, HORIZONS, MeasuredMotion, NominalContact, PoseTrack, PoseTracks, Regime, RigSettings,
-    TrackedBody, TrackerNoise, WindowOptions, diverging, ends, scores, window_start, windows,
+    BoardRig, HORIZONS, MotionState, NominalContact, PoseTrack, PoseTracks, Regime, RigSettings,
+    TrackedBody, TrackerNoise, WindowOptions, diverges_under_noise, ends, scores, window_start,
+    windows,
 };
 use dwell_physics::ContactFriction;
 use dwell_scene::parallel::Threads;
@@ -53,8 +54,8 @@ fn rig(friction: f64) -> BoardRig {
     rig.with_settings(&settings).unwrap()
 }
 
-fn motion(height_m: f64, linear: DVec3, angular: DVec3) -> MeasuredMotion {
-    MeasuredMotion {
+fn motion(height_m: f64, linear: DVec3, angular: DVec3) -> MotionState {
+    MotionState {
         position: DVec3::new(0.4, height_m, -0.7),
         rotation: DQuat::IDENTITY,
         linear,
@@ -113,7 +114,7 @@ fn tossed(friction: f64, count: usize) -> PoseTracks {
     let episodes = (0..count)
         .map(|k| {
             let turn = DQuat::from_rotation_x(0.4 * k as f64) * DQuat::from_rotation_z(0.3);
-            let start = MeasuredMotion {
+            let start = MotionState {
                 rotation: turn,
                 ..motion(
                     0.2,
@@ -212,7 +213,7 @@ fn hidden_friction_is_found_out_of_fold() {
     )
     .unwrap();
     let scored = alone.models[0].episodes.iter();
-    let peer = OtherSimulator {
+    let peer = PeerScores {
         name: "nominal".into(),
         scores: scored.map(|e| (e.episode.clone(), e.score)).collect(),
     };
@@ -286,7 +287,7 @@ fn window_starts_in_flight_do_not_lag() {
 fn a_cube_on_its_edge_is_chance_and_a_flat_one_is_not() {
     let balanced = |degrees: f64, height_m: f64| {
         let turn = DQuat::from_rotation_z(degrees.to_radians());
-        let start = MeasuredMotion {
+        let start = MotionState {
             rotation: turn,
             ..motion(height_m, DVec3::ZERO, DVec3::ZERO)
         };
@@ -309,7 +310,7 @@ fn a_cube_on_its_edge_is_chance_and_a_flat_one_is_not() {
         position_m: 1e-5,
         rotation_rad: 2e-3,
     };
-    let found = diverging(
+    let found = diverges_under_noise(
         &rig(0.3),
         &tracks,
         &[0, 1],
@@ -326,7 +327,7 @@ fn a_table_of_scores_names_the_columns_that_it_wants() {
     let path = folder.path().join("peer.csv");
     let read = |text: &str| {
         std::fs::write(&path, text).unwrap();
-        OtherSimulator::read(&path).map_err(|error| error.to_string())
+        PeerScores::read(&path).map_err(|error| error.to_string())
     };
     let whole = read("episode,position_widths,rotation_deg,e_q\na,0.5,10,0.1\n").unwrap();
     assert_eq!(

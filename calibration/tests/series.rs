@@ -7,7 +7,9 @@
 
 use dwell_calibration::rollout::drive::{DriveRecording, DriveRecordings, NominalBase, models};
 use dwell_calibration::rollout::drop::BallDrops;
-use dwell_calibration::rollout::series::{ModelledSubject as _, SeriesOptions, SeriesReport, run};
+use dwell_calibration::rollout::series::{
+    ModelComparisonReport, ModelledSubject as _, SeriesOptions, run,
+};
 use dwell_calibration::rollout::{Regime, RolloutSubject as _};
 use dwell_scene::random::RandomKey;
 use std::fmt::Write as _;
@@ -74,7 +76,7 @@ fn options() -> SeriesOptions {
     }
 }
 
-fn tried(drives: &DriveRecordings, names: &[&str]) -> SeriesReport {
+fn tried(drives: &DriveRecordings, names: &[&str]) -> ModelComparisonReport {
     let mut all = models();
     all.retain(|model| names.contains(&model.name));
     run(drives, &all, &options(), &mut |_, _| true).unwrap()

@@ -59,7 +59,7 @@ pub(crate) fn mass_factors(model: &PhysicsModel, state: &State) -> Vec<Vec<f32>>
             .take_while(|body| body.object == object)
             .count();
         let own = first..first + count;
-        if let Some(mass) = state.object_mass_kg(house, object) {
+        if let Some(mass) = state.overridden_mass_kg(house, object) {
             let total: f32 = own
                 .clone()
                 .map(|k| model.bodies[k].mass_kg(&factors[k]))

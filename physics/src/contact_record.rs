@@ -3,7 +3,7 @@
 use crate::articulation::JointSystem;
 use crate::contact::{
     BodyMotion, ContactCollector, ContactEvent, ContactHooks, ContactReport, ContactTracker,
-    MergedEvents, RestitutionContext, RestitutionResult, merge_excess, record_motion,
+    ExcessEventTotals, RestitutionContext, RestitutionResult, merge_excess, record_motion,
 };
 use crate::dynamics::Dynamics;
 use crate::joints::JointCoordinate;
@@ -11,10 +11,10 @@ use rapier3d::dynamics::RigidBodyHandle;
 
 /// Contact data kept from step to step.
 #[derive(Clone, Default)]
-pub(crate) struct ContactRecord {
+pub(crate) struct ContactPipeline {
     pub(crate) tracker: ContactTracker,
     /// The events of the last control step that were merged instead of reported one by one.
-    pub(crate) merged_events: MergedEvents,
+    pub(crate) merged_events: ExcessEventTotals,
     /// The motion of each body before the physics step.
     motion: Vec<BodyMotion>,
 }
@@ -26,7 +26,7 @@ pub(crate) struct SolvedContacts {
     reports: Vec<ContactReport>,
 }
 
-impl ContactRecord {
+impl ContactPipeline {
     /// Runs rapier's physics step.
     pub(crate) fn solve(&mut self, dynamics: &mut Dynamics) -> SolvedContacts {
         let flying = dynamics.engine.bodies_in_free_flight();

@@ -60,7 +60,7 @@ pub(crate) trait MassLaw: Debug + Send + Sync {
 
 /// Returns the inertia of each body whose parts state it or that a law changes; the colliders of such a body have no
 /// density. Shape (body,).
-pub(crate) fn altered(
+pub(crate) fn explicit_inertias(
     model: &PhysicsModel,
     state: &State,
     factors: &[Vec<f32>],

@@ -27,7 +27,7 @@ pub struct FrozenObject {
 
 /// A joint's leaf that overlaps other things at the start: it passes through them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct PassingJoint {
+pub struct PassThroughJoint {
     /// The joint.
     pub joint: JointId,
     /// The names of the things it passes through, sorted.
@@ -59,7 +59,7 @@ pub struct StartReport {
     /// Objects that were frozen.
     pub frozen: Vec<FrozenObject>,
     /// Leaves that pass through things that they overlap.
-    pub passing: Vec<PassingJoint>,
+    pub passing: Vec<PassThroughJoint>,
     /// Moving objects without collision pieces of their own, which got convex pieces of their visible mesh.
     pub stand_ins: Vec<ObjectId>,
     /// Agents that were put at a free place.

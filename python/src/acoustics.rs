@@ -38,7 +38,7 @@ impl PyAcousticScene {
         laws: Data,
         parameters: Data,
     ) -> PyResult<Self> {
-        arrays::ready(py)?;
+        arrays::init_numpy(py)?;
         let house = house.get().engines.house().clone();
         py.engine(|| -> Result<_, PyFault> {
             let config: AcousticConfig = config.read()?;
@@ -181,7 +181,7 @@ pub(crate) fn response_metrics(
     rate_hz: f64,
     width: Data,
 ) -> PyResult<PyValue> {
-    let samples = arrays::row("samples", &samples)?;
+    let samples = arrays::as_contiguous_slice("samples", &samples)?;
     py.engine(|| -> Result<_, PyFault> {
         let width: BandWidth = width.read()?;
         let found = metrics::impulse_response_metrics(samples, rate_hz, width);
@@ -198,7 +198,10 @@ pub(crate) fn ear_metrics(
     rate_hz: f64,
     width: Data,
 ) -> PyResult<PyValue> {
-    let (left, right) = (arrays::row("left", &left)?, arrays::row("right", &right)?);
+    let (left, right) = (
+        arrays::as_contiguous_slice("left", &left)?,
+        arrays::as_contiguous_slice("right", &right)?,
+    );
     py.engine(|| -> Result<_, PyFault> {
         let width: BandWidth = width.read()?;
         let found = metrics::binaural_metrics(left, right, rate_hz, width);

@@ -47,7 +47,7 @@ fn refused(sensor: &str, dtype: Dtype, found: &str) -> PyErr {
 }
 
 /// What was given in place of an array to write into, for errors.
-fn form_of(out: &Bound<'_, PyAny>) -> String {
+fn describe_argument(out: &Bound<'_, PyAny>) -> String {
     match out.getattr("dtype") {
         Ok(dtype) => format!("one of {dtype}"),
         Err(_) => format!("a {}", out.get_type()),
@@ -62,7 +62,7 @@ fn borrow_buffers<'py, T: numpy::Element>(
 ) -> PyResult<PyReadwriteArrayDyn<'py, T>> {
     let array = out
         .cast::<PyArrayDyn<T>>()
-        .map_err(|_| refused(sensor, dtype, &form_of(out)))?;
+        .map_err(|_| refused(sensor, dtype, &describe_argument(out)))?;
     // A slice also exists of an array in Fortran's order, but would be filled in the wrong one.
     if !array.is_c_contiguous() {
         return Err(refused(sensor, dtype, "one that is not C-contiguous"));
@@ -135,7 +135,7 @@ impl PyBatch {
         threads: Option<usize>,
         overlap: bool,
     ) -> PyResult<Self> {
-        arrays::ready(py)?;
+        arrays::init_numpy(py)?;
         let shared: Vec<std::sync::Arc<Engines>> = houses
             .iter()
             .map(|house| house.get().engines.clone())
@@ -213,7 +213,7 @@ impl PyBatch {
         py: Python<'py>,
         actions: PyReadonlyArray1<'py, i64>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let numbers = arrays::row("actions", &actions)?.to_vec();
+        let numbers = arrays::as_contiguous_slice("actions", &actions)?.to_vec();
         let infos = self.with(py, |batch| {
             let actions = numbers
                 .iter()
@@ -263,7 +263,7 @@ impl PyBatch {
         which: PyReadonlyArray1<'py, bool>,
         outs: Vec<Option<Bound<'py, PyAny>>>,
     ) -> PyResult<()> {
-        let which = arrays::row("which", &which)?.to_vec();
+        let which = arrays::as_contiguous_slice("which", &which)?.to_vec();
         let specs = self.with(py, |batch| Ok(batch.specs()))?;
         let mut lent = Vec::new();
         for (k, out) in outs.iter().enumerate() {

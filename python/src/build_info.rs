@@ -185,7 +185,9 @@ fn graphics_adapters() -> Vec<serde_json::Value> {
 }
 
 /// Returns the speeds of an adapter's paths in a built-in house.
-fn speeds(adapter: &dwell_render::Adapter) -> Result<dwell_render::VisibilityPathSpeeds, String> {
+fn speeds(
+    adapter: &dwell_render::AdapterInfo,
+) -> Result<dwell_render::VisibilityPathSpeeds, String> {
     let house = dwell_houses::open("builtin:studio").map_err(|error| error.to_string())?;
     let tables = Arc::new(dwell_render::CpuRenderer::new(&Arc::new(house.0)));
     dwell_render::Gpu::shared_adapter(adapter)

@@ -3,7 +3,7 @@
 use crate::callbacks;
 use crate::engine_call::{EngineCall, attach};
 use crate::errors::PyFault;
-use dwell_calibration::rollout::study::OtherSimulator;
+use dwell_calibration::rollout::study::PeerScores;
 use dwell_scene::parallel::Threads;
 use pyo3::prelude::*;
 use std::path::Path;
@@ -26,9 +26,9 @@ pub(crate) fn calibrate(
             threads: Some(Threads::requested(None)?.count()),
             ..Default::default()
         };
-        let peers: Result<Vec<OtherSimulator>, _> = peers
+        let peers: Result<Vec<PeerScores>, _> = peers
             .iter()
-            .map(|p| OtherSimulator::read(Path::new(p)))
+            .map(|p| PeerScores::read(Path::new(p)))
             .collect();
         let report = dwell_calibration::calibrate_any(
             Path::new(measured),

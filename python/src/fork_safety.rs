@@ -73,7 +73,7 @@ fn is_registered(py: Python<'_>) -> PyResult<bool> {
 }
 
 /// Before a fork: waits for the engine calls of other threads.
-fn wait(py: Python<'_>) {
+fn wait_for_engine_calls(py: Python<'_>) {
     FORKS.fetch_add(1, Ordering::SeqCst);
     let start = Instant::now();
     while CALLS.load(Ordering::SeqCst) > OWN.get() {
@@ -98,7 +98,8 @@ pub(crate) fn register(py: Python<'_>) -> PyResult<()> {
     if !os.hasattr("register_at_fork")? {
         return Ok(());
     }
-    let before = PyCFunction::new_closure(py, None, None, |args, _| wait(args.py()))?;
+    let before =
+        PyCFunction::new_closure(py, None, None, |args, _| wait_for_engine_calls(args.py()))?;
     let in_parent = PyCFunction::new_closure(py, None, None, |_, _| {
         FORKS.fetch_sub(1, Ordering::SeqCst);
     })?;

@@ -23,7 +23,7 @@ impl PyHdf5 {
             let folder = Path::new(&path).parent().unwrap_or_else(|| Path::new(""));
             let name = Path::new(&path).file_name().unwrap_or_default();
             let bytes = DataRoot::new(folder)
-                .and_then(|root| root.read_named(&name.to_string_lossy(), MAX_FILE_BYTES));
+                .and_then(|root| root.read_user_named(&name.to_string_lossy(), MAX_FILE_BYTES));
             let bytes = bytes.map_err(|error| PyFault::Measured(error.to_string()))?;
             let file =
                 Hdf5::open(bytes).map_err(|error| PyFault::Measured(format!("{path}: {error}")))?;

@@ -5,7 +5,7 @@ use dwell::SoundName;
 /// A placement of a thing, as Python writes it.
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct BodyRow {
+pub(crate) struct BodyArgument {
     pub(crate) object: String,
     pub(crate) part: Option<String>,
     pub(crate) position: [f32; 3],
@@ -17,7 +17,7 @@ pub(crate) struct BodyRow {
 /// A placement of an agent, as Python writes it.
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct AgentRow {
+pub(crate) struct AgentPlacementArgument {
     pub(crate) position: [f32; 3],
     pub(crate) yaw_deg: f32,
     pub(crate) pitch_deg: f32,
@@ -30,7 +30,7 @@ pub(crate) struct AgentRow {
 /// A sound to play, as Python writes it.
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct SoundRow {
+pub(crate) struct SoundArgument {
     pub(crate) sound: SoundName,
     pub(crate) at: SoundPlaceRow,
     pub(crate) level_db: Option<f32>,

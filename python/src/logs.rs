@@ -174,7 +174,7 @@ fn loggers(py: Python<'_>) -> Option<&'static (Py<PyAny>, Py<PyAny>)> {
 }
 
 /// Reads the level that is wanted.
-pub(crate) fn set_level(py: Python<'_>) {
+pub(crate) fn sync_level(py: Python<'_>) {
     let Some((own, root)) = loggers(py) else {
         return;
     };

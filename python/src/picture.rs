@@ -2,7 +2,7 @@
 
 use crate::errors::PyFault;
 use crate::values::Data;
-use dwell::sensors::{ImageSettings, Observation, ObservationData};
+use dwell::sensors::{ImageObservationOptions, Observation, ObservationData};
 use dwell::{CameraMount, ImageRequest, World, camera_mount};
 use dwell_render::{Camera, ClassSet, Preset, Projection};
 use dwell_scene::parallel::Threads;
@@ -108,7 +108,7 @@ pub(crate) fn render(
         preset: own.preset,
     };
     let threads = Threads::requested(None)?;
-    let images = ImageSettings {
+    let images = ImageObservationOptions {
         max_objects: own.max_objects,
         classes: own.classes,
     };

@@ -92,7 +92,7 @@ pub(crate) fn surfaces<'py>(
         let world = &running.world;
         Ok((world.house().clone(), dwell::room_surfaces(world)))
     })?;
-    let mapping = |surface: dwell::RoomSurface| {
+    let mapping = |surface: dwell::RoomMaterialMesh| {
         let row = PyDict::new(py);
         let material = &house.materials[surface.material];
         let room = surface.room.map(|room| house.rooms[room].name.as_str());

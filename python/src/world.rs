@@ -7,12 +7,12 @@ use crate::descriptions::describe_level;
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use crate::house::PyHouse;
-use crate::json_rows::{AgentRow, BodyRow, SoundPlaceRow, SoundRow};
+use crate::json_rows::{AgentPlacementArgument, BodyArgument, SoundArgument, SoundPlaceRow};
 use crate::navigation::PyNavigation;
 use crate::picture;
 use crate::values::Data;
 use crate::world_access::{ActiveGuide, WorldAccess};
-use dwell::{ActionRequest, DiscreteAction, ShortestPathFollower, World, WorldConfig};
+use dwell::{DiscreteAction, HandActionRequest, ShortestPathFollower, World, WorldConfig};
 use dwell::{PlayRequest, SoundPlace, WorldError};
 use dwell_houses::HousesError;
 use dwell_physics::{AgentControl, AgentPlacement, BodyState};
@@ -77,7 +77,7 @@ impl PyWorld {
         &self,
         work: impl FnOnce(&mut WorldAccess<'_>) -> Result<T, PyFault>,
     ) -> Result<T, PyFault> {
-        let mut guide = self.guide.lock().map_err(|_| stopped())?;
+        let mut guide = self.guide.lock().map_err(|_| poisoned_world_fault())?;
         let work = |world: &mut World, strides| {
             let guide = &mut *guide;
             work(&mut WorldAccess {
@@ -88,7 +88,7 @@ impl PyWorld {
         };
         match &self.source {
             WorldSource::Own(world) => {
-                let mut world = world.lock().map_err(|_| stopped())?;
+                let mut world = world.lock().map_err(|_| poisoned_world_fault())?;
                 work(&mut world, IdVec::default())
             }
             WorldSource::Env { batch, env } => {
@@ -101,7 +101,7 @@ impl PyWorld {
     }
 }
 
-fn stopped() -> PyFault {
+fn poisoned_world_fault() -> PyFault {
     PyFault::Usage("a bug of the engine stopped this world; make a new one".to_owned())
 }
 
@@ -124,7 +124,7 @@ impl PyWorld {
         config_json: &str,
         seed: u64,
     ) -> PyResult<Self> {
-        arrays::ready(py)?;
+        arrays::init_numpy(py)?;
         let engines = house.get().engines.clone();
         let world = py.engine(|| -> Result<World, PyFault> {
             let config: WorldConfig = serde_json::from_str(config_json)?;
@@ -183,7 +183,7 @@ impl PyWorld {
     fn act(&self, py: Python<'_>, agent: usize, action: Data) -> PyResult<PyValue> {
         self.with(py, |running| {
             let agent = running.agent(agent)?;
-            let request: ActionRequest = action.read()?;
+            let request: HandActionRequest = action.read()?;
             let outcome = running.world.act_on(agent, &request)?;
             PyValue::of(&running.outcome(&outcome)?)
         })
@@ -217,7 +217,7 @@ impl PyWorld {
 
     fn place_agent(&self, py: Python<'_>, agent: usize, place: Data) -> PyResult<()> {
         self.with(py, |running| {
-            let row: AgentRow = place.read()?;
+            let row: AgentPlacementArgument = place.read()?;
             let placement = AgentPlacement {
                 agent: running.agent(agent)?,
                 position: row.position.into(),
@@ -301,7 +301,7 @@ impl PyWorld {
 
     fn play(&self, py: Python<'_>, sound: Data) -> PyResult<u64> {
         self.with(py, |running| {
-            let row: SoundRow = sound.read()?;
+            let row: SoundArgument = sound.read()?;
             let place = match row.at {
                 SoundPlaceRow::Position(position) => SoundPlace::Point(position.into()),
                 SoundPlaceRow::Object(name) => SoundPlace::Object(running.object(&json!(name))?),
@@ -441,8 +441,8 @@ impl PyWorld {
                         "name": joint.name,
                         "object": house.objects[joint.object].name,
                         "kind": joint.kind,
-                        "limits": state.joint_values(house, id).limits,
-                        "motor": state.joint_values(house, id).servo,
+                        "limits": state.joint_parameters(house, id).limits,
+                        "motor": state.joint_parameters(house, id).servo,
                         "position": state.joint_position[id],
                         "velocity": state.joint_velocity[id],
                         "command": state.joint_command[id],
@@ -497,7 +497,7 @@ impl PyWorld {
 
     fn set_bodies(&self, py: Python<'_>, bodies: Data) -> PyResult<()> {
         self.with(py, |running| {
-            let rows: Vec<BodyRow> = bodies.read()?;
+            let rows: Vec<BodyArgument> = bodies.read()?;
             let bodies: Vec<BodyState> = rows
                 .iter()
                 .map(|row| {

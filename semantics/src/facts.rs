@@ -1,7 +1,7 @@
 //! State-independent facts about an object: kind, colours, substances, size.
 
 use crate::category::{SemanticCategory, categories};
-use crate::color::{ColorVocabulary, MaterialColors, Pattern, SurfacePatch, color_words};
+use crate::color::{ColorShare, ColorVocabulary, MaterialColors, Pattern, color_words};
 use crate::english::counted_noun;
 use crate::form::{Description, Noun};
 use crate::geometry::mapped_area_m2;
@@ -32,7 +32,7 @@ pub struct ObjectFacts {
     pub plural: String,
     /// Its sorts of colour by share of what is seen of it where it stands at the start, from around and a little above (below, for
     /// what hangs), largest first; by share of its whole surface where nothing of it is seen. Screens, clear glass, mirrors and the pots of plants are left out.
-    pub patches: Vec<SurfacePatch>,
+    pub patches: Vec<ColorShare>,
     /// Its colours in plain words with their shares, largest first; empty for things that are nearly all clear glass or mirror.
     pub colors: Vec<(&'static str, f32)>,
     /// The pattern of most of it; `None` for plain things, and for pictures, screens and books.
@@ -323,11 +323,7 @@ fn named_surfaces(
 }
 
 /// The sorts of colour by opacity-weighted share of `areas`, largest first.
-fn patches(
-    house: &House,
-    paints: &MaterialColors,
-    areas: &[(MaterialId, f32)],
-) -> Vec<SurfacePatch> {
+fn patches(house: &House, paints: &MaterialColors, areas: &[(MaterialId, f32)]) -> Vec<ColorShare> {
     let opaque = |id: MaterialId| house.materials[id].opacity.max(0.02);
     paints.patches(areas.iter().map(|(id, area)| (*id, area * opaque(*id))))
 }

@@ -44,7 +44,7 @@ impl RoomOutline {
 
     /// Returns where a point lies along the longer edge of the rectangle around the floor, -1 to 1 from end to end.
     pub(crate) fn lengthwise_share(&self, point: Vec2) -> f32 {
-        let share = self.share(point);
+        let share = self.normalized_position(point);
         if self.half_m.x >= self.half_m.y {
             share.x
         } else {
@@ -58,7 +58,7 @@ impl RoomOutline {
     }
 
     /// Returns where a point lies in the rectangle around the floor: -1 to 1 along and across the longest border.
-    pub(crate) fn share(&self, point: Vec2) -> Vec2 {
+    pub(crate) fn normalized_position(&self, point: Vec2) -> Vec2 {
         (turned(self.along, point) - self.middle) / self.half_m.max(Vec2::splat(1e-6))
     }
 }
@@ -129,8 +129,8 @@ mod tests {
         let outline = RoomOutline::gather(&room);
         assert_eq!(outline.corners.len(), 5, "{:?}", outline.corners);
         assert!(!outline.corners.contains(&d) && !outline.corners.contains(&g));
-        let share = outline.share(p(2.0, 2.5));
+        let share = outline.normalized_position(p(2.0, 2.5));
         assert!(share.length() < 1e-6, "{share}");
-        assert!((outline.share(f).abs() - Vec2::ONE).length() < 1e-6);
+        assert!((outline.normalized_position(f).abs() - Vec2::ONE).length() < 1e-6);
     }
 }

@@ -1,6 +1,6 @@
 //! State-independent facts about a room.
 
-use crate::color::{ColorVocabulary, MaterialColors, SurfacePatch, color_words};
+use crate::color::{ColorShare, ColorVocabulary, MaterialColors, color_words};
 use crate::english;
 use crate::form::Noun;
 use crate::open_passages::passages;
@@ -121,7 +121,7 @@ impl RoomProperties {
     }
 
     /// Returns the phrase of place in it: "in the kitchen", "on the second balcony".
-    pub fn place(&self) -> String {
+    pub fn locative_phrase(&self) -> String {
         format!("{} the {}", preposition(&self.noun), self.label)
     }
 
@@ -134,8 +134,8 @@ impl RoomProperties {
 /// Areas of floors by substance and seen walls by material, per room.
 struct RoomSurfaces {
     floors: IdVec<RoomId, BTreeMap<String, f32>>,
-    floor_paints: IdVec<RoomId, Vec<SurfacePatch>>,
-    walls: IdVec<RoomId, Vec<SurfacePatch>>,
+    floor_paints: IdVec<RoomId, Vec<ColorShare>>,
+    walls: IdVec<RoomId, Vec<ColorShare>>,
 }
 
 impl RoomSurfaces {
@@ -194,7 +194,7 @@ impl RoomSurfaces {
 }
 
 /// The colour word of at least half of a surface.
-fn most(patches: &[SurfacePatch]) -> Option<&'static str> {
+fn most(patches: &[ColorShare]) -> Option<&'static str> {
     let words = color_words(patches, ColorVocabulary::Plain);
     let (word, _) = words.first().filter(|(_, share)| *share >= 0.5)?;
     Some(word)

@@ -148,7 +148,7 @@ impl Semantics {
         &self.colors
     }
 
-    pub(crate) fn rest_extent(&self, object: ObjectId) -> &Extent {
+    pub(crate) fn initial_extent(&self, object: ObjectId) -> &Extent {
         &self.rest_extents[object]
     }
 

@@ -90,11 +90,11 @@ fn words_know_what_is_open_and_what_is_on() {
         let part = &mut b.data.parts[dwell_scene::PartId(object.0)];
         let pose = part.world_from_part;
         b.data.objects[object].mobility = dwell_scene::Mobility::Articulated;
-        b.data.joints.push(dwell_scene::Articulation {
+        b.data.joints.push(dwell_scene::Joint {
             parent_from_joint: pose,
             limits: Some([0.0, 1.5]),
             open: 1.5,
-            ..dwell_scene::Articulation::new(
+            ..dwell_scene::Joint::new(
                 "hinge",
                 object,
                 dwell_scene::PartId(object.0),

@@ -8,7 +8,7 @@
 
 use dwell_houses::generate::HouseSpec;
 use dwell_scene::parallel::Threads;
-use dwell_tests::validity::{CheckDepth, look, of_other_bytes};
+use dwell_tests::validity::{CheckDepth, check_house, thread_dependent_seeds};
 use std::collections::BTreeMap;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -40,7 +40,7 @@ fn main() -> ExitCode {
     while seed < to {
         let chunk: Vec<u64> = (seed..to.min(seed + CHUNK)).collect();
         for looked in threads.map(chunk.len(), |k| {
-            look(chunk[k], &HouseSpec::default(), depth)
+            check_house(chunk[k], &HouseSpec::default(), depth)
         }) {
             for fault in &looked.faults {
                 println!("{} {} {}", looked.seed, fault.rule, fault.what);
@@ -50,7 +50,7 @@ fn main() -> ExitCode {
             given_up += usize::from(!looked.given_up.is_empty());
             counts = [0, 1].map(|k| counts[k] + looked.counts[k]);
         }
-        for other in of_other_bytes(&chunk) {
+        for other in thread_dependent_seeds(&chunk) {
             println!("{other} bytes differ beside other houses");
             *by_rule.entry("bytes").or_default() += 1;
         }

@@ -9,7 +9,7 @@
     reason = "figures and skips are printed; a test fails by panicking"
 )]
 
-use dwell::sensors::{self, ImageSettings, Observation, ObservationData};
+use dwell::sensors::{self, ImageObservationOptions, Observation, ObservationData};
 use dwell::{CameraMount, Engines, ImageRequest, World, WorldConfig, viewpoints};
 use dwell_physics::AgentControl;
 use dwell_render::{
@@ -113,7 +113,12 @@ fn look(
         };
         views.push(
             world
-                .image_observations(&request, names, ImageSettings::default(), Threads::new(2))
+                .image_observations(
+                    &request,
+                    names,
+                    ImageObservationOptions::default(),
+                    Threads::new(2),
+                )
                 .unwrap(),
         );
     }

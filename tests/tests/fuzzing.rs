@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use dwell_scene::random::RandomKey;
-use dwell_tests::hostile::{NAMES, OTHERS, live_in, mutated, read, sample, seeds};
+use dwell_tests::hostile::{NAMES, OTHERS, exercise_house, mutated, read, sample, seeds};
 
 /// One of so many opened houses is run.
 const LIVED_IN: usize = 4;
@@ -27,7 +27,7 @@ fn run(name: &str, count: usize) -> (usize, Vec<String>) {
                 return false;
             };
             if k % LIVED_IN == 0 {
-                live_in(house);
+                exercise_house(house);
             }
             true
         }));
@@ -78,7 +78,7 @@ fn every_sample_opens_as_it_is() {
         let sample = sample(name);
         let opened = read(&sample, 0, sample.bytes(0));
         let (house, _) = opened.unwrap_or_else(|error| panic!("{name}: {error}"));
-        live_in(house);
+        exercise_house(house);
     }
 }
 

@@ -3,7 +3,7 @@
 use dwell_houses::builtin;
 use dwell_houses::generate::HouseSpec;
 use dwell_scene::parallel::Threads;
-use dwell_tests::validity::{CheckCounts, CheckDepth, look, of_other_bytes};
+use dwell_tests::validity::{CheckCounts, CheckDepth, check_house, thread_dependent_seeds};
 use std::collections::BTreeMap;
 
 /// Seeds that are looked at in every run.
@@ -37,26 +37,31 @@ fn assert_valid(all: &[CheckCounts]) {
 
 #[test]
 fn houses_of_seeds_are_valid_as_they_stand() {
-    let look = |seed: usize| look(seed as u64, &HouseSpec::default(), CheckDepth::Geometric);
-    assert_valid(&Threads::default().map(SEEDS as usize, look));
+    let check =
+        |seed: usize| check_house(seed as u64, &HouseSpec::default(), CheckDepth::Geometric);
+    assert_valid(&Threads::default().map(SEEDS as usize, check));
 }
 
 #[test]
 fn houses_of_seeds_stay_as_they_are_when_physics_begins() {
-    let look = |seed: usize| look(seed as u64, &HouseSpec::default(), CheckDepth::Settled);
-    assert_valid(&Threads::default().map(SETTLED as usize, look));
+    let check = |seed: usize| check_house(seed as u64, &HouseSpec::default(), CheckDepth::Settled);
+    assert_valid(&Threads::default().map(SETTLED as usize, check));
 }
 
 #[test]
 fn houses_of_seeds_are_the_same_alone_and_beside_others() {
     let seeds: Vec<u64> = (0..20).collect();
-    assert_eq!(of_other_bytes(&seeds), Vec::<u64>::new());
+    assert_eq!(thread_dependent_seeds(&seeds), Vec::<u64>::new());
 }
 
 /// Its grid has lines half a micrometre apart: strips of floor between them were triangles without area, which held everything.
 #[test]
 fn a_house_whose_lines_differ_by_rounding_is_valid() {
-    assert_valid(&[look(1743, &HouseSpec::default(), CheckDepth::Settled)]);
+    assert_valid(&[check_house(
+        1743,
+        &HouseSpec::default(),
+        CheckDepth::Settled,
+    )]);
 }
 
 #[test]
@@ -65,7 +70,7 @@ fn built_in_houses_are_valid_and_stay_as_they_are() {
     let looked: Vec<CheckCounts> = specs
         .map(|known| {
             let (seed, spec) = known.expect("every built-in house has a spec");
-            look(seed, &spec, CheckDepth::Settled)
+            check_house(seed, &spec, CheckDepth::Settled)
         })
         .collect();
     assert_valid(&looked);

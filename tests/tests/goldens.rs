@@ -61,12 +61,12 @@ fn pictures_are_the_golden_ones() {
             }
         }
     }
-    let world = turned(views::company());
-    for image in views::at(&world, eyes(), &sensors(), ClassSet::Coarse).unwrap() {
+    let world = turned(views::world_of_two_agents());
+    for image in views::observe_request(&world, eyes(), &sensors(), ClassSet::Coarse).unwrap() {
         golden.check(&format!("sensor_{}", image.spec.name), &image);
     }
     for (name, classes) in [("fine", ClassSet::Fine), ("nyu40", ClassSet::Nyu40)] {
-        for image in views::at(&world, eyes(), &["semantic"], classes).unwrap() {
+        for image in views::observe_request(&world, eyes(), &["semantic"], classes).unwrap() {
             golden.check(&format!("sensor_semantic_{name}"), &image);
         }
     }
@@ -240,8 +240,8 @@ fn every_preset_and_kind_of_camera_has_golden_pictures() {
 /// A depth that is a millimetre off somewhere, an id that is another away from edges, and a list without its last row.
 #[test]
 fn small_errors_of_exact_sensors_are_found() {
-    let world = turned(views::company());
-    for image in views::at(
+    let world = turned(views::world_of_two_agents());
+    for image in views::observe_request(
         &world,
         eyes(),
         &["depth", "instance", "boxes_2d"],

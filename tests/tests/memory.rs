@@ -156,7 +156,7 @@ fn an_hour_of_sound_keeps_memory_flat() {
             signal: &signal,
         };
         stream
-            .block(
+            .render_block(
                 &rays,
                 &state,
                 &[source],

@@ -2,7 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use dwell::sensors::{ImageSettings, ObservationData};
+use dwell::sensors::{ImageObservationOptions, ObservationData};
 use dwell::{
     Batch, CameraMount, DiscreteAction, Env, EnvConfig, ImageRequest, SensorConfig, WorldConfig,
 };
@@ -147,7 +147,7 @@ fn shutters_in_a_batch_give_the_bits_of_worlds_alone() {
                 let picture = world.image_observations(
                     &request,
                     &["rgb".to_owned()],
-                    ImageSettings::default(),
+                    ImageObservationOptions::default(),
                     Threads::ONE,
                 );
                 let ObservationData::Uint8(rgb) = &picture.unwrap()[0].data else {

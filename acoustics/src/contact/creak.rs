@@ -38,20 +38,23 @@ pub struct CreakSound {
 }
 
 impl CreakSound {
-    fn length(&self) -> f64 {
+    fn segment_duration_s(&self) -> f64 {
         f64::from(self.length_s).clamp(1e-3, 2.0)
     }
 
     /// Returns the duration of its sound, s.
     pub fn duration_s(&self) -> f64 {
-        self.length() + SLIP_S + Radiator::new(&self.partners, self.hinge_key).ringing_s() + 0.012
+        self.segment_duration_s()
+            + SLIP_S
+            + Radiator::new(&self.partners, self.hinge_key).ringing_s()
+            + 0.012
     }
 
     /// Returns the times of its slips, from the beginning of the segment, s, and their impulses, N·s.
     fn slips(&self) -> Vec<(f64, f64)> {
         let [from, to] = self.angle_rad.map(f64::from);
         let turned = to - from;
-        let speed_m_s = turned.abs() / self.length() * PIN_M;
+        let speed_m_s = turned.abs() / self.segment_duration_s() * PIN_M;
         let force_n = BENDING_SHARE * DROP * f64::from(self.friction_n_m).max(0.0) / PIN_M;
         let ease = libm::exp(-(speed_m_s / SMOOTH_M_S) * (speed_m_s / SMOOTH_M_S));
         let impulse_n_s = force_n * SLIP_S * ease;
@@ -69,7 +72,12 @@ impl CreakSound {
                 let at = (k as f64 + 0.3 * (stream.uniform() - 0.5)) * SLIP_RAD;
                 let strength = 0.5 + stream.uniform();
                 let inside = at > low && at <= high;
-                inside.then(|| ((at - from) / turned * self.length(), impulse_n_s * strength))
+                inside.then(|| {
+                    (
+                        (at - from) / turned * self.segment_duration_s(),
+                        impulse_n_s * strength,
+                    )
+                })
             })
             .collect();
         slips.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -80,7 +88,7 @@ impl CreakSound {
     pub fn render(&self, rate_hz: u32) -> Vec<f32> {
         let radiator = Radiator::new(&self.partners, self.hinge_key);
         let mut out = vec![0.0; samples(self.duration_s(), rate_hz)];
-        let mut force = vec![0.0; samples(self.length() + SLIP_S, rate_hz) + 1];
+        let mut force = vec![0.0; samples(self.segment_duration_s() + SLIP_S, rate_hz) + 1];
         for (start_s, impulse_n_s) in self.slips() {
             add_half_sine(&mut force, rate_hz, start_s, impulse_n_s, SLIP_S);
         }

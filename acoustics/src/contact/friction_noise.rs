@@ -67,7 +67,7 @@ impl FrictionSound {
     }
 
     /// Returns the root mean square of the varying force, N.
-    fn variation_n(&self) -> f64 {
+    fn force_rms_n(&self) -> f64 {
         let (normal, speed) = (
             f64::from(self.force_n).max(0.0),
             f64::from(self.speed_m_s).max(0.0),
@@ -106,7 +106,7 @@ impl FrictionSound {
         // the white noise times (1 - pole) / (1 + pole).
         let pole = libm::exp(-TAU * self.corner_hz().min(0.45 * rate) / rate);
         let slow = libm::exp(-TAU * 20.0 / rate);
-        let scale = self.variation_n() * ((1.0 - pole) * (1.0 + pole)).sqrt();
+        let scale = self.force_rms_n() * ((1.0 - pole) * (1.0 + pole)).sqrt();
         let mut stream = self.key.child("rub").stream();
         let count = samples(self.length(), rate_hz);
         let (mut low, mut drift) = (0.0, 0.0);

@@ -135,7 +135,7 @@ pub(crate) fn diffracted_paths(
     }
     let touched: Vec<EdgePoint> = ways.iter().flat_map(|way| way.touches.clone()).collect();
     let kept = grazing_edge_transmission(data, rays, source, receiver, &touched);
-    unite(&mut ways, &n_per_m);
+    sum_coherent_paths(&mut ways, &n_per_m);
     for way in &mut ways {
         for (amplitude, kept) in way.amplitude.iter_mut().zip(kept) {
             *amplitude *= kept.sqrt();
@@ -165,7 +165,7 @@ pub(crate) fn diffracted_paths(
 }
 
 /// Returns the share of the sound from a `source` in sight that edges beside the straight line pass. Shape (band,).
-pub(crate) fn unobstructed_share(
+pub(crate) fn line_of_sight_transmission(
     data: &PropagationData,
     rays: &RayScene,
     source: Vec3,
@@ -266,7 +266,7 @@ fn strongest(mut ways: Vec<DiffractionPath>) -> Vec<DiffractionPath> {
 }
 
 /// Adds, in each band, the waves whose lengths differ by less than a quarter wavelength from the strongest one to it.
-fn unite(ways: &mut [DiffractionPath], n_per_m: &[f64; BAND_COUNT]) {
+fn sum_coherent_paths(ways: &mut [DiffractionPath], n_per_m: &[f64; BAND_COUNT]) {
     for (band, n_per_m) in n_per_m.iter().enumerate() {
         let amplitude = |way: &DiffractionPath| way.amplitude[band];
         let strongest = (0..ways.len()).reduce(|a, b| {

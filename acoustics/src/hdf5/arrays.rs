@@ -10,12 +10,12 @@ const MOST_BITS: u8 = 40;
 
 /// The form of an entry: its bytes, and whether it states a size and filters.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct ArrayEntry {
+pub(super) struct ArrayEntryFormat {
     pub(super) width: usize,
     pub(super) filtered: bool,
 }
 
-impl ArrayEntry {
+impl ArrayEntryFormat {
     /// Reads the next entry, at `place`; `None` for a chunk that was never written.
     pub(super) fn read(
         self,
@@ -51,7 +51,7 @@ impl ArrayEntry {
     }
 
     /// Reads entries in pages of a power of two of them, each with a checksum; written pages have a bit set.
-    fn pages(
+    fn read_pages(
         self,
         cursor: &mut Cursor<'_>,
         places: std::ops::Range<u64>,
@@ -79,7 +79,10 @@ impl ArrayEntry {
 }
 
 /// Returns the entries of a fixed array.
-pub(super) fn fixed(source: &FileBytes<'_>, address: u64) -> Hdf5Result<Vec<StoredChunk>> {
+pub(super) fn read_fixed_array(
+    source: &FileBytes<'_>,
+    address: u64,
+) -> Hdf5Result<Vec<StoredChunk>> {
     let mut found = Vec::new();
     let mut header = source.at(address)?;
     header.check_signature(b"FAHD", 0)?;
@@ -95,7 +98,7 @@ pub(super) fn fixed(source: &FileBytes<'_>, address: u64) -> Hdf5Result<Vec<Stor
             "damaged at byte {address}: an array of {count} chunks"
         ));
     }
-    let entry = ArrayEntry { width, filtered };
+    let entry = ArrayEntryFormat { width, filtered };
     let mut cursor = source.at(block)?;
     cursor.check_signature(b"FADB", 0)?;
     cursor.skip(1)?;
@@ -106,7 +109,7 @@ pub(super) fn fixed(source: &FileBytes<'_>, address: u64) -> Hdf5Result<Vec<Stor
         let pages = count.div_ceil(1 << page_bits);
         let written = cursor.take(pages.div_ceil(8) as usize)?;
         cursor.skip(CHECK_SUM as usize)?;
-        entry.pages(&mut cursor, 0..count, page_bits, written, &mut found)?;
+        entry.read_pages(&mut cursor, 0..count, page_bits, written, &mut found)?;
     }
     Ok(found)
 }
@@ -114,7 +117,7 @@ pub(super) fn fixed(source: &FileBytes<'_>, address: u64) -> Hdf5Result<Vec<Stor
 /// An extensible array: some entries in its index block, the others in blocks, whose number and length double in turn from
 /// group to group. The blocks of later groups are listed in a block of their own.
 struct ExtensibleArray {
-    entry: ArrayEntry,
+    entry: ArrayEntryFormat,
     /// Entries in the index block.
     direct: u64,
     /// Entries of the first block.
@@ -155,7 +158,7 @@ pub(super) fn extensible(source: &FileBytes<'_>, address: u64) -> Hdf5Result<Vec
         ));
     }
     let array = ExtensibleArray {
-        entry: ArrayEntry { width, filtered },
+        entry: ArrayEntryFormat { width, filtered },
         direct,
         shortest,
         listed_groups: 2 * pointers.ilog2(),
@@ -169,7 +172,7 @@ pub(super) fn extensible(source: &FileBytes<'_>, address: u64) -> Hdf5Result<Vec
 
 impl ExtensibleArray {
     /// Returns the blocks of a group, and the entries of each.
-    fn group(&self, group: u32) -> (u64, u64) {
+    fn super_block_shape(&self, group: u32) -> (u64, u64) {
         (1 << (group / 2), self.shortest << group.div_ceil(2))
     }
 
@@ -186,10 +189,10 @@ impl ExtensibleArray {
         self.entry.row(&mut cursor, 0..self.direct, to)?;
         let mut first = self.direct;
         for group in 0..self.groups {
-            let (blocks, length) = self.group(group);
+            let (blocks, length) = self.super_block_shape(group);
             if group >= self.listed_groups {
                 if let Some(list) = cursor.address()? {
-                    self.read_list(source, list, group, first, to)?;
+                    self.read_secondary_block(source, list, group, first, to)?;
                 }
                 first += blocks * length;
                 continue;
@@ -205,7 +208,7 @@ impl ExtensibleArray {
     }
 
     /// Reads a block that lists those of a group.
-    fn read_list(
+    fn read_secondary_block(
         &self,
         source: &FileBytes<'_>,
         address: u64,
@@ -218,7 +221,7 @@ impl ExtensibleArray {
         cursor.skip(1)?;
         cursor.address()?;
         cursor.skip(self.place_width)?;
-        let (blocks, length) = self.group(group);
+        let (blocks, length) = self.super_block_shape(group);
         let pages = if length > 1 << self.page_bits {
             length >> self.page_bits
         } else {
@@ -260,6 +263,6 @@ impl ExtensibleArray {
         }
         cursor.skip(CHECK_SUM as usize)?;
         self.entry
-            .pages(&mut cursor, places, self.page_bits, written, to)
+            .read_pages(&mut cursor, places, self.page_bits, written, to)
     }
 }

@@ -5,7 +5,7 @@ use super::bytes::{Cursor, FileBytes, Hdf5Fault, Hdf5Result};
 /// Calls `each` with every leaf's entry: its key, and its address.
 ///
 /// `kind` is 0 for groups and 1 for chunks, `key` the bytes of a key.
-pub(super) fn entries(
+pub(super) fn for_each_entry(
     source: &FileBytes<'_>,
     root: u64,
     kind: u8,

@@ -126,7 +126,7 @@ impl ChunkGrid {
     }
 
     /// Copies the values of a chunk to their places.
-    fn place(
+    fn scatter_chunk(
         &self,
         number: u64,
         bytes: &[u8],
@@ -194,7 +194,7 @@ pub(super) fn numbers(
         let undone = filters.decode(stored, chunk.skipped_filters, whole);
         let bytes =
             undone.map_err(|Hdf5Fault(why)| Hdf5Fault(format!("chunk {}: {why}", chunk.number)))?;
-        grid.place(chunk.number, &bytes, of, size, shape, &mut values);
+        grid.scatter_chunk(chunk.number, &bytes, of, size, shape, &mut values);
     }
     Ok(values)
 }

@@ -1,6 +1,6 @@
 //! Chunk indices of a variable: six kinds.
 
-use super::arrays::{self, ArrayEntry};
+use super::arrays::{self, ArrayEntryFormat};
 use super::btree1;
 use super::btree2;
 use super::bytes::{Cursor, FileBytes, Hdf5Fault, Hdf5Result};
@@ -21,7 +21,7 @@ pub(super) fn chunks(
         ChunkIndex::Tree1 => {
             // Size, filters, and offset, with an axis for the bytes of a value.
             let key = 8 + 8 * (grid.axes() + 1);
-            btree1::entries(source, address, 1, key, &mut |mut key, address| {
+            btree1::for_each_entry(source, address, 1, key, &mut |mut key, address| {
                 let (size, skipped) = (Some(u64::from(key.u32()?)), key.u32()?);
                 let number = grid.chunk_starting_at(&coordinates(&mut key, grid.axes())?);
                 found.extend(number.map(|number| StoredChunk {
@@ -38,7 +38,7 @@ pub(super) fn chunks(
             btree2::records(source, address, &mut |mut record| {
                 let width = record.remaining().saturating_sub(plain);
                 let filtered = width > record.widths.address;
-                let stored = ArrayEntry { width, filtered }.read(&mut record, 0)?;
+                let stored = ArrayEntryFormat { width, filtered }.read(&mut record, 0)?;
                 let number = grid.chunk_index(&coordinates(&mut record, grid.axes())?);
                 let both = stored.zip(number);
                 found.extend(both.map(|(stored, number)| StoredChunk { number, ..stored }));
@@ -65,7 +65,7 @@ pub(super) fn chunks(
         }
         ChunkIndex::Fixed | ChunkIndex::Extensible => {
             let entries = if matches!(chunked.index, ChunkIndex::Fixed) {
-                arrays::fixed(source, address)?
+                arrays::read_fixed_array(source, address)?
             } else {
                 arrays::extensible(source, address)?
             };

@@ -26,11 +26,11 @@ pub(super) fn find(
 ) -> Hdf5Result<Option<u64>> {
     let mut found = None;
     if let Some(table) = group.first(kind::SYMBOL_TABLE) {
-        found = in_table(source, table.content()?, name)?;
+        found = find_in_symbol_table(source, table.content()?, name)?;
     }
     for message in group.all(kind::LINK) {
         if found.is_none() {
-            found = link_of(message.content()?, name)?;
+            found = target_if_named(message.content()?, name)?;
         }
     }
     if found.is_none()
@@ -54,7 +54,7 @@ pub(super) fn find(
 }
 
 /// Searches groups of older files: a tree of tables, with names in a heap.
-fn in_table(
+fn find_in_symbol_table(
     source: &FileBytes<'_>,
     mut table: Cursor<'_>,
     name: &str,
@@ -67,7 +67,7 @@ fn in_table(
     heap.length()?;
     let names = source.values(heap.defined_address()?, size)?;
     let mut found = None;
-    btree1::entries(source, tree, 0, table.widths.length, &mut |_, address| {
+    btree1::for_each_entry(source, tree, 0, table.widths.length, &mut |_, address| {
         let mut node = source.at(address)?;
         node.check_signature(b"SNOD", 1)?;
         node.skip(1)?;
@@ -119,7 +119,7 @@ fn in_heap(
         if found.is_none()
             && let Some(link) = heap.object(source, id)?
         {
-            found = link_of(link, name)?;
+            found = target_if_named(link, name)?;
         }
         Ok(())
     })?;
@@ -127,7 +127,7 @@ fn in_heap(
 }
 
 /// Returns the target of a link message if it has that name.
-fn link_of(mut cursor: Cursor<'_>, name: &str) -> Hdf5Result<Option<LinkTarget>> {
+fn target_if_named(mut cursor: Cursor<'_>, name: &str) -> Hdf5Result<Option<LinkTarget>> {
     let version = cursor.u8()?;
     if version != 1 {
         return unsupported(format!("a link of version {version}; read is version 1"));

@@ -3,7 +3,7 @@
 use super::{Ear, Head, HeadId, HeadTables, SphericalHead};
 use crate::bands::BandValues;
 use crate::config::AcousticConfig;
-use crate::minimum_phase::PathFilters;
+use crate::minimum_phase::MinimumPhaseDesigner;
 use glam::{Quat, Vec3};
 use realfft::num_complex::Complex;
 use std::collections::BTreeMap;
@@ -28,7 +28,7 @@ impl HeadSet {
             config.head_radius_m,
             speed_m_s,
             rate_hz,
-            PathFilters::bins_at(rate_hz),
+            MinimumPhaseDesigner::bins_at(rate_hz),
         )
     }
 

@@ -58,11 +58,11 @@ pub struct Head {
 #[derive(Clone)]
 enum HeadModel {
     Sphere { radius_m: f64 },
-    Measured(Arc<MeasuredTables>),
+    Measured(Arc<MeasuredHeadCache>),
 }
 
 /// A measurement, and its tables by sample rate (Hz) and number of bins.
-struct MeasuredTables {
+struct MeasuredHeadCache {
     responses: HeadResponses,
     tables: Mutex<BTreeMap<(u64, usize), Arc<MeasuredHead>>>,
 }
@@ -103,7 +103,7 @@ impl Head {
         let responses = HeadResponses::new(measurement)?;
         Ok(Self {
             id: HeadId(measurement.hash()),
-            shape: HeadModel::Measured(Arc::new(MeasuredTables {
+            shape: HeadModel::Measured(Arc::new(MeasuredHeadCache {
                 responses,
                 tables: Mutex::default(),
             })),

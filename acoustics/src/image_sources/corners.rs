@@ -6,7 +6,7 @@ use crate::planes::Plane;
 use glam::Vec3;
 
 /// Returns the points that `path` passes from `source` to `receiver`, both included, m.
-pub(crate) fn corners(
+pub(crate) fn path_vertices(
     planes: &[Plane],
     path: &PropagationPath,
     source: Vec3,

@@ -10,7 +10,7 @@ use crate::diffraction;
 use crate::echogram::PropagationPath;
 use crate::propagation_data::PropagationData;
 use crate::receiver::SoundSourcePose;
-pub(crate) use corners::corners;
+pub(crate) use corners::path_vertices;
 use dwell_scene::rays::RayScene;
 use glam::{DVec3, Vec3};
 use visibility::ImageValidator;
@@ -23,12 +23,16 @@ pub(crate) fn find_specular_paths(
     receiver: Vec3,
 ) -> Vec<PropagationPath> {
     let mut paths = find_omnidirectional(data, rays, source.position(), receiver);
-    radiate(data, source, &mut paths);
+    apply_source_directivity(data, source, &mut paths);
     paths
 }
 
 /// Applies the source's directivity to paths of an omnidirectional source.
-fn radiate(data: &PropagationData, source: &SoundSourcePose, paths: &mut Vec<PropagationPath>) {
+fn apply_source_directivity(
+    data: &PropagationData,
+    source: &SoundSourcePose,
+    paths: &mut Vec<PropagationPath>,
+) {
     let speed_m_s = data.config().air.speed_of_sound_m_s();
     let (axis, pattern) = data.effects().radiation(source, speed_m_s);
     if !pattern.is_omni() {
@@ -52,7 +56,7 @@ fn find_omnidirectional(
 ) -> Vec<PropagationPath> {
     let validator = ImageValidator::new(data, rays, source, receiver);
     let mut paths: Vec<(PropagationPath, DVec3)> = Vec::new();
-    for path in straight(data, rays, source, receiver) {
+    for path in direct_and_diffracted_paths(data, rays, source, receiver) {
         let from = path.diffraction_points.first().copied().unwrap_or(source);
         paths.push((path, from.as_dvec3()));
     }
@@ -81,7 +85,7 @@ fn find_omnidirectional(
 }
 
 /// Returns the direct path, in sight or through walls, and where it is not in sight, the diffracted ones.
-fn straight(
+fn direct_and_diffracted_paths(
     data: &PropagationData,
     rays: &RayScene,
     source: Vec3,
@@ -92,7 +96,7 @@ fn straight(
     if data.config().diffraction {
         match &mut direct {
             Some(path) if path.walls == 0 => {
-                let kept = diffraction::unobstructed_share(data, rays, source, receiver);
+                let kept = diffraction::line_of_sight_transmission(data, rays, source, receiver);
                 for (e, kept) in path.energy.iter_mut().zip(kept) {
                     *e *= kept as f32;
                 }
@@ -140,13 +144,13 @@ pub(crate) fn revalidate_paths(
     known: &[PropagationPath],
 ) -> Vec<PropagationPath> {
     let validator = ImageValidator::new(data, rays, source, receiver);
-    let mut paths = straight(data, rays, source, receiver);
+    let mut paths = direct_and_diffracted_paths(data, rays, source, receiver);
     let mut images = Vec::new();
     for path in known.iter().filter(|path| !path.planes.is_empty()) {
         if sequences::mirror(data.planes(), source.as_dvec3(), &path.planes, &mut images) {
             paths.extend(validator.path(&path.planes, &images));
         }
     }
-    radiate(data, &SoundSourcePose::omni(source), &mut paths);
+    apply_source_directivity(data, &SoundSourcePose::omni(source), &mut paths);
     paths
 }

@@ -27,7 +27,7 @@ pub(super) fn for_each_plane_sequence(
     mut visit: impl FnMut(&[u32], &[DVec3]),
 ) {
     let config = data.config();
-    let largest = data.plane_table().by_decreasing_area();
+    let largest = data.plane_table().largest_static_planes();
     let tried = &largest[..largest.len().min(config.image_planes)];
     let mut exhaustive = 0;
     let mut count = 1;

@@ -81,7 +81,7 @@ const LOWEST_HZ: f64 = 20.0;
 /// The field at one receiver, made of frames that overlap by half. Each is a sum of plane waves with its own directions and
 /// phases, under half a period of a sine: the powers of two neighbours sum to a constant.
 #[derive(Debug)]
-struct NoiseField {
+struct BackgroundNoiseStage {
     rate_hz: f64,
     hum_pa: f64,
     hum_hz: f64,
@@ -122,7 +122,7 @@ fn install(values: LawValues<'_>, rate_hz: f64) -> Box<dyn MicrophoneStage> {
         let below = (place as usize).min(BAND_COUNT - 2);
         (below, (place - below as f64) as f32)
     };
-    Box::new(NoiseField {
+    Box::new(BackgroundNoiseStage {
         rate_hz,
         hum_pa: values.get("hum_pa"),
         hum_hz: values.get("hum_hz"),
@@ -135,7 +135,7 @@ fn install(values: LawValues<'_>, rate_hz: f64) -> Box<dyn MicrophoneStage> {
     })
 }
 
-impl NoiseField {
+impl BackgroundNoiseStage {
     /// Returns a frame at every channel, under its window. Shape (channel, 2 hop).
     fn frame(&mut self, number: u64, listener: &StageContext<'_>) -> Vec<Vec<f32>> {
         let key = listener.room_key.child("background noise").child(number);
@@ -209,7 +209,7 @@ impl NoiseField {
     }
 }
 
-impl MicrophoneStage for NoiseField {
+impl MicrophoneStage for BackgroundNoiseStage {
     fn process(&mut self, block: &mut SampleBlock<'_>) {
         let length = block.len();
         if self.hum_pa != 0.0 {
@@ -332,7 +332,7 @@ mod tests {
         let laws = [law("background_noise", &[("level_pa", 0.02)])];
         with_listener(at, room, RandomKey::root(99), |listener| {
             let silence = vec![0.0; at.channels() * samples];
-            MicrophoneChain::record(&laws, RATE_HZ, listener, silence)
+            MicrophoneChain::record_until_silent(&laws, RATE_HZ, listener, silence)
         })
     }
 

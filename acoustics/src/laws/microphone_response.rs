@@ -3,7 +3,7 @@
 use super::fir::FirFilter;
 use super::microphone_stage::MicrophoneStage;
 use super::{AcousticLaw, BAND_DB, SignalStage, bands_db};
-use crate::minimum_phase::PathFilters;
+use crate::minimum_phase::MinimumPhaseDesigner;
 use dwell_scene::law::EngineKind;
 use dwell_scene::{LawInfo, LawValues};
 
@@ -31,7 +31,7 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
 };
 
 fn install(values: LawValues<'_>, rate_hz: f64) -> Box<dyn MicrophoneStage> {
-    let filters = PathFilters::with_min_span(rate_hz, SPAN_S);
+    let filters = MinimumPhaseDesigner::with_min_span(rate_hz, SPAN_S);
     let energy = bands_db(values).map(|db| libm::powf(10.0, db / 10.0));
     let (mut spectrum, amplitude) = filters.spectrum(&energy, None);
     let taps = filters.impulse_response(&mut filters.fft(), &mut spectrum);

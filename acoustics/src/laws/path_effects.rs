@@ -57,7 +57,7 @@ impl Default for PathEffects {
 
 impl PathEffects {
     /// Returns the settings with the true air, kept within the range of [`Air::check`].
-    pub(crate) fn config(&self, stated: &AcousticConfig) -> AcousticConfig {
+    pub(crate) fn effective_config(&self, stated: &AcousticConfig) -> AcousticConfig {
         let temperature_c = stated.air.temperature_c + self.temperature_error_k;
         AcousticConfig {
             air: Air {

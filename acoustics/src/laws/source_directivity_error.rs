@@ -41,10 +41,10 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
                                 stated for each turn, high octaves most, late sound hardly; a gain or a response changes by the \
                                 same for all turns",
     },
-    effect: SignalStage::Propagation(turn),
+    effect: SignalStage::Propagation(apply_directivity_error),
 };
 
-fn turn(values: LawValues<'_>, effects: &mut PathEffects) {
+fn apply_directivity_error(values: LawValues<'_>, effects: &mut PathEffects) {
     effects.source_rotation_deg[0] += values.get("yaw_deg") as f32;
     effects.source_rotation_deg[1] += values.get("pitch_deg") as f32;
     effects.source_sharpness += values.get("sharpness") as f32;

@@ -36,7 +36,7 @@ pub(super) fn with_listener<T>(
 pub(super) fn microphone_output(laws: &[LawSpec], seed: u64, pressure: &[f32]) -> Vec<f32> {
     let here = Receiver::omni(glam::Vec3::ZERO);
     with_listener(&here, seed, RandomKey::root(seed), |listener| {
-        MicrophoneChain::record(laws, RATE_HZ, listener, pressure.to_vec())
+        MicrophoneChain::record_until_silent(laws, RATE_HZ, listener, pressure.to_vec())
     })
 }
 

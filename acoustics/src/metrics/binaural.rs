@@ -83,14 +83,16 @@ pub fn binaural_metrics(
         let end = heard[0].len() - filters.leading_samples();
         let [l, r] = heard.map(|ear| unwrap_pre_ringing(&ear, end));
         let early = (early + filters.leading_samples()).min(l.len());
-        let iacc = |l: &[f32], r: &[f32]| peak(l, r, lags, rate_hz, true).map(|found| found.1);
+        let iacc = |l: &[f32], r: &[f32]| {
+            cross_correlation_peak(l, r, lags, rate_hz, true).map(|found| found.1)
+        };
         found.iacc_early = iacc(&l[..early], &r[..early]);
         found.iacc_late = iacc(&l[early..], &r[early..]);
         found.iacc = iacc(&l, &r);
         if let Some([l, r]) = pair(&mut filters, &first) {
             found.ild_db = super::decibels(energy(&l), energy(&r));
             let [l, r] = [l, r].map(|ear| unwrap_pre_ringing(&ear, end));
-            found.itd_s = peak(&l, &r, lags, rate_hz, false).map(|found| found.0);
+            found.itd_s = cross_correlation_peak(&l, &r, lags, rate_hz, false).map(|found| found.0);
         }
     }
     let cut = |ear: &[f32]| energy(&ear[..direct.min(ear.len())]);
@@ -98,7 +100,7 @@ pub fn binaural_metrics(
     let [l, r] = first.map(|ear| filters.low_pass(&ear, FINE_HZ));
     let end = l.len() - filters.leading_samples();
     let (l, r) = (unwrap_pre_ringing(&l, end), unwrap_pre_ringing(&r, end));
-    metrics.itd_s = peak(&l, &r, lags, rate_hz, false).map(|found| found.0);
+    metrics.itd_s = cross_correlation_peak(&l, &r, lags, rate_hz, false).map(|found| found.0);
     metrics
 }
 
@@ -110,7 +112,7 @@ fn unwrap_pre_ringing(samples: &[f32], end: usize) -> Vec<f32> {
 /// Returns the lag of `right` behind `left` (s) at which their normalized cross-correlation, over lags of up to `lags`
 /// samples, is largest, and its value; `by_magnitude`: whether a negative one counts by its magnitude. `None` where an ear
 /// is silent.
-fn peak(
+fn cross_correlation_peak(
     left: &[f32],
     right: &[f32],
     lags: usize,

@@ -43,7 +43,7 @@ fn weld(point: Vec3) -> [i32; 3] {
 }
 
 /// A straight line that bounds a face.
-struct FaceRim {
+struct FaceBoundarySegment {
     ends: [Vec3; 2],
     /// From the line into the face, unit length, perpendicular to the line.
     into: Vec3,
@@ -79,7 +79,7 @@ pub(super) fn find_edges(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Vec<Diff
         match into[..] {
             [] => {}
             // Its other faces may be cut elsewhere.
-            [into] => rims.push(FaceRim { ends, into }),
+            [into] => rims.push(FaceBoundarySegment { ends, into }),
             _ => edges.extend(widest_gap(&ends, &into)),
         }
     }
@@ -105,7 +105,7 @@ fn at_most_two_duplicates(corners: &[[Vec3; 3]]) -> Vec<usize> {
 }
 
 /// Returns the edges formed by rims.
-fn join(rims: &[FaceRim]) -> Vec<DiffractionEdge> {
+fn join(rims: &[FaceBoundarySegment]) -> Vec<DiffractionEdge> {
     let cells = |point: Vec3| {
         let corners = (0..8).map(move |k| {
             let side = |axis: i32| {
@@ -161,7 +161,7 @@ fn join(rims: &[FaceRim]) -> Vec<DiffractionEdge> {
     edges
 }
 
-impl FaceRim {
+impl FaceBoundarySegment {
     fn length_m(&self) -> f32 {
         self.ends[0].distance(self.ends[1])
     }

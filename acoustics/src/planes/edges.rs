@@ -61,7 +61,11 @@ impl EdgeTable {
     }
 
     /// Returns the same in a state.
-    pub(crate) fn edges_in_state(&self, house: &House, state: &State) -> Vec<DiffractionEdge> {
+    pub(crate) fn moving_edges_in_state(
+        &self,
+        house: &House,
+        state: &State,
+    ) -> Vec<DiffractionEdge> {
         let start = |part| house.parts[part].world_from_part;
         self.moved(|part| {
             state

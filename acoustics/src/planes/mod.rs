@@ -165,7 +165,7 @@ impl PlaneTable {
     }
 
     /// Returns the largest static planes, largest first, at most 200.
-    pub(crate) fn by_decreasing_area(&self) -> &[u32] {
+    pub(crate) fn largest_static_planes(&self) -> &[u32] {
         &self.largest
     }
 
@@ -258,7 +258,7 @@ mod tests {
         let area: f64 = table.initial_planes.iter().map(|plane| plane.area_m2).sum();
         assert!((area - 126.0).abs() < 1e-4);
         assert!(
-            (table.initial_planes[table.by_decreasing_area()[0] as usize].area_m2 - 30.0).abs()
+            (table.initial_planes[table.largest_static_planes()[0] as usize].area_m2 - 30.0).abs()
                 < 1e-4
         );
     }

@@ -93,7 +93,7 @@ impl Codebook {
         }
         let values = match bits.take(4)? {
             0 => return Ok(Self { words, dimensions }),
-            1 => values_a_dimension(words, dimensions),
+            1 => lookup1_values(words, dimensions),
             2 => words * dimensions,
             kind => {
                 let found = format!("lookup type {kind}, allowed 0 to 2");
@@ -135,7 +135,7 @@ fn skip_runs(bits: &mut BitReader, words: u64) -> Result<(), String> {
 }
 
 /// Returns the largest number whose power of `dimensions` is at most `words` (section 9.2.3, `lookup1_values`).
-fn values_a_dimension(words: u64, dimensions: u64) -> u64 {
+fn lookup1_values(words: u64, dimensions: u64) -> u64 {
     let fits = |value: u64| {
         let mut power = 1_u64;
         // From 25 dimensions on the power of 2 is above the 2^24 words that a book can have.
@@ -336,7 +336,7 @@ pub(super) mod tests {
             ((1 << 24) - 1, 1, (1 << 24) - 1),
             ((1 << 24) - 1, 65_535, 1),
         ] {
-            assert_eq!(values_a_dimension(words, dimensions), values, "{words}");
+            assert_eq!(lookup1_values(words, dimensions), values, "{words}");
         }
     }
 }

@@ -29,13 +29,13 @@ impl AcousticScene {
         source: &SoundSourcePose,
         receiver: Vec3,
     ) -> Result<Vec<EarlyPath>, AcousticsError> {
-        self.check(rays, source, &[receiver])?;
+        self.check_trace_inputs(rays, source, &[receiver])?;
         let position = source.position();
         let paths =
             image_sources::find_specular_paths(self.data(), rays, source, receiver).into_iter();
         Ok(paths
             .map(|path| EarlyPath {
-                points: image_sources::corners(self.planes(), &path, position, receiver),
+                points: image_sources::path_vertices(self.planes(), &path, position, receiver),
                 path,
             })
             .collect())

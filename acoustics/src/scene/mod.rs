@@ -139,7 +139,7 @@ impl AcousticScene {
     }
 
     /// Checks that source and receiver have finite positions, and that rays are of this house.
-    pub(crate) fn check(
+    pub(crate) fn check_trace_inputs(
         &self,
         rays: &RayScene,
         source: &SoundSourcePose,
@@ -195,12 +195,21 @@ impl AcousticScene {
         key: RandomKey,
         threads: Threads,
     ) -> Result<Vec<Echogram>, AcousticsError> {
-        self.check(rays, source, receivers)?;
-        Ok(self.echograms_of(rays, source, receivers, self.config().rays, key, threads))
+        self.check_trace_inputs(rays, source, receivers)?;
+        Ok(
+            self.echograms_with_ray_count(
+                rays,
+                source,
+                receivers,
+                self.config().rays,
+                key,
+                threads,
+            ),
+        )
     }
 
     /// As [`Self::echograms`] with this many rays.
-    pub(crate) fn echograms_of(
+    pub(crate) fn echograms_with_ray_count(
         &self,
         rays: &RayScene,
         source: &SoundSourcePose,
@@ -298,7 +307,7 @@ impl AcousticScene {
             self.responses_before_microphones(rays, source, &placed, key, noise, threads)?;
         let both = arrived.into_iter().zip(&placed);
         Ok(both
-            .map(|(response, receiver)| self.record(response, receiver, key))
+            .map(|(response, receiver)| self.apply_microphone_laws(response, receiver, key))
             .collect())
     }
 
@@ -307,7 +316,7 @@ impl AcousticScene {
     ///
     /// With the key of [`Self::impulse_response`] it has the same random arrivals. The microphones of an array receive the
     /// centre's early paths as plane waves here. A head that is unknown to the scene is replaced by the built-in one.
-    pub fn impulse_response_of(
+    pub fn impulse_response_from_echogram(
         &self,
         echogram: Echogram,
         receiver: &Receiver,
@@ -315,7 +324,7 @@ impl AcousticScene {
     ) -> ImpulseResponse {
         let receiver = &self.effects().true_receiver(receiver);
         let noise = arrival_key(key, echogram.source, receiver.position());
-        self.record(
+        self.apply_microphone_laws(
             self.response_before_microphones(echogram, receiver, None, noise),
             receiver,
             key,
@@ -323,7 +332,7 @@ impl AcousticScene {
     }
 
     /// Returns a response after the microphone laws.
-    fn record(
+    fn apply_microphone_laws(
         &self,
         response: ImpulseResponse,
         receiver: &Receiver,
@@ -333,7 +342,12 @@ impl AcousticScene {
         let listener = self.stage_context(receiver, key.child("room"), own);
         let rate_hz = f64::from(self.config().rate_hz);
         ImpulseResponse {
-            samples: MicrophoneChain::record(&self.laws, rate_hz, &listener, response.samples),
+            samples: MicrophoneChain::record_until_silent(
+                &self.laws,
+                rate_hz,
+                &listener,
+                response.samples,
+            ),
             ..response
         }
     }

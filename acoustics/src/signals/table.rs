@@ -3,7 +3,7 @@
 use super::loop_builder::LoopBuilder;
 use super::{SignalInfo, appliances, household, music, speech, test_signals};
 
-const fn signal(
+const fn signal_row(
     name: &'static str,
     description: &'static str,
     loop_s: f64,
@@ -22,7 +22,7 @@ const fn signal(
 
 /// By name. Levels are root mean squares over the whole loop, pauses included.
 pub(super) const ALL: [SignalInfo; 26] = [
-    signal(
+    signal_row(
         "alarm",
         "a smoke alarm: three beeps and a pause",
         4.0,
@@ -32,7 +32,7 @@ pub(super) const ALL: [SignalInfo; 26] = [
         ),
         household::alarm,
     ),
-    signal(
+    signal_row(
         "babble",
         "many voices at once, without words",
         12.0,
@@ -42,14 +42,14 @@ pub(super) const ALL: [SignalInfo; 26] = [
         ),
         speech::babble,
     ),
-    signal(
+    signal_row(
         "clock",
         "a clock that ticks every second",
         2.0,
         (35.0, "estimate: ticks of 50 dB, a tenth of the time"),
         household::clock,
     ),
-    signal(
+    signal_row(
         "dishwasher",
         "a dishwasher: water that sweeps, a pump",
         8.0,
@@ -59,28 +59,28 @@ pub(super) const ALL: [SignalInfo; 26] = [
         ),
         appliances::dishwasher,
     ),
-    signal(
+    signal_row(
         "doorbell",
         "a chime of two bars, once in six seconds",
         6.0,
         (68.0, "makers' figures: 80 dB at 1 m while it strikes"),
         appliances::doorbell,
     ),
-    signal(
+    signal_row(
         "fan",
         "a fan or a hood: broad noise with a blade tone",
         4.0,
         (55.0, "EU labels of hoods, middle step: 63 dB(A) of power"),
         household::fan,
     ),
-    signal(
+    signal_row(
         "footsteps",
         "steps of a walking person",
         4.0,
         (55.0, "estimate, as of `FootstepSound` on wood"),
         household::footsteps,
     ),
-    signal(
+    signal_row(
         "fridge",
         "the hum of a compressor",
         4.0,
@@ -90,28 +90,28 @@ pub(super) const ALL: [SignalInfo; 26] = [
         ),
         household::fridge,
     ),
-    signal(
+    signal_row(
         "hair_dryer",
         "a hair dryer: hot air with a blade tone",
         4.0,
         (72.0, "makers' figures: 75 to 85 dB(A) of power"),
         appliances::hair_dryer,
     ),
-    signal(
+    signal_row(
         "hum",
         "mains hum of a transformer",
         2.0,
         (35.0, "estimate"),
         household::hum,
     ),
-    signal(
+    signal_row(
         "impulse",
         "one sample a second, for measuring",
         1.0,
         (70.0, "as is asked for"),
         test_signals::impulse,
     ),
-    signal(
+    signal_row(
         "kettle",
         "water that heats up",
         4.0,
@@ -121,28 +121,28 @@ pub(super) const ALL: [SignalInfo; 26] = [
         ),
         household::kettle,
     ),
-    signal(
+    signal_row(
         "microwave",
         "a microwave oven: hum and fan",
         4.0,
         (55.0, "makers' figures: 50 to 60 dB(A) at 1 m"),
         appliances::microwave,
     ),
-    signal(
+    signal_row(
         "noise",
         "pink noise, for measuring",
         4.0,
         (70.0, "as is asked for"),
         household::pink,
     ),
-    signal(
+    signal_row(
         "phone",
         "a telephone that rings two seconds of six",
         6.0,
         (75.0, "estimate: 80 dB while it rings"),
         household::phone,
     ),
-    signal(
+    signal_row(
         "radio",
         "music with a beat",
         16.0,
@@ -152,35 +152,35 @@ pub(super) const ALL: [SignalInfo; 26] = [
         ),
         music::radio,
     ),
-    signal(
+    signal_row(
         "rain",
         "rain on leaves and a sill",
         8.0,
         (55.0, "estimate: moderate rain, 50 dB(A)"),
         appliances::rain,
     ),
-    signal(
+    signal_row(
         "sine",
         "a tone of 1 kHz, for measuring",
         1.0,
         (70.0, "as is asked for"),
         test_signals::sine,
     ),
-    signal(
+    signal_row(
         "speech",
         "one voice without words",
         8.0,
         (62.0, "ANSI S3.5-1997: normal speech, 62.35 dB at 1 m"),
         speech::speech,
     ),
-    signal(
+    signal_row(
         "sweep",
         "an exponential sweep and a pause, for measuring",
         4.0,
         (70.0, "as is asked for"),
         test_signals::sweep,
     ),
-    signal(
+    signal_row(
         "tap",
         "water that runs into a sink",
         4.0,
@@ -190,21 +190,21 @@ pub(super) const ALL: [SignalInfo; 26] = [
         ),
         household::tap,
     ),
-    signal(
+    signal_row(
         "television",
         "two voices over music",
         16.0,
         (62.0, "as speech"),
         speech::television,
     ),
-    signal(
+    signal_row(
         "toilet_flush",
         "a cistern that empties and fills again",
         12.0,
         (70.0, "estimate: 75 dB(A) while it empties"),
         household::toilet_flush,
     ),
-    signal(
+    signal_row(
         "vacuum_cleaner",
         "a vacuum cleaner: air, motor, blades",
         4.0,
@@ -214,7 +214,7 @@ pub(super) const ALL: [SignalInfo; 26] = [
         ),
         appliances::vacuum_cleaner,
     ),
-    signal(
+    signal_row(
         "washing_machine",
         "a washing machine: drum, motor, water",
         6.0,
@@ -224,7 +224,7 @@ pub(super) const ALL: [SignalInfo; 26] = [
         ),
         household::washing_machine,
     ),
-    signal(
+    signal_row(
         "white",
         "white noise, for measuring",
         4.0,

@@ -1,7 +1,7 @@
 //! The plan of a block: sources that are heard, and those that need new impulse responses.
 
 use super::source_state::{self, ListeningSituation, SituationChange, UpdateThreshold};
-use super::update_queue::{PartialTrace, UpdateRequest};
+use super::update_queue::{PartialTraceOutcome, UpdateRequest};
 use super::{ActiveSource, BlockReport, Stream, early};
 use crate::echogram::PropagationPath;
 use crate::error::AcousticsError;
@@ -34,7 +34,7 @@ pub(super) struct PlannedSource {
     /// The block since which a new response waits for its turn.
     pub(super) waiting_since_block: Option<u64>,
     /// The state of its partial trace.
-    pub(super) partial_trace: PartialTrace,
+    pub(super) partial_trace: PartialTraceOutcome,
 }
 
 /// A source that sounds or rings out.
@@ -70,7 +70,7 @@ impl Stream {
         let glides =
             self.config.tracked_reflections > 0 && receiver.microphone_positions().is_none();
         let distance_m = self.config.update_distance_m;
-        let parts = self.poses(state);
+        let parts = self.large_part_poses(state);
         // Nothing is reused where all rays are traced anyway.
         let remembers = self.config.update_share < 1.0;
         let around = BlockContext {
@@ -182,7 +182,7 @@ impl Stream {
                 .unwrap_or(self.block),
             now,
             new_response: None,
-            partial_trace: PartialTrace::Unchanged,
+            partial_trace: PartialTraceOutcome::Unchanged,
             is_waiting: false,
         })
     }

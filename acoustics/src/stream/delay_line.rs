@@ -59,7 +59,7 @@ impl<'a> DelayedSegment<'a> {
     pub(super) fn filtered(&self, response: &[f32], amplitude: f32) -> Vec<f32> {
         let mut filtered = vec![0.0; self.count.next_multiple_of(LANES)];
         let met = self.filter_input(response.len(), filtered.len());
-        SimdLevel::best_available().run(ConvolutionKernel {
+        SimdLevel::best_available().run(FirSimdKernel {
             met: &met,
             response,
             amplitude,
@@ -86,7 +86,7 @@ impl<'a> DelayedSegment<'a> {
 
     /// Adds to `out`, shape (sample,), the crossfade of two filtered segments. `fade`: the weight of the new. Shape
     /// (sample,).
-    pub(super) fn add(
+    pub(super) fn add_crossfaded(
         &self,
         old: Option<&[f32]>,
         new: Option<&[f32]>,
@@ -104,7 +104,7 @@ impl<'a> DelayedSegment<'a> {
 }
 
 /// A convolution kernel.
-struct ConvolutionKernel<'a> {
+struct FirSimdKernel<'a> {
     /// As many samples before those of `out` as there are taps, and then as many as `out` has.
     met: &'a [f32],
     response: &'a [f32],
@@ -113,7 +113,7 @@ struct ConvolutionKernel<'a> {
     out: &'a mut [f32],
 }
 
-impl SimdKernel for ConvolutionKernel<'_> {
+impl SimdKernel for FirSimdKernel<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -264,7 +264,7 @@ mod tests {
                 let parts = responses.each_ref().map(|response| {
                     let mut out = vec![0.0; passage.count.next_multiple_of(LANES)];
                     let met = passage.filter_input(response.len(), out.len());
-                    level.run(ConvolutionKernel {
+                    level.run(FirSimdKernel {
                         met: &met,
                         response,
                         amplitude: 0.5,

@@ -111,7 +111,7 @@ impl DelayInterpolation<'_> {
             passage.filtered(&wavelet.response[skip..], wavelet.amplitude)
         };
         let (old, new) = (old.map(filtered), new.map(filtered));
-        passage.add(old.as_deref(), new.as_deref(), self.fade, out);
+        passage.add_crossfaded(old.as_deref(), new.as_deref(), self.fade, out);
     }
 }
 

@@ -29,7 +29,7 @@ use early::{DelayInterpolation, TrackedPath};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 use source_state::{ListeningSituation, SourceState};
-use update_queue::PartialTrace;
+use update_queue::PartialTraceOutcome;
 use xxhash_rust::xxh3::xxh3_64;
 
 /// Size from corner to corner below which parts do not affect sound, m.
@@ -199,7 +199,7 @@ impl Stream {
     ///
     /// # Determinism
     /// The samples depend on the calls so far alone, not on the number of threads.
-    pub fn block(
+    pub fn render_block(
         &mut self,
         rays: &RayScene,
         state: &State,
@@ -310,9 +310,9 @@ impl Stream {
             voice.tracked.last_positions = Some(place);
             voice.pending_update.due_block = since;
             match job {
-                PartialTrace::Unchanged => {}
-                PartialTrace::None => voice.pending_update.job = None,
-                PartialTrace::Advanced(job) => voice.pending_update.job = Some(job),
+                PartialTraceOutcome::Unchanged => {}
+                PartialTraceOutcome::None => voice.pending_update.job = None,
+                PartialTraceOutcome::Advanced(job) => voice.pending_update.job = Some(job),
             }
         }
         self.voices.retain(|voice| {
@@ -321,13 +321,13 @@ impl Stream {
         let own = self.key.child("microphone").child(self.block);
         let listener = self.scene.stage_context(receiver, self.room, own);
         self.microphones.process_block(&state.laws, &listener, out);
-        self.parts = self.poses(state);
+        self.parts = self.large_part_poses(state);
         self.block += 1;
         Ok(report)
     }
 
     /// Returns the poses of the large parts. Shape (large part,).
-    fn poses(&self, state: &State) -> Vec<Pose> {
+    fn large_part_poses(&self, state: &State) -> Vec<Pose> {
         let parts = self.large_parts.iter();
         parts.map(|part| state.part_pose[*part]).collect()
     }

@@ -94,7 +94,8 @@ impl ResponseUpdater<'_> {
 
     fn check(&self) -> Result<(), AcousticsError> {
         let centre = [self.receiver.position()];
-        self.scene.check(self.rays, &self.source, &centre)?;
+        self.scene
+            .check_trace_inputs(self.rays, &self.source, &centre)?;
         self.scene.check_receiver(self.receiver)
     }
 
@@ -103,7 +104,8 @@ impl ResponseUpdater<'_> {
         let centre = [self.receiver.position()];
         let (rays, source) = (self.rays, &self.source);
         let scene = self.scene;
-        let echograms = scene.echograms_of(rays, source, &centre, count, key, self.threads);
+        let echograms =
+            scene.echograms_with_ray_count(rays, source, &centre, count, key, self.threads);
         Ok(echograms.into_iter().next().unwrap_or_default())
     }
 

@@ -171,7 +171,7 @@ mod tests {
         let mut out = vec![0.0; 2 * BLOCK];
         let sources = [source(4), source(7)];
         stream
-            .block(&rays, &state, &sources, &receiver, &mut out)
+            .render_block(&rays, &state, &sources, &receiver, &mut out)
             .unwrap();
         assert!(out.iter().all(|x| x.is_finite()));
     }

@@ -42,13 +42,13 @@ pub(super) struct UpdateRequest<'a> {
     /// The block in which a new response became due.
     pub(super) due_block: u64,
     pub(super) new_response: Option<(ListeningSituation, ImpulseResponse)>,
-    pub(super) partial_trace: PartialTrace,
+    pub(super) partial_trace: PartialTraceOutcome,
     /// True while a new response still waits for its turn or for rays.
     pub(super) is_waiting: bool,
 }
 
 /// The outcome of a partial trace.
-pub(super) enum PartialTrace {
+pub(super) enum PartialTraceOutcome {
     Unchanged,
     None,
     Advanced(Box<TraceJob>),
@@ -135,7 +135,7 @@ impl Stream {
             match want.need() {
                 // The situation is again that of the response.
                 UpdateUrgency::None if want.started().is_some() => {
-                    want.partial_trace = PartialTrace::None;
+                    want.partial_trace = PartialTraceOutcome::None;
                 }
                 UpdateUrgency::None => {}
                 _ => order.push(want),
@@ -207,7 +207,7 @@ impl Stream {
             .iter()
             .filter_map(|voice| voice.current_response.as_ref());
         if let Some(known) = others.find(|(then, _)| usable(then)) {
-            want.partial_trace = PartialTrace::None;
+            want.partial_trace = PartialTraceOutcome::None;
             want.new_response = Some(known.clone());
             return Ok(());
         }
@@ -252,7 +252,7 @@ impl Stream {
         report.rays += response.echogram.ray_statistics.rays as usize;
         want.now.has_approximate_tail =
             around.large_part_moving || then.has_approximate_tail || !known;
-        want.partial_trace = PartialTrace::None;
+        want.partial_trace = PartialTraceOutcome::None;
         want.new_response = Some((want.now.clone(), response));
         Ok(())
     }
@@ -294,7 +294,7 @@ impl Stream {
             // A listener who walks on must not keep all other sources from their turns.
             Some(_) if is_waiting => {
                 (want.is_waiting, want.due_block, want.partial_trace) =
-                    (true, self.block, PartialTrace::None);
+                    (true, self.block, PartialTraceOutcome::None);
                 return Ok(());
             }
             _ => Box::new(TraceJob {
@@ -313,11 +313,11 @@ impl Stream {
         if let Some(response) = response {
             budget.spend(RESPONSE_COST_RAYS);
             report.traced_responses += 1;
-            want.partial_trace = PartialTrace::None;
+            want.partial_trace = PartialTraceOutcome::None;
             want.new_response = Some((job.situation, response));
         } else {
             want.is_waiting = true;
-            want.partial_trace = PartialTrace::Advanced(job);
+            want.partial_trace = PartialTraceOutcome::Advanced(job);
         }
         Ok(())
     }

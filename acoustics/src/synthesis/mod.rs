@@ -11,7 +11,7 @@ use crate::config::AcousticConfig;
 use crate::echogram::{Echogram, MIN_DISTANCE_M, PropagationPath};
 use crate::fft::RealFft;
 use crate::head::HeadSet;
-use crate::minimum_phase::{self, HRIR_PRE_RINGING_S, PathFilters};
+use crate::minimum_phase::{self, HRIR_PRE_RINGING_S, MinimumPhaseDesigner};
 use crate::receiver::Receiver;
 use crate::receiver_channel::ReceiverChannel;
 use dwell_scene::random::RandomKey;
@@ -32,7 +32,7 @@ const OVERLAP: f64 = 0.5;
 const SHORT_S: f64 = 0.004;
 
 /// Returns the taps of the filters of moving paths.
-fn short(rate_hz: f64) -> usize {
+fn short_filter_taps(rate_hz: f64) -> usize {
     (SHORT_S * rate_hz) as usize
 }
 
@@ -46,7 +46,7 @@ fn longest(config: &AcousticConfig) -> usize {
 pub(crate) struct Synthesizer {
     rate_hz: f64,
     arrivals_per_s: f64,
-    filters: PathFilters,
+    filters: MinimumPhaseDesigner,
     /// Fade-out of the filters of moving paths.
     fade: Vec<f32>,
     longest: usize,
@@ -105,12 +105,12 @@ impl Synthesizer {
 
     fn new(config: &AcousticConfig) -> Self {
         let rate_hz = f64::from(config.rate_hz);
-        let filters = PathFilters::new(rate_hz);
+        let filters = MinimumPhaseDesigner::new(rate_hz);
         Self {
             longest: longest(config),
             banks: [const { OnceLock::new() }; 3],
             filters,
-            fade: minimum_phase::fade_out_weights(short(rate_hz) / 4),
+            fade: minimum_phase::fade_out_weights(short_filter_taps(rate_hz) / 4),
             rate_hz,
             arrivals_per_s: config.arrivals_per_s,
         }
@@ -211,7 +211,7 @@ impl Synthesizer {
             let levels = levels.get_or_compute(|| {
                 let mut paths = vec![0.0; length];
                 // Bands are known at their centres: levels are those before absorption above.
-                let omni = PathListening {
+                let omni = PathRenderContext {
                     channels: &[ReceiverChannel::Omni],
                     at_channel: true,
                     air: None,
@@ -221,7 +221,7 @@ impl Synthesizer {
             });
             noise.add(&arrivals, levels, &channels, &mut out);
         }
-        let listening = |channels, at_channel| PathListening {
+        let listening = |channels, at_channel| PathRenderContext {
             channels,
             at_channel,
             air,
@@ -247,7 +247,7 @@ impl Synthesizer {
         &self,
         echogram: &Echogram,
         paths: &[PropagationPath],
-        listening: &PathListening<'_>,
+        listening: &PathRenderContext<'_>,
         out: &mut [f32],
     ) {
         let length = out.len() / listening.channels.len();
@@ -272,9 +272,9 @@ impl Synthesizer {
         fft: &'a mut RealFft,
         speed_m_s: f64,
         path: &'a PropagationPath,
-        listening: &PathListening<'a>,
+        listening: &PathRenderContext<'a>,
     ) -> impl Iterator<Item = PathFilter> + 'a {
-        let PathListening {
+        let PathRenderContext {
             channels,
             at_channel,
             air,
@@ -322,7 +322,7 @@ impl Synthesizer {
         hearing: &ReceiverContext<'_>,
     ) -> Vec<Vec<PathFilter>> {
         let channels = ReceiverChannel::of(hearing.receiver, hearing.heads, speed_m_s);
-        let listening = PathListening {
+        let listening = PathRenderContext {
             channels: &channels,
             at_channel: false,
             air: hearing.upper_air,
@@ -337,7 +337,7 @@ impl Synthesizer {
 
     /// Keeps the first [`SHORT_S`] after the lead, the last quarter of them faded out.
     fn shorten(&self, mut wavelet: PathFilter) -> PathFilter {
-        let taps = short(self.rate_hz) + wavelet.pre_ringing_samples;
+        let taps = short_filter_taps(self.rate_hz) + wavelet.pre_ringing_samples;
         if wavelet.response.len() > taps {
             wavelet.response.truncate(taps);
             minimum_phase::fade_out(&mut wavelet.response, &self.fade);
@@ -366,7 +366,7 @@ impl Synthesizer {
 }
 
 /// The channels that receive paths, and the air.
-struct PathListening<'a> {
+struct PathRenderContext<'a> {
     channels: &'a [ReceiverChannel],
     /// True for paths that end at the channel itself rather than at the centre.
     at_channel: bool,

@@ -22,7 +22,7 @@ pub(super) struct GainCurve {
 }
 
 /// Energy over the hops of a band, each arrival spread by the band's filter.
-pub(super) struct BandEnergy<'a> {
+pub(super) struct BandEnergyCurve<'a> {
     /// Samples of a hop, and its decimation factor; see [`FilterBank::decimation_factor`].
     hop: usize,
     stride: usize,
@@ -44,7 +44,7 @@ fn hop(band: usize, rate_hz: f64, stride: usize) -> usize {
     stride * (kept as usize).max(1)
 }
 
-impl<'a> BandEnergy<'a> {
+impl<'a> BandEnergyCurve<'a> {
     /// Zero energy in `length` samples.
     pub(super) fn new(
         bank: &'a FilterBank,
@@ -90,7 +90,7 @@ impl<'a> BandEnergy<'a> {
 
 impl GainCurve {
     /// Gains of 1.
-    pub(super) fn unity(wanted: &BandEnergy<'_>) -> Self {
+    pub(super) fn unity(wanted: &BandEnergyCurve<'_>) -> Self {
         Self {
             per_sample: 1.0 / wanted.hop as f32,
             gain: vec![1.0; wanted.sums.len()],
@@ -103,7 +103,7 @@ impl GainCurve {
     /// phases of real reflections are unknown. In a narrow band, an impulse response would be up to decibels off the traced
     /// energy. `paths`, `noise`: the bank's output in one band at the receiver's centre, the noise with these gains. Shape
     /// (sample,).
-    pub(super) fn correct(&mut self, paths: &[f32], noise: &[f32], wanted: &BandEnergy<'_>) {
+    pub(super) fn correct(&mut self, paths: &[f32], noise: &[f32], wanted: &BandEnergyCurve<'_>) {
         let (kept, stride) = (wanted.hop / wanted.stride, wanted.stride as f64);
         let hops = wanted.sums.iter().enumerate().map(|(k, wanted)| {
             let span = |x: &[f32]| (k * kept).min(x.len())..((k + 1) * kept).min(x.len());
@@ -186,7 +186,7 @@ mod tests {
             .map(|k| stream.normal() as f32 * if k < 2000 { 2.0 } else { 0.4 })
             .collect();
         let paths: Vec<f32> = noise.iter().map(|x| 0.1 * x).collect();
-        let mut wanted = BandEnergy::new(&bank, band, rate_hz, length, 0);
+        let mut wanted = BandEnergyCurve::new(&bank, band, rate_hz, length, 0);
         for k in 0..length {
             wanted.add(k, asked);
         }
@@ -213,7 +213,7 @@ mod tests {
     #[test]
     fn what_would_be_heard_too_early_comes_with_the_first_that_may() {
         let bank = FilterBank::new(16_000.0, 1000, 0.5);
-        let mut energy = BandEnergy::new(&bank, 7, 16_000.0, 1000, 300);
+        let mut energy = BandEnergyCurve::new(&bank, 7, 16_000.0, 1000, 300);
         energy.add(301, 2.0);
         assert!((energy.sums.iter().sum::<f64>() - 2.0).abs() < 1e-6);
         assert!(energy.sums[..300 / energy.hop].iter().all(|e| *e == 0.0));

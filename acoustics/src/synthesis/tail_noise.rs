@@ -1,6 +1,6 @@
 //! The tail as pressure: random arrivals with the histogram's energies.
 
-use super::noise_gains::{BandEnergy, BandGains, GainCurve};
+use super::noise_gains::{BandEnergyCurve, BandGains, GainCurve};
 use super::upper_air::{UpperAirAbsorption, UpperBands};
 use crate::bands::{BAND_COUNT, BandValues, FilterBank};
 use crate::directions::DirectionalEnergy;
@@ -164,7 +164,8 @@ impl TailNoise<'_> {
         } else {
             ROUNDS_OF_MANY
         };
-        let wanted: [BandEnergy<'_>; BAND_COUNT] = std::array::from_fn(|band| self.wanted(band));
+        let wanted: [BandEnergyCurve<'_>; BAND_COUNT] =
+            std::array::from_fn(|band| self.wanted(band));
         let mut levels: BandGains = std::array::from_fn(|band| GainCurve::unity(&wanted[band]));
         let paths = self.bank.split_decimated(paths);
         let mut poll = PollEvery::new(ARRIVALS_BETWEEN_POLLS);
@@ -186,9 +187,10 @@ impl TailNoise<'_> {
     }
 
     /// Returns the wanted energy of a band over time.
-    fn wanted(&self, band: usize) -> BandEnergy<'_> {
+    fn wanted(&self, band: usize) -> BandEnergyCurve<'_> {
         let Self { bank, rate_hz, .. } = self;
-        let mut wanted = BandEnergy::new(bank, band, *rate_hz, self.length, self.silent_samples);
+        let mut wanted =
+            BandEnergyCurve::new(bank, band, *rate_hz, self.length, self.silent_samples);
         let mut add = |time_s: f64, energy: &[f64; BAND_COUNT]| {
             let place = (time_s * rate_hz) as usize;
             if place < self.length {

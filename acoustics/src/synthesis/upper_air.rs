@@ -6,7 +6,7 @@
 use crate::bands::{self, BAND_COUNT};
 use crate::config::AcousticConfig;
 use crate::fft::RealFft;
-use crate::minimum_phase::PathFilters;
+use crate::minimum_phase::MinimumPhaseDesigner;
 use dwell_scene::interrupt::PollEvery;
 use realfft::num_complex::Complex;
 
@@ -16,13 +16,13 @@ const WRAP_S: f64 = 0.02;
 const FURTHEST_M: f64 = 1e6;
 
 /// Returns the centre of the highest band, Hz.
-fn highest_hz() -> f64 {
+fn top_band_centre_hz() -> f64 {
     bands::exact_centre_hz(BAND_COUNT - 1)
 }
 
 /// Returns the centres of the parts, Hz: thirds of an octave above that of the highest band as far as a sample rate reaches. Shape (part,).
 fn centres_hz(rate_hz: f64) -> impl Iterator<Item = f64> {
-    let centres = (1..).map(|k| highest_hz() * libm::pow(10.0, 0.1 * f64::from(k)));
+    let centres = (1..).map(|k| top_band_centre_hz() * libm::pow(10.0, 0.1 * f64::from(k)));
     centres.take_while(move |centre_hz| *centre_hz < 0.5 * rate_hz)
 }
 
@@ -38,20 +38,24 @@ pub(crate) struct UpperAirAbsorption {
 impl UpperAirAbsorption {
     /// The absorption of `config`'s air, with this `share` of it; `None` without absorption, or where nothing above the
     /// highest band is audible.
-    pub(super) fn new(config: &AcousticConfig, share: f64, filters: &PathFilters) -> Option<Self> {
+    pub(super) fn new(
+        config: &AcousticConfig,
+        share: f64,
+        filters: &MinimumPhaseDesigner,
+    ) -> Option<Self> {
         let rate_hz = f64::from(config.rate_hz);
         let centres_hz: Vec<f64> = centres_hz(rate_hz).collect();
         if !config.air_absorption || share <= 0.0 || centres_hz.is_empty() {
             return None;
         }
-        let known = config.air.attenuation_db_per_m(highest_hz());
+        let known = config.air.attenuation_db_per_m(top_band_centre_hz());
         let decay_per_m = |frequency_hz: f64| {
             let more_db = config.air.attenuation_db_per_m(frequency_hz) - known;
             share * more_db.max(0.0) / (20.0 * std::f64::consts::LOG10_E)
         };
         Some(Self {
             per_m: filters.log_spectrum(|frequency_hz| {
-                if frequency_hz > highest_hz() {
+                if frequency_hz > top_band_centre_hz() {
                     -decay_per_m(frequency_hz)
                 } else {
                     0.0
@@ -86,7 +90,7 @@ impl UpperBands {
             poll.turn();
             let frequency_hz = bin as f64 * rate_hz / fft.len() as f64;
             // In thirds of an octave above the highest band, which includes everything below.
-            let place = 10.0 * libm::log10(frequency_hz.max(1.0) / highest_hz());
+            let place = 10.0 * libm::log10(frequency_hz.max(1.0) / top_band_centre_hz());
             let place = place.clamp(0.0, count as f64);
             let below = place.floor();
             let upper = libm::sin(std::f64::consts::FRAC_PI_2 * (place - below));
@@ -146,14 +150,15 @@ mod tests {
             rate_hz: 48_000,
             ..AcousticConfig::full()
         };
-        let air = UpperAirAbsorption::new(&config, 1.0, &PathFilters::new(48_000.0)).unwrap();
+        let air =
+            UpperAirAbsorption::new(&config, 1.0, &MinimumPhaseDesigner::new(48_000.0)).unwrap();
         let n = 48_000;
         let parts = UpperBands::new(48_000.0, n);
         let more_db = |frequency_hz| {
             config.air.attenuation_db_per_m(frequency_hz)
-                - config.air.attenuation_db_per_m(highest_hz())
+                - config.air.attenuation_db_per_m(top_band_centre_hz())
         };
-        let sixteen_hz = highest_hz() * libm::pow(10.0, 0.3);
+        let sixteen_hz = top_band_centre_hz() * libm::pow(10.0, 0.3);
         for (frequency_hz, wanted_db) in [(6_000.0, 0.0), (sixteen_hz, more_db(sixteen_hz))] {
             let omega = std::f64::consts::TAU * frequency_hz / 48_000.0;
             let mut tone: Vec<f32> = (0..n).map(|k| libm::sin(omega * k as f64) as f32).collect();
@@ -176,7 +181,11 @@ mod tests {
     #[test]
     fn there_is_nothing_to_take_at_16_khz_or_without_absorption() {
         let made = |config: &AcousticConfig, share| {
-            UpperAirAbsorption::new(config, share, &PathFilters::new(f64::from(config.rate_hz)))
+            UpperAirAbsorption::new(
+                config,
+                share,
+                &MinimumPhaseDesigner::new(f64::from(config.rate_hz)),
+            )
         };
         let fast = AcousticConfig {
             rate_hz: 48_000,

@@ -60,7 +60,7 @@ pub(crate) struct LateReverberation {
 }
 
 /// The energy received from a chunk of rays, each of power 1.
-struct RayChunk {
+struct RayChunkEnergy {
     /// Shape (receiver, bin), flat.
     energy: Vec<BandValues>,
     /// Shape (receiver, time, cell), flat.
@@ -344,7 +344,7 @@ impl<'a> TailTrace<'a> {
 
 impl ReceiverSums {
     /// Adds a chunk's energy at receiver `receiver`.
-    fn add(&mut self, chunk: &RayChunk, receiver: usize, bins: usize, times: usize) {
+    fn add(&mut self, chunk: &RayChunkEnergy, receiver: usize, bins: usize, times: usize) {
         let mut all = [0.0; BAND_COUNT];
         let energy = &chunk.energy[receiver * bins..(receiver + 1) * bins];
         for (sum, bin) in self.energy.iter_mut().zip(energy) {

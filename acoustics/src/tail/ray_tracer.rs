@@ -1,7 +1,7 @@
 //! Tracing of rays through the house.
 
 use super::receiver_volume::TailReceiver;
-use super::{RAYS_PER_CHUNK, RayChunk};
+use super::{RAYS_PER_CHUNK, RayChunkEnergy};
 use crate::bands::{BAND_COUNT, BandValues};
 use crate::directions::{CELL_COUNT, direction_cell};
 use crate::directivity::TabulatedPattern;
@@ -93,10 +93,10 @@ struct TracedRay {
 
 impl RayTracer<'_> {
     /// Traces the rays of `range`, at most a chunk.
-    pub(super) fn trace_chunk(&self, range: Range<usize>, key: RandomKey) -> RayChunk {
+    pub(super) fn trace_chunk(&self, range: Range<usize>, key: RandomKey) -> RayChunkEnergy {
         debug_assert!(range.len() <= RAYS_PER_CHUNK);
         let receivers = self.listeners.len();
-        let mut chunk = RayChunk {
+        let mut chunk = RayChunkEnergy {
             energy: vec![[0.0; BAND_COUNT]; receivers * self.bin_count],
             directions: vec![[0.0; BAND_COUNT]; receivers * self.direction_time_bins * CELL_COUNT],
             by_ray: vec![[0.0; SPAN_COUNT]; receivers * RAYS_PER_CHUNK],
@@ -132,7 +132,7 @@ impl RayTracer<'_> {
         &self,
         mut rays: Vec<TracedRay>,
         random: &mut RayRandom<'_>,
-        chunk: &mut RayChunk,
+        chunk: &mut RayChunkEnergy,
         beyond: &mut Vec<TracedRay>,
     ) {
         let Some(begin_m) = rays.first().map(|one| one.travelled_m) else {
@@ -166,7 +166,7 @@ impl RayTracer<'_> {
         end_m: f32,
         worth: &BandValues,
         random: &mut RayRandom<'_>,
-        chunk: &mut RayChunk,
+        chunk: &mut RayChunkEnergy,
         beyond: &mut Vec<TracedRay>,
     ) -> Option<TracedRay> {
         let images = self.data.config().image_order;
@@ -231,7 +231,7 @@ impl RayTracer<'_> {
         one: &TracedRay,
         scattered: &BandValues,
         aside: &mut RandomStream,
-        chunk: &mut RayChunk,
+        chunk: &mut RayChunkEnergy,
     ) {
         let looks_through =
             self.wall_probability > 0.0 && aside.uniform_f32() < WALL_SHADOW_RAY_PROBABILITY;
@@ -314,7 +314,7 @@ impl RayTracer<'_> {
         one: &TracedRay,
         reach_m: f32,
         stream: &mut RandomStream,
-        chunk: &mut RayChunk,
+        chunk: &mut RayChunkEnergy,
     ) {
         // Drawn once, so that a receiver's energies do not depend on the others.
         let place = stream.uniform_f32();
@@ -345,7 +345,7 @@ impl RayTracer<'_> {
 
     fn deposit(
         &self,
-        chunk: &mut RayChunk,
+        chunk: &mut RayChunkEnergy,
         (receiver, origin): (usize, usize),
         way_m: f32,
         energy: &BandValues,

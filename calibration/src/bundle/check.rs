@@ -569,7 +569,7 @@ pub(super) fn check_sufficient_data(bundle: &Bundle) -> CheckResult {
         BundleKind::Trajectory | BundleKind::Servo | BundleKind::ImpulseResponse => {}
     }
     durations(bundle)?;
-    unit_checks::motion(&bundle.name, &bundle.manifest, &bundle.episodes)
+    unit_checks::check_flights(&bundle.name, &bundle.manifest, &bundle.episodes)
 }
 
 /// Checks that no episode is longer than can be computed.

@@ -28,7 +28,7 @@ pub struct Manifest {
     pub channels: Vec<ChannelManifest>,
     /// The meaning of the numbers of `poses.csv` and `starts.csv` (kind `pose_trajectory`).
     #[serde(default)]
-    pub poses: Option<PoseForm>,
+    pub poses: Option<PoseTableFormat>,
     /// Anything else.
     #[serde(default)]
     pub notes: String,
@@ -53,7 +53,7 @@ pub enum BundleKind {
 /// The meaning of the numbers of `poses.csv`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct PoseForm {
+pub struct PoseTableFormat {
     /// Samples per second, Hz; the samples of an episode are evenly spaced.
     pub rate_hz: f64,
     /// The frame of `wx, wy, wz`.
@@ -94,13 +94,13 @@ pub struct SceneManifest {
     pub board: Option<BoardManifest>,
     /// The base of drives.
     #[serde(default)]
-    pub base: Option<BaseManifest>,
+    pub base: Option<WheeledBaseManifest>,
 }
 
 /// A base with two driven wheels side by side, with the values assumed before any fit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct BaseManifest {
+pub struct WheeledBaseManifest {
     /// Radius of both wheels, m; 0.001 to 1.
     pub wheel_radius_m: f64,
     /// Distance between the points where they touch the floor, m; 0.01 to 5.
@@ -264,7 +264,7 @@ pub struct CommandRow {
     missing_docs,
     reason = "coordinates in m, documented once at the head of `bundle`"
 )]
-pub struct ResponseRow {
+pub struct ImpulseResponseRow {
     /// The episode.
     pub episode: String,
     /// The WAV file, relative to the bundle, such as `ir/03.wav`.

@@ -1,8 +1,8 @@
 //! Drives of a robot: the content of `drive.csv`, and its plausibility.
 
 use super::check;
-use super::file::{BaseManifest, DriveRow, Manifest};
-use super::read::{episode, table};
+use super::file::{DriveRow, Manifest, WheeledBaseManifest};
+use super::read::{episode_index, for_each_row};
 use super::{MeasuredEpisode, unit_checks};
 use crate::error::CalibrationError;
 use std::collections::BTreeMap;
@@ -26,7 +26,7 @@ pub(super) fn read(
     by_name: &BTreeMap<String, usize>,
     episodes: &mut [MeasuredEpisode],
 ) -> OdometryCheck {
-    table(folder, "drive.csv", |row: DriveRow, at| {
+    for_each_row(folder, "drive.csv", |row: DriveRow, at| {
         check::check_time(at, row.t_s)?;
         for (field, value) in [("x", row.x), ("y", row.y)] {
             check::check_position(at, field, value)?;
@@ -38,7 +38,7 @@ pub(super) fn read(
         ] {
             check::check_finite(at, field, value, most)?;
         }
-        let index = episode(at, by_name, &row.episode)?;
+        let index = episode_index(at, by_name, &row.episode)?;
         episodes[index].drive.push(row);
         Ok(())
     })?;
@@ -97,7 +97,7 @@ struct WheelAndTrackerPaths {
 }
 
 impl WheelAndTrackerPaths {
-    fn add(&mut self, pair: &[DriveRow], base: &BaseManifest) {
+    fn add(&mut self, pair: &[DriveRow], base: &WheeledBaseManifest) {
         let (before, now) = (&pair[0], &pair[1]);
         let along = |heading: f64| {
             (now.x - before.x) * libm::cos(heading) + (now.y - before.y) * libm::sin(heading)
@@ -112,7 +112,7 @@ impl WheelAndTrackerPaths {
         self.turned_both += by_wheels * libm::atan2(libm::sin(turn), libm::cos(turn));
     }
 
-    fn end(&mut self, rows: &[DriveRow], base: &BaseManifest) {
+    fn end(&mut self, rows: &[DriveRow], base: &WheeledBaseManifest) {
         let ends =
             [rows.first(), rows.last()].map(|row| row.map_or(0.0, |r| r.left_rad + r.right_rad));
         self.since_start_m += 0.5 * base.wheel_radius_m * (ends[1] - ends[0]);

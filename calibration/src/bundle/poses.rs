@@ -2,7 +2,7 @@
 
 use super::check::{self, NameIndex};
 use super::file::{AngularFrame, Manifest, PoseRow, StartRow};
-use super::read::{episode, table};
+use super::read::{episode_index, for_each_row};
 use super::{MeasuredEpisode, PoseRates, PoseSample, unit_checks};
 use crate::error::CalibrationError;
 use glam::{DQuat, DVec3};
@@ -33,7 +33,7 @@ pub(super) fn read(
         .poses
         .as_ref()
         .map_or(AngularFrame::World, |form| form.angular_velocity);
-    table(folder, "poses.csv", |row: PoseRow, at| {
+    for_each_row(folder, "poses.csv", |row: PoseRow, at| {
         let sample = PoseSample {
             t_s: row.t_s,
             entity: names.entity(at, "entity", &row.entity)?,
@@ -45,8 +45,8 @@ pub(super) fn read(
         for (field, value) in [("x", row.x), ("y", row.y), ("z", row.z)] {
             check::check_position(at, field, value)?;
         }
-        let rates = rates(at, &row, sample.rotation, frame)?;
-        episodes[episode(at, by_name, &row.episode)?]
+        let rates = parse_rates(at, &row, sample.rotation, frame)?;
+        episodes[episode_index(at, by_name, &row.episode)?]
             .poses
             .push(PoseSample { rates, ..sample });
         Ok(())
@@ -66,8 +66,8 @@ fn starts(
     frame: AngularFrame,
     episodes: &mut [MeasuredEpisode],
 ) -> PoseCheck {
-    table(folder, "starts.csv", |row: StartRow, at| {
-        let index = episode(at, by_name, &row.episode)?;
+    for_each_row(folder, "starts.csv", |row: StartRow, at| {
+        let index = episode_index(at, by_name, &row.episode)?;
         let episode = &mut episodes[index];
         if episode.known_start.is_some() {
             let found = format!("{:?} again", row.episode);
@@ -116,7 +116,7 @@ fn unit(at: &str, rotation: DQuat) -> Result<DQuat, CalibrationError> {
     ))
 }
 
-fn rates(
+fn parse_rates(
     at: &str,
     row: &PoseRow,
     rotation: DQuat,
@@ -178,7 +178,7 @@ pub(super) fn check_poses(
             }
         }
     }
-    velocities(name, form.angular_velocity, step_s, episodes)
+    check_velocities(name, form.angular_velocity, step_s, episodes)
 }
 
 /// Sums of squares over samples that move fast enough.
@@ -218,7 +218,7 @@ impl Mismatch {
 }
 
 /// Velocities against differences of the poses: body against world, units, sign, and the clock's scale.
-fn velocities(
+fn check_velocities(
     name: &str,
     frame: AngularFrame,
     step_s: f64,
@@ -288,7 +288,7 @@ pub(crate) fn rotation_vector_between(a: DQuat, b: DQuat) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bundle::file::{BundleKind, PoseForm, SceneManifest, VERSION};
+    use crate::bundle::file::{BundleKind, PoseTableFormat, SceneManifest, VERSION};
 
     const RATE_HZ: f64 = 100.0;
 
@@ -332,7 +332,7 @@ mod tests {
             kind: BundleKind::PoseTrajectory,
             scene: SceneManifest::default(),
             channels: Vec::new(),
-            poses: Some(PoseForm {
+            poses: Some(PoseTableFormat {
                 rate_hz: RATE_HZ,
                 angular_velocity: frame,
                 filtering: String::new(),

@@ -1,7 +1,9 @@
 //! Reading of files into a checked [`Bundle`].
 
 use super::check::{self, NameIndex};
-use super::file::{BundleKind, CommandRow, EpisodeRow, Manifest, ResponseRow, TrajectoryRow};
+use super::file::{
+    BundleKind, CommandRow, EpisodeRow, ImpulseResponseRow, Manifest, TrajectoryRow,
+};
 use super::limits;
 use super::{Bundle, MeasuredEpisode, MeasuredResponse, MeasuredSample, odometry, poses, row, wav};
 use crate::error::CalibrationError;
@@ -128,7 +130,7 @@ fn manifest(folder: &Path) -> Result<Manifest, CalibrationError> {
 }
 
 /// Calls `row` with every row of a table and its place.
-pub(super) fn table<T: DeserializeOwned>(
+pub(super) fn for_each_row<T: DeserializeOwned>(
     folder: &Path,
     name: &str,
     mut each: impl FnMut(T, &str) -> Result<(), CalibrationError>,
@@ -167,7 +169,7 @@ pub(super) fn table<T: DeserializeOwned>(
 fn episodes(folder: &Path) -> Result<Vec<MeasuredEpisode>, CalibrationError> {
     let mut found: Vec<MeasuredEpisode> = Vec::new();
     let mut names = BTreeSet::new();
-    table(folder, "episodes.csv", |row: EpisodeRow, at| {
+    for_each_row(folder, "episodes.csv", |row: EpisodeRow, at| {
         check::check_name(at, "episode", &row.episode)?;
         check::check_name(at, "split_group", &row.split_group)?;
         if !names.insert(row.episode.clone()) {
@@ -199,7 +201,7 @@ fn episodes(folder: &Path) -> Result<Vec<MeasuredEpisode>, CalibrationError> {
 }
 
 /// The position of an episode.
-pub(super) fn episode(
+pub(super) fn episode_index(
     at: &str,
     by_name: &BTreeMap<String, usize>,
     name: &str,
@@ -220,7 +222,7 @@ fn trajectory(
     by_name: &BTreeMap<String, usize>,
     episodes: &mut [MeasuredEpisode],
 ) -> Result<(), CalibrationError> {
-    table(folder, "trajectory.csv", |row: TrajectoryRow, at| {
+    for_each_row(folder, "trajectory.csv", |row: TrajectoryRow, at| {
         check::check_time(at, row.t_s)?;
         check::check_finite(at, "value", row.value, 1e6)?;
         let sample = MeasuredSample {
@@ -229,7 +231,7 @@ fn trajectory(
             t_s: row.t_s,
             value: row.value,
         };
-        episodes[episode(at, by_name, &row.episode)?]
+        episodes[episode_index(at, by_name, &row.episode)?]
             .samples
             .push(sample);
         Ok(())
@@ -249,7 +251,7 @@ fn commands(
     by_name: &BTreeMap<String, usize>,
     episodes: &mut [MeasuredEpisode],
 ) -> Result<(), CalibrationError> {
-    table(folder, "command.csv", |row: CommandRow, at| {
+    for_each_row(folder, "command.csv", |row: CommandRow, at| {
         check::check_time(at, row.t_s)?;
         check::check_finite(at, "value", row.value, 1e3)?;
         names.entity(at, "actuator", &row.actuator)?;
@@ -261,7 +263,7 @@ fn commands(
                 "position",
             ));
         }
-        episodes[episode(at, by_name, &row.episode)?]
+        episodes[episode_index(at, by_name, &row.episode)?]
             .commands
             .push(row);
         Ok(())
@@ -279,7 +281,7 @@ fn responses(
     episodes: &mut [MeasuredEpisode],
 ) -> Result<(), CalibrationError> {
     let mut count = 0;
-    table(folder, "ir.csv", |row: ResponseRow, at| {
+    for_each_row(folder, "ir.csv", |row: ImpulseResponseRow, at| {
         count += 1;
         if count > limits::MAX_RESPONSES {
             let limit = limits::MAX_RESPONSES;
@@ -296,7 +298,7 @@ fn responses(
         check::check_point_in_room(at, "receiver", receiver_m, manifest)?;
         let (file, wav_at) = open(folder, &row.file, limits::MAX_WAV_BYTES)?;
         let samples = wav::samples(file, &wav_at, row.rate_hz)?;
-        episodes[episode(at, by_name, &row.episode)?]
+        episodes[episode_index(at, by_name, &row.episode)?]
             .responses
             .push(MeasuredResponse {
                 source_m,

@@ -43,7 +43,7 @@ fn is_near(found: f64, wanted: f64, tolerance: f64) -> bool {
 }
 
 /// Returns the remedy for numbers in another unit. `key`: of the map of `dwell measure import`.
-fn convert(what: &str, unit: UnitScale, key: &str) -> String {
+fn unit_conversion_hint(what: &str, unit: UnitScale, key: &str) -> String {
     let (name, factor) = unit;
     let digits = if factor.fract() == 0.0 { 0 } else { 4 };
     format!(
@@ -55,7 +55,7 @@ fn convert(what: &str, unit: UnitScale, key: &str) -> String {
 /// Returns the remedy for angles that are larger by `factor` than radians; empty where degrees do not explain it.
 pub(super) fn degrees_hint(what: &str, factor: f64) -> Option<String> {
     is_near(factor, DEGREES, FACTOR_TOLERANCE)
-        .then(|| convert(what, ("degrees", DEGREES), "radians_per_unit"))
+        .then(|| unit_conversion_hint(what, ("degrees", DEGREES), "radians_per_unit"))
 }
 
 /// Returns the remedy for lengths that are larger by `factor` than metres; empty where no unit explains it.
@@ -63,7 +63,7 @@ pub(super) fn length_unit_hint(what: &str, factor: f64) -> Option<String> {
     let unit = LENGTHS
         .iter()
         .find(|unit| is_near(factor, unit.1, FACTOR_TOLERANCE))?;
-    Some(convert(what, *unit, "metres_per_unit"))
+    Some(unit_conversion_hint(what, *unit, "metres_per_unit"))
 }
 
 fn median(values: &mut [f64]) -> Option<f64> {
@@ -91,10 +91,13 @@ pub(super) fn check_even_sampling(at: &str, times: &[f64], rate_hz: f64) -> Unit
     let told = if last == 0.0 {
         "; it stands twice: leave one of the two rows out".to_owned()
     } else if let Some(unit) = unit {
-        format!("; times {}", convert("are", *unit, "seconds_per_unit"))
+        format!(
+            "; times {}",
+            unit_conversion_hint("are", *unit, "seconds_per_unit")
+        )
     } else if is_near(usual, 1.0, 1e-6) && rate_hz > 1.0 {
         let (unit, key) = (("frames", rate_hz), "seconds_per_unit");
-        format!("; times {}", convert("are counted", unit, key))
+        format!("; times {}", unit_conversion_hint("are counted", unit, key))
     } else if !is_near(usual * rate_hz, 1.0, SPACING_TOLERANCE) {
         let found = 1.0 / usual;
         format!(
@@ -190,7 +193,11 @@ fn tracks(manifest: &Manifest, episode: &MeasuredEpisode) -> [CoordinateTrack; 3
 }
 
 /// Checks that bodies fall along y by what the manifest says, in metres and seconds, and that flights are flights alone.
-pub(super) fn motion(name: &str, manifest: &Manifest, episodes: &[MeasuredEpisode]) -> UnitCheck {
+pub(super) fn check_flights(
+    name: &str,
+    manifest: &Manifest,
+    episodes: &[MeasuredEpisode],
+) -> UnitCheck {
     let file = match manifest.kind {
         BundleKind::Trajectory => "trajectory.csv",
         BundleKind::PoseTrajectory => "poses.csv",
@@ -230,7 +237,7 @@ fn falls(at: &str, manifest: &Manifest, all: &[[CoordinateTrack; 3]]) -> UnitChe
             let reach = (track.m.len() / part).max(1);
             for a in track.accelerations(reach).filter(|a| a.is_finite()) {
                 counts[axis] += 1;
-                for (k, factor) in factors().enumerate() {
+                for (k, factor) in length_unit_factors().enumerate() {
                     if is_near(a.abs(), g * factor, FACTOR_TOLERANCE) {
                         let sign = if a < 0.0 { -1 } else { 1 };
                         *found.entry((axis, sign, k)).or_default() += 1;
@@ -283,7 +290,7 @@ fn falls(at: &str, manifest: &Manifest, all: &[[CoordinateTrack; 3]]) -> UnitChe
 }
 
 /// Factors of lengths: metres first.
-fn factors() -> impl Iterator<Item = f64> {
+fn length_unit_factors() -> impl Iterator<Item = f64> {
     std::iter::once(1.0).chain(LENGTHS.iter().map(|unit| unit.1))
 }
 
@@ -304,7 +311,7 @@ fn suggested_fix((axis, sign, unit): AxisGuess, kind: BundleKind) -> String {
     }
     if let Some(unit) = unit {
         told.push_str("; ");
-        told.push_str(&convert("lengths", unit, "metres_per_unit"));
+        told.push_str(&unit_conversion_hint("lengths", unit, "metres_per_unit"));
     }
     told
 }
@@ -335,7 +342,10 @@ pub(super) fn clock(at: &str, times: &[f64]) -> UnitCheck {
          0.0166667)"
             .to_owned()
     } else {
-        format!("; {}", convert("times", TIMES[0], "seconds_per_unit"))
+        format!(
+            "; {}",
+            unit_conversion_hint("times", TIMES[0], "seconds_per_unit")
+        )
     };
     Err(CalibrationError::field(
         at,

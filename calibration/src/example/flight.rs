@@ -6,7 +6,7 @@ const GRAVITY: f64 = 9.806_65;
 const SUBSTEPS: usize = 16;
 
 /// Positions (m) at equal steps of time, the start first.
-pub(super) fn path(
+pub(super) fn trajectory(
     start: [f64; 3],
     velocity: [f64; 3],
     drag_per_m: f64,
@@ -60,7 +60,7 @@ mod tests {
     #[test]
     fn a_fall_through_air_meets_its_closed_form() {
         let k = 0.11;
-        let path = path([0.0; 3], [0.0; 3], k, 0.01, 101);
+        let path = trajectory([0.0; 3], [0.0; 3], k, 0.01, 101);
         let exact = -(GRAVITY * k).sqrt().cosh().ln() / k;
         assert!(
             (path[100][1] - exact).abs() < 1e-9,

@@ -58,7 +58,7 @@ pub fn write(folder: &Path, seed: u64) -> Result<String, CalibrationError> {
             level * heading.sin(),
         ];
         let samples = (RATE_HZ * (0.45 + 0.2 * stream.uniform())) as usize;
-        let path = flight::path(start, velocity, drag_per_m, 1.0 / RATE_HZ, samples);
+        let path = flight::trajectory(start, velocity, drag_per_m, 1.0 / RATE_HZ, samples);
         let mut noise = key.child("noise").child(throw as u64).stream();
         for (k, point) in path.iter().enumerate() {
             let t_s = 12.5 + 2.0 * throw as f64 + k as f64 / RATE_HZ;

@@ -11,7 +11,7 @@ use crate::format_number::{format_list, format_number, format_percent};
 use crate::select::{
     Decision, Estimate, Findings, ScoredModel, SingleCause, by_channel, estimates, sd_of,
 };
-use crate::twin::{Cause, FitParameter, Installation, ParameterIndex, Twin};
+use crate::twin::{Cause, CauseInstallation, FitParameter, ParameterIndex, Twin};
 use dwell_scene::LawSpec;
 
 /// The version of the report's form.
@@ -159,7 +159,7 @@ fn verdict(twin: &dyn Twin, findings: &Findings) -> CalibrationVerdict {
     }
 }
 
-fn with_unit(unit: &str) -> String {
+fn unit_suffix(unit: &str) -> String {
     if unit == "1" {
         String::new()
     } else {
@@ -179,7 +179,7 @@ fn in_words(parameters: &[FittedParameter]) -> String {
                 "{} = {}{} ({low} to {high})",
                 p.name,
                 format_number(p.value),
-                with_unit(&p.unit)
+                unit_suffix(&p.unit)
             )
         })
         .collect();
@@ -210,7 +210,7 @@ fn sentence(
                 .map(|c| {
                     let p = &c.parameters[0];
                     let [low, high] = p.interval.map(format_number);
-                    format!("{} {low} to {high}{}", p.name, with_unit(&p.unit))
+                    format!("{} {low} to {high}{}", p.name, unit_suffix(&p.unit))
                 })
                 .collect();
             let limits = if limits.is_empty() {
@@ -257,7 +257,7 @@ fn sentence(
                 format!(
                     " It is worth {}{} in {}.",
                     format_number(w.rms),
-                    with_unit(&w.unit),
+                    unit_suffix(&w.unit),
                     w.channel
                 )
             });
@@ -290,7 +290,7 @@ fn found(twin: &dyn Twin, findings: &Findings) -> FoundEffects {
         let cause: &Cause = &twin.causes()[*index];
         let values = parameters(twin, &findings.chosen, *index);
         match &cause.installs_as {
-            Installation::Law { version, target } => found.laws.push(LawSpec {
+            CauseInstallation::Law { version, target } => found.laws.push(LawSpec {
                 id: cause.id.clone(),
                 version: *version,
                 target: target.clone(),
@@ -300,13 +300,13 @@ fn found(twin: &dyn Twin, findings: &Findings) -> FoundEffects {
                     .chain(cause.fixed.clone())
                     .collect(),
             }),
-            Installation::Addresses(addresses) => {
+            CauseInstallation::Addresses(addresses) => {
                 let pairs = addresses.iter().zip(&values);
                 found
                     .parameters
                     .extend(pairs.map(|(address, p)| (address.clone(), p.value)));
             }
-            Installation::Unsupported => {}
+            CauseInstallation::Unsupported => {}
         }
     }
     found

@@ -1,6 +1,6 @@
 //! The report as data.
 
-use crate::select::{Agreement, ChannelResidual, HeldOutGain, UnexplainedResidual};
+use crate::select::{ChannelResidual, HeldOutGain, ResidualNoiseTest, SplitHalfAgreement};
 use dwell_scene::LawSpec;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -149,11 +149,11 @@ pub struct CalibrationReport {
     /// The residuals with the found effects.
     pub residuals_after: Vec<ChannelResidual>,
     /// The test of whether they are more than noise, before.
-    pub remainder_before: UnexplainedResidual,
+    pub remainder_before: ResidualNoiseTest,
     /// And after.
-    pub remainder_after: UnexplainedResidual,
+    pub remainder_after: ResidualNoiseTest,
     /// The agreement of the cause's size where it is weak and where it is strong; `null` where that was not tested.
-    pub agreement: Option<Agreement>,
+    pub agreement: Option<SplitHalfAgreement>,
     /// All causes that were tried.
     pub candidates: Vec<CandidateCause>,
     /// Nuisances that all episodes share.

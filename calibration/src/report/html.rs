@@ -74,7 +74,7 @@ impl CalibrationReport {
         self.pictures(&mut out);
         self.table_of_causes(&mut out);
         self.table_of_residuals(&mut out);
-        self.rest(&mut out);
+        self.write_closing_sections(&mut out);
         out.push_str("</body></html>\n");
         out
     }
@@ -132,7 +132,7 @@ impl CalibrationReport {
             }
         }
         out.push_str("</table></div>");
-        let told = |r: &crate::select::UnexplainedResidual| {
+        let told = |r: &crate::select::ResidualNoiseTest| {
             format!(
                 "{} (noise alone stays below {})",
                 format_number(r.ratio),
@@ -157,7 +157,7 @@ impl CalibrationReport {
         }
     }
 
-    fn rest(&self, out: &mut String) {
+    fn write_closing_sections(&self, out: &mut String) {
         if !self.nuisances.is_empty() {
             out.push_str("<h2>Nuisances</h2><div class=\"scroll\"><table>");
             for nuisance in &self.nuisances {

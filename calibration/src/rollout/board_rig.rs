@@ -1,9 +1,9 @@
 //! The simulation of a body above a board, ready to be started from any motion.
 
-use super::motion::MeasuredMotion;
+use super::motion::MotionState;
 use super::pose_tracks::{PoseTracks, TrackedBody};
 use crate::error::CalibrationError;
-use crate::twin::test_world::{BOARD_SUBSTANCE, OBJECT_SUBSTANCE, TestObject, TestWorld};
+use crate::twin::test_world::{BOARD_SUBSTANCE, ExperimentWorld, OBJECT_SUBSTANCE, TestObject};
 use dwell_physics::{ContactFriction, PhysicsConfig};
 use dwell_scene::{LawSpec, PartId};
 use glam::{DQuat, DVec3, Quat, Vec3};
@@ -17,7 +17,7 @@ const BODY: PartId = PartId(0);
 /// A tiny house, a body above a board, to be copied for every roll-out.
 #[derive(Clone)]
 pub struct BoardRig {
-    stage: TestWorld,
+    stage: ExperimentWorld,
     /// The law that turns the inertia of a solid body into the measured one.
     inertia: LawSpec,
 }
@@ -65,7 +65,7 @@ impl BoardRig {
             sleeping: false,
             ..PhysicsConfig::default()
         };
-        let stage = TestWorld::new(20.0, &thing, config)?;
+        let stage = ExperimentWorld::new(20.0, &thing, config)?;
         let gravity = [("world/gravity_m_s2", tracks.gravity_m_s2)];
         let rig = Self {
             stage: stage.with_laws_and_overrides(Vec::new(), &gravity)?,
@@ -104,9 +104,9 @@ impl BoardRig {
     /// [`CalibrationError::Simulation`] for a start that is not finite.
     pub fn simulate(
         &self,
-        start: &MeasuredMotion,
+        start: &MotionState,
         samples: usize,
-    ) -> Result<Vec<MeasuredMotion>, CalibrationError> {
+    ) -> Result<Vec<MotionState>, CalibrationError> {
         let mut stage = self.stage.clone();
         // Near the origin single precision is finest, and the board is the same everywhere.
         let origin = DVec3::new(start.position.x, 0.0, start.position.z);
@@ -120,7 +120,7 @@ impl BoardRig {
         let mut motions = Vec::with_capacity(samples);
         for _ in 0..samples {
             stage.step()?;
-            motions.push(read(
+            motions.push(motion_from_state(
                 origin,
                 stage.state.part_pose[BODY].position,
                 stage.state.part_pose[BODY].rotation,
@@ -131,19 +131,19 @@ impl BoardRig {
     }
 }
 
-fn read(
+fn motion_from_state(
     origin: DVec3,
     position: Vec3,
     rotation: Quat,
     velocity: &dwell_scene::Velocity,
-) -> MeasuredMotion {
+) -> MotionState {
     let quat = DQuat::from_xyzw(
         f64::from(rotation.x),
         f64::from(rotation.y),
         f64::from(rotation.z),
         f64::from(rotation.w),
     );
-    MeasuredMotion {
+    MotionState {
         position: origin + position.as_dvec3(),
         rotation: quat.normalize(),
         linear: velocity.linear.as_dvec3(),

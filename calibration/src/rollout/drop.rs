@@ -1,13 +1,13 @@
 //! Balls that fall: free flight through the engine's own physics, from any measured height.
 
-use super::motion::{Deviation, MeasuredMotion};
+use super::motion::{Deviation, MotionState};
 use super::regime::Regime;
 use super::series::{ModelParameter, ModelledSubject, SimulationModel};
 use super::subject::RolloutSubject;
 use crate::bundle::{self, Bundle};
 use crate::error::CalibrationError;
 use crate::report::FoundEffects;
-use crate::twin::test_world::{TestObject, TestWorld, hermite_interpolation};
+use crate::twin::test_world::{ExperimentWorld, TestObject, hermite_interpolation};
 use crate::twin::{air_density_kg_m3, gravity_m_s2};
 use dwell_physics::PhysicsConfig;
 use dwell_scene::random::RandomKey;
@@ -49,13 +49,13 @@ struct BallDrop {
     group: String,
     ball: usize,
     t_s: Vec<f64>,
-    motions: Vec<MeasuredMotion>,
+    motions: Vec<MotionState>,
     regimes: Vec<Regime>,
 }
 
 /// The balls, each in its house, with laws.
 pub struct DropRig {
-    stages: Vec<TestWorld>,
+    stages: Vec<ExperimentWorld>,
     rate_hz: f64,
 }
 
@@ -195,7 +195,7 @@ fn released(rows: &[(f64, f64)]) -> &[(f64, f64)] {
     &rows[first.unwrap_or(rows.len())..]
 }
 
-fn motions(rows: &[(f64, f64)]) -> Vec<MeasuredMotion> {
+fn motions(rows: &[(f64, f64)]) -> Vec<MotionState> {
     (0..rows.len())
         .map(|k| {
             let (a, b) = (rows[k.saturating_sub(1)], rows[(k + 1).min(rows.len() - 1)]);
@@ -204,8 +204,8 @@ fn motions(rows: &[(f64, f64)]) -> Vec<MeasuredMotion> {
         .collect()
 }
 
-fn motion(height_m: f64, speed_m_s: f64) -> MeasuredMotion {
-    MeasuredMotion {
+fn motion(height_m: f64, speed_m_s: f64) -> MotionState {
+    MotionState {
         position: DVec3::Y * height_m,
         rotation: DQuat::IDENTITY,
         linear: DVec3::Y * speed_m_s,
@@ -251,7 +251,7 @@ impl RolloutSubject for BallDrops {
         self.episodes.len()
     }
 
-    fn measured(&self, episode: usize) -> &[MeasuredMotion] {
+    fn measured(&self, episode: usize) -> &[MotionState] {
         &self.episodes[episode].motions
     }
 
@@ -279,7 +279,7 @@ impl RolloutSubject for BallDrops {
         at: usize,
         samples: usize,
         nudge: Option<RandomKey>,
-    ) -> Result<Vec<MeasuredMotion>, CalibrationError> {
+    ) -> Result<Vec<MotionState>, CalibrationError> {
         let drop = &self.episodes[episode];
         let from = (at + 1).saturating_sub(PAST);
         let since = |k: usize| drop.t_s[k] - drop.t_s[from];
@@ -380,7 +380,7 @@ impl ModelledSubject for BallDrops {
             } else {
                 Vec::new()
             };
-            let stage = TestWorld::new(self.size_m, ball, config.clone())?;
+            let stage = ExperimentWorld::new(self.size_m, ball, config.clone())?;
             stages.push(stage.with_laws_and_overrides(laws, &[("world/gravity_m_s2", gravity)])?);
         }
         Ok(DropRig { stages, rate_hz })

@@ -51,7 +51,7 @@ pub(crate) fn windows(out: &mut String, model: &str, scores: &[WindowScore]) {
 }
 
 /// Writes which residuals are the solver's.
-pub(crate) fn solver(out: &mut String, sentences: &[String]) {
+pub(crate) fn write_solver_artefacts(out: &mut String, sentences: &[String]) {
     out.push_str("<h2>Steps</h2>");
     for sentence in sentences {
         let _ = write!(out, "<p>{}</p>", page::escape(sentence));

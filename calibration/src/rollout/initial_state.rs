@@ -1,6 +1,6 @@
 //! The motion that a window starts from, estimated from the measured poses up to it.
 
-use super::motion::MeasuredMotion;
+use super::motion::MotionState;
 use super::pose_tracks::PoseTrack;
 use super::regime::Regime;
 use crate::bundle::rotation_vector_between;
@@ -68,7 +68,7 @@ pub fn window_start(
     gravity_m_s2: f64,
     noise: &TrackerNoise,
     nudge: Option<RandomKey>,
-) -> MeasuredMotion {
+) -> MotionState {
     let past = (at + 1).saturating_sub(SAMPLES)..at + 1;
     let (motions, regimes) = (&track.motions[past.clone()], &track.regimes[past]);
     let here = track.motions[at];
@@ -88,14 +88,14 @@ pub fn window_start(
     let turned_by = |by: DVec3| (DQuat::from_scaled_axis(by) * here.rotation).normalize();
     if let ([place], [turned]) = (&places[..], &turns[..]) {
         // Nothing before: the velocities that were recorded must do.
-        return MeasuredMotion {
+        return MotionState {
             position: *place,
             rotation: turned_by(*turned),
             ..here
         };
     }
     let fall = DVec3::NEG_Y * gravity_m_s2;
-    let (position, linear) = filtered(&places, regimes, step_s, noise.position_m, |regime| {
+    let (position, linear) = kalman_filter(&places, regimes, step_s, noise.position_m, |regime| {
         let drift = if regime == Regime::Flight {
             fall
         } else {
@@ -103,10 +103,10 @@ pub fn window_start(
         };
         (drift, LINEAR_M_S2[kind(regime)])
     });
-    let (turned, angular) = filtered(&turns, regimes, step_s, noise.rotation_rad, |regime| {
+    let (turned, angular) = kalman_filter(&turns, regimes, step_s, noise.rotation_rad, |regime| {
         (DVec3::ZERO, ANGULAR_RAD_S2[kind(regime)])
     });
-    MeasuredMotion {
+    MotionState {
         position,
         rotation: turned_by(turned),
         linear,
@@ -129,7 +129,7 @@ fn kind(regime: Regime) -> usize {
 }
 
 /// The place and its rate at the last sample.
-fn filtered(
+fn kalman_filter(
     values: &[DVec3],
     regimes: &[Regime],
     step_s: f64,
@@ -179,7 +179,7 @@ mod tests {
             .collect();
         let regimes = vec![Regime::Flight; count];
         let fall = DVec3::NEG_Y * g;
-        let (place, rate) = filtered(&values, &regimes, step_s, noise, |_| (fall, 0.0));
+        let (place, rate) = kalman_filter(&values, &regimes, step_s, noise, |_| (fall, 0.0));
         let end = (count - 1) as f64 * step_s;
         let time = |k: usize| k as f64 * step_s - end;
         let straight: Vec<DVec3> = (0..count)
@@ -207,7 +207,7 @@ mod tests {
             position_m: 1e-3,
             rotation_rad: 1e-2,
         };
-        let still = MeasuredMotion {
+        let still = MotionState {
             position: DVec3::Y,
             rotation: DQuat::IDENTITY,
             linear: DVec3::ZERO,

@@ -24,12 +24,12 @@ mod windows;
 
 pub use board_rig::{BoardRig, RigSettings, STEPS_PER_SAMPLE};
 pub use initial_state::{TrackerNoise, window_start};
-pub use motion::{Deviation, MeasuredMotion};
+pub use motion::{Deviation, MotionState};
 pub use pose_tracks::{NominalContact, PoseTrack, PoseTracks, TrackedBody};
-pub use refine::{REFINEMENT_FACTOR, Refinement, refinements};
+pub use refine::{REFINEMENT_FACTOR, StepRefinementEffect, refinements};
 pub use regime::Regime;
 pub use residuals::{Quantiles, ResidualGroup, ResidualGroups};
-pub use score::{Score, deviations, diverging, scores};
+pub use score::{Score, deviations, diverges_under_noise, scores};
 pub use subject::RolloutSubject;
 pub use summary::{EpisodeSpread, ScoreSummary};
-pub use windows::{HORIZONS, WindowEnd, WindowOptions, WindowScore, ends, windows};
+pub use windows::{HORIZONS, WindowOptions, WindowPrediction, WindowScore, ends, windows};

@@ -4,7 +4,7 @@ use glam::{DQuat, DVec3};
 
 /// A body's pose and velocities in the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MeasuredMotion {
+pub struct MotionState {
     /// Its origin, m.
     pub position: DVec3,
     /// World from body.
@@ -26,7 +26,7 @@ pub struct Deviation {
 
 impl Deviation {
     /// Between a prediction and a measurement.
-    pub fn between(predicted: &MeasuredMotion, measured: &MeasuredMotion) -> Self {
+    pub fn between(predicted: &MotionState, measured: &MotionState) -> Self {
         Self {
             position_m: (predicted.position - measured.position).length(),
             rotation_rad: crate::bundle::rotation_vector_between(
@@ -68,13 +68,13 @@ mod tests {
 
     #[test]
     fn a_turn_counts_the_short_way_and_a_shift_by_its_length() {
-        let still = MeasuredMotion {
+        let still = MotionState {
             position: DVec3::ZERO,
             rotation: DQuat::IDENTITY,
             linear: DVec3::ZERO,
             angular: DVec3::ZERO,
         };
-        let turned = MeasuredMotion {
+        let turned = MotionState {
             position: DVec3::new(3e-3, 4e-3, 0.0),
             // 350 degrees one way are 10 the other.
             rotation: -DQuat::from_rotation_y(350.0_f64.to_radians()),

@@ -2,7 +2,7 @@
 
 use super::board_rig::BoardRig;
 use super::initial_state::{TrackerNoise, window_start};
-use super::motion::{Deviation, MeasuredMotion};
+use super::motion::{Deviation, MotionState};
 use super::regime::{self, Regime};
 use super::subject::RolloutSubject;
 use crate::bundle::{self, Bundle, MeasuredEpisode, PoseRates, rotation_vector_between};
@@ -63,13 +63,13 @@ pub struct PoseTrack {
     /// Episodes of one group are held out together.
     pub group: String,
     /// The measured motion. Shape (sample,).
-    pub motions: Vec<MeasuredMotion>,
+    pub motions: Vec<MotionState>,
     /// The regime at each sample. Shape (sample,).
     pub regimes: Vec<Regime>,
     /// The sample that whole roll-outs start from.
     pub start: usize,
     /// The motion there, with velocities fitted to the flight before it where the bundle has them.
-    pub start_motion: MeasuredMotion,
+    pub start_motion: MotionState,
 }
 
 impl TrackedBody {
@@ -162,7 +162,7 @@ impl RolloutSubject for PoseTracks {
         self.episodes.len()
     }
 
-    fn measured(&self, episode: usize) -> &[MeasuredMotion] {
+    fn measured(&self, episode: usize) -> &[MotionState] {
         &self.episodes[episode].motions
     }
 
@@ -188,7 +188,7 @@ impl RolloutSubject for PoseTracks {
         at: usize,
         samples: usize,
         nudge: Option<RandomKey>,
-    ) -> Result<Vec<MeasuredMotion>, CalibrationError> {
+    ) -> Result<Vec<MotionState>, CalibrationError> {
         let track = &self.episodes[episode];
         let (step_s, g) = (self.step_s(), self.gravity_m_s2);
         rig.simulate(
@@ -205,7 +205,7 @@ fn track(
     gravity_m_s2: f64,
 ) -> PoseTrack {
     let poses = &episode.poses;
-    let motions: Vec<MeasuredMotion> = (0..poses.len())
+    let motions: Vec<MotionState> = (0..poses.len())
         .map(|k| {
             let rates = poses[k].rates.unwrap_or_else(|| {
                 // Backward differences; the first sample has what the second has.
@@ -216,7 +216,7 @@ fn track(
                     angular: rotation_vector_between(a.rotation, b.rotation) / step_s,
                 }
             });
-            MeasuredMotion {
+            MotionState {
                 position: poses[k].position,
                 rotation: poses[k].rotation,
                 linear: rates.linear,
@@ -229,7 +229,7 @@ fn track(
         None => (0, None),
     };
     let measured = motions[start];
-    let start_motion = rates.map_or(measured, |rates| MeasuredMotion {
+    let start_motion = rates.map_or(measured, |rates| MotionState {
         linear: rates.linear,
         angular: rates.angular,
         ..measured

@@ -2,7 +2,7 @@
 
 use super::motion::Deviation;
 use super::regime::Regime;
-use super::windows::{HORIZONS, WindowEnd};
+use super::windows::{HORIZONS, WindowPrediction};
 use crate::fit::median;
 use crate::format_number::format_number;
 use serde::Serialize;
@@ -18,7 +18,7 @@ const FEWEST: usize = 20;
 
 /// The effect of a finer step in windows of one horizon and regime. Windows that diverge are left out.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Refinement {
+pub struct StepRefinementEffect {
     /// Samples ahead.
     pub horizon: usize,
     /// The worst that the body does between start and end; `null`: all windows.
@@ -38,8 +38,11 @@ pub struct Refinement {
 }
 
 /// Compares ends with those of the same windows at a quarter of the step.
-pub fn refinements(coarse: &[WindowEnd], fine: &[WindowEnd]) -> Vec<Refinement> {
-    let pairs: Vec<(&WindowEnd, &WindowEnd)> = coarse
+pub fn refinements(
+    coarse: &[WindowPrediction],
+    fine: &[WindowPrediction],
+) -> Vec<StepRefinementEffect> {
+    let pairs: Vec<(&WindowPrediction, &WindowPrediction)> = coarse
         .iter()
         .zip(fine)
         .filter(|(a, b)| (a.start, a.horizon) == (b.start, b.horizon) && !a.diverges)
@@ -54,10 +57,10 @@ pub fn refinements(coarse: &[WindowEnd], fine: &[WindowEnd]) -> Vec<Refinement> 
             if here.len() < FEWEST {
                 continue;
             }
-            let middle = |size: &dyn Fn(&(&WindowEnd, &WindowEnd)) -> f64| {
+            let middle = |size: &dyn Fn(&(&WindowPrediction, &WindowPrediction)) -> f64| {
                 median(&mut here.iter().map(|pair| size(pair)).collect::<Vec<f64>>())
             };
-            let apart = |pair: &(&WindowEnd, &WindowEnd)| {
+            let apart = |pair: &(&WindowPrediction, &WindowPrediction)| {
                 Deviation::between(&pair.1.predicted, &pair.0.predicted)
             };
             let position_median_mm = [
@@ -71,7 +74,7 @@ pub fn refinements(coarse: &[WindowEnd], fine: &[WindowEnd]) -> Vec<Refinement> 
             let changes = |[coarse, fine]: [f64; 2], least: f64| {
                 (fine - coarse).abs() > (ARTEFACT_SHARE * coarse).max(least)
             };
-            found.push(Refinement {
+            found.push(StepRefinementEffect {
                 horizon,
                 regime,
                 count: here.len(),
@@ -88,7 +91,7 @@ pub fn refinements(coarse: &[WindowEnd], fine: &[WindowEnd]) -> Vec<Refinement> 
 }
 
 /// Returns the result, in a sentence.
-pub(crate) fn sentence(model: &str, refinements: &[Refinement]) -> String {
+pub(crate) fn sentence(model: &str, refinements: &[StepRefinementEffect]) -> String {
     let artefacts = refinements.iter().filter(|r| r.artefact);
     let told: Vec<String> = artefacts
         .map(|r| {
@@ -114,23 +117,23 @@ pub(crate) fn sentence(model: &str, refinements: &[Refinement]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rollout::MeasuredMotion;
+    use crate::rollout::MotionState;
     use glam::{DQuat, DVec3};
 
-    fn ends(off_m: f64) -> Vec<WindowEnd> {
+    fn ends(off_m: f64) -> Vec<WindowPrediction> {
         (0..30)
             .map(|k| {
-                let predicted = MeasuredMotion {
+                let predicted = MotionState {
                     position: DVec3::X * off_m,
                     rotation: DQuat::IDENTITY,
                     linear: DVec3::ZERO,
                     angular: DVec3::ZERO,
                 };
-                let origin = MeasuredMotion {
+                let origin = MotionState {
                     position: DVec3::ZERO,
                     ..predicted
                 };
-                WindowEnd {
+                WindowPrediction {
                     start: (0, k),
                     horizon: 5,
                     regime: Regime::Impact,

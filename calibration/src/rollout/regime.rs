@@ -1,6 +1,6 @@
 //! Regimes of a toss: a body's contact state at a sample, by the measured poses.
 
-use super::motion::MeasuredMotion;
+use super::motion::MotionState;
 use super::pose_tracks::TrackedBody;
 use glam::DVec3;
 use serde::Serialize;
@@ -81,7 +81,7 @@ const STILL_M_S: f64 = 0.03;
 
 /// The regime of every sample.
 pub(super) fn of(
-    motions: &[MeasuredMotion],
+    motions: &[MotionState],
     body: &TrackedBody,
     step_s: f64,
     gravity_m_s2: DVec3,
@@ -117,7 +117,7 @@ pub(super) fn of(
 }
 
 /// The height of the lowest corner of a box, m.
-pub(super) fn lowest_m(motion: &MeasuredMotion, half: [f64; 3]) -> f64 {
+pub(super) fn lowest_m(motion: &MotionState, half: [f64; 3]) -> f64 {
     let axes = [DVec3::X, DVec3::Y, DVec3::Z];
     let drop: f64 = axes
         .iter()
@@ -144,7 +144,7 @@ mod tests {
         };
         let fall_s: f64 = 0.205;
         let height = half + 0.5 * g * fall_s * fall_s;
-        let motions: Vec<MeasuredMotion> = (0..80)
+        let motions: Vec<MotionState> = (0..80)
             .map(|k| {
                 let t = f64::from(k) * step_s;
                 let y = if t < fall_s {
@@ -155,7 +155,7 @@ mod tests {
                 let vy = if t < fall_s { -g * t } else { 0.0 };
                 let slide = (t.min(0.6) - 0.3).clamp(0.0, 0.3);
                 let moves = if (0.3..0.6).contains(&t) { 0.5 } else { 0.0 };
-                MeasuredMotion {
+                MotionState {
                     position: DVec3::new(0.5 * slide, y, 0.0),
                     rotation: DQuat::IDENTITY,
                     linear: DVec3::new(moves, vy, 0.0),
@@ -168,7 +168,7 @@ mod tests {
         assert_eq!(found[20], Regime::Impact);
         assert_eq!(found[40], Regime::Contact);
         assert_eq!(found[75], Regime::Rest);
-        let tilted = MeasuredMotion {
+        let tilted = MotionState {
             rotation: DQuat::from_rotation_z(45.0_f64.to_radians()),
             ..motions[79]
         };

@@ -1,7 +1,7 @@
 //! Distributions of residuals: by regime, by speed, by kind of episode, for several models beside each other.
 
 use super::regime::Regime;
-use super::windows::WindowEnd;
+use super::windows::WindowPrediction;
 use serde::Serialize;
 
 /// Groups by speed hold equally many windows.
@@ -11,15 +11,15 @@ const FEWEST: usize = 10;
 
 /// The kind of residual.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Residual {
+pub(crate) enum ResidualKind {
     /// Distance, mm.
     Position,
     /// Angle, degrees.
     Rotation,
 }
 
-impl Residual {
-    fn of(self, end: &WindowEnd) -> f64 {
+impl ResidualKind {
+    fn of(self, end: &WindowPrediction) -> f64 {
         match self {
             Self::Position => end.deviation.position_mm(),
             Self::Rotation => end.deviation.rotation_deg(),
@@ -62,7 +62,7 @@ pub struct Quantiles {
 }
 
 /// A model's name and its windows; the windows of all models are the same.
-pub(crate) type ModelWindows<'a> = (&'a str, &'a [WindowEnd]);
+pub(crate) type ModelWindows<'a> = (&'a str, &'a [WindowPrediction]);
 
 /// All pictures of the windows that look `horizon` samples ahead: position and, where there are, rotation, by regime, by speed, and
 /// by `kinds` (of each episode) where these are more than one.
@@ -73,7 +73,7 @@ pub(crate) fn all(
     kinds: &[&str],
 ) -> Vec<ResidualGroups> {
     // Every model has the same windows in the same order.
-    let ahead: Vec<(&str, Vec<&WindowEnd>)> = rows
+    let ahead: Vec<(&str, Vec<&WindowPrediction>)> = rows
         .iter()
         .map(|(name, ends)| {
             (
@@ -85,8 +85,8 @@ pub(crate) fn all(
     let rows = &ahead[..];
     let mut found = Vec::new();
     let which = [
-        (Residual::Position, "position", "mm"),
-        (Residual::Rotation, "rotation", "degrees"),
+        (ResidualKind::Position, "position", "mm"),
+        (ResidualKind::Rotation, "rotation", "degrees"),
     ];
     for (residual, word, unit) in which.into_iter().take(if rotation { 2 } else { 1 }) {
         let mut push = |by: &str, groups: Vec<ResidualGroup>| {
@@ -117,7 +117,7 @@ pub(crate) fn all(
     found
 }
 
-fn by_speed(rows: &[(&str, Vec<&WindowEnd>)], residual: Residual) -> Vec<ResidualGroup> {
+fn by_speed(rows: &[(&str, Vec<&WindowPrediction>)], residual: ResidualKind) -> Vec<ResidualGroup> {
     let Some((_, ends)) = rows.first() else {
         return Vec::new();
     };
@@ -129,7 +129,7 @@ fn by_speed(rows: &[(&str, Vec<&WindowEnd>)], residual: Residual) -> Vec<Residua
     let edge = |k: usize| speeds[(k * (speeds.len() - 1)) / SPEEDS];
     let groups = (0..SPEEDS).map(|k| {
         let (low, high) = (edge(k), edge(k + 1));
-        let inside = |end: &WindowEnd| {
+        let inside = |end: &WindowPrediction| {
             (low..high).contains(&end.speed_m_s) || (k + 1 == SPEEDS && end.speed_m_s >= low)
         };
         let label = format!("{low:.2} to {high:.2} m/s");
@@ -140,10 +140,10 @@ fn by_speed(rows: &[(&str, Vec<&WindowEnd>)], residual: Residual) -> Vec<Residua
 
 /// Quantiles of the windows that belong to the group and that diverge in no model.
 fn group(
-    rows: &[(&str, Vec<&WindowEnd>)],
-    residual: Residual,
+    rows: &[(&str, Vec<&WindowPrediction>)],
+    residual: ResidualKind,
     label: String,
-    belongs: &dyn Fn(&WindowEnd) -> bool,
+    belongs: &dyn Fn(&WindowPrediction) -> bool,
 ) -> Option<ResidualGroup> {
     let (_, first) = rows.first()?;
     let chosen: Vec<usize> = (0..first.len())

@@ -2,7 +2,7 @@
 
 use super::board_rig::BoardRig;
 use super::initial_state::window_start;
-use super::motion::{Deviation, MeasuredMotion};
+use super::motion::{Deviation, MotionState};
 use super::pose_tracks::{PoseTrack, PoseTracks};
 use super::subject::RolloutSubject;
 use crate::error::CalibrationError;
@@ -85,7 +85,7 @@ const NUDGES: u64 = 4;
 ///
 /// # Determinism
 /// The same bits for any number of threads.
-pub fn diverging(
+pub fn diverges_under_noise(
     rig: &BoardRig,
     tracks: &PoseTracks,
     which: &[usize],
@@ -96,7 +96,7 @@ pub fn diverging(
     let one = |k: usize| {
         let track = &tracks.episodes[which[k]];
         let samples = track.motions.len() - track.start - 1;
-        let last = |start: &MeasuredMotion| {
+        let last = |start: &MotionState| {
             let rolled = rig.simulate(start, samples)?;
             Ok::<_, CalibrationError>(rolled.last().copied().unwrap_or(*start))
         };
@@ -109,7 +109,7 @@ pub fn diverging(
             let other = estimate(Some(key.child(which[k] as u64).child(nudge)));
             // The stated start, moved as the noise moves an estimate of it.
             let turned = other.rotation * known.rotation.inverse();
-            let start = MeasuredMotion {
+            let start = MotionState {
                 position: track.start_motion.position + other.position - known.position,
                 rotation: (turned * track.start_motion.rotation).normalize(),
                 linear: track.start_motion.linear + other.linear - known.linear,

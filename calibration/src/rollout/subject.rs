@@ -1,6 +1,6 @@
 //! Subjects of roll-outs: measured motions, and a simulation that predicts them.
 
-use super::motion::{Deviation, MeasuredMotion};
+use super::motion::{Deviation, MotionState};
 use super::regime::Regime;
 use crate::error::CalibrationError;
 use dwell_scene::random::RandomKey;
@@ -14,7 +14,7 @@ pub trait RolloutSubject: Sync {
     fn count(&self) -> usize;
 
     /// Returns the measured motion, at even spacing. Shape (sample,).
-    fn measured(&self, episode: usize) -> &[MeasuredMotion];
+    fn measured(&self, episode: usize) -> &[MotionState];
 
     /// Returns the regime at each sample. Shape (sample,).
     fn regimes(&self, episode: usize) -> &[Regime];
@@ -42,5 +42,5 @@ pub trait RolloutSubject: Sync {
         at: usize,
         samples: usize,
         nudge: Option<RandomKey>,
-    ) -> Result<Vec<MeasuredMotion>, CalibrationError>;
+    ) -> Result<Vec<MotionState>, CalibrationError>;
 }

@@ -1,6 +1,6 @@
 //! Windows: from every measured sample, some samples ahead.
 
-use super::motion::{Deviation, MeasuredMotion};
+use super::motion::{Deviation, MotionState};
 use super::regime::Regime;
 use super::subject::RolloutSubject;
 use crate::error::CalibrationError;
@@ -27,7 +27,7 @@ pub struct WindowOptions {
 
 /// One window's end.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WindowEnd {
+pub struct WindowPrediction {
     /// The episode, and the sample that it started from.
     pub start: (usize, usize),
     /// Samples ahead.
@@ -37,7 +37,7 @@ pub struct WindowEnd {
     /// Measured speed at the start, m/s.
     pub speed_m_s: f64,
     /// The prediction.
-    pub predicted: MeasuredMotion,
+    pub predicted: MotionState,
     /// Its deviation from the measurement.
     pub deviation: Deviation,
     /// True if starts within the uncertainty of this one end elsewhere: the result is chance, and says little about
@@ -71,7 +71,7 @@ fn ends_of<S: RolloutSubject>(
     rig: &S::Rig,
     episode: usize,
     windowing: &WindowOptions,
-) -> Result<Vec<WindowEnd>, CalibrationError> {
+) -> Result<Vec<WindowPrediction>, CalibrationError> {
     let longest = HORIZONS.into_iter().max().unwrap_or(1);
     let (measured, regimes) = (subject.measured(episode), subject.regimes(episode));
     let last = measured.len().saturating_sub(1);
@@ -90,7 +90,7 @@ fn ends_of<S: RolloutSubject>(
         }
         for horizon in HORIZONS.into_iter().filter(|h| *h <= plain.len()) {
             let predicted = plain[horizon - 1];
-            ends.push(WindowEnd {
+            ends.push(WindowPrediction {
                 start: (episode, at),
                 horizon,
                 regime: Regime::hardest(&regimes[at..=at + horizon]),
@@ -117,15 +117,15 @@ pub fn ends<S: RolloutSubject>(
     subject: &S,
     rigs: &[&S::Rig],
     windowing: &WindowOptions,
-) -> Result<Vec<WindowEnd>, CalibrationError> {
+) -> Result<Vec<WindowPrediction>, CalibrationError> {
     let one = |episode: usize| ends_of(subject, rigs[episode], episode, windowing);
     let found = windowing.threads.map(subject.count(), one);
-    let found: Result<Vec<Vec<WindowEnd>>, _> = found.into_iter().collect();
+    let found: Result<Vec<Vec<WindowPrediction>>, _> = found.into_iter().collect();
     Ok(found?.concat())
 }
 
 /// Returns the deviations of the windows, by horizon and regime; those that diverge apart.
-pub fn windows(ends: &[WindowEnd]) -> Vec<WindowScore> {
+pub fn windows(ends: &[WindowPrediction]) -> Vec<WindowScore> {
     let mut scores = Vec::new();
     for horizon in HORIZONS {
         let regimes = std::iter::once(None).chain(Regime::ALL.map(Some));

@@ -1,6 +1,6 @@
 //! Agreement of a cause's size wherever it is strong or weak: a name that fits one regime and not another is refuted.
 
-use super::compare::{CauseComparison, Estimate, ScoredModel, estimates};
+use super::compare::{CauseComparer, Estimate, ScoredModel, estimates};
 use super::residual::effective_count;
 use crate::error::CalibrationError;
 use crate::twin::{ResidualStructure, cause_range};
@@ -13,7 +13,7 @@ const ALLOWED_SHARE: f64 = 0.05;
 
 /// The first parameter of a cause, fitted apart in the episodes that feel it least and most.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Agreement {
+pub struct SplitHalfAgreement {
     /// Its fit in the half of the episodes that feels it least.
     pub weak: f64,
     /// Its fit in the half that feels it most.
@@ -22,7 +22,7 @@ pub struct Agreement {
     pub z: f64,
 }
 
-impl Agreement {
+impl SplitHalfAgreement {
     /// Returns whether the two differ by more than chance and the precision of masses and sizes allow.
     pub(crate) fn is_refuting(&self) -> bool {
         let size = self.weak.abs().max(self.strong.abs());
@@ -32,9 +32,9 @@ impl Agreement {
 
 /// Fits `judged`'s first cause apart in two halves of the training episodes; `None` where there are too few.
 pub(super) fn agreement(
-    all: &CauseComparison<'_>,
+    all: &CauseComparer<'_>,
     judged: &ScoredModel,
-) -> Result<Option<Agreement>, CalibrationError> {
+) -> Result<Option<SplitHalfAgreement>, CalibrationError> {
     let Some(cause) = judged.model.causes.first() else {
         return Ok(None);
     };
@@ -76,7 +76,7 @@ pub(super) fn agreement(
     } else {
         0.0
     };
-    Ok(Some(Agreement {
+    Ok(Some(SplitHalfAgreement {
         weak: weak.value,
         strong: strong.value,
         z,

@@ -12,7 +12,7 @@ use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 
 /// The inputs that all comparisons share.
-pub(crate) struct CauseComparison<'a> {
+pub(crate) struct CauseComparer<'a> {
     pub(crate) twin: &'a dyn Twin,
     pub(crate) split: &'a EpisodeSplit,
     pub(crate) options: &'a Options,
@@ -59,7 +59,7 @@ impl Estimate {
     }
 }
 
-impl CauseComparison<'_> {
+impl CauseComparer<'_> {
     fn task<'b>(&'b self, set: &'b [usize], robust: bool) -> FitTask<'b> {
         FitTask {
             twin: self.twin,

@@ -7,10 +7,10 @@ mod residual;
 mod split;
 mod verdict;
 
-pub use agreement::Agreement;
+pub use agreement::SplitHalfAgreement;
 pub use gain::HeldOutGain;
 pub(crate) use gain::share_gained;
-pub use residual::{ChannelResidual, UnexplainedResidual};
+pub use residual::{ChannelResidual, ResidualNoiseTest};
 
 pub(crate) use compare::{Estimate, ScoredModel, estimates, sd_of};
 pub(crate) use residual::by_channel;

@@ -188,14 +188,14 @@ pub(super) fn effective_count(twin: &dyn Twin, set: &[usize], residuals: &[Vec<f
 
 /// A test for residuals beyond noise.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct UnexplainedResidual {
+pub struct ResidualNoiseTest {
     /// Mean square of the residuals over that of their noise: 1 for noise alone.
     pub ratio: f64,
     /// The ratio above which noise alone is no explanation.
     pub threshold: f64,
 }
 
-impl UnexplainedResidual {
+impl ResidualNoiseTest {
     /// Returns whether something systematic is left.
     pub(crate) fn is_structured(&self) -> bool {
         self.ratio > self.threshold

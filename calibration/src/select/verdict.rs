@@ -1,8 +1,8 @@
 //! From fits to a verdict.
 
-use super::agreement::{Agreement, agreement};
-use super::compare::{CauseComparison, ModelAdvantage, ScoredModel, estimates};
-use super::residual::{UnexplainedResidual, noise};
+use super::agreement::{SplitHalfAgreement, agreement};
+use super::compare::{CauseComparer, ModelAdvantage, ScoredModel, estimates};
+use super::residual::{ResidualNoiseTest, noise};
 use super::split::EpisodeSplit;
 use crate::error::CalibrationError;
 use crate::fit::CauseSet;
@@ -25,9 +25,9 @@ pub(crate) struct Findings {
     pub(crate) chosen: ScoredModel,
     /// `chosen` against nuisances alone.
     pub(crate) advantage_over_base: Option<ModelAdvantage>,
-    pub(crate) remainder_before: UnexplainedResidual,
-    pub(crate) remainder_after: UnexplainedResidual,
-    pub(crate) agreement: Option<Agreement>,
+    pub(crate) remainder_before: ResidualNoiseTest,
+    pub(crate) remainder_after: ResidualNoiseTest,
+    pub(crate) agreement: Option<SplitHalfAgreement>,
     pub(crate) decision: Decision,
 }
 
@@ -60,7 +60,7 @@ pub(crate) fn find_causes(
     let threads = Threads::resolve(options.threads);
     progress.stage(0.1, "fitting starts, offsets and noise")?;
     let start = estimate_noise(twin, &split, options, threads, progress)?;
-    let all = CauseComparison {
+    let all = CauseComparer {
         twin,
         split: &split,
         options,
@@ -97,9 +97,8 @@ pub(crate) fn find_causes(
         })
         .collect();
     progress.stage(0.7, "comparing causes")?;
-    let remainder = |judged: &ScoredModel| {
-        UnexplainedResidual::of(all.twin, &split.train, &judged.fit.residuals)
-    };
+    let remainder =
+        |judged: &ScoredModel| ResidualNoiseTest::of(all.twin, &split.train, &judged.fit.residuals);
     let remainder_before = remainder(&base);
     let (decision, chosen) = decide(&all, &base, &singles, &remainder_before)?;
     let mut decision = decision;
@@ -158,7 +157,7 @@ fn estimate_noise(
     {
         return Ok(start);
     }
-    let fit = CauseComparison {
+    let fit = CauseComparer {
         twin,
         split,
         options,
@@ -238,10 +237,10 @@ fn implausible(twin: &dyn Twin, judged: &ScoredModel, cause: usize) -> Option<St
 }
 
 fn decide(
-    all: &CauseComparison<'_>,
+    all: &CauseComparer<'_>,
     base: &ScoredModel,
     singles: &[SingleCause],
-    remainder: &UnexplainedResidual,
+    remainder: &ResidualNoiseTest,
 ) -> Result<(Decision, ScoredModel), CalibrationError> {
     let mut passing: Vec<&SingleCause> = singles.iter().filter(|single| single.passes).collect();
     passing.sort_by(|a, b| b.advantage.delta_bic.total_cmp(&a.advantage.delta_bic));
@@ -280,7 +279,7 @@ fn decide(
 }
 
 /// The reason why no cause passes, with the one that comes nearest.
-fn rejection_reason(all: &CauseComparison<'_>, singles: &[SingleCause]) -> String {
+fn rejection_reason(all: &CauseComparer<'_>, singles: &[SingleCause]) -> String {
     let best = singles
         .iter()
         .max_by(|a, b| a.advantage.delta_bic.total_cmp(&b.advantage.delta_bic));
@@ -304,12 +303,11 @@ fn rejection_reason(all: &CauseComparison<'_>, singles: &[SingleCause]) -> Strin
 
 /// Searches for a second cause beside the first.
 fn second_cause(
-    all: &CauseComparison<'_>,
+    all: &CauseComparer<'_>,
     first: &SingleCause,
     singles: &[SingleCause],
 ) -> Result<(Decision, ScoredModel), CalibrationError> {
-    let remainder =
-        UnexplainedResidual::of(all.twin, &all.split.train, &first.scored.fit.residuals);
+    let remainder = ResidualNoiseTest::of(all.twin, &all.split.train, &first.scored.fit.residuals);
     let alone = (Decision::Named(vec![first.cause]), first.scored.clone());
     // A second cause is searched only where the first leaves structure.
     if !remainder.is_structured() {

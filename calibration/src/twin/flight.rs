@@ -1,10 +1,10 @@
 //! Free flight: each episode is a ball that flies through the engine's own physics.
 
 use super::air::{air_density_kg_m3, gravity_m_s2};
-use super::test_world::{TestObject, TestWorld, hermite_interpolation};
+use super::test_world::{ExperimentWorld, TestObject, hermite_interpolation};
 use super::{
-    Cause, ChannelInfo, EpisodeData, EpisodeParameters, FitParameter, Installation, ParameterIndex,
-    ResidualStructure, Twin,
+    Cause, CauseInstallation, ChannelInfo, EpisodeData, EpisodeParameters, FitParameter,
+    ParameterIndex, ResidualStructure, Twin,
 };
 use crate::bundle::{Bundle, MeasuredSample};
 use crate::error::CalibrationError;
@@ -26,7 +26,7 @@ pub(crate) struct FlightTwin {
     own: Vec<FitParameter>,
     /// The axis and whether it is the speed, of each own nuisance.
     own_axes: Vec<(usize, bool)>,
-    stages: Vec<TestWorld>,
+    stages: Vec<ExperimentWorld>,
     /// The stage of each episode's body.
     stage_of: Vec<usize>,
     rate_hz: f64,
@@ -83,7 +83,7 @@ impl FlightTwin {
                 solver_substeps: 1,
                 ..PhysicsConfig::default()
             };
-            stages.push(TestWorld::new(size_m, &ball, config)?);
+            stages.push(ExperimentWorld::new(size_m, &ball, config)?);
         }
         let air_density_kg_m3 = air_density_kg_m3(manifest);
         let gravity_m_s2 = gravity_m_s2(manifest);
@@ -174,7 +174,7 @@ fn causes(drag: &LawInfo, gravity_m_s2: f64, air_density_kg_m3: f64) -> Vec<Caus
             equation: drag.equation.to_owned(),
             parameters: FitParameter::of_law(drag, "c_d", 0.05).into_iter().collect(),
             separating_experiment: drag.separating_experiment.to_owned(),
-            installs_as: Installation::Law {
+            installs_as: CauseInstallation::Law {
                 version: drag.version,
                 target: None,
             },
@@ -190,7 +190,7 @@ fn causes(drag: &LawInfo, gravity_m_s2: f64, air_density_kg_m3: f64) -> Vec<Caus
             separating_experiment: "throw at speeds that differ by a factor of three or more: the deceleration grows with \
                                     the speed here, with its square in quadratic drag"
                 .into(),
-            installs_as: Installation::Unsupported,
+            installs_as: CauseInstallation::Unsupported,
             fixed: Vec::new(),
             starts: vec![0.05, 0.3],
         },
@@ -203,7 +203,7 @@ fn causes(drag: &LawInfo, gravity_m_s2: f64, air_density_kg_m3: f64) -> Vec<Caus
             separating_experiment: "throw flat and steep, slow and fast: gravity changes the vertical motion alone, by the \
                                     same amount at every speed; time a pendulum of known length"
                 .into(),
-            installs_as: Installation::Addresses(vec!["world/gravity_m_s2".into()]),
+            installs_as: CauseInstallation::Addresses(vec!["world/gravity_m_s2".into()]),
             fixed: Vec::new(),
             starts: vec![],
         },

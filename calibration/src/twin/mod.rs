@@ -10,7 +10,7 @@ pub(crate) mod test_world;
 
 pub(crate) use air::{air_density_kg_m3, gravity_m_s2};
 pub(crate) use flight::FlightTwin;
-pub(crate) use parameter::{Cause, FitParameter, Installation};
+pub(crate) use parameter::{Cause, CauseInstallation, FitParameter};
 pub(crate) use room::RoomTwin;
 pub(crate) use servo::ServoTwin;
 
@@ -120,7 +120,7 @@ pub(crate) trait Twin: Sync {
         for (k, slot) in slots.iter().enumerate() {
             let column = match self.derivative(episode, at, base, *slot) {
                 Some(column) => column,
-                None => self.difference(episode, at, base, *slot)?,
+                None => self.finite_difference(episode, at, base, *slot)?,
             };
             matrix.column_mut(k).copy_from_slice(&column);
         }
@@ -128,7 +128,7 @@ pub(crate) trait Twin: Sync {
     }
 
     /// The derivative by `slot` from one more simulation.
-    fn difference(
+    fn finite_difference(
         &self,
         episode: usize,
         at: &EpisodeParameters<'_>,

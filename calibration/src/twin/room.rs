@@ -2,8 +2,8 @@
 
 use super::features::{self, FilterRingingModel, WINDOWS};
 use super::{
-    Cause, ChannelInfo, EpisodeData, EpisodeParameters, FitParameter, Installation, ParameterIndex,
-    ResidualStructure, Twin,
+    Cause, CauseInstallation, ChannelInfo, EpisodeData, EpisodeParameters, FitParameter,
+    ParameterIndex, ResidualStructure, Twin,
 };
 use crate::bundle::file::{RoomManifest, SurfaceManifest};
 use crate::bundle::{Bundle, ROOM_SURFACES};
@@ -146,7 +146,7 @@ impl RoomTwin {
     }
 
     /// The prediction with all absorptions of a surface one step further, and the steps.
-    fn moved(
+    fn predict_with_absorption_step(
         &self,
         episode: usize,
         at: &EpisodeParameters<'_>,
@@ -318,7 +318,7 @@ fn causes(
                 "measure close to {name} and far from it: its own early reflections change their level, the late decay \
                  shows the sum over all surfaces alone; or cover it and measure again"
             ),
-            installs_as: Installation::Addresses(addresses),
+            installs_as: CauseInstallation::Addresses(addresses),
             fixed: Vec::new(),
             starts: Vec::new(),
         });
@@ -395,7 +395,7 @@ impl Twin for RoomTwin {
                 ParameterIndex::Cause(k) => {
                     let (surface, band) = (k / count, k % count);
                     if let Entry::Vacant(entry) = moved.entry(surface) {
-                        entry.insert(self.moved(episode, at, surface)?);
+                        entry.insert(self.predict_with_absorption_step(episode, at, surface)?);
                     }
                     let (there, steps) = &moved[&surface];
                     for row in (0..base.len()).filter(|row| channel[*row] == band) {

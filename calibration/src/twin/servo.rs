@@ -1,9 +1,9 @@
 //! A servo: each episode is a run of commands through the engine's own joint.
 
 use super::flight::{channels, measured};
-use super::test_world::{TestObject, TestWorld, hermite_interpolation};
+use super::test_world::{ExperimentWorld, TestObject, hermite_interpolation};
 use super::{
-    Cause, ChannelInfo, EpisodeData, EpisodeParameters, FitParameter, Installation,
+    Cause, CauseInstallation, ChannelInfo, EpisodeData, EpisodeParameters, FitParameter,
     ResidualStructure, Twin,
 };
 use crate::bundle::Bundle;
@@ -26,7 +26,7 @@ pub(crate) struct ServoTwin {
     own: Vec<FitParameter>,
     /// (time from the episode's first sample, target) of each episode, by time.
     commands: Vec<Vec<(f64, f64)>>,
-    stage: TestWorld,
+    stage: ExperimentWorld,
     rate_hz: f64,
     backlash: &'static LawInfo,
     friction_n_m: f64,
@@ -86,7 +86,7 @@ impl ServoTwin {
                     .within(-MOST_OFFSET_S, MOST_OFFSET_S),
             ],
             own: vec![FitParameter::nuisance("start position", "rad", 2e-3).within(-3.0, 3.0)],
-            stage: TestWorld::new(ROOM_M, &arm, config)?,
+            stage: ExperimentWorld::new(ROOM_M, &arm, config)?,
             rate_hz: options.physics_rate_hz,
             friction_n_m: joint.friction_n_m,
             commands,
@@ -117,7 +117,7 @@ fn causes(backlash: &LawInfo, joint: &str, friction_n_m: f64, stiffness: f64) ->
             equation: backlash.equation.to_owned(),
             parameters: FitParameter::of_law(backlash, "half_width", 1e-3).into_iter().collect(),
             separating_experiment: backlash.separating_experiment.to_owned(),
-            installs_as: Installation::Law {
+            installs_as: CauseInstallation::Law {
                 version: backlash.version,
                 target: Some(joint.to_owned()),
             },
@@ -139,7 +139,7 @@ fn causes(backlash: &LawInfo, joint: &str, friction_n_m: f64, stiffness: f64) ->
             separating_experiment: "stiffen the servo: what friction holds back shrinks with its stiffness, what backlash \
                                     holds back does not"
                 .into(),
-            installs_as: Installation::Unsupported,
+            installs_as: CauseInstallation::Unsupported,
             fixed: Vec::new(),
             starts: [0.005, 0.02].map(|rad| friction_n_m + torque(rad)).to_vec(),
         },
@@ -156,7 +156,7 @@ fn causes(backlash: &LawInfo, joint: &str, friction_n_m: f64, stiffness: f64) ->
                 torque(1e-3),
             )],
             separating_experiment: "move slowly and fast: what damping holds back grows with the speed".into(),
-            installs_as: Installation::Unsupported,
+            installs_as: CauseInstallation::Unsupported,
             fixed: Vec::new(),
             starts: vec![torque(0.005), torque(0.03)],
         },
@@ -168,7 +168,7 @@ fn causes(backlash: &LawInfo, joint: &str, friction_n_m: f64, stiffness: f64) ->
             separating_experiment: "approach one target from both sides in small steps: a deadband has no memory, backlash \
                                     stays on the side it came from"
                 .into(),
-            installs_as: Installation::Unsupported,
+            installs_as: CauseInstallation::Unsupported,
             fixed: Vec::new(),
             starts: vec![0.005, 0.02, 0.06],
         },
@@ -178,7 +178,7 @@ fn causes(backlash: &LawInfo, joint: &str, friction_n_m: f64, stiffness: f64) ->
             equation: "target = s times command".into(),
             parameters: vec![number("scale", "1", 1.0, [0.2, 5.0], [0.9, 1.1], 2e-3)],
             separating_experiment: "hold still at several targets: a wrong scale is wrong in proportion to the target".into(),
-            installs_as: Installation::Unsupported,
+            installs_as: CauseInstallation::Unsupported,
             fixed: Vec::new(),
             starts: vec![],
         },

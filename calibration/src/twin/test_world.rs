@@ -4,8 +4,8 @@ use crate::error::CalibrationError;
 use dwell_physics::{PhysicsConfig, PhysicsWorld};
 use dwell_scene::material::library;
 use dwell_scene::{
-    Articulation, Category, Collider, House, HouseData, IdVec, JointKind, LawSpec, LevelId,
-    Material, Mesh, Mobility, Object, ObjectId, Part, PartId, Pose, Servo, ShoeboxMaterials, State,
+    Category, Collider, House, HouseData, IdVec, Joint, JointKind, LawSpec, LevelId, Material,
+    Mesh, Mobility, Object, ObjectId, Part, PartId, Pose, Servo, ShoeboxMaterials, State,
 };
 use glam::{Affine3A, Vec3};
 use std::sync::Arc;
@@ -23,7 +23,7 @@ const WAITING_HEIGHT_M: f32 = 2.0;
 
 /// A physics world at its start, to be copied for every simulation.
 #[derive(Clone)]
-pub(crate) struct TestWorld {
+pub(crate) struct ExperimentWorld {
     pub(crate) house: Arc<House>,
     pub(crate) world: PhysicsWorld,
     pub(crate) state: State,
@@ -79,7 +79,7 @@ impl TestObject {
     }
 }
 
-impl TestWorld {
+impl ExperimentWorld {
     /// A closed box of `size_m` around the origin with one thing in it. Near the origin single precision is finest: the
     /// rounding of larger coordinates would exceed the effects that are looked for.
     pub(crate) fn new(
@@ -207,11 +207,11 @@ fn put(data: &mut HouseData, thing: &TestObject) {
         inertial: None,
     });
     if let Some((servo, friction)) = thing.hinge {
-        data.joints.push(Articulation {
+        data.joints.push(Joint {
             limits: Some([-3.0, 3.0]),
             friction,
             servo: Some(servo),
-            ..Articulation::new(&thing.name, object, part, JointKind::Hinge, Vec3::Y)
+            ..Joint::new(&thing.name, object, part, JointKind::Hinge, Vec3::Y)
         });
     }
 }

@@ -258,7 +258,7 @@ pub const fn plastic(name: &'static str, srgb: Srgb) -> Finish {
 }
 
 /// Black plastic.
-pub const fn black() -> Finish {
+pub const fn black_plastic() -> Finish {
     plastic("black_plastic", [34, 34, 36])
 }
 
@@ -404,7 +404,7 @@ mod tests {
             chrome(),
             brass(),
             plastic("p", WHITE),
-            black(),
+            black_plastic(),
             device("d", WHITE),
             enamel("e", WHITE),
             glass(),

@@ -154,7 +154,7 @@ impl Model {
 
     /// The same model with a switch.
     #[must_use]
-    pub fn switched(mut self, on: bool) -> Self {
+    pub fn with_switch_state(mut self, on: bool) -> Self {
         self.switch = Some(on);
         self
     }
@@ -208,7 +208,7 @@ impl Model {
         if let Some(joint) = self.joints.last_mut() {
             joint.toggles_switch = true;
         }
-        self.switched(false)
+        self.with_switch_state(false)
     }
 
     /// The same model, its first joint open by `fraction` (0 to 1) at the start.

@@ -132,7 +132,7 @@ fn cut(collider: &Collider) -> Vec<Aabb> {
 
 /// Returns what is made to measure: equal settings are built once in a process and shared by all houses. `settings` names the thing and
 /// says all that `build` depends on.
-pub fn built_to_size(settings: String, build: impl FnOnce() -> Model) -> Arc<Model> {
+pub fn cached_custom_model(settings: String, build: impl FnOnce() -> Model) -> Arc<Model> {
     static SHELF: Mutex<BTreeMap<String, Arc<Model>>> = Mutex::new(BTreeMap::new());
     let lock = || SHELF.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(known) = lock().get(&settings) {

@@ -78,7 +78,7 @@ struct RoomRow {
 }
 
 #[derive(Deserialize)]
-struct NamePrefixRow {
+struct MaterialPrefixRow {
     prefix: String,
     material: String,
 }
@@ -86,7 +86,7 @@ struct NamePrefixRow {
 struct FurnitureTables {
     categories: BTreeMap<String, CategoryRow>,
     rooms: BTreeMap<String, String>,
-    prefixes: Vec<NamePrefixRow>,
+    prefixes: Vec<MaterialPrefixRow>,
 }
 
 fn rows<T: serde::de::DeserializeOwned>(text: &str) -> Vec<T> {
@@ -122,7 +122,7 @@ fn tables() -> &'static FurnitureTables {
                     .or_insert_with(|| kind.clone());
             }
         }
-        let mut prefixes: Vec<NamePrefixRow> =
+        let mut prefixes: Vec<MaterialPrefixRow> =
             rows(include_str!("../../../assets/texture_substances.csv"));
         prefixes.sort_by(|a, b| {
             b.prefix

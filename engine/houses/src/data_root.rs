@@ -77,7 +77,7 @@ impl DataRoot {
     ///
     /// # Errors
     /// [`HousesError::PathLeavesRoot`] when a link leads out of the root, [`HousesError::Io`] when it is no folder.
-    pub(crate) fn names(&self, path: &str) -> Result<Vec<String>, HousesError> {
+    pub(crate) fn list_folder(&self, path: &str) -> Result<Vec<String>, HousesError> {
         let full = self.folder.join(path);
         self.check_inside(&full, path)?;
         let entries = std::fs::read_dir(&full).map_err(HousesError::io(&full))?;
@@ -120,7 +120,7 @@ impl DataRoot {
     ///
     /// # Errors
     /// [`HousesError::TooLarge`] above `max_bytes`, [`HousesError::Io`] when the system refuses.
-    pub fn read_named(&self, path: &str, max_bytes: u64) -> Result<Vec<u8>, HousesError> {
+    pub fn read_user_named(&self, path: &str, max_bytes: u64) -> Result<Vec<u8>, HousesError> {
         read_up_to(&self.folder.join(path), path, max_bytes)
     }
 }
@@ -261,7 +261,7 @@ mod tests {
         std::os::unix::fs::symlink(outside.path().join("blob"), inside.path().join("m.glb"))
             .unwrap();
         let root = DataRoot::new(inside.path()).unwrap();
-        assert_eq!(root.read_named("m.glb", 10).unwrap(), b"x");
+        assert_eq!(root.read_user_named("m.glb", 10).unwrap(), b"x");
     }
 
     #[test]

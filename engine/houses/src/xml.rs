@@ -55,7 +55,7 @@ fn check(text: &str, at: &FileLocation) -> Result<(), HousesError> {
             depth = depth.saturating_sub(1);
             skip(">")
         } else {
-            let tag = Tag::read(rest);
+            let tag = TagCounts::read(rest);
             if !rest[..tag.length.unwrap_or(0)].ends_with("/>") {
                 depth += u64::from(tag.length.is_some());
             }
@@ -89,7 +89,7 @@ fn check(text: &str, at: &FileLocation) -> Result<(), HousesError> {
 
 /// The text between `<` and `>`; `>` in quotes ends nothing.
 #[derive(Default)]
-struct Tag {
+struct TagCounts {
     /// Its length in bytes; `None` for a tag without an end.
     length: Option<usize>,
     attributes: u64,
@@ -97,7 +97,7 @@ struct Tag {
     namespaces: u64,
 }
 
-impl Tag {
+impl TagCounts {
     fn read(text: &str) -> Self {
         let mut tag = Self::default();
         let mut quote = None;

@@ -136,7 +136,7 @@ impl Default for ImageChannels {
 
 /// Earlier poses of camera and parts, for [`FrameMut::flow`].
 #[derive(Clone, Copy, Debug)]
-pub struct PreviousFrame<'a> {
+pub struct PreviousPoses<'a> {
     /// The camera's earlier pose.
     pub world_from_camera: Pose,
     /// Earlier poses of the parts that have moved since, by part; the others have not moved.

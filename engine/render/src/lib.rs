@@ -56,9 +56,9 @@ pub use back_end::{BackEnd, Renderer};
 pub use camera::{Camera, Projection};
 pub use cpu::{CpuRenderer, RenderJob};
 pub use error::RenderError;
-pub use frame::{Frame, FrameMut, ImageChannels, Preset, PreviousFrame, View};
+pub use frame::{Frame, FrameMut, ImageChannels, Preset, PreviousPoses, View};
 pub use gpu::{
-    Adapter, AdapterKind, BatchLimits, Gpu, GpuRenderer, PendingBatch, VisibilityPath,
+    AdapterInfo, AdapterKind, BatchLimits, Gpu, GpuRenderer, PendingBatch, VisibilityPath,
     VisibilityPathSpeeds, adapters,
 };
 pub use laws::{Optics, Shutter};

@@ -63,7 +63,7 @@ impl ShadingMaterial {
                 let (width, height) = textures.size(texture);
                 look.texture = texture.index() as u32;
                 look.texel_count = width * height;
-                look.transmits_light |= textures.is_clear(texture);
+                look.transmits_light |= textures.has_transparency(texture);
             }
         }
         if look.texture == NONE && !look.transmits_light {

@@ -94,7 +94,7 @@ impl ClassSet {
     }
 
     /// The class of an object by the file: of the first name that it knows, if that is the first that the object has.
-    fn known(self, object: &Object) -> Option<i32> {
+    fn listed_class(self, object: &Object) -> Option<i32> {
         let mut names = self.names_of(object).into_iter();
         let class = |name: &str| TABLE.class.get(name).copied();
         if self == Self::Fine {
@@ -108,7 +108,7 @@ impl ClassSet {
         let mut names: BTreeMap<String, i32> = house
             .objects
             .iter()
-            .filter(|object| self.known(object).is_none())
+            .filter(|object| self.listed_class(object).is_none())
             .map(|object| (self.name(object).to_owned(), VOID))
             .collect();
         for (class, value) in (TABLE.names.len() as i32..).zip(names.values_mut()) {
@@ -128,7 +128,7 @@ impl ClassSet {
         let named = TABLE.nyu40.iter().position(|name| name == own);
         let by_row = || {
             Self::Coarse
-                .known(object)
+                .listed_class(object)
                 .map(|row| TABLE.nyu40_of_row[row as usize])
         };
         named
@@ -173,7 +173,7 @@ impl EntityClasses {
             match table {
                 ClassSet::Nyu40 => ClassSet::nyu40(object),
                 ClassSet::Coarse | ClassSet::Fine => table
-                    .known(object)
+                    .listed_class(object)
                     .or_else(|| strange.get(table.name(object)).copied())
                     .unwrap_or(VOID),
             }

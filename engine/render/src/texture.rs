@@ -171,7 +171,7 @@ impl Textures {
     }
 
     /// Returns whether some texel lets light through.
-    pub(crate) fn is_clear(&self, texture: TextureId) -> bool {
+    pub(crate) fn has_transparency(&self, texture: TextureId) -> bool {
         self.images[texture.index()].clear
     }
 
@@ -531,6 +531,6 @@ mod tests {
         let all = single(2, 2, [red, clear_green, red, clear_green].concat());
         let [r, g, b, a] = all.sample(0, Vec2::ZERO, 100.0).to_array();
         assert!(r > 0.99 && g == 0.0 && b == 0.0 && (a - 0.5).abs() < 0.01);
-        assert!(all.is_clear(TextureId(0)));
+        assert!(all.has_transparency(TextureId(0)));
     }
 }

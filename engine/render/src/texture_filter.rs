@@ -1,7 +1,7 @@
 //! Anisotropic texture filtering: a pixel's footprint on an image that is seen at an angle, and its average.
 
 use crate::texture::{Textures, mip_level};
-use crate::triangle_table::PosedTriangle;
+use crate::triangle_table::PosedTriangleShading;
 use glam::{Vec2, Vec3, Vec4};
 
 /// The least cosine between ray and normal at which a pixel's footprint still grows.
@@ -32,7 +32,12 @@ impl TextureFootprint {
     /// by the inverse of the cosine. The samples: `GL_EXT_texture_filter_anisotropic`, after P. S. Heckbert, *Fundamentals of
     /// Texture Mapping and Image Warping*, 1989; their places are the middles of equal parts of the longer axis.
     #[inline]
-    pub(crate) fn new(standing: &PosedTriangle, direction: Vec3, width_m: f32, size: Vec2) -> Self {
+    pub(crate) fn new(
+        standing: &PosedTriangleShading,
+        direction: Vec3,
+        width_m: f32,
+        size: Vec2,
+    ) -> Self {
         let normal = standing.normal;
         let along = normal.dot(direction);
         let ahead = direction - normal * along;

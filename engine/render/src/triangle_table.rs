@@ -26,7 +26,7 @@ pub(crate) struct TriangleShading {
 
 /// A triangle where it stands, in world space.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct PosedTriangle {
+pub(crate) struct PosedTriangleShading {
     /// See [`TriangleShading::uv`].
     pub(crate) uv: [Vec4; 2],
     pub(crate) normal: Vec3,
@@ -35,9 +35,9 @@ pub(crate) struct PosedTriangle {
 impl TriangleShading {
     /// The triangle as posed with its part.
     #[inline]
-    pub(crate) fn posed(&self, pose: Option<&Pose>) -> PosedTriangle {
+    pub(crate) fn posed(&self, pose: Option<&Pose>) -> PosedTriangleShading {
         let Some(pose) = pose else {
-            return PosedTriangle {
+            return PosedTriangleShading {
                 uv: self.uv,
                 normal: self.normal,
             };
@@ -46,14 +46,14 @@ impl TriangleShading {
             let gradient = pose.rotation * row.truncate();
             gradient.extend(row.w - gradient.dot(pose.position))
         });
-        PosedTriangle {
+        PosedTriangleShading {
             uv,
             normal: pose.rotation * self.normal,
         }
     }
 }
 
-impl PosedTriangle {
+impl PosedTriangleShading {
     /// Texture coordinates at a point on the triangle.
     #[inline]
     pub(crate) fn uv(&self, point: Vec3) -> Vec2 {
@@ -65,7 +65,7 @@ impl PosedTriangle {
     }
 }
 
-impl PosedTriangle {
+impl PosedTriangleShading {
     /// Returns the change of texture coordinates along a vector on the triangle.
     #[inline]
     pub(crate) fn uv_along(&self, way: Vec3) -> Vec2 {

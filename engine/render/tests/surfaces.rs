@@ -5,7 +5,7 @@
 mod common;
 
 use common::{Builder, World, look, meets, quad};
-use dwell_render::{Camera, Frame, ImageChannels, PreviousFrame, RenderJob, View, visible_objects};
+use dwell_render::{Camera, Frame, ImageChannels, PreviousPoses, RenderJob, View, visible_objects};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::space::rotation_from_yaw_pitch;
@@ -25,7 +25,7 @@ fn cuboid(half: Vec3) -> Mesh {
 }
 
 /// The flow of a view whose camera and things were elsewhere before.
-fn flow(world: &World, view: &View, before: PreviousFrame<'_>) -> Vec<Vec2> {
+fn flow(world: &World, view: &View, before: PreviousPoses<'_>) -> Vec<Vec2> {
     let channels = ImageChannels {
         flow: true,
         ..ImageChannels::NONE
@@ -54,7 +54,7 @@ fn translation_before_a_plane_flows_as_worked_out() {
     let world = builder.build();
     let camera = Camera::from_fov(64, 48, 90.0).unwrap();
     let view = View::new(camera, Pose::IDENTITY);
-    let from = |x: f32, y: f32, z: f32| PreviousFrame {
+    let from = |x: f32, y: f32, z: f32| PreviousPoses {
         world_from_camera: Pose::from_position(Vec3::new(x, y, z)),
         moved_parts: &[],
         agents: &[],
@@ -73,7 +73,7 @@ fn translation_before_a_plane_flows_as_worked_out() {
         assert!((flow - radius * 0.2 / 2.2).length() < 1e-3, "{flow}");
     }
     // It turned to the left by 0.1 rad: a pixel at the angle a from the axis was at a - 0.1 (to the right is positive).
-    let turned = PreviousFrame {
+    let turned = PreviousPoses {
         world_from_camera: Pose::new(Vec3::ZERO, rotation_from_yaw_pitch(-0.1, 0.0)),
         ..from(0.0, 0.0, 0.0)
     };
@@ -121,7 +121,7 @@ fn what_moves_flows_and_what_rests_does_not() {
     let part = world.house.objects[thing].first_part;
     let camera = Camera::from_fov(64, 48, 90.0).unwrap();
     let view = View::new(camera, Pose::IDENTITY);
-    let before = PreviousFrame {
+    let before = PreviousPoses {
         world_from_camera: Pose::IDENTITY,
         moved_parts: &[(part, was)],
         agents: &[],
@@ -151,7 +151,7 @@ fn nothing_flows_as_if_it_were_far_away() {
     let world = Builder::empty().build();
     let camera = Camera::equirectangular(64).unwrap();
     let view = View::new(camera, Pose::IDENTITY);
-    let before = PreviousFrame {
+    let before = PreviousPoses {
         world_from_camera: Pose::new(Vec3::new(1.0, 2.0, 3.0), rotation_from_yaw_pitch(0.3, 0.0)),
         moved_parts: &[],
         agents: &[],
@@ -410,7 +410,7 @@ fn cameras_see_agents_bodies() {
     );
     assert!(bounds.world_from_box.rotation.dot(Quat::IDENTITY).abs() > 1.0 - 1e-6);
     // The other one steps towards the eye: flow grows outwards from the middle.
-    let before = PreviousFrame {
+    let before = PreviousPoses {
         world_from_camera: pose,
         moved_parts: &[],
         agents: &[Vec3::new(1.0, 0.0, 2.5), Vec3::new(4.2, 0.0, 2.5)],

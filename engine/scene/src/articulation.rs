@@ -117,7 +117,7 @@ pub struct Mimic {
 /// `world_from_child = world_from_parent * parent_from_joint * motion(position) * child_from_joint⁻¹`, where the motion
 /// turns about or slides along `axis`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Articulation {
+pub struct Joint {
     /// The name, unique in its object.
     pub name: String,
     /// The object it belongs to.
@@ -162,7 +162,7 @@ pub struct Articulation {
     pub toggles_switch: bool,
 }
 
-impl Articulation {
+impl Joint {
     /// Returns the displacement of the joint at `position` (rad or m).
     pub fn motion(&self, position: f32) -> Pose {
         motion_along(self.kind, self.axis, position)
@@ -246,12 +246,12 @@ mod tests {
 
     #[test]
     fn a_door_swings_about_its_hinge_line() {
-        let door = Articulation {
+        let door = Joint {
             parent_from_joint: Pose::from_position(Vec3::new(1.0, 0.0, 5.0)),
             child_from_joint: Pose::from_position(Vec3::new(-0.4, 0.0, 0.0)),
             limits: Some([0.0, FRAC_PI_2]),
             open: FRAC_PI_2,
-            ..Articulation::new("hinge", ObjectId(0), PartId(0), JointKind::Hinge, Vec3::Y)
+            ..Joint::new("hinge", ObjectId(0), PartId(0), JointKind::Hinge, Vec3::Y)
         };
         let closed = door.world_from_child(&Pose::IDENTITY, 0.0);
         assert!((closed.position - Vec3::new(1.4, 0.0, 5.0)).length() < 1e-6);

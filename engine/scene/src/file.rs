@@ -39,7 +39,7 @@ pub enum ReadError {
 pub fn open(path: &Path, max_bytes: u64) -> Result<File, ReadError> {
     // Opening a device can have effects, so its type is checked first.
     regular(&fs::metadata(path)?)?;
-    let file = without_waiting(path)?;
+    let file = open_nonblocking(path)?;
     let meta = file.metadata()?;
     // The path may have been replaced since.
     regular(&meta)?;
@@ -130,7 +130,7 @@ impl StagedPath {
         if let Some(above) = place.parent() {
             fs::create_dir_all(above)?;
         }
-        let make = |path: &Path| fs::create_dir(path).and_then(|()| without_waiting(path));
+        let make = |path: &Path| fs::create_dir(path).and_then(|()| open_nonblocking(path));
         Self::claim(place, make, |path| fs::remove_dir_all(path))
     }
 
@@ -207,7 +207,7 @@ fn lock_abandoned_draft(path: &Path) -> Option<File> {
     if !meta.is_file() && !meta.is_dir() {
         return None;
     }
-    let handle = without_waiting(path).ok()?;
+    let handle = open_nonblocking(path).ok()?;
     (handle.try_lock().is_ok() && is_at(&handle, path)).then_some(handle)
 }
 
@@ -228,7 +228,7 @@ fn is_at(_: &File, path: &Path) -> bool {
 }
 
 /// Opens for reading without blocking: folders, too, and named pipes without a writer.
-fn without_waiting(path: &Path) -> io::Result<File> {
+fn open_nonblocking(path: &Path) -> io::Result<File> {
     let mut options = OpenOptions::new();
     options.read(true);
     #[cfg(unix)]

@@ -64,7 +64,7 @@ pub struct SoundEmitter {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sound_file: Option<SoundFileId>,
     /// Starts it again when it ends.
-    #[serde(default = "yes", skip_serializing_if = "is_true")]
+    #[serde(default = "default_true", skip_serializing_if = "is_true")]
     pub loops: bool,
     /// Start time, s after the start of a world; 0 to 86400. A loop that starts at 0 has always been playing.
     #[serde(default, skip_serializing_if = "is_zero")]
@@ -94,7 +94,7 @@ impl SoundEmitter {
 }
 
 // Defaults are not written, so that houses without sound files keep their bytes and fingerprints.
-const fn yes() -> bool {
+const fn default_true() -> bool {
     true
 }
 

@@ -31,14 +31,14 @@ mod state;
 mod texture;
 pub mod units;
 
-pub use articulation::{Articulation, JointCommand, JointKind, Mimic, Servo};
+pub use articulation::{Joint, JointCommand, JointKind, Mimic, Servo};
 pub use bounds::Aabb;
 pub use collider::Collider;
 pub use error::SceneError;
 pub use fixtures::{Light, LightShape, Receptacle, ReceptacleKind, SoundEmitter, SoundFile};
 pub use house::{
     AgentStart, Category, Geometry, House, HouseData, Inertial, Level, Mobility, Object, Part,
-    PlacedMesh, Room, ShoeboxMaterials, StaticTriangle, Structure, StructureKind, SurfaceHit,
+    PlacedMesh, Room, ShoeboxMaterials, StaticTriangleSource, Structure, StructureKind, SurfaceHit,
     SurfaceOwner,
 };
 pub use ids::{

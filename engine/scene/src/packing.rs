@@ -54,7 +54,7 @@ pub fn pack_to_size(bytes: &[u8], base: &[u8], most: usize) -> Vec<u8> {
 fn pack_stoppably(quality: i32, bytes: &[u8], base: &[u8]) -> Vec<u8> {
     // Dropped when the caller stops waiting, which ends the thread at the next block of input.
     let wanted = Arc::new(());
-    let source = WhileWanted {
+    let source = CancellableReader {
         bytes: Cursor::new(bytes.to_vec()),
         wanted: Arc::downgrade(&wanted),
     };
@@ -102,12 +102,12 @@ fn pack_with(
 }
 
 /// A reader that fails as soon as the caller has stopped waiting.
-struct WhileWanted {
+struct CancellableReader {
     bytes: Cursor<Vec<u8>>,
     wanted: Weak<()>,
 }
 
-impl Read for WhileWanted {
+impl Read for CancellableReader {
     fn read(&mut self, to: &mut [u8]) -> std::io::Result<usize> {
         if self.wanted.strong_count() == 0 {
             return Err(std::io::ErrorKind::ConnectionAborted.into());

@@ -14,7 +14,7 @@ use std::sync::Arc;
 const MOST_OPEN: usize = 64;
 
 /// A picture to be taken.
-struct PictureOrder<'a> {
+struct PictureRequest<'a> {
     /// Index of the environment.
     number: usize,
     /// Index among the environment's pictures.
@@ -36,11 +36,11 @@ struct PictureInProgress<'a> {
 /// Pictures by one renderer.
 struct RendererGroup<'a> {
     renderer: Arc<Renderer>,
-    orders: Vec<PictureOrder<'a>>,
+    orders: Vec<PictureRequest<'a>>,
 }
 
 /// Returns the picture orders of environments, with their indices, by renderer.
-fn gather<'a>(
+fn requests_by_renderer<'a>(
     envs: impl Iterator<Item = (usize, &'a mut Env)>,
 ) -> Result<Vec<RendererGroup<'a>>, WorldError> {
     let mut groups: Vec<RendererGroup<'a>> = Vec::new();
@@ -58,7 +58,7 @@ fn gather<'a>(
         let wishes = requests.views.iter().zip(&mut results.images);
         for (place, (wish, picture)) in wishes.enumerate() {
             if world.state().agents.get(wish.eye.agent).is_some() {
-                groups[group].orders.push(PictureOrder {
+                groups[group].orders.push(PictureRequest {
                     number,
                     place,
                     world,
@@ -72,9 +72,9 @@ fn gather<'a>(
 }
 
 /// The first orders, as many as may have an open shutter, and how many have.
-fn first_orders<'a>(
-    orders: &mut impl Iterator<Item = PictureOrder<'a>>,
-) -> (Vec<PictureOrder<'a>>, usize) {
+fn take_render_batch<'a>(
+    orders: &mut impl Iterator<Item = PictureRequest<'a>>,
+) -> (Vec<PictureRequest<'a>>, usize) {
     let mut open = 0;
     let mut taken = Vec::new();
     while open < MOST_OPEN
@@ -89,13 +89,13 @@ fn first_orders<'a>(
 
 /// Sets up the cameras of some orders, `open` of them with an open shutter.
 fn set_up_cameras(
-    (orders, open): (Vec<PictureOrder<'_>>, usize),
+    (orders, open): (Vec<PictureRequest<'_>>, usize),
     threads: Threads,
 ) -> Vec<PictureInProgress<'_>> {
     // Worlds are copied for those alone.
     let threads = if open == 0 { Threads::ONE } else { threads };
     let takes = threads.map(orders.len(), |k| {
-        let PictureOrder {
+        let PictureRequest {
             world,
             request,
             picture,
@@ -150,10 +150,10 @@ pub(crate) fn render_images<'a>(
     envs: impl Iterator<Item = (usize, &'a mut Env)>,
     threads: Threads,
 ) -> Result<(), WorldError> {
-    for RendererGroup { renderer, orders } in gather(envs)? {
+    for RendererGroup { renderer, orders } in requests_by_renderer(envs)? {
         let mut orders = orders.into_iter();
         loop {
-            let mut taking = set_up_cameras(first_orders(&mut orders), threads);
+            let mut taking = set_up_cameras(take_render_batch(&mut orders), threads);
             if taking.is_empty() {
                 break;
             }
@@ -183,7 +183,7 @@ pub(crate) fn start_rendering<'a>(
     threads: Threads,
 ) -> Result<Vec<PendingImages>, WorldError> {
     let mut under_way = Vec::new();
-    for RendererGroup { renderer, orders } in gather(envs)? {
+    for RendererGroup { renderer, orders } in requests_by_renderer(envs)? {
         // All pictures of an environment, or none.
         let mut presets = orders.iter().map(|order| order.request.preset);
         if !presets.all(|preset| renderer.can_submit(preset)) {
@@ -191,7 +191,7 @@ pub(crate) fn start_rendering<'a>(
         }
         let mut orders = orders.into_iter();
         loop {
-            let mut taking = set_up_cameras(first_orders(&mut orders), threads);
+            let mut taking = set_up_cameras(take_render_batch(&mut orders), threads);
             if taking.is_empty() {
                 break;
             }

@@ -52,7 +52,7 @@ pub struct ObjectState {
 
 /// All objects as they are now.
 pub fn object_states(world: &World) -> Vec<ObjectState> {
-    let around = SharedQueries::of(world);
+    let around = ObjectStateQueries::of(world);
     world
         .house()
         .objects
@@ -66,11 +66,11 @@ pub fn object_states(world: &World) -> Vec<ObjectState> {
 /// # Panics
 /// For an object that does not exist.
 pub fn object_state(world: &World, id: ObjectId) -> ObjectState {
-    SharedQueries::of(world).tell(id)
+    ObjectStateQueries::of(world).tell(id)
 }
 
 /// Queries about all objects, answered once for all of them.
-struct SharedQueries<'a> {
+struct ObjectStateQueries<'a> {
     world: &'a World,
     /// Shape (object,).
     boxes: Vec<Aabb>,
@@ -79,7 +79,7 @@ struct SharedQueries<'a> {
     sounding: BTreeSet<ObjectId>,
 }
 
-impl<'a> SharedQueries<'a> {
+impl<'a> ObjectStateQueries<'a> {
     fn of(world: &'a World) -> Self {
         let (house, state) = (world.house(), world.state());
         Self {

@@ -6,7 +6,7 @@ use crate::env_agent::EnvAgent;
 use crate::env_config::EnvConfig;
 use crate::episode::Episode;
 use crate::error::WorldError;
-use crate::sensor_requests::{EngineResults, SensorRequests};
+use crate::sensor_requests::{RenderedImages, SensorRequests};
 use crate::world::World;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, Id, IdVec, Pose};
@@ -28,7 +28,7 @@ pub struct Env {
     /// Those who act, in the order of actions. Shape (agent,).
     pub(crate) agents: Vec<EnvAgent>,
     pub(crate) requests: SensorRequests,
-    pub(crate) results: EngineResults,
+    pub(crate) results: RenderedImages,
     /// Poses of all agents of the world at the beginning of the episodes. Shape (agent of the world,).
     pub(crate) start_poses: IdVec<AgentId, Pose>,
     pub(crate) seed: u64,
@@ -67,7 +67,7 @@ impl Env {
             world,
             agents,
             requests,
-            results: EngineResults::default(),
+            results: RenderedImages::default(),
             start_poses: IdVec::default(),
             seed: 0,
             episode_key: RandomKey::root(0),

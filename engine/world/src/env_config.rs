@@ -113,11 +113,14 @@ impl EnvConfig {
                 return Err(fault("agents", found, "each agent once".to_owned()));
             }
         }
-        let roles = self.agents.iter().map(|own| self.role(own));
+        let roles = self.agents.iter().map(|own| self.resolve_agent(own));
         roles.collect()
     }
 
-    fn role<'a>(&'a self, own: &'a AgentConfig) -> Result<ResolvedAgentConfig<'a>, WorldError> {
+    fn resolve_agent<'a>(
+        &'a self,
+        own: &'a AgentConfig,
+    ) -> Result<ResolvedAgentConfig<'a>, WorldError> {
         let general = match own.task {
             Some(_) => &Value::Null,
             None => &self.task_settings,

@@ -4,7 +4,7 @@ use crate::camera_capture::ImageRequest;
 use crate::env::Env;
 use crate::env_agent::EnvAgent;
 use crate::error::WorldError;
-use crate::sensor_requests::{EngineResults, SensorRequests};
+use crate::sensor_requests::{RenderedImages, SensorRequests};
 use crate::sensors::{ObservationBuffer, Sensor, SensorContext, SensorSpec};
 use crate::world::World;
 use dwell_render::{Camera, Preset};
@@ -80,7 +80,7 @@ impl Env {
     /// The world, and the buffers for its pictures, at the same time.
     pub(crate) fn world_and_image_buffers(
         &mut self,
-    ) -> (&World, &SensorRequests, &mut EngineResults) {
+    ) -> (&World, &SensorRequests, &mut RenderedImages) {
         self.results.allocate(&self.requests, &self.world);
         (&self.world, &self.requests, &mut self.results)
     }

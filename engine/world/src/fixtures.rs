@@ -13,7 +13,7 @@ pub struct SceneOverlay {
     /// Sources of sound.
     pub sources: Vec<SoundSource>,
     /// Joints.
-    pub joints: Vec<JointFixture>,
+    pub joints: Vec<JointOverlay>,
     /// Around objects.
     pub boxes: Vec<ObjectBox>,
 }
@@ -50,7 +50,7 @@ pub struct SoundSource {
 
 /// A joint.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct JointFixture {
+pub struct JointOverlay {
     /// Its object's name and its own, with `/` between.
     pub name: String,
     /// Turning (`hinge`) or sliding (`slide`).
@@ -116,7 +116,7 @@ pub fn scene_overlay(world: &World) -> Result<SceneOverlay, WorldError> {
     let joints = house.joints.iter_ids().map(|(id, joint)| {
         let parent = joint.parent.map(|parent| state.part_pose[parent]);
         let world_from_joint = parent.unwrap_or(Pose::IDENTITY) * joint.parent_from_joint;
-        JointFixture {
+        JointOverlay {
             name: format!("{}/{}", house.objects[joint.object].name, joint.name),
             kind: match joint.kind {
                 JointKind::Hinge => "hinge",

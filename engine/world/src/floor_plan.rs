@@ -1,7 +1,7 @@
 //! Labels of a floor plan beside its picture: places of names, and swings of doors.
 
 use crate::world::World;
-use dwell_scene::{Articulation, House, JointKind, LevelId, Pose, Room, RoomId, State};
+use dwell_scene::{House, Joint, JointKind, LevelId, Pose, Room, RoomId, State};
 use glam::{Vec2, Vec3};
 use serde::Serialize;
 
@@ -64,7 +64,7 @@ pub fn floor_plan(world: &World, level: LevelId) -> FloorPlan {
         name: room.name.clone(),
         kinds: room.kinds.clone(),
         area_m2: house.exclusive_area_m2(id),
-        label_position: place(house, id).to_array(),
+        label_position: label_position(house, id).to_array(),
     });
     let low = here()
         .map(|(_, room)| room.floor_y)
@@ -91,7 +91,7 @@ fn flat(point: Vec3) -> [f32; 2] {
     [point.x, point.z]
 }
 
-fn door(house: &House, state: &State, joint: &Articulation) -> PlanDoor {
+fn door(house: &House, state: &State, joint: &Joint) -> PlanDoor {
     let world_from_parent = joint
         .parent
         .map_or(Pose::IDENTITY, |parent| state.part_pose[parent]);
@@ -121,7 +121,7 @@ fn door(house: &House, state: &State, joint: &Articulation) -> PlanDoor {
 }
 
 /// The point of a room's floor, of many, that is furthest from its edges, (x, z), m.
-fn place(house: &House, id: RoomId) -> Vec2 {
+fn label_position(house: &House, id: RoomId) -> Vec2 {
     let room = &house.rooms[id];
     let outline = outline(room);
     let points = house.points_in_room(id, POINTS);

@@ -10,7 +10,7 @@ pub(crate) fn mib(bytes: u64) -> String {
 
 /// Returns the memory that this process may still take: of the machine, of its group's limit and of its own; `None` where unknown.
 pub(crate) fn free_bytes() -> Option<u64> {
-    let of_machine = kibibytes("/proc/meminfo", "MemAvailable:");
+    let of_machine = kib_field_bytes("/proc/meminfo", "MemAvailable:");
     [of_machine, of_group(), of_process()]
         .into_iter()
         .flatten()
@@ -18,7 +18,7 @@ pub(crate) fn free_bytes() -> Option<u64> {
 }
 
 /// The number behind `name` in a file of the system that counts in KiB, bytes.
-fn kibibytes(file: &str, name: &str) -> Option<u64> {
+fn kib_field_bytes(file: &str, name: &str) -> Option<u64> {
     let text = read_to_string(file).ok()?;
     let line = text.lines().find_map(|line| line.strip_prefix(name))?;
     let count: u64 = line.split_whitespace().next()?.parse().ok()?;
@@ -32,7 +32,7 @@ fn of_process() -> Option<u64> {
         .lines()
         .find_map(|line| line.strip_prefix("Max address space"))?;
     let most: u64 = most.split_whitespace().next()?.parse().ok()?;
-    Some(most.saturating_sub(kibibytes("/proc/self/status", "VmSize:")?))
+    Some(most.saturating_sub(kib_field_bytes("/proc/self/status", "VmSize:")?))
 }
 
 /// The free memory under the limits of the process's control groups, of either version.
@@ -54,13 +54,13 @@ fn of_group() -> Option<u64> {
         let folders =
             groups.map(|group| Path::new(root).join(group.strip_prefix("/").unwrap_or(group)));
         folders
-            .filter_map(|folder| room_of_group(&folder, most, used))
+            .filter_map(|folder| cgroup_headroom(&folder, most, used))
             .min()
     });
     rooms.min()
 }
 
-fn room_of_group(folder: &Path, most: &str, used: &str) -> Option<u64> {
+fn cgroup_headroom(folder: &Path, most: &str, used: &str) -> Option<u64> {
     let number =
         |name: &str| -> Option<u64> { read_to_string(folder.join(name)).ok()?.trim().parse().ok() };
     let most = number(most)?;
@@ -83,7 +83,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let write =
             |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
-        let room = || room_of_group(folder.path(), "memory.max", "memory.current");
+        let room = || cgroup_headroom(folder.path(), "memory.max", "memory.current");
         assert_eq!(room(), None);
         write("memory.max", "max\n");
         write("memory.current", "700\n");

@@ -19,7 +19,7 @@ pub(crate) fn all_slice() -> &'static [&'static LawInfo] {
 
 /// The numbers of a law that is given by its name alone, where these need no choice.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LawDefaults {
+pub struct LawPreset {
     /// The law's id.
     pub id: &'static str,
     /// Values by parameter name; the others have their defaults.
@@ -29,33 +29,33 @@ pub struct LawDefaults {
 }
 
 /// The laws that have usual numbers. The others need some: a wind has no usual direction.
-pub const DEFAULT_VALUES: &[LawDefaults] = &[
-    LawDefaults {
+pub const DEFAULT_VALUES: &[LawPreset] = &[
+    LawPreset {
         id: "drag",
         params: &[("c_d", 0.47)],
         about: "that of a sphere at Reynolds numbers of 1e4 to 1e5: S. F. Hoerner, Fluid-Dynamic Drag (1965), chapter 3",
     },
-    LawDefaults {
+    LawPreset {
         id: "buoyancy",
         params: &[("fluid_density_kg_m3", 1.204)],
         about: "dry air at 20 degrees Celsius and 101325 Pa",
     },
-    LawDefaults {
+    LawPreset {
         id: "no_air_absorption",
         params: &[("missing", 1.0)],
         about: "all of it is missing",
     },
-    LawDefaults {
+    LawPreset {
         id: "vignetting",
         params: &[("strength", 1.0)],
         about: "the law of the fourth power",
     },
-    LawDefaults {
+    LawPreset {
         id: "redwood_depth",
         params: &[("strength", 1.0)],
         about: "the published noise",
     },
-    LawDefaults {
+    LawPreset {
         id: "kinect_depth",
         params: &[("axial", 1.0), ("lateral", 1.0)],
         about: "the published noise",
@@ -67,7 +67,7 @@ pub const DEFAULT_VALUES: &[LawDefaults] = &[
 /// # Errors
 /// [`WorldError::Unknown`] lists the laws there are; [`WorldError::Scene`] names a parameter out of bounds, or a target that
 /// is there in two spellings.
-pub fn install(house: &House, specs: &[LawSpec]) -> Result<Vec<LawSpec>, WorldError> {
+pub fn normalize_laws(house: &House, specs: &[LawSpec]) -> Result<Vec<LawSpec>, WorldError> {
     let installed = dwell_scene::law::install(house, all_slice(), specs);
     installed.map_err(|error| match error {
         SceneError::UnknownLaw { id, known } => WorldError::Unknown {
@@ -89,7 +89,7 @@ pub fn state_with_laws<'a>(
     parameters: impl IntoIterator<Item = (&'a String, &'a f64)>,
 ) -> Result<State, WorldError> {
     let mut state = State::new(house);
-    state.laws = install(house, specs)?;
+    state.laws = normalize_laws(house, specs)?;
     let values: Vec<(Address, f64)> = parameters
         .into_iter()
         .map(|(text, value)| Ok((text.parse()?, *value)))

@@ -47,7 +47,9 @@ mod world;
 mod world_snapshot;
 mod world_sounds;
 
-pub use actions::{ActionRequest, AgentAction, DiscreteAction, ObjectRef, PixelCamera, StepSizes};
+pub use actions::{
+    AgentAction, DiscreteAction, HandActionRequest, ObjectRef, PixelCamera, StepSizes,
+};
 pub use batch::Batch;
 pub use camera_capture::{CameraMount, ImageRequest};
 pub use config::WorldConfig;
@@ -59,14 +61,14 @@ pub use episode::{Episode, StepInfo, StepResult};
 pub use error::WorldError;
 pub use expert::{ShortestPathFollower, action_towards_object};
 pub use fixtures::{
-    JointFixture, LampFixture, ObjectBox, SceneOverlay, SoundSource, scene_overlay,
+    JointOverlay, LampFixture, ObjectBox, SceneOverlay, SoundSource, scene_overlay,
 };
 pub use floor_plan::{FloorPlan, PlanDoor, PlanRoom, floor_plan};
 pub use info::{RoomViewpoint, info, viewpoints};
-pub use motion_history::MotionHistory;
+pub use motion_history::LastStepMotion;
 pub use plain_json_error::plain_json_error;
-pub use room_surfaces::{RoomSurface, room_surfaces};
-pub use sensor_requests::{EngineResults, RenderedImage, SensorRequests, ViewRequest};
+pub use room_surfaces::{RoomMaterialMesh, room_surfaces};
+pub use sensor_requests::{RenderedImage, RenderedImages, SensorRequests, ViewRequest};
 pub use sound::{PlayRequest, SoundName, SoundPlace, SoundState, default_level_db};
 pub use world::World;
 

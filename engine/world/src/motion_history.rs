@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// The motion of the last step: what has moved, with its previous pose.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct MotionHistory {
+pub struct LastStepMotion {
     /// Previous poses of the parts that have moved, by part.
     pub previous_part_poses: Vec<(PartId, Pose)>,
     /// True if there was a step since the world began.
@@ -17,7 +17,7 @@ pub struct MotionHistory {
     pub previous_feet: Vec<Vec3>,
 }
 
-impl MotionHistory {
+impl LastStepMotion {
     /// Records the differences of `before` from `now`.
     pub(crate) fn record(&mut self, before: &PreviousState, now: &State) {
         self.has_step = true;

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 /// All triangles of a material in a room, in world space.
 #[derive(Clone, Debug, PartialEq)]
-pub struct RoomSurface {
+pub struct RoomMaterialMesh {
     /// The room; `None`: the building where no room is known, and what stands outside.
     pub room: Option<RoomId>,
     /// True for a ceiling, which hides the room from above.
@@ -27,7 +27,7 @@ pub struct RoomSurface {
 /// The triangles of structure and objects as they stand in a world, by room (that of the object's middle) and material, ceilings
 /// apart. Their
 /// number is [`House::triangle_count`].
-pub fn room_surfaces(world: &World) -> Vec<RoomSurface> {
+pub fn room_surfaces(world: &World) -> Vec<RoomMaterialMesh> {
     let (house, state) = (world.house(), world.state());
     let mut all = SurfaceBuilder::new();
     for piece in &house.structure {
@@ -64,7 +64,7 @@ fn room_of(house: &House, state: &State, object: dwell_scene::ObjectId) -> Optio
 type SurfaceKey = (Option<RoomId>, bool, MaterialId);
 
 /// Meshes in the making.
-struct SurfaceBuilder(BTreeMap<SurfaceKey, RoomSurface>);
+struct SurfaceBuilder(BTreeMap<SurfaceKey, RoomMaterialMesh>);
 
 impl SurfaceBuilder {
     fn new() -> Self {
@@ -84,18 +84,18 @@ impl SurfaceBuilder {
             let Some(material) = materials.get(usize::from(mesh.slot(k))) else {
                 continue;
             };
-            let surface = self
-                .0
-                .entry((room, ceiling, *material))
-                .or_insert_with(|| RoomSurface {
-                    room,
-                    ceiling,
-                    material: *material,
-                    positions: Vec::new(),
-                    normals: Vec::new(),
-                    uvs: Vec::new(),
-                    triangles: Vec::new(),
-                });
+            let surface =
+                self.0
+                    .entry((room, ceiling, *material))
+                    .or_insert_with(|| RoomMaterialMesh {
+                        room,
+                        ceiling,
+                        material: *material,
+                        positions: Vec::new(),
+                        normals: Vec::new(),
+                        uvs: Vec::new(),
+                        triangles: Vec::new(),
+                    });
             let first = surface.positions.len() as u32;
             let corners = triangle.map(|vertex| {
                 let point = mesh.positions[vertex as usize];

@@ -77,7 +77,7 @@ pub fn variants_of<T: JsonSchema>() -> Vec<VariantSchema> {
 pub(crate) fn field_names<'de, T: Deserialize<'de>>() -> &'static [&'static str] {
     let mut names: &'static [&'static str] = &[];
     // It never returns a value: only the request of `T` for a struct is wanted.
-    let _ = T::deserialize(FieldNames(&mut names));
+    let _ = T::deserialize(FieldNameRecorder(&mut names));
     names
 }
 
@@ -107,9 +107,9 @@ fn take_about(schema: &mut Value) -> String {
 }
 
 /// A deserializer that records the field names that a struct requests, and gives no value.
-struct FieldNames<'a>(&'a mut &'static [&'static str]);
+struct FieldNameRecorder<'a>(&'a mut &'static [&'static str]);
 
-impl<'de> Deserializer<'de> for FieldNames<'_> {
+impl<'de> Deserializer<'de> for FieldNameRecorder<'_> {
     type Error = serde::de::value::Error;
 
     fn deserialize_any<V: Visitor<'de>>(self, _: V) -> Result<V::Value, Self::Error> {

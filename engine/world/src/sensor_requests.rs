@@ -57,12 +57,12 @@ pub struct RenderedImage {
 
 /// The engines' results for one world. Buffers are kept from step to step.
 #[derive(Clone, Debug, Default)]
-pub struct EngineResults {
+pub struct RenderedImages {
     /// Pictures, in the order of the requests.
     pub images: Vec<RenderedImage>,
 }
 
-impl EngineResults {
+impl RenderedImages {
     /// The picture of a view.
     pub fn image_of(&self, eye: &EyeCamera) -> Option<&RenderedImage> {
         self.images.iter().find(|picture| picture.eye == *eye)

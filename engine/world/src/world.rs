@@ -4,7 +4,7 @@ use crate::config::WorldConfig;
 use crate::engines::Engines;
 use crate::error::WorldError;
 use crate::initial_state::InitialWorld;
-use crate::motion_history::{MotionHistory, PreviousState};
+use crate::motion_history::{LastStepMotion, PreviousState};
 use crate::sound::{StepContext, WorldSound};
 use dwell_physics::{
     ActionOutcome, AgentControl, AgentPlacement, BodyState, ContactEvent, HandAction, JointState,
@@ -33,7 +33,7 @@ pub struct World {
     pub(crate) events: Vec<ContactEvent>,
     pub(crate) key: RandomKey,
     /// Poses before the last step.
-    pub(crate) motion_history: MotionHistory,
+    pub(crate) motion_history: LastStepMotion,
     /// Memory for it.
     before: PreviousState,
     /// The state that [`World::reset`] goes back to; worlds of one config share it.
@@ -68,7 +68,7 @@ impl World {
             sound: WorldSound::new(config),
             events: Vec::new(),
             key: RandomKey::root(0),
-            motion_history: MotionHistory::default(),
+            motion_history: LastStepMotion::default(),
             before: PreviousState::default(),
             initial: start,
         })
@@ -221,7 +221,7 @@ impl World {
     }
 
     /// Returns the poses before the last step.
-    pub fn motion_history(&self) -> &MotionHistory {
+    pub fn motion_history(&self) -> &LastStepMotion {
         &self.motion_history
     }
 
@@ -240,8 +240,8 @@ impl World {
     }
 
     /// The contact events of the last step beyond its limit: their number, and their impulse together.
-    pub fn merged_events(&self) -> dwell_physics::MergedEvents {
-        self.physics.merged_events()
+    pub fn merged_events(&self) -> dwell_physics::ExcessEventTotals {
+        self.physics.events_beyond_limit()
     }
 
     /// Returns the number of pairs of collision pieces in physics.
@@ -331,7 +331,7 @@ impl World {
             return refuse("the command is no finite number");
         }
         // The servo in force: an address may have changed the house's own.
-        let servo = self.state.joint_values(&house, joint).servo;
+        let servo = self.state.joint_parameters(&house, joint).servo;
         let gain = servo.map(|servo| servo.velocity_gain);
         match command {
             _ if articulation.mimic.is_some() && command != JointCommand::Off => {

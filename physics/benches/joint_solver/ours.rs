@@ -3,8 +3,8 @@
 use crate::chain::{Chain, DENSITY, GRAVITY, ORIGIN, Solver};
 use dwell_physics::{JointState, PhysicsConfig, PhysicsWorld};
 use dwell_scene::{
-    Articulation, Category, Collider, House, JointCommand, JointId, JointKind, LevelId, MaterialId,
-    Mesh, Mobility, Object, ObjectId, Part, PartId, Pose, RoomId, Servo, ShoeboxMaterials, State,
+    Category, Collider, House, Joint, JointCommand, JointId, JointKind, LevelId, MaterialId, Mesh,
+    Mobility, Object, ObjectId, Part, PartId, Pose, RoomId, Servo, ShoeboxMaterials, State,
 };
 use glam::{Affine3A, DVec3, Vec3};
 use std::sync::Arc;
@@ -51,13 +51,13 @@ fn house(chain: &Chain) -> Arc<House> {
         });
         let before = k.checked_sub(1);
         let place = if k == 0 { at } else { Vec3::X * reach };
-        data.joints.push(Articulation {
+        data.joints.push(Joint {
             parent: before.map(|before| PartId(before as u32)),
             parent_from_joint: Pose::from_position(place),
             limits: chain.limits,
             friction: chain.friction,
             servo,
-            ..Articulation::new(&format!("j{k}"), object, part, JointKind::Hinge, bar.axis)
+            ..Joint::new(&format!("j{k}"), object, part, JointKind::Hinge, bar.axis)
         });
         (at.x, reach) = (at.x + bar.length, bar.length);
     }

@@ -75,7 +75,7 @@ impl ActionContext<'_> {
                 joint.position_at(fraction)
             };
             let goal = state
-                .joint_values(&self.dynamics.model.house, *id)
+                .joint_parameters(&self.dynamics.model.house, *id)
                 .clamp(goal);
             state.joint_command[*id] = JointCommand::Position(goal);
             let drive = HandDrive::new(goal, state.joint_position[*id], Some(actor.id));

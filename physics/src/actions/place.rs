@@ -163,7 +163,9 @@ impl ActionContext<'_> {
         }
         let feet = match (aim.point, on) {
             (Some(point), _) => self.feet_around(grip.body as usize, ground, point),
-            (None, Some(object)) => self.feet_on(state, grip.body as usize, object, eye, reach),
+            (None, Some(object)) => {
+                self.placement_points_on(state, grip.body as usize, object, eye, reach)
+            }
             (None, None) => {
                 let below = eye + dwell_scene::space::forward_from_yaw(actor.body.yaw_rad) * 0.5;
                 let floor = actor.body.position.y;
@@ -261,7 +263,7 @@ impl ActionContext<'_> {
     }
 
     /// Returns all points on an object's level surfaces within reach, the nearest to the eye first.
-    fn feet_on(
+    fn placement_points_on(
         &self,
         state: &State,
         body: usize,

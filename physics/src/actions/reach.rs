@@ -47,7 +47,7 @@ impl ActionContext<'_> {
             let sentence = format!("The {name} is behind you. Turn around.");
             return Some(fail(OutcomeCode::BehindAgent, sentence, Some(object)));
         }
-        if let Err(blocker) = self.sight(state, actor, object, nearest) {
+        if let Err(blocker) = self.check_visible(state, actor, object, nearest) {
             let sentence = match blocker {
                 Some(what) => {
                     format!("You cannot see the {name}: the {what} is in between. Step aside.")
@@ -97,7 +97,7 @@ impl ActionContext<'_> {
     }
 
     /// Returns whether some point of an object is visible; the error is the thing that hides it, if any.
-    fn sight(
+    fn check_visible(
         &self,
         state: &State,
         actor: Actor<'_>,
@@ -171,7 +171,7 @@ impl ActionContext<'_> {
         let house = &self.dynamics.model.house;
         let mut found = Vec::new();
         for (id, agent) in state.agents.iter_ids() {
-            let mut open: Vec<ObjectId> = self.carrier_of(agent).into_iter().collect();
+            let mut open: Vec<ObjectId> = self.object_underfoot(agent).into_iter().collect();
             while let Some(object) = open.pop() {
                 if found.contains(&(id, object)) {
                     continue;
@@ -205,7 +205,7 @@ impl ActionContext<'_> {
     }
 
     /// Returns the object directly under an agent's feet.
-    fn carrier_of(&self, agent: &AgentState) -> Option<ObjectId> {
+    fn object_underfoot(&self, agent: &AgentState) -> Option<ObjectId> {
         let seen = |_: ColliderHandle, collider: &Collider| {
             self.dynamics.entries[entry_index(collider)]
                 .agent()

@@ -125,7 +125,7 @@ impl Agents {
         let mut passive_velocities = self.passive_velocities[id.index()];
         let others = other_agents(state, id);
         let mut walk = CharacterController {
-            probe: probe(dynamics, agent, id, &others),
+            probe: current_agent_queries(dynamics, agent, id, &others),
             pushes: Vec::new(),
             dt_s: dynamics.settings.dt_s,
             gravity_m_s2: dynamics.engine.gravity.length(),
@@ -158,7 +158,9 @@ impl Agents {
         }
         let up = agent.crouched_by_m - wanted;
         let others = other_agents(state, id);
-        if up > 0.0 && !probe(dynamics, agent, id, &others).has_headroom(agent.position, up) {
+        if up > 0.0
+            && !current_agent_queries(dynamics, agent, id, &others).has_headroom(agent.position, up)
+        {
             return Some(DelayedOutcome {
                 agent: Some(id),
                 outcome: fail(
@@ -195,7 +197,7 @@ pub(crate) fn finish_movement(dynamics: &Dynamics, state: &mut State, ways: &[Mo
 }
 
 /// Returns the surroundings of an agent, for its present height.
-fn probe<'a>(
+fn current_agent_queries<'a>(
     dynamics: &'a Dynamics,
     agent: &AgentState,
     id: AgentId,

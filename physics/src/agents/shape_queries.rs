@@ -334,7 +334,7 @@ impl AgentQueries<'_> {
     }
 
     /// Returns the unit normal of the surface directly under the middle, on its upper side; `None` without one near `height_m`.
-    pub(crate) fn surface(&self, feet: Vec3, height_m: f32) -> Option<Vec3> {
+    pub(crate) fn ground_normal(&self, feet: Vec3, height_m: f32) -> Option<Vec3> {
         let predicate = |_: ColliderHandle, collider: &Collider| {
             self.obstacle_kind(collider) != ObstacleKind::Ignored
         };

@@ -18,7 +18,7 @@ impl CharacterController<'_> {
     pub(super) fn is_too_steep(&self, feet: Vec3, height_m: f32) -> bool {
         let steepest = math::cos(self.probe.body.max_slope_rad);
         self.probe
-            .surface(feet, height_m)
+            .ground_normal(feet, height_m)
             .is_some_and(|normal| normal.y < steepest - MARGIN && normal.y > MARGIN)
     }
 
@@ -35,7 +35,7 @@ impl CharacterController<'_> {
     /// Returns the slide's horizontal velocity after a step on the ground at `feet`.
     pub(super) fn velocity_on_slope(&self, feet: Vec3, slide: Vec3) -> Vec3 {
         let resting = slide == Vec3::ZERO;
-        let Some(normal) = self.probe.surface(feet, feet.y) else {
+        let Some(normal) = self.probe.ground_normal(feet, feet.y) else {
             return if resting {
                 slide
             } else {

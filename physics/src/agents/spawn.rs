@@ -50,7 +50,7 @@ impl Agents {
                     beside && (other.position.y - place.y).abs() < height_m
                 })
             };
-            let place = place_with_room(dynamics, &house, (id, body, from), taken, &mut search)?;
+            let place = find_spawn_point(dynamics, &house, (id, body, from), taken, &mut search)?;
             if place == from {
                 continue;
             }
@@ -67,7 +67,7 @@ impl Agents {
     }
 }
 
-fn place_with_room(
+fn find_spawn_point(
     dynamics: &Dynamics,
     house: &House,
     (id, body, from): (AgentId, AgentBody, Vec3),

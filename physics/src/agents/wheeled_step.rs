@@ -30,7 +30,7 @@ pub(crate) fn drive(
     let seconds = f64::from(dt_s);
     let (believed, true_twist) = match (agent.body.locomotion, truth) {
         (Locomotion::DifferentialDrive(nominal), Locomotion::DifferentialDrive(truth)) => {
-            let mut rolling = roll(agent, &nominal, truth, control, seconds);
+            let mut rolling = accelerate_wheels(agent, &nominal, truth, control, seconds);
             for side in 0..2 {
                 agent.base.wheel_rotation_rad[side] += rolling.rate_rad_s[side] * seconds;
             }
@@ -89,7 +89,7 @@ fn to_f32_array(twist: &PlanarTwist) -> [f32; 3] {
 }
 
 /// Accelerates both wheels towards their commands.
-fn roll(
+fn accelerate_wheels(
     agent: &mut AgentState,
     nominal: &DifferentialDrive,
     truth: &DifferentialDrive,

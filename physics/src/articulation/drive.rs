@@ -53,7 +53,10 @@ impl JointSystem {
             let hand = self.hand_drives.get_mut(&joint.id);
             let puller = hand.as_ref().and_then(|hand| hand.agent);
             let puller = puller.and_then(|agent| state.agents.get(agent));
-            let effort = puller.map_or_else(|| state.hand_effort(), |agent| agent.body.hand_effort);
+            let effort = puller.map_or_else(
+                || state.default_hand_effort(),
+                |agent| agent.body.hand_effort,
+            );
             let limits = (step_s, effort);
             let (pull, progress) =
                 joints::advance(joint.kind, &joint.values, command, hand, now, limits);

@@ -68,13 +68,13 @@ impl JointSystem {
 
     /// Moves jointed bodies along with their parents.
     pub(crate) fn move_jointed_bodies(&self, dynamics: &mut Dynamics, state: &State) {
-        let stands = self.joints.iter().map(|joint| joints::JointPlacement {
+        let stands = self.joints.iter().map(|joint| joints::ImposedJointState {
             position: state.joint_position[joint.id],
             velocity: 0.0,
             force_update: false,
             is_latched: false,
         });
-        let stands: Vec<joints::JointPlacement> = stands.collect();
+        let stands: Vec<joints::ImposedJointState> = stands.collect();
         for tree in &self.trees {
             let moved = tree.root_body().is_some_and(|body| {
                 let body = body as usize;

@@ -31,7 +31,7 @@ impl ApproachMotion {
         (a, b): (&BodyMotion, &BodyMotion),
     ) -> Self {
         let normal = manifold.data.normal;
-        let (p, q) = ends_before(manifold, contact, bodies, (a, b));
+        let (p, q) = surface_points_before_step(manifold, contact, bodies, (a, b));
         let place = (p + q) * 0.5;
         let relative = a.velocity_at(place) - b.velocity_at(place);
         let speed = relative.dot(normal);
@@ -57,7 +57,7 @@ pub(super) fn speed_after(speed: f32, acceleration: f32, way_m: f32) -> f32 {
 }
 
 /// Returns the positions of the two surfaces of a contact point before the step.
-fn ends_before(
+fn surface_points_before_step(
     manifold: &ContactManifold,
     contact: &SolverContact,
     bodies: &RigidBodySet,

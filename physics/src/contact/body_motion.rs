@@ -124,7 +124,7 @@ pub(crate) fn record_motion(
             max_point_speed_m_s: linear.length()
                 + angular.length() * body.mass_properties().max_extent(),
             kinetic_energy_j: if flies { body.kinetic_energy() } else { 0.0 },
-            free_velocity_change: free.then(|| gravity * engine.free_fall_time_s(flies)),
+            free_velocity_change: free.then(|| gravity * engine.gravity_time_s(flies)),
         };
     }
 }

@@ -4,7 +4,7 @@ use super::approach::ApproachMotion;
 use super::body_motion::{BodyMotion, motion_before};
 use super::collider_entry::{ColliderEntry, ContactEntity, entry_index};
 use super::friction;
-use crate::engine::{FrictionStorage, points};
+use crate::engine::{FrictionImpulseLayout, points};
 use glam::Vec3;
 use rapier3d::dynamics::{RigidBodyHandle, RigidBodySet, SoftBodySet, SoftBodyTearEvent};
 use rapier3d::geometry::{Collider, ColliderSet, CollisionEvent, ContactManifold, ContactPair};
@@ -45,7 +45,7 @@ pub(crate) struct ContactCollector<'a> {
     /// Motion before the step of every body that was awake, by its arena index.
     before: &'a [BodyMotion],
     /// Rapier's layout of friction impulses.
-    kept: FrictionStorage,
+    kept: FrictionImpulseLayout,
     reports: Mutex<Vec<ContactReport>>,
 }
 
@@ -54,7 +54,7 @@ impl<'a> ContactCollector<'a> {
         entries: &'a [ColliderEntry],
         before: &'a [BodyMotion],
         slowest: f32,
-        kept: FrictionStorage,
+        kept: FrictionImpulseLayout,
     ) -> Self {
         Self {
             entries,
@@ -108,7 +108,7 @@ impl<'a> ContactCollector<'a> {
             tangential_speed_m_s: 0.0,
             normal_impulse_on_second: Vec3::ZERO,
             impulse_on_bodies: [(one, &motions.0), (two, &motions.1)]
-                .map(|(collider, motion)| self.pushed(bodies, collider, motion)),
+                .map(|(collider, motion)| self.body_contact_impulse(bodies, collider, motion)),
         };
         let mut strongest = 0.0;
         for manifold in pair.solver_manifolds() {
@@ -135,7 +135,7 @@ impl<'a> ContactCollector<'a> {
     }
 
     /// Returns the contact impulse on the body of a collider in the step, N·s.
-    fn pushed(
+    fn body_contact_impulse(
         &self,
         bodies: &RigidBodySet,
         collider: &Collider,
@@ -158,7 +158,7 @@ impl ContactReport {
         manifold: &ContactManifold,
         bodies: &RigidBodySet,
         (a, b): &(BodyMotion, BodyMotion),
-        kept: FrictionStorage,
+        kept: FrictionImpulseLayout,
     ) -> f32 {
         let normal = manifold.data.normal;
         let mut here = 0.0;

@@ -91,7 +91,7 @@ impl ContactEvent {
 
 /// Events of a control step beyond its limit, which are merged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct MergedEvents {
+pub struct ExcessEventTotals {
     /// Number of events.
     pub count: usize,
     /// The sum of their normal impulses, N·s.
@@ -104,9 +104,9 @@ pub(crate) fn merge_excess(
     events: &mut Vec<ContactEvent>,
     first: usize,
     most: usize,
-) -> MergedEvents {
+) -> ExcessEventTotals {
     let new = &mut events[first..];
-    let mut merged = MergedEvents::default();
+    let mut merged = ExcessEventTotals::default();
     if new.len() > most {
         new.sort_by(|x, y| {
             let impact = |event: &ContactEvent| event.kind != ContactKind::Impact;

@@ -5,13 +5,13 @@
 //! body with one contact; with several, each is estimated from the last substep.
 
 use super::collector::ContactReport;
-use crate::engine::{FrictionStorage, points};
+use crate::engine::{FrictionImpulseLayout, points};
 use glam::Vec3;
 use rapier3d::dynamics::RigidBodyHandle;
 use rapier3d::geometry::ContactManifold;
 use std::collections::BTreeSet;
 
-impl FrictionStorage {
+impl FrictionImpulseLayout {
     /// Returns the friction of a plane in the last substep, N·s, on its first body.
     pub(super) fn last_substep_friction(self, plane: &ContactManifold) -> Vec3 {
         let each = points(plane).map(|(_, point)| point.warmstart_tangent_world);

@@ -4,7 +4,7 @@ use super::collider_entry::{ColliderEntry, entry_index};
 use super::contact_law::{ContactLaw, ContactSide, ContactValues, LawContact};
 use super::rolling;
 use super::substances::ContactTable;
-use crate::engine::FrictionStorage;
+use crate::engine::FrictionImpulseLayout;
 use dwell_scene::interrupt;
 use dwell_scene::material::PairContact;
 use dwell_scene::{AgentId, House};
@@ -85,7 +85,7 @@ pub(crate) struct ContactHooks<'a> {
     pub(crate) entries: &'a [ColliderEntry],
     pub(crate) properties: ContactProperties<'a>,
     pub(crate) excluded: &'a CollisionExclusions,
-    pub(crate) friction_storage: FrictionStorage,
+    pub(crate) friction_storage: FrictionImpulseLayout,
     /// Length of the step, s.
     pub(crate) dt_s: f32,
 }
@@ -179,7 +179,7 @@ impl ContactHooks<'_> {
     ) {
         let count = plane.solver_contacts.len();
         let turns =
-            |law: &Arc<dyn ContactLaw>| law.scope().is_swapped(self.properties.house, &a, &b);
+            |law: &Arc<dyn ContactLaw>| law.scope().match_sides(self.properties.house, &a, &b);
         if count == 0 || self.properties.laws.iter().all(|law| turns(law).is_none()) {
             return;
         }

@@ -23,7 +23,7 @@ pub(crate) use contact_law::{ContactLaw, ContactSide, ContactValues, LawContact}
 pub(crate) use contact_pairs::contacts_within;
 pub(crate) use contact_tracker::ContactTracker;
 pub(crate) use events::merge_excess;
-pub use events::{ContactEvent, ContactKind, ContactPhase, MergedEvents};
+pub use events::{ContactEvent, ContactKind, ContactPhase, ExcessEventTotals};
 pub(crate) use hooks::{CollisionExclusions, ContactHooks, ContactProperties};
 pub(crate) use restitution::{RestitutionContext, RestitutionResult};
 pub(crate) use scope::ContactScope;

@@ -297,7 +297,7 @@ impl FreeFlightImpact {
             return;
         };
         let (linear, angular) = (rigid.linvel(), rigid.angvel());
-        self.shift(struck);
+        self.move_tree_impulses(struck);
         let trees: Vec<Vec<f64>> = struck.iter().map(ImpulseDynamics::velocities).collect();
         self.apply_sequential_impulses(engine, struck, 1.0);
         let Some(max_energy_j) = self.max_energy_j else {
@@ -334,7 +334,7 @@ impl FreeFlightImpact {
     }
 
     /// Moves rapier's impulses on trees to the impact points.
-    fn shift(&self, struck: &mut [ImpulseDynamics]) {
+    fn move_tree_impulses(&self, struck: &mut [ImpulseDynamics]) {
         for hit in self.hits.iter().filter(|hit| hit.parting > 0.0) {
             for joined in hit.sides.iter().filter_map(|side| side.joined.as_ref()) {
                 let pushed = f64::from(hit.pushed);

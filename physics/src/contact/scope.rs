@@ -109,7 +109,7 @@ impl ContactScope {
     }
 
     /// Returns whether a contact is within the scope, and if so, whether `b` is the surface and not `a`.
-    pub(crate) fn is_swapped(
+    pub(crate) fn match_sides(
         &self,
         house: &House,
         a: &ContactSide<'_>,

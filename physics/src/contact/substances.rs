@@ -108,7 +108,7 @@ impl ContactTable {
                 pairs.push(pair);
             }
         }
-        let special = cover(&exceptions, &usage(house, &class_of_material, count));
+        let special = vertex_cover(&exceptions, &usage(house, &class_of_material, count));
         Self {
             classes,
             class_of_material,
@@ -180,7 +180,7 @@ fn usage(house: &House, class_of_material: &IdVec<MaterialId, u16>, count: usize
 
 /// Returns classes such that every exception contains one, the rarer of the two: contacts of a pair with a hook are
 /// computed anew in every step, so that fewer are better.
-fn cover(exceptions: &[(usize, usize)], usage: &[usize]) -> Vec<bool> {
+fn vertex_cover(exceptions: &[(usize, usize)], usage: &[usize]) -> Vec<bool> {
     let mut covered = vec![false; usage.len()];
     for (i, j) in exceptions {
         if i == j {

@@ -27,7 +27,7 @@ pub(crate) struct BodyMasses {
 impl BodyMasses {
     pub(crate) fn new(model: &PhysicsModel, state: &State, laws: &LawSet) -> Self {
         let factors = body::mass_factors(model, state);
-        let altered = inertia::altered(model, state, &factors, &laws.masses);
+        let altered = inertia::explicit_inertias(model, state, &factors, &laws.masses);
         Self {
             factors,
             overridden: altered,

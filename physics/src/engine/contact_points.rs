@@ -14,7 +14,7 @@ pub(crate) fn points(
 
 /// Layout of friction impulses in rapier's contact points.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct FrictionStorage {
+pub(crate) struct FrictionImpulseLayout {
     /// Each point of a plane holds the friction of the whole plane.
     pub(crate) patch_friction: bool,
     /// rapier runs once in a physics step.

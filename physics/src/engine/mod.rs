@@ -8,7 +8,7 @@ mod sleeping_cache;
 mod workspace;
 
 pub(crate) use contact_compliance::ContactCompliance;
-pub(crate) use contact_points::{FrictionStorage, points};
+pub(crate) use contact_points::{FrictionImpulseLayout, points};
 pub use pair_reduction::PairCounts;
 pub(crate) use sleeping_cache::SleepingIslandCache;
 
@@ -97,8 +97,8 @@ impl RapierWorld {
     }
 
     /// Returns the layout of friction impulses in contact points.
-    pub(crate) fn friction_storage(&self) -> FrictionStorage {
-        FrictionStorage {
+    pub(crate) fn friction_storage(&self) -> FrictionImpulseLayout {
+        FrictionImpulseLayout {
             patch_friction: self.parameters.friction_model == FrictionModel::Simplified,
             single_solver_call: self.runs == 1,
         }
@@ -126,14 +126,14 @@ impl RapierWorld {
                 body.is_dynamic()
                     && body.gravity_scale() != 0.0
                     && self.joints.attached_joints(*handle).next().is_none()
-                    && !self.is_carried(body)
+                    && !self.is_supported(body)
             })
         };
         self.islands.active_bodies().filter(flies).collect()
     }
 
     /// Returns the part of a step for which gravity acts on a body that hits something in it, s.
-    pub(crate) fn free_fall_time_s(&self, flies: bool) -> f32 {
+    pub(crate) fn gravity_time_s(&self, flies: bool) -> f32 {
         self.parameters.dt - if flies { 0.5 * self.substep_s() } else { 0.0 }
     }
 
@@ -160,7 +160,7 @@ impl RapierWorld {
     /// Returns whether a body is supported: by something that presses, and is not left at a speed that a step of gravity
     /// does not take back; or that is so close below, at so low a speed, that its bounces would last two steps. Compliant
     /// contacts support as long as they touch.
-    fn is_carried(&self, body: &RigidBody) -> bool {
+    fn is_supported(&self, body: &RigidBody) -> bool {
         if self.soft {
             return self.is_pressed(body);
         }

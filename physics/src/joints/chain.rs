@@ -34,7 +34,7 @@ struct ChainLink {
 
 /// The wrenches of laws on a tree, and the time of their evaluation within a step.
 #[derive(Clone, Copy)]
-pub(super) struct LawWrenchQuery<'a> {
+pub(super) struct LawWrenchEvaluator<'a> {
     pub(super) wrench_fn: &'a LinkWrenchFn<'a>,
     /// Length of the step, s.
     pub(super) dt_s: f64,
@@ -155,7 +155,7 @@ impl Chain {
         &self,
         positions: &[f64],
         velocities: &[f64],
-        pushed: Option<LawWrenchQuery<'_>>,
+        pushed: Option<LawWrenchEvaluator<'_>>,
     ) -> TreeDynamics<'_> {
         let count = self.links.len();
         let mut frames: Vec<RigidTransform> = Vec::with_capacity(count);
@@ -198,7 +198,7 @@ impl Chain {
         let (pushes, root_push) = match &pushed {
             Some(pushed) => (
                 self.law_wrenches(pushed, (&axes, &masses, &angular)),
-                self.root_push(pushed),
+                self.root_law_wrench(pushed),
             ),
             None => (Vec::new(), ExternalWrench::default()),
         };
@@ -218,7 +218,7 @@ impl Chain {
     }
 }
 
-impl LawWrenchQuery<'_> {
+impl LawWrenchEvaluator<'_> {
     /// Returns the wrench of laws on a body with this velocity and angular velocity.
     fn at(&self, body: u32, lump: &LumpedBody, velocity: DVec3, spin: DVec3) -> ExternalWrench {
         (self.wrench_fn)(LinkStep {
@@ -236,11 +236,11 @@ impl LawWrenchQuery<'_> {
 
 impl Chain {
     /// Returns the wrench of laws on a free root, evaluated at the beginning of the step.
-    fn root_push(&self, pushed: &LawWrenchQuery<'_>) -> ExternalWrench {
+    fn root_law_wrench(&self, pushed: &LawWrenchEvaluator<'_>) -> ExternalWrench {
         let (Some(lump), Some(body)) = (&self.free_root, self.root_body) else {
             return ExternalWrench::default();
         };
-        let begins = LawWrenchQuery {
+        let begins = LawWrenchEvaluator {
             at_midpoint: false,
             ..*pushed
         };
@@ -250,7 +250,7 @@ impl Chain {
     /// Returns the wrenches of laws on each joint's body. Shape (freedom,).
     fn law_wrenches(
         &self,
-        pushed: &LawWrenchQuery<'_>,
+        pushed: &LawWrenchEvaluator<'_>,
         (axes, masses, angular): (&[JointAxisState], &[LumpedBody], &[DVec3]),
     ) -> Vec<ExternalWrench> {
         let mut linear: Vec<DVec3> = Vec::with_capacity(axes.len());

@@ -192,7 +192,7 @@ impl EffortProblem {
             let gradient: Vec<f64> = self.gradient(&velocity).iter().map(|g| -g).collect();
             // Newton's step: Hessian * way = -gradient.
             let way = curvature.cholesky().solve(&gradient);
-            let stride = self.stride(&velocity, &way);
+            let stride = self.line_search_step(&velocity, &way);
             for (v, d) in velocity.iter_mut().zip(&way) {
                 *v += stride * d;
             }
@@ -228,7 +228,7 @@ impl EffortProblem {
     }
 
     /// Returns the step length along `way`: to the minimum, at most 1.
-    fn stride(&self, from: &[f64], way: &[f64]) -> f64 {
+    fn line_search_step(&self, from: &[f64], way: &[f64]) -> f64 {
         // The derivative along the way.
         let rise = |stride: f64| -> f64 {
             let there: Vec<f64> = from.iter().zip(way).map(|(v, d)| v + stride * d).collect();

@@ -124,7 +124,7 @@ fn apply_body_wrenches(
 impl PredictedJoint {
     /// Returns whether a joint that was at `before` came to `now` as predicted. rapier takes a whole step for the impact at
     /// a stop, and may leave the joint short of it.
-    fn as_predicted(
+    fn moved_as_predicted(
         &self,
         engine: &RapierWorld,
         before: &JointReading,
@@ -171,16 +171,16 @@ pub(crate) fn correct_tree_positions(
         return false;
     }
     if !loose && !engine.has_multiple_solver_calls() && untouched() {
-        follow(engine, joints, &course, joint_coordinates);
+        place_as_predicted(engine, joints, &course, joint_coordinates);
         return true;
     }
     let came_true: Vec<bool> = course
         .iter()
         .zip(pairs)
-        .map(|(going, (before, now))| going.as_predicted(engine, before, now))
+        .map(|(going, (before, now))| going.moved_as_predicted(engine, before, now))
         .collect();
     if !loose && came_true.iter().all(|came| *came) && untouched() {
-        follow(engine, joints, &course, joint_coordinates);
+        place_as_predicted(engine, joints, &course, joint_coordinates);
         return true;
     }
     if standing.is_at_rest(engine, tree, joints) {
@@ -198,7 +198,7 @@ pub(crate) fn correct_tree_positions(
 }
 
 /// Puts the bodies of a tree at its joints' predicted positions.
-fn follow(
+fn place_as_predicted(
     engine: &mut RapierWorld,
     joints: &[PhysicsJoint],
     course: &[PredictedJoint],

@@ -8,7 +8,7 @@ use glam::{DVec3, Vec3};
 
 /// The commanded placement of one joint.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct JointPlacement {
+pub(crate) struct ImposedJointState {
     /// rad or m.
     pub(crate) position: f32,
     /// rad/s or m/s.
@@ -30,7 +30,7 @@ pub(crate) fn place_tree(
     engine: &mut RapierWorld,
     joints: &[PhysicsJoint],
     tree: &KinematicTree,
-    placements: &[JointPlacement],
+    placements: &[ImposedJointState],
 ) {
     let mut moved = vec![false; tree.joints.len()];
     for (k, place) in tree.joints.iter().enumerate() {
@@ -113,7 +113,7 @@ fn rounded_along(velocity: DVec3, axis: DVec3) -> Vec3 {
     rounded
 }
 
-impl JointPlacement {
+impl ImposedJointState {
     /// Returns whether a position and velocity agree with these, within these shares, or these values below 1.
     fn agrees_with(&self, (position, velocity): (f64, f64), within: [f32; 2]) -> bool {
         let same = |told: f32, found: f64, within: f32| {
@@ -128,7 +128,7 @@ impl JointPlacement {
 pub(crate) fn matches_bodies(
     engine: &RapierWorld,
     joint: &PhysicsJoint,
-    stand: &JointPlacement,
+    stand: &ImposedJointState,
     found: (f64, f64),
 ) -> bool {
     let (mut place, mut speed) = (1.0_f32, 1.0_f32);

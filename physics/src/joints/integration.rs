@@ -9,7 +9,7 @@
 //! energy of symmetric methods.
 
 use super::base_contacts::{self, BaseResponse, ReducedProblem, SupportState};
-use super::chain::{Chain, LawWrenchQuery};
+use super::chain::{Chain, LawWrenchEvaluator};
 use super::convex_solver::{EffortProblem, EffortTerm, SymmetricMatrix};
 use super::effort_term::JointDof;
 use super::tree::KinematicTree;
@@ -126,7 +126,7 @@ impl TreeSolver<'_> {
         };
         let part_s = dt_s / parts;
         let at = |middle: bool| {
-            self.drivers.wrench_fn.map(|push| LawWrenchQuery {
+            self.drivers.wrench_fn.map(|push| LawWrenchEvaluator {
                 wrench_fn: push,
                 dt_s: part_s,
                 at_midpoint: middle,

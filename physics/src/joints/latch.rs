@@ -3,7 +3,7 @@
 use super::{PhysicsJoint, child_at};
 use crate::body::{BodyHandle, BodyStatus, body_type};
 use crate::engine::RapierWorld;
-use dwell_scene::{Articulation, JointKind};
+use dwell_scene::{Joint, JointKind};
 
 /// Returns the distance from its closed position within which a joint counts as closed, rad or m.
 pub(crate) fn closed_tolerance(kind: JointKind) -> f32 {
@@ -16,7 +16,7 @@ pub(crate) fn closed_tolerance(kind: JointKind) -> f32 {
 /// Returns whether a joint at `position` is closed.
 pub(crate) fn is_at_closed_position(
     joint: &PhysicsJoint,
-    articulation: &Articulation,
+    articulation: &Joint,
     position: f32,
 ) -> bool {
     joint.latchable && (position - articulation.closed).abs() <= closed_tolerance(joint.kind)
@@ -26,7 +26,7 @@ pub(crate) fn is_at_closed_position(
 pub(crate) fn latch(
     engine: &mut RapierWorld,
     joint: &PhysicsJoint,
-    articulation: &Articulation,
+    articulation: &Joint,
     body: &BodyHandle,
     hold: &mut BodyStatus,
 ) {

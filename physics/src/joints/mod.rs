@@ -29,12 +29,12 @@ pub(crate) use efforts::{
     JointStepInputs, TreePrediction, apply_efforts, clear_efforts, correct_tree_positions,
     project_woken,
 };
-pub(crate) use forward_kinematics::{JointPlacement, matches_bodies, place_tree};
+pub(crate) use forward_kinematics::{ImposedJointState, matches_bodies, place_tree};
 pub(crate) use impulse_dynamics::{ImpulseDynamics, ImpulsePoint};
 pub(crate) use joint_state::{JointCoordinate, continued_coordinate, read_joint};
 pub(crate) use latch::{closed_tolerance, is_at_closed_position, latch, release};
 pub(crate) use link_law::{ExternalWrench, LinkLaw, LinkStep};
-pub(crate) use motor_law::{LawState, MotorLaw, MotorStep, motor_command};
+pub(crate) use motor_law::{MotorLaw, MotorStep, StatefulLaw, motor_command};
 pub(crate) use resistance_law::{JointLoad, JointResistance, ResistanceLaw, SlipSpring};
 pub(crate) use tree::{KinematicTree, trees};
 
@@ -42,7 +42,7 @@ use crate::body::BodyHandle;
 use crate::convert::to_rapier;
 use crate::engine::RapierWorld;
 use crate::model::PhysicsModel;
-use dwell_scene::{Articulation, JointId, JointKind, JointParameters, PartId, Pose, State};
+use dwell_scene::{Joint, JointId, JointKind, JointParameters, PartId, Pose, State};
 use glam::{DVec3, Quat, Vec3};
 use rapier3d::dynamics::{
     GenericJointBuilder, ImpulseJointHandle, JointAxesMask, JointAxis, RigidBodyHandle,
@@ -102,7 +102,7 @@ pub(crate) fn insert(
         };
         let (parent_handle, body_from_parent, standing) = parent(model, bodies, joint, anchor);
         let child_from_part = offset(model, child, joint.child);
-        let values = state.joint_values(&model.house, id);
+        let values = state.joint_parameters(&model.house, id);
         let parent_from_joint = to_rapier(&(body_from_parent * values.parent_from_joint));
         let child_from_joint = to_rapier(&(child_from_part * joint.child_from_joint));
         let to_x = to_x(values.axis);
@@ -165,7 +165,7 @@ fn to_x(axis: Vec3) -> RapierPose {
 fn parent(
     model: &PhysicsModel,
     bodies: &[BodyHandle],
-    joint: &Articulation,
+    joint: &Joint,
     anchor: RigidBodyHandle,
 ) -> (RigidBodyHandle, Pose, bool) {
     match joint.parent {
@@ -190,13 +190,13 @@ fn offset(model: &PhysicsModel, body: u32, part: PartId) -> Pose {
 }
 
 /// Sets a joint's parameters in force from the state. Returns whether they changed.
-pub(crate) fn set_values(
+pub(crate) fn update_joint_parameters(
     engine: &mut RapierWorld,
     model: &PhysicsModel,
     joint: &mut PhysicsJoint,
     state: &State,
 ) -> bool {
-    let values = state.joint_values(&model.house, joint.id);
+    let values = state.joint_parameters(&model.house, joint.id);
     if values == joint.values {
         return false;
     }

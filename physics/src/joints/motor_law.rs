@@ -5,7 +5,7 @@ use dwell_scene::{JointCommand, JointId, State};
 use std::fmt::Debug;
 
 /// The state of a motor's or joint's law between steps.
-pub(crate) trait LawState {
+pub(crate) trait StatefulLaw {
     /// Notes that a joint was set to `position` (rad or m) from outside, which is no motion.
     fn joint_set(&mut self, _joint: JointId, _position: f32) {}
 
@@ -19,7 +19,7 @@ pub(crate) trait LawState {
 }
 
 /// A law that changes motors in each physics step.
-pub(crate) trait MotorLaw: LawState + Debug + Send + Sync {
+pub(crate) trait MotorLaw: StatefulLaw + Debug + Send + Sync {
     /// Changes the command that a joint's motor follows in one physics step. It is called for every motor in every step.
     fn modify_command(&mut self, _motor: &MotorStep, _command: &mut JointCommand) {}
 

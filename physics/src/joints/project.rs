@@ -56,7 +56,7 @@ impl TreeStep {
             .collect();
         let floating = motion.floating_base();
         let inertia = motion.joint_space_inertia();
-        let held = held_by_stops(&joints, &positions, &inertia);
+        let held = stop_impulse_terms(&joints, &positions, &inertia);
         let (velocity, root) =
             motion.velocities_from_momenta(floating.as_ref(), momenta, (inertia, held));
         if let (Some((linear, angular)), Some(body)) = (root, engine.bodies.get_mut(tree.root)) {
@@ -69,8 +69,11 @@ impl TreeStep {
             .map(|(joint, (position, end))| snap_to_limit(joint, *position, *end))
             .collect();
         if floating.is_some() && arrived != positions {
-            let shift =
-                motion.middle() - self.chain.dynamics_at(&arrived, &velocities, None).middle();
+            let shift = motion.center_of_mass()
+                - self
+                    .chain
+                    .dynamics_at(&arrived, &velocities, None)
+                    .center_of_mass();
             if let Some(body) = engine.bodies.get_mut(tree.root) {
                 let at = body.position().translation.as_dvec3() + shift;
                 body.set_translation(at.as_vec3(), false);
@@ -96,7 +99,7 @@ fn snap_to_limit(joint: &PhysicsJoint, position: f64, end: Option<f64>) -> f64 {
 }
 
 /// Returns the impulses that stop joints beyond their stops: a plastic impact, with the momentum that it gives the others.
-fn held_by_stops(
+fn stop_impulse_terms(
     joints: &[&PhysicsJoint],
     positions: &[f64],
     inertia: &SymmetricMatrix,
@@ -134,7 +137,7 @@ impl TreeDynamics<'_> {
     }
 
     /// Returns the common centre of mass of all that moves, m.
-    fn middle(&self) -> DVec3 {
+    fn center_of_mass(&self) -> DVec3 {
         let root = self.free_root.unwrap_or_default();
         let whole = self
             .masses

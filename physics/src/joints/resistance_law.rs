@@ -1,11 +1,11 @@
 //! Laws of joint resistance.
 
-use super::LawState;
+use super::StatefulLaw;
 use dwell_scene::JointId;
 use std::fmt::Debug;
 
 /// A law that changes the resistance of joints.
-pub(crate) trait ResistanceLaw: LawState + Debug + Send + Sync {
+pub(crate) trait ResistanceLaw: StatefulLaw + Debug + Send + Sync {
     /// Notes a joint's position (rad or m) at the beginning of a physics step.
     fn update_position(&mut self, _joint: JointId, _position: f32) {}
 

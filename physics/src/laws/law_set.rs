@@ -5,7 +5,7 @@ use crate::bases::BaseLaw;
 use crate::contact::{ContactLaw, ContactProperties, ContactTable};
 use crate::engine::ContactCompliance;
 use crate::inertia::MassLaw;
-use crate::joints::{LawState, LinkLaw, MotorLaw, ResistanceLaw};
+use crate::joints::{LinkLaw, MotorLaw, ResistanceLaw, StatefulLaw};
 use dwell_scene::{House, JointId, LawSpec};
 use std::sync::Arc;
 
@@ -93,7 +93,7 @@ impl LawSet {
     }
 
     /// Notes that a joint was set to `position` (rad or m) from outside.
-    pub(crate) fn joint_set(&mut self, joint: JointId, position: f32) {
+    pub(crate) fn notify_joint_set(&mut self, joint: JointId, position: f32) {
         for (_, effect) in self.stateful_laws() {
             effect.joint_set(joint, position);
         }
@@ -120,13 +120,13 @@ impl LawSet {
         }
     }
 
-    fn stateful_laws(&mut self) -> impl Iterator<Item = (usize, &mut dyn LawState)> {
+    fn stateful_laws(&mut self) -> impl Iterator<Item = (usize, &mut dyn StatefulLaw)> {
         let motors = self.motors.iter_mut().map(|motor| {
-            let effect: &mut dyn LawState = &mut *motor.effect;
+            let effect: &mut dyn StatefulLaw = &mut *motor.effect;
             (motor.law, effect)
         });
         let resistances = self.resistances.iter_mut().map(|resistance| {
-            let effect: &mut dyn LawState = &mut *resistance.effect;
+            let effect: &mut dyn StatefulLaw = &mut *resistance.effect;
             (resistance.law, effect)
         });
         motors.chain(resistances)

@@ -170,7 +170,7 @@ fn part_pieces(
             pieces.push(solid(house, id, shaped, density));
         }
     }
-    substance::cover_pieces(house, id, &mut pieces);
+    substance::assign_face_materials(house, id, &mut pieces);
     pieces
 }
 
@@ -384,7 +384,7 @@ fn stand_in_pieces(house: &House, meshes: &mut ShapeCache, body: &BodyPlan) -> V
             })
             .collect();
         set_part_density(&mut own, part);
-        substance::cover_pieces(house, *id, &mut own);
+        substance::assign_face_materials(house, *id, &mut own);
         pieces.extend(own.into_iter().map(|piece| moved(piece, &place)));
     }
     if pieces.is_empty() {

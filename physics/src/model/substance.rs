@@ -23,7 +23,7 @@ struct SurfaceSample {
 }
 
 /// Gives each convex piece, in part space, the material of the faces on it; pieces without any keep the one they have.
-pub(super) fn cover_pieces(house: &House, part: PartId, pieces: &mut [CollisionPiece]) {
+pub(super) fn assign_face_materials(house: &House, part: PartId, pieces: &mut [CollisionPiece]) {
     let materials = &house.parts[part].materials;
     let alike = materials.windows(2).all(|two| two[0] == two[1]);
     if alike || !pieces.iter().any(is_convex) {

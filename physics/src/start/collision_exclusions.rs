@@ -6,7 +6,7 @@ use crate::contact::{ColliderEntry, CollisionExclusions, ContactEntity, entry_in
 use crate::error::PhysicsError;
 use crate::limits;
 use crate::model::{BodyPlan, PhysicsModel, PieceOwner, shapes};
-use crate::report::{PassingJoint, StartReport};
+use crate::report::{PassThroughJoint, StartReport};
 use dwell_scene::interrupt;
 use dwell_scene::{Mobility, ObjectId};
 use rapier3d::parry::query;
@@ -70,7 +70,7 @@ impl StartResolver<'_> {
                             &*piece.shape,
                             self.owner(entry),
                         )
-                        .is_some_and(|overlap| self.counts(&overlap))
+                        .is_some_and(|overlap| self.exceeds_tolerance(&overlap))
                     };
                     let touches = match (robot, same) {
                         (true, true) => within(CLEARANCE_M),
@@ -97,13 +97,13 @@ impl StartResolver<'_> {
             } else {
                 pairs.extend(
                     families
-                        .beside(plan.object, number)
+                        .pieces_of_other_bodies(plan.object, number)
                         .map(|entry| (number, entry)),
                 );
             }
             limits::check_excluded_pairs(&self.model.house, plan.object, pairs.len())?;
             if !through.is_empty() {
-                report.passing.push(PassingJoint {
+                report.passing.push(PassThroughJoint {
                     joint,
                     through: through.into_iter().collect(),
                 });
@@ -167,7 +167,7 @@ impl ObjectPieces {
     }
 
     /// Returns the pieces of an object but those of one of its bodies.
-    fn beside(&self, object: ObjectId, body: u32) -> impl Iterator<Item = u32> {
+    fn pieces_of_other_bodies(&self, object: ObjectId, body: u32) -> impl Iterator<Item = u32> {
         let all = self.pieces.range((object, None)..=(object, Some(u32::MAX)));
         let others = all.filter(move |((_, owner), _)| *owner != Some(body));
         others.flat_map(|(_, pieces)| pieces.iter().copied())

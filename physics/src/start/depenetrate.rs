@@ -39,7 +39,7 @@ impl StartResolver<'_> {
             let place = self.lift(plan, start, placed)?;
             self.is_reached(plan, &start, &place).then_some(place)
         };
-        self.pushed(plan, start, placed, self.limits())
+        self.push_up_or_down(plan, start, placed, self.push_limits())
             .or_else(lifted)
     }
 
@@ -53,11 +53,11 @@ impl StartResolver<'_> {
         if self.has_floor(plan, &start) {
             return None;
         }
-        let pushed = self.push(plan, start, placed, (Vec3::Y, self.limits()));
+        let pushed = self.push(plan, start, placed, (Vec3::Y, self.push_limits()));
         pushed.or_else(|| self.lift(plan, start, placed))
     }
 
-    fn limits(&self) -> (f32, usize) {
+    fn push_limits(&self) -> (f32, usize) {
         (self.settings.config.max_start_shift_m, MOST_PUSHES)
     }
 
@@ -76,7 +76,7 @@ impl StartResolver<'_> {
     }
 
     /// Pushes a body to the side or up, or down from under something, but never through a wall, floor or ceiling.
-    fn pushed(
+    fn push_up_or_down(
         &self,
         plan: &BodyPlan,
         start: RapierPose,
@@ -107,7 +107,7 @@ impl StartResolver<'_> {
         for _ in 0..=most {
             let Some(overlap) = self
                 .overlap(plan, &place, placed)
-                .filter(|overlap| self.counts(overlap))
+                .filter(|overlap| self.exceeds_tolerance(overlap))
             else {
                 return from_rapier(&place).is_valid().then_some(place);
             };
@@ -128,7 +128,8 @@ impl StartResolver<'_> {
 
     fn is_clear(&self, plan: &BodyPlan, place: &RapierPose, placed: &PlacedBodies) -> bool {
         let overlap = self.overlap(plan, place, placed);
-        overlap.is_none_or(|overlap| !self.counts(&overlap)) && from_rapier(place).is_valid()
+        overlap.is_none_or(|overlap| !self.exceeds_tolerance(&overlap))
+            && from_rapier(place).is_valid()
     }
 
     /// Returns whether a body's middle moves straight to another place through no wall, floor or ceiling.
@@ -159,7 +160,7 @@ impl StartResolver<'_> {
             let found = self.overlap_of_two(plan, &start, &one);
             others.extend(
                 found
-                    .filter(|overlap| movable && self.counts(overlap))
+                    .filter(|overlap| movable && self.exceeds_tolerance(overlap))
                     .map(|overlap| (one, overlap)),
             );
         }
@@ -197,13 +198,14 @@ impl StartResolver<'_> {
         standing: &mut PlacedBodies,
     ) -> Option<(RapierPose, Vec<RapierPose>)> {
         let plan = &self.model.bodies[index];
-        let place = self.pushed(plan, start, standing, self.limits())?;
+        let place = self.push_up_or_down(plan, start, standing, self.push_limits())?;
         standing.insert(self.model, index, place);
         let mut ways = Vec::with_capacity(others.len());
         for (other, _) in others {
             let other = other.body as usize;
             let plan = &self.model.bodies[other];
-            let way = self.pushed(plan, self.place(other), standing, self.limits())?;
+            let way =
+                self.push_up_or_down(plan, self.place(other), standing, self.push_limits())?;
             standing.insert(self.model, other, way);
             ways.push(way);
         }
@@ -224,7 +226,7 @@ impl StartResolver<'_> {
             let mut place = start;
             place.translation += Vec3::new(cos, 0.0, sin) * distance;
             let near = bound - distance;
-            let place = self.pushed(plan, place, placed, (near, MOST_PUSHES_BESIDE))?;
+            let place = self.push_up_or_down(plan, place, placed, (near, MOST_PUSHES_BESIDE))?;
             self.is_reached(plan, &start, &place).then_some(place)
         })
     }

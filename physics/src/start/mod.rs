@@ -79,7 +79,7 @@ impl StartResolver<'_> {
             let plan = &self.model.bodies[index];
             let start = resolved[index].pose;
             let found = self.overlap(plan, &start, &placed);
-            if let Some(overlap) = found.filter(|overlap| self.counts(overlap)) {
+            if let Some(overlap) = found.filter(|overlap| self.exceeds_tolerance(overlap)) {
                 report.overlaps += 1;
                 deepest.insert(index, overlap);
                 if self.is_crowded(plan, &start, &placed) {
@@ -113,7 +113,7 @@ impl StartResolver<'_> {
             .iter()
             .filter_map(|other| self.overlap_of_two(plan, place, other));
         found
-            .filter(|overlap| self.counts(overlap))
+            .filter(|overlap| self.exceeds_tolerance(overlap))
             .nth(MOST_OVERLAPPED)
             .is_some()
     }
@@ -149,7 +149,7 @@ impl StartResolver<'_> {
         report.frozen.sort_by_key(|frozen| frozen.object);
     }
 
-    fn counts(&self, overlap: &Penetration) -> bool {
+    fn exceeds_tolerance(&self, overlap: &Penetration) -> bool {
         overlap.depth_m > self.settings.config.overlap_tolerance_m
     }
 }

@@ -91,7 +91,7 @@ impl PhysicsWorld {
 /// have set them, is put at the nearer one.
 pub(super) fn align_joints(model: &PhysicsModel, state: &mut State) {
     for (id, joint) in model.house.joints.iter_ids() {
-        let values = state.joint_values(&model.house, id);
+        let values = state.joint_parameters(&model.house, id);
         state.joint_position[id] = values.clamp(state.joint_position[id]);
         let parent = joint.parent.map_or(dwell_scene::Pose::IDENTITY, |parent| {
             state.part_pose[parent]

@@ -5,7 +5,7 @@ use crate::articulation::joint_from_state;
 use crate::body::{self, BodyStatus};
 use crate::convert::to_rapier;
 use crate::error::PhysicsError;
-use crate::joints::{self, JointPlacement};
+use crate::joints::{self, ImposedJointState};
 use dwell_scene::{AgentId, AgentState, Id, JointId, State, Velocity};
 use glam::Vec3;
 use std::collections::BTreeSet;
@@ -134,7 +134,7 @@ impl PhysicsWorld {
                     &mut self.dynamics.statuses[child],
                 );
             }
-            let stand = JointPlacement {
+            let stand = ImposedJointState {
                 position,
                 velocity: state.joint_velocity[joint.id],
                 force_update: false,
@@ -145,7 +145,7 @@ impl PhysicsWorld {
                 && !joints::matches_bodies(&self.dynamics.engine, joint, &stand, there);
             if put {
                 self.dynamics.engine.wake_around(body.handle);
-                self.dynamics.laws.joint_set(joint.id, position);
+                self.dynamics.laws.notify_joint_set(joint.id, position);
             }
             if self.dynamics.statuses[child] == BodyStatus::Frozen && put {
                 self.dynamics.statuses[child] = BodyStatus::Free;

@@ -18,8 +18,8 @@ use crate::agents::Agents;
 use crate::articulation::JointSystem;
 use crate::body::{BodyHandle, BodyStatus};
 use crate::config::PhysicsConfig;
-use crate::contact::{CollisionExclusions, ContactEntity, ContactTable, MergedEvents};
-use crate::contact_record::ContactRecord;
+use crate::contact::{CollisionExclusions, ContactEntity, ContactTable, ExcessEventTotals};
+use crate::contact_record::ContactPipeline;
 use crate::convert::to_rapier;
 use crate::dynamics::{BodyMasses, Dynamics, assemble};
 use crate::engine::PairCounts;
@@ -50,7 +50,7 @@ pub struct PhysicsWorld {
     agents: Agents,
     hands: Hands,
     pushes: Vec<OngoingPush>,
-    contacts: ContactRecord,
+    contacts: ContactPipeline,
     /// The overrides in force.
     applied: BTreeMap<Address, f64>,
     /// Outcomes in the last step of operations that take time.
@@ -129,7 +129,7 @@ impl PhysicsWorld {
             agents: Agents::default(),
             hands: Hands::default(),
             pushes: Vec::new(),
-            contacts: ContactRecord::default(),
+            contacts: ContactPipeline::default(),
             applied: state.overrides.clone(),
             notices: Vec::new(),
         };
@@ -197,14 +197,14 @@ impl PhysicsWorld {
     }
 
     /// Returns the events of the last control step beyond its limit: their number and total impulse.
-    pub fn merged_events(&self) -> MergedEvents {
+    pub fn events_beyond_limit(&self) -> ExcessEventTotals {
         self.contacts.merged_events
     }
 
     /// Returns friction and restitution between two things, with overrides, by their first surfaces (a wall or mesh of
     /// several materials has others too); `None` for a thing without contacts. Laws may change the values that act; each
     /// contact event has those of its own surfaces.
-    pub fn pair(&self, a: ContactEntity, b: ContactEntity) -> Option<PairContact> {
+    pub fn contact_coefficients(&self, a: ContactEntity, b: ContactEntity) -> Option<PairContact> {
         let class = |contact_entity: ContactEntity| {
             let entry = self.dynamics.entries.iter();
             let mut found = entry.filter(|entry| entry.contact_entity == Some(contact_entity));

@@ -6,7 +6,7 @@ use crate::contact::{ContactProperties, ContactTable};
 use crate::dynamics::{self, BodyMasses};
 use crate::error::PhysicsError;
 use crate::hands::HeldObject;
-use crate::joints::{self, JointPlacement};
+use crate::joints::{self, ImposedJointState};
 use crate::laws;
 use dwell_scene::{AgentId, Id, State};
 use glam::Vec3;
@@ -88,7 +88,8 @@ impl PhysicsWorld {
         }
         for joint in &mut self.articulation.joints {
             let before = (joint.values.parent_from_joint, joint.values.axis);
-            changed |= joints::set_values(&mut self.dynamics.engine, &model, joint, state);
+            changed |=
+                joints::update_joint_parameters(&mut self.dynamics.engine, &model, joint, state);
             longer |= (joint.values.parent_from_joint, joint.values.axis) != before;
             let position = state.joint_position[joint.id];
             let within = joint.values.clamp(position);
@@ -123,7 +124,7 @@ impl PhysicsWorld {
         }
         // Only now, that contacts are computed under the new laws.
         if longer {
-            self.follow_lengths(state);
+            self.reposition_jointed_bodies(state);
         }
         if changed || acts_anew {
             self.wake_sleepers(changed);
@@ -170,12 +171,12 @@ impl PhysicsWorld {
     }
 
     /// Moves jointed bodies whose joint frames have changed; joints keep their positions and velocities.
-    fn follow_lengths(&mut self, state: &mut State) {
-        let stands: Vec<JointPlacement> = self
+    fn reposition_jointed_bodies(&mut self, state: &mut State) {
+        let stands: Vec<ImposedJointState> = self
             .articulation
             .joints
             .iter()
-            .map(|joint| JointPlacement {
+            .map(|joint| ImposedJointState {
                 position: state.joint_position[joint.id],
                 velocity: state.joint_velocity[joint.id],
                 force_update: true,
@@ -186,7 +187,7 @@ impl PhysicsWorld {
     }
 
     /// Puts all jointed bodies at these placements, and writes their poses. Shape of `stands`: (joint,).
-    pub(super) fn place_joints(&mut self, state: &mut State, placements: &[JointPlacement]) {
+    pub(super) fn place_joints(&mut self, state: &mut State, placements: &[ImposedJointState]) {
         for tree in &self.articulation.trees {
             joints::place_tree(
                 &mut self.dynamics.engine,

@@ -103,7 +103,7 @@ impl PhysicsWorld {
         for set in joints {
             self.dynamics
                 .laws
-                .joint_set(set.joint, state.joint_position[set.joint]);
+                .notify_joint_set(set.joint, state.joint_position[set.joint]);
         }
         let children = joints
             .iter()
@@ -138,7 +138,7 @@ impl PhysicsWorld {
             };
             return Err(refuse(at(), "velocity", set.velocity.to_string(), allowed));
         }
-        let values = state.joint_values(house, set.joint);
+        let values = state.joint_parameters(house, set.joint);
         let within = values.clamp(set.position);
         if (within - set.position).abs() > AT_STOP * within.abs().max(1.0) {
             let [low, high] = values.limits.unwrap_or([f32::MIN, f32::MAX]);

@@ -1,7 +1,7 @@
 //! Settling of objects before a world begins.
 
 use super::PhysicsWorld;
-use crate::contact::MergedEvents;
+use crate::contact::ExcessEventTotals;
 use crate::error::PhysicsError;
 use dwell_scene::{State, interrupt};
 
@@ -39,7 +39,7 @@ impl PhysicsWorld {
         }
         self.dynamics.tick = 0;
         self.contacts.tracker.forget_events();
-        self.contacts.merged_events = MergedEvents::default();
+        self.contacts.merged_events = ExcessEventTotals::default();
         self.notices.clear();
         Ok(())
     }

@@ -14,7 +14,7 @@ use crate::config::PhysicsConfig;
 use crate::contact::rolling;
 use crate::contact::{
     ColliderEntry, CollisionExclusions, ContactHooks, ContactProperties, ContactTable,
-    ContactTracker, MergedEvents,
+    ContactTracker, ExcessEventTotals,
 };
 use crate::dynamics::{AssembledWorld, BodyMasses, assemble};
 use crate::engine::{RapierWorld, SleepingIslandCache};
@@ -41,7 +41,7 @@ const HEADER: usize = 4 + 4 + 8 + 8 + 8;
 
 /// State of this crate between steps.
 #[derive(Clone, Serialize, Deserialize)]
-struct WorldMemory {
+struct NonRapierState {
     tick: u64,
     statuses: Vec<BodyStatus>,
     passive_velocities: Vec<PassiveVelocity>,
@@ -59,7 +59,7 @@ struct WorldMemory {
 /// State of rapier between steps.
 #[derive(Serialize, Deserialize)]
 struct SnapshotData<'a> {
-    memory: WorldMemory,
+    memory: NonRapierState,
     #[serde(borrow)]
     islands: CowField<'a, IslandManager>,
     broad_phase: CowField<'a, BroadPhaseBvh>,
@@ -101,7 +101,10 @@ impl PhysicsWorld {
     /// Never: writing plain data to memory cannot fail.
     pub fn snapshot(&self) -> Vec<u8> {
         let most = self.target_snapshot_bytes() - HEADER;
-        self.with_header(MAGIC, &pack_to_size(&self.body(), &[], most))
+        self.with_header(
+            MAGIC,
+            &pack_to_size(&self.encode_snapshot_data(), &[], most),
+        )
     }
 
     /// Returns the target size of a snapshot: 256 KiB and 2 KiB for each body that can move. A larger one is packed harder;
@@ -116,12 +119,12 @@ impl PhysicsWorld {
     /// # Panics
     /// Never: writing plain data to memory cannot fail.
     pub fn unpacked_snapshot(&self) -> Vec<u8> {
-        self.with_header(MAGIC_OF_MOMENTS, &self.body())
+        self.with_header(MAGIC_OF_MOMENTS, &self.encode_snapshot_data())
     }
 
     fn shot(&self) -> SnapshotData<'_> {
         SnapshotData {
-            memory: WorldMemory {
+            memory: NonRapierState {
                 tick: self.dynamics.tick,
                 statuses: self.dynamics.statuses.clone(),
                 passive_velocities: self.agents.passive_velocities.clone(),
@@ -143,7 +146,7 @@ impl PhysicsWorld {
         }
     }
 
-    fn body(&self) -> Vec<u8> {
+    fn encode_snapshot_data(&self) -> Vec<u8> {
         columnar::to_bytes(&self.shot())
             .expect("rapier's sets are plain data that say how long they are")
     }
@@ -300,10 +303,10 @@ impl PhysicsWorld {
         self.pushes = memory.ongoing_pushes;
         self.articulation.actuations = memory.pulls;
         for joint in &mut self.articulation.joints {
-            joints::set_values(&mut self.dynamics.engine, &model, joint, state);
+            joints::update_joint_parameters(&mut self.dynamics.engine, &model, joint, state);
         }
         self.contacts.tracker = memory.contact_tracker;
-        self.contacts.merged_events = MergedEvents::default();
+        self.contacts.merged_events = ExcessEventTotals::default();
         self.notices.clear();
         Ok(())
     }

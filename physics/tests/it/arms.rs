@@ -4,8 +4,8 @@ use crate::common::{Build, Piece, Run, gravity};
 use dwell_physics::PhysicsConfig;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{
-    Articulation, Collider, JointCommand, JointId, JointKind, Mobility, ObjectId, PartId, Pose,
-    Servo, State,
+    Collider, Joint, JointCommand, JointId, JointKind, Mobility, ObjectId, PartId, Pose, Servo,
+    State,
 };
 use glam::{DQuat, DVec3, Vec3};
 
@@ -65,12 +65,12 @@ pub(crate) fn arm_on(base: Option<Piece>, payload_kg: f32, servo: Option<Servo>)
             None => (None, SHOULDER),
             Some(before) => (Some(parts[before]), Vec3::X * reach),
         };
-        build.data.joints.push(Articulation {
+        build.data.joints.push(Joint {
             parent,
             parent_from_joint: Pose::from_position(at),
             limits: Some([-3.0, 3.0]),
             servo,
-            ..Articulation::new(&format!("j{k}"), object, parts[k], JointKind::Hinge, *axis)
+            ..Joint::new(&format!("j{k}"), object, parts[k], JointKind::Hinge, *axis)
         });
         reach = *length;
     }
@@ -281,11 +281,11 @@ pub(crate) fn double_pendulum(servo: Option<Servo>, angles: [f32; 2], speeds: [f
     for k in 0..2 {
         let parent = (k == 1).then_some(parts[0]);
         let place = if k == 0 { at } else { Vec3::NEG_Y * 0.5 };
-        build.data.joints.push(Articulation {
+        build.data.joints.push(Joint {
             parent,
             parent_from_joint: Pose::from_position(place),
             servo,
-            ..Articulation::new(
+            ..Joint::new(
                 &format!("j{k}"),
                 object,
                 parts[k],
@@ -458,7 +458,7 @@ fn parameters_of_a_robot_change_at_run_time() {
     set(&mut run, "part/arm/part_5/mass_kg", 3.0);
     set(&mut run, "joint/1/gear", 0.1);
     set(&mut run, "joint/1/friction", 0.5);
-    let joint = run.state.joint_values(&run.house, JointId(1));
+    let joint = run.state.joint_parameters(&run.house, JointId(1));
     assert!((joint.servo.unwrap().joint_effort() - 20.0).abs() < 1e-4 && joint.friction == 0.5);
     run.steps(20);
     let sunk = angles(&run.state);
@@ -492,10 +492,10 @@ fn a_stated_inertia_is_the_one_that_swings() {
         moments: Vec3::new(0.06, 0.05, own),
     });
     let hinge = JointKind::Hinge;
-    build.data.joints.push(Articulation {
+    build.data.joints.push(Joint {
         parent_from_joint: Pose::from_position(at),
         initial: 0.05,
-        ..Articulation::new("pivot", object, part, hinge, Vec3::Z)
+        ..Joint::new("pivot", object, part, hinge, Vec3::Z)
     });
     let mut run = build.run_with(awake());
     let period =

@@ -5,9 +5,9 @@ use dwell_scene::material::library;
 use dwell_scene::navigation::{NavConfig, NavGrid};
 use dwell_scene::rays::RayScene;
 use dwell_scene::{
-    Aabb, AgentBody, AgentId, AgentState, Articulation, Category, Collider, House, HouseData, Id,
-    JointId, JointKind, LevelId, Material, MaterialId, Mesh, Mobility, Object, ObjectId, Part,
-    PartId, Pose, Receptacle, ReceptacleKind, RoomId, ShoeboxMaterials, State,
+    Aabb, AgentBody, AgentId, AgentState, Category, Collider, House, HouseData, Id, Joint, JointId,
+    JointKind, LevelId, Material, MaterialId, Mesh, Mobility, Object, ObjectId, Part, PartId, Pose,
+    Receptacle, ReceptacleKind, RoomId, ShoeboxMaterials, State,
 };
 use glam::{Affine3A, Quat, Vec3};
 use std::sync::Arc;
@@ -158,14 +158,14 @@ impl Build {
         let id = self.data.objects[object].parts().next_back().unwrap();
         let child_from_joint =
             self.data.parts[id].world_from_part.inverse() * Pose::from_position(at);
-        self.data.joints.push(Articulation {
+        self.data.joints.push(Joint {
             parent_from_joint: Pose::from_position(at),
             child_from_joint,
             limits: Some(limits),
             closed: 0.0_f32.clamp(limits[0], limits[1]),
             open: limits[1],
             initial: 0.0_f32.clamp(limits[0], limits[1]),
-            ..Articulation::new("hinge", object, id, kind, axis)
+            ..Joint::new("hinge", object, id, kind, axis)
         })
     }
 

@@ -33,7 +33,7 @@ fn a_dropped_thing_reports_its_momentum() {
         );
         let (friction, e) = pair(floor, thing);
         assert_eq!((event.friction, event.restitution), (friction, e));
-        let values = run.world.pair(event.a, event.b).unwrap();
+        let values = run.world.contact_coefficients(event.a, event.b).unwrap();
         assert_eq!((values.friction, values.restitution), (friction, e));
         let speed = (2.0 * gravity() * height).sqrt();
         let mass = 2000.0 * 4.0 / 3.0 * std::f32::consts::PI * radius.powi(3);
@@ -287,7 +287,7 @@ fn five_hundred_falling_things_stay_bounded() {
         for _ in 0..30 {
             run.events.clear();
             run.steps(1);
-            let rest = run.world.merged_events();
+            let rest = run.world.events_beyond_limit();
             let sum: f32 = run.events.iter().map(|event| event.impulse_n_s).sum();
             told = told.max(run.events.len());
             merged += rest.count;

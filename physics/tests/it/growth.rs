@@ -2,9 +2,7 @@
 
 use crate::common::{Build, Piece};
 use dwell_physics::{PhysicsConfig, PhysicsError, PhysicsWorld};
-use dwell_scene::{
-    Articulation, House, Id, JointKind, Mesh, Mobility, Part, PartId, Pose, Servo, State,
-};
+use dwell_scene::{House, Id, Joint, JointKind, Mesh, Mobility, Part, PartId, Pose, Servo, State};
 use glam::{Affine3A, Vec3};
 use std::sync::Arc;
 
@@ -48,11 +46,11 @@ fn hinges(count: usize, servo: Option<Servo>, on: impl Fn(usize) -> Option<PartI
         }
         let (child, name) = (PartId::from_index(k), format!("joint_{k}"));
         let from = on(k).map_or(Vec3::ZERO, |parent| at(parent.index()));
-        build.data.joints.push(Articulation {
+        build.data.joints.push(Joint {
             parent: on(k),
             parent_from_joint: Pose::from_position(at(k) - from),
             servo,
-            ..Articulation::new(&name, object, child, JointKind::Hinge, Vec3::Y)
+            ..Joint::new(&name, object, child, JointKind::Hinge, Vec3::Y)
         });
     }
     build

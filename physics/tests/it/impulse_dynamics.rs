@@ -3,7 +3,7 @@
 use crate::bounces::{each_step, set_pair};
 use crate::common::{Build, Piece, Run};
 use dwell_physics::{JointState, PhysicsConfig};
-use dwell_scene::{Articulation, JointId, JointKind, Mobility, ObjectId, PartId, Pose};
+use dwell_scene::{Joint, JointId, JointKind, Mobility, ObjectId, PartId, Pose};
 use glam::{DVec3, Vec3};
 
 const DENSITY: f32 = 500.0;
@@ -349,12 +349,12 @@ fn what_floats_on_joints_keeps_momentum_when_it_is_struck() {
                 JointKind::Hinge => Vec3::Y,
                 JointKind::Slide => Vec3::Z,
             };
-            build.data.joints.push(Articulation {
+            build.data.joints.push(Joint {
                 parent: Some(parts[0]),
                 parent_from_joint: Pose::from_position(place),
                 child_from_joint: Pose::from_position(place - Vec3::X * 0.45),
                 limits: Some([-1.5, 1.5]),
-                ..Articulation::new("link", rig, parts[1], kind, axis)
+                ..Joint::new("link", rig, parts[1], kind, axis)
             });
             let aim = if on_root { root_at } else { child_at };
             let from = aim + Vec3::new(0.05, 0.03, 0.6);

@@ -3,7 +3,7 @@
 use crate::common::{Build, Piece, Run};
 use crate::laws::spec;
 use dwell_physics::PhysicsConfig;
-use dwell_scene::{Articulation, JointCommand, JointId, JointKind, Mobility, Servo, State};
+use dwell_scene::{Joint, JointCommand, JointId, JointKind, Mobility, Servo, State};
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -18,8 +18,8 @@ fn lift() -> Build {
     let weight = Piece::cuboid(Vec3::splat(0.1), at).density(1000.0);
     let object = build.object("lift", Mobility::Articulated, &[weight]);
     let part = build.data.objects[object].first_part;
-    let joint = Articulation::new("slide", object, part, JointKind::Slide, Vec3::Y);
-    build.data.joints.push(Articulation {
+    let joint = Joint::new("slide", object, part, JointKind::Slide, Vec3::Y);
+    build.data.joints.push(Joint {
         parent_from_joint: dwell_scene::Pose::from_position(at),
         limits: Some([0.0, 1.0]),
         servo: Some(Servo {

@@ -5,7 +5,7 @@
 
 use crate::arms::awake;
 use crate::common::{Build, Piece, Run};
-use dwell_scene::{Articulation, JointCommand, JointId, JointKind, Mobility, PartId, Pose, Servo};
+use dwell_scene::{Joint, JointCommand, JointId, JointKind, Mobility, PartId, Pose, Servo};
 use glam::{DVec3, Quat, Vec3};
 
 const AT: Vec3 = Vec3::new(2.0, 2.0, 2.0);
@@ -39,11 +39,11 @@ fn grip(way: Vec3) -> Run {
         .into_iter()
         .enumerate()
     {
-        build.data.joints.push(Articulation {
+        build.data.joints.push(Joint {
             parent: Some(parts[k]),
             parent_from_joint: Pose::from_position(Vec3::X * at),
             servo,
-            ..Articulation::new(name, object, parts[k + 1], JointKind::Slide, axis)
+            ..Joint::new(name, object, parts[k + 1], JointKind::Slide, axis)
         });
     }
     let mut run = build.run_with(awake());

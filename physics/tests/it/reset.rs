@@ -407,9 +407,9 @@ fn a_stated_inertia_changes_at_run_time() {
         part_from_principal: Pose::from_position(Vec3::NEG_Y * 0.1),
         moments: Vec3::new(0.06, 0.05, 0.07),
     });
-    build.data.joints.push(dwell_scene::Articulation {
+    build.data.joints.push(dwell_scene::Joint {
         parent_from_joint: Pose::from_position(at),
-        ..dwell_scene::Articulation::new(
+        ..dwell_scene::Joint::new(
             "pivot",
             object,
             part,

@@ -299,11 +299,11 @@ fn snapshots_stay_within_their_size() {
         });
         let to = Vec3::NEG_X * if k == 0 { 0.0 } else { 0.1 };
         let kind = dwell_scene::JointKind::Hinge;
-        build.data.joints.push(dwell_scene::Articulation {
+        build.data.joints.push(dwell_scene::Joint {
             parent,
             parent_from_joint: from,
             child_from_joint: dwell_scene::Pose::from_position(to),
-            ..dwell_scene::Articulation::new(&format!("j{k}"), arm, *part, kind, Vec3::Z)
+            ..dwell_scene::Joint::new(&format!("j{k}"), arm, *part, kind, Vec3::Z)
         });
     }
     let mut arm = build.run();

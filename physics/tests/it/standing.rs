@@ -3,8 +3,8 @@
 use crate::arms::{STRONG, arm_on, awake};
 use crate::common::{Build, Piece, Run, gravity, pair};
 use dwell_scene::{
-    Articulation, Collider, JointCommand, JointId, JointKind, Mobility, ObjectId, PartId, Pose,
-    Servo, State,
+    Collider, Joint, JointCommand, JointId, JointKind, Mobility, ObjectId, PartId, Pose, Servo,
+    State,
 };
 use glam::Vec3;
 
@@ -65,13 +65,13 @@ fn four_legs(servo: Servo) -> (Build, [f32; 8]) {
             let parent = if joint == 0 { 0 } else { child - 1 };
             pose[child - 1] = angle;
             let name = format!("leg{leg}_{joint}");
-            build.data.joints.push(Articulation {
+            build.data.joints.push(Joint {
                 parent: Some(parts[parent]),
                 parent_from_joint: Pose::from_position(at),
                 limits: Some([-2.0, 2.0]),
                 initial: angle,
                 servo: Some(servo),
-                ..Articulation::new(&name, object, parts[child], JointKind::Hinge, Vec3::Z)
+                ..Joint::new(&name, object, parts[child], JointKind::Hinge, Vec3::Z)
             });
         }
         let shank = &mut build.data.parts[parts[2 + 2 * leg]];

@@ -3,7 +3,7 @@
 use crate::arms::awake;
 use crate::common::{Build, Piece, Run, gravity};
 use dwell_physics::PhysicsConfig;
-use dwell_scene::{Articulation, Collider, JointKind, Mobility, PartId, Pose};
+use dwell_scene::{Collider, Joint, JointKind, Mobility, PartId, Pose};
 use glam::Vec3;
 
 /// Two bars of 0.3 m in a row along +X that swing about Z, between stops.
@@ -19,12 +19,12 @@ fn bars(masses_kg: [f32; 2], limits: [[f32; 2]; 2], start: [f32; 2]) -> Run {
     for k in 0..2 {
         build.data.parts[parts[k]].mass_kg = Some(masses_kg[k]);
         let place = if k == 0 { at } else { Vec3::X * 0.3 };
-        build.data.joints.push(Articulation {
+        build.data.joints.push(Joint {
             parent: (k == 1).then(|| parts[0]),
             parent_from_joint: Pose::from_position(place),
             limits: Some(limits[k]),
             initial: start[k],
-            ..Articulation::new(
+            ..Joint::new(
                 &format!("j{k}"),
                 object,
                 parts[k],

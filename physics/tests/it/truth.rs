@@ -192,7 +192,7 @@ fn stacks_stand_for_a_minute() {
 
 /// Mass of a piece of the test's default density, kg.
 fn mass_kg(run: &Run, thing: ObjectId) -> f64 {
-    run.state.object_mass_kg(&run.house, thing).map_or_else(
+    run.state.overridden_mass_kg(&run.house, thing).map_or_else(
         || {
             let part = &run.house.parts[run.root(thing)];
             let volume = part.colliders[0].volume_m3().unwrap();
@@ -385,11 +385,11 @@ fn a_loaded_gyroscope_goes_round_at_its_rate() {
             let name = format!("axis_{child}");
             let world = |part: usize| build.data.parts[parts[part]].world_from_part;
             let here = Pose::from_position(at);
-            let joint = dwell_scene::Articulation {
+            let joint = dwell_scene::Joint {
                 parent: parent.map(|part| parts[part]),
                 parent_from_joint: parent.map_or(here, |part| world(part).inverse() * here),
                 child_from_joint: world(child).inverse() * here,
-                ..dwell_scene::Articulation::new(&name, gyro, parts[child], JointKind::Hinge, axis)
+                ..dwell_scene::Joint::new(&name, gyro, parts[child], JointKind::Hinge, axis)
             };
             build.data.joints.push(joint)
         };

@@ -6,7 +6,7 @@
 use crate::arms::{awake, double_pendulum};
 use crate::common::{Build, Piece, Run};
 use dwell_physics::JointState;
-use dwell_scene::{Articulation, JointCommand, JointId, JointKind, Mobility, PartId, Pose, Servo};
+use dwell_scene::{Joint, JointCommand, JointId, JointKind, Mobility, PartId, Pose, Servo};
 use glam::Vec3;
 
 const WHEEL: JointId = JointId(0);
@@ -25,7 +25,7 @@ fn wheel(floats: bool, limits: Option<[f32; 2]>) -> Run {
     let object = build.object("rig", mobility, &pieces);
     let parts: Vec<PartId> = build.data.objects[object].parts().collect();
     let at = if floats { Vec3::Y * 0.3 } else { AT };
-    build.data.joints.push(Articulation {
+    build.data.joints.push(Joint {
         parent: floats.then(|| parts[0]),
         parent_from_joint: Pose::from_position(at),
         limits,
@@ -33,7 +33,7 @@ fn wheel(floats: bool, limits: Option<[f32; 2]>) -> Run {
             max_effort: 1000.0,
             ..Servo::default()
         }),
-        ..Articulation::new(
+        ..Joint::new(
             "axle",
             object,
             *parts.last().unwrap(),

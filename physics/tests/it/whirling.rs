@@ -3,7 +3,7 @@
 use crate::arms::awake;
 use crate::common::{Build, Piece, Run};
 use dwell_physics::{JointState, PhysicsConfig};
-use dwell_scene::{Articulation, Collider, JointId, JointKind, Mobility, PartId, Pose};
+use dwell_scene::{Collider, Joint, JointId, JointKind, Mobility, PartId, Pose};
 use glam::Vec3;
 
 const LENGTH: f64 = 0.6;
@@ -29,10 +29,10 @@ fn bars(count: usize, rate_hz: f32) -> Run {
     let parts: Vec<PartId> = build.data.objects[object].parts().collect();
     for (k, part) in parts.iter().enumerate() {
         let place = if k == 0 { at } else { Vec3::X * LENGTH as f32 };
-        build.data.joints.push(Articulation {
+        build.data.joints.push(Joint {
             parent: k.checked_sub(1).map(|before| parts[before]),
             parent_from_joint: Pose::from_position(place),
-            ..Articulation::new(&format!("j{k}"), object, *part, JointKind::Hinge, Vec3::Z)
+            ..Joint::new(&format!("j{k}"), object, *part, JointKind::Hinge, Vec3::Z)
         });
     }
     let mut run = build.run_with(PhysicsConfig {

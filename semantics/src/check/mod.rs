@@ -133,7 +133,7 @@ impl<'a> Checker<'a> {
                 let body = |terms: &[Term]| self.has_quality(terms[0], quality);
                 self.quantify(std::slice::from_ref(subject), &mut Vec::new(), &body)
             }
-            Clause::Exists(Phrase::Described(what)) if wide_landmark(what).is_some() => {
+            Clause::Exists(Phrase::Described(what)) if wide_scope_modifier(what).is_some() => {
                 self.exists_for_each(what)
             }
             Clause::Exists(what) => {
@@ -193,7 +193,7 @@ impl<'a> Checker<'a> {
     /// "There is a lamp on every desk": each desk has its own.
     fn exists_for_each(&self, what: &Description) -> WitnessedTruth {
         let mut thing = what.clone();
-        let Some(at) = wide_landmark(what) else {
+        let Some(at) = wide_scope_modifier(what) else {
             return WitnessedTruth::undecided(UndecidedReason::UnknownPredicate);
         };
         let Modifier {
@@ -286,7 +286,7 @@ impl<'a> Checker<'a> {
 }
 
 /// The modifier with a landmark that has a wider scope than the thing that exists: "every desk", "no desk", "two desks".
-fn wide_landmark(what: &Description) -> Option<usize> {
+fn wide_scope_modifier(what: &Description) -> Option<usize> {
     let is_wide = |modifier: &Modifier| match &modifier.arguments[..] {
         [Phrase::Described(own)] => !matches!(own.quantifier, Quantifier::The | Quantifier::Some),
         _ => false,

@@ -57,15 +57,15 @@ impl WitnessedTruth {
 
     /// Conjunction, with the facts of all parts, or of the first that is false.
     pub(super) fn all(parts: impl Iterator<Item = Self>) -> Self {
-        Self::until(parts, Truth::False, Truth::and)
+        Self::fold_until(parts, Truth::False, Truth::and)
     }
 
     /// Disjunction, with the facts of the first part that is true, or of all.
     pub(super) fn any(parts: impl Iterator<Item = Self>) -> Self {
-        Self::until(parts, Truth::True, Truth::or)
+        Self::fold_until(parts, Truth::True, Truth::or)
     }
 
-    fn until(
+    fn fold_until(
         parts: impl Iterator<Item = Self>,
         decisive: Truth,
         join: fn(Truth, Truth) -> Truth,

@@ -9,6 +9,6 @@ mod vocabulary;
 
 pub use oklab::Oklab;
 pub(crate) use paint::MaterialColors;
-pub use paint::{MENTION_SHARE, SurfacePatch, color_words};
+pub use paint::{ColorShare, MENTION_SHARE, color_words};
 pub use pattern::Pattern;
 pub use vocabulary::ColorVocabulary;

@@ -25,7 +25,7 @@ const SEEDS: usize = 16;
 
 /// A sort of colour of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SurfacePatch {
+pub struct ColorShare {
     /// Its colour, in linear light; `None` for the part of pictures and patterns that is of no sort.
     pub linear: Option<[f32; 3]>,
     /// Its fraction of the surface, weighted by opacity; the patches of a thing sum to 1.
@@ -37,16 +37,16 @@ type Shade = ([f32; 3], Oklab);
 
 /// The colours of a material.
 #[derive(Clone, Debug, PartialEq)]
-struct Paint {
+struct MaterialPalette {
     /// Its sorts of colour.
-    sorts: Vec<SurfacePatch>,
+    sorts: Vec<ColorShare>,
     /// How they lie on it, where it has several.
     pattern: Option<Pattern>,
 }
 
 /// The colours of each material of a house.
 #[derive(Debug)]
-pub(crate) struct MaterialColors(IdVec<MaterialId, Paint>);
+pub(crate) struct MaterialColors(IdVec<MaterialId, MaterialPalette>);
 
 impl MaterialColors {
     /// Finds the colours of every material of a house.
@@ -58,8 +58,8 @@ impl MaterialColors {
             let base = material.base_color;
             match material.texture {
                 Some(texture) => paint(&house.textures[texture], base, &decoded),
-                None => Paint {
-                    sorts: vec![SurfacePatch {
+                None => MaterialPalette {
+                    sorts: vec![ColorShare {
                         linear: Some(base),
                         share: 1.0,
                     }],
@@ -79,19 +79,16 @@ impl MaterialColors {
     pub(crate) fn patches(
         &self,
         areas: impl IntoIterator<Item = (MaterialId, f32)>,
-    ) -> Vec<SurfacePatch> {
+    ) -> Vec<ColorShare> {
         let areas: Vec<(MaterialId, f32)> = areas.into_iter().collect();
         let whole: f32 = areas.iter().map(|(_, area)| area).sum();
-        let mut patches: Vec<SurfacePatch> = areas
+        let mut patches: Vec<ColorShare> = areas
             .iter()
             .flat_map(|(material, area)| {
-                self.0[*material]
-                    .sorts
-                    .iter()
-                    .map(move |sort| SurfacePatch {
-                        share: sort.share * area / whole,
-                        ..*sort
-                    })
+                self.0[*material].sorts.iter().map(move |sort| ColorShare {
+                    share: sort.share * area / whole,
+                    ..*sort
+                })
             })
             .collect();
         patches.sort_by(|p, q| q.share.total_cmp(&p.share));
@@ -105,7 +102,7 @@ impl MaterialColors {
 /// A sort is what lies within [`SHADE`] of its own mean. The largest is sought from some of the pixels that lie in no sort found
 /// before, so that neither a pattern's ground nor a grain about its mean is missed.
 /// `decoded`: linear light of every byte. Shape (256,).
-fn paint(texture: &Texture, base: [f32; 3], decoded: &[f32; 256]) -> Paint {
+fn paint(texture: &Texture, base: [f32; 3], decoded: &[f32; 256]) -> MaterialPalette {
     let count = texture.width as usize * texture.height as usize;
     // A stride that shares a factor with the width would look at some of the columns only.
     let mut step = (count / PIXELS).max(1);
@@ -132,9 +129,9 @@ fn paint(texture: &Texture, base: [f32; 3], decoded: &[f32; 256]) -> Paint {
     let shades = places.into_iter().zip(left.iter().map(|(_, shade)| *shade));
     let shades: Vec<_> = shades.collect();
     let whole = left.len() as f32;
-    let mut found: Vec<SurfacePatch> = Vec::new();
+    let mut found: Vec<ColorShare> = Vec::new();
     while left.len() as f32 >= (SORT_SHARE * whole).max(1.0) {
-        let middle = largest_sort(&left);
+        let middle = largest_cluster_mean(&left);
         let lab = Oklab::from_linear(middle);
         let before = left.len();
         left.retain(|(_, shade)| shade.distance(lab) > SHADE);
@@ -143,26 +140,26 @@ fn paint(texture: &Texture, base: [f32; 3], decoded: &[f32; 256]) -> Paint {
             break;
         }
         let linear = Some(middle);
-        found.push(SurfacePatch { linear, share });
+        found.push(ColorShare { linear, share });
     }
     let pattern = (found.len() > 1).then(|| pattern(&shades));
     let dominant = found.iter().find(|sort| sort.share >= DOMINANT_SHARE);
     let sorts = if let Some(sort) = dominant {
         let share = 1.0;
-        vec![SurfacePatch { share, ..*sort }]
+        vec![ColorShare { share, ..*sort }]
     } else {
         let share = 1.0 - found.iter().map(|sort| sort.share).sum::<f32>();
-        found.push(SurfacePatch {
+        found.push(ColorShare {
             linear: None,
             share,
         });
         found
     };
-    Paint { sorts, pattern }
+    MaterialPalette { sorts, pattern }
 }
 
 /// The mean of the largest sort of colour among `shades`, which are some.
-fn largest_sort(shades: &[Shade]) -> [f32; 3] {
+fn largest_cluster_mean(shades: &[Shade]) -> [f32; 3] {
     let mut best = ([0.0; 3], 0);
     // From pixels alone: the mean of two sorts may lie near enough to both.
     for k in 0..SEEDS {
@@ -217,7 +214,7 @@ fn decoded() -> [f32; 256] {
 /// Patches of equal words count together; pictures and patterns have none; words under [`MENTION_SHARE`] are dropped, unless
 /// that leaves none of a thing without pictures and patterns.
 pub fn color_words(
-    patches: &[SurfacePatch],
+    patches: &[ColorShare],
     vocabulary: ColorVocabulary,
 ) -> Vec<(&'static str, f32)> {
     let mut words: Vec<(&'static str, f32)> = Vec::new();
@@ -245,8 +242,8 @@ pub fn color_words(
 mod tests {
     use super::*;
 
-    fn patch(linear: [f32; 3], share: f32) -> SurfacePatch {
-        SurfacePatch {
+    fn patch(linear: [f32; 3], share: f32) -> ColorShare {
+        ColorShare {
             linear: Some(linear),
             share,
         }
@@ -272,7 +269,7 @@ mod tests {
 
     #[test]
     fn a_picture_in_a_thin_frame_has_no_word() {
-        let picture = SurfacePatch {
+        let picture = ColorShare {
             linear: None,
             ..patch([0.0; 3], 0.9)
         };

@@ -46,17 +46,17 @@ impl Pattern {
 /// R. A. Fisher, *Statistical Methods for Research Workers*, 1925, chapters 7 and 8.
 pub(super) fn pattern(shades: &[([f32; 2], Oklab)]) -> Pattern {
     let whole = Sum::of(shades.iter().map(|(_, shade)| shade));
-    let total = whole.squares - whole.between();
+    let total = whole.squares - whole.count_times_squared_mean();
     let explained = |axis: usize| {
         let mut bands = [Sum::default(); BANDS];
         for (place, shade) in shades {
             let band = (place[axis] * BANDS as f32) as usize;
             bands[band.min(BANDS - 1)].add(shade);
         }
-        let between: f32 = bands.iter().map(Sum::between).sum();
-        let share = (between - whole.between()) / total.max(f32::MIN_POSITIVE);
+        let between: f32 = bands.iter().map(Sum::count_times_squared_mean).sum();
+        let share = (between - whole.count_times_squared_mean()) / total.max(f32::MIN_POSITIVE);
         // A disc is darker in its middle columns and rows, but does not alternate.
-        if changes(&bands, &whole) >= CHANGES {
+        if side_changes(&bands, &whole) >= CHANGES {
             share
         } else {
             0.0
@@ -73,7 +73,7 @@ pub(super) fn pattern(shades: &[([f32; 2], Oklab)]) -> Pattern {
 }
 
 /// Returns how often neighbouring bands lie on different sides of the mean colour, along the line from it to the band farthest from it.
-fn changes(bands: &[Sum], whole: &Sum) -> usize {
+fn side_changes(bands: &[Sum], whole: &Sum) -> usize {
     let mean = whole.mean();
     let filled = bands.iter().filter(|band| band.count > 0.0);
     let apart: Vec<Vec3> = filled.map(|band| band.mean() - mean).collect();
@@ -114,7 +114,7 @@ impl Sum {
     }
 
     /// The square of the mean, as often as there are shades.
-    fn between(&self) -> f32 {
+    fn count_times_squared_mean(&self) -> f32 {
         self.shade.length_squared() / self.count.max(1.0)
     }
 }

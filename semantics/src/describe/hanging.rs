@@ -60,7 +60,7 @@ impl MountedObject {
     }
 
     /// Returns whether its noun says already on what it hangs: a wall lamp, a ceiling lamp.
-    pub(super) fn is_in_noun(&self, scene: &SemanticScene<'_>) -> bool {
+    pub(super) fn noun_names_mount(&self, scene: &SemanticScene<'_>) -> bool {
         let mut words = scene.facts(self.object).noun.split(' ');
         words.any(|word| word == self.mount.name())
     }

@@ -29,7 +29,7 @@ fn first_related(scene: &SemanticScene<'_>, object: ObjectId, name: &str) -> Opt
     // A thing is placed by something larger than itself; the largest is the easiest to find.
     let marks = |id: ObjectId| scene.facts(id).category.is_some() && !scene.facts(id).is_opening();
     found.retain(|other| name != "next_to" || marks(*other));
-    found.retain(|other| name != "in" || !scene.is_lain_upon(*other));
+    found.retain(|other| name != "in" || !scene.is_seat_or_bed(*other));
     let volume = |id: ObjectId| scene.extent(id).bounds.volume();
     let largest = found
         .into_iter()
@@ -67,7 +67,7 @@ fn place(scene: &SemanticScene<'_>, object: ObjectId) -> Option<Modifier> {
         return Some(place);
     }
     match MountedObject::of(scene, object) {
-        Some(hanging) if hanging.is_in_noun(scene) => None,
+        Some(hanging) if hanging.noun_names_mount(scene) => None,
         Some(hanging) => Some(hanging.mount.modifier()),
         None => related("next_to"),
     }

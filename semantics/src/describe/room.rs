@@ -64,7 +64,8 @@ fn contents(scene: &SemanticScene<'_>, room: RoomId, objects: &[ObjectId]) -> Ro
             let predicate = predicates::find(name).ok()?;
             let others = predicates::related_objects(scene, predicate, *object);
             let carrier = others.into_iter().find(|other| {
-                scene.room_of(*other) == Some(room) && !(name == "in" && scene.is_lain_upon(*other))
+                scene.room_of(*other) == Some(room)
+                    && !(name == "in" && scene.is_seat_or_bed(*other))
             })?;
             Some((carrier, name))
         });
@@ -73,7 +74,7 @@ fn contents(scene: &SemanticScene<'_>, room: RoomId, objects: &[ObjectId]) -> Ro
             contents.carried.entry(key).or_default().push(*object);
             continue;
         }
-        match MountedObject::of(scene, *object).filter(|hanging| !hanging.is_in_noun(scene)) {
+        match MountedObject::of(scene, *object).filter(|hanging| !hanging.noun_names_mount(scene)) {
             Some(hanging) => contents.hanging.push(hanging),
             None => contents.standing.push(*object),
         }

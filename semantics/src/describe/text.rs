@@ -90,7 +90,7 @@ impl<'a> TextWriter<'a> {
         let pronoun = self
             .antecedent
             .as_ref()
-            .filter(|own| stands_for(own, &form));
+            .filter(|own| can_be_pronoun(own, &form));
         let short = pronoun.map(|antecedent| form.with_pronoun(antecedent));
         let said = short.and_then(|short| language.say(&short, key));
         let Some(mut said) = said.or_else(|| language.say(&form, key)) else {
@@ -119,7 +119,7 @@ impl<'a> TextWriter<'a> {
         terms.sort_unstable();
         terms.dedup();
         self.antecedent = form
-            .subject()
+            .pronoun_antecedent()
             .filter(|_| !has_other_antecedent(&form))
             .cloned();
         self.written.claims.push(TextClaim {
@@ -159,11 +159,11 @@ fn has_other_antecedent(form: &Form) -> bool {
 }
 
 /// Returns whether "it" may stand for `antecedent` in `form`: as its subject, or as the landmark of a list.
-fn stands_for(antecedent: &Phrase, form: &Form) -> bool {
+fn can_be_pronoun(antecedent: &Phrase, form: &Form) -> bool {
     let is_room = matches!(
         antecedent,
         Phrase::Described(own) if matches!(own.noun, Noun::Room(_))
     );
     let exists = matches!(form, Form::Claim(Clause::Exists(_)));
-    form.subject() == Some(antecedent) && !(is_room && exists)
+    form.pronoun_antecedent() == Some(antecedent) && !(is_room && exists)
 }

@@ -10,7 +10,7 @@ use std::collections::VecDeque;
 impl Form {
     /// The phrase that "it" in the next sentence stands for: the subject of a claim, where that is one thing. `None` where a
     /// pronoun would have no antecedent, or more than one.
-    pub fn subject(&self) -> Option<&Phrase> {
+    pub fn pronoun_antecedent(&self) -> Option<&Phrase> {
         let Self::Claim(clause) = self else {
             return None;
         };
@@ -139,7 +139,7 @@ impl Resolver {
     fn after(before: Option<&Form>, choices: Vec<usize>) -> Self {
         let mut resolver = Self {
             mentions: Vec::new(),
-            subject: before.and_then(Form::subject).cloned(),
+            subject: before.and_then(Form::pronoun_antecedent).cloned(),
             unit: 0,
             choices,
             counts: Vec::new(),
@@ -185,7 +185,7 @@ impl Resolver {
                 }
             }
             Form::Question(_) | Form::NounPhrase(_) => {
-                self.unit(None, |visit| visit_form(form, visit));
+                self.resolve_unit(None, |visit| visit_form(form, visit));
             }
         }
     }
@@ -212,11 +212,11 @@ impl Resolver {
                     Clause::Exists(Phrase::Described(own))
                         if own.noun == Noun::SameNoun && own.modifiers.is_empty()
                 );
-                self.unit(verb.as_deref(), |visit| visit_clause(one, visit));
+                self.resolve_unit(verb.as_deref(), |visit| visit_clause(one, visit));
                 if let Clause::Exists(Phrase::Described(own)) = &mut *one
                     && is_part_of_several
                 {
-                    self.place_of_several(own, first);
+                    self.inherit_group_modifiers(own, first);
                 }
                 if let Clause::Holds { arguments, .. } = &*one {
                     for mention in &mut self.mentions[first..] {
@@ -224,7 +224,7 @@ impl Resolver {
                     }
                 }
                 if let Some(subject) = self.mentions.get_mut(first) {
-                    subject.with_said = subject_with_said(one);
+                    subject.with_said = subject_with_predicate(one);
                 }
             }
         }
@@ -242,7 +242,7 @@ impl Resolver {
             otherwise,
         } = step
         else {
-            self.unit(verb.as_deref(), |visit| visit_step(step, visit));
+            self.resolve_unit(verb.as_deref(), |visit| visit_step(step, visit));
             // "Bring another cup": where none was named, any cup.
             visit_step(step, &mut |phrase, _| {
                 if let Phrase::Described(own) = phrase
@@ -267,7 +267,7 @@ impl Resolver {
     }
 
     /// Resolves what a clause or a step says of things before it.
-    fn unit(
+    fn resolve_unit(
         &mut self,
         verb: Option<&str>,
         mut visit: impl FnMut(&mut dyn FnMut(&mut Phrase, Role)),
@@ -377,7 +377,7 @@ impl Resolver {
     }
 
     /// "There are two chairs in the kitchen, one red and one blue": both are in the kitchen.
-    fn place_of_several(&self, own: &mut Description, before: usize) {
+    fn inherit_group_modifiers(&self, own: &mut Description, before: usize) {
         let named = self.mentions[..before].iter().rev().find_map(|mention| {
             let Phrase::Described(named) = &mention.phrase else {
                 return None;
@@ -509,7 +509,7 @@ impl Resolver {
 }
 
 /// A subject of indefinite number with what its clause says of it, which "they" then stands for: "three cups are on the table".
-fn subject_with_said(clause: &Clause) -> Option<Description> {
+fn subject_with_predicate(clause: &Clause) -> Option<Description> {
     let subject = match clause {
         Clause::Holds { arguments, .. } => arguments.first()?,
         Clause::Is { subject, .. } => subject,

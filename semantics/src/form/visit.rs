@@ -37,7 +37,7 @@ impl Form {
     }
 
     /// Returns the numbers of modifiers of what its clauses relate their subjects to, and of all its phrases.
-    pub(crate) fn modifiers(&self) -> (usize, usize) {
+    pub(crate) fn modifier_counts(&self) -> (usize, usize) {
         let of_landmarks = match self {
             Self::Claim(clause)
             | Self::Question(Question::Whether(clause) | Question::Which { clause, .. }) => {

@@ -34,7 +34,7 @@ impl Extent {
             }
         });
         let footprint = Hull::around(outline);
-        let sole = sole(house, state, object, bounds.min.y + SOLE_M);
+        let sole = underside_points(house, state, object, bounds.min.y + SOLE_M);
         Self {
             bounds,
             footprint,
@@ -48,7 +48,7 @@ impl Extent {
     }
 }
 
-fn sole(house: &House, state: &State, object: ObjectId, top: f32) -> Vec<Vec3> {
+fn underside_points(house: &House, state: &State, object: ObjectId, top: f32) -> Vec<Vec3> {
     let mut faces: Vec<([Vec3; 3], f32)> = Vec::new();
     let mut corners_below: Vec<Vec3> = Vec::new();
     object_triangles(house, state, object, |corners| {

@@ -186,7 +186,7 @@ impl Lexicon {
     }
 
     /// The entries that match `text` from the word `at` on.
-    pub(super) fn at<'a>(
+    pub(super) fn matches_at<'a>(
         &'a self,
         text: &'a [String],
         at: usize,
@@ -280,7 +280,7 @@ mod tests {
         lexicon.add_texts("noun", "sofa bed", &[&["sofa bed"], &["sofa beds"]]);
         let text = words("the sofa bed");
         let found: Vec<(&str, usize)> = lexicon
-            .at(&text, 1)
+            .matches_at(&text, 1)
             .map(|found| (lexicon.entry(found.entry).id.as_str(), found.length))
             .collect();
         assert_eq!(found, [("sofa", 1), ("sofa bed", 2)]);

@@ -15,7 +15,7 @@ pub(super) enum Phrase {
 pub type ChooseWording<'a> = &'a mut dyn FnMut(usize) -> usize;
 
 impl Grammar {
-    pub(super) fn phrases(
+    pub(super) fn linearize_function(
         &self,
         tree: &Tree,
         category: NonTerminal,
@@ -72,7 +72,7 @@ impl Grammar {
         choose: ChooseWording<'_>,
     ) -> Option<Vec<Phrase>> {
         match (kind, tree) {
-            (ArgumentKind::Rules(category), _) => self.phrases(tree, *category, choose),
+            (ArgumentKind::Rules(category), _) => self.linearize_function(tree, *category, choose),
             (ArgumentKind::Entry(class, variant), Tree::Entry { class: own, id })
                 if class == own =>
             {

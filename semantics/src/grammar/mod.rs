@@ -110,7 +110,7 @@ impl Grammar {
         let own = own.filter(|(name, _)| tree.function() == Some(name.as_str()));
         let own = own.map(|(_, category)| category);
         let phrases = (self.start.iter().chain(own))
-            .find_map(|category| self.phrases(tree, *category, choose))?;
+            .find_map(|category| self.linearize_function(tree, *category, choose))?;
         Some(text::write(&phrases))
     }
 
@@ -125,7 +125,7 @@ impl Grammar {
     }
 
     /// Returns normalized words with endings set apart: "what's" as "what is".
-    pub fn endings_apart(&self, words: &[String]) -> Vec<String> {
+    pub fn split_clitics(&self, words: &[String]) -> Vec<String> {
         self.paraphrases
             .endings_apart(words, |word| self.has_word(word))
     }

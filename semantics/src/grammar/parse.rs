@@ -128,7 +128,7 @@ impl Parser<'_> {
             }
             Symbol::Argument(_, ArgumentKind::Entry(class, variant)) => {
                 let found: Vec<_> = lexicon
-                    .at(self.words, at)
+                    .matches_at(self.words, at)
                     .filter(|found| {
                         found.variant == *variant && lexicon.entry(found.entry).class == *class
                     })
@@ -232,7 +232,7 @@ impl Parser<'_> {
         let symbol = &production.symbols[item.dot - 1];
         let mut found: Vec<PartReading> = Vec::new();
         for step in &self.sets[set].steps[&item] {
-            let last = self.nodes_of(symbol, step.child, set, known);
+            let last = self.child_readings(symbol, step.child, set, known);
             for (before_cost, before) in self.arguments(step.before, step.set, known) {
                 for (cost, node) in &last {
                     let mut arguments = before.clone();
@@ -258,7 +258,7 @@ impl Parser<'_> {
         found
     }
 
-    fn nodes_of(
+    fn child_readings(
         &self,
         symbol: &Symbol,
         child: Child,

@@ -55,7 +55,7 @@ fn shared_modifiers(items: &[Phrase], most: usize) -> Vec<Modifier> {
     shared
 }
 
-fn without_last(items: &[Phrase], number: usize) -> Option<Vec<Phrase>> {
+fn without_last_modifiers(items: &[Phrase], number: usize) -> Option<Vec<Phrase>> {
     let shorter = items.iter().map(|item| {
         let mut own = description(item)?.clone();
         own.modifiers
@@ -66,7 +66,7 @@ fn without_last(items: &[Phrase], number: usize) -> Option<Vec<Phrase>> {
 }
 
 /// Returns whether a landmark cannot stand inside another noun phrase without "that is".
-fn is_modified(phrase: &Phrase) -> bool {
+fn needs_relative_clause(phrase: &Phrase) -> bool {
     match phrase {
         Phrase::Described(description) => {
             matches!(description.noun, Noun::Object(_))
@@ -89,10 +89,10 @@ impl TreeBuilder<'_> {
         }
         let shared = shared_modifiers(items, 1);
         if shared.iter().any(is_seen) {
-            return self.seen(&without_last(items, 1)?);
+            return self.seen(&without_last_modifiers(items, 1)?);
         }
-        if let Some((front, number)) = self.front(items) {
-            let rest = self.items(&without_last(items, number)?)?;
+        if let Some((front, number)) = self.fronted_modifiers(items) {
+            let rest = self.items(&without_last_modifiers(items, number)?)?;
             return Some(Tree::apply(list_name("exists_front", items), [front, rest]));
         }
         let all = self.items(items)?;
@@ -103,14 +103,14 @@ impl TreeBuilder<'_> {
         let shared = shared_modifiers(items, 1);
         let side = shared.first().and_then(places::side_to_tree);
         if let Some(side) = side {
-            let rest = self.items(&without_last(items, 1)?)?;
+            let rest = self.items(&without_last_modifiers(items, 1)?)?;
             return Some(Tree::apply(list_name("see_front", items), [side, rest]));
         }
         Some(Tree::apply(list_name("see", items), [self.items(items)?]))
     }
 
     /// The place that stands before the verb, and the number of modifiers that it says.
-    fn front(&self, items: &[Phrase]) -> Option<(Tree, usize)> {
+    fn fronted_modifiers(&self, items: &[Phrase]) -> Option<(Tree, usize)> {
         let shared = shared_modifiers(items, 2);
         let [.., last] = &shared[..] else {
             return None;
@@ -118,7 +118,8 @@ impl TreeBuilder<'_> {
         // Rooms have no modifiers behind them: "on the first floor there are two bedrooms".
         let is_room =
             |item: &Phrase| description(item).is_some_and(|own| matches!(own.noun, Noun::Room(_)));
-        let is_plain = last.predicate != "leads_from" && !last.arguments.iter().any(is_modified);
+        let is_plain =
+            last.predicate != "leads_from" && !last.arguments.iter().any(needs_relative_clause);
         if items.len() == 1 && is_plain && !is_room(&items[0]) {
             return None;
         }
@@ -213,36 +214,36 @@ fn list_name(function: &str, items: &[Phrase]) -> &'static str {
 }
 
 /// The modifiers that a clause adds to each of its items, and the tree of the items.
-struct Added<'a> {
+struct ExistenceParts<'a> {
     modifiers: Vec<Modifier>,
     items: &'a Tree,
 }
 
-fn added<'a>(function: &str, arguments: &'a [Tree]) -> Option<Added<'a>> {
+fn added<'a>(function: &str, arguments: &'a [Tree]) -> Option<ExistenceParts<'a>> {
     let seen = || Modifier::new(SEEN, []);
     Some(match (function, arguments) {
-        ("exists" | "exists_list" | "whether_exists", [items]) => Added {
+        ("exists" | "exists_list" | "whether_exists", [items]) => ExistenceParts {
             modifiers: Vec::new(),
             items,
         },
         ("exists_front" | "exists_front_list", [front, items])
-        | ("front_stands", [front, _, items]) => Added {
+        | ("front_stands", [front, _, items]) => ExistenceParts {
             modifiers: front_from_tree(front)?,
             items,
         },
-        ("room_has" | "room_has_list" | "whether_room_has", [place, items]) => Added {
+        ("room_has" | "room_has_list" | "whether_room_has", [place, items]) => ExistenceParts {
             modifiers: vec![Modifier::new("in_room", [room(place)?])],
             items,
         },
-        ("see_from" | "whether_see_from", [place, items]) => Added {
+        ("see_from" | "whether_see_from", [place, items]) => ExistenceParts {
             modifiers: vec![Modifier::new("visible_from_room", [room(place)?])],
             items,
         },
-        ("see" | "see_list" | "whether_seen", [items]) => Added {
+        ("see" | "see_list" | "whether_seen", [items]) => ExistenceParts {
             modifiers: vec![seen()],
             items,
         },
-        ("see_front" | "see_front_list", [side, items]) => Added {
+        ("see_front" | "see_front_list", [side, items]) => ExistenceParts {
             modifiers: vec![places::side_from_tree(side)?, seen()],
             items,
         },
@@ -272,7 +273,7 @@ pub(super) fn front_from_tree(tree: &Tree) -> Option<Vec<Modifier>> {
 
 /// The clause of a tree of existence; `None` for other trees.
 pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Clause> {
-    let Added { modifiers, items } = added(function, arguments)?;
+    let ExistenceParts { modifiers, items } = added(function, arguments)?;
     let mut found = Vec::new();
     collect(items, &modifiers, &mut found)?;
     // "You can see the sofa from the kitchen" is about the sofa.
@@ -373,7 +374,7 @@ pub(super) fn item_phrases(clause: &Tree, path: &[usize]) -> Vec<(Vec<usize>, Ph
     let Some((function, arguments)): Option<Parts<'_>> = parts(clause) else {
         return Vec::new();
     };
-    let Some(Added { modifiers, items }) = added(function, arguments) else {
+    let Some(ExistenceParts { modifiers, items }) = added(function, arguments) else {
         return Vec::new();
     };
     let mut path = path.to_vec();

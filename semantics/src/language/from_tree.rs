@@ -88,7 +88,7 @@ fn list(tree: &Tree) -> Option<Vec<Clause>> {
         .iter()
         .map(|tree| simple(tree))
         .collect::<Option<_>>()?;
-    places::with_landmark_before(&mut clauses, &trees);
+    places::inherit_side_landmarks(&mut clauses, &trees);
     Some(clauses)
 }
 
@@ -155,7 +155,7 @@ pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
             Clause::All(vec![no(one)?, no(other)?])
         }
         ("more_each", [more, there, than, elsewhere]) => {
-            numbers::more_each([more, there], [than, elsewhere])?
+            numbers::more_in_places([more, there], [than, elsewhere])?
         }
         ("is" | "whether_is", [subject, quality]) => is(phrase(subject)?, quality)?,
         ("says" | "whether_says", [subject, said]) => verb_phrases::clause(phrase(subject)?, said)?,

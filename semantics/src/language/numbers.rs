@@ -43,7 +43,7 @@ pub(super) fn more_where(what: &Tree, one: &Tree, other: &Tree) -> Option<Clause
 }
 
 /// More of a kind in one place than of another kind in another: "more jars on the shelf than mugs on the table".
-pub(super) fn more_each(more: [&Tree; 2], than: [&Tree; 2]) -> Option<Clause> {
+pub(super) fn more_in_places(more: [&Tree; 2], than: [&Tree; 2]) -> Option<Clause> {
     let there = |[what, place]: [&Tree; 2]| Some(described(what)?.with_modifier(modifier(place)?));
     Some(clause(there(more)?, there(than)?))
 }
@@ -58,7 +58,7 @@ pub(super) fn as_many(one: &Tree, other: &Tree) -> Option<Clause> {
 }
 
 /// The clauses of "two or three chairs".
-pub(super) fn counts(one: &Tree, other: &Tree, what: &Tree) -> Option<Vec<Clause>> {
+pub(super) fn exact_count_clauses(one: &Tree, other: &Tree, what: &Tree) -> Option<Vec<Clause>> {
     let exactly = |count: &Tree| {
         let what = described(what)?;
         let what = what.with_quantifier(Quantifier::Exactly(number(count)?));

@@ -196,7 +196,7 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
         ("exactly_same", [count]) => {
             Some(named_before(Quantifier::Exactly(number(count)?), function))
         }
-        ("np_nothing" | "np_something", [inner]) => nothing(inner).map(Phrase::from),
+        ("np_nothing" | "np_something", [inner]) => indefinite_pronoun(inner).map(Phrase::from),
         ("at_least_two" | "i_at_least_two" | "bare_plural" | "i_bare_plural", [noun])
         | ("gathering_of", [_, noun]) => of(Quantifier::AtLeast(2), noun),
         ("i_something", []) => {
@@ -250,7 +250,7 @@ fn named_before(quantifier: Quantifier, function: &str) -> Phrase {
     Description::new(quantifier, noun).into()
 }
 
-fn nothing(tree: &Tree) -> Option<Description> {
+fn indefinite_pronoun(tree: &Tree) -> Option<Description> {
     match parts(tree)? {
         ("nothing", []) => {
             let noun = Noun::Object(Noun::ANY_OBJECT.to_owned());
@@ -261,13 +261,13 @@ fn nothing(tree: &Tree) -> Option<Description> {
             Some(Description::new(Quantifier::Some, noun))
         }
         ("nothing_with" | "something_with", [inner, added]) => {
-            Some(nothing(inner)?.with_modifier(modifier(added)?))
+            Some(indefinite_pronoun(inner)?.with_modifier(modifier(added)?))
         }
         ("nothing_with_relative" | "something_with_relative", [inner, added]) => {
-            verb_phrases::with_relative(nothing(inner)?, added)
+            verb_phrases::with_relative(indefinite_pronoun(inner)?, added)
         }
         ("nothing_quality" | "something_quality", [inner, quality]) => {
-            let mut description = nothing(inner)?;
+            let mut description = indefinite_pronoun(inner)?;
             verb_phrases::add_quality(&mut description, quality_of(quality)?)?;
             Some(description)
         }
@@ -282,7 +282,7 @@ pub(super) fn between_two(noun: &Tree) -> Option<[Phrase; 2]> {
 }
 
 /// Returns whether a noun names doors and archways, which lead from room to room.
-fn is_way(noun: &Noun) -> bool {
+fn is_passage_noun(noun: &Noun) -> bool {
     let ways = ["door", "arch", "archway", "doorway", "gate", "thing"];
     match noun {
         Noun::Object(noun) => ways.iter().any(|way| noun.ends_with(way)),
@@ -313,7 +313,7 @@ pub(super) fn described(tree: &Tree) -> Option<Description> {
             let mut description = described(noun)?;
             let is_of = parts(added)?.0 == "modifier_of";
             let added = modifier(added)?;
-            if added.predicate.starts_with("leads_") && !is_way(&description.noun) {
+            if added.predicate.starts_with("leads_") && !is_passage_noun(&description.noun) {
                 return None;
             }
             // What a picture shows is not its own, and "at the end of the bed" is no place in a room.
@@ -337,7 +337,7 @@ pub(super) fn described(tree: &Tree) -> Option<Description> {
         }
         ("way_between", [noun, one, other]) => {
             let way = described(noun)?;
-            is_way(&way.noun).then_some(())?;
+            is_passage_noun(&way.noun).then_some(())?;
             let to = |place: &Tree| Some(Modifier::new("leads_to", [room(place)?]));
             way.with_modifier(to(one)?).with_modifier(to(other)?)
         }

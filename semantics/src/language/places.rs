@@ -76,7 +76,10 @@ pub(super) fn mount_to_tree(mount: &Phrase) -> Option<Tree> {
     let wall = Noun::Structure("wall".to_owned());
     let any = Description::new(Quantifier::Some, wall).with_modifier(side.clone());
     (**own == any).then_some(())?;
-    Some(Tree::apply("mount_flank", [flank_to_tree(side)?]))
+    Some(Tree::apply(
+        "mount_flank",
+        [attributive_side_to_tree(side)?],
+    ))
 }
 
 pub(super) fn mount_from_tree(tree: &Tree) -> Option<Phrase> {
@@ -98,7 +101,7 @@ pub(super) fn side_to_tree(modifier: &Modifier) -> Option<Tree> {
 }
 
 /// The tree of a side before a noun: "the left wall".
-fn flank_to_tree(modifier: &Modifier) -> Option<Tree> {
+fn attributive_side_to_tree(modifier: &Modifier) -> Option<Tree> {
     let side = side_to_tree(modifier)?;
     let (function, _) = parts(&side)?;
     Some(Tree::apply(&function.replace("side_", "flank_"), []))
@@ -112,7 +115,7 @@ pub(super) fn side_of(predicate: &str) -> Option<Tree> {
 
 /// Puts the landmark that a clause has on a side in place of the listener in those after it: "The bin is to the left of the
 /// toilet, and the basket is to the right."
-pub(super) fn with_landmark_before(clauses: &mut [Clause], trees: &[&Tree]) {
+pub(super) fn inherit_side_landmarks(clauses: &mut [Clause], trees: &[&Tree]) {
     let mut before: Option<Phrase> = None;
     for (clause, tree) in clauses.iter_mut().zip(trees) {
         let Clause::Holds {
@@ -124,7 +127,7 @@ pub(super) fn with_landmark_before(clauses: &mut [Clause], trees: &[&Tree]) {
         };
         match (predicate.as_str(), &arguments[..], &before) {
             ("left_of" | "right_of", [_, landmark], _) => before = Some(landmark.clone()),
-            ("on_left" | "on_right", [_], Some(landmark)) if says_any_side(tree) => {
+            ("on_left" | "on_right", [_], Some(landmark)) if has_side_without_landmark(tree) => {
                 *predicate = predicate.replace("on_", "") + "_of";
                 arguments.push(landmark.clone());
             }
@@ -133,9 +136,9 @@ pub(super) fn with_landmark_before(clauses: &mut [Clause], trees: &[&Tree]) {
     }
 }
 
-fn says_any_side(tree: &Tree) -> bool {
+fn has_side_without_landmark(tree: &Tree) -> bool {
     parts(tree).is_some_and(|(function, arguments)| {
-        function.ends_with(ANY_LANDMARK) || arguments.iter().any(says_any_side)
+        function.ends_with(ANY_LANDMARK) || arguments.iter().any(has_side_without_landmark)
     })
 }
 
@@ -192,9 +195,10 @@ impl TreeBuilder<'_> {
         Some(match &own.modifiers[..] {
             [] if position == Position::Landmark => Tree::apply("i_structure", [noun]),
             [] => Tree::apply("structure_np", [noun]),
-            [side] if flank_to_tree(side).is_some() => {
-                Tree::apply(&named("structure_flank"), [flank_to_tree(side)?, noun])
-            }
+            [side] if attributive_side_to_tree(side).is_some() => Tree::apply(
+                &named("structure_flank"),
+                [attributive_side_to_tree(side)?, noun],
+            ),
             [
                 Modifier {
                     negated: false,
@@ -211,7 +215,7 @@ impl TreeBuilder<'_> {
 
     /// The tree of every piece of a kind, of a room or of all.
     fn every_piece(&self, own: &Description, noun: Tree) -> Option<Tree> {
-        let piece = self.looks_of_piece(own, noun)?;
+        let piece = self.structure_noun_phrase(own, noun)?;
         match &own.modifiers[..] {
             [] => Some(Tree::apply("every_piece", [piece])),
             [there] if there.predicate == "in_room" && !there.negated => {
@@ -223,7 +227,7 @@ impl TreeBuilder<'_> {
     }
 
     /// The tree of a piece with its colour and substance.
-    fn looks_of_piece(&self, own: &Description, noun: Tree) -> Option<Tree> {
+    fn structure_noun_phrase(&self, own: &Description, noun: Tree) -> Option<Tree> {
         let mut tree = Tree::apply("piece", [noun]);
         if let Some(word) = &own.material {
             tree = Tree::apply("piece_material", [self.known("material", word)?, tree]);
@@ -240,7 +244,7 @@ impl TreeBuilder<'_> {
 
     /// The tree of any piece with its colour and substance.
     fn piece(&self, own: &Description, noun: Tree, position: Position) -> Option<Tree> {
-        let tree = self.looks_of_piece(own, noun)?;
+        let tree = self.structure_noun_phrase(own, noun)?;
         match (&own.modifiers[..], position) {
             ([], Position::Landmark) => Some(Tree::apply("i_piece_np", [tree])),
             ([], Position::Free) => Some(Tree::apply("piece_np", [tree])),

@@ -12,7 +12,7 @@ use crate::grammar::Tree;
 /// - a bare plural as "some" where a plural or a denial goes before;
 /// - "on the shelves" as on any of them, "with the green chairs" as with several;
 /// - "the walls of the kitchen" as every wall of it where something is said of them.
-pub(super) fn by_place(tree: Tree) -> Tree {
+pub(super) fn resolve_plurals(tree: Tree) -> Tree {
     distributed(tree, false)
 }
 
@@ -50,7 +50,7 @@ fn distributed(tree: Tree, under_plural: bool) -> Tree {
         if at == 0 {
             under |= subject_is_plural;
             if is_said {
-                argument = every_piece(argument);
+                argument = as_every_piece_of(argument);
             }
         }
         distributed_arguments.push(argument);
@@ -75,7 +75,7 @@ fn is_plural(function: &str, arguments: &[Tree]) -> bool {
     }
 }
 
-fn every_piece(tree: Tree) -> Tree {
+fn as_every_piece_of(tree: Tree) -> Tree {
     match parts(&tree) {
         Some(("pieces_of" | "structures_of", _)) => renamed(tree, "every_piece_of"),
         _ => tree,

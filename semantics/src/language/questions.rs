@@ -13,7 +13,7 @@ use crate::form::{
 use crate::grammar::Tree;
 
 /// The question of a tree that is only read, never said; `None` for other trees.
-fn paraphrased(function: &str, arguments: &[Tree]) -> Option<Question> {
+fn read_only_question(function: &str, arguments: &[Tree]) -> Option<Question> {
     let count = |description: Description| Question::HowMany(Box::new(description));
     let which = |kind: Option<Description>, clause: Clause| Question::Which {
         kind: kind.map(Box::new),
@@ -36,7 +36,7 @@ fn paraphrased(function: &str, arguments: &[Tree]) -> Option<Question> {
             numbers::more_where(what, other, one)?,
         ]),
         ("which_count", [one, other, what]) => {
-            Question::Alternatives(numbers::counts(one, other, what)?)
+            Question::Alternatives(numbers::exact_count_clauses(one, other, what)?)
         }
         ("which_verb", [kind, verb, object]) => which(
             Some(described(kind)?),
@@ -296,7 +296,7 @@ pub(super) fn question(tree: &Tree) -> Option<Question> {
     if let Some(clauses) = alternatives::from_tree(function, arguments) {
         return Some(Question::Alternatives(clauses));
     }
-    if let Some(other) = paraphrased(function, arguments) {
+    if let Some(other) = read_only_question(function, arguments) {
         return Some(other);
     }
     match (function, arguments) {
@@ -355,9 +355,9 @@ pub(super) fn indirect(tree: &Tree) -> Option<Question> {
         ("indirect_color", [of]) => attribute(AttributeKind::Color, of),
         ("indirect_material", [of]) => attribute(AttributeKind::Material, of),
         ("indirect_room", [of]) => attribute(AttributeKind::Room, of),
-        ("indirect_stranded", arguments) => paraphrased("what_stranded", arguments),
+        ("indirect_stranded", arguments) => read_only_question("what_stranded", arguments),
         ("indirect_stranded_standing", arguments) => {
-            paraphrased("what_stranded_standing", arguments)
+            read_only_question("what_stranded_standing", arguments)
         }
         _ => None,
     }
@@ -424,7 +424,7 @@ impl TreeBuilder<'_> {
     fn which(&self, kind: Option<&Description>, clause: &Clause) -> Option<Tree> {
         let kind = match kind {
             Some(kind) if kind.modifiers.is_empty() && kind.selection.is_none() => {
-                Some(self.adjectives(kind)?)
+                Some(self.noun_with_adjectives(kind)?)
             }
             Some(_) => return None,
             None => None,

@@ -186,7 +186,7 @@ impl Language {
             return read;
         }
         // "What's" apart, then phrases replaced, too.
-        let apart = self.grammar.endings_apart(&words);
+        let apart = self.grammar.split_clitics(&words);
         let paraphrase = self.grammar.paraphrase(&words);
         let mut best = read;
         for other in [apart, paraphrase] {
@@ -218,7 +218,7 @@ impl Language {
         let parse = self.grammar.parse(words);
         // "The chair near the table larger than the bed" compares the chair: few describe a landmark by a comparison.
         let forms = parse.trees.iter().filter_map(|(cost, tree)| {
-            let form = from_tree::form(&plurals::by_place(tree.clone()))?;
+            let form = from_tree::form(&plurals::resolve_plurals(tree.clone()))?;
             // "The TV stands in front of the window" is no plural of "TV stand".
             let phrase = usize::from(matches!(form, Form::NounPhrase(_)));
             let penalty = form.described_comparisons() + 2 * phrase;
@@ -226,7 +226,7 @@ impl Language {
         });
         let mut ranked: Vec<(usize, Form)> = forms.collect();
         // "Is the plant in the pot in front of the desk?" is about the plant in the pot.
-        ranked.sort_by_cached_key(|(cost, form)| (*cost, form.modifiers()));
+        ranked.sort_by_cached_key(|(cost, form)| (*cost, form.modifier_counts()));
         let mut forms: Vec<Form> = Vec::new();
         for form in ranked
             .iter()

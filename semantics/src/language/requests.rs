@@ -39,7 +39,7 @@ pub(super) fn plan(tree: &Tree) -> Option<Vec<RequestStep>> {
         }
         ("then" | "steps", [first, rest]) => {
             let mut rest = plan(rest)?;
-            if !fetched_for(first, &mut rest)? {
+            if !merge_fetch_step(first, &mut rest)? {
                 rest.insert(0, step(first)?);
             }
             rest
@@ -56,7 +56,7 @@ pub(super) fn plan(tree: &Tree) -> Option<Vec<RequestStep>> {
 
 /// Puts what is fetched, or any thing that is picked up, in place of "it" in the step after it, which says where it goes: "Fetch
 /// the cup and put it on the table", "Take one of the cups and bring it to me". Returns whether it did.
-fn fetched_for(tree: &Tree, rest: &mut [RequestStep]) -> Option<bool> {
+fn merge_fetch_step(tree: &Tree, rest: &mut [RequestStep]) -> Option<bool> {
     let fetched = match step(tree)? {
         RequestStep::Do { verb, object } => {
             let is_any =

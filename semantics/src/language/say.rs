@@ -35,7 +35,7 @@ impl Language {
         let builder = self.builder();
         let tree = Tree::apply(
             "which_meant",
-            [builder.adjectives(kind)?, builder.any_of(named)?],
+            [builder.noun_with_adjectives(kind)?, builder.any_of(named)?],
         );
         Some(self.grammar.linearize(&tree, &mut |_| 0)?.0)
     }

@@ -245,7 +245,7 @@ impl TreeBuilder<'_> {
     pub(super) fn noun_of(&self, kind: &Description) -> Option<Tree> {
         match &kind.noun {
             Noun::Room(noun) => self.known(ROOM_NOUN, noun),
-            _ => self.adjectives(kind),
+            _ => self.noun_with_adjectives(kind),
         }
     }
 
@@ -389,7 +389,7 @@ impl TreeBuilder<'_> {
     }
 
     fn landmark(&self, description: &Description) -> Option<Tree> {
-        let own = self.adjectives(description)?;
+        let own = self.noun_with_adjectives(description)?;
         if description.selection.is_some() {
             return None;
         }
@@ -482,7 +482,7 @@ impl TreeBuilder<'_> {
 
     /// The noun with its adjectives and modifiers, in their order.
     pub(super) fn with_modifiers(&self, description: &Description) -> Option<Tree> {
-        let mut noun = Tree::apply("plain", [self.adjectives(description)?]);
+        let mut noun = Tree::apply("plain", [self.noun_with_adjectives(description)?]);
         for modifier in &description.modifiers {
             if let Some(other) = self.other_than(modifier) {
                 noun = Tree::apply("with", [noun, other]);
@@ -538,7 +538,7 @@ impl TreeBuilder<'_> {
 
     /// Size, state, colours, material and noun, in this order; of groups ("pair of black shoes") colours and material stand after
     /// the "of".
-    pub(super) fn adjectives(&self, description: &Description) -> Option<Tree> {
+    pub(super) fn noun_with_adjectives(&self, description: &Description) -> Option<Tree> {
         let Noun::Object(noun) = &description.noun else {
             return None;
         };

@@ -37,7 +37,7 @@ fn affirmed(said: Predication) -> SaidList {
 }
 
 /// The reading of a verb phrase; `None` for other trees.
-pub(super) fn said(tree: &Tree) -> Option<SaidList> {
+pub(super) fn predications(tree: &Tree) -> Option<SaidList> {
     Some(match parts(tree)? {
         ("vp_relation", [word, object]) => {
             let object = phrase(object)?;
@@ -105,7 +105,7 @@ pub(super) fn said(tree: &Tree) -> Option<SaidList> {
         }
         ("vp_quality", [quality]) => affirmed(Predication::Quality(quality_of(quality)?)),
         ("vp_standing", [posture, inner]) => {
-            let mut all = said(inner)?;
+            let mut all = predications(inner)?;
             // "Standing on" does not say that something is switched on, and nothing "stands" being a chair.
             let is_no_place = |said: &Predication| match said {
                 Predication::Quality(_) => true,
@@ -116,17 +116,17 @@ pub(super) fn said(tree: &Tree) -> Option<SaidList> {
                 return None;
             }
             if hangs(posture) {
-                hang(&mut all);
+                use_hangs_on(&mut all);
             }
             all
         }
-        ("vps_single" | "vps_several", [inner]) => said(inner)?,
+        ("vps_single" | "vps_several", [inner]) => predications(inner)?,
         ("vps_pair" | "vps_beside", [first, last]) => {
-            let mut all = said(first)?;
+            let mut all = predications(first)?;
             match parts(last)? {
-                ("vps_one", [one]) => all.extend(said(one)?),
-                ("vps_not", [one]) => all.extend(denied(said(one)?)?),
-                _ => all.extend(said(last)?),
+                ("vps_one", [one]) => all.extend(predications(one)?),
+                ("vps_not", [one]) => all.extend(denied(predications(one)?)?),
+                _ => all.extend(predications(last)?),
             }
             // "Visible in the mirror" is not what is visible and in the mirror.
             let is = |at: usize, found: fn(&Predication) -> bool| {
@@ -144,8 +144,8 @@ pub(super) fn said(tree: &Tree) -> Option<SaidList> {
             all
         }
         ("vps_more", [first, rest]) => {
-            let mut all = said(first)?;
-            all.extend(said(rest)?);
+            let mut all = predications(first)?;
+            all.extend(predications(rest)?);
             all
         }
         _ => return None,
@@ -157,7 +157,7 @@ fn hangs(posture: &Tree) -> bool {
 }
 
 /// What hangs "on" a thing is mounted on it.
-fn hang(all: &mut SaidList) {
+fn use_hangs_on(all: &mut SaidList) {
     for (said, _) in all {
         if let Predication::Relation(modifier) = said
             && modifier.predicate == "on"
@@ -235,12 +235,12 @@ fn clause_of(subject: Phrase, (said, negated): (Predication, bool)) -> Option<Cl
 
 /// The clause that says all of a verb phrase of a subject. Of "a lamp" it must be one lamp of which all of it is true: that one exists.
 pub(super) fn clause(subject: Phrase, tree: &Tree) -> Option<Clause> {
-    let mut all = said(tree)?;
+    let mut all = predications(tree)?;
     if let [_] = all[..] {
         return clause_of(subject, all.remove(0));
     }
     let (mut own, others): (SaidList, SaidList) =
-        all.into_iter().partition(|(said, _)| describes(said));
+        all.into_iter().partition(|(said, _)| is_attributive(said));
     let conjunction = |subject: &Phrase, all: SaidList| -> Option<Vec<Clause>> {
         let all = all.into_iter();
         all.map(|one| clause_of(subject.clone(), one)).collect()
@@ -268,7 +268,7 @@ pub(super) fn clause(subject: Phrase, tree: &Tree) -> Option<Clause> {
 }
 
 /// Returns whether it can be said within a description.
-fn describes(said: &Predication) -> bool {
+fn is_attributive(said: &Predication) -> bool {
     matches!(said, Predication::Relation(_) | Predication::Quality(_))
 }
 
@@ -305,19 +305,19 @@ pub(super) fn add_said(description: &mut Description, all: SaidList) -> Option<(
 
 /// The description with what a verb phrase says added.
 pub(super) fn with_said(mut description: Description, tree: &Tree) -> Option<Description> {
-    add_said(&mut description, said(tree)?)?;
+    add_said(&mut description, predications(tree)?)?;
     Some(description)
 }
 
 /// The description with what a relative clause says: "that is not on the table", "standing by the door".
 pub(super) fn with_relative(mut description: Description, tree: &Tree) -> Option<Description> {
     let all = match parts(tree)? {
-        ("relative", [inner]) => said(inner)?,
-        ("relative_not", [inner]) => denied(said(inner)?)?,
+        ("relative", [inner]) => predications(inner)?,
+        ("relative_not", [inner]) => denied(predications(inner)?)?,
         ("relative_stands" | "relative_standing", [posture, inner]) => {
-            let mut all = said(inner)?;
+            let mut all = predications(inner)?;
             if hangs(posture) {
-                hang(&mut all);
+                use_hangs_on(&mut all);
             }
             all
         }

@@ -21,7 +21,7 @@ impl SemanticScene<'_> {
         against.get_or_init(|| {
             interrupt::check();
             let reach = self.extent(object).bounds.grown(GAP_M);
-            self.within(&reach, MOST_NEAR, |other| is_against(self, object, other))
+            self.objects_near(&reach, MOST_NEAR, |other| is_against(self, object, other))
         })
     }
 }

@@ -6,9 +6,9 @@ use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::Truth;
 
 /// See [`Predicate::definition`].
-pub(super) struct Checked;
+pub(super) struct Checkered;
 
-impl Predicate for Checked {
+impl Predicate for Checkered {
     fn name(&self) -> &'static str {
         "checked"
     }

@@ -34,7 +34,7 @@ impl SemanticScene<'_> {
             return known.get(&container).cloned().unwrap_or_default();
         }
         let reach = self.extent(container).bounds.grown(2.0 * BESIDE_M);
-        self.within(&reach, usize::MAX, |thing| is_in(self, thing, container))
+        self.objects_near(&reach, usize::MAX, |thing| is_in(self, thing, container))
     }
 
     /// Returns the contents of every object, ascending, in one pass over all things.
@@ -44,7 +44,7 @@ impl SemanticScene<'_> {
             for thing in self.house().objects.ids() {
                 interrupt::check();
                 for around in self.containers(thing) {
-                    if !self.is_lain_upon(*around) {
+                    if !self.is_seat_or_bed(*around) {
                         contents.entry(*around).or_default().push(thing);
                     }
                 }

@@ -5,7 +5,7 @@ use crate::scene::{SemanticScene, Term};
 use crate::truth::{Truth, UndecidedReason};
 
 /// Returns whether a door's sides are as `test` says; undecided for what is no door.
-pub(super) fn doorway_of(
+pub(super) fn doorway_satisfies(
     scene: &SemanticScene<'_>,
     door: Term,
     test: impl Fn(&RoomDoorway) -> bool,

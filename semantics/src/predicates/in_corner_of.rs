@@ -56,7 +56,7 @@ impl Predicate for InCornerOf {
         };
         let outline = scene.semantics.room_outline(room);
         let outer = outline
-            .share(shape.middle_xz())
+            .normalized_position(shape.middle_xz())
             .abs()
             .cmpgt(glam::Vec2::splat(CENTRAL));
         let mut corners = outline.corners.iter();

@@ -1,6 +1,6 @@
 //! The predicate `in_front_of`, relative to a viewer.
 
-use super::{Predicate, RelationProperties, THING, view::Sights};
+use super::{Predicate, RelationProperties, THING, view::ViewedPair};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::{Truth, UndecidedReason};
 
@@ -48,7 +48,7 @@ impl Predicate for InFrontOf {
     }
 
     fn decide(&self, scene: &SemanticScene<'_>, args: &[Term], viewer: Option<&Viewer>) -> Truth {
-        let sights = viewer.and_then(|viewer| Sights::of(scene, viewer, [args[0], args[1]]));
+        let sights = viewer.and_then(|viewer| ViewedPair::of(scene, viewer, [args[0], args[1]]));
         sights.map_or(Truth::Undecided(UndecidedReason::NotInFront), |sights| {
             let nearer = sights.nearer_m() >= LEAST_M;
             Truth::from(nearer && sights.shared_width(scene) >= SHARE)

@@ -52,7 +52,10 @@ impl Predicate for InMiddleOf {
         let Some(shape) = shape_in_room(scene, args[0], room) else {
             return Truth::False;
         };
-        let share = scene.semantics.room_outline(room).share(shape.middle_xz());
+        let share = scene
+            .semantics
+            .room_outline(room)
+            .normalized_position(shape.middle_xz());
         Truth::from(share.abs().max_element() <= CENTRAL)
     }
 

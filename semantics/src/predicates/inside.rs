@@ -27,7 +27,7 @@ fn containers(scene: &SemanticScene<'_>, thing: ObjectId) -> Vec<ObjectId> {
     // Four fifths of an edge hold its middle.
     let middle = inner.center();
     let reach = Aabb::new(middle, middle).grown(BESIDE_M + 1e-5 * middle.abs().max_element());
-    let mut found = scene.within(&reach, MOST_AROUND, |other| {
+    let mut found = scene.objects_near(&reach, MOST_AROUND, |other| {
         other != thing && House::fits_in(&scene.extent(other).bounds, &inner)
     });
     let house = scene.house();
@@ -44,7 +44,7 @@ pub(super) fn is_in(scene: &SemanticScene<'_>, thing: ObjectId, container: Objec
     thing != container
         && House::fits_in(&outer, &inner)
         && scene.containers(thing).binary_search(&container).is_ok()
-        && !scene.is_lain_upon(container)
+        && !scene.is_seat_or_bed(container)
 }
 
 /// See [`Predicate::definition`] and [`dwell_scene::House::encloses`]. Where the boxes of more than 32 things are around it, those
@@ -102,7 +102,7 @@ impl Predicate for Inside {
             return Vec::new();
         };
         let around = scene.containers(thing).iter();
-        let holding = around.filter(|id| !scene.is_lain_upon(**id));
+        let holding = around.filter(|id| !scene.is_seat_or_bed(**id));
         holding.map(|id| Term::Object(*id)).collect()
     }
 }

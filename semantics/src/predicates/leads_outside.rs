@@ -1,6 +1,6 @@
 //! The predicate `leads_outside`.
 
-use super::doors::doorway_of;
+use super::doors::doorway_satisfies;
 use super::{OBJECT, Predicate};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::Truth;
@@ -26,6 +26,6 @@ impl Predicate for LeadsOutside {
     }
 
     fn decide(&self, scene: &SemanticScene<'_>, args: &[Term], _: Option<&Viewer>) -> Truth {
-        doorway_of(scene, args[0], |doorway| doorway.outside)
+        doorway_satisfies(scene, args[0], |doorway| doorway.outside)
     }
 }

@@ -1,6 +1,6 @@
 //! The predicate `leads_to`.
 
-use super::doors::doorway_of;
+use super::doors::doorway_satisfies;
 use super::{OBJECT, Predicate, ROOM};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::Truth;
@@ -26,6 +26,6 @@ impl Predicate for LeadsTo {
     }
 
     fn decide(&self, scene: &SemanticScene<'_>, args: &[Term], _: Option<&Viewer>) -> Truth {
-        doorway_of(scene, args[0], |doorway| doorway.has_side(args[1]))
+        doorway_satisfies(scene, args[0], |doorway| doorway.has_side(args[1]))
     }
 }

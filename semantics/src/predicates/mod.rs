@@ -286,7 +286,7 @@ pub fn all() -> &'static [&'static dyn Predicate] {
         &full::Full,
         &empty::Empty,
         &striped::Striped,
-        &checked::Checked,
+        &checked::Checkered,
         &patterned::Patterned,
     ]
 }

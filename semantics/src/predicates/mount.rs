@@ -114,13 +114,13 @@ fn is_before(scene: &SemanticScene<'_>, cloth: ObjectId, window: ObjectId) -> bo
 }
 
 /// The candidate mounts of `thing`: windows, then structure pieces, each ascending.
-fn mounts(scene: &SemanticScene<'_>, thing: ObjectId) -> Vec<Term> {
+fn candidate_mounts(scene: &SemanticScene<'_>, thing: ObjectId) -> Vec<Term> {
     if scene.holder(thing).is_some() || !scene.supports(thing).is_empty() {
         return Vec::new();
     }
     let windows = if is_cloth(scene, thing) {
         let reach = scene.extent(thing).bounds.grown(WINDOW_GAP_M + 0.01);
-        scene.within(&reach, MOST_NEAR, |window| is_before(scene, thing, window))
+        scene.objects_near(&reach, MOST_NEAR, |window| is_before(scene, thing, window))
     } else {
         Vec::new()
     };
@@ -154,7 +154,7 @@ fn find_mount(scene: &SemanticScene<'_>, thing: ObjectId) -> Option<Term> {
         },
         _ => 0,
     };
-    mounts(scene, thing).into_iter().min_by(|p, q| {
+    candidate_mounts(scene, thing).into_iter().min_by(|p, q| {
         let by_rank = rank(p).cmp(&rank(q));
         by_rank.then_with(|| away_m(p).total_cmp(&away_m(q)))
     })

@@ -10,7 +10,7 @@ use dwell_scene::{Aabb, ObjectId, interrupt};
 const NEIGHBOUR_GAP_M: f32 = 0.5;
 
 /// Returns the vertical overlap of two boxes and the least that neighbours have, m.
-fn shared_m(p: &Aabb, q: &Aabb) -> (f32, f32) {
+fn vertical_overlap_and_minimum_m(p: &Aabb, q: &Aabb) -> (f32, f32) {
     (shared_height_m(p, q), 0.5 * p.size().y.min(q.size().y))
 }
 
@@ -31,8 +31,8 @@ impl SemanticScene<'_> {
 /// Returns the candidates for neighbours of `object`, ascending.
 fn neighbour_candidates(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<ObjectId> {
     let own = scene.extent(object).bounds;
-    scene.within(&own.grown(NEIGHBOUR_GAP_M), MOST_NEAR, |other| {
-        let (shared, least) = shared_m(&own, &scene.extent(other).bounds);
+    scene.objects_near(&own.grown(NEIGHBOUR_GAP_M), MOST_NEAR, |other| {
+        let (shared, least) = vertical_overlap_and_minimum_m(&own, &scene.extent(other).bounds);
         other != object && shared >= least && scene.holder(other).is_none()
     })
 }
@@ -46,7 +46,7 @@ fn neighbours(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<ObjectId> {
 }
 
 /// Returns whether `other` is among the candidates for neighbours of `object`, or these were not limited in number.
-fn counts(scene: &SemanticScene<'_>, object: ObjectId, other: ObjectId) -> bool {
+fn is_neighbour_candidate(scene: &SemanticScene<'_>, object: ObjectId, other: ObjectId) -> bool {
     let near = scene.neighbour_candidates(object);
     near.len() < MOST_NEAR || near.binary_search(&other).is_ok()
 }
@@ -67,7 +67,7 @@ fn is_next_to(scene: &SemanticScene<'_>, a: ObjectId, b: ObjectId) -> bool {
     if !p.bounds.grown(NEIGHBOUR_GAP_M).intersects(&q.bounds) {
         return false;
     }
-    let (shared, least) = shared_m(&p.bounds, &q.bounds);
+    let (shared, least) = vertical_overlap_and_minimum_m(&p.bounds, &q.bounds);
     if shared < least {
         return false;
     }
@@ -78,8 +78,8 @@ fn is_next_to(scene: &SemanticScene<'_>, a: ObjectId, b: ObjectId) -> bool {
     p.footprint.distance(&q.footprint) <= NEIGHBOUR_GAP_M
         && !above()
         && scene.room_of(a) == scene.room_of(b)
-        && counts(scene, a, b)
-        && counts(scene, b, a)
+        && is_neighbour_candidate(scene, a, b)
+        && is_neighbour_candidate(scene, b, a)
         && !stacked(scene, a, b)
 }
 

@@ -68,7 +68,10 @@ impl Predicate for Opposite {
                     return false;
                 };
                 let outline = scene.semantics.room_outline(room);
-                let (from, to) = (outline.share(p.middle_xz()), outline.share(q.middle_xz()));
+                let (from, to) = (
+                    outline.normalized_position(p.middle_xz()),
+                    outline.normalized_position(q.middle_xz()),
+                );
                 let along = outline.along();
                 let across = |axis: Vec2| faces(&p, &q, axis) || faces(&p, &q, -axis);
                 (from.x * to.x < 0.0 && across(along))

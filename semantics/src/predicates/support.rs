@@ -76,7 +76,7 @@ fn supports_of(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<SurfaceSuppor
         best: vec![None; extent.sole.len()],
     };
     let highest_foot = extent.bottom_m() + CARRIER_RISE_M;
-    let below = scene.within(&reach, MOST_NEAR, |other| {
+    let below = scene.objects_near(&reach, MOST_NEAR, |other| {
         other != object
             && scene.holder(other).is_none()
             && scene.extent(other).bounds.min.y <= highest_foot

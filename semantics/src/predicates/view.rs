@@ -39,14 +39,14 @@ pub(crate) fn is_in_front(scene: &SemanticScene<'_>, viewer: &Viewer, term: Term
 }
 
 /// Two things as a viewer sees them, both in front of it.
-pub(super) struct Sights {
+pub(super) struct ViewedPair {
     upright_from_world: Pose,
     terms: [Term; 2],
     /// Where their middles are in the viewer's upright frame, m.
     middles: [Vec3; 2],
 }
 
-impl Sights {
+impl ViewedPair {
     /// Returns how a viewer sees two things; `None` when the middle of one is not in front of the viewer.
     pub(super) fn of(scene: &SemanticScene<'_>, viewer: &Viewer, terms: [Term; 2]) -> Option<Self> {
         let upright_from_world = viewer.upright().inverse();

@@ -67,7 +67,7 @@ fn by_relations(scene: &SemanticScene<'_>, target: ObjectId) -> Vec<Modifier> {
         for landmark in predicates::related_objects(scene, predicate, target) {
             if scene.facts(landmark).category.is_none()
                 || scene.facts(landmark).is_opening()
-                || (name == "in" && scene.is_lain_upon(landmark))
+                || (name == "in" && scene.is_seat_or_bed(landmark))
             {
                 continue;
             }

@@ -74,7 +74,7 @@ impl<'a> SemanticScene<'a> {
     }
 
     /// Returns whether every part of the object is in its initial pose.
-    pub fn at_rest(&self, object: ObjectId) -> bool {
+    pub fn is_in_initial_pose(&self, object: ObjectId) -> bool {
         let house = self.house();
         house.objects[object]
             .parts()
@@ -83,8 +83,8 @@ impl<'a> SemanticScene<'a> {
 
     /// Returns the object's extent.
     pub fn extent(&self, object: ObjectId) -> &Extent {
-        if self.at_rest(object) {
-            return self.semantics.rest_extent(object);
+        if self.is_in_initial_pose(object) {
+            return self.semantics.initial_extent(object);
         }
         let extent = &self.known[object].extent;
         extent.get_or_init(|| self.semantics.moved_extent(self.state, object))
@@ -92,7 +92,7 @@ impl<'a> SemanticScene<'a> {
 
     /// Returns at most `most` things whose boxes share a point with `reach` and for which `counts` is true, ascending; of more than
     /// that, those about its middle.
-    pub(crate) fn within(
+    pub(crate) fn objects_near(
         &self,
         reach: &Aabb,
         most: usize,
@@ -106,7 +106,7 @@ impl<'a> SemanticScene<'a> {
             BoxTree::new(boxes.collect())
         });
         let counts = |k| counts(ObjectId::from_index(k));
-        let found = boxes.nearest(reach, most, counts).into_iter();
+        let found = boxes.nearest_intersecting(reach, most, counts).into_iter();
         found.map(ObjectId::from_index).collect()
     }
 
@@ -116,7 +116,7 @@ impl<'a> SemanticScene<'a> {
     }
 
     /// Returns whether things lie on it, never in it, in everyday speech: a book between the arms of a sofa lies on the sofa.
-    pub(crate) fn is_lain_upon(&self, object: ObjectId) -> bool {
+    pub(crate) fn is_seat_or_bed(&self, object: ObjectId) -> bool {
         let seats = ["chair", "sofa", "bed"];
         let row = self.facts(object).category;
         let mut places = self.house().receptacles_of(object);
@@ -144,7 +144,7 @@ impl<'a> SemanticScene<'a> {
         here.or_else(|| {
             self.house().objects[object]
                 .room
-                .filter(|_| self.at_rest(object))
+                .filter(|_| self.is_in_initial_pose(object))
         })
     }
 
@@ -188,7 +188,7 @@ impl<'a> SemanticScene<'a> {
             return Some(house.rooms[room].level);
         }
         if let Term::Object(id) = term
-            && self.at_rest(id)
+            && self.is_in_initial_pose(id)
         {
             return Some(house.objects[id].level);
         }

@@ -113,7 +113,12 @@ pub(super) fn compare(
             if ids.len() == found.len() =>
         {
             let differ = |k: usize| f64::from(u8::from(ids[k] != found[k]));
-            Ok(exact(*width, ids.len(), differ, |a, b| ids[a] != ids[b]))
+            Ok(difference_beside_edges(
+                *width,
+                ids.len(),
+                differ,
+                |a, b| ids[a] != ids[b],
+            ))
         }
         (
             StoredObservation::Steps { width, step, steps },
@@ -131,7 +136,7 @@ pub(super) fn compare(
                 |k: usize| (apart(&steps[at(k)], &found[at(k)]) - 1.0).max(0.0) * step_of(k);
             // Steps of a hundredth of the range make an edge.
             let edge = |a: usize, b: usize| apart(&steps[at(a)], &steps[at(b)]) > 655.0;
-            Ok(exact(*width, pixels, differ, edge))
+            Ok(difference_beside_edges(*width, pixels, differ, edge))
         }
         (StoredObservation::List(rows), StoredObservation::List(found))
             if rows.len() == found.len() =>
@@ -161,7 +166,7 @@ pub(super) fn compare(
 
 /// Pixels that may differ beside edges alone. `differ`: by how much; `edge`: whether two pixels of the golden picture lie on
 /// two sides of one.
-fn exact(
+fn difference_beside_edges(
     width: usize,
     pixels: usize,
     differ: impl Fn(usize) -> f64,

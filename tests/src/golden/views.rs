@@ -1,7 +1,7 @@
 //! The views that golden pictures show: of built-in houses alone.
 
 use crate::apartment;
-use dwell::sensors::{ImageSettings, Observation};
+use dwell::sensors::{ImageObservationOptions, Observation};
 use dwell::{CameraMount, Engines, ImageRequest, World, WorldConfig, WorldError};
 use dwell_render::{Camera, ClassSet, Preset, Projection, RenderError};
 use dwell_scene::parallel::Threads;
@@ -123,7 +123,7 @@ pub fn world_over(engines: Arc<Engines>) -> World {
 ///
 /// # Panics
 /// When the agents do not fit.
-pub fn company() -> World {
+pub fn world_of_two_agents() -> World {
     let config = WorldConfig {
         agents: vec![AgentBody::default(); 2],
         ..WorldConfig::default()
@@ -151,7 +151,7 @@ pub fn look(
 ) -> Result<Vec<Observation>, WorldError> {
     let rotation = rotation_from_yaw_pitch(yaw_deg.to_radians(), pitch_deg.to_radians());
     let place = CameraMount::World(Pose::new(Vec3::from_array(eye), rotation));
-    at(
+    observe_request(
         world,
         ImageRequest {
             camera,
@@ -167,14 +167,14 @@ pub fn look(
 ///
 /// # Errors
 /// [`WorldError`] for a sensor that there is not.
-pub fn at(
+pub fn observe_request(
     world: &World,
     request: ImageRequest,
     sensors: &[&str],
     classes: ClassSet,
 ) -> Result<Vec<Observation>, WorldError> {
     let names: Vec<String> = sensors.iter().map(|name| (*name).to_owned()).collect();
-    let settings = ImageSettings {
+    let settings = ImageObservationOptions {
         max_objects: 16,
         classes,
     };

@@ -33,7 +33,7 @@ pub fn read(
 
 /// Makes a world of a house, walks a step in it and takes a picture of 24 by 16 pixels. What a house does not allow ends in an
 /// error, as an agent without a floor to stand on.
-pub fn live_in(house: House) {
+pub fn exercise_house(house: House) {
     let engines = Engines::new(Arc::new(house));
     let Ok(mut world) = World::new(engines, &WorldConfig::default()) else {
         return;

@@ -8,7 +8,7 @@ mod mutate;
 mod samples;
 mod targets;
 
-pub use bodies::{live_in, read};
+pub use bodies::{exercise_house, read};
 pub use mutate::mutated;
 pub use samples::{NAMES, Sample, sample};
 pub use targets::{OTHERS, fuzz, seed_corpus, seeds};

@@ -12,7 +12,7 @@ use dwell_calibration::{Options, calibrate};
 use dwell_semantics::language::Language;
 use tempfile::TempDir;
 
-use super::bodies::{live_in, read};
+use super::bodies::{exercise_house, read};
 use super::samples::{NAMES, Sample, files_below, sample};
 
 /// Targets beside those of [`NAMES`].
@@ -42,7 +42,7 @@ impl Target for Sample {
 
     fn take(&self, file: usize, bytes: &[u8]) {
         if let Ok((house, _)) = read(self, file, bytes) {
-            live_in(house);
+            exercise_house(house);
         }
     }
 }

@@ -41,7 +41,7 @@ pub struct CheckCounts {
 }
 
 /// Looks at the house of a seed and spec.
-pub fn look(seed: u64, spec: &HouseSpec, depth: CheckDepth) -> CheckCounts {
+pub fn check_house(seed: u64, spec: &HouseSpec, depth: CheckDepth) -> CheckCounts {
     let mut looked = CheckCounts {
         seed,
         counts: [0; 2],
@@ -66,7 +66,7 @@ pub fn look(seed: u64, spec: &HouseSpec, depth: CheckDepth) -> CheckCounts {
 }
 
 /// Seeds whose houses differ when they are made at the same time on two threads instead of one after the other.
-pub fn of_other_bytes(seeds: &[u64]) -> Vec<u64> {
+pub fn thread_dependent_seeds(seeds: &[u64]) -> Vec<u64> {
     let number = |seed: u64| {
         let made = generate(seed, &HouseSpec::default());
         made.map(|generated| (generated.house.fingerprint(), generated.report))

@@ -101,7 +101,7 @@ impl SphereFit {
     }
 
     /// Returns the gain that gives all responses the sphere's energy at low frequencies.
-    pub(super) fn gain(
+    pub(super) fn level_matching_gain(
         &self,
         directions: &[DVec3],
         responses: &[[Vec<f32>; 2]],
@@ -128,7 +128,7 @@ impl SphereFit {
     }
 
     /// Returns the delays from a direction that was not measured: the sphere's, plus the deviation of those nearby, s.
-    pub(super) fn filled_delay_s(
+    pub(super) fn extrapolated_delay_s(
         &self,
         directions: &[DVec3],
         delay_s: &[[f64; 2]],

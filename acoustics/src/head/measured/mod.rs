@@ -72,7 +72,9 @@ impl HeadResponses {
         let (mut begins_s, mut delay_s) = (Vec::new(), Vec::new());
         for row in &rows {
             let begin_s = row.responses.map(|response| onsets.onset_s(response));
-            responses.push([0, 1].map(|ear| cut(row.responses[ear], begin_s[ear], rate_hz)));
+            responses.push(
+                [0, 1].map(|ear| truncate_and_fade(row.responses[ear], begin_s[ear], rate_hz)),
+            );
             delay_s.push([0, 1].map(|ear| row.delay_s[ear] + begin_s[ear]));
             begins_s.push(begin_s);
         }
@@ -82,7 +84,7 @@ impl HeadResponses {
             *late_s -= fit.common_delay_s;
         }
         let samples = responses.iter().flatten().map(Vec::len).max().unwrap_or(0);
-        let gain = fit.gain(&directions, &responses, rate_hz, samples);
+        let gain = fit.level_matching_gain(&directions, &responses, rate_hz, samples);
         for x in responses.iter_mut().flatten().flatten() {
             *x *= gain as f32;
         }
@@ -93,7 +95,7 @@ impl HeadResponses {
             let nearest = directions[..measured].iter().map(|d| d.dot(direction));
             if nearest.fold(-1.0, f64::max) < GAP_COSINE {
                 let near = WeightedDirections::near(&directions[..measured], direction);
-                delay_s.push(fit.filled_delay_s(&directions, &delay_s, &near, direction));
+                delay_s.push(fit.extrapolated_delay_s(&directions, &delay_s, &near, direction));
                 directions.push(direction);
             }
         }
@@ -128,7 +130,7 @@ impl HeadResponses {
 }
 
 /// Returns a response up to the end of its ringing.
-fn cut(response: &[f32], begin_s: f64, rate_hz: f64) -> Vec<f32> {
+fn truncate_and_fade(response: &[f32], begin_s: f64, rate_hz: f64) -> Vec<f32> {
     let samples = |time_s: f64| (time_s.max(0.0) * rate_hz) as usize;
     let end = samples(begin_s + RINGING_S).clamp(1, response.len());
     let mut kept = response[..end].to_vec();

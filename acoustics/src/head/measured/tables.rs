@@ -85,7 +85,7 @@ impl HeadResponses {
                     *value *= bass;
                 }
                 let per_hz = slope(&rest, &common, &frequencies);
-                without_noise(&mut rest, &common, &frequencies, per_hz);
+                idealize_bass(&mut rest, &common, &frequencies, per_hz);
                 finish(delay_s, rest, per_hz)
             };
             rows.push([whole(delay_s[0], left), whole(delay_s[1], right)]);
@@ -217,7 +217,7 @@ fn slope(rest: &[Complex<f32>], common: &[f32], frequencies: &[f64]) -> f64 {
 
 /// Below [`BASS_HZ`] the differences between responses are noise, and a head only delays: the level goes to 1, and the
 /// phase to the common one and the delay of the frequencies above.
-fn without_noise(rest: &mut [Complex<f32>], common: &[f32], frequencies: &[f64], per_hz: f64) {
+fn idealize_bass(rest: &mut [Complex<f32>], common: &[f32], frequencies: &[f64], per_hz: f64) {
     let (low, high) = BASS_HZ;
     for ((value, common), frequency_hz) in rest.iter_mut().zip(common).zip(frequencies) {
         if *frequency_hz >= high {

@@ -7,7 +7,7 @@ mod rig;
 pub use model::models;
 pub use rig::DriveRig;
 
-use super::motion::{Deviation, MeasuredMotion};
+use super::motion::{Deviation, MotionState};
 use super::regime::Regime;
 use super::series::{ModelledSubject, SimulationModel};
 use super::subject::RolloutSubject;
@@ -60,7 +60,7 @@ pub struct DriveRecording {
     pub planar_poses: Vec<[f64; 3]>,
     /// Rotations of the left and the right wheel since the sample before, rad. Shape (sample,).
     pub wheel_rotation_rad: Vec<[f64; 2]>,
-    motions: Vec<MeasuredMotion>,
+    motions: Vec<MotionState>,
     regimes: Vec<Regime>,
 }
 
@@ -134,9 +134,9 @@ fn wrapped(angle_rad: f64) -> f64 {
 }
 
 /// The motion of a robot at a place in the plane, in a world whose y is up and in which yaw 0 looks along -z.
-fn motion([x, y, heading]: [f64; 3], speed_m_s: f64) -> MeasuredMotion {
+fn motion([x, y, heading]: [f64; 3], speed_m_s: f64) -> MotionState {
     let rotation = DQuat::from_rotation_y(heading);
-    MeasuredMotion {
+    MotionState {
         position: DVec3::new(-y, 0.0, -x),
         rotation,
         linear: rotation * DVec3::NEG_Z * speed_m_s,
@@ -176,7 +176,7 @@ impl RolloutSubject for DriveRecordings {
         self.episodes.len()
     }
 
-    fn measured(&self, episode: usize) -> &[MeasuredMotion] {
+    fn measured(&self, episode: usize) -> &[MotionState] {
         &self.episodes[episode].motions
     }
 
@@ -208,7 +208,7 @@ impl RolloutSubject for DriveRecordings {
         at: usize,
         samples: usize,
         nudge: Option<RandomKey>,
-    ) -> Result<Vec<MeasuredMotion>, CalibrationError> {
+    ) -> Result<Vec<MotionState>, CalibrationError> {
         let drive = &self.episodes[episode];
         let from = at.saturating_sub(PAST);
         let way = rig.simulated_path(
@@ -219,7 +219,7 @@ impl RolloutSubject for DriveRecordings {
         let count = seen.len() as f64;
         let offset = rig.heading_offset_rad;
         let off = seen.iter().zip(&way).map(|(m, w)| m[2] - offset - w[2]);
-        let (mut turn, turn_sd) = mean(&off.collect::<Vec<f64>>());
+        let (mut turn, turn_sd) = mean_and_sd(&off.collect::<Vec<f64>>());
         let turned = |w: &[f64; 3], turn: f64| {
             let (sin, cos) = libm::sincos(turn);
             [cos * w[0] - sin * w[1], sin * w[0] + cos * w[1]]
@@ -230,7 +230,7 @@ impl RolloutSubject for DriveRecordings {
                 .iter()
                 .zip(&way)
                 .map(|(m, w)| m[axis] - turned(w, turn)[axis]);
-            (shift[axis], shift_sd[axis]) = mean(&off.collect::<Vec<f64>>());
+            (shift[axis], shift_sd[axis]) = mean_and_sd(&off.collect::<Vec<f64>>());
         }
         if let Some(key) = nudge {
             let mut stream = key.stream();
@@ -252,7 +252,7 @@ impl RolloutSubject for DriveRecordings {
 }
 
 /// Mean and standard deviation.
-fn mean(values: &[f64]) -> (f64, f64) {
+fn mean_and_sd(values: &[f64]) -> (f64, f64) {
     let count = values.len().max(1) as f64;
     let mean = values.iter().sum::<f64>() / count;
     let squares: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();

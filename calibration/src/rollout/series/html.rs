@@ -1,12 +1,12 @@
 //! The report of a series as one page: no network, no script.
 
-use super::SeriesReport;
+use super::ModelComparisonReport;
 use crate::format_number::{format_number, format_percent};
 use crate::report::page;
 use crate::rollout::html;
 use std::fmt::Write as _;
 
-impl SeriesReport {
+impl ModelComparisonReport {
     /// The report as one page.
     pub fn to_html(&self) -> String {
         let count = self.models.first().map_or(0, |m| m.episodes.len());
@@ -22,13 +22,13 @@ impl SeriesReport {
             "<div class=\"verdict named\"><b>Whole episodes</b>{}</div>",
             page::escape(&self.sentence)
         );
-        self.whole(&mut out);
+        self.write_whole_episodes(&mut out);
         self.parameters(&mut out);
         out.push_str("<h2>Windows</h2><p class=\"soft\">From measured samples some samples ahead: root mean square (median).</p>");
         for outcome in &self.models {
             html::windows(&mut out, outcome.model.name, &outcome.windows);
         }
-        html::solver(&mut out, &self.solver);
+        html::write_solver_artefacts(&mut out, &self.solver);
         html::residuals(&mut out, &self.residuals);
         let found = serde_json::to_string_pretty(&self.found).unwrap_or_default();
         let _ = writeln!(
@@ -39,7 +39,7 @@ impl SeriesReport {
         out
     }
 
-    fn whole(&self, out: &mut String) {
+    fn write_whole_episodes(&self, out: &mut String) {
         out.push_str(
             "<h2>Whole episodes</h2><p class=\"soft\">Medians: at the last sample, and of the mean over samples.</p>\
              <div class=\"scroll\"><table><tr><th>Model</th><th>Episodes</th><th>End</th><th>Mean</th><th>Gain</th></tr>",

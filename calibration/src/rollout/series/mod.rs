@@ -13,8 +13,8 @@ use super::refine::sentence as told;
 use super::residuals::{self, ResidualGroups};
 use super::study::folds;
 use super::{
-    REFINEMENT_FACTOR, Refinement, WindowEnd, WindowOptions, WindowScore, ends, refinements,
-    windows,
+    REFINEMENT_FACTOR, StepRefinementEffect, WindowOptions, WindowPrediction, WindowScore, ends,
+    refinements, windows,
 };
 use crate::error::CalibrationError;
 use crate::fit::{Variable, least_squares, median};
@@ -75,12 +75,12 @@ pub struct ModelOutcome {
     /// Windows, each out of fold.
     pub windows: Vec<WindowScore>,
     /// The effect of a quarter of the step.
-    pub refinements: Vec<Refinement>,
+    pub refinements: Vec<StepRefinementEffect>,
 }
 
 /// The report of a series.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SeriesReport {
+pub struct ModelComparisonReport {
     /// The version of this form.
     pub version: u32,
     /// The bundle's title.
@@ -115,14 +115,14 @@ pub fn run<S: ModelledSubject>(
     models: &[SimulationModel],
     options: &SeriesOptions,
     progress: &mut dyn FnMut(f32, &str) -> bool,
-) -> Result<SeriesReport, CalibrationError> {
+) -> Result<ModelComparisonReport, CalibrationError> {
     let fold_of = folds_of(subject, options)?;
     let progress = CallbackProgress::new(progress);
     let mut outcomes: Vec<ModelOutcome> = Vec::with_capacity(models.len());
-    let mut windows: Vec<Vec<WindowEnd>> = Vec::with_capacity(models.len());
+    let mut windows: Vec<Vec<WindowPrediction>> = Vec::with_capacity(models.len());
     for (k, model) in models.iter().enumerate() {
         let share = [k, k + 1].map(|k| k as f32 / models.len() as f32);
-        let study = ModelStudy {
+        let study = ModelCrossValidation {
             subject,
             model,
             fold_of: &fold_of,
@@ -150,7 +150,7 @@ pub fn run<S: ModelledSubject>(
     let best = outcomes
         .iter()
         .min_by(|a, b| a.square_mm2().total_cmp(&b.square_mm2()));
-    Ok(SeriesReport {
+    Ok(ModelComparisonReport {
         version: 1,
         title: subject.title().to_owned(),
         licence: subject.licence().to_owned(),
@@ -210,7 +210,7 @@ fn folds_of<S: ModelledSubject>(
 }
 
 /// A model in cross-validation.
-struct ModelStudy<'a, S: ModelledSubject> {
+struct ModelCrossValidation<'a, S: ModelledSubject> {
     subject: &'a S,
     model: &'a SimulationModel,
     fold_of: &'a [usize],
@@ -218,12 +218,12 @@ struct ModelStudy<'a, S: ModelledSubject> {
     key: RandomKey,
 }
 
-impl<S: ModelledSubject> ModelStudy<'_, S> {
+impl<S: ModelledSubject> ModelCrossValidation<'_, S> {
     fn run(
         &self,
         share: [f32; 2],
         progress: &dyn ProgressReporter,
-    ) -> Result<(ModelOutcome, Vec<WindowEnd>), CalibrationError> {
+    ) -> Result<(ModelOutcome, Vec<WindowPrediction>), CalibrationError> {
         let threads = Threads::resolve(self.options.threads);
         let count = self.fold_of.iter().max().map_or(0, |most| most + 1);
         let (mut chosen, mut rigs, mut fine) = (Vec::new(), Vec::new(), Vec::new());

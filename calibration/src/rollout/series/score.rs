@@ -4,7 +4,7 @@ use super::{ModelOutcome, ModelledSubject};
 use crate::error::CalibrationError;
 use crate::fit::median;
 use crate::format_number::{format_number, format_percent};
-use crate::rollout::{Deviation, MeasuredMotion};
+use crate::rollout::{Deviation, MotionState};
 use crate::select::share_gained;
 use dwell_scene::random::RandomKey;
 use serde::Serialize;
@@ -69,7 +69,7 @@ fn paired_rollout<S: ModelledSubject>(
     subject: &S,
     rig: &S::Rig,
     episode: usize,
-) -> Result<Vec<(MeasuredMotion, MeasuredMotion)>, CalibrationError> {
+) -> Result<Vec<(MotionState, MotionState)>, CalibrationError> {
     let measured = subject.measured(episode);
     let at = subject.past_samples();
     let samples = measured.len().saturating_sub(at + 1);

@@ -1,6 +1,6 @@
 //! The report of a series as files.
 
-use super::SeriesReport;
+use super::ModelComparisonReport;
 use crate::error::CalibrationError;
 use crate::report::write_atomically;
 use crate::rollout::box_plot;
@@ -8,7 +8,7 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 
-impl SeriesReport {
+impl ModelComparisonReport {
     /// The report as one JSON object; its key `html` holds the page.
     pub fn to_json(&self) -> String {
         let mut value = self.value();

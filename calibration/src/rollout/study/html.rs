@@ -24,7 +24,7 @@ impl StudyReport {
         );
         self.whole(&mut out);
         self.parameters(&mut out);
-        self.ahead(&mut out);
+        self.write_windows(&mut out);
         self.pairs(&mut out);
         let found = serde_json::to_string_pretty(&self.found).unwrap_or_default();
         let _ = writeln!(
@@ -140,7 +140,7 @@ impl StudyReport {
         out.push_str("</table></div>");
     }
 
-    fn ahead(&self, out: &mut String) {
+    fn write_windows(&self, out: &mut String) {
         let stride = self.options.window_stride;
         let _ = write!(
             out,
@@ -153,7 +153,7 @@ impl StudyReport {
         for report in &self.models {
             html::windows(out, report.model.name, &report.windows);
         }
-        html::solver(out, &self.solver);
+        html::write_solver_artefacts(out, &self.solver);
         html::residuals(out, &self.residuals);
     }
 

@@ -11,14 +11,14 @@ mod write;
 
 pub(super) use folds::folds;
 pub use model::{ContactModel, ContactParameter, all as models, further_models};
-pub use other_simulator::{OtherSimulator, SimulatorComparison, SimulatorScoreDifference};
+pub use other_simulator::{PeerScores, SimulatorComparison, SimulatorScoreDifference};
 
 use super::refine::sentence as told;
 use super::residuals::{self, ResidualGroups};
 use super::{
-    BoardRig, PoseTracks, REFINEMENT_FACTOR, Refinement, RolloutSubject as _, Score, ScoreSummary,
-    TrackerNoise, WindowEnd, WindowOptions, WindowScore, diverging, ends, refinements, scores,
-    windows,
+    BoardRig, PoseTracks, REFINEMENT_FACTOR, RolloutSubject as _, Score, ScoreSummary,
+    StepRefinementEffect, TrackerNoise, WindowOptions, WindowPrediction, WindowScore,
+    diverges_under_noise, ends, refinements, scores, windows,
 };
 use crate::error::CalibrationError;
 use crate::progress::{CallbackProgress, ProgressReporter};
@@ -97,7 +97,7 @@ pub struct ModelReport {
     /// Windows, each out of fold.
     pub windows: Vec<WindowScore>,
     /// The effect of a quarter of the step.
-    pub refinements: Vec<Refinement>,
+    pub refinements: Vec<StepRefinementEffect>,
     /// Every episode.
     pub episodes: Vec<EpisodeScore>,
     /// The comparison with the peers, episode by episode.
@@ -140,7 +140,7 @@ pub struct StudyReport {
 pub fn run(
     tracks: &PoseTracks,
     models: &[ContactModel],
-    peers: &[OtherSimulator],
+    peers: &[PeerScores],
     options: &StudyOptions,
     progress: &mut dyn FnMut(f32, &str) -> bool,
 ) -> Result<StudyReport, CalibrationError> {
@@ -149,10 +149,11 @@ pub fn run(
     let groups: Vec<&str> = tracks.episodes.iter().map(|e| e.group.as_str()).collect();
     let fold_of = folds::folds(&groups, options.folds, options.seed);
     let mut reports = Vec::with_capacity(models.len());
-    let mut windows: Vec<Vec<WindowEnd>> = Vec::with_capacity(models.len());
+    let mut windows: Vec<Vec<WindowPrediction>> = Vec::with_capacity(models.len());
     for (k, model) in models.iter().enumerate() {
         let share = [k, k + 1].map(|k| k as f32 / models.len() as f32);
-        let (report, ends) = study(tracks, model, peers, &fold_of, options, share, &progress)?;
+        let (report, ends) =
+            study_model(tracks, model, peers, &fold_of, options, share, &progress)?;
         let told = format!("{}: {}", model.name, errors(&report));
         progress.stage(share[1], &told)?;
         reports.push(report);
@@ -210,15 +211,15 @@ fn check(tracks: &PoseTracks, options: &StudyOptions) -> Result<(), CalibrationE
     Ok(())
 }
 
-fn study(
+fn study_model(
     tracks: &PoseTracks,
     model: &ContactModel,
-    peers: &[OtherSimulator],
+    peers: &[PeerScores],
     fold_of: &[usize],
     options: &StudyOptions,
     share: [f32; 2],
     progress: &dyn ProgressReporter,
-) -> Result<(ModelReport, Vec<WindowEnd>), CalibrationError> {
+) -> Result<(ModelReport, Vec<WindowPrediction>), CalibrationError> {
     let threads = Threads::resolve(options.threads);
     let key = RandomKey::root(options.seed)
         .child("study")
@@ -254,7 +255,7 @@ fn study(
             .collect();
         progress.check()?;
         let scores = scores(rig, tracks, &held, threads)?;
-        let chance = diverging(rig, tracks, &held, key.child("episodes"), threads)?;
+        let chance = diverges_under_noise(rig, tracks, &held, key.child("episodes"), threads)?;
         for ((k, score), diverges) in held.iter().zip(scores).zip(chance) {
             by_episode[*k] = (score, diverges);
         }

@@ -40,7 +40,7 @@ const FRICTION: ContactParameter = ContactParameter {
     is_logarithmic: true,
 };
 
-const fn number(
+const fn contact_parameter(
     name: &'static str,
     unit: &'static str,
     range: [f64; 2],
@@ -54,12 +54,14 @@ const fn number(
     }
 }
 
-const RESTITUTION: ContactParameter = number("restitution", "1", [0.0, 0.5], false);
-const FREQUENCY: ContactParameter = number("natural_frequency_hz", "Hz", [8.0, 120.0], true);
-const DAMPING: ContactParameter = number("damping_ratio", "1", [0.2, 3.0], true);
+const RESTITUTION: ContactParameter = contact_parameter("restitution", "1", [0.0, 0.5], false);
+const FREQUENCY: ContactParameter =
+    contact_parameter("natural_frequency_hz", "Hz", [8.0, 120.0], true);
+const DAMPING: ContactParameter = contact_parameter("damping_ratio", "1", [0.2, 3.0], true);
 /// Negative slopes, restitution that grows with speed, exist in no material; they are searched so that a fit may say so.
-const SLOPE: ContactParameter = number("restitution_slope_s_m", "s/m", [-0.2, 0.4], false);
-const TORSION: ContactParameter = number("torsion_radius_m", "m", [0.0, 0.03], false);
+const SLOPE: ContactParameter =
+    contact_parameter("restitution_slope_s_m", "s/m", [-0.2, 0.4], false);
+const TORSION: ContactParameter = contact_parameter("torsion_radius_m", "m", [0.0, 0.03], false);
 
 /// The models of a study: as the engine comes; the engine's own two numbers fitted; friction by point with compliance.
 pub fn all() -> Vec<ContactModel> {

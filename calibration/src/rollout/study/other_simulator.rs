@@ -15,7 +15,7 @@ const MOST_BYTES: u64 = 16 << 20;
 
 /// Another simulator's scores.
 #[derive(Clone, Debug, PartialEq)]
-pub struct OtherSimulator {
+pub struct PeerScores {
     /// Its name.
     pub name: String,
     /// By episode.
@@ -34,7 +34,7 @@ struct PeerScoreRow {
     e_q: f64,
 }
 
-impl OtherSimulator {
+impl PeerScores {
     /// Reads a CSV table with the columns `episode, position_widths, rotation_deg, e_q`; the file's name is the peer's.
     ///
     /// # Errors
@@ -99,7 +99,7 @@ pub struct SimulatorComparison {
 pub(super) fn compare(
     tracks: &PoseTracks,
     ours: &[Score],
-    peer: &OtherSimulator,
+    peer: &PeerScores,
     draws: usize,
     key: RandomKey,
 ) -> Result<SimulatorComparison, CalibrationError> {

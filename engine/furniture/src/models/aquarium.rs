@@ -115,7 +115,7 @@ fn aquarium(style: &Style, key: RandomKey) -> Model {
     }
     let front = style.front_style();
     let mut model = Model::articulated("aquarium", "fish_tank")
-        .switched(true)
+        .with_switch_state(true)
         .part(body)
         .with_sound([0.0, h - 0.05, -z + 0.05], "hum", 34.0)
         .with_light_shape([0.0, h + 0.02, 0.0], dwell_scene::LightShape::Point, 3.0);

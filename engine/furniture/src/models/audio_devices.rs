@@ -2,7 +2,7 @@
 
 use super::casings::CASING_COLORS;
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black, chrome, device, plastic, walnut};
+use crate::finishes::{Finish, black_plastic, chrome, device, plastic, walnut};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{block, cylinder, rod, rounded_block, tube};
@@ -50,7 +50,7 @@ fn radio(on: bool) -> Model {
             0.6,
         )
         .with(
-            &black(),
+            &black_plastic(),
             block([-x + 0.02, 0.0, -z + 0.01], [x - 0.02, 0.006, z - 0.01]),
         )
         .with(
@@ -64,7 +64,7 @@ fn radio(on: bool) -> Model {
             rod([0.13, h - 0.01, -0.03], [0.13, h + 0.2, -0.05], 0.0025).visual_only(),
         );
     Model::pickable("radio", "radio")
-        .switched(on)
+        .with_switch_state(on)
         .part(body)
         .with_sound([-0.06, 0.09, z + 0.01], "radio", 63.0)
 }
@@ -117,7 +117,7 @@ fn sample_loudspeaker(style: &Style, key: RandomKey) -> Model {
     };
     let height = d.sample_m("height");
     loudspeaker(height)
-        .switched(false)
+        .with_switch_state(false)
         .with_sound([0.0, 0.66 * height, 0.14], "radio", 70.0)
         .with_finish_replaced("walnut", &case)
 }
@@ -153,7 +153,7 @@ fn stereo(style: &Style, key: RandomKey) -> Model {
             0.4,
         )
         .with(
-            &black(),
+            &black_plastic(),
             block([-x + 0.03, 0.0, -z + 0.03], [x - 0.03, 0.012, z - 0.05]),
         )
         .with(
@@ -206,7 +206,7 @@ fn stereo(style: &Style, key: RandomKey) -> Model {
             .visual_only(),
         );
     Model::movable("stereo", "stereo_set")
-        .switched(false)
+        .with_switch_state(false)
         .part(body)
         .with_sound([0.0, 0.5 * h, z], "radio", 66.0)
 }
@@ -238,7 +238,7 @@ fn headphones(style: &Style, key: RandomKey) -> Model {
         .with(&shell, tube(&arc, 0.01, 8))
         .with_fill_fraction(&shell, ear(-1.0).merged(ear(1.0)), 0.5);
     Model::pickable("headphones", "headphones")
-        .switched(false)
+        .with_switch_state(false)
         .part(body)
         .with_sound([r, y - 0.02, 0.0], "radio", 48.0)
 }

@@ -1,7 +1,7 @@
 //! A bathroom scale.
 
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black};
+use crate::finishes::{Finish, black_plastic};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{block, rounded_block};
@@ -18,13 +18,16 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[CatalogueEntry::new(
 /// A bathroom scale.
 fn scale() -> Model {
     let body = PartBuilder::new("body")
-        .with(&black(), block([-0.13, 0.0, -0.13], [0.13, 0.012, 0.13]))
+        .with(
+            &black_plastic(),
+            block([-0.13, 0.0, -0.13], [0.13, 0.012, 0.13]),
+        )
         .with(
             &Finish::plain("green_glass", "glass", [150, 186, 180]).transparent(1.0),
             rounded_block([-0.15, 0.012, -0.15], [0.15, 0.022, 0.15], 0.004, 1),
         )
         .with(
-            &black(),
+            &black_plastic(),
             block([-0.04, 0.022, -0.12], [0.04, 0.0225, -0.08]).visual_only(),
         );
     Model::movable("bathroom_scale", "weight_scale").part(body)

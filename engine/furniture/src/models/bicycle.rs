@@ -1,7 +1,7 @@
 //! A bicycle.
 
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black, chrome, painted_steel};
+use crate::finishes::{Finish, black_plastic, chrome, painted_steel};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{SolidMesh, ball, block, cylinder, ring, rod, rounded_block, tube};
@@ -64,7 +64,7 @@ fn bicycle(_style: &Style, key: RandomKey) -> Model {
             0.16,
         )
         .with_fill_fraction(
-            &black(),
+            &black_plastic(),
             rounded_block(
                 [saddle[0] - 0.14, h - 0.1, -0.07],
                 [saddle[0] + 0.12, h - 0.04, 0.07],
@@ -109,14 +109,14 @@ fn bicycle(_style: &Style, key: RandomKey) -> Model {
             0.5,
         )
         .with(
-            &black(),
+            &black_plastic(),
             block(
                 [crank[0] - 0.15, crank[1] + 0.12, 0.05],
                 [crank[0] - 0.06, crank[1] + 0.14, 0.13],
             ),
         )
         .with(
-            &black(),
+            &black_plastic(),
             block(
                 [crank[0] + 0.06, crank[1] - 0.14, -0.13],
                 [crank[0] + 0.15, crank[1] - 0.12, -0.05],
@@ -124,15 +124,15 @@ fn bicycle(_style: &Style, key: RandomKey) -> Model {
         )
         // A stand of two legs under the bottom bracket.
         .with(
-            &black(),
+            &black_plastic(),
             ball(0.01, 8).translated(crank[0] - 0.08, 0.01, 0.16),
         )
         .with(
-            &black(),
+            &black_plastic(),
             ball(0.01, 8).translated(crank[0] - 0.08, 0.01, -0.16),
         )
         .with(
-            &black(),
+            &black_plastic(),
             rod(
                 [crank[0], crank[1], 0.0],
                 [crank[0] - 0.08, 0.008, 0.16],
@@ -140,7 +140,7 @@ fn bicycle(_style: &Style, key: RandomKey) -> Model {
             ),
         )
         .with(
-            &black(),
+            &black_plastic(),
             rod(
                 [crank[0], crank[1], 0.0],
                 [crank[0] - 0.08, 0.008, -0.16],

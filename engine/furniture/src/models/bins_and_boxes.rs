@@ -1,7 +1,7 @@
 //! Laundry baskets, waste bins and storage boxes.
 
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black, rattan};
+use crate::finishes::{Finish, black_plastic, rattan};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{block, ring, surface_of_revolution, vessel};
@@ -62,7 +62,7 @@ fn pedal_bin(height_m: f32, color: &Finish) -> Model {
     let body = PartBuilder::new("body")
         .with_fill_fraction(color, pail, 0.35)
         .with(
-            &black(),
+            &black_plastic(),
             block([-0.03, 0.01, z], [0.03, 0.02, z + 0.06]).visual_only(),
         );
     let low = rim + 0.001;
@@ -80,7 +80,7 @@ fn pedal_bin(height_m: f32, color: &Finish) -> Model {
     Model::movable("trash_can", "trash_can")
         .part(body)
         .with_container_space("inside", [-half, WALL_M, -half], [half, rim, half])
-        .part(PartBuilder::new("lid").with_fill_fraction(&black(), cover, 0.1))
+        .part(PartBuilder::new("lid").with_fill_fraction(&black_plastic(), cover, 0.1))
         .hinged("lid", [0.0, low, -r], Vec3::NEG_X, LID_RAD)
 }
 

@@ -73,7 +73,7 @@ impl Carcass {
     }
 
     /// The free space above the shelf at `share` (0: the bottom) up to the one at `next` (1: the top), over the whole width.
-    pub(super) fn space(&self, share: f32, next: f32) -> ([f32; 3], [f32; 3]) {
+    pub(super) fn space_between_shelves(&self, share: f32, next: f32) -> ([f32; 3], [f32; 3]) {
         let height = self.max[1] - self.min[1];
         let surface = |s: f32| {
             if s <= 0.0 {

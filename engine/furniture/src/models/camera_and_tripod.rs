@@ -1,7 +1,7 @@
 //! A camera and a tripod.
 
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black, chrome, device};
+use crate::finishes::{Finish, black_plastic, chrome, device};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{ball, block, cylinder, rod, rounded_block};
@@ -41,7 +41,11 @@ fn camera(_style: &Style, key: RandomKey) -> Model {
             &skin,
             block([-0.25 * x, 0.8 * h, -z + 0.004], [0.45 * x, h, -z + 0.04]),
         )
-        .with_fill_fraction(&black(), lens(0.36 * h, -z + 0.045, depth - 0.05), 0.7)
+        .with_fill_fraction(
+            &black_plastic(),
+            lens(0.36 * h, -z + 0.045, depth - 0.05),
+            0.7,
+        )
         .with(
             &Finish::plain("lens", "glass", [40, 46, 70]).transparent(1.0),
             lens(0.28 * h, z - 0.005, 0.004),
@@ -51,7 +55,7 @@ fn camera(_style: &Style, key: RandomKey) -> Model {
             cylinder(0.01, 0.008, 12).translated(-0.7 * x, 0.8 * h, -z + 0.022),
         );
     Model::pickable("camera", "camera")
-        .switched(false)
+        .with_switch_state(false)
         .part(body)
 }
 
@@ -68,7 +72,7 @@ fn tripod(_style: &Style, key: RandomKey) -> Model {
     let crown = 0.72 * h;
     let mut body = PartBuilder::new("body")
         .with(
-            &black(),
+            &black_plastic(),
             cylinder(0.045, 0.06, 16).translated(0.0, crown - 0.03, 0.0),
         )
         .with_fill_fraction(
@@ -76,15 +80,18 @@ fn tripod(_style: &Style, key: RandomKey) -> Model {
             cylinder(0.013, h - crown - 0.03, 12).translated(0.0, crown, 0.0),
             0.6,
         )
-        .with(&black(), block([-0.04, h - 0.05, -0.03], [0.04, h, 0.03]))
         .with(
-            &black(),
+            &black_plastic(),
+            block([-0.04, h - 0.05, -0.03], [0.04, h, 0.03]),
+        )
+        .with(
+            &black_plastic(),
             rod([0.0, h - 0.03, -0.02], [0.1, h - 0.12, -0.14], 0.008),
         );
     for k in 0..3 {
         let (sin, cos) = dwell_scene::math::sin_cos(TAU * k as f32 / 3.0);
         let foot = ball(0.012, 8).translated(r * sin, 0.012, r * cos);
-        body = body.with(&black(), foot);
+        body = body.with(&black_plastic(), foot);
         body = body.with_fill_fraction(
             &leg,
             rod(

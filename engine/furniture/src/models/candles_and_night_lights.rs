@@ -1,7 +1,7 @@
 //! Candles and night lights.
 
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black, milk_glass, painted_steel, plastic};
+use crate::finishes::{Finish, black_plastic, milk_glass, painted_steel, plastic};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{cone, cylinder, rod, surface_of_revolution};
@@ -30,7 +30,7 @@ fn night_light() -> Model {
         .with(&milk_glass(), cone(0.034, 0.026, 0.07, 18))
         .with(&red, cap);
     Model::pickable("night_light", "table_lamp")
-        .switched(true)
+        .with_switch_state(true)
         .part(body)
         .with_light([0.0, 0.15, 0.0], 1.0)
 }
@@ -52,7 +52,7 @@ fn candle(height_m: f32) -> Model {
             cylinder(0.032, height_m, 18).translated(0.0, 0.008, 0.0),
         )
         .with(
-            &black(),
+            &black_plastic(),
             rod(
                 [0.0, height_m + 0.008, 0.0],
                 [0.0, height_m + 0.016, 0.0],
@@ -61,7 +61,7 @@ fn candle(height_m: f32) -> Model {
             .visual_only(),
         );
     Model::pickable("candle", "candle")
-        .switched(false)
+        .with_switch_state(false)
         .part(body)
         .with_light([0.0, height_m + 0.04, 0.0], 0.5)
 }

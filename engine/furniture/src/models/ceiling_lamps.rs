@@ -2,7 +2,7 @@
 
 use super::lampshades::{shade_finish, shade_mesh};
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black, brass, chrome, milk_glass, plastic, white_lacquer};
+use crate::finishes::{Finish, black_plastic, brass, chrome, milk_glass, plastic, white_lacquer};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{ball, cylinder, rod, surface_of_revolution, tube};
@@ -37,7 +37,7 @@ fn ceiling_dome(radius_m: f32, power_w: f32) -> Model {
         )
         .with_fill_fraction(&milk_glass(), glass, 0.08);
     Model::fixed("ceiling_dome", "chandelier")
-        .switched(true)
+        .with_switch_state(true)
         .part(body)
         .with_light([0.0, -0.13, 0.0], power_w)
 }
@@ -58,7 +58,7 @@ fn drum(drop_m: f32, radius_m: f32, cloth: &Finish, power_w: f32) -> Model {
             cylinder(0.05, 0.025, 20).translated(0.0, -0.025, 0.0),
         )
         .with(
-            &black(),
+            &black_plastic(),
             rod(
                 [0.0, -drop_m + 0.5 * height, 0.0],
                 [0.0, -0.025, 0.0],
@@ -76,7 +76,7 @@ fn drum(drop_m: f32, radius_m: f32, cloth: &Finish, power_w: f32) -> Model {
                 .visual_only(),
         );
     Model::fixed("drum_lamp", "chandelier")
-        .switched(true)
+        .with_switch_state(true)
         .part(body)
         .with_light([0.0, -drop_m - 0.02, 0.0], power_w)
 }
@@ -110,7 +110,10 @@ fn pendant(drop_m: f32, radius_m: f32, metal: &Finish, power_w: f32) -> Model {
             metal,
             cylinder(0.05, 0.025, 20).translated(0.0, -0.025, 0.0),
         )
-        .with(&black(), rod([0.0, top, 0.0], [0.0, -0.025, 0.0], 0.004))
+        .with(
+            &black_plastic(),
+            rod([0.0, top, 0.0], [0.0, -0.025, 0.0], 0.004),
+        )
         .with(
             metal,
             surface_of_revolution(&dome, 32).translated(0.0, -drop_m, 0.0),
@@ -122,7 +125,7 @@ fn pendant(drop_m: f32, radius_m: f32, metal: &Finish, power_w: f32) -> Model {
                 .visual_only(),
         );
     Model::fixed("pendant_lamp", "chandelier")
-        .switched(true)
+        .with_switch_state(true)
         .part(body)
         .with_light([0.0, -drop_m - 0.12, 0.0], power_w)
 }
@@ -216,7 +219,7 @@ fn chandelier(style: &Style, key: RandomKey) -> Model {
             );
     }
     Model::fixed("chandelier", "chandelier")
-        .switched(true)
+        .with_switch_state(true)
         .part(body)
         .with_light([0.0, low - 0.05, 0.0], 24.0)
 }

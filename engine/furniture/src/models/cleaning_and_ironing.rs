@@ -1,7 +1,7 @@
 //! A vacuum cleaner, an iron and an ironing board.
 
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{black, chrome, plastic, steel};
+use crate::finishes::{black_plastic, chrome, plastic, steel};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{ball, block, cylinder, extrude, rod, rounded_block, tube};
@@ -51,10 +51,13 @@ fn vacuum_cleaner(_style: &Style, key: RandomKey) -> Model {
             rounded_block([-x + 0.035, 0.02, -z], [x - 0.035, tank, z - 0.09], 0.06, 3),
             0.3,
         )
-        .with_all(&black(), [wheel(-1.0), wheel(1.0)])
-        .with(&black(), ball(0.03, 10).translated(0.0, 0.03, z - 0.13))
+        .with_all(&black_plastic(), [wheel(-1.0), wheel(1.0)])
         .with(
-            &black(),
+            &black_plastic(),
+            ball(0.03, 10).translated(0.0, 0.03, z - 0.13),
+        )
+        .with(
+            &black_plastic(),
             rounded_block([-x, 0.0, z - 0.085], [x, 0.035, z], 0.012, 1),
         )
         .with_fill_fraction(
@@ -63,7 +66,7 @@ fn vacuum_cleaner(_style: &Style, key: RandomKey) -> Model {
             0.2,
         )
         .with(
-            &black(),
+            &black_plastic(),
             tube(
                 &[
                     [0.0, h - 0.06, z - 0.12],
@@ -75,7 +78,7 @@ fn vacuum_cleaner(_style: &Style, key: RandomKey) -> Model {
             ),
         )
         .with_fill_fraction(
-            &black(),
+            &black_plastic(),
             tube(
                 &[
                     [0.0, h - 0.017, z - 0.24],
@@ -90,7 +93,7 @@ fn vacuum_cleaner(_style: &Style, key: RandomKey) -> Model {
             0.3,
         );
     Model::movable("vacuum_cleaner", "vacuum_cleaner")
-        .switched(false)
+        .with_switch_state(false)
         .part(body)
         .with_sound([0.0, 0.1, -z + 0.05], "noise", 72.0)
 }
@@ -149,11 +152,11 @@ fn iron(_style: &Style, key: RandomKey) -> Model {
             ),
         )
         .with(
-            &black(),
+            &black_plastic(),
             rod([0.0, 0.02, z - 0.02], [0.0, 0.68 * h, z - 0.025], 0.015),
         );
     Model::pickable("iron", "iron")
-        .switched(false)
+        .with_switch_state(false)
         .part(body)
         .with_sound([0.0, 0.5 * h, -z], "noise", 56.0)
 }

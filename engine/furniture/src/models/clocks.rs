@@ -1,7 +1,7 @@
 //! Wall clocks and alarm clocks.
 
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black, lacquer, plastic};
+use crate::finishes::{Finish, black_plastic, lacquer, plastic};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{block, cylinder, panel, ring};
@@ -80,7 +80,7 @@ fn alarm_clock() -> Model {
                 .visual_only(),
         )
         .with_all(
-            &black(),
+            &black_plastic(),
             [-0.03, 0.03].map(|x| block([x - 0.006, 0.0, -0.018], [x + 0.006, 0.025, 0.018])),
         );
     Model::pickable("alarm_clock", "clock")

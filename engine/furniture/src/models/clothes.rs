@@ -1,7 +1,7 @@
 //! Folded clothes, shoes and helmets.
 
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black, leather, plastic};
+use crate::finishes::{Finish, black_plastic, leather, plastic};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{loft, oval, rounded_block, surface_of_revolution};
@@ -143,6 +143,6 @@ fn helmet(_style: &Style, key: RandomKey) -> Model {
     };
     let body = PartBuilder::new("body")
         .with_fill_fraction(&shell, dome, 0.05)
-        .with_all(&black(), [vent(-0.13 * w), vent(0.13 * w)]);
+        .with_all(&black_plastic(), [vent(-0.13 * w), vent(0.13 * w)]);
     Model::pickable("helmet", "helmet").part(body)
 }

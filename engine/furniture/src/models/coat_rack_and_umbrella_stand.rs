@@ -2,7 +2,7 @@
 
 use super::clothes::CLOTHING_COLORS;
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black, oak};
+use crate::finishes::{Finish, black_plastic, oak};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{
@@ -67,14 +67,14 @@ fn coat_rack(width_m: f32, coat: &Finish, scarf: &Finish) -> Model {
     ));
     let body = PartBuilder::new("body")
         .with(&oak(), block([-x, -0.05, 0.0], [x, 0.05, 0.02]))
-        .with_all(&black(), (0..5).map(hook))
+        .with_all(&black_plastic(), (0..5).map(hook))
         .with_fill_fraction(coat, garment, 0.15)
         .with_fill_fraction(scarf, shawl, 0.3);
     Model::fixed("coat_rack", "hanger").part(body)
 }
 
 /// Black hooks.
-const BLACK: &Finish = &black();
+const BLACK: &Finish = &black_plastic();
 
 fn sample_coat_rack(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("coat_rack", key);

@@ -1,7 +1,7 @@
 //! Desktop computers, towers and laptops.
 
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black, device};
+use crate::finishes::{Finish, black_plastic, device};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{block, cylinder, panel, rounded_block};
@@ -109,7 +109,7 @@ fn computer(_style: &Style, key: RandomKey) -> Model {
             0.5,
         );
     Model::movable("computer", "computer")
-        .switched(true)
+        .with_switch_state(true)
         .part(body)
 }
 
@@ -130,14 +130,14 @@ fn computer_tower(_style: &Style, key: RandomKey) -> Model {
     let body = PartBuilder::new("body")
         .with_fill_fraction(&case, block([-x, 0.012, -z], [x, h, z - 0.01]), 0.35)
         .with(
-            &black(),
+            &black_plastic(),
             block(
                 [-x + 0.012, 0.05, z - 0.01],
                 [x - 0.012, h - 0.03, z - 0.004],
             ),
         )
         .with(
-            &black(),
+            &black_plastic(),
             block([-x + 0.02, 0.0, -z + 0.02], [x - 0.02, 0.012, z - 0.04]),
         )
         .with(
@@ -148,7 +148,7 @@ fn computer_tower(_style: &Style, key: RandomKey) -> Model {
                 .visual_only(),
         );
     Model::movable("computer_tower", "computer")
-        .switched(true)
+        .with_switch_state(true)
         .part(body)
         .with_sound([0.0, 0.5 * h, -z], "fan", 34.0)
 }
@@ -206,7 +206,7 @@ fn laptop() -> Model {
                 .visual_only(),
         );
     Model::pickable("laptop", "laptop")
-        .switched(true)
+        .with_switch_state(true)
         .part(body)
         .with_sound([0.0, 0.01, 0.0], "fan", 28.0)
 }

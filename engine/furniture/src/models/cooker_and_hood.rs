@@ -4,7 +4,7 @@ use super::cabinet_parts::level_handle;
 use super::casings::casing;
 use super::kitchen_units::{UNIT_DEPTH_M, WORKTOP_M};
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black, enamel, painted_steel, steel};
+use crate::finishes::{Finish, black_plastic, enamel, painted_steel, steel};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{SolidMesh, block, cylinder};
@@ -49,7 +49,7 @@ fn cooker() -> Model {
     let body = PartBuilder::new("body")
         .with_all(&case, shell)
         .with(
-            &black(),
+            &black_plastic(),
             block([-x + 0.02, 0.0, -z + 0.03], [x - 0.02, 0.06, face - 0.04]),
         )
         .with(&dark, block([-x, top, -z], [x, WORKTOP_M, z]))
@@ -62,7 +62,7 @@ fn cooker() -> Model {
                 plate(0.14, 0.13, 0.08),
             ],
         )
-        .with_all(&black(), (0..5).map(knob))
+        .with_all(&black_plastic(), (0..5).map(knob))
         .with(&case, block([-x, 0.07, face], [x, 0.29, z]));
     let grid = steel();
     let body = body.with(
@@ -75,7 +75,7 @@ fn cooker() -> Model {
         .with(&dark, block([-x, 0.36, face + 0.002], [x, 0.7, z]))
         .with(&steel(), level_handle(0.0, 0.74, z, 0.2));
     Model::articulated("cooker", "cooker")
-        .switched(false)
+        .with_switch_state(false)
         .part(body)
         .with_sound([0.0, 0.54, face], "fan", 46.0)
         .with_support_surface("hob", [-x, WORKTOP_M, -z], [x, WORKTOP_M + 0.4, z])
@@ -110,7 +110,7 @@ fn range_hood(width_m: f32) -> Model {
         dropoff_rate: 1.0,
     };
     Model::fixed("range_hood", "range_hood")
-        .switched(false)
+        .with_switch_state(false)
         .part(body)
         .with_light_shape([0.0, -0.01, 0.23], down, 5.0)
         .with_sound([0.0, 0.1, 0.23], "fan", 58.0)

@@ -1,7 +1,7 @@
 //! Pots, pans, utensils, cutting boards and knife blocks.
 
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, beech, black, painted_steel, steel};
+use crate::finishes::{Finish, beech, black_plastic, painted_steel, steel};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{cylinder, rod, rounded_block, surface_of_revolution, tube, vessel};
@@ -52,9 +52,9 @@ fn pot(radius_m: f32, color: &Finish) -> Model {
             0.06,
         )
         .with_fill_fraction(color, lid, 0.25)
-        .with_all(&black(), [grip(-1.0), grip(1.0)])
+        .with_all(&black_plastic(), [grip(-1.0), grip(1.0)])
         .with(
-            &black(),
+            &black_plastic(),
             cylinder(0.018, 0.022, 12).translated(0.0, h + 0.026, 0.0),
         );
     Model::pickable("pot", "pot").part(body)
@@ -80,7 +80,7 @@ fn open_pot(radius_m: f32, color: &Finish) -> Model {
     };
     let body = PartBuilder::new("body")
         .with_fill_fraction(color, shell, 0.4)
-        .with_all(&black(), [grip(-1.0), grip(1.0)]);
+        .with_all(&black_plastic(), [grip(-1.0), grip(1.0)]);
     let half = 0.62 * r;
     Model::pickable("open_pot", "pot")
         .part(body)
@@ -109,7 +109,7 @@ fn pan(radius_m: f32) -> Model {
     let iron = painted_steel("black_steel", [40, 40, 42]);
     let shell = vessel(&[(0.0, 0.0), (0.82 * r, 0.0), (r, 0.045)], 0.004, 26);
     let body = PartBuilder::new("body").with(&iron, shell).with(
-        &black(),
+        &black_plastic(),
         rod([r - 0.012, 0.04, 0.0], [r + 0.17, 0.06, 0.0], 0.009),
     );
     Model::pickable("pan", "pan").part(body)
@@ -198,7 +198,7 @@ fn knife_block() -> Model {
             &beech(),
             crate::shapes::extrude(&side, 0.1).translated(0.0, 0.0, -0.05),
         )
-        .with_all(&black(), (0..5).map(grip));
+        .with_all(&black_plastic(), (0..5).map(grip));
     Model::pickable("knife_block", "knife_rack").part(body)
 }
 

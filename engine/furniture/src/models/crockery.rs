@@ -56,7 +56,7 @@ fn plate(radius_m: f32, glaze: &Finish) -> Model {
         (0.0, 0.0055),
     ];
     Model::pickable("plate", "plate")
-        .part(PartBuilder::new("body").with(glaze, plate_pieces(&profile, r)))
+        .part(PartBuilder::new("body").with(glaze, plate_solid(&profile, r)))
         .with_support_surface(
             "top",
             [-0.45 * r, 0.0055, -0.45 * r],
@@ -65,7 +65,7 @@ fn plate(radius_m: f32, glaze: &Finish) -> Model {
 }
 
 /// A plate collides as a flat disc with a thin rim of wedges, so that things can lie in it.
-fn plate_pieces(profile: &[(f32, f32)], radius_m: f32) -> crate::shapes::SolidMesh {
+fn plate_solid(profile: &[(f32, f32)], radius_m: f32) -> crate::shapes::SolidMesh {
     let mut solid = surface_of_revolution(profile, 28);
     let disc = cylinder(0.58 * radius_m, 0.0055, 8);
     let rim = vessel(

@@ -2,7 +2,7 @@
 
 use super::cabinet_parts::{BOARD_M, Carcass, GAP_M, SHELVES, door, level_handle};
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{black, chrome, grey_board, painted_steel};
+use crate::finishes::{black_plastic, chrome, grey_board, painted_steel};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{block, cylinder, rounded_block};
@@ -37,7 +37,7 @@ fn shoe_cabinet(style: &Style, key: RandomKey) -> Model {
             rounded_block([-x, top, carcass.min[2]], [x, h, z + BOARD_M], 0.004, 1),
         )
         .with(
-            &black(),
+            &black_plastic(),
             block(
                 [-x + 0.03, 0.0, carcass.min[2] + 0.01],
                 [x - 0.03, 0.05, z - 0.02],
@@ -90,7 +90,7 @@ fn larder(style: &Style, key: RandomKey) -> Model {
     let split = 0.6;
     let body = PartBuilder::new("body")
         .with(
-            &black(),
+            &black_plastic(),
             block([-x, 0.0, carcass.min[2] + 0.02], [x, 0.1, z - 0.04]),
         )
         .with_all(&grey_board(), carcass.boards(&[0.2, 0.4, split, 0.8], &[]));
@@ -98,7 +98,7 @@ fn larder(style: &Style, key: RandomKey) -> Model {
         .part(body)
         .with_support_surface("top", [-x, h, carcass.min[2]], [x, h + 0.3, z]);
     for (k, name) in SHELVES.into_iter().take(5).enumerate() {
-        let (low, high) = carcass.space(0.2 * k as f32, 0.2 * (k + 1) as f32);
+        let (low, high) = carcass.space_between_shelves(0.2 * k as f32, 0.2 * (k + 1) as f32);
         model = model.with_container_space(name, low, high);
     }
     let y = carcass.min[1] + split * (h - carcass.min[1]);
@@ -156,7 +156,7 @@ fn safe(_style: &Style, key: RandomKey) -> Model {
         .with_fill_fraction(&steel, leaf, 0.4)
         .with_fill_fraction(&chrome(), knob.translated(0.2 * w, 0.5 * h, z - 0.012), 0.5)
         .with(
-            &black(),
+            &black_plastic(),
             block([-0.25 * w, 0.42 * h, z - 0.008], [-0.02 * w, 0.62 * h, z]),
         );
     Model::articulated("safe", "safe")

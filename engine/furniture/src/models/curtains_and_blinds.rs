@@ -1,7 +1,7 @@
 //! Curtains and blinds.
 
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black, cloth, plastic};
+use crate::finishes::{Finish, black_plastic, cloth, plastic};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{SolidMesh, ball, block, curtain as folds, rod};
@@ -45,9 +45,9 @@ impl Curtains {
         let end = |at: f32| ball(0.022, 12).translated(at, 0.0, OFF_M);
         let pole: SolidMesh = rod([-x - 0.03, 0.0, OFF_M], [x + 0.03, 0.0, OFF_M], 0.012);
         let body = PartBuilder::new("rod")
-            .with(&black(), pole)
+            .with(&black_plastic(), pole)
             .with_all(
-                &black(),
+                &black_plastic(),
                 [
                     hold(-x + 0.01),
                     hold(x - 0.01),

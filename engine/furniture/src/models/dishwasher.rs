@@ -2,7 +2,7 @@
 
 use super::cabinet_parts::level_handle;
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{black, steel};
+use crate::finishes::{black_plastic, steel};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::block;
@@ -31,7 +31,7 @@ fn dishwasher(style: &Style, key: RandomKey) -> Model {
     let (low, top) = (0.12, h - 0.03);
     let body = PartBuilder::new("body")
         .with(
-            &black(),
+            &black_plastic(),
             block([-x + 0.02, 0.0, -z + 0.03], [x - 0.02, 0.1, face - 0.05]),
         )
         .with_fill_fraction(
@@ -70,12 +70,12 @@ fn dishwasher(style: &Style, key: RandomKey) -> Model {
             0.5,
         )
         .with(
-            &black(),
+            &black_plastic(),
             block([-x + 0.03, h - 0.07, z], [x - 0.03, h - 0.02, z + 0.002]).visual_only(),
         )
         .with(&steel(), level_handle(0.0, h - 0.11, z, 0.36 * w));
     Model::articulated("dishwasher", "dishwasher")
-        .switched(false)
+        .with_switch_state(false)
         .part(body)
         .with_sound([0.0, 0.4, z], "washing_machine", 48.0)
         .with_container_space(

@@ -1,7 +1,7 @@
 //! A drum kit.
 
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black, brass, chrome, plastic};
+use crate::finishes::{Finish, black_plastic, brass, chrome, plastic};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{cylinder, rod, surface_of_revolution};
@@ -113,11 +113,11 @@ fn drum_kit(_style: &Style, key: RandomKey) -> Model {
         body = body
             .with(&brass(), plate)
             .with_fill_fraction(&chrome(), post, 0.4)
-            .with_fill_fraction(&black(), foot, 0.15);
+            .with_fill_fraction(&black_plastic(), foot, 0.15);
     }
     let body = body
         .with(
-            &black(),
+            &black_plastic(),
             cylinder(0.17, 0.07, 24).translated(0.0, 0.45, -z + 0.18),
         )
         .with_fill_fraction(
@@ -126,7 +126,7 @@ fn drum_kit(_style: &Style, key: RandomKey) -> Model {
             0.5,
         )
         .with_fill_fraction(
-            &black(),
+            &black_plastic(),
             cylinder(0.18, 0.03, 3).translated(0.0, 0.0, -z + 0.18),
             0.2,
         );

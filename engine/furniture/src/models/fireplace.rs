@@ -91,7 +91,7 @@ fn fireplace(_style: &Style, key: RandomKey) -> Model {
             .visual_only(),
         );
     Model::fixed("fireplace", "fireplace")
-        .switched(false)
+        .with_switch_state(false)
         .part(body)
         .with_light([0.0, hearth + 0.3, 0.1 * z], 20.0)
         .with_sound([0.0, hearth + 0.1, 0.0], "noise", 40.0)

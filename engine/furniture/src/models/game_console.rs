@@ -1,7 +1,7 @@
 //! A game console with its controller.
 
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{black, device, plastic};
+use crate::finishes::{black_plastic, device, plastic};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{block, cylinder, rounded_block};
@@ -51,7 +51,7 @@ fn game_console(_style: &Style, key: RandomKey) -> Model {
         .with_fill_fraction(&case, block([-x, 0.006, -z], [x, 0.46 * top, z]), 0.6)
         .with_fill_fraction(&case, block([-x, 0.54 * top, -z], [x, top, z - 0.01]), 0.6)
         .with_fill_fraction(
-            &black(),
+            &black_plastic(),
             block(
                 [-x + 0.012, 0.46 * top, -z + 0.01],
                 [x - 0.012, 0.54 * top, z - 0.02],
@@ -59,7 +59,7 @@ fn game_console(_style: &Style, key: RandomKey) -> Model {
             0.6,
         )
         .with(
-            &black(),
+            &black_plastic(),
             block([-x + 0.02, 0.0, -z + 0.02], [x - 0.02, 0.006, z - 0.02]),
         )
         .with_fill_fraction(
@@ -68,9 +68,9 @@ fn game_console(_style: &Style, key: RandomKey) -> Model {
             0.5,
         )
         .with_all(&pad, [grip(-1.0), grip(1.0)])
-        .with_all(&black(), [stick(-0.03), stick(0.03)]);
+        .with_all(&black_plastic(), [stick(-0.03), stick(0.03)]);
     Model::movable("game_console", "game_console")
-        .switched(false)
+        .with_switch_state(false)
         .part(body)
         .with_sound([0.0, 0.3 * h, -z], "fan", 36.0)
 }

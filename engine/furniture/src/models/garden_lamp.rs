@@ -61,7 +61,7 @@ fn garden_lamp(_style: &Style, key: RandomKey) -> Model {
             0.3,
         );
     Model::fixed("garden_lamp", "outdoor_lamp")
-        .switched(true)
+        .with_switch_state(true)
         .part(body)
         .with_light([0.0, h + 0.05, 0.0], 8.0)
 }

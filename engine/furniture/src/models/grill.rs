@@ -1,7 +1,7 @@
 //! A grill.
 
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black, painted_steel, steel};
+use crate::finishes::{Finish, black_plastic, painted_steel, steel};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{block, cylinder, rod};
@@ -61,7 +61,7 @@ fn grill(_style: &Style, key: RandomKey) -> Model {
     for (sx, sz) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
         let (a, b) = (sx * (bowl - 0.03), sz * (0.7 * z));
         body = body.with_fill_fraction(
-            &black(),
+            &black_plastic(),
             block(
                 [a - 0.018, 0.0, b - 0.018],
                 [a + 0.018, rim - 0.16, b + 0.018],
@@ -85,15 +85,15 @@ fn grill(_style: &Style, key: RandomKey) -> Model {
     };
     let body = body
         .with_fill_fraction(
-            &black(),
+            &black_plastic(),
             block(
                 [-bowl + 0.015, 0.16, -0.7 * z + 0.018],
                 [bowl - 0.015, 0.175, 0.7 * z - 0.018],
             ),
             0.5,
         )
-        .with_all(&black(), (0..3).map(knob))
-        .with_all(&black(), [wheel(-1.0), wheel(1.0)]);
+        .with_all(&black_plastic(), (0..3).map(knob))
+        .with_all(&black_plastic(), [wheel(-1.0), wheel(1.0)]);
     let side = [
         [-0.8 * z, 0.0],
         [0.8 * z, 0.0],
@@ -143,7 +143,7 @@ fn grill(_style: &Style, key: RandomKey) -> Model {
             .visual_only(),
         );
     Model::articulated("grill", "grill")
-        .switched(false)
+        .with_switch_state(false)
         .part(body)
         .with_support_surface(
             "side_table",

@@ -1,7 +1,7 @@
 //! A guitar on its stand.
 
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black, chrome};
+use crate::finishes::{Finish, black_plastic, chrome};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{ball, block, cylinder, extrude, rod};
@@ -134,17 +134,20 @@ fn guitar(_style: &Style, key: RandomKey) -> Model {
             .visual_only(),
         )
         .with(
-            &black(),
+            &black_plastic(),
             ball(0.012, 8).translated(-0.8 * x, 0.012, z - 0.012),
         )
         .with(
-            &black(),
+            &black_plastic(),
             ball(0.012, 8).translated(0.8 * x, 0.012, z - 0.012),
         )
-        .with(&black(), ball(0.012, 8).translated(0.0, 0.012, -z + 0.012))
+        .with(
+            &black_plastic(),
+            ball(0.012, 8).translated(0.0, 0.012, -z + 0.012),
+        )
         // The stand: two feet to the front and one behind, a yoke below, a prop at the back.
         .with(
-            &black(),
+            &black_plastic(),
             rod(
                 [-0.8 * x, 0.012, z - 0.012],
                 [0.0, 0.11, back - 0.03],
@@ -152,11 +155,11 @@ fn guitar(_style: &Style, key: RandomKey) -> Model {
             ),
         )
         .with(
-            &black(),
+            &black_plastic(),
             rod([0.8 * x, 0.012, z - 0.012], [0.0, 0.11, back - 0.03], 0.011),
         )
         .with(
-            &black(),
+            &black_plastic(),
             rod(
                 [0.0, 0.012, -z + 0.012],
                 [0.0, 0.6 * neck, back - 0.012],
@@ -164,7 +167,7 @@ fn guitar(_style: &Style, key: RandomKey) -> Model {
             ),
         )
         .with(
-            &black(),
+            &black_plastic(),
             block([-0.1, low - 0.015, back - 0.03], [0.1, low, face + 0.01]),
         );
     Model::movable("guitar", "guitar").part(body)

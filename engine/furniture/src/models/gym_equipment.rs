@@ -1,7 +1,7 @@
 //! A treadmill and a weight bench.
 
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black, chrome, painted_steel, plastic};
+use crate::finishes::{Finish, black_plastic, chrome, painted_steel, plastic};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{block, cylinder, rod, rounded_block};
@@ -56,7 +56,7 @@ fn treadmill(_style: &Style, key: RandomKey) -> Model {
             0.1,
         )
         .with_fill_fraction(
-            &black(),
+            &black_plastic(),
             rounded_block([-x, 0.005, -z], [x, 0.24, -z + 0.3], 0.04, 2),
             0.25,
         );
@@ -69,7 +69,7 @@ fn treadmill(_style: &Style, key: RandomKey) -> Model {
                 0.12,
             )
             .with_fill_fraction(
-                &black(),
+                &black_plastic(),
                 rod([a, h - 0.28, -z + 0.13], [a, h - 0.3, -z + 0.62], 0.02),
                 0.5,
             );
@@ -80,10 +80,10 @@ fn treadmill(_style: &Style, key: RandomKey) -> Model {
         .rotated_x(-0.45);
     let (cy, cz) = (h - 0.25, -z + 0.13);
     let body = body
-        .with_fill_fraction(&black(), console.translated(0.0, cy, cz), 0.3)
+        .with_fill_fraction(&black_plastic(), console.translated(0.0, cy, cz), 0.3)
         .with(&screen, shown.translated(0.0, cy, cz).visual_only());
     Model::fixed("treadmill", "gym_equipment")
-        .switched(false)
+        .with_switch_state(false)
         .part(body)
         .with_sound([0.0, 0.15, -z + 0.15], "hum", 62.0)
 }

@@ -1,7 +1,7 @@
 //! Radiators, air conditioners and fans.
 
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black, chrome, enamel, plastic};
+use crate::finishes::{Finish, black_plastic, chrome, enamel, plastic};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{SolidMesh, block, cylinder, ring, rod, rounded_block, surface_of_revolution};
@@ -47,7 +47,7 @@ pub fn radiator(width_m: f32, height_m: f32) -> Model {
 
 fn sample_radiator(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("radiator", key);
-    radiator(d.sample_m("width"), d.sample_m("height")).switched(true)
+    radiator(d.sample_m("width"), d.sample_m("height")).with_switch_state(true)
 }
 
 /// The indoor unit of an air conditioner, on the wall; y = 0 is its lower edge.
@@ -70,7 +70,7 @@ fn air_conditioner(_style: &Style, key: RandomKey) -> Model {
             0.45,
         )
         .with(
-            &black(),
+            &black_plastic(),
             block([-x + 0.06, 0.02, depth], [x - 0.06, 0.045, depth + 0.001]).visual_only(),
         )
         .with(
@@ -86,7 +86,7 @@ fn air_conditioner(_style: &Style, key: RandomKey) -> Model {
             block([x - 0.1, 0.12, depth], [x - 0.08, 0.126, depth + 0.001]).visual_only(),
         );
     Model::fixed("air_conditioner", "air_conditioner")
-        .switched(false)
+        .with_switch_state(false)
         .part(body)
         .with_sound([0.0, 0.02, depth], "fan", 40.0)
 }
@@ -98,7 +98,7 @@ fn pedestal_fan(style: &Style, key: RandomKey) -> Model {
     let (r, y) = (0.5 * w, h - 0.5 * w);
     let dark = d.chance("dark", 0.5);
     let case = if dark {
-        black()
+        black_plastic()
     } else {
         plastic("white_plastic", [240, 240, 236])
     };
@@ -166,7 +166,7 @@ fn pedestal_fan(style: &Style, key: RandomKey) -> Model {
     let cage = hub(-0.05, 0.1, r - 0.004).collision_only();
     let body = body.with(&style.metal, cage);
     Model::movable("pedestal_fan", "fan")
-        .switched(false)
+        .with_switch_state(false)
         .part(body)
         .with_sound([0.0, y, 0.05], "fan", 50.0)
 }
@@ -212,7 +212,7 @@ fn ceiling_fan(style: &Style, key: RandomKey) -> Model {
         body = body.with(&style.wood, one.translated(0.0, low + 0.14, 0.0));
     }
     Model::fixed("ceiling_fan", "fan")
-        .switched(true)
+        .with_switch_state(true)
         .part(body)
         .with_light([0.0, low - 0.03, 0.0], 12.0)
         .with_sound([0.0, low + 0.14, 0.0], "fan", 38.0)

@@ -2,7 +2,7 @@
 
 use super::cabinet_parts::SHELVES;
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{black, brass};
+use crate::finishes::{black_plastic, brass};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{block, cylinder, rod, rounded_block};
@@ -95,7 +95,7 @@ fn serving_cart(style: &Style, key: RandomKey) -> Model {
         let wheel = cylinder(0.03, 0.02, 16).rotated_z(FRAC_PI_2);
         body = body
             .with_fill_fraction(&metal, rod([a, 0.055, b], [a, h - 0.01, b], 0.01), 0.4)
-            .with(&black(), wheel.translated(a + 0.01, 0.03, b));
+            .with(&black_plastic(), wheel.translated(a + 0.01, 0.03, b));
     }
     for side in [-1.0, 1.0] {
         let a = side * (x - 0.02);

@@ -2,7 +2,9 @@
 
 use super::casings::{CASING_COLORS, casing};
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black, chrome, enamel, glass, painted_steel, plastic, steel};
+use crate::finishes::{
+    Finish, black_plastic, chrome, enamel, glass, painted_steel, plastic, steel,
+};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{block, cylinder, rod, rounded_block, surface_of_revolution, tube, vessel};
@@ -50,16 +52,16 @@ fn kettle() -> Model {
         24,
     );
     let body = PartBuilder::new("body")
-        .with(&black(), cylinder(0.082, 0.02, 24))
+        .with(&black_plastic(), cylinder(0.082, 0.02, 24))
         .with_fill_fraction(&steel(), pot, 0.03)
-        .with(&black(), grip)
+        .with(&black_plastic(), grip)
         .with_fill_fraction(&steel(), spout, 0.2)
         .with(
-            &black(),
+            &black_plastic(),
             cylinder(0.012, 0.015, 12).translated(0.0, 0.2035, 0.0),
         );
     Model::pickable("kettle", "kettle")
-        .switched(false)
+        .with_switch_state(false)
         .part(body)
         .with_sound([0.0, 0.1, 0.0], "kettle", 64.0)
 }
@@ -90,11 +92,17 @@ fn toaster() -> Model {
             rounded_block([-0.14, 0.008, -0.085], [0.14, 0.18, 0.085], 0.03, 2),
             0.2,
         )
-        .with(&black(), block([-0.12, 0.0, -0.07], [0.12, 0.008, 0.07]))
-        .with_all(&black(), [slot(-0.03), slot(0.03)])
-        .with(&black(), block([0.14, 0.11, -0.015], [0.16, 0.125, 0.015]));
+        .with(
+            &black_plastic(),
+            block([-0.12, 0.0, -0.07], [0.12, 0.008, 0.07]),
+        )
+        .with_all(&black_plastic(), [slot(-0.03), slot(0.03)])
+        .with(
+            &black_plastic(),
+            block([0.14, 0.11, -0.015], [0.16, 0.125, 0.015]),
+        );
     Model::pickable("toaster", "toaster")
-        .switched(false)
+        .with_switch_state(false)
         .part(body)
         .with_sound([0.0, 0.1, 0.0], "hum", 36.0)
 }
@@ -145,7 +153,7 @@ fn coffee_machine() -> Model {
         )
         .with_fill_fraction(&glass(), jug.translated(0.0, 0.0, 0.045), 0.25);
     Model::movable("coffee_machine", "coffee_machine")
-        .switched(false)
+        .with_switch_state(false)
         .part(body)
         .with_sound([0.0, 0.25, 0.0], "hum", 55.0)
 }
@@ -185,7 +193,7 @@ fn microwave() -> Model {
     let body = PartBuilder::new("body")
         .with_all(&case, shell)
         .with(
-            &black(),
+            &black_plastic(),
             block([-x + 0.02, 0.0, -z + 0.02], [x - 0.02, low, z - 0.02]),
         )
         .with_all(&case, [knob(0.1), knob(0.19)]);
@@ -215,7 +223,7 @@ fn microwave() -> Model {
             }),
         );
     Model::movable("microwave", "microwave")
-        .switched(false)
+        .with_switch_state(false)
         .part(body)
         .with_sound([0.0, 0.15, z], "hum", 56.0)
         .with_container_space(
@@ -273,11 +281,11 @@ fn blender(_style: &Style, key: RandomKey) -> Model {
         .with(&glass(), jug.translated(0.0, base, 0.0))
         .with(&glass(), grip.visual_only())
         .with(
-            &black(),
+            &black_plastic(),
             cylinder(0.84 * r, 0.06 * h, 20).translated(0.0, 0.9 * h, 0.0),
         )
         .with(
-            &black(),
+            &black_plastic(),
             cylinder(0.4 * r, 0.04 * h, 14).translated(0.0, 0.96 * h, 0.0),
         )
         .with(
@@ -287,7 +295,7 @@ fn blender(_style: &Style, key: RandomKey) -> Model {
                 .translated(0.0, 0.14 * h, 0.9 * r),
         );
     Model::movable("blender", "food_processor")
-        .switched(false)
+        .with_switch_state(false)
         .part(body)
         .with_sound([0.0, 0.2 * h, 0.0], "noise", 80.0)
 }

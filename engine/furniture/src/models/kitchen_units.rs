@@ -3,7 +3,7 @@
 use super::cabinet_parts::{BOARD_M, Carcass, GAP_M, TOP_BOARD, door, drawer, drawer_space};
 use super::taps::with_mixer_tap;
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black, lacquer, steel};
+use crate::finishes::{Finish, black_plastic, lacquer, steel};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{SolidMesh, block};
@@ -16,7 +16,7 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[
     CatalogueEntry::new("sink_unit_2", "kitchen_set", 40, sink_unit_2),
     CatalogueEntry::new("sink_unit_3", "kitchen_set", 41, sink_unit_3),
     CatalogueEntry::new("base_unit_1", "kitchen_set", 42, base_unit_1),
-    CatalogueEntry::new("base_unit_2", "kitchen_set", 43, base_unit_2),
+    CatalogueEntry::new("base_unit_2", "kitchen_set", 43, two_bay_base_unit),
 ];
 
 /// Height of worktops, m.
@@ -64,7 +64,10 @@ impl KitchenUnit {
         let mut boards = carcass.boards(&[], &walls);
         boards.remove(TOP_BOARD);
         let mut body = PartBuilder::new("body")
-            .with(&black(), block([-x, 0.0, -z + 0.02], [x, 0.1, face - 0.04]))
+            .with(
+                &black_plastic(),
+                block([-x, 0.0, -z + 0.02], [x, 0.1, face - 0.04]),
+            )
             .with_all(&carcass_board(), boards);
         let left_of = |k: usize| -x + self.bay_m * k as f32;
         // The worktop has a hole for each sink.
@@ -198,7 +201,7 @@ fn base_unit_1(style: &Style, key: RandomKey) -> Model {
     )
 }
 
-fn base_unit_2(style: &Style, key: RandomKey) -> Model {
+fn two_bay_base_unit(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("base_unit_2", key);
     let bays = d.choose(
         "order",

@@ -21,7 +21,7 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[
         "wall_cabinet_2",
         "hanging_kitchen_cabinet",
         45,
-        wall_cabinet_2,
+        two_door_wall_cabinet,
     ),
     CatalogueEntry::new(
         "wall_cabinet_3",
@@ -49,8 +49,8 @@ fn wall_cabinet(doors: usize, door_m: f32, height_m: f32, front: &FrontStyle) ->
     };
     let walls: Vec<f32> = (1..count).map(|k| k as f32 / count as f32).collect();
     let white = carcass_board();
-    let (low, middle) = carcass.space(0.0, 0.5);
-    let (upper, high) = carcass.space(0.5, 1.0);
+    let (low, middle) = carcass.space_between_shelves(0.0, 0.5);
+    let (upper, high) = carcass.space_between_shelves(0.5, 1.0);
     let mut model = Model::articulated("wall_cabinet", "hanging_kitchen_cabinet")
         .part(PartBuilder::new("body").with_all(&white, carcass.boards(&[0.5], &walls)));
     for (k, [lower, above]) in SHELVES.into_iter().take(count).enumerate() {
@@ -110,7 +110,7 @@ fn sample_wall_cabinet(style: &Style, key: RandomKey) -> Model {
     cabinet(style, "wall_cabinet", key, 1)
 }
 
-fn wall_cabinet_2(style: &Style, key: RandomKey) -> Model {
+fn two_door_wall_cabinet(style: &Style, key: RandomKey) -> Model {
     cabinet(style, "wall_cabinet_2", key, 2)
 }
 

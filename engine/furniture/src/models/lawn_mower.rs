@@ -1,7 +1,7 @@
 //! A lawn mower.
 
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black, painted_steel};
+use crate::finishes::{Finish, black_plastic, painted_steel};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{cylinder, rounded_block, tube};
@@ -51,12 +51,12 @@ fn lawn_mower(_style: &Style, key: RandomKey) -> Model {
             0.1,
         )
         .with_fill_fraction(
-            &black(),
+            &black_plastic(),
             cylinder(0.13, 0.14, 20).translated(0.0, 0.22, 0.5 * (front + rear) + 0.06),
             0.8,
         )
         .with_all(
-            &black(),
+            &black_plastic(),
             [
                 wheel(-1.0, front),
                 wheel(1.0, front),
@@ -75,7 +75,7 @@ fn lawn_mower(_style: &Style, key: RandomKey) -> Model {
             0.04,
         )
         .with_fill_fraction(
-            &black(),
+            &black_plastic(),
             tube(
                 &[
                     [-x + 0.06, 0.2, rear],
@@ -89,7 +89,7 @@ fn lawn_mower(_style: &Style, key: RandomKey) -> Model {
             0.6,
         );
     Model::movable("lawn_mower", "lawn_mower")
-        .switched(false)
+        .with_switch_state(false)
         .part(body)
         .with_sound([0.0, 0.3, front], "noise", 88.0)
 }

@@ -2,7 +2,7 @@
 
 use super::cabinet_parts::{BOARD_M, Carcass, GAP_M, door};
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black};
+use crate::finishes::{Finish, black_plastic};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{block, rounded_block};
@@ -46,13 +46,13 @@ impl Lowboard {
                 rounded_block([-x, top, -z], [x, self.height_m, z + BOARD_M], 0.006, 1),
             )
             .with(
-                &black(),
+                &black_plastic(),
                 block([-x + 0.05, 0.0, -z + 0.02], [x - 0.05, 0.07, z - 0.05]),
             )
             .with_all(&self.wood, carcass.boards(&[0.5], &[1.0 / 3.0, 2.0 / 3.0]));
         let third = (carcass.max[0] - carcass.min[0]) / 3.0;
-        let (_, upper) = carcass.space(0.5, 1.0);
-        let (lower, _) = carcass.space(0.5, 1.0);
+        let (_, upper) = carcass.space_between_shelves(0.5, 1.0);
+        let (lower, _) = carcass.space_between_shelves(0.5, 1.0);
         let middle = 0.5 * third - 0.02;
         let mut model = Model::articulated(self.name, self.category)
             .part(body)

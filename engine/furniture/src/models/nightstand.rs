@@ -28,7 +28,7 @@ fn nightstand(width_m: f32, height_m: f32, wood: &Finish, front: &FrontStyle) ->
     let body = PartBuilder::new("body")
         .with_all(wood, carcass.boards(&[SHARE], &[]))
         .with_all(wood, legs);
-    let (low, high) = carcass.space(0.0, SHARE);
+    let (low, high) = carcass.space_between_shelves(0.0, SHARE);
     let (x, face) = (0.5 * width_m, 0.5 * DEPTH_M);
     let split = carcass.min[1] + SHARE * (height_m - carcass.min[1]);
     let (front_low, front_high) = ([-x, split], [x, height_m - 0.002]);

@@ -1,7 +1,7 @@
 //! An office chair on castors.
 
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black, chrome};
+use crate::finishes::{Finish, black_plastic, chrome};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{ball, block, cushion, cylinder, rod, rounded_block};
@@ -18,7 +18,7 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[CatalogueEntry::new(
 
 /// A swivel chair on five castors.
 fn office_chair(cloth: &Finish) -> Model {
-    let dark = black();
+    let dark = black_plastic();
     let mut body = PartBuilder::new("body").with(
         &chrome(),
         cylinder(0.025, 0.34, 14).translated(0.0, 0.09, 0.0),

@@ -53,7 +53,9 @@ fn slab(name: &'static str, category: &'static str, key: RandomKey) -> Model {
     let body = PartBuilder::new("body")
         .with(&case, rounded_block([-x, 0.0, -z], [x, h, z], 0.45 * h, 1))
         .with(&screen("slab_screen", &d), face.visual_only());
-    Model::pickable(name, category).switched(true).part(body)
+    Model::pickable(name, category)
+        .with_switch_state(true)
+        .part(body)
 }
 
 /// A telephone with a receiver on its cradle.
@@ -90,7 +92,7 @@ fn telephone() -> Model {
         )
         .with(&dial, face.visual_only());
     Model::pickable("telephone", "telephone")
-        .switched(false)
+        .with_switch_state(false)
         .part(body)
         .with_sound([0.0, 0.03, 0.0], "phone", 74.0)
 }

@@ -1,7 +1,7 @@
 //! A piano and an electronic keyboard.
 
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black, brass, plastic};
+use crate::finishes::{Finish, black_plastic, brass, plastic};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{SolidMesh, block, rod, rounded_block};
@@ -43,7 +43,7 @@ fn keys(half: f32, y: f32, z: f32, depth: f32) -> [(Finish, SolidMesh); 2] {
         }
     }
     white.colliders = block([-half, y, z - depth], [half, y + 0.012, z]).colliders;
-    [(ivory, white), (black(), dark)]
+    [(ivory, white), (black_plastic(), dark)]
 }
 
 /// An upright piano; the lid over its keys turns up.
@@ -168,9 +168,16 @@ fn keyboard(_style: &Style, key: RandomKey) -> Model {
         .with_fill_fraction(&case, block([-x, h - 0.012, -z], [x, h, z - 0.16]), 0.5)
         .with(&white.0, white.1)
         .with(&dark.0, dark.1)
-        .with_fill_fraction(&black(), bar(1.0, -0.03).merged(bar(-1.0, 0.03)), 0.8)
-        .with_all(&black(), [foot(-1.0), foot(1.0), top(-1.0), top(1.0)]);
+        .with_fill_fraction(
+            &black_plastic(),
+            bar(1.0, -0.03).merged(bar(-1.0, 0.03)),
+            0.8,
+        )
+        .with_all(
+            &black_plastic(),
+            [foot(-1.0), foot(1.0), top(-1.0), top(1.0)],
+        );
     Model::movable("keyboard", "keyboard")
-        .switched(false)
+        .with_switch_state(false)
         .part(body)
 }

@@ -49,7 +49,7 @@ fn refrigerator(width_m: f32, height_m: f32, depth_m: f32) -> Model {
     };
     let body = PartBuilder::new("body")
         .with_all(&white, case)
-        .with(&crate::finishes::black(), feet)
+        .with(&crate::finishes::black_plastic(), feet)
         .with_all(&glass(), [shelf(0.3), shelf(0.55), shelf(0.78)]);
     let space = |low: f32, high: f32| ([-x + w, low, back + w], [x - w, high, front - 0.06]);
     let level = |share: f32| split + share * (height_m - split);
@@ -66,7 +66,7 @@ fn refrigerator(width_m: f32, height_m: f32, depth_m: f32) -> Model {
             .with(&steel(), upright_handle(x - 0.05, handle[0], handle[1], z))
     };
     Model::articulated("refrigerator", "refrigerator")
-        .switched(true)
+        .with_switch_state(true)
         .part(body)
         .with_sound([0.0, 0.2, back + 0.05], "fridge", 38.0)
         .with_container_space("lower_shelf", a0, a1)

@@ -40,8 +40,8 @@ impl Bookshelf {
         let body = PartBuilder::new("body").with_all(&self.wood, carcass.boards(&shares, &[]));
         let mut model = Model::fixed("bookshelf", "bookshelf").part(body);
         for (k, name) in SHELVES.into_iter().take(levels).enumerate() {
-            let (low, high) =
-                carcass.space(k as f32 / levels as f32, (k + 1) as f32 / levels as f32);
+            let (low, high) = carcass
+                .space_between_shelves(k as f32 / levels as f32, (k + 1) as f32 / levels as f32);
             model = model.with_support_surface(name, low, high);
         }
         let (x, z) = (0.5 * self.width_m, 0.5 * self.depth_m);
@@ -112,7 +112,7 @@ fn cube_shelf(style: &Style, key: RandomKey) -> Model {
         .part(body)
         .with_support_surface("top", [-x, h, -z], [x, h + 0.5, z]);
     for (row, names) in NAMES.iter().take(rows).enumerate() {
-        let (low, high) = carcass.space(share(row, rows), share(row + 1, rows));
+        let (low, high) = carcass.space_between_shelves(share(row, rows), share(row + 1, rows));
         for (column, name) in names.iter().take(columns).enumerate() {
             let left = -x + share(column, columns) * w + BOARD_M;
             let right = -x + share(column + 1, columns) * w - BOARD_M;

@@ -123,7 +123,7 @@ fn shower_cabin(style: &Style, key: RandomKey) -> Model {
             rod([a + 0.04, 1.15, face], [a + 0.04, 1.15, face + 0.03], 0.006).visual_only(),
         );
     Model::articulated("shower_cabin", "shower")
-        .switched(false)
+        .with_switch_state(false)
         .part(body)
         .with_sound([-0.2 * w, head - 0.03, -z + 0.3], "tap", 66.0)
         .with_container_space(

@@ -178,7 +178,7 @@ impl Sofa {
 }
 
 /// Builds and proportions that seats of one family share.
-fn seat(style: &Style, d: &SizeSampler, cover: Finish) -> Sofa {
+fn sample_seating(style: &Style, d: &SizeSampler, cover: Finish) -> Sofa {
     let arm = match style.leg {
         LegStyle::Turned => d.choose("arm", [ArmStyle::Rolled, ArmStyle::Rolled, ArmStyle::Block]),
         LegStyle::Metal => ArmStyle::Block,
@@ -204,7 +204,7 @@ fn seat(style: &Style, d: &SizeSampler, cover: Finish) -> Sofa {
 
 fn sofa(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("sofa", key);
-    let family = seat(
+    let family = sample_seating(
         style,
         &d,
         style.random_upholstery(&mut d.stream("cover")).clone(),
@@ -221,7 +221,7 @@ fn sofa(style: &Style, key: RandomKey) -> Model {
 
 fn armchair(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("armchair", key);
-    let family = seat(
+    let family = sample_seating(
         style,
         &d,
         style.random_upholstery(&mut d.stream("cover")).clone(),

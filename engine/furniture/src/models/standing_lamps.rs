@@ -2,7 +2,7 @@
 
 use super::lampshades::{shade_finish, shade_mesh};
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black, brass, chrome, milk_glass};
+use crate::finishes::{Finish, black_plastic, brass, chrome, milk_glass};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{ball, cylinder, rod, surface_of_revolution, tapered_leg, tube};
@@ -22,7 +22,7 @@ fn floor_lamp(height_m: f32, cloth: &Finish) -> Model {
     let low = height_m - 0.28;
     let body = PartBuilder::new("body")
         .with(
-            &black(),
+            &black_plastic(),
             surface_of_revolution(
                 &[
                     (0.0, 0.0),
@@ -35,7 +35,7 @@ fn floor_lamp(height_m: f32, cloth: &Finish) -> Model {
             ),
         )
         .with(
-            &black(),
+            &black_plastic(),
             rod([0.0, 0.026, 0.0], [0.0, height_m - 0.06, 0.0], 0.011),
         )
         .with(
@@ -49,7 +49,7 @@ fn floor_lamp(height_m: f32, cloth: &Finish) -> Model {
             shade_mesh(0.21, 0.16, 0.28).translated(0.0, low, 0.0),
         );
     Model::movable("floor_lamp", "floor_lamp")
-        .switched(true)
+        .with_switch_state(true)
         .part(body)
         .with_light([0.0, low + 0.14, 0.0], 9.0)
 }
@@ -68,7 +68,7 @@ fn tripod_lamp(height_m: f32, wood: &Finish, cloth: &Finish) -> Model {
     }
     let body = body
         .with(
-            &black(),
+            &black_plastic(),
             cylinder(0.045, 0.03, 16).translated(0.0, low, 0.0),
         )
         .with(
@@ -82,7 +82,7 @@ fn tripod_lamp(height_m: f32, wood: &Finish, cloth: &Finish) -> Model {
             shade_mesh(0.23, 0.21, 0.26).translated(0.0, low + 0.04, 0.0),
         );
     Model::movable("tripod_lamp", "floor_lamp")
-        .switched(true)
+        .with_switch_state(true)
         .part(body)
         .with_light([0.0, low + 0.15, 0.0], 9.0)
 }
@@ -136,7 +136,7 @@ fn table_lamp(height_m: f32, base: &Finish, cloth: &Finish) -> Model {
             shade_mesh(0.36 * height_m, 0.24 * height_m, height_m - low).translated(0.0, low, 0.0),
         );
     Model::movable("table_lamp", "table_lamp")
-        .switched(true)
+        .with_switch_state(true)
         .part(body)
         .with_light([0.0, 0.74 * height_m, 0.0], 6.0)
 }
@@ -186,7 +186,7 @@ fn desk_lamp(lacquer: &Finish) -> Model {
         dropoff_rate: 1.0,
     };
     Model::movable("desk_lamp", "table_lamp")
-        .switched(true)
+        .with_switch_state(true)
         .part(body)
         .with_light_shape([0.0, 0.33, 0.05], down, 6.0)
 }

@@ -1,7 +1,7 @@
 //! A flat television on a foot, and its remote control.
 
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black, device, plastic};
+use crate::finishes::{Finish, black_plastic, device, plastic};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{block, panel, rounded_block};
@@ -34,10 +34,13 @@ fn television(width_m: f32) -> Model {
     let case = device("black_case", [26, 26, 29]);
     let body = PartBuilder::new("body")
         .with(
-            &black(),
+            &black_plastic(),
             block([-0.3 * width_m, 0.0, -0.11], [0.3 * width_m, 0.012, 0.11]),
         )
-        .with(&black(), block([-0.05, 0.012, -0.03], [0.05, low, -0.005]))
+        .with(
+            &black_plastic(),
+            block([-0.05, 0.012, -0.03], [0.05, low, -0.005]),
+        )
         .with_fill_fraction(
             &case,
             rounded_block([-x, low, -0.035], [x, high, 0.02], 0.01, 1),
@@ -48,7 +51,7 @@ fn television(width_m: f32) -> Model {
         panel(width_m - 0.03, height - 0.045, 0.003).translated(0.0, low + 0.03, 0.02),
     );
     Model::fixed("television", "television")
-        .switched(true)
+        .with_switch_state(true)
         .part(body)
         .with_sound([0.0, low + 0.05, 0.03], "television", 60.0)
         .part(screen)
@@ -73,7 +76,7 @@ fn remote_control() -> Model {
     };
     let body = PartBuilder::new("body")
         .with(
-            &black(),
+            &black_plastic(),
             rounded_block([-0.024, 0.0, -0.085], [0.024, 0.018, 0.085], 0.006, 1),
         )
         .with_all(&plastic("grey_plastic", [150, 150, 154]), (0..9).map(key));

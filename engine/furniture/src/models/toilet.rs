@@ -70,7 +70,7 @@ fn toilet() -> Model {
     let cover = [0.417, 0.435].map(|y| outline(0.187, back + 0.024, z, y));
     let lid = PartBuilder::new("lid").with_fill_fraction(&seat, loft(&cover), 0.5);
     Model::articulated("toilet", "toilet")
-        .switched(false)
+        .with_switch_state(false)
         .part(body)
         .with_sound([0.0, 0.5, -z + 0.1], "toilet_flush", 70.0)
         .part(lid)

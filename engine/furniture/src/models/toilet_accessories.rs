@@ -1,7 +1,7 @@
 //! Toilet paper and its holder, toilet brush, plunger.
 
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black, chrome, plastic};
+use crate::finishes::{Finish, black_plastic, chrome, plastic};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{ball, block, cylinder, rod, surface_of_revolution, vessel};
@@ -78,7 +78,10 @@ fn toilet_brush(style: &Style, key: RandomKey) -> Model {
                 .visual_only(),
         )
         .with(&holder, rod([0.0, 0.03, 0.0], [0.0, h - 0.02, 0.0], 0.007))
-        .with(&black(), ball(0.012, 10).translated(0.0, h - 0.012, 0.0));
+        .with(
+            &black_plastic(),
+            ball(0.012, 10).translated(0.0, h - 0.012, 0.0),
+        );
     Model::movable("toilet_brush", "toiletries").part(body)
 }
 

@@ -2,7 +2,7 @@
 
 use super::casings::CASING_COLORS;
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black, chrome, glass, plastic};
+use crate::finishes::{Finish, black_plastic, chrome, glass, plastic};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{
@@ -193,7 +193,7 @@ fn hair_dryer(_style: &Style, key: RandomKey) -> Model {
             0.3,
         )
         .with_fill_fraction(
-            &black(),
+            &black_plastic(),
             nozzle.translated(0.25 * w, r, -0.5 * depth + r),
             0.3,
         )
@@ -203,7 +203,7 @@ fn hair_dryer(_style: &Style, key: RandomKey) -> Model {
             0.5,
         )
         .with(
-            &black(),
+            &black_plastic(),
             cylinder(0.03, 0.004, 16)
                 .rotated_z(FRAC_PI_2)
                 .translated(-0.5 * w, r, -0.5 * depth + r)
@@ -211,14 +211,14 @@ fn hair_dryer(_style: &Style, key: RandomKey) -> Model {
         )
         // The handle is lower at its end, so that the dryer lies on barrel and grip.
         .with(
-            &black(),
+            &black_plastic(),
             block(
                 [-0.2 * w - 0.012, 0.0, 0.5 * depth - 0.03],
                 [-0.2 * w + 0.012, r - 0.014, 0.5 * depth - 0.01],
             ),
         );
     Model::pickable("hair_dryer", "hair_dryer")
-        .switched(false)
+        .with_switch_state(false)
         .part(body)
         .with_sound([0.5 * w, r, -0.5 * depth + r], "noise", 76.0)
 }

@@ -1,7 +1,7 @@
 //! Teddy bears, toy trains, blocks and balls.
 
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black, pine, upholstery};
+use crate::finishes::{Finish, black_plastic, pine, upholstery};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{ball, block, cone, cylinder, rod, rounded_block, surface_of_revolution};
@@ -64,11 +64,11 @@ fn teddy_bear(plush: &Finish) -> Model {
             [-1.0_f32, 1.0].map(|s| limb([s * 0.045, 0.04, 0.04], [s * 0.075, 0.04, 0.13], 0.028)),
         )
         .with_all(
-            &black(),
+            &black_plastic(),
             [-0.022, 0.022].map(|x| ball(0.006, 8).translated(x, 0.215, 0.058).visual_only()),
         )
         .with(
-            &black(),
+            &black_plastic(),
             ball(0.008, 8).translated(0.0, 0.192, 0.078).visual_only(),
         );
     Model::pickable("teddy_bear", "toy").part(body)
@@ -111,7 +111,7 @@ fn toy_train() -> Model {
         .with(&red, block([-0.11, 0.05, -0.04], [-0.02, 0.14, 0.04]))
         .with(&blue, block([-0.12, 0.14, -0.046], [-0.01, 0.15, 0.046]))
         .with(
-            &black(),
+            &black_plastic(),
             cone(0.013, 0.018, 0.04, 12).translated(0.085, 0.115, 0.0),
         )
         .with_all(

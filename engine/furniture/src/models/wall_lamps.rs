@@ -59,7 +59,7 @@ fn wall_lamp(style: &Style, key: RandomKey) -> Model {
         }
     };
     Model::fixed("wall_lamp", "wall_lamp")
-        .switched(true)
+        .with_switch_state(true)
         .part(body)
         .with_light([0.0, 0.5 * h + 0.04, z], 6.0)
 }
@@ -77,7 +77,7 @@ fn mirror_lamp(width_m: f32) -> Model {
         end: Vec3::new(x, 0.0, 0.1),
     };
     Model::fixed("mirror_lamp", "wall_lamp")
-        .switched(true)
+        .with_switch_state(true)
         .part(body)
         .with_light_shape([-x, 0.0, 0.1], line, 6.0)
 }

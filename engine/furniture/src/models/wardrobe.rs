@@ -47,8 +47,8 @@ impl Wardrobe {
                 &chrome(),
                 rod([-x + BOARD_M, rail, 0.0], [x - BOARD_M, rail, 0.0], 0.012),
             );
-        let (low, high) = carcass.space(0.0, 0.84);
-        let (shelf_low, shelf_high) = carcass.space(0.84, 1.0);
+        let (low, high) = carcass.space_between_shelves(0.0, 0.84);
+        let (shelf_low, shelf_high) = carcass.space_between_shelves(0.84, 1.0);
         let mut model = Model::articulated("wardrobe", "wardrobe_cabinet")
             .part(body)
             .with_container_space("inside", low, [high[0], rail - 0.03, high[2]])

@@ -72,7 +72,7 @@ fn washbasin(width_m: f32, look: &FrontStyle) -> Model {
         );
     let face = carcass.max[2];
     let (a, b) = (carcass.min[0], carcass.max[0]);
-    let (low_in, high_in) = carcass.space(0.0, 1.0);
+    let (low_in, high_in) = carcass.space_between_shelves(0.0, 1.0);
     Model::articulated("washbasin", "sink")
         .part(body)
         .with_container_space("basin", [-bx, low + t, back], [bx, rim, front_z])
@@ -173,7 +173,7 @@ fn basin(_style: &Style, key: RandomKey) -> Model {
     );
     body = body.with_fill_fraction(&white, column.translated(0.0, 0.0, -z + 0.12), 0.25);
     Model::fixed("basin", "sink")
-        .switched(false)
+        .with_switch_state(false)
         .part(body)
         .with_sound([0.0, h, ledge + 0.06], "tap", 58.0)
         .with_container_space(

@@ -2,7 +2,7 @@
 
 use super::casings::casing;
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black, chrome, enamel, plastic};
+use crate::finishes::{Finish, black_plastic, chrome, enamel, plastic};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{SolidMesh, block, cylinder, ring};
@@ -69,7 +69,7 @@ fn washer() -> Model {
                 .visual_only(),
         )
         .with(
-            &black(),
+            &black_plastic(),
             block([-x + 0.03, 0.0, -z + 0.03], [x - 0.03, 0.012, z - 0.03]),
         )
         .with(
@@ -101,7 +101,7 @@ fn washer() -> Model {
         );
     let (low, high) = drum_space(0.42, z);
     Model::articulated("washing_machine", "washer")
-        .switched(false)
+        .with_switch_state(false)
         .part(body)
         .with_sound([0.0, 0.42, z], "washing_machine", 62.0)
         .with_support_surface("top", [-x, h, -z], [x, h + 0.5, z])
@@ -134,7 +134,7 @@ fn dryer(style: &Style, key: RandomKey) -> Model {
             part.with_fill_fraction(&style.appliance, wall, 0.9)
         })
         .with(
-            &black(),
+            &black_plastic(),
             block(
                 [-x + 0.03, 0.0, -0.5 * depth + 0.03],
                 [x - 0.03, 0.012, z - 0.03],
@@ -171,7 +171,7 @@ fn dryer(style: &Style, key: RandomKey) -> Model {
             0.4,
         );
     Model::articulated("tumble_dryer", "dryer")
-        .switched(false)
+        .with_switch_state(false)
         .part(body)
         .with_sound([0.0, middle, z], "washing_machine", 60.0)
         .with_support_surface(

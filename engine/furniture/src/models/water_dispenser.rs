@@ -1,7 +1,7 @@
 //! A water cooler with its bottle.
 
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black, plastic};
+use crate::finishes::{Finish, black_plastic, plastic};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{block, rounded_block, surface_of_revolution};
@@ -57,7 +57,7 @@ fn water_dispenser(style: &Style, key: RandomKey) -> Model {
             0.18,
         )
         .with(
-            &black(),
+            &black_plastic(),
             block(
                 [-x + 0.04, 0.62 * case, z - 0.08],
                 [x - 0.04, 0.62 * case + 0.012, z - 0.01],
@@ -74,7 +74,7 @@ fn water_dispenser(style: &Style, key: RandomKey) -> Model {
         );
     }
     Model::fixed("water_dispenser", "water_dispenser")
-        .switched(true)
+        .with_switch_state(true)
         .part(body)
         .with_sound([0.0, 0.2, -z], "hum", 36.0)
         .with_support_surface(

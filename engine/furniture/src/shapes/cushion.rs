@@ -13,7 +13,7 @@ const LINES: usize = 9;
 const CUSHION_LINES: usize = 6;
 
 /// Grid line `k` of `count` in -1 to 1: denser towards the rims, exactly symmetric.
-fn line(k: usize, count: usize) -> f32 {
+fn grid_coordinate(k: usize, count: usize) -> f32 {
     let t = (2.0 * k as f32 - (count - 1) as f32) / (count - 1) as f32;
     t * (1.5 - 0.5 * t * t)
 }
@@ -26,7 +26,7 @@ pub fn cushion(min: [f32; 3], max: [f32; 3]) -> SolidMesh {
     // The points of a cube, pulled in to |x|^8 + |y|^8 + |z|^8 = 1.
     for [axis, right, up] in SIDES {
         add_grid(&mut mesh, CUSHION_LINES, CUSHION_LINES, |i, j| {
-            let at = |k| line(k, CUSHION_LINES);
+            let at = |k| grid_coordinate(k, CUSHION_LINES);
             let cube = axis + right * at(i) + up * at(j);
             let power = |x: f32, n: f32| math::pow(x.abs(), n);
             let round = power(cube.x, 8.0) + power(cube.y, 8.0) + power(cube.z, 8.0);
@@ -58,7 +58,7 @@ pub fn pillow(size_m: [f32; 3]) -> SolidMesh {
     let mut mesh = Mesh::default();
     for side in [1.0_f32, -1.0] {
         add_grid(&mut mesh, LINES, LINES, |i, j| {
-            let (s, t) = (line(i, LINES), -side * line(j, LINES));
+            let (s, t) = (grid_coordinate(i, LINES), -side * grid_coordinate(j, LINES));
             let position = place(s, t, side);
             Vertex {
                 position,

@@ -85,7 +85,7 @@ fn recipes() -> &'static [TextureGenerator] {
         recipe("shapes", 192, 256, pictures::shapes),
         recipe("branch", 192, 256, pictures::branch),
         recipe("planets", 256, 192, pictures::planets),
-        recipe("fields", 192, 256, pictures::fields),
+        recipe("fields", 192, 256, pictures::color_fields),
         recipe("rings", 192, 256, pictures::rings),
         recipe("waves", 192, 256, pictures::waves),
         recipe("television", 256, 144, screens::television),
@@ -95,7 +95,7 @@ fn recipes() -> &'static [TextureGenerator] {
         recipe("clock", 128, 128, screens::clock),
         recipe("grille", 64, 64, screens::grille),
         recipe("cover", 96, 128, prints::cover),
-        recipe("pages", 32, 128, prints::pages),
+        recipe("pages", 32, 128, prints::page_edges),
         recipe("foliage", 64, 64, prints::foliage),
         recipe("peel", 64, 64, prints::peel),
     ];

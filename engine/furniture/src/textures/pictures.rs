@@ -83,7 +83,7 @@ pub(super) fn branch(canvas: &mut PixelCanvas, paint: &TexturePaint) {
 }
 
 /// Three soft fields of colour, one over the other.
-pub(super) fn fields(canvas: &mut PixelCanvas, paint: &TexturePaint) {
+pub(super) fn color_fields(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let [a, b, c] = paint.colors;
     let ground = mix(shade(b, 0.75), [0.9, 0.86, 0.8], 0.35);
     canvas.fill(|u, v| {

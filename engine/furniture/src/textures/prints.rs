@@ -14,7 +14,7 @@ pub(super) fn cover(canvas: &mut PixelCanvas, paint: &TexturePaint) {
 }
 
 /// The edges of many pages, lines along u.
-pub(super) fn pages(canvas: &mut PixelCanvas, paint: &TexturePaint) {
+pub(super) fn page_edges(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     canvas.fill(|u, v| {
         shade(
             paint.colors[0],

@@ -61,14 +61,14 @@ pub(super) fn add(
         ObjectSource::Box { size_m } => from_box(&mut session.data, *size_m, &wanted.attributes)
             .map_err(prefix_field("what.box"))?,
     };
-    describe::describe(&mut session.data, id, &wanted.attributes)
+    describe::set_attributes(&mut session.data, id, &wanted.attributes)
         .map_err(prefix_field("traits"))?;
     if let Some(look) = &wanted.style {
         surfaces::paint_object(&mut session.data, id, None, look).map_err(prefix_field("look"))?;
     }
     place_new_object(session, id, wanted.name.as_deref(), &wanted.place)?;
     if let Some(sound) = &wanted.sound {
-        fixtures::sound_of(session, id, sound).map_err(prefix_field("sound"))?;
+        fixtures::attach_sound(session, id, sound).map_err(prefix_field("sound"))?;
     }
     Ok(id)
 }
@@ -217,7 +217,7 @@ fn from_file(
         &loaded.data.meshes[dwell_scene::MeshId(0)],
         &Affine3A::IDENTITY,
     );
-    let single = rigid(
+    let single = single_rigid_object(
         loaded.data.clone(),
         loaded.materials.clone(),
         colliders,
@@ -245,12 +245,12 @@ fn from_box(
     let wood = library().get_or_default("wood");
     let material = own.materials.push(Material::of("box_wood", wood));
     let colliders = vec![Collider::cuboid(-half, half)];
-    let single = rigid(own, vec![material], colliders, "box", traits);
+    let single = single_rigid_object(own, vec![material], colliders, "box", traits);
     Ok(first(&copy_objects(data, &single, &[ObjectId(0)])))
 }
 
 /// The first mesh of `data` as a loose rigid thing; its mass is that of its category over the box around it.
-fn rigid(
+fn single_rigid_object(
     mut data: HouseData,
     materials: Vec<MaterialId>,
     colliders: Vec<Collider>,

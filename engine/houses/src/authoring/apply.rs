@@ -179,7 +179,7 @@ impl<'a> EditSession<'a> {
             }
             Edit::Describe(change) => {
                 let id = self.object("object", &change.object)?;
-                describe::describe(&mut self.data, id, &change.attributes)
+                describe::set_attributes(&mut self.data, id, &change.attributes)
                     .map_err(prefix_field("traits"))
             }
             Edit::Rename(rename) => self.rename(rename),
@@ -212,7 +212,7 @@ impl<'a> EditSession<'a> {
     }
 
     /// An object, and the objects that move with it.
-    fn group(
+    fn object_with_contents(
         &mut self,
         id: ObjectId,
         with_things: bool,
@@ -226,13 +226,13 @@ impl<'a> EditSession<'a> {
 
     fn remove(&mut self, change: &RemoveObject) -> Result<(), HousesError> {
         let id = self.object("object", &change.object)?;
-        self.removed = self.group(id, change.with_contents)?;
+        self.removed = self.object_with_contents(id, change.with_contents)?;
         Ok(())
     }
 
     fn shift(&mut self, change: &MoveObject) -> Result<(), HousesError> {
         let id = self.object("object", &change.object)?;
-        let all = self.group(id, change.with_contents)?;
+        let all = self.object_with_contents(id, change.with_contents)?;
         let first = place::placement_transform(self, id, &change.place)?;
         let by = checked_point("by", change.translation_m)?;
         let turn_rad = check_range(

@@ -112,7 +112,7 @@ impl ObjectCopier<'_> {
             material.texture = material
                 .texture
                 .map(|texture| find_or_push(&mut into.textures, &from.textures[texture]));
-            material_of(&mut into.materials, material)
+            find_or_add_material(&mut into.materials, material)
         })
     }
 }
@@ -124,7 +124,7 @@ fn find_or_push<I: Id, T>(table: &mut IdVec<I, Arc<T>>, thing: &Arc<T>) -> I {
 }
 
 /// The id of a material: of one with the same name and content, else of a new one with a name that was free.
-pub(super) fn material_of(
+pub(super) fn find_or_add_material(
     materials: &mut IdVec<MaterialId, Material>,
     mut material: Material,
 ) -> MaterialId {

@@ -13,7 +13,7 @@ use crate::import::{CategoryRow, category, convex_pieces};
 ///
 /// # Errors
 /// [`HousesError::Spec`] for an unknown category, a mass that is not above 0, or what an object with joints cannot be.
-pub(super) fn describe(
+pub(super) fn set_attributes(
     data: &mut HouseData,
     id: ObjectId,
     traits: &ObjectAttributes,

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use dwell_scene::{HouseData, JointId, ObjectId};
 
 use super::edit_errors::{check_range, invalid_field, unknown_name};
-use super::edits::SetDoor;
+use super::edits::SetOpening;
 use crate::error::HousesError;
 
 /// Sets the initial opening of one of an object's `joints`, or of all that open.
@@ -16,7 +16,7 @@ pub(super) fn set_door(
     data: &mut HouseData,
     id: ObjectId,
     joints: &[JointId],
-    change: &SetDoor,
+    change: &SetOpening,
 ) -> Result<(), HousesError> {
     let open = check_range("open", change.open, [0.0, 1.0], "")?;
     let own = joints.iter().copied();

@@ -24,7 +24,7 @@ pub enum Edit {
     /// Sets the start pose of an agent.
     AgentStart(SetAgentStart),
     /// Sets the initial opening of a door, drawer or lid.
-    SetDoor(SetDoor),
+    SetDoor(SetOpening),
     /// Sets attributes of an object.
     Describe(SetAttributes),
     /// Renames something.
@@ -395,7 +395,7 @@ pub struct SetAgentStart {
 /// Sets the initial opening of something.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct SetDoor {
+pub struct SetOpening {
     /// The object's name.
     pub object: String,
     /// 0 closed, 1 fully open.

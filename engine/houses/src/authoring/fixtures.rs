@@ -27,7 +27,7 @@ const ATTENUATION: [f32; 3] = [0.0, 0.0, 1.0];
 const USUAL_W: f32 = 10.0;
 
 /// Gives an object a sound from its middle; it starts switched on.
-pub(super) fn sound_of(
+pub(super) fn attach_sound(
     session: &mut EditSession<'_>,
     id: ObjectId,
     sound: &SoundSpec,
@@ -86,14 +86,14 @@ pub(super) fn add_emitter(
                     "a name beside `at`",
                 ));
             }
-            sound_of(session, id, &wanted.sound).map_err(prefix_field("sound"))
+            attach_sound(session, id, &wanted.sound).map_err(prefix_field("sound"))
         }
         (None, Some(at)) => {
             let at = checked_point("at", at)?;
             if let Some(name) = &wanted.name {
                 session.check_name_is_free("name", name)?;
             }
-            let id = disc(&mut session.data);
+            let id = add_emitter_disc(&mut session.data);
             let name = match &wanted.name {
                 Some(name) => name.clone(),
                 None => session.object_index.next_numbered_name("source"),
@@ -105,7 +105,7 @@ pub(super) fn add_emitter(
                 ..Placement::default()
             };
             place_new_object(session, id, Some(&name), &place)?;
-            sound_of(session, id, &wanted.sound).map_err(prefix_field("sound"))?;
+            attach_sound(session, id, &wanted.sound).map_err(prefix_field("sound"))?;
             if let Some(emitter) = session.data.emitters.last_mut() {
                 emitter.position = Vec3::Y * (0.5 * DISC_M[1] + below);
             }
@@ -123,7 +123,7 @@ pub(super) fn add_emitter(
 }
 
 /// A small black disc that nothing touches.
-fn disc(data: &mut HouseData) -> ObjectId {
+fn add_emitter_disc(data: &mut HouseData) -> ObjectId {
     let [edge, height, _] = DISC_M;
     let half = 0.5 * Vec3::new(edge, height, edge);
     let mut own = HouseData::default();

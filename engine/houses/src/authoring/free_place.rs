@@ -78,12 +78,12 @@ impl<'a> PlacementSearch<'a> {
     /// The free place nearest to the carrier's middle where the thing stands on even ground; for one that is larger than all even ground,
     /// the one nearest where its middle is carried.
     pub(super) fn find_free_position(&self) -> Option<Vec3> {
-        let even = self.places().find(|place| self.is_even(*place));
-        even.or_else(|| self.places().next())
+        let even = self.free_positions().find(|place| self.is_even(*place));
+        even.or_else(|| self.free_positions().next())
     }
 
     /// Returns the places without overlap, the nearest to the carrier's middle first.
-    fn places(&self) -> impl Iterator<Item = Vec3> {
+    fn free_positions(&self) -> impl Iterator<Item = Vec3> {
         let (middle, size) = (self.bounds.center(), self.bounds.size());
         let step = |size: f32| (size / MOST_STEPS).max(STEP_M);
         let steps = |size: f32| (0.5 * size / step(size)) as i32;

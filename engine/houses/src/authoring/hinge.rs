@@ -1,6 +1,6 @@
 //! A hinge for a node of a foreign house, so that it opens.
 
-use dwell_scene::{Articulation, Collider, HouseData, JointKind, Mobility, ObjectId, Pose};
+use dwell_scene::{Collider, HouseData, Joint, JointKind, Mobility, ObjectId, Pose};
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 
@@ -150,7 +150,7 @@ pub(super) fn attach_hinge(
         mobility: Some(Mobility::Movable),
         ..ObjectAttributes::default()
     };
-    describe::describe(data, id, &traits)?;
+    describe::set_attributes(data, id, &traits)?;
     let object = &mut data.objects[id];
     object.mobility = Mobility::Articulated;
     object.pickable = false;
@@ -161,7 +161,7 @@ pub(super) fn attach_hinge(
         part.colliders = convex_pieces(&data.meshes[part.mesh], &part.part_from_mesh);
     }
     let world_from_joint = Pose::new(pivot, Quat::IDENTITY);
-    data.joints.push(Articulation {
+    data.joints.push(Joint {
         parent_from_joint: world_from_joint,
         child_from_joint: part.world_from_part.inverse() * world_from_joint,
         limits: Some([open.min(closed).min(0.0), open.max(closed).max(0.0)]),
@@ -169,7 +169,7 @@ pub(super) fn attach_hinge(
         open,
         friction: FRICTION_N_M,
         damping: DAMPING_N_M_S,
-        ..Articulation::new("hinge", id, child, JointKind::Hinge, axis)
+        ..Joint::new("hinge", id, child, JointKind::Hinge, axis)
     });
     Ok(())
 }

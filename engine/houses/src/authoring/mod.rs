@@ -33,7 +33,7 @@ pub use apply::edit;
 pub use edits::{
     AddEmitter, AddLamp, AddObject, AddRobot, Anchor, ChangeMaterial, Edit, MoveObject,
     ObjectAttributes, ObjectSource, Placement, RemoveObject, Rename, RoomSide, SetAgentStart,
-    SetAttributes, SetDoor, SoundSpec, SurfaceSelector, SurfaceStyle, UpAxis,
+    SetAttributes, SetOpening, SoundSpec, SurfaceSelector, SurfaceStyle, UpAxis,
 };
 pub use files::FileAccess;
 pub use floor_plan::{
@@ -41,7 +41,7 @@ pub use floor_plan::{
     StoreyPlan, SurfaceFinish, WindowPlan,
 };
 pub use hinge::{BoxSide, HingeAxis, NodeHinge};
-pub use name_mapping::{MappedMaterial, MappedNode, MappedRoom, NameMapping, map_template};
+pub use name_mapping::{MappedNode, MappedRoom, MaterialMappingEntry, NameMapping, map_template};
 pub use open::{HousePlan, build, edits_from_json};
 pub(crate) use open::{open, recognizes};
 pub use unmapped::{UnmappedName, UnmappedNames, unmapped_names};

@@ -33,7 +33,7 @@ const GAP_M: f32 = 0.03;
 #[serde(default, deny_unknown_fields)]
 pub struct NameMapping {
     /// Names of materials or their images.
-    pub materials: BTreeMap<String, MappedMaterial>,
+    pub materials: BTreeMap<String, MaterialMappingEntry>,
     /// Names of nodes or models.
     pub nodes: BTreeMap<String, MappedNode>,
     /// Names of rooms or their foreign kinds.
@@ -42,7 +42,7 @@ pub struct NameMapping {
 
 /// The mapping of a material: a substance's name, or a table.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct MappedMaterial(pub MaterialMapping);
+pub struct MaterialMappingEntry(pub MaterialMapping);
 
 /// The table form of a material's mapping.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
@@ -114,7 +114,7 @@ macro_rules! word_or_table {
 }
 
 word_or_table!(
-    MappedMaterial,
+    MaterialMappingEntry,
     MaterialMapping,
     substance,
     "a substance's name, or a table with `substance`"
@@ -164,7 +164,7 @@ impl NameMapping {
         let materials = self
             .materials
             .iter()
-            .flat_map(|(pattern, MappedMaterial(row))| {
+            .flat_map(|(pattern, MaterialMappingEntry(row))| {
                 let numbers = [("opacity", row.opacity), ("roughness", row.roughness)];
                 numbers.map(|(name, number)| (format!("materials.{pattern:?}.{name}"), number))
             });
@@ -213,7 +213,7 @@ impl NameMapping {
     /// [`HousesError::Spec`] names the pattern and the field, what was found and what is possible; [`HousesError::Scene`].
     pub fn apply(&self, house: &House, report: &mut LoadReport) -> Result<House, HousesError> {
         let mut data = house.data().clone();
-        self.materials_of(&mut data)?;
+        self.apply_materials(&mut data)?;
         self.nodes_of(&mut data, report)?;
         for room in &mut data.rooms {
             let names = room
@@ -240,14 +240,14 @@ impl NameMapping {
         House::new(data).map_err(HousesError::scene(&FileLocation::file("map")))
     }
 
-    fn materials_of(&self, data: &mut HouseData) -> Result<(), HousesError> {
+    fn apply_materials(&self, data: &mut HouseData) -> Result<(), HousesError> {
         for k in 0..data.materials.len() {
             let id = dwell_scene::MaterialId(k as u32);
             let material = &data.materials[id];
             let image = material
                 .texture
                 .map(|texture| data.textures[texture].name.as_str());
-            let Some((pattern, MappedMaterial(row))) = best(
+            let Some((pattern, MaterialMappingEntry(row))) = best(
                 &self.materials,
                 image.into_iter().chain([material.name.as_str()]),
             ) else {
@@ -299,7 +299,7 @@ impl NameMapping {
                 return Err(prefix_field(place)(invalid_field("hinge", found, possible)));
             }
             if let Some(kind) = row.structure {
-                becomes_structure(data, id, kind).map_err(prefix_field(place))?;
+                convert_to_structure(data, id, kind).map_err(prefix_field(place))?;
                 walls.insert(id);
                 continue;
             }
@@ -323,7 +323,7 @@ impl NameMapping {
             if let Some(hinge) = &row.hinge {
                 attach_hinge(data, id, hinge).map_err(prefix_field(&place))?;
             }
-            describe::describe(data, id, &traits).map_err(prefix_field(&place))?;
+            describe::set_attributes(data, id, &traits).map_err(prefix_field(&place))?;
             let object = &mut data.objects[id];
             let kind = category([object.category.coarse.as_str()]);
             if unknown
@@ -439,7 +439,7 @@ fn is_supported(data: &HouseData, id: ObjectId) -> bool {
 }
 
 /// Turns an object into a piece of the building; the object is left for the caller to remove.
-fn becomes_structure(
+fn convert_to_structure(
     data: &mut HouseData,
     id: ObjectId,
     kind: StructureKind,

@@ -64,12 +64,12 @@ impl Default for HousePlan {
 pub fn edits_from_json(text: &str) -> Result<Vec<Edit>, HousesError> {
     let at = FileLocation::file("edits");
     serde_json::from_str(text).map_err(|error| {
-        several_in_one(text.as_bytes(), &at).unwrap_or_else(|| json::syntax(&at)(error))
+        edit_name_count_error(text.as_bytes(), &at).unwrap_or_else(|| json::syntax(&at)(error))
     })
 }
 
 /// The fault of an edit that has several names, or none; `None` where all have one.
-fn several_in_one(text: &[u8], at: &FileLocation) -> Option<HousesError> {
+fn edit_name_count_error(text: &[u8], at: &FileLocation) -> Option<HousesError> {
     let file: serde_json::Value = serde_json::from_slice(text).ok()?;
     let edits = file.get("edits").unwrap_or(&file).as_array()?;
     let names = |edit: &serde_json::Value| Some(edit.as_object()?.keys().cloned().collect());
@@ -90,8 +90,9 @@ impl HousePlan {
     /// # Errors
     /// [`HousesError::Syntax`], [`HousesError::Field`] for another format, [`HousesError::Version`].
     pub fn from_json(text: &[u8], at: &FileLocation) -> Result<Self, HousesError> {
-        let plan: Self = json::from_slice(text)
-            .map_err(|error| several_in_one(text, at).unwrap_or_else(|| json::syntax(at)(error)))?;
+        let plan: Self = json::from_slice(text).map_err(|error| {
+            edit_name_count_error(text, at).unwrap_or_else(|| json::syntax(at)(error))
+        })?;
         if plan.format != FORMAT {
             return Err(HousesError::Field {
                 at: at.field("format"),

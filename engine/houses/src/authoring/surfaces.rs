@@ -10,7 +10,7 @@ use dwell_scene::{
 use glam::{Vec2, Vec3};
 
 use super::apply::EditSession;
-use super::copy_objects::material_of;
+use super::copy_objects::find_or_add_material;
 use super::edit_errors::{check_range, find_substance, invalid_field, prefix_field, unknown_name};
 use super::edits::{ChangeMaterial, RoomSide, SurfaceSelector, SurfaceStyle};
 use super::remove_objects;
@@ -148,7 +148,7 @@ fn repainted(
     let mut new = Vec::with_capacity(old.len());
     for id in old {
         let material = changed(&data.materials[*id], look)?;
-        new.push(material_of(&mut data.materials, material));
+        new.push(find_or_add_material(&mut data.materials, material));
     }
     Ok(new)
 }

@@ -5,9 +5,9 @@ use dwell_furniture::finishes::Finish;
 use dwell_furniture::model::Model;
 use dwell_furniture::textures::{TexturePattern, textures};
 use dwell_scene::{
-    Aabb, Articulation, Category, HouseData, Id, JointKind, Level, LevelId, Light, MaterialId,
-    Mesh, MeshId, Object, ObjectId, Part, PartId, Pose, Receptacle, RoomId, SoundEmitter,
-    Structure, StructureKind, TextureId,
+    Aabb, Category, HouseData, Id, Joint, JointKind, Level, LevelId, Light, MaterialId, Mesh,
+    MeshId, Object, ObjectId, Part, PartId, Pose, Receptacle, RoomId, SoundEmitter, Structure,
+    StructureKind, TextureId,
 };
 use glam::Affine3A;
 use std::collections::BTreeMap;
@@ -26,7 +26,7 @@ const SLIDE_DAMPING: f32 = 8.0;
 
 /// A model that is part of the house.
 #[derive(Clone, Debug)]
-pub(crate) struct ModelInstances {
+pub(crate) struct AddedModel {
     pub(crate) model: Arc<Model>,
     meshes: Vec<MeshId>,
     materials: Vec<Vec<MaterialId>>,
@@ -41,7 +41,7 @@ pub(crate) struct HouseAssembly {
     patterns: Vec<TexturePattern>,
     finishes: Vec<(Finish, MaterialId)>,
     /// Models by address, which they keep alive.
-    kinds: BTreeMap<usize, ModelInstances>,
+    kinds: BTreeMap<usize, AddedModel>,
     material_names: UniqueNames,
     object_names: UniqueNames,
 }
@@ -85,7 +85,7 @@ impl HouseAssembly {
     }
 
     /// Adds a model; a shared model is one kind.
-    pub(crate) fn add_model(&mut self, model: impl Into<Arc<Model>>) -> ModelInstances {
+    pub(crate) fn add_model(&mut self, model: impl Into<Arc<Model>>) -> AddedModel {
         let model = model.into();
         let address = Arc::as_ptr(&model) as usize;
         if let Some(known) = self.kinds.get(&address) {
@@ -106,7 +106,7 @@ impl HouseAssembly {
                     .collect()
             })
             .collect();
-        let kind = ModelInstances {
+        let kind = AddedModel {
             model,
             meshes,
             materials,
@@ -143,7 +143,7 @@ impl HouseAssembly {
     /// Puts an instance into a room, its first joint open by `openness` (0 to 1).
     pub(crate) fn add_instance(
         &mut self,
-        kind: &ModelInstances,
+        kind: &AddedModel,
         world_from_model: Pose,
         room: RoomId,
         openness: f32,
@@ -195,15 +195,20 @@ impl HouseAssembly {
             part_count: model.parts.len() as u32,
         });
         let part_id = |k: usize| PartId(first_part.0 + k as u32);
-        self.fixtures(&model, object, part_id);
+        self.add_joints_lights_and_sounds(&model, object, part_id);
     }
 
-    fn fixtures(&mut self, model: &Model, object: ObjectId, part_id: impl Fn(usize) -> PartId) {
+    fn add_joints_lights_and_sounds(
+        &mut self,
+        model: &Model,
+        object: ObjectId,
+        part_id: impl Fn(usize) -> PartId,
+    ) {
         let data = &mut self.data;
         for joint in &model.joints {
             let frame = Pose::from_position(joint.position);
             let hinge = joint.kind == JointKind::Hinge;
-            data.joints.push(Articulation {
+            data.joints.push(Joint {
                 parent: Some(part_id(joint.parent)),
                 parent_from_joint: frame,
                 child_from_joint: frame,
@@ -213,7 +218,7 @@ impl HouseAssembly {
                 toggles_switch: joint.toggles_switch,
                 friction: FRICTION,
                 damping: if hinge { HINGE_DAMPING } else { SLIDE_DAMPING },
-                ..Articulation::new(
+                ..Joint::new(
                     joint.name,
                     object,
                     part_id(joint.child),

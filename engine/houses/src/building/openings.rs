@@ -3,7 +3,7 @@
 use std::f32::consts::FRAC_PI_2;
 
 use super::assembly::HouseAssembly;
-use dwell_furniture::model_cache::built_to_size;
+use dwell_furniture::model_cache::cached_custom_model;
 use dwell_furniture::models::doors::Door;
 use dwell_furniture::models::windows::Window;
 use dwell_scene::{Pose, RoomId};
@@ -19,7 +19,7 @@ pub(crate) fn add_door(
     openness: f32,
 ) {
     let settings = format!("{door:?} square {square}");
-    let kind = assembly.add_model(built_to_size(settings, || {
+    let kind = assembly.add_model(cached_custom_model(settings, || {
         let mut model = door.build();
         for joint in model.joints.iter_mut().filter(|_| square) {
             joint.open = joint.open.min(FRAC_PI_2);
@@ -31,6 +31,8 @@ pub(crate) fn add_door(
 
 /// Puts a window into a hole; `pose` is its middle, the room at +Z.
 pub(crate) fn add_window(assembly: &mut HouseAssembly, window: &Window, pose: Pose, room: RoomId) {
-    let kind = assembly.add_model(built_to_size(format!("{window:?}"), || window.build()));
+    let kind = assembly.add_model(cached_custom_model(format!("{window:?}"), || {
+        window.build()
+    }));
     assembly.add_instance(&kind, pose, room, 0.0);
 }

@@ -29,7 +29,7 @@ pub(crate) struct ShellRoom {
     /// Height of the slab's lower face above the floor, m: that of the storey's walls.
     pub(crate) storey_m: f32,
     /// Its floor and the slab above it; they reach to the middle of walls.
-    pub(crate) slabs: [FloorSlab; 2],
+    pub(crate) slabs: [HorizontalSlab; 2],
     /// The outlines of a ceiling that hangs below that slab.
     pub(crate) suspended_ceiling: Vec<PolygonXz>,
     pub(crate) floor_finish: Finish,
@@ -41,7 +41,7 @@ pub(crate) type PolygonXz = Vec<[f32; 2]>;
 
 /// A floor or a ceiling.
 #[derive(Clone, Debug)]
-pub(crate) struct FloorSlab {
+pub(crate) struct HorizontalSlab {
     pub(crate) outlines: Vec<PolygonXz>,
     pub(crate) thick_m: f32,
 }

@@ -6,7 +6,7 @@ use super::assembly::HouseAssembly;
 use super::yaw::yaw_rotation;
 use dwell_furniture::finishes::Finish;
 use dwell_furniture::model::Model;
-use dwell_furniture::model_cache::built_to_size;
+use dwell_furniture::model_cache::cached_custom_model;
 use dwell_furniture::models::stairs::{Stairs, railing};
 use dwell_furniture::style::Style;
 use dwell_scene::{Pose, RoomId};
@@ -64,7 +64,7 @@ pub(crate) fn add_stairs(
         wood: style.wood.clone(),
         paint: Finish::plain("stair_white", "wood", [238, 236, 230]),
     };
-    let kind = assembly.add_model(built_to_size(format!("{model:?}"), || model.build()));
+    let kind = assembly.add_model(cached_custom_model(format!("{model:?}"), || model.build()));
     let pose = Pose::new(flights.front, yaw_rotation(flights.yaw_deg()));
     assembly.add_instance(&kind, pose, room, 0.0);
 }
@@ -93,7 +93,7 @@ pub(crate) fn add_railing(
 /// A railing of a length.
 pub(crate) fn railing_model(length_m: f32, style: &Style) -> Arc<Model> {
     let metal = &style.metal;
-    built_to_size(format!("railing {length_m} {metal:?}"), || {
+    cached_custom_model(format!("railing {length_m} {metal:?}"), || {
         railing(length_m, metal)
     })
 }

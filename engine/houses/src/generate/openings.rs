@@ -7,7 +7,7 @@ use super::plan::{
     ConnectionKind, GeneratedPlan, GeneratedStorey, GridRect, GridSteps, RoomBoundary,
     StairwellPlan, StoreyCells, metres, steps,
 };
-use super::reachability::unreachable_rooms_when_empty;
+use super::reachability::count_unreachable_when_empty;
 use super::rooms::{GeneratedRoomKind, WindowStyle};
 use dwell_scene::random::{RandomKey, RandomStream};
 
@@ -204,7 +204,7 @@ fn doors(
         let mut dealt = sample_doors(storey, runs, stairs.map(|stairs| stairs.area), stream);
         // Where no two doors meet, an open leaf may still block the way to a room.
         if dealt.1 == 0 {
-            dealt.1 = unreachable_rooms_when_empty(storey, &dealt.0, stairs);
+            dealt.1 = count_unreachable_when_empty(storey, &dealt.0, stairs);
         }
         if best.as_ref().is_none_or(|(_, least)| dealt.1 < *least) {
             best = Some(dealt);

@@ -53,7 +53,7 @@ pub(super) fn unreachable_rooms(
                 }
             }
         }
-        let walk = map.largest();
+        let walk = map.mark_largest_region();
         let reached = map.reached_on(&walk, storey.rooms.len());
         let cut_off = plan.stairs.is_some_and(|stairs| {
             let ways = stairs_at(&stairs, level, plan.storeys.len());
@@ -70,7 +70,7 @@ pub(super) fn unreachable_rooms(
 }
 
 /// Returns the number of rooms of a storey that are unreachable while they are empty.
-pub(super) fn unreachable_rooms_when_empty(
+pub(super) fn count_unreachable_when_empty(
     storey: &GeneratedStorey,
     holes: &[WallHole],
     stairs: Option<StairwellPlan>,
@@ -238,7 +238,7 @@ impl OccupancyMap {
     }
 
     /// The walkable cells, those of the largest connected floor marked.
-    fn largest(&self) -> Vec<CellReach> {
+    fn mark_largest_region(&self) -> Vec<CellReach> {
         let walkable = self.walkable();
         let mut walk: Vec<CellReach> = walkable
             .iter()
@@ -275,7 +275,7 @@ impl OccupancyMap {
 
     /// For each room whether it is reached: no less than half of its walkable floor.
     fn reached(&self, rooms: usize) -> Vec<bool> {
-        self.reached_on(&self.largest(), rooms)
+        self.reached_on(&self.mark_largest_region(), rooms)
     }
 
     fn reached_on(&self, walk: &[CellReach], rooms: usize) -> Vec<bool> {

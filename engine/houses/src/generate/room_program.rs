@@ -10,7 +10,7 @@ use dwell_scene::random::{RandomKey, RandomStream};
 
 /// A required room.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct RoomRequirement {
+pub(crate) struct RequiredRoom {
     pub(crate) kind: GeneratedRoomKind,
     pub(crate) area_m2: f32,
 }
@@ -20,7 +20,7 @@ pub(crate) struct RoomRequirement {
 pub(crate) struct RoomProgram {
     pub(crate) home: HomeKind,
     /// Rooms of the storeys from the ground up, without hallways and outdoor rooms.
-    pub(crate) storeys: Vec<Vec<RoomRequirement>>,
+    pub(crate) storeys: Vec<Vec<RequiredRoom>>,
     /// A balcony or terrace.
     pub(crate) outside: Option<GeneratedRoomKind>,
 }
@@ -48,13 +48,13 @@ pub(crate) fn draw_room_program(spec: &HouseSpec, key: RandomKey) -> RoomProgram
         rooms.truncate(MAX_ROOMS);
     }
     let mut key = key.child("areas").stream();
-    let mut storeys: Vec<Vec<RoomRequirement>> = storeys
+    let mut storeys: Vec<Vec<RequiredRoom>> = storeys
         .into_iter()
         .map(|rooms| {
             let wanted = |kind: GeneratedRoomKind| {
                 let [low, usual, high] = kind.requirements().area_m2;
                 let area_m2 = (usual * key.range(0.8, 1.35)).clamp(low, high);
-                RoomRequirement { kind, area_m2 }
+                RequiredRoom { kind, area_m2 }
             };
             rooms.into_iter().map(wanted).collect()
         })
@@ -216,7 +216,7 @@ fn balance(storeys: &mut [Vec<GeneratedRoomKind>]) {
 }
 
 /// Scales areas towards a total, each within what its kind allows.
-fn scale(storeys: &mut [Vec<RoomRequirement>], area_m2: f32) {
+fn scale(storeys: &mut [Vec<RequiredRoom>], area_m2: f32) {
     let hallways = if storeys.iter().map(Vec::len).sum::<usize>() > 1 {
         1.12
     } else {

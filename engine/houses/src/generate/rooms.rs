@@ -64,7 +64,7 @@ pub(crate) enum WindowStyle {
 
 /// The requirements of a kind of room.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct RoomRequirements {
+pub(crate) struct RoomKindProperties {
     /// A row of `assets/rooms.csv`; rooms are named after it.
     pub(crate) name: &'static str,
     /// Everyday names of its kind, the most fitting first.
@@ -78,15 +78,15 @@ pub(crate) struct RoomRequirements {
     pub(crate) storey: usize,
 }
 
-const fn traits(
+const fn room_kind_properties(
     name: &'static str,
     words: &'static [&'static str],
     area_m2: [f32; 3],
     least_width_m: f32,
     windows: WindowStyle,
     storey: usize,
-) -> RoomRequirements {
-    RoomRequirements {
+) -> RoomKindProperties {
+    RoomKindProperties {
         name,
         everyday_names: words,
         area_m2,
@@ -119,10 +119,10 @@ impl GeneratedRoomKind {
     ];
 
     /// Areas: usual German flats after E. Neufert, *Architects' Data*, 4th ed. (2012), "Housing", rounded.
-    pub(crate) const fn requirements(self) -> RoomRequirements {
+    pub(crate) const fn requirements(self) -> RoomKindProperties {
         use WindowStyle::{Frosted, High, None, Usual, Wide};
         match self {
-            Self::Studio => traits(
+            Self::Studio => room_kind_properties(
                 "studio",
                 &["living room", "bedroom", "kitchen"],
                 [17.0, 26.0, 45.0],
@@ -130,7 +130,7 @@ impl GeneratedRoomKind {
                 Wide,
                 0,
             ),
-            Self::LivingRoom => traits(
+            Self::LivingRoom => room_kind_properties(
                 "living_room",
                 &["living room"],
                 [13.0, 24.0, 48.0],
@@ -138,7 +138,7 @@ impl GeneratedRoomKind {
                 Wide,
                 0,
             ),
-            Self::DiningRoom => traits(
+            Self::DiningRoom => room_kind_properties(
                 "dining_room",
                 &["dining room"],
                 [8.5, 13.0, 26.0],
@@ -146,9 +146,13 @@ impl GeneratedRoomKind {
                 Usual,
                 0,
             ),
-            Self::Kitchen => traits("kitchen", &["kitchen"], [6.5, 11.0, 22.0], 2.3, High, 0),
-            Self::Bedroom => traits("bedroom", &["bedroom"], [10.5, 15.0, 28.0], 2.9, Usual, 1),
-            Self::ChildRoom => traits(
+            Self::Kitchen => {
+                room_kind_properties("kitchen", &["kitchen"], [6.5, 11.0, 22.0], 2.3, High, 0)
+            }
+            Self::Bedroom => {
+                room_kind_properties("bedroom", &["bedroom"], [10.5, 15.0, 28.0], 2.9, Usual, 1)
+            }
+            Self::ChildRoom => room_kind_properties(
                 "child_room",
                 &["child room", "bedroom"],
                 [8.5, 12.0, 22.0],
@@ -156,7 +160,7 @@ impl GeneratedRoomKind {
                 Usual,
                 1,
             ),
-            Self::GuestRoom => traits(
+            Self::GuestRoom => room_kind_properties(
                 "guest_room",
                 &["guest room", "bedroom"],
                 [8.5, 12.0, 22.0],
@@ -164,13 +168,25 @@ impl GeneratedRoomKind {
                 Usual,
                 1,
             ),
-            Self::Bathroom => traits("bathroom", &["bathroom"], [4.6, 7.0, 14.0], 2.0, Frosted, 1),
-            Self::Toilet => traits("toilet", &["toilet"], [2.6, 3.2, 6.0], 1.4, Frosted, 0),
-            Self::Office => traits("office", &["office"], [8.0, 12.0, 26.0], 2.5, Usual, 0),
-            Self::Lobby => traits("lobby", &["lobby"], [14.0, 24.0, 60.0], 3.4, Wide, 0),
-            Self::Wardrobe => traits("wardrobe", &["wardrobe"], [3.6, 5.5, 12.0], 1.7, None, 1),
-            Self::Storage => traits("storage", &["storage"], [2.2, 4.0, 12.0], 1.3, None, 0),
-            Self::BoilerRoom => traits(
+            Self::Bathroom => {
+                room_kind_properties("bathroom", &["bathroom"], [4.6, 7.0, 14.0], 2.0, Frosted, 1)
+            }
+            Self::Toilet => {
+                room_kind_properties("toilet", &["toilet"], [2.6, 3.2, 6.0], 1.4, Frosted, 0)
+            }
+            Self::Office => {
+                room_kind_properties("office", &["office"], [8.0, 12.0, 26.0], 2.5, Usual, 0)
+            }
+            Self::Lobby => {
+                room_kind_properties("lobby", &["lobby"], [14.0, 24.0, 60.0], 3.4, Wide, 0)
+            }
+            Self::Wardrobe => {
+                room_kind_properties("wardrobe", &["wardrobe"], [3.6, 5.5, 12.0], 1.7, None, 1)
+            }
+            Self::Storage => {
+                room_kind_properties("storage", &["storage"], [2.2, 4.0, 12.0], 1.3, None, 0)
+            }
+            Self::BoilerRoom => room_kind_properties(
                 "boiler_room",
                 &["boiler room"],
                 [4.0, 6.0, 14.0],
@@ -178,10 +194,16 @@ impl GeneratedRoomKind {
                 Frosted,
                 0,
             ),
-            Self::Gym => traits("gym", &["gym"], [10.0, 16.0, 32.0], 2.9, Usual, 1),
-            Self::Hallway => traits("hallway", &["hallway"], [1.5, 8.0, 40.0], 1.1, None, 0),
-            Self::Balcony => traits("balcony", &["balcony"], [3.0, 5.0, 12.0], 1.3, None, 0),
-            Self::Terrace => traits("terrace", &["terrace"], [6.0, 12.0, 30.0], 2.0, None, 0),
+            Self::Gym => room_kind_properties("gym", &["gym"], [10.0, 16.0, 32.0], 2.9, Usual, 1),
+            Self::Hallway => {
+                room_kind_properties("hallway", &["hallway"], [1.5, 8.0, 40.0], 1.1, None, 0)
+            }
+            Self::Balcony => {
+                room_kind_properties("balcony", &["balcony"], [3.0, 5.0, 12.0], 1.3, None, 0)
+            }
+            Self::Terrace => {
+                room_kind_properties("terrace", &["terrace"], [6.0, 12.0, 30.0], 2.0, None, 0)
+            }
         }
     }
 

@@ -11,7 +11,7 @@ use super::spec::DoorStates;
 use crate::building::assembly::HouseAssembly;
 use crate::building::openings::{add_door, add_window};
 use crate::building::outline::outline;
-use crate::building::room::{CEILING_M, FloorSlab, ShellRoom};
+use crate::building::room::{CEILING_M, HorizontalSlab, ShellRoom};
 use crate::building::stairs::{
     RAILING_INSET_M, StairFlights, add_railing, add_stairs, railing_model,
 };
@@ -34,12 +34,12 @@ const FLOOR_SLAB_M: f32 = 0.2;
 pub(crate) const STOREY_M: f32 = CEILING_M + CEILING_SLAB_M + FLOOR_SLAB_M;
 
 /// The building, for later stages.
-pub(crate) struct BuildingShell {
+pub(crate) struct ShellRoomIds {
     /// The ids of the rooms, by storey.
     pub(crate) rooms: Vec<Vec<RoomId>>,
 }
 
-impl BuildingShell {
+impl ShellRoomIds {
     /// Puts furniture into the rooms.
     pub(crate) fn furnish(&self, storeys: &[Vec<RoomFurniture>], assembly: &mut HouseAssembly) {
         for (level, rooms) in storeys.iter().enumerate() {
@@ -119,7 +119,7 @@ pub(crate) fn floor_contains_zone(floor: &[ZoneXz], rect: &ZoneXz) -> bool {
 }
 
 /// The rectangles that a room's slab covers: to the middle of inner and to the outer face of outer walls, m.
-fn slab(
+fn slab_rectangles(
     storey: &GeneratedStorey,
     cells: &StoreyCells,
     room: usize,
@@ -150,10 +150,10 @@ fn slab(
 
 impl ShellBuilder<'_> {
     /// Adds the building to an empty house.
-    pub(crate) fn build(&self, assembly: &mut HouseAssembly) -> BuildingShell {
+    pub(crate) fn build(&self, assembly: &mut HouseAssembly) -> ShellRoomIds {
         let mut names = UniqueNames::default();
         let outside = facade_finish(self.key.child("facade"));
-        let mut shell = BuildingShell { rooms: Vec::new() };
+        let mut shell = ShellRoomIds { rooms: Vec::new() };
         for (level, storey) in self.plan.storeys.iter().enumerate() {
             assembly.add_storey();
             let cells = StoreyCells::new(&storey.rooms);
@@ -212,7 +212,7 @@ impl ShellBuilder<'_> {
                 Vec::new()
             } else {
                 let void = well(!top && plan.kind == GeneratedRoomKind::Hallway);
-                slab(storey, cells, room, void)
+                slab_rectangles(storey, cells, room, void)
             };
             let built = ShellRoom {
                 name: names.unique(traits.name),
@@ -226,11 +226,11 @@ impl ShellBuilder<'_> {
                 ceiling_m: CEILING_M,
                 storey_m: CEILING_M,
                 slabs: [
-                    FloorSlab {
-                        outlines: vec![slab(storey, cells, room, void)],
+                    HorizontalSlab {
+                        outlines: vec![slab_rectangles(storey, cells, room, void)],
                         thick_m: FLOOR_SLAB_M,
                     },
-                    FloorSlab {
+                    HorizontalSlab {
                         outlines: vec![ceiling],
                         thick_m: if top { FLOOR_SLAB_M } else { CEILING_SLAB_M },
                     },

@@ -27,11 +27,11 @@ pub(super) fn split_glb(bytes: &[u8]) -> Result<(Root, &[u8]), String> {
     let invalid = |error: serde_json::Error| {
         format!("no valid glTF 2.0: {}", crate::plain_parse_error(&error))
     };
-    indices::check(text).map_err(invalid)?;
+    indices::check_index_widths(text).map_err(invalid)?;
     // Only files that need it are read as a tree: that is slower, and places in the text are lost.
     let mut json: Root = if contains(text, BASISU.as_bytes()) {
         let mut tree: Value = serde_json::from_slice(text).map_err(invalid)?;
-        show_basisu_images(&mut tree);
+        set_basisu_sources(&mut tree);
         serde_json::from_value(tree).map_err(invalid)?
     } else {
         deserialize::from_slice(text).map_err(invalid)?
@@ -61,7 +61,7 @@ fn contains(text: &[u8], word: &[u8]) -> bool {
 
 /// Names the image of `KHR_texture_basisu` as the texture's own, which the extension lets a file leave out: the image is
 /// then found, and what cannot be decoded is reported like any other image.
-fn show_basisu_images(tree: &mut Value) {
+fn set_basisu_sources(tree: &mut Value) {
     let textures = tree.get_mut("textures").and_then(Value::as_array_mut);
     for texture in textures.into_iter().flatten() {
         let source = texture["extensions"][BASISU]["source"].clone();

@@ -201,7 +201,7 @@ fn merge(
             continue;
         }
         // Mixed primitives keep their attributes: flat normals and no place on the image for those that lack them.
-        fill(&mut part, &merged);
+        match_attributes(&mut part, &merged);
         if merged.normals.is_empty() && !part.normals.is_empty() {
             merged = with_flat_normals(&merged);
         }
@@ -240,7 +240,7 @@ fn transform_uvs(json: &Root, primitive: &Primitive, part: &mut Mesh) {
 }
 
 /// Gives `part` the attributes that `merged` already has.
-fn fill(part: &mut Mesh, merged: &Mesh) {
+fn match_attributes(part: &mut Mesh, merged: &Mesh) {
     if !merged.normals.is_empty() && part.normals.is_empty() {
         *part = with_flat_normals(part);
     }

@@ -45,7 +45,7 @@ const TABLES: [&str; 2] = ["attributes", "targets"];
 ///
 /// # Errors
 /// Those of JSON, and for a number of more than 32 bits.
-pub(super) fn check(text: &[u8]) -> Result<(), serde_json::Error> {
+pub(super) fn check_index_widths(text: &[u8]) -> Result<(), serde_json::Error> {
     let mut json = serde_json::Deserializer::from_slice(text);
     IndexVisitor::default().deserialize(&mut json)?;
     json.end()
@@ -135,14 +135,14 @@ mod tests {
             r#"{"meshes": [{"primitives": [{"mode": 4294967300}]}]}"#,
             r#"{"meshes": [{"primitives": [{"targets": [{"NORMAL": 4294967296}]}]}]}"#,
         ] {
-            let told = check(text.as_bytes()).unwrap_err().to_string();
+            let told = check_index_widths(text.as_bytes()).unwrap_err().to_string();
             assert!(told.contains("; allowed are 0 to 4294967295"), "{told}");
         }
         for text in [
             r#"{"nodes": [{"mesh": 4294967295, "extras": {"mesh": 4294967296}}]}"#,
             r#"{"accessors": [{"max": [5000000000, -1, 0.5]}], "buffers": [{"byteLength": 5000000000}]}"#,
         ] {
-            assert!(check(text.as_bytes()).is_ok(), "{text}");
+            assert!(check_index_widths(text.as_bytes()).is_ok(), "{text}");
         }
     }
 }

@@ -56,7 +56,7 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, LoadReport), Houses
         .into_owned();
     std::fs::metadata(path).map_err(HousesError::io(path))?;
     let root = DataRoot::new(folder)?;
-    let bytes = root.read_named(&name, MAX_BUFFER_BYTES)?;
+    let bytes = root.read_user_named(&name, MAX_BUFFER_BYTES)?;
     open_bytes(&bytes, &root, &name, threads)
 }
 

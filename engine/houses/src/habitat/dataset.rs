@@ -89,7 +89,7 @@ impl Dataset {
         let mut base = (folder.to_owned(), String::new());
         for folder in folder.ancestors().take(1 + MOST_STEPS) {
             let root = DataRoot::new(folder)?;
-            let found = root.names("")?;
+            let found = root.list_folder("")?;
             if let Some(name) = found
                 .into_iter()
                 .find(|name| name.ends_with(DATASET_ENDING))
@@ -164,7 +164,7 @@ impl Dataset {
                 Vec::new()
             });
             for folder in folders {
-                let names = self.root.names(&folder);
+                let names = self.root.list_folder(&folder);
                 if let Err(HousesError::PathLeavesRoot { .. }) = names {
                     report.warn(at.clone(), refused());
                 }
@@ -206,7 +206,11 @@ impl Dataset {
             for folder in &folders {
                 if word.contains('*') {
                     next.push(folder.clone());
-                    let names = self.root.names(folder).unwrap_or_default().into_iter();
+                    let names = self
+                        .root
+                        .list_folder(folder)
+                        .unwrap_or_default()
+                        .into_iter();
                     next.extend(names.map(|name| join(folder, &name)));
                 } else {
                     next.push(join(folder, word));

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use dwell_scene::{
-    Aabb, Articulation, Category, Collider, HouseData, Id, Inertial, JointId, JointKind, LevelId,
-    Light, LightShape, MaterialId, Mesh, Mimic, Mobility, Object, ObjectId, Part, PartId, Pose,
+    Aabb, Category, Collider, HouseData, Id, Inertial, Joint, JointId, JointKind, LevelId, Light,
+    LightShape, MaterialId, Mesh, Mimic, Mobility, Object, ObjectId, Part, PartId, Pose,
     Receptacle, ReceptacleKind, RoomId, Servo, SoundEmitter, space,
 };
 use glam::{Affine3A, Mat3A, Vec3};
@@ -310,7 +310,7 @@ impl ImportedObject {
                     offset: mimic.offset,
                 })
             });
-            let added = data.joints.push(Articulation {
+            let added = data.joints.push(Joint {
                 parent: parent.map(part),
                 parent_from_joint,
                 child_from_joint: joint.child_from_joint,
@@ -324,7 +324,7 @@ impl ImportedObject {
                 servo: joint.servo,
                 mimic,
                 toggles_switch: joint.switches,
-                ..Articulation::new(&joint.name, id, part(child), joint.kind, joint.axis)
+                ..Joint::new(&joint.name, id, part(child), joint.kind, joint.axis)
             });
             leaders.entry(joint.name).or_insert(added);
         }

@@ -22,7 +22,7 @@ pub(crate) struct ImportedLamp {
 }
 
 /// Returns whether `name` is that of an object or of one of its parts: `fridge_1.door` is of `fridge_1`.
-fn is_of(name: &str, thing: &str) -> bool {
+fn names_object_or_part(name: &str, thing: &str) -> bool {
     let rest = name.strip_prefix(thing);
     rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }
@@ -36,8 +36,9 @@ pub(super) fn attach_lamps(lamps: Vec<ImportedLamp>, data: &mut HouseData, bound
             let apart = (lamp.position.clamp(own.min, own.max) - lamp.position).length();
             let moves = data.objects[ObjectId::from_index(k)].mobility == Mobility::Movable;
             let far = moves && apart > OWN_M;
-            let named =
-                |wanted: &String| is_of(&data.objects[ObjectId::from_index(k)].source_id, wanted);
+            let named = |wanted: &String| {
+                names_object_or_part(&data.objects[ObjectId::from_index(k)].source_id, wanted)
+            };
             let other = !lamp.object_name.as_ref().is_some_and(named);
             ((other, far), apart)
         };

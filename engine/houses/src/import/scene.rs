@@ -62,7 +62,7 @@ impl SceneNode {
     }
 
     /// Returns whether its transform leaves it a volume; one that does not is reported.
-    fn keeps_volume(&self, at: &FileLocation, report: &mut LoadReport) -> bool {
+    fn has_invertible_transform(&self, at: &FileLocation, report: &mut LoadReport) -> bool {
         let keeps = !space::is_singular(&self.world_from_mesh.matrix3);
         if !keeps {
             let reason = "it flattens space".to_owned();
@@ -147,7 +147,7 @@ impl ImportedScene {
         let (structure, objects): (Vec<_>, Vec<_>) = things
             .into_iter()
             .filter(|thing| !thing.mesh.triangles.is_empty())
-            .filter(|thing| thing.keeps_volume(at, report))
+            .filter(|thing| thing.has_invertible_transform(at, report))
             .partition(|thing| thing.structure_kind().is_some());
         let alone = structure.is_empty() && given.is_empty() && objects.len() == 1;
         for thing in structure {
@@ -164,7 +164,7 @@ impl ImportedScene {
             interrupt::check();
             builder.object(thing, alone, at, report);
         }
-        builder.fix_floating_objects(alone, known);
+        builder.make_floating_objects_fixed(alone, known);
         lamps::attach_lamps(self.lamps, &mut builder.data, &builder.bounds);
         if builder.data.structure.is_empty() && builder.data.objects.is_empty() {
             return Err(HousesError::empty(at, report));
@@ -458,7 +458,7 @@ impl HouseBuilder {
     }
 
     /// Makes movable things fixed that float: they would only fall. The first `known` objects are as their file says.
-    fn fix_floating_objects(&mut self, alone: bool, known: usize) {
+    fn make_floating_objects_fixed(&mut self, alone: bool, known: usize) {
         let floor_of = |level: LevelId| {
             let rooms = self.data.rooms.iter().filter(|room| room.level == level);
             let floor_y = rooms.map(|room| room.floor_y).reduce(f32::max);

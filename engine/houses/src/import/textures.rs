@@ -29,11 +29,11 @@ pub(crate) fn texture_name(path: &str) -> String {
 /// # Errors
 /// A sentence when the bytes are no PNG or JPEG image, or it is too large to be read.
 pub(crate) fn pixels(bytes: &[u8]) -> Result<u64, String> {
-    header(bytes).map(|(_, pixels)| pixels)
+    open_decoder(bytes).map(|(_, pixels)| pixels)
 }
 
 /// A decoder behind the image's header, and the number of pixels that this states.
-fn header(bytes: &[u8]) -> Result<(impl ImageDecoder + '_, u64), String> {
+fn open_decoder(bytes: &[u8]) -> Result<(impl ImageDecoder + '_, u64), String> {
     let told = |error: image::ImageError| error.to_string();
     let mut reader = ImageReader::new(Cursor::new(bytes))
         .with_guessed_format()
@@ -68,10 +68,10 @@ fn header(bytes: &[u8]) -> Result<(impl ImageDecoder + '_, u64), String> {
 /// # Errors
 /// A sentence when the bytes are no such image or the image is too large.
 pub(crate) fn decode(name: &str, bytes: &[u8]) -> Result<Texture, String> {
-    let (decoder, pixels) = header(bytes)?;
+    let (decoder, pixels) = open_decoder(bytes)?;
     let (width, height) = decoder.dimensions();
     let color = decoder.color_type();
-    let mut raw = empty_vec(decoder.total_bytes())?;
+    let mut raw = try_with_capacity(decoder.total_bytes())?;
     raw.resize(decoder.total_bytes() as usize, 0);
     decoder
         .read_image(&mut raw)
@@ -81,7 +81,7 @@ pub(crate) fn decode(name: &str, bytes: &[u8]) -> Result<Texture, String> {
 }
 
 /// An empty vector with room for so many bytes. `image` itself panics, or ends the process, where memory does not suffice.
-fn empty_vec(count: u64) -> Result<Vec<u8>, String> {
+fn try_with_capacity(count: u64) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     let reserved = bytes.try_reserve_exact(usize::try_from(count).unwrap_or(usize::MAX));
     reserved.map_err(|_| format!("the {count} bytes that it takes are not free"))?;
@@ -103,7 +103,7 @@ fn rgba(mut raw: Vec<u8>, color: ColorType, pixels: u64) -> Result<Vec<u8>, Stri
     if channels == 4 {
         return Ok(raw);
     }
-    let mut rgba = empty_vec(pixels * 4)?;
+    let mut rgba = try_with_capacity(pixels * 4)?;
     for pixel in raw.chunks_exact(channels) {
         rgba.extend(match *pixel {
             [grey] => [grey, grey, grey, u8::MAX],
@@ -299,7 +299,11 @@ mod tests {
 
     #[test]
     fn memory_that_is_not_there_is_an_error() {
-        assert!(empty_vec(1 << 62).unwrap_err().contains("are not free"));
+        assert!(
+            try_with_capacity(1 << 62)
+                .unwrap_err()
+                .contains("are not free")
+        );
     }
 
     #[test]

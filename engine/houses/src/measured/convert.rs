@@ -4,7 +4,7 @@ use super::file::{BandCoefficient, MeasuredMaterial, MeasuredRoomFile};
 use super::unknown_names;
 use crate::data_root::DataRoot;
 use crate::error::HousesError;
-use crate::obj::{PartShape, mesh_of_shape, read_mesh};
+use crate::obj::{ObjMeshSource, build_mesh, read_mesh};
 use crate::report::{FileLocation, LoadReport};
 use dwell_scene::material::{Bands, library};
 use dwell_scene::{
@@ -233,12 +233,12 @@ impl MeasuredRoomBuilder<'_> {
         let mut bounds = Aabb::EMPTY;
         for (name, runs) in by_material {
             let material = self.material_of(&FileLocation::file(&inside).field("usemtl"), name)?;
-            let shape = PartShape {
+            let shape = ObjMeshSource {
                 obj: &files.obj,
                 face_groups: runs,
                 box_mapping: false,
             };
-            let mut mesh = mesh_of_shape(&shape, &FileLocation::file(&inside), report);
+            let mut mesh = build_mesh(&shape, &FileLocation::file(&inside), report);
             for point in mesh.positions.iter_mut().chain(&mut mesh.normals) {
                 *point = upright(*point);
             }

@@ -39,7 +39,7 @@ pub fn open(path: &Path) -> Result<(House, LoadReport), HousesError> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     std::fs::metadata(path).map_err(HousesError::io(path))?;
     let root = DataRoot::new(folder)?;
-    let bytes = root.read_named(&name, MAX_TEXT_BYTES)?;
+    let bytes = root.read_user_named(&name, MAX_TEXT_BYTES)?;
     let at = FileLocation::file(&*name);
     let file: MeasuredRoomFile = json::from_slice(&bytes).map_err(json::syntax(&at))?;
     let stem = name.rsplit_once('.').map_or(&*name, |(stem, _)| stem);

@@ -71,7 +71,7 @@ pub(super) fn read(mut source: MjcfSource, report: &mut LoadReport) -> Result<Ho
     let mut objects = Vec::new();
     match source.body_geoms(0, report) {
         Ok(pieces) => reader.building(&source, 0, Pose::IDENTITY, &pieces, report),
-        Err(error) => left_out(&error, &source, report),
+        Err(error) => report_left_out(&error, &source, report),
     }
     for root in source.root_bodies() {
         if structure_kind(&name_of(&source.model, root)).is_some() {
@@ -84,18 +84,18 @@ pub(super) fn read(mut source: MjcfSource, report: &mut LoadReport) -> Result<Ho
     for root in objects {
         match source.robot(root, report) {
             Ok(thing) => reader.object(&source, root, &thing, report),
-            Err(error) => left_out(&error, &source, report),
+            Err(error) => report_left_out(&error, &source, report),
         }
     }
     let mut data = reader.data;
     if data.meshes.iter().all(|mesh| mesh.triangles.is_empty()) {
         return Err(HousesError::empty(&at, report));
     }
-    place(&mut data);
+    assign_rooms(&mut data);
     House::new(data).map_err(HousesError::scene(&at))
 }
 
-fn left_out(error: &HousesError, source: &MjcfSource, report: &mut LoadReport) {
+fn report_left_out(error: &HousesError, source: &MjcfSource, report: &mut LoadReport) {
     let what = format!("left out: {error}");
     report.warn(
         source.at.field("worldbody"),
@@ -124,7 +124,7 @@ impl MjcfHouseReader {
             let file_from_body = file_from_parent * pose(&source.model.bodies[id].body.pose);
             match source.body_geoms(id, report) {
                 Ok(pieces) => self.building(source, id, file_from_body, &pieces, report),
-                Err(error) => left_out(&error, source, report),
+                Err(error) => report_left_out(&error, source, report),
             }
             let children = source.model.bodies_iter();
             let children = children.filter(|(_, entry)| entry.parent == Some(id));
@@ -331,7 +331,7 @@ impl MjcfHouseReader {
         object.source_id.clone_from(&file_name);
         object.model.clone_from(&file_name);
         let row = category_of(&file_name);
-        let joints = thing.joints().count();
+        let joints = thing.movable_joint_names().count();
         if let Some(row) = row {
             object.category = category(row);
             object.switch = row.is_switchable().then_some(false);
@@ -389,7 +389,7 @@ fn kind_words(name: &str) -> Option<String> {
 }
 
 /// Assigns objects to rooms, and sets the storey's box; small loose things can be taken.
-fn place(data: &mut HouseData) {
+fn assign_rooms(data: &mut HouseData) {
     for k in 0..data.objects.len() {
         let id = ObjectId(k as u32);
         let parts = data.objects[id].parts().map(|part| &data.parts[part]);

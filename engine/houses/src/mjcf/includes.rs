@@ -27,19 +27,19 @@ pub(super) fn check(
     text: &str,
     report: &mut LoadReport,
 ) -> Result<(), HousesError> {
-    let mut walk = IncludeResolver {
+    let mut walk = IncludeChecker {
         files,
         report,
         seen: 0,
         open: Vec::new(),
         classes: DefaultClasses::default(),
     };
-    walk.file(&files.file, text)?;
+    walk.check_file(&files.file, text)?;
     walk.classes.report_undefined(walk.report);
     Ok(())
 }
 
-struct IncludeResolver<'a> {
+struct IncludeChecker<'a> {
     files: &'a RobotFiles,
     report: &'a mut LoadReport,
     /// Number of checked files, those that are named again counted again.
@@ -50,9 +50,9 @@ struct IncludeResolver<'a> {
     classes: DefaultClasses,
 }
 
-impl IncludeResolver<'_> {
+impl IncludeChecker<'_> {
     /// Returns the number of elements of a file, with all that it includes and attaches.
-    fn file(&mut self, name: &str, text: &str) -> Result<u64, HousesError> {
+    fn check_file(&mut self, name: &str, text: &str) -> Result<u64, HousesError> {
         self.seen += 1;
         let at = FileLocation::file(name);
         let refuse = |message: String| HousesError::Syntax {
@@ -86,12 +86,14 @@ impl IncludeResolver<'_> {
             unread_elements::report_unread_elements(node, &at, self.report);
             self.classes.record(node, &at, self.report);
             match node.tag_name().name() {
-                "include" => elements = elements.saturating_add(self.named(node, name)?),
+                "include" => {
+                    elements = elements.saturating_add(self.check_referenced_file(node, name)?)
+                }
                 // Models of `<asset>` are copied by each `<attach>`.
                 "model" if node.has_attribute("file") => {
                     // It has classes of its own.
                     let outer = mem::take(&mut self.classes);
-                    largest = largest.max(self.named(node, name)?);
+                    largest = largest.max(self.check_referenced_file(node, name)?);
                     mem::replace(&mut self.classes, outer).report_undefined(self.report);
                 }
                 _ => {}
@@ -113,7 +115,11 @@ impl IncludeResolver<'_> {
     }
 
     /// The elements of the file that `node` of the file `name` names.
-    fn named(&mut self, node: Node<'_, '_>, name: &str) -> Result<u64, HousesError> {
+    fn check_referenced_file(
+        &mut self,
+        node: Node<'_, '_>,
+        name: &str,
+    ) -> Result<u64, HousesError> {
         let row = node.document().text_pos_at(node.range().start).row;
         let tag = node.tag_name().name();
         let at = FileLocation::file(name)
@@ -127,6 +133,6 @@ impl IncludeResolver<'_> {
             at,
             message: error.to_string(),
         })?;
-        self.file(&path, &text)
+        self.check_file(&path, &text)
     }
 }

@@ -10,9 +10,9 @@ use dwell_scene::{House, MaterialId, Mesh, TextureId};
 use glam::Affine3A;
 
 use super::file::FaceGroup;
-use super::load::{MeshFiles, mesh_files};
+use super::load::{ParsedObj, parse_obj_with_mtl};
 use super::read_obj;
-use super::shape::{MaterialSlots, PartShape, mesh_of_shape};
+use super::shape::{MaterialSlots, ObjMeshSource, build_mesh};
 use crate::data_root::DataRoot;
 use crate::error::HousesError;
 use crate::import::{
@@ -54,8 +54,8 @@ pub(crate) fn read_scene(
     std::fs::metadata(path).map_err(HousesError::io(path))?;
     let (root, inside) = locate(path)?;
     let at = FileLocation::file(&inside);
-    let bytes = root.read_named(&inside, MAX_MESH_BYTES)?;
-    let files = mesh_files(&bytes, &root, &inside, report);
+    let bytes = root.read_user_named(&inside, MAX_MESH_BYTES)?;
+    let files = parse_obj_with_mtl(&bytes, &root, &inside, report);
     let wanted: BTreeSet<String> = files.textures.iter().flatten().cloned().collect();
     let images = read_images(&root, wanted, threads, report);
     let slots = MaterialSlots::of(&files.obj, &files.mtl, &at, report);
@@ -68,7 +68,7 @@ pub(crate) fn read_scene(
     let materials: Vec<MaterialId> = slots
         .entries
         .iter()
-        .map(|(name, in_file)| looks.add(&look(&files, name, *in_file, &texture_ids)))
+        .map(|(name, in_file)| looks.add(&imported_material(&files, name, *in_file, &texture_ids)))
         .collect();
     let name = texture_name(&inside);
     let mut things: Vec<(String, Vec<(u16, &FaceGroup)>)> = Vec::new();
@@ -98,8 +98,8 @@ pub(crate) fn read_scene(
     let things = things
         .into_iter()
         .map(|(name, runs)| {
-            let mesh = mesh_of_shape(
-                &PartShape {
+            let mesh = build_mesh(
+                &ObjMeshSource {
                     obj: &files.obj,
                     face_groups: runs,
                     box_mapping,
@@ -138,12 +138,12 @@ pub(crate) fn read_scene(
 /// All faces of an OBJ file as one mesh, without materials.
 pub(crate) fn mesh_without_materials(bytes: &[u8], path: &str, report: &mut LoadReport) -> Mesh {
     let obj = read_obj(bytes, path, report);
-    let shape = PartShape {
+    let shape = ObjMeshSource {
         face_groups: obj.face_groups.iter().map(|run| (0, run)).collect(),
         obj: &obj,
         box_mapping: false,
     };
-    mesh_of_shape(&shape, &FileLocation::file(path), report)
+    build_mesh(&shape, &FileLocation::file(path), report)
 }
 
 /// The folder that bounds the file's paths, and the file in it: the data root if the file is a SUNCG model, whose
@@ -178,8 +178,8 @@ fn locate(path: &Path) -> Result<(DataRoot, String), HousesError> {
     }
 }
 
-fn look(
-    files: &MeshFiles,
+fn imported_material(
+    files: &ParsedObj,
     name: &str,
     in_file: Option<usize>,
     textures: &BTreeMap<&str, TextureId>,

@@ -11,7 +11,7 @@ use crate::warning_kind::WarningKind;
 
 /// An OBJ file and the materials of its MTL files, one after another.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct MeshFiles {
+pub struct ParsedObj {
     /// The OBJ file.
     pub obj: ObjFile,
     /// The materials.
@@ -21,9 +21,9 @@ pub struct MeshFiles {
 }
 
 /// Reads an OBJ file with its MTL files.
-pub(crate) fn read_mesh(root: &DataRoot, path: &str, report: &mut LoadReport) -> Option<MeshFiles> {
+pub(crate) fn read_mesh(root: &DataRoot, path: &str, report: &mut LoadReport) -> Option<ParsedObj> {
     match root.read(path, MAX_MESH_BYTES) {
-        Ok(bytes) => Some(mesh_files(&bytes, root, path, report)),
+        Ok(bytes) => Some(parse_obj_with_mtl(&bytes, root, path, report)),
         Err(error) => {
             let damage = WarningKind::UnreadableMesh {
                 path: path.to_owned(),
@@ -36,15 +36,15 @@ pub(crate) fn read_mesh(root: &DataRoot, path: &str, report: &mut LoadReport) ->
 }
 
 /// The same from the bytes of an OBJ file; its MTL files are read from `root`.
-pub(crate) fn mesh_files(
+pub(crate) fn parse_obj_with_mtl(
     bytes: &[u8],
     root: &DataRoot,
     path: &str,
     report: &mut LoadReport,
-) -> MeshFiles {
-    let mut files = MeshFiles {
+) -> ParsedObj {
+    let mut files = ParsedObj {
         obj: read_obj(bytes, path, report),
-        ..MeshFiles::default()
+        ..ParsedObj::default()
     };
     let folder = parent_folder(path);
     let mut known = BTreeSet::new();

@@ -58,11 +58,12 @@ fn statement(material: &mut MtlMaterial, keyword: &[u8], rest: &[u8]) -> bool {
         ),
         b"d" => set(
             &mut material.opacity,
-            share(rest.strip_prefix(b"-halo").unwrap_or(rest)),
+            unit_fraction(rest.strip_prefix(b"-halo").unwrap_or(rest)),
         ),
         // `d` and `Tr` state the same; `d` counts when both are there.
         b"Tr" => {
-            material.opacity.is_some() || set(&mut material.opacity, share(rest).map(|t| 1.0 - t))
+            material.opacity.is_some()
+                || set(&mut material.opacity, unit_fraction(rest).map(|t| 1.0 - t))
         }
         _ if keyword.eq_ignore_ascii_case(b"map_kd") => {
             set(&mut material.diffuse_map, map_path(rest))
@@ -81,7 +82,7 @@ fn scalar(rest: &[u8]) -> Option<f32> {
 }
 
 /// A number from 0 to 1.
-fn share(rest: &[u8]) -> Option<f32> {
+fn unit_fraction(rest: &[u8]) -> Option<f32> {
     scalar(rest).filter(|share| (0.0..=1.0).contains(share))
 }
 

@@ -14,7 +14,7 @@ pub fn read_obj(text: &[u8], file: &str, report: &mut LoadReport) -> ObjFile {
         obj: ObjFile::default(),
         at: FileLocation::file(file),
         report,
-        names: OpenNames::default(),
+        names: CurrentNames::default(),
         pending: Vec::new(),
     };
     for (number, line) in lines(text) {
@@ -24,7 +24,7 @@ pub fn read_obj(text: &[u8], file: &str, report: &mut LoadReport) -> ObjFile {
 }
 
 #[derive(Default)]
-struct OpenNames {
+struct CurrentNames {
     object: String,
     group: String,
     material: Option<String>,
@@ -34,7 +34,7 @@ struct ObjReader<'a> {
     obj: ObjFile,
     at: FileLocation,
     report: &'a mut LoadReport,
-    names: OpenNames,
+    names: CurrentNames,
     /// Corners of the face being read.
     pending: Vec<FaceCorner>,
 }

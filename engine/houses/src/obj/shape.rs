@@ -7,7 +7,7 @@ use dwell_scene::interrupt::PollEvery;
 use glam::{Vec2, Vec3, Vec3Swizzles as _};
 
 use super::file::{FaceCorner, FaceGroup, MtlFile, NONE, ObjFile};
-use super::triangles::FaceTriangles;
+use super::triangles::FaceTriangulator;
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
 
@@ -83,7 +83,7 @@ impl MaterialSlots {
 }
 
 /// Runs of an OBJ file as one mesh.
-pub(crate) struct PartShape<'a> {
+pub(crate) struct ObjMeshSource<'a> {
     /// The file.
     pub(crate) obj: &'a ObjFile,
     /// The slot of each run that is taken, with the run.
@@ -94,8 +94,8 @@ pub(crate) struct PartShape<'a> {
 }
 
 /// Cuts polygons into triangles, merges corners into vertices, replaces numbers that are not finite.
-pub(crate) fn mesh_of_shape(
-    shape: &PartShape<'_>,
+pub(crate) fn build_mesh(
+    shape: &ObjMeshSource<'_>,
     at: &FileLocation,
     report: &mut LoadReport,
 ) -> Mesh {
@@ -113,7 +113,7 @@ pub(crate) fn mesh_of_shape(
     let mut builder = ObjMeshBuilder {
         obj,
         mesh: Mesh::default(),
-        heads: VertexChains::of(obj.positions.len(), triangle_count),
+        heads: NewestVertices::of(obj.positions.len(), triangle_count),
         chain: Vec::new(),
         normals,
         uvs,
@@ -122,7 +122,7 @@ pub(crate) fn mesh_of_shape(
     builder.mesh.triangles.reserve(triangle_count);
     let mut degenerate = 0;
     let (mut points, mut ring) = (Vec::new(), Vec::new());
-    let mut cutter = FaceTriangles::default();
+    let mut cutter = FaceTriangulator::default();
     let mut poll = PollEvery::new(100_000);
     for (slot, face) in faces() {
         let face = obj.face(face);
@@ -132,7 +132,7 @@ pub(crate) fn mesh_of_shape(
         let flat = face_normal(&points);
         ring.clear();
         ring.extend(face.iter().map(|corner| builder.vertex(*corner, flat)));
-        for triangle in cutter.cut(&points, flat) {
+        for triangle in cutter.triangulate_face(&points, flat) {
             builder.mesh.triangles.push(triangle.map(|k| ring[k]));
             builder.mesh.slots.push(slot);
             let [a, b, c] = builder.mesh.corners(builder.mesh.triangles.len() - 1);
@@ -160,12 +160,12 @@ fn face_normal(points: &[Vec3]) -> Vec3 {
 }
 
 /// The newest vertex of each position. A file may hold a few faces each of very many things and ten million positions.
-enum VertexChains {
+enum NewestVertices {
     Dense(Vec<u32>),
     Sparse(BTreeMap<u32, u32>),
 }
 
-impl VertexChains {
+impl NewestVertices {
     fn of(positions: usize, triangles: usize) -> Self {
         if positions / 64 > triangles {
             return Self::Sparse(BTreeMap::new());
@@ -194,7 +194,7 @@ struct ObjMeshBuilder<'a> {
     obj: &'a ObjFile,
     mesh: Mesh,
     /// For each position of the file the newest vertex made of it.
-    heads: VertexChains,
+    heads: NewestVertices,
     /// For each vertex its corner and the next vertex at the same position.
     chain: Vec<(FaceCorner, u32)>,
     normals: bool,
@@ -284,8 +284,8 @@ mod tests {
             .iter()
             .map(|run| (slots.of_run(run), run))
             .collect();
-        let mesh = mesh_of_shape(
-            &PartShape {
+        let mesh = build_mesh(
+            &ObjMeshSource {
                 obj: &obj,
                 face_groups: runs,
                 box_mapping,

@@ -13,16 +13,16 @@ const AREA_TOLERANCE: f64 = 1e-3;
 
 /// Cuts faces into triangles.
 #[derive(Default)]
-pub(super) struct FaceTriangles {
+pub(super) struct FaceTriangulator {
     corners: Vec<DVec2>,
     /// Number of faces that cross themselves or have too many corners; they are fans of triangles, as convex faces are.
     pub(super) unfilled: u64,
 }
 
-impl FaceTriangles {
+impl FaceTriangulator {
     /// Triangles of a face, as positions among its corners `points` (m), with its unit normal: a fan from the first corner where the
     /// face is convex, and triangles that fill it otherwise. They turn as the face turns.
-    pub(super) fn cut(&mut self, points: &[Vec3], normal: Vec3) -> Vec<[usize; 3]> {
+    pub(super) fn triangulate_face(&mut self, points: &[Vec3], normal: Vec3) -> Vec<[usize; 3]> {
         let fan = || (1..points.len() - 1).map(|k| [0, k, k + 1]).collect();
         if points.len() == 3 {
             return fan();

@@ -42,7 +42,7 @@ pub fn open(path: &Path) -> Result<(House, LoadReport), HousesError> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     std::fs::metadata(path).map_err(HousesError::io(path))?;
     let root = DataRoot::new(folder)?;
-    let bytes = root.read_named(&name, MAX_TEXT_BYTES)?;
+    let bytes = root.read_user_named(&name, MAX_TEXT_BYTES)?;
     let mut report = LoadReport::new();
     let sizes = AssetSizes::read_near(folder, &mut report);
     convert(&bytes, &name, &sizes, report)
@@ -58,7 +58,8 @@ fn convert(
     let file: ProcThorHouse = json::from_slice(bytes).map_err(json::syntax(&at))?;
     let openings = file.doors.len() + file.windows.len();
     let lamps = file.procedural_parameters.lights.len();
-    let count = file.walls.len() + file.rooms.len() + openings + lamps + count(&file.objects);
+    let count =
+        file.walls.len() + file.rooms.len() + openings + lamps + count_with_children(&file.objects);
     if count > MAX_NODES {
         return Err(HousesError::TooLarge {
             at: at.field("objects"),
@@ -99,10 +100,10 @@ fn convert(
     Ok((house, report))
 }
 
-fn count(objects: &[ObjectFile]) -> usize {
+fn count_with_children(objects: &[ObjectFile]) -> usize {
     objects
         .iter()
-        .map(|object| 1 + count(&object.children))
+        .map(|object| 1 + count_with_children(&object.children))
         .sum()
 }
 
@@ -130,7 +131,7 @@ struct ProcThorReader<'a> {
 
 impl ProcThorReader<'_> {
     /// The room whose floor is below a place.
-    fn room_over(&self, place: Vec3) -> Option<&ConvertedRoom> {
+    fn containing_room(&self, place: Vec3) -> Option<&ConvertedRoom> {
         let known = &self.assembly.data.rooms;
         let place = Vec2::new(place.x, place.z);
         self.rooms
@@ -139,8 +140,8 @@ impl ProcThorReader<'_> {
     }
 
     /// That room, else the one whose middle is nearest.
-    fn room_at(&self, place: Vec3) -> Option<&ConvertedRoom> {
-        self.room_over(place).or_else(|| {
+    fn containing_or_nearest_room(&self, place: Vec3) -> Option<&ConvertedRoom> {
+        self.containing_room(place).or_else(|| {
             let place = DVec2::new(f64::from(place.x), f64::from(place.z));
             let distance = |room: &ConvertedRoom| {
                 let sum: DVec2 = room.outline.iter().sum();
@@ -176,6 +177,6 @@ fn rotation(degrees: Vector3) -> Quat {
 }
 
 /// Returns whether numbers are a possible position in a house.
-fn is_place(p: Vec3) -> bool {
+fn is_valid_position(p: Vec3) -> bool {
     p.is_finite() && Aabb::new(Vec3::splat(-1e4), Vec3::splat(1e4)).contains(p)
 }

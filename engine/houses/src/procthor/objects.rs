@@ -15,8 +15,8 @@ use serde::Deserialize;
 
 use super::file::{ObjectFile, ProcThorLight};
 use super::shell::split_camel_case;
-use super::{ProcThorReader, is_place, point, rotation};
-use crate::building::assembly::ModelInstances;
+use super::{ProcThorReader, is_valid_position, point, rotation};
+use crate::building::assembly::AddedModel;
 use crate::import::{CategoryRow, category, category_of};
 use crate::warning_kind::{UnmappedKind, WarningKind};
 
@@ -53,7 +53,7 @@ fn kind_of(type_name: &str) -> Option<&'static str> {
 }
 
 /// The kinds of one house by asset, height and whether they stay.
-type AssetKinds = BTreeMap<(String, u32, bool), Option<ModelInstances>>;
+type AssetKinds = BTreeMap<(String, u32, bool), Option<AddedModel>>;
 
 impl ProcThorReader<'_> {
     /// Adds all objects, those in and on others too.
@@ -98,13 +98,13 @@ impl ProcThorReader<'_> {
             return self.warn(&format!("{at}.position"), damage);
         };
         let (middle, turned) = (point(position), rotation(object.rotation));
-        if !is_place(middle) || !turned.is_finite() {
+        if !is_valid_position(middle) || !turned.is_finite() {
             let reason =
                 "it is no place in a house: position (m) and rotation (degrees) need x, y and z"
                     .to_owned();
             return self.warn(at, WarningKind::BadTransform { reason });
         }
-        let Some(room) = self.room_at(middle).map(|room| room.id) else {
+        let Some(room) = self.containing_or_nearest_room(middle).map(|room| room.id) else {
             return;
         };
         *unsized_count += usize::from(size.is_none());
@@ -212,13 +212,13 @@ impl ProcThorReader<'_> {
                 continue;
             }
             let at = point(light.position);
-            if !is_place(at) {
+            if !is_valid_position(at) {
                 let field = format!("proceduralParameters.lights[{k}]");
                 let reason = "its position (m) needs x, y and z".to_owned();
                 self.warn(&field, WarningKind::BadTransform { reason });
                 continue;
             }
-            if let Some(room) = self.room_at(at) {
+            if let Some(room) = self.containing_or_nearest_room(at) {
                 let (id, up) = (room.id, room.ceiling_y - top);
                 let pose = Pose::from_position(at.with_y(up));
                 self.assembly.add_instance(&kind, pose, id, 0.0);

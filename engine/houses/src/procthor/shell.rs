@@ -12,7 +12,7 @@ use serde_json::Value;
 
 use super::covers::finish_of_material;
 use super::file::{HoleFile, ProcThorHouse, ProcThorRoom, Vector3, WallFile};
-use super::{ConvertedRoom, ProcThorReader, is_place, point};
+use super::{ConvertedRoom, ProcThorReader, is_valid_position, point};
 use crate::import::{UniqueNames, room_kind, triangulate};
 use crate::limits::MAX_OUTLINE;
 use crate::warning_kind::{UnmappedKind, WarningKind};
@@ -248,7 +248,7 @@ impl ProcThorReader<'_> {
             .sum();
         if outline.len() < 3
             || outline.len() > MAX_OUTLINE
-            || !corners.iter().all(|p| is_place(*p))
+            || !corners.iter().all(|p| is_valid_position(*p))
             || area.abs() < 1e-3
         {
             let reason = format!(
@@ -351,7 +351,7 @@ impl ProcThorReader<'_> {
     /// The face of a wall; `None` for a wall of no size.
     fn face(&self, wall: &WallFile) -> Result<Option<WallFace>, String> {
         let mut corners: Vec<Vec3> = wall.polygon.iter().copied().map(point).collect();
-        if !corners.iter().all(|p| is_place(*p)) {
+        if !corners.iter().all(|p| is_valid_position(*p)) {
             return Err("a corner is no place of x, y and z in metres".to_owned());
         }
         // As AI2-THOR does: of the corners by height, the first two are the wall's foot, in the order of the file.
@@ -367,7 +367,7 @@ impl ProcThorReader<'_> {
         let along = run.normalize();
         let side = along.cross(Vec3::Y);
         let middle = *foot + run * 0.5;
-        let on = |sign: f32| self.room_over(middle + side * (sign * BESIDE_M));
+        let on = |sign: f32| self.containing_room(middle + side * (sign * BESIDE_M));
         let faces_front = match (on(1.0), on(-1.0)) {
             (Some(front), Some(back)) => {
                 front.file_id == wall.room_id || back.file_id != wall.room_id
@@ -419,7 +419,10 @@ impl ProcThorReader<'_> {
             hole.up[0]
         };
         let place = face.at(middle, up);
-        let Some(room) = self.room_at(place + face.normal * 0.1).map(|room| room.id) else {
+        let Some(room) = self
+            .containing_or_nearest_room(place + face.normal * 0.1)
+            .map(|room| room.id)
+        else {
             return;
         };
         let model = if is_window {

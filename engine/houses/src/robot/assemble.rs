@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use dwell_scene::material::library;
 use dwell_scene::{
-    Aabb, Articulation, Category, House, HouseData, JointId, JointKind, Level, LevelId, Material,
+    Aabb, Category, House, HouseData, Joint, JointId, JointKind, Level, LevelId, Material,
     MaterialId, Mesh, Mimic, Mobility, Object, ObjectId, Part, PartId, Pose, Structure,
     StructureKind, Texture, TextureId, interrupt, units,
 };
@@ -60,7 +60,7 @@ pub(crate) fn add(
     }
     let mut looks = RobotMaterials::default();
     let mut world_from: Vec<Pose> = vec![world_from_root];
-    let mut joints: Vec<Articulation> = Vec::new();
+    let mut joints: Vec<Joint> = Vec::new();
     let mut by_name: BTreeMap<&str, usize> = BTreeMap::new();
     for joint in moving() {
         let (Some((parent, place)), Some((child, _))) = (homes[joint.parent], homes[joint.child])
@@ -90,7 +90,7 @@ pub(crate) fn add(
         };
         let start = start.clamp(low, high);
         let child_part = PartId(first_part.0 + child as u32);
-        let articulation = Articulation {
+        let articulation = Joint {
             parent: Some(PartId(first_part.0 + parent as u32)),
             parent_from_joint: place * joint.parent_from_joint,
             child_from_joint: joint.child_from_joint,
@@ -103,7 +103,7 @@ pub(crate) fn add(
             armature: joint.armature,
             servo: joint.servo,
             mimic: leader,
-            ..Articulation::new(&joint.name, object, child_part, kind, joint.axis)
+            ..Joint::new(&joint.name, object, child_part, kind, joint.axis)
         };
         let above = world_from[parent];
         world_from.push(articulation.world_from_child(&above, start));

@@ -104,7 +104,7 @@ pub(crate) fn check(mut robot: Robot) -> Result<Robot, HousesError> {
     for link in &robot.links {
         check_link(link, &at.field(format_args!("link[{}]", link.name)))?;
     }
-    massive(&robot, &at)?;
+    check_masses(&robot, &at)?;
     Ok(robot)
 }
 
@@ -221,7 +221,7 @@ fn positive(m: &DMat3) -> bool {
 }
 
 /// Checks that moving links have a mass.
-fn massive(robot: &Robot, at: &FileLocation) -> Result<(), HousesError> {
+fn check_masses(robot: &Robot, at: &FileLocation) -> Result<(), HousesError> {
     let fixed = FixedLinks::new(robot);
     for joint in robot
         .joints

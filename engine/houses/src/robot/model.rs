@@ -113,7 +113,7 @@ impl Robot {
     }
 
     /// The names of the joints that move, in the order in which they get into a house.
-    pub fn joints(&self) -> impl Iterator<Item = &str> {
+    pub fn movable_joint_names(&self) -> impl Iterator<Item = &str> {
         let moving = self
             .joints
             .iter()

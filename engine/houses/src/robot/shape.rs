@@ -48,20 +48,20 @@ impl ShapeGeometry {
                     ..Mesh::default()
                 }
             }
-            Self::Ball { radius } => turned(&ball(*radius, 0.0)),
+            Self::Ball { radius } => revolve(&capsule_profile(*radius, 0.0)),
             Self::Ellipsoid { radii } => {
-                let mut mesh = turned(&ball(1.0, 0.0));
+                let mut mesh = revolve(&capsule_profile(1.0, 0.0));
                 mesh.positions.iter_mut().for_each(|p| *p *= *radii);
                 mesh
             }
             Self::Capsule {
                 half_height,
                 radius,
-            } => turned(&ball(*radius, *half_height)),
+            } => revolve(&capsule_profile(*radius, *half_height)),
             Self::Cylinder {
                 half_height,
                 radius,
-            } => turned(&[
+            } => revolve(&[
                 (0.0, -half_height),
                 (*radius, -half_height),
                 (*radius, *half_height),
@@ -80,7 +80,7 @@ impl ShapeGeometry {
 }
 
 /// The outline (distance from the axis, height) of a ball whose halves stand apart.
-fn ball(radius: f32, apart: f32) -> Vec<(f32, f32)> {
+fn capsule_profile(radius: f32, apart: f32) -> Vec<(f32, f32)> {
     let half = |from: f32, shift: f32| {
         (0..=BANDS).map(move |k| {
             let (s, c) = math::sin_cos(from + 0.5 * PI * k as f32 / BANDS as f32);
@@ -93,7 +93,7 @@ fn ball(radius: f32, apart: f32) -> Vec<(f32, f32)> {
 }
 
 /// An outline turned about Z, from its lowest point up.
-fn turned(outline: &[(f32, f32)]) -> Mesh {
+fn revolve(outline: &[(f32, f32)]) -> Mesh {
     let mut mesh = Mesh::default();
     for (radius, height) in outline {
         for k in 0..AROUND {

@@ -43,7 +43,7 @@ pub struct SuncgHouse {
     )]
     pub scale_to_meters: Option<f64>,
     /// The storeys.
-    pub levels: Vec<LevelFile>,
+    pub levels: Vec<SuncgLevel>,
     /// The box around everything, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bbox: Option<BoundsFile>,
@@ -55,7 +55,7 @@ pub struct SuncgHouse {
 /// A storey.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct LevelFile {
+pub struct SuncgLevel {
     /// Its index as text.
     #[serde(
         deserialize_with = "lenient_json::text",

@@ -16,5 +16,5 @@ pub use convert::convert;
 pub use open::open;
 pub(crate) use open::recognizes;
 pub use parse::parse;
-pub use read::{SuncgFiles, locate};
+pub use read::{ParsedSuncgFiles, locate};
 pub use write::{write, write_into, write_shared_tables};

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use dwell_scene::House;
 use dwell_scene::parallel::Threads;
 
-use super::{SuncgFiles, convert, locate};
+use super::{ParsedSuncgFiles, convert, locate};
 use crate::error::HousesError;
 use crate::report::LoadReport;
 
@@ -26,7 +26,7 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, LoadReport), Houses
     let house_json = house_json(path)?;
     let (root, inside) = locate(&house_json)?;
     let mut report = LoadReport::new();
-    let files = SuncgFiles::read(&root, &inside, threads, &mut report)?;
+    let files = ParsedSuncgFiles::read(&root, &inside, threads, &mut report)?;
     let house = convert(&files, threads, &mut report)?;
     Ok((house, report))
 }

@@ -3,7 +3,7 @@
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
-use super::file::{LevelFile, NodeFile, SuncgHouse, SuncgMaterial};
+use super::file::{NodeFile, SuncgHouse, SuncgLevel, SuncgMaterial};
 use super::lenient_json::{SEPARATOR, shorten};
 use crate::error::HousesError;
 use crate::limits::MAX_NODES;
@@ -65,7 +65,7 @@ pub fn parse(text: &[u8], name: &str, report: &mut LoadReport) -> Result<SuncgHo
             Value::Object(fields) => read_level(fields, &at, report),
             other => {
                 bad_field(&other, "an object", at, report);
-                LevelFile::default()
+                SuncgLevel::default()
             }
         });
     }
@@ -76,9 +76,9 @@ fn read_level(
     mut object: Map<String, Value>,
     at: &FileLocation,
     report: &mut LoadReport,
-) -> LevelFile {
+) -> SuncgLevel {
     let nodes = object.remove("nodes");
-    let mut level: LevelFile = fields(object, at, report);
+    let mut level: SuncgLevel = fields(object, at, report);
     match nodes {
         Some(Value::Array(nodes)) => {
             for (i, node) in nodes.into_iter().enumerate() {

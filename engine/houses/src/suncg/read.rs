@@ -16,13 +16,13 @@ use crate::data_root::{DataRoot, parent_folder};
 use crate::error::HousesError;
 use crate::import::read_images;
 use crate::limits::MAX_TEXT_BYTES;
-use crate::obj::{MeshFiles, read_mesh};
+use crate::obj::{ParsedObj, read_mesh};
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
 
 /// All files of one house, parsed.
 #[derive(Debug)]
-pub struct SuncgFiles {
+pub struct ParsedSuncgFiles {
     /// The folder's name below `house/` and `room/`.
     pub scene_id: String,
     /// `house.json`, relative to the root.
@@ -30,7 +30,7 @@ pub struct SuncgFiles {
     /// Its content.
     pub house: SuncgHouse,
     /// OBJ files by path relative to the root, with their materials; those that do not exist are absent.
-    pub meshes: BTreeMap<String, MeshFiles>,
+    pub meshes: BTreeMap<String, ParsedObj>,
     /// Paths of the OBJ files that are there and could not be read; the report says why.
     pub unreadable: BTreeSet<String>,
     /// `arch.json` with its path, when the house has no room meshes.
@@ -51,7 +51,7 @@ pub(super) mod paths {
     use crate::warning_kind::WarningKind;
 
     /// Returns whether an id can be the name of a file: it comes from the file and must not lead anywhere else.
-    pub(in super::super) fn is_plain(id: &str) -> bool {
+    pub(in super::super) fn is_safe_file_name(id: &str) -> bool {
         invalid_id_reason(id).is_none()
     }
 
@@ -78,7 +78,7 @@ pub(super) mod paths {
     }
 
     /// The candidates for a texture that an override names, best first.
-    pub(in super::super) fn texture(name: &str) -> Option<[String; 2]> {
+    pub(in super::super) fn texture_path_candidates(name: &str) -> Option<[String; 2]> {
         let inside =
             |ending: &str| crate::DataRoot::resolve("texture", &format!("{name}{ending}")).ok();
         let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending);
@@ -90,7 +90,7 @@ pub(super) mod paths {
 
     /// The meshes that a node may use.
     pub(in super::super) fn node_mesh_paths(scene_id: &str, node: &NodeFile) -> Vec<String> {
-        let Some(model) = node.model_id.as_deref().filter(|id| is_plain(id)) else {
+        let Some(model) = node.model_id.as_deref().filter(|id| is_safe_file_name(id)) else {
             return Vec::new();
         };
         match node.kind.as_deref() {
@@ -107,7 +107,7 @@ pub(super) mod paths {
     }
 }
 
-impl SuncgFiles {
+impl ParsedSuncgFiles {
     /// Reads `house_path` of `root` and everything it names.
     ///
     /// # Errors
@@ -120,11 +120,14 @@ impl SuncgFiles {
     ) -> Result<Self, HousesError> {
         let house = {
             let _span = debug_span!("house.json").entered();
-            let bytes = root.read_named(house_path, MAX_TEXT_BYTES)?;
+            let bytes = root.read_user_named(house_path, MAX_TEXT_BYTES)?;
             parse(&bytes, house_path, report)?
         };
         let folder = parent_folder(house_path).rsplit('/').next().unwrap_or("");
-        let from_file = house.id.as_deref().filter(|id| paths::is_plain(id));
+        let from_file = house
+            .id
+            .as_deref()
+            .filter(|id| paths::is_safe_file_name(id));
         // The folder's name finds the rooms; the id inside may have been changed by a tool.
         let scene_id = if folder.is_empty() || !root.folder().join("room").join(folder).is_dir() {
             from_file.unwrap_or(folder).to_owned()
@@ -185,7 +188,7 @@ impl SuncgFiles {
 
     /// The texture that an override names, with its path.
     pub(super) fn override_texture(&self, name: &str) -> Option<&str> {
-        let candidates = paths::texture(name)?;
+        let candidates = paths::texture_path_candidates(name)?;
         candidates
             .iter()
             .find_map(|path| self.textures.get_key_value(path))
@@ -207,7 +210,7 @@ fn read_meshes(
     house: &SuncgHouse,
     threads: Threads,
     report: &mut LoadReport,
-) -> (BTreeMap<String, MeshFiles>, BTreeSet<String>) {
+) -> (BTreeMap<String, ParsedObj>, BTreeSet<String>) {
     let wanted: BTreeSet<String> = nodes(house)
         .flat_map(|node| paths::node_mesh_paths(scene_id, node))
         .collect();
@@ -236,7 +239,7 @@ fn read_meshes(
 fn read_arch(
     root: &DataRoot,
     scene_id: &str,
-    meshes: &BTreeMap<String, MeshFiles>,
+    meshes: &BTreeMap<String, ParsedObj>,
     report: &mut LoadReport,
 ) -> Option<(String, ArchFile)> {
     let path = format!("wall/{scene_id}/{scene_id}.arch.json");
@@ -260,7 +263,7 @@ fn read_arch(
 fn read_textures(
     root: &DataRoot,
     house: &SuncgHouse,
-    meshes: &BTreeMap<String, MeshFiles>,
+    meshes: &BTreeMap<String, ParsedObj>,
     arch: Option<&(String, ArchFile)>,
     threads: Threads,
     at: &FileLocation,
@@ -277,7 +280,7 @@ fn read_textures(
         .flat_map(|element| &element.materials);
     let named = own.chain(&house.materials).chain(of_arch);
     for name in named.filter_map(|material| material.texture.as_deref()) {
-        let Some(candidates) = paths::texture(name) else {
+        let Some(candidates) = paths::texture_path_candidates(name) else {
             report.warn(
                 at.clone(),
                 WarningKind::PathRefused {

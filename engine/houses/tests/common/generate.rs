@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use dwell_scene::space::is_singular;
 use dwell_scene::{
-    Aabb, Articulation, Bands, Category, Collider, Daytime, HouseData, JointKind, Level, LevelId,
-    Light, LightShape, Material, MaterialId, Mesh, MeshId, Mobility, Object, ObjectId, Part,
-    PartId, Pose, Receptacle, ReceptacleKind, Room, RoomId, Servo, Sky, SoundEmitter, Structure,
-    StructureKind, Texture, TextureId, Weather,
+    Aabb, Bands, Category, Collider, Daytime, HouseData, Joint, JointKind, Level, LevelId, Light,
+    LightShape, Material, MaterialId, Mesh, MeshId, Mobility, Object, ObjectId, Part, PartId, Pose,
+    Receptacle, ReceptacleKind, Room, RoomId, Servo, Sky, SoundEmitter, Structure, StructureKind,
+    Texture, TextureId, Weather,
 };
 use glam::{Affine3A, Mat3A, Quat, Vec2, Vec3, Vec3A};
 
@@ -341,9 +341,9 @@ pub(crate) fn house(numbers: &[u32]) -> HouseData {
     data
 }
 
-fn joint(n: &mut Numbers<'_>, object: ObjectId, first: PartId, child: PartId) -> Articulation {
+fn joint(n: &mut Numbers<'_>, object: ObjectId, first: PartId, child: PartId) -> Joint {
     let (low, span) = (n.float().clamp(-3.0, 3.0), n.unit());
-    Articulation {
+    Joint {
         name: n.name(0),
         object,
         parent: n.flag().then_some(first),

@@ -12,7 +12,7 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use dwell_houses::LoadReport;
-use dwell_houses::suncg::{SuncgFiles, convert, locate};
+use dwell_houses::suncg::{ParsedSuncgFiles, convert, locate};
 use dwell_scene::House;
 use dwell_scene::parallel::Threads;
 
@@ -22,7 +22,7 @@ pub(crate) const SCENE_ID: &str = "0004d52d1aeeb8ae6de39d6bd993e992";
 /// The real house: files, what became of them, and what was reported.
 pub(crate) struct Real {
     pub(crate) root: PathBuf,
-    pub(crate) files: SuncgFiles,
+    pub(crate) files: ParsedSuncgFiles,
     pub(crate) house: House,
     pub(crate) report: LoadReport,
 }
@@ -42,7 +42,7 @@ pub(crate) fn real() -> Option<&'static Real> {
         let root = data_root()?;
         let (data, path) = locate(&root.join("house").join(SCENE_ID).join("house.json")).unwrap();
         let mut report = LoadReport::new();
-        let files = SuncgFiles::read(&data, &path, Threads::new(2), &mut report).unwrap();
+        let files = ParsedSuncgFiles::read(&data, &path, Threads::new(2), &mut report).unwrap();
         let house = convert(&files, Threads::new(2), &mut report).unwrap();
         Some(Real {
             root,

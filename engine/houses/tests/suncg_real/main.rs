@@ -13,11 +13,11 @@ mod content;
 mod geometry;
 
 use dwell_houses::obj;
-use dwell_houses::suncg::SuncgFiles;
+use dwell_houses::suncg::ParsedSuncgFiles;
 use dwell_houses::suncg::file::NodeFile;
 use glam::{DMat4, DVec3};
 
-pub(crate) fn nodes(files: &SuncgFiles) -> &[NodeFile] {
+pub(crate) fn nodes(files: &ParsedSuncgFiles) -> &[NodeFile] {
     &files.house.levels[0].nodes
 }
 
@@ -25,7 +25,7 @@ pub(crate) fn model_of(node: &NodeFile) -> &str {
     node.model_id.as_deref().unwrap()
 }
 
-pub(crate) fn objects(files: &SuncgFiles) -> impl Iterator<Item = (usize, &NodeFile)> {
+pub(crate) fn objects(files: &ParsedSuncgFiles) -> impl Iterator<Item = (usize, &NodeFile)> {
     nodes(files)
         .iter()
         .enumerate()
@@ -36,11 +36,11 @@ pub(crate) fn matrix(node: &NodeFile) -> DMat4 {
     DMat4::from_cols_array(node.transform.as_deref().unwrap().try_into().unwrap())
 }
 
-pub(crate) fn object_mesh<'a>(files: &'a SuncgFiles, model: &str) -> &'a obj::file::ObjFile {
+pub(crate) fn object_mesh<'a>(files: &'a ParsedSuncgFiles, model: &str) -> &'a obj::file::ObjFile {
     &files.meshes[&format!("object/{model}/{model}.obj")].obj
 }
 
-pub(crate) fn room_mesh(files: &SuncgFiles, room: usize, part: char) -> &obj::file::ObjFile {
+pub(crate) fn room_mesh(files: &ParsedSuncgFiles, room: usize, part: char) -> &obj::file::ObjFile {
     &files.meshes[&format!("room/{}/fr_0rm_{room}{part}.obj", files.scene_id)].obj
 }
 

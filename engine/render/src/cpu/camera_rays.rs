@@ -18,7 +18,7 @@ pub(super) const LANES: usize = PACKET_COLUMNS * PACKET_ROWS;
 
 /// A view, prepared.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct CameraRays {
+pub(super) struct CameraRayGenerator {
     view: View,
     right: Vec3,
     up: Vec3,
@@ -29,7 +29,7 @@ pub(super) struct CameraRays {
 }
 
 /// The rays of some pixels with their hits. Lane k is column k % 8 and row k / 8.
-pub(super) struct CameraPacket {
+pub(super) struct CameraRayPacket {
     rays: RayPacket<LANES>,
     /// Depth per length along the ray.
     per_length: [f32; LANES],
@@ -67,7 +67,7 @@ pub(super) struct PrimaryHit {
     pub(super) triangle: u32,
 }
 
-impl CameraPacket {
+impl CameraRayPacket {
     /// No rays; memory for many packets of one picture.
     pub(super) fn new() -> Self {
         Self {
@@ -180,7 +180,7 @@ impl CameraPacket {
     /// Continues behind the given depths; lanes that are not named hit nothing from now on.
     pub(super) fn continue_behind(
         &mut self,
-        rays: &CameraRays,
+        rays: &CameraRayGenerator,
         scene: SceneBvh<'_>,
         behind: impl Iterator<Item = (usize, f32)>,
     ) {
@@ -193,7 +193,7 @@ impl CameraPacket {
         self.trace(rays, scene);
     }
 
-    fn trace(&mut self, rays: &CameraRays, scene: SceneBvh<'_>) {
+    fn trace(&mut self, rays: &CameraRayGenerator, scene: SceneBvh<'_>) {
         let Some(beam) = &mut self.beam else {
             scene.closest_packet(
                 &self.rays,
@@ -213,7 +213,7 @@ impl CameraPacket {
     }
 }
 
-impl CameraRays {
+impl CameraRayGenerator {
     pub(super) fn new(view: &View) -> Self {
         let rotation = view.world_from_camera.rotation.normalize();
         let (fixed, growing) = view.camera.pixel_area();
@@ -244,7 +244,7 @@ impl CameraRays {
         scene: SceneBvh<'_>,
         (left, top): (usize, usize),
         (width, height): (usize, usize),
-        packet: &mut CameraPacket,
+        packet: &mut CameraRayPacket,
     ) {
         let (near, far) = self.depth_range();
         packet.rays.origin = self.view.world_from_camera.position;
@@ -271,7 +271,7 @@ impl CameraRays {
     #[inline]
     fn aim(
         &self,
-        packet: &mut CameraPacket,
+        packet: &mut CameraRayPacket,
         (left, top): (f32, f32),
         (fx, fy, cx, cy): (f32, f32, f32, f32),
     ) {
@@ -296,7 +296,7 @@ impl CameraRays {
     }
 
     /// Directions through the middles of pixels of cameras that bend straight lines.
-    fn distorted_rays(&self, packet: &mut CameraPacket, (left, top): (usize, usize)) {
+    fn distorted_rays(&self, packet: &mut CameraRayPacket, (left, top): (usize, usize)) {
         let camera = &self.view.camera;
         let is_range = camera.projection().depth_is_range();
         for k in 0..LANES {
@@ -341,7 +341,7 @@ impl CameraRays {
     }
 
     /// Returns whether the picture shows no light.
-    pub(super) fn is_flat(&self) -> bool {
+    pub(super) fn is_flat_preset(&self) -> bool {
         self.view.preset == Preset::Flat
     }
 
@@ -371,7 +371,7 @@ impl CameraRays {
     }
 
     /// Starts in the middles of pixels, all in one direction.
-    fn orthographic_rays(&self, packet: &mut CameraPacket, (left, top): (usize, usize)) {
+    fn orthographic_rays(&self, packet: &mut CameraRayPacket, (left, top): (usize, usize)) {
         let start = std::array::from_fn(|k| {
             let image = Vec2::new(
                 (left + k % PACKET_COLUMNS) as f32 + 0.5,

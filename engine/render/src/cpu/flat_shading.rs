@@ -10,12 +10,12 @@
 )]
 
 use super::CpuRenderer;
-use super::camera_rays::{CameraPacket, LANES, RayPacketHits};
-use super::tile::ImageTile;
+use super::camera_rays::{CameraRayPacket, LANES, RayPacketHits};
+use super::tile::ImageBand;
 use crate::color::SrgbTables;
 use crate::texture::{BilinearTaps, MipImage, mip_level};
 use crate::texture_filter::MIN_FOOTPRINT_COSINE;
-use crate::triangle_table::{NEEDS_SHADING, PosedTriangle, coordinate};
+use crate::triangle_table::{NEEDS_SHADING, PosedTriangleShading, coordinate};
 use dwell_scene::simd_dispatch::{SimdKernel, SimdLevel};
 use glam::Vec3;
 
@@ -44,7 +44,7 @@ struct TexelLookups {
 /// Locates the texels of pixels that see one triangle.
 struct TexelLocator<'a> {
     seen: RayPacketHits<'a>,
-    standing: &'a PosedTriangle,
+    standing: &'a PosedTriangleShading,
     image: &'a MipImage,
     /// Texels of the largest level for each m² of the triangle.
     density: f32,
@@ -63,7 +63,7 @@ impl SimdKernel for TexelLocator<'_> {
             depth_per_length: per_length,
         } = self.seen;
         let [x, y, z] = &rays.direction;
-        let PosedTriangle { uv, normal } = self.standing;
+        let PosedTriangleShading { uv, normal } = self.standing;
         let (start, (fixed, growing)) = (rays.origin, self.pixel_area);
         let mut places = TexelLookups {
             level: [0; LANES],
@@ -105,12 +105,12 @@ impl SimdKernel for TexelLocator<'_> {
     }
 }
 
-impl ImageTile<'_> {
+impl ImageBand<'_> {
     /// Colours the pixels, of those in `lanes`, that see nothing or something opaque; returns the others.
     pub(super) fn color_opaque_pixels(
         &self,
         renderer: &CpuRenderer,
-        packet: &CameraPacket,
+        packet: &CameraRayPacket,
         mut lanes: u64,
         bytes: &mut [[u8; 3]; LANES],
     ) -> u64 {
@@ -234,7 +234,7 @@ mod tests {
                         hits: &hits,
                         depth_per_length: &per_length,
                     },
-                    standing: &PosedTriangle { uv, normal },
+                    standing: &PosedTriangleShading { uv, normal },
                     image,
                     density,
                     pixel_area: (fixed, growing),

@@ -11,8 +11,8 @@ mod tile;
 mod unoccluded;
 
 use crate::error::RenderError;
-use crate::frame::{FrameMut, Preset, PreviousFrame, View};
-use crate::light::{HouseLight, Lighting, LightingInputs};
+use crate::frame::{FrameMut, Preset, PreviousPoses, View};
+use crate::light::{Lighting, LightingInputs, StaticLighting};
 use crate::material::ShadingMaterial;
 use crate::semantic::{ClassSet, EntityClasses};
 use crate::texture::Textures;
@@ -24,7 +24,7 @@ use dwell_scene::rays::RayScene;
 use dwell_scene::{Aabb, House, State};
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
-use tile::ImageTile;
+use tile::ImageBand;
 
 /// Rows of an image that one thread takes at a time; a multiple of a packet's edge.
 const BAND_ROWS: usize = 8;
@@ -62,7 +62,7 @@ pub struct CpuRenderer {
     /// Boxes around the surface of each part, in its own space. Shape (part,).
     part_bounds: OnceLock<Vec<Aabb>>,
     /// Made for the first lit view.
-    light: OnceLock<HouseLight>,
+    light: OnceLock<StaticLighting>,
     /// The light of worlds in earlier calls, that of the latest last.
     lightings: Mutex<VecDeque<Lighting>>,
     /// The trees of meshes, made when one is rendered alone. Shape (mesh,).
@@ -79,7 +79,7 @@ pub struct RenderJob<'a> {
     /// The view.
     pub view: View,
     /// The previous frame, for flow; without it nothing has moved.
-    pub before: Option<PreviousFrame<'a>>,
+    pub before: Option<PreviousPoses<'a>>,
     /// The first wanted row and the one behind the last; `None`: all.
     pub rows: Option<(u32, u32)>,
     /// The buffers for its images: of the rows that are wanted.
@@ -213,7 +213,7 @@ impl CpuRenderer {
                     lightings[k].exposure(self.house_light(), eye),
                 )
             });
-            ImageTile::split(job, light, &mut bands);
+            ImageBand::split(job, light, &mut bands);
         }
         threads.for_each(&mut bands, |_, band| band.render(self));
         drop(bands);
@@ -237,9 +237,10 @@ impl CpuRenderer {
         job.frame.check(view, pixels)
     }
 
-    pub(crate) fn house_light(&self) -> &HouseLight {
-        self.light
-            .get_or_init(|| HouseLight::new(&self.house, &self.shading_materials, &self.textures))
+    pub(crate) fn house_light(&self) -> &StaticLighting {
+        self.light.get_or_init(|| {
+            StaticLighting::new(&self.house, &self.shading_materials, &self.textures)
+        })
     }
 
     /// The light of a world as it stands: kept where all its inputs are as they were, else computed in the memory that was used

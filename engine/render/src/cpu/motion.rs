@@ -3,14 +3,14 @@
 use super::CpuRenderer;
 use super::camera_rays::PrimaryHit;
 use crate::camera::{Camera, Projection};
-use crate::frame::PreviousFrame;
+use crate::frame::PreviousPoses;
 use dwell_scene::{Id, State};
 use glam::{Vec2, Vec3};
 
 /// Returns the motion in the image of a point that is seen at `image`, pixels; it was at `was` in the world.
 pub(super) fn point_flow(
     camera: &Camera,
-    before: &PreviousFrame<'_>,
+    before: &PreviousPoses<'_>,
     image: (f32, f32),
     was: Vec3,
 ) -> [f32; 2] {
@@ -21,7 +21,7 @@ pub(super) fn point_flow(
 /// As [`point_flow`] for a direction that is infinitely far away.
 pub(super) fn direction_flow(
     camera: &Camera,
-    before: &PreviousFrame<'_>,
+    before: &PreviousPoses<'_>,
     image: (f32, f32),
     direction: Vec3,
 ) -> [f32; 2] {
@@ -60,7 +60,7 @@ impl CpuRenderer {
         &self,
         sight: &PrimaryHit,
         state: &State,
-        before: &PreviousFrame<'_>,
+        before: &PreviousPoses<'_>,
     ) -> Vec3 {
         let Some(instance) = sight.instance else {
             return sight.point;

@@ -17,7 +17,7 @@ use super::shade::{
     CONTINUATION_OFFSET, MAX_MIRROR_BOUNCES, MAX_TRANSPARENT_LAYERS, OPAQUE_THRESHOLD,
     SHADOW_RAY_OFFSET_M,
 };
-use super::tile::ImageTile;
+use super::tile::ImageBand;
 use crate::light::{
     Exposure, IncidentLight, LightSource, Lighting, ShadingPoint, room_lookup_point, sky_luminance,
     tone_map,
@@ -48,7 +48,7 @@ const SUN_RADIUS: f32 = 0.004_65;
 
 /// The remaining budget of bounces of one kind of ray.
 #[derive(Clone, Copy)]
-struct PathState {
+struct BounceBudget {
     /// Surfaces that may still reflect diffusely.
     bounces: u32,
     mirrors: u32,
@@ -61,12 +61,12 @@ struct PathState {
 /// One band with its light.
 struct PathTracer<'a> {
     renderer: &'a CpuRenderer,
-    band: &'a ImageTile<'a>,
+    band: &'a ImageBand<'a>,
     lighting: &'a Lighting,
     exposure: Exposure,
 }
 
-impl ImageTile<'_> {
+impl ImageBand<'_> {
     /// sRGB of a pixel with all light.
     pub(super) fn full_color(
         &self,
@@ -90,7 +90,7 @@ impl ImageTile<'_> {
                 row as f32 + place(sample / SAMPLES_PER_EDGE, y),
             );
             if let Some((ray, per_length)) = self.rays.ray(image) {
-                let path = PathState {
+                let path = BounceBudget {
                     bounces: 1,
                     mirrors: MAX_MIRROR_BOUNCES,
                     depth: 0.0,
@@ -106,7 +106,7 @@ impl ImageTile<'_> {
 
 impl PathTracer<'_> {
     /// Returns the radiance along a ray, in units of display white.
-    fn light_along(&self, mut ray: Ray, path: PathState, sampler: &mut PixelSampler) -> Vec3 {
+    fn light_along(&self, mut ray: Ray, path: BounceBudget, sampler: &mut PixelSampler) -> Vec3 {
         let (mut light, mut rest) = (Vec3::ZERO, 1.0);
         for layer in 1..=MAX_TRANSPARENT_LAYERS {
             let Some(hit) = self
@@ -147,7 +147,7 @@ impl PathTracer<'_> {
         &self,
         (sight, distance_m): (&PrimaryHit, f32),
         weights: (f32, f32),
-        path: PathState,
+        path: BounceBudget,
         sampler: &mut PixelSampler,
     ) -> (Vec3, f32) {
         let (renderer, state) = (self.renderer, self.band.state);
@@ -158,7 +158,7 @@ impl PathTracer<'_> {
         let (facing, smooth) = renderer.normals(&skin, sight, position, weights);
         let off = sight.point + facing * SHADOW_RAY_OFFSET_M;
         if skin.material.mirror && path.mirrors > 0 {
-            let seen = Microfacet {
+            let seen = MicrofacetNormals {
                 facet: facing,
                 facing,
             };
@@ -200,7 +200,7 @@ impl PathTracer<'_> {
         if path.mirrors > 0 && reflects(skin.material) {
             let facet = sampler.sample_microfacet(smooth, skin.material.roughness);
             let share = reflectance(skin.material, skin.color, -sight.direction.dot(facet));
-            let seen = Microfacet { facet, facing };
+            let seen = MicrofacetNormals { facet, facing };
             let light = self.reflected(sight, off, seen, path, sampler);
             shown = shown * (Vec3::ONE - share) * (1.0 - skin.material.metallic) + light * share;
         }
@@ -215,8 +215,8 @@ impl PathTracer<'_> {
         &self,
         sight: &PrimaryHit,
         off: Vec3,
-        Microfacet { facet, facing }: Microfacet,
-        path: PathState,
+        MicrofacetNormals { facet, facing }: MicrofacetNormals,
+        path: BounceBudget,
         sampler: &mut PixelSampler,
     ) -> Vec3 {
         let direction = sight.direction.reflect(facet).normalize_or(facing);
@@ -226,7 +226,7 @@ impl PathTracer<'_> {
         } else {
             sight.direction.reflect(facing).normalize_or(facing)
         };
-        let path = PathState {
+        let path = BounceBudget {
             mirrors: path.mirrors - 1,
             // Patterns in a mirror are as fine as if they stood behind it.
             depth: sight.depth,
@@ -241,10 +241,10 @@ impl PathTracer<'_> {
         &self,
         off: Vec3,
         normal: Vec3,
-        path: PathState,
+        path: BounceBudget,
         sampler: &mut PixelSampler,
     ) -> Vec3 {
-        let path = PathState {
+        let path = BounceBudget {
             bounces: path.bounces - 1,
             mirrors: 0,
             hidden: EntityId::VOID.0,
@@ -302,7 +302,7 @@ impl PathTracer<'_> {
 
 /// The normal of a facet, and that of the flat triangle that it is on, towards the viewer.
 #[derive(Clone, Copy)]
-struct Microfacet {
+struct MicrofacetNormals {
     facet: Vec3,
     facing: Vec3,
 }

@@ -1,10 +1,10 @@
 //! The colour of a pixel.
 
 use super::CpuRenderer;
-use super::camera_rays::CameraRays;
-use super::camera_rays::{CameraPacket, LANES, PACKET_COLUMNS, PrimaryHit, VISIBLE_MASK};
+use super::camera_rays::CameraRayGenerator;
+use super::camera_rays::{CameraRayPacket, LANES, PACKET_COLUMNS, PrimaryHit, VISIBLE_MASK};
 use super::flat_shading::set_bit_positions;
-use super::tile::ImageTile;
+use super::tile::ImageBand;
 use crate::color::SrgbTables;
 use crate::light::{IncidentLight, ShadingPoint, room_lookup_point, sky_luminance, tone_map};
 use crate::material::ShadingMaterial;
@@ -90,7 +90,7 @@ const SHADOW_RAYS: usize = 2;
 
 /// A surface that a pixel sees, whose shadows are not yet known.
 #[derive(Clone, Copy)]
-pub(super) struct PendingShadows {
+pub(super) struct UnshadowedPixel {
     lane: usize,
     /// Opacity: the share of what lies behind it that it hides.
     opacity: f32,
@@ -104,7 +104,7 @@ pub(super) struct PendingShadows {
     from: f32,
 }
 
-impl PendingShadows {
+impl UnshadowedPixel {
     const NONE: Self = Self {
         lane: 0,
         opacity: 1.0,
@@ -138,7 +138,7 @@ impl OutgoingLight {
 /// Memory for many packets.
 pub(super) struct ShadeScratch {
     pub(super) bytes: [[u8; 3]; LANES],
-    pending: [PendingShadows; LANES],
+    pending: [UnshadowedPixel; LANES],
     open: TransmittedLanes,
     next: TransmittedLanes,
 }
@@ -147,7 +147,7 @@ impl ShadeScratch {
     pub(super) fn new() -> Self {
         Self {
             bytes: [[0; 3]; LANES],
-            pending: [PendingShadows::NONE; LANES],
+            pending: [UnshadowedPixel::NONE; LANES],
             open: TransmittedLanes::NONE,
             next: TransmittedLanes::NONE,
         }
@@ -158,7 +158,7 @@ impl CpuRenderer {
     /// Returns the surface at a hit, without light.
     pub(super) fn surface_at_hit<'a>(
         &'a self,
-        rays: &CameraRays,
+        rays: &CameraRayGenerator,
         state: &'a State,
         sight: &PrimaryHit,
     ) -> ShadedSurface<'a> {
@@ -169,7 +169,7 @@ impl CpuRenderer {
     #[inline]
     pub(super) fn surface_at_point<'a>(
         &'a self,
-        rays: &CameraRays,
+        rays: &CameraRayGenerator,
         state: &'a State,
         sight: &PrimaryHit,
         position: usize,
@@ -191,7 +191,7 @@ impl CpuRenderer {
             let (fixed, growing) = rays.pixel_area;
             let area = (fixed + growing * depth * depth) * sight.depth_per_length;
             let uv = standing.uv(point);
-            let sample = if rays.is_flat() {
+            let sample = if rays.is_flat_preset() {
                 let slope = normal.dot(direction).abs().max(MIN_FOOTPRINT_COSINE);
                 let texels = area / slope * (triangle.texture_density * look.texel_count);
                 self.textures.sample(texture, uv, texels)
@@ -236,12 +236,12 @@ impl CpuRenderer {
     }
 }
 
-impl ImageTile<'_> {
+impl ImageBand<'_> {
     /// sRGB of the first `columns` by `rows` pixels of a packet, which afterwards no longer knows what they see first.
     pub(super) fn colors(
         &self,
         renderer: &CpuRenderer,
-        packet: &mut CameraPacket,
+        packet: &mut CameraRayPacket,
         (columns, rows): (usize, usize),
         palette: &mut ShadeScratch,
     ) {
@@ -289,9 +289,9 @@ impl ImageTile<'_> {
     fn color(
         &self,
         renderer: &CpuRenderer,
-        packet: &CameraPacket,
+        packet: &CameraRayPacket,
         lane: usize,
-    ) -> Result<[u8; 3], PendingShadows> {
+    ) -> Result<[u8; 3], UnshadowedPixel> {
         let Some(sight) = packet.closest_hit(lane) else {
             let direction = packet.direction(lane);
             if direction == Vec3::ZERO {
@@ -308,7 +308,7 @@ impl ImageTile<'_> {
         if self.light.is_none() && sent.opacity >= OPAQUE_THRESHOLD {
             return Ok(self.encode(sent.incoming.light));
         }
-        Err(PendingShadows {
+        Err(UnshadowedPixel {
             lane,
             opacity: sent.opacity,
             incoming: sent.incoming,
@@ -323,7 +323,7 @@ impl ImageTile<'_> {
     fn composite_transmitted(
         &self,
         renderer: &CpuRenderer,
-        packet: &mut CameraPacket,
+        packet: &mut CameraRayPacket,
         palette: &mut ShadeScratch,
     ) {
         let bytes = &mut palette.bytes;

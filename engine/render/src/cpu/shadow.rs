@@ -2,7 +2,7 @@
 
 use super::CpuRenderer;
 use super::camera_rays::{LANES, VISIBLE_MASK};
-use super::shade::PendingShadows;
+use super::shade::UnshadowedPixel;
 use crate::light::{LampCluster, LightSource, Lighting};
 use dwell_scene::EntityId;
 use dwell_scene::bvh::{PacketHits, Ray, RayPacket, SceneBvh};
@@ -80,7 +80,7 @@ impl CpuRenderer {
         &self,
         scene: SceneBvh<'_>,
         lighting: &Lighting,
-        pending: &mut [PendingShadows],
+        pending: &mut [UnshadowedPixel],
     ) {
         let mut hits = PacketHits::<LANES>::new();
         for first in 0..pending.len() {

@@ -1,10 +1,10 @@
 //! A tile: some rows of one picture.
 
-use super::camera_rays::{CameraPacket, CameraRays, PACKET_COLUMNS, PACKET_ROWS};
+use super::camera_rays::{CameraRayGenerator, CameraRayPacket, PACKET_COLUMNS, PACKET_ROWS};
 use super::motion;
 use super::shade::ShadeScratch;
 use super::{BAND_ROWS, CpuRenderer, RenderJob};
-use crate::frame::{FrameMut, PreviousFrame};
+use crate::frame::{FrameMut, PreviousPoses};
 use crate::light::{Exposure, Lighting};
 use dwell_scene::State;
 use dwell_scene::bvh::SceneBvh;
@@ -15,11 +15,11 @@ use glam::Vec3;
 const PACKETS_PER_CHECK: usize = 32;
 
 /// Rows of a picture, with their destination.
-pub(super) struct ImageTile<'a> {
+pub(super) struct ImageBand<'a> {
     pub(super) scene: SceneBvh<'a>,
     pub(super) state: &'a State,
-    before: Option<PreviousFrame<'a>>,
-    pub(super) rays: CameraRays,
+    before: Option<PreviousPoses<'a>>,
+    pub(super) rays: CameraRayGenerator,
     /// The light; `None` for flat views.
     pub(super) light: Option<(&'a Lighting, Exposure)>,
     /// Size of the picture, pixels.
@@ -30,7 +30,7 @@ pub(super) struct ImageTile<'a> {
     frame: FrameMut<'a>,
 }
 
-impl<'a> ImageTile<'a> {
+impl<'a> ImageBand<'a> {
     /// Cuts the picture of a job into bands.
     pub(super) fn split(
         job: &'a mut RenderJob<'_>,
@@ -39,7 +39,7 @@ impl<'a> ImageTile<'a> {
     ) {
         let camera = job.view.camera;
         let (width, height) = (camera.width() as usize, camera.height() as usize);
-        let rays = CameraRays::new(&job.view);
+        let rays = CameraRayGenerator::new(&job.view);
         let (first, last) = job.row_range();
         let mut rest = job.frame.reborrow();
         for first_row in (first..last).step_by(BAND_ROWS) {
@@ -60,7 +60,7 @@ impl<'a> ImageTile<'a> {
 
     /// Writes the pixels.
     pub(super) fn render(&mut self, renderer: &CpuRenderer) {
-        let (mut packet, mut palette) = (CameraPacket::new(), ShadeScratch::new());
+        let (mut packet, mut palette) = (CameraRayPacket::new(), ShadeScratch::new());
         let end = (self.size.0, self.first_row + self.rows);
         // All light of a packet takes milliseconds.
         let mut pace = PollEvery::new(if self.rays.is_full() {
@@ -81,7 +81,7 @@ impl<'a> ImageTile<'a> {
     fn write(
         &mut self,
         renderer: &CpuRenderer,
-        packet: &mut CameraPacket,
+        packet: &mut CameraRayPacket,
         palette: &mut ShadeScratch,
         (left, top): (usize, usize),
     ) {
@@ -154,7 +154,7 @@ impl<'a> ImageTile<'a> {
     fn write_surface(
         &mut self,
         renderer: &CpuRenderer,
-        packet: &CameraPacket,
+        packet: &CameraRayPacket,
         lane: usize,
         pixel: usize,
     ) {

@@ -1,7 +1,7 @@
 //! Unoccluded pixels: how many a thing would have without all others.
 
 use super::CpuRenderer;
-use super::camera_rays::{CameraPacket, CameraRays, LANES, PACKET_COLUMNS, PACKET_ROWS};
+use super::camera_rays::{CameraRayGenerator, CameraRayPacket, LANES, PACKET_COLUMNS, PACKET_ROWS};
 use crate::frame::View;
 use dwell_scene::bvh::{Instance, InstanceSet, RayMask, SceneBvh, TriangleBvh};
 use dwell_scene::rays::{BODY_PIECES, RayScene};
@@ -30,12 +30,12 @@ impl CpuRenderer {
             fixed: &NOTHING,
             moving: &set,
         };
-        let rays = CameraRays::new(&View {
+        let rays = CameraRayGenerator::new(&View {
             hidden_entity: None,
             ..*view
         });
         let (columns, rows) = image_bounds(view, &set);
-        let (mut packet, mut count) = (CameraPacket::new(), 0);
+        let (mut packet, mut count) = (CameraRayPacket::new(), 0);
         let end = (view.camera.width() as usize, view.camera.height() as usize);
         for top in rows.step_by(PACKET_ROWS) {
             for left in columns.clone().step_by(PACKET_COLUMNS) {

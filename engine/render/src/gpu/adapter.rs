@@ -36,7 +36,7 @@ impl AdapterKind {
 /// An adapter. Two of them are the same when all fields are equal: names alone are shared by equal cards, and by one card behind two
 /// interfaces.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Adapter {
+pub struct AdapterInfo {
     /// Its type.
     pub kind: AdapterKind,
     /// `vulkan`, `metal`, `dx12` or `gl`.
@@ -53,7 +53,7 @@ pub struct Adapter {
     pub duplicate_index: usize,
 }
 
-impl Adapter {
+impl AdapterInfo {
     fn of(adapter: &wgpu::Adapter) -> Self {
         let info = adapter.get_info();
         let kind = match info.device_type {
@@ -85,7 +85,7 @@ impl Adapter {
     }
 }
 
-impl std::fmt::Display for Adapter {
+impl std::fmt::Display for AdapterInfo {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self {
             name, interface, ..
@@ -115,13 +115,13 @@ pub(super) enum AdapterChoice<'a> {
     /// only those of that interface.
     Named(&'a str),
     /// This one.
-    Exact(&'a Adapter),
+    Exact(&'a AdapterInfo),
 }
 
 const INTERFACES: [&str; 4] = ["vulkan", "metal", "dx12", "gl"];
 
 impl AdapterChoice<'_> {
-    fn is(&self, adapter: &Adapter) -> bool {
+    fn is(&self, adapter: &AdapterInfo) -> bool {
         let is_hardware = adapter.kind != AdapterKind::Software;
         match self {
             Self::Hardware => is_hardware,
@@ -153,8 +153,10 @@ impl std::fmt::Display for AdapterChoice<'_> {
 
 /// All adapters, the likely quickest first and software last. `ask`: those behind some interfaces. GL is queried where nothing else
 /// answers but software: a card may have no other driver. Its software is listed only where there is no other.
-fn gather<T>(mut ask: impl FnMut(wgpu::Backends) -> Vec<(Adapter, T)>) -> Vec<(Adapter, T)> {
-    let is_hardware = |(adapter, _): &(Adapter, T)| adapter.kind != AdapterKind::Software;
+fn gather<T>(
+    mut ask: impl FnMut(wgpu::Backends) -> Vec<(AdapterInfo, T)>,
+) -> Vec<(AdapterInfo, T)> {
+    let is_hardware = |(adapter, _): &(AdapterInfo, T)| adapter.kind != AdapterKind::Software;
     let mut all = ask(wgpu::Backends::PRIMARY);
     if !all.iter().any(is_hardware) {
         let is_first = all.is_empty();
@@ -170,9 +172,9 @@ fn gather<T>(mut ask: impl FnMut(wgpu::Backends) -> Vec<(Adapter, T)>) -> Vec<(A
     for k in 0..all.len() {
         let (before, rest) = all.split_at_mut(k);
         let own = &mut rest[0].0;
-        let same = |(other, _): &&(Adapter, T)| {
+        let same = |(other, _): &&(AdapterInfo, T)| {
             let twin = own.duplicate_index;
-            Adapter {
+            AdapterInfo {
                 duplicate_index: twin,
                 ..other.clone()
             } == *own
@@ -192,7 +194,7 @@ fn may_ask_gl(used_by: &AtomicU32, process: u32) -> bool {
 }
 
 /// All adapters, and whether GL was left out because a process that this one was forked from has used it.
-fn list() -> (Vec<(Adapter, wgpu::Adapter)>, bool) {
+fn list() -> (Vec<(AdapterInfo, wgpu::Adapter)>, bool) {
     let process = std::process::id();
     let mut is_gl_lost = false;
     let all = gather(|backends| {
@@ -211,7 +213,7 @@ fn list() -> (Vec<(Adapter, wgpu::Adapter)>, bool) {
         }
         let found = found.into_iter();
         found
-            .map(|adapter| (Adapter::of(&adapter), adapter))
+            .map(|adapter| (AdapterInfo::of(&adapter), adapter))
             .collect()
     });
     (all, is_gl_lost)
@@ -219,7 +221,7 @@ fn list() -> (Vec<(Adapter, wgpu::Adapter)>, bool) {
 
 /// The adapters of this machine, the likely quickest first and software last; none where there is no driver. Those behind GL are left
 /// out in a process that was forked from one that has found them.
-pub fn adapters() -> Vec<Adapter> {
+pub fn adapters() -> Vec<AdapterInfo> {
     let (all, _) = list();
     all.into_iter().map(|(adapter, _)| adapter).collect()
 }
@@ -228,7 +230,7 @@ pub fn adapters() -> Vec<Adapter> {
 const NOT_GL: &str = "it cannot be opened again here: start workers with \"spawn\", or use `cpu`";
 
 /// Returns the error for a process that was forked from one that has opened an adapter.
-pub(super) fn forked_process_error(adapter: &Adapter) -> RenderError {
+pub(super) fn forked_process_error(adapter: &AdapterInfo) -> RenderError {
     let instead = if adapter.interface == "gl" {
         NOT_GL
     } else {
@@ -244,7 +246,7 @@ pub(super) fn forked_process_error(adapter: &Adapter) -> RenderError {
 ///
 /// # Errors
 /// [`RenderError::NoAdapter`]; [`RenderError::Forked`] where it may be behind GL, which cannot be asked here.
-pub(super) fn find(wanted: AdapterChoice<'_>) -> Result<(Adapter, wgpu::Adapter), RenderError> {
+pub(super) fn find(wanted: AdapterChoice<'_>) -> Result<(AdapterInfo, wgpu::Adapter), RenderError> {
     let (all, is_gl_lost) = list();
     let names: Vec<String> = all.iter().map(|(adapter, _)| adapter.to_string()).collect();
     let found = all.into_iter().find(|(adapter, _)| wanted.is(adapter));
@@ -270,8 +272,8 @@ pub(super) fn find(wanted: AdapterChoice<'_>) -> Result<(Adapter, wgpu::Adapter)
 mod tests {
     use super::*;
 
-    fn adapter(kind: AdapterKind, interface: &str, name: &str, bus: &str) -> Adapter {
-        Adapter {
+    fn adapter(kind: AdapterKind, interface: &str, name: &str, bus: &str) -> AdapterInfo {
+        AdapterInfo {
             kind,
             interface: interface.into(),
             name: name.into(),
@@ -282,12 +284,12 @@ mod tests {
         }
     }
 
-    fn pipe(interface: &str) -> Adapter {
+    fn pipe(interface: &str) -> AdapterInfo {
         adapter(AdapterKind::Software, interface, "llvmpipe (LLVM 15)", "")
     }
 
     /// The adapters of a machine whose Vulkan and GL have these.
-    fn machine(vulkan: &[Adapter], gl: &[Adapter]) -> Vec<Adapter> {
+    fn machine(vulkan: &[AdapterInfo], gl: &[AdapterInfo]) -> Vec<AdapterInfo> {
         let listed = gather(|backends| {
             let of = if backends == wgpu::Backends::GL {
                 gl
@@ -299,7 +301,7 @@ mod tests {
         listed.into_iter().map(|(adapter, ())| adapter).collect()
     }
 
-    fn chosen(all: &[Adapter], wanted: AdapterChoice<'_>) -> Option<usize> {
+    fn chosen(all: &[AdapterInfo], wanted: AdapterChoice<'_>) -> Option<usize> {
         all.iter().position(|adapter| wanted.is(adapter))
     }
 

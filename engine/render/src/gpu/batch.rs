@@ -7,7 +7,7 @@ use super::world_rows::{WorldRows, runs_of_same_world};
 use crate::camera::{Camera, Projection};
 use crate::cpu::{CpuRenderer, RenderJob};
 use crate::error::RenderError;
-use crate::frame::{FrameMut, Preset, PreviousFrame, each_image};
+use crate::frame::{FrameMut, Preset, PreviousPoses, each_image};
 use crate::light::Lighting;
 use dwell_scene::bvh::flat::{PackedRow, flat_pose};
 use dwell_scene::parallel::Threads;
@@ -74,7 +74,7 @@ pub(super) fn words_per_pixel(frame: &FrameMut<'_>) -> usize {
 
 /// The rays of cameras that bend straight lines.
 #[derive(Debug, Default)]
-pub(super) struct LensRays {
+pub(super) struct LensRayTable {
     cameras: Vec<(Camera, u32)>,
     /// Directions per metre of depth in the camera's frame. Shape (ray,).
     pub(super) rays: Vec<[f32; 4]>,
@@ -85,7 +85,7 @@ pub(super) struct LensRays {
 /// Rays kept for cameras that may come again.
 const MOST_LENS_RAYS: usize = 1 << 22;
 
-impl LensRays {
+impl LensRayTable {
     /// Forgets old cameras when there are too many; before a batch.
     fn evict_old(&mut self) {
         if self.rays.len() > MOST_LENS_RAYS {
@@ -120,10 +120,10 @@ impl LensRays {
 
 /// The rows of a batch, and the offsets of its images. Its memory is reused.
 #[derive(Debug, Default)]
-pub(super) struct GpuBatch {
+pub(super) struct PackedBatch {
     pub(super) rows: Vec<PackedRow>,
     pub(super) image_offsets: Vec<ImageOffsets>,
-    pub(super) lens_rays: LensRays,
+    pub(super) lens_rays: LensRayTable,
     /// The draw calls of the raster path.
     pub(super) draw_batch: DrawBatch,
     worlds: WorldRows,
@@ -146,7 +146,7 @@ fn quaternion(rotation: Quat) -> PackedRow {
     Vec4::from(rotation).to_array().map(f32::to_bits)
 }
 
-impl GpuBatch {
+impl PackedBatch {
     /// Writes the rows of some jobs. `draws`: the house and the longest edge of a texture, for the raster path.
     pub(super) fn fill(
         &mut self,
@@ -257,7 +257,7 @@ impl GpuBatch {
             self.lens_rays.of(camera)
         };
         let before = job.before.as_ref().filter(|_| places.flow.is_some());
-        let before_rows = before.map_or(0, |before| self.add_before(job, before));
+        let before_rows = before.map_or(0, |before| self.add_previous_poses(job, before));
         let (fixed, growing) = camera.pixel_area();
         let eye_before = before.map_or(view.world_from_camera, |before| before.world_from_camera);
         let word = |place: Option<usize>| place.map_or(NOT_WANTED, |place| place as u32);
@@ -315,7 +315,7 @@ impl GpuBatch {
     }
 
     /// Adds the previous pose of each instance; returns the first row.
-    fn add_before(&mut self, job: &RenderJob<'_>, before: &PreviousFrame<'_>) -> u32 {
+    fn add_previous_poses(&mut self, job: &RenderJob<'_>, before: &PreviousPoses<'_>) -> u32 {
         let first = self.rows.len() as u32;
         for part in &job.scene.house().geometry().movable {
             let moved = &before.moved_parts;
@@ -343,7 +343,7 @@ impl GpuBatch {
 /// The displacement of each agent to its previous position, m.
 fn previous_agent_offsets<'a>(
     state: &'a State,
-    before: &'a PreviousFrame<'_>,
+    before: &'a PreviousPoses<'_>,
 ) -> impl Iterator<Item = Vec3> + 'a {
     let agents = state.agents.as_slice().iter().enumerate();
     agents.map(|(k, agent)| {

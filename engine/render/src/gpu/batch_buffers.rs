@@ -1,6 +1,6 @@
 //! Memory for one batch under way; kept for later ones, and only grown.
 
-use super::batch::GpuBatch;
+use super::batch::PackedBatch;
 use super::device::Gpu;
 use super::raster::RenderAtlas;
 use crate::error::RenderError;
@@ -107,7 +107,7 @@ impl StagingBuffer {
 /// The buffers of one batch.
 #[derive(Debug)]
 pub(super) struct BatchBuffers {
-    pub(super) batch: GpuBatch,
+    pub(super) batch: PackedBatch,
     upload: StagingBuffer,
     rows: GrowableBuffer,
     lenses: GrowableBuffer,
@@ -128,7 +128,7 @@ impl BatchBuffers {
         use wgpu::BufferUsages as Use;
         let written = Use::STORAGE | Use::COPY_DST;
         Self {
-            batch: GpuBatch::default(),
+            batch: PackedBatch::default(),
             upload: StagingBuffer::new(),
             rows: GrowableBuffer::new("worlds", written),
             lenses: GrowableBuffer::new("lenses", written),

@@ -104,13 +104,13 @@ impl Culler {
             occluders,
         };
         if top != NO_LINK {
-            culler.cut(nodes, top, bounds);
+            culler.add_subtrees(nodes, top, bounds);
         }
         culler
     }
 
     /// Lists a link and all below it down to chunks; the blocks of each stand together.
-    fn cut(&mut self, nodes: &[PackedRow], link: u32, bounds: Aabb) {
+    fn add_subtrees(&mut self, nodes: &[PackedRow], link: u32, bounds: Aabb) {
         let blocks = blocks_below(nodes, link);
         let is_chunk = blocks.len() as u32 <= CHUNK_BLOCKS || link >> 31 == 1;
         let own = self.subtrees.len();
@@ -121,7 +121,7 @@ impl Culler {
         });
         if !is_chunk {
             for (link, bounds) in children(nodes, link) {
-                self.cut(nodes, link, bounds);
+                self.add_subtrees(nodes, link, bounds);
             }
             self.subtrees[own].next = self.subtrees.len();
         }

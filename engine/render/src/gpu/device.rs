@@ -1,6 +1,6 @@
 //! An adapter in use.
 
-use super::adapter::{Adapter, AdapterChoice, block_on, find, forked_process_error};
+use super::adapter::{AdapterChoice, AdapterInfo, block_on, find, forked_process_error};
 use super::kernels::{BindGroupLayouts, Kernels};
 use super::raster;
 use super::visibility_path::VisibilityPathSpeeds;
@@ -13,7 +13,7 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 /// An adapter in use, shared by the renderers of all houses.
 #[derive(Debug)]
 pub struct Gpu {
-    adapter: Adapter,
+    adapter: AdapterInfo,
     pub(super) device: wgpu::Device,
     pub(super) queue: wgpu::Queue,
     pub(super) layouts: BindGroupLayouts,
@@ -59,8 +59,8 @@ static OPEN: Mutex<DeviceRegistry> = Mutex::new(DeviceRegistry::NONE);
 /// Adapters in use by this process.
 struct DeviceRegistry {
     /// The adapter that each requested name stands for.
-    names: BTreeMap<Option<String>, Adapter>,
-    gpus: BTreeMap<Adapter, Arc<Gpu>>,
+    names: BTreeMap<Option<String>, AdapterInfo>,
+    gpus: BTreeMap<AdapterInfo, Arc<Gpu>>,
 }
 
 impl DeviceRegistry {
@@ -69,7 +69,7 @@ impl DeviceRegistry {
         gpus: BTreeMap::new(),
     };
 
-    fn known(&mut self, adapter: &Adapter) -> Option<Arc<Gpu>> {
+    fn known(&mut self, adapter: &AdapterInfo) -> Option<Arc<Gpu>> {
         let gpu = self.gpus.get(adapter)?;
         if gpu.check_process().is_ok() {
             return Some(gpu.clone());
@@ -101,13 +101,16 @@ impl Gpu {
     ///
     /// # Errors
     /// As [`Self::open`]; where houses do not fit, making renderers fails.
-    pub fn open_adapter(adapter: &Adapter, most: BatchLimits) -> Result<Arc<Self>, RenderError> {
+    pub fn open_adapter(
+        adapter: &AdapterInfo,
+        most: BatchLimits,
+    ) -> Result<Arc<Self>, RenderError> {
         let (adapter, handle) = find(AdapterChoice::Exact(adapter))?;
         Self::open_found(adapter, &handle, most)
     }
 
     fn open_found(
-        adapter: Adapter,
+        adapter: AdapterInfo,
         handle: &wgpu::Adapter,
         most: BatchLimits,
     ) -> Result<Arc<Self>, RenderError> {
@@ -190,7 +193,7 @@ impl Gpu {
     ///
     /// # Errors
     /// As [`Self::open`].
-    pub fn shared_adapter(adapter: &Adapter) -> Result<Arc<Self>, RenderError> {
+    pub fn shared_adapter(adapter: &AdapterInfo) -> Result<Arc<Self>, RenderError> {
         let mut open = lock_ignoring_poison(&OPEN);
         if let Some(gpu) = open.known(adapter) {
             return Ok(gpu);
@@ -201,7 +204,7 @@ impl Gpu {
 
     fn share(
         open: &mut DeviceRegistry,
-        adapter: Adapter,
+        adapter: AdapterInfo,
         handle: &wgpu::Adapter,
     ) -> Result<Arc<Self>, RenderError> {
         if let Some(gpu) = open.known(&adapter) {
@@ -221,7 +224,7 @@ impl Gpu {
     }
 
     /// The adapter.
-    pub fn adapter(&self) -> &Adapter {
+    pub fn adapter(&self) -> &AdapterInfo {
         &self.adapter
     }
 

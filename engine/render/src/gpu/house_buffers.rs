@@ -9,7 +9,7 @@ use crate::cpu::{CpuRenderer, VISIBLE_MASK};
 use crate::error::RenderError;
 use crate::semantic::ClassSet;
 use dwell_scene::bvh::TriangleBvh;
-use dwell_scene::bvh::flat::{BLOCK_ROWS, FlatBvh, NO_LINK, PackedRow};
+use dwell_scene::bvh::flat::{BLOCK_ROWS, FlatBvhRoot, NO_LINK, PackedRow};
 use dwell_scene::rays::{BODY_PIECES, body_trees};
 use dwell_scene::{IdVec, MeshId};
 use glam::Vec3;
@@ -77,9 +77,9 @@ impl HouseBuffers {
             .flatten(VISIBLE_MASK, &mut nodes, &mut blocks);
         let culler = Culler::new(&nodes, fixed.root, fixed.bounds, occluders(&blocks));
         // Each mesh once, however many parts show it.
-        let mut flat: IdVec<MeshId, Option<(FlatBvh, Range<u32>)>> =
+        let mut flat: IdVec<MeshId, Option<(FlatBvhRoot, Range<u32>)>> =
             IdVec::filled(None, house.meshes.len());
-        let mut trees: Vec<FlatBvh> = Vec::new();
+        let mut trees: Vec<FlatBvhRoot> = Vec::new();
         let mut ranges: Vec<Range<u32>> = Vec::new();
         let mut add = |tree: &TriangleBvh| {
             let first = (blocks.len() / BLOCK_ROWS) as u32;
@@ -91,7 +91,7 @@ impl HouseBuffers {
             let made = flat[mesh].get_or_insert_with(|| match &geometry.mesh_bvh[mesh] {
                 Some(tree) => add(tree),
                 None => (
-                    FlatBvh {
+                    FlatBvhRoot {
                         root: NO_LINK,
                         bounds: dwell_scene::Aabb::EMPTY,
                         stack_size: 0,

@@ -18,7 +18,7 @@ mod renderer;
 mod visibility_path;
 mod world_rows;
 
-pub use adapter::{Adapter, AdapterKind, adapters};
+pub use adapter::{AdapterInfo, AdapterKind, adapters};
 pub use device::{BatchLimits, Gpu};
 pub use renderer::{GpuRenderer, PendingBatch};
 pub use visibility_path::{VisibilityPath, VisibilityPathSpeeds};

@@ -33,7 +33,7 @@ impl WorldRows {
         threads.for_each(&mut work, |_, (run, rows)| {
             rows.clear();
             if let Some(job) = run.first() {
-                list(job, rows);
+                pack_world(job, rows);
             }
         });
     }
@@ -48,7 +48,7 @@ impl WorldRows {
 }
 
 /// The tree over a world's instances, then the instances.
-fn list(job: &RenderJob<'_>, rows: &mut Vec<PackedRow>) {
+fn pack_world(job: &RenderJob<'_>, rows: &mut Vec<PackedRow>) {
     let moving = job.scene.bvh().moving;
     rows.resize(3, [0; 4]);
     let top = moving.flatten_tree(rows);

@@ -1,6 +1,6 @@
 //! The inputs of a world's light, so that it is computed anew only when some of them have changed.
 
-use super::indirect::HouseLight;
+use super::indirect::StaticLighting;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{House, State};
 
@@ -8,7 +8,7 @@ use dwell_scene::{House, State};
 #[derive(Clone, Copy)]
 pub(crate) struct LightingInputs<'a> {
     pub(crate) house: &'a House,
-    pub(crate) fixed: &'a HouseLight,
+    pub(crate) fixed: &'a StaticLighting,
     /// The geometry that blocks light.
     pub(crate) scene: &'a RayScene,
     /// Switches, places of lamps, and how far doors are open.

@@ -1,6 +1,6 @@
 //! Light as rows of four numbers, as `gpu/shaders/light.wgsl` reads it.
 
-use super::indirect::HouseLight;
+use super::indirect::StaticLighting;
 use super::openings::WindowLight;
 use super::outdoor::OutdoorLight;
 use super::{Exposure, Lighting, PointLamp};
@@ -49,7 +49,7 @@ fn air_rows(air: &OutdoorLight) -> Vec<PackedRow> {
     rows
 }
 
-impl HouseLight {
+impl StaticLighting {
     /// The constant light, when its first row is `first`: four rows of heads, storeys, windows, first windows of each room,
     /// the open air, and cells of storeys.
     pub(crate) fn to_rows(&self, first: usize) -> Vec<PackedRow> {

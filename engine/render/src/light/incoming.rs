@@ -22,13 +22,13 @@ pub(crate) enum LightSource {
 
 /// Light of one source.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct LightSample {
+pub(crate) struct SourceContribution {
     pub(crate) source: LightSource,
     /// In units of display white.
     pub(crate) light: Vec3,
 }
 
-impl LightSample {
+impl SourceContribution {
     const NONE: Self = Self {
         source: LightSource::None,
         light: Vec3::ZERO,
@@ -40,13 +40,13 @@ impl LightSample {
 pub(crate) struct IncidentLight<const N: usize> {
     /// The light that arrives, in units of display white.
     pub(crate) light: Vec3,
-    pub(crate) rays: [LightSample; N],
+    pub(crate) rays: [SourceContribution; N],
 }
 
 impl<const N: usize> IncidentLight<N> {
     pub(crate) const NONE: Self = Self {
         light: Vec3::ZERO,
-        rays: [LightSample::NONE; N],
+        rays: [SourceContribution::NONE; N],
     };
 
     /// Only light that arrives.
@@ -75,7 +75,10 @@ impl<const N: usize> IncidentLight<N> {
             }
         }
         if strength > least {
-            let ray = std::mem::replace(&mut self.rays[weakest], LightSample { source, light });
+            let ray = std::mem::replace(
+                &mut self.rays[weakest],
+                SourceContribution { source, light },
+            );
             self.light += ray.light;
         } else {
             self.light += light;

@@ -33,7 +33,7 @@ const ROUNDS: usize = 24;
 
 /// The constant part of a house's light.
 #[derive(Debug)]
-pub(crate) struct HouseLight {
+pub(crate) struct StaticLighting {
     pub(crate) grid: RoomGrid,
     /// The open air, if the house knows its own.
     pub(crate) outdoor: Option<OutdoorLight>,
@@ -66,7 +66,7 @@ pub(crate) struct RoomLight {
     pub(crate) mean: f32,
 }
 
-impl HouseLight {
+impl StaticLighting {
     pub(crate) fn new(house: &House, looks: &[ShadingMaterial], textures: &Textures) -> Self {
         let grid = RoomGrid::new(house);
         let air = house.sky.as_ref().map(OutdoorLight::new);
@@ -125,7 +125,7 @@ impl HouseLight {
     /// The equation of the integrating sphere, E A (1 - r) = `flux`, whose indirect part is what walls throw back; e.g.
     /// J. W. T. Walsh, *Photometry* (1926). Of the light on an opening of area S all goes into the other room: E (A (1 - r) + S) =
     /// `flux` + S E of the other, so that walls take what lamps send out and no more.
-    pub(crate) fn rooms(
+    pub(crate) fn solve_room_light(
         &self,
         house: &House,
         state: &State,

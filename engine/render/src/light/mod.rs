@@ -13,7 +13,7 @@ mod tone;
 
 pub(crate) use cache_key::LightingInputs;
 pub(crate) use incoming::{IncidentLight, LightSource};
-pub(crate) use indirect::HouseLight;
+pub(crate) use indirect::StaticLighting;
 pub(crate) use lamp_clusters::LampCluster;
 pub(crate) use tone::tone_map;
 
@@ -96,7 +96,7 @@ impl Lighting {
         if fixed.outdoor.is_some() {
             let windows = fixed.windows.iter();
             self.sunlit
-                .extend(windows.map(|window| sunlit(window, fixed.sun, &sun_reaches)));
+                .extend(windows.map(|window| sunlit_fraction(window, fixed.sun, &sun_reaches)));
         }
         self.lamps.clear();
         for light in &house.lights {
@@ -128,7 +128,7 @@ impl Lighting {
             return;
         }
         std::mem::swap(now, last);
-        fixed.rooms(
+        fixed.solve_room_light(
             house,
             state,
             &mut self.flux_lm,
@@ -139,7 +139,7 @@ impl Lighting {
 
     /// Returns the exposure of a camera at `eye`: by the mean light of its room, not quite to the full, so that dim rooms look
     /// dimmer than bright ones.
-    pub(crate) fn exposure(&self, fixed: &HouseLight, eye: Vec3) -> Exposure {
+    pub(crate) fn exposure(&self, fixed: &StaticLighting, eye: Vec3) -> Exposure {
         let mean = if let Some(room) = fixed.grid.room(eye) {
             self.rooms[room].mean
         } else {
@@ -189,7 +189,7 @@ impl Lighting {
     #[inline]
     pub(crate) fn incoming<const N: usize>(
         &self,
-        fixed: &HouseLight,
+        fixed: &StaticLighting,
         exposure: Exposure,
         site: &ShadingPoint,
     ) -> IncidentLight<N> {
@@ -204,7 +204,7 @@ impl Lighting {
     #[inline]
     pub(crate) fn for_each_source(
         &self,
-        fixed: &HouseLight,
+        fixed: &StaticLighting,
         exposure: Exposure,
         site: &ShadingPoint,
         mut tell: impl FnMut(LightSource, Vec3),
@@ -213,7 +213,7 @@ impl Lighting {
         let room = fixed.grid.room(site.room_lookup_point);
         let Some(position) = room else {
             let Some(air) = &fixed.outdoor else {
-                tell(LightSource::Sky, open_air(normal));
+                tell(LightSource::Sky, default_outdoor_radiance(normal));
                 return self.lamp_illuminance(None, site, exposure.per_lx, tell);
             };
             let per_lx = air.exposure_beside(exposure.per_lx);
@@ -333,7 +333,7 @@ fn daylight(window: &WindowLight, to_sun: Vec3, point: Vec3, normal: Vec3) -> (V
 }
 
 /// Returns the sunlit share of a window, by points on it.
-fn sunlit(
+fn sunlit_fraction(
     window: &WindowLight,
     (to_sun, lx): (Vec3, Vec3),
     sun_reaches: impl Fn(Vec3) -> bool,
@@ -352,14 +352,14 @@ fn sunlit(
 }
 
 /// Returns the radiance of white in the open air of a house without a sky, in units of display white.
-fn open_air(normal: Vec3) -> Vec3 {
+fn default_outdoor_radiance(normal: Vec3) -> Vec3 {
     let sky = 0.35 + 0.25 * normal.y;
     let sun = 0.5 * normal.dot(DEFAULT_SUN_DIRECTION).max(0.0);
     Vec3::splat((sky + sun) * OPEN_AIR)
 }
 
 /// Returns the radiance of the background, in units of display white, along a unit direction. `light`: `None` on a flat picture.
-pub(crate) fn sky_luminance(direction: Vec3, light: Option<(&HouseLight, Exposure)>) -> Vec3 {
+pub(crate) fn sky_luminance(direction: Vec3, light: Option<(&StaticLighting, Exposure)>) -> Vec3 {
     match light {
         None => plain_sky(direction),
         Some((fixed, exposure)) => match &fixed.outdoor {

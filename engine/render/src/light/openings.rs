@@ -53,7 +53,7 @@ pub(crate) fn openings(
         if !(is("window") || is("door") || is("garage_door") || is("arch")) {
             continue;
         }
-        let Some((center, thin, half)) = frame(house, id) else {
+        let Some((center, thin, half)) = opening_box(house, id) else {
             continue;
         };
         let normal = thin.normalize_or(Vec3::X);
@@ -93,7 +93,7 @@ fn is_glazed(house: &House, id: ObjectId) -> bool {
 }
 
 /// Middle, half the thinnest edge and the other half edges of an object's box in the space of its first part.
-fn frame(house: &House, id: ObjectId) -> Option<(Vec3, Vec3, [Vec3; 2])> {
+fn opening_box(house: &House, id: ObjectId) -> Option<(Vec3, Vec3, [Vec3; 2])> {
     let object = &house.objects[id];
     let root = house.parts[object.first_part].world_from_part;
     let root_from_world = root.inverse();

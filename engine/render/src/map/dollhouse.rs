@@ -1,6 +1,6 @@
 //! Doll's house views: a storey from outside and above, without the part over a cut.
 
-use super::section_view::SectionView;
+use super::section_view::CutawayView;
 use super::{StoreyMap, floor_y};
 use crate::camera::{Camera, Projection};
 use crate::cpu::CpuRenderer;
@@ -149,7 +149,7 @@ impl Dollhouse {
         state: &State,
         threads: Threads,
     ) -> Result<Vec<u8>, RenderError> {
-        let cut = SectionView {
+        let cut = CutawayView {
             view: self.view,
             level_y: self.cut_y,
             floor_y: self.floor_y,

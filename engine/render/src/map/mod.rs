@@ -14,7 +14,7 @@ use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{Aabb, House, Id, LevelId, Pose, State, space};
 use glam::{Vec2, Vec3};
-use section_view::SectionView;
+use section_view::CutawayView;
 use std::f32::consts::FRAC_PI_2;
 
 /// Distance of the cut below the lowest ceiling of a storey, m.
@@ -101,7 +101,7 @@ impl StoreyMap {
         state: &State,
         threads: Threads,
     ) -> Result<Vec<u8>, RenderError> {
-        let cut = SectionView {
+        let cut = CutawayView {
             view: self.view,
             level_y: self.cut_y,
             floor_y: self.cut_y - self.view.camera.far_m(),

@@ -34,7 +34,7 @@ const BESIDE: ImageChannels = ImageChannels {
 
 /// A level cut through a storey.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct SectionView<'a> {
+pub(super) struct CutawayView<'a> {
     /// The view from above, without roll: then a row of the image meets the cut at one depth.
     pub(super) view: View,
     /// Height of the cut, m.
@@ -45,7 +45,7 @@ pub(super) struct SectionView<'a> {
     pub(super) plan: &'a StoreyMap,
 }
 
-impl SectionView<'_> {
+impl CutawayView<'_> {
     /// The picture in flat colours, darker where a surface turns away, with dark walls at the cut. Shape (height, width, 3).
     pub(super) fn render(
         &self,
@@ -225,7 +225,7 @@ mod tests {
             Pose::new(eye, turned),
         );
         for view in [map.view, beside] {
-            let cut = SectionView {
+            let cut = CutawayView {
                 view,
                 level_y: map.cut_y,
                 floor_y: -0.5,

@@ -1,7 +1,7 @@
 //! The same views by both back ends.
 
 use dwell_render::{
-    BatchLimits, CpuRenderer, Frame, Gpu, GpuRenderer, ImageChannels, PreviousFrame, RenderJob,
+    BatchLimits, CpuRenderer, Frame, Gpu, GpuRenderer, ImageChannels, PreviousPoses, RenderJob,
     View, VisibilityPath, adapters,
 };
 use dwell_scene::parallel::Threads;
@@ -54,7 +54,7 @@ impl Pair {
     pub(crate) fn shoot_after(
         &self,
         views: &[View],
-        before: Option<PreviousFrame<'_>>,
+        before: Option<PreviousPoses<'_>>,
     ) -> Vec<(Frame, Frame)> {
         let by_cpu = self.by(views, before, &|jobs| {
             self.cpu.render_batch(jobs, Threads::default()).unwrap();
@@ -69,7 +69,7 @@ impl Pair {
     pub(crate) fn by(
         &self,
         views: &[View],
-        before: Option<PreviousFrame<'_>>,
+        before: Option<PreviousPoses<'_>>,
         render: &dyn Fn(&mut [RenderJob<'_>]),
     ) -> Vec<Frame> {
         let mut frames: Vec<Frame> = views

@@ -3,7 +3,7 @@
 use super::agreement::Pair;
 use super::compare::Count;
 use super::houses::views;
-use dwell_render::{Camera, PreviousFrame, Projection, VisibilityPath};
+use dwell_render::{Camera, PreviousPoses, Projection, VisibilityPath};
 use dwell_scene::{AgentBody, AgentState, Id, PartId, Pose};
 use glam::{Quat, Vec3};
 use std::sync::Arc;
@@ -113,7 +113,7 @@ fn cameras_agree(path: VisibilityPath, cameras: &[(&'static str, Camera)]) {
             let mut was = view.world_from_camera;
             was.position += Vec3::new(0.02, -0.01, 0.03);
             was.rotation *= Quat::from_rotation_y(0.02);
-            let before = PreviousFrame {
+            let before = PreviousPoses {
                 world_from_camera: was,
                 moved_parts: &parts,
                 agents: &agents,

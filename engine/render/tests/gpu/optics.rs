@@ -4,7 +4,7 @@ use super::agreement::Pair;
 use super::cameras::cameras;
 use super::compare::Count;
 use crate::common::{Builder, look, quad};
-use dwell_render::{Camera, Preset, PreviousFrame, View, VisibilityPath};
+use dwell_render::{Camera, Preset, PreviousPoses, View, VisibilityPath};
 use dwell_scene::{
     Daytime, House, Light, LightShape, Material, Mesh, ObjectId, PartId, Pose, ShoeboxMaterials,
     Sky,
@@ -154,7 +154,7 @@ fn what_was_endlessly_far_beside_the_picture_has_no_flow() {
     let far = |part: &PartId| (*part, Pose::from_position(Vec3::new(2e38, 1.0, 1.0)));
     let moved: Vec<_> = pair.house.geometry().movable.iter().map(far).collect();
     let place = Pose::from_position(Vec3::new(3.0, 1.2, 3.6));
-    let before = PreviousFrame {
+    let before = PreviousPoses {
         world_from_camera: place,
         moved_parts: &moved,
         agents: &[],

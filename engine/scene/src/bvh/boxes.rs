@@ -43,14 +43,14 @@ impl BoxTree {
 
     /// Returns the numbers of all boxes that share a point with `reach`, rising.
     pub fn touching(&self, reach: &Aabb) -> Vec<usize> {
-        self.nearest(reach, usize::MAX, |_| true)
+        self.nearest_intersecting(reach, usize::MAX, |_| true)
     }
 
     /// Returns the numbers of at most `most` boxes that share a point with `reach` and for which `counts` is true, rising.
     ///
     /// Of more than `most` it returns those about the middle of `reach`: of two branches of the tree the one whose middle
     /// is nearer is searched first. It calls `counts` for at most 32 times `most` boxes, however many lie in one place.
-    pub fn nearest(
+    pub fn nearest_intersecting(
         &self,
         reach: &Aabb,
         most: usize,
@@ -71,7 +71,7 @@ impl BoxTree {
             }
             let first = node.first as usize;
             if node.count == 0 {
-                let away = |k: usize| away2(&self.tree.nodes[k].bounds, middle);
+                let away = |k: usize| center_distance_squared(&self.tree.nodes[k].bounds, middle);
                 let nearer = usize::from(away(first + 1) < away(first));
                 open.extend([first + 1 - nearer, first + nearer]);
                 continue;
@@ -93,7 +93,7 @@ impl BoxTree {
 }
 
 /// Returns the squared distance of a box's middle, m².
-fn away2(bounds: &Aabb, point: Vec3) -> f32 {
+fn center_distance_squared(bounds: &Aabb, point: Vec3) -> f32 {
     bounds.center().distance_squared(point)
 }
 
@@ -130,7 +130,7 @@ mod tests {
             let expected: Vec<usize> = touching.map(|(k, _)| k).collect();
             assert_eq!(tree.touching(&reach), expected);
             let odd: Vec<usize> = expected.into_iter().filter(|k| k % 2 == 1).collect();
-            assert_eq!(tree.nearest(&reach, 1000, |k| k % 2 == 1), odd);
+            assert_eq!(tree.nearest_intersecting(&reach, 1000, |k| k % 2 == 1), odd);
         }
         assert!(tree.touching(&Aabb::EMPTY).is_empty());
         assert!(BoxTree::new(Vec::new()).touching(&boxes[0]).is_empty());
@@ -142,7 +142,7 @@ mod tests {
         let tree = BoxTree::new(vec![one; 10_000]);
         for (counts, expected) in [(true, (64, 64)), (false, (0, 32 * 64))] {
             let mut asked = 0;
-            let found = tree.nearest(&one, 64, |_| {
+            let found = tree.nearest_intersecting(&one, 64, |_| {
                 asked += 1;
                 counts
             });
@@ -157,7 +157,7 @@ mod tests {
             .collect();
         let tree = BoxTree::new(boxes);
         let reach = Aabb::new(Vec3::X * 500.0, Vec3::X * 700.0);
-        let found = tree.nearest(&reach, 20, |_| true);
+        let found = tree.nearest_intersecting(&reach, 20, |_| true);
         assert_eq!(found.len(), 20);
         assert!(found.iter().all(|k| (560..640).contains(k)), "{found:?}");
     }

@@ -30,7 +30,7 @@ pub const NO_LINK: u32 = u32::MAX;
 
 /// The rows of a tree written by [`TriangleBvh::flatten`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FlatBvh {
+pub struct FlatBvhRoot {
     /// The link to its root.
     pub root: u32,
     /// Around all triangles, m.
@@ -93,7 +93,7 @@ impl TriangleBvh {
         mask: RayMask,
         nodes: &mut Vec<PackedRow>,
         blocks: &mut Vec<PackedRow>,
-    ) -> FlatBvh {
+    ) -> FlatBvhRoot {
         let (first_node, first_block) = (nodes.len() / NODE_ROWS, blocks.len() / BLOCK_ROWS);
         write_nodes(&self.tree, first_node, first_block, nodes);
         for (block, surfaces) in self.blocks.iter().zip(self.surfaces.as_chunks::<WIDTH>().0) {
@@ -109,7 +109,7 @@ impl TriangleBvh {
                 if seen[k] { surfaces[k].index } else { u32::MAX }
             }));
         }
-        FlatBvh {
+        FlatBvhRoot {
             root: rebase_link(self.tree.root, first_node, first_block),
             bounds: self.tree.bounds,
             stack_size: max_stack_depth(&self.tree, self.tree.root),

@@ -2,7 +2,7 @@
 
 use super::instances::InstanceSet;
 use super::kernels::closest_hit::{ClosestHit, HitIndex, TieBreak, coincidence_min_distance};
-use super::kernels::dispatch::{ClosestPacket, OccludedPacket};
+use super::kernels::dispatch::{ClosestPacketQuery, OccludedPacketQuery};
 use super::kernels::scene_ray::{AllHitsVisitor, AnyHitVisitor, ClosestHitVisitor, SceneRayQuery};
 use super::kernels::tree_ray::HitVisitor;
 use super::kernels::triangle::{EdgePlanes, barycentric_weights, dot, plane_distance};
@@ -62,7 +62,7 @@ impl SceneBvh<'_> {
             return;
         }
         let mut every = AllHitsVisitor(|place, distance| hits.push(self.hit(ray, place, distance)));
-        self.offer(ray, &HitFilter::new(mask, None), &mut every);
+        self.visit_hits(ray, &HitFilter::new(mask, None), &mut every);
         hits.sort_by(|a, b| {
             let rest = |hit: &Hit| (hit.id, hit.instance, hit.triangle);
             a.distance_m
@@ -97,7 +97,7 @@ impl SceneBvh<'_> {
         hidden: Option<i32>,
     ) -> u64 {
         let filter = &HitFilter::new(mask, hidden);
-        SimdLevel::best_available().run(OccludedPacket {
+        SimdLevel::best_available().run(OccludedPacketQuery {
             scene: self,
             rays,
             filter,
@@ -127,7 +127,7 @@ impl SceneBvh<'_> {
         hits: &mut PacketHits<N>,
     ) {
         let mut answers = tree_packet::PacketClosestHits::new();
-        level.run(ClosestPacket {
+        level.run(ClosestPacketQuery {
             scene: self,
             rays,
             filter,
@@ -166,7 +166,7 @@ impl SceneBvh<'_> {
     }
 
     fn occluded_filtered(&self, ray: &Ray, filter: &HitFilter) -> bool {
-        ray.is_usable() && self.offer(ray, filter, &mut AnyHitVisitor)
+        ray.is_usable() && self.visit_hits(ray, filter, &mut AnyHitVisitor)
     }
 
     /// The second pass of a ray whose first was ambiguous.
@@ -181,7 +181,7 @@ impl SceneBvh<'_> {
     fn offer_all(&self, ray: &Ray, filter: &HitFilter, nearest: &mut ClosestHit) {
         let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
         let claim = |place: HitIndex| self.tie_break(origin, direction, place);
-        self.offer(
+        self.visit_hits(
             ray,
             filter,
             &mut ClosestHitVisitor {
@@ -192,7 +192,7 @@ impl SceneBvh<'_> {
     }
 
     /// Passes hits to `hits`; returns whether it needs no more.
-    fn offer(&self, ray: &Ray, filter: &HitFilter, hits: &mut impl HitVisitor) -> bool {
+    fn visit_hits(&self, ray: &Ray, filter: &HitFilter, hits: &mut impl HitVisitor) -> bool {
         SimdLevel::best_available().run(SceneRayQuery {
             scene: self,
             ray,

@@ -31,7 +31,7 @@ pub(super) fn write_floats(floats: &[u32], bytes: &mut Vec<u8>) -> FloatLayout {
         bytes.extend(floats.iter().flat_map(|bits| bits.to_le_bytes()));
         return FloatLayout::Plain;
     }
-    write_by_byte(floats, bytes);
+    write_byte_shuffled(floats, bytes);
     FloatLayout::ByteShuffled
 }
 
@@ -54,7 +54,7 @@ pub(super) fn read_floats(
     }
 }
 
-fn write_by_byte(floats: &[u32], bytes: &mut Vec<u8>) {
+fn write_byte_shuffled(floats: &[u32], bytes: &mut Vec<u8>) {
     for k in 0..FLOAT {
         bytes.extend(floats.iter().map(|bits| bits.to_le_bytes()[k]));
     }
@@ -90,7 +90,10 @@ impl RowDictionary {
                 new.extend_from_slice(row);
             }
         }
-        let codes: Vec<u8> = new.chunks_exact(width).map(unit_code).collect();
+        let codes: Vec<u8> = new
+            .chunks_exact(width)
+            .map(encode_largest_component)
+            .collect();
         let unit = codes.iter().filter(|code| **code > 0).count();
         let units = (unit * 2 > codes.len()).then_some(codes);
         if let Some(codes) = &units {
@@ -121,7 +124,7 @@ impl RowDictionary {
             push_varint(bytes, *back);
         }
         bytes.extend(self.units.iter().flatten());
-        write_by_byte(&self.new, bytes);
+        write_byte_shuffled(&self.new, bytes);
     }
 }
 
@@ -184,7 +187,7 @@ fn read_rows(
 
 /// Returns the index of the largest component of a row (2 bits), its sign, and its deviation in steps from the value
 /// computed from the others, in one byte; 0 for a row that is not of unit length.
-fn unit_code(row: &[u32]) -> u8 {
+fn encode_largest_component(row: &[u32]) -> u8 {
     let size = |k: usize| f32::from_bits(row[k]).abs();
     let largest = (1..row.len()).fold(0, |best, k| if size(k) > size(best) { k } else { best });
     let others = || {
@@ -193,7 +196,7 @@ fn unit_code(row: &[u32]) -> u8 {
             .filter(|(k, _)| *k != largest)
             .map(|(_, bits)| *bits)
     };
-    let Some(expected) = last_part(others()) else {
+    let Some(expected) = implied_component(others()) else {
         return 0;
     };
     let found = size(largest);
@@ -217,7 +220,7 @@ fn unit_row(code: u8, others: &[u32]) -> Result<impl Iterator<Item = u32>, Colum
     };
     let (largest, negative) = (usize::from(code & 3), u32::from(code >> 2 & 1));
     let steps = i32::from(code >> 3) - MAX_UNIT_STEPS - 1;
-    let expected = last_part(others.iter().copied());
+    let expected = implied_component(others.iter().copied());
     let (Some(expected), true) = (expected, largest <= others.len()) else {
         return Err(refused);
     };
@@ -237,7 +240,7 @@ fn unit_row(code: u8, others: &[u32]) -> Result<impl Iterator<Item = u32>, Colum
 }
 
 /// Returns the last component of a unit row computed from its others.
-fn last_part(others: impl Iterator<Item = u32>) -> Option<f32> {
+fn implied_component(others: impl Iterator<Item = u32>) -> Option<f32> {
     let squares = others
         .map(f32::from_bits)
         .fold(0.0, |sum, part| sum + part * part);

@@ -82,17 +82,17 @@ struct ColumnarReader<'de> {
 }
 
 impl<'de> ColumnarReader<'de> {
-    fn rest(&mut self) -> Result<&mut &'de [u8], ColumnsError> {
+    fn non_float_bytes(&mut self) -> Result<&mut &'de [u8], ColumnsError> {
         let column = self.columns.get_mut(self.at);
         Ok(&mut column.ok_or(ColumnsError::UnexpectedEnd)?.rest)
     }
 
     fn byte(&mut self) -> Result<u8, ColumnsError> {
-        byte(self.rest()?)
+        byte(self.non_float_bytes()?)
     }
 
     fn whole(&mut self) -> Result<u64, ColumnsError> {
-        read_varint(self.rest()?)
+        read_varint(self.non_float_bytes()?)
     }
 
     fn signed(&mut self) -> Result<i64, ColumnsError> {
@@ -101,12 +101,12 @@ impl<'de> ColumnarReader<'de> {
     }
 
     fn length(&mut self) -> Result<usize, ColumnsError> {
-        length(self.rest()?)
+        length(self.non_float_bytes()?)
     }
 
     fn taken(&mut self) -> Result<&'de [u8], ColumnsError> {
         let length = self.length()?;
-        take(self.rest()?, length)
+        take(self.non_float_bytes()?, length)
     }
 }
 
@@ -187,7 +187,7 @@ impl<'de> Deserializer<'de> for &mut ColumnarReader<'de> {
     }
 
     fn deserialize_f64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ColumnsError> {
-        let bytes = take(self.rest()?, 8)?;
+        let bytes = take(self.non_float_bytes()?, 8)?;
         let bytes = std::array::from_fn(|k| bytes[k]);
         visitor.visit_f64(f64::from_le_bytes(bytes))
     }
@@ -314,7 +314,7 @@ impl<'a, 'de> SequenceReader<'a, 'de> {
     }
 
     /// No more capacity than this is reserved: a length may be damaged.
-    fn expected(&self) -> usize {
+    fn capped_len(&self) -> usize {
         self.left.min(1 << 12)
     }
 }
@@ -334,7 +334,7 @@ impl<'de> de::SeqAccess<'de> for SequenceReader<'_, 'de> {
     }
 
     fn size_hint(&self) -> Option<usize> {
-        Some(self.expected())
+        Some(self.capped_len())
     }
 }
 
@@ -356,7 +356,7 @@ impl<'de> de::MapAccess<'de> for SequenceReader<'_, 'de> {
     }
 
     fn size_hint(&self) -> Option<usize> {
-        Some(self.expected())
+        Some(self.capped_len())
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::check_rooms;
 use super::data::{AgentStart, HouseData, Mobility, Room};
-use crate::articulation::Articulation;
+use crate::articulation::Joint;
 use crate::collider::Collider;
 use crate::error::{SceneError, range};
 use crate::fixtures::{LightShape, SoundFile};
@@ -389,7 +389,7 @@ fn joints(data: &HouseData) -> Result<(), SceneError> {
 }
 
 /// Checks a joint's servo and what it follows.
-fn motor(data: &HouseData, at: &str, id: JointId, joint: &Articulation) -> Result<(), SceneError> {
+fn motor(data: &HouseData, at: &str, id: JointId, joint: &Joint) -> Result<(), SceneError> {
     if let Some(servo) = &joint.servo {
         for (field, value) in [
             ("servo.stiffness", servo.stiffness),

@@ -1,6 +1,6 @@
 //! The tables of a house.
 
-use crate::articulation::Articulation;
+use crate::articulation::Joint;
 use crate::bounds::Aabb;
 use crate::collider::Collider;
 use crate::fixtures::{Light, Receptacle, SoundEmitter, SoundFile};
@@ -35,7 +35,7 @@ pub struct HouseData {
     /// Rigid parts of all objects; an object's parts stand together, in the order of the objects.
     pub parts: IdVec<PartId, Part>,
     /// Joints.
-    pub joints: IdVec<JointId, Articulation>,
+    pub joints: IdVec<JointId, Joint>,
     /// Meshes, shared between instances of a model.
     pub meshes: IdVec<MeshId, Arc<Mesh>>,
     /// Materials; names are unique.

@@ -34,7 +34,7 @@ pub struct PlacedMesh {
 
 /// The origin of a static triangle.
 #[derive(Clone, Copy, Debug)]
-pub struct StaticTriangle {
+pub struct StaticTriangleSource {
     /// Position in [`Geometry::placed`].
     pub placed: u32,
     /// Position in the mesh.
@@ -47,7 +47,7 @@ pub struct Geometry {
     /// All triangles that never move.
     pub static_bvh: Arc<TriangleBvh>,
     /// The origin of each static triangle. Shape (static triangle,).
-    pub static_triangles: Vec<StaticTriangle>,
+    pub static_triangles: Vec<StaticTriangleSource>,
     /// Structure pieces in order, then parts in order.
     pub placed: Vec<PlacedMesh>,
     /// The parts that move, in order: instance `k` of a [`RayScene`](crate::rays::RayScene) is `movable[k]`.
@@ -109,7 +109,7 @@ impl Geometry {
             baked
                 .triangles
                 .extend(mesh.triangles.iter().map(|t| t.map(|vertex| vertex + base)));
-            let sources = (0..mesh.triangles.len() as u32).map(|triangle| StaticTriangle {
+            let sources = (0..mesh.triangles.len() as u32).map(|triangle| StaticTriangleSource {
                 placed: k as u32,
                 triangle,
             });

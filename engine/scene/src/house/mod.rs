@@ -14,7 +14,7 @@ pub use data::{
     StructureKind,
 };
 pub(crate) use geometry::normals_map;
-pub use geometry::{Geometry, PlacedMesh, StaticTriangle, SurfaceHit, SurfaceOwner};
+pub use geometry::{Geometry, PlacedMesh, StaticTriangleSource, SurfaceHit, SurfaceOwner};
 pub use shoebox::ShoeboxMaterials;
 
 use crate::error::SceneError;

@@ -15,7 +15,7 @@ impl LawSpec {
     /// moves as one, else the first part that moves with it. An agent is its number. A name of nothing stays as it is.
     pub fn canonical_target(house: &House, info: &LawInfo, target: &str) -> String {
         let found = match info.acts_on {
-            "joint" => joint(house, target),
+            "joint" => canonical_joint(house, target),
             "object" => body(house, target),
             "agent" => target.parse::<u32>().ok().map(|agent| agent.to_string()),
             _ => None,
@@ -78,7 +78,7 @@ impl LawSpec {
 }
 
 /// `OBJECT/JOINT`.
-fn own_name(house: &House, id: JointId) -> String {
+fn qualified_joint_name(house: &House, id: JointId) -> String {
     let joint = &house.joints[id];
     format!("{}/{}", house.objects[joint.object].name, joint.name)
 }
@@ -86,7 +86,7 @@ fn own_name(house: &House, id: JointId) -> String {
 /// Returns whether a law's target names a joint: by its name, as `OBJECT/JOINT`, or by its number.
 pub fn is_joint_named(house: &House, id: JointId, target: &str) -> bool {
     target == house.joints[id].name
-        || target == own_name(house, id)
+        || target == qualified_joint_name(house, id)
         || target == id.index().to_string()
 }
 
@@ -111,7 +111,7 @@ fn share_a_joint(house: &House, a: &str, b: &str) -> bool {
     joints_named(house, a).any(|id| of_b.contains(&id))
 }
 
-fn joint(house: &House, target: &str) -> Option<String> {
+fn canonical_joint(house: &House, target: &str) -> Option<String> {
     let named = |target: &str| {
         let mut found = joints_named(house, target);
         let (first, more) = (found.next(), found.next().is_some());
@@ -126,7 +126,7 @@ fn joint(house: &House, target: &str) -> Option<String> {
         let any = house.joints.iter().any(|joint| joint.name == target);
         number(target).filter(|_| !any)
     })?;
-    [own_name(house, id), id.index().to_string()]
+    [qualified_joint_name(house, id), id.index().to_string()]
         .into_iter()
         .find(|spelling| named(spelling) == Some(id))
 }

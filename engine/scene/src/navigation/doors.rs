@@ -37,7 +37,7 @@ impl NavGrid {
                     .layers
                     .cells_of(beside)
                     .map(|cell| NavCell(cell as u32));
-                let here = cells.filter(|cell| self.is_beside(passage, *cell));
+                let here = cells.filter(|cell| self.is_at_leaf_height(passage, *cell));
                 islands.extend(here.filter_map(|cell| self.island(cell)));
             }
         }
@@ -53,7 +53,7 @@ impl NavGrid {
     }
 
     /// Returns whether an agent on `cell` is at the height of the door's leaf.
-    fn is_beside(&self, passage: usize, cell: NavCell) -> bool {
+    fn is_at_leaf_height(&self, passage: usize, cell: NavCell) -> bool {
         let y = self.layers.height[cell.0 as usize];
         let leaf = &self.ground.doors[passage].closed_spans;
         leaf.iter()

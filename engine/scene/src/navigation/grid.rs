@@ -159,7 +159,7 @@ impl NavGrid {
     ) -> Result<(), SceneError> {
         for &column in filled {
             interrupt::check();
-            self.fill(column);
+            self.merge_column_spans(column);
             let spans = spans_at(&self.mixed, &self.ground, column);
             self.layers
                 .set_standing_heights(column, spans, &self.config);
@@ -186,7 +186,7 @@ impl NavGrid {
         Ok(())
     }
 
-    fn fill(&mut self, column: usize) {
+    fn merge_column_spans(&mut self, column: usize) {
         let mut moving = self.obstacles.at(column as u32).peekable();
         self.mixed[column] = moving.peek().is_some().then(|| {
             let fixed = self.ground.fixed.at(column).iter().copied();

@@ -32,12 +32,12 @@ impl HeightSpan {
 /// Sorts spans and joins those that touch. The result depends on the set of them only, and joining joined spans again
 /// changes nothing.
 pub(super) fn merge_spans(spans: &mut Vec<HeightSpan>) {
-    let kept = join_first(spans);
+    let kept = merge_spans_in_place(spans);
     spans.truncate(kept);
 }
 
 /// As [`merge_spans`]; the joined spans come first, and their number is returned.
-fn join_first(spans: &mut [HeightSpan]) -> usize {
+fn merge_spans_in_place(spans: &mut [HeightSpan]) -> usize {
     spans.sort_by(|a, b| a.low.total_cmp(&b.low).then(a.high.total_cmp(&b.high)));
     let mut kept = 0_usize;
     for k in 0..spans.len() {
@@ -195,7 +195,7 @@ impl Heightfield {
         for end in &ends[..count] {
             pace.turn();
             first.push(kept as u32);
-            let joined = join_first(&mut spans[start..*end]);
+            let joined = merge_spans_in_place(&mut spans[start..*end]);
             spans.copy_within(start..start + joined, kept);
             kept += joined;
             start = *end;

@@ -53,18 +53,18 @@ impl NavGrid {
     /// Returns the corners of a shortened path: the cheapest choice of its cells such that straight lines between them are
     /// free, then each moved from cell to cell as long as that shortens the path.
     pub fn corners(&self, path: &[NavCell]) -> Vec<NavCell> {
-        let mut corners = self.choose(path);
+        let mut corners = self.shortcut_path(path);
         for _ in 0..MOST_ROUNDS {
             if !self.tighten(&mut corners) {
                 break;
             }
-            corners = self.choose(&corners);
+            corners = self.shortcut_path(&corners);
         }
         corners
     }
 
     /// Returns the cheapest path from the first to the last cell by straight pieces between its cells.
-    fn choose(&self, path: &[NavCell]) -> Vec<NavCell> {
+    fn shortcut_path(&self, path: &[NavCell]) -> Vec<NavCell> {
         let Some(last) = path.len().checked_sub(1) else {
             return Vec::new();
         };

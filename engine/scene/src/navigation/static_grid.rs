@@ -3,7 +3,7 @@
 use super::config::{NavConfig, range};
 use super::heightfield::{GridFrame, HeightSpan, Heightfield};
 use super::obstacles::rasterize_part;
-use crate::articulation::Articulation;
+use crate::articulation::Joint;
 use crate::bounds::Aabb;
 use crate::error::SceneError;
 use crate::house::{House, StructureKind, SurfaceOwner};
@@ -170,14 +170,14 @@ pub(super) fn columns_around(
 }
 
 /// Returns the initial pose of a joint's parent.
-fn start_of_parent(house: &House, joint: &Articulation) -> Pose {
+fn start_of_parent(house: &House, joint: &Joint) -> Pose {
     joint
         .parent
         .map_or(Pose::IDENTITY, |parent| house.parts[parent].world_from_part)
 }
 
 /// Returns the transform of a door's leaf at a position of its joint.
-pub(super) fn leaf_transform(state: &State, joint: &Articulation, position: f32) -> Affine3A {
+pub(super) fn leaf_transform(state: &State, joint: &Joint, position: f32) -> Affine3A {
     let parent = joint
         .parent
         .map_or(Pose::IDENTITY, |parent| state.part_pose[parent]);

@@ -35,7 +35,7 @@ impl RayScene {
             .map(|part| geometry.placed_part(*part).world_from_mesh)
             .collect();
         Self {
-            moving: InstanceSet::new(parts(&house)),
+            moving: InstanceSet::new(moving_part_instances(&house)),
             world_from_mesh: start,
             house,
         }
@@ -66,7 +66,7 @@ impl RayScene {
     /// Adapts to another number of agents.
     fn rebuild_instances(&mut self, state: &State) {
         let house = &self.house;
-        let instances = parts(house).chain(state.agents.ids().flat_map(|id| {
+        let instances = moving_part_instances(house).chain(state.agents.ids().flat_map(|id| {
             let entity = house.entity_of_agent(id).0;
             body_trees().iter().map(move |mesh| Instance {
                 mesh: mesh.clone(),
@@ -234,7 +234,7 @@ impl RayScene {
 }
 
 /// Returns the parts that move, at their initial poses.
-fn parts(house: &House) -> impl Iterator<Item = Instance> + '_ {
+fn moving_part_instances(house: &House) -> impl Iterator<Item = Instance> + '_ {
     let geometry = house.geometry();
     geometry.movable.iter().map(|part| {
         let placed = geometry.placed_part(*part);

@@ -81,7 +81,10 @@ pub(super) fn diffuse_lx(altitude_rad: f32, weather: Weather) -> f32 {
     if altitude_rad > 0.0 {
         a + b * math::pow(math::sin(altitude_rad), c)
     } else {
-        a * math::pow(10.0, twilight(altitude_rad.to_degrees()) - twilight(0.0))
+        a * math::pow(
+            10.0,
+            twilight_log10_lx(altitude_rad.to_degrees()) - twilight_log10_lx(0.0),
+        )
     }
 }
 
@@ -90,7 +93,7 @@ pub(super) fn diffuse_lx(altitude_rad: f32, weather: Weather) -> f32 {
 /// # Source
 /// P. M. Janiczek, J. A. De Young, "Computer programs for sun and moon illuminance", USNO Circular 171 (1987), table of
 /// the polynomials in altitude over 90 degrees.
-fn twilight(altitude_deg: f32) -> f32 {
+fn twilight_log10_lx(altitude_deg: f32) -> f32 {
     let altitude = altitude_deg.clamp(NIGHT_DEG, 0.0);
     let [l0, l1, l2, l3] = if altitude > -0.8 {
         [2.88, 22.26, -207.64, 1034.30]

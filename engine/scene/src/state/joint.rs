@@ -1,7 +1,7 @@
 //! Joint parameters in force: the house's values with the state's overrides.
 
 use super::{Address, State};
-use crate::articulation::{Articulation, JointKind, Mimic, Servo, motion_along};
+use crate::articulation::{Joint, JointKind, Mimic, Servo, motion_along};
 use crate::error::SceneError;
 use crate::house::House;
 use crate::ids::JointId;
@@ -56,7 +56,7 @@ pub(super) struct JointField {
     pub(super) name: &'static str,
     pub(super) unit: &'static str,
     pub(super) range: [f64; 2],
-    pub(super) get: fn(&Articulation) -> Option<f32>,
+    pub(super) get: fn(&Joint) -> Option<f32>,
 }
 
 /// The fields of a joint that have an address.
@@ -183,7 +183,7 @@ impl State {
     /// The range of a joint's field: a limit stays on its side of the other one.
     pub(super) fn joint_range(&self, house: &House, id: JointId, field: &JointField) -> [f64; 2] {
         let [low, high] = field.range;
-        match (field.name, self.joint_values(house, id).limits) {
+        match (field.name, self.joint_parameters(house, id).limits) {
             ("lower", Some([_, upper])) => [low, upper.into()],
             ("upper", Some([lower, _])) => [lower.into(), high],
             _ => [low, high],
@@ -191,7 +191,7 @@ impl State {
     }
 
     /// Returns the parameters in force at a joint.
-    pub fn joint_values(&self, house: &House, id: JointId) -> JointParameters {
+    pub fn joint_parameters(&self, house: &House, id: JointId) -> JointParameters {
         let joint = &house.joints[id];
         let mut values = JointParameters {
             kind: joint.kind,
@@ -269,7 +269,7 @@ impl State {
         world_from_parent: &Pose,
         position: f32,
     ) -> Pose {
-        let values = self.joint_values(house, id);
+        let values = self.joint_parameters(house, id);
         *world_from_parent
             * values.parent_from_joint
             * values.motion(position)

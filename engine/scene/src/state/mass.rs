@@ -6,7 +6,7 @@ use crate::ids::{Id, ObjectId, PartId};
 
 impl State {
     /// Returns the overridden mass of an object, kg; `None` without an override of the object itself.
-    pub fn object_mass_kg(&self, house: &House, object: ObjectId) -> Option<f32> {
+    pub fn overridden_mass_kg(&self, house: &House, object: ObjectId) -> Option<f32> {
         self.override_value(format!(
             "object/{}/mass_kg",
             house.entity_of_object(object).0

@@ -49,7 +49,7 @@ impl State {
     }
 
     /// Returns the strongest pull on a joint without a motor by commands that come from no agent, N·m or N.
-    pub fn hand_effort(&self) -> f32 {
+    pub fn default_hand_effort(&self) -> f32 {
         self.override_value("world/hand_effort".to_owned())
             .unwrap_or(AgentBody::HAND_EFFORT)
     }

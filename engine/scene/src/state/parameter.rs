@@ -53,7 +53,7 @@ impl State {
             ["object", object, "mass_kg"] => {
                 let object = find_object(house, address, object)?;
                 let of_parts = || self.mass_of_parts_kg(house, object);
-                make(self.object_mass_kg(house, object).unwrap_or_else(of_parts), "kg", 1e-6, 1e6)
+                make(self.overridden_mass_kg(house, object).unwrap_or_else(of_parts), "kg", 1e-6, 1e6)
             }
             ["material", material, field] => {
                 let material = &house.materials[find_material(house, address, material)?];
@@ -121,7 +121,7 @@ impl State {
             }
             ["agent", agent, ref words @ ..] => self.agent_parameter(address, agent, words),
             ["world", "gravity_m_s2"] => make(self.gravity_m_s2(), "m/s2", 0.0, 100.0),
-            ["world", "hand_effort"] => make(self.hand_effort(), "N m or N", 0.0, 1e4),
+            ["world", "hand_effort"] => make(self.default_hand_effort(), "N m or N", 0.0, 1e4),
             ["law", ..] => Err(address.invalid(
                 "parameters of laws are read and set through the world, which knows the laws of all engines",
             )),

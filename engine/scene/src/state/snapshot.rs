@@ -10,7 +10,7 @@ const VERSION: u32 = 6;
 const HEADER: usize = 4 + 4 + 8 + 8;
 
 impl State {
-    fn body_bytes(&self) -> Vec<u8> {
+    fn snapshot_body(&self) -> Vec<u8> {
         postcard::to_stdvec(self)
             .expect("a state is plain data that postcard can always write to memory")
     }
@@ -20,12 +20,12 @@ impl State {
     /// # Determinism
     /// Equal states give equal numbers on every machine (XXH3 over the snapshot's body).
     pub fn hash(&self) -> u64 {
-        xxh3_64(&self.body_bytes())
+        xxh3_64(&self.snapshot_body())
     }
 
     /// Returns the state as bytes: header, version, fingerprint of the house, checksum, body.
     pub fn to_bytes(&self, house: &House) -> Vec<u8> {
-        let body = self.body_bytes();
+        let body = self.snapshot_body();
         let mut bytes = Vec::with_capacity(HEADER + body.len());
         bytes.extend_from_slice(MAGIC);
         bytes.extend_from_slice(&VERSION.to_le_bytes());

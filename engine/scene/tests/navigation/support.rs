@@ -3,9 +3,9 @@
 use dwell_scene::navigation::{NavCell, NavConfig, NavGrid};
 use dwell_scene::random::RandomKey;
 use dwell_scene::{
-    Aabb, Articulation, Category, Collider, House, HouseData, JointKind, Level, LevelId,
-    MaterialId, Mesh, Mobility, Object, ObjectId, Part, PartId, Pose, ShoeboxMaterials, State,
-    Structure, StructureKind,
+    Aabb, Category, Collider, House, HouseData, Joint, JointKind, Level, LevelId, MaterialId, Mesh,
+    Mobility, Object, ObjectId, Part, PartId, Pose, ShoeboxMaterials, State, Structure,
+    StructureKind,
 };
 use glam::{Affine3A, Vec2, Vec3};
 use std::sync::Arc;
@@ -93,7 +93,7 @@ pub(crate) fn room_with_door() -> HouseData {
         Vec3::new(0.02, 0.98, 0.48),
         shut,
     );
-    data.joints.push(Articulation {
+    data.joints.push(Joint {
         name: "hinge".into(),
         object: ObjectId(0),
         parent: None,

@@ -18,7 +18,7 @@ mod wait;
 
 pub use discrete::AgentAction;
 pub use kind::ActionKind;
-pub use request::ActionRequest;
+pub use request::HandActionRequest;
 pub use step_sizes::StepSizes;
 pub use target::{ObjectRef, PixelCamera, TargetRequest};
 

@@ -13,7 +13,7 @@ use serde_json::{Map, Value};
 /// An action of the hand, as data. `World::act_on` reads it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct ActionRequest {
+pub struct HandActionRequest {
     /// The name of one of [`all`] that is of the hand.
     pub kind: String,
     /// The fields of a [`TargetRequest`], where the kind is done to a thing, and those of the kind.
@@ -21,7 +21,7 @@ pub struct ActionRequest {
     pub fields: Map<String, Value>,
 }
 
-impl ActionRequest {
+impl HandActionRequest {
     /// The kind.
     ///
     /// # Errors
@@ -62,7 +62,7 @@ impl World {
     pub fn read_action(
         &self,
         agent: AgentId,
-        request: &ActionRequest,
+        request: &HandActionRequest,
     ) -> Result<Box<dyn HandAction>, WorldError> {
         let kind = request.kind()?;
         let allowed = allowed_fields(kind);
@@ -99,7 +99,7 @@ impl World {
     pub fn act_on(
         &mut self,
         agent: AgentId,
-        request: &ActionRequest,
+        request: &HandActionRequest,
     ) -> Result<ActionOutcome, WorldError> {
         let action = self.read_action(agent, request)?;
         Ok(self.act(agent, &*action))
@@ -132,7 +132,7 @@ mod tests {
     }
 
     fn read(text: &str) -> Result<String, String> {
-        let request: ActionRequest = serde_json::from_str(text).map_err(|e| e.to_string())?;
+        let request: HandActionRequest = serde_json::from_str(text).map_err(|e| e.to_string())?;
         let action = world().read_action(AgentId(0), &request);
         action
             .map(|action| format!("{action:?}"))
@@ -200,7 +200,7 @@ mod tests {
     #[test]
     fn a_pixel_points_where_the_camera_sees_it() {
         let mut world = world();
-        let request: ActionRequest = serde_json::from_str(
+        let request: HandActionRequest = serde_json::from_str(
             r#"{"kind": "point", "pixel": [0, 1], "camera": {"width": 2, "height": 2, "fov_deg": 90}}"#,
         )
         .unwrap();

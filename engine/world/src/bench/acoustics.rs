@@ -29,7 +29,7 @@ pub(super) fn run(
     let threads = Threads::requested(options.threads)?;
     let rooms: Vec<WalkPaths> = spots
         .iter()
-        .filter_map(|spot| WalkPaths::free(&rays, *spot))
+        .filter_map(|spot| WalkPaths::find_unobstructed(&rays, *spot))
         .take(ROOMS.min(options.walks))
         .collect();
     let walk_count = if rooms.is_empty() { 0 } else { options.walks };
@@ -70,7 +70,7 @@ pub(super) fn run(
     for preset in &options.presets {
         // Walks in a room differ by their rays.
         let walks = rooms.iter().zip(&wanted).cycle();
-        let walks: Vec<WalkBench> = (0..options.walks)
+        let walks: Vec<WalkBenchResult> = (0..options.walks)
             .zip(walks)
             .map(|(k, (figure, wanted))| {
                 progress.begin_part(&format!("walk {} of {walk_count}, {preset}", k + 1))?;
@@ -78,7 +78,7 @@ pub(super) fn run(
                 walk(&engines, &rays, preset, *figure, wanted, seed)
             })
             .collect::<Result<_, _>>()?;
-        let middle = |of: fn(&WalkBench) -> Option<f64>| {
+        let middle = |of: fn(&WalkBenchResult) -> Option<f64>| {
             let mut values: Vec<f64> = walks.iter().filter_map(of).collect();
             values.sort_by(f64::total_cmp);
             // Nothing where no walk has a figure.
@@ -111,7 +111,7 @@ const BLOCK: usize = 800;
 const BLOCKS: usize = 200;
 
 /// A walk with a radio.
-struct WalkBench {
+struct WalkBenchResult {
     times_real_time: f64,
     /// Mean deviation of its end's measures from the reference over the octaves from 250 Hz to 4 kHz; `None` where a band lacks one.
     t30_off_percent: Option<f64>,
@@ -137,7 +137,7 @@ impl WalkPaths {
     const ROOM_M: f32 = 0.15;
 
     /// The first rotation around `spot` for which both paths are free, and the line between the walkers.
-    fn free(rays: &RayScene, spot: Vec3) -> Option<Self> {
+    fn find_unobstructed(rays: &RayScene, spot: Vec3) -> Option<Self> {
         let mut turned = (0..Self::TURNS).map(|k| {
             let angle = std::f32::consts::TAU * k as f32 / Self::TURNS as f32;
             let (sin, cos) = dwell_scene::math::sin_cos(angle);
@@ -172,7 +172,7 @@ impl WalkPaths {
 
     /// Returns the poses at the end of block `k` of a listener that walks to and fro at 1 m/s and turns, and of a radio that moves as
     /// fast.
-    fn place(&self, k: usize) -> (Vec3, Pose) {
+    fn poses_after_block(&self, k: usize) -> (Vec3, Pose) {
         let way_m = (0.05 * k as f32 + Self::REACH_M).rem_euclid(4.0 * Self::REACH_M);
         let off_m = Self::REACH_M - (way_m - 2.0 * Self::REACH_M).abs();
         let (radio, head) = self.at(off_m);
@@ -187,7 +187,7 @@ fn reference_metrics(
     figure: WalkPaths,
     threads: Threads,
 ) -> Result<Metrics, WorldError> {
-    let (position, head) = figure.place(BLOCKS - 1);
+    let (position, head) = figure.poses_after_block(BLOCKS - 1);
     let scene = engines.acoustic_scene("reference", 16_000)?;
     let source = SoundSourcePose::omni(position);
     let echogram = scene.echogram(rays, &source, head.position, RandomKey::root(1), threads)?;
@@ -202,7 +202,7 @@ fn walk(
     figure: WalkPaths,
     wanted: &Metrics,
     seed: u64,
-) -> Result<WalkBench, WorldError> {
+) -> Result<WalkBenchResult, WorldError> {
     let scene = engines.acoustic_scene(preset, 16_000)?;
     let config = StreamConfig::preset(preset).unwrap_or_default();
     let mut stream = Stream::new(scene, config, RandomKey::root(seed), Threads::ONE)?;
@@ -212,13 +212,13 @@ fn walk(
     let mut out = vec![0.0; 2 * BLOCK];
     let start = Instant::now();
     for k in 0..BLOCKS {
-        let (position, head) = figure.place(k);
+        let (position, head) = figure.poses_after_block(k);
         let source = ActiveSource {
             id: 0,
             position,
             signal: &signal,
         };
-        stream.block(rays, &state, &[source], &Receiver::binaural(head), &mut out)?;
+        stream.render_block(rays, &state, &[source], &Receiver::binaural(head), &mut out)?;
     }
     let seconds = start.elapsed().as_secs_f64();
     let mut heard = stream.echograms();
@@ -229,7 +229,7 @@ fn walk(
         let off: Option<Vec<f64>> = bands.map(|(a, b)| off(a, b)).collect();
         off.map(|off| off.iter().sum::<f64>() / off.len() as f64)
     };
-    Ok(WalkBench {
+    Ok(WalkBenchResult {
         times_real_time: 0.05 * BLOCKS as f64 / seconds,
         t30_off_percent: mean(|a, b| Some(100.0 * (a.t30_s? / b.t30_s? - 1.0).abs())),
         c80_off_db: mean(|a, b| Some((a.c80_db? - b.c80_db?).abs())),

@@ -105,12 +105,12 @@ fn with_box_objects(house: &House, boxes: &BenchBoxes) -> Result<House, WorldErr
 
 /// A world at its start.
 #[derive(Clone)]
-struct BenchStart {
+struct BenchWorld {
     world: PhysicsWorld,
     state: State,
 }
 
-impl BenchStart {
+impl BenchWorld {
     fn new(
         house: &Arc<House>,
         model: &Arc<PhysicsModel>,
@@ -162,12 +162,12 @@ pub(super) fn run(
     config.control_rate_hz = config.physics_rate_hz / STEPS_PER_CONTROL as f32;
     let house = Arc::new(opened);
     let model = Arc::new(PhysicsModel::new(house.clone()));
-    let (start, report) = BenchStart::new(&house, &model, &config)?;
+    let (start, report) = BenchWorld::new(&house, &model, &config)?;
     let restless = PhysicsConfig {
         sleeping: false,
         ..config.clone()
     };
-    let (awake, _) = BenchStart::new(&house, &model, &restless)?;
+    let (awake, _) = BenchWorld::new(&house, &model, &restless)?;
     let mut settled = start.clone();
     settled.run((SETTLED_S * config.physics_rate_hz) as usize)?;
     let energy_j = settled.world.kinetic_energy_j();
@@ -182,8 +182,8 @@ pub(super) fn run(
     settled.run(10 * config.physics_rate_hz as usize)?;
     let threads = Threads::requested(options.threads)?;
     progress.begin_part("worlds together")?;
-    let together = together(&start, options, threads)?;
-    let mut rate = |what: &str, start: &BenchStart| -> Result<f64, WorldError> {
+    let together = parallel_speedup(&start, options, threads)?;
+    let mut rate = |what: &str, start: &BenchWorld| -> Result<f64, WorldError> {
         progress.begin_part(what)?;
         let mut rates = Vec::new();
         for _ in 0..options.repeats {
@@ -210,8 +210,8 @@ pub(super) fn run(
 }
 
 /// Throughput of many worlds on `threads` threads over that of one world on one thread, of the median of interleaved pairs.
-fn together(
-    start: &BenchStart,
+fn parallel_speedup(
+    start: &BenchWorld,
     options: &BenchOptions,
     threads: Threads,
 ) -> Result<f64, WorldError> {

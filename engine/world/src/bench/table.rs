@@ -12,7 +12,7 @@ use dwell_scene::{Pose, State};
 use serde_json::{Value, json};
 
 /// Worlds in one house, and the viewpoint in each.
-struct RenderBenchStage {
+struct RenderBenchWorlds {
     poses: Vec<Pose>,
     worlds: Vec<(RayScene, State)>,
 }
@@ -45,7 +45,7 @@ pub(super) fn run(
     let engines = open(house)?;
     let threads = Threads::requested(options.threads)?;
     let most = options.batch.iter().copied().max().unwrap_or(1);
-    let stage = RenderBenchStage {
+    let stage = RenderBenchWorlds {
         poses: render::views(&engines, options)?,
         worlds: (0..most).map(|_| world(&engines)).collect(),
     };
@@ -89,7 +89,7 @@ fn world(engines: &Engines) -> (RayScene, State) {
 
 /// One size of batch and picture: colour, depth and ids.
 fn row(
-    stage: &RenderBenchStage,
+    stage: &RenderBenchWorlds,
     renderer: &Renderer,
     options: &BenchOptions,
     size: BenchSize,
@@ -146,7 +146,7 @@ fn row(
 }
 
 fn list<'a>(
-    stage: &'a RenderBenchStage,
+    stage: &'a RenderBenchWorlds,
     camera: Camera,
     options: &BenchOptions,
     frames: &'a mut [Frame],

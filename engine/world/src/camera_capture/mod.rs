@@ -6,7 +6,7 @@ pub(crate) use shutter::ImageExposure;
 
 use crate::error::WorldError;
 use crate::world::World;
-use dwell_render::{Camera, Frame, ImageChannels, Optics, Preset, PreviousFrame, View};
+use dwell_render::{Camera, Frame, ImageChannels, Optics, Preset, PreviousPoses, View};
 use dwell_scene::parallel::Threads;
 use dwell_scene::{AgentId, AgentState, EntityId, Pose};
 
@@ -94,9 +94,9 @@ impl World {
     }
 
     /// Returns the previous frame; `None` in the first step.
-    pub(crate) fn previous_frame(&self, world_from_camera: Pose) -> Option<PreviousFrame<'_>> {
+    pub(crate) fn previous_frame(&self, world_from_camera: Pose) -> Option<PreviousPoses<'_>> {
         let past = self.motion_history();
-        past.has_step.then_some(PreviousFrame {
+        past.has_step.then_some(PreviousPoses {
             world_from_camera,
             moved_parts: &past.previous_part_poses,
             agents: &past.previous_feet,

@@ -23,7 +23,7 @@ struct RowTiming {
 }
 
 /// Rows that are taken at one moment.
-struct PictureRows<'a> {
+struct SimultaneousRows<'a> {
     /// Time before the picture's, in steps of the world.
     share: f32,
     /// The first row and the one behind the last; `None`: all.
@@ -82,7 +82,7 @@ impl ImageExposure {
             moments,
             exposed,
         } = self;
-        for part in parts(&shot.view.camera, *timing, exposed, frame) {
+        for part in exposure_rows(&shot.view.camera, *timing, exposed, frame) {
             let (state, scene) = moments.at(world, part.share);
             let mut view = shot.view;
             if part.rows.is_some() || part.share > 0.0 {
@@ -105,7 +105,7 @@ impl ImageExposure {
             exposed,
             ..
         } = self;
-        let parts = parts(&shot.view.camera, *timing, exposed, frame);
+        let parts = exposure_rows(&shot.view.camera, *timing, exposed, frame);
         frames.extend(parts.into_iter().map(|part| part.frame));
     }
 
@@ -128,12 +128,12 @@ impl ImageExposure {
 }
 
 /// The parts of a picture: all images at the end of the exposure, then colours at each of its moments.
-fn parts<'a>(
+fn exposure_rows<'a>(
     camera: &Camera,
     timing: RowTiming,
     exposed: &'a mut [Vec<u8>],
     mut frame: FrameMut<'a>,
-) -> Vec<PictureRows<'a>> {
+) -> Vec<SimultaneousRows<'a>> {
     let mut parts = Vec::new();
     if !exposed.is_empty() {
         frame.rgb = None;
@@ -162,10 +162,10 @@ fn rolling_rows<'a>(
     delay: f32,
     earlier: f32,
     mut frame: FrameMut<'a>,
-    parts: &mut Vec<PictureRows<'a>>,
+    parts: &mut Vec<SimultaneousRows<'a>>,
 ) {
     if delay == 0.0 {
-        parts.push(PictureRows {
+        parts.push(SimultaneousRows {
             share: earlier,
             rows: None,
             frame,
@@ -173,7 +173,7 @@ fn rolling_rows<'a>(
         return;
     }
     let height = camera.height();
-    parts.extend((0..height).map(|row| PictureRows {
+    parts.extend((0..height).map(|row| SimultaneousRows {
         share: earlier + delay * (height - 1 - row) as f32,
         rows: Some((row, row + 1)),
         frame: frame.split_off_pixels(camera.width() as usize),

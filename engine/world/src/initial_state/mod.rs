@@ -46,7 +46,7 @@ impl InitialWorld {
             let agent = AgentState::new(*body, start.position, start.yaw_rad);
             state.agents.push(agent);
         }
-        state.laws = crate::laws::install(house, &config.laws)?;
+        state.laws = crate::laws::normalize_laws(house, &config.laws)?;
         let values: Vec<(Address, f64)> = config
             .parameters
             .iter()

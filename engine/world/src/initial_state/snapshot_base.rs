@@ -2,7 +2,7 @@
 
 use super::InitialWorld;
 use crate::config::WorldConfig;
-use crate::motion_history::MotionHistory;
+use crate::motion_history::LastStepMotion;
 use dwell_physics::{PhysicsModel, PhysicsWorld};
 use dwell_scene::random::RandomKey;
 use dwell_scene::{House, State};
@@ -18,7 +18,7 @@ pub(crate) struct SnapshotParts {
     pub(crate) physics: Vec<u8>,
     pub(crate) sound: Vec<u8>,
     pub(crate) key: RandomKey,
-    pub(crate) motion_history: MotionHistory,
+    pub(crate) motion_history: LastStepMotion,
 }
 
 /// The bytes of the common initial state of worlds.
@@ -46,7 +46,7 @@ impl SnapshotBase {
                     model.house(),
                     &start.state,
                     &start.physics,
-                    (Vec::new(), RandomKey::root(0), MotionHistory::default()),
+                    (Vec::new(), RandomKey::root(0), LastStepMotion::default()),
                 )
             },
         );
@@ -63,7 +63,7 @@ pub(crate) fn unpacked_body(
     house: &House,
     state: &State,
     physics: &PhysicsWorld,
-    (sound, key, past): (Vec<u8>, RandomKey, MotionHistory),
+    (sound, key, past): (Vec<u8>, RandomKey, LastStepMotion),
 ) -> Vec<u8> {
     let parts = SnapshotParts {
         state: state.to_bytes(house),

@@ -1,7 +1,7 @@
 //! Boxes around things in the image.
 
 use super::camera::CameraConfig;
-use super::image::{self, ImageContext, ImageSensorKind, ObservationShape, PictureStyle};
+use super::image::{self, DisplayStyle, ImageContext, ImageSensorKind, ObservationShape};
 use super::object_list;
 use super::{Dtype, ObservationBuffer, Sensor, SensorKind, SensorSetup};
 use crate::error::WorldError;
@@ -23,7 +23,7 @@ static IMAGE: ImageSensorKind = ImageSensorKind {
     name: "boxes_2d",
     about: ABOUT,
     shape: ObservationShape::List(6),
-    style: PictureStyle::List,
+    style: DisplayStyle::List,
     dtype: Dtype::Int32,
     unit: "id, px",
     low: 0.0,

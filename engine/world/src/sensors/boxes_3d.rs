@@ -1,7 +1,7 @@
 //! Oriented boxes around things in view.
 
 use super::camera::CameraConfig;
-use super::image::{self, ImageContext, ImageSensorKind, ObservationShape, PictureStyle};
+use super::image::{self, DisplayStyle, ImageContext, ImageSensorKind, ObservationShape};
 use super::object_list;
 use super::{Dtype, ObservationBuffer, Sensor, SensorKind, SensorSetup};
 use crate::error::WorldError;
@@ -23,7 +23,7 @@ static IMAGE: ImageSensorKind = ImageSensorKind {
     name: "boxes_3d",
     about: ABOUT,
     shape: ObservationShape::List(11),
-    style: PictureStyle::List,
+    style: DisplayStyle::List,
     dtype: Dtype::Float32,
     unit: "id, m, m, 1",
     low: -1e9,

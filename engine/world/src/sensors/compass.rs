@@ -1,8 +1,8 @@
 //! The compass: an agent's heading relative to its start.
 
 use super::{
-    AgentSensor, AgentSettings, Dtype, ObservationBuffer, Sensor, SensorContext, SensorKind,
-    SensorSetup, SensorSpec,
+    AgentSensorSettings, Dtype, ObservationBuffer, ObservedAgent, Sensor, SensorContext,
+    SensorKind, SensorSetup, SensorSpec,
 };
 use crate::error::WorldError;
 use crate::schema;
@@ -17,15 +17,15 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: "compass",
     about: ABOUT,
     build,
-    settings: schema::fields_of::<AgentSettings>,
+    settings: schema::fields_of::<AgentSensorSettings>,
     image: None,
 };
 
 #[derive(Debug)]
-struct CompassSensor(AgentSensor);
+struct CompassSensor(ObservedAgent);
 
 fn build(value: &serde_json::Value, setup: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
-    Ok(Box::new(CompassSensor(AgentSensor::build(
+    Ok(Box::new(CompassSensor(ObservedAgent::build(
         KIND.name, value, setup,
     )?)))
 }

@@ -1,7 +1,7 @@
 //! Depth image.
 
 use super::camera::CameraConfig;
-use super::image::{self, ImageContext, ImageSensorKind, ObservationShape, PictureStyle};
+use super::image::{self, DisplayStyle, ImageContext, ImageSensorKind, ObservationShape};
 use super::{Dtype, ObservationBuffer, Sensor, SensorKind, SensorSetup};
 use crate::error::WorldError;
 use crate::schema;
@@ -22,7 +22,7 @@ static IMAGE: ImageSensorKind = ImageSensorKind {
     name: "depth",
     about: ABOUT,
     shape: ObservationShape::Image(1),
-    style: PictureStyle::Depth,
+    style: DisplayStyle::Depth,
     dtype: Dtype::Float32,
     unit: "m",
     low: 0.0,

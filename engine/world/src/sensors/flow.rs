@@ -1,7 +1,7 @@
 //! Optical flow.
 
 use super::camera::CameraConfig;
-use super::image::{self, ImageContext, ImageSensorKind, ObservationShape, PictureStyle};
+use super::image::{self, DisplayStyle, ImageContext, ImageSensorKind, ObservationShape};
 use super::{Dtype, ObservationBuffer, Sensor, SensorKind, SensorSetup};
 use crate::error::WorldError;
 use crate::schema;
@@ -22,7 +22,7 @@ static IMAGE: ImageSensorKind = ImageSensorKind {
     name: "flow",
     about: ABOUT,
     shape: ObservationShape::Image(2),
-    style: PictureStyle::Flow,
+    style: DisplayStyle::Flow,
     dtype: Dtype::Float32,
     unit: "px",
     low: -1e9,

@@ -1,8 +1,8 @@
 //! The position sensor: an agent's position relative to its start.
 
 use super::{
-    AgentSensor, AgentSettings, Dtype, ObservationBuffer, Sensor, SensorContext, SensorKind,
-    SensorSetup, SensorSpec,
+    AgentSensorSettings, Dtype, ObservationBuffer, ObservedAgent, Sensor, SensorContext,
+    SensorKind, SensorSetup, SensorSpec,
 };
 use crate::error::WorldError;
 use crate::schema;
@@ -13,15 +13,15 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: "gps",
     about: ABOUT,
     build,
-    settings: schema::fields_of::<AgentSettings>,
+    settings: schema::fields_of::<AgentSensorSettings>,
     image: None,
 };
 
 #[derive(Debug)]
-struct GpsSensor(AgentSensor);
+struct GpsSensor(ObservedAgent);
 
 fn build(value: &serde_json::Value, setup: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
-    Ok(Box::new(GpsSensor(AgentSensor::build(
+    Ok(Box::new(GpsSensor(ObservedAgent::build(
         KIND.name, value, setup,
     )?)))
 }

@@ -1,8 +1,8 @@
 //! The gyro: an agent's angular velocity.
 
 use super::{
-    AgentSensor, AgentSettings, Dtype, ObservationBuffer, Sensor, SensorContext, SensorKind,
-    SensorSetup, SensorSpec,
+    AgentSensorSettings, Dtype, ObservationBuffer, ObservedAgent, Sensor, SensorContext,
+    SensorKind, SensorSetup, SensorSpec,
 };
 use crate::error::WorldError;
 use crate::schema;
@@ -17,15 +17,15 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: "gyro",
     about: ABOUT,
     build,
-    settings: schema::fields_of::<AgentSettings>,
+    settings: schema::fields_of::<AgentSensorSettings>,
     image: None,
 };
 
 #[derive(Debug)]
-struct GyroSensor(AgentSensor);
+struct GyroSensor(ObservedAgent);
 
 fn build(value: &serde_json::Value, setup: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
-    Ok(Box::new(GyroSensor(AgentSensor::build(
+    Ok(Box::new(GyroSensor(ObservedAgent::build(
         KIND.name, value, setup,
     )?)))
 }

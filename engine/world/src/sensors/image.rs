@@ -21,7 +21,7 @@ pub(crate) struct ImageSensorKind {
     pub(super) name: &'static str,
     pub(super) about: &'static str,
     pub(super) shape: ObservationShape,
-    pub(super) style: PictureStyle,
+    pub(super) style: DisplayStyle,
     pub(super) dtype: Dtype,
     pub(super) unit: &'static str,
     pub(super) low: f64,
@@ -39,7 +39,7 @@ pub(crate) type ClassImageSensor = fn(ClassSet) -> &'static ImageSensorKind;
 /// The style in which an observation is shown to people.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum PictureStyle {
+pub enum DisplayStyle {
     /// Colours as they are, sRGB.
     Colors,
     /// Distances: near is bright.
@@ -58,14 +58,14 @@ pub enum PictureStyle {
 
 /// The settings of image observations beside the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ImageSettings {
+pub struct ImageObservationOptions {
     /// Rows of those that list things, 1 to 4,096; default 64.
     pub max_objects: u32,
     /// The classes of `semantic`; default coarse ones.
     pub classes: ClassSet,
 }
 
-impl Default for ImageSettings {
+impl Default for ImageObservationOptions {
     fn default() -> Self {
         Self {
             max_objects: 64,
@@ -226,10 +226,10 @@ impl World {
         &self,
         request: &ImageRequest,
         names: &[String],
-        settings: ImageSettings,
+        settings: ImageObservationOptions,
         threads: Threads,
     ) -> Result<Vec<Observation>, WorldError> {
-        let ImageSettings {
+        let ImageObservationOptions {
             max_objects,
             classes,
         } = settings;

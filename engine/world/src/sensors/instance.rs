@@ -1,7 +1,7 @@
 //! Instance ids.
 
 use super::camera::CameraConfig;
-use super::image::{self, ImageContext, ImageSensorKind, ObservationShape, PictureStyle};
+use super::image::{self, DisplayStyle, ImageContext, ImageSensorKind, ObservationShape};
 use super::{Dtype, ObservationBuffer, Sensor, SensorKind, SensorSetup};
 use crate::error::WorldError;
 use crate::schema;
@@ -22,7 +22,7 @@ static IMAGE: ImageSensorKind = ImageSensorKind {
     name: "instance",
     about: ABOUT,
     shape: ObservationShape::Image(1),
-    style: PictureStyle::Ids,
+    style: DisplayStyle::Ids,
     dtype: Dtype::Int32,
     unit: "id",
     low: 0.0,

@@ -29,13 +29,13 @@ mod wheel_odometry;
 pub use crate::eye_camera::EyeCamera;
 pub use camera::CameraConfig;
 pub(crate) use camera::mount;
-pub use image::{ImageSettings, Observation, ObservationData, PictureStyle};
+pub use image::{DisplayStyle, ImageObservationOptions, Observation, ObservationData};
 pub(crate) use picture_memory::{image_bytes, observation_bytes};
 
 use crate::episode::Episode;
 use crate::error::WorldError;
 use crate::schema::FieldSchema;
-use crate::sensor_requests::{EngineResults, SensorRequests};
+use crate::sensor_requests::{RenderedImages, SensorRequests};
 use crate::world::World;
 use dwell_render::ClassSet;
 use dwell_scene::random::RandomKey;
@@ -111,7 +111,7 @@ pub struct SensorContext<'a> {
     /// Poses of all agents of the world at the beginning of the episode. Shape (agent,).
     pub start_poses: &'a IdVec<AgentId, Pose>,
     /// The results of the engines.
-    pub results: &'a EngineResults,
+    pub results: &'a RenderedImages,
     /// The sensor's random stream in this step.
     pub key: RandomKey,
 }
@@ -178,7 +178,7 @@ impl SensorSetup<'_> {
 /// The settings of a sensor of an agent that has no others.
 #[derive(Debug, Default, serde::Deserialize, schemars::JsonSchema)]
 #[serde(default, deny_unknown_fields)]
-struct AgentSettings {
+struct AgentSensorSettings {
     /// The key in the observation; by default the sensor's kind.
     name: Option<String>,
     /// Which agent's; by default the one whom the environment is about.
@@ -187,18 +187,18 @@ struct AgentSettings {
 
 /// The agent of a sensor, and its key in the observation.
 #[derive(Debug)]
-struct AgentSensor {
+struct ObservedAgent {
     name: String,
     agent: AgentId,
 }
 
-impl AgentSensor {
+impl ObservedAgent {
     fn build(
         kind: &str,
         value: &serde_json::Value,
         setup: SensorSetup<'_>,
     ) -> Result<Self, WorldError> {
-        let AgentSettings { name, agent } = parse_sensor_settings(value)?;
+        let AgentSensorSettings { name, agent } = parse_sensor_settings(value)?;
         Ok(Self {
             name: key(kind, name)?,
             agent: setup.agent(agent)?,
@@ -252,7 +252,7 @@ impl SensorKind {
     }
 
     /// Returns the style in which its observation is shown to people; `None` for other than image sensors.
-    pub fn picture_style(&self) -> Option<PictureStyle> {
+    pub fn picture_style(&self) -> Option<DisplayStyle> {
         let image = self.image?;
         Some(image(ClassSet::Coarse).style)
     }

@@ -1,7 +1,7 @@
 //! Normals of surfaces.
 
 use super::camera::CameraConfig;
-use super::image::{self, ImageContext, ImageSensorKind, ObservationShape, PictureStyle};
+use super::image::{self, DisplayStyle, ImageContext, ImageSensorKind, ObservationShape};
 use super::{Dtype, ObservationBuffer, Sensor, SensorKind, SensorSetup};
 use crate::error::WorldError;
 use crate::schema;
@@ -22,7 +22,7 @@ static IMAGE: ImageSensorKind = ImageSensorKind {
     name: "normals",
     about: ABOUT,
     shape: ObservationShape::Image(3),
-    style: PictureStyle::Directions,
+    style: DisplayStyle::Directions,
     dtype: Dtype::Float32,
     unit: "1",
     low: -1.000_01,

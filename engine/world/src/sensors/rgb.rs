@@ -1,7 +1,7 @@
 //! Colour image.
 
 use super::camera::CameraConfig;
-use super::image::{self, ImageContext, ImageSensorKind, ObservationShape, PictureStyle};
+use super::image::{self, DisplayStyle, ImageContext, ImageSensorKind, ObservationShape};
 use super::{Dtype, ObservationBuffer, Sensor, SensorKind, SensorSetup};
 use crate::error::WorldError;
 use crate::schema;
@@ -21,7 +21,7 @@ static IMAGE: ImageSensorKind = ImageSensorKind {
     name: "rgb",
     about: ABOUT,
     shape: ObservationShape::Image(3),
-    style: PictureStyle::Colors,
+    style: DisplayStyle::Colors,
     dtype: Dtype::Uint8,
     unit: "sRGB",
     low: 0.0,

@@ -1,7 +1,7 @@
 //! Semantic classes.
 
 use super::camera::CameraConfig;
-use super::image::{self, ImageContext, ImageSensorKind, ObservationShape, PictureStyle};
+use super::image::{self, DisplayStyle, ImageContext, ImageSensorKind, ObservationShape};
 use super::{Dtype, ObservationBuffer, Sensor, SensorKind, SensorSetup};
 use crate::error::WorldError;
 use crate::schema;
@@ -23,7 +23,7 @@ static COARSE: ImageSensorKind = ImageSensorKind {
     name: NAME,
     about: COARSE_ABOUT,
     shape: ObservationShape::Image(1),
-    style: PictureStyle::Ids,
+    style: DisplayStyle::Ids,
     dtype: Dtype::Int32,
     unit: "class",
     low: 0.0,

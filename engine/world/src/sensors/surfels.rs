@@ -1,7 +1,7 @@
 //! Surface elements.
 
 use super::camera::CameraConfig;
-use super::image::{self, ImageContext, ImageSensorKind, ObservationShape, PictureStyle};
+use super::image::{self, DisplayStyle, ImageContext, ImageSensorKind, ObservationShape};
 use super::{Dtype, ObservationBuffer, Sensor, SensorKind, SensorSetup};
 use crate::error::WorldError;
 use crate::schema;
@@ -23,7 +23,7 @@ static IMAGE: ImageSensorKind = ImageSensorKind {
     name: "surfels",
     about: ABOUT,
     shape: ObservationShape::Image(9),
-    style: PictureStyle::Light,
+    style: DisplayStyle::Light,
     dtype: Dtype::Float32,
     unit: "m, 1, 1",
     low: -1e6,

@@ -1,7 +1,7 @@
 //! The sensor of objects in view, with their hidden shares.
 
 use super::camera::CameraConfig;
-use super::image::{self, ImageContext, ImageSensorKind, ObservationShape, PictureStyle};
+use super::image::{self, DisplayStyle, ImageContext, ImageSensorKind, ObservationShape};
 use super::object_list;
 use super::{Dtype, ObservationBuffer, Sensor, SensorKind, SensorSetup};
 use crate::error::WorldError;
@@ -23,7 +23,7 @@ static IMAGE: ImageSensorKind = ImageSensorKind {
     name: "visible_objects",
     about: ABOUT,
     shape: ObservationShape::List(3),
-    style: PictureStyle::List,
+    style: DisplayStyle::List,
     dtype: Dtype::Float32,
     unit: "id, px, 1",
     low: 0.0,

@@ -1,8 +1,8 @@
 //! Wheel odometry: a base's pose estimated from its wheels alone.
 
 use super::{
-    AgentSensor, AgentSettings, Dtype, ObservationBuffer, Sensor, SensorContext, SensorKind,
-    SensorSetup, SensorSpec,
+    AgentSensorSettings, Dtype, ObservationBuffer, ObservedAgent, Sensor, SensorContext,
+    SensorKind, SensorSetup, SensorSpec,
 };
 use crate::error::WorldError;
 use crate::schema;
@@ -18,15 +18,15 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: "wheel_odometry",
     about: ABOUT,
     build,
-    settings: schema::fields_of::<AgentSettings>,
+    settings: schema::fields_of::<AgentSensorSettings>,
     image: None,
 };
 
 #[derive(Debug)]
-struct WheelOdometrySensor(AgentSensor);
+struct WheelOdometrySensor(ObservedAgent);
 
 fn build(value: &serde_json::Value, setup: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
-    Ok(Box::new(WheelOdometrySensor(AgentSensor::build(
+    Ok(Box::new(WheelOdometrySensor(ObservedAgent::build(
         KIND.name, value, setup,
     )?)))
 }

@@ -46,7 +46,7 @@ impl AgentListener {
         let size = self.stream.config().block_samples;
         let mut heard = vec![0.0; 2 * size];
         self.stream
-            .block(rays, state, &active, &receiver, &mut heard)?;
+            .render_block(rays, state, &active, &receiver, &mut heard)?;
         for (window, block) in self
             .recent_samples
             .chunks_exact_mut(self.length)

@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 ///
 /// # Errors
 /// [`WorldError`] for a signal that nobody knows and a sound file that is none.
-pub(super) fn read(
+pub(super) fn read_emitter_block(
     engines: &Engines,
     emitter: &SoundEmitter,
     (rate_hz, block, start): (u32, u64, u64),
@@ -73,7 +73,7 @@ impl EmitterStates {
 
     /// The block that ends now goes to where the state has them.
     pub(super) fn update(&mut self, house: &House, state: &State) {
-        let targets = self.targets(house, state);
+        let targets = self.target_pressures_pa(house, state);
         if self.fades.is_empty() {
             self.fades = targets.into_iter().map(GainRamp::steady).collect();
             return;
@@ -86,13 +86,13 @@ impl EmitterStates {
     /// Returns the gains in the block that ended last. Shape (emitter,).
     pub(super) fn fades(&self, house: &House, state: &State) -> Vec<GainRamp> {
         if self.fades.is_empty() {
-            let targets = self.targets(house, state).into_iter();
+            let targets = self.target_pressures_pa(house, state).into_iter();
             return targets.map(GainRamp::steady).collect();
         }
         self.fades.clone()
     }
 
-    fn targets(&self, house: &House, state: &State) -> Vec<f32> {
+    fn target_pressures_pa(&self, house: &House, state: &State) -> Vec<f32> {
         let target = |k| {
             if self.is_on(house, state, k) {
                 pa_from_db_spl(self.level_db(house, k))

@@ -13,7 +13,7 @@ use dwell_scene::material::library;
 use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{
-    AgentId, Articulation, House, Id, JointId, JointKind, PartId, Pose, State, StructureKind,
+    AgentId, House, Id, Joint, JointId, JointKind, PartId, Pose, State, StructureKind,
 };
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -129,7 +129,7 @@ impl WorldSound {
             .events
             .iter()
             .filter(|event| event.kind == ContactKind::Impact && event.impulse_n_s >= FAINTEST_N_S);
-        for event in hardest(blows, MOST_BLOWS) {
+        for event in largest_impulses(blows, MOST_BLOWS) {
             let sound = ImpactSound {
                 position: event.position,
                 impulse_n_s: event.impulse_n_s,
@@ -146,7 +146,7 @@ impl WorldSound {
             let rubs = matches!(event.kind, ContactKind::Scrape | ContactKind::Roll);
             rubs && event.phase != ContactPhase::End && event.duration_s > 0.0
         });
-        for event in hardest(rubs, MOST_RUBS) {
+        for event in largest_impulses(rubs, MOST_RUBS) {
             let (kind, speed_m_s) = match event.kind {
                 ContactKind::Roll => (FrictionSoundKind::Roll, event.rolling_speed_m_s),
                 _ => (
@@ -173,7 +173,7 @@ impl WorldSound {
     }
 
     /// A hinge that creaks, a drawer that rubs, a door that slams.
-    fn add_joint_sounds(&mut self, step: &StepContext<'_>, joint: JointId, of: &Articulation) {
+    fn add_joint_sounds(&mut self, step: &StepContext<'_>, joint: JointId, of: &Joint) {
         let (house, state) = (step.house, step.state);
         let Some((before, speed_before)) = step.joints_before.get(joint.index()).copied() else {
             return;
@@ -194,7 +194,7 @@ impl WorldSound {
         let anchor = (parent * of.parent_from_joint).position;
         let middle = middle(house, state, of.child);
         let place = step.key.child("joint").child(u64::from(joint.0));
-        let friction = state.joint_values(house, joint).friction;
+        let friction = state.joint_parameters(house, joint).friction;
         let partners = [leaf.clone(), frame];
         let sound = match of.kind {
             JointKind::Hinge => ContactSound::Creak(CreakSound {
@@ -311,7 +311,7 @@ impl WorldSound {
 }
 
 /// The `most` events with the largest impulse; equal ones in their order.
-fn hardest<'a>(
+fn largest_impulses<'a>(
     events: impl Iterator<Item = &'a ContactEvent>,
     most: usize,
 ) -> impl Iterator<Item = &'a ContactEvent> {

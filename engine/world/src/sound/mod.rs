@@ -152,7 +152,7 @@ impl WorldSound {
             }
             let mut ears = AgentListener {
                 agent: *agent,
-                stream: self.stream(engines, *agent, key)?,
+                stream: self.new_stream(engines, *agent, key)?,
                 head: self.head,
                 recent_samples: vec![0.0; 2 * length],
                 length,
@@ -166,7 +166,7 @@ impl WorldSound {
         Ok(())
     }
 
-    fn stream(
+    fn new_stream(
         &self,
         engines: &Engines,
         agent: AgentId,
@@ -212,7 +212,7 @@ impl WorldSound {
             }
             let mut signal = vec![0.0; self.block];
             let time = (self.rate_hz, self.block as u64, start);
-            emitters::read(engines, emitter, time, &mut signal)?;
+            emitters::read_emitter_block(engines, emitter, time, &mut signal)?;
             fade.apply(self.rate_hz, &mut signal);
             sources.push(BlockSource {
                 id: k as u64,
@@ -226,7 +226,7 @@ impl WorldSound {
             playing.state.fade.apply(self.rate_hz, &mut signal);
             sources.push(BlockSource {
                 id: playing.state.id,
-                position: nearest_open_air_point(rays, playing.air_position(house, state)),
+                position: nearest_open_air_point(rays, playing.emission_point(house, state)),
                 signal,
             });
         }
@@ -275,7 +275,7 @@ impl WorldSound {
     ) -> Result<(), WorldError> {
         match self.played(handle) {
             Some(playing) => playing.state.stopped = silent,
-            None => self.emitter(house, handle)?.silent = silent,
+            None => self.emitter_override_mut(house, handle)?.silent = silent,
         }
         Ok(())
     }
@@ -288,7 +288,7 @@ impl WorldSound {
     ) -> Result<(), WorldError> {
         match self.played(handle) {
             Some(playing) => playing.state.request.level_db = level_db,
-            None => self.emitter(house, handle)?.level_db = Some(level_db),
+            None => self.emitter_override_mut(house, handle)?.level_db = Some(level_db),
         }
         Ok(())
     }
@@ -298,7 +298,7 @@ impl WorldSound {
         playing.find(|playing| playing.state.id == handle)
     }
 
-    fn emitter(
+    fn emitter_override_mut(
         &mut self,
         house: &House,
         handle: u64,

@@ -200,7 +200,7 @@ impl Playback {
     }
 
     /// The point from which it is heard, m: of an object, not from within it, but from above.
-    pub(super) fn air_position(&self, house: &House, state: &State) -> Vec3 {
+    pub(super) fn emission_point(&self, house: &House, state: &State) -> Vec3 {
         let SoundPlace::Object(object) = self.state.request.place else {
             return self.position(house, state);
         };

@@ -117,7 +117,7 @@ impl WorldSound {
             }
             let mut ears = AgentListener {
                 agent,
-                stream: sound.stream(engines, agent, key)?,
+                stream: sound.new_stream(engines, agent, key)?,
                 head: sound.head,
                 recent_samples: window,
                 length,

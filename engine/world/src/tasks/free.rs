@@ -77,7 +77,7 @@ struct FreeTask {
 
 impl FreeTask {
     /// Returns the start of an episode: the position, and the heading, rad.
-    fn start(
+    fn choose_start(
         &self,
         world: &World,
         body: &AgentBody,
@@ -131,7 +131,7 @@ impl Task for FreeTask {
                 agent.0
             )));
         };
-        let (position, yaw_rad) = self.start(world, &body, (placed, key))?;
+        let (position, yaw_rad) = self.choose_start(world, &body, (placed, key))?;
         world.place_agent(agent, position, yaw_rad)?;
         Ok(Episode {
             agent,

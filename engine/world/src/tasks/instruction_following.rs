@@ -4,7 +4,7 @@
 //! instruction is fulfilled. The episode ends with `stop`.
 
 use super::door_leaves::DoorLeaves;
-use super::goal_cells::GoalCells;
+use super::goal_cells::IslandCellIndex;
 use super::standing_room::FreeStartCells;
 use super::{Task, TaskKind, TaskSetup};
 use crate::actions::{DiscreteAction, StepSizes};
@@ -160,7 +160,7 @@ impl InstructionFollowing {
     /// All at once: who is stopped on the way has found nothing.
     fn find_playable(&self, world: &World, grid: &NavGrid) -> Vec<PlayableInstruction> {
         let mut offers = Vec::new();
-        let ground = GoalCells::of(grid);
+        let ground = IslandCellIndex::of(grid);
         let engines = world.engines().clone();
         let state: &State = world.state();
         let scene = engines.semantics().scene(state);
@@ -180,7 +180,7 @@ impl InstructionFollowing {
 fn goal_cells(
     world: &World,
     agent: AgentId,
-    ground: &GoalCells<'_>,
+    ground: &IslandCellIndex<'_>,
     instruction: &Instruction,
 ) -> Vec<NavCell> {
     if !instruction.goal.rooms.is_empty() {

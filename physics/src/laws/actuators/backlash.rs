@@ -2,7 +2,7 @@
 
 use super::TargetMotors;
 use crate::error::PhysicsError;
-use crate::joints::{LawState, MotorLaw, MotorStep};
+use crate::joints::{MotorLaw, MotorStep, StatefulLaw};
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
@@ -160,7 +160,7 @@ impl MotorLaw for Backlash {
     }
 }
 
-impl LawState for Backlash {
+impl StatefulLaw for Backlash {
     fn joint_set(&mut self, joint: JointId, position: f32) {
         if let Some(play) = self.motors.get_mut(&joint) {
             *play = BacklashState::at(position);

@@ -2,7 +2,7 @@
 
 use super::TargetMotors;
 use crate::error::PhysicsError;
-use crate::joints::{ActuationGain, JointActuation, LawState, MotorLaw};
+use crate::joints::{ActuationGain, JointActuation, MotorLaw, StatefulLaw};
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
@@ -76,4 +76,4 @@ impl MotorLaw for JointCompliance {
     }
 }
 
-impl LawState for JointCompliance {}
+impl StatefulLaw for JointCompliance {}

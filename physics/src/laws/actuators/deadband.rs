@@ -2,7 +2,7 @@
 
 use super::TargetMotors;
 use crate::error::PhysicsError;
-use crate::joints::{LawState, MotorLaw, MotorStep};
+use crate::joints::{MotorLaw, MotorStep, StatefulLaw};
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
@@ -83,4 +83,4 @@ impl MotorLaw for Deadband {
     }
 }
 
-impl LawState for Deadband {}
+impl StatefulLaw for Deadband {}

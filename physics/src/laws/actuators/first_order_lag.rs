@@ -2,7 +2,7 @@
 
 use super::FilteredCommands;
 use crate::error::PhysicsError;
-use crate::joints::{LawState, MotorLaw, MotorStep};
+use crate::joints::{MotorLaw, MotorStep, StatefulLaw};
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
@@ -64,7 +64,7 @@ impl MotorLaw for FirstOrderLag {
     fn modify_command(&mut self, motor: &MotorStep, command: &mut JointCommand) {
         let steps = motor.dt_s / self.tau_s;
         self.outputs
-            .follow(motor, command, |y, told| relax(y, told, steps));
+            .filter_command(motor, command, |y, told| relax(y, told, steps));
     }
 
     fn clone_box(&self) -> Box<dyn MotorLaw> {
@@ -72,7 +72,7 @@ impl MotorLaw for FirstOrderLag {
     }
 }
 
-impl LawState for FirstOrderLag {
+impl StatefulLaw for FirstOrderLag {
     fn state(&self) -> Vec<f32> {
         self.outputs.memory()
     }

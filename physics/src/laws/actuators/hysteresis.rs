@@ -2,7 +2,7 @@
 
 use super::TargetJoints;
 use crate::error::PhysicsError;
-use crate::joints::{JointLoad, JointResistance, LawState, ResistanceLaw, SlipSpring};
+use crate::joints::{JointLoad, JointResistance, ResistanceLaw, SlipSpring, StatefulLaw};
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
@@ -119,7 +119,7 @@ impl ResistanceLaw for Hysteresis {
     }
 }
 
-impl LawState for Hysteresis {
+impl StatefulLaw for Hysteresis {
     fn joint_set(&mut self, joint: JointId, position: f32) {
         if let Some(spring) = self.springs.get_mut(&joint) {
             *spring = HysteresisSpring {

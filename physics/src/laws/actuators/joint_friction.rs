@@ -2,7 +2,7 @@
 
 use super::TargetJoints;
 use crate::error::PhysicsError;
-use crate::joints::{JointLoad, JointResistance, LawState, ResistanceLaw};
+use crate::joints::{JointLoad, JointResistance, ResistanceLaw, StatefulLaw};
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
@@ -155,7 +155,7 @@ impl ResistanceLaw for JointFriction {
         load: &JointLoad,
         resistance: &mut JointResistance,
     ) {
-        if self.hinges.hold(joint) {
+        if self.hinges.contains(joint) {
             resistance.friction += self.friction.bound(load);
             resistance.damping += self.friction.viscous;
         }
@@ -166,7 +166,7 @@ impl ResistanceLaw for JointFriction {
     }
 }
 
-impl LawState for JointFriction {}
+impl StatefulLaw for JointFriction {}
 
 #[cfg(test)]
 mod tests {

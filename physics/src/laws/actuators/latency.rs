@@ -2,7 +2,7 @@
 
 use super::{TargetMotors, number, same_kind, with};
 use crate::error::PhysicsError;
-use crate::joints::{LawState, MotorLaw, MotorStep, motor_command};
+use crate::joints::{MotorLaw, MotorStep, StatefulLaw, motor_command};
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
@@ -96,7 +96,7 @@ impl MotorLaw for Latency {
     }
 }
 
-impl LawState for Latency {
+impl StatefulLaw for Latency {
     fn state(&self) -> Vec<f32> {
         let mut memory = Vec::new();
         for past in self.past.values() {

@@ -19,15 +19,15 @@ use crate::error::PhysicsError;
 use crate::joints::MotorStep;
 use crate::model::PhysicsModel;
 use dwell_scene::law::is_joint_named;
-use dwell_scene::{Articulation, JointCommand, JointId, LawValues};
+use dwell_scene::{Joint, JointCommand, JointId, LawValues};
 use std::collections::BTreeMap;
 
 /// Returns the joints that a spec acts on, of those for which `may` holds.
-fn joints(
+fn target_joints(
     values: LawValues<'_>,
     model: &PhysicsModel,
     kind: &'static str,
-    may: impl Fn(&Articulation) -> bool,
+    may: impl Fn(&Joint) -> bool,
 ) -> Result<Vec<JointId>, PhysicsError> {
     let house = &model.house;
     let able = || house.joints.iter_ids().filter(|(_, joint)| may(joint));
@@ -52,7 +52,7 @@ struct TargetMotors(Vec<JointId>);
 impl TargetMotors {
     fn of(values: LawValues<'_>, model: &PhysicsModel) -> Result<Self, PhysicsError> {
         let kind = "joint with a servo";
-        joints(values, model, kind, |joint| joint.servo.is_some()).map(Self)
+        target_joints(values, model, kind, |joint| joint.servo.is_some()).map(Self)
     }
 
     fn contains(&self, joint: JointId) -> bool {
@@ -71,10 +71,10 @@ struct TargetJoints(Vec<JointId>);
 
 impl TargetJoints {
     fn of(values: LawValues<'_>, model: &PhysicsModel) -> Result<Self, PhysicsError> {
-        joints(values, model, "joint", |_| true).map(Self)
+        target_joints(values, model, "joint", |_| true).map(Self)
     }
 
-    fn hold(&self, joint: JointId) -> bool {
+    fn contains(&self, joint: JointId) -> bool {
         self.0.binary_search(&joint).is_ok()
     }
 }
@@ -92,7 +92,7 @@ impl FilteredCommands {
 
     /// Advances a motor's output by `step` and gives the motor its mean as command. `step` gets the output and the command,
     /// and returns the output at the end of the step and its mean over it. An output begins at the joint's position.
-    fn follow(
+    fn filter_command(
         &mut self,
         motor: &MotorStep,
         command: &mut JointCommand,

@@ -3,7 +3,7 @@
 use super::TargetMotors;
 use crate::error::PhysicsError;
 use crate::joints::{
-    ActuationGain, JointActuation, JointLoad, JointResistance, LawState, MotorLaw, ResistanceLaw,
+    ActuationGain, JointActuation, JointLoad, JointResistance, MotorLaw, ResistanceLaw, StatefulLaw,
 };
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
@@ -162,4 +162,4 @@ impl ResistanceLaw for MotorConstants {
     }
 }
 
-impl LawState for MotorConstants {}
+impl StatefulLaw for MotorConstants {}

@@ -2,7 +2,7 @@
 
 use super::FilteredCommands;
 use crate::error::PhysicsError;
-use crate::joints::{LawState, MotorLaw, MotorStep};
+use crate::joints::{MotorLaw, MotorStep, StatefulLaw};
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
@@ -66,7 +66,7 @@ impl MotorLaw for RateLimit {
     fn modify_command(&mut self, motor: &MotorStep, command: &mut JointCommand) {
         let most = self.max_rate * motor.dt_s;
         self.outputs
-            .follow(motor, command, |y, told| approach(y, told, most));
+            .filter_command(motor, command, |y, told| approach(y, told, most));
     }
 
     fn clone_box(&self) -> Box<dyn MotorLaw> {
@@ -74,7 +74,7 @@ impl MotorLaw for RateLimit {
     }
 }
 
-impl LawState for RateLimit {
+impl StatefulLaw for RateLimit {
     fn state(&self) -> Vec<f32> {
         self.outputs.memory()
     }

@@ -2,7 +2,7 @@
 
 use super::TargetMotors;
 use crate::error::PhysicsError;
-use crate::joints::{JointActuation, LawState, MotorLaw};
+use crate::joints::{JointActuation, MotorLaw, StatefulLaw};
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
@@ -62,4 +62,4 @@ impl MotorLaw for Saturation {
     }
 }
 
-impl LawState for Saturation {}
+impl StatefulLaw for Saturation {}

@@ -73,7 +73,7 @@ pub(super) fn loads(stage: &LawContext<'_>, scope: &ContactScope) -> Vec<Contact
                 rotation: Quat::IDENTITY,
             };
             let sides = (side(a, classes.0), side(b, classes.1));
-            if scope.is_swapped(stage.house, &sides.0, &sides.1).is_none() {
+            if scope.match_sides(stage.house, &sides.0, &sides.1).is_none() {
                 continue;
             }
             loads.push(ContactLoad {
@@ -95,7 +95,10 @@ pub(super) fn loads(stage: &LawContext<'_>, scope: &ContactScope) -> Vec<Contact
 }
 
 impl ContactLoad {
-    fn each<'a>(&self, stage: &'a LawContext<'_>) -> impl Iterator<Item = (f32, &'a RigidBody)> {
+    fn signed_bodies<'a>(
+        &self,
+        stage: &'a LawContext<'_>,
+    ) -> impl Iterator<Item = (f32, &'a RigidBody)> {
         [(1.0, self.bodies.0), (-1.0, self.bodies.1)]
             .into_iter()
             .filter_map(|(sign, handle)| {
@@ -106,7 +109,7 @@ impl ContactLoad {
 
     /// Returns the relative angular velocity of the first body against the second, rad/s.
     pub(super) fn relative_spin(&self, stage: &LawContext<'_>) -> Vec3 {
-        self.each(stage)
+        self.signed_bodies(stage)
             .map(|(sign, rigid)| rigid.angvel() * sign)
             .sum()
     }
@@ -114,7 +117,7 @@ impl ContactLoad {
     /// Returns the angular acceleration by gravity of the first about the contact against the second, without slip, rad/s².
     pub(super) fn gravity_angular_acceleration(&self, stage: &LawContext<'_>) -> Vec3 {
         let gravity = stage.engine.gravity;
-        self.each(stage)
+        self.signed_bodies(stage)
             .filter(|(_, rigid)| rigid.is_dynamic())
             .map(|(sign, rigid)| {
                 let arm = rigid.center_of_mass() - self.point;
@@ -130,7 +133,7 @@ impl ContactLoad {
     pub(super) fn inertia(&self, stage: &LawContext<'_>, axis: Vec3, rolling: bool) -> f32 {
         // An angular impulse L and -L changes the spin of one against the other by L (1/I_1 + 1/I_2).
         let inverse: f32 = self
-            .each(stage)
+            .signed_bodies(stage)
             .filter(|(_, rigid)| rigid.is_dynamic())
             .map(|(_, rigid)| {
                 let arm = rigid.center_of_mass() - self.point;
@@ -142,7 +145,7 @@ impl ContactLoad {
 
     /// Returns the distance of the nearer moving centre of mass from the contact plane, m.
     pub(super) fn radius_m(&self, stage: &LawContext<'_>) -> f32 {
-        self.each(stage)
+        self.signed_bodies(stage)
             .filter(|(_, rigid)| rigid.is_dynamic())
             .map(|(_, rigid)| (rigid.center_of_mass() - self.point).dot(self.normal).abs())
             .fold(f32::MAX, f32::min)

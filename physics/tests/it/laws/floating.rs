@@ -6,9 +6,7 @@
 use super::spec;
 use crate::common::{Build, Piece, Run};
 use dwell_physics::{JointState, PhysicsConfig};
-use dwell_scene::{
-    Articulation, Collider, JointId, JointKind, LawSpec, Mobility, PartId, Pose, State,
-};
+use dwell_scene::{Collider, Joint, JointId, JointKind, LawSpec, Mobility, PartId, Pose, State};
 use glam::{DVec3, Vec3};
 
 const AT: Vec3 = Vec3::new(3.0, 3.0, 3.0);
@@ -29,17 +27,17 @@ fn robot(laws: Vec<LawSpec>, limits: Option<[f32; 2]>, rate_hz: f32) -> Run {
     ];
     let object = build.object("robot", Mobility::Movable, &pieces);
     let parts: Vec<PartId> = build.data.objects[object].parts().collect();
-    build.data.joints.push(Articulation {
+    build.data.joints.push(Joint {
         parent: Some(parts[0]),
         parent_from_joint: Pose::from_position(Vec3::X * 0.2),
         limits,
-        ..Articulation::new("hinge", object, parts[1], JointKind::Hinge, Vec3::Z)
+        ..Joint::new("hinge", object, parts[1], JointKind::Hinge, Vec3::Z)
     });
-    build.data.joints.push(Articulation {
+    build.data.joints.push(Joint {
         parent: Some(parts[1]),
         parent_from_joint: Pose::from_position(Vec3::new(0.3, 0.2, 0.0)),
         limits,
-        ..Articulation::new("slide", object, parts[2], JointKind::Slide, Vec3::X)
+        ..Joint::new("slide", object, parts[2], JointKind::Slide, Vec3::X)
     });
     let house = build.house();
     let mut state = State::new(&house);

@@ -3,9 +3,7 @@
 use super::spec;
 use crate::common::{Build, Piece, Run, gravity};
 use dwell_physics::{JointState, PhysicsConfig};
-use dwell_scene::{
-    Articulation, Collider, JointId, JointKind, LawSpec, Mobility, PartId, Pose, State,
-};
+use dwell_scene::{Collider, Joint, JointId, JointKind, LawSpec, Mobility, PartId, Pose, State};
 use glam::{DVec3, Vec3};
 
 const PIVOT: Vec3 = Vec3::new(2.0, 2.0, 2.0);
@@ -49,9 +47,9 @@ fn pivoted(along: Vec3, axis: Vec3) -> Build {
     };
     let object = build.object("bar", Mobility::Articulated, &[piece]);
     let part = build.data.objects[object].first_part;
-    build.data.joints.push(Articulation {
+    build.data.joints.push(Joint {
         parent_from_joint: Pose::from_position(PIVOT),
-        ..Articulation::new("pivot", object, part, JointKind::Hinge, axis)
+        ..Joint::new("pivot", object, part, JointKind::Hinge, axis)
     });
     build
 }
@@ -189,14 +187,14 @@ fn lift_on_a_slider_balances_what_drives_it_out() {
         let slider = Piece::cuboid(Vec3::splat(0.03), PIVOT + Vec3::new(0.1, 0.3, 0.0));
         let object = build.object("table", Mobility::Articulated, &[table, slider]);
         let parts: Vec<PartId> = build.data.objects[object].parts().collect();
-        build.data.joints.push(Articulation {
+        build.data.joints.push(Joint {
             parent_from_joint: Pose::from_position(PIVOT),
-            ..Articulation::new("turn", object, parts[0], JointKind::Hinge, Vec3::Y)
+            ..Joint::new("turn", object, parts[0], JointKind::Hinge, Vec3::Y)
         });
-        build.data.joints.push(Articulation {
+        build.data.joints.push(Joint {
             parent: Some(parts[0]),
             parent_from_joint: Pose::from_position(Vec3::new(0.1, 0.3, 0.0)),
-            ..Articulation::new("slide", object, parts[1], JointKind::Slide, Vec3::X)
+            ..Joint::new("slide", object, parts[1], JointKind::Slide, Vec3::X)
         });
         build
     };
@@ -272,10 +270,10 @@ fn drag_on_all_of_a_floating_robot_takes_its_share_of_momentum() {
     };
     let object = build.object("robot", Mobility::Movable, &[base, link]);
     let parts: Vec<PartId> = build.data.objects[object].parts().collect();
-    build.data.joints.push(Articulation {
+    build.data.joints.push(Joint {
         parent: Some(parts[0]),
         parent_from_joint: Pose::from_position(Vec3::X * 0.15),
-        ..Articulation::new("elbow", object, parts[1], JointKind::Hinge, Vec3::Z)
+        ..Joint::new("elbow", object, parts[1], JointKind::Hinge, Vec3::Z)
     });
     let house = build.house();
     let mut state = State::new(&house);

@@ -7,7 +7,7 @@ use super::spec;
 use crate::common::{Build, Piece, Run, gravity};
 use dwell_physics::{JointState, PhysicsConfig};
 use dwell_scene::{
-    Articulation, JointCommand, JointId, JointKind, LawSpec, Mobility, PartId, Pose, Servo, State,
+    Joint, JointCommand, JointId, JointKind, LawSpec, Mobility, PartId, Pose, Servo, State,
 };
 use glam::Vec3;
 
@@ -45,14 +45,14 @@ fn what_turning_asks_of_a_slider_loads_its_friction() {
         let slider = Piece::cuboid(Vec3::splat(0.03), AT + Vec3::new(0.1, 0.3, 0.0));
         let object = build.object("table", Mobility::Articulated, &[table, slider]);
         let parts: Vec<PartId> = build.data.objects[object].parts().collect();
-        build.data.joints.push(Articulation {
+        build.data.joints.push(Joint {
             parent_from_joint: Pose::from_position(AT),
-            ..Articulation::new("turn", object, parts[0], JointKind::Hinge, Vec3::Y)
+            ..Joint::new("turn", object, parts[0], JointKind::Hinge, Vec3::Y)
         });
-        build.data.joints.push(Articulation {
+        build.data.joints.push(Joint {
             parent: Some(parts[0]),
             parent_from_joint: Pose::from_position(Vec3::new(0.1, 0.3, 0.0)),
-            ..Articulation::new("slide", object, parts[1], JointKind::Slide, Vec3::X)
+            ..Joint::new("slide", object, parts[1], JointKind::Slide, Vec3::X)
         });
         let mut run = start(build, friction("slide", COULOMB), None);
         let speed = (outward / (mass * radius)).sqrt();
@@ -84,18 +84,18 @@ fn what_another_joint_gives_loads_the_friction_of_the_one_that_bears_it() {
         let slider = Piece::cuboid(Vec3::splat(0.05), AT + Vec3::Y * 0.3);
         let object = build.object("pair", Mobility::Articulated, &[carrier, slider]);
         let parts: Vec<PartId> = build.data.objects[object].parts().collect();
-        build.data.joints.push(Articulation {
+        build.data.joints.push(Joint {
             parent_from_joint: Pose::from_position(AT),
-            ..Articulation::new("lower", object, parts[0], JointKind::Slide, Vec3::X)
+            ..Joint::new("lower", object, parts[0], JointKind::Slide, Vec3::X)
         });
-        build.data.joints.push(Articulation {
+        build.data.joints.push(Joint {
             parent: Some(parts[0]),
             parent_from_joint: Pose::from_position(Vec3::Y * 0.3),
             servo: Some(Servo {
                 max_effort: 10.0,
                 ..Servo::default()
             }),
-            ..Articulation::new("upper", object, parts[1], JointKind::Slide, Vec3::X)
+            ..Joint::new("upper", object, parts[1], JointKind::Slide, Vec3::X)
         });
         let mut run = start(build, friction("lower", COULOMB), Some(0.0));
         run.state.joint_command[JointId(1)] = JointCommand::Effort(effort);
@@ -123,9 +123,9 @@ fn what_lies_on_a_lift_loads_its_friction() {
         let lift = Piece::cuboid(Vec3::new(0.25, 0.01, 0.1), AT).density(125.0);
         let object = build.object("lift", Mobility::Articulated, &[lift]);
         let part = build.data.objects[object].first_part;
-        build.data.joints.push(Articulation {
+        build.data.joints.push(Joint {
             parent_from_joint: Pose::from_position(AT),
-            ..Articulation::new("rail", object, part, JointKind::Slide, Vec3::Y)
+            ..Joint::new("rail", object, part, JointKind::Slide, Vec3::Y)
         });
         let crate_ = Piece::cuboid(Vec3::splat(0.1), AT + Vec3::Y * 0.1105);
         build.movable("crate", crate_);

@@ -21,7 +21,7 @@ use super::walls::{WallSegment, wall_segments};
 use crate::building::assembly::HouseAssembly;
 use crate::building::openings::{add_door, add_window};
 use crate::building::outline::outline;
-use crate::building::room::{FloorSlab, ShellRoom};
+use crate::building::room::{HorizontalSlab, ShellRoom};
 use crate::building::stairs::{StairFlights, add_railing, add_stairs};
 use crate::building::wall::{FinishBands, ShellWall, WallAxis};
 use crate::building::yaw::yaw_rotation;
@@ -161,7 +161,7 @@ impl StoreyBuilder<'_> {
         }
         self.walls(&walls, &holes, &looks, &ids, assembly);
         for hole in &holes {
-            self.fill(hole, &walls[hole.wall_segment], &ids, assembly)?;
+            self.fill_opening(hole, &walls[hole.wall_segment], &ids, assembly)?;
         }
         let rise = height + CEILING_SLAB_M + FLOOR_SLAB_M;
         for (well, comes_up) in [
@@ -270,10 +270,10 @@ impl StoreyBuilder<'_> {
                 .filter_map(|hole| doorway(hole, &walls[hole.wall_segment], k)),
         );
         let slab = |well: Option<&[Millimetres; 4]>| {
-            slab(&grid.rectangles(|i, j| grid.owner(i, j) == Some(k) && !open(well, i, j)))
+            slab_outlines(&grid.rectangles(|i, j| grid.owner(i, j) == Some(k) && !open(well, i, j)))
         };
         let hung = if ceiling_m < height {
-            slab_of(&grid.rectangles(|i, j| own(i, j) && !open(to_above, i, j)))
+            rectangle_outlines(&grid.rectangles(|i, j| own(i, j) && !open(to_above, i, j)))
         } else {
             Vec::new()
         };
@@ -284,11 +284,11 @@ impl StoreyBuilder<'_> {
             floor_m: self.floor_m,
             ceiling_m,
             slabs: [
-                FloorSlab {
+                HorizontalSlab {
                     outlines: slab(from_below),
                     thick_m: FLOOR_SLAB_M,
                 },
-                FloorSlab {
+                HorizontalSlab {
                     outlines: slab(to_above),
                     thick_m: if self.top {
                         FLOOR_SLAB_M
@@ -348,7 +348,7 @@ impl StoreyBuilder<'_> {
         }
     }
 
-    fn fill(
+    fn fill_opening(
         &self,
         hole: &PlanOpening<'_>,
         stretch: &WallSegment,
@@ -530,7 +530,7 @@ fn doorway(hole: &PlanOpening<'_>, stretch: &WallSegment, room: usize) -> Option
 }
 
 /// The outlines of a slab over rectangles: one where they are one piece without a hole, else each of them.
-fn slab(rects: &[[f32; 4]]) -> Vec<Vec<[f32; 2]>> {
+fn slab_outlines(rects: &[[f32; 4]]) -> Vec<Vec<[f32; 2]>> {
     let whole = outline(rects);
     let area = |rect: &[f32; 4]| (rect[2] - rect[0]) * (rect[3] - rect[1]);
     let wanted: f32 = rects.iter().map(area).sum();
@@ -540,10 +540,10 @@ fn slab(rects: &[[f32; 4]]) -> Vec<Vec<[f32; 2]>> {
     if (0.5 * twice.abs() - wanted).abs() < 1e-3 * wanted.max(1.0) {
         return vec![whole];
     }
-    slab_of(rects)
+    rectangle_outlines(rects)
 }
 
-fn slab_of(rects: &[[f32; 4]]) -> Vec<Vec<[f32; 2]>> {
+fn rectangle_outlines(rects: &[[f32; 4]]) -> Vec<Vec<[f32; 2]>> {
     let corners =
         |[x0, z0, x1, z1]: &[f32; 4]| vec![[*x0, *z0], [*x1, *z0], [*x1, *z1], [*x0, *z1]];
     rects.iter().map(corners).collect()

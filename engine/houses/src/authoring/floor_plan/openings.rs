@@ -98,7 +98,7 @@ fn of_door<'a>(
         Some(_) => format!("{front:?} and, on its {}side, {behind:?}", word(door.side)),
     };
     let fits = |stretch: &WallSegment| is_wall_on_side(stretch, own, other, door.side);
-    let (stretch, along) = place(stretches, fits, (&between, door.at_m, width))?;
+    let (stretch, along) = locate_in_wall(stretches, fits, (&between, door.at_m, width))?;
     let inward = stretches[stretch].sides[1] == PlanCell::Room(own);
     // The model looks along +Z into the room; its left is where hinges are by default.
     let low_is_left = inward == stretches[stretch].along_x;
@@ -145,7 +145,7 @@ fn of_window<'a>(
     let fits =
         |stretch: &WallSegment| is_wall_on_side(stretch, own, PlanCell::Outside, window.side);
     let between = format!("{:?} and its {}outside", window.room, word(window.side));
-    let (stretch, along) = place(stretches, fits, (&between, window.at_m, width))?;
+    let (stretch, along) = locate_in_wall(stretches, fits, (&between, window.at_m, width))?;
     Ok(PlanOpening {
         wall_segment: stretch,
         opening: WallOpening {
@@ -184,7 +184,7 @@ fn word(side: Option<CardinalDirection>) -> String {
 }
 
 /// A stretch for which `fits` holds, and the position of the hole along it.
-fn place(
+fn locate_in_wall(
     stretches: &[WallSegment],
     fits: impl Fn(&WallSegment) -> bool,
     (between, at_m, width_m): (&str, Option<f32>, f32),

@@ -137,8 +137,8 @@ fn room_of(sides: [PlanCell; 2]) -> Option<usize> {
 }
 
 fn run_of(grid: &PlanGrid, i: usize, j: usize, thickest: Millimetres) -> WallRun {
-    let upright = across(&grid.zs, j, |j| grid.cell(i, j));
-    let level = across(&grid.xs, i, |i| grid.cell(i, j));
+    let upright = cells_across_wall(&grid.zs, j, |j| grid.cell(i, j));
+    let level = cells_across_wall(&grid.xs, i, |i| grid.cell(i, j));
     let fits = |(sides, thick): &([PlanCell; 2], Millimetres)| {
         *thick <= thickest && sides.iter().any(|side| matches!(side, PlanCell::Room(_)))
     };
@@ -151,7 +151,7 @@ fn run_of(grid: &PlanGrid, i: usize, j: usize, thickest: Millimetres) -> WallRun
 }
 
 /// Returns the cells on both sides of the wall at a place of a line of cells, and their distance.
-fn across(
+fn cells_across_wall(
     lines: &[Millimetres],
     at: usize,
     cell: impl Fn(usize) -> PlanCell,

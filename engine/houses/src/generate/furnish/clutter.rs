@@ -35,12 +35,12 @@ pub(crate) fn place_small_items(
         let spaces = space.pieces[host].model.model.spaces.len();
         for k in 0..spaces {
             let key = key.child(host as u64).child(k as u64);
-            on_one(space, rule, [host, k], amount, style, key);
+            fill_receptacle(space, rule, [host, k], amount, style, key);
         }
     }
 }
 
-fn on_one(
+fn fill_receptacle(
     space: &mut RoomLayout,
     rule: &SmallItemRule,
     [host, k]: [usize; 2],
@@ -69,7 +69,9 @@ fn on_one(
             continue;
         };
         for _ in 0..TRIES {
-            let Some(pose) = place(&space.pieces[host], k, &stock, rule.turn_deg, &mut draw) else {
+            let Some(pose) =
+                sample_pose_on(&space.pieces[host], k, &stock, rule.turn_deg, &mut draw)
+            else {
                 break;
             };
             let piece = PlacedFurniture::new(&stock, pose).anchored_to(host);
@@ -82,7 +84,7 @@ fn on_one(
 }
 
 /// A random place in a space of the host, randomly rotated; `None` when the thing is too large.
-fn place(
+fn sample_pose_on(
     host: &PlacedFurniture,
     k: usize,
     stock: &Arc<CachedModel>,

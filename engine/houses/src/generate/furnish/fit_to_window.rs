@@ -3,7 +3,7 @@
 use crate::generate::openings::WallHole;
 use dwell_furniture::finishes::Finish;
 use dwell_furniture::model::Model;
-use dwell_furniture::model_cache::{CachedModel, built_to_size};
+use dwell_furniture::model_cache::{CachedModel, cached_custom_model};
 use dwell_furniture::models::curtains_and_blinds::Curtains;
 use dwell_furniture::models::heating_and_cooling::radiator;
 use dwell_furniture::style::Style;
@@ -42,14 +42,14 @@ pub(crate) fn window_sized_model(
                 },
             };
             // One cut for all cloths.
-            let cut = built_to_size(format!("{curtains:?}"), || curtains.build());
+            let cut = cached_custom_model(format!("{curtains:?}"), || curtains.build());
             let sewn = Model::clone(&cut).with_finish_replaced("curtain_cloth", &cloth);
             Some((Arc::new(CachedModel::new("curtains", sewn)), rod_m))
         }
         "radiator" if hole.low_m > 0.45 && width_m > 0.5 => {
             let height_m = (hole.low_m - 0.3).min(0.5);
             let width_m = (0.8 * width_m).clamp(0.5, 1.4);
-            let model = built_to_size(format!("radiator {width_m} {height_m}"), || {
+            let model = cached_custom_model(format!("radiator {width_m} {height_m}"), || {
                 radiator(width_m, height_m)
             });
             Some((Arc::new(CachedModel::new("radiator", model)), 0.12))

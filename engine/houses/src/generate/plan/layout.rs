@@ -1,12 +1,12 @@
 //! Layout of rooms: the best of many drawn plans.
 
-use super::links::{connect_rooms, score_links};
+use super::links::{connect_rooms, missing_links};
 use super::storey::{STAIRS_DEPTH, STAIRS_WIDTH, StoreyFrame, StripLayout, draw_storey, end_width};
 use super::{
     GeneratedPlan, GeneratedRoom, GeneratedStorey, GridRect, GridSteps, StairwellPlan, metres,
     steps,
 };
-use crate::generate::room_program::{RoomProgram, RoomRequirement};
+use crate::generate::room_program::{RequiredRoom, RoomProgram};
 use crate::generate::rooms::GeneratedRoomKind;
 use crate::generate::spec::HomeKind;
 use dwell_scene::random::{RandomKey, RandomStream};
@@ -70,7 +70,7 @@ fn attempt(
             connections: links,
         });
     }
-    let missing_connections = score_links(&storeys, adjacency);
+    let missing_connections = missing_links(&storeys, adjacency);
     score += 3.0 * missing_connections.len() as f32;
     let stairs = stairs.then(|| {
         let west = arrangements.iter().any(|a| a.west.is_some());
@@ -91,16 +91,16 @@ fn attempt(
 
 /// Deals the rooms of a storey to the strips and ends.
 fn arrange(
-    rooms: &[RoomRequirement],
+    rooms: &[RequiredRoom],
     home: HomeKind,
     stairs: bool,
     ground: bool,
     stream: &mut RandomStream,
 ) -> StripLayout {
     use GeneratedRoomKind::{DiningRoom, Kitchen, LivingRoom, Lobby, Studio};
-    let mut rest: Vec<RoomRequirement> = rooms.to_vec();
+    let mut rest: Vec<RequiredRoom> = rooms.to_vec();
     let mut arrangement = StripLayout::default();
-    let public = |room: &RoomRequirement| matches!(room.kind, LivingRoom | Lobby | Studio);
+    let public = |room: &RequiredRoom| matches!(room.kind, LivingRoom | Lobby | Studio);
     let mut main = rest.iter().position(public);
     // Without a room for all, the largest one takes the end, or none on an upper storey.
     if main.is_none() && (rest.len() < 3 || stream.below(2) == 0) {
@@ -213,9 +213,9 @@ fn frame(
 }
 
 /// Returns the cost of the rooms' deviations from the programme; `None` when one cannot be used.
-fn faults(rooms: &[GeneratedRoom], wanted: &[RoomRequirement]) -> Option<f32> {
+fn faults(rooms: &[GeneratedRoom], wanted: &[RequiredRoom]) -> Option<f32> {
     let mut score = 0.0;
-    let mut open: Vec<&RoomRequirement> = wanted.iter().collect();
+    let mut open: Vec<&RequiredRoom> = wanted.iter().collect();
     for room in rooms {
         let area_m2: f32 = room
             .areas
@@ -226,7 +226,7 @@ fn faults(rooms: &[GeneratedRoom], wanted: &[RoomRequirement]) -> Option<f32> {
             score += 0.04 * area_m2;
             continue;
         }
-        let of_kind = |w: &&RoomRequirement| w.kind == room.kind;
+        let of_kind = |w: &&RequiredRoom| w.kind == room.kind;
         let nearest = (0..open.len())
             .filter(|k| of_kind(&open[*k]))
             .min_by(|a, b| {

@@ -12,7 +12,7 @@ const DOOR_RUN: GridSteps = 24;
 const OPEN_RUN: GridSteps = 40;
 
 /// The longest stretch between two rooms.
-fn shared(runs: &[RoomBoundary], a: usize, b: Option<usize>) -> GridSteps {
+fn longest_shared_wall(runs: &[RoomBoundary], a: usize, b: Option<usize>) -> GridSteps {
     let between = runs.iter().filter(|run| run.separates(Some(a), b));
     between.map(|run| run.to - run.from).max().unwrap_or(0)
 }
@@ -33,7 +33,7 @@ pub(super) fn connect_rooms(
     let hub = hallway.or(public).or((!rooms.is_empty()).then_some(0))?;
     let mut links = Vec::new();
     if ground {
-        (shared(&runs, hub, None) >= DOOR_RUN).then_some(())?;
+        (longest_shared_wall(&runs, hub, None) >= DOOR_RUN).then_some(())?;
         links.push(RoomConnection {
             into: hub,
             from: None,
@@ -44,13 +44,14 @@ pub(super) fn connect_rooms(
         let behind = matches!(room.kind, Kitchen | DiningRoom);
         let social = public.filter(|p| *p != k && behind);
         // Kitchens and dining rooms open wide to the living room where they touch it.
-        if let Some(public) = social.filter(|p| shared(&runs, k, Some(*p)) >= OPEN_RUN) {
+        if let Some(public) = social.filter(|p| longest_shared_wall(&runs, k, Some(*p)) >= OPEN_RUN)
+        {
             links.push(RoomConnection {
                 into: k,
                 from: Some(public),
                 kind: ConnectionKind::Open,
             });
-        } else if shared(&runs, k, Some(hub)) >= DOOR_RUN {
+        } else if longest_shared_wall(&runs, k, Some(hub)) >= DOOR_RUN {
             links.push(RoomConnection {
                 into: k,
                 from: Some(hub),
@@ -66,7 +67,7 @@ pub(super) fn connect_rooms(
             p != q
                 && rooms[*p].kind == *a
                 && rooms[*q].kind == *b
-                && shared(&runs, *p, Some(*q)) >= DOOR_RUN
+                && longest_shared_wall(&runs, *p, Some(*q)) >= DOOR_RUN
         });
         let joined = |links: &[RoomConnection], p: usize, q: usize| {
             links.iter().any(|link| {
@@ -87,7 +88,7 @@ pub(super) fn connect_rooms(
 }
 
 /// The pairs of kinds that should be connected and are not.
-pub(super) fn score_links(
+pub(super) fn missing_links(
     storeys: &[GeneratedStorey],
     adjacency: &[[GeneratedRoomKind; 2]],
 ) -> Vec<[GeneratedRoomKind; 2]> {

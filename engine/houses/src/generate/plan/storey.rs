@@ -1,7 +1,7 @@
 //! One storey: rooms in strips along a corridor.
 
 use super::{GeneratedRoom, GridRect, GridSteps, metres, steps};
-use crate::generate::room_program::RoomRequirement;
+use crate::generate::room_program::RequiredRoom;
 use crate::generate::rooms::GeneratedRoomKind;
 use dwell_scene::random::RandomStream;
 
@@ -39,12 +39,12 @@ impl StoreyFrame {
 #[derive(Clone, Debug, Default)]
 pub(super) struct StripLayout {
     /// Rooms of the northern and the southern strip from west to east.
-    pub(super) strips: [Vec<RoomRequirement>; 2],
+    pub(super) strips: [Vec<RequiredRoom>; 2],
     /// A room over the full depth at the east end, and rooms carved from it.
-    pub(super) east: Option<RoomRequirement>,
-    pub(super) corridor_rooms: Vec<RoomRequirement>,
+    pub(super) east: Option<RequiredRoom>,
+    pub(super) corridor_rooms: Vec<RequiredRoom>,
     /// A room over the full depth at the west end; the way in then crosses the southern strip.
-    pub(super) west: Option<RoomRequirement>,
+    pub(super) west: Option<RequiredRoom>,
 }
 
 impl StripLayout {
@@ -62,14 +62,14 @@ impl StripLayout {
 }
 
 /// The width of a room in a strip.
-pub(super) fn width_of(room: &RoomRequirement, depth: GridSteps) -> GridSteps {
+pub(super) fn width_of(room: &RequiredRoom, depth: GridSteps) -> GridSteps {
     let least = steps(room.kind.requirements().min_width_m);
     let depth_m = metres(depth).max(0.5);
     steps(room.area_m2 / depth_m).max(least)
 }
 
 /// Widths of rooms that fill `length` exactly, in proportion to their preferred ones; `None` when they do not fit.
-fn fill(rooms: &[RoomRequirement], depth: GridSteps, length: GridSteps) -> Option<Vec<GridSteps>> {
+fn fill(rooms: &[RequiredRoom], depth: GridSteps, length: GridSteps) -> Option<Vec<GridSteps>> {
     let wishes: Vec<GridSteps> = rooms.iter().map(|room| width_of(room, depth)).collect();
     let total: GridSteps = wishes.iter().sum();
     if total == 0 {
@@ -203,7 +203,7 @@ pub(super) fn end_width(area_m2: f32, depth: GridSteps) -> GridSteps {
 fn carve(
     living: &mut GeneratedRoom,
     block: GridRect,
-    carved: &RoomRequirement,
+    carved: &RequiredRoom,
     at_north: bool,
     aisle: [GridSteps; 2],
 ) -> Option<GeneratedRoom> {

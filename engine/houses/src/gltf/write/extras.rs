@@ -1,6 +1,6 @@
 //! Meanings of nodes: `extras.dwell`, in our names and SI units.
 
-use dwell_scene::{Articulation, HouseData, Id, Object, ObjectId, Part, PartId, Room, Structure};
+use dwell_scene::{HouseData, Id, Joint, Object, ObjectId, Part, PartId, Room, Structure};
 use serde_json::{Value, json};
 
 /// A room: its kinds, heights and floor. The floor is triangles of `[x, z]`.
@@ -88,11 +88,7 @@ pub(super) fn part(part: &Part) -> Value {
 
 /// A joint: its axis through its frame on the parent, its range and its place at the start, rad or m; its motor, and by name
 /// the joint that it follows.
-fn joint<'a>(
-    house: &HouseData,
-    joint: &Articulation,
-    part_name: impl Fn(PartId) -> &'a str,
-) -> Value {
+fn joint<'a>(house: &HouseData, joint: &Joint, part_name: impl Fn(PartId) -> &'a str) -> Value {
     let mimic = joint.mimic.map(|mimic| {
         json!({
             "leader": house.joints[mimic.leader].name,

@@ -31,17 +31,17 @@ impl<'a> Converter<'a> {
                 .iter()
                 .any(|room| ids.contains(&Some(room.as_str())))
         };
-        self.arch_where(belongs, level, room, hidden);
+        self.add_arch_elements(belongs, level, room, hidden);
     }
 
     /// Adds the elements that no node claimed.
     pub(super) fn arch_leftovers(&mut self) {
         if !self.data.levels.is_empty() {
-            self.arch_where(|_| true, LevelId(0), None, &[]);
+            self.add_arch_elements(|_| true, LevelId(0), None, &[]);
         }
     }
 
-    fn arch_where(
+    fn add_arch_elements(
         &mut self,
         wanted: impl Fn(&ArchElement) -> bool,
         level: LevelId,

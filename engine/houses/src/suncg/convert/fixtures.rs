@@ -13,7 +13,7 @@ const LEAST_CUTOFF_RAD: f32 = 0.01;
 
 impl Converter<'_> {
     /// Adds the lights of a model to a part; returns whether it has any.
-    pub(super) fn lights(
+    pub(super) fn add_lights(
         &mut self,
         model: &str,
         object: ObjectId,

@@ -20,7 +20,7 @@ use dwell_scene::{Aabb, House, HouseData, Level, LevelId, PartId, RoomId, Textur
 use glam::Affine3A;
 use tracing::debug_span;
 
-use super::read::SuncgFiles;
+use super::read::ParsedSuncgFiles;
 use crate::error::HousesError;
 use crate::import::{
     MaterialTableBuilder, UniqueNames, drop_rooms_without_floor, report_covered_rooms,
@@ -33,7 +33,7 @@ use crate::report::{FileLocation, LoadReport};
 /// [`HousesError::Field`] for axes nothing can be made of, [`HousesError::Empty`] when no triangle is left,
 /// [`HousesError::Scene`] when the result breaks a rule of the scene. Everything else is reported.
 pub fn convert(
-    files: &SuncgFiles,
+    files: &ParsedSuncgFiles,
     threads: Threads,
     report: &mut LoadReport,
 ) -> Result<House, HousesError> {
@@ -81,14 +81,14 @@ pub fn convert(
     }
     {
         let _span = debug_span!("bodies").entered();
-        converter.shape_bodies(threads);
+        converter.add_convex_colliders(threads);
     }
     converter.finish()
 }
 
 /// A house under construction.
 struct Converter<'a> {
-    files: &'a SuncgFiles,
+    files: &'a ParsedSuncgFiles,
     at: FileLocation,
     report: &'a mut LoadReport,
     /// Scale and axes of the file; the identity in every file seen.

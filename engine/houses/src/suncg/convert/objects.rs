@@ -7,7 +7,7 @@ use glam::{Affine3A, DAffine3, Vec3};
 
 use super::super::file::{BinaryFlag, NodeFile, SuncgMaterial};
 use super::super::read::paths;
-use super::parts::{ObjectPlan, PartGeometry, hinge_on_part};
+use super::parts::{ObjectDraft, PartMesh, hinge_on_part};
 use super::{Converter, NodeKey, boxes, mobility, place};
 use crate::import::CategoryRow;
 use crate::report::FileLocation;
@@ -70,7 +70,7 @@ impl<'a> Converter<'a> {
             );
         }
         let moves = mobility::is_movable_kind(row, entry);
-        let plan = ObjectPlan {
+        let plan = ObjectDraft {
             key,
             at,
             model,
@@ -135,7 +135,7 @@ impl<'a> Converter<'a> {
         None
     }
 
-    fn model_object(&mut self, plan: &ObjectPlan<'a>, path: &str, node: &'a NodeFile) {
+    fn model_object(&mut self, plan: &ObjectDraft<'a>, path: &str, node: &'a NodeFile) {
         let overrides = self.overrides(node, &plan.at);
         let Some(files) = self.files.meshes.get(path) else {
             return;
@@ -188,7 +188,7 @@ impl<'a> Converter<'a> {
             self.object_materials(files, &slots, &overrides, usual, &emissive, &plan.at);
         let shapes = meshes
             .into_iter()
-            .map(|(name, mesh)| PartGeometry {
+            .map(|(name, mesh)| PartMesh {
                 name,
                 mesh,
                 materials: materials.clone(),
@@ -264,7 +264,7 @@ impl<'a> Converter<'a> {
         };
         // Designers build steps, boards and counters from boxes, so they stay where they are.
         let row = crate::import::category(["box"]);
-        let plan = ObjectPlan {
+        let plan = ObjectDraft {
             key,
             at,
             model: "box",
@@ -277,7 +277,7 @@ impl<'a> Converter<'a> {
         };
         self.push_object(
             &plan,
-            vec![PartGeometry {
+            vec![PartMesh {
                 name: "body",
                 mesh,
                 materials,

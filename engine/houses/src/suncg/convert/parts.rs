@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use dwell_scene::parallel::Threads;
 use dwell_scene::{
-    Aabb, Articulation, Category, Collider, JointKind, MaterialId, MeshId, Mobility, Object,
-    ObjectId, Part, PartId, Pose, RoomId,
+    Aabb, Category, Collider, Joint, JointKind, MaterialId, MeshId, Mobility, Object, ObjectId,
+    Part, PartId, Pose, RoomId,
 };
 use glam::{Affine3A, Vec3};
 
@@ -23,7 +23,7 @@ const HINGE_DAMPING: f32 = 1.5;
 const LEAST_SWING_RAD: f32 = 1.6;
 
 /// The properties of an object that its node states, before its parts are made.
-pub(super) struct ObjectPlan<'a> {
+pub(super) struct ObjectDraft<'a> {
     pub(super) key: NodeKey,
     pub(super) at: FileLocation,
     pub(super) model: &'a str,
@@ -36,7 +36,7 @@ pub(super) struct ObjectPlan<'a> {
 }
 
 /// A part without its position in the tables.
-pub(super) struct PartGeometry {
+pub(super) struct PartMesh {
     pub(super) name: &'static str,
     pub(super) mesh: MeshId,
     pub(super) materials: Vec<MaterialId>,
@@ -45,8 +45,8 @@ pub(super) struct PartGeometry {
 impl Converter<'_> {
     pub(super) fn push_object(
         &mut self,
-        plan: &ObjectPlan<'_>,
-        shapes: Vec<PartGeometry>,
+        plan: &ObjectDraft<'_>,
+        shapes: Vec<PartMesh>,
         hinge: Option<(HingeOnPart, bool)>,
     ) {
         let id = ObjectId(self.data.objects.len() as u32);
@@ -81,7 +81,7 @@ impl Converter<'_> {
         let name = self.object_names.numbered(coarse);
         let center = Vec3::new(bounds.center().x, bounds.center().y, bounds.center().z);
         let room = plan.room.or_else(|| self.room_around(center));
-        let lit = self.lights(plan.model, id, first_part, &plan.at);
+        let lit = self.add_lights(plan.model, id, first_part, &plan.at);
         let categories = [plan.category.fine.as_str(), plan.category.coarse.as_str()];
         let sounds = self.sounds(plan.model, &categories, id, first_part, &plan.at);
         let switch = if lit {
@@ -114,9 +114,9 @@ impl Converter<'_> {
 
     fn part(
         &mut self,
-        plan: &ObjectPlan<'_>,
+        plan: &ObjectDraft<'_>,
         object: ObjectId,
-        shape: PartGeometry,
+        shape: PartMesh,
         swings: bool,
     ) -> Part {
         let fixed = !swings && !plan.moves;
@@ -177,7 +177,7 @@ impl Converter<'_> {
     }
 
     /// Gives every moving part its convex pieces; instances of a model at one scale share the work.
-    pub(super) fn shape_bodies(&mut self, threads: Threads) {
+    pub(super) fn add_convex_colliders(&mut self, threads: Threads) {
         let key = |part: &Part| {
             (
                 part.mesh,
@@ -243,7 +243,7 @@ fn joint(
     first: PartId,
     child: PartId,
     world_from_part: Pose,
-) -> Articulation {
+) -> Joint {
     let part_from_joint = Pose::from_position(hinge.point);
     let (closed, open) = if is_open {
         (hinge.turn_rad, 0.0)
@@ -257,7 +257,7 @@ fn joint(
     } else {
         (Some(first), part_from_joint)
     };
-    Articulation {
+    Joint {
         parent,
         parent_from_joint,
         child_from_joint: part_from_joint,
@@ -266,6 +266,6 @@ fn joint(
         open,
         friction: HINGE_FRICTION,
         damping: HINGE_DAMPING,
-        ..Articulation::new("hinge", object, child, JointKind::Hinge, Vec3::Y)
+        ..Joint::new("hinge", object, child, JointKind::Hinge, Vec3::Y)
     }
 }

@@ -10,9 +10,9 @@ use super::super::read::paths;
 use super::{Converter, NodeKey, place};
 use crate::import::room_kind;
 use crate::limits::MAX_CORNERS_SHOWN;
-use crate::obj::MeshFiles;
+use crate::obj::ParsedObj;
 use crate::obj::file::FaceGroup;
-use crate::obj::{MaterialSlots, PartShape, mesh_of_shape};
+use crate::obj::{MaterialSlots, ObjMeshSource, build_mesh};
 use crate::report::FileLocation;
 use crate::warning_kind::{UnmappedKind, WarningKind};
 
@@ -328,7 +328,7 @@ impl<'a> Converter<'a> {
 
 /// The mesh of a piece with its own few slots, and the file's slots that they are.
 fn piece_mesh(
-    files: &MeshFiles,
+    files: &ParsedObj,
     slots: &MaterialSlots,
     runs: Vec<&FaceGroup>,
     at: &FileLocation,
@@ -352,8 +352,8 @@ fn piece_mesh(
         in_file.is_some_and(|i| files.textures[i].is_some())
     });
     (
-        mesh_of_shape(
-            &PartShape {
+        build_mesh(
+            &ObjMeshSource {
                 obj: &files.obj,
                 face_groups: own,
                 box_mapping,

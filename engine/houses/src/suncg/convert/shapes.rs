@@ -7,24 +7,24 @@ use dwell_scene::parallel::Threads;
 use dwell_scene::{IdVec, Mesh, MeshId};
 
 use super::super::file::NodeFile;
-use super::super::read::{SuncgFiles, paths};
+use super::super::read::{ParsedSuncgFiles, paths};
 use super::hinge::{self, MeshHinge};
 use crate::import::{components, submesh};
-use crate::obj::MeshFiles;
-use crate::obj::{MaterialSlots, PartShape, mesh_of_shape};
+use crate::obj::ParsedObj;
+use crate::obj::{MaterialSlots, ObjMeshSource, build_mesh};
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
 
 /// The mesh of one OBJ file of a model.
 pub(super) struct ModelShape {
     pub(super) slots: MaterialSlots,
-    pub(super) full_mesh: SharedMesh,
+    pub(super) full_mesh: DeferredMesh,
     /// Its leaf and hinge, when a hinge explains its two states.
     pub(super) hinged: Option<HingedModel>,
 }
 
 /// A mesh that becomes part of the house at its first use.
-pub(super) struct SharedMesh {
+pub(super) struct DeferredMesh {
     pub(super) mesh: Arc<Mesh>,
     id: Option<MeshId>,
 }
@@ -32,14 +32,14 @@ pub(super) struct SharedMesh {
 /// A model that is split at its hinge.
 pub(super) struct HingedModel {
     /// The fixed part, if there is one.
-    pub(super) frame: Option<SharedMesh>,
+    pub(super) frame: Option<DeferredMesh>,
     /// The part that turns.
-    pub(super) leaf: SharedMesh,
+    pub(super) leaf: DeferredMesh,
     /// The hinge, and the turn to the model's other state.
     pub(super) hinge: MeshHinge,
 }
 
-impl SharedMesh {
+impl DeferredMesh {
     fn new(mesh: Mesh) -> Self {
         Self {
             mesh: Arc::new(mesh),
@@ -62,7 +62,11 @@ pub(super) struct ModelShapes {
 
 impl ModelShapes {
     /// Makes the shapes, several at once.
-    pub(super) fn build(files: &SuncgFiles, threads: Threads, report: &mut LoadReport) -> Self {
+    pub(super) fn build(
+        files: &ParsedSuncgFiles,
+        threads: Threads,
+        report: &mut LoadReport,
+    ) -> Self {
         // Model ids in use, and whether some instance puts a texture on it.
         let mut models: BTreeMap<&str, bool> = BTreeMap::new();
         for node in files.house.levels.iter().flat_map(|level| &level.nodes) {
@@ -71,12 +75,12 @@ impl ModelShapes {
                 node.kind.as_deref(),
                 node.model_id.as_deref(),
             ) {
-                *models.entry(model).or_default() |= lays_texture(files, node);
+                *models.entry(model).or_default() |= overrides_texture(files, node);
             }
         }
         let models: Vec<_> = models
             .into_iter()
-            .filter(|(model, _)| paths::is_plain(model))
+            .filter(|(model, _)| paths::is_safe_file_name(model))
             .collect();
         let built = threads.map(models.len(), |k| {
             let (model, textured) = models[k];
@@ -98,7 +102,7 @@ impl ModelShapes {
     }
 }
 
-fn lays_texture(files: &SuncgFiles, node: &NodeFile) -> bool {
+fn overrides_texture(files: &ParsedSuncgFiles, node: &NodeFile) -> bool {
     let table = node
         .material_indices
         .as_ref()
@@ -112,7 +116,7 @@ fn lays_texture(files: &SuncgFiles, node: &NodeFile) -> bool {
 
 /// The shapes of a model's one or two states.
 fn of_model(
-    files: &SuncgFiles,
+    files: &ParsedSuncgFiles,
     model: &str,
     textured: bool,
     report: &mut LoadReport,
@@ -134,19 +138,19 @@ fn of_model(
             path,
             ModelShape {
                 slots,
-                full_mesh: SharedMesh::new(mesh),
+                full_mesh: DeferredMesh::new(mesh),
                 hinged: None,
             },
         ));
     }
     if let [(_, first), (_, second)] = shapes.as_mut_slice() {
-        take_apart(first, second);
+        split_at_hinge(first, second);
     }
     shapes
 }
 
 fn model_mesh(
-    files: &MeshFiles,
+    files: &ParsedObj,
     slots: &MaterialSlots,
     textured: bool,
     at: &FileLocation,
@@ -159,8 +163,8 @@ fn model_mesh(
         .iter()
         .map(|run| (slots.of_run(run), run))
         .collect();
-    mesh_of_shape(
-        &PartShape {
+    build_mesh(
+        &ObjMeshSource {
             obj: &files.obj,
             face_groups: runs,
             box_mapping,
@@ -171,7 +175,7 @@ fn model_mesh(
 }
 
 /// Finds the hinge between the two states of a model and splits both meshes at it.
-fn take_apart(first: &mut ModelShape, second: &mut ModelShape) {
+fn split_at_hinge(first: &mut ModelShape, second: &mut ModelShape) {
     let pieces = [
         components(&first.full_mesh.mesh),
         components(&second.full_mesh.mesh),
@@ -192,10 +196,10 @@ fn take_apart(first: &mut ModelShape, second: &mut ModelShape) {
         let still: Vec<u32> = (0..mesh.triangles.len() as u32)
             .filter(|k| !is_moving[*k as usize])
             .collect();
-        let frame = (!still.is_empty()).then(|| SharedMesh::new(submesh(mesh, &still)));
+        let frame = (!still.is_empty()).then(|| DeferredMesh::new(submesh(mesh, &still)));
         shape.hinged = Some(HingedModel {
             frame,
-            leaf: SharedMesh::new(submesh(mesh, &moving)),
+            leaf: DeferredMesh::new(submesh(mesh, &moving)),
             hinge,
         });
     }

@@ -7,7 +7,7 @@ use super::super::file::SuncgMaterial;
 use super::Converter;
 use crate::import::{ImportedMaterial, category, substance_of};
 use crate::obj::MaterialSlots;
-use crate::obj::MeshFiles;
+use crate::obj::ParsedObj;
 use crate::report::FileLocation;
 use crate::warning_kind::{UnmappedKind, WarningKind};
 
@@ -15,7 +15,7 @@ impl<'a> Converter<'a> {
     /// The material of a slot of a wall, floor or ceiling.
     pub(super) fn structure_material(
         &mut self,
-        files: &'a MeshFiles,
+        files: &'a ParsedObj,
         slots: &MaterialSlots,
         slot: u16,
         kind: StructureKind,
@@ -23,7 +23,7 @@ impl<'a> Converter<'a> {
         let usual = usual_of_structure(kind);
         let surface = self.slot_surface(files, slots, usize::from(slot));
         let substance = surface.named_substance().unwrap_or(usual);
-        self.look(&surface, substance, false)
+        self.add_material(&surface, substance, false)
     }
 
     /// The material of a side of a wall or slab that has only those of `change`.
@@ -40,7 +40,7 @@ impl<'a> Converter<'a> {
         let substance = surface
             .named_substance()
             .unwrap_or_else(|| usual_of_structure(kind));
-        self.look(&surface, substance, false)
+        self.add_material(&surface, substance, false)
     }
 
     /// The materials of an object's slots after its overrides.
@@ -48,7 +48,7 @@ impl<'a> Converter<'a> {
     /// Overrides count positions in the model's MTL file; a name only labels one.
     pub(super) fn object_materials(
         &mut self,
-        files: &'a MeshFiles,
+        files: &'a ParsedObj,
         slots: &MaterialSlots,
         overrides: &[&'a SuncgMaterial],
         usual: &'static Substance,
@@ -73,7 +73,7 @@ impl<'a> Converter<'a> {
                     );
                 }
                 let substance = self.substance(&surface, usual, at);
-                self.look(&surface, substance, emissive.contains(&slot))
+                self.add_material(&surface, substance, emissive.contains(&slot))
             })
             .collect()
     }
@@ -89,12 +89,12 @@ impl<'a> Converter<'a> {
             self.apply_override(&mut surface, change, at);
         }
         let substance = self.substance(&surface, library().default_substance(), at);
-        self.look(&surface, substance, false)
+        self.add_material(&surface, substance, false)
     }
 
     fn slot_surface(
         &mut self,
-        files: &'a MeshFiles,
+        files: &'a ParsedObj,
         slots: &MaterialSlots,
         slot: usize,
     ) -> SlotSurface<'a> {
@@ -185,7 +185,7 @@ impl<'a> Converter<'a> {
         }
     }
 
-    fn look(
+    fn add_material(
         &mut self,
         surface: &SlotSurface<'a>,
         substance: &'static Substance,

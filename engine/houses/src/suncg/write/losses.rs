@@ -35,7 +35,7 @@ pub(super) fn of_house(house: &House) -> ExportLosses {
         house
             .materials
             .iter()
-            .filter(|material| has_own_numbers(material))
+            .filter(|material| differs_from_substance(material))
             .count(),
     );
     losses.add(
@@ -68,7 +68,7 @@ pub(super) fn of_house(house: &House) -> ExportLosses {
 }
 
 /// Returns whether a material differs from its substance where the format has no field.
-fn has_own_numbers(material: &Material) -> bool {
+fn differs_from_substance(material: &Material) -> bool {
     let usual = library().get_or_default(&material.substance);
     let numbers = |density: f32, friction: f32, restitution: f32, metallic: f32| {
         [density, friction, restitution, metallic].map(f32::to_bits)

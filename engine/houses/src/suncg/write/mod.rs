@@ -15,7 +15,7 @@ use dwell_scene::file::StagedPath;
 use dwell_scene::{Aabb, House, LevelId, Material, MaterialId, RoomId, State, TextureId, units};
 use glam::Vec3;
 
-use super::file::{BoundsFile, LevelFile, NodeFile, SuncgHouse};
+use super::file::{BoundsFile, NodeFile, SuncgHouse, SuncgLevel};
 use crate::atomic::write_folder;
 use crate::data_root::DataRoot;
 use crate::error::HousesError;
@@ -79,7 +79,7 @@ fn move_all(from: &Path, to: &Path, is_shared: bool) -> Result<(), HousesError> 
         let entry = entry.map_err(HousesError::io(from))?;
         let target = to.join(entry.file_name());
         if target.exists() {
-            if is_shared && is_whole(&entry.path(), &target) {
+            if is_shared && is_complete_copy(&entry.path(), &target) {
                 continue;
             }
             if target.is_dir() {
@@ -96,14 +96,14 @@ fn move_all(from: &Path, to: &Path, is_shared: bool) -> Result<(), HousesError> 
 }
 
 /// Returns whether all that a file or folder has is there with as many bytes: its name is the content's.
-fn is_whole(made: &Path, there: &Path) -> bool {
+fn is_complete_copy(made: &Path, there: &Path) -> bool {
     let Ok(entries) = fs::read_dir(made) else {
         let bytes = |path: &Path| fs::metadata(path).ok().map(|found| found.len());
         return there.is_file() && bytes(made) == bytes(there);
     };
     entries
         .flatten()
-        .all(|entry| is_whole(&entry.path(), &there.join(entry.file_name())))
+        .all(|entry| is_complete_copy(&entry.path(), &there.join(entry.file_name())))
 }
 
 /// Writes the tables of a data root that [`write_into`] filled: once, after the last house, or again at any time.
@@ -158,11 +158,11 @@ impl<'a> SuncgWriter<'a> {
         losses: &mut crate::export_loss::ExportLosses,
     ) -> Result<(), HousesError> {
         self.textures()?;
-        let mut levels: Vec<LevelFile> = Vec::new();
+        let mut levels: Vec<SuncgLevel> = Vec::new();
         for (id, level) in self.house.levels.iter_ids() {
             let nodes = self.nodes(id, losses)?;
             let (id, bbox) = (Some(level.name.clone()), bounds(&level.bounds));
-            levels.push(LevelFile {
+            levels.push(SuncgLevel {
                 id,
                 valid: None,
                 bbox,
@@ -261,7 +261,7 @@ impl<'a> SuncgWriter<'a> {
         Ok(nodes)
     }
 
-    fn house_file(&self, levels: Vec<LevelFile>) -> Result<(), HousesError> {
+    fn house_file(&self, levels: Vec<SuncgLevel>) -> Result<(), HousesError> {
         let all = self
             .house
             .levels

@@ -3,8 +3,7 @@
 use std::collections::BTreeMap;
 
 use dwell_scene::{
-    Articulation, House, JointId, JointKind, MaterialId, Mobility, Object, ObjectId, Part, PartId,
-    Pose,
+    House, Joint, JointId, JointKind, MaterialId, Mobility, Object, ObjectId, Part, PartId, Pose,
 };
 use glam::{Affine3A, Mat4, Vec3};
 
@@ -41,7 +40,7 @@ impl WrittenModels {
 }
 
 /// The hinge that a model's two states can show: the positions of the joint in them.
-struct TwoStates {
+struct TwoStateHinge {
     joint: JointId,
     /// The initial position of the door, or fully open when it starts closed.
     open: f32,
@@ -142,7 +141,7 @@ impl SuncgWriter<'_> {
         object_id: ObjectId,
         mut row: ModelRow,
         materials: &[MaterialId],
-        states: Option<&TwoStates>,
+        states: Option<&TwoStateHinge>,
         losses: &mut ExportLosses,
     ) -> Result<String, HousesError> {
         let house = self.house;
@@ -293,7 +292,7 @@ fn key_of_row(row: &ModelRow) -> String {
 fn pieces<'a>(
     house: &'a House,
     object: &Object,
-    joint: Option<(&Articulation, f32)>,
+    joint: Option<(&Joint, f32)>,
 ) -> Vec<ModelPiece<'a>> {
     let root = &house.parts[object.first_part];
     let mut first_slot = 0;
@@ -327,7 +326,7 @@ fn pieces<'a>(
 }
 
 /// The two states of an object, when its only joint is an upright hinge of a leaf on a frame.
-fn two_states(house: &House, id: ObjectId) -> Option<TwoStates> {
+fn two_states(house: &House, id: ObjectId) -> Option<TwoStateHinge> {
     let object = &house.objects[id];
     let mut joints = house.joints_of(id);
     let (joint_id, None) = (joints.next()?, joints.next()) else {
@@ -347,7 +346,7 @@ fn two_states(house: &House, id: ObjectId) -> Option<TwoStates> {
         && object.part_count > 1
         && joint.parent == Some(object.first_part);
     let turns = (open - joint.closed).abs() > 0.06;
-    (fits && turns).then_some(TwoStates {
+    (fits && turns).then_some(TwoStateHinge {
         joint: joint_id,
         open,
         closed: joint.closed,

@@ -8,14 +8,14 @@ use super::tree_packet::PacketClosestHits;
 use crate::simd_dispatch::SimdKernel;
 
 /// Offers all hits that may matter to the results.
-pub(in super::super) struct ClosestPacket<'a, 'b, const N: usize> {
+pub(in super::super) struct ClosestPacketQuery<'a, 'b, const N: usize> {
     pub(in super::super) scene: &'a SceneBvh<'b>,
     pub(in super::super) rays: &'a RayPacket<N>,
     pub(in super::super) filter: &'a HitFilter,
     pub(in super::super) hits: &'a mut PacketClosestHits<N>,
 }
 
-impl<const N: usize> SimdKernel for ClosestPacket<'_, '_, N> {
+impl<const N: usize> SimdKernel for ClosestPacketQuery<'_, '_, N> {
     type Output = ();
 
     #[inline(always)]
@@ -25,13 +25,13 @@ impl<const N: usize> SimdKernel for ClosestPacket<'_, '_, N> {
 }
 
 /// The rays that hit anything, as bits.
-pub(in super::super) struct OccludedPacket<'a, 'b, const N: usize> {
+pub(in super::super) struct OccludedPacketQuery<'a, 'b, const N: usize> {
     pub(in super::super) scene: &'a SceneBvh<'b>,
     pub(in super::super) rays: &'a RayPacket<N>,
     pub(in super::super) filter: &'a HitFilter,
 }
 
-impl<const N: usize> SimdKernel for OccludedPacket<'_, '_, N> {
+impl<const N: usize> SimdKernel for OccludedPacketQuery<'_, '_, N> {
     type Output = u64;
 
     #[inline(always)]
@@ -82,7 +82,7 @@ mod tests {
             let answer = |level: SimdLevel| {
                 let mut hits = PacketHits::<N>::new();
                 scene.closest_packet_at_level(level, &rays, &filter, &mut hits);
-                let blocked = level.run(OccludedPacket {
+                let blocked = level.run(OccludedPacketQuery {
                     scene,
                     rays: &rays,
                     filter: &filter,

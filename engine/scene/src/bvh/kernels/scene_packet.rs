@@ -44,7 +44,7 @@ pub(super) fn closest<const N: usize>(
     );
     if !scene.moving.is_empty() {
         fan.prepare_for_tree(&scene.moving.tree.bounds);
-        let mut moving = ClosestInstances {
+        let mut moving = ClosestInstanceVisitor {
             set: scene.moving,
             filter,
             answers,
@@ -83,7 +83,7 @@ pub(super) fn occluded<const N: usize>(
         traverse(
             &scene.moving.tree,
             &mut fan,
-            &mut OccludedInstances {
+            &mut OccludedInstanceVisitor {
                 set: scene.moving,
                 filter,
             },
@@ -127,7 +127,7 @@ fn packet_in_instance<const N: usize>(
 }
 
 /// [`ClosestLeafVisitor`] over the instances of a set.
-struct ClosestInstances<'a, const N: usize, C> {
+struct ClosestInstanceVisitor<'a, const N: usize, C> {
     set: &'a InstanceSet,
     filter: &'a HitFilter,
     answers: &'a mut PacketClosestHits<N>,
@@ -135,7 +135,7 @@ struct ClosestInstances<'a, const N: usize, C> {
 }
 
 impl<const N: usize, C: Fn(usize, HitIndex) -> TieBreak + Copy> PacketLeafVisitor<N>
-    for ClosestInstances<'_, N, C>
+    for ClosestInstanceVisitor<'_, N, C>
 {
     #[inline(always)]
     fn visit_leaf(&mut self, fan: &mut PreparedPacket<N>, instance: usize) -> bool {
@@ -164,12 +164,12 @@ impl<const N: usize, C: Fn(usize, HitIndex) -> TieBreak + Copy> PacketLeafVisito
 }
 
 /// [`OccludedLeafVisitor`] over the instances of a set.
-struct OccludedInstances<'a> {
+struct OccludedInstanceVisitor<'a> {
     set: &'a InstanceSet,
     filter: &'a HitFilter,
 }
 
-impl<const N: usize> PacketLeafVisitor<N> for OccludedInstances<'_> {
+impl<const N: usize> PacketLeafVisitor<N> for OccludedInstanceVisitor<'_> {
     #[inline(always)]
     fn visit_leaf(&mut self, fan: &mut PreparedPacket<N>, instance: usize) -> bool {
         let placed = &self.set.placed[instance];

@@ -69,7 +69,7 @@ impl PreparedRay {
 
     /// Returns the children whose boxes the ray enters up to `limit`, as bits, and the entry distances.
     #[inline(always)]
-    fn enters(&self, node: &Node, limit: f32) -> (u32, Vec4) {
+    fn intersect_children(&self, node: &Node, limit: f32) -> (u32, Vec4) {
         let (enter, leave) = slab_range4(
             node,
             &self.wide,
@@ -123,7 +123,7 @@ pub(super) fn traverse(
             }
         } else {
             let node = &tree.nodes[index];
-            let (hits, enter) = probe.enters(node, limit);
+            let (hits, enter) = probe.intersect_children(node, limit);
             if hits != 0 {
                 link = super::push_further(node, hits, enter, &mut stack, &mut top);
                 continue;
