@@ -2,16 +2,67 @@
 
 from __future__ import annotations
 
+import functools
+import re
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+
 import pytest
 
 import dwell
+from dwell import cli
+
+Open = Callable[[str, int | None], dwell.House]
 
 
 @pytest.fixture(scope="session")
-def apartment() -> dwell.House:
-    return dwell.House.open("builtin:apartment")
+def opened() -> Open:
+    """Opens a house the first time that it is asked for, and then gives the same one."""
+    return functools.cache(dwell.House.open_by)
+
+
+@pytest.fixture(scope="session")
+def apartment(opened: Open) -> dwell.House:
+    return opened("builtin:apartment", None)
 
 
 @pytest.fixture(scope="session")
 def shoebox() -> dwell.House:
     return dwell.House.shoebox((6.0, 3.0, 5.0), substance="plaster")
+
+
+@pytest.fixture
+def open_once(
+    request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch, opened: Open
+) -> None:
+    """Built-in houses that are opened by their names are those of the tests before.
+
+    Houses do not change, and what engines derive from one (grids, planes, sound) is then made once
+    in a process and not in each test. For files that ask what happens in a house, not for those
+    about opening one or deriving from it; tests marked ``fresh`` open their own.
+    """
+    if request.node.get_closest_marker("fresh"):
+        return
+    open_by = dwell.House.open_by
+
+    def open_builtin(name: str, threads: int | None) -> dwell.House:
+        is_builtin = isinstance(name, str) and re.fullmatch(r"builtin:\w+", name)
+        return opened(name, threads) if is_builtin else open_by(name, threads)
+
+    monkeypatch.setattr(dwell.House, "open_by", staticmethod(open_builtin))
+
+
+@pytest.fixture
+def command(
+    capfd: pytest.CaptureFixture[str],
+) -> Callable[..., subprocess.CompletedProcess[str]]:
+    """``dwell ARGUMENTS`` in this process: the status, and what was printed."""
+
+    def run(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+        words = [*map(str, arguments)]
+        capfd.readouterr()
+        status = cli.main(words)
+        return subprocess.CompletedProcess(words, status, *capfd.readouterr())
+
+    return run

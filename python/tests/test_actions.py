@@ -10,6 +10,8 @@ import pytest
 import dwell
 import dwell.world
 
+pytestmark = pytest.mark.usefixtures("open_once")
+
 
 @pytest.fixture
 def world(apartment: dwell.House) -> dwell.World:

@@ -14,6 +14,8 @@ import pytest
 import dwell
 from dwell.envs import DwellEnv, DwellVectorEnv
 
+pytestmark = pytest.mark.usefixtures("open_once")
+
 HOUSE = "builtin:apartment"
 SMALL = {"rgb": {"width": 16, "height": 16}, "instruction": {}}
 MOON = "world/gravity_m_s2"

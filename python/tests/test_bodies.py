@@ -11,6 +11,8 @@ import pytest
 import dwell
 from dwell.configs import LOCOMOTIONS
 
+pytestmark = pytest.mark.usefixtures("open_once")
+
 DRIVE = {"locomotion": {"differential_drive": {"wheel_base_m": 0.4, "left_wheel_radius_m": 0.05}}}
 HOLONOMIC = {"locomotion": {"holonomic": {"max_sideways_m_s": 0.5}}}
 

@@ -15,6 +15,8 @@ import dwell.measures
 from dwell import plans, sound_maps
 from dwell.envs import DwellEnv, DwellVectorEnv
 
+pytestmark = pytest.mark.usefixtures("open_once")
+
 ROBOT = Path(__file__).parents[2] / "physics" / "tests" / "it" / "robots" / "gripper.urdf"
 
 

@@ -20,6 +20,8 @@ from dwell import charts, places, plans, relations, sound_maps
 from dwell.envs import DwellEnv, DwellVectorEnv
 from dwell.language import say
 
+pytestmark = pytest.mark.usefixtures("open_once")
+
 
 class Blank(dwell.Sensor):
     space = gymnasium.spaces.Discrete(2)

@@ -7,6 +7,7 @@ import re
 import subprocess
 import sys
 import wave
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +20,12 @@ from dwell.sounds import read_wav
 HOUSE = "builtin:apartment"
 
 
-def dwell(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+Command = Callable[..., subprocess.CompletedProcess[str]]
+pytestmark = pytest.mark.usefixtures("open_once")
+
+
+def process(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    """``dwell ARGUMENTS`` in a process of its own; the fixture ``command`` runs it in this one."""
     command = [sys.executable, "-m", "dwell.cli", *map(str, arguments)]
     return subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
 
@@ -42,44 +48,46 @@ def two_points() -> tuple[str, str]:
 
 
 def test_exit_statuses_tell_failure_from_bad_usage() -> None:
-    assert dwell("info", HOUSE).returncode == 0
-    missing = dwell("info", "builtin:castle")
+    assert process("info", HOUSE).returncode == 0
+    missing = process("info", "builtin:castle")
     assert missing.returncode == 1
     assert missing.stdout == ""
     assert "castle" in missing.stderr
     assert missing.stderr.count("\n") == 1
-    assert dwell("cook", HOUSE).returncode == 2
-    assert dwell("render").returncode == 2
-    assert dwell("render", HOUSE, "--at", "1,2", "--out", "x").returncode == 2
-    assert dwell().returncode == 2
+    assert process("cook", HOUSE).returncode == 2
+    assert process("render").returncode == 2
+    assert process("render", HOUSE, "--at", "1,2", "--out", "x").returncode == 2
+    assert process().returncode == 2
 
 
 def test_doctor_and_info_print_one_object(monkeypatch: pytest.MonkeyPatch) -> None:
     # As on a server, where drivers of the desktop complain.
     monkeypatch.delenv("XDG_RUNTIME_DIR", raising=False)
-    doctor = dwell("doctor", "--json")
+    doctor = process("doctor", "--json")
     assert "XDG_RUNTIME_DIR" not in doctor.stderr
     assert "cpu" in str(one_object(doctor)["render_back_ends"])
-    info = one_object(dwell("info", HOUSE, "--json"))
+    info = one_object(process("info", HOUSE, "--json"))
     assert {"rooms", "objects", "triangles"} <= set(info)
 
 
 def test_render_writes_pictures_and_exact_arrays(
-    tmp_path: Path, two_points: tuple[str, str]
+    tmp_path: Path, two_points: tuple[str, str], command: Command
 ) -> None:
     out = tmp_path / "views"
     sensors = "rgb,depth,instance,semantic"
     where = ("--at", two_points[0], "--width", "64", "--height", "48")
-    files = one_object(dwell("render", HOUSE, *where, "--sensors", sensors, "--out", out, "--json"))
+    files = one_object(
+        command("render", HOUSE, *where, "--sensors", sensors, "--out", out, "--json")
+    )
     names = {Path(name).name for name in files["files"]}  # type: ignore[attr-defined]
     assert names >= {"view_rgb.png", "view_depth.npy", "view_instance.png"}
     assert not [path for path in out.iterdir() if path.name.startswith(".")]
-    assert dwell("render", HOUSE, "--sensors", "smell", "--out", out).returncode == 1
+    assert command("render", HOUSE, "--sensors", "smell", "--out", out).returncode == 1
 
 
-def test_describe_writes_lines_and_reports_bad_houses(tmp_path: Path) -> None:
+def test_describe_writes_lines_and_reports_bad_houses(tmp_path: Path, command: Command) -> None:
     out = tmp_path / "lines.jsonl"
-    done = dwell("describe", HOUSE, "builtin:castle", "--level", "room", "--out", out)
+    done = command("describe", HOUSE, "builtin:castle", "--level", "room", "--out", out)
     assert done.returncode == 1
     assert "castle" in done.stderr
     rows = [json.loads(line) for line in out.read_text("utf-8").splitlines()]
@@ -87,11 +95,13 @@ def test_describe_writes_lines_and_reports_bad_houses(tmp_path: Path) -> None:
     assert all(row["text"].endswith(".") for row in rows)
 
 
-def test_ir_writes_a_sound_and_its_measures(tmp_path: Path, two_points: tuple[str, str]) -> None:
+def test_ir_writes_a_sound_and_its_measures(
+    tmp_path: Path, two_points: tuple[str, str], command: Command
+) -> None:
     out = tmp_path / "ir.wav"
     points = ("--source", two_points[0], "--mic", two_points[1])
     asked = ("ir", HOUSE, *points, "--rays", "500", "--out", out, "--json")
-    facts = one_object(dwell(*asked))
+    facts = one_object(command(*asked))
     assert (facts["bits"], facts["full_scale_pa"]) == (32, 1.0)
     sound, rate_hz = read_wav(out)
     assert (rate_hz, sound.shape) == (facts["rate_hz"], (1, facts["samples"]))
@@ -99,16 +109,17 @@ def test_ir_writes_a_sound_and_its_measures(tmp_path: Path, two_points: tuple[st
     # Levels stay: four times as far from the source it is fainter.
     source = [float(x) for x in two_points[0].split(",")]
     near = ",".join(str(x) for x in (source[0] + 0.3, source[1], source[2]))
-    loud = one_object(dwell("ir", HOUSE, "--source", two_points[0], "--mic", near, "--json"))
+    points = ("--source", two_points[0], "--mic", near, "--rays", "500")
+    loud = one_object(command("ir", HOUSE, *points, "--json"))
     assert float(str(loud["peak_pa"])) > 2.0
-    facts = one_object(dwell(*asked, "--bits", "16"))
+    facts = one_object(command(*asked, "--bits", "16"))
     assert (facts["bits"], facts["full_scale_pa"]) == (16, facts["peak_pa"])
     with wave.open(str(out)) as file:
         assert (file.getsampwidth(), file.getframerate()) == (2, facts["rate_hz"])
     again, _ = read_wav(out, full_scale_pa=float(str(facts["full_scale_pa"])))
     assert float(np.abs(again - sound).max()) < 2e-5 * float(str(facts["peak_pa"]))
-    assert dwell("ir", HOUSE).returncode == 1
-    assert dwell(*asked, "--bits", "24").returncode == 2
+    assert command("ir", HOUSE).returncode == 1
+    assert command(*asked, "--bits", "24").returncode == 2
 
 
 @pytest.mark.parametrize(
@@ -119,8 +130,10 @@ def test_ir_writes_a_sound_and_its_measures(tmp_path: Path, two_points: tuple[st
         ("physics", "physics_steps_per_s", ("--steps", "5")),
     ],
 )
-def test_bench_gives_its_figure(stage: str, figure: str, small: tuple[str, ...]) -> None:
-    told = one_object(dwell("bench", stage, HOUSE, "--repeats", "1", *small, "--json"))
+def test_bench_gives_its_figure(
+    stage: str, figure: str, small: tuple[str, ...], command: Command
+) -> None:
+    told = one_object(command("bench", stage, HOUSE, "--repeats", "1", *small, "--json"))
     assert float(str(told[figure])) > 0.0
 
 
@@ -139,20 +152,20 @@ def test_bench_tells_how_far_it_is_and_ends_where_its_listener_raises() -> None:
         _native.bench("physics", HOUSE, options, stop)
 
 
-def test_bench_measures_batches_by_size_and_path() -> None:
+def test_bench_measures_batches_by_size_and_path(command: Command) -> None:
     small = ("--repeats", "1", "--batch", "1,3", "--resolution", "16,24", "--json")
-    by_cpu = one_object(dwell("bench", "render", HOUSE, "--backend", "cpu", *small))["rows"]
+    by_cpu = one_object(command("bench", "render", HOUSE, "--backend", "cpu", *small))["rows"]
     assert isinstance(by_cpu, list)
     sizes = [(row["resolution"], row["batch"]) for row in by_cpu]
     assert sizes == [(16, 1), (16, 3), (24, 1), (24, 3)]
     assert all(row["views_per_s"] > 0.0 for row in by_cpu)
-    assert "several" in dwell("bench", "render", HOUSE, "--resolution", "16,24").stderr
-    adapters = one_object(dwell("doctor", "--json"))["graphics_adapters"]
+    assert "several" in command("bench", "render", HOUSE, "--resolution", "16,24").stderr
+    adapters = one_object(command("doctor", "--json"))["graphics_adapters"]
     assert isinstance(adapters, list)
     if not adapters:
         pytest.skip("no graphics adapter, not even of software")
     back_end = ("--backend", f"gpu:{adapters[0]['name']}")
-    table = one_object(dwell("bench", "render", HOUSE, *back_end, *small))
+    table = one_object(command("bench", "render", HOUSE, *back_end, *small))
     rows = table["rows"]
     assert isinstance(rows, list)
     assert len(rows) == 8
@@ -163,24 +176,24 @@ def test_bench_measures_batches_by_size_and_path() -> None:
         assert row["views_per_s"] < row["bound_views_per_s"]
 
 
-def test_calibrate_finds_what_the_example_hides(tmp_path: Path) -> None:
+def test_calibrate_finds_what_the_example_hides(tmp_path: Path, command: Command) -> None:
     from dwell import _native
 
     bundle = tmp_path / "throws.measured"
     hidden = _native.calibration_example(str(bundle), 1)
     out = tmp_path / "report"
-    report = one_object(dwell("calibrate", bundle, "--out", out, "--json"))
+    report = one_object(command("calibrate", bundle, "--out", out, "--json"))
     assert "drag" in hidden
     assert "drag" in str(report["sentence"])
     assert "<svg" in (out / "report.html").read_text("utf-8")
     found = json.loads((out / "found.json").read_text("utf-8"))
     assert found["laws"][0]["id"] == "drag"
-    assert dwell("calibrate", tmp_path / "nothing").returncode == 1
+    assert command("calibrate", tmp_path / "nothing").returncode == 1
 
 
-def test_demo_writes_a_page_that_needs_no_network(tmp_path: Path) -> None:
-    out = tmp_path / "demo"
-    summary = one_object(dwell("demo", HOUSE, "--out", out, "--json"))
+def look_at_demo(out: Path, done: subprocess.CompletedProcess[str]) -> dict[str, object]:
+    """Checks the folder of a demo; returns the summary."""
+    summary = one_object(done)
     assert summary["fulfilled"] is True
     page = (out / "index.html").read_text("utf-8")
     assert not re.search(r"(src|href)=[\"']?(https?:)?//", page)
@@ -190,52 +203,88 @@ def test_demo_writes_a_page_that_needs_no_network(tmp_path: Path) -> None:
         frames = sound.readframes(sound.getnframes())
     assert any(frames)
     assert float(str(summary["errand_full_scale_pa"])) > 0.0
-    assert dwell("demo", HOUSE, "--out", tmp_path).returncode == 1, "a folder that no demo wrote"
+    return summary
 
 
-def test_points_may_be_negative_and_must_be_finite(tmp_path: Path) -> None:
+@pytest.mark.slow
+def test_demo_writes_a_page_that_needs_no_network(tmp_path: Path) -> None:
+    out = tmp_path / "demo"
+    look_at_demo(out, process("demo", HOUSE, "--out", out, "--json"))
+    done = process("demo", HOUSE, "--out", tmp_path)
+    assert done.returncode == 1, "a folder that no demo wrote"
+
+
+def test_demo_of_a_small_house_writes_a_page(
+    tmp_path: Path, command: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from dwell.camera import Camera
+    from dwell.demo import episode, instruction, throughput
+
+    # Without the bench of acoustics, which first computes references: half a minute.
+    small = {
+        "load": {"repeats": 1},
+        "render": {"repeats": 1},
+        "physics": {"repeats": 1, "steps": 2, "worlds": 2},
+        "env": {"envs": 1, "steps": 2},
+    }
+    assert set(small) < set(throughput._RUNS)
+    monkeypatch.setattr(throughput, "_RUNS", small)
+    monkeypatch.setattr(episode, "CAMERA", Camera(64, 48))
+    # A short way.
+    monkeypatch.setattr(instruction, "_SEED", 4)
+    out = tmp_path / "demo"
+    summary = look_at_demo(out, command("demo", "builtin:studio", "--out", out, "--json"))
+    figures = summary["figures"]
+    assert isinstance(figures, dict)
+    assert set(figures) == set(small)
+    assert not [stage for stage, found in figures.items() if "failed" in found]
+    done = command("demo", "builtin:studio", "--out", tmp_path)
+    assert done.returncode == 1, "a folder that no demo wrote"
+
+
+def test_points_may_be_negative_and_must_be_finite(tmp_path: Path, command: Command) -> None:
     points = ("--source", "-2,1.5,6", "--mic", "-1.5,1.5,-6.5")
-    assert dwell("ir", HOUSE, *points, "--rays", "10", "--json").returncode == 0
+    assert command("ir", HOUSE, *points, "--rays", "10", "--json").returncode == 0
     for where in ("nan,0,0", "inf,0,0", "-1,nan,2"):
-        done = dwell("render", HOUSE, "--at", where, "--out", tmp_path / "x")
+        done = command("render", HOUSE, "--at", where, "--out", tmp_path / "x")
         assert done.returncode == 2
         assert "finite" in done.stderr
 
 
-def test_a_sound_has_the_name_of_one(tmp_path: Path) -> None:
+def test_a_sound_has_the_name_of_one(tmp_path: Path, command: Command) -> None:
     points = ("--source", "-2,1.5,6", "--mic", "-1.5,1.5,-6.5")
-    done = dwell("ir", HOUSE, *points, "--rays", "10", "--out", tmp_path / "x.mp3")
+    done = command("ir", HOUSE, *points, "--rays", "10", "--out", tmp_path / "x.mp3")
     assert done.returncode == 1
     assert "expected the name of a .wav file" in done.stderr
     assert not list(tmp_path.iterdir())
 
 
-def test_bad_files_and_numbers_get_a_sentence(tmp_path: Path) -> None:
+def test_bad_files_and_numbers_get_a_sentence(tmp_path: Path, command: Command) -> None:
     path = tmp_path / "house.json"
     for text in ('{"position": 1}', "[1]", '[{"position": [0, 0], "forward": [0, 0, 1]}]', "{"):
         path.write_text(text, "utf-8")
-        done = dwell("bench", "render", HOUSE, "--views", path)
+        done = command("bench", "render", HOUSE, "--views", path)
         assert done.returncode == 1
         assert str(path) in done.stderr
         assert done.stderr.count("\n") == 1
     path.write_text('[{"position": [0, 0, 0], "forward": [0, 0.0, 0]}]', "utf-8")
-    done = dwell("bench", "render", HOUSE, "--views", path)
+    done = command("bench", "render", HOUSE, "--views", path)
     assert done.returncode == 1
     assert f"{path}: view 0: forward is 0" in done.stderr
     path.write_text("[]", "utf-8")
-    assert "JSON object" in dwell("bench", "physics", HOUSE, "--boxes", path).stderr
+    assert "JSON object" in command("bench", "physics", HOUSE, "--boxes", path).stderr
     rows = {"fixed": [], "dynamic": [{"position": [0, 0, 0]}], "density_kg_m3": 1}
     path.write_text(json.dumps({**rows, "physics_rate_hz": 100}))
-    told = dwell("bench", "physics", HOUSE, "--boxes", path).stderr
+    told = command("bench", "physics", HOUSE, "--boxes", path).stderr
     assert f"{path}: dynamic[0]: expected center and half_extents, [x, y, z] in metres" in told
     none = {"fixed": [], "dynamic": [], "density_kg_m3": 400, "physics_rate_hz": 0}
     path.write_text(json.dumps(none), "utf-8")
-    told = dwell("bench", "physics", HOUSE, "--boxes", path).stderr
+    told = command("bench", "physics", HOUSE, "--boxes", path).stderr
     assert "boxes.physics_rate_hz is 0; allowed is 5 to 5000 Hz" in told
-    done = dwell("describe", HOUSE, "--level", "instructions", "--seed", "-1")
+    done = command("describe", HOUSE, "--level", "instructions", "--seed", "-1")
     assert done.returncode == 2
     assert "whole number" in done.stderr
-    missing = dwell("describe", "nope.obj")
+    missing = command("describe", "nope.obj")
     assert missing.stderr.count("nope.obj") == 1
 
 
@@ -347,63 +396,71 @@ def test_an_interrupted_describe_refuses_a_house_that_has_changed(
     assert main(command) == 0
 
 
-def test_what_the_demo_cannot_walk_through_is_refused(tmp_path: Path) -> None:
+def test_what_the_demo_cannot_walk_through_is_refused(tmp_path: Path, command: Command) -> None:
     thing = tmp_path / "thing.obj"
     thing.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "utf-8")
-    done = dwell("demo", thing, "--out", tmp_path / "demo")
+    done = command("demo", thing, "--out", tmp_path / "demo")
     assert done.returncode == 1
     assert "no rooms" in done.stderr
     assert "Traceback" not in done.stderr
 
 
-def test_calibrate_refuses_a_house_where_none_was_measured_in(tmp_path: Path) -> None:
+def test_calibrate_refuses_a_house_where_none_was_measured_in(
+    tmp_path: Path, command: Command
+) -> None:
     from dwell import _native
 
     bundle = tmp_path / "throws.measured"
     _native.calibration_example(str(bundle), 1)
-    done = dwell("calibrate", bundle, "--house", "nope")
+    done = command("calibrate", bundle, "--house", "nope")
     assert done.returncode == 1
     assert "house" in done.stderr
 
 
-def test_a_response_obeys_laws(tmp_path: Path, two_points: tuple[str, str]) -> None:
+def test_a_response_obeys_laws(
+    tmp_path: Path, two_points: tuple[str, str], command: Command
+) -> None:
     points = ("--source", two_points[0], "--mic", two_points[1], "--rays", "20", "--json")
-    plain = one_object(dwell("ir", HOUSE, *points))
+    plain = one_object(command("ir", HOUSE, *points))
     laws = tmp_path / "found.json"
     law = {"id": "microphone_gain", "version": 1, "params": {"gain_db": 20.0}}
     laws.write_text(json.dumps({"laws": [law], "parameters": {}}), "utf-8")
-    louder = one_object(dwell("ir", HOUSE, *points, "--laws", laws))
+    louder = one_object(command("ir", HOUSE, *points, "--laws", laws))
     assert isinstance(louder["peak_pa"], float)
     assert isinstance(plain["peak_pa"], float)
     assert abs(louder["peak_pa"] / plain["peak_pa"] - 10.0) < 1e-4
-    missing = dwell("ir", HOUSE, *points, "--laws", tmp_path / "no.json")
+    missing = command("ir", HOUSE, *points, "--laws", tmp_path / "no.json")
     assert missing.returncode == 1
     assert "no.json" in missing.stderr
 
 
-def test_measures_of_a_response_name_their_bands(two_points: tuple[str, str]) -> None:
+def test_measures_of_a_response_name_their_bands(
+    two_points: tuple[str, str], command: Command
+) -> None:
     points = ("--source", two_points[0], "--mic", two_points[1], "--rays", "20")
-    metrics = one_object(dwell("ir", HOUSE, *points, "--json"))["metrics"]
+    metrics = one_object(command("ir", HOUSE, *points, "--json"))["metrics"]
     assert [row["centre_hz"] for row in metrics][:3] == [62.5, 125, 250]  # type: ignore[attr-defined]
-    assert "1000 Hz: " in dwell("ir", HOUSE, *points).stdout
+    assert "1000 Hz: " in command("ir", HOUSE, *points).stdout
 
 
 def test_sensors_maps_and_dolls_houses_are_all_written(
-    tmp_path: Path, two_points: tuple[str, str]
+    tmp_path: Path, two_points: tuple[str, str], command: Command
 ) -> None:
     at, size = ("--at", two_points[0]), ("--width", "40", "--height", "30")
     out = ("--out", tmp_path / "all", "--json")
     pictures = one_object(
-        dwell("render", HOUSE, "--sensors", "rgb,depth", *at, *size, "--map", "--dollhouse", *out)
+        command("render", HOUSE, "--sensors", "rgb,depth", *at, *size, "--map", "--dollhouse", *out)
     )
     names = {Path(str(file)).name for file in pictures["files"]}  # type: ignore[attr-defined]
     assert {"view_rgb.png", "view_depth.npy", "map_0.png", "dollhouse.png"} <= names
     assert all((tmp_path / "all" / name).exists() for name in names)
     # Without --sensors and --at only what is asked for.
     out = ("--out", tmp_path / "one", "--json")
-    alone = one_object(dwell("render", "builtin:studio", *size[:2], "--map", *out))
+    alone = one_object(command("render", "builtin:studio", *size[:2], "--map", *out))
     assert [Path(str(file)).name for file in alone["files"]] == ["map_0.png"]  # type: ignore[attr-defined]
-    several = dwell("render", "seed:1", "seed:2", "--sheet", "--sensors", "rgb", "--out", tmp_path)
+    several = command(
+        "render", "seed:1", "seed:2", "--sheet", "--sensors", "rgb", "--out", tmp_path
+    )
     assert several.returncode != 0
     assert "without --sensors" in several.stderr
 

@@ -19,6 +19,8 @@ from dwell.engine_types import (
 from dwell.envs import DwellEnv
 from dwell.envs.config import EnvSettings, arguments_of
 
+pytestmark = pytest.mark.usefixtures("open_once")
+
 #: What World has as arguments of their own.
 _OWN = {"agents", "laws", "parameters"}
 

@@ -19,6 +19,8 @@ from dwell import _native
 from dwell.envs import DwellEnv, DwellVectorEnv
 from dwell.envs.snapshots import check_and_strip, with_checksum
 
+pytestmark = pytest.mark.usefixtures("open_once")
+
 STEPS = 40
 
 

@@ -13,6 +13,8 @@ import pytest
 import dwell
 from dwell.envs import DwellEnv, DwellVectorEnv
 
+pytestmark = pytest.mark.usefixtures("open_once")
+
 
 class Side(enum.IntEnum):
     LEFT = 1

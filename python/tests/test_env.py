@@ -13,6 +13,8 @@ from gymnasium.utils.env_checker import check_env
 import dwell
 from dwell.envs import DwellEnv, DwellVectorEnv
 
+pytestmark = pytest.mark.usefixtures("open_once")
+
 ENV_ID = "dwell/InstructionFollowing-v0"
 SMALL = {
     "rgb": {"width": 32, "height": 24},
@@ -45,8 +47,8 @@ def test_observations_have_the_documented_keys_and_fit_their_spaces() -> None:
     assert (tokens[len(tokens.nonzero()[0]) :] == 0).all()
 
 
-@pytest.mark.parametrize("threads", [1, 2])
-def test_the_same_seed_gives_the_same_bits_on_any_number_of_threads(threads: int) -> None:
+@pytest.mark.fresh
+def test_the_same_seed_gives_the_same_bits_on_any_number_of_threads() -> None:
     def play(threads: int) -> tuple[list[int], list[bytes]]:
         env = DwellEnv(threads=threads)
         observation, _ = env.reset(seed=11)
@@ -57,11 +59,13 @@ def test_the_same_seed_gives_the_same_bits_on_any_number_of_threads(threads: int
             bits.append(observation["rgb"].tobytes() + observation["audio"].tobytes())
         return hashes, bits
 
-    assert play(threads) == play(1)
+    once = play(1)
+    assert play(1) == once
+    assert play(2) == once
 
 
 def test_the_expert_fulfils_instructions_and_is_paid_for_it() -> None:
-    env = DwellEnv(sensors=SMALL)
+    env = DwellEnv(sensors=["instruction"])
     fulfilled = 0
     for seed in range(6):
         env.reset(seed=seed)

@@ -14,6 +14,8 @@ import dwell
 from dwell.envs import DwellEnv, DwellVectorEnv
 from dwell.envs.config import HouseCache
 
+pytestmark = pytest.mark.usefixtures("open_once")
+
 SMALL = {"rgb": {"width": 16, "height": 16}, "instruction": {}}
 
 
@@ -87,6 +89,7 @@ def test_arguments_that_there_are_not_are_answered_with_the_nearest_names() -> N
         DwellEnv("Free", stride={"forward": 0.3})
 
 
+@pytest.mark.fresh
 def test_houses_may_be_given_open(apartment: dwell.House) -> None:
     env = DwellEnv(sensors=SMALL, houses=apartment)
     _, info = env.reset(seed=3)

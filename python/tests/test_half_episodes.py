@@ -8,6 +8,8 @@ import pytest
 import dwell
 from dwell.envs import DwellEnv, DwellVectorEnv
 
+pytestmark = pytest.mark.usefixtures("open_once")
+
 
 class Raised(BaseException):
     """What no ``except Exception`` catches, as KeyboardInterrupt."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import functools
 import math
 import os
 import pickle
@@ -26,6 +27,9 @@ KEMAR = DATA / "measured" / "acoustics" / "hrtf" / "MIT_KEMAR_normal_pinna.sofa"
 needs_kemar = pytest.mark.skipif(not KEMAR.is_file(), reason=f"{KEMAR} is not there")
 RADIUS_M, FAR_M, RATE_HZ = 0.0875, 1.4, 44_100
 Write = Callable[..., Path]
+#: Frequencies and lags of cross-correlations, and what turns the phases of the ones by the others.
+LINES_HZ, LAGS_S = 20.0 * np.arange(5, 75), np.arange(-1000, 1001) * 1e-6
+SHIFTS = np.exp(-2j * np.pi * np.outer(LINES_HZ, LAGS_S))
 #: h5py has no types.
 File = Any
 Change = Callable[[File], None]
@@ -65,21 +69,28 @@ def _towards(azimuth_deg: float, elevation_deg: float) -> NDArray[np.float64]:
     return np.array([math.cos(e) * math.cos(a), math.cos(e) * math.sin(a), math.sin(e)])
 
 
+@functools.lru_cache(32)
+def _waves(samples: int, rate_hz: float, at_hz: tuple[float, ...]) -> NDArray[np.complex128]:
+    """What a response is multiplied with for its spectrum: shape (sample, frequency)."""
+    turns = np.outer(at_hz, np.arange(samples)) / rate_hz
+    waves: NDArray[np.complex128] = np.exp(-2j * np.pi * turns.T)
+    return waves
+
+
 def _spectrum(
     response: NDArray[np.float64], rate_hz: float, at_hz: NDArray[np.float64]
 ) -> NDArray[np.complex128]:
-    turns = np.outer(at_hz, np.arange(response.shape[-1])) / rate_hz
-    spectrum: NDArray[np.complex128] = response @ np.exp(-2j * np.pi * turns.T)
+    spectrum: NDArray[np.complex128] = response @ _waves(
+        response.shape[-1], rate_hz, tuple(at_hz.tolist())
+    )
     return spectrum
 
 
 def _itd_us(pair: NDArray[np.float64], rate_hz: float) -> float:
     """The lag of the largest cross-correlation below 1.5 kHz: positive when the left is first."""
-    lines = 20.0 * np.arange(5, 75)
-    left, right = _spectrum(pair, rate_hz, lines)
-    lags = np.arange(-1000, 1001) * 1e-6
-    correlation = (left * right.conj()) @ np.exp(-2j * np.pi * np.outer(lines, lags))
-    return float(1e6 * lags[correlation.real.argmax()])
+    left, right = _spectrum(pair, rate_hz, LINES_HZ)
+    correlation = (left * right.conj()) @ SHIFTS
+    return float(1e6 * LAGS_S[correlation.real.argmax()])
 
 
 def _levels_db(pair: NDArray[np.float64], rate_hz: float, centre_hz: float) -> NDArray[np.float64]:

@@ -17,6 +17,8 @@ import pytest
 import dwell
 from dwell.envs import DwellEnv, DwellVectorEnv
 
+pytestmark = pytest.mark.usefixtures("open_once")
+
 SMALL: dict[str, Any] = {"rgb": {"width": 16, "height": 12}, "instruction": {}}
 CAMERA = dwell.Camera(16, 12)
 

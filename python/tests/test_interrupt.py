@@ -64,10 +64,10 @@ def test_a_world_that_was_only_looked_at_goes_on_as_if_nothing_had_been() -> Non
 @pytest.mark.parametrize("threads", [1, 2])
 def test_a_batch_that_was_stopped_wants_a_reset_and_then_plays_as_ever(threads: int) -> None:
     def new() -> DwellVectorEnv:
-        return DwellVectorEnv(40, houses="builtin:studio", sensors=["depth"], threads=threads)
+        return DwellVectorEnv(16, houses="builtin:studio", sensors=["depth"], threads=threads)
 
     envs, twin = new(), new()
-    forward = np.full(40, 3)
+    forward = np.full(16, 3)
     twin.reset(seed=5)
     expected = twin.step(forward)[0]["depth"].copy()
 
@@ -84,7 +84,7 @@ def test_a_batch_that_was_stopped_wants_a_reset_and_then_plays_as_ever(threads: 
 @pytest.mark.parametrize("threads", [1, 2])
 def test_a_first_reset_that_was_stopped_wants_another_and_then_plays_as_ever(threads: int) -> None:
     def new() -> DwellVectorEnv:
-        house = dwell.House.generate(3, home="house")
+        house = dwell.House.generate(3, home="apartment")
         return DwellVectorEnv(4, houses=house, sensors=["gps", "audio"], threads=threads)
 
     forward, refused = np.full(4, 3), 0
@@ -132,10 +132,10 @@ def test_an_environment_whose_restoring_was_stopped_is_restored_the_next_time() 
 @pytest.mark.parametrize(
     "look",
     [
-        lambda world: world.map(1500)[0],
+        lambda world: world.map(800)[0],
         lambda world: world.navigation(dwell.Walker(cell_m=0.05)).occupancy().free,
         lambda world: world.listen(16_000),
-        lambda world: world.render(agent=0, camera=dwell.Camera(width=1500, height=1500))["rgb"],
+        lambda world: world.render(agent=0, camera=dwell.Camera(width=600, height=600))["rgb"],
     ],
     ids=["map", "navigation", "listen", "render"],
 )

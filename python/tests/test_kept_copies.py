@@ -13,6 +13,8 @@ import dwell
 import dwell.house_list
 from dwell.envs import DwellEnv, DwellVectorEnv
 
+pytestmark = pytest.mark.usefixtures("open_once")
+
 
 @pytest.mark.parametrize("kind", [DwellEnv, DwellVectorEnv])
 def test_a_pickled_environment_is_the_one_that_was_made(kind: type) -> None:

@@ -12,6 +12,8 @@ import pytest
 import dwell
 from dwell.navigation import Navigation
 
+pytestmark = pytest.mark.usefixtures("open_once")
+
 
 def test_in_an_empty_room_the_way_is_the_straight_line(shoebox: dwell.House) -> None:
     navigation = shoebox.navigation()

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import subprocess
-import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import get_args
 
@@ -16,18 +17,30 @@ import dwell
 from dwell import _native, plans
 from dwell.engine_types import Channel
 
+pytestmark = pytest.mark.usefixtures("open_once")
 WALL = (40, 40, 44)
 
 
-def render(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "dwell.cli", "render", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
+Command = Callable[..., subprocess.CompletedProcess[str]]
+Files = Callable[..., list[Path]]
 
 
-def files(*arguments: str | Path) -> list[Path]:
-    done = render(*arguments, "--json")
-    assert done.returncode == 0, done.stderr
-    return [Path(name) for name in json.loads(done.stdout)["files"]]
+@pytest.fixture
+def render(command: Command) -> Command:
+    """``dwell render`` in this process."""
+    return functools.partial(command, "render")
+
+
+@pytest.fixture
+def files(render: Command) -> Files:
+    """What ``dwell render`` writes."""
+
+    def written(*arguments: str | Path) -> list[Path]:
+        done = render(*arguments, "--json")
+        assert done.returncode == 0, done.stderr
+        return [Path(name) for name in json.loads(done.stdout)["files"]]
+
+    return written
 
 
 def size(path: Path) -> tuple[int, int]:
@@ -98,7 +111,7 @@ def test_ways_are_drawn_where_they_lead(shoebox: dwell.House) -> None:
     assert abs(high[1] - (5.0 - left) * scale) < 12
 
 
-def test_render_writes_plans_and_sheets(tmp_path: Path) -> None:
+def test_render_writes_plans_and_sheets(tmp_path: Path, render: Command, files: Files) -> None:
     house = "builtin:studio"
     paths = files(house, "--map", "--dollhouse", "--sheet", "--width", "200", "--out", tmp_path)
     assert [path.name for path in paths] == ["map_0.png", "dollhouse.png", "sheet.png"]
@@ -106,7 +119,7 @@ def test_render_writes_plans_and_sheets(tmp_path: Path) -> None:
     rooms = len(dwell.House.open(house).rooms())
     rows = -(-(rooms + 2) // 4)
     assert size(paths[2])[1] == rows * (270 + 24 + 10) + 10
-    (sheet,) = files("seed:1..3", house, "--sheet", "--columns", "2", "--out", tmp_path)
+    (sheet,) = files("seed:1..3?home=studio", house, "--sheet", "--columns", "2", "--out", tmp_path)
     assert size(sheet) == (2 * 370 + 10, 2 * 304 + 10)
     done = render(house, "builtin:castle", "--sheet", "--out", tmp_path / "some", "--json")
     assert done.returncode == 1
@@ -147,7 +160,9 @@ def test_a_sheet_says_how_far_it_is() -> None:
     assert [share for share, _ in told] == sorted(share for share, _ in told)
 
 
-def test_the_command_line_takes_any_intrinsics(tmp_path: Path, shoebox: dwell.House) -> None:
+def test_the_command_line_takes_any_intrinsics(
+    tmp_path: Path, render: Command, files: Files
+) -> None:
     house = "builtin:studio"
     world = dwell.World(house, agents=0)
     view = ("--width", "40", "--height", "30", "--at", "3,1.2,4", "--yaw-deg", "30")

@@ -16,6 +16,8 @@ from dwell import cli
 from dwell.envs import DwellEnv, ReplayRecorder
 from dwell.sounds import read_wav
 
+pytestmark = pytest.mark.usefixtures("open_once")
+
 ACTIONS = ["move_forward", "turn_left", "move_forward", "open", "look_down", "move_forward"]
 
 

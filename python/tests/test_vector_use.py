@@ -16,6 +16,8 @@ import dwell
 from dwell import cli
 from dwell.envs import DwellEnv, DwellVectorEnv, ReplayRecorder, VectorReplayRecorder
 
+pytestmark = pytest.mark.usefixtures("open_once")
+
 SMALL = {"rgb": {"width": 16, "height": 16}, "instruction": {}}
 STUDIO = "builtin:studio"
 

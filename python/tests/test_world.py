@@ -18,6 +18,8 @@ import dwell
 from dwell import Camera, World, _native
 from dwell.envs import DwellEnv
 
+pytestmark = pytest.mark.usefixtures("open_once")
+
 
 def test_errors_form_one_tree_that_callers_expect() -> None:
     with pytest.raises(FileNotFoundError) as caught:
@@ -309,6 +311,7 @@ def _step_in_child(results: multiprocessing.SimpleQueue[int]) -> None:
     results.put(world.state_hash())
 
 
+@pytest.mark.fresh
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
 def test_a_forked_child_can_step_and_render(apartment: dwell.House) -> None:
