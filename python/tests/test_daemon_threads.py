@@ -15,17 +15,21 @@ CALLS = {
     "open": "dwell.House.open('builtin:studio')",
     "env": "env.step(1)",
 }
+#: What it needs for that.
+ENV = """
+from dwell.envs import DwellEnv
+
+env = DwellEnv("Free", houses="builtin:studio", sensors=["gps"])
+env.reset(seed=1)
+"""
 SCRIPT = """
 import atexit, threading
 {first}
 import dwell
-from dwell.envs import DwellEnv
 
 world = dwell.World("builtin:studio")
-env = DwellEnv("Free", houses="builtin:studio", sensors=["gps"])
-env.reset(seed=1)
 begun = threading.Event()
-
+{prepare}
 def work():
     while True:
         {call}
@@ -122,7 +126,8 @@ def ended(script: str, status: int = 0) -> str:
 @pytest.mark.parametrize("first", ["", HOLDS_THE_GIL], ids=["at work", "waiting for the GIL"])
 def test_a_process_ends_well_while_a_daemon_thread_works(call: str, first: str) -> None:
     for _ in range(2):
-        ended(SCRIPT.format(call=CALLS[call], first=first))
+        prepare = ENV if call == "env" else ""
+        ended(SCRIPT.format(call=CALLS[call], first=first, prepare=prepare))
 
 
 @pytest.mark.parametrize("what", CALLS_OF_PYTHON)

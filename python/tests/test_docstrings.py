@@ -12,6 +12,8 @@ import pytest
 
 import dwell
 
+pytestmark = pytest.mark.usefixtures("open_once")
+
 
 def modules() -> list[str]:
     """Every module of the package in whose source an example stands."""

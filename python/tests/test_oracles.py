@@ -13,10 +13,12 @@ HOUSES = ("builtin:studio", "seed:4?home=studio", "seed:8?home=studio")
 LEAST = 0.98
 
 
-@pytest.fixture(scope="module")
-def questions() -> list[Question]:
+@pytest.fixture(
+    scope="module", params=[HOUSES[:2], pytest.param(HOUSES, marks=pytest.mark.slow)], ids=len
+)
+def questions(request: pytest.FixtureRequest) -> list[Question]:
     found: list[Question] = []
-    for k, house in enumerate(HOUSES):
+    for k, house in enumerate(request.param):
         found += Survey(house, seed=0, each=1).all(reach=k == 0, sweep=k == 1, viewers=1)
     return found
 
