@@ -29,8 +29,8 @@ def senses(world: dwell.World) -> list[Any]:
     """Steps, looks, listens, asks the way."""
     world.step()
     heard = world.listen(1600)
-    image = world.render(agent=0, camera=dwell.Camera(96, 96))["rgb"]
-    scene = dwell.AcousticScene("builtin:studio", rays=2000)
+    image = world.render(agent=0, camera=dwell.Camera(48, 48))["rgb"]
+    scene = dwell.AcousticScene("builtin:studio", rays=200)
     response = scene.impulse_response((1.5, 1.5, 1.5), (2.0, 1.0, 2.0))
     return [world.state_hash(), heard.sum(), int(image.sum()), float(np.abs(response).sum())]
 

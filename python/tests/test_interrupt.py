@@ -85,9 +85,9 @@ def test_a_batch_that_was_stopped_wants_a_reset_and_then_plays_as_ever(threads: 
 def test_a_first_reset_that_was_stopped_wants_another_and_then_plays_as_ever(threads: int) -> None:
     def new() -> DwellVectorEnv:
         house = dwell.House.generate(3, home="apartment")
-        return DwellVectorEnv(4, houses=house, sensors=["gps", "audio"], threads=threads)
+        return DwellVectorEnv(2, houses=house, sensors=["gps", "audio"], threads=threads)
 
-    forward, refused = np.full(4, 3), 0
+    forward, refused = np.full(2, 3), 0
     twin = new()
     twin.reset(seed=0)
     twin.step(forward)
@@ -161,7 +161,7 @@ def test_a_handler_runs_in_the_middle_of_what_is_never_stopped_half_way() -> Non
 def test_a_handler_that_does_not_raise_leaves_the_call_alone() -> None:
     seen: list[bool] = []
     world = dwell.World("builtin:studio")
-    camera = dwell.Camera(width=2048, height=2048)
+    camera = dwell.Camera(width=1024, height=1024)
     expected = world.render(agent=0, camera=camera)["rgb"]
     with interrupted.signals(signal.SIGUSR1, lambda *_: seen.append(interrupted.in_the_middle())):
         while not any(seen):
@@ -183,7 +183,7 @@ def test_a_handler_that_calls_dwell_in_the_middle_of_a_call_is_refused_and_does_
 
     with interrupted.signals(signal.SIGUSR1, handler):
         while not said:
-            world.render(agent=0, camera=dwell.Camera(width=2048, height=2048))
+            world.render(agent=0, camera=dwell.Camera(width=1024, height=1024))
     assert len(said) == 2
     assert all("let it set a flag" in sentence for sentence in said)
     world.step()
