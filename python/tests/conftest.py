@@ -36,7 +36,7 @@ def shoebox() -> dwell.House:
 def open_once(
     request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch, opened: Open
 ) -> None:
-    """Built-in houses that are opened by their names are those of the tests before.
+    """Built-in houses and studios of seeds, opened by name, are those of the tests before.
 
     Houses do not change, and what engines derive from one (grids, planes, sound) is then made once
     in a process and not in each test. For files that ask what happens in a house, not for those
@@ -46,11 +46,12 @@ def open_once(
         return
     open_by = dwell.House.open_by
 
-    def open_builtin(name: str, threads: int | None) -> dwell.House:
-        is_builtin = isinstance(name, str) and re.fullmatch(r"builtin:\w+", name)
-        return opened(name, threads) if is_builtin else open_by(name, threads)
+    def open_known(name: str, threads: int | None) -> dwell.House:
+        if isinstance(name, str) and re.fullmatch(r"builtin:\w+|seed:\d\?home=studio", name):
+            return opened(name, threads)
+        return open_by(name, threads)
 
-    monkeypatch.setattr(dwell.House, "open_by", staticmethod(open_builtin))
+    monkeypatch.setattr(dwell.House, "open_by", staticmethod(open_known))
 
 
 @pytest.fixture

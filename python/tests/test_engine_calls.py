@@ -125,6 +125,7 @@ def address(array: np.ndarray[Any, Any]) -> int:
     return int(array.__array_interface__["data"][0])
 
 
+@pytest.mark.usefixtures("open_once")
 def test_observations_are_written_where_they_are_read() -> None:
     envs = DwellVectorEnv(2, sensors=["rgb", "depth", "audio"])
     first, _ = envs.reset(seed=0)
@@ -140,6 +141,7 @@ def test_observations_are_written_where_they_are_read() -> None:
     assert address(one["rgb"]) != address(kept.step(np.array([0, 0]))[0]["rgb"])
 
 
+@pytest.mark.usefixtures("open_once")
 def test_the_native_batch_writes_into_the_array_it_is_given_and_only_its_part() -> None:
     envs = DwellVectorEnv(2, sensors=["rgb"])
     envs.reset(seed=0)

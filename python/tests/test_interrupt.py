@@ -84,7 +84,7 @@ def test_a_batch_that_was_stopped_wants_a_reset_and_then_plays_as_ever(threads: 
 @pytest.mark.parametrize("threads", [1, 2])
 def test_a_first_reset_that_was_stopped_wants_another_and_then_plays_as_ever(threads: int) -> None:
     def new() -> DwellVectorEnv:
-        house = dwell.House.generate(3, home="apartment")
+        house = dwell.House.generate(3, home="studio")
         return DwellVectorEnv(2, houses=house, sensors=["gps", "audio"], threads=threads)
 
     forward, refused = np.full(2, 3), 0

@@ -38,6 +38,7 @@ def test_a_copied_world_goes_on_from_its_moment_alone(apartment: dwell.House) ->
     assert other.state_hash() == world.state_hash()
 
 
+@pytest.mark.usefixtures("open_once")
 def test_environments_are_made_anew_from_their_arguments(apartment: dwell.House) -> None:
     env = DwellEnv(sensors=SMALL, houses=apartment, stride={"turn_deg": 30.0})
     env.reset(seed=5)
