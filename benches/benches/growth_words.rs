@@ -264,10 +264,10 @@ fn words(rows: &mut Rows, shape: Shape, house: &Arc<House>) {
     let state = State::new(house);
     rows.row(shape, count, "facts", || Semantics::new(house));
     rows.row(shape, count, "house", || {
-        describe::describe_house(&semantics.scene(&state), None)
+        describe::describe_house(&semantics.scene(&state), describe::TextLength::Normal, None)
     });
     rows.row(shape, count, "object", || {
-        describe::captions(&semantics.scene(&state), None)
+        describe::captions(&semantics.scene(&state), describe::TextLength::Normal, None)
     });
     rows.row(shape, count, "graph", || {
         scene_graph(&semantics.scene(&state), None)

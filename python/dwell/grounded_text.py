@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 if TYPE_CHECKING:
     from typing_extensions import Self
 
 __all__ = ["Text"]
+
+# How much a text tells.
+Length: TypeAlias = Literal["short", "normal", "long"]
 
 
 class Text(str):

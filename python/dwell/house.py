@@ -19,7 +19,7 @@ from dwell.arguments import (
     point,
     text,
 )
-from dwell.grounded_text import Text, texts
+from dwell.grounded_text import Length, Text, texts
 from dwell.house_list import HouseList
 from dwell.navigation import Navigation, Walker, walker_settings
 
@@ -261,12 +261,18 @@ class House:
 
     @overload
     def describe(
-        self, level: Literal["object", "room", "house"] = ..., *, seed: int | None = ...
+        self,
+        level: Literal["object", "room", "house"] = ...,
+        *,
+        length: Length = ...,
+        seed: int | None = ...,
     ) -> list[Text]: ...
     @overload
-    def describe(self, level: Level, *, seed: int | None = ...) -> list[str]: ...
     def describe(
-        self, level: Level = "house", *, seed: int | None = None
+        self, level: Level, *, length: Length = ..., seed: int | None = ...
+    ) -> list[str]: ...
+    def describe(
+        self, level: Level = "house", *, length: Length = "normal", seed: int | None = None
     ) -> list[Text] | list[str]:
         """Sentences about the house as it starts.
 
@@ -276,11 +282,23 @@ class House:
                 ``instructions`` (a JSON object each: ``kind``, ``text``, ``form``, ``spans``, and
                 ``goal`` with ``rooms``, counted from 0 as in the graph, ``objects``, the ids of
                 instance images and of the graph, ``radius_m`` and ``in_sight``).
+            length: Of the levels object, room and house: ``short`` (a thing's looks, the area and
+                the largest things of a room, the rooms of a house), ``normal``, or ``long``, which
+                also says where things stand to each other.
             seed: Draws the wordings, with the name of the house; without it each sentence has its
                 first wording.
+
+        Examples:
+            >>> import dwell
+            >>> house = dwell.House.open("builtin:studio")
+            >>> lengths = ("short", "normal", "long")
+            >>> sizes = [len(house.describe("room", length=name)[0]) for name in lengths]
+            >>> sizes == sorted(sizes)
+            True
         """
         seed = None if seed is None else integer_in_range("seed", seed)
-        return texts(level, self._native.describe(text("level", level), seed))
+        rows = self._native.describe(text("level", level), text("length", length), seed)
+        return texts(level, rows)
 
     def semantic_classes(self, table: Classes = "coarse") -> list[str]:
         """The names of the numbers in semantic images; 0 is void.

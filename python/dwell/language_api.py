@@ -7,7 +7,7 @@ from typing import Any, Literal, overload
 from dwell import _native
 from dwell.arguments import integer_in_range
 from dwell.arguments import text as checked_text
-from dwell.grounded_text import Text, texts
+from dwell.grounded_text import Length, Text, texts
 from dwell.relation_api import RelationApi, Viewer, viewer_argument
 
 
@@ -19,6 +19,7 @@ class LanguageApi(RelationApi):
         self,
         level: Literal["object", "room", "house", "view"] = ...,
         *,
+        length: Length = ...,
         seed: int | None = ...,
         viewer: Viewer | None = ...,
         agent: int | None = ...,
@@ -28,6 +29,7 @@ class LanguageApi(RelationApi):
         self,
         level: str,
         *,
+        length: Length = ...,
         seed: int | None = ...,
         viewer: Viewer | None = ...,
         agent: int | None = ...,
@@ -36,6 +38,7 @@ class LanguageApi(RelationApi):
         self,
         level: str = "house",
         *,
+        length: Length = "normal",
         seed: int | None = None,
         viewer: Viewer | None = None,
         agent: int | None = None,
@@ -44,6 +47,7 @@ class LanguageApi(RelationApi):
 
         Args:
             level: Also ``view``: what is seen, side by side, as one text.
+            length: Of the levels object, room and house.
             seed: Draws the wordings.
             viewer: Whose view: an agent's number or a camera, as for :meth:`holds`. Without it the
                 eyes of ``agent``.
@@ -63,9 +67,10 @@ class LanguageApi(RelationApi):
         seed = None if seed is None else integer_in_range("seed", seed)
         listener = None if agent is None else integer_in_range("agent", agent, high=2**31 - 1)
         looks = viewer_argument(viewer)
-        return texts(
-            level, self._native.describe(checked_text("level", level), looks, listener, seed)
+        rows = self._native.describe(
+            checked_text("level", level), checked_text("length", length), looks, listener, seed
         )
+        return texts(level, rows)
 
     def check(
         self, sentence: str, *, viewer: Viewer | None = None, agent: int | None = None

@@ -6,7 +6,7 @@ use dwell_scene::House;
 use dwell_scene::random::RandomKey;
 use dwell_semantics::check::{GroundedPhrase, Listener};
 use dwell_semantics::describe::{
-    GroundedText, captions, describe_house, describe_rooms, describe_view,
+    GroundedText, TextLength, captions, describe_house, describe_rooms, describe_view,
 };
 use dwell_semantics::graph::scene_graph;
 use dwell_semantics::instruct::{
@@ -118,23 +118,42 @@ fn goal(house: &House, goal: &InstructionGoal) -> Value {
     })
 }
 
+/// The length of a name; other levels than those of texts about the house have only one.
+fn text_length(level: &str, name: &str) -> Result<TextLength, PyFault> {
+    let Some(length) = TextLength::find(name) else {
+        let allowed = TextLength::ALL.map(TextLength::name).join(", ");
+        return Err(PyFault::Config(format!(
+            "length is {name:?}; allowed are {allowed}"
+        )));
+    };
+    let has_lengths = ["object", "room", "house"].contains(&level);
+    if has_lengths || length == TextLength::Normal {
+        return Ok(length);
+    }
+    Err(PyFault::Config(format!(
+        "length is {name:?} with level {level:?}; only the levels object, room and house have lengths"
+    )))
+}
+
 /// Texts about a house as it stands in a state: a mapping each.
 ///
 /// # Errors
-/// [`PyFault::Config`] for an unknown level.
+/// [`PyFault::Config`] for an unknown level or length.
 pub(crate) fn describe_level(
     scene: &SemanticScene<'_>,
     listener: Listener,
     level: &str,
+    length: &str,
     seed: Option<u64>,
 ) -> Result<PyValue, PyFault> {
     let house = scene.house();
+    let length = text_length(level, length)?;
     // One seed does not choose the same wordings in every house.
     let wording = seed.map(|seed| RandomKey::root(seed).child(house.name.as_str()));
     let texts = match level {
-        "house" => vec![describe_house(scene, wording)],
-        "room" => describe_rooms(scene, wording),
-        "object" => captions(scene, wording),
+        "house" => vec![describe_house(scene, length, wording)],
+        "room" => describe_rooms(scene, length, wording),
+        "object" => captions(scene, length, wording),
         "view" if listener.viewer.is_none() => {
             return Err(PyFault::Config(
                 "level is \"view\": World.describe has it, with viewer or agent".to_owned(),

@@ -189,12 +189,18 @@ impl PyHouse {
         py.engine(|| PyValue::of(&dwell::viewpoints(&self.engines)?))
     }
 
-    #[pyo3(signature = (level, key=None))]
-    fn describe(&self, py: Python<'_>, level: &str, key: Option<u64>) -> PyResult<PyValue> {
+    #[pyo3(signature = (level, length, key=None))]
+    fn describe(
+        &self,
+        py: Python<'_>,
+        level: &str,
+        length: &str,
+        key: Option<u64>,
+    ) -> PyResult<PyValue> {
         py.engine(|| {
             let state = State::new(self.house());
             let scene = self.engines.semantics().scene(&state);
-            describe_level(&scene, Listener::default(), level, key)
+            describe_level(&scene, Listener::default(), level, length, key)
         })
     }
 

@@ -536,18 +536,19 @@ impl PyWorld {
         })
     }
 
-    #[pyo3(signature = (level, viewer, agent=None, key=None))]
+    #[pyo3(signature = (level, length, viewer, agent=None, key=None))]
     fn describe(
         &self,
         py: Python<'_>,
         level: &str,
+        length: &str,
         viewer: Data,
         agent: Option<usize>,
         key: Option<u64>,
     ) -> PyResult<PyValue> {
         self.read_interruptible(py, |running| {
             let listener = running.listener(viewer, agent)?;
-            describe_level(&running.scene(), listener, level, key)
+            describe_level(&running.scene(), listener, level, length, key)
         })
     }
 

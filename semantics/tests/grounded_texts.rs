@@ -9,7 +9,7 @@ use dwell_scene::random::RandomKey;
 use dwell_scene::{House, State};
 use dwell_semantics::check::{Checker, Listener};
 use dwell_semantics::describe::{
-    GroundedText, captions, describe_house, describe_rooms, describe_view,
+    GroundedText, TextLength, captions, describe_house, describe_rooms, describe_view,
 };
 use dwell_semantics::form::Form;
 use dwell_semantics::instruct::{InstructionKind, candidates};
@@ -51,10 +51,16 @@ fn examine_house(name: &str) {
     let state = State::new(&house);
     let scene = semantics.scene(&state);
     let nobody = Listener::default();
-    for wording in [None, Some(RandomKey::root(5))] {
-        let mut texts = vec![describe_house(&scene, wording)];
-        texts.extend(describe_rooms(&scene, wording));
-        texts.extend(captions(&scene, wording));
+    let drawn = Some(RandomKey::root(5));
+    for (length, wording) in [
+        (TextLength::Normal, None),
+        (TextLength::Normal, drawn),
+        (TextLength::Short, None),
+        (TextLength::Long, drawn),
+    ] {
+        let mut texts = vec![describe_house(&scene, length, wording)];
+        texts.extend(describe_rooms(&scene, length, wording));
+        texts.extend(captions(&scene, length, wording));
         for text in texts {
             examine(&scene, nobody, &text, name);
         }
@@ -129,9 +135,13 @@ fn odd_nouns_are_said_and_their_texts_are_true() {
         let semantics = Semantics::new(&house);
         let state = State::new(&house);
         let scene = semantics.scene(&state);
-        let mut texts = captions(&scene, None);
-        texts.extend(describe_rooms(&scene, Some(RandomKey::root(3))));
-        texts.push(describe_house(&scene, None));
+        let mut texts = captions(&scene, TextLength::Normal, None);
+        texts.extend(describe_rooms(
+            &scene,
+            TextLength::Normal,
+            Some(RandomKey::root(3)),
+        ));
+        texts.push(describe_house(&scene, TextLength::Normal, None));
         assert!(house.rooms.get(room).is_some());
         let checker = Checker::new(&scene, Listener::default());
         for text in texts {

@@ -4,7 +4,7 @@ use dwell_houses::suncg;
 use dwell_scene::parallel::Threads;
 use dwell_scene::{House, ObjectId, State};
 use dwell_semantics::color::ColorVocabulary;
-use dwell_semantics::describe::{caption, describe_house};
+use dwell_semantics::describe::{TextLength, caption, describe_house};
 use dwell_semantics::graph::scene_graph;
 use dwell_semantics::instruct::{InstructionKind, candidates};
 use dwell_semantics::{Semantics, SizeClass};
@@ -106,7 +106,7 @@ fn things_are_in_the_rooms_that_the_file_lists_them_in() {
                 same += 1;
             } else {
                 other.push((
-                    caption(&scene, id, None).text,
+                    caption(&scene, id, TextLength::Normal, None).text,
                     house.rooms[file].name.clone(),
                 ));
             }
@@ -245,7 +245,7 @@ fn the_house_is_described_and_its_things_can_be_asked_for() {
     let semantics = Semantics::new(&house);
     let state = State::new(&house);
     let scene = semantics.scene(&state);
-    let text = describe_house(&scene, None).text;
+    let text = describe_house(&scene, TextLength::Normal, None).text;
     println!("{text}");
     assert!(
         text.starts_with(
@@ -257,7 +257,7 @@ fn the_house_is_described_and_its_things_can_be_asked_for() {
     assert_eq!(text.matches("red walls").count(), 2);
     assert_eq!(text.matches("white walls").count(), 2);
     for object in house.objects.ids() {
-        let words = caption(&scene, object, None).text;
+        let words = caption(&scene, object, TextLength::Normal, None).text;
         assert!(
             words.starts_with("a ") || words.starts_with("an "),
             "{words}"

@@ -7,7 +7,9 @@ use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{AgentBody, AgentId, AgentState, Pose, State};
 use dwell_semantics::check::{Checker, Listener};
-use dwell_semantics::describe::{caption, describe_house, describe_room, describe_view};
+use dwell_semantics::describe::{
+    TextLength, caption, describe_house, describe_room, describe_view,
+};
 use dwell_semantics::form::{Description, Form, Noun, Phrase, Quantifier};
 use dwell_semantics::graph::{SceneGraph, scene_graph};
 use dwell_semantics::instruct::{
@@ -36,27 +38,27 @@ fn captions_read_aloud() {
     let mut state = State::new(&s.house);
     let scene = semantics.scene(&state);
     assert_eq!(
-        caption(&scene, s.cup, None).text,
+        caption(&scene, s.cup, TextLength::Normal, None).text,
         "a white porcelain cup on the table in the kitchen"
     );
     assert_eq!(
-        caption(&scene, s.red_chair, None).text,
+        caption(&scene, s.red_chair, TextLength::Normal, None).text,
         "a red plastic chair next to the table in the kitchen"
     );
     assert_eq!(
-        caption(&scene, s.apple, None).text,
+        caption(&scene, s.apple, TextLength::Normal, None).text,
         "a red plastic portion of food in the bowl in the kitchen"
     );
     assert_eq!(
-        caption(&scene, s.stool, None).text,
+        caption(&scene, s.stool, TextLength::Normal, None).text,
         "a brown wooden stool on the rug in the hallway"
     );
     assert_eq!(
-        caption(&scene, s.picture, None).text,
+        caption(&scene, s.picture, TextLength::Normal, None).text,
         "a yellow picture on the wall in the kitchen"
     );
     assert_eq!(
-        caption(&scene, s.bed_b, None).text,
+        caption(&scene, s.bed_b, TextLength::Normal, None).text,
         "a green double bed in the second bedroom"
     );
     state.agents.push(AgentState::new(
@@ -67,7 +69,7 @@ fn captions_read_aloud() {
     state.held_by[s.cup] = Some(AgentId(0));
     let scene = semantics.scene(&state);
     assert_eq!(
-        caption(&scene, s.cup, None).text,
+        caption(&scene, s.cup, TextLength::Normal, None).text,
         "a white porcelain cup in somebody's hand in the hallway"
     );
 }
@@ -106,7 +108,9 @@ fn words_know_what_is_open_and_what_is_on() {
     let house = b.build();
     let semantics = Semantics::new(&house);
     let mut state = State::new(&house);
-    let says = |state: &State, object| caption(&semantics.scene(state), object, None).text;
+    let says = |state: &State, object| {
+        caption(&semantics.scene(state), object, TextLength::Normal, None).text
+    };
     assert_eq!(
         says(&state, door),
         "a closed brown wooden door in the kitchen"
@@ -144,13 +148,13 @@ fn descriptions_read_aloud() {
     let state = State::new(&s.house);
     let scene = semantics.scene(&state);
     assert_eq!(
-        describe_room(&scene, s.kitchen, None).text,
+        describe_room(&scene, s.kitchen, TextLength::Normal, None).text,
         "The kitchen is about 15 square metres. It has a brown parquet floor and white walls. In the kitchen there is a brown \
          wooden table, a white refrigerator and two plastic chairs. On the table there is a white porcelain bowl and a white \
          porcelain cup. There is a red plastic portion of food in the bowl. There is a yellow picture on the wall in the \
          kitchen."
     );
-    let text = describe_house(&scene, None).text;
+    let text = describe_house(&scene, TextLength::Normal, None).text;
     println!("{text}");
     assert!(text.starts_with(
         "There are four rooms and 13 things. There are two bedrooms, a hallway and a kitchen.\n"
@@ -207,7 +211,7 @@ fn the_colour_is_that_of_what_is_seen() {
     assert_eq!(colors[0].0, "orange", "{colors:?}");
     assert!(colors[0].1 > 0.5, "{colors:?}");
     let state = State::new(&house);
-    let text = describe_house(&semantics.scene(&state), None).text;
+    let text = describe_house(&semantics.scene(&state), TextLength::Normal, None).text;
     assert!(text.contains("an orange and gray wardrobe"), "{text}");
 }
 
@@ -219,7 +223,7 @@ fn texts_are_the_same_every_time() {
         let state = State::new(&s.house);
         let scene = semantics.scene(&state);
         let graph = serde_json::to_string(&scene_graph(&scene, None)).unwrap();
-        (describe_house(&scene, None).text, graph)
+        (describe_house(&scene, TextLength::Normal, None).text, graph)
     };
     assert_eq!(text(), text());
 }

@@ -7,7 +7,9 @@ use dwell_scene::{
     AgentBody, AgentId, AgentState, MaterialId, Mesh, ObjectId, RoomId, State, StructureKind,
 };
 use dwell_semantics::check::{Checker, Listener};
-use dwell_semantics::describe::{caption, describe_house, describe_room, describe_view};
+use dwell_semantics::describe::{
+    TextLength, caption, describe_house, describe_room, describe_view,
+};
 use dwell_semantics::form::Form;
 use dwell_semantics::refer::refer;
 use dwell_semantics::{Semantics, Term, predicates};
@@ -30,11 +32,23 @@ impl Told {
     }
 
     fn caption(&self, object: ObjectId) -> String {
-        caption(&self.semantics.scene(&self.state), object, None).text
+        caption(
+            &self.semantics.scene(&self.state),
+            object,
+            TextLength::Normal,
+            None,
+        )
+        .text
     }
 
     fn room(&self, room: RoomId) -> String {
-        describe_room(&self.semantics.scene(&self.state), room, None).text
+        describe_room(
+            &self.semantics.scene(&self.state),
+            room,
+            TextLength::Normal,
+            None,
+        )
+        .text
     }
 
     fn holds(&self, name: &str, thing: ObjectId, other: Term) -> bool {
@@ -464,7 +478,7 @@ fn doors_are_named_by_where_they_lead() {
         "From the bedroom there are two doors to the hallway"
     );
     assert!(
-        !describe_house(&told.semantics.scene(&told.state), None)
+        !describe_house(&told.semantics.scene(&told.state), TextLength::Normal, None)
             .text
             .contains("further")
     );

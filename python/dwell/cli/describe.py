@@ -12,12 +12,19 @@ from dwell.cli.job_journal import Journal, contents_of
 from dwell.files import open_file
 
 _LEVELS = ("object", "room", "house", "graph", "instructions")
+_LENGTHS = ("short", "normal", "long")
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Adds the options."""
     parser.add_argument("houses", metavar="HOUSE", nargs="+")
     parser.add_argument("--level", choices=_LEVELS, default="house")
+    parser.add_argument(
+        "--length",
+        choices=_LENGTHS,
+        default="normal",
+        help="of objects, rooms and houses; long ones also say where things stand to each other",
+    )
     parser.add_argument("--seed", type=count, help="draws the wordings, with the name of the house")
     parser.add_argument(
         "--out",
@@ -33,7 +40,12 @@ def run(args: argparse.Namespace) -> int:
     from dwell.house_list import HouseList
 
     houses = HouseList(args.houses)
-    job = {"command": "describe", "level": args.level, "seed": args.seed, "houses": args.houses}
+    if args.length != "normal" and args.level not in ("object", "room", "house"):
+        raise ValueError(
+            f"--length {args.length}: only the levels object, room and house have lengths"
+        )
+    settings = {"level": args.level, "length": args.length, "seed": args.seed}
+    job = {"command": "describe", **settings, "houses": args.houses}
     journal = Journal(args.out, job) if args.out else None
     printer = _Printer(args.level) if args.json else None
     told, failed = set() if journal is None else set(journal.done), 0
@@ -45,7 +57,7 @@ def run(args: argparse.Namespace) -> int:
             if name not in told:
                 told.add(name)
                 contents = None if journal is None else contents_of(name)
-                rows = _describe(name, args.level, args.seed)
+                rows = _describe(name, args.level, args.length, args.seed)
                 failed += rows is None
                 if journal is not None and rows is not None:
                     journal.add(name, rows, contents)
@@ -85,13 +97,18 @@ class _Printer:
         sys.stdout.write(("" if self._before == ", " else self._before) + "]}\n")
 
 
-def _describe(name: str, level: Any, seed: int | None) -> list[dict[str, Any]] | None:  # noqa: ANN401
+def _describe(
+    name: str,
+    level: Any,  # noqa: ANN401
+    length: Any,  # noqa: ANN401
+    seed: int | None,
+) -> list[dict[str, Any]] | None:
     """The rows of a house; ``None``, and a sentence, for one that cannot be opened."""
     from dwell import DwellError
     from dwell.house import House
 
     try:
-        texts = House.open(name).describe(level, seed=seed)
+        texts = House.open(name).describe(level, length=length, seed=seed)
     except DwellError as error:
         said = str(error)
         where = "" if said.startswith(name) else f"{name}: "

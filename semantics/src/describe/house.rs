@@ -1,5 +1,6 @@
 //! The description of a house.
 
+use super::length::TextLength;
 use super::room::say_room;
 use super::text::{GroundedText, TextWriter};
 use crate::check::{Checker, Listener};
@@ -38,9 +39,13 @@ fn room_items(scene: &SemanticScene<'_>, rooms: &[RoomId]) -> Vec<Description> {
         .collect()
 }
 
-/// The description of a house: the numbers of storeys, rooms and things, its rooms, then each of them, storey by storey.
-/// `wording` draws the wordings.
-pub fn describe_house(scene: &SemanticScene<'_>, wording: Option<RandomKey>) -> GroundedText {
+/// The description of a house: the numbers of storeys, rooms and things, its rooms, then each of them, storey by storey; a short one
+/// ends before the rooms' own texts. `wording` draws the wordings.
+pub fn describe_house(
+    scene: &SemanticScene<'_>,
+    length: TextLength,
+    wording: Option<RandomKey>,
+) -> GroundedText {
     let checker = Checker::new(scene, Listener::default());
     let mut writer = TextWriter::new(&checker, wording);
     let house = scene.house();
@@ -79,9 +84,11 @@ pub fn describe_house(scene: &SemanticScene<'_>, wording: Option<RandomKey>) -> 
         };
         writer.there_are(&items, &place);
     }
-    for room in order {
-        writer.end_paragraph();
-        say_room(&mut writer, scene, room);
+    if length > TextLength::Short {
+        for room in order {
+            writer.end_paragraph();
+            say_room(&mut writer, scene, room, length);
+        }
     }
     writer.finish()
 }

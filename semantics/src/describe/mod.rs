@@ -3,13 +3,16 @@
 mod hanging;
 mod house;
 mod item;
+mod length;
 mod object;
 mod openings;
 mod room;
+mod surroundings;
 mod text;
 mod view;
 
 pub use house::describe_house;
+pub use length::TextLength;
 pub use object::{caption, captions};
 pub use room::{describe_room, describe_rooms};
 pub use text::{GroundedText, TextClaim};

@@ -2,11 +2,13 @@
 
 use super::hanging::MountedObject;
 use super::item::appearance;
+use super::length::TextLength;
+use super::surroundings::{say_load, say_surroundings};
 use super::text::{GroundedText, TextWriter};
 use crate::check::{Checker, Listener};
 use crate::form::{Description, Modifier, Noun, Quantifier};
 use crate::predicates;
-use crate::refer::room_phrase;
+use crate::refer::{refer, room_phrase};
 use crate::scene::{SemanticScene, Term};
 use dwell_scene::random::RandomKey;
 use dwell_scene::{ObjectId, RoomId};
@@ -73,13 +75,16 @@ fn place(scene: &SemanticScene<'_>, object: ObjectId) -> Option<Modifier> {
     }
 }
 
-/// A description of an object by its looks, place and room.
-fn description(scene: &SemanticScene<'_>, object: ObjectId) -> Description {
+/// A description of an object by its looks, place and room; in a short text by its looks.
+fn description(scene: &SemanticScene<'_>, object: ObjectId, length: TextLength) -> Description {
     let room = scene.room_of(object);
     let mut description = appearance(scene, object);
     let is_on = scene.house().objects[object].switch.is_some() && scene.state.switched_on[object];
     if is_on && description.state.is_none() {
         description.state = Some("switched_on".to_owned());
+    }
+    if length == TextLength::Short {
+        return description;
     }
     if let Some(passage) = passage(scene, object, room) {
         description.modifiers.extend(passage);
@@ -95,24 +100,31 @@ fn description(scene: &SemanticScene<'_>, object: ObjectId) -> Description {
     description
 }
 
-/// A caption: "a brown wooden chair next to the table in the kitchen". `wording` draws the wordings.
+/// A caption: "a brown wooden chair next to the table in the kitchen"; short: "a brown wooden chair". A long one is made of
+/// sentences, and goes on with where the thing stands and what lies on it, as far as a description fits it alone. `wording` draws the
+/// wordings.
 pub fn caption(
     scene: &SemanticScene<'_>,
     object: ObjectId,
+    length: TextLength,
     wording: Option<RandomKey>,
 ) -> GroundedText {
     let checker = Checker::new(scene, Listener::default());
-    caption_with(&checker, object, wording)
+    caption_with(&checker, object, length, wording)
 }
 
 /// The captions of all objects, in order.
-pub fn captions(scene: &SemanticScene<'_>, wording: Option<RandomKey>) -> Vec<GroundedText> {
+pub fn captions(
+    scene: &SemanticScene<'_>,
+    length: TextLength,
+    wording: Option<RandomKey>,
+) -> Vec<GroundedText> {
     let checker = Checker::new(scene, Listener::default());
     let objects = scene.house().objects.ids().enumerate();
     objects
         .map(|(k, object)| {
             let wording = wording.map(|key| key.child(k as u64));
-            caption_with(&checker, object, wording)
+            caption_with(&checker, object, length, wording)
         })
         .collect()
 }
@@ -120,10 +132,20 @@ pub fn captions(scene: &SemanticScene<'_>, wording: Option<RandomKey>) -> Vec<Gr
 fn caption_with(
     checker: &Checker<'_>,
     object: ObjectId,
+    length: TextLength,
     wording: Option<RandomKey>,
 ) -> GroundedText {
+    let scene = checker.scene();
     let mut writer = TextWriter::new(checker, wording);
-    let description = description(checker.scene(), object);
-    writer.say_of(description.into(), Term::Object(object));
+    let description = description(scene, object, length);
+    if length < TextLength::Long {
+        writer.say_of(description.into(), Term::Object(object));
+        return writer.finish();
+    }
+    writer.there_are(&[description], &[]);
+    if let Some(subject) = refer(scene, object) {
+        say_surroundings(&mut writer, scene, object, &subject.clone().into());
+        say_load(&mut writer, scene, object, &subject);
+    }
     writer.finish()
 }

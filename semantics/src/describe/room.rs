@@ -2,7 +2,9 @@
 
 use super::hanging::{MountKind, MountedObject};
 use super::item::{grouped, items};
+use super::length::TextLength;
 use super::openings::{say_doors, say_passages};
+use super::surroundings::say_surroundings;
 use super::text::{GroundedText, TextWriter};
 use crate::check::{Checker, Listener, spoken_area_m2};
 use crate::form::{
@@ -21,13 +23,18 @@ fn is_rug(scene: &SemanticScene<'_>, object: ObjectId) -> bool {
     row.is_some_and(|row| row.name == "rug")
 }
 
+/// Says the room's area.
+fn say_area(writer: &mut TextWriter<'_>, scene: &SemanticScene<'_>, room: RoomId) {
+    writer.say(Form::Claim(Clause::Area {
+        room: room_phrase(scene, room),
+        square_metres: spoken_area_m2(scene.semantics.room(room).area_m2),
+    }));
+}
+
 /// Says the room's area and the look of its floor and walls.
 fn say_shell(writer: &mut TextWriter<'_>, scene: &SemanticScene<'_>, room: RoomId) {
     let facts = scene.semantics.room(room);
-    writer.say(Form::Claim(Clause::Area {
-        room: room_phrase(scene, room),
-        square_metres: spoken_area_m2(facts.area_m2),
-    }));
+    say_area(writer, scene, room);
     let mut surfaces = Vec::new();
     if facts.floor_color.is_some() || facts.floor_word.is_some() {
         surfaces.push(RoomSurface {
@@ -197,11 +204,26 @@ fn carried_by(scene: &SemanticScene<'_>, predicate: &str, carriers: &[ObjectId])
     carried.into_iter().collect()
 }
 
-/// Says a room: its size and surfaces, its openings, what it has in it, what lies on what, and what hangs.
-pub(super) fn say_room(writer: &mut TextWriter<'_>, scene: &SemanticScene<'_>, room: RoomId) {
-    say_shell(writer, scene, room);
-    say_passages(writer, scene, room);
-    say_doors(writer, scene, room);
+/// Largest number of kinds of things in a short text.
+const MAX_SHORT_KINDS: usize = 4;
+/// Largest number of things of which a long text says where they stand.
+const MAX_PLACED: usize = 8;
+
+/// Says a room: its size and surfaces, its openings, what it has in it, what lies on what, and what hangs; in a short text only its size
+/// and the largest things that stand in it, in a long one also where the largest of them stand.
+pub(super) fn say_room(
+    writer: &mut TextWriter<'_>,
+    scene: &SemanticScene<'_>,
+    room: RoomId,
+    length: TextLength,
+) {
+    if length == TextLength::Short {
+        say_area(writer, scene, room);
+    } else {
+        say_shell(writer, scene, room);
+        say_passages(writer, scene, room);
+        say_doors(writer, scene, room);
+    }
     let in_room = Modifier::new("in_room", [room_phrase(scene, room)]);
     let all = scene.objects_in(room);
     if all.is_empty() {
@@ -220,7 +242,16 @@ pub(super) fn say_room(writer: &mut TextWriter<'_>, scene: &SemanticScene<'_>, r
         standing,
     } = contents(scene, room, &told);
     let place = std::slice::from_ref(&in_room);
-    writer.there_are(&items(scene, &standing, all), place);
+    let mut largest = items(scene, &standing, all);
+    if length == TextLength::Short {
+        largest.truncate(MAX_SHORT_KINDS);
+        writer.there_are(&largest, place);
+        return;
+    }
+    writer.there_are(&largest, place);
+    if length == TextLength::Long {
+        say_places(writer, scene, &standing);
+    }
     for group in carrier_groups(scene, room, carried) {
         let items = group.items(scene);
         let carrier = Phrase::from(group.carrier);
@@ -244,27 +275,51 @@ pub(super) fn say_room(writer: &mut TextWriter<'_>, scene: &SemanticScene<'_>, r
     }
 }
 
+/// Says where the largest of the things that stand in a room stand, as far as a description fits each alone.
+fn say_places(writer: &mut TextWriter<'_>, scene: &SemanticScene<'_>, standing: &[ObjectId]) {
+    let groups = grouped(scene, standing);
+    let largest = groups.iter().flat_map(|group| &group.objects);
+    for object in largest.take(MAX_PLACED) {
+        if let Some(subject) = refer(scene, *object) {
+            say_surroundings(writer, scene, *object, &subject.into());
+        }
+    }
+}
+
 /// The description of a room. `wording` draws the wordings.
 pub fn describe_room(
     scene: &SemanticScene<'_>,
     room: RoomId,
+    length: TextLength,
     wording: Option<RandomKey>,
 ) -> GroundedText {
     let checker = Checker::new(scene, Listener::default());
-    describe_with(&checker, room, wording)
+    describe_with(&checker, room, length, wording)
 }
 
 /// The descriptions of all rooms, in order.
-pub fn describe_rooms(scene: &SemanticScene<'_>, wording: Option<RandomKey>) -> Vec<GroundedText> {
+pub fn describe_rooms(
+    scene: &SemanticScene<'_>,
+    length: TextLength,
+    wording: Option<RandomKey>,
+) -> Vec<GroundedText> {
     let checker = Checker::new(scene, Listener::default());
     let rooms = scene.house().rooms.ids().enumerate();
     rooms
-        .map(|(k, room)| describe_with(&checker, room, wording.map(|key| key.child(k as u64))))
+        .map(|(k, room)| {
+            let wording = wording.map(|key| key.child(k as u64));
+            describe_with(&checker, room, length, wording)
+        })
         .collect()
 }
 
-fn describe_with(checker: &Checker<'_>, room: RoomId, wording: Option<RandomKey>) -> GroundedText {
+fn describe_with(
+    checker: &Checker<'_>,
+    room: RoomId,
+    length: TextLength,
+    wording: Option<RandomKey>,
+) -> GroundedText {
     let mut writer = TextWriter::new(checker, wording);
-    say_room(&mut writer, checker.scene(), room);
+    say_room(&mut writer, checker.scene(), room, length);
     writer.finish()
 }

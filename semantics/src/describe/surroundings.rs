@@ -1,0 +1,113 @@
+//! What surrounds a thing: where it stands in its room, and what is around it.
+
+use super::item::items;
+use super::text::TextWriter;
+use crate::form::{Clause, Description, Form, Modifier, Noun, Phrase, Quantifier};
+use crate::predicates;
+use crate::refer::{refer, room_phrase};
+use crate::scene::{SemanticScene, Term};
+use dwell_scene::ObjectId;
+
+/// Largest number of landmarks that are told for a thing.
+const MAX_LANDMARKS: usize = 3;
+/// Smallest volume of a landmark, as share of that of the thing.
+const MIN_LANDMARK_SHARE: f32 = 0.3;
+
+/// Relations to landmarks in the order of telling; the first ones say more. Each landmark is told by one of them.
+const RELATIONS: [&str; 4] = ["above", "below", "facing", "next_to"];
+/// Places within a room, the first that holds is told.
+const SPOTS: [&str; 2] = ["in_corner_of", "in_middle_of"];
+
+fn claim(predicate: &str, arguments: Vec<Phrase>) -> Form {
+    Form::Claim(Clause::Holds {
+        predicate: predicate.to_owned(),
+        arguments,
+    })
+}
+
+/// The landmarks that no description confuses with others, by their relation to a thing, the largest first. Rugs, openings and
+/// what lies on the thing are none.
+fn landmarks(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<(&'static str, Phrase)> {
+    let volume = |id: ObjectId| scene.extent(id).bounds.volume();
+    let mut told: Vec<ObjectId> = Vec::new();
+    let mut found = Vec::new();
+    for name in RELATIONS {
+        let Ok(predicate) = predicates::find(name) else {
+            continue;
+        };
+        let mut others = predicates::related_objects(scene, predicate, object);
+        others.retain(|other| {
+            scene.room_of(*other) == scene.room_of(object)
+                && !told.contains(other)
+                && !scene.facts(*other).is_opening()
+                && volume(*other) >= MIN_LANDMARK_SHARE * volume(object)
+        });
+        others.sort_by(|p, q| volume(*q).total_cmp(&volume(*p)).then(p.cmp(q)));
+        for other in others {
+            if told.len() == MAX_LANDMARKS {
+                return found;
+            }
+            if let Some(description) = refer(scene, other) {
+                told.push(other);
+                found.push((name, description.into()));
+            }
+        }
+    }
+    found
+}
+
+/// Says where a thing that `subject` describes stands: its spot in the room, then the landmarks around it, those of one relation
+/// in one sentence.
+pub(super) fn say_surroundings(
+    writer: &mut TextWriter<'_>,
+    scene: &SemanticScene<'_>,
+    object: ObjectId,
+    subject: &Phrase,
+) {
+    if let Some(room) = scene.room_of(object) {
+        let in_spot = |name: &&str| {
+            predicates::find(name).is_ok_and(|predicate| {
+                let terms = [Term::Object(object), Term::Room(room)];
+                predicate.holds(scene, &terms, None).is_true()
+            })
+        };
+        if let Some(spot) = SPOTS.iter().find(|name| in_spot(name)) {
+            writer.say(claim(spot, vec![subject.clone(), room_phrase(scene, room)]));
+        }
+    }
+    let landmarks = landmarks(scene, object);
+    for of_one in landmarks.chunk_by(|(one, _), (other, _)| one == other) {
+        let phrases = of_one.iter().map(|(_, phrase)| phrase.clone());
+        let mut phrases: Vec<Phrase> = phrases.collect();
+        let object = match phrases.len() {
+            1 => phrases.remove(0),
+            _ => Phrase::List(phrases),
+        };
+        writer.say(claim(of_one[0].0, vec![subject.clone(), object]));
+    }
+}
+
+/// Says what lies in and on a thing that `subject` describes; of a container without contents that it is empty.
+pub(super) fn say_load(
+    writer: &mut TextWriter<'_>,
+    scene: &SemanticScene<'_>,
+    object: ObjectId,
+    subject: &Description,
+) {
+    for (place, converse) in [("on", "supports"), ("in", "contains")] {
+        let Ok(predicate) = predicates::find(converse) else {
+            continue;
+        };
+        let load = predicates::related_objects(scene, predicate, object);
+        let there = Modifier::new(place, [subject.clone().into()]);
+        if !load.is_empty() {
+            writer.there_are(&items(scene, &load, &load), &[there]);
+        } else if place == "in"
+            && predicates::find("empty")
+                .is_ok_and(|empty| empty.holds(scene, &[Term::Object(object)], None).is_true())
+        {
+            let nothing = Noun::Object(Noun::ANY_OBJECT.to_owned());
+            writer.there_are(&[Description::new(Quantifier::No, nothing)], &[there]);
+        }
+    }
+}
