@@ -414,7 +414,7 @@ fn every_law_is_found_by_its_fingerprint() {
     let hall = room();
     // A seed for each law in turn; all of three with all tests.
     let every = std::env::var_os("DWELL_TEST_ALL").is_some();
-    for (k, info) in laws::all().iter().enumerate() {
+    for (k, info) in laws::all().enumerate() {
         for seed in 0..3 {
             if !every && seed != k as u64 % 3 {
                 continue;

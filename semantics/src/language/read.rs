@@ -221,7 +221,7 @@ impl Language {
             let form = from_tree::form(&plurals::resolve_plurals(tree.clone()))?;
             // "The TV stands in front of the window" is no plural of "TV stand".
             let phrase = usize::from(matches!(form, Form::NounPhrase(_)));
-            let penalty = form.described_comparisons() + 2 * phrase;
+            let penalty = 3 * form.described_comparisons() + 2 * phrase;
             Some((*cost as usize + penalty, form))
         });
         let mut ranked: Vec<(usize, Form)> = forms.collect();
