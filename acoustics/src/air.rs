@@ -1,7 +1,7 @@
 //! Air: speed of sound and absorption.
 
 use crate::bands::{self, BAND_COUNT};
-use crate::error::{AcousticsError, range};
+use crate::error::{AcousticsError, check_range};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -41,21 +41,21 @@ impl Air {
     /// # Errors
     /// [`AcousticsError::Range`] names the field.
     pub fn check(&self) -> Result<(), AcousticsError> {
-        range(
+        check_range(
             "air",
             "temperature_c",
             self.temperature_c,
             (-40.0, 60.0),
             "-40 to 60",
         )?;
-        range(
+        check_range(
             "air",
             "humidity_pct",
             self.humidity_pct,
             (0.0, 100.0),
             "0 to 100",
         )?;
-        range(
+        check_range(
             "air",
             "pressure_kpa",
             self.pressure_kpa,

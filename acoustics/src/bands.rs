@@ -117,9 +117,9 @@ impl FilterBank {
             }
             up_to.push(sums.iter().map(|s| (s / sum.max(1e-300)) as f32).collect());
         }
-        let spans: Vec<Range<usize>> = shares.iter().map(|share| span(share)).collect();
+        let spans: Vec<Range<usize>> = shares.iter().map(|share| nonzero_bins(share)).collect();
         let slow = spans.iter().map(|span| {
-            let stride = stride(span, fft.bins());
+            let stride = decimation_for_span(span, fft.bins());
             let slow = match stride {
                 1 => fft.clone(),
                 _ => RealFft::new(fft.len() / stride),
@@ -225,7 +225,7 @@ impl FilterBank {
 }
 
 /// Returns the bins from the first to the last with a share.
-fn span(share: &[f32]) -> Range<usize> {
+fn nonzero_bins(share: &[f32]) -> Range<usize> {
     let first = share.iter().position(|s| *s > 0.0);
     let last = share.iter().rposition(|s| *s > 0.0);
     first
@@ -234,7 +234,7 @@ fn span(share: &[f32]) -> Range<usize> {
 }
 
 /// See [`FilterBank::decimation_factor`].
-fn stride(span: &Range<usize>, bins: usize) -> usize {
+fn decimation_for_span(span: &Range<usize>, bins: usize) -> usize {
     let last = span.end.saturating_sub(1);
     let mut stride = SLOWEST;
     while stride > 1 && (last * stride) as f64 > ROOM * (bins - 1) as f64 {

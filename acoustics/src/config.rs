@@ -1,7 +1,7 @@
 //! Settings of the accuracy and extent of sound propagation.
 
 use crate::air::Air;
-use crate::error::{AcousticsError, range};
+use crate::error::{AcousticsError, check_range};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -140,19 +140,19 @@ impl AcousticConfig {
     pub fn check(&self) -> Result<(), AcousticsError> {
         const AT: &str = "acoustics";
         let whole = |field, value: usize, high: usize, allowed| {
-            range(AT, field, value as f64, (0.0, high as f64), allowed)
+            check_range(AT, field, value as f64, (0.0, high as f64), allowed)
         };
         let rate = f64::from(self.rate_hz);
-        range(AT, "rate_hz", rate, (8_000.0, 192_000.0), "8000 to 192000")?;
+        check_range(AT, "rate_hz", rate, (8_000.0, 192_000.0), "8000 to 192000")?;
         whole("rays", self.rays, 10_000_000, "0 to 10000000")?;
-        range(
+        check_range(
             AT,
             "max_duration_s",
             self.max_duration_s,
             (0.02, 20.0),
             "0.02 to 20",
         )?;
-        range(AT, "bin_s", self.bin_s, (0.0005, 0.05), "0.0005 to 0.05")?;
+        check_range(AT, "bin_s", self.bin_s, (0.0005, 0.05), "0.0005 to 0.05")?;
         whole("image_order", self.image_order, 4, "0 to 4")?;
         whole("image_planes", self.image_planes, 200, "0 to 200")?;
         whole(
@@ -161,29 +161,29 @@ impl AcousticConfig {
             100_000,
             "0 to 100000",
         )?;
-        range(
+        check_range(
             AT,
             "roulette_db",
             self.roulette_db,
             (10.0, 120.0),
             "10 to 120",
         )?;
-        range(
+        check_range(
             AT,
             "receiver_radius_m",
             self.receiver_radius_m,
             (0.05, 2.0),
             "0.05 to 2",
         )?;
-        range(
+        check_range(
             AT,
             "arrivals_per_s",
             self.arrivals_per_s,
             (500.0, 100_000.0),
             "500 to 100000",
         )?;
-        range(AT, "max_error", self.max_error, (0.0, 1.0), "0 to 1")?;
-        range(
+        check_range(AT, "max_error", self.max_error, (0.0, 1.0), "0 to 1")?;
+        check_range(
             AT,
             "head_radius_m",
             self.head_radius_m,

@@ -76,7 +76,7 @@ impl DirectionalEnergy {
         let (mut sum, mut all) = (Vec3::ZERO, 0.0);
         for (cell, energy) in self.energy.iter().enumerate() {
             let energy: f32 = energy.iter().sum();
-            sum += middle(cell) * energy;
+            sum += cell_mean_direction(cell) * energy;
             all += energy;
         }
         if all > 0.0 { sum / all } else { Vec3::ZERO }
@@ -119,7 +119,7 @@ impl DirectionalEnergy {
 }
 
 /// Returns the middle of a cell, not of unit length: the mean of its unit vectors.
-fn middle(cell: usize) -> Vec3 {
+fn cell_mean_direction(cell: usize) -> Vec3 {
     // Over an eighth of a turn the mean of a vector is sin(pi/8)/(pi/8) of it; over the height it is nearly the middle's.
     const SPREAD: f32 = 0.974_495_4;
     let v = direction_in_cell(cell, 0.5, 0.5);
@@ -202,7 +202,9 @@ mod tests {
         // Half of the draws have energy 2: standard error 1 / sqrt(n).
         assert!((found[3][2] - 1.0).abs() < 0.04 && found[40][2] == 0.0);
         assert!((found[40][6] - 1.0).abs() < 0.04 && found[3][6] == 0.0);
-        assert!((directions.mean_direction().length() - middle(3).length()).abs() < 0.1);
+        assert!(
+            (directions.mean_direction().length() - cell_mean_direction(3).length()).abs() < 0.1
+        );
     }
 
     #[test]

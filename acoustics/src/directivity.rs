@@ -1,7 +1,7 @@
 //! Directivity of sources and microphones.
 
 use crate::bands::{self, BAND_COUNT, BandValues};
-use crate::error::{AcousticsError, range};
+use crate::error::{AcousticsError, check_range};
 use crate::head::sphere_response;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
@@ -76,8 +76,8 @@ impl Directivity {
             Self::Omni => Ok(()),
             Self::FirstOrder { gradient } => gradient
                 .iter()
-                .try_for_each(|g| range(AT, "gradient", f64::from(*g), (0.0, 1.0), "0 to 1")),
-            Self::Sphere { radius_m } => range(
+                .try_for_each(|g| check_range(AT, "gradient", f64::from(*g), (0.0, 1.0), "0 to 1")),
+            Self::Sphere { radius_m } => check_range(
                 AT,
                 "radius_m",
                 f64::from(*radius_m),
@@ -86,13 +86,13 @@ impl Directivity {
             ),
             Self::Polar { gain } => {
                 let angles = gain.len() as f64;
-                range(AT, "angles", angles, (2.0, MOST_ANGLES), "2 to 361")?;
+                check_range(AT, "angles", angles, (2.0, MOST_ANGLES), "2 to 361")?;
                 for on_axis in gain.iter().take(1).flatten() {
                     let allowed = "1 on the axis";
-                    range(AT, "gain", f64::from(*on_axis), (0.999, 1.001), allowed)?;
+                    check_range(AT, "gain", f64::from(*on_axis), (0.999, 1.001), allowed)?;
                 }
                 let mut all = gain.iter().flatten();
-                all.try_for_each(|g| range(AT, "gain", f64::from(*g), (-2.0, 2.0), "-2 to 2"))
+                all.try_for_each(|g| check_range(AT, "gain", f64::from(*g), (-2.0, 2.0), "-2 to 2"))
             }
         }
     }

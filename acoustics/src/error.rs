@@ -88,7 +88,7 @@ pub enum AcousticsError {
 }
 
 /// Refuses `value` unless it lies in `low..=high`.
-pub(crate) fn range(
+pub(crate) fn check_range(
     at: &'static str,
     field: &'static str,
     value: f64,
@@ -124,7 +124,7 @@ mod tests {
 
     #[test]
     fn messages_say_what_was_found_and_what_is_allowed() {
-        let message = range("air", "humidity_pct", 120.0, (0.0, 100.0), "0 to 100")
+        let message = check_range("air", "humidity_pct", 120.0, (0.0, 100.0), "0 to 100")
             .unwrap_err()
             .to_string();
         assert_eq!(message, "air: humidity_pct is 120; allowed are 0 to 100");

@@ -66,7 +66,7 @@ impl RealFft {
     /// As [`Self::forward`], into `spectrum` of [`Self::bins`] values.
     pub(crate) fn forward_into(&mut self, signal: &[f32], spectrum: &mut [Complex<f32>]) {
         // A transform of some million samples takes 0.1 s, and cannot be cancelled.
-        interrupt::check();
+        interrupt::unwind_if_cancelled();
         let used = signal.len().min(self.time.len());
         self.time[..used].copy_from_slice(&signal[..used]);
         self.time[used..].fill(0.0);
@@ -82,7 +82,7 @@ impl RealFft {
 
     /// As [`Self::inverse`], without a copy.
     pub(crate) fn inverse_ref(&mut self, spectrum: &mut [Complex<f32>]) -> &[f32] {
-        interrupt::check();
+        interrupt::unwind_if_cancelled();
         // A real signal's spectrum is real at both ends; rounding errors there are dropped.
         spectrum[0].im = 0.0;
         let last = spectrum.len() - 1;

@@ -67,7 +67,7 @@ pub use echogram::{
 };
 pub use error::AcousticsError;
 pub use head::{Head, HeadId};
-pub use material_report::{AcousticReport, MaterialAcoustics};
+pub use material_report::{MaterialAcoustics, MaterialReport};
 pub use planes::{DiffractionEdge, NO_PLANE, Plane, PlaneTable};
 pub use receiver::{MAX_MICROPHONES, Microphone, Receiver, ReceiverKind, SoundSourcePose};
 pub use recordings::Recording;

@@ -30,7 +30,7 @@ pub struct MaterialAcoustics {
 
 /// The acoustic materials of a house.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct AcousticReport {
+pub struct MaterialReport {
     /// Materials that have area, the largest first.
     pub materials: Vec<MaterialAcoustics>,
     /// Area of all triangles, m².
@@ -49,7 +49,7 @@ pub struct AcousticReport {
     pub triangles: usize,
 }
 
-impl AcousticReport {
+impl MaterialReport {
     pub(crate) fn new(data: &PropagationData) -> Self {
         let house = data.house();
         let mut area_of = vec![0.0_f64; house.materials.len()];
@@ -131,8 +131,8 @@ mod tests {
 
     #[test]
     fn a_shoebox_is_explained() {
-        let carpet = Material::of("rug", library().get("carpet").unwrap());
-        let unknown = Material::of("unknown", library().default_substance());
+        let carpet = Material::from_substance("rug", library().get("carpet").unwrap());
+        let unknown = Material::from_substance("unknown", library().default_substance());
         let materials = ShoeboxMaterials {
             floor: carpet.clone(),
             ..ShoeboxMaterials::uniform(&unknown)

@@ -1,7 +1,7 @@
 //! Sources and receivers of sound.
 
 use crate::directivity::Directivity;
-use crate::error::{AcousticsError, finite, range};
+use crate::error::{AcousticsError, check_range, finite};
 use crate::head::HeadId;
 use dwell_scene::Pose;
 use glam::{Quat, Vec3};
@@ -211,7 +211,7 @@ impl Receiver {
         check_unit_rotation("the receiver", self.pose.rotation)?;
         match &self.kind {
             ReceiverKind::Omni | ReceiverKind::Binaural | ReceiverKind::Head(_) => Ok(()),
-            ReceiverKind::Ambisonics { order } => range(
+            ReceiverKind::Ambisonics { order } => check_range(
                 AT,
                 "order",
                 f64::from(*order),
@@ -221,7 +221,7 @@ impl Receiver {
             ReceiverKind::Array(microphones) => {
                 let most = MAX_MICROPHONES as f64;
                 let count = microphones.len() as f64;
-                range(AT, "microphones", count, (1.0, most), "1 to 128")?;
+                check_range(AT, "microphones", count, (1.0, most), "1 to 128")?;
                 microphones.iter().try_for_each(|microphone| {
                     finite("a microphone", microphone.array_from_microphone.position)?;
                     check_unit_rotation("a microphone", microphone.array_from_microphone.rotation)?;

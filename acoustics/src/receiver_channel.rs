@@ -55,7 +55,11 @@ pub(crate) enum ReceiverChannel {
 
 impl ReceiverChannel {
     /// Returns the channels of a receiver, in order.
-    pub(crate) fn of(receiver: &Receiver, heads: &HeadSet, speed_m_s: f64) -> Vec<Self> {
+    pub(crate) fn all_of_receiver(
+        receiver: &Receiver,
+        heads: &HeadSet,
+        speed_m_s: f64,
+    ) -> Vec<Self> {
         let rotation = receiver.pose.rotation;
         match &receiver.kind {
             ReceiverKind::Omni => vec![Self::Omni],

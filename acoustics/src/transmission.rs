@@ -37,7 +37,7 @@ pub(crate) fn transmitted_path(
     let mut near_m = 0.0;
     let mut walls: Vec<TransmittingWall> = Vec::new();
     for _ in 0..MOST_SURFACES {
-        interrupt::check();
+        interrupt::unwind_if_cancelled();
         let Some(hit) = rays.closest(&whole.with_range(near_m, whole.far_m), RayMask::EAR) else {
             let fractions = walls.iter().fold([1.0; BAND_COUNT], |product, wall| {
                 std::array::from_fn(|band| product[band] * wall.passed[band])
@@ -80,7 +80,7 @@ pub(crate) fn exit_behind_wall(
     let mut wall = TransmittingWall::new(data, rays, hit);
     let mut last_m = hit.distance_m;
     for _ in 0..MOST_SURFACES {
-        interrupt::check();
+        interrupt::unwind_if_cancelled();
         if wall.passed.iter().all(|passed| *passed <= 0.0) {
             return None;
         }

@@ -35,9 +35,9 @@ fn ask(bytes: Vec<u8>) -> usize {
         return 0;
     };
     let texts = [
-        file.text(None, "SOFAConventions"),
-        file.text(Some("SourcePosition"), "Type"),
-        file.text(Some("SourcePosition"), "Units"),
+        file.attribute_text(None, "SOFAConventions"),
+        file.attribute_text(Some("SourcePosition"), "Type"),
+        file.attribute_text(Some("SourcePosition"), "Units"),
     ];
     let mut answered = texts.iter().filter(|text| text.is_ok()).count();
     for name in VARIABLES {
@@ -60,7 +60,7 @@ fn ask(bytes: Vec<u8>) -> usize {
 fn old_and_new_files_hold_the_same() {
     for (name, bytes) in SAMPLES {
         let file = Hdf5::open(bytes.to_vec()).unwrap();
-        let text = |of, what| file.text(of, what).unwrap();
+        let text = |of, what| file.attribute_text(of, what).unwrap();
         let convention = text(None, "SOFAConventions");
         assert_eq!(convention.as_deref(), Some("SimpleFreeFieldHRIR"), "{name}");
         assert_eq!(text(None, "RoomType"), None);

@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         );
     };
     let (measured, out) = (Path::new(measured), Path::new(out));
-    let sentence = match dwell_calibration::check(measured)?.0 {
+    let sentence = match dwell_calibration::check_bundle(measured)?.0 {
         BundleKind::PoseTrajectory => tosses(measured, out, &options, wanted, peers)?,
         BundleKind::Drive => {
             let drives = DriveRecordings::read(measured)?;

@@ -95,7 +95,7 @@ pub fn calibrate_any(
     options.check()?;
     let bundle = bundle::read(path)?;
     if bundle.kind() == BundleKind::PoseTrajectory {
-        let tracks = rollout::PoseTracks::of(&bundle)?;
+        let tracks = rollout::PoseTracks::from_bundle(&bundle)?;
         let settings = rollout::study::StudyOptions {
             seed: options.seed,
             threads: options.threads,
@@ -125,7 +125,7 @@ pub fn calibrate_any(
 ///
 /// # Errors
 /// [`CalibrationError`] names file, line and field.
-pub fn check(path: &Path) -> Result<(BundleKind, usize), CalibrationError> {
+pub fn check_bundle(path: &Path) -> Result<(BundleKind, usize), CalibrationError> {
     let bundle = bundle::read(path)?;
     Ok((bundle.kind(), bundle.episodes.len()))
 }

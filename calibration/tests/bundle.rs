@@ -270,7 +270,7 @@ fn drive(change: impl Fn(usize, &mut [f64; 6])) -> Result<(BundleKind, usize), S
     }
     put("episodes.csv", episodes);
     put("drive.csv", rows);
-    dwell_calibration::check(folder.path()).map_err(|error| error.to_string())
+    dwell_calibration::check_bundle(folder.path()).map_err(|error| error.to_string())
 }
 
 #[test]

@@ -10,8 +10,8 @@ use dwell_calibration::rollout::study::{
 };
 use dwell_calibration::rollout::{
     BoardRig, HORIZONS, MotionState, NominalContact, PoseTrack, PoseTracks, Regime, RigSettings,
-    TrackedBody, TrackerNoise, WindowOptions, diverges_under_noise, ends, scores, window_start,
-    windows,
+    TrackedBody, TrackerNoise, WindowOptions, diverges_under_noise, predict_windows, scores,
+    window_scores, window_start,
 };
 use dwell_physics::ContactFriction;
 use dwell_scene::parallel::Threads;
@@ -156,13 +156,16 @@ fn roll_outs_meet_their_own_tosses_and_threads_change_nothing() {
         chaos_guard: Some(RandomKey::root(0)),
         threads,
     };
-    let found = ends(&tracks, &rigs, &windowing(Threads::ONE)).unwrap();
+    let found = predict_windows(&tracks, &rigs, &windowing(Threads::ONE)).unwrap();
     for threads in [2, 7] {
         let threads = Threads::new(threads);
         assert_eq!(scores(&rig, &tracks, &all, threads).unwrap(), other);
-        assert_eq!(ends(&tracks, &rigs, &windowing(threads)).unwrap(), found);
+        assert_eq!(
+            predict_windows(&tracks, &rigs, &windowing(threads)).unwrap(),
+            found
+        );
     }
-    let one = windows(&found);
+    let one = window_scores(&found);
     // Errors grow with the horizon, and every horizon is there.
     let total: Vec<f64> = HORIZONS
         .iter()

@@ -37,7 +37,7 @@ pub(crate) fn body_type(hold: BodyStatus) -> RigidBodyType {
 /// Returns the factors on the densities of each body's parts that give overridden parts and objects their mass. A part's
 /// own factor sets its mass relative to the others, and the object's mass, where it is overridden, the sum. Shape (body,
 /// part).
-pub(crate) fn mass_factors(model: &PhysicsModel, state: &State) -> Vec<Vec<f32>> {
+pub(crate) fn density_factors(model: &PhysicsModel, state: &State) -> Vec<Vec<f32>> {
     let house = &model.house;
     if state.overrides.is_empty() {
         let ones = |body: &BodyPlan| vec![1.0; body.parts.len()];

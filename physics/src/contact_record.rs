@@ -1,12 +1,12 @@
 //! The contacts of a physics step: solution, correction of rebounds, and events.
 
-use crate::articulation::JointSystem;
+use crate::articulation::WorldJoints;
 use crate::contact::{
     BodyMotion, ContactCollector, ContactEvent, ContactHooks, ContactReport, ContactTracker,
     ExcessEventTotals, RestitutionContext, RestitutionResult, merge_excess, record_motion,
 };
 use crate::dynamics::Dynamics;
-use crate::joints::JointCoordinate;
+use crate::joints::JointKinematics;
 use rapier3d::dynamics::RigidBodyHandle;
 
 /// Contact data kept from step to step.
@@ -53,9 +53,9 @@ impl ContactPipeline {
     pub(crate) fn correct_restitution(
         &self,
         dynamics: &mut Dynamics,
-        articulation: &mut JointSystem,
+        articulation: &mut WorldJoints,
         solved: &SolvedContacts,
-        joints_before: &[JointCoordinate],
+        joints_before: &[JointKinematics],
     ) -> RestitutionResult {
         let context = RestitutionContext {
             motions: &self.motion,

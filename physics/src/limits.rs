@@ -146,7 +146,7 @@ fn broad_phase_pairs(model: &PhysicsModel, state: &State) -> Result<usize, Physi
     let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
     let (mut met, mut near) = (0, 0);
     for (first, bounds) in boxes.iter().enumerate() {
-        interrupt::check();
+        interrupt::unwind_if_cancelled();
         for second in tree.intersect_aabb(bounds) {
             // Each pair once.
             if second as usize <= first {

@@ -6,7 +6,7 @@ use crate::engine_call::EngineCall;
 use crate::errors::{PyFault, to_python};
 use crate::house::PyHouse;
 use crate::hrtf::PyHead;
-use crate::values::Data;
+use crate::values::JsonArgument;
 use dwell_acoustics::bands::NOMINAL_CENTRES_HZ;
 use dwell_acoustics::metrics::BandWidth;
 use dwell_acoustics::{
@@ -34,9 +34,9 @@ impl PyAcousticScene {
     fn new(
         py: Python<'_>,
         house: &Bound<'_, PyHouse>,
-        config: Data,
-        laws: Data,
-        parameters: Data,
+        config: JsonArgument,
+        laws: JsonArgument,
+        parameters: JsonArgument,
     ) -> PyResult<Self> {
         arrays::init_numpy(py)?;
         let house = house.get().engines.house().clone();
@@ -54,7 +54,12 @@ impl PyAcousticScene {
         })
     }
 
-    fn early_paths(&self, py: Python<'_>, source: Data, mic: [f32; 3]) -> PyResult<PyValue> {
+    fn early_paths(
+        &self,
+        py: Python<'_>,
+        source: JsonArgument,
+        mic: [f32; 3],
+    ) -> PyResult<PyValue> {
         py.engine(|| -> Result<_, PyFault> {
             let source: SoundSourcePose = source.read()?;
             let mic = Vec3::from_array(mic);
@@ -67,8 +72,8 @@ impl PyAcousticScene {
     fn impulse_responses<'py>(
         &self,
         py: Python<'py>,
-        source: Data,
-        receivers: Data,
+        source: JsonArgument,
+        receivers: JsonArgument,
         heads: Vec<Py<PyHead>>,
         seed: u64,
         threads: Option<usize>,
@@ -76,7 +81,7 @@ impl PyAcousticScene {
         let responses = py.engine(|| {
             let source: SoundSourcePose = source.read()?;
             let receivers: Vec<Receiver> = receivers.read()?;
-            let (key, threads) = (RandomKey::root(seed), Threads::requested(threads)?);
+            let (key, threads) = (RandomKey::root(seed), Threads::try_resolve(threads)?);
             let mut scene = self.scene.clone();
             for head in &heads {
                 scene.add_head(&head.get().head);
@@ -96,8 +101,8 @@ impl PyAcousticScene {
     fn metrics(
         &self,
         py: Python<'_>,
-        source: Data,
-        receivers: Data,
+        source: JsonArgument,
+        receivers: JsonArgument,
         seed: u64,
         threads: Option<usize>,
     ) -> PyResult<PyValue> {
@@ -128,8 +133,8 @@ impl PyAcousticScene {
     fn echogram(
         &self,
         py: Python<'_>,
-        source: Data,
-        receiver: Data,
+        source: JsonArgument,
+        receiver: JsonArgument,
         seed: u64,
         threads: Option<usize>,
     ) -> PyResult<PyValue> {
@@ -165,7 +170,7 @@ impl PyAcousticScene {
         threads: Option<usize>,
     ) -> Result<Vec<Echogram>, PyFault> {
         let centres: Vec<Vec3> = receivers.iter().map(Receiver::position).collect();
-        let (key, threads) = (RandomKey::root(seed), Threads::requested(threads)?);
+        let (key, threads) = (RandomKey::root(seed), Threads::try_resolve(threads)?);
         let echograms = self
             .scene
             .echograms(&self.rays, source, &centres, key, threads)?;
@@ -179,7 +184,7 @@ pub(crate) fn response_metrics(
     py: Python<'_>,
     samples: PyReadonlyArray1<'_, f32>,
     rate_hz: f64,
-    width: Data,
+    width: JsonArgument,
 ) -> PyResult<PyValue> {
     let samples = arrays::as_contiguous_slice("samples", &samples)?;
     py.engine(|| -> Result<_, PyFault> {
@@ -196,7 +201,7 @@ pub(crate) fn ear_metrics(
     left: PyReadonlyArray1<'_, f32>,
     right: PyReadonlyArray1<'_, f32>,
     rate_hz: f64,
-    width: Data,
+    width: JsonArgument,
 ) -> PyResult<PyValue> {
     let (left, right) = (
         arrays::as_contiguous_slice("left", &left)?,

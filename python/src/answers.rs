@@ -86,35 +86,35 @@ impl<'py> IntoPyObject<'py> for PyValue {
 struct AnswerSerializer;
 
 /// Rows that are being put together, of an enum's variant where they have one.
-struct RowsSerializer {
+struct SequenceSerializer {
     variant: Option<&'static str>,
     rows: Vec<PyValue>,
 }
 
 /// Fields that are being put together, of an enum's variant where they have one.
-struct FieldsSerializer {
+struct MapSerializer {
     variant: Option<&'static str>,
     /// Of the value that comes next.
     name: Option<Name>,
     fields: Vec<(Name, PyValue)>,
 }
 
-fn rows(variant: Option<&'static str>, count: usize) -> RowsSerializer {
-    RowsSerializer {
+fn rows(variant: Option<&'static str>, count: usize) -> SequenceSerializer {
+    SequenceSerializer {
         variant,
         rows: Vec::with_capacity(count),
     }
 }
 
-fn fields(variant: Option<&'static str>, count: usize) -> FieldsSerializer {
-    FieldsSerializer {
+fn fields(variant: Option<&'static str>, count: usize) -> MapSerializer {
+    MapSerializer {
         variant,
         name: None,
         fields: Vec::with_capacity(count),
     }
 }
 
-impl RowsSerializer {
+impl SequenceSerializer {
     fn push(&mut self, value: &(impl Serialize + ?Sized)) -> Result<(), Error> {
         self.rows.push(value.serialize(AnswerSerializer)?);
         Ok(())
@@ -125,7 +125,7 @@ impl RowsSerializer {
     }
 }
 
-impl FieldsSerializer {
+impl MapSerializer {
     fn push(
         &mut self,
         name: impl Into<Name>,
@@ -153,13 +153,13 @@ macro_rules! whole_numbers {
 impl Serializer for AnswerSerializer {
     type Ok = PyValue;
     type Error = Error;
-    type SerializeSeq = RowsSerializer;
-    type SerializeTuple = RowsSerializer;
-    type SerializeTupleStruct = RowsSerializer;
-    type SerializeTupleVariant = RowsSerializer;
-    type SerializeMap = FieldsSerializer;
-    type SerializeStruct = FieldsSerializer;
-    type SerializeStructVariant = FieldsSerializer;
+    type SerializeSeq = SequenceSerializer;
+    type SerializeTuple = SequenceSerializer;
+    type SerializeTupleStruct = SequenceSerializer;
+    type SerializeTupleVariant = SequenceSerializer;
+    type SerializeMap = MapSerializer;
+    type SerializeStruct = MapSerializer;
+    type SerializeStructVariant = MapSerializer;
 
     fn serialize_bool(self, value: bool) -> Result<PyValue, Error> {
         Ok(PyValue::Flag(value))
@@ -236,11 +236,11 @@ impl Serializer for AnswerSerializer {
         Ok(value.serialize(self)?.of_variant(Some(variant)))
     }
 
-    fn serialize_seq(self, count: Option<usize>) -> Result<RowsSerializer, Error> {
+    fn serialize_seq(self, count: Option<usize>) -> Result<SequenceSerializer, Error> {
         Ok(rows(None, count.unwrap_or(0)))
     }
 
-    fn serialize_tuple(self, count: usize) -> Result<RowsSerializer, Error> {
+    fn serialize_tuple(self, count: usize) -> Result<SequenceSerializer, Error> {
         Ok(rows(None, count))
     }
 
@@ -248,7 +248,7 @@ impl Serializer for AnswerSerializer {
         self,
         _: &'static str,
         count: usize,
-    ) -> Result<RowsSerializer, Error> {
+    ) -> Result<SequenceSerializer, Error> {
         Ok(rows(None, count))
     }
 
@@ -258,15 +258,15 @@ impl Serializer for AnswerSerializer {
         _: u32,
         variant: &'static str,
         count: usize,
-    ) -> Result<RowsSerializer, Error> {
+    ) -> Result<SequenceSerializer, Error> {
         Ok(rows(Some(variant), count))
     }
 
-    fn serialize_map(self, count: Option<usize>) -> Result<FieldsSerializer, Error> {
+    fn serialize_map(self, count: Option<usize>) -> Result<MapSerializer, Error> {
         Ok(fields(None, count.unwrap_or(0)))
     }
 
-    fn serialize_struct(self, _: &'static str, count: usize) -> Result<FieldsSerializer, Error> {
+    fn serialize_struct(self, _: &'static str, count: usize) -> Result<MapSerializer, Error> {
         Ok(fields(None, count))
     }
 
@@ -276,7 +276,7 @@ impl Serializer for AnswerSerializer {
         _: u32,
         variant: &'static str,
         count: usize,
-    ) -> Result<FieldsSerializer, Error> {
+    ) -> Result<MapSerializer, Error> {
         Ok(fields(Some(variant), count))
     }
 }
@@ -284,7 +284,7 @@ impl Serializer for AnswerSerializer {
 /// Rows are all alike, whatever they are called.
 macro_rules! rows_are_pushed {
     ($($Kind:ident::$push:ident,)+) => {$(
-        impl $Kind for RowsSerializer {
+        impl $Kind for SequenceSerializer {
             type Ok = PyValue;
             type Error = Error;
 
@@ -309,7 +309,7 @@ rows_are_pushed! {
 /// So are fields.
 macro_rules! fields_are_pushed {
     ($($Kind:ident,)+) => {$(
-        impl $Kind for FieldsSerializer {
+        impl $Kind for MapSerializer {
             type Ok = PyValue;
             type Error = Error;
 
@@ -330,7 +330,7 @@ macro_rules! fields_are_pushed {
 
 fields_are_pushed! { SerializeStruct, SerializeStructVariant, }
 
-impl SerializeMap for FieldsSerializer {
+impl SerializeMap for MapSerializer {
     type Ok = PyValue;
     type Error = Error;
 

@@ -7,7 +7,7 @@ use crate::errors::PyFault;
 use crate::house::PyHouse;
 use crate::picture;
 use crate::prepared_env::PyPreparedEnv;
-use crate::values::Data;
+use crate::values::JsonArgument;
 use dwell::sensors::{Dtype, ObservationBuffer};
 use dwell::{Batch, DiscreteAction, Engines, Env, EnvConfig, StepInfo, StepResult};
 use dwell_scene::interrupt;
@@ -34,7 +34,7 @@ enum BorrowedBuffer<'py> {
 }
 
 /// The error of an array that cannot be written in place.
-fn refused(sensor: &str, dtype: Dtype, found: &str) -> PyErr {
+fn buffer_error(sensor: &str, dtype: Dtype, found: &str) -> PyErr {
     let dtype = match dtype {
         Dtype::Uint8 => "uint8",
         Dtype::Float32 => "float32",
@@ -62,16 +62,16 @@ fn borrow_buffers<'py, T: numpy::Element>(
 ) -> PyResult<PyReadwriteArrayDyn<'py, T>> {
     let array = out
         .cast::<PyArrayDyn<T>>()
-        .map_err(|_| refused(sensor, dtype, &describe_argument(out)))?;
+        .map_err(|_| buffer_error(sensor, dtype, &describe_argument(out)))?;
     // A slice also exists of an array in Fortran's order, but would be filled in the wrong one.
     if !array.is_c_contiguous() {
-        return Err(refused(sensor, dtype, "one that is not C-contiguous"));
+        return Err(buffer_error(sensor, dtype, "one that is not C-contiguous"));
     }
     array.try_readwrite().map_err(|error| match error {
         BorrowError::AlreadyBorrowed => crate::errors::to_python(PyFault::Usage(format!(
             "{sensor}: its buffer is in use by another call; one thread at a time steps an environment"
         ))),
-        _ => refused(sensor, dtype, "one that is read-only"),
+        _ => buffer_error(sensor, dtype, "one that is read-only"),
     })
 }
 
@@ -142,11 +142,11 @@ impl PyBatch {
             .collect();
         let batch = py.engine(|| -> Result<Batch, PyFault> {
             let config: EnvConfig = serde_json::from_str(config_json)?;
-            let threads = Threads::requested(threads)?;
+            let threads = Threads::try_resolve(threads)?;
             let count = shared.len();
             let mut envs = Vec::new();
             for engines in shared {
-                interrupt::check();
+                interrupt::unwind_if_cancelled();
                 envs.push(Env::new(engines, &config)?);
                 if let [first] = envs.as_slice() {
                     dwell::memory_estimate::check(first, count)?;
@@ -167,7 +167,7 @@ impl PyBatch {
     /// Returns who acts in every environment, by the number among the world's agents.
     fn agents(&self, py: Python<'_>) -> PyResult<Vec<u32>> {
         self.with(py, |batch| {
-            Ok(batch.agents().map(|agent| agent.0).collect())
+            Ok(batch.acting_agents().map(|agent| agent.0).collect())
         })
     }
 
@@ -284,7 +284,7 @@ impl PyBatch {
         let mut slices = Vec::new();
         for (array, spec) in lent.iter_mut().zip(&specs) {
             let name = &spec.name;
-            let refuse = |_| refused(name, spec.dtype, "one that is not C-contiguous");
+            let refuse = |_| buffer_error(name, spec.dtype, "one that is not C-contiguous");
             slices.push(match array {
                 BorrowedBuffer::Uint8(array) => {
                     ObservationBuffer::Uint8(array.as_slice_mut().map_err(refuse)?)
@@ -329,7 +329,7 @@ impl PyBatch {
         &self,
         py: Python<'_>,
         env: usize,
-        ruling: Data,
+        ruling: JsonArgument,
         agent: usize,
     ) -> PyResult<PyValue> {
         self.with(py, |batch| {
@@ -355,7 +355,12 @@ impl PyBatch {
         self.with(py, |batch| Ok(batch.text_observations(sensor)))
     }
 
-    fn render<'py>(&self, py: Python<'py>, env: usize, view: Data) -> PyResult<Bound<'py, PyAny>> {
+    fn render<'py>(
+        &self,
+        py: Python<'py>,
+        env: usize,
+        view: JsonArgument,
+    ) -> PyResult<Bound<'py, PyAny>> {
         let mut seen = self.with(py, |batch| {
             let env = batch.env(env)?;
             let view = match env.agents().next() {

@@ -4,7 +4,7 @@ use crate::answers::PyValue;
 use crate::callbacks;
 use crate::engine_call::{EngineCall, attach};
 use crate::errors::PyFault;
-use crate::values::Data;
+use crate::values::JsonArgument;
 use pyo3::prelude::*;
 
 /// Measures one stage: `load`, `render`, `physics`, `acoustics` or `env`; answers its figures. `progress`:
@@ -15,7 +15,7 @@ pub(crate) fn bench(
     py: Python<'_>,
     what: &str,
     house: &str,
-    options: Data,
+    options: JsonArgument,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<PyValue> {
     let mut raised = None;

@@ -146,13 +146,13 @@ pub(crate) fn doctor(py: Python<'_>) -> PyResult<PyValue> {
 }
 
 fn machine() -> Result<PyValue, PyFault> {
-    let threads = Threads::requested(None)?.count();
+    let threads = Threads::try_resolve(None)?.count();
     PyValue::of(&json!({
         "version": env!("CARGO_PKG_VERSION"),
         "target": format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
         "threads": threads,
         "available_cores": parallel::available_cores(),
-        "machine_threads": parallel::available_threads(),
+        "machine_threads": parallel::hardware_threads(),
         "threads_variable": parallel::threads_variable()?,
         "cpu_features": cpu_features(),
         "render_back_ends": ["cpu", "gpu"],

@@ -23,7 +23,7 @@ pub(crate) fn calibrate(
     let report = py.engine(|| -> Result<String, PyFault> {
         let options = dwell_calibration::Options {
             house: house.map(str::to_owned),
-            threads: Some(Threads::requested(None)?.count()),
+            threads: Some(Threads::try_resolve(None)?.count()),
             ..Default::default()
         };
         let peers: Result<Vec<PeerScores>, _> = peers
@@ -62,5 +62,5 @@ pub(crate) fn calibration_example(py: Python<'_>, folder: &str, seed: u64) -> Py
 /// Reads and checks a measured bundle; returns its number of episodes.
 #[pyfunction]
 pub(crate) fn check_measured(py: Python<'_>, measured: &str) -> PyResult<usize> {
-    py.engine(|| Ok::<_, PyFault>(dwell_calibration::check(Path::new(measured))?.1))
+    py.engine(|| Ok::<_, PyFault>(dwell_calibration::check_bundle(Path::new(measured))?.1))
 }

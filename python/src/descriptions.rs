@@ -47,7 +47,7 @@ impl ThingIds {
 }
 
 /// The number of letters before a byte of a text: Python counts letters.
-pub(crate) fn letters(text: &str, byte: usize) -> usize {
+pub(crate) fn char_offset(text: &str, byte: usize) -> usize {
     if text.is_ascii() {
         byte
     } else {
@@ -59,8 +59,8 @@ fn spans(house: &House, text: &str, phrases: &[GroundedPhrase]) -> Value {
     let spans = phrases.iter().map(|phrase| {
         let ThingIds { ids, rooms } = ThingIds::of(house, &phrase.terms);
         json!({
-            "start": letters(text, phrase.start),
-            "end": letters(text, phrase.end),
+            "start": char_offset(text, phrase.start),
+            "end": char_offset(text, phrase.end),
             "ids": ids,
             "rooms": rooms,
         })
@@ -75,8 +75,8 @@ fn text_row(house: &House, text: &GroundedText) -> Result<Value, PyFault> {
         let ThingIds { ids, rooms } = ThingIds::of(house, &claim.terms);
         all.extend_from_slice(&claim.terms);
         claims.push(json!({
-            "start": letters(&text.text, claim.start),
-            "end": letters(&text.text, claim.end),
+            "start": char_offset(&text.text, claim.start),
+            "end": char_offset(&text.text, claim.end),
             "form": serde_json::to_value(&claim.form)?,
             "ids": ids,
             "rooms": rooms,

@@ -98,7 +98,7 @@ const TREE: [(&str, &str, &str, &str); 8] = [
     ),
 ];
 
-fn kinds(py: Python<'_>) -> PyResult<&'static Vec<(&'static str, Py<PyType>)>> {
+fn exception_types(py: Python<'_>) -> PyResult<&'static Vec<(&'static str, Py<PyType>)>> {
     KINDS.get_or_try_init(py, || {
         let builtins = py.import("builtins")?;
         let mut made: Vec<(&'static str, Py<PyType>)> =
@@ -127,7 +127,7 @@ fn kinds(py: Python<'_>) -> PyResult<&'static Vec<(&'static str, Py<PyType>)>> {
 }
 
 fn kind(py: Python<'_>, name: &str, message: String) -> PyErr {
-    match kinds(py) {
+    match exception_types(py) {
         Ok(kinds) => {
             let found = kinds
                 .iter()
@@ -163,7 +163,7 @@ pub(crate) fn printable(text: String) -> String {
 
 /// Adds the tree to the module.
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    for (name, kind) in kinds(module.py())? {
+    for (name, kind) in exception_types(module.py())? {
         module.add(*name, kind.bind(module.py()))?;
     }
     Ok(())

@@ -40,7 +40,7 @@ impl PyHdf5 {
     #[pyo3(signature = (variable, name))]
     fn text(&self, py: Python<'_>, variable: Option<&str>, name: &str) -> PyResult<Option<String>> {
         py.engine(|| {
-            let text = self.file.text(variable, name);
+            let text = self.file.attribute_text(variable, name);
             text.map_err(|error| self.fault(&error))
         })
     }

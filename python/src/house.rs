@@ -44,7 +44,7 @@ impl PyHouse {
     #[pyo3(signature = (house, threads=None))]
     fn open(py: Python<'_>, house: &str, threads: Option<usize>) -> PyResult<Self> {
         py.engine(|| -> Result<_, PyFault> {
-            let (house, report) = dwell_houses::open_with(house, Threads::requested(threads)?)?;
+            let (house, report) = dwell_houses::open_with(house, Threads::try_resolve(threads)?)?;
             Ok(Self::from_house(house, authoring::rows(&report)?))
         })
     }
@@ -100,7 +100,7 @@ impl PyHouse {
                         "no substance {name:?}; there are {known:?}"
                     )));
                 };
-                materials = ShoeboxMaterials::uniform(&Material::of("wall", found));
+                materials = ShoeboxMaterials::uniform(&Material::from_substance("wall", found));
             }
             let ShoeboxMaterials {
                 floor,
@@ -186,7 +186,7 @@ impl PyHouse {
     }
 
     fn rooms(&self, py: Python<'_>) -> PyResult<PyValue> {
-        py.engine(|| PyValue::of(&dwell::viewpoints(&self.engines)?))
+        py.engine(|| PyValue::of(&dwell::best_room_viewpoints(&self.engines)?))
     }
 
     #[pyo3(signature = (level, length, key=None))]

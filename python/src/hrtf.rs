@@ -15,7 +15,7 @@ pub(crate) struct PyHead {
     pub(crate) head: Head,
 }
 
-fn shape(name: &str, expected: &str, found: &[usize]) -> PyErr {
+fn shape_error(name: &str, expected: &str, found: &[usize]) -> PyErr {
     let message = format!("{name}: expected shape {expected}, found {found:?}");
     crate::errors::to_python(PyFault::Config(message))
 }
@@ -44,14 +44,18 @@ impl PyHead {
             (sources.as_array(), responses.as_array(), delays.as_array());
         let count = sources.nrows();
         if sources.ncols() != 3 {
-            return Err(shape("sources", "(direction, 3)", sources.shape()));
+            return Err(shape_error("sources", "(direction, 3)", sources.shape()));
         }
         if responses.shape()[..2] != [count, 2] {
             let expected = format!("({count}, 2, sample)");
-            return Err(shape("responses", &expected, responses.shape()));
+            return Err(shape_error("responses", &expected, responses.shape()));
         }
         if delays.shape() != [count, 2] {
-            return Err(shape("delays", &format!("({count}, 2)"), delays.shape()));
+            return Err(shape_error(
+                "delays",
+                &format!("({count}, 2)"),
+                delays.shape(),
+            ));
         }
         let measurement = HrirMeasurement {
             sources: sources

@@ -1,10 +1,10 @@
 //! Forms and sentences for Python.
 
 use crate::answers;
-use crate::descriptions::letters;
+use crate::descriptions::char_offset;
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
-use crate::values::Data;
+use crate::values::JsonArgument;
 use crate::world::PyWorld;
 use crate::world_access::WorldAccess;
 use dwell_scene::AgentId;
@@ -18,7 +18,11 @@ use pyo3::prelude::*;
 use serde_json::{Value, json};
 
 impl WorldAccess<'_> {
-    pub(crate) fn listener(&self, viewer: Data, agent: Option<usize>) -> Result<Listener, PyFault> {
+    pub(crate) fn listener(
+        &self,
+        viewer: JsonArgument,
+        agent: Option<usize>,
+    ) -> Result<Listener, PyFault> {
         let agent = agent.map(|agent| self.agent(agent)).transpose()?;
         let eyes = |agent: AgentId| dwell_semantics::Viewer::of_agent(self.world.state(), agent);
         let viewer = self.viewer(viewer)?;
@@ -94,7 +98,7 @@ pub(crate) fn language_read(py: Python<'_>, text: &str) -> PyResult<answers::PyV
 #[pyfunction]
 pub(crate) fn language_say(
     py: Python<'_>,
-    form: Data,
+    form: JsonArgument,
     seed: Option<u64>,
 ) -> PyResult<Option<String>> {
     py.engine(|| {
@@ -110,7 +114,7 @@ pub(crate) fn world_check_text(
     py: Python<'_>,
     world: &Bound<'_, PyWorld>,
     text: &str,
-    viewer: Data,
+    viewer: JsonArgument,
     agent: Option<usize>,
 ) -> PyResult<answers::PyValue> {
     world.get().read_interruptible(py, |running| {
@@ -122,8 +126,8 @@ pub(crate) fn world_check_text(
             let grounded = checker.ground(said);
             let phrases = grounded.into_iter().map(|phrase| {
                 json!({
-                    "start": letters(&said.text, phrase.start),
-                    "end": letters(&said.text, phrase.end),
+                    "start": char_offset(&said.text, phrase.start),
+                    "end": char_offset(&said.text, phrase.end),
                     "things": running.terms_json(&phrase.terms),
                 })
             });

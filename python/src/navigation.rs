@@ -4,7 +4,7 @@ use crate::answers::PyValue;
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use crate::house::PyHouse;
-use crate::values::Data;
+use crate::values::JsonArgument;
 use dwell::Engines;
 use dwell_scene::interrupt;
 use dwell_scene::navigation::{NavCell, NavConfig, NavGrid};
@@ -38,17 +38,21 @@ struct GridAtState {
 
 impl PyNavigation {
     /// Of a house as it starts: every house keeps the grids of its latest walkers.
-    fn of_start(engines: &Engines, walker: Data) -> Result<Self, PyFault> {
+    fn of_start(engines: &Engines, walker: JsonArgument) -> Result<Self, PyFault> {
         let grid = engines
             .nav_grid_of_config(&walker.read()?)
-            .map_err(refused)?;
+            .map_err(config_fault)?;
         Ok(Self::at(engines.house(), grid, None))
     }
 
     /// Of a house as it stands in a state.
-    pub(crate) fn build(house: &Arc<House>, state: &State, walker: Data) -> Result<Self, PyFault> {
+    pub(crate) fn build(
+        house: &Arc<House>,
+        state: &State,
+        walker: JsonArgument,
+    ) -> Result<Self, PyFault> {
         let config: NavConfig = walker.read()?;
-        let grid = Arc::new(NavGrid::build(house, state, &config).map_err(refused)?);
+        let grid = Arc::new(NavGrid::build(house, state, &config).map_err(config_fault)?);
         Ok(Self::at(house, grid, Some(state.clone())))
     }
 
@@ -85,7 +89,7 @@ impl PyNavigation {
 }
 
 /// A walker's number is the caller's, not the house's.
-fn refused(error: impl std::fmt::Display) -> PyFault {
+fn config_fault(error: impl std::fmt::Display) -> PyFault {
     PyFault::Config(error.to_string())
 }
 
@@ -105,7 +109,7 @@ impl PyNavigation {
     fn new(
         py: Python<'_>,
         house: &Bound<'_, PyHouse>,
-        walker: Data,
+        walker: JsonArgument,
         state: Option<&[u8]>,
     ) -> PyResult<Self> {
         let engines = &house.get().engines;

@@ -1,7 +1,7 @@
 //! One picture of a world, as Python requests it.
 
 use crate::errors::PyFault;
-use crate::values::Data;
+use crate::values::JsonArgument;
 use dwell::sensors::{ImageObservationOptions, Observation, ObservationData};
 use dwell::{CameraMount, ImageRequest, World, camera_mount};
 use dwell_render::{Camera, ClassSet, Preset, Projection};
@@ -80,7 +80,7 @@ impl Default for PictureSettings {
 /// Returns what the sensors called `channels` give for the view that `view` describes.
 pub(crate) fn render(
     world: &World,
-    view: Data,
+    view: JsonArgument,
     channels: &[String],
 ) -> Result<Vec<Observation>, PyFault> {
     let settings: PictureSettings = view.read()?;
@@ -104,10 +104,10 @@ pub(crate) fn render(
     };
     let request = ImageRequest {
         camera: camera.with_range(own.near_m, own.far_m)?,
-        mount: place(world, &settings)?,
+        mount: checked_mount(world, &settings)?,
         preset: own.preset,
     };
-    let threads = Threads::requested(None)?;
+    let threads = Threads::try_resolve(None)?;
     let images = ImageObservationOptions {
         max_objects: own.max_objects,
         classes: own.classes,
@@ -126,7 +126,7 @@ pub(crate) fn array(py: Python<'_>, observation: Observation) -> PyResult<Bound<
 }
 
 /// Returns the mount of the camera.
-fn place(world: &World, settings: &PictureSettings) -> Result<CameraMount, PyFault> {
+fn checked_mount(world: &World, settings: &PictureSettings) -> Result<CameraMount, PyFault> {
     let own = &settings.camera;
     let mount = camera_mount(own.position_m, [own.yaw_deg, own.pitch_deg, own.roll_deg]);
     if !mount.is_valid() {

@@ -4,7 +4,7 @@ use crate::answers::PyValue;
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use crate::house::PyHouse;
-use crate::values::Data;
+use crate::values::JsonArgument;
 use crate::world::PyWorld;
 use dwell_render::{Dollhouse, DollhouseConfig, StoreyMap};
 use dwell_scene::parallel::Threads;
@@ -27,7 +27,7 @@ pub(crate) fn map<'py>(
     let (rgb, map) = world.get().read_interruptible(py, |running| {
         let world = &running.world;
         let map = StoreyMap::new(world.house(), LevelId(level), longest_edge)?;
-        let (renderer, threads) = (world.engines().cpu_renderer()?, Threads::requested(None)?);
+        let (renderer, threads) = (world.engines().cpu_renderer()?, Threads::try_resolve(None)?);
         Ok((
             map.render(renderer, world.rays(), world.state(), threads)?,
             map,
@@ -44,13 +44,13 @@ pub(crate) fn dollhouse<'py>(
     py: Python<'py>,
     world: &Bound<'py, PyWorld>,
     level: u32,
-    config: Data,
+    config: JsonArgument,
 ) -> PyResult<RgbArray<'py>> {
     let (rgb, size) = world.get().read_interruptible(py, |running| {
         let world = &running.world;
         let config: DollhouseConfig = config.read()?;
         let doll = Dollhouse::new(world.house(), LevelId(level), &config)?;
-        let (renderer, threads) = (world.engines().cpu_renderer()?, Threads::requested(None)?);
+        let (renderer, threads) = (world.engines().cpu_renderer()?, Threads::try_resolve(None)?);
         let rgb = doll.render(renderer, world.rays(), world.state(), threads)?;
         Ok((rgb, (doll.view.camera.height(), doll.view.camera.width())))
     })?;

@@ -39,7 +39,7 @@ pub(crate) fn prepared_envs(
         .collect();
     py.engine(|| -> Result<_, PyFault> {
         let config: EnvConfig = serde_json::from_str(config_json)?;
-        let threads = Threads::requested(threads)?;
+        let threads = Threads::try_resolve(threads)?;
         let envs = threads.map(shared.len(), |k| {
             let mut env = Env::new(shared[k].clone(), &config)?;
             if let Some(seed) = seeds.get(k).copied().flatten() {

@@ -3,13 +3,13 @@
 use crate::answers::PyValue;
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
-use crate::values::Data;
+use crate::values::JsonArgument;
 use crate::world::PyWorld;
 use crate::world_access::WorldAccess;
 use dwell_scene::space::rotation_from_yaw_pitch;
 use dwell_scene::{AgentId, EntityId, Id, LevelId, Pose, RoomId};
 use dwell_semantics::color::ColorVocabulary;
-use dwell_semantics::graph::{Related, listed, relations, scene_graph};
+use dwell_semantics::graph::{Related, default_relation_codes, relations, scene_graph};
 use dwell_semantics::predicates::{Predicate, all, find};
 use dwell_semantics::selections::{self, Selection};
 use dwell_semantics::{SemanticScene, Term, UndecidedReason, Viewer, object_attributes};
@@ -125,12 +125,12 @@ impl WorldAccess<'_> {
         }
     }
 
-    fn terms(&self, named: Data) -> Result<Vec<Term>, PyFault> {
+    fn terms(&self, named: JsonArgument) -> Result<Vec<Term>, PyFault> {
         let named: Vec<Value> = named.read()?;
         named.iter().map(|named| self.term(named)).collect()
     }
 
-    pub(crate) fn viewer(&self, viewer: Data) -> Result<Option<Viewer>, PyFault> {
+    pub(crate) fn viewer(&self, viewer: JsonArgument) -> Result<Option<Viewer>, PyFault> {
         let viewer: Value = viewer.read()?;
         if viewer.is_null() {
             return Ok(None);
@@ -165,10 +165,10 @@ impl WorldAccess<'_> {
         viewer: Option<&Viewer>,
     ) -> Result<Vec<Related>, PyFault> {
         let codes = match names {
-            None => listed(viewer.is_some()),
+            None => default_relation_codes(viewer.is_some()),
             Some(names) => names
                 .iter()
-                .map(|name| code_of(name, viewer))
+                .map(|name| binary_predicate_index(name, viewer))
                 .collect::<Result<_, _>>()?,
         };
         Ok(relations(&self.scene(), &codes, viewer))
@@ -176,7 +176,7 @@ impl WorldAccess<'_> {
 }
 
 /// The place of a predicate of two places in the list of all.
-fn code_of(name: &str, viewer: Option<&Viewer>) -> Result<usize, PyFault> {
+fn binary_predicate_index(name: &str, viewer: Option<&Viewer>) -> Result<usize, PyFault> {
     let predicate = predicate_called(name)?;
     if predicate.arity() != 2 {
         return Err(PyFault::Config(format!(
@@ -214,8 +214,8 @@ pub(crate) fn world_holds(
     py: Python<'_>,
     world: &Bound<'_, PyWorld>,
     name: &str,
-    things: Data,
-    viewer: Data,
+    things: JsonArgument,
+    viewer: JsonArgument,
 ) -> PyResult<(Option<bool>, Option<&'static str>)> {
     world.get().read_interruptible(py, |running| {
         let predicate = predicate_called(name)?;
@@ -232,10 +232,10 @@ pub(crate) fn world_select(
     py: Python<'_>,
     world: &Bound<'_, PyWorld>,
     name: &str,
-    things: Data,
+    things: JsonArgument,
     n: usize,
-    reference: Data,
-    viewer: Data,
+    reference: JsonArgument,
+    viewer: JsonArgument,
 ) -> PyResult<(Option<String>, Option<&'static str>)> {
     world.get().read_interruptible(py, |running| {
         let selection = selection_called(name)?;
@@ -261,7 +261,7 @@ pub(crate) fn world_relations(
     py: Python<'_>,
     world: &Bound<'_, PyWorld>,
     names: Option<Vec<String>>,
-    viewer: Data,
+    viewer: JsonArgument,
 ) -> PyResult<Vec<(String, &'static str, String)>> {
     world.get().read_interruptible(py, |running| {
         let viewer = running.viewer(viewer)?;
@@ -280,7 +280,7 @@ pub(crate) fn world_relation_array<'py>(
     py: Python<'py>,
     world: &Bound<'_, PyWorld>,
     names: Option<Vec<String>>,
-    viewer: Data,
+    viewer: JsonArgument,
 ) -> PyResult<Bound<'py, PyArray2<i32>>> {
     let (rows, count) = world.get().read_interruptible(py, |running| {
         let viewer = running.viewer(viewer)?;
@@ -303,7 +303,7 @@ pub(crate) fn world_relation_array<'py>(
 pub(crate) fn world_attributes(
     py: Python<'_>,
     world: &Bound<'_, PyWorld>,
-    named: Data,
+    named: JsonArgument,
 ) -> PyResult<PyValue> {
     world.get().read_interruptible(py, |running| {
         let id = running.object(&named.read()?)?;
@@ -316,7 +316,7 @@ pub(crate) fn world_attributes(
 pub(crate) fn world_color_names(
     py: Python<'_>,
     world: &Bound<'_, PyWorld>,
-    named: Data,
+    named: JsonArgument,
     vocabulary: usize,
 ) -> PyResult<Vec<(&'static str, f32)>> {
     world.get().read_interruptible(py, |running| {
@@ -336,7 +336,7 @@ pub(crate) fn world_color_names(
 pub(crate) fn world_graph_json(
     py: Python<'_>,
     world: &Bound<'_, PyWorld>,
-    viewer: Data,
+    viewer: JsonArgument,
 ) -> PyResult<String> {
     world.get().read_interruptible(py, |running| {
         let viewer = running.viewer(viewer)?;

@@ -10,9 +10,9 @@ use serde_json::{Map, Number, Value};
 const DEEPEST: usize = 100;
 
 /// An argument of mappings, lists, text and numbers.
-pub(crate) struct Data(Value);
+pub(crate) struct JsonArgument(Value);
 
-impl<'py> FromPyObject<'_, 'py> for Data {
+impl<'py> FromPyObject<'_, 'py> for JsonArgument {
     type Error = PyErr;
 
     fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
@@ -20,7 +20,7 @@ impl<'py> FromPyObject<'_, 'py> for Data {
     }
 }
 
-impl Data {
+impl JsonArgument {
     /// With a field that a mapping has where it does not state it.
     pub(crate) fn with_default(mut self, field: &str, value: u32) -> Self {
         if let Value::Object(fields) = &mut self.0 {

@@ -10,7 +10,7 @@ use crate::house::PyHouse;
 use crate::json_rows::{AgentPlacementArgument, BodyArgument, SoundArgument, SoundPlaceRow};
 use crate::navigation::PyNavigation;
 use crate::picture;
-use crate::values::Data;
+use crate::values::JsonArgument;
 use crate::world_access::{ActiveGuide, WorldAccess};
 use dwell::{DiscreteAction, HandActionRequest, ShortestPathFollower, World, WorldConfig};
 use dwell::{PlayRequest, SoundPlace, WorldError};
@@ -173,14 +173,14 @@ impl PyWorld {
         self.with(py, |running| Ok(running.world.step(&controls)?))
     }
 
-    fn step_fields(&self, py: Python<'_>, controls: Data) -> PyResult<()> {
+    fn step_fields(&self, py: Python<'_>, controls: JsonArgument) -> PyResult<()> {
         self.with(py, |running| {
             let controls: Vec<AgentControl> = controls.read()?;
             Ok(running.world.step(&controls)?)
         })
     }
 
-    fn act(&self, py: Python<'_>, agent: usize, action: Data) -> PyResult<PyValue> {
+    fn act(&self, py: Python<'_>, agent: usize, action: JsonArgument) -> PyResult<PyValue> {
         self.with(py, |running| {
             let agent = running.agent(agent)?;
             let request: HandActionRequest = action.read()?;
@@ -197,7 +197,7 @@ impl PyWorld {
             let action = known.ok_or_else(|| {
                 PyFault::Config(format!("action {action}; allowed are 0 to {last}"))
             })?;
-            let stride = running.stride(agent);
+            let stride = running.step_sizes(agent);
             let outcome = running.world.act_discrete(agent, action, &stride)?;
             PyValue::of(&running.outcome(&outcome)?)
         })
@@ -206,7 +206,7 @@ impl PyWorld {
     fn delayed_outcomes(&self, py: Python<'_>) -> PyResult<PyValue> {
         self.read_interruptible(py, |running| {
             let mut notices = Vec::new();
-            for notice in running.world.notices() {
+            for notice in running.world.delayed_outcomes() {
                 let outcome = running.outcome(&notice.outcome)?;
                 let agent = notice.agent.map(|agent| agent.0);
                 notices.push(json!({"agent": agent, "outcome": outcome}));
@@ -215,7 +215,7 @@ impl PyWorld {
         })
     }
 
-    fn place_agent(&self, py: Python<'_>, agent: usize, place: Data) -> PyResult<()> {
+    fn place_agent(&self, py: Python<'_>, agent: usize, place: JsonArgument) -> PyResult<()> {
         self.with(py, |running| {
             let row: AgentPlacementArgument = place.read()?;
             let placement = AgentPlacement {
@@ -245,7 +245,7 @@ impl PyWorld {
     }
 
     /// One object, by its name or the sensors' id.
-    fn object(&self, py: Python<'_>, named: Data) -> PyResult<PyValue> {
+    fn object(&self, py: Python<'_>, named: JsonArgument) -> PyResult<PyValue> {
         self.read_interruptible(py, |running| {
             let id = running.object(&named.read()?)?;
             PyValue::of(&dwell::object_state(running.world, id))
@@ -263,7 +263,7 @@ impl PyWorld {
     fn render<'py>(
         &self,
         py: Python<'py>,
-        view: Data,
+        view: JsonArgument,
         channels: Vec<String>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let seen = self.read_interruptible(py, |running| {
@@ -299,7 +299,7 @@ impl PyWorld {
         heard.into_pyarray(py).reshape([2, samples])
     }
 
-    fn play(&self, py: Python<'_>, sound: Data) -> PyResult<u64> {
+    fn play(&self, py: Python<'_>, sound: JsonArgument) -> PyResult<u64> {
         self.with(py, |running| {
             let row: SoundArgument = sound.read()?;
             let place = match row.at {
@@ -340,7 +340,7 @@ impl PyWorld {
         self.read_interruptible(py, |running| PyValue::of(&running.world.sounds()))
     }
 
-    fn navigation(&self, py: Python<'_>, walker: Data) -> PyResult<PyNavigation> {
+    fn navigation(&self, py: Python<'_>, walker: JsonArgument) -> PyResult<PyNavigation> {
         self.read_interruptible(py, |running| {
             let world = &running.world;
             PyNavigation::build(world.house(), world.state(), walker)
@@ -400,7 +400,7 @@ impl PyWorld {
                 };
                 *running.guide = Some((
                     bits,
-                    ShortestPathFollower::new(id, grid, &[cell], running.stride(id)),
+                    ShortestPathFollower::new(id, grid, &[cell], running.step_sizes(id)),
                 ));
             }
             let WorldAccess { world, guide, .. } = running;
@@ -415,10 +415,13 @@ impl PyWorld {
         self.read_interruptible(py, |running| {
             let agent = running.agent(agent)?;
             let object = running.object(&json!(object))?;
-            Ok(
-                dwell::action_towards_object(running.world, agent, object, &running.stride(agent))
-                    .map(|action| action as usize),
+            Ok(dwell::action_towards_object(
+                running.world,
+                agent,
+                object,
+                &running.step_sizes(agent),
             )
+            .map(|action| action as usize))
         })
     }
 
@@ -495,7 +498,7 @@ impl PyWorld {
         })
     }
 
-    fn set_bodies(&self, py: Python<'_>, bodies: Data) -> PyResult<()> {
+    fn set_bodies(&self, py: Python<'_>, bodies: JsonArgument) -> PyResult<()> {
         self.with(py, |running| {
             let rows: Vec<BodyArgument> = bodies.read()?;
             let bodies: Vec<BodyState> = rows
@@ -542,7 +545,7 @@ impl PyWorld {
         py: Python<'_>,
         level: &str,
         length: &str,
-        viewer: Data,
+        viewer: JsonArgument,
         agent: Option<usize>,
         key: Option<u64>,
     ) -> PyResult<PyValue> {

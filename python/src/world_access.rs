@@ -60,7 +60,7 @@ impl WorldAccess<'_> {
     }
 
     /// Returns how far discrete actions of an agent go.
-    pub(crate) fn stride(&self, agent: AgentId) -> StepSizes {
+    pub(crate) fn step_sizes(&self, agent: AgentId) -> StepSizes {
         self.strides.get(agent).copied().unwrap_or_default()
     }
 

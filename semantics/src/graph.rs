@@ -184,7 +184,7 @@ pub fn number_of(house: &House, term: Term) -> i32 {
 }
 
 /// The objects and pieces of the building whose middles are in front of a viewer, the nearest of them; in order.
-fn in_front(scene: &SemanticScene<'_>, viewer: &Viewer) -> Vec<Term> {
+fn nearest_in_front(scene: &SemanticScene<'_>, viewer: &Viewer) -> Vec<Term> {
     let house = scene.house();
     let objects = house.objects.ids().map(Term::Object);
     let terms = objects.chain(house.structure.ids().map(Term::Structure));
@@ -217,12 +217,12 @@ pub fn relations(
     let known: Vec<(usize, &dyn Predicate)> = known.filter(|(_, p)| p.arity() == 2).collect();
     let viewed = known.iter().any(|(_, predicate)| predicate.needs_viewer());
     let viewer = viewer.filter(|_| viewed);
-    let front = viewer.map_or_else(Vec::new, |viewer| in_front(scene, viewer));
+    let front = viewer.map_or_else(Vec::new, |viewer| nearest_in_front(scene, viewer));
     let objects = scene.house().objects.ids().map(Term::Object);
     let subjects = objects.chain(scene.state.agents.ids().map(Term::Agent));
     let mut found: Vec<Related> = Vec::new();
     for subject in subjects {
-        interrupt::check();
+        interrupt::unwind_if_cancelled();
         for (code, predicate) in &known {
             let mut terms = if !predicate.needs_viewer() {
                 predicate.related(scene, subject)
@@ -244,7 +244,7 @@ pub fn relations(
 
 /// The places in [`predicates::all`] of the predicates that tables list unasked; with a viewer also of those that need one and
 /// lead to few.
-pub fn listed(with_viewer: bool) -> Vec<usize> {
+pub fn default_relation_codes(with_viewer: bool) -> Vec<usize> {
     let all = predicates::all().iter().enumerate();
     let listed = all.filter(|(_, predicate)| {
         predicate.arity() == 2
@@ -268,7 +268,7 @@ pub fn scene_graph(scene: &SemanticScene<'_>, viewer: Option<&Viewer>) -> SceneG
             passages: facts.passages.iter().map(|room| room.0).collect(),
         }
     });
-    let found = relations(scene, &listed(viewer.is_some()), viewer);
+    let found = relations(scene, &default_relation_codes(viewer.is_some()), viewer);
     let edges = found
         .into_iter()
         .map(|(subject, code, object)| RelationEdge {
@@ -296,7 +296,7 @@ pub fn scene_graph(scene: &SemanticScene<'_>, viewer: Option<&Viewer>) -> SceneG
 
 impl SceneGraph {
     /// The relations of one object, by sensors' id.
-    pub fn of(&self, id: i32) -> impl Iterator<Item = &RelationEdge> {
+    pub fn relations_of(&self, id: i32) -> impl Iterator<Item = &RelationEdge> {
         self.relations.iter().filter(move |edge| edge.subject == id)
     }
 

@@ -40,12 +40,16 @@ impl NounIndex {
     }
 
     /// The number of a thing's kind.
-    pub(crate) fn of(&self, object: ObjectId) -> u32 {
+    pub(crate) fn class_of(&self, object: ObjectId) -> u32 {
         self.of[object]
     }
 
     /// The numbers of the kinds that may be called `noun`.
-    pub(crate) fn with_noun(&self, facts: &IdVec<ObjectId, ObjectFacts>, noun: &str) -> Vec<u32> {
+    pub(crate) fn classes_called(
+        &self,
+        facts: &IdVec<ObjectId, ObjectFacts>,
+        noun: &str,
+    ) -> Vec<u32> {
         let kinds = self.all.iter().enumerate();
         let called = kinds.filter(|(_, kind)| facts[kind.first].is_called(noun));
         called.map(|(k, _)| k as u32).collect()

@@ -22,7 +22,7 @@ pub(crate) struct ReachableArea {
     reach_m: f32,
 }
 
-fn square(x: f32, z: f32) -> (i32, i32) {
+fn square_index(x: f32, z: f32) -> (i32, i32) {
     ((x / SQUARE_M).floor() as i32, (z / SQUARE_M).floor() as i32)
 }
 
@@ -32,7 +32,7 @@ impl ReachableArea {
         let mut cells: BTreeMap<(i32, i32), Vec<Vec3>> = BTreeMap::new();
         for cell in grid.reachable(start) {
             let at = grid.position(cell);
-            cells.entry(square(at.x, at.z)).or_default().push(at);
+            cells.entry(square_index(at.x, at.z)).or_default().push(at);
         }
         Some(Self {
             cells,
@@ -52,8 +52,8 @@ impl ReachableArea {
 
     /// The cells whose squares lie at most `margin_m` beside the box.
     fn cells_at(&self, bounds: &Aabb, margin_m: f32) -> impl Iterator<Item = Vec3> {
-        let (x0, z0) = square(bounds.min.x - margin_m, bounds.min.z - margin_m);
-        let (x1, z1) = square(bounds.max.x + margin_m, bounds.max.z + margin_m);
+        let (x0, z0) = square_index(bounds.min.x - margin_m, bounds.min.z - margin_m);
+        let (x1, z1) = square_index(bounds.max.x + margin_m, bounds.max.z + margin_m);
         let rows = self.cells.range((x0, i32::MIN)..=(x1, i32::MAX));
         let near = rows.filter(move |((_, z), _)| (z0..=z1).contains(z));
         near.flat_map(|(_, cells)| cells.iter().copied())

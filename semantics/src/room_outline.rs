@@ -31,7 +31,7 @@ impl RoomOutline {
         let points = room.footprint.iter().flatten();
         let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
         for point in points {
-            let local = turned(along, *point);
+            let local = along_across(along, *point);
             (low, high) = (low.min(local), high.max(local));
         }
         Self {
@@ -59,11 +59,11 @@ impl RoomOutline {
 
     /// Returns where a point lies in the rectangle around the floor: -1 to 1 along and across the longest border.
     pub(crate) fn normalized_position(&self, point: Vec2) -> Vec2 {
-        (turned(self.along, point) - self.middle) / self.half_m.max(Vec2::splat(1e-6))
+        (along_across(self.along, point) - self.middle) / self.half_m.max(Vec2::splat(1e-6))
     }
 }
 
-fn turned(along: Vec2, point: Vec2) -> Vec2 {
+fn along_across(along: Vec2, point: Vec2) -> Vec2 {
     Vec2::new(along.dot(point), along.perp().dot(point))
 }
 

@@ -114,8 +114,8 @@ impl RoomProperties {
             names,
             area_m2: house.exclusive_area_m2(id),
             floor_word: surfaces.floor_word(id),
-            floor_color: most(&surfaces.floor_paints[id]),
-            wall_color: most(&surfaces.walls[id]),
+            floor_color: dominant_color_word(&surfaces.floor_paints[id]),
+            wall_color: dominant_color_word(&surfaces.walls[id]),
             passages: Vec::new(),
         }
     }
@@ -194,7 +194,7 @@ impl RoomSurfaces {
 }
 
 /// The colour word of at least half of a surface.
-fn most(patches: &[ColorShare]) -> Option<&'static str> {
+fn dominant_color_word(patches: &[ColorShare]) -> Option<&'static str> {
     let words = color_words(patches, ColorVocabulary::Plain);
     let (word, _) = words.first().filter(|(_, share)| *share >= 0.5)?;
     Some(word)

@@ -177,7 +177,7 @@ impl Semantics {
 
     /// The numbers of the kinds of things that may be called `noun`.
     pub(crate) fn kinds_called(&self, noun: &str) -> Vec<u32> {
-        self.kinds.with_noun(&self.facts, noun)
+        self.kinds.classes_called(&self.facts, noun)
     }
 }
 

@@ -243,7 +243,7 @@ fn the_graph_holds_exactly_what_the_predicates_say() {
     let mut count = 0;
     for a in s.house.objects.ids() {
         for b in s.house.objects.ids() {
-            for code in dwell_semantics::graph::listed(true) {
+            for code in dwell_semantics::graph::default_relation_codes(true) {
                 let predicate = predicates::all()[code];
                 let pair = [Term::Object(a), Term::Object(b)];
                 let holds = predicate.holds(&scene, &pair, Some(&viewer)).is_true();
@@ -363,7 +363,7 @@ fn read_by_graph(graph: &SceneGraph, house: &dwell_scene::House, e: &Description
             // "The table" only where there is one.
             let definite = other.quantifier == Quantifier::The;
             assert!(definite == (landmarks.len() == 1), "{e:?}: {landmarks:?}");
-            graph.of(node.id).any(|edge| {
+            graph.relations_of(node.id).any(|edge| {
                 edge.predicate == modifier.predicate && landmarks.contains(&edge.object)
             })
         });

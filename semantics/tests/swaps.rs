@@ -117,7 +117,7 @@ impl Facts<'_> {
             && description.state.as_ref().is_none_or(in_state)
             && description.modifiers.iter().all(|modifier| {
                 let other = &modifier.arguments[0];
-                let mut edges = self.graph.of(node.id);
+                let mut edges = self.graph.relations_of(node.id);
                 match (modifier.predicate.as_str(), other) {
                     ("in_room", room) => self.is_room(room, node.room),
                     ("hangs_on", Phrase::Described(mount)) => edges.any(|edge| {

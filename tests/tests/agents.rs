@@ -64,7 +64,7 @@ fn batch(env: Env) -> Batch {
 
 /// Returns the observations of each agent of a batch of one environment, in order. Shape (agent,) of (sensor,).
 fn seen(batch: &mut Batch) -> Vec<Vec<Vec<u8>>> {
-    let mut by_agent = vec![Vec::new(); batch.agents().len()];
+    let mut by_agent = vec![Vec::new(); batch.acting_agents().len()];
     for (agent, bits) in batch.agent_of_sensors().into_iter().zip(observe(batch)) {
         by_agent[agent].push(bits);
     }

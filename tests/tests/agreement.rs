@@ -10,7 +10,7 @@
 )]
 
 use dwell::sensors::{self, ImageObservationOptions, Observation, ObservationData};
-use dwell::{CameraMount, Engines, ImageRequest, World, WorldConfig, viewpoints};
+use dwell::{CameraMount, Engines, ImageRequest, World, WorldConfig, best_room_viewpoints};
 use dwell_physics::AgentControl;
 use dwell_render::{
     BackEnd, Camera, Frame, ImageChannels, Preset, View, VisibleObject, visible_objects,
@@ -44,7 +44,7 @@ struct Stage {
 
 fn stage(name: &str, most: usize) -> Stage {
     let engines = Engines::new(Arc::new(dwell_houses::open(name).unwrap().0));
-    let rooms = viewpoints(&engines).unwrap();
+    let rooms = best_room_viewpoints(&engines).unwrap();
     let stands = rooms.iter().cycle().take(most);
     Stage {
         stands: stands

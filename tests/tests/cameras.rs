@@ -70,7 +70,7 @@ fn eye_before(world: &World, share: f32) -> Pose {
     let is = world.state().agents[AgentId(0)].world_from_eye();
     let was = world
         .motion_history()
-        .eye(AgentId(0), world.state())
+        .previous_eye_pose(AgentId(0), world.state())
         .unwrap();
     Pose::new(
         is.position.lerp(was.position, share),
@@ -137,7 +137,7 @@ fn turn_rate(world: &World) -> f32 {
     let is = world.state().agents[AgentId(0)].world_from_eye().rotation;
     let was = world
         .motion_history()
-        .eye(AgentId(0), world.state())
+        .previous_eye_pose(AgentId(0), world.state())
         .unwrap()
         .rotation;
     2.0 * is.dot(was).abs().min(1.0).acos() / 0.05

@@ -219,7 +219,7 @@ fn gathering(agents: usize) -> World {
         ..WorldConfig::default()
     };
     let engines = dwell_tests::apartment();
-    let stand = Vec3::from_array(dwell::viewpoints(&engines).unwrap()[0].stand);
+    let stand = Vec3::from_array(dwell::best_room_viewpoints(&engines).unwrap()[0].stand);
     let mut world = World::new(engines, &config).unwrap();
     for agent in 0..agents as u32 {
         let aside = Vec3::X * 0.5 * agent as f32;
@@ -334,7 +334,7 @@ fn one_parameter_in_two_spellings_is_refused_and_is_one_parameter_afterwards() {
 fn the_size_of_a_room_is_the_same_in_numbers_and_in_words() {
     let engines = dwell_tests::apartment();
     let info = dwell::info(&engines, &serde_json::json!([]));
-    let views = dwell::viewpoints(&engines).unwrap();
+    let views = dwell::best_room_viewpoints(&engines).unwrap();
     for (k, room) in engines.house().rooms.ids().enumerate() {
         let own = engines.house().exclusive_area_m2(room);
         assert_eq!(info["rooms"][k]["area_m2"], serde_json::json!(own));

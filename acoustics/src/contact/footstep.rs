@@ -51,7 +51,7 @@ impl FootstepSound {
     }
 
     /// Returns masses in kg, radii in m and substances of the impacting parts: the leg behind its sole, and the sole's edge.
-    fn parts(&self) -> [(f64, f64, &'static str); 2] {
+    fn impacting_masses(&self) -> [(f64, f64, &'static str); 2] {
         let leg = LEG * f64::from(self.mass_kg).clamp(1.0, 1_000.0);
         [(leg, HEEL_M, SOLE), (EDGE * leg, EDGE_M, EDGE_OF)]
     }
@@ -88,7 +88,7 @@ impl FootstepSound {
             let mut stream = self.key.child("step").stream();
             for (start_s, share) in [(0.0, 1.0), (self.toe_s(), TOE)] {
                 let strength = share * (0.85 + 0.3 * stream.uniform());
-                for (mass_kg, radius_m, substance) in self.parts() {
+                for (mass_kg, radius_m, substance) in self.impacting_masses() {
                     let modulus = modulus_pa(substance, &self.floor.substance);
                     let lasts_s = hertz_contact_time_s(mass_kg, radius_m, modulus, speed);
                     let impulse = mass_kg * speed * strength;

@@ -57,13 +57,15 @@ pub struct FrictionSound {
 }
 
 impl FrictionSound {
-    fn length(&self) -> f64 {
+    fn segment_duration_s(&self) -> f64 {
         f64::from(self.length_s).clamp(1e-3, 2.0)
     }
 
     /// Returns the duration of its sound, s.
     pub fn duration_s(&self) -> f64 {
-        self.length() + Radiator::new(&self.partners, self.contact_key).ringing_s() + 0.012
+        self.segment_duration_s()
+            + Radiator::new(&self.partners, self.contact_key).ringing_s()
+            + 0.012
     }
 
     /// Returns the root mean square of the varying force, N.
@@ -108,7 +110,7 @@ impl FrictionSound {
         let slow = libm::exp(-TAU * 20.0 / rate);
         let scale = self.force_rms_n() * ((1.0 - pole) * (1.0 + pole)).sqrt();
         let mut stream = self.key.child("rub").stream();
-        let count = samples(self.length(), rate_hz);
+        let count = samples(self.segment_duration_s(), rate_hz);
         let (mut low, mut drift) = (0.0, 0.0);
         let mut force = vec![0.0; count];
         // Samples before the segment let the filters settle.

@@ -45,7 +45,7 @@ pub fn panel_mode_hz(
     thickness_m: f64,
     of: &ElasticProperties,
 ) -> f64 {
-    let [(gx, hx, jx), (gy, hy, jy)] = lines.map(warburton);
+    let [(gx, hx, jx), (gy, hy, jy)] = lines.map(warburton_coefficients);
     let [a, b] = sides_m;
     let across = (a / b) * (a / b);
     let nu = of.poisson;
@@ -57,7 +57,7 @@ pub fn panel_mode_hz(
 }
 
 /// Returns G, H and J of a direction with `m` nodal lines across it.
-fn warburton(m: u32) -> (f64, f64, f64) {
+fn warburton_coefficients(m: u32) -> (f64, f64, f64) {
     match m {
         0 => (0.0, 0.0, 0.0),
         1 => (0.0, 0.0, 12.0 / (PI * PI)),
@@ -99,7 +99,7 @@ impl BendingPanel {
     ///
     /// The box around it and its mass give the share of the box that the substance fills: below 0.4 it is hollow, with
     /// walls of equal thickness all around, one of which bends.
-    pub fn of(body: &ContactBody, of: &ElasticProperties) -> Self {
+    pub fn equivalent_to(body: &ContactBody, of: &ElasticProperties) -> Self {
         let mut edges = body.size_m.map(|edge| f64::from(edge).clamp(1e-3, 20.0));
         edges.sort_by(|a, b| b.total_cmp(a));
         let [length, width, height] = edges;
@@ -228,25 +228,25 @@ mod tests {
             mass_kg: 0.3 * 0.03 * 0.002 * 7850.0,
             size_m: [0.03, 0.3, 0.002],
         };
-        let panel = BendingPanel::of(&ruler, &steel);
+        let panel = BendingPanel::equivalent_to(&ruler, &steel);
         assert!(panel.is_bar && (panel.thickness_m - 0.002).abs() < 1e-9);
         let tray = ContactBody {
             mass_kg: 0.4 * 0.3 * 0.002 * 7850.0,
             size_m: [0.3, 0.002, 0.4],
         };
-        let panel = BendingPanel::of(&tray, &steel);
+        let panel = BendingPanel::equivalent_to(&tray, &steel);
         assert!(!panel.is_bar && (panel.mass_kg - f64::from(tray.mass_kg)).abs() < 1e-9);
         let area = 2.0 * (0.3 * 0.3 + 2.0 * 0.3 * 0.2);
         let pot = ContactBody {
             mass_kg: (area * 0.001 * 7850.0) as f32,
             size_m: [0.3, 0.2, 0.3],
         };
-        let panel = BendingPanel::of(&pot, &steel);
+        let panel = BendingPanel::equivalent_to(&pot, &steel);
         assert!((panel.thickness_m - 0.001).abs() < 1e-6, "{panel:?}");
         assert!((panel.area_m2 - area).abs() < 1e-6);
         for modes in [
             panel.modes(&steel),
-            BendingPanel::of(&ruler, &steel).modes(&steel),
+            BendingPanel::equivalent_to(&ruler, &steel).modes(&steel),
         ] {
             assert!(modes.len() >= 5 && modes.len() <= MOST_MODES);
             assert!(modes.is_sorted_by(|a, b| a.frequency_hz <= b.frequency_hz));
@@ -257,7 +257,7 @@ mod tests {
             size_m: [0.015; 3],
         };
         assert!(
-            BendingPanel::of(&die, &elastic("plastic"))
+            BendingPanel::equivalent_to(&die, &elastic("plastic"))
                 .modes(&elastic("plastic"))
                 .len()
                 <= 1

@@ -61,7 +61,7 @@ impl Radiator {
             return;
         };
         let of = elastic(&partner.substance);
-        let panel = BendingPanel::of(&body, &of);
+        let panel = BendingPanel::equivalent_to(&body, &of);
         let mut stream = key.child("struck at").stream();
         let at = [stream.uniform(), stream.uniform()];
         let half_m = 0.5 * panel.sides_m[0];

@@ -80,12 +80,12 @@ impl EdgeFrame {
         }
     }
 
-    fn at(&self, along_m: f64) -> DVec3 {
+    fn clamped_point_at(&self, along_m: f64) -> DVec3 {
         self.start + self.along * along_m.clamp(0.0, self.length_m)
     }
 
     /// Returns a point on the line of the edge.
-    fn on_line(&self, along_m: f64) -> DVec3 {
+    fn point_on_line(&self, along_m: f64) -> DVec3 {
         self.start + self.along * along_m
     }
 
@@ -111,7 +111,7 @@ impl EdgeFrame {
         let along_m = p.along_m + (q.along_m - p.along_m) * (r / (r + s));
         let straight_m = a.distance(b);
         let over = |point: DVec3| a.distance(point) + point.distance(b);
-        let least_m = over(self.on_line(along_m));
+        let least_m = over(self.point_on_line(along_m));
         // Faces themselves count as air: waves run along them.
         let open =
             |seen: &EdgeCoordinates, far: f64| seen.across.x >= far * (self.open_cosine - AT_FACE);
@@ -119,10 +119,10 @@ impl EdgeFrame {
         let crossing = p.across.x * q.across.y.abs() + q.across.x * p.across.y.abs();
         let ends = [
             (self.start, along_m),
-            (self.on_line(self.length_m), self.length_m - along_m),
+            (self.point_on_line(self.length_m), self.length_m - along_m),
         ];
         Some(EdgePath {
-            point: self.at(along_m),
+            point: self.clamped_point_at(along_m),
             detour_m: (least_m - straight_m).max(0.0),
             is_occluded: p.across.y * q.across.y < 0.0 && crossing < 0.0,
             forward_weight: (-p.across.dot(q.across) / (r * s)).max(0.0),
@@ -153,9 +153,9 @@ impl EdgeFrame {
             return None;
         }
         let rise = (q.along_m - p.along_m) / (r + m + s);
-        let first = self.at(p.along_m + rise * r);
-        let on_other = self.on_line(p.along_m + rise * (r + m));
-        let second = other.at(other.to_local(on_other).along_m);
+        let first = self.clamped_point_at(p.along_m + rise * r);
+        let on_other = self.point_on_line(p.along_m + rise * (r + m));
+        let second = other.clamped_point_at(other.to_local(on_other).along_m);
         let (here, then) = (
             self.diffracted_path(a, second)?,
             other.diffracted_path(first, b)?,

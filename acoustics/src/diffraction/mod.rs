@@ -63,7 +63,7 @@ impl EdgePoint {
     }
 
     /// Returns whether both belong to one profile: parallel, close together, and on one side of the straight line.
-    fn is_near(&self, other: &Self) -> bool {
+    fn is_same_profile(&self, other: &Self) -> bool {
         self.at.distance(other.at) < PROFILE_M
             && self.along.dot(other.along).abs() > 0.9
             && self.aside.dot(other.aside) > 0.0
@@ -129,7 +129,7 @@ pub(crate) fn diffracted_paths(
             });
         }
     }
-    let mut ways = strongest(ways);
+    let mut ways = strongest_per_profile(ways);
     if ways.is_empty() {
         return Vec::new();
     }
@@ -194,7 +194,7 @@ fn grazing_edge_transmission(
     for (frame, bend) in &near {
         // Of the edges of one profile the nearest acts.
         let touch = EdgePoint::new(frame, bend.point, from, to);
-        if taken.iter().any(|other| other.is_near(&touch)) {
+        if taken.iter().any(|other| other.is_same_profile(&touch)) {
             continue;
         }
         let off = bend.point + frame.outward() * STAND_OFF_M;
@@ -246,13 +246,18 @@ fn near_edges(
 }
 
 /// Returns the strongest paths, one of each profile.
-fn strongest(mut ways: Vec<DiffractionPath>) -> Vec<DiffractionPath> {
+fn strongest_per_profile(mut ways: Vec<DiffractionPath>) -> Vec<DiffractionPath> {
     let power = |way: &DiffractionPath| way.amplitude.iter().map(|a| a * a).sum::<f64>();
     ways.sort_by(|a, b| power(b).total_cmp(&power(a)));
     let mut kept: Vec<DiffractionPath> = Vec::new();
     for way in ways {
         let same = |other: &DiffractionPath| {
-            let near = |touch: &EdgePoint| other.touches.iter().any(|there| there.is_near(touch));
+            let near = |touch: &EdgePoint| {
+                other
+                    .touches
+                    .iter()
+                    .any(|there| there.is_same_profile(touch))
+            };
             way.touches.iter().any(near)
         };
         if !kept.iter().any(same) {

@@ -38,7 +38,7 @@ impl ArrayEntryFormat {
     }
 
     /// Reads consecutive entries.
-    fn row(
+    fn read_entries(
         self,
         cursor: &mut Cursor<'_>,
         places: std::ops::Range<u64>,
@@ -70,7 +70,7 @@ impl ArrayEntryFormat {
             cursor.skip(CHECK_SUM as usize)?;
             let flags: u8 = written.get(page / 8).copied().unwrap_or(0);
             if flags & (0x80 >> (page % 8)) != 0 {
-                self.row(&mut content, first..end, to)?;
+                self.read_entries(&mut content, first..end, to)?;
             }
             first = end;
         }
@@ -104,7 +104,7 @@ pub(super) fn read_fixed_array(
     cursor.skip(1)?;
     cursor.address()?;
     if count <= 1 << page_bits {
-        entry.row(&mut cursor, 0..count, &mut found)?;
+        entry.read_entries(&mut cursor, 0..count, &mut found)?;
     } else {
         let pages = count.div_ceil(1 << page_bits);
         let written = cursor.take(pages.div_ceil(8) as usize)?;
@@ -131,7 +131,10 @@ struct ExtensibleArray {
 }
 
 /// Returns the entries of an extensible array.
-pub(super) fn extensible(source: &FileBytes<'_>, address: u64) -> Hdf5Result<Vec<StoredChunk>> {
+pub(super) fn read_extensible_array(
+    source: &FileBytes<'_>,
+    address: u64,
+) -> Hdf5Result<Vec<StoredChunk>> {
     let mut found = Vec::new();
     let mut header = source.at(address)?;
     header.check_signature(b"EAHD", 0)?;
@@ -186,7 +189,7 @@ impl ExtensibleArray {
         cursor.check_signature(b"EAIB", 0)?;
         cursor.skip(1)?;
         cursor.address()?;
-        self.entry.row(&mut cursor, 0..self.direct, to)?;
+        self.entry.read_entries(&mut cursor, 0..self.direct, to)?;
         let mut first = self.direct;
         for group in 0..self.groups {
             let (blocks, length) = self.super_block_shape(group);
@@ -259,7 +262,7 @@ impl ExtensibleArray {
         cursor.address()?;
         cursor.skip(self.place_width)?;
         if places.end - places.start <= 1 << self.page_bits {
-            return self.entry.row(&mut cursor, places, to);
+            return self.entry.read_entries(&mut cursor, places, to);
         }
         cursor.skip(CHECK_SUM as usize)?;
         self.entry

@@ -14,7 +14,7 @@ pub(super) fn text(
     header: &ObjectHeader<'_>,
     name: &str,
 ) -> Hdf5Result<Option<String>> {
-    for message in header.all(kind::ATTRIBUTE) {
+    for message in header.messages_of_kind(kind::ATTRIBUTE) {
         if message.shared {
             continue;
         }
@@ -35,7 +35,7 @@ pub(super) fn text(
     };
     let heap = FractalHeap::read(source, heap)?;
     let mut found = None;
-    btree2::records(source, tree, &mut |mut record| {
+    btree2::for_each_record(source, tree, &mut |mut record| {
         let id = record.sub_cursor(heap.id_length())?;
         // Attributes by name, except those that several objects share.
         if found.is_none()

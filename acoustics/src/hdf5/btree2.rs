@@ -17,7 +17,7 @@ struct BTreeLayout {
 const MOST_LEVELS: u16 = 40;
 
 /// Calls `each` with every record of a tree.
-pub(super) fn records(
+pub(super) fn for_each_record(
     source: &FileBytes<'_>,
     address: u64,
     each: &mut impl FnMut(Cursor<'_>) -> Hdf5Result<()>,
@@ -85,7 +85,7 @@ impl BTreeLayout {
             kind,
             node_size,
             record_size,
-            count_width: width(most),
+            count_width: bytes_to_store(most),
             total_widths: vec![0],
         };
         let mut total = most;
@@ -94,13 +94,13 @@ impl BTreeLayout {
             let pointer = (address + tree.count_width + below) as u64;
             let most = room.checked_sub(pointer)? / (record + pointer);
             total = (most + 1).saturating_mul(total).saturating_add(most);
-            tree.total_widths.push(width(total));
+            tree.total_widths.push(bytes_to_store(total));
         }
         (most > 0).then_some(tree)
     }
 }
 
 /// Returns the bytes of a number up to this one.
-fn width(most: u64) -> usize {
+fn bytes_to_store(most: u64) -> usize {
     most.checked_ilog2().unwrap_or(0) as usize / 8 + 1
 }

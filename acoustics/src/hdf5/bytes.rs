@@ -49,9 +49,9 @@ impl<'a> FileBytes<'a> {
 
     /// Returns a cursor at an address, over `length` bytes.
     pub(super) fn block(&self, address: u64, length: u64) -> Hdf5Result<Cursor<'_>> {
-        interrupt::check();
+        interrupt::unwind_if_cancelled();
         Ok(Cursor {
-            bytes: self.values(address, length)?,
+            bytes: self.unbudgeted_bytes(address, length)?,
             start: address,
             at: 0,
             widths: self.widths,
@@ -60,7 +60,7 @@ impl<'a> FileBytes<'a> {
     }
 
     /// Returns the bytes of values, which the budget does not count.
-    pub(super) fn values(&self, address: u64, length: u64) -> Hdf5Result<&'a [u8]> {
+    pub(super) fn unbudgeted_bytes(&self, address: u64, length: u64) -> Hdf5Result<&'a [u8]> {
         let range = || {
             let start = usize::try_from(address).ok()?;
             let end = start.checked_add(usize::try_from(length).ok()?)?;

@@ -95,7 +95,7 @@ fn inflate(bytes: &[u8], most: u64) -> Hdf5Result<Vec<u8>> {
     let mut stream = ZlibDecoder::new(bytes).take(most + 1);
     let mut inflated = Vec::new();
     loop {
-        interrupt::check();
+        interrupt::unwind_if_cancelled();
         match (&mut stream).take(PIECE).read_to_end(&mut inflated) {
             Ok(0) => break,
             Ok(_) => {}

@@ -184,13 +184,13 @@ pub(super) fn numbers(
     let whole = usize::try_from(grid.bytes).or_else(|_| unsupported("chunks too large"))?;
     // Uncompressed chunks must be within the file before memory is allocated.
     for chunk in &chunks {
-        source.values(chunk.address, chunk.size.unwrap_or(grid.bytes))?;
+        source.unbudgeted_bytes(chunk.address, chunk.size.unwrap_or(grid.bytes))?;
     }
     let count = shape.count().unwrap_or(0) as usize;
     let mut values = vec![0.0; count];
     for chunk in &chunks {
-        interrupt::check();
-        let stored = source.values(chunk.address, chunk.size.unwrap_or(grid.bytes))?;
+        interrupt::unwind_if_cancelled();
+        let stored = source.unbudgeted_bytes(chunk.address, chunk.size.unwrap_or(grid.bytes))?;
         let undone = filters.decode(stored, chunk.skipped_filters, whole);
         let bytes =
             undone.map_err(|Hdf5Fault(why)| Hdf5Fault(format!("chunk {}: {why}", chunk.number)))?;

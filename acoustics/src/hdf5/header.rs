@@ -97,7 +97,7 @@ impl<'a> ObjectHeader<'a> {
     }
 
     /// Returns the messages of a kind.
-    pub(super) fn all(&self, kind: u16) -> impl Iterator<Item = &HeaderMessage<'a>> {
+    pub(super) fn messages_of_kind(&self, kind: u16) -> impl Iterator<Item = &HeaderMessage<'a>> {
         self.messages
             .iter()
             .filter(move |message| message.kind == kind)
@@ -105,7 +105,7 @@ impl<'a> ObjectHeader<'a> {
 
     /// Returns the first message of a kind.
     pub(super) fn first(&self, kind: u16) -> Option<&HeaderMessage<'a>> {
-        self.all(kind).next()
+        self.messages_of_kind(kind).next()
     }
 }
 

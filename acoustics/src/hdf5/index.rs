@@ -35,7 +35,7 @@ pub(super) fn chunks(
         }
         ChunkIndex::Tree2 => {
             let plain = 8 * grid.axes();
-            btree2::records(source, address, &mut |mut record| {
+            btree2::for_each_record(source, address, &mut |mut record| {
                 let width = record.remaining().saturating_sub(plain);
                 let filtered = width > record.widths.address;
                 let stored = ArrayEntryFormat { width, filtered }.read(&mut record, 0)?;
@@ -55,7 +55,7 @@ pub(super) fn chunks(
             // All are stored or none is.
             let length = grid.count.checked_mul(grid.bytes);
             let length = length.ok_or_else(|| Hdf5Fault("damaged: too many chunks".to_owned()))?;
-            source.values(address, length)?;
+            source.unbudgeted_bytes(address, length)?;
             found.extend((0..grid.count).map(|number| StoredChunk {
                 number,
                 address: address + number * grid.bytes,
@@ -67,7 +67,7 @@ pub(super) fn chunks(
             let entries = if matches!(chunked.index, ChunkIndex::Fixed) {
                 arrays::read_fixed_array(source, address)?
             } else {
-                arrays::extensible(source, address)?
+                arrays::read_extensible_array(source, address)?
             };
             found.extend(entries.into_iter().filter_map(|stored| {
                 let number = grid.chunk_index_in_array(stored.number)?;

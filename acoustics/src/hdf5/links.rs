@@ -28,7 +28,7 @@ pub(super) fn find(
     if let Some(table) = group.first(kind::SYMBOL_TABLE) {
         found = find_in_symbol_table(source, table.content()?, name)?;
     }
-    for message in group.all(kind::LINK) {
+    for message in group.messages_of_kind(kind::LINK) {
         if found.is_none() {
             found = target_if_named(message.content()?, name)?;
         }
@@ -65,7 +65,7 @@ fn find_in_symbol_table(
     heap.skip(3)?;
     let size = heap.length()?;
     heap.length()?;
-    let names = source.values(heap.defined_address()?, size)?;
+    let names = source.unbudgeted_bytes(heap.defined_address()?, size)?;
     let mut found = None;
     btree1::for_each_entry(source, tree, 0, table.widths.length, &mut |_, address| {
         let mut node = source.at(address)?;
@@ -112,7 +112,7 @@ fn in_heap(
     };
     let heap = FractalHeap::read(source, heap)?;
     let mut found = None;
-    btree2::records(source, tree, &mut |mut record| {
+    btree2::for_each_record(source, tree, &mut |mut record| {
         // The name's hash.
         record.skip(4)?;
         let id = record.sub_cursor(heap.id_length())?;

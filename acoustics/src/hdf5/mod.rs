@@ -70,7 +70,7 @@ impl Hdf5 {
     /// # Errors
     /// [`AcousticsError::Hdf5`] when the file is damaged, or the name leads elsewhere.
     pub fn shape(&self, name: &str) -> Result<Option<Vec<u64>>, AcousticsError> {
-        self.with_source(name, |source| {
+        self.query(name, |source| {
             let Some(header) = self.variable(source, name)? else {
                 return Ok(None);
             };
@@ -86,8 +86,12 @@ impl Hdf5 {
     ///
     /// # Errors
     /// [`AcousticsError::Hdf5`] when the file is damaged, the name leads elsewhere, or the attribute is no text.
-    pub fn text(&self, of: Option<&str>, name: &str) -> Result<Option<String>, AcousticsError> {
-        self.with_source(of.unwrap_or("the file"), |source| {
+    pub fn attribute_text(
+        &self,
+        of: Option<&str>,
+        name: &str,
+    ) -> Result<Option<String>, AcousticsError> {
+        self.query(of.unwrap_or("the file"), |source| {
             let header = match of {
                 Some(variable) => self.variable(source, variable)?,
                 None => Some(self.root(source)?),
@@ -102,14 +106,14 @@ impl Hdf5 {
     /// [`AcousticsError::Hdf5`] when there is no such variable, it is damaged or not numeric, its values are in another
     /// file, or it has more than [`MAX_ARRAY_VALUES`].
     pub fn numbers(&self, name: &str) -> Result<Hdf5Array, AcousticsError> {
-        self.with_source(name, |source| match self.variable(source, name)? {
+        self.query(name, |source| match self.variable(source, name)? {
             Some(header) => numbers(source, &header),
             None => unsupported("missing"),
         })
     }
 
     /// Runs a query of the file; errors name the place `at`.
-    fn with_source<T>(
+    fn query<T>(
         &self,
         at: &str,
         work: impl FnOnce(&FileBytes<'_>) -> Hdf5Result<T>,
@@ -184,7 +188,7 @@ fn numbers(source: &FileBytes<'_>, header: &ObjectHeader<'_>) -> Hdf5Result<Hdf5
             plain(bytes.take(stated)?, stated as u64)?
         }
         StorageLayout::Contiguous(Some(address), stated) => {
-            plain(source.values(address, stated)?, stated)?
+            plain(source.unbudgeted_bytes(address, stated)?, stated)?
         }
         StorageLayout::Contiguous(None, _) => return unsupported("its values were never written"),
         StorageLayout::Chunked(chunked) => {

@@ -13,7 +13,7 @@ pub use measured::{HeadSummary, HrirMeasurement};
 pub(crate) use series::sphere_response;
 pub use sphere::woodworth_delay_s;
 
-use crate::error::{AcousticsError, range};
+use crate::error::{AcousticsError, check_range};
 use measured::{HeadResponses, MeasuredHead};
 use serde::{Deserialize, Serialize};
 use sphere::SphericalHead;
@@ -83,7 +83,7 @@ impl Head {
     /// # Source
     /// R. O. Duda, W. L. Martens, JASA 104, 3048 (1998).
     pub fn spherical(radius_m: f64) -> Result<Self, AcousticsError> {
-        range("head", "radius_m", radius_m, (0.03, 0.2), "0.03 to 0.2")?;
+        check_range("head", "radius_m", radius_m, (0.03, 0.2), "0.03 to 0.2")?;
         let mut bytes = b"sphere".to_vec();
         bytes.extend_from_slice(&radius_m.to_le_bytes());
         Ok(Self {

@@ -34,7 +34,7 @@ fn apply_source_directivity(
     paths: &mut Vec<PropagationPath>,
 ) {
     let speed_m_s = data.config().air.speed_of_sound_m_s();
-    let (axis, pattern) = data.effects().radiation(source, speed_m_s);
+    let (axis, pattern) = data.effects().source_axis_and_pattern(source, speed_m_s);
     if !pattern.is_omni() {
         for path in paths.iter_mut() {
             let gain = pattern.gain(axis.dot(path.departure));

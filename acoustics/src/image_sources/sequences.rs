@@ -47,7 +47,7 @@ pub(super) fn for_each_plane_sequence(
         walk.descend(&mut visit);
     }
     let mut images = Vec::new();
-    for sequence in discover(data, rays, receiver) {
+    for sequence in ray_traced_sequences(data, rays, receiver) {
         let known = sequence.len() <= exhaustive && sequence.iter().all(|p| tried.contains(p));
         if !known && mirror(data.planes(), source, &sequence, &mut images) {
             visit(&sequence, &images);
@@ -109,7 +109,11 @@ impl SequenceSearch<'_> {
 }
 
 /// Returns the sequences, from the source on, of specular rays from the receiver.
-fn discover(data: &PropagationData, rays: &RayScene, receiver: Vec3) -> BTreeSet<Vec<u32>> {
+fn ray_traced_sequences(
+    data: &PropagationData,
+    rays: &RayScene,
+    receiver: Vec3,
+) -> BTreeSet<Vec<u32>> {
     let config = data.config();
     let mut found = BTreeSet::new();
     for k in 0..config.discovery_rays {

@@ -139,7 +139,8 @@ impl BackgroundNoiseStage {
     /// Returns a frame at every channel, under its window. Shape (channel, 2 hop).
     fn frame(&mut self, number: u64, listener: &StageContext<'_>) -> Vec<Vec<f32>> {
         let key = listener.room_key.child("background noise").child(number);
-        let channels = ReceiverChannel::of(listener.receiver, listener.heads, listener.speed_m_s);
+        let channels =
+            ReceiverChannel::all_of_receiver(listener.receiver, listener.heads, listener.speed_m_s);
         let bins = self.fft.bins();
         let mut spectra = vec![vec![Complex::new(0.0_f32, 0.0); bins]; channels.len()];
         let step = TAU * self.rate_hz / self.fft.len() as f64;

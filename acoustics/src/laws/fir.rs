@@ -20,14 +20,14 @@ impl FirFilter {
         }
     }
 
-    fn reach(&self) -> usize {
+    fn history_samples(&self) -> usize {
         self.delay + self.taps.len().max(1) - 1
     }
 }
 
 impl MicrophoneStage for FirFilter {
     fn process(&mut self, block: &mut SampleBlock<'_>) {
-        let (reach, length) = (self.reach(), block.len());
+        let (reach, length) = (self.history_samples(), block.len());
         self.history.resize(block.channels, vec![0.0; reach]);
         let mut heard = Vec::with_capacity(reach + length);
         for (history, channel) in self.history.iter_mut().zip(block.channels_mut()) {
@@ -47,7 +47,7 @@ impl MicrophoneStage for FirFilter {
     }
 
     fn restore(&mut self, memory: &StageState) {
-        let reach = self.reach();
+        let reach = self.history_samples();
         self.history = memory
             .samples
             .iter()
@@ -72,7 +72,7 @@ impl MicrophoneStage for FirFilter {
     }
 
     fn tail_samples(&self, _length: usize) -> usize {
-        self.reach()
+        self.history_samples()
     }
 
     fn needs_fade_in(&self) -> bool {

@@ -27,10 +27,10 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
         separating_experiment: "compare from where known sources on two sides are heard: all are turned by the same angles, while times \
                                 of arrival and what an omnidirectional microphone hears stay",
     },
-    effect: SignalStage::Propagation(turn),
+    effect: SignalStage::Propagation(add_rotation_error),
 };
 
-fn turn(values: LawValues<'_>, effects: &mut PathEffects) {
+fn add_rotation_error(values: LawValues<'_>, effects: &mut PathEffects) {
     let names = ["yaw_deg", "pitch_deg", "roll_deg"];
     for (sum, name) in effects.receiver_rotation_deg.iter_mut().zip(names) {
         *sum += values.get(name) as f32;

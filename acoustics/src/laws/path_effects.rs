@@ -32,7 +32,7 @@ pub(crate) struct PathEffects {
 }
 
 /// Returns the rotation about the vertical (to the left), then about the sideways axis (up), then about the axis to the back.
-fn turn([yaw_deg, pitch_deg, roll_deg]: [f32; 3]) -> Quat {
+fn rotation_from_euler_deg([yaw_deg, pitch_deg, roll_deg]: [f32; 3]) -> Quat {
     let about = |axis: Vec3, degrees: f32| {
         let (s, c) = sin_cos(0.5 * degrees.to_radians());
         Quat::from_xyzw(axis.x * s, axis.y * s, axis.z * s, c)
@@ -74,12 +74,12 @@ impl PathEffects {
     }
 
     /// Returns the share of the air's absorption, 0 to 1.
-    pub(crate) fn air_absorption(&self) -> f64 {
+    pub(crate) fn air_absorption_share(&self) -> f64 {
         self.air_absorption
     }
 
     /// Returns the direction of a source's axis, unit length, and its gains around it, in air with `speed_m_s`.
-    pub(crate) fn radiation(
+    pub(crate) fn source_axis_and_pattern(
         &self,
         source: &SoundSourcePose,
         speed_m_s: f64,
@@ -88,7 +88,8 @@ impl PathEffects {
         let axis = match self.source_rotation_deg {
             [0.0, 0.0] => source.axis(),
             [yaw_deg, pitch_deg] => {
-                source.pose.rotation * (turn([yaw_deg, pitch_deg, 0.0]) * Vec3::NEG_Z)
+                source.pose.rotation
+                    * (rotation_from_euler_deg([yaw_deg, pitch_deg, 0.0]) * Vec3::NEG_Z)
             }
         };
         if self.source_sharpness == 0.0 && self.source_beam_db == 0.0 {
@@ -121,7 +122,7 @@ impl PathEffects {
             placed.pose.position += rotation * Vec3::from_array(self.receiver_offset_m);
         }
         if self.receiver_rotation_deg != [0.0; 3] {
-            placed.pose.rotation = rotation * turn(self.receiver_rotation_deg);
+            placed.pose.rotation = rotation * rotation_from_euler_deg(self.receiver_rotation_deg);
         }
         placed
     }

@@ -120,7 +120,7 @@ impl EnergyCurve {
                 .rposition(|slot| *slot > 0.0)
                 .map_or(0, |last| last + 1),
         );
-        let Some(beyond) = energy_beyond(&slots) else {
+        let Some(beyond) = extrapolated_tail_energy(&slots) else {
             return Vec::new();
         };
         let all = slots.iter().sum::<f64>() + beyond;
@@ -171,7 +171,7 @@ impl EnergyCurve {
 
 /// Returns the energy that a response of these energies, shape (slot,), the last above 0, would still have after its end;
 /// `None` where that cannot be determined.
-fn energy_beyond(slots: &[f64]) -> Option<f64> {
+fn extrapolated_tail_energy(slots: &[f64]) -> Option<f64> {
     let end = slots.len();
     let width = end / (3 * WINDOWS);
     if width < SLOTS_A_WINDOW {

@@ -44,7 +44,7 @@ impl BandWidth {
     }
 
     /// Returns the position of the 1 kHz band.
-    fn of_1_khz(self) -> f64 {
+    fn band_index_of_1_khz(self) -> f64 {
         match self {
             Self::Octave => 4.0,
             Self::ThirdOctave => 13.0,
@@ -59,7 +59,7 @@ impl BandWidth {
         1000.0
             * libm::pow(
                 10.0,
-                0.3 * (band as f64 - self.of_1_khz()) / self.per_octave(),
+                0.3 * (band as f64 - self.band_index_of_1_khz()) / self.per_octave(),
             )
     }
 

@@ -83,7 +83,7 @@ pub(super) fn find_edges(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Vec<Diff
             _ => edges.extend(widest_gap(&ends, &into)),
         }
     }
-    edges.extend(join(&rims));
+    edges.extend(edges_from_face_boundaries(&rims));
     merge(&edges)
 }
 
@@ -105,7 +105,7 @@ fn at_most_two_duplicates(corners: &[[Vec3; 3]]) -> Vec<usize> {
 }
 
 /// Returns the edges formed by rims.
-fn join(rims: &[FaceBoundarySegment]) -> Vec<DiffractionEdge> {
+fn edges_from_face_boundaries(rims: &[FaceBoundarySegment]) -> Vec<DiffractionEdge> {
     let cells = |point: Vec3| {
         let corners = (0..8).map(move |k| {
             let side = |axis: i32| {
@@ -216,7 +216,7 @@ fn sides(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Vec<TriangleSide> {
     // Stable, so that triangles of one edge stay in order. In parts first, which only need to be merged then, so that a
     // large house is not sorted in one go.
     for part in sides.chunks_mut(SIDES_PER_CHECK) {
-        interrupt::check();
+        interrupt::unwind_if_cancelled();
         part.sort_by_key(|side| side.key);
     }
     sides.sort_by_key(|side| side.key);

@@ -46,7 +46,7 @@ pub(super) fn relief_depths_m(
         let along = walls
             .iter()
             .filter(|wall| wall.plane.normal.dot(own.normal).abs() > LEAST_COS);
-        let relief_m = of_panel(&pieces, along);
+        let relief_m = panel_relief_m(&pieces, along);
         for (_, k) in panel {
             reliefs[*k] = relief_m;
         }
@@ -77,7 +77,10 @@ fn walls<'a>(
 
 /// Returns the rms height of a surface of two equal halves, one a panel's and one a wall's, over their mean, m: half the
 /// distance of a panel that is parallel to its wall. The smallest over the walls before or behind the panel's middle.
-fn of_panel<'a>(pieces: &[[Vec3; 3]], walls: impl Iterator<Item = &'a RelievedWall<'a>>) -> f32 {
+fn panel_relief_m<'a>(
+    pieces: &[[Vec3; 3]],
+    walls: impl Iterator<Item = &'a RelievedWall<'a>>,
+) -> f32 {
     let areas = || pieces.iter().map(panels::area_m2);
     let area_m2: f64 = areas().sum();
     let centre = |piece: &[Vec3; 3]| piece.iter().sum::<Vec3>().as_dvec3() / 3.0;

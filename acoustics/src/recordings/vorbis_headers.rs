@@ -58,7 +58,7 @@ fn codebooks(bytes: &[u8]) -> Result<(), String> {
     let count = 1 + bits.take(8)?;
     let (mut words, mut numbers) = (0, 0);
     for _ in 0..count {
-        let book = Codebook::read(&mut bits)?;
+        let book = CodebookSize::read(&mut bits)?;
         words += book.words;
         numbers += book.words * book.dimensions;
         if words > MOST_WORDS || numbers > MOST_NUMBERS {
@@ -71,12 +71,12 @@ fn codebooks(bytes: &[u8]) -> Result<(), String> {
 }
 
 /// The unpacked size of a codebook.
-struct Codebook {
+struct CodebookSize {
     words: u64,
     dimensions: u64,
 }
 
-impl Codebook {
+impl CodebookSize {
     /// Reads to the end of a codebook.
     fn read(bits: &mut BitReader) -> Result<Self, String> {
         let sync = bits.take(24)?;
@@ -260,7 +260,7 @@ pub(super) mod tests {
         let count = 1 + bits.take(8).unwrap();
         let mut words = 0;
         for _ in 0..count {
-            words += Codebook::read(&mut bits).unwrap().words;
+            words += CodebookSize::read(&mut bits).unwrap().words;
         }
         // After the codebooks come the time domain transforms: one, which is 0.
         assert_eq!((bits.take(6), bits.take(16)), (Ok(0), Ok(0)));

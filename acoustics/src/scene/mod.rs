@@ -9,7 +9,7 @@ use crate::echogram::{Echogram, PropagationPath};
 use crate::error::{AcousticsError, finite};
 use crate::head::{Head, HeadSet};
 use crate::laws::{self, PathEffects, microphone_stage::StageContext};
-use crate::material_report::AcousticReport;
+use crate::material_report::MaterialReport;
 use crate::microphone_chain::MicrophoneChain;
 use crate::planes::{DiffractionEdge, Plane};
 use crate::propagation_data::PropagationData;
@@ -76,14 +76,14 @@ impl AcousticScene {
 
     fn apply_laws(&mut self, effects: PathEffects) {
         let air = self.config().air;
-        let absorption = self.effects().air_absorption();
+        let absorption = self.effects().air_absorption_share();
         self.data.apply_effects(effects, &self.stated);
         let config = *self.config();
         if config.air != air {
             // Interaural delays depend on the speed of sound.
             self.heads = Arc::new(self.heads.with_speed_of_sound_of(&config));
         }
-        let share = self.effects().air_absorption();
+        let share = self.effects().air_absorption_share();
         if config.air != air || share != absorption {
             self.upper_air = self.synthesizer.upper_air(&config, share).map(Arc::new);
         }
@@ -134,8 +134,8 @@ impl AcousticScene {
     }
 
     /// Returns the report of acoustic materials: areas, mean absorption, default materials.
-    pub fn material_report(&self) -> AcousticReport {
-        AcousticReport::new(&self.data)
+    pub fn material_report(&self) -> MaterialReport {
+        MaterialReport::new(&self.data)
     }
 
     /// Checks that source and receiver have finite positions, and that rays are of this house.

@@ -27,7 +27,7 @@ pub(super) fn microwave(canvas: &mut LoopBuilder) {
     ] {
         canvas.continuous_tone(frequency_hz, amplitude);
     }
-    let fan = canvas.noise("fan", |f| resonance_gain(f, 350.0, 700.0));
+    let fan = canvas.shaped_noise("fan", |f| resonance_gain(f, 350.0, 700.0));
     let loop_s = canvas.loop_s();
     canvas.add_noise(&fan, 0.0, loop_s, |t| {
         0.8 + 0.15 * libm::cos(TAU * t / loop_s)
@@ -36,7 +36,7 @@ pub(super) fn microwave(canvas: &mut LoopBuilder) {
 
 /// Drops that fall everywhere at once, and some that are heard one by one on a sill.
 pub(super) fn rain(canvas: &mut LoopBuilder) {
-    let wash = canvas.noise("wash", |f| {
+    let wash = canvas.shaped_noise("wash", |f| {
         0.6 * resonance_gain(f, 900.0, 1500.0) + resonance_gain(f, 5000.0, 9000.0)
     });
     canvas.add_to_loop(&wash, 1.0);
@@ -52,8 +52,8 @@ pub(super) fn rain(canvas: &mut LoopBuilder) {
 /// A universal motor at 30,000 turns a minute with nine blades, and much air.
 pub(super) fn vacuum_cleaner(canvas: &mut LoopBuilder) {
     let (air, body) = (
-        canvas.noise("air", |f| resonance_gain(f, 2200.0, 4500.0)),
-        canvas.noise("body", |f| resonance_gain(f, 450.0, 500.0)),
+        canvas.shaped_noise("air", |f| resonance_gain(f, 2200.0, 4500.0)),
+        canvas.shaped_noise("body", |f| resonance_gain(f, 450.0, 500.0)),
     );
     canvas.add_to_loop(&air, 1.0);
     canvas.add_to_loop(&body, 0.7);
@@ -64,7 +64,7 @@ pub(super) fn vacuum_cleaner(canvas: &mut LoopBuilder) {
 
 /// Air through a hot nozzle: noise with a strong blade tone.
 pub(super) fn hair_dryer(canvas: &mut LoopBuilder) {
-    let air = canvas.noise("air", |f| resonance_gain(f, 1500.0, 2500.0));
+    let air = canvas.shaped_noise("air", |f| resonance_gain(f, 1500.0, 2500.0));
     canvas.add_to_loop(&air, 1.0);
     for (frequency_hz, amplitude) in [(250.0, 0.3), (1750.0, 0.5), (3500.0, 0.2)] {
         canvas.continuous_tone(frequency_hz, amplitude);
@@ -74,8 +74,8 @@ pub(super) fn hair_dryer(canvas: &mut LoopBuilder) {
 /// Arms of water that sweep past, and a pump.
 pub(super) fn dishwasher(canvas: &mut LoopBuilder) {
     let (water, pump) = (
-        canvas.noise("water", |f| resonance_gain(f, 700.0, 1200.0)),
-        canvas.noise("pump", |f| resonance_gain(f, 180.0, 150.0)),
+        canvas.shaped_noise("water", |f| resonance_gain(f, 700.0, 1200.0)),
+        canvas.shaped_noise("pump", |f| resonance_gain(f, 180.0, 150.0)),
     );
     canvas.add_to_loop(&pump, 0.5);
     canvas.continuous_tone(100.0, 0.3);

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 pub(super) fn alarm(canvas: &mut LoopBuilder) {
     for beep in 0..3 {
         for (harmonic, amplitude) in [(1.0, 1.0), (2.0, 0.2)] {
-            canvas.tone(Tone {
+            canvas.add_tone(Tone {
                 start_s: f64::from(beep),
                 duration_s: 0.5,
                 frequency_hz: 3100.0 * harmonic,
@@ -33,7 +33,7 @@ pub(super) fn clock(canvas: &mut LoopBuilder) {
 
 /// Broad noise that falls off above 500 Hz, and the tone of the blades.
 pub(super) fn fan(canvas: &mut LoopBuilder) {
-    let air = canvas.noise("air", |f| 1.0 / (1.0 + (f / 500.0) * (f / 500.0)).sqrt());
+    let air = canvas.shaped_noise("air", |f| 1.0 / (1.0 + (f / 500.0) * (f / 500.0)).sqrt());
     canvas.add_to_loop(&air, 1.0);
     for (harmonic, amplitude) in [(1.0, 0.25), (2.0, 0.15), (3.0, 0.08)] {
         canvas.continuous_tone(117.0 * harmonic, amplitude);
@@ -42,7 +42,7 @@ pub(super) fn fan(canvas: &mut LoopBuilder) {
 
 /// Two steps a second: a dull thud of the heel, and the roll of the sole.
 pub(super) fn footsteps(canvas: &mut LoopBuilder) {
-    let sole = canvas.noise("sole", |f| resonance_gain(f, 900.0, 1200.0));
+    let sole = canvas.shaped_noise("sole", |f| resonance_gain(f, 900.0, 1200.0));
     let mut stream = canvas.key.child("steps").stream();
     for step in 0..8 {
         let start_s = 0.5 * f64::from(step) + 0.03 * stream.uniform();
@@ -71,7 +71,7 @@ pub(super) fn fridge(canvas: &mut LoopBuilder) {
     ] {
         canvas.continuous_tone(frequency_hz, amplitude);
     }
-    let air = canvas.noise("air", |f| resonance_gain(f, 250.0, 500.0));
+    let air = canvas.shaped_noise("air", |f| resonance_gain(f, 250.0, 500.0));
     canvas.add_to_loop(&air, 0.15);
 }
 
@@ -84,7 +84,7 @@ pub(super) fn hum(canvas: &mut LoopBuilder) {
 
 /// The rush of heating water, and bubbles that pop at random.
 pub(super) fn kettle(canvas: &mut LoopBuilder) {
-    let rush = canvas.noise("rush", |f| {
+    let rush = canvas.shaped_noise("rush", |f| {
         resonance_gain(f, 700.0, 900.0) + 0.3 * resonance_gain(f, 2500.0, 3000.0)
     });
     canvas.add_to_loop(&rush, 1.0);
@@ -93,7 +93,7 @@ pub(super) fn kettle(canvas: &mut LoopBuilder) {
 
 /// Equal power in every octave from 40 Hz up.
 pub(super) fn pink(canvas: &mut LoopBuilder) {
-    let noise = canvas.noise("pink", |f| if f < 40.0 { 0.0 } else { 1.0 / f.sqrt() });
+    let noise = canvas.shaped_noise("pink", |f| if f < 40.0 { 0.0 } else { 1.0 / f.sqrt() });
     canvas.add_to_loop(&noise, 1.0);
 }
 
@@ -118,7 +118,7 @@ pub(super) fn phone(canvas: &mut LoopBuilder) {
 
 /// A jet of water on steel: broad noise with a rise at high frequencies, and drops.
 pub(super) fn tap(canvas: &mut LoopBuilder) {
-    let jet = canvas.noise("jet", |f| {
+    let jet = canvas.shaped_noise("jet", |f| {
         0.5 * resonance_gain(f, 400.0, 500.0) + resonance_gain(f, 3500.0, 5000.0)
     });
     canvas.add_to_loop(&jet, 1.0);
@@ -128,10 +128,10 @@ pub(super) fn tap(canvas: &mut LoopBuilder) {
 /// Four seconds of rushing water, then the hiss of the valve while the cistern fills.
 pub(super) fn toilet_flush(canvas: &mut LoopBuilder) {
     let (rush, hiss) = (
-        canvas.noise("rush", |f| {
+        canvas.shaped_noise("rush", |f| {
             resonance_gain(f, 350.0, 500.0) + 0.4 * resonance_gain(f, 1500.0, 2000.0)
         }),
-        canvas.noise("hiss", |f| resonance_gain(f, 3000.0, 3500.0)),
+        canvas.shaped_noise("hiss", |f| resonance_gain(f, 3000.0, 3500.0)),
     );
     canvas.add_noise(&rush, 0.2, 4.5, |t| {
         raised_cosine_envelope(t, 4.5, 0.6) * libm::exp(-0.25 * t)
@@ -147,8 +147,8 @@ pub(super) fn toilet_flush(canvas: &mut LoopBuilder) {
 /// A drum that turns 0.8 times a second with wet clothes, a motor, and water.
 pub(super) fn washing_machine(canvas: &mut LoopBuilder) {
     let (motor, slosh) = (
-        canvas.noise("motor", |f| resonance_gain(f, 120.0, 80.0)),
-        canvas.noise("slosh", |f| resonance_gain(f, 500.0, 700.0)),
+        canvas.shaped_noise("motor", |f| resonance_gain(f, 120.0, 80.0)),
+        canvas.shaped_noise("slosh", |f| resonance_gain(f, 500.0, 700.0)),
     );
     canvas.add_to_loop(&motor, 0.4);
     for (harmonic, amplitude) in [(1.0, 0.4), (2.0, 0.3), (4.0, 0.15)] {

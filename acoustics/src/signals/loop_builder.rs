@@ -48,7 +48,7 @@ impl LoopBuilder {
         let count = (duration_s * self.rate_hz) as usize;
         for k in 0..count {
             if k % SAMPLES_PER_CHECK == 0 {
-                interrupt::check();
+                interrupt::unwind_if_cancelled();
             }
             let place = (first as i64 + k as i64).rem_euclid(length as i64) as usize;
             self.samples[place] += value((first + k as f64) / self.rate_hz - start_s);
@@ -56,7 +56,7 @@ impl LoopBuilder {
     }
 
     /// Adds a tone; nothing when it lies above 0.45 of the rate.
-    pub(super) fn tone(&mut self, tone: Tone) {
+    pub(super) fn add_tone(&mut self, tone: Tone) {
         if tone.frequency_hz > 0.45 * self.rate_hz {
             return;
         }
@@ -98,7 +98,7 @@ impl LoopBuilder {
     }
 
     /// Returns periodic noise over the whole loop with root mean square 1: `gain(frequency in Hz)` shapes its amplitude.
-    pub(super) fn noise(&self, name: &str, gain: impl Fn(f64) -> f64) -> Vec<f64> {
+    pub(super) fn shaped_noise(&self, name: &str, gain: impl Fn(f64) -> f64) -> Vec<f64> {
         let length = self.samples.len();
         // Odd lengths lose one sample, which is repeated: 20 us in a loop are inaudible.
         let mut fft = RealFft::new(length - length % 2);
@@ -108,7 +108,7 @@ impl LoopBuilder {
         let last = spectrum.len() - 1;
         for (k, value) in spectrum.iter_mut().enumerate() {
             if k % SAMPLES_PER_CHECK == 0 {
-                interrupt::check();
+                interrupt::unwind_if_cancelled();
             }
             let phase = TAU * stream.uniform();
             if k > 0 && k < last {
@@ -119,9 +119,9 @@ impl LoopBuilder {
                 );
             }
         }
-        interrupt::check();
+        interrupt::unwind_if_cancelled();
         let samples = fft.inverse(&mut spectrum);
-        interrupt::check();
+        interrupt::unwind_if_cancelled();
         let power: f64 = samples.iter().map(|x| f64::from(*x).powi(2)).sum();
         let scale = (samples.len() as f64 / power.max(1e-300)).sqrt();
         (0..length)
@@ -141,7 +141,7 @@ impl LoopBuilder {
         let (rate, first) = (self.rate_hz, (start_s * self.rate_hz).ceil() as i64);
         for k in 0..(duration_s * rate) as i64 {
             if k % SAMPLES_PER_CHECK as i64 == 0 {
-                interrupt::check();
+                interrupt::unwind_if_cancelled();
             }
             let place = (first + k).rem_euclid(length as i64) as usize;
             self.samples[place] += noise[place] * value((first + k) as f64 / rate - start_s);

@@ -57,7 +57,7 @@ pub fn info(name: &str) -> Result<&'static SignalInfo, AcousticsError> {
 /// Refuses an unsupported sample rate.
 pub(crate) fn check_rate(rate_hz: u32) -> Result<(), AcousticsError> {
     let rate = f64::from(rate_hz);
-    crate::error::range("signals", "rate_hz", rate, (1e3, 192e3), "1000 to 192000")
+    crate::error::check_range("signals", "rate_hz", rate, (1e3, 192e3), "1000 to 192000")
 }
 
 type SharedLoop = Arc<OnceLock<Arc<[f32]>>>;

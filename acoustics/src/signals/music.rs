@@ -40,8 +40,8 @@ pub(super) fn music_band(canvas: &mut LoopBuilder, amplitude: f64) {
     let bars = (canvas.loop_s() / 2.0).floor() as usize;
     let bar_s = canvas.loop_s() / bars.max(1) as f64;
     let (snare, hat) = (
-        canvas.noise("snare", |f| resonance_gain(f, 1800.0, 2500.0)),
-        canvas.noise("hat", |f| if f > 5000.0 { 1.0 } else { 0.0 }),
+        canvas.shaped_noise("snare", |f| resonance_gain(f, 1800.0, 2500.0)),
+        canvas.shaped_noise("hat", |f| if f > 5000.0 { 1.0 } else { 0.0 }),
     );
     let mut stream = canvas.key.child("tune").stream();
     let mut step = 2_usize;

@@ -23,7 +23,7 @@ const VOWELS_HZ: [[f64; 3]; 5] = [
 
 /// Adds a voice that speaks from `start_s` to `end_s` in syllables of about a quarter of a second, with pauses.
 fn talk(canvas: &mut LoopBuilder, voice: &SpeechVoice, name: &str, (start_s, end_s): (f64, f64)) {
-    let hiss = canvas.noise(name, |f| resonance_gain(f, 4500.0, 3000.0));
+    let hiss = canvas.shaped_noise(name, |f| resonance_gain(f, 4500.0, 3000.0));
     let mut stream = canvas.key.child(name).stream();
     let mut now_s = start_s;
     while now_s < end_s - 0.3 {

@@ -1,7 +1,7 @@
 //! Signals for measuring: a tone, a click, white noise, a sweep with its inverse, maximum length sequences.
 
 use super::loop_builder::LoopBuilder;
-use crate::error::{AcousticsError, range};
+use crate::error::{AcousticsError, check_range};
 use std::f64::consts::TAU;
 
 /// A tone of 1 kHz, or what fits the loop next to it.
@@ -17,7 +17,7 @@ pub(super) fn impulse(canvas: &mut LoopBuilder) {
 
 /// Equal power at all frequencies.
 pub(super) fn white(canvas: &mut LoopBuilder) {
-    let noise = canvas.noise("white", |_| 1.0);
+    let noise = canvas.shaped_noise("white", |_| 1.0);
     canvas.add_to_loop(&noise, 1.0);
 }
 
@@ -59,15 +59,15 @@ impl Sweep {
         const AT: &str = "sweep";
         super::check_rate(rate_hz)?;
         let rate = f64::from(rate_hz);
-        range(AT, "duration_s", duration_s, (0.05, 100.0), "0.05 to 100")?;
-        range(
+        check_range(AT, "duration_s", duration_s, (0.05, 100.0), "0.05 to 100")?;
+        check_range(
             AT,
             "high_hz",
             high_hz,
             (1.0, 0.5 * rate),
             "to half the rate",
         )?;
-        range(AT, "low_hz", low_hz, (1.0, 0.999 * high_hz), "1 to high_hz")?;
+        check_range(AT, "low_hz", low_hz, (1.0, 0.999 * high_hz), "1 to high_hz")?;
         let count = (duration_s * rate) as usize;
         let growth = libm::log(high_hz / low_hz);
         let sample = |k: usize| {
@@ -128,7 +128,7 @@ pub fn maximum_length_sequence(order: u32) -> Result<Vec<f32>, AcousticsError> {
         &[1, 3, 4],
     ];
     let found = f64::from(order);
-    range(
+    check_range(
         "maximum length sequence",
         "order",
         found,

@@ -1,6 +1,6 @@
 //! Settings of a stream's updates.
 
-use crate::error::{AcousticsError, range};
+use crate::error::{AcousticsError, check_range};
 use serde::{Deserialize, Serialize};
 
 /// Settings of a [`Stream`](crate::Stream).
@@ -92,9 +92,9 @@ impl StreamConfig {
     pub fn check(&self) -> Result<(), AcousticsError> {
         const AT: &str = "sound stream";
         let number = |field, value: f32, high, allowed| {
-            range(AT, field, f64::from(value), (0.0, high), allowed)
+            check_range(AT, field, f64::from(value), (0.0, high), allowed)
         };
-        range(
+        check_range(
             AT,
             "block_samples",
             self.block_samples as f64,
@@ -104,28 +104,28 @@ impl StreamConfig {
         number("update_distance_m", self.update_distance_m, 10.0, "0 to 10")?;
         number("update_angle_rad", self.update_angle_rad, 3.2, "0 to 3.2")?;
         number("update_part_m", self.update_part_m, 10.0, "0 to 10")?;
-        range(
+        check_range(
             AT,
             "moving_paths",
             self.tracked_reflections as f64,
             (0.0, 64.0),
             "0 to 64",
         )?;
-        range(
+        check_range(
             AT,
             "update_share",
             self.update_share,
             (1e-3, 1.0),
             "0.001 to 1",
         )?;
-        range(
+        check_range(
             AT,
             "update_rays",
             self.update_rays as f64,
             (0.0, 1e7),
             "0 to 10000000",
         )?;
-        range(
+        check_range(
             AT,
             "max_sources",
             self.max_sources as f64,

@@ -93,7 +93,7 @@ impl<'a> DelayedSegment<'a> {
         fade: &[f32],
         out: &mut [f32],
     ) {
-        SimdLevel::best_available().run(SegmentReader {
+        SimdLevel::best_available().run(SegmentInterpolation {
             passage: self,
             old,
             new,
@@ -137,7 +137,7 @@ impl SimdKernel for FirSimdKernel<'_> {
 }
 
 /// Reads a segment between samples.
-struct SegmentReader<'a> {
+struct SegmentInterpolation<'a> {
     passage: &'a DelayedSegment<'a>,
     old: Option<&'a [f32]>,
     new: Option<&'a [f32]>,
@@ -145,7 +145,7 @@ struct SegmentReader<'a> {
     out: &'a mut [f32],
 }
 
-impl SimdKernel for SegmentReader<'_> {
+impl SimdKernel for SegmentInterpolation<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -273,7 +273,7 @@ mod tests {
                     out
                 });
                 let mut out = vec![0.0; size];
-                level.run(SegmentReader {
+                level.run(SegmentInterpolation {
                     passage: &passage,
                     old: Some(&parts[0]),
                     new: Some(&parts[1]),

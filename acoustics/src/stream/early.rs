@@ -19,7 +19,7 @@ pub(super) struct TrackedPath {
 }
 
 /// Returns the distance that the bends of a path have slid in a movement, m; `None` where two paths are not the same.
-fn slid_m(a: &PropagationPath, b: &PropagationPath) -> Option<f32> {
+fn bend_displacement_m(a: &PropagationPath, b: &PropagationPath) -> Option<f32> {
     if a.planes != b.planes || a.diffraction_points.len() != b.diffraction_points.len() {
         return None;
     }
@@ -63,7 +63,7 @@ impl DelayInterpolation<'_> {
         let mut left: Vec<&TrackedPath> = old.iter().collect();
         for path in new {
             let before = (0..left.len())
-                .filter_map(|k| Some((k, slid_m(&left[k].path, &path.path)?)))
+                .filter_map(|k| Some((k, bend_displacement_m(&left[k].path, &path.path)?)))
                 .min_by(|a, b| a.1.total_cmp(&b.1))
                 .map(|(k, _)| left.remove(k));
             for (channel, out) in out.chunks_exact_mut(size).enumerate() {

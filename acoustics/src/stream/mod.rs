@@ -332,7 +332,7 @@ impl Stream {
         parts.map(|part| state.part_pose[*part]).collect()
     }
 
-    fn bytes(&self) -> Vec<u8> {
+    fn encode_state(&self) -> Vec<u8> {
         let snapshot = StreamSnapshot {
             version: VERSION,
             block_samples: self.config.block_samples as u64,
@@ -348,7 +348,7 @@ impl Stream {
 
     /// Returns the stream's state as bytes: with them an equal stream continues bit for bit.
     pub fn snapshot(&self) -> Vec<u8> {
-        let body = self.bytes();
+        let body = self.encode_state();
         let mut bytes = xxh3_64(&body).to_le_bytes().to_vec();
         bytes.extend_from_slice(&body);
         bytes
@@ -427,7 +427,7 @@ impl Stream {
 
     /// Returns a hash of all that affects the future output.
     pub fn hash(&self) -> u64 {
-        xxh3_64(&self.bytes())
+        xxh3_64(&self.encode_state())
     }
 }
 

@@ -40,7 +40,7 @@ impl ResponseUpdater<'_> {
     ) -> Result<(ImpulseResponse, bool), AcousticsError> {
         let config = self.scene.config();
         let again = self.key.child("again").child(memory.update);
-        let mut echogram = self.echogram(memory.rays(config), again)?;
+        let mut echogram = self.echogram(memory.rays_to_trace(config), again)?;
         let mut known = memory.blend_into(&mut echogram);
         if !known && all {
             echogram = self.echogram(config.rays, again.child("all"))?;

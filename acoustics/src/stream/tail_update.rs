@@ -35,14 +35,14 @@ pub(super) struct TailHistory<'a> {
 }
 
 /// Returns the number of rays of an update that reuses the rest.
-pub(super) fn ray_budget(config: &AcousticConfig, share: f64) -> usize {
+pub(super) fn partial_ray_count(config: &AcousticConfig, share: f64) -> usize {
     (config.rays as f64 * share).ceil() as usize
 }
 
 impl TailHistory<'_> {
     /// Returns the number of rays that are traced anew.
-    pub(super) fn rays(&self, config: &AcousticConfig) -> usize {
-        ray_budget(config, self.share)
+    pub(super) fn rays_to_trace(&self, config: &AcousticConfig) -> usize {
+        partial_ray_count(config, self.share)
     }
 
     /// Returns the difference of `now` from the previous tail, where it has mixed, as a deviate of a normal distribution: a

@@ -9,7 +9,7 @@
 use super::block_plan::BlockContext;
 use super::response_update::ResponseUpdater;
 use super::source_state::{ListeningSituation, SituationChange, SourceState, TraceJob};
-use super::tail_update::{TailHistory, ray_budget};
+use super::tail_update::{TailHistory, partial_ray_count};
 use super::{BlockReport, Stream};
 use crate::error::AcousticsError;
 use crate::receiver::SoundSourcePose;
@@ -105,7 +105,7 @@ impl RayBudget {
     }
 
     /// Returns whether work of `rays` may start.
-    fn allows(&self, rays: usize) -> bool {
+    fn may_start(&self, rays: usize) -> bool {
         !self.served || self.holds(rays)
     }
 
@@ -181,7 +181,7 @@ impl Stream {
                 return Ok(());
             }
             (SituationChange::Rotated, Some((then, response))) => {
-                want.is_waiting = !budget.allows(ROTATION_COST_RAYS);
+                want.is_waiting = !budget.may_start(ROTATION_COST_RAYS);
                 if !want.is_waiting {
                     budget.spend(ROTATION_COST_RAYS);
                     report.rotated += 1;
@@ -232,9 +232,9 @@ impl Stream {
         budget: &mut RayBudget,
         report: &mut BlockReport,
     ) -> Result<(), AcousticsError> {
-        let rays = ray_budget(self.scene.config(), self.config.update_share);
+        let rays = partial_ray_count(self.scene.config(), self.config.update_share);
         want.is_waiting =
-            want.need() != UpdateUrgency::Immediate && !budget.allows(rays + RESPONSE_COST_RAYS);
+            want.need() != UpdateUrgency::Immediate && !budget.may_start(rays + RESPONSE_COST_RAYS);
         if want.is_waiting {
             return Ok(());
         }
@@ -267,7 +267,7 @@ impl Stream {
     ) -> Result<(), AcousticsError> {
         let all = self.scene.config().rays;
         if want.current_response().is_none() && !budget.holds(all) {
-            let share = ray_budget(self.scene.config(), self.config.update_share);
+            let share = partial_ray_count(self.scene.config(), self.config.update_share);
             let rays = share
                 .min(budget.left.unwrap_or(all))
                 .clamp(MIN_RAYS.min(all), all);
@@ -285,7 +285,7 @@ impl Stream {
             Some(left) if is_waiting => left,
             _ => usize::MAX,
         };
-        if is_waiting && !budget.allows(MIN_RAYS) {
+        if is_waiting && !budget.may_start(MIN_RAYS) {
             want.is_waiting = true;
             return Ok(());
         }

@@ -62,7 +62,7 @@ impl FractionalDelay {
 
     /// Adds `response`, delayed by the delay less `lead` samples and scaled, to `out`. Samples outside are dropped.
     pub(crate) fn add(&self, out: &mut [f32], response: &[f32], lead: usize, gain: f32) {
-        SimdLevel::best_available().run(DelayedAdd {
+        SimdLevel::best_available().run(FractionalDelayKernel {
             taps: self,
             out,
             response,
@@ -73,7 +73,7 @@ impl FractionalDelay {
 }
 
 /// The arguments of [`FractionalDelay::add`].
-struct DelayedAdd<'a> {
+struct FractionalDelayKernel<'a> {
     taps: &'a FractionalDelay,
     out: &'a mut [f32],
     response: &'a [f32],
@@ -81,7 +81,7 @@ struct DelayedAdd<'a> {
     gain: f32,
 }
 
-impl SimdKernel for DelayedAdd<'_> {
+impl SimdKernel for FractionalDelayKernel<'_> {
     type Output = ();
 
     #[inline(always)]

@@ -188,7 +188,7 @@ impl Synthesizer {
         if out.is_empty() {
             return out;
         }
-        let channels = ReceiverChannel::of(receiver, heads, echogram.speed_m_s);
+        let channels = ReceiverChannel::all_of_receiver(receiver, heads, echogram.speed_m_s);
         // The tail may not begin before the direct sound.
         let radius_m = receiver
             .radius_m()
@@ -321,7 +321,7 @@ impl Synthesizer {
         paths: &[PropagationPath],
         hearing: &ReceiverContext<'_>,
     ) -> Vec<Vec<PathFilter>> {
-        let channels = ReceiverChannel::of(hearing.receiver, hearing.heads, speed_m_s);
+        let channels = ReceiverChannel::all_of_receiver(hearing.receiver, hearing.heads, speed_m_s);
         let listening = PathRenderContext {
             channels: &channels,
             at_channel: false,

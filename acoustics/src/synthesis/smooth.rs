@@ -15,7 +15,7 @@ const PASSES: usize = 2;
 pub(super) fn smooth(histogram: &EnergyHistogram) -> Vec<[f64; BAND_COUNT]> {
     let mut smoothed = histogram.bins.clone();
     for _ in 0..PASSES {
-        smoothed = pass(&smoothed);
+        smoothed = moving_average(&smoothed);
     }
     let (before, after) = (histogram.total(), total(&smoothed));
     for bin in &mut smoothed {
@@ -35,7 +35,7 @@ fn total(bins: &[[f64; BAND_COUNT]]) -> [f64; BAND_COUNT] {
 }
 
 /// Replaces every bin by the mean of those around it.
-fn pass(bins: &[[f64; BAND_COUNT]]) -> Vec<[f64; BAND_COUNT]> {
+fn moving_average(bins: &[[f64; BAND_COUNT]]) -> Vec<[f64; BAND_COUNT]> {
     // Sums up to each bin, so that a window is one difference.
     let mut sums = vec![[0.0; BAND_COUNT]];
     let mut sum = [0.0; BAND_COUNT];

@@ -67,7 +67,9 @@ impl TailNoise<'_> {
         out: &mut [f32],
     ) {
         let speed = self.echogram.speed_m_s;
-        let pulses = arrivals.iter().map(|arrival| self.pulse(arrival, levels));
+        let pulses = arrivals
+            .iter()
+            .map(|arrival| self.arrival_amplitudes(arrival, levels));
         let pulses: Vec<BandValues> = pulses.collect();
         let mut bus: BandSignals = vec![Vec::new(); BAND_COUNT];
         let mut poll = PollEvery::new(ARRIVALS_BETWEEN_POLLS);
@@ -165,7 +167,7 @@ impl TailNoise<'_> {
             ROUNDS_OF_MANY
         };
         let wanted: [BandEnergyCurve<'_>; BAND_COUNT] =
-            std::array::from_fn(|band| self.wanted(band));
+            std::array::from_fn(|band| self.target_energy(band));
         let mut levels: BandGains = std::array::from_fn(|band| GainCurve::unity(&wanted[band]));
         let paths = self.bank.split_decimated(paths);
         let mut poll = PollEvery::new(ARRIVALS_BETWEEN_POLLS);
@@ -173,7 +175,7 @@ impl TailNoise<'_> {
             let mut bus: BandSignals = vec![vec![0.0; self.length]; BAND_COUNT];
             for arrival in arrivals {
                 poll.turn();
-                let pulse = self.pulse(arrival, &levels);
+                let pulse = self.arrival_amplitudes(arrival, &levels);
                 self.add_arrival(&mut bus, arrival.time_s, &pulse, &Delay::None);
             }
             let mut noise = self.bank.blend(&bus, self.length);
@@ -187,7 +189,7 @@ impl TailNoise<'_> {
     }
 
     /// Returns the wanted energy of a band over time.
-    fn wanted(&self, band: usize) -> BandEnergyCurve<'_> {
+    fn target_energy(&self, band: usize) -> BandEnergyCurve<'_> {
         let Self { bank, rate_hz, .. } = self;
         let mut wanted =
             BandEnergyCurve::new(bank, band, *rate_hz, self.length, self.silent_samples);
@@ -207,7 +209,7 @@ impl TailNoise<'_> {
     }
 
     /// Returns the amplitude of an arrival in each band.
-    fn pulse(&self, arrival: &TailArrival, levels: &BandGains) -> BandValues {
+    fn arrival_amplitudes(&self, arrival: &TailArrival, levels: &BandGains) -> BandValues {
         let place = ((arrival.time_s * self.rate_hz) as usize).min(self.length - 1);
         std::array::from_fn(|band| arrival.amplitude[band] * levels[band].at(place))
     }

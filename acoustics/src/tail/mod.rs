@@ -21,7 +21,7 @@ use dwell_scene::random::{RandomKey, RandomStream};
 use dwell_scene::rays::RayScene;
 use glam::{Quat, Vec3};
 use ray_tracer::RayTracer;
-use receiver_volume::TailReceiver;
+use receiver_volume::DetectionVolume;
 use serde::{Deserialize, Serialize};
 use spans::SpanVariance;
 
@@ -171,7 +171,7 @@ pub(crate) struct TailTrace<'a> {
     data: &'a PropagationData,
     rays: &'a RayScene,
     source: &'a SoundSourcePose,
-    listeners: Vec<TailReceiver>,
+    listeners: Vec<DetectionVolume>,
     /// Number of rays.
     count: usize,
     key: RandomKey,
@@ -209,7 +209,7 @@ impl<'a> TailTrace<'a> {
         let probes = config.discovery_rays.clamp(PROBES.0, PROBES.1);
         let listeners = threads.map(receivers.len(), |k| {
             let (radius_m, source) = (config.receiver_radius_m, source.position());
-            TailReceiver::new(rays, source, receivers[k], radius_m, probes)
+            DetectionVolume::new(rays, source, receivers[k], radius_m, probes)
         });
         Self {
             data,
@@ -234,7 +234,10 @@ impl<'a> TailTrace<'a> {
         let (bin_count, times) = (config.bin_count(), direction_bin_count(config));
         let hidden = self.listeners.iter().any(|listener| listener.is_occluded);
         let mut start = key.child("turn").stream();
-        let (axis, pattern) = self.data.effects().radiation(self.source, speed);
+        let (axis, pattern) = self
+            .data
+            .effects()
+            .source_axis_and_pattern(self.source, speed);
         let walk = RayTracer {
             data: self.data,
             rays: self.rays,

@@ -1,6 +1,6 @@
 //! Tracing of rays through the house.
 
-use super::receiver_volume::TailReceiver;
+use super::receiver_volume::DetectionVolume;
 use super::{RAYS_PER_CHUNK, RayChunkEnergy};
 use crate::bands::{BAND_COUNT, BandValues};
 use crate::directions::{CELL_COUNT, direction_cell};
@@ -40,7 +40,7 @@ pub(super) struct RayTracer<'a> {
     /// The source's axis and its gains around it.
     pub(super) axis: Vec3,
     pub(super) pattern: TabulatedPattern,
-    pub(super) listeners: &'a [TailReceiver],
+    pub(super) listeners: &'a [DetectionVolume],
     pub(super) sequence_rotation: Quat,
     /// Offset of the sequence of directions.
     pub(super) sequence_offset: (f64, f64),
@@ -65,7 +65,7 @@ struct RayRandom<'a> {
 }
 
 impl RayRandom<'_> {
-    fn of(&mut self, one: &TracedRay) -> &mut RandomStream {
+    fn stream_for(&mut self, one: &TracedRay) -> &mut RandomStream {
         if one.walls == 0 { self.own } else { self.aside }
     }
 }
@@ -152,7 +152,7 @@ impl RayTracer<'_> {
             if last {
                 return;
             }
-            let place = random.of(one).uniform_f32();
+            let place = random.stream_for(one).uniform_f32();
             worth = self::band_importance(&next, &least);
             resample(&next, count, &worth, place, &mut rays);
             next.clear();
@@ -171,7 +171,7 @@ impl RayTracer<'_> {
     ) -> Option<TracedRay> {
         let images = self.data.config().image_order;
         while one.travelled_m < end_m {
-            interrupt::check();
+            interrupt::unwind_if_cancelled();
             if one.reflections == MOST_REFLECTIONS {
                 return None;
             }
@@ -179,7 +179,7 @@ impl RayTracer<'_> {
             // Image sources are not transmitted.
             if one.mirrored && (one.scattered || one.order > images || one.walls > 0) {
                 let reach_m = hit.map_or(f32::INFINITY, |hit| hit.distance_m);
-                self.record_crossings(&one, reach_m, random.of(&one), chunk);
+                self.record_crossings(&one, reach_m, random.stream_for(&one), chunk);
             }
             let Some(hit) = hit else {
                 // Behind an outer wall is the open air.
@@ -215,7 +215,7 @@ impl RayTracer<'_> {
             if scattering.iter().any(|s| *s > 0.0) {
                 self.add_diffuse_rain(start, normal, &one, &parts.scattered, random.aside, chunk);
             }
-            let stream = random.of(&one);
+            let stream = random.stream_for(&one);
             if !one.reflect(start, normal, &parts, worth, stream) {
                 return None;
             }

@@ -26,7 +26,7 @@ struct DetectionSphere {
 
 /// A receiver of the ray tracer.
 #[derive(Clone, Debug)]
-pub(super) struct TailReceiver {
+pub(super) struct DetectionVolume {
     pub(super) position: Vec3,
     balls: Vec<DetectionSphere>,
     /// Visible volume, m³.
@@ -35,7 +35,7 @@ pub(super) struct TailReceiver {
     pub(super) is_occluded: bool,
 }
 
-impl TailReceiver {
+impl DetectionVolume {
     /// Probes the surroundings of `position` with `probes` rays.
     pub(super) fn new(
         rays: &RayScene,
@@ -83,7 +83,7 @@ impl TailReceiver {
     }
 
     /// Returns the sphere for paths of `path_length_m`.
-    fn ball(&self, way_m: f32) -> DetectionSphere {
+    fn sphere_at(&self, way_m: f32) -> DetectionSphere {
         let steps = libm::logf((way_m / FIRST_M as f32).max(1.0)) / libm::logf(STEP as f32);
         self.balls[(steps as usize).min(self.balls.len() - 1)]
     }
@@ -102,7 +102,7 @@ impl TailReceiver {
         if miss_squared >= largest_m * largest_m {
             return None;
         }
-        let ball = self.ball(path_length_m + along.max(0.0));
+        let ball = self.sphere_at(path_length_m + along.max(0.0));
         let half = (ball.radius_m * ball.radius_m - miss_squared)
             .max(0.0)
             .sqrt();

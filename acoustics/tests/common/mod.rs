@@ -27,7 +27,7 @@ pub(crate) fn material(absorption: f32, scattering: f32) -> Material {
         absorption: Bands::constant(absorption),
         scattering: Bands::constant(scattering),
         transmission_loss_db: Bands::constant(Material::MAX_TRANSMISSION_LOSS_DB),
-        ..Material::of("test", library().default_substance())
+        ..Material::from_substance("test", library().default_substance())
     }
 }
 

@@ -556,7 +556,7 @@ pub(super) fn check_sufficient_data(bundle: &Bundle) -> CheckResult {
         let mut channels = episode.samples.chunk_by(|a, b| a.channel == b.channel);
         channels.try_for_each(|samples| {
             let times: Vec<f64> = samples.iter().map(|s| s.t_s).collect();
-            unit_checks::clock(&at, &times)
+            unit_checks::check_sample_times(&at, &times)
         })?;
     }
     match bundle.kind() {

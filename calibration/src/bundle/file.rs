@@ -334,7 +334,7 @@ pub struct DriveRow {
     missing_docs,
     reason = "velocities in m/s and rad/s, by axis, in the frames of `poses.csv`"
 )]
-pub struct StartRow {
+pub struct StartVelocityRow {
     /// The episode.
     pub episode: String,
     /// The sample, counted from 0.

@@ -76,9 +76,9 @@ pub(super) fn check_drives(
         let times: Vec<f64> = rows.iter().map(|row| row.t_s).collect();
         unit_checks::check_even_sampling(&at, &times, base.rate_hz)?;
         rows.windows(2).for_each(|pair| ways.add(pair, base));
-        ways.end(rows, base);
+        ways.add_end_difference(rows, base);
     }
-    ways.judge(&format!("{name}/drive.csv"))
+    ways.check_agreement(&format!("{name}/drive.csv"))
 }
 
 /// Lengths and turns of robots' paths, by the wheels and by the tracker, m and rad.
@@ -112,13 +112,13 @@ impl WheelAndTrackerPaths {
         self.turned_both += by_wheels * libm::atan2(libm::sin(turn), libm::cos(turn));
     }
 
-    fn end(&mut self, rows: &[DriveRow], base: &WheeledBaseManifest) {
+    fn add_end_difference(&mut self, rows: &[DriveRow], base: &WheeledBaseManifest) {
         let ends =
             [rows.first(), rows.last()].map(|row| row.map_or(0.0, |r| r.left_rad + r.right_rad));
         self.since_start_m += 0.5 * base.wheel_radius_m * (ends[1] - ends[0]);
     }
 
-    fn judge(&self, at: &str) -> OdometryCheck {
+    fn check_agreement(&self, at: &str) -> OdometryCheck {
         let is_right = |ratio: f64| (WAYS[0]..=WAYS[1]).contains(&ratio);
         let ratio = self.wheels_m / self.tracker_m;
         if self.wheels_m.abs() > TELLING_WAY_M && !is_right(ratio) {

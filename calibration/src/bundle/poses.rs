@@ -1,7 +1,7 @@
 //! Pose trajectories: the content of `poses.csv` and `starts.csv`, and its plausibility.
 
 use super::check::{self, NameIndex};
-use super::file::{AngularFrame, Manifest, PoseRow, StartRow};
+use super::file::{AngularFrame, Manifest, PoseRow, StartVelocityRow};
 use super::read::{episode_index, for_each_row};
 use super::{MeasuredEpisode, PoseRates, PoseSample, unit_checks};
 use crate::error::CalibrationError;
@@ -38,7 +38,10 @@ pub(super) fn read(
             t_s: row.t_s,
             entity: names.entity(at, "entity", &row.entity)?,
             position: DVec3::new(row.x, row.y, row.z),
-            rotation: unit(at, DQuat::from_xyzw(row.qx, row.qy, row.qz, row.qw))?,
+            rotation: checked_unit_quaternion(
+                at,
+                DQuat::from_xyzw(row.qx, row.qy, row.qz, row.qw),
+            )?,
             rates: None,
         };
         check::check_time(at, row.t_s)?;
@@ -66,7 +69,7 @@ fn starts(
     frame: AngularFrame,
     episodes: &mut [MeasuredEpisode],
 ) -> PoseCheck {
-    for_each_row(folder, "starts.csv", |row: StartRow, at| {
+    for_each_row(folder, "starts.csv", |row: StartVelocityRow, at| {
         let index = episode_index(at, by_name, &row.episode)?;
         let episode = &mut episodes[index];
         if episode.known_start.is_some() {
@@ -97,7 +100,7 @@ fn starts(
     })
 }
 
-fn unit(at: &str, rotation: DQuat) -> Result<DQuat, CalibrationError> {
+fn checked_unit_quaternion(at: &str, rotation: DQuat) -> Result<DQuat, CalibrationError> {
     let length = rotation.length();
     if (length - 1.0).abs() <= UNIT_TOLERANCE {
         return Ok(rotation.normalize());
@@ -183,7 +186,7 @@ pub(super) fn check_poses(
 
 /// Sums of squares over samples that move fast enough.
 #[derive(Default)]
-struct Mismatch {
+struct VelocityMismatch {
     total: f64,
     left: f64,
     other_left: f64,
@@ -193,7 +196,7 @@ struct Mismatch {
     count: usize,
 }
 
-impl Mismatch {
+impl VelocityMismatch {
     fn add(&mut self, from_poses: DVec3, stated: DVec3, other: DVec3) {
         if from_poses.length() < TELLING_SPEED || !from_poses.is_finite() {
             return;
@@ -212,7 +215,7 @@ impl Mismatch {
     }
 
     /// The share of the motion that the stated velocities miss; `None` where too little moves.
-    fn share(&self) -> Option<f64> {
+    fn unexplained_share(&self) -> Option<f64> {
         (self.count >= FEWEST_TELLING).then(|| (self.left / self.total).sqrt())
     }
 }
@@ -224,7 +227,7 @@ fn check_velocities(
     step_s: f64,
     episodes: &[MeasuredEpisode],
 ) -> PoseCheck {
-    let (mut linear, mut angular) = (Mismatch::default(), Mismatch::default());
+    let (mut linear, mut angular) = (VelocityMismatch::default(), VelocityMismatch::default());
     for episode in episodes {
         for pair in episode.poses.windows(3) {
             let Some(rates) = pair[1].rates else { continue };
@@ -240,7 +243,10 @@ fn check_velocities(
             angular.add(turned, rates.angular, other);
         }
     }
-    if let Some(share) = linear.share().filter(|share| *share > WRONG_SHARE) {
+    if let Some(share) = linear
+        .unexplained_share()
+        .filter(|share| *share > WRONG_SHARE)
+    {
         return Err(CalibrationError::field(
             format!("{name}/poses.csv"),
             "vx, vy, vz against differences of x, y, z: the share that disagrees",
@@ -252,7 +258,10 @@ fn check_velocities(
             ),
         ));
     }
-    if let Some(share) = angular.share().filter(|share| *share > WRONG_SHARE) {
+    if let Some(share) = angular
+        .unexplained_share()
+        .filter(|share| *share > WRONG_SHARE)
+    {
         let hint = if angular.other_left < 0.25 * angular.left {
             "; they agree in the other frame: angular_velocity is wrong".to_owned()
         } else if let Some(hint) = unit_checks::degrees_hint("angular velocities", angular.factor())

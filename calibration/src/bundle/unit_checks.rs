@@ -205,7 +205,7 @@ pub(super) fn check_flights(
     };
     let at = format!("{name}/{file}");
     let all: Vec<[CoordinateTrack; 3]> = episodes.iter().map(|e| tracks(manifest, e)).collect();
-    falls(&at, manifest, &all)?;
+    check_fall_direction(&at, manifest, &all)?;
     if manifest.kind != BundleKind::Trajectory {
         return Ok(());
     }
@@ -227,7 +227,7 @@ pub(super) fn check_flights(
 type AxisGuess = (usize, f64, Option<UnitScale>);
 
 /// Refuses motions of which hardly any falls along y, while most fall along another axis or in another unit.
-fn falls(at: &str, manifest: &Manifest, all: &[[CoordinateTrack; 3]]) -> UnitCheck {
+fn check_fall_direction(at: &str, manifest: &Manifest, all: &[[CoordinateTrack; 3]]) -> UnitCheck {
     let g = manifest.scene.environment.g_m_s2.unwrap_or(9.806_65);
     // Reaches of an acceleration, samples: near ones catch short flights, far ones see through noise.
     let shares = [4, 8, 16].map(|part| {
@@ -317,7 +317,7 @@ fn suggested_fix((axis, sign, unit): AxisGuess, kind: BundleKind) -> String {
 }
 
 /// Refuses samples of an episode at one time, those too far apart to show a motion, and gaps. `times`: of one channel, rising.
-pub(super) fn clock(at: &str, times: &[f64]) -> UnitCheck {
+pub(super) fn check_sample_times(at: &str, times: &[f64]) -> UnitCheck {
     let mut pairs = times.iter().zip(times.iter().skip(1));
     if let Some((twice, _)) = pairs.find(|(a, b)| a == b) {
         let allowed = "each time once for a channel: leave one of the two rows out, or give recordings that were put together \

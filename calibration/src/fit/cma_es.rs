@@ -78,13 +78,15 @@ impl CmaEs {
 
     /// The points of the next generation, in the unit cube. Shape (lambda, parameter).
     pub(crate) fn sample_population(&mut self) -> Vec<Vec<f64>> {
-        let (root, _) = self.roots();
+        let (root, _) = self.covariance_square_roots();
         let n = self.mean.len();
         (0..self.constants.lambda)
             .map(|_| {
                 let z = DVector::from_fn(n, |_, _| self.stream.normal());
                 let x = &self.mean + self.sigma * (&root * z);
-                x.iter().map(|value| reflected(*value)).collect()
+                x.iter()
+                    .map(|value| fold_into_unit_interval(*value))
+                    .collect()
             })
             .collect()
     }
@@ -100,7 +102,7 @@ impl CmaEs {
             }
         };
         order.sort_by(|a, b| cost(*a).total_cmp(&cost(*b)).then(a.cmp(b)));
-        let (_, inverse_root) = self.roots();
+        let (_, inverse_root) = self.covariance_square_roots();
         let c = &self.constants;
         let n = self.mean.len() as f64;
         let steps: Vec<DVector<f64>> = order
@@ -136,11 +138,14 @@ impl CmaEs {
 
     /// The mean of the distribution, in the unit cube.
     pub(crate) fn mean(&self) -> Vec<f64> {
-        self.mean.iter().map(|value| reflected(*value)).collect()
+        self.mean
+            .iter()
+            .map(|value| fold_into_unit_interval(*value))
+            .collect()
     }
 
     /// The symmetric square root of the covariance, and its inverse.
-    fn roots(&self) -> (DMatrix<f64>, DMatrix<f64>) {
+    fn covariance_square_roots(&self) -> (DMatrix<f64>, DMatrix<f64>) {
         let eigen = SymmetricEigen::new(self.covariance.clone());
         let scaled = |f: &dyn Fn(f64) -> f64| {
             let values = eigen.eigenvalues.map(|value| f(value.max(1e-20).sqrt()));
@@ -151,7 +156,7 @@ impl CmaEs {
 }
 
 /// A number folded back into 0..1 at both ends.
-fn reflected(value: f64) -> f64 {
+fn fold_into_unit_interval(value: f64) -> f64 {
     let folded = value.rem_euclid(2.0);
     if folded > 1.0 { 2.0 - folded } else { folded }
 }

@@ -125,7 +125,7 @@ impl FitTask<'_> {
     ) -> Result<Vec<NormalBlock>, CalibrationError> {
         let mut damping = 1e-6;
         let mut value = total(&now.residuals, loss);
-        let mut blocks = self.blocks(global, point, now, loss)?;
+        let mut blocks = self.normal_blocks(global, point, now, loss)?;
         let count = now.residuals.iter().map(Vec::len).sum::<usize>().max(1) as f64;
         for _ in 0..most {
             self.progress.check()?;
@@ -135,7 +135,7 @@ impl FitTask<'_> {
                 if step.predicted < least {
                     break;
                 }
-                let trial = self.moved(global, point, &step);
+                let trial = self.apply_step(global, point, &step);
                 // A trial that the engine refuses is too large a step.
                 let there = self
                     .evaluate(&trial)
@@ -152,13 +152,13 @@ impl FitTask<'_> {
                 // Blocks of the point before the last, tiny, step serve as well.
                 break;
             }
-            blocks = self.blocks(global, point, now, loss)?;
+            blocks = self.normal_blocks(global, point, now, loss)?;
         }
         Ok(blocks)
     }
 
     /// The point one step on, inside the bounds.
-    fn moved(
+    fn apply_step(
         &self,
         global: &[ParameterIndex],
         point: &ParameterVector,
@@ -223,7 +223,7 @@ impl FitTask<'_> {
         })
     }
 
-    fn blocks(
+    fn normal_blocks(
         &self,
         global: &[ParameterIndex],
         point: &ParameterVector,

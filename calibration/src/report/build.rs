@@ -11,7 +11,7 @@ use crate::format_number::{format_list, format_number, format_percent};
 use crate::select::{
     Decision, Estimate, Findings, ScoredModel, SingleCause, by_channel, estimates, sd_of,
 };
-use crate::twin::{Cause, CauseInstallation, FitParameter, ParameterIndex, Twin};
+use crate::twin::{Cause, CauseBinding, FitParameter, ParameterIndex, Twin};
 use dwell_scene::LawSpec;
 
 /// The version of the report's form.
@@ -43,7 +43,7 @@ pub(crate) fn build(bundle: &Bundle, twin: &dyn Twin, findings: &Findings) -> Ca
         title: bundle.manifest.title.clone(),
         licence: bundle.manifest.licence.clone(),
         kind: bundle.kind(),
-        sentence: sentence(&verdict, &candidates, twin, findings),
+        sentence: verdict_sentence(&verdict, &candidates, twin, findings),
         fitted_episodes: name(&findings.split.train),
         held_out_episodes: name(&findings.split.held_out),
         residuals_before: by_channel(twin, &set_before, &before),
@@ -190,7 +190,7 @@ fn in_words(parameters: &[FittedParameter]) -> String {
     }
 }
 
-fn sentence(
+fn verdict_sentence(
     verdict: &CalibrationVerdict,
     candidates: &[CandidateCause],
     twin: &dyn Twin,
@@ -290,7 +290,7 @@ fn found(twin: &dyn Twin, findings: &Findings) -> FoundEffects {
         let cause: &Cause = &twin.causes()[*index];
         let values = parameters(twin, &findings.chosen, *index);
         match &cause.installs_as {
-            CauseInstallation::Law { version, target } => found.laws.push(LawSpec {
+            CauseBinding::Law { version, target } => found.laws.push(LawSpec {
                 id: cause.id.clone(),
                 version: *version,
                 target: target.clone(),
@@ -300,13 +300,13 @@ fn found(twin: &dyn Twin, findings: &Findings) -> FoundEffects {
                     .chain(cause.fixed.clone())
                     .collect(),
             }),
-            CauseInstallation::Addresses(addresses) => {
+            CauseBinding::Addresses(addresses) => {
                 let pairs = addresses.iter().zip(&values);
                 found
                     .parameters
                     .extend(pairs.map(|(address, p)| (address.clone(), p.value)));
             }
-            CauseInstallation::Unsupported => {}
+            CauseBinding::Unsupported => {}
         }
     }
     found

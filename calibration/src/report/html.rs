@@ -37,7 +37,7 @@ pub(crate) fn escape(text: &str) -> String {
     out
 }
 
-fn unit(text: &str) -> String {
+fn unit_suffix(text: &str) -> String {
     if text == "1" {
         String::new()
     } else {
@@ -45,7 +45,7 @@ fn unit(text: &str) -> String {
     }
 }
 
-fn head(verdict: &CalibrationVerdict) -> (&'static str, &'static str) {
+fn verdict_heading(verdict: &CalibrationVerdict) -> (&'static str, &'static str) {
     match verdict {
         CalibrationVerdict::NoEffect => ("nothing", "Nothing is missing"),
         CalibrationVerdict::Named { .. } => ("named", "The cause has a name"),
@@ -58,7 +58,7 @@ impl CalibrationReport {
     /// The report as one page.
     pub fn to_html(&self) -> String {
         let mut out = String::with_capacity(1 << 16);
-        let (class, says) = head(&self.verdict);
+        let (class, says) = verdict_heading(&self.verdict);
         let lead = format!(
             "Measured against simulated: {} episodes fitted, {} held out from all fitting. Licence of the data: {}.",
             self.fitted_episodes.len(),
@@ -110,7 +110,7 @@ impl CalibrationReport {
              <th>Held-out error taken away</th><th></th></tr>",
         );
         for candidate in &self.candidates {
-            row(out, candidate);
+            write_cause_row(out, candidate);
         }
         out.push_str("</table></div>");
     }
@@ -167,7 +167,7 @@ impl CalibrationReport {
                     escape(&nuisance.name),
                     format_number(nuisance.value),
                     format_number(nuisance.sd),
-                    unit(&nuisance.unit)
+                    unit_suffix(&nuisance.unit)
                 );
             }
             out.push_str("</table></div>");
@@ -195,7 +195,7 @@ impl CalibrationReport {
     }
 }
 
-fn row(out: &mut String, candidate: &CandidateCause) {
+fn write_cause_row(out: &mut String, candidate: &CandidateCause) {
     let told: Vec<String> = candidate.parameters.iter().map(parameter).collect();
     let [low, high] = candidate.gain.share_interval.map(format_percent);
     let judgement = match (&candidate.implausible, candidate.passes) {
@@ -221,14 +221,14 @@ fn parameter(p: &FittedParameter) -> String {
         "{} = {}{}<br><span class=\"soft\">{low} to {high}; was {}</span>",
         escape(&p.name),
         format_number(p.value),
-        unit(&p.unit),
+        unit_suffix(&p.unit),
         format_number(p.default)
     )
 }
 
 fn residual_row(out: &mut String, when: &str, r: &ChannelResidual) {
     let known = if r.noise_known { "" } else { " (estimated)" };
-    let unit = unit(&r.unit);
+    let unit = unit_suffix(&r.unit);
     let _ = write!(
         out,
         "<tr><td>{}</td><td class=\"soft\">{when}</td><td class=\"n\">{}{unit}</td><td class=\"n\">{}{unit}</td>\

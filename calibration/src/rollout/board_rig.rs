@@ -3,7 +3,9 @@
 use super::motion::MotionState;
 use super::pose_tracks::{PoseTracks, TrackedBody};
 use crate::error::CalibrationError;
-use crate::twin::test_world::{BOARD_SUBSTANCE, ExperimentWorld, OBJECT_SUBSTANCE, TestObject};
+use crate::twin::test_world::{
+    BOARD_SUBSTANCE, ExperimentObject, ExperimentWorld, OBJECT_SUBSTANCE,
+};
 use dwell_physics::{ContactFriction, PhysicsConfig};
 use dwell_scene::{LawSpec, PartId};
 use glam::{DQuat, DVec3, Quat, Vec3};
@@ -55,7 +57,8 @@ impl BoardRig {
         times: u32,
     ) -> Result<Self, CalibrationError> {
         let body = &tracks.body;
-        let thing = TestObject::box_above_board(&body.name, body.mass_kg, body.half_extents_m);
+        let thing =
+            ExperimentObject::box_above_board(&body.name, body.mass_kg, body.half_extents_m);
         let rate_hz = tracks.rate_hz as f32;
         let config = PhysicsConfig {
             control_rate_hz: rate_hz,

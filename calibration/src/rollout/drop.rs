@@ -7,7 +7,7 @@ use super::subject::RolloutSubject;
 use crate::bundle::{self, Bundle};
 use crate::error::CalibrationError;
 use crate::report::FoundEffects;
-use crate::twin::test_world::{ExperimentWorld, TestObject, hermite_interpolation};
+use crate::twin::test_world::{ExperimentObject, ExperimentWorld, hermite_interpolation};
 use crate::twin::{air_density_kg_m3, gravity_m_s2};
 use dwell_physics::PhysicsConfig;
 use dwell_scene::random::RandomKey;
@@ -39,7 +39,7 @@ pub struct BallDrops {
     licence: String,
     gravity_m_s2: f64,
     air_density_kg_m3: f64,
-    balls: Vec<(String, TestObject)>,
+    balls: Vec<(String, ExperimentObject)>,
     size_m: f32,
     episodes: Vec<BallDrop>,
 }
@@ -81,7 +81,8 @@ impl BallDrops {
         };
         let balls = manifest.scene.bodies.iter().map(|body| {
             // `bundle::read` has required the radius.
-            let ball = TestObject::ball(&body.name, body.mass_kg, body.radius_m.unwrap_or(0.0));
+            let ball =
+                ExperimentObject::ball(&body.name, body.mass_kg, body.radius_m.unwrap_or(0.0));
             (body.name.clone(), ball)
         });
         let mut reach = 0.0_f64;

@@ -101,10 +101,10 @@ pub fn window_start(
         } else {
             DVec3::ZERO
         };
-        (drift, LINEAR_M_S2[kind(regime)])
+        (drift, LINEAR_M_S2[acceleration_index(regime)])
     });
     let (turned, angular) = kalman_filter(&turns, regimes, step_s, noise.rotation_rad, |regime| {
-        (DVec3::ZERO, ANGULAR_RAD_S2[kind(regime)])
+        (DVec3::ZERO, ANGULAR_RAD_S2[acceleration_index(regime)])
     });
     MotionState {
         position,
@@ -119,7 +119,7 @@ const LINEAR_M_S2: [f64; 4] = [0.1, 150.0, 5.0, 0.3];
 /// The same for angular accelerations, rad/s².
 const ANGULAR_RAD_S2: [f64; 4] = [1.0, 1500.0, 100.0, 5.0];
 
-fn kind(regime: Regime) -> usize {
+fn acceleration_index(regime: Regime) -> usize {
     match regime {
         Regime::Flight => 0,
         Regime::Impact => 1,

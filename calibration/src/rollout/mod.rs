@@ -29,7 +29,9 @@ pub use pose_tracks::{NominalContact, PoseTrack, PoseTracks, TrackedBody};
 pub use refine::{REFINEMENT_FACTOR, StepRefinementEffect, refinements};
 pub use regime::Regime;
 pub use residuals::{Quantiles, ResidualGroup, ResidualGroups};
-pub use score::{Score, deviations, diverges_under_noise, scores};
+pub use score::{MeanDeviation, deviations, diverges_under_noise, scores};
 pub use subject::RolloutSubject;
 pub use summary::{EpisodeSpread, ScoreSummary};
-pub use windows::{HORIZONS, WindowOptions, WindowPrediction, WindowScore, ends, windows};
+pub use windows::{
+    HORIZONS, WindowOptions, WindowPrediction, WindowScore, predict_windows, window_scores,
+};

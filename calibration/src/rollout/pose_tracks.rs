@@ -80,11 +80,11 @@ impl TrackedBody {
 
     /// The moments of a solid box of this mass and size, kg·m².
     pub fn solid_inertia_kg_m2(&self) -> [f64; 3] {
-        solid(self.mass_kg, self.half_extents_m)
+        box_inertia_kg_m2(self.mass_kg, self.half_extents_m)
     }
 }
 
-fn solid(mass_kg: f64, half: [f64; 3]) -> [f64; 3] {
+fn box_inertia_kg_m2(mass_kg: f64, half: [f64; 3]) -> [f64; 3] {
     let [x, y, z] = half.map(|half| half * half);
     [y + z, x + z, x + y].map(|sum| mass_kg * sum / 3.0)
 }
@@ -95,10 +95,10 @@ impl PoseTracks {
     /// # Errors
     /// [`CalibrationError`] for a bundle that cannot be read, and for one of another kind.
     pub fn read(folder: &Path) -> Result<Self, CalibrationError> {
-        Self::of(&bundle::read(folder)?)
+        Self::from_bundle(&bundle::read(folder)?)
     }
 
-    pub(crate) fn of(bundle: &Bundle) -> Result<Self, CalibrationError> {
+    pub(crate) fn from_bundle(bundle: &Bundle) -> Result<Self, CalibrationError> {
         let scene = &bundle.manifest.scene;
         let (Some(form), Some(board), Some(body)) =
             (&bundle.manifest.poses, &scene.board, scene.bodies.first())
@@ -121,7 +121,9 @@ impl PoseTracks {
             name: body.name.clone(),
             mass_kg: body.mass_kg,
             half_extents_m: half,
-            inertia_kg_m2: body.inertia_kg_m2.unwrap_or(solid(body.mass_kg, half)),
+            inertia_kg_m2: body
+                .inertia_kg_m2
+                .unwrap_or(box_inertia_kg_m2(body.mass_kg, half)),
         };
         let gravity_m_s2 = gravity_m_s2(&bundle.manifest);
         let step_s = 1.0 / form.rate_hz;
@@ -237,7 +239,7 @@ fn track(
     PoseTrack {
         name: episode.name.clone(),
         group: episode.group.clone(),
-        regimes: regime::of(&motions, body, step_s, DVec3::NEG_Y * gravity_m_s2),
+        regimes: regime::regimes_of_track(&motions, body, step_s, DVec3::NEG_Y * gravity_m_s2),
         motions,
         start,
         start_motion,

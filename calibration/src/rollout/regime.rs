@@ -80,7 +80,7 @@ const BLOW_SAMPLES: usize = 2;
 const STILL_M_S: f64 = 0.03;
 
 /// The regime of every sample.
-pub(super) fn of(
+pub(super) fn regimes_of_track(
     motions: &[MotionState],
     body: &TrackedBody,
     step_s: f64,
@@ -163,7 +163,7 @@ mod tests {
                 }
             })
             .collect();
-        let found = of(&motions, &body, step_s, DVec3::NEG_Y * g);
+        let found = regimes_of_track(&motions, &body, step_s, DVec3::NEG_Y * g);
         assert_eq!(found[10], Regime::Flight);
         assert_eq!(found[20], Regime::Impact);
         assert_eq!(found[40], Regime::Contact);

@@ -19,7 +19,7 @@ pub(crate) enum ResidualKind {
 }
 
 impl ResidualKind {
-    fn of(self, end: &WindowPrediction) -> f64 {
+    fn residual(self, end: &WindowPrediction) -> f64 {
         match self {
             Self::Position => end.deviation.position_mm(),
             Self::Rotation => end.deviation.rotation_deg(),
@@ -156,7 +156,8 @@ fn group(
         models: rows
             .iter()
             .map(|(model, ends)| {
-                let mut sizes: Vec<f64> = chosen.iter().map(|k| residual.of(ends[*k])).collect();
+                let mut sizes: Vec<f64> =
+                    chosen.iter().map(|k| residual.residual(ends[*k])).collect();
                 sizes.sort_by(f64::total_cmp);
                 let last = (sizes.len() - 1) as f64;
                 let at = [0.05, 0.25, 0.5, 0.75, 0.95]

@@ -12,7 +12,7 @@ use serde::Serialize;
 
 /// Means over the samples of an episode, from its start to its last sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Score {
+pub struct MeanDeviation {
     /// Distance, as a share of the body's width.
     pub position_widths: f64,
     /// Angle, degrees.
@@ -25,8 +25,8 @@ pub struct Score {
     pub rotation_square_rad2: f64,
 }
 
-impl Score {
-    fn of(deviations: &[Deviation], half_width_m: f64) -> Self {
+impl MeanDeviation {
+    fn from_deviations(deviations: &[Deviation], half_width_m: f64) -> Self {
         let count = deviations.len().max(1) as f64;
         let mean = |f: &dyn Fn(&Deviation) -> f64| deviations.iter().map(f).sum::<f64>() / count;
         Self {
@@ -65,11 +65,11 @@ pub fn scores(
     tracks: &PoseTracks,
     which: &[usize],
     threads: Threads,
-) -> Result<Vec<Score>, CalibrationError> {
+) -> Result<Vec<MeanDeviation>, CalibrationError> {
     let half_width_m = tracks.body.half_width_m();
     let one = |k: usize| {
         let deviations = deviations(rig, &tracks.episodes[which[k]])?;
-        Ok(Score::of(&deviations, half_width_m))
+        Ok(MeanDeviation::from_deviations(&deviations, half_width_m))
     };
     threads.map(which.len(), one).into_iter().collect()
 }

@@ -1,6 +1,6 @@
 //! Mean, median and spread over episodes.
 
-use super::score::Score;
+use super::score::MeanDeviation;
 use crate::fit::median;
 use serde::Serialize;
 
@@ -49,8 +49,8 @@ pub struct ScoreSummary {
 
 impl ScoreSummary {
     /// The summary of some scores.
-    pub fn of(scores: &[Score]) -> Self {
-        let column = |f: fn(&Score) -> f64| scores.iter().map(f).collect::<Vec<f64>>();
+    pub fn of(scores: &[MeanDeviation]) -> Self {
+        let column = |f: fn(&MeanDeviation) -> f64| scores.iter().map(f).collect::<Vec<f64>>();
         let predicted = scores.iter().filter(|score| score.e_q < PREDICTED_E_Q);
         Self {
             count: scores.len(),

@@ -66,7 +66,7 @@ pub struct WindowScore {
     pub rotation_median_deg: f64,
 }
 
-fn ends_of<S: RolloutSubject>(
+fn predict_episode_windows<S: RolloutSubject>(
     subject: &S,
     rig: &S::Rig,
     episode: usize,
@@ -113,19 +113,19 @@ fn ends_of<S: RolloutSubject>(
 ///
 /// # Determinism
 /// The same bits for any number of threads.
-pub fn ends<S: RolloutSubject>(
+pub fn predict_windows<S: RolloutSubject>(
     subject: &S,
     rigs: &[&S::Rig],
     windowing: &WindowOptions,
 ) -> Result<Vec<WindowPrediction>, CalibrationError> {
-    let one = |episode: usize| ends_of(subject, rigs[episode], episode, windowing);
+    let one = |episode: usize| predict_episode_windows(subject, rigs[episode], episode, windowing);
     let found = windowing.threads.map(subject.count(), one);
     let found: Result<Vec<Vec<WindowPrediction>>, _> = found.into_iter().collect();
     Ok(found?.concat())
 }
 
 /// Returns the deviations of the windows, by horizon and regime; those that diverge apart.
-pub fn windows(ends: &[WindowPrediction]) -> Vec<WindowScore> {
+pub fn window_scores(ends: &[WindowPrediction]) -> Vec<WindowScore> {
     let mut scores = Vec::new();
     for horizon in HORIZONS {
         let regimes = std::iter::once(None).chain(Regime::ALL.map(Some));

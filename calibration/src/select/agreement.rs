@@ -38,7 +38,7 @@ pub(super) fn agreement(
     let Some(cause) = judged.model.causes.first() else {
         return Ok(None);
     };
-    if all.twin.structure() != ResidualStructure::OverTime || all.split.train.len() < 6 {
+    if all.twin.residual_structure() != ResidualStructure::OverTime || all.split.train.len() < 6 {
         return Ok(None);
     }
     let first = cause_range(all.twin, *cause).start;

@@ -68,7 +68,7 @@ impl CauseComparer<'_> {
             // Levels of a response have no outliers, and each fit of a room costs much.
             robust: robust
                 && self.options.robust
-                && self.twin.structure() == ResidualStructure::OverTime,
+                && self.twin.residual_structure() == ResidualStructure::OverTime,
             progress: self.progress,
         }
     }

@@ -74,7 +74,7 @@ pub(super) fn effective_sample_size(count: usize, autocorrelation: f64) -> f64 {
 ///
 /// # Source
 /// Variance of third differences of white noise: 1 + 9 + 9 + 1 = 20 times its own.
-pub(crate) fn noise(sequences: &[&[f64]]) -> Option<f64> {
+pub(crate) fn noise_from_differences(sequences: &[&[f64]]) -> Option<f64> {
     let mut differences: Vec<f64> = sequences
         .iter()
         .flat_map(|sequence| {
@@ -156,7 +156,7 @@ pub(crate) fn by_channel(
 
 /// Returns the effective number of all residuals.
 pub(super) fn effective_count(twin: &dyn Twin, set: &[usize], residuals: &[Vec<f64>]) -> f64 {
-    match twin.structure() {
+    match twin.residual_structure() {
         ResidualStructure::OverTime => {
             let all = by_sequence(twin, set, residuals);
             let counted = all.values().map(|sequences| {
@@ -202,7 +202,7 @@ impl ResidualNoiseTest {
     }
 
     pub(crate) fn of(twin: &dyn Twin, set: &[usize], residuals: &[Vec<f64>]) -> Self {
-        match twin.structure() {
+        match twin.residual_structure() {
             ResidualStructure::OverTime => Self::in_time(twin, set, residuals),
             ResidualStructure::ByCell => Self::in_cells(twin, set, residuals),
         }
@@ -212,7 +212,7 @@ impl ResidualNoiseTest {
         let (mut sum, mut count) = (0.0, 0);
         for sequences in by_sequence(twin, set, residuals).values() {
             let all = || sequences.iter().flat_map(|sequence| sequence.iter());
-            let Some(floor) = noise(sequences).filter(|noise| *noise > 0.0) else {
+            let Some(floor) = noise_from_differences(sequences).filter(|noise| *noise > 0.0) else {
                 continue;
             };
             // A few outliers are no structure.
@@ -276,10 +276,10 @@ mod tests {
             let values: Vec<f64> = (0..400)
                 .map(|k| 3.0 * (f64::from(k) * 0.02).sin() + 0.1 * stream.normal())
                 .collect();
-            let found = noise(&[&values]).unwrap();
+            let found = noise_from_differences(&[&values]).unwrap();
             assert!((found / 0.1 - 1.0).abs() < 0.25, "{found}");
         }
-        assert_eq!(noise(&[&[1.0, 2.0, 3.0]]), None);
+        assert_eq!(noise_from_differences(&[&[1.0, 2.0, 3.0]]), None);
     }
 
     #[test]

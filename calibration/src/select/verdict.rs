@@ -2,7 +2,7 @@
 
 use super::agreement::{SplitHalfAgreement, agreement};
 use super::compare::{CauseComparer, ModelAdvantage, ScoredModel, estimates};
-use super::residual::{ResidualNoiseTest, noise};
+use super::residual::{ResidualNoiseTest, noise_from_differences};
 use super::split::EpisodeSplit;
 use crate::error::CalibrationError;
 use crate::fit::CauseSet;
@@ -152,7 +152,7 @@ fn estimate_noise(
     progress: &dyn ProgressReporter,
 ) -> Result<ParameterVector, CalibrationError> {
     let start = ParameterVector::start(twin);
-    if twin.structure() != ResidualStructure::OverTime
+    if twin.residual_structure() != ResidualStructure::OverTime
         || twin.channels().iter().all(|channel| channel.noise_known)
     {
         return Ok(start);
@@ -186,7 +186,7 @@ fn estimate_noise(
             let n = residuals.iter().map(Vec::len).sum::<usize>().max(1) as f64;
             (residuals.iter().flatten().map(|r| r * r).sum::<f64>() / n).sqrt()
         };
-        let sd = noise(&slices)
+        let sd = noise_from_differences(&slices)
             .filter(|sd| *sd > 0.0)
             .unwrap_or_else(spread)
             .max(1e-9);

@@ -1,10 +1,10 @@
 //! Free flight: each episode is a ball that flies through the engine's own physics.
 
 use super::air::{air_density_kg_m3, gravity_m_s2};
-use super::test_world::{ExperimentWorld, TestObject, hermite_interpolation};
+use super::test_world::{ExperimentObject, ExperimentWorld, hermite_interpolation};
 use super::{
-    Cause, CauseInstallation, ChannelInfo, EpisodeData, EpisodeParameters, FitParameter,
-    ParameterIndex, ResidualStructure, Twin,
+    Cause, CauseBinding, ChannelInfo, EpisodeData, EpisodeParameters, FitParameter, ParameterIndex,
+    ResidualStructure, Twin,
 };
 use crate::bundle::{Bundle, MeasuredSample};
 use crate::error::CalibrationError;
@@ -74,7 +74,8 @@ impl FlightTwin {
         let mut stages = Vec::new();
         for body in &manifest.scene.bodies {
             // `bundle::read` has required the radius.
-            let ball = TestObject::ball(&body.name, body.mass_kg, body.radius_m.unwrap_or(0.0));
+            let ball =
+                ExperimentObject::ball(&body.name, body.mass_kg, body.radius_m.unwrap_or(0.0));
             let config = PhysicsConfig {
                 control_rate_hz: options.physics_rate_hz as f32,
                 physics_rate_hz: options.physics_rate_hz as f32,
@@ -93,7 +94,7 @@ impl FlightTwin {
             episodes: bundle
                 .episodes
                 .iter()
-                .map(|episode| measured(bundle, episode))
+                .map(|episode| episode_data(bundle, episode))
                 .collect(),
             channels: channels(bundle),
             causes: causes(drag, gravity_m_s2, air_density_kg_m3),
@@ -136,7 +137,10 @@ pub(super) fn channels(bundle: &Bundle) -> Vec<ChannelInfo> {
 }
 
 /// An episode's numbers, with times from its first sample on.
-pub(super) fn measured(bundle: &Bundle, episode: &crate::bundle::MeasuredEpisode) -> EpisodeData {
+pub(super) fn episode_data(
+    bundle: &Bundle,
+    episode: &crate::bundle::MeasuredEpisode,
+) -> EpisodeData {
     let first = episode
         .samples
         .iter()
@@ -172,9 +176,9 @@ fn causes(drag: &LawInfo, gravity_m_s2: f64, air_density_kg_m3: f64) -> Vec<Caus
             id: drag.id.to_owned(),
             name: drag.name.to_owned(),
             equation: drag.equation.to_owned(),
-            parameters: FitParameter::of_law(drag, "c_d", 0.05).into_iter().collect(),
+            parameters: FitParameter::from_law(drag, "c_d", 0.05).into_iter().collect(),
             separating_experiment: drag.separating_experiment.to_owned(),
-            installs_as: CauseInstallation::Law {
+            installs_as: CauseBinding::Law {
                 version: drag.version,
                 target: None,
             },
@@ -190,7 +194,7 @@ fn causes(drag: &LawInfo, gravity_m_s2: f64, air_density_kg_m3: f64) -> Vec<Caus
             separating_experiment: "throw at speeds that differ by a factor of three or more: the deceleration grows with \
                                     the speed here, with its square in quadratic drag"
                 .into(),
-            installs_as: CauseInstallation::Unsupported,
+            installs_as: CauseBinding::Unsupported,
             fixed: Vec::new(),
             starts: vec![0.05, 0.3],
         },
@@ -203,7 +207,7 @@ fn causes(drag: &LawInfo, gravity_m_s2: f64, air_density_kg_m3: f64) -> Vec<Caus
             separating_experiment: "throw flat and steep, slow and fast: gravity changes the vertical motion alone, by the \
                                     same amount at every speed; time a pendulum of known length"
                 .into(),
-            installs_as: CauseInstallation::Addresses(vec!["world/gravity_m_s2".into()]),
+            installs_as: CauseBinding::Addresses(vec!["world/gravity_m_s2".into()]),
             fixed: Vec::new(),
             starts: vec![],
         },
@@ -223,7 +227,7 @@ impl Twin for FlightTwin {
         &self.channels
     }
 
-    fn structure(&self) -> ResidualStructure {
+    fn residual_structure(&self) -> ResidualStructure {
         ResidualStructure::OverTime
     }
 

@@ -10,7 +10,7 @@ pub(crate) mod test_world;
 
 pub(crate) use air::{air_density_kg_m3, gravity_m_s2};
 pub(crate) use flight::FlightTwin;
-pub(crate) use parameter::{Cause, CauseInstallation, FitParameter};
+pub(crate) use parameter::{Cause, CauseBinding, FitParameter};
 pub(crate) use room::RoomTwin;
 pub(crate) use servo::ServoTwin;
 
@@ -80,7 +80,7 @@ pub(crate) trait Twin: Sync {
     /// Returns the channels.
     fn channels(&self) -> &[ChannelInfo];
     /// The structure by which noise and model error are distinguished.
-    fn structure(&self) -> ResidualStructure;
+    fn residual_structure(&self) -> ResidualStructure;
     /// Returns the causes that may be missing.
     fn causes(&self) -> &[Cause];
     /// Nuisances that all episodes share.

@@ -39,7 +39,7 @@ impl FitParameter {
     }
 
     /// A parameter of an engine's law.
-    pub(crate) fn of_law(info: &LawInfo, name: &str, step: f64) -> Option<Self> {
+    pub(crate) fn from_law(info: &LawInfo, name: &str, step: f64) -> Option<Self> {
         let param = info.param(name)?;
         Some(Self {
             name: param.name.to_owned(),
@@ -55,7 +55,7 @@ impl FitParameter {
 
 /// The installation of a cause in a simulation that others run.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum CauseInstallation {
+pub(crate) enum CauseBinding {
     /// It is a law of an engine.
     Law {
         version: u32,
@@ -77,7 +77,7 @@ pub(crate) struct Cause {
     pub(crate) parameters: Vec<FitParameter>,
     /// The experiment that separates it from its rivals.
     pub(crate) separating_experiment: String,
-    pub(crate) installs_as: CauseInstallation,
+    pub(crate) installs_as: CauseBinding,
     /// Parameters of a law that are known and not fitted.
     pub(crate) fixed: Vec<(String, f64)>,
     /// Values of the first parameter from which fitting is tried.

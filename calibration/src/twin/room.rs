@@ -2,8 +2,8 @@
 
 use super::features::{self, FilterRingingModel, WINDOWS};
 use super::{
-    Cause, CauseInstallation, ChannelInfo, EpisodeData, EpisodeParameters, FitParameter,
-    ParameterIndex, ResidualStructure, Twin,
+    Cause, CauseBinding, ChannelInfo, EpisodeData, EpisodeParameters, FitParameter, ParameterIndex,
+    ResidualStructure, Twin,
 };
 use crate::bundle::file::{RoomManifest, SurfaceManifest};
 use crate::bundle::{Bundle, ROOM_SURFACES};
@@ -247,7 +247,7 @@ fn shoebox(room: &RoomManifest) -> Result<House, dwell_scene::SceneError> {
 
 fn material(name: &str, surface: Option<&SurfaceManifest>) -> Material {
     let known = surface.cloned().unwrap_or_default();
-    let mut material = Material::of(
+    let mut material = Material::from_substance(
         name,
         library().get_or_default(known.substance.as_deref().unwrap_or("plaster")),
     );
@@ -318,7 +318,7 @@ fn causes(
                 "measure close to {name} and far from it: its own early reflections change their level, the late decay \
                  shows the sum over all surfaces alone; or cover it and measure again"
             ),
-            installs_as: CauseInstallation::Addresses(addresses),
+            installs_as: CauseBinding::Addresses(addresses),
             fixed: Vec::new(),
             starts: Vec::new(),
         });
@@ -339,7 +339,7 @@ impl Twin for RoomTwin {
         &self.channels
     }
 
-    fn structure(&self) -> ResidualStructure {
+    fn residual_structure(&self) -> ResidualStructure {
         ResidualStructure::ByCell
     }
 

@@ -1,9 +1,9 @@
 //! A servo: each episode is a run of commands through the engine's own joint.
 
-use super::flight::{channels, measured};
-use super::test_world::{ExperimentWorld, TestObject, hermite_interpolation};
+use super::flight::{channels, episode_data};
+use super::test_world::{ExperimentObject, ExperimentWorld, hermite_interpolation};
 use super::{
-    Cause, CauseInstallation, ChannelInfo, EpisodeData, EpisodeParameters, FitParameter,
+    Cause, CauseBinding, ChannelInfo, EpisodeData, EpisodeParameters, FitParameter,
     ResidualStructure, Twin,
 };
 use crate::bundle::Bundle;
@@ -43,7 +43,7 @@ impl ServoTwin {
             ..Servo::default()
         };
         let hinge = (servo, joint.friction_n_m as f32);
-        let arm = TestObject::arm(&joint.name, joint.inertia_kg_m2, hinge);
+        let arm = ExperimentObject::arm(&joint.name, joint.inertia_kg_m2, hinge);
         let config = PhysicsConfig {
             control_rate_hz: options.physics_rate_hz as f32,
             physics_rate_hz: options.physics_rate_hz as f32,
@@ -72,7 +72,7 @@ impl ServoTwin {
             episodes: bundle
                 .episodes
                 .iter()
-                .map(|episode| measured(bundle, episode))
+                .map(|episode| episode_data(bundle, episode))
                 .collect(),
             channels: channels(bundle),
             causes: causes(
@@ -115,9 +115,9 @@ fn causes(backlash: &LawInfo, joint: &str, friction_n_m: f64, stiffness: f64) ->
             id: backlash.id.to_owned(),
             name: backlash.name.to_owned(),
             equation: backlash.equation.to_owned(),
-            parameters: FitParameter::of_law(backlash, "half_width", 1e-3).into_iter().collect(),
+            parameters: FitParameter::from_law(backlash, "half_width", 1e-3).into_iter().collect(),
             separating_experiment: backlash.separating_experiment.to_owned(),
-            installs_as: CauseInstallation::Law {
+            installs_as: CauseBinding::Law {
                 version: backlash.version,
                 target: Some(joint.to_owned()),
             },
@@ -139,7 +139,7 @@ fn causes(backlash: &LawInfo, joint: &str, friction_n_m: f64, stiffness: f64) ->
             separating_experiment: "stiffen the servo: what friction holds back shrinks with its stiffness, what backlash \
                                     holds back does not"
                 .into(),
-            installs_as: CauseInstallation::Unsupported,
+            installs_as: CauseBinding::Unsupported,
             fixed: Vec::new(),
             starts: [0.005, 0.02].map(|rad| friction_n_m + torque(rad)).to_vec(),
         },
@@ -156,7 +156,7 @@ fn causes(backlash: &LawInfo, joint: &str, friction_n_m: f64, stiffness: f64) ->
                 torque(1e-3),
             )],
             separating_experiment: "move slowly and fast: what damping holds back grows with the speed".into(),
-            installs_as: CauseInstallation::Unsupported,
+            installs_as: CauseBinding::Unsupported,
             fixed: Vec::new(),
             starts: vec![torque(0.005), torque(0.03)],
         },
@@ -168,7 +168,7 @@ fn causes(backlash: &LawInfo, joint: &str, friction_n_m: f64, stiffness: f64) ->
             separating_experiment: "approach one target from both sides in small steps: a deadband has no memory, backlash \
                                     stays on the side it came from"
                 .into(),
-            installs_as: CauseInstallation::Unsupported,
+            installs_as: CauseBinding::Unsupported,
             fixed: Vec::new(),
             starts: vec![0.005, 0.02, 0.06],
         },
@@ -178,7 +178,7 @@ fn causes(backlash: &LawInfo, joint: &str, friction_n_m: f64, stiffness: f64) ->
             equation: "target = s times command".into(),
             parameters: vec![number("scale", "1", 1.0, [0.2, 5.0], [0.9, 1.1], 2e-3)],
             separating_experiment: "hold still at several targets: a wrong scale is wrong in proportion to the target".into(),
-            installs_as: CauseInstallation::Unsupported,
+            installs_as: CauseBinding::Unsupported,
             fixed: Vec::new(),
             starts: vec![],
         },
@@ -198,7 +198,7 @@ impl Twin for ServoTwin {
         &self.channels
     }
 
-    fn structure(&self) -> ResidualStructure {
+    fn residual_structure(&self) -> ResidualStructure {
         ResidualStructure::OverTime
     }
 

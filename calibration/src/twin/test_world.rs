@@ -30,7 +30,7 @@ pub(crate) struct ExperimentWorld {
 }
 
 /// The simulated object.
-pub(crate) struct TestObject {
+pub(crate) struct ExperimentObject {
     pub(crate) name: String,
     pub(crate) mass_kg: f32,
     pub(crate) collider: Collider,
@@ -40,7 +40,7 @@ pub(crate) struct TestObject {
     pub(crate) board: bool,
 }
 
-impl TestObject {
+impl ExperimentObject {
     /// A ball.
     pub(crate) fn ball(name: &str, mass_kg: f64, radius_m: f64) -> Self {
         Self {
@@ -84,7 +84,7 @@ impl ExperimentWorld {
     /// rounding of larger coordinates would exceed the effects that are looked for.
     pub(crate) fn new(
         size_m: f32,
-        thing: &TestObject,
+        thing: &ExperimentObject,
         config: PhysicsConfig,
     ) -> Result<Self, CalibrationError> {
         let fault =
@@ -105,7 +105,7 @@ impl ExperimentWorld {
         for piece in &mut data.structure {
             piece.room = None;
         }
-        put(&mut data, thing);
+        add_object(&mut data, thing);
         if thing.board {
             put_board(&mut data);
         }
@@ -162,8 +162,8 @@ impl ExperimentWorld {
     }
 }
 
-fn put(data: &mut HouseData, thing: &TestObject) {
-    let material = data.materials.push(Material::of(
+fn add_object(data: &mut HouseData, thing: &ExperimentObject) {
+    let material = data.materials.push(Material::from_substance(
         "thing",
         library().get_or_default(OBJECT_SUBSTANCE),
     ));
@@ -218,7 +218,7 @@ fn put(data: &mut HouseData, thing: &TestObject) {
 
 /// The board: a slab below the plane y = 0, one convex piece without inner edges.
 fn put_board(data: &mut HouseData) {
-    let material = data.materials.push(Material::of(
+    let material = data.materials.push(Material::from_substance(
         "board",
         library().get_or_default(BOARD_SUBSTANCE),
     ));

@@ -116,7 +116,7 @@ impl Finish {
 
     /// The material of a house.
     pub fn material(&self, name: String, texture: Option<TextureId>) -> Material {
-        let mut material = Material::of(name, self.substance()).with_srgb(self.srgb);
+        let mut material = Material::from_substance(name, self.substance()).with_srgb(self.srgb);
         material.texture = texture;
         material.emission = self.emission;
         material.opacity = self.opacity.unwrap_or(material.opacity);
@@ -263,7 +263,7 @@ pub const fn black_plastic() -> Finish {
 }
 
 /// The bulk of a device.
-pub const fn device(name: &'static str, srgb: Srgb) -> Finish {
+pub const fn electronics(name: &'static str, srgb: Srgb) -> Finish {
     Finish::plain(name, "electronics", srgb)
 }
 
@@ -355,7 +355,7 @@ pub const fn rattan() -> Finish {
 }
 
 /// The edges of a book's pages.
-pub const fn pages() -> Finish {
+pub const fn book_page_edges() -> Finish {
     Finish::tiled(
         "pages",
         "paper",
@@ -405,7 +405,7 @@ mod tests {
             brass(),
             plastic("p", WHITE),
             black_plastic(),
-            device("d", WHITE),
+            electronics("d", WHITE),
             enamel("e", WHITE),
             glass(),
             mirror(),
@@ -417,7 +417,7 @@ mod tests {
             foliage("f", WHITE, WHITE),
             soil(),
             rattan(),
-            pages(),
+            book_page_edges(),
             paper("p", WHITE),
             lampshade("l", WHITE),
             milk_glass(),

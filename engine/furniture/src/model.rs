@@ -255,16 +255,16 @@ impl Model {
     /// The same model; things can stand on its newest part, in the free space between two corners.
     #[must_use]
     pub fn with_support_surface(self, name: &'static str, min: [f32; 3], max: [f32; 3]) -> Self {
-        self.space(name, ReceptacleKind::On, min, max)
+        self.with_receptacle(name, ReceptacleKind::On, min, max)
     }
 
     /// The same model; things can lie inside its newest part, in the free space between two corners.
     #[must_use]
     pub fn with_container_space(self, name: &'static str, min: [f32; 3], max: [f32; 3]) -> Self {
-        self.space(name, ReceptacleKind::In, min, max)
+        self.with_receptacle(name, ReceptacleKind::In, min, max)
     }
 
-    fn space(
+    fn with_receptacle(
         mut self,
         name: &'static str,
         holding: ReceptacleKind,

@@ -42,7 +42,7 @@ impl CachedModel {
         let (mut boxes, mut swept_boxes, mut open_leaves) = (Vec::new(), Vec::new(), Vec::new());
         for (k, part) in model.parts.iter().enumerate() {
             let pose = model.model_from_part(k);
-            boxes.extend(around(&part.colliders, &pose));
+            boxes.extend(collider_boxes(&part.colliders, &pose));
         }
         for joint in &model.joints {
             let colliders = &model.parts[joint.child].colliders;
@@ -59,14 +59,14 @@ impl CachedModel {
                 };
                 let pose = parent * to_axis * motion * to_axis.inverse();
                 if joint.kind == JointKind::Slide {
-                    let all = around(colliders, &pose);
+                    let all = collider_boxes(colliders, &pose);
                     swept = all.iter().fold(swept, |all, one| all.union(one));
                 } else {
                     if station == STATIONS {
-                        let open = around(colliders, &pose).into_iter();
+                        let open = collider_boxes(colliders, &pose).into_iter();
                         open_leaves.extend(open.filter(|leaf| leaf.max.y > HIGH_M));
                     }
-                    let cut = colliders.iter().flat_map(cut);
+                    let cut = colliders.iter().flat_map(slice_bounds);
                     swept_boxes.extend(cut.map(|piece| piece.transformed(&pose.to_affine())));
                 }
             }
@@ -93,7 +93,7 @@ impl CachedModel {
     }
 }
 
-fn around(colliders: &[Collider], pose: &Pose) -> Vec<Aabb> {
+fn collider_boxes(colliders: &[Collider], pose: &Pose) -> Vec<Aabb> {
     let bounds = |collider: &Collider| match collider {
         Collider::Cuboid {
             part_from_box,
@@ -111,7 +111,7 @@ fn around(colliders: &[Collider], pose: &Pose) -> Vec<Aabb> {
 }
 
 /// The box around a collider, cut across its longer level edge.
-fn cut(collider: &Collider) -> Vec<Aabb> {
+fn slice_bounds(collider: &Collider) -> Vec<Aabb> {
     let Some(bounds) = collider.bounds() else {
         return Vec::new();
     };

@@ -37,7 +37,7 @@ impl Model {
             part.mass_kg *= by.x * by.y * by.z;
             for collider in &mut part.colliders {
                 if uniform {
-                    resize(collider, by.x);
+                    scale_collider(collider, by.x);
                 } else {
                     *collider = stretch(collider, by);
                 }
@@ -68,7 +68,7 @@ impl Model {
     }
 }
 
-fn resize(collider: &mut Collider, factor: f32) {
+fn scale_collider(collider: &mut Collider, factor: f32) {
     match collider {
         Collider::Cuboid {
             part_from_box,

@@ -181,7 +181,7 @@ impl LoadReport {
     }
 
     /// The unmapped names, with their number of uses.
-    pub fn unmapped(&self) -> impl Iterator<Item = (UnmappedKind, &str, u64)> {
+    pub fn unmapped_name_counts(&self) -> impl Iterator<Item = (UnmappedKind, &str, u64)> {
         self.warnings.iter().filter_map(|w| match &w.kind {
             WarningKind::Unmapped { what, name } => Some((*what, name.as_str(), w.count)),
             _ => None,

@@ -38,7 +38,7 @@ fn check(text: &str, at: &FileLocation) -> Result<(), HousesError> {
     let mut from = 0;
     for piece in 0_u32.. {
         if piece % 1024 == 0 {
-            interrupt::check();
+            interrupt::unwind_if_cancelled();
         }
         let Some(start) = text[from..].find('<').map(|at| from + at) else {
             break;
@@ -55,7 +55,7 @@ fn check(text: &str, at: &FileLocation) -> Result<(), HousesError> {
             depth = depth.saturating_sub(1);
             skip(">")
         } else {
-            let tag = TagCounts::read(rest);
+            let tag = TagAttributeCounts::read(rest);
             if !rest[..tag.length.unwrap_or(0)].ends_with("/>") {
                 depth += u64::from(tag.length.is_some());
             }
@@ -89,7 +89,7 @@ fn check(text: &str, at: &FileLocation) -> Result<(), HousesError> {
 
 /// The text between `<` and `>`; `>` in quotes ends nothing.
 #[derive(Default)]
-struct TagCounts {
+struct TagAttributeCounts {
     /// Its length in bytes; `None` for a tag without an end.
     length: Option<usize>,
     attributes: u64,
@@ -97,7 +97,7 @@ struct TagCounts {
     namespaces: u64,
 }
 
-impl TagCounts {
+impl TagAttributeCounts {
     fn read(text: &str) -> Self {
         let mut tag = Self::default();
         let mut quote = None;

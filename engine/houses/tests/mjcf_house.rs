@@ -76,7 +76,10 @@ fn floors_become_rooms_and_walls_the_building() {
         .find(|p| p.name == "floor_kitchen")
         .unwrap();
     assert_eq!(house.materials[kitchen.materials[0]].substance, "wood");
-    let unmapped: Vec<_> = report.unmapped().map(|(_, name, _)| name).collect();
+    let unmapped: Vec<_> = report
+        .unmapped_name_counts()
+        .map(|(_, name, _)| name)
+        .collect();
     assert_eq!(unmapped, ["Qux7"]);
 }
 

@@ -189,7 +189,7 @@ fn things_have_the_assets_sizes_places_and_fronts() {
     );
     assert!(house.objects.iter().all(|o| o.source_id != "Gizmo|2|3"));
     let unmapped: Vec<_> = report
-        .unmapped()
+        .unmapped_name_counts()
         .map(|(_, name, _)| name.to_owned())
         .collect();
     assert_eq!(unmapped, ["Gizmo"]);

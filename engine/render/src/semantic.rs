@@ -84,7 +84,7 @@ impl ClassSet {
     }
 
     /// The names of an object that are tried, in order.
-    fn names_of(self, object: &Object) -> [&str; 2] {
+    fn candidate_names(self, object: &Object) -> [&str; 2] {
         let category = &object.category;
         match self {
             Self::Fine => [&category.fine, &category.coarse],
@@ -95,7 +95,7 @@ impl ClassSet {
 
     /// The class of an object by the file: of the first name that it knows, if that is the first that the object has.
     fn listed_class(self, object: &Object) -> Option<i32> {
-        let mut names = self.names_of(object).into_iter();
+        let mut names = self.candidate_names(object).into_iter();
         let class = |name: &str| TABLE.class.get(name).copied();
         if self == Self::Fine {
             return names.find(|name| !name.is_empty()).and_then(class);
@@ -109,7 +109,7 @@ impl ClassSet {
             .objects
             .iter()
             .filter(|object| self.listed_class(object).is_none())
-            .map(|object| (self.name(object).to_owned(), VOID))
+            .map(|object| (self.preferred_name(object).to_owned(), VOID))
             .collect();
         for (class, value) in (TABLE.names.len() as i32..).zip(names.values_mut()) {
             *value = class;
@@ -117,8 +117,8 @@ impl ClassSet {
         names
     }
 
-    fn name(self, object: &Object) -> &str {
-        let mut names = self.names_of(object).into_iter();
+    fn preferred_name(self, object: &Object) -> &str {
+        let mut names = self.candidate_names(object).into_iter();
         names.find(|name| !name.is_empty()).unwrap_or("object")
     }
 
@@ -174,7 +174,7 @@ impl EntityClasses {
                 ClassSet::Nyu40 => ClassSet::nyu40(object),
                 ClassSet::Coarse | ClassSet::Fine => table
                     .listed_class(object)
-                    .or_else(|| strange.get(table.name(object)).copied())
+                    .or_else(|| strange.get(table.preferred_name(object)).copied())
                     .unwrap_or(VOID),
             }
         }));

@@ -52,9 +52,9 @@ pub fn texture_bytes(house: &House) -> u64 {
         let texture = textures[k];
         if !texture.is_loaded() {
             let pixels = u64::from(texture.width) * u64::from(texture.height);
-            return (level_texels(image_size(texture, None)), pixels * 4);
+            return (mip_chain_texels(image_size(texture, None)), pixels * 4);
         }
-        (level_texels(image_size(texture, one_color(texture))), 0)
+        (mip_chain_texels(image_size(texture, one_color(texture))), 0)
     });
     // While the largest is prepared, its next two levels are held as bytes, too: 5/4 bytes a pixel.
     let largest = each.iter().map(|(texels, _)| *texels).max().unwrap_or(0);
@@ -71,7 +71,7 @@ fn one_color(texture: &Texture) -> Option<[u8; 4]> {
     let first = texels.first().copied().unwrap_or([255; 4]);
     let mut rows = texels.chunks(TEXELS_PER_CHECK);
     let same = rows.all(|row| {
-        interrupt::check();
+        interrupt::unwind_if_cancelled();
         row.iter().all(|texel| *texel == first)
     });
     same.then_some(first)
@@ -86,7 +86,7 @@ fn image_size(texture: &Texture, uniform: Option<[u8; 4]>) -> (usize, usize) {
 }
 
 /// Texels of all levels of an image.
-fn level_texels((mut width, mut height): (usize, usize)) -> u64 {
+fn mip_chain_texels((mut width, mut height): (usize, usize)) -> u64 {
     let mut all = 0;
     loop {
         all += width as u64 * height as u64;
@@ -117,7 +117,8 @@ impl Textures {
         let painted: Vec<&Texture> = house.textures.iter().map(|texture| &**texture).collect();
         let uniform = Threads::default().map(painted.len(), |k| one_color(painted[k]));
         let sizes = painted.iter().zip(&uniform);
-        let texels = sizes.map(|(texture, uniform)| level_texels(image_size(texture, *uniform)));
+        let texels =
+            sizes.map(|(texture, uniform)| mip_chain_texels(image_size(texture, *uniform)));
         let mut all = Self {
             texels: reserved(texels.sum())?,
             offsets: Vec::new(),
@@ -143,7 +144,7 @@ impl Textures {
         loop {
             self.offsets.push(self.texels.len() as u32);
             for texels in current.chunks(TEXELS_PER_CHECK) {
-                interrupt::check();
+                interrupt::unwind_if_cancelled();
                 self.texels
                     .extend(texels.iter().map(|texel| linear(srgb, *texel)));
             }
@@ -444,7 +445,7 @@ mod tests {
         let house = house(vec![plain, noise]);
         // 64 x 32, 32 x 16, and on to 2 x 1 and 1 x 1.
         let texels = (2048 * 4 - 2) / 3 + 1;
-        assert_eq!(level_texels((64, 32)), texels);
+        assert_eq!(mip_chain_texels((64, 32)), texels);
         assert_eq!(texture_bytes(&house), 8 + texels * 9);
         let all = Textures::new(&house).unwrap();
         assert_eq!(all.bytes() as u64, 8 + texels * 8);

@@ -120,7 +120,7 @@ impl TriangleTable {
         for source in &geometry.static_triangles {
             pace.turn();
             let placed = &geometry.placed[source.placed as usize];
-            all.add(
+            all.add_house_triangle(
                 house,
                 placed,
                 &placed.world_from_mesh,
@@ -144,20 +144,20 @@ impl TriangleTable {
             }
             for triangle in 0..house.meshes[placed.mesh].triangles.len() {
                 pace.turn();
-                all.add(house, placed, &placed.part_from_mesh, triangle, looks);
+                all.add_house_triangle(house, placed, &placed.part_from_mesh, triangle, looks);
             }
         }
         for (piece, mesh) in body_meshes().iter().enumerate() {
             all.bodies[piece] = all.triangles.len() as u32;
             for triangle in 0..mesh.triangles.len() {
-                all.add_body(mesh, triangle, looks.len() - 1, looks);
+                all.add_body_triangle(mesh, triangle, looks.len() - 1, looks);
             }
         }
         all
     }
 
     /// A triangle of agents' bodies. Pieces are only stretched along the axes of their symmetry, so that normals stay.
-    fn add_body(
+    fn add_body_triangle(
         &mut self,
         mesh: &Mesh,
         triangle: usize,
@@ -180,7 +180,7 @@ impl TriangleTable {
         });
     }
 
-    fn add(
+    fn add_house_triangle(
         &mut self,
         house: &House,
         placed: &PlacedMesh,
@@ -239,7 +239,7 @@ impl TriangleTable {
 
     /// Returns the position of a hit's triangle in the tables.
     #[inline]
-    pub(crate) fn position(&self, instance: Option<u32>, triangle: u32) -> usize {
+    pub(crate) fn table_index(&self, instance: Option<u32>, triangle: u32) -> usize {
         match instance {
             None => triangle as usize,
             Some(instance) => {
@@ -450,7 +450,7 @@ mod tests {
         let surfaces = TriangleTable::new(&house, &looks);
         assert_eq!(surfaces.bodies[0], 12);
         for (k, source) in house.geometry().static_triangles.iter().enumerate() {
-            let triangle = surfaces.triangle(surfaces.position(None, k as u32));
+            let triangle = surfaces.triangle(surfaces.table_index(None, k as u32));
             assert!((triangle.texture_density - 1.0).abs() < 1e-5);
             let placed = &house.geometry().placed[source.placed as usize];
             assert_eq!(triangle.material as i32 + 1, EntityId(placed.entity.0).0);

@@ -56,12 +56,12 @@ impl Default for Servo {
 
 impl Servo {
     /// Returns the largest effort at the joint, N·m or N.
-    pub fn joint_effort(&self) -> f32 {
+    pub fn max_joint_effort(&self) -> f32 {
         self.gear * self.max_effort
     }
 
     /// Returns the highest speed to which it drives the joint, rad/s or m/s; infinite without a bound.
-    pub fn joint_velocity(&self) -> f32 {
+    pub fn max_joint_speed(&self) -> f32 {
         self.max_velocity
             .map_or(f32::INFINITY, |velocity| velocity / self.gear)
     }

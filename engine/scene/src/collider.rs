@@ -1,7 +1,7 @@
 //! Collision shapes of a part.
 
 use crate::bounds::Aabb;
-use crate::error::{SceneError, range};
+use crate::error::{SceneError, check_range};
 use crate::space::Pose;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -88,15 +88,15 @@ impl Collider {
     pub(crate) fn check(&self, at: &str, reach_m: f32) -> Result<(), SceneError> {
         let pose = |field, pose: &Pose| {
             let allowed = "finite with a unit quaternion";
-            range(at, field, pose.is_valid(), "not rigid", allowed)
+            check_range(at, field, pose.is_valid(), "not rigid", allowed)
         };
         let size = |field, smallest: f32, found: String| {
-            range(at, field, smallest > 0.0, found, "numbers above 0")
+            check_range(at, field, smallest > 0.0, found, "numbers above 0")
         };
         let near = |field, center: Vec3, radius: f32| {
             let far_m = center.abs().max_element() + radius;
             let allowed = "finite numbers, all of the shape within 32768 m of the part's origin";
-            range(at, field, far_m <= reach_m, far_m, allowed)
+            check_range(at, field, far_m <= reach_m, far_m, allowed)
         };
         match self {
             Self::Cuboid {

@@ -104,7 +104,7 @@ pub enum SceneError {
 }
 
 /// Refuses a value out of its range; `at`: its path.
-pub(crate) fn range(
+pub(crate) fn check_range(
     at: &str,
     field: &'static str,
     ok: bool,

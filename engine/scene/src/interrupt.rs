@@ -106,7 +106,7 @@ pub fn uninterruptible<R>(work: impl FnOnce() -> R) -> R {
 }
 
 /// Unwinds here when the call is to stop. Costs some nanoseconds; meant for loops whose turns take a millisecond or so.
-pub fn check() {
+pub fn unwind_if_cancelled() {
     if POLL.with_borrow(|poll| poll.as_ref().is_some_and(PollSchedule::is_due)) {
         poll_now();
     }
@@ -139,7 +139,7 @@ impl PollEvery {
     pub fn count_many(&mut self, count: usize) {
         if self.left < count.max(1) {
             self.left = self.every;
-            check();
+            unwind_if_cancelled();
         }
         self.left = self.left.saturating_sub(count);
     }
@@ -185,7 +185,7 @@ pub(crate) fn token() -> Option<CancelToken> {
 pub(crate) fn run_with_token<R>(token: Option<&CancelToken>, work: impl FnOnce() -> R) -> R {
     // The calling thread polls, too, when it has pieces to do itself.
     let _restore = ScopeGuard::set_and_guard(token.cloned(), schedule());
-    check();
+    unwind_if_cancelled();
     work()
 }
 
@@ -206,7 +206,7 @@ mod tests {
     /// Turns of a millisecond each.
     fn spin(turns: usize) -> usize {
         for _ in 0..turns {
-            check();
+            unwind_if_cancelled();
             std::thread::sleep(Duration::from_millis(1));
         }
         turns
@@ -218,7 +218,7 @@ mod tests {
         assert_eq!(interruptible(yes, || spin(100_000)), Err(Interrupted(())));
         assert!(start.elapsed() >= INTERVAL);
         assert_eq!(interruptible(no, || spin(40)), Ok(40));
-        check();
+        unwind_if_cancelled();
     }
 
     #[test]
@@ -266,7 +266,7 @@ mod tests {
                 shared = ASKED.load(Ordering::Relaxed);
             });
             // Not once the work was done: the answer is known.
-            check();
+            unwind_if_cancelled();
         });
         assert_eq!(stopped, Err(Interrupted(())));
         assert!(alone > 0 && shared > alone, "{alone} {shared}");

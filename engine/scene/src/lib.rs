@@ -52,6 +52,6 @@ pub use sky::{Daytime, Sky, SkyDome, Weather};
 pub use space::Pose;
 pub use state::{
     Address, AgentBody, AgentState, BaseState, Contact, DifferentialDrive, HolonomicBase,
-    JointParameters, LeggedLocomotion, Locomotion, Parameter, State, SupportRelation, Velocity,
+    JointParameters, LeggedLocomotion, Locomotion, Parameter, State, SupportDirection, Velocity,
 };
 pub use texture::Texture;

@@ -65,7 +65,7 @@ fn pack_stoppably(quality: i32, bytes: &[u8], base: &[u8]) -> Vec<u8> {
         let _ = sender.send(pack_with(quality, source, length, &base));
     });
     loop {
-        interrupt::check();
+        interrupt::unwind_if_cancelled();
         match receiver.recv_timeout(interrupt::INTERVAL) {
             Err(mpsc::RecvTimeoutError::Timeout) => {}
             packed => return packed.expect(NEVER).expect(NEVER),

@@ -36,7 +36,7 @@ const TURNS_A_LOOK: f32 = 0.618_034;
 const GRAZE_M: f32 = 1e-3;
 
 /// Returns the openness at `place` and around it.
-fn openness(rays: &RayScene, place: Vec3) -> usize {
+fn min_openness_around(rays: &RayScene, place: Vec3) -> usize {
     let open = openness_at(rays, place);
     if open < ENOUGH {
         return open;
@@ -63,13 +63,13 @@ fn openness_at(rays: &RayScene, place: Vec3) -> usize {
 
 /// The place in the air at or beside `place` from which a sound there is heard: the first that is open enough, else the most open.
 pub(crate) fn nearest_open_air_point(rays: &RayScene, place: Vec3) -> Vec3 {
-    let mut best = (openness(rays, place), place);
+    let mut best = (min_openness_around(rays, place), place);
     for beside in STEPS_M.map(|step_m| SEARCH_DIRECTIONS.map(|way| place + way * step_m)) {
         for place in beside {
             if best.0 >= ENOUGH {
                 return best.1;
             }
-            let open = openness(rays, place);
+            let open = min_openness_around(rays, place);
             if open > best.0 {
                 best = (open, place);
             }
@@ -129,10 +129,13 @@ mod tests {
             for (emitter, place) in house.emitters.iter().zip(emitter_listening_points(&house)) {
                 let pose = house.parts[emitter.part].world_from_part;
                 let told = pose.transform_point(emitter.position);
-                within += usize::from(openness(&rays, told) < ENOUGH);
+                within += usize::from(min_openness_around(&rays, told) < ENOUGH);
                 let place = pose.transform_point(place);
                 let object = &house.objects[emitter.object].name;
-                assert!(openness(&rays, place) >= ENOUGH, "{name}: {object}");
+                assert!(
+                    min_openness_around(&rays, place) >= ENOUGH,
+                    "{name}: {object}"
+                );
                 assert!(place.distance(told) < 0.2, "{name}: {object}");
             }
         }

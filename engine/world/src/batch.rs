@@ -29,7 +29,7 @@ pub struct Batch {
 const WAVES: usize = 4;
 
 /// In what two environments differ that a batch cannot join.
-fn difference(first: &Env, other: &Env) -> Option<&'static str> {
+fn batch_mismatch(first: &Env, other: &Env) -> Option<&'static str> {
     let (agents, sensors) = (first.agents(), first.specs());
     if !agents.eq(other.agents()) {
         Some("agents")
@@ -59,7 +59,7 @@ impl Batch {
             ));
         };
         for (k, env) in envs.iter().enumerate() {
-            if let Some(what) = difference(first, env) {
+            if let Some(what) = batch_mismatch(first, env) {
                 return Err(WorldError::InvalidCall(format!(
                     "environment {k} has other {what} than environment 0"
                 )));
@@ -120,7 +120,7 @@ impl Batch {
     /// [`WorldError::InvalidCall`] for an environment that does not exist or whose agents or sensors differ, [`WorldError::Render`] for
     /// a picture of it that was under way; nothing has changed then.
     pub fn replace_env(&mut self, index: usize, env: Env) -> Result<Env, WorldError> {
-        if let Some(what) = difference(self.env(index)?, &env) {
+        if let Some(what) = batch_mismatch(self.env(index)?, &env) {
             let told = format!("put: the {what} differ from those of environment {index}");
             return Err(WorldError::InvalidCall(told));
         }
@@ -156,7 +156,7 @@ impl Batch {
     }
 
     /// Returns who acts in every environment, in the order of actions. Shape (agent,).
-    pub fn agents(&self) -> impl ExactSizeIterator<Item = AgentId> + '_ {
+    pub fn acting_agents(&self) -> impl ExactSizeIterator<Item = AgentId> + '_ {
         self.envs[0].agents()
     }
 
@@ -307,7 +307,7 @@ impl Batch {
         let active: Vec<bool> = seeds.iter().map(Option::is_some).collect();
         let reset =
             |k: usize, env: &mut Env| env.reset_with_listeners(seeds[k].unwrap_or_default());
-        let (names, rate_hz) = self.signals_to_make(&active);
+        let (names, rate_hz) = self.unsynthesized_signals(&active);
         self.end_episodes_on_interrupt(&active, |batch| {
             if names.is_empty() {
                 batch.run_active_and_render(&active, reset)?;
@@ -325,7 +325,7 @@ impl Batch {
     }
 
     /// Returns the signals that the starting environments will play and nobody has made yet; all have one rate.
-    fn signals_to_make(&self, active: &[bool]) -> (Vec<String>, u32) {
+    fn unsynthesized_signals(&self, active: &[bool]) -> (Vec<String>, u32) {
         let beginning = self.envs.iter().zip(active).filter(|(_, on)| **on);
         let (mut all, mut rate_hz) = (BTreeSet::new(), 0);
         for (names, rate) in beginning.map(|(env, _)| env.signals()) {
@@ -349,7 +349,7 @@ impl Batch {
         &mut self,
         actions: &[Option<DiscreteAction>],
     ) -> Result<Vec<Option<StepInfo>>, WorldError> {
-        let agents = self.agents().len();
+        let agents = self.acting_agents().len();
         if actions.len() != self.envs.len() * agents {
             return Err(WorldError::InvalidCall(format!(
                 "actions: expected one for each of {agents} agents in each of {} environments, found {}",

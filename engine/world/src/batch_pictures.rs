@@ -3,7 +3,7 @@
 use crate::camera_capture::{ImageExposure, ImageRequest};
 use crate::env::Env;
 use crate::error::WorldError;
-use crate::sensor_requests::RenderedImage;
+use crate::sensor_requests::RenderedView;
 use crate::world::World;
 use dwell_render::{PendingBatch, RenderJob, Renderer};
 use dwell_scene::parallel::Threads;
@@ -21,7 +21,7 @@ struct PictureRequest<'a> {
     place: usize,
     world: &'a World,
     request: ImageRequest,
-    picture: &'a mut RenderedImage,
+    picture: &'a mut RenderedView,
 }
 
 /// A picture that is being taken.
@@ -29,7 +29,7 @@ struct PictureInProgress<'a> {
     number: usize,
     place: usize,
     world: &'a World,
-    picture: &'a mut RenderedImage,
+    picture: &'a mut RenderedView,
     take: ImageExposure,
 }
 
@@ -134,7 +134,7 @@ fn jobs<'a>(taking: &'a mut [PictureInProgress<'_>]) -> Vec<RenderJob<'a>> {
 
 /// Develops the pictures that were exposed.
 fn average_exposures<'a>(
-    pairs: impl Iterator<Item = (&'a mut ImageExposure, &'a mut RenderedImage)>,
+    pairs: impl Iterator<Item = (&'a mut ImageExposure, &'a mut RenderedView)>,
     threads: Threads,
 ) {
     let mut exposed: Vec<_> = pairs

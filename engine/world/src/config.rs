@@ -123,7 +123,7 @@ impl WorldConfig {
             return fault("agents", self.agents.len().to_string(), "at most 64".into());
         }
         for (k, body) in self.agents.iter().enumerate() {
-            body.check().map_err(|error| of_agent(k, error))?;
+            body.check().map_err(|error| with_agent_index(k, error))?;
         }
         Ok(())
     }
@@ -159,7 +159,7 @@ impl WorldConfig {
 }
 
 /// Returns the message for a fault of an agent's body, with its index.
-fn of_agent(number: usize, error: SceneError) -> SceneError {
+fn with_agent_index(number: usize, error: SceneError) -> SceneError {
     match error {
         SceneError::Range {
             at,

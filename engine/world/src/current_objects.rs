@@ -57,7 +57,7 @@ pub fn object_states(world: &World) -> Vec<ObjectState> {
         .house()
         .objects
         .ids()
-        .map(|id| around.tell(id))
+        .map(|id| around.object_state(id))
         .collect()
 }
 
@@ -66,7 +66,7 @@ pub fn object_states(world: &World) -> Vec<ObjectState> {
 /// # Panics
 /// For an object that does not exist.
 pub fn object_state(world: &World, id: ObjectId) -> ObjectState {
-    ObjectStateQueries::of(world).tell(id)
+    ObjectStateQueries::of(world).object_state(id)
 }
 
 /// Queries about all objects, answered once for all of them.
@@ -94,7 +94,7 @@ impl<'a> ObjectStateQueries<'a> {
         }
     }
 
-    fn tell(&self, id: ObjectId) -> ObjectState {
+    fn object_state(&self, id: ObjectId) -> ObjectState {
         let (house, state) = (self.world.house(), self.world.state());
         let object = &house.objects[id];
         let bounds = &self.boxes[id.index()];

@@ -4,7 +4,7 @@ use crate::air_position::emitter_listening_points;
 use crate::config::WorldConfig;
 use crate::error::WorldError;
 use crate::initial_state::InitialWorld;
-use crate::recordings::Recordings;
+use crate::recordings::RecordingCache;
 use crate::release_memory::ReleaseOnDrop;
 use crate::texture_memory;
 use dwell_acoustics::signals::Signal;
@@ -35,7 +35,7 @@ pub struct Engines {
     /// Scenes by preset and sample rate.
     acoustics: Mutex<BTreeMap<(String, u32), AcousticScene>>,
     heads: Mutex<BTreeMap<HeadId, Head>>,
-    recordings: Recordings,
+    recordings: RecordingCache,
     /// The points from which the house's own sounds are heard. Shape (emitter,).
     emitter_places: OnceLock<Vec<Vec3>>,
     /// Grids of the house as it starts, by walker, the latest at the end.
@@ -58,7 +58,7 @@ impl Engines {
             physics: OnceLock::new(),
             acoustics: Mutex::default(),
             heads: Mutex::default(),
-            recordings: Recordings::default(),
+            recordings: RecordingCache::default(),
             emitter_places: OnceLock::new(),
             grids: Mutex::default(),
             start: Mutex::default(),
@@ -76,10 +76,10 @@ impl Engines {
     /// # Errors
     /// [`WorldError::Config`] or [`WorldError::Render`] for images that the free memory does not hold.
     pub fn cpu_renderer(&self) -> Result<&CpuRenderer, WorldError> {
-        self.tables().map(|tables| &**tables)
+        self.shared_cpu_renderer().map(|tables| &**tables)
     }
 
-    fn tables(&self) -> Result<&Arc<CpuRenderer>, WorldError> {
+    fn shared_cpu_renderer(&self) -> Result<&Arc<CpuRenderer>, WorldError> {
         // One thread makes it; the others wait, as twice the memory may not be there.
         let _made = self.making.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(tables) = self.renderer.get() {
@@ -100,7 +100,10 @@ impl Engines {
         if let Some(renderer) = made.get(back_end) {
             return Ok(renderer.clone());
         }
-        let renderer = Arc::new(Renderer::new(back_end, self.tables()?.clone())?);
+        let renderer = Arc::new(Renderer::new(
+            back_end,
+            self.shared_cpu_renderer()?.clone(),
+        )?);
         made.insert(back_end.clone(), renderer.clone());
         Ok(renderer)
     }

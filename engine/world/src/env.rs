@@ -46,7 +46,7 @@ impl Env {
     /// [`WorldError`] names the setting or the fault of the house.
     pub fn new(engines: Arc<Engines>, config: &EnvConfig) -> Result<Self, WorldError> {
         let agents = config
-            .roles()?
+            .resolved_agents()?
             .iter()
             .map(|role| EnvAgent::new(role, &config.world))
             .collect::<Result<Vec<_>, _>>()?;
@@ -54,7 +54,7 @@ impl Env {
         world_config.settle_s.get_or_insert(SETTLE_S);
         // What `agent/N/camera/fov_deg` reads is what the agent sees with.
         for (number, body) in world_config.agents.iter_mut().enumerate() {
-            if let Some(fov_deg) = fov_deg(&agents, AgentId::from_index(number)) {
+            if let Some(fov_deg) = eye_camera_fov_deg(&agents, AgentId::from_index(number)) {
                 body.camera_fov_deg = fov_deg;
             }
         }
@@ -151,7 +151,7 @@ impl Env {
             self.world.reset(key)?;
         }
         for agent in &mut self.agents {
-            agent.task.prepare_house(&self.world)?;
+            agent.task.survey_house(&self.world)?;
         }
         let mut order: Vec<&mut EnvAgent> = self.agents.iter_mut().collect();
         order.sort_unstable_by_key(|agent| agent.id);
@@ -217,7 +217,7 @@ pub(crate) fn no_agent(agent: usize, count: usize) -> WorldError {
 }
 
 /// The field of view of an agent's eyes, degrees: that of the first camera with one, of its own sensors or else of the others'.
-fn fov_deg(agents: &[EnvAgent], whose: AgentId) -> Option<f32> {
+fn eye_camera_fov_deg(agents: &[EnvAgent], whose: AgentId) -> Option<f32> {
     let (own, others): (Vec<_>, Vec<_>) = agents.iter().partition(|agent| agent.id == whose);
     let sensors = own.iter().chain(&others).flat_map(|agent| &agent.sensors);
     let mut eyes = sensors.filter_map(|sensor| sensor.camera());

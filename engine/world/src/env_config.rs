@@ -88,7 +88,7 @@ impl EnvConfig {
     ///
     /// # Errors
     /// [`WorldError::Config`] for none, one that does not exist or is there twice, and a stride out of range.
-    pub(crate) fn roles(&self) -> Result<Vec<ResolvedAgentConfig<'_>>, WorldError> {
+    pub(crate) fn resolved_agents(&self) -> Result<Vec<ResolvedAgentConfig<'_>>, WorldError> {
         let fault = |field: &'static str, found: String, allowed: String| WorldError::Config {
             field,
             found,
@@ -161,7 +161,7 @@ mod tests {
                 {"agent": 1, "task_settings": {"start": "house"}},
             ],
         }));
-        let [last, first, second] = config.roles().unwrap().try_into().unwrap();
+        let [last, first, second] = config.resolved_agents().unwrap().try_into().unwrap();
         assert_eq!((last.agent.index(), last.task), (2, "Free"));
         assert_eq!(last.task_settings, &json!({"start": "anywhere"}));
         assert_eq!(last.sensors.unwrap()[0].kind, "gps");
@@ -180,11 +180,11 @@ mod tests {
     #[test]
     fn one_agent_acts_by_default_and_none_or_one_twice_is_refused() {
         let default = EnvConfig::default();
-        let roles = default.roles().unwrap();
+        let roles = default.resolved_agents().unwrap();
         assert_eq!((roles.len(), roles[0].agent.index()), (1, 0));
         let told = |agents: Value| {
             let config = config(&json!({"agents": agents}));
-            config.roles().unwrap_err().to_string()
+            config.resolved_agents().unwrap_err().to_string()
         };
         assert_eq!(
             told(json!([])),

@@ -14,7 +14,7 @@ const UPRIGHT: f32 = 0.95;
 
 /// Names and doors of a storey; points are (x, z), m.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct FloorPlan {
+pub struct FloorPlanLabels {
     /// The storey's height, m.
     pub floor_y: f32,
     /// Its rooms.
@@ -52,7 +52,7 @@ pub struct PlanDoor {
 }
 
 /// Returns the labels of a storey's plan; neither rooms nor doors for a storey that the house does not have.
-pub fn floor_plan(world: &World, level: LevelId) -> FloorPlan {
+pub fn floor_plan(world: &World, level: LevelId) -> FloorPlanLabels {
     let (house, state) = (world.house(), world.state());
     let here = || {
         house
@@ -80,7 +80,7 @@ pub fn floor_plan(world: &World, level: LevelId) -> FloorPlan {
             && axis.y.abs() > UPRIGHT
             && (low..=high).contains(&center_y)
     });
-    FloorPlan {
+    FloorPlanLabels {
         floor_y: if low.is_finite() { low } else { 0.0 },
         rooms: rooms.collect(),
         doors: doors.map(|joint| door(house, state, joint)).collect(),

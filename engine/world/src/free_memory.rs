@@ -11,10 +11,14 @@ pub(crate) fn mib(bytes: u64) -> String {
 /// Returns the memory that this process may still take: of the machine, of its group's limit and of its own; `None` where unknown.
 pub(crate) fn free_bytes() -> Option<u64> {
     let of_machine = kib_field_bytes("/proc/meminfo", "MemAvailable:");
-    [of_machine, of_group(), of_process()]
-        .into_iter()
-        .flatten()
-        .min()
+    [
+        of_machine,
+        cgroup_memory_headroom(),
+        address_space_headroom(),
+    ]
+    .into_iter()
+    .flatten()
+    .min()
 }
 
 /// The number behind `name` in a file of the system that counts in KiB, bytes.
@@ -26,7 +30,7 @@ fn kib_field_bytes(file: &str, name: &str) -> Option<u64> {
 }
 
 /// The free memory under the limit on addresses (`ulimit -v`).
-fn of_process() -> Option<u64> {
+fn address_space_headroom() -> Option<u64> {
     let limits = read_to_string("/proc/self/limits").ok()?;
     let most = limits
         .lines()
@@ -36,7 +40,7 @@ fn of_process() -> Option<u64> {
 }
 
 /// The free memory under the limits of the process's control groups, of either version.
-fn of_group() -> Option<u64> {
+fn cgroup_memory_headroom() -> Option<u64> {
     let groups = read_to_string("/proc/self/cgroup").ok()?;
     let rooms = groups.lines().filter_map(|line| {
         let (_, line) = line.split_once(':')?;

@@ -89,7 +89,7 @@ const PLACES: usize = 48;
 ///
 /// # Errors
 /// [`WorldError::Scene`] for a house too large for a navigation grid.
-pub fn viewpoints(engines: &Engines) -> Result<Vec<RoomViewpoint>, WorldError> {
+pub fn best_room_viewpoints(engines: &Engines) -> Result<Vec<RoomViewpoint>, WorldError> {
     let house = engines.house();
     let body = AgentBody::default();
     let grid = engines.nav_grid(&body)?;
@@ -98,7 +98,7 @@ pub fn viewpoints(engines: &Engines) -> Result<Vec<RoomViewpoint>, WorldError> {
     let rooms = places.iter_ids();
     Ok(rooms
         .map(|(room, places)| {
-            dwell_scene::interrupt::check();
+            dwell_scene::interrupt::unwind_if_cancelled();
             viewpoint(&rays, places, room, body.eye_height_m)
         })
         .collect())
@@ -109,7 +109,7 @@ fn walkable_places(house: &House, grid: &NavGrid) -> IdVec<RoomId, Vec<Vec3>> {
     let mut places = IdVec::filled(Vec::new(), house.rooms.len());
     for (k, cell) in grid.walkable().enumerate() {
         if k % 4096 == 0 {
-            dwell_scene::interrupt::check();
+            dwell_scene::interrupt::unwind_if_cancelled();
         }
         let place = grid.position(cell);
         let room = house.room_at(place + Vec3::Y * 0.1);

@@ -68,7 +68,7 @@ pub const DEFAULT_VALUES: &[LawPreset] = &[
 /// [`WorldError::Unknown`] lists the laws there are; [`WorldError::Scene`] names a parameter out of bounds, or a target that
 /// is there in two spellings.
 pub fn normalize_laws(house: &House, specs: &[LawSpec]) -> Result<Vec<LawSpec>, WorldError> {
-    let installed = dwell_scene::law::install(house, all_slice(), specs);
+    let installed = dwell_scene::law::check_and_canonicalize(house, all_slice(), specs);
     installed.map_err(|error| match error {
         SceneError::UnknownLaw { id, known } => WorldError::Unknown {
             kind: "law",

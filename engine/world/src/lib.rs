@@ -63,12 +63,12 @@ pub use expert::{ShortestPathFollower, action_towards_object};
 pub use fixtures::{
     JointOverlay, LampFixture, ObjectBox, SceneOverlay, SoundSource, scene_overlay,
 };
-pub use floor_plan::{FloorPlan, PlanDoor, PlanRoom, floor_plan};
-pub use info::{RoomViewpoint, info, viewpoints};
+pub use floor_plan::{FloorPlanLabels, PlanDoor, PlanRoom, floor_plan};
+pub use info::{RoomViewpoint, best_room_viewpoints, info};
 pub use motion_history::LastStepMotion;
 pub use plain_json_error::plain_json_error;
 pub use room_surfaces::{RoomMaterialMesh, room_surfaces};
-pub use sensor_requests::{RenderedImage, RenderedImages, SensorRequests, ViewRequest};
+pub use sensor_requests::{RenderedImages, RenderedView, SensorRequests, ViewRequest};
 pub use sound::{PlayRequest, SoundName, SoundPlace, SoundState, default_level_db};
 pub use world::World;
 

@@ -39,7 +39,7 @@ impl LastStepMotion {
     }
 
     /// Returns the previous pose of an agent's eyes; the current one before the first step.
-    pub fn eye(&self, agent: AgentId, now: &State) -> Option<Pose> {
+    pub fn previous_eye_pose(&self, agent: AgentId, now: &State) -> Option<Pose> {
         let is = now.agents.get(agent)?.world_from_eye();
         Some(
             self.previous_eye_poses
@@ -50,7 +50,7 @@ impl LastStepMotion {
     }
 
     /// Returns whether nothing but eyes has moved.
-    pub(crate) fn is_still(&self, now: &State) -> bool {
+    pub(crate) fn is_scene_still(&self, now: &State) -> bool {
         let feet = self.previous_feet.iter().zip(now.agents.iter());
         self.previous_part_poses.is_empty() && feet.into_iter().all(|(was, is)| *was == is.position)
     }

@@ -25,7 +25,7 @@ struct HouseSounds {
 }
 
 #[derive(Debug, Default)]
-pub(crate) struct Recordings {
+pub(crate) struct RecordingCache {
     known: Mutex<LoadedSounds>,
     own: Mutex<HouseSounds>,
     /// Set once the house's own sounds are known to be valid.
@@ -40,7 +40,7 @@ fn hash_samples(samples: &[f32]) -> u64 {
     sum.digest()
 }
 
-impl Recordings {
+impl RecordingCache {
     /// The file at `name` below `root` at `rate_hz`, and the check sum of its samples.
     pub(crate) fn open(
         &self,
@@ -90,7 +90,7 @@ impl Recordings {
             let Some(id) = emitter.sound_file.filter(|id| seen.insert(*id)) else {
                 continue;
             };
-            interrupt::check();
+            interrupt::unwind_if_cancelled();
             let (file, object) = (&house.sound_files[id], &house.objects[emitter.object]);
             let name = format!("{}, played by {:?}", file.name, object.name);
             Recording::decode(&name, &file.bytes)?;

@@ -46,7 +46,7 @@ impl SensorRequests {
 
 /// The images of one view; those that were not requested are empty.
 #[derive(Clone, Debug)]
-pub struct RenderedImage {
+pub struct RenderedView {
     /// The requested camera.
     pub eye: EyeCamera,
     /// The camera as it was for this picture.
@@ -59,12 +59,12 @@ pub struct RenderedImage {
 #[derive(Clone, Debug, Default)]
 pub struct RenderedImages {
     /// Pictures, in the order of the requests.
-    pub images: Vec<RenderedImage>,
+    pub images: Vec<RenderedView>,
 }
 
 impl RenderedImages {
     /// The picture of a view.
-    pub fn image_of(&self, eye: &EyeCamera) -> Option<&RenderedImage> {
+    pub fn image_of(&self, eye: &EyeCamera) -> Option<&RenderedView> {
         self.images.iter().find(|picture| picture.eye == *eye)
     }
 
@@ -83,7 +83,7 @@ impl RenderedImages {
                     }
                 }
                 found => {
-                    let picture = RenderedImage {
+                    let picture = RenderedView {
                         eye: request.eye.clone(),
                         camera,
                         frame: Frame::new(&camera, channels),

@@ -181,7 +181,7 @@ impl World {
 
     /// The signals of what is switched on, each once, and their sample rate, Hz.
     pub(crate) fn signals(&self) -> (Vec<String>, u32) {
-        self.sound.signals(self.engines.house(), &self.state)
+        self.sound.active_signals(self.engines.house(), &self.state)
     }
 
     /// The object in the middle of an agent's view, within 10 m.

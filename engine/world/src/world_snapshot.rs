@@ -4,7 +4,7 @@
 //! initial state, which a restoring process has as well: unchanged parts take next to nothing.
 
 use crate::error::WorldError;
-use crate::initial_state::{SnapshotBase, SnapshotParts, unpacked_body};
+use crate::initial_state::{SnapshotBase, SnapshotParts, serialize_snapshot_parts};
 use crate::sound::WorldSound;
 use crate::world::World;
 use dwell_scene::packing::{pack_to_size, unpack};
@@ -41,7 +41,7 @@ impl World {
         let mut told =
             postcard::to_stdvec(&head).expect("plain bytes can always be written to memory");
         let (state, physics) = (self.state(), &self.physics);
-        let body = unpacked_body(
+        let body = serialize_snapshot_parts(
             self.house(),
             state,
             physics,

@@ -51,7 +51,8 @@ impl World {
     /// All sources: those of the house's objects, whose handles are their numbers, then those played on request. Sounds of contacts
     /// are not among them.
     pub fn sounds(&self) -> Vec<SoundState> {
-        self.sound.list(self.engines.house(), &self.state)
+        self.sound
+            .list_emitters_and_playbacks(self.engines.house(), &self.state)
     }
 
     /// The newest samples at an agent's ear (0 left, 1 right), Pa; zeros before it listened that long.

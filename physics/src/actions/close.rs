@@ -1,7 +1,7 @@
 //! The action of closing.
 
 use super::ActionResult;
-use super::hand_action::{Hand, HandAction};
+use super::hand_action::{HandAction, HandContext};
 use super::request::Target;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -24,7 +24,7 @@ impl Close {
 }
 
 impl HandAction for Close {
-    fn perform(&self, hand: &mut Hand<'_>) -> ActionResult {
+    fn perform(&self, hand: &mut HandContext<'_>) -> ActionResult {
         hand.context
             .swing_door(hand.state, hand.actor, &self.target, 0.0)
     }

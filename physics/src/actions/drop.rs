@@ -1,7 +1,7 @@
 //! The action of releasing an object.
 
 use super::ActionResult;
-use super::hand_action::{Hand, HandAction};
+use super::hand_action::{HandAction, HandContext};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 pub struct Drop {}
 
 impl HandAction for Drop {
-    fn perform(&self, hand: &mut Hand<'_>) -> ActionResult {
+    fn perform(&self, hand: &mut HandContext<'_>) -> ActionResult {
         Ok(hand.context.release(hand.state, hand.actor.id))
     }
 }

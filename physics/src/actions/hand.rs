@@ -4,7 +4,7 @@ use super::request::Target;
 use super::{ActionContext, ActionResult, Actor};
 use crate::body::BodyStatus;
 use crate::convert::{from_rapier, to_rapier};
-use crate::hands::{Grasp, HeldObject, hand_pose};
+use crate::hands::{Grasp, HeldObject, held_body_target_pose};
 use crate::outcome::{ActionOutcome, OutcomeCode, done, fail};
 use dwell_scene::{AgentId, Mobility, State};
 use glam::Vec3;
@@ -93,7 +93,7 @@ impl ActionContext<'_> {
         self.dynamics
             .collision_exclusions
             .exclude_carried(body as u32, actor.id);
-        let target = to_rapier(&hand_pose(&grip, &holder));
+        let target = to_rapier(&held_body_target_pose(&grip, &holder));
         let clear = if loaded {
             None
         } else {
@@ -122,7 +122,8 @@ impl ActionContext<'_> {
         state.agents[actor.id].holding = Some(object);
         state.held_by[object] = Some(actor.id);
         self.dynamics.flush();
-        self.articulation.write(self.dynamics, state);
+        self.articulation
+            .write_bodies_and_joints(self.dynamics, state);
         let sentence = format!("You hold the {name}.");
         Ok(done(OutcomeCode::Done, sentence, Some(object)))
     }

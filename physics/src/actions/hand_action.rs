@@ -11,23 +11,23 @@ pub trait HandAction: Debug + Send + Sync {
     ///
     /// # Errors
     /// The outcome with the reason why it is refused.
-    fn perform(&self, hand: &mut Hand<'_>) -> ActionResult;
+    fn perform(&self, hand: &mut HandContext<'_>) -> ActionResult;
 }
 
 impl<A: HandAction + ?Sized> HandAction for &A {
-    fn perform(&self, hand: &mut Hand<'_>) -> ActionResult {
+    fn perform(&self, hand: &mut HandContext<'_>) -> ActionResult {
         (**self).perform(hand)
     }
 }
 
 /// The hand of an agent, and the world that it acts on.
-pub struct Hand<'a> {
+pub struct HandContext<'a> {
     pub(super) context: ActionContext<'a>,
     pub(super) state: &'a mut State,
     pub(super) actor: Actor<'a>,
 }
 
-impl Debug for Hand<'_> {
+impl Debug for HandContext<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Hand")
             .field("agent", &self.actor.id)
@@ -35,7 +35,7 @@ impl Debug for Hand<'_> {
     }
 }
 
-impl Hand<'_> {
+impl HandContext<'_> {
     /// Performs an action, and returns its outcome.
     pub(super) fn perform(&mut self, action: &dyn HandAction) -> ActionOutcome {
         action.perform(self).unwrap_or_else(|refusal| *refusal)

@@ -24,7 +24,7 @@ mod throw;
 
 pub use close::Close;
 pub use drop::Drop;
-pub use hand_action::{Hand, HandAction};
+pub use hand_action::{HandAction, HandContext};
 pub use open::Open;
 pub use pick::Pick;
 pub use place::Place;
@@ -39,7 +39,7 @@ pub use switch::Toggle;
 pub use throw::Throw;
 
 use crate::agents::Agents;
-use crate::articulation::JointSystem;
+use crate::articulation::WorldJoints;
 use crate::dynamics::Dynamics;
 use crate::hands::Hands;
 use crate::outcome::ActionOutcome;
@@ -57,7 +57,7 @@ struct Actor<'a> {
 /// The parts of a world that actions read and change.
 pub(crate) struct ActionContext<'a> {
     pub(crate) dynamics: &'a mut Dynamics,
-    pub(crate) articulation: &'a mut JointSystem,
+    pub(crate) articulation: &'a mut WorldJoints,
     pub(crate) agents: &'a Agents,
     pub(crate) hands: &'a mut Hands,
     pub(crate) pushes: &'a mut Vec<OngoingPush>,
@@ -77,7 +77,7 @@ impl<'a> ActionContext<'a> {
             body: state.agents[agent],
             rays,
         };
-        let mut hand = Hand {
+        let mut hand = HandContext {
             context: self,
             state,
             actor,

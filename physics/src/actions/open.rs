@@ -1,7 +1,7 @@
 //! The action of opening.
 
 use super::ActionResult;
-use super::hand_action::{Hand, HandAction};
+use super::hand_action::{HandAction, HandContext};
 use super::request::Target;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -37,7 +37,7 @@ impl Open {
 }
 
 impl HandAction for Open {
-    fn perform(&self, hand: &mut Hand<'_>) -> ActionResult {
+    fn perform(&self, hand: &mut HandContext<'_>) -> ActionResult {
         hand.context
             .swing_door(hand.state, hand.actor, &self.target, self.fraction)
     }

@@ -1,7 +1,7 @@
 //! The action of picking up an object.
 
 use super::ActionResult;
-use super::hand_action::{Hand, HandAction};
+use super::hand_action::{HandAction, HandContext};
 use super::request::Target;
 use crate::hands::Grasp;
 use schemars::JsonSchema;
@@ -28,7 +28,7 @@ impl Pick {
 }
 
 impl HandAction for Pick {
-    fn perform(&self, hand: &mut Hand<'_>) -> ActionResult {
+    fn perform(&self, hand: &mut HandContext<'_>) -> ActionResult {
         hand.context
             .pick(hand.state, hand.actor, &self.target, self.grasp)
     }

@@ -1,6 +1,6 @@
 //! The action of placing the held object on a support.
 
-use super::hand_action::{Hand, HandAction};
+use super::hand_action::{HandAction, HandContext};
 use super::request::Target;
 use super::stable_pose::StablePose;
 use super::{ActionContext, ActionResult, Actor};
@@ -52,7 +52,7 @@ impl Place {
 }
 
 impl HandAction for Place {
-    fn perform(&self, hand: &mut Hand<'_>) -> ActionResult {
+    fn perform(&self, hand: &mut HandContext<'_>) -> ActionResult {
         hand.context
             .place_on(hand.state, hand.actor, self.target.as_ref())
     }
@@ -114,7 +114,8 @@ impl ActionContext<'_> {
             rigid.set_angvel(Vec3::ZERO, true);
         }
         self.dynamics.flush();
-        self.articulation.write(self.dynamics, state);
+        self.articulation
+            .write_bodies_and_joints(self.dynamics, state);
     }
 
     fn spot_on(
@@ -162,14 +163,14 @@ impl ActionContext<'_> {
             }
         }
         let feet = match (aim.point, on) {
-            (Some(point), _) => self.feet_around(grip.body as usize, ground, point),
+            (Some(point), _) => self.ring_points_around(grip.body as usize, ground, point),
             (None, Some(object)) => {
                 self.placement_points_on(state, grip.body as usize, object, eye, reach)
             }
             (None, None) => {
                 let below = eye + dwell_scene::space::forward_from_yaw(actor.body.yaw_rad) * 0.5;
                 let floor = actor.body.position.y;
-                self.feet_around(
+                self.ring_points_around(
                     grip.body as usize,
                     ground,
                     Vec3::new(below.x, floor, below.z),
@@ -292,7 +293,7 @@ impl ActionContext<'_> {
     }
 
     /// Returns points on rings around a point, the nearest first.
-    fn feet_around(&self, body: usize, ground: SupportFilter, point: Vec3) -> Vec<Vec3> {
+    fn ring_points_around(&self, body: usize, ground: SupportFilter, point: Vec3) -> Vec<Vec3> {
         let mut feet = Vec::new();
         for ring in 0..RINGS {
             let count = if ring == 0 { 1 } else { 6 * ring };

@@ -1,6 +1,6 @@
 //! The action of placing the held object at a point.
 
-use super::hand_action::{Hand, HandAction};
+use super::hand_action::{HandAction, HandContext};
 use super::{ActionContext, ActionResult, Actor};
 use crate::dynamics::SupportFilter;
 use crate::outcome::{OutcomeCode, done, fail};
@@ -22,7 +22,7 @@ pub struct PlaceAt {
 }
 
 impl HandAction for PlaceAt {
-    fn perform(&self, hand: &mut Hand<'_>) -> ActionResult {
+    fn perform(&self, hand: &mut HandContext<'_>) -> ActionResult {
         hand.context.place_at(hand.state, hand.actor, self.point)
     }
 }

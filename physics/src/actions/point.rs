@@ -1,6 +1,6 @@
 //! The action of pointing.
 
-use super::hand_action::{Hand, HandAction};
+use super::hand_action::{HandAction, HandContext};
 use super::request::Target;
 use super::{ActionContext, ActionResult, Actor};
 use crate::outcome::{OutcomeCode, PointedTarget, done, fail};
@@ -17,7 +17,7 @@ pub struct Point {
 }
 
 impl HandAction for Point {
-    fn perform(&self, hand: &mut Hand<'_>) -> ActionResult {
+    fn perform(&self, hand: &mut HandContext<'_>) -> ActionResult {
         hand.context.point(hand.state, hand.actor, &self.target)
     }
 }

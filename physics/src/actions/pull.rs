@@ -1,7 +1,7 @@
 //! The action of pulling.
 
 use super::ActionResult;
-use super::hand_action::{Hand, HandAction};
+use super::hand_action::{HandAction, HandContext};
 use super::request::Target;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -17,7 +17,7 @@ pub struct Pull {
 }
 
 impl HandAction for Pull {
-    fn perform(&self, hand: &mut Hand<'_>) -> ActionResult {
+    fn perform(&self, hand: &mut HandContext<'_>) -> ActionResult {
         hand.context
             .start_push(hand.state, hand.actor, &self.target, self.force_n, -1.0)
     }

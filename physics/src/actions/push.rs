@@ -1,6 +1,6 @@
 //! The actions of pushing and pulling: a force for a short time, and the distance that the object moved.
 
-use super::hand_action::{Hand, HandAction};
+use super::hand_action::{HandAction, HandContext};
 use super::request::Target;
 use super::target::ResolvedTarget;
 use super::{ActionContext, ActionResult, Actor};
@@ -48,7 +48,7 @@ pub struct Push {
 }
 
 impl HandAction for Push {
-    fn perform(&self, hand: &mut Hand<'_>) -> ActionResult {
+    fn perform(&self, hand: &mut HandContext<'_>) -> ActionResult {
         hand.context
             .start_push(hand.state, hand.actor, &self.target, self.force_n, 1.0)
     }

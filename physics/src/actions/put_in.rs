@@ -1,6 +1,6 @@
 //! The action of putting the held object into a container.
 
-use super::hand_action::{Hand, HandAction};
+use super::hand_action::{HandAction, HandContext};
 use super::request::Target;
 use super::stable_pose::StablePose;
 use super::target::ResolvedTarget;
@@ -48,7 +48,7 @@ pub struct PutIn {
 }
 
 impl HandAction for PutIn {
-    fn perform(&self, hand: &mut Hand<'_>) -> ActionResult {
+    fn perform(&self, hand: &mut HandContext<'_>) -> ActionResult {
         hand.context.place_in(hand.state, hand.actor, &self.target)
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{ActionContext, Actor};
 use crate::body;
-use crate::contact::{ColliderEntry, ContactEntity, entry_index};
+use crate::contact::{ColliderMetadata, ContactEntity, entry_index};
 use crate::model::PhysicsModel;
 use crate::outcome::{ActionOutcome, OutcomeCode, fail};
 use dwell_scene::bvh::{Ray, RayMask};
@@ -29,7 +29,7 @@ impl ActionContext<'_> {
         let agent = &actor.body;
         let name = self.dynamics.name_of(object);
         let eye = agent.eye_position();
-        let (distance, nearest) = self.distance_m(state, object, eye);
+        let (distance, nearest) = self.distance_and_nearest_point(state, object, eye);
         let reach = agent.body.reach_m;
         if distance > reach {
             let sentence = format!(
@@ -62,7 +62,12 @@ impl ActionContext<'_> {
     }
 
     /// Returns the distance of an object's surface from a point, m, and its nearest point.
-    fn distance_m(&self, state: &State, object: ObjectId, from: Vec3) -> (f32, Vec3) {
+    fn distance_and_nearest_point(
+        &self,
+        state: &State,
+        object: ObjectId,
+        from: Vec3,
+    ) -> (f32, Vec3) {
         let mut points = Vec::new();
         let model: &PhysicsModel = &self.dynamics.model;
         for (index, plan) in model.bodies.iter().enumerate() {
@@ -130,7 +135,7 @@ impl ActionContext<'_> {
     }
 
     /// Returns the name of a collider's owner for people.
-    pub(super) fn name_of_entry(&self, entry: &ColliderEntry) -> String {
+    pub(super) fn name_of_entry(&self, entry: &ColliderMetadata) -> String {
         match entry.contact_entity {
             Some(ContactEntity::Structure(id)) => {
                 self.surface_name(dwell_scene::SurfaceOwner::Structure(id))

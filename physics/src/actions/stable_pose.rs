@@ -34,7 +34,7 @@ pub(super) struct StablePose {
     sole: [Vec3; DIRECTIONS],
 }
 
-fn around(k: usize) -> Vec3 {
+fn horizontal_direction(k: usize) -> Vec3 {
     let (s, c) = dwell_scene::math::sin_cos(TAU * k as f32 / DIRECTIONS as f32);
     Vec3::new(c, 0.0, s)
 }
@@ -58,7 +58,7 @@ impl StablePose {
         let bounds = plan.bounds(&RapierPose::from_rotation(rotation));
         let mut sole = [Vec3::ZERO; DIRECTIONS];
         for (k, point) in sole.iter_mut().enumerate() {
-            let direction = Vec3::NEG_Y + around(k) * TILT_RAD;
+            let direction = Vec3::NEG_Y + horizontal_direction(k) * TILT_RAD;
             *point = outermost(plan, rotation, direction)?;
         }
         Some(Self {
@@ -94,7 +94,7 @@ impl StablePose {
         };
         (0..DIRECTIONS)
             .map(|k| {
-                let out = around(k);
+                let out = horizontal_direction(k);
                 points()
                     .map(|point| (point - self.center_of_mass).dot(out))
                     .fold(f32::NEG_INFINITY, f32::max)

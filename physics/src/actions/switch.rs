@@ -1,6 +1,6 @@
 //! The action of switching.
 
-use super::hand_action::{Hand, HandAction};
+use super::hand_action::{HandAction, HandContext};
 use super::request::Target;
 use super::{ActionContext, ActionResult, Actor};
 use crate::outcome::{OutcomeCode, done, fail};
@@ -26,7 +26,7 @@ impl Toggle {
 }
 
 impl HandAction for Toggle {
-    fn perform(&self, hand: &mut Hand<'_>) -> ActionResult {
+    fn perform(&self, hand: &mut HandContext<'_>) -> ActionResult {
         hand.context.toggle(hand.state, hand.actor, &self.target)
     }
 }

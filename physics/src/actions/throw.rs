@@ -1,6 +1,6 @@
 //! The action of throwing.
 
-use super::hand_action::{Hand, HandAction};
+use super::hand_action::{HandAction, HandContext};
 use super::{ActionContext, ActionResult, Actor};
 use crate::outcome::{OutcomeCode, done, fail};
 use dwell_scene::State;
@@ -43,7 +43,7 @@ impl Default for Throw {
 }
 
 impl HandAction for Throw {
-    fn perform(&self, hand: &mut Hand<'_>) -> ActionResult {
+    fn perform(&self, hand: &mut HandContext<'_>) -> ActionResult {
         let actor = hand.actor;
         let ahead = actor.body.world_from_eye().transform_vector(Vec3::NEG_Z);
         let direction = self.direction.unwrap_or(ahead);
@@ -93,7 +93,8 @@ impl ActionContext<'_> {
             rigid.set_angvel(Vec3::ZERO, true);
         }
         self.dynamics.flush();
-        self.articulation.write(self.dynamics, state);
+        self.articulation
+            .write_bodies_and_joints(self.dynamics, state);
         let name = self.dynamics.name_of(grip.object);
         let limit = if speed < speed_m_s {
             ", as fast as you can"

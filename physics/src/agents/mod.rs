@@ -19,7 +19,7 @@ pub(crate) use character_controller::{
 pub(crate) use movement::{MovementRecord, finish_movement};
 pub(crate) use shape_queries::{AgentCylinder, AgentQueries};
 
-use crate::contact::{ColliderEntry, ContactEntity, ContactProperties};
+use crate::contact::{ColliderMetadata, ContactEntity, ContactProperties};
 use crate::dynamics::{self, Dynamics};
 use crate::engine::RapierWorld;
 use dwell_scene::{AgentBody, AgentId, AgentState, Id};
@@ -95,7 +95,7 @@ pub(crate) fn resize_capsule(engine: &mut RapierWorld, agent: &mut Agent, state:
 pub(crate) fn insert(
     engine: &mut RapierWorld,
     values: ContactProperties<'_>,
-    entries: &mut Vec<ColliderEntry>,
+    entries: &mut Vec<ColliderMetadata>,
     id: AgentId,
     state: &AgentState,
     event_force_n: f32,
@@ -104,7 +104,7 @@ pub(crate) fn insert(
         .bodies
         .insert(RigidBodyBuilder::kinematic_position_based().translation(state.position));
     let (shape, center) = capsule(state);
-    let entry = ColliderEntry {
+    let entry = ColliderMetadata {
         contact_entity: Some(ContactEntity::Agent(id)),
         body: None,
         surface: values.table.agent_material(),

@@ -5,7 +5,7 @@
 //! the capsule can enter nothing that the cylinder clears.
 
 use crate::body::{BodyHandle, BodyStatus};
-use crate::contact::{ColliderEntry, CollisionExclusions, entry_index};
+use crate::contact::{ColliderMetadata, CollisionExclusions, entry_index};
 use crate::engine::RapierWorld;
 use crate::model::PhysicsModel;
 use dwell_scene::{AgentBody, AgentId};
@@ -69,7 +69,7 @@ enum ObstacleKind {
 pub(crate) struct AgentQueries<'a> {
     pub(crate) engine: &'a RapierWorld,
     pub(crate) model: &'a PhysicsModel,
-    pub(crate) entries: &'a [ColliderEntry],
+    pub(crate) entries: &'a [ColliderMetadata],
     pub(crate) bodies: &'a [BodyHandle],
     pub(crate) statuses: &'a [BodyStatus],
     pub(crate) excluded: &'a CollisionExclusions,

@@ -1,6 +1,6 @@
 //! Joint actuation in a control step: motors, and hands that open doors and drawers.
 
-use super::JointSystem;
+use super::WorldJoints;
 use crate::contact::{ContactEntity, entry_index};
 use crate::dynamics::Dynamics;
 use crate::joints::{self, DriveProgress, HandDrive, PhysicsJoint, motor_command};
@@ -11,7 +11,7 @@ use dwell_scene::{JointCommand, State};
 pub(crate) const OPEN_THRESHOLD: f32 = 0.95;
 pub(crate) const CLOSED_THRESHOLD: f32 = 0.02;
 
-impl JointSystem {
+impl WorldJoints {
     /// Sets the actuation of all joints from the state's targets.
     pub(crate) fn drive(
         &mut self,
@@ -113,7 +113,7 @@ impl JointSystem {
             };
             done(OutcomeCode::Done, sentence, Some(object))
         } else {
-            let what = in_the_way(dynamics, state, joint).map_or_else(
+            let what = blocking_object_name(dynamics, state, joint).map_or_else(
                 || "something is in the way. Step aside or move it.".to_owned(),
                 |what| format!("the {what} is in the way. Move it."),
             );
@@ -128,7 +128,11 @@ impl JointSystem {
 }
 
 /// Returns the name of a thing that a joint's leaf touches, other than its own object and the building.
-fn in_the_way(dynamics: &Dynamics, state: &State, joint: &PhysicsJoint) -> Option<String> {
+fn blocking_object_name(
+    dynamics: &Dynamics,
+    state: &State,
+    joint: &PhysicsJoint,
+) -> Option<String> {
     let child = &dynamics.model.bodies[joint.child as usize];
     let house = &dynamics.model.house;
     let own = |part| house.parts[part].object == child.object;

@@ -10,25 +10,25 @@ use crate::body::{self, BodyStatus};
 use crate::convert::{from_rapier, to_rapier};
 use crate::dynamics::Dynamics;
 use crate::joints::{
-    self, HandDrives, JointActuation, JointCoordinate, KinematicTree, PhysicsJoint,
+    self, HandDrives, JointActuation, JointKinematics, KinematicTree, PhysicsJoint,
 };
 use dwell_scene::{JointId, State};
 
 /// All joints of a world.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct JointSystem {
+pub(crate) struct WorldJoints {
     pub(crate) joints: Vec<PhysicsJoint>,
     /// Kinematic trees of joints that act on each other.
     pub(crate) trees: Vec<KinematicTree>,
     /// Each joint's coordinates within a control step, with the turns of hinges. Between control steps the state holds
     /// them. Shape (joint,).
-    pub(crate) joint_coordinates: Vec<JointCoordinate>,
+    pub(crate) joint_coordinates: Vec<JointKinematics>,
     /// The actuation of each joint during this control step. Shape (joint,).
     pub(crate) actuations: Vec<Option<JointActuation>>,
     pub(crate) hand_drives: HandDrives,
 }
 
-impl JointSystem {
+impl WorldJoints {
     /// Reads the joints' coordinates from the state, at the beginning of a control step.
     pub(crate) fn read(&mut self, state: &State) {
         let joints = self.joints.iter();
@@ -46,7 +46,7 @@ impl JointSystem {
     }
 
     /// Writes poses, velocities and joints into the state.
-    pub(crate) fn write(&self, dynamics: &Dynamics, state: &mut State) {
+    pub(crate) fn write_bodies_and_joints(&self, dynamics: &Dynamics, state: &mut State) {
         for (plan, body) in dynamics.model.bodies.iter().zip(&dynamics.bodies) {
             body::write_parts(&dynamics.engine, plan, body, state);
         }
@@ -89,8 +89,8 @@ impl JointSystem {
 }
 
 /// Returns a joint's coordinates in the state.
-pub(crate) fn joint_from_state(state: &State, joint: JointId) -> JointCoordinate {
-    JointCoordinate {
+pub(crate) fn joint_from_state(state: &State, joint: JointId) -> JointKinematics {
+    JointKinematics {
         position: state.joint_position[joint].into(),
         velocity: state.joint_velocity[joint].into(),
     }

@@ -1,11 +1,11 @@
 //! Motors under laws: their commands and efforts change in every physics step.
 
-use super::JointSystem;
+use super::WorldJoints;
 use crate::dynamics::Dynamics;
-use crate::joints::{self, MotorStep, motor_command};
+use crate::joints::{self, MotorState, motor_command};
 use dwell_scene::State;
 
-impl JointSystem {
+impl WorldJoints {
     /// Sets the actuation of motors in the next physics step from their commands in this control step.
     pub(crate) fn drive_motors(&mut self, dynamics: &mut Dynamics, state: &State) {
         if dynamics.laws.motors.is_empty() {
@@ -24,7 +24,7 @@ impl JointSystem {
                 self.joint_coordinates[index],
             );
             let (position, velocity) = (now.position as f32, now.velocity as f32);
-            let motor = MotorStep {
+            let motor = MotorState {
                 joint: joint.id,
                 position,
                 velocity,

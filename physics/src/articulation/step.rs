@@ -1,21 +1,21 @@
 //! The joints of a world in one physics step: efforts before it, and positions after it.
 
-use super::JointSystem;
+use super::WorldJoints;
 use crate::dynamics::Dynamics;
 use crate::joints::{
-    self, ExternalWrench, JointLoad, JointResistance, JointStepInputs, LinkStep, TreePrediction,
+    self, ExternalWrench, JointLoad, JointResistance, JointStepInputs, LinkState, TreePrediction,
 };
 use dwell_scene::JointId;
 
 /// The predicted motion of all kinematic trees in a physics step.
-pub(crate) struct JointStep {
+pub(crate) struct JointStepPrediction {
     /// `None` for a tree that is asleep or latched. Shape (tree,).
     predictions: Vec<Option<TreePrediction>>,
     /// Free bodies that are roots of trees and react to their joints.
     pub(crate) floating_roots: Vec<u32>,
 }
 
-impl JointSystem {
+impl WorldJoints {
     /// Passes the joints' positions to resistance laws.
     pub(crate) fn update_resistance_laws(&self, dynamics: &mut Dynamics) {
         if dynamics.laws.resistances.is_empty() {
@@ -31,7 +31,7 @@ impl JointSystem {
     }
 
     /// Gives rapier the efforts along all joints for the next physics step.
-    pub(crate) fn apply_efforts(&self, dynamics: &mut Dynamics) -> JointStep {
+    pub(crate) fn apply_efforts(&self, dynamics: &mut Dynamics) -> JointStepPrediction {
         let engine = &mut dynamics.engine;
         for joint in &self.joints {
             joints::clear_efforts(engine, joint);
@@ -44,8 +44,8 @@ impl JointSystem {
         };
         let dt_s = dynamics.settings.dt_s;
         let time_s = dynamics.tick as f64 * f64::from(dt_s);
-        let push = |link: LinkStep| {
-            let link = LinkStep { time_s, ..link };
+        let push = |link: LinkState| {
+            let link = LinkState { time_s, ..link };
             let pushes = laws.links.iter().map(|law| law.wrench(&link));
             pushes.fold(ExternalWrench::default(), ExternalWrench::sum)
         };
@@ -66,14 +66,18 @@ impl JointSystem {
         let floating_roots = trees
             .filter_map(|tree| tree.floating_root(engine, &self.joints))
             .collect();
-        JointStep {
+        JointStepPrediction {
             predictions,
             floating_roots,
         }
     }
 
     /// Moves trees to their predicted positions after a physics step. Returns whether one was moved.
-    pub(crate) fn correct_positions(&mut self, dynamics: &mut Dynamics, step: JointStep) -> bool {
+    pub(crate) fn correct_positions(
+        &mut self,
+        dynamics: &mut Dynamics,
+        step: JointStepPrediction,
+    ) -> bool {
         let (engine, coordinates) = (&mut dynamics.engine, &mut self.joint_coordinates);
         let mut placed = false;
         for (tree, prediction) in self.trees.iter().zip(step.predictions) {

@@ -66,7 +66,7 @@ pub(super) fn motion_before(motions: &[BodyMotion], body: Option<RigidBodyHandle
 }
 
 /// Returns the entry of a body.
-fn at(motions: &mut Vec<BodyMotion>, body: RigidBodyHandle) -> &mut BodyMotion {
+fn motion_entry_mut(motions: &mut Vec<BodyMotion>, body: RigidBodyHandle) -> &mut BodyMotion {
     let index = body.into_raw_parts().0 as usize;
     if motions.len() <= index {
         motions.resize(index + 1, BodyMotion::default());
@@ -85,7 +85,7 @@ pub(crate) fn record_motion(
     if !flying.is_empty() {
         for (handle, body) in engine.bodies.iter() {
             if body.is_dynamic() && body.is_sleeping() {
-                *at(out, handle) = BodyMotion {
+                *motion_entry_mut(out, handle) = BodyMotion {
                     is_recorded: true,
                     center: body.center_of_mass(),
                     rotation: *body.rotation(),
@@ -113,7 +113,7 @@ pub(crate) fn record_motion(
         };
         let gravity = engine.gravity * falls;
         let free = body.is_dynamic() && engine.joints.attached_joints(handle).next().is_none();
-        *at(out, handle) = BodyMotion {
+        *motion_entry_mut(out, handle) = BodyMotion {
             is_recorded: true,
             linear,
             angular,

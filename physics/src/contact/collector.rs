@@ -2,7 +2,7 @@
 
 use super::approach::ApproachMotion;
 use super::body_motion::{BodyMotion, motion_before};
-use super::collider_entry::{ColliderEntry, ContactEntity, entry_index};
+use super::collider_entry::{ColliderMetadata, ContactEntity, entry_index};
 use super::friction;
 use crate::engine::{FrictionImpulseLayout, points};
 use glam::Vec3;
@@ -39,7 +39,7 @@ pub(crate) struct ContactReport {
 
 /// Gathers contacts while rapier steps.
 pub(crate) struct ContactCollector<'a> {
-    entries: &'a [ColliderEntry],
+    entries: &'a [ColliderMetadata],
     /// Speed below which nothing is reported, m/s.
     slowest: f32,
     /// Motion before the step of every body that was awake, by its arena index.
@@ -51,7 +51,7 @@ pub(crate) struct ContactCollector<'a> {
 
 impl<'a> ContactCollector<'a> {
     pub(crate) fn new(
-        entries: &'a [ColliderEntry],
+        entries: &'a [ColliderMetadata],
         before: &'a [BodyMotion],
         slowest: f32,
         kept: FrictionImpulseLayout,

@@ -20,12 +20,12 @@ pub enum ContactEntity {
 
 /// The contact class of a piece, or of each of its triangles.
 #[derive(Clone, Debug)]
-pub(crate) enum SurfaceMaterials {
+pub(crate) enum SurfaceContactClasses {
     Uniform(u16),
     PerTriangle(Arc<[u16]>),
 }
 
-impl SurfaceMaterials {
+impl SurfaceContactClasses {
     /// Returns the class at a triangle of the shape; `subshape` is ignored where there is one class.
     pub(crate) fn class(&self, subshape: u32) -> u16 {
         match self {
@@ -49,16 +49,20 @@ impl SurfaceMaterials {
 
 /// The owner and the materials of a collider.
 #[derive(Clone, Debug)]
-pub(crate) struct ColliderEntry {
+pub(crate) struct ColliderMetadata {
     /// Its owner; `None` for the fallback box.
     pub(crate) contact_entity: Option<ContactEntity>,
     /// The rigid body it moves with, unless it is static or an agent's.
     pub(crate) body: Option<u32>,
-    pub(crate) surface: SurfaceMaterials,
+    pub(crate) surface: SurfaceContactClasses,
 }
 
-impl ColliderEntry {
-    pub(crate) fn new(owner: PieceOwner, body: Option<u32>, surface: SurfaceMaterials) -> Self {
+impl ColliderMetadata {
+    pub(crate) fn new(
+        owner: PieceOwner,
+        body: Option<u32>,
+        surface: SurfaceContactClasses,
+    ) -> Self {
         let contact_entity = match owner {
             PieceOwner::Structure(id) => Some(ContactEntity::Structure(id)),
             PieceOwner::Part(id) => Some(ContactEntity::Part(id)),

@@ -1,7 +1,7 @@
 //! Pairs of bodies in contact.
 
-use super::collider_entry::{ColliderEntry, ContactEntity, entry_index};
-use dwell_scene::{Contact, SupportRelation};
+use super::collider_entry::{ColliderMetadata, ContactEntity, entry_index};
+use dwell_scene::{Contact, SupportDirection};
 use rapier3d::dynamics::RigidBodyHandle;
 use rapier3d::geometry::{ColliderSet, NarrowPhase};
 
@@ -13,12 +13,12 @@ const MIN_SUPPORT_NORMAL_Y: f32 = 0.5;
 pub(crate) fn contacts_within(
     narrow_phase: &NarrowPhase,
     colliders: &ColliderSet,
-    entries: &[ColliderEntry],
+    entries: &[ColliderMetadata],
     distance_m: f32,
 ) -> Vec<([RigidBodyHandle; 2], Contact)> {
     let mut out = Vec::new();
     for pair in narrow_phase.contact_pairs() {
-        let (mut near, mut rest) = (false, SupportRelation::NoSupport);
+        let (mut near, mut rest) = (false, SupportDirection::NoSupport);
         for manifold in pair.solver_manifolds() {
             let touches = manifold
                 .points
@@ -29,9 +29,9 @@ pub(crate) fn contacts_within(
             let up = manifold.data.normal.y;
             if touches && up.abs() >= MIN_SUPPORT_NORMAL_Y {
                 rest = if up > 0.0 {
-                    SupportRelation::BOnA
+                    SupportDirection::BOnA
                 } else {
-                    SupportRelation::AOnB
+                    SupportDirection::AOnB
                 };
             }
         }
@@ -75,10 +75,10 @@ pub(crate) fn contacts_within(
 }
 
 /// Returns the same seen from the other side.
-fn turned(rest: SupportRelation) -> SupportRelation {
+fn turned(rest: SupportDirection) -> SupportDirection {
     match rest {
-        SupportRelation::NoSupport => SupportRelation::NoSupport,
-        SupportRelation::AOnB => SupportRelation::BOnA,
-        SupportRelation::BOnA => SupportRelation::AOnB,
+        SupportDirection::NoSupport => SupportDirection::NoSupport,
+        SupportDirection::AOnB => SupportDirection::BOnA,
+        SupportDirection::BOnA => SupportDirection::AOnB,
     }
 }

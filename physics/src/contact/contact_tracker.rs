@@ -35,7 +35,7 @@ struct ImpactAccumulator {
 
 /// The contact of a pair in the present control step, apart from impacts.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-struct ContactAccumulator {
+struct SustainedContactAccumulator {
     first_tick: u64,
     last_tick: u64,
     steps: u32,
@@ -63,7 +63,7 @@ struct SlidingPair {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ContactTracker {
     impacts: BTreeMap<ContactPair, ImpactAccumulator>,
-    touching: BTreeMap<ContactPair, ContactAccumulator>,
+    touching: BTreeMap<ContactPair, SustainedContactAccumulator>,
     moving: BTreeMap<ContactPair, SlidingPair>,
     /// Displacement that the last step cut off by stopping a body at a surface, by its arena index, m.
     pub(super) undone_displacements: BTreeMap<u32, Vec3>,
@@ -198,11 +198,14 @@ impl ContactTracker {
         let place = moment / impulse;
         let before = self.touching.get(&pair).map(|touching| touching.place);
         let before = before.or(self.moving.get(&pair).map(|moving| moving.place));
-        let touching = self.touching.entry(pair).or_insert(ContactAccumulator {
-            first_tick: tick,
-            classes: group[0].classes,
-            ..ContactAccumulator::default()
-        });
+        let touching = self
+            .touching
+            .entry(pair)
+            .or_insert(SustainedContactAccumulator {
+                first_tick: tick,
+                classes: group[0].classes,
+                ..SustainedContactAccumulator::default()
+            });
         touching.last_tick = tick;
         touching.steps += 1;
         touching.impulse_n_s += impulse;
@@ -300,7 +303,7 @@ impl ImpactAccumulator {
     }
 }
 
-impl ContactAccumulator {
+impl SustainedContactAccumulator {
     fn slip_m_s(&self) -> f32 {
         self.slip / self.impulse_n_s
     }

@@ -1,6 +1,6 @@
 //! Callbacks from rapier during a step: contact filter and friction of a pair.
 
-use super::collider_entry::{ColliderEntry, entry_index};
+use super::collider_entry::{ColliderMetadata, entry_index};
 use super::contact_law::{ContactLaw, ContactSide, ContactValues, LawContact};
 use super::rolling;
 use super::substances::ContactTable;
@@ -30,12 +30,12 @@ pub(crate) struct CollisionExclusions {
 }
 
 impl CollisionExclusions {
-    fn can_collide(&self, entries: &[ColliderEntry], a: usize, b: usize) -> bool {
+    fn can_collide(&self, entries: &[ColliderMetadata], a: usize, b: usize) -> bool {
         let one_way = |a: usize, b: usize| {
             let Some(body) = entries.get(a).and_then(|entry| entry.body) else {
                 return true;
             };
-            let with_agent = entries.get(b).and_then(ColliderEntry::agent);
+            let with_agent = entries.get(b).and_then(ColliderMetadata::agent);
             let carried =
                 with_agent.is_some_and(|agent| self.carriers.binary_search(&(body, agent)).is_ok());
             !carried && self.entries.binary_search(&(body, b as u32)).is_err()
@@ -66,7 +66,7 @@ pub(crate) struct ContactProperties<'a> {
 
 impl ContactProperties<'_> {
     /// Returns the values of a collider on itself, for rapier's own rule, and whether rapier asks the hook about its pairs instead.
-    pub(crate) fn self_pair(&self, entry: &ColliderEntry) -> (PairContact, bool) {
+    pub(crate) fn self_pair(&self, entry: &ColliderMetadata) -> (PairContact, bool) {
         let (mut own, mut special) = self.table.self_pair(&entry.surface);
         if self.is_compliant {
             own.restitution = 0.0;
@@ -82,7 +82,7 @@ impl ContactProperties<'_> {
 
 /// The callbacks of one step.
 pub(crate) struct ContactHooks<'a> {
-    pub(crate) entries: &'a [ColliderEntry],
+    pub(crate) entries: &'a [ColliderMetadata],
     pub(crate) properties: ContactProperties<'a>,
     pub(crate) excluded: &'a CollisionExclusions,
     pub(crate) friction_storage: FrictionImpulseLayout,
@@ -92,7 +92,7 @@ pub(crate) struct ContactHooks<'a> {
 
 impl PhysicsHooks for ContactHooks<'_> {
     fn filter_contact_pair(&self, context: &PairFilterContext) -> Option<SolverFlags> {
-        interrupt::check();
+        interrupt::unwind_if_cancelled();
         let a = entry_index(&context.colliders[context.collider1]);
         let b = entry_index(&context.colliders[context.collider2]);
         self.excluded
@@ -101,7 +101,7 @@ impl PhysicsHooks for ContactHooks<'_> {
     }
 
     fn modify_solver_contacts(&self, context: &mut ContactModificationContext) {
-        interrupt::check();
+        interrupt::unwind_if_cancelled();
         let colliders = context.colliders;
         let (one, two) = (&colliders[context.collider1], &colliders[context.collider2]);
         let (a, b) = (entry_index(one), entry_index(two));
@@ -136,13 +136,14 @@ impl PhysicsHooks for ContactHooks<'_> {
         if laws.is_empty() {
             return;
         }
-        let side = |entry: &ColliderEntry, class: u16, body: Option<RigidBodyHandle>| ContactSide {
-            contact_entity: entry.contact_entity,
-            substance: table.substance(class),
-            rotation: body
-                .and_then(|body| bodies.get(body))
-                .map_or(Quat::IDENTITY, |rigid| *rigid.rotation()),
-        };
+        let side =
+            |entry: &ColliderMetadata, class: u16, body: Option<RigidBodyHandle>| ContactSide {
+                contact_entity: entry.contact_entity,
+                substance: table.substance(class),
+                rotation: body
+                    .and_then(|body| bodies.get(body))
+                    .map_or(Quat::IDENTITY, |rigid| *rigid.rotation()),
+            };
         let sides = (side(a, class_a, body_a), side(b, class_b, body_b));
         self.apply_contact_laws(manifold, bodies, (body_a, body_b), sides);
     }

@@ -18,7 +18,7 @@ mod substances;
 pub(crate) use body_motion::{BodyMotion, record_motion};
 pub(crate) use collector::{ContactCollector, ContactReport};
 pub use collider_entry::ContactEntity;
-pub(crate) use collider_entry::{ColliderEntry, entry_index};
+pub(crate) use collider_entry::{ColliderMetadata, entry_index};
 pub(crate) use contact_law::{ContactLaw, ContactSide, ContactValues, LawContact};
 pub(crate) use contact_pairs::contacts_within;
 pub(crate) use contact_tracker::ContactTracker;

@@ -13,9 +13,9 @@
 
 use super::approach::{ApproachMotion, speed_after};
 use super::body_motion::{BodyMotion, motion_before};
-use super::collider_entry::{ColliderEntry, ContactEntity, entry_index};
+use super::collider_entry::{ColliderMetadata, ContactEntity, entry_index};
 use crate::engine::{RapierWorld, points};
-use crate::joints::{ImpulseDynamics, ImpulsePoint, JointCoordinate, KinematicTree, PhysicsJoint};
+use crate::joints::{ImpulseDynamics, ImpulsePoint, JointKinematics, KinematicTree, PhysicsJoint};
 use glam::Vec3;
 use rapier3d::dynamics::RigidBodyHandle;
 use rapier3d::geometry::{Collider, ColliderHandle, ContactManifold, ContactPair};
@@ -83,11 +83,11 @@ struct FreeFlightImpact {
 pub(crate) struct RestitutionContext<'a> {
     /// Before the step.
     pub(crate) motions: &'a [BodyMotion],
-    pub(crate) entries: &'a [ColliderEntry],
+    pub(crate) entries: &'a [ColliderMetadata],
     pub(crate) trees: &'a [KinematicTree],
     pub(crate) joints: &'a [PhysicsJoint],
     /// Each joint's coordinates before the step.
-    pub(crate) joints_before: &'a [JointCoordinate],
+    pub(crate) joints_before: &'a [JointKinematics],
     /// Length of the step, s.
     pub(crate) dt_s: f32,
 }
@@ -99,7 +99,7 @@ impl RestitutionContext<'_> {
         &self,
         engine: &mut RapierWorld,
         landed: &[RigidBodyHandle],
-        joint_coordinates: &mut [JointCoordinate],
+        joint_coordinates: &mut [JointKinematics],
     ) -> RestitutionResult {
         let mut added = BTreeMap::new();
         let mut struck: Vec<ImpulseDynamics> = Vec::new();
@@ -132,7 +132,7 @@ impl RestitutionContext<'_> {
         engine: &RapierWorld,
         body: RigidBodyHandle,
         later: &[RigidBodyHandle],
-        (struck, joint_coordinates): (&mut Vec<ImpulseDynamics>, &[JointCoordinate]),
+        (struck, joint_coordinates): (&mut Vec<ImpulseDynamics>, &[JointKinematics]),
     ) -> Option<FreeFlightImpact> {
         let rigid = engine.bodies.get(body)?;
         let (mut hits, mut stands) = (Vec::new(), true);
@@ -162,7 +162,7 @@ impl RestitutionContext<'_> {
         &self,
         engine: &RapierWorld,
         pair: &ContactPair,
-        (struck, joint_coordinates): (&mut Vec<ImpulseDynamics>, &[JointCoordinate]),
+        (struck, joint_coordinates): (&mut Vec<ImpulseDynamics>, &[JointKinematics]),
         hits: &mut Vec<ImpactPoint>,
     ) {
         let contact_entity = |collider: ColliderHandle| {
@@ -237,7 +237,7 @@ impl RestitutionContext<'_> {
         &self,
         engine: &RapierWorld,
         body: RigidBodyHandle,
-        (struck, joint_coordinates): (&mut Vec<ImpulseDynamics>, &[JointCoordinate]),
+        (struck, joint_coordinates): (&mut Vec<ImpulseDynamics>, &[JointKinematics]),
     ) -> Option<usize> {
         engine.joints.attached_joints(body).next()?;
         let tree = ImpulseDynamics::tree_of(self.trees, self.joints, body)?;
@@ -412,7 +412,7 @@ impl ImpactSide {
     fn push(&self, engine: &mut RapierWorld, struck: &mut [ImpulseDynamics], impulse: f32) {
         if let Some(joined) = &self.joined {
             struck[joined.tree].apply_impulse(&joined.point, impulse.into());
-        } else if let Some(body) = self.body.filter(|body| moves(engine, *body))
+        } else if let Some(body) = self.body.filter(|body| is_impulse_movable(engine, *body))
             && let Some(body) = engine.bodies.get_mut(body)
         {
             let push = self.way * impulse;
@@ -427,7 +427,7 @@ fn parent(engine: &RapierWorld, collider: ColliderHandle) -> Option<RigidBodyHan
 }
 
 /// Returns whether an impulse moves a body: no fixed, sleeping, kinematic or jointed one.
-fn moves(engine: &RapierWorld, body: RigidBodyHandle) -> bool {
+fn is_impulse_movable(engine: &RapierWorld, body: RigidBodyHandle) -> bool {
     let loose = engine.joints.attached_joints(body).next().is_none();
     let rigid = engine.bodies.get(body);
     loose && rigid.is_some_and(|rigid| rigid.is_dynamic() && !rigid.is_sleeping())
@@ -436,7 +436,11 @@ fn moves(engine: &RapierWorld, body: RigidBodyHandle) -> bool {
 /// Returns the speed of a body's point along a direction after 1 N·s along it, m/s. `turn`: cross product of the arm to the
 /// point with the direction.
 fn inverse_effective_mass(engine: &RapierWorld, body: RigidBodyHandle, turn: Vec3) -> f32 {
-    let Some(rigid) = engine.bodies.get(body).filter(|_| moves(engine, body)) else {
+    let Some(rigid) = engine
+        .bodies
+        .get(body)
+        .filter(|_| is_impulse_movable(engine, body))
+    else {
         return 0.0;
     };
     let properties = rigid.mass_properties();

@@ -4,10 +4,10 @@
 //! radian (its distance hardly changes there), and with it a tilted normal: a cart on such wheels jerks, and stops on a
 //! slope. While a cylinder turns about its axis, its line of contact is computed from the flat face instead.
 
-use super::collider_entry::{ColliderEntry, entry_index};
+use super::collider_entry::{ColliderMetadata, entry_index};
 use crate::body::BodyHandle;
 use crate::engine::RapierWorld;
-use crate::model::RollingCylinder;
+use crate::model::RollableCylinder;
 use glam::Vec3;
 use rapier3d::dynamics::RigidBodySet;
 use rapier3d::geometry::{Collider, ColliderHandle, Cylinder, TypedShape};
@@ -55,10 +55,10 @@ pub(crate) fn set_rolling_hook(
 /// Makes rapier ask the hook about the cylinders that rolled at the time of a snapshot. `built`: the rebuilt world, with
 /// its bodies in order and its entries; `bodies`: those of the snapshot.
 pub(crate) fn restore_rolling_hooks(
-    rollers: &[RollingCylinder],
-    built: (&mut RapierWorld, &[BodyHandle], &[ColliderEntry]),
+    rollers: &[RollableCylinder],
+    built: (&mut RapierWorld, &[BodyHandle], &[ColliderMetadata]),
     bodies: &RigidBodySet,
-    asked: impl Fn(&ColliderEntry) -> bool,
+    asked: impl Fn(&ColliderMetadata) -> bool,
 ) {
     let (engine, handles, entries) = built;
     for roller in rollers {

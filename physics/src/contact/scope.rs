@@ -1,6 +1,6 @@
 //! The contacts that a law's target names.
 
-use super::collider_entry::{ColliderEntry, ContactEntity};
+use super::collider_entry::{ColliderMetadata, ContactEntity};
 use super::contact_law::ContactSide;
 use super::substances::ContactTable;
 use crate::error::PhysicsError;
@@ -44,7 +44,7 @@ impl NamedContactTarget {
         }
     }
 
-    fn is(&self, house: &House, side: &ContactSide<'_>) -> bool {
+    fn matches_side(&self, house: &House, side: &ContactSide<'_>) -> bool {
         self.substance == Some(side.substance) || self.is_thing(house, side.contact_entity)
     }
 }
@@ -99,7 +99,7 @@ impl ContactScope {
         &self,
         house: &House,
         table: &ContactTable,
-        entry: &ColliderEntry,
+        entry: &ColliderMetadata,
     ) -> bool {
         let Some(one) = &self.one else {
             return entry.body.is_some();
@@ -116,7 +116,9 @@ impl ContactScope {
         b: &ContactSide<'_>,
     ) -> Option<bool> {
         let is = |named: &Option<NamedContactTarget>, side: &ContactSide<'_>| {
-            named.as_ref().is_none_or(|named| named.is(house, side))
+            named
+                .as_ref()
+                .is_none_or(|named| named.matches_side(house, side))
         };
         let (forth, back) = (
             is(&self.one, a) && is(&self.other, b),

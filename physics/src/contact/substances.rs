@@ -1,6 +1,6 @@
 //! Friction and restitution of every pair of substances in a house, looked up in a step without strings.
 
-use super::collider_entry::SurfaceMaterials;
+use super::collider_entry::SurfaceContactClasses;
 use crate::model::MaterialAssignment;
 use dwell_scene::material::{PairContact, library};
 use dwell_scene::{Address, House, IdVec, MaterialId, State};
@@ -42,7 +42,7 @@ fn overridden(state: &State, address: &str) -> Option<f32> {
     state.overrides.get(&address).map(|value| *value as f32)
 }
 
-fn mean(a: f32, b: f32) -> f32 {
+fn geometric_mean(a: f32, b: f32) -> f32 {
     // As in rapier's `GeometricMean` rule and the library, so that the bits agree.
     (a.max(0.0) * b.max(0.0)).sqrt()
 }
@@ -99,8 +99,8 @@ impl ContactTable {
             for (j, b) in classes.iter().enumerate() {
                 let pair = pair(state, (a, own[i]), (b, own[j]));
                 let by_rule = PairContact {
-                    friction: mean(own[i].friction, own[j].friction),
-                    restitution: mean(own[i].restitution, own[j].restitution),
+                    friction: geometric_mean(own[i].friction, own[j].friction),
+                    restitution: geometric_mean(own[i].restitution, own[j].restitution),
                 };
                 if pair != by_rule && i <= j {
                     exceptions.push((i, j));
@@ -108,7 +108,10 @@ impl ContactTable {
                 pairs.push(pair);
             }
         }
-        let special = vertex_cover(&exceptions, &usage(house, &class_of_material, count));
+        let special = vertex_cover(
+            &exceptions,
+            &piece_count_by_class(house, &class_of_material, count),
+        );
         Self {
             classes,
             class_of_material,
@@ -121,22 +124,24 @@ impl ContactTable {
     }
 
     /// Returns the class or classes of a piece.
-    pub(crate) fn surface_materials(&self, cover: &MaterialAssignment) -> SurfaceMaterials {
+    pub(crate) fn surface_materials(&self, cover: &MaterialAssignment) -> SurfaceContactClasses {
         let class = |material: Option<MaterialId>| {
             material.map_or(self.unknown, |material| self.class_of_material[material])
         };
         match cover {
-            MaterialAssignment::Uniform(material) => SurfaceMaterials::Uniform(class(*material)),
+            MaterialAssignment::Uniform(material) => {
+                SurfaceContactClasses::Uniform(class(*material))
+            }
             MaterialAssignment::PerTriangle(materials) => {
                 let classes: Arc<[u16]> = materials.iter().map(|m| class(Some(*m))).collect();
-                SurfaceMaterials::PerTriangle(classes)
+                SurfaceContactClasses::PerTriangle(classes)
             }
         }
     }
 
     /// Returns the class of an agent's body.
-    pub(crate) fn agent_material(&self) -> SurfaceMaterials {
-        SurfaceMaterials::Uniform(self.human)
+    pub(crate) fn agent_material(&self) -> SurfaceContactClasses {
+        SurfaceContactClasses::Uniform(self.human)
     }
 
     /// Returns the values between two classes.
@@ -145,13 +150,15 @@ impl ContactTable {
     }
 
     /// Returns the values of a surface on itself, for rapier's own rule, and whether its pairs need a look-up instead.
-    pub(crate) fn self_pair(&self, surface: &SurfaceMaterials) -> (PairContact, bool) {
+    pub(crate) fn self_pair(&self, surface: &SurfaceContactClasses) -> (PairContact, bool) {
         match surface {
-            SurfaceMaterials::Uniform(class) => {
+            SurfaceContactClasses::Uniform(class) => {
                 let class = usize::from(*class);
                 (self.own[class], self.special[class])
             }
-            SurfaceMaterials::PerTriangle(_) => (self.own[usize::from(surface.class(0))], true),
+            SurfaceContactClasses::PerTriangle(_) => {
+                (self.own[usize::from(surface.class(0))], true)
+            }
         }
     }
 
@@ -167,7 +174,11 @@ impl ContactTable {
 }
 
 /// Returns the number of the house's pieces in each class.
-fn usage(house: &House, class_of_material: &IdVec<MaterialId, u16>, count: usize) -> Vec<usize> {
+fn piece_count_by_class(
+    house: &House,
+    class_of_material: &IdVec<MaterialId, u16>,
+    count: usize,
+) -> Vec<usize> {
     let mut usage = vec![0; count];
     let parts = house.parts.iter().map(|part| &part.materials);
     for materials in parts.chain(house.structure.iter().map(|piece| &piece.materials)) {
@@ -208,11 +219,13 @@ fn pair(
     };
     let friction = match (a.0.friction, b.0.friction) {
         (None, None) => table.friction,
-        _ => named("friction").unwrap_or_else(|| mean(a.1.friction, b.1.friction)),
+        _ => named("friction").unwrap_or_else(|| geometric_mean(a.1.friction, b.1.friction)),
     };
     let restitution = match (a.0.restitution, b.0.restitution) {
         (None, None) => table.restitution,
-        _ => named("restitution").unwrap_or_else(|| mean(a.1.restitution, b.1.restitution)),
+        _ => {
+            named("restitution").unwrap_or_else(|| geometric_mean(a.1.restitution, b.1.restitution))
+        }
     };
     PairContact {
         friction,
@@ -226,8 +239,9 @@ mod tests {
     use dwell_scene::{Material, ShoeboxMaterials};
 
     fn room(floor: &str, walls: &str) -> House {
-        let of =
-            |name: &str, substance: &str| Material::of(name, library().get_or_default(substance));
+        let of = |name: &str, substance: &str| {
+            Material::from_substance(name, library().get_or_default(substance))
+        };
         let materials = ShoeboxMaterials {
             floor: of("floor", floor),
             ..ShoeboxMaterials::uniform(&of("wall", walls))
@@ -250,7 +264,7 @@ mod tests {
         }
         // Cast iron on oak is a published pair: one of the two needs the look-up.
         let special = |k: u32| {
-            let surface = SurfaceMaterials::Uniform(table.class_of_material[MaterialId(k)]);
+            let surface = SurfaceContactClasses::Uniform(table.class_of_material[MaterialId(k)]);
             table.self_pair(&surface).1
         };
         assert!(special(0) || special(1));

@@ -2,7 +2,7 @@
 
 use crate::body::{self, BodyHandle, BodyStatus, body_type};
 use crate::config::ResolvedConfig;
-use crate::contact::{ColliderEntry, ContactProperties};
+use crate::contact::{ColliderMetadata, ContactProperties};
 use crate::engine::{ContactCompliance, RapierWorld};
 use crate::inertia::{self, BodyInertia};
 use crate::laws::LawSet;
@@ -26,7 +26,7 @@ pub(crate) struct BodyMasses {
 
 impl BodyMasses {
     pub(crate) fn new(model: &PhysicsModel, state: &State, laws: &LawSet) -> Self {
-        let factors = body::mass_factors(model, state);
+        let factors = body::density_factors(model, state);
         let altered = inertia::explicit_inertias(model, state, &factors, &laws.masses);
         Self {
             factors,
@@ -38,7 +38,7 @@ impl BodyMasses {
 /// The parts of a world that follow from its shapes.
 pub(crate) struct AssembledWorld {
     pub(crate) engine: RapierWorld,
-    pub(crate) entries: Vec<ColliderEntry>,
+    pub(crate) entries: Vec<ColliderMetadata>,
     pub(crate) bodies: Vec<BodyHandle>,
     pub(crate) anchor: RigidBodyHandle,
 }
@@ -68,7 +68,7 @@ pub(crate) fn assemble(
     let anchor = engine.bodies.insert(RigidBodyBuilder::fixed());
     let mut bodies = Vec::with_capacity(model.bodies.len());
     for (index, plan) in model.bodies.iter().enumerate() {
-        interrupt::check();
+        interrupt::unwind_if_cancelled();
         let (world_from_body, hold) = places(index);
         let place = BodyPlacement {
             index: index as u32,
@@ -114,11 +114,11 @@ pub(crate) fn insert_statics(
     engine: &mut RapierWorld,
     model: &PhysicsModel,
     values: ContactProperties<'_>,
-) -> Vec<ColliderEntry> {
+) -> Vec<ColliderMetadata> {
     let ground = engine.bodies.insert(RigidBodyBuilder::fixed());
     let mut entries = Vec::with_capacity(model.static_pieces.len());
     for piece in &model.static_pieces {
-        let entry = ColliderEntry::new(
+        let entry = ColliderMetadata::new(
             piece.owner,
             None,
             values.table.surface_materials(&piece.materials),
@@ -141,7 +141,7 @@ pub(crate) fn insert_body(
     engine: &mut RapierWorld,
     plan: &BodyPlan,
     values: ContactProperties<'_>,
-    entries: &mut Vec<ColliderEntry>,
+    entries: &mut Vec<ColliderMetadata>,
     place: BodyPlacement<'_>,
 ) -> BodyHandle {
     let mut builder = RigidBodyBuilder::new(body_type(place.status))
@@ -157,7 +157,7 @@ pub(crate) fn insert_body(
     let handle = engine.bodies.insert(builder);
     for piece in &plan.pieces {
         let surface = values.table.surface_materials(&piece.materials);
-        let entry = ColliderEntry::new(piece.owner, Some(place.index), surface);
+        let entry = ColliderMetadata::new(piece.owner, Some(place.index), surface);
         let factor = plan.mass_factor_of(piece, place.mass_factors);
         let density = density(piece, factor, place.inertia.as_ref());
         let builder = ColliderBuilder::new(piece.shape.clone())

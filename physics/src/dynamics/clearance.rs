@@ -2,7 +2,7 @@
 
 use super::Dynamics;
 use crate::body::BodyStatus;
-use crate::contact::{ColliderEntry, ContactEntity, entry_index};
+use crate::contact::{ColliderMetadata, ContactEntity, entry_index};
 use crate::model::shapes;
 use dwell_scene::{AgentState, ObjectId};
 use glam::Vec3;
@@ -35,13 +35,13 @@ pub(crate) enum SupportFilter {
 }
 
 impl Dynamics {
-    pub(crate) fn entry_of(&self, collider: &Collider) -> &ColliderEntry {
+    pub(crate) fn entry_of(&self, collider: &Collider) -> &ColliderMetadata {
         &self.entries[entry_index(collider)]
     }
 
     /// Returns the first obstacle between an eye and a point that a hand cannot get past: building, furniture, leaves.
     /// Hands reach around loose objects and agents.
-    pub(crate) fn first_reach_obstacle(&self, eye: Vec3, point: Vec3) -> Option<&ColliderEntry> {
+    pub(crate) fn first_reach_obstacle(&self, eye: Vec3, point: Vec3) -> Option<&ColliderMetadata> {
         let barring = |_: ColliderHandle, collider: &Collider| {
             let entry = self.entry_of(collider);
             entry.agent().is_none()
@@ -66,7 +66,7 @@ impl Dynamics {
         body: usize,
         place: &RapierPose,
         holder: HolderCollision,
-    ) -> Option<&ColliderEntry> {
+    ) -> Option<&ColliderMetadata> {
         let queries = self.engine.queries(QueryFilter::default());
         let passes = |collider: &Collider| {
             let entry = self.entry_of(collider);

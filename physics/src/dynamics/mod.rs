@@ -12,7 +12,7 @@ pub(crate) use clearance::{HolderCollision, SupportFilter};
 
 use crate::body::{self, BodyHandle, BodyStatus};
 use crate::config::ResolvedConfig;
-use crate::contact::{ColliderEntry, CollisionExclusions, ContactHooks, ContactTable, rolling};
+use crate::contact::{ColliderMetadata, CollisionExclusions, ContactHooks, ContactTable, rolling};
 use crate::engine::RapierWorld;
 use crate::laws::{BodyLaw, LawContext, LawSet};
 use crate::model::PhysicsModel;
@@ -27,7 +27,7 @@ pub(crate) struct Dynamics {
     pub(crate) settings: ResolvedConfig,
     pub(crate) engine: RapierWorld,
     /// The entry of each collider, by its user data.
-    pub(crate) entries: Vec<ColliderEntry>,
+    pub(crate) entries: Vec<ColliderMetadata>,
     pub(crate) table: ContactTable,
     /// Shape (body,).
     pub(crate) bodies: Vec<BodyHandle>,

@@ -3,7 +3,7 @@
 use super::Dynamics;
 use crate::body::{BodyHandle, BodyStatus};
 use crate::contact::contacts_within;
-use dwell_scene::{Contact, State, SupportRelation};
+use dwell_scene::{Contact, State, SupportDirection};
 use rapier3d::dynamics::RigidBodyHandle;
 
 /// Physics steps between transfers to the cache: a quarter of a second at the default rate.
@@ -81,7 +81,7 @@ impl Dynamics {
             (
                 contact.a,
                 contact.b,
-                contact.support_relation == SupportRelation::NoSupport,
+                contact.support_relation == SupportDirection::NoSupport,
             )
         });
         contacts.dedup_by_key(|contact| (contact.a, contact.b));

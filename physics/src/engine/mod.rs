@@ -246,7 +246,7 @@ impl RapierWorld {
             .filter(|(_, from, to)| from != to)
             .collect();
         for run in 1..=self.runs {
-            interrupt::check();
+            interrupt::unwind_if_cancelled();
             for (handle, from, to) in &led {
                 let share = run as f32 / self.runs as f32;
                 let place = if run == self.runs {

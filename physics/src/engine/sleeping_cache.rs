@@ -45,13 +45,13 @@ pub(crate) struct SleepingIslandCache {
 }
 
 impl SleepingIslandCache {
-    fn place(&self, body: RigidBodyHandle) -> Result<usize, usize> {
+    fn search_body(&self, body: RigidBodyHandle) -> Result<usize, usize> {
         let key = |body: &RigidBodyHandle| body.into_raw_parts();
         self.bodies.binary_search_by_key(&key(&body), key)
     }
 
     pub(crate) fn contains(&self, body: RigidBodyHandle) -> bool {
-        self.place(body).is_ok()
+        self.search_body(body).is_ok()
     }
 
     /// Returns the contacts of cached bodies, among themselves and with fixed ones.
@@ -69,14 +69,14 @@ impl SleepingIslandCache {
     }
 
     fn add(&mut self, body: RigidBodyHandle) {
-        if let Err(place) = self.place(body) {
+        if let Err(place) = self.search_body(body) {
             self.bodies.insert(place, body);
         }
     }
 
     /// Returns whether it was cached. Its contacts are kept.
     fn remove(&mut self, body: RigidBodyHandle) -> bool {
-        let Ok(place) = self.place(body) else {
+        let Ok(place) = self.search_body(body) else {
             return false;
         };
         self.bodies.remove(place);
@@ -349,14 +349,14 @@ impl RapierWorld {
         for body in bodies {
             let colliders = self.bodies.get(*body).map(RigidBody::colliders);
             for collider in colliders.unwrap_or_default() {
-                if let Some(aabb) = self.box_of(*collider, away) {
+                if let Some(aabb) = self.broad_phase_aabb(*collider, away) {
                     self.broad_phase.set_aabb(&parameters, *collider, aabb);
                 }
             }
         }
     }
 
-    fn box_of(&self, collider: ColliderHandle, away: bool) -> Option<Aabb> {
+    fn broad_phase_aabb(&self, collider: ColliderHandle, away: bool) -> Option<Aabb> {
         let shape = self.colliders.get(collider)?;
         let aabb = shape.compute_broad_phase_aabb(self.parameters(), &self.bodies);
         if !aabb.mins.is_finite() || !aabb.maxs.is_finite() {

@@ -87,7 +87,7 @@ impl HeldObject {
 }
 
 /// Returns the target pose of a held body.
-pub(crate) fn hand_pose(grip: &HeldObject, holder: &AgentState) -> Pose {
+pub(crate) fn held_body_target_pose(grip: &HeldObject, holder: &AgentState) -> Pose {
     let yaw = dwell_scene::space::rotation_from_yaw_pitch(holder.yaw_rad, 0.0);
     let pitch = holder.pitch_rad.clamp(PITCHES[0], PITCHES[1]);
     let look = dwell_scene::space::rotation_from_yaw_pitch(holder.yaw_rad, pitch) * Vec3::NEG_Z;
@@ -105,7 +105,7 @@ pub(crate) fn pull_towards_hand(
     holder: &AgentState,
     dt_s: f32,
 ) -> bool {
-    let target = hand_pose(grip, holder);
+    let target = held_body_target_pose(grip, holder);
     engine.wake(body.handle);
     let gravity = engine.gravity.length();
     let Some(rigid) = engine.bodies.get_mut(body.handle) else {

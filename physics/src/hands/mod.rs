@@ -4,7 +4,7 @@ mod grasp;
 mod held_object;
 
 pub use grasp::Grasp;
-pub(crate) use held_object::{HeldObject, hand_pose};
+pub(crate) use held_object::{HeldObject, held_body_target_pose};
 
 use crate::dynamics::Dynamics;
 use crate::outcome::{DelayedOutcome, OutcomeCode, fail};

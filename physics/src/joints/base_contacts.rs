@@ -105,7 +105,7 @@ impl ReducedProblem {
             *momentum -= dt_s * bias;
         }
         let floating = motion.floating_base();
-        let (efforts, root_efforts) = motion.contact_forces(floating.as_ref());
+        let (efforts, root_efforts) = motion.generalized_contact_forces(floating.as_ref());
         for (momentum, effort) in momentum.iter_mut().zip(efforts) {
             *momentum += dt_s * effort;
         }
@@ -142,7 +142,7 @@ impl ReducedProblem {
         let rows: Vec<[PointJacobian; 3]> = motion
             .supports
             .iter()
-            .map(|support| rows(motion, &floating, support.link, support.position))
+            .map(|support| point_jacobian_rows(motion, &floating, support.link, support.position))
             .collect();
         let strength = brake * dt_s;
         for (rows, hold) in rows.iter().zip(holds) {
@@ -203,7 +203,7 @@ impl ReducedProblem {
 }
 
 /// Returns the Jacobian of a point of a joint's body (or the root), in three directions.
-fn rows(
+fn point_jacobian_rows(
     motion: &TreeDynamics<'_>,
     floating: &FloatingBase,
     link: Option<usize>,

@@ -6,8 +6,8 @@ use super::external_contact::{self, ExternalContact};
 use super::frame::RigidTransform;
 use super::support::{self, SupportPoint};
 use super::tree::KinematicTree;
-use super::tree_dynamics::{BodyAcceleration, JointAxisState, LumpedBody, TreeDynamics};
-use super::{ExternalWrench, LinkStep};
+use super::tree_dynamics::{JointAxisState, LinkMotion, SpatialInertia, TreeDynamics};
+use super::{ExternalWrench, LinkState};
 use crate::engine::RapierWorld;
 use dwell_scene::JointKind;
 use glam::{DMat3, DQuat, DVec3};
@@ -29,7 +29,7 @@ struct ChainLink {
     parent_from_joint: RigidTransform,
     joint_from_child: RigidTransform,
     /// Mass, and centre and inertia in the body's own frame.
-    lump: LumpedBody,
+    lump: SpatialInertia,
 }
 
 /// The wrenches of laws on a tree, and the time of their evaluation within a step.
@@ -44,11 +44,11 @@ pub(super) struct LawWrenchEvaluator<'a> {
 
 /// The free joints of a tree, parents first. Shape (freedom,).
 #[derive(Clone, Debug)]
-pub(super) struct Chain {
+pub(super) struct FreeJointChain {
     links: Vec<ChainLink>,
-    root: BodyAcceleration,
+    root: LinkMotion,
     root_velocity: DVec3,
-    free_root: Option<LumpedBody>,
+    free_root: Option<SpatialInertia>,
     /// Index of a free root's plan in the model.
     root_body: Option<u32>,
     supports: Vec<SupportPoint>,
@@ -58,7 +58,7 @@ pub(super) struct Chain {
     gravity: DVec3,
 }
 
-impl Chain {
+impl FreeJointChain {
     /// `free`: the tree's joints that may move.
     pub(super) fn of(
         engine: &RapierWorld,
@@ -79,12 +79,12 @@ impl Chain {
                 parent_from_joint: RigidTransform::of(&joint.parent_from_joint),
                 joint_from_child: RigidTransform::of(&joint.child_from_joint).inverse(),
                 lump: body(joint.child_handle)
-                    .map_or_else(LumpedBody::default, LumpedBody::in_body_frame),
+                    .map_or_else(SpatialInertia::default, SpatialInertia::in_body_frame),
             }
         };
         let mut chain = Self {
             links: free.iter().map(link).collect(),
-            root: BodyAcceleration::default(),
+            root: LinkMotion::default(),
             root_velocity: DVec3::ZERO,
             free_root: None,
             root_body: tree.root_body,
@@ -110,9 +110,9 @@ impl Chain {
             return;
         };
         let center = root.center_of_mass().as_dvec3();
-        self.root = BodyAcceleration::at_constant_velocity(center, root.angvel().as_dvec3());
+        self.root = LinkMotion::at_constant_velocity(center, root.angvel().as_dvec3());
         self.root_velocity = root.linvel().as_dvec3();
-        self.free_root = root.is_dynamic().then(|| LumpedBody::of(root));
+        self.free_root = root.is_dynamic().then(|| SpatialInertia::of(root));
         self.stands = !root.is_dynamic()
             && root.linvel() == glam::Vec3::ZERO
             && root.angvel() == glam::Vec3::ZERO;
@@ -141,7 +141,7 @@ impl Chain {
         }
         let bodies = handles.iter().enumerate();
         let bodies: Vec<_> = bodies.map(|(k, handle)| (*handle, link_of(k))).collect();
-        self.touches = external_contact::of_tree(engine, &bodies, floats);
+        self.touches = external_contact::tree_contacts(engine, &bodies, floats);
     }
 
     /// Returns whether the root is not dynamic and at rest.
@@ -184,7 +184,7 @@ impl Chain {
                 velocity: velocities[k],
             });
             let turn = DMat3::from_quat(frame.rotation.normalize());
-            masses.push(LumpedBody {
+            masses.push(SpatialInertia {
                 center: frame.translation + frame.rotation * link.lump.center,
                 inertia: turn * link.lump.inertia * turn.transpose(),
                 ..link.lump
@@ -220,8 +220,8 @@ impl Chain {
 
 impl LawWrenchEvaluator<'_> {
     /// Returns the wrench of laws on a body with this velocity and angular velocity.
-    fn at(&self, body: u32, lump: &LumpedBody, velocity: DVec3, spin: DVec3) -> ExternalWrench {
-        (self.wrench_fn)(LinkStep {
+    fn at(&self, body: u32, lump: &SpatialInertia, velocity: DVec3, spin: DVec3) -> ExternalWrench {
+        (self.wrench_fn)(LinkState {
             body,
             mass_kg: lump.mass,
             inertia: lump.inertia,
@@ -234,7 +234,7 @@ impl LawWrenchEvaluator<'_> {
     }
 }
 
-impl Chain {
+impl FreeJointChain {
     /// Returns the wrench of laws on a free root, evaluated at the beginning of the step.
     fn root_law_wrench(&self, pushed: &LawWrenchEvaluator<'_>) -> ExternalWrench {
         let (Some(lump), Some(body)) = (&self.free_root, self.root_body) else {
@@ -251,7 +251,7 @@ impl Chain {
     fn law_wrenches(
         &self,
         pushed: &LawWrenchEvaluator<'_>,
-        (axes, masses, angular): (&[JointAxisState], &[LumpedBody], &[DVec3]),
+        (axes, masses, angular): (&[JointAxisState], &[SpatialInertia], &[DVec3]),
     ) -> Vec<ExternalWrench> {
         let mut linear: Vec<DVec3> = Vec::with_capacity(axes.len());
         let mut pushes = Vec::with_capacity(axes.len());

@@ -133,11 +133,11 @@ pub(crate) fn advance(
             }
             JointCommand::Effort(target) => (target, ActuationGain::Effort),
         };
-        let max_effort = servo.joint_effort();
+        let max_effort = servo.max_joint_effort();
         let pull = JointActuation {
             target,
             max_effort,
-            max_velocity: servo.joint_velocity(),
+            max_velocity: servo.max_joint_speed(),
             gravity_compensation: if gain == ActuationGain::Effort {
                 0.0
             } else {

@@ -65,7 +65,7 @@ pub(super) struct JointDof {
 }
 
 impl JointDof {
-    fn element(&self, offset: f64, slope: f64, bounds: [f64; 2]) -> EffortTerm {
+    fn bounded_linear_effort(&self, offset: f64, slope: f64, bounds: [f64; 2]) -> EffortTerm {
         EffortTerm {
             index: self.index,
             opposing: None,
@@ -91,14 +91,14 @@ impl JointDof {
         };
         // -d ((1 - theta) v0 + theta v) with theta = 1 / (1 - exp(-z)) - 1 / z, z = d h / m: v = v0 exp(-z).
         let offset = -damping * (1.0 - end) * self.velocity;
-        self.element(offset, damping * end, [f64::NEG_INFINITY, f64::INFINITY])
+        self.bounded_linear_effort(offset, damping * end, [f64::NEG_INFINITY, f64::INFINITY])
     }
 
     /// Coulomb friction: the effort that stops the motion within the step, up to its bound.
     pub(super) fn friction(&self, friction: f64) -> EffortTerm {
         // |tau| <= F, and against v: the step from -F to F at v = 0 is made a steep slope.
         let slope = RIGID * self.inertia / self.dt_s;
-        self.element(0.0, slope, [-friction, friction])
+        self.bounded_linear_effort(0.0, slope, [-friction, friction])
     }
 
     /// A slipping spring: the effort at the middle of the step, where the midpoint rule keeps the energy of oscillations;
@@ -110,7 +110,7 @@ impl JointDof {
         // F - k h/2 (v0 + v)/2 in the middle of the step, F - k h (v0 + v)/2 at its end.
         let slope = share * stiffness * self.dt_s;
         let offset = f64::from(spring.effort) - slope * self.velocity;
-        self.element(offset, slope, [-most, most])
+        self.bounded_linear_effort(offset, slope, [-most, most])
     }
 
     /// A stop: from below (`side` 1) or from above (-1).
@@ -123,7 +123,7 @@ impl JointDof {
         };
         // k (limit - q - h v), in one direction only.
         let offset = stiffness * (limit - self.position);
-        self.element(offset, stiffness * self.dt_s, bounds)
+        self.bounded_linear_effort(offset, stiffness * self.dt_s, bounds)
     }
 
     /// The constraint of a mimic joint: its position is `multiplier` times another's plus `offset`, or the nearest within
@@ -142,7 +142,7 @@ impl JointDof {
             .clamp(-MIMIC_CORRECTION_SPEED, MIMIC_CORRECTION_SPEED);
         EffortTerm {
             opposing: Some((leader.index, multiplier)),
-            ..self.element(-slope * mended, slope, [f64::NEG_INFINITY, f64::INFINITY])
+            ..self.bounded_linear_effort(-slope * mended, slope, [f64::NEG_INFINITY, f64::INFINITY])
         }
     }
 
@@ -176,7 +176,7 @@ impl JointDof {
         });
         EffortTerm {
             speed_limit: speed,
-            ..self.element(offset, slope, [-most, most])
+            ..self.bounded_linear_effort(offset, slope, [-most, most])
         }
     }
 }

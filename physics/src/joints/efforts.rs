@@ -9,10 +9,10 @@ use super::PhysicsJoint;
 use super::effort_term::JointActuation;
 use super::forward_kinematics;
 use super::integration::{REST_DISPLACEMENT, TreeIntegration, TreeSolver};
-use super::joint_state::{JointCoordinate, JointReading, is_untouched};
+use super::joint_state::{JointKinematics, JointReading, is_untouched};
 use super::tree::KinematicTree;
 use super::tree_step::TreeStep;
-use super::{ExternalWrench, JointLoad, JointResistance, LinkStep};
+use super::{ExternalWrench, JointLoad, JointResistance, LinkState};
 use crate::engine::RapierWorld;
 use dwell_scene::JointId;
 use glam::Vec3;
@@ -27,7 +27,7 @@ pub(crate) struct JointStepInputs<'a> {
     /// The actuation of each joint. Shape (joint,).
     pub(crate) actuations: &'a [Option<JointActuation>],
     /// Each joint's coordinates after the last step. Shape (joint,).
-    pub(crate) joint_coordinates: &'a [JointCoordinate],
+    pub(crate) joint_coordinates: &'a [JointKinematics],
     /// Changes of joint resistance by laws; `None`: no law changes it.
     pub(crate) resistance_fn: Option<&'a ResistanceFn<'a>>,
     /// Wrenches of laws on the bodies that joints move; `None`: no law exerts one.
@@ -36,7 +36,7 @@ pub(crate) struct JointStepInputs<'a> {
 }
 
 /// The wrench of laws on a body.
-pub(crate) type LinkWrenchFn<'a> = dyn Fn(LinkStep) -> ExternalWrench + 'a;
+pub(crate) type LinkWrenchFn<'a> = dyn Fn(LinkState) -> ExternalWrench + 'a;
 
 /// Changes a joint's resistance under a load.
 pub(crate) type ResistanceFn<'a> = dyn Fn(JointId, &JointLoad, &mut JointResistance) + 'a;
@@ -146,7 +146,7 @@ pub(crate) fn correct_tree_positions(
     tree: &KinematicTree,
     joints: &[PhysicsJoint],
     outlook: TreePrediction,
-    joint_coordinates: &mut [JointCoordinate],
+    joint_coordinates: &mut [JointKinematics],
 ) -> bool {
     let TreePrediction {
         mut standing,
@@ -202,11 +202,11 @@ fn place_as_predicted(
     engine: &mut RapierWorld,
     joints: &[PhysicsJoint],
     course: &[PredictedJoint],
-    joint_coordinates: &mut [JointCoordinate],
+    joint_coordinates: &mut [JointKinematics],
 ) {
     for going in course {
         let ([_, position], velocity) = (going.positions, going.velocity);
-        joint_coordinates[going.joint] = JointCoordinate { position, velocity };
+        joint_coordinates[going.joint] = JointKinematics { position, velocity };
         forward_kinematics::place_child(engine, &joints[going.joint], (position, velocity), false);
     }
 }
@@ -216,7 +216,7 @@ pub(crate) fn project_woken(
     engine: &mut RapierWorld,
     tree: &KinematicTree,
     joints: &[PhysicsJoint],
-    joint_coordinates: &mut [JointCoordinate],
+    joint_coordinates: &mut [JointKinematics],
 ) -> bool {
     let Some(standing) = TreeStep::of(engine, tree, joints, joint_coordinates) else {
         return false;

@@ -46,7 +46,7 @@ impl ExternalContact {
 
 /// Returns the contact forces on the bodies of a tree, in a fixed order. `stands`: whether support from below is left out;
 /// contacts within the tree never are, or it would press on itself one way only.
-pub(super) fn of_tree(
+pub(super) fn tree_contacts(
     engine: &RapierWorld,
     bodies: &[(RigidBodyHandle, Option<usize>)],
     stands: bool,

@@ -9,13 +9,13 @@
 //! complement.
 
 use super::convex_solver::{CholeskyFactor, SymmetricMatrix};
-use super::tree_dynamics::{BodyAcceleration, JointAxisState, LumpedBody, Wrench};
+use super::tree_dynamics::{JointAxisState, LinkMotion, SpatialInertia, Wrench};
 use glam::DVec3;
 
 /// The six freedoms of a root: the velocity of the tree's centre of mass as if all joints stood, and its rotation.
 pub(super) struct FloatingBase {
     /// The tree as one body.
-    pub(super) composite_body: LumpedBody,
+    pub(super) composite_body: SpatialInertia,
     factor: CholeskyFactor,
     /// Linear and angular momentum about the common centre of mass for each unit of a joint's velocity. Shape (freedom, 6).
     pub(super) momentum_jacobian: Vec<[f64; 6]>,
@@ -33,9 +33,9 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 impl FloatingBase {
     pub(super) fn of(
-        root: &LumpedBody,
+        root: &SpatialInertia,
         axes: &[JointAxisState],
-        carried: &[LumpedBody],
+        carried: &[SpatialInertia],
         momenta: &[(DVec3, DVec3)],
     ) -> Self {
         let children = axes
@@ -56,7 +56,7 @@ impl FloatingBase {
             .collect();
         Self {
             composite_body: whole,
-            factor: six_by_six(&whole).cholesky(),
+            factor: spatial_inertia_matrix(&whole).cholesky(),
             momentum_jacobian: columns,
         }
     }
@@ -73,11 +73,11 @@ impl FloatingBase {
 
     /// Returns what the six freedoms resist with, `I^c_0`.
     pub(super) fn inertia(&self) -> SymmetricMatrix {
-        six_by_six(&self.composite_body)
+        spatial_inertia_matrix(&self.composite_body)
     }
 
     /// Returns the six velocities of a root with this motion and velocity of its centre of mass.
-    pub(super) fn base_velocity(&self, root: &BodyAcceleration, velocity: DVec3) -> [f64; 6] {
+    pub(super) fn base_velocity(&self, root: &LinkMotion, velocity: DVec3) -> [f64; 6] {
         let there = velocity + root.angular.cross(self.composite_body.center - root.center);
         six(there, root.angular)
     }
@@ -99,14 +99,10 @@ impl FloatingBase {
     }
 
     /// Returns the root's motion when its six velocities change at this rate, per second.
-    pub(super) fn base_motion_at(
-        &self,
-        root: &BodyAcceleration,
-        gained: &[f64; 6],
-    ) -> BodyAcceleration {
+    pub(super) fn base_motion_at(&self, root: &LinkMotion, gained: &[f64; 6]) -> LinkMotion {
         let linear = DVec3::new(gained[0], gained[1], gained[2]);
         let angular = DVec3::new(gained[3], gained[4], gained[5]);
-        BodyAcceleration {
+        LinkMotion {
             acceleration: root.acceleration
                 + linear
                 + angular.cross(root.center - self.composite_body.center),
@@ -116,7 +112,7 @@ impl FloatingBase {
     }
 }
 
-fn six_by_six(whole: &LumpedBody) -> SymmetricMatrix {
+fn spatial_inertia_matrix(whole: &SpatialInertia) -> SymmetricMatrix {
     let mut own = SymmetricMatrix::zero(6);
     for k in 0..3 {
         own.set(k, k, whole.mass);

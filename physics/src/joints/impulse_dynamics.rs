@@ -11,8 +11,8 @@
 use super::convex_solver::SymmetricMatrix;
 use super::floating_base::{FloatingBase, dot};
 use super::forward_kinematics;
-use super::joint_state::JointCoordinate;
-use super::tree_dynamics::{BodyAcceleration, JointAxisState};
+use super::joint_state::JointKinematics;
+use super::tree_dynamics::{JointAxisState, LinkMotion};
 use super::tree_step::TreeStep;
 use super::{KinematicTree, PhysicsJoint};
 use crate::engine::RapierWorld;
@@ -38,7 +38,7 @@ pub(crate) struct ImpulseDynamics {
     /// The bodies that the joints move. Shape (freedom,).
     bodies: Vec<RigidBodyHandle>,
     root_body: RigidBodyHandle,
-    root: BodyAcceleration,
+    root: LinkMotion,
     root_velocity: DVec3,
     floating: Option<FloatingBase>,
     /// The joint-space inertia matrix, with a free root's six freedoms.
@@ -85,7 +85,7 @@ impl ImpulseDynamics {
         engine: &RapierWorld,
         (trees, tree): (&[KinematicTree], usize),
         joints: &[PhysicsJoint],
-        (began, joint_coordinates): (&[JointCoordinate], &[JointCoordinate]),
+        (began, joint_coordinates): (&[JointKinematics], &[JointKinematics]),
     ) -> Option<Self> {
         let number = tree;
         let tree = &trees[number];
@@ -247,7 +247,7 @@ impl ImpulseDynamics {
         engine: &mut RapierWorld,
         trees: &[KinematicTree],
         joints: &[PhysicsJoint],
-        joint_coordinates: &mut [JointCoordinate],
+        joint_coordinates: &mut [JointKinematics],
     ) -> bool {
         if !self.moved {
             return false;
@@ -266,7 +266,7 @@ impl ImpulseDynamics {
         for (k, free) in self.free.iter().enumerate() {
             let (position, velocity) = (self.positions[k], self.velocities[k]);
             let joint = trees[self.tree].joints[*free];
-            joint_coordinates[joint] = JointCoordinate { position, velocity };
+            joint_coordinates[joint] = JointKinematics { position, velocity };
             forward_kinematics::place_child(engine, &joints[joint], (position, velocity), false);
         }
         true

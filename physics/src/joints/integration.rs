@@ -9,7 +9,7 @@
 //! energy of symmetric methods.
 
 use super::base_contacts::{self, BaseResponse, ReducedProblem, SupportState};
-use super::chain::{Chain, LawWrenchEvaluator};
+use super::chain::{FreeJointChain, LawWrenchEvaluator};
 use super::convex_solver::{EffortProblem, EffortTerm, SymmetricMatrix};
 use super::effort_term::JointDof;
 use super::tree::KinematicTree;
@@ -108,7 +108,7 @@ impl TreeSolver<'_> {
     /// Integrates the tree from here.
     pub(super) fn integrate<'c>(
         &self,
-        chain: &'c Chain,
+        chain: &'c FreeJointChain,
         positions: &[f64],
         velocities: &[f64],
     ) -> TreeIntegration<'c> {
@@ -304,7 +304,7 @@ impl TreeSolver<'_> {
                 .zip(&resistances)
                 .map(|(freedom, resistance)| {
                     let velocity = velocity[freedom.index];
-                    let own = self.own_elements(freedom, resistance);
+                    let own = self.joint_effort_terms(freedom, resistance);
                     let own: f64 = own
                         .map(|element| element.effort_and_slope(velocity).0)
                         .sum();
@@ -340,7 +340,7 @@ impl TreeSolver<'_> {
     }
 
     /// Returns the efforts along a joint of its motor and its resistance.
-    fn own_elements<'a>(
+    fn joint_effort_terms<'a>(
         &'a self,
         freedom: &'a JointDof,
         resistance: &'a JointResistance,
@@ -360,7 +360,7 @@ impl TreeSolver<'_> {
         let mut elements = Vec::with_capacity(3 * freedoms.len());
         for ((joint, freedom), place) in self.joints.iter().zip(freedoms).zip(self.free) {
             let resistance = &resistances[freedom.index];
-            elements.extend(self.own_elements(freedom, resistance));
+            elements.extend(self.joint_effort_terms(freedom, resistance));
             if let Some([low, high]) = joint.values.limits {
                 elements.push(freedom.limit_stop(low.into(), 1.0));
                 elements.push(freedom.limit_stop(high.into(), -1.0));

@@ -17,7 +17,7 @@ use std::f64::consts::TAU;
 /// The coordinates of a joint from which physics goes on: position and velocity. Bodies hold the same as poses and
 /// velocities in the world, rounded to f32.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct JointCoordinate {
+pub(crate) struct JointKinematics {
     /// rad or m.
     pub(crate) position: f64,
     /// rad/s or m/s.
@@ -54,14 +54,14 @@ pub(crate) fn read_joint(
 pub(crate) fn continued_coordinate(
     engine: &RapierWorld,
     joint: &PhysicsJoint,
-    last_known: JointCoordinate,
-) -> JointCoordinate {
+    last_known: JointKinematics,
+) -> JointKinematics {
     JointReading::at_step_start(engine, joint, last_known).coordinate()
 }
 
 /// Returns the rounding error of a joint's position and velocity because bodies are f32: rad or m, and per second. A
 /// position is rounded by its distance from the world's origin, a velocity by the bodies' own.
-fn rounding(engine: &RapierWorld, joint: &PhysicsJoint) -> [f64; 2] {
+fn f32_rounding_error(engine: &RapierWorld, joint: &PhysicsJoint) -> [f64; 2] {
     let grain = ROUNDINGS * f64::from(f32::EPSILON);
     let mut sizes = [1.0_f64, 0.0];
     let child = engine.bodies.get(joint.child_handle);
@@ -96,15 +96,15 @@ fn velocity_at(body: &RigidBody, at: DVec3) -> DVec3 {
 }
 
 impl JointReading {
-    pub(super) fn coordinate(&self) -> JointCoordinate {
-        JointCoordinate {
+    pub(super) fn coordinate(&self) -> JointKinematics {
+        JointKinematics {
             position: self.position,
             velocity: self.velocity,
         }
     }
 
     pub(super) fn of(engine: &RapierWorld, joint: &PhysicsJoint, last_known: f64) -> Self {
-        Self::with(engine, joint, |_, _| (last_known, 0.0))
+        Self::measure_with(engine, joint, |_, _| (last_known, 0.0))
     }
 
     /// Returns the joint before a step. Where bodies differ from `last_known` by no more than their rounding, it has those
@@ -112,10 +112,10 @@ impl JointReading {
     pub(super) fn at_step_start(
         engine: &RapierWorld,
         joint: &PhysicsJoint,
-        last_known: JointCoordinate,
+        last_known: JointKinematics,
     ) -> Self {
         let reading = Self::of(engine, joint, last_known.position);
-        let [place, speed] = rounding(engine, joint);
+        let [place, speed] = f32_rounding_error(engine, joint);
         let held = |told: f64, found: f64, within: f64| {
             let same = (found - told).abs() <= within;
             if same { told } else { found }
@@ -135,7 +135,7 @@ impl JointReading {
     pub(super) fn at_step_end(&self, engine: &RapierWorld, joint: &PhysicsJoint) -> Self {
         let (count, substep_s) = substeps(engine);
         let turns_alone = is_untouched(engine, joint);
-        Self::with(engine, joint, |now, axis| {
+        Self::measure_with(engine, joint, |now, axis| {
             let way = self.step_displacement(engine, now.velocity);
             let [child, parent] = [0, 1].map(|k| {
                 let missing = missing_turn(self.spins[k], now.spins[k], count, substep_s);
@@ -157,7 +157,7 @@ impl JointReading {
 
     /// `expect`: from the joint's present motion and its axis in the world, its approximate position by its bodies, and
     /// their lost rotation.
-    fn with(
+    fn measure_with(
         engine: &RapierWorld,
         joint: &PhysicsJoint,
         expect: impl FnOnce(&Self, DVec3) -> (f64, f64),

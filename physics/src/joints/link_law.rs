@@ -10,12 +10,12 @@ use std::fmt::Debug;
 pub(crate) trait LinkLaw: Debug + Send + Sync {
     /// Returns the wrench on a jointed body, or on a free root of a tree. It is called several times in a step, until the
     /// tree's motion and the wrenches agree.
-    fn wrench(&self, link: &LinkStep) -> ExternalWrench;
+    fn wrench(&self, link: &LinkState) -> ExternalWrench;
 }
 
 /// A body of a kinematic tree, at the beginning of a step or at its middle.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct LinkStep {
+pub(crate) struct LinkState {
     /// Index of its plan in the model.
     pub(crate) body: u32,
     pub(crate) mass_kg: f64,
@@ -50,7 +50,7 @@ impl ExternalWrench {
     }
 }
 
-impl LinkStep {
+impl LinkState {
     /// Returns the share of its momentum that a body loses each second under a decay with `rate_per_s`, for the whole step,
     /// so that an otherwise free body slows exponentially and never reverses.
     pub(crate) fn decay_per_s(&self, rate_per_s: f64) -> f64 {
@@ -78,8 +78,8 @@ impl LinkStep {
 mod tests {
     use super::*;
 
-    fn link(velocity: f64, dt_s: f64, middle: bool) -> LinkStep {
-        LinkStep {
+    fn link(velocity: f64, dt_s: f64, middle: bool) -> LinkState {
+        LinkState {
             body: 0,
             mass_kg: 1.0,
             inertia: DMat3::IDENTITY,

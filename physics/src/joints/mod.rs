@@ -31,10 +31,10 @@ pub(crate) use efforts::{
 };
 pub(crate) use forward_kinematics::{ImposedJointState, matches_bodies, place_tree};
 pub(crate) use impulse_dynamics::{ImpulseDynamics, ImpulsePoint};
-pub(crate) use joint_state::{JointCoordinate, continued_coordinate, read_joint};
+pub(crate) use joint_state::{JointKinematics, continued_coordinate, read_joint};
 pub(crate) use latch::{closed_tolerance, is_at_closed_position, latch, release};
-pub(crate) use link_law::{ExternalWrench, LinkLaw, LinkStep};
-pub(crate) use motor_law::{MotorLaw, MotorStep, StatefulLaw, motor_command};
+pub(crate) use link_law::{ExternalWrench, LinkLaw, LinkState};
+pub(crate) use motor_law::{MotorLaw, MotorState, StatefulLaw, motor_command};
 pub(crate) use resistance_law::{JointLoad, JointResistance, ResistanceLaw, SlipSpring};
 pub(crate) use tree::{KinematicTree, trees};
 
@@ -101,11 +101,11 @@ pub(crate) fn insert(
             continue;
         };
         let (parent_handle, body_from_parent, standing) = parent(model, bodies, joint, anchor);
-        let child_from_part = offset(model, child, joint.child);
+        let child_from_part = part_pose_on_body(model, child, joint.child);
         let values = state.joint_parameters(&model.house, id);
         let parent_from_joint = to_rapier(&(body_from_parent * values.parent_from_joint));
         let child_from_joint = to_rapier(&(child_from_part * joint.child_from_joint));
-        let to_x = to_x(values.axis);
+        let to_x = frame_with_x_along(values.axis);
         let locked = match joint.kind {
             JointKind::Hinge => JointAxesMask::LOCKED_REVOLUTE_AXES,
             JointKind::Slide => JointAxesMask::LOCKED_PRISMATIC_AXES,
@@ -115,7 +115,7 @@ pub(crate) fn insert(
             .local_frame1(parent_from_joint * to_x)
             .local_frame2(child_from_joint * to_x)
             .contacts_enabled(false);
-        if let Some(limits) = held_by_rapier(joint.kind, &values) {
+        if let Some(limits) = rapier_limits(joint.kind, &values) {
             builder = builder.limits(axis, limits);
         }
         let child_handle = bodies[child as usize].handle;
@@ -151,13 +151,13 @@ fn free_axis(kind: JointKind) -> JointAxis {
 const SLACK: f32 = 1e-5;
 
 /// Returns the limits that rapier enforces too.
-fn held_by_rapier(kind: JointKind, values: &JointParameters) -> Option<[f32; 2]> {
+fn rapier_limits(kind: JointKind, values: &JointParameters) -> Option<[f32; 2]> {
     let limits = values.limits?;
     effort_term::rapier_can_limit(kind, limits).then_some([limits[0] - SLACK, limits[1] + SLACK])
 }
 
 /// rapier turns about and slides along the frames' X axes.
-fn to_x(axis: Vec3) -> RapierPose {
+fn frame_with_x_along(axis: Vec3) -> RapierPose {
     RapierPose::from_rotation(Quat::from_rotation_arc(Vec3::X, axis.normalize_or(Vec3::X)))
 }
 
@@ -173,7 +173,7 @@ fn parent(
         Some(part) => match model.body_of_part[part] {
             Some(body) => (
                 bodies[body as usize].handle,
-                offset(model, body, part),
+                part_pose_on_body(model, body, part),
                 false,
             ),
             None => (anchor, model.house.parts[part].world_from_part, true),
@@ -181,7 +181,7 @@ fn parent(
     }
 }
 
-fn offset(model: &PhysicsModel, body: u32, part: PartId) -> Pose {
+fn part_pose_on_body(model: &PhysicsModel, body: u32, part: PartId) -> Pose {
     let parts = &model.bodies[body as usize].parts;
     parts
         .iter()
@@ -204,7 +204,7 @@ pub(crate) fn update_joint_parameters(
         && let Some(held) = engine.joints.get_mut(joint.handle, false)
     {
         let axis = free_axis(joint.kind);
-        match held_by_rapier(joint.kind, &values) {
+        match rapier_limits(joint.kind, &values) {
             Some(limits) => {
                 held.data.set_limits(axis, limits);
             }
@@ -218,7 +218,7 @@ pub(crate) fn update_joint_parameters(
         joint.parent_from_joint = parent_from_joint;
         let child_from_joint = joint.child_from_joint;
         if let Some(held) = engine.joints.get_mut(joint.handle, false) {
-            let to_x = to_x(values.axis);
+            let to_x = frame_with_x_along(values.axis);
             held.data.set_local_frame1(parent_from_joint * to_x);
             held.data.set_local_frame2(child_from_joint * to_x);
         }

@@ -7,7 +7,7 @@ use std::fmt::Debug;
 /// The state of a motor's or joint's law between steps.
 pub(crate) trait StatefulLaw {
     /// Notes that a joint was set to `position` (rad or m) from outside, which is no motion.
-    fn joint_set(&mut self, _joint: JointId, _position: f32) {}
+    fn on_joint_set(&mut self, _joint: JointId, _position: f32) {}
 
     /// Returns its state, for snapshots.
     fn state(&self) -> Vec<f32> {
@@ -21,7 +21,7 @@ pub(crate) trait StatefulLaw {
 /// A law that changes motors in each physics step.
 pub(crate) trait MotorLaw: StatefulLaw + Debug + Send + Sync {
     /// Changes the command that a joint's motor follows in one physics step. It is called for every motor in every step.
-    fn modify_command(&mut self, _motor: &MotorStep, _command: &mut JointCommand) {}
+    fn modify_command(&mut self, _motor: &MotorState, _command: &mut JointCommand) {}
 
     /// Changes the actuation by a joint's motor for its command in one physics step.
     fn modify_actuation(&self, _joint: JointId, _pull: &mut JointActuation) {}
@@ -38,7 +38,7 @@ impl Clone for Box<dyn MotorLaw> {
 
 /// A joint with a motor before a physics step.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct MotorStep {
+pub(crate) struct MotorState {
     pub(crate) joint: JointId,
     /// rad or m.
     pub(crate) position: f32,
@@ -48,7 +48,7 @@ pub(crate) struct MotorStep {
     pub(crate) dt_s: f32,
 }
 
-impl MotorStep {
+impl MotorState {
     /// Returns the value of a command of this kind that keeps the present state.
     pub(crate) fn holding_value(&self, command: JointCommand) -> f32 {
         match command {

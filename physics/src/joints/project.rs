@@ -12,7 +12,7 @@ use super::PhysicsJoint;
 use super::convex_solver::{EffortProblem, EffortTerm, SymmetricMatrix};
 use super::floating_base::FloatingBase;
 use super::forward_kinematics;
-use super::joint_state::JointCoordinate;
+use super::joint_state::JointKinematics;
 use super::tree::KinematicTree;
 use super::tree_dynamics::{TreeDynamics, Wrench};
 use super::tree_step::TreeStep;
@@ -32,7 +32,7 @@ impl TreeStep {
         tree: &KinematicTree,
         joints: &[PhysicsJoint],
         ends: &[Option<f64>],
-        joint_coordinates: &mut [JointCoordinate],
+        joint_coordinates: &mut [JointKinematics],
     ) {
         self.chain.follow_root(engine, tree);
         let (positions, velocities) = (self.positions(), self.velocities());
@@ -46,7 +46,8 @@ impl TreeStep {
                     return Wrench::default();
                 };
                 let (linear, angular) = (body.linvel().as_dvec3(), body.angvel().as_dvec3());
-                let (linear, angular) = motion.beside_root(lump.center, linear, angular);
+                let (linear, angular) =
+                    motion.velocity_relative_to_root(lump.center, linear, angular);
                 let force = linear * lump.mass;
                 Wrench {
                     force,
@@ -83,7 +84,7 @@ impl TreeStep {
         for ((joint, k), (position, velocity)) in joints.iter().zip(&self.free).zip(states) {
             let [low, high] = joint.stops();
             let position = position.max(low).min(high);
-            joint_coordinates[tree.joints[*k]] = JointCoordinate { position, velocity };
+            joint_coordinates[tree.joints[*k]] = JointKinematics { position, velocity };
             forward_kinematics::place_child(engine, joint, (position, velocity), false);
         }
     }
@@ -128,7 +129,12 @@ fn stop_impulse_terms(
 
 impl TreeDynamics<'_> {
     /// Returns the velocity and angular velocity of a body relative to a kinematic root. A free root counts with the others.
-    fn beside_root(&self, center: DVec3, linear: DVec3, angular: DVec3) -> (DVec3, DVec3) {
+    fn velocity_relative_to_root(
+        &self,
+        center: DVec3,
+        linear: DVec3,
+        angular: DVec3,
+    ) -> (DVec3, DVec3) {
         if self.free_root.is_some() {
             return (linear, angular);
         }

@@ -20,7 +20,7 @@ use rapier3d::dynamics::RigidBody;
 
 /// The mass properties of a body.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct LumpedBody {
+pub(super) struct SpatialInertia {
     /// kg.
     pub(super) mass: f64,
     /// Mass that gravity acts on, kg: less under water.
@@ -31,7 +31,7 @@ pub(super) struct LumpedBody {
     pub(super) inertia: DMat3,
 }
 
-impl LumpedBody {
+impl SpatialInertia {
     pub(super) fn of(body: &RigidBody) -> Self {
         let own = Self::in_body_frame(body);
         let turn = DMat3::from_quat(body.position().rotation.as_dquat().normalize());
@@ -67,12 +67,12 @@ impl LumpedBody {
             mass,
             weight_mass: self.weight_mass + other.weight_mass,
             center,
-            inertia: self.about(center) + other.about(center),
+            inertia: self.inertia_about(center) + other.inertia_about(center),
         }
     }
 
     /// The inertia about another point (Steiner): `I_p = I_c + m (|d|^2 1 - d d^T)`.
-    fn about(&self, point: DVec3) -> DMat3 {
+    fn inertia_about(&self, point: DVec3) -> DMat3 {
         let d = self.center - point;
         let outer = DMat3::from_cols(d * d.x, d * d.y, d * d.z);
         self.inertia + (DMat3::from_diagonal(DVec3::splat(d.length_squared())) - outer) * self.mass
@@ -117,14 +117,14 @@ impl JointAxisState {
 
 /// The motion of a body, with accelerations as if no joint accelerated.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct BodyAcceleration {
+pub(super) struct LinkMotion {
     pub(super) center: DVec3,
     pub(super) angular: DVec3,
     pub(super) acceleration: DVec3,
     pub(super) angular_acceleration: DVec3,
 }
 
-impl BodyAcceleration {
+impl LinkMotion {
     /// A body at rest or at constant velocity.
     pub(super) fn at_constant_velocity(center: DVec3, angular: DVec3) -> Self {
         Self {
@@ -150,12 +150,12 @@ pub(super) struct TreeDynamics<'a> {
     /// Wrench of laws on a free root.
     pub(super) root_law_wrench: ExternalWrench,
     pub(super) axes: Vec<JointAxisState>,
-    pub(super) masses: Vec<LumpedBody>,
+    pub(super) masses: Vec<SpatialInertia>,
     pub(super) angular: Vec<DVec3>,
     /// The motion of the root.
-    pub(super) root: BodyAcceleration,
+    pub(super) root: LinkMotion,
     /// The root's own mass if it is free, its joints' efforts reacting on it.
-    pub(super) free_root: Option<LumpedBody>,
+    pub(super) free_root: Option<SpatialInertia>,
     /// The velocity of the root's centre of mass, m/s.
     pub(super) root_velocity: DVec3,
     /// The support points of a tree whose root is free.
@@ -167,7 +167,7 @@ pub(super) struct TreeDynamics<'a> {
 
 impl TreeDynamics<'_> {
     /// Returns the mass that each joint moves, and its momentum for each unit of the joint's velocity. Shape (freedom,) each.
-    fn composite_bodies(&self) -> (Vec<LumpedBody>, Vec<(DVec3, DVec3)>) {
+    fn composite_bodies(&self) -> (Vec<SpatialInertia>, Vec<(DVec3, DVec3)>) {
         let mut carried = self.masses.clone();
         for k in (0..carried.len()).rev() {
             if let Some(parent) = self.axes[k].parent {
@@ -176,7 +176,7 @@ impl TreeDynamics<'_> {
             }
         }
         // F_k = I^c_k S_k (table 6.2).
-        let momentum = |(axis, lump): (&JointAxisState, &LumpedBody)| {
+        let momentum = |(axis, lump): (&JointAxisState, &SpatialInertia)| {
             let (linear, angular) = axis.unit_velocity_at(lump.center);
             (linear * lump.mass, lump.inertia * angular)
         };
@@ -218,18 +218,18 @@ impl TreeDynamics<'_> {
     }
 
     /// Returns the motion of every body when the joints accelerate at this rate. Shape (freedom,).
-    fn moving(&self, accelerations: &[f64]) -> Vec<BodyAcceleration> {
+    fn link_motions(&self, accelerations: &[f64]) -> Vec<LinkMotion> {
         self.moving_over(self.root, accelerations)
     }
 
-    fn moving_over(&self, root: BodyAcceleration, accelerations: &[f64]) -> Vec<BodyAcceleration> {
-        let mut moving: Vec<BodyAcceleration> = Vec::with_capacity(self.axes.len());
+    fn moving_over(&self, root: LinkMotion, accelerations: &[f64]) -> Vec<LinkMotion> {
+        let mut moving: Vec<LinkMotion> = Vec::with_capacity(self.axes.len());
         for (k, axis) in self.axes.iter().enumerate() {
             let parent = axis.parent.map_or(root, |parent| moving[parent]);
             let turn = axis.direction * axis.velocity;
             let gain = axis.direction * accelerations[k];
             let center = self.masses[k].center;
-            let mut body = BodyAcceleration::at_constant_velocity(center, self.angular[k]);
+            let mut body = LinkMotion::at_constant_velocity(center, self.angular[k]);
             // a_k = a_lambda + S_k q''_k + v_k x S_k q'_k (table 5.1), in three dimensions.
             match axis.kind {
                 JointKind::Hinge => {
@@ -254,7 +254,10 @@ impl TreeDynamics<'_> {
     }
 
     /// Returns the generalized forces of the last step's contacts: on the joints, shape (freedom,), and on a free root's six freedoms.
-    pub(super) fn contact_forces(&self, floating: Option<&FloatingBase>) -> (Vec<f64>, [f64; 6]) {
+    pub(super) fn generalized_contact_forces(
+        &self,
+        floating: Option<&FloatingBase>,
+    ) -> (Vec<f64>, [f64; 6]) {
         let mut efforts = vec![0.0; self.axes.len()];
         let mut whole = Wrench::default();
         for touch in self.external_contacts {
@@ -287,7 +290,7 @@ impl TreeDynamics<'_> {
         };
         let moving = self.moving_over(root, accelerations);
         // Newton's m a - m g and Euler's I alpha; rapier adds omega x I omega itself.
-        let wrench = |body: &BodyAcceleration, lump: &LumpedBody| Wrench {
+        let wrench = |body: &LinkMotion, lump: &SpatialInertia| Wrench {
             force: body.acceleration * lump.mass - self.gravity * lump.weight_mass,
             torque: lump.inertia * body.angular_acceleration,
         };
@@ -322,7 +325,7 @@ impl TreeDynamics<'_> {
     pub(super) fn loads(&self) -> TreeLoads {
         let n = self.axes.len();
         // f^B = I a + v x* I v less what acts from outside (table 5.1), about the origin: here the weight, below what laws push with.
-        let own = |body: &BodyAcceleration, lump: &LumpedBody| {
+        let own = |body: &LinkMotion, lump: &SpatialInertia| {
             let weight = -self.gravity * lump.weight_mass;
             let force = body.acceleration * lump.mass + weight;
             let moment = lump.inertia * body.angular_acceleration
@@ -340,10 +343,10 @@ impl TreeDynamics<'_> {
                 weight,
             ]
         };
-        let moving = self.moving(&vec![0.0; n]);
+        let moving = self.link_motions(&vec![0.0; n]);
         let pairs = moving.iter().zip(&self.masses);
         let mut links: Vec<[Wrench; 2]> = pairs.map(|(body, lump)| own(body, lump)).collect();
-        let pushed = |load: &mut [Wrench; 2], push: &ExternalWrench, lump: &LumpedBody| {
+        let pushed = |load: &mut [Wrench; 2], push: &ExternalWrench, lump: &SpatialInertia| {
             let push = Wrench {
                 force: push.force,
                 torque: push.torque + lump.center.cross(push.force),

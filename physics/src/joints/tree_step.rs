@@ -1,7 +1,7 @@
 //! The joints of a tree that may move, before and after a step.
 
-use super::chain::Chain;
-use super::joint_state::{JointCoordinate, JointReading};
+use super::chain::FreeJointChain;
+use super::joint_state::{JointKinematics, JointReading};
 use super::tree::KinematicTree;
 use super::{PhysicsJoint, child_at};
 use crate::engine::RapierWorld;
@@ -19,7 +19,7 @@ pub(crate) struct TreeStep {
     pub(super) free: Vec<usize>,
     /// Shape (freedom,).
     pub(super) readings: Vec<JointReading>,
-    pub(super) chain: Chain,
+    pub(super) chain: FreeJointChain,
 }
 
 impl TreeStep {
@@ -28,7 +28,7 @@ impl TreeStep {
         engine: &RapierWorld,
         tree: &KinematicTree,
         joints: &[PhysicsJoint],
-        joint_coordinates: &[JointCoordinate],
+        joint_coordinates: &[JointKinematics],
     ) -> Option<Self> {
         let moves = |k: &usize| {
             let child = joints[tree.joints[*k]].child_handle;
@@ -45,7 +45,7 @@ impl TreeStep {
         };
         Some(Self {
             readings: free.iter().map(read).collect(),
-            chain: Chain::of(engine, tree, &free, joints),
+            chain: FreeJointChain::of(engine, tree, &free, joints),
             free,
         })
     }

@@ -1,7 +1,7 @@
 //! Laws that act on bodies between physics steps.
 
 use crate::body::BodyHandle;
-use crate::contact::{ColliderEntry, ContactTable};
+use crate::contact::{ColliderMetadata, ContactTable};
 use crate::engine::RapierWorld;
 use crate::model::BodyPlan;
 use dwell_scene::House;
@@ -27,7 +27,7 @@ pub(crate) struct LawContext<'a> {
     /// [`LinkLaw`](crate::joints::LinkLaw).
     pub(crate) floating_roots: &'a [u32],
     /// The entry of each collider, by its user data.
-    pub(crate) entries: &'a [ColliderEntry],
+    pub(crate) entries: &'a [ColliderMetadata],
     pub(crate) house: &'a House,
     pub(crate) table: &'a ContactTable,
     /// Length of a physics step, s.

@@ -95,7 +95,7 @@ impl LawSet {
     /// Notes that a joint was set to `position` (rad or m) from outside.
     pub(crate) fn notify_joint_set(&mut self, joint: JointId, position: f32) {
         for (_, effect) in self.stateful_laws() {
-            effect.joint_set(joint, position);
+            effect.on_joint_set(joint, position);
         }
     }
 

@@ -7,7 +7,7 @@ pub(crate) mod shapes;
 mod substance;
 
 pub(crate) use plan::{BodyPlan, CollisionPiece, MaterialAssignment, PieceOwner};
-pub(crate) use rolling_cylinder::RollingCylinder;
+pub(crate) use rolling_cylinder::RollableCylinder;
 
 use dwell_scene::{Aabb, House, IdVec, ObjectId, PartId};
 use std::fmt;
@@ -25,7 +25,7 @@ pub struct PhysicsModel {
     /// Moving objects without collision pieces of their own, which have convex pieces of their visible mesh.
     pub(crate) fallback_collider_objects: Vec<ObjectId>,
     /// The cylinders of bodies.
-    pub(crate) rolling_cylinders: Vec<RollingCylinder>,
+    pub(crate) rolling_cylinders: Vec<RollableCylinder>,
     /// The box around all static pieces and bodies at the start, m.
     pub(crate) bounds: Aabb,
 }

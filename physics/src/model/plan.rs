@@ -167,14 +167,19 @@ fn part_pieces(
                 });
             }
         } else if let Some(shaped) = shapes::convex(collider) {
-            pieces.push(solid(house, id, shaped, density));
+            pieces.push(part_collision_piece(house, id, shaped, density));
         }
     }
     substance::assign_face_materials(house, id, &mut pieces);
     pieces
 }
 
-fn solid(house: &House, id: PartId, shaped: PlacedShape, density: f32) -> CollisionPiece {
+fn part_collision_piece(
+    house: &House,
+    id: PartId,
+    shaped: PlacedShape,
+    density: f32,
+) -> CollisionPiece {
     CollisionPiece {
         owner: PieceOwner::Part(id),
         shape: shaped.shape,
@@ -212,7 +217,7 @@ fn set_part_density(pieces: &mut [CollisionPiece], part: &Part) {
             piece.density_kg_m3 = 0.0;
         }
     } else {
-        weigh(pieces, part.mass_kg, part.density_kg_m3);
+        set_uniform_density(pieces, part.mass_kg, part.density_kg_m3);
     }
 }
 
@@ -234,7 +239,7 @@ fn stated_mass_properties(
     ))
 }
 
-fn weigh(pieces: &mut [CollisionPiece], mass_kg: Option<f32>, density_kg_m3: f32) {
+fn set_uniform_density(pieces: &mut [CollisionPiece], mass_kg: Option<f32>, density_kg_m3: f32) {
     let volume = volume_m3(pieces);
     let density = match mass_kg {
         Some(mass) if volume > 0.0 => mass / volume,
@@ -259,7 +264,7 @@ pub(super) fn plan(house: Arc<House>) -> PhysicsModel {
         let mut root: Option<usize> = None;
         let first_body = bodies.len();
         for id in object.parts() {
-            interrupt::check();
+            interrupt::unwind_if_cancelled();
             let part = &house.parts[id];
             let joint = joint_of_part[id];
             let stands = part.fixed || (joint.is_none() && object.mobility != Mobility::Movable);
@@ -346,7 +351,7 @@ pub(super) fn plan(house: Arc<House>) -> PhysicsModel {
 fn structure_pieces(house: &House, meshes: &mut ShapeCache) -> Vec<CollisionPiece> {
     let mut pieces = Vec::new();
     for (id, structure) in house.structure.iter_ids() {
-        interrupt::check();
+        interrupt::unwind_if_cancelled();
         let exact = meshes.exact(house, structure.mesh, &Affine3A::IDENTITY);
         if let Some((shape, triangles)) = exact {
             pieces.push(CollisionPiece {
@@ -380,7 +385,7 @@ fn stand_in_pieces(house: &House, meshes: &mut ShapeCache, body: &BodyPlan) -> V
                     part_from_shape,
                     triangles: Vec::new(),
                 };
-                solid(house, *id, shaped, part.density_kg_m3)
+                part_collision_piece(house, *id, shaped, part.density_kg_m3)
             })
             .collect();
         set_part_density(&mut own, part);
@@ -400,7 +405,7 @@ fn stand_in_pieces(house: &House, meshes: &mut ShapeCache, body: &BodyPlan) -> V
         } else {
             root.density_kg_m3
         };
-        pieces.push(solid(house, body.root(), crumb, density));
+        pieces.push(part_collision_piece(house, body.root(), crumb, density));
     }
     pieces
 }

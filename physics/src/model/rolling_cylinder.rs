@@ -10,7 +10,7 @@ const MIN_ROLLING_M_S: f32 = 0.01;
 
 /// A cylinder of a body that may move.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct RollingCylinder {
+pub(crate) struct RollableCylinder {
     body: u32,
     /// Its index among the body's pieces.
     piece: usize,
@@ -19,11 +19,11 @@ pub(crate) struct RollingCylinder {
 }
 
 /// Returns all cylinders of bodies, in order.
-pub(crate) fn rolling_cylinders(bodies: &[BodyPlan]) -> Vec<RollingCylinder> {
+pub(crate) fn rolling_cylinders(bodies: &[BodyPlan]) -> Vec<RollableCylinder> {
     let of_body = |(index, plan): (usize, &BodyPlan)| {
         let roller = move |(piece, shaped): (usize, &CollisionPiece)| {
             let cylinder = shaped.shape.as_cylinder()?;
-            Some(RollingCylinder {
+            Some(RollableCylinder {
                 body: index as u32,
                 piece,
                 axis_in_body: shaped.pose.rotation * Vec3::Y,
@@ -36,7 +36,7 @@ pub(crate) fn rolling_cylinders(bodies: &[BodyPlan]) -> Vec<RollingCylinder> {
     bodies.iter().enumerate().flat_map(of_body).collect()
 }
 
-impl RollingCylinder {
+impl RollableCylinder {
     /// Returns whether it turns about its axis.
     pub(crate) fn rolls(&self, body: &RigidBody) -> bool {
         let axis = body.position().rotation * self.axis_in_body;

@@ -55,7 +55,7 @@ pub(super) fn assign_face_materials(house: &House, part: PartId, pieces: &mut [C
     }
     for (piece, areas) in pieces.iter_mut().zip(&areas) {
         if is_convex(piece)
-            && let Some(material) = most(materials, areas)
+            && let Some(material) = dominant_material(materials, areas)
         {
             piece.materials = MaterialAssignment::Uniform(Some(material));
         }
@@ -67,7 +67,7 @@ fn is_convex(piece: &CollisionPiece) -> bool {
 }
 
 /// Returns the material with the largest area, of equal ones the first; `None` where there is no area.
-fn most(materials: &[MaterialId], areas: &[f64]) -> Option<MaterialId> {
+fn dominant_material(materials: &[MaterialId], areas: &[f64]) -> Option<MaterialId> {
     let of = |material: MaterialId| -> f64 {
         let own = materials.iter().zip(areas);
         own.filter(|(other, _)| **other == material)

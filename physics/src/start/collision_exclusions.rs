@@ -2,7 +2,7 @@
 
 use super::overlap::penetration_depth;
 use super::{CLEARANCE_M, StartResolver};
-use crate::contact::{ColliderEntry, CollisionExclusions, ContactEntity, entry_index};
+use crate::contact::{ColliderMetadata, CollisionExclusions, ContactEntity, entry_index};
 use crate::error::PhysicsError;
 use crate::limits;
 use crate::model::{BodyPlan, PhysicsModel, PieceOwner, shapes};
@@ -30,13 +30,13 @@ impl StartResolver<'_> {
         let house = &self.model.house;
         let driven = house.joints.iter().filter(|joint| joint.servo.is_some());
         let robots: BTreeSet<ObjectId> = driven.map(|joint| joint.object).collect();
-        let families = ObjectPieces::new(self.model, self.entries);
+        let families = JointedObjectPieces::new(self.model, self.entries);
         for (index, plan) in self.model.bodies.iter().enumerate() {
             let Some(joint) = plan.joint else { continue };
-            interrupt::check();
+            interrupt::unwind_if_cancelled();
             let robot = robots.contains(&plan.object);
             let mut through = BTreeSet::new();
-            let place = self.place(index);
+            let place = self.body_pose(index);
             for piece in &plan.pieces {
                 let world_from_piece = place * piece.pose;
                 let near = shapes::bounds(&piece.shape, &world_from_piece).grown(LEAF_MARGIN_M);
@@ -74,7 +74,7 @@ impl StartResolver<'_> {
                     };
                     let touches = match (robot, same) {
                         (true, true) => within(CLEARANCE_M),
-                        (true, false) => !self.is_free(plan) && inside(),
+                        (true, false) => !self.is_movable(plan) && inside(),
                         (false, true) => true,
                         (false, false) => within(LEAF_MARGIN_M),
                     };
@@ -116,11 +116,11 @@ impl StartResolver<'_> {
     }
 
     /// Returns whether a body's object has a free root.
-    fn is_free(&self, plan: &BodyPlan) -> bool {
+    fn is_movable(&self, plan: &BodyPlan) -> bool {
         self.model.house.objects[plan.object].mobility == Mobility::Movable
     }
 
-    fn same_object(&self, entry: &ColliderEntry, plan: &BodyPlan) -> bool {
+    fn same_object(&self, entry: &ColliderMetadata, plan: &BodyPlan) -> bool {
         match entry.contact_entity {
             Some(ContactEntity::Part(part)) => self.model.house.parts[part].object == plan.object,
             _ => false,
@@ -138,13 +138,13 @@ impl StartResolver<'_> {
 }
 
 /// The pieces of objects with joints, by object and body (`None`: static ones), and their parents.
-struct ObjectPieces {
+struct JointedObjectPieces {
     pieces: BTreeMap<(ObjectId, Option<u32>), Vec<u32>>,
     children: BTreeMap<u32, Vec<u32>>,
 }
 
-impl ObjectPieces {
-    fn new(model: &PhysicsModel, entries: &[ColliderEntry]) -> Self {
+impl JointedObjectPieces {
+    fn new(model: &PhysicsModel, entries: &[ColliderMetadata]) -> Self {
         let joints = model.house.joints.iter();
         let jointed: BTreeSet<ObjectId> = joints.map(|joint| joint.object).collect();
         let mut pieces: BTreeMap<_, Vec<u32>> = BTreeMap::new();

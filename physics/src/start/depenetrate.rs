@@ -205,7 +205,7 @@ impl StartResolver<'_> {
             let other = other.body as usize;
             let plan = &self.model.bodies[other];
             let way =
-                self.push_up_or_down(plan, self.place(other), standing, self.push_limits())?;
+                self.push_up_or_down(plan, self.body_pose(other), standing, self.push_limits())?;
             standing.insert(self.model, other, way);
             ways.push(way);
         }

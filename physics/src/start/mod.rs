@@ -7,7 +7,7 @@ mod placed_bodies;
 
 use crate::body::{BodyHandle, BodyStatus};
 use crate::config::ResolvedConfig;
-use crate::contact::ColliderEntry;
+use crate::contact::ColliderMetadata;
 use crate::engine::RapierWorld;
 use crate::model::{BodyPlan, PhysicsModel};
 use crate::report::{FrozenObject, MovedObject, StartReport};
@@ -27,7 +27,7 @@ const MOST_OVERLAPPED: usize = 32;
 pub(crate) struct StartResolver<'a> {
     pub(crate) engine: &'a RapierWorld,
     pub(crate) model: &'a PhysicsModel,
-    pub(crate) entries: &'a [ColliderEntry],
+    pub(crate) entries: &'a [ColliderMetadata],
     pub(crate) bodies: &'a [BodyHandle],
     pub(crate) settings: &'a ResolvedConfig,
 }
@@ -40,7 +40,7 @@ pub(crate) struct ResolvedBody {
 }
 
 impl StartResolver<'_> {
-    fn place(&self, body: usize) -> RapierPose {
+    fn body_pose(&self, body: usize) -> RapierPose {
         let handle = self.bodies[body].handle;
         self.engine
             .bodies
@@ -52,7 +52,7 @@ impl StartResolver<'_> {
     pub(crate) fn resolve(&self, report: &mut StartReport) -> Vec<ResolvedBody> {
         let mut resolved: Vec<ResolvedBody> = (0..self.bodies.len())
             .map(|body| ResolvedBody {
-                pose: self.place(body),
+                pose: self.body_pose(body),
                 status: BodyStatus::Free,
             })
             .collect();
@@ -142,7 +142,7 @@ impl StartResolver<'_> {
                 distance_m: 0.0,
             });
             entry.overlap_m = entry.overlap_m.max(overlap.depth_m);
-            let way = resolved[*index].pose.translation - self.place(*index).translation;
+            let way = resolved[*index].pose.translation - self.body_pose(*index).translation;
             entry.distance_m = entry.distance_m.max(way.length());
         }
         report.moved = moved.into_values().collect();

@@ -27,7 +27,7 @@ impl StartResolver<'_> {
         place: &RapierPose,
         placed: &PlacedBodies,
     ) -> Option<Penetration> {
-        interrupt::check();
+        interrupt::unwind_if_cancelled();
         let mut found = Vec::new();
         let is_static = |_, collider: &rapier3d::geometry::Collider| {
             self.entries[entry_index(collider)].body.is_none()

@@ -5,7 +5,7 @@ use crate::agents::{self, FASTEST_FALL_M_S, PassiveVelocity, STEEPEST_LOOK_RAD};
 use crate::bases::{PlanarTwist, WheelGeometry};
 use crate::convert::to_rapier;
 use crate::error::PhysicsError;
-use crate::hands::hand_pose;
+use crate::hands::held_body_target_pose;
 use dwell_scene::{AgentId, AgentState, BaseState, DifferentialDrive, Id, Locomotion, State, math};
 use glam::Vec3;
 
@@ -288,7 +288,8 @@ impl PhysicsWorld {
             }
         }
         self.dynamics.flush();
-        self.articulation.write(&self.dynamics, state);
+        self.articulation
+            .write_bodies_and_joints(&self.dynamics, state);
         Ok(())
     }
 
@@ -297,7 +298,7 @@ impl PhysicsWorld {
     fn bring_held(&mut self, state: &mut State, place: usize, here: &AgentState) {
         let grip = self.hands.held_objects[place];
         let body = grip.body as usize;
-        let hand = to_rapier(&hand_pose(&grip, here));
+        let hand = to_rapier(&held_body_target_pose(&grip, here));
         let mut eye = hand;
         let middle = self.dynamics.model.bodies[body].bounds(&hand).center();
         eye.translation += here.eye_position() - middle;

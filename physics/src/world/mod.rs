@@ -15,7 +15,7 @@ pub use set_state::{BodyState, JointState};
 
 use crate::actions::{ActionContext, HandAction, OngoingPush};
 use crate::agents::Agents;
-use crate::articulation::JointSystem;
+use crate::articulation::WorldJoints;
 use crate::body::{BodyHandle, BodyStatus};
 use crate::config::PhysicsConfig;
 use crate::contact::{CollisionExclusions, ContactEntity, ContactTable, ExcessEventTotals};
@@ -46,7 +46,7 @@ use std::sync::Arc;
 #[derive(Clone)]
 pub struct PhysicsWorld {
     dynamics: Dynamics,
-    articulation: JointSystem,
+    articulation: WorldJoints,
     agents: Agents,
     hands: Hands,
     pushes: Vec<OngoingPush>,
@@ -125,7 +125,7 @@ impl PhysicsWorld {
         };
         let mut world = Self {
             dynamics,
-            articulation: JointSystem::default(),
+            articulation: WorldJoints::default(),
             agents: Agents::default(),
             hands: Hands::default(),
             pushes: Vec::new(),
@@ -146,7 +146,9 @@ impl PhysicsWorld {
         if !report.agents.is_empty() {
             world.dynamics.flush();
         }
-        world.articulation.write(&world.dynamics, state);
+        world
+            .articulation
+            .write_bodies_and_joints(&world.dynamics, state);
         world.dynamics.write_contacts(state);
         Ok((world, report))
     }
@@ -234,11 +236,15 @@ impl PhysicsWorld {
 
     fn check_state(&self, state: &State) -> Result<(), PhysicsError> {
         check_counts(&self.dynamics.model.house, state)?;
-        same("agents", state.agents.len(), self.agents.list.len())
+        check_equal_counts("agents", state.agents.len(), self.agents.list.len())
     }
 }
 
-fn same(what: &'static str, found: usize, expected: usize) -> Result<(), PhysicsError> {
+fn check_equal_counts(
+    what: &'static str,
+    found: usize,
+    expected: usize,
+) -> Result<(), PhysicsError> {
     if found == expected {
         Ok(())
     } else {
@@ -251,19 +257,19 @@ fn same(what: &'static str, found: usize, expected: usize) -> Result<(), Physics
 }
 
 fn check_counts(house: &House, state: &State) -> Result<(), PhysicsError> {
-    same("parts", state.part_pose.len(), house.parts.len())?;
-    same(
+    check_equal_counts("parts", state.part_pose.len(), house.parts.len())?;
+    check_equal_counts(
         "part velocities",
         state.part_velocity.len(),
         house.parts.len(),
     )?;
-    same("joints", state.joint_position.len(), house.joints.len())?;
-    same(
+    check_equal_counts("joints", state.joint_position.len(), house.joints.len())?;
+    check_equal_counts(
         "joint commands",
         state.joint_command.len(),
         house.joints.len(),
     )?;
-    same("objects", state.held_by.len(), house.objects.len())
+    check_equal_counts("objects", state.held_by.len(), house.objects.len())
 }
 
 impl fmt::Debug for PhysicsWorld {

@@ -197,11 +197,12 @@ impl PhysicsWorld {
             );
         }
         self.dynamics.flush();
-        self.articulation.write(&self.dynamics, state);
+        self.articulation
+            .write_bodies_and_joints(&self.dynamics, state);
     }
 
     /// Returns whether a collider is a rolling cylinder: the hook is asked about its contacts whatever the materials are.
-    fn rolls(&self, collider: ColliderHandle) -> bool {
+    fn is_rollable_cylinder(&self, collider: ColliderHandle) -> bool {
         self.dynamics.model.rolling_cylinders.iter().any(|roller| {
             let body = self.dynamics.bodies.get(roller.body());
             let body = body.and_then(|body| self.dynamics.engine.bodies.get(body.handle));
@@ -222,7 +223,7 @@ impl PhysicsWorld {
             return false;
         };
         let mut rule = values.self_pair(&self.dynamics.entries[entry]);
-        rule.1 |= self.rolls(handle);
+        rule.1 |= self.is_rollable_cylinder(handle);
         let same_rule = collider.friction() == rule.0.friction
             && collider.restitution() == rule.0.restitution
             && collider

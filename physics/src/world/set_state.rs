@@ -68,7 +68,7 @@ impl PhysicsWorld {
             state.part_velocity[*root] = *velocity;
         }
         self.adopt_state(state)?;
-        self.wake_tree_bodies(roots.iter().map(|(root, ..)| *root));
+        self.wake_bodies_of(roots.iter().map(|(root, ..)| *root));
         Ok(())
     }
 
@@ -108,7 +108,7 @@ impl PhysicsWorld {
         let children = joints
             .iter()
             .map(|set| self.dynamics.model.house.joints[set.joint].child);
-        self.wake_tree_bodies(children.collect::<Vec<_>>().into_iter());
+        self.wake_bodies_of(children.collect::<Vec<_>>().into_iter());
         Ok(())
     }
 
@@ -223,7 +223,7 @@ impl PhysicsWorld {
         Ok((root, of_root, Velocity { linear, angular }))
     }
 
-    fn wake_tree_bodies(&mut self, parts: impl Iterator<Item = PartId>) {
+    fn wake_bodies_of(&mut self, parts: impl Iterator<Item = PartId>) {
         for part in parts {
             if let Some(body) = self.dynamics.model.body_of_part[part] {
                 let handle = self.dynamics.bodies[body as usize].handle;

@@ -30,7 +30,7 @@ impl PhysicsWorld {
         let steps = longest_s * f64::from(self.dynamics.settings.config.control_rate_hz);
         let mut events = Vec::new();
         for _ in 0..steps.round() as u64 {
-            interrupt::check();
+            interrupt::unwind_if_cancelled();
             self.step(state, &[], &mut events)?;
             events.clear();
             if self.awake_count() == 0 {

@@ -13,7 +13,7 @@ use crate::body::pose_of;
 use crate::config::PhysicsConfig;
 use crate::contact::rolling;
 use crate::contact::{
-    ColliderEntry, CollisionExclusions, ContactHooks, ContactProperties, ContactTable,
+    ColliderMetadata, CollisionExclusions, ContactHooks, ContactProperties, ContactTable,
     ContactTracker, ExcessEventTotals,
 };
 use crate::dynamics::{AssembledWorld, BodyMasses, assemble};
@@ -122,7 +122,7 @@ impl PhysicsWorld {
         self.with_header(MAGIC_OF_MOMENTS, &self.encode_snapshot_data())
     }
 
-    fn shot(&self) -> SnapshotData<'_> {
+    fn collect_snapshot_data(&self) -> SnapshotData<'_> {
         SnapshotData {
             memory: NonRapierState {
                 tick: self.dynamics.tick,
@@ -147,7 +147,7 @@ impl PhysicsWorld {
     }
 
     fn encode_snapshot_data(&self) -> Vec<u8> {
-        columnar::to_bytes(&self.shot())
+        columnar::to_bytes(&self.collect_snapshot_data())
             .expect("rapier's sets are plain data that say how long they are")
     }
 
@@ -157,7 +157,7 @@ impl PhysicsWorld {
     /// Never: writing plain data to memory cannot fail.
     pub fn hash(&self) -> u64 {
         // Rows are three times as fast as columns, and need not pack well.
-        let rows = postcard::to_stdvec(&self.shot())
+        let rows = postcard::to_stdvec(&self.collect_snapshot_data())
             .expect("rapier's sets are plain data that postcard can always write to memory");
         xxh3_64(&rows)
     }
@@ -244,14 +244,14 @@ impl PhysicsWorld {
             agents.push(agents::insert(engine, values, entries, id, agent, force));
         }
         let (engine, handles, entries) = (&mut built.engine, &built.bodies, &built.entries);
-        let asked = |entry: &ColliderEntry| values.self_pair(entry).1;
+        let asked = |entry: &ColliderMetadata| values.self_pair(entry).1;
         rolling::restore_rolling_hooks(
             &model.rolling_cylinders,
             (engine, handles, entries),
             &bodies,
             asked,
         );
-        flush(&mut built, values, &memory.excluded);
+        apply_external_changes(&mut built, values, &memory.excluded);
         let AssembledWorld {
             engine: scaffold,
             entries,
@@ -344,7 +344,7 @@ impl PhysicsWorld {
     }
 }
 
-fn flush(
+fn apply_external_changes(
     assembly: &mut AssembledWorld,
     properties: ContactProperties<'_>,
     excluded: &CollisionExclusions,

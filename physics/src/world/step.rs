@@ -37,7 +37,7 @@ impl PhysicsWorld {
         let mut ways = MovementRecord::all(state);
         let mut placed = false;
         for substep in 0..self.dynamics.settings.steps_per_control {
-            interrupt::check();
+            interrupt::unwind_if_cancelled();
             self.move_agents(state, controls, &mut ways, substep == 0);
             placed = self.physics_step(state, events);
             self.hands.undo_wall_penetration(&mut self.dynamics);
@@ -51,7 +51,8 @@ impl PhysicsWorld {
         // A body that slept all the time is as it was written.
         if !slept || self.dynamics.engine.islands.num_active_bodies() > 0 {
             self.articulation.write_coordinates(state);
-            self.articulation.write(&self.dynamics, state);
+            self.articulation
+                .write_bodies_and_joints(&self.dynamics, state);
             self.dynamics.write_contacts(state);
         }
         Ok(())

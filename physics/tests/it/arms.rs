@@ -459,7 +459,7 @@ fn parameters_of_a_robot_change_at_run_time() {
     set(&mut run, "joint/1/gear", 0.1);
     set(&mut run, "joint/1/friction", 0.5);
     let joint = run.state.joint_parameters(&run.house, JointId(1));
-    assert!((joint.servo.unwrap().joint_effort() - 20.0).abs() < 1e-4 && joint.friction == 0.5);
+    assert!((joint.servo.unwrap().max_joint_effort() - 20.0).abs() < 1e-4 && joint.friction == 0.5);
     run.steps(20);
     let sunk = angles(&run.state);
     assert!(sunk[1] < -0.3, "{sunk:?}");

@@ -71,8 +71,9 @@ impl Build {
     }
 
     pub(crate) fn room_of(size: [f32; 3], floor: &str) -> Self {
-        let of =
-            |name: &str, substance: &str| Material::of(name, library().get_or_default(substance));
+        let of = |name: &str, substance: &str| {
+            Material::from_substance(name, library().get_or_default(substance))
+        };
         let materials = ShoeboxMaterials {
             floor: of("floor", floor),
             ..ShoeboxMaterials::uniform(&of("wall", "plaster"))
@@ -90,7 +91,9 @@ impl Build {
         let substance = library()
             .get(substance)
             .expect("a substance of the library");
-        self.data.materials.push(Material::of(name, substance))
+        self.data
+            .materials
+            .push(Material::from_substance(name, substance))
     }
 
     /// Adds an object with one part for each piece.

@@ -2,7 +2,7 @@
 
 use crate::common::{Build, Piece, Run};
 use dwell_physics::{OutcomeCode, PhysicsConfig, Target, actions};
-use dwell_scene::{AgentId, Collider, Mobility, ObjectId, Pose, SupportRelation};
+use dwell_scene::{AgentId, Collider, Mobility, ObjectId, Pose, SupportDirection};
 use glam::{Quat, Vec3};
 use std::f32::consts::PI;
 use std::sync::Arc;
@@ -277,7 +277,7 @@ fn what_rests_on_what_follows_a_stack() {
         if contact.b.is_none() {
             assert_eq!(
                 contact.support_relation,
-                SupportRelation::AOnB,
+                SupportDirection::AOnB,
                 "everything stands on the floor"
             );
         }

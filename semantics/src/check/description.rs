@@ -43,12 +43,12 @@ impl Checker<'_> {
         if let Some(known) = self.extensions.borrow().get(&key) {
             return known.clone();
         }
-        let found = Rc::new(self.find(description));
+        let found = Rc::new(self.compute_extension(description));
         self.extensions.borrow_mut().insert(key, found.clone());
         found
     }
 
-    fn find(&self, description: &Description) -> Extension {
+    fn compute_extension(&self, description: &Description) -> Extension {
         let mut found = Extension::default();
         let mut poll = PollEvery::new(THINGS_PER_CHECK);
         for term in self.things_named(&description.noun) {
@@ -63,7 +63,7 @@ impl Checker<'_> {
             found.fault = Some(UndecidedReason::NoAntecedent);
         }
         if let Some(selection) = &description.selection {
-            return self.selected(selection, &found.fits);
+            return self.apply_selection(selection, &found.fits);
         }
         found
     }
@@ -80,7 +80,7 @@ impl Checker<'_> {
         let reason = undecided.map(|(_, reason)| *reason).next();
         match reason {
             Some(reason) if least != most => WitnessedTruth::undecided(reason),
-            _ => WitnessedTruth::plain(Truth::from(least)),
+            _ => WitnessedTruth::without_witnesses(Truth::from(least)),
         }
     }
 
@@ -130,18 +130,18 @@ impl Checker<'_> {
             if truth.is_false() {
                 break;
             }
-            truth = truth.and(self.modified(modifier, term));
+            truth = truth.and(self.modifier_holds(modifier, term));
         }
         truth
     }
 
-    fn modified(&self, modifier: &Modifier, term: Term) -> Truth {
+    fn modifier_holds(&self, modifier: &Modifier, term: Term) -> Truth {
         let Ok(predicate) = predicates::find(&modifier.predicate) else {
             return Truth::Undecided(UndecidedReason::UnknownPredicate);
         };
         let body = |terms: &[Term]| {
             let truth = predicate.holds(self.scene, terms, self.listener.viewer.as_ref());
-            WitnessedTruth::plain(truth)
+            WitnessedTruth::without_witnesses(truth)
         };
         let among_related = match &modifier.arguments[..] {
             [Phrase::Described(landmark)] if landmark.quantifier == Quantifier::Some => {
@@ -194,7 +194,7 @@ impl Checker<'_> {
         }))
     }
 
-    fn selected(&self, selection: &OrdinalSelection, fits: &[Term]) -> Extension {
+    fn apply_selection(&self, selection: &OrdinalSelection, fits: &[Term]) -> Extension {
         let fault = |reason| Extension {
             fault: Some(reason),
             ..Extension::default()
@@ -230,7 +230,7 @@ impl Checker<'_> {
 
     /// The one thing that a phrase denotes.
     pub(super) fn unique_referent(&self, phrase: &Phrase) -> Result<Term, UndecidedReason> {
-        if let Some(named) = self.named(phrase) {
+        if let Some(named) = self.direct_referent(phrase) {
             return named;
         }
         let Phrase::Described(description) = phrase else {

@@ -110,7 +110,7 @@ impl<'a> Checker<'a> {
     }
 
     fn judge(&self, clause: &Clause) -> WitnessedTruth {
-        interrupt::check();
+        interrupt::unwind_if_cancelled();
         match clause {
             Clause::Holds {
                 predicate,
@@ -246,12 +246,12 @@ impl<'a> Checker<'a> {
                 size.word().unwrap_or("normal"),
                 (facts.size == *size).into(),
             ),
-            Quality::State(name) => (name.as_str(), self.state(name, term)),
+            Quality::State(name) => (name.as_str(), self.state_holds(name, term)),
         };
         WitnessedTruth::fact(name, &[term], truth)
     }
 
-    fn state(&self, name: &str, term: Term) -> Truth {
+    fn state_holds(&self, name: &str, term: Term) -> Truth {
         predicates::find(name).map_or(
             Truth::Undecided(UndecidedReason::UnknownPredicate),
             |found| found.holds(self.scene, &[term], self.listener.viewer.as_ref()),
@@ -259,7 +259,7 @@ impl<'a> Checker<'a> {
     }
 
     /// The thing that a phrase denotes by id, as the listener or as a storey; `None` for descriptions and holes.
-    fn named(&self, phrase: &Phrase) -> Option<Result<Term, UndecidedReason>> {
+    fn direct_referent(&self, phrase: &Phrase) -> Option<Result<Term, UndecidedReason>> {
         let house = self.scene.house();
         Some(match phrase {
             Phrase::Id(id) => {

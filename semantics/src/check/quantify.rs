@@ -34,7 +34,7 @@ impl Checker<'_> {
             chosen.pop();
             judged
         };
-        match (self.named(first), first) {
+        match (self.direct_referent(first), first) {
             (Some(Ok(term)), _) => with(term),
             (Some(Err(reason)), _) => WitnessedTruth::undecided(reason),
             (None, Phrase::Described(description)) => {
@@ -131,7 +131,7 @@ fn quantify_definite(
     let first = values.next().unwrap_or(Truth::False);
     if values.all(|truth| truth == first) {
         return match first {
-            Truth::False if all.is_empty() => WitnessedTruth::plain(first),
+            Truth::False if all.is_empty() => WitnessedTruth::without_witnesses(first),
             _ => WitnessedTruth::all(all.into_iter()),
         };
     }

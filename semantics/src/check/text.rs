@@ -107,7 +107,7 @@ impl Checker<'_> {
                 all
             }
             phrase => {
-                let named = self.named(phrase).and_then(Result::ok);
+                let named = self.direct_referent(phrase).and_then(Result::ok);
                 named.into_iter().collect()
             }
         }

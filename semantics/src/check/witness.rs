@@ -38,10 +38,10 @@ impl WitnessedTruth {
     }
 
     pub(super) fn undecided(reason: UndecidedReason) -> Self {
-        Self::plain(Truth::Undecided(reason))
+        Self::without_witnesses(Truth::Undecided(reason))
     }
 
-    pub(super) fn plain(truth: Truth) -> Self {
+    pub(super) fn without_witnesses(truth: Truth) -> Self {
         Self {
             truth,
             witnesses: Vec::new(),
@@ -70,7 +70,7 @@ impl WitnessedTruth {
         decisive: Truth,
         join: fn(Truth, Truth) -> Truth,
     ) -> Self {
-        let mut whole = Self::plain(!decisive);
+        let mut whole = Self::without_witnesses(!decisive);
         for part in parts {
             if part.truth == decisive {
                 return part;

@@ -30,14 +30,14 @@ const REACH: f32 = 4.0;
 const SURVEY_NAMES: f32 = 2.0;
 
 /// What colours are called: patches on screens by the people of a survey, things in rooms by readers (`assets/colors/README.md`).
-struct Naming {
+struct ColorNamingModel {
     /// The shares of the survey's answers by corner of a cell.
     survey: Vec<Shares>,
     /// Colours of things in CIELAB, and how often each word was given.
     things: Vec<(Vec3, Shares)>,
 }
 
-impl Naming {
+impl ColorNamingModel {
     fn parse(survey: &str, things: &str) -> Result<Self, SemanticsError> {
         let mut naming = Self {
             survey: vec![[0.0; WORDS.len()]; SIZE.iter().product()],
@@ -65,7 +65,7 @@ impl Naming {
     }
 
     fn shared() -> &'static Self {
-        static NAMING: OnceLock<Naming> = OnceLock::new();
+        static NAMING: OnceLock<ColorNamingModel> = OnceLock::new();
         NAMING.get_or_init(|| {
             let survey = include_str!("../../../assets/colors/naming_survey.csv");
             let things = include_str!("../../../assets/colors/naming_things.csv");
@@ -124,7 +124,7 @@ fn corner(at: [i32; 3]) -> Option<usize> {
 /// The survey: R. Munroe, *Color Survey Results*, xkcd 2010, as counted by cells of
 /// CIELAB in J. Heer and M. Stone, *Color Naming Models for Color Selection, Image Editing and Palette Design*, CHI 2012.
 pub(super) fn common_word(linear: [f32; 3]) -> &'static str {
-    let shares = Naming::shared().shares(cielab_from_linear(linear));
+    let shares = ColorNamingModel::shared().shares(cielab_from_linear(linear));
     let most = (0..WORDS.len()).max_by(|p, q| shares[*p].total_cmp(&shares[*q]).then(q.cmp(p)));
     most.map_or(WORDS[0], |k| WORDS[k])
 }

@@ -57,7 +57,7 @@ impl MaterialColors {
             let material = &materials[k];
             let base = material.base_color;
             match material.texture {
-                Some(texture) => paint(&house.textures[texture], base, &decoded),
+                Some(texture) => texture_palette(&house.textures[texture], base, &decoded),
                 None => MaterialPalette {
                     sorts: vec![ColorShare {
                         linear: Some(base),
@@ -102,7 +102,7 @@ impl MaterialColors {
 /// A sort is what lies within [`SHADE`] of its own mean. The largest is sought from some of the pixels that lie in no sort found
 /// before, so that neither a pattern's ground nor a grain about its mean is missed.
 /// `decoded`: linear light of every byte. Shape (256,).
-fn paint(texture: &Texture, base: [f32; 3], decoded: &[f32; 256]) -> MaterialPalette {
+fn texture_palette(texture: &Texture, base: [f32; 3], decoded: &[f32; 256]) -> MaterialPalette {
     let count = texture.width as usize * texture.height as usize;
     // A stride that shares a factor with the width would look at some of the columns only.
     let mut step = (count / PIXELS).max(1);
@@ -294,7 +294,7 @@ mod tests {
     /// The words for the colours of an image.
     fn words(texture: &Texture) -> Vec<&'static str> {
         let words = color_words(
-            &paint(texture, [1.0; 3], &decoded()).sorts,
+            &texture_palette(texture, [1.0; 3], &decoded()).sorts,
             ColorVocabulary::Plain,
         );
         words.into_iter().map(|(word, _)| word).collect()

@@ -45,15 +45,15 @@ impl Pattern {
 /// # Source
 /// R. A. Fisher, *Statistical Methods for Research Workers*, 1925, chapters 7 and 8.
 pub(super) fn pattern(shades: &[([f32; 2], Oklab)]) -> Pattern {
-    let whole = Sum::of(shades.iter().map(|(_, shade)| shade));
+    let whole = ShadeSums::of(shades.iter().map(|(_, shade)| shade));
     let total = whole.squares - whole.count_times_squared_mean();
     let explained = |axis: usize| {
-        let mut bands = [Sum::default(); BANDS];
+        let mut bands = [ShadeSums::default(); BANDS];
         for (place, shade) in shades {
             let band = (place[axis] * BANDS as f32) as usize;
             bands[band.min(BANDS - 1)].add(shade);
         }
-        let between: f32 = bands.iter().map(Sum::count_times_squared_mean).sum();
+        let between: f32 = bands.iter().map(ShadeSums::count_times_squared_mean).sum();
         let share = (between - whole.count_times_squared_mean()) / total.max(f32::MIN_POSITIVE);
         // A disc is darker in its middle columns and rows, but does not alternate.
         if side_changes(&bands, &whole) >= CHANGES {
@@ -73,7 +73,7 @@ pub(super) fn pattern(shades: &[([f32; 2], Oklab)]) -> Pattern {
 }
 
 /// Returns how often neighbouring bands lie on different sides of the mean colour, along the line from it to the band farthest from it.
-fn side_changes(bands: &[Sum], whole: &Sum) -> usize {
+fn side_changes(bands: &[ShadeSums], whole: &ShadeSums) -> usize {
     let mean = whole.mean();
     let filled = bands.iter().filter(|band| band.count > 0.0);
     let apart: Vec<Vec3> = filled.map(|band| band.mean() - mean).collect();
@@ -87,13 +87,13 @@ fn side_changes(bands: &[Sum], whole: &Sum) -> usize {
 
 /// Sums over shades.
 #[derive(Clone, Copy, Default)]
-struct Sum {
+struct ShadeSums {
     count: f32,
     shade: Vec3,
     squares: f32,
 }
 
-impl Sum {
+impl ShadeSums {
     fn of<'a>(shades: impl Iterator<Item = &'a Oklab>) -> Self {
         let mut sum = Self::default();
         for shade in shades {

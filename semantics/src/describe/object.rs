@@ -40,7 +40,7 @@ fn first_related(scene: &SemanticScene<'_>, object: ObjectId, name: &str) -> Opt
 }
 
 /// The sides of a door: from a room to another or to the outside; `None` when that is not known, and for other things.
-fn passage(
+fn door_side_modifiers(
     scene: &SemanticScene<'_>,
     door: ObjectId,
     room: Option<RoomId>,
@@ -86,7 +86,7 @@ fn description(scene: &SemanticScene<'_>, object: ObjectId, length: TextLength) 
     if length == TextLength::Short {
         return description;
     }
-    if let Some(passage) = passage(scene, object, room) {
+    if let Some(passage) = door_side_modifiers(scene, object, room) {
         description.modifiers.extend(passage);
         return description;
     }

@@ -66,7 +66,7 @@ struct RoomContents {
 fn contents(scene: &SemanticScene<'_>, room: RoomId, objects: &[ObjectId]) -> RoomContents {
     let mut contents = RoomContents::default();
     for object in objects {
-        interrupt::check();
+        interrupt::unwind_if_cancelled();
         let carrier = ["in", "on"].into_iter().find_map(|name| {
             let predicate = predicates::find(name).ok()?;
             let others = predicates::related_objects(scene, predicate, *object);

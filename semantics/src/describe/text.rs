@@ -83,7 +83,7 @@ impl<'a> TextWriter<'a> {
     }
 
     fn write(&mut self, form: Form, subject: Option<Term>) {
-        interrupt::check();
+        interrupt::unwind_if_cancelled();
         let language = self.checker.scene().semantics.language();
         let number = self.written.claims.len() as u64;
         let key = self.wording.map(|key| key.child(number));

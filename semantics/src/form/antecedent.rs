@@ -302,7 +302,7 @@ impl Resolver {
                 let choice = self.choices.get(self.counts.len()).copied().unwrap_or(0);
                 self.counts.push(candidates.len());
                 if let Some(found) = candidates.into_iter().nth(choice) {
-                    *phrase = the_one(found);
+                    *phrase = exactly_one_as_definite(found);
                 }
             }
             Phrase::Described(own) if own.noun == Noun::SameNoun => {
@@ -486,7 +486,7 @@ impl Resolver {
             let is_own = own.any(|own| own.unit == self.unit && own.phrase == mention.phrase);
             // "A pan is on the stove, and it is empty": a pan on the stove.
             let phrase = match &mention.with_said {
-                Some(said) if is_one(said) => said.clone().into(),
+                Some(said) if is_indefinite_singular(said) => said.clone().into(),
                 _ => mention.phrase.clone(),
             };
             if !is_room && !is_own && !phrases.contains(&phrase) {
@@ -544,12 +544,12 @@ fn subject_with_predicate(clause: &Clause) -> Option<Description> {
     Some(subject)
 }
 
-fn is_one(own: &Description) -> bool {
+fn is_indefinite_singular(own: &Description) -> bool {
     matches!(own.quantifier, Quantifier::Some | Quantifier::Exactly(1))
 }
 
 /// "There is exactly one bottle in the hall, and it is green": the bottle.
-fn the_one(phrase: Phrase) -> Phrase {
+fn exactly_one_as_definite(phrase: Phrase) -> Phrase {
     match phrase {
         Phrase::Described(own) if own.quantifier == Quantifier::Exactly(1) => {
             own.with_quantifier(Quantifier::The).into()

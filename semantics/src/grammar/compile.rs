@@ -76,7 +76,7 @@ impl Compiler<'_> {
             .unwrap_or_else(one)
     }
 
-    fn number(&mut self, category: &str, variant: usize) -> NonTerminal {
+    fn intern_non_terminal(&mut self, category: &str, variant: usize) -> NonTerminal {
         let next = self.found.numbers.len();
         let key = (category.to_owned(), variant);
         let number = *self.found.numbers.entry(key).or_insert(next);
@@ -174,7 +174,7 @@ impl Compiler<'_> {
                     ORDINAL => ArgumentKind::Ordinal,
                     DIGITS => ArgumentKind::Digits,
                     made if self.made.contains(made) => {
-                        ArgumentKind::Rules(self.number(&category, variant))
+                        ArgumentKind::Rules(self.intern_non_terminal(&category, variant))
                     }
                     _ => ArgumentKind::Entry(category, variant),
                 };
@@ -203,7 +203,7 @@ impl Compiler<'_> {
         let result = category(&rule.result);
         for choice in self.choices(rule, &pieces, &result)? {
             let variant = self.variant_of(rule, &result.0, &result.1, usize::MAX, &choice)?;
-            let number = self.number(&result.0, variant);
+            let number = self.intern_non_terminal(&result.0, variant);
             let symbols = pieces.iter().enumerate();
             let symbols: Result<Vec<Symbol>, GrammarError> = symbols
                 .map(|piece| self.symbol(rule, piece, &choice))

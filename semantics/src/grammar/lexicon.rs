@@ -181,7 +181,7 @@ impl Lexicon {
     }
 
     /// The normalized words of all entries.
-    pub(super) fn all_words(&self) -> impl Iterator<Item = &str> {
+    pub(super) fn entry_words(&self) -> impl Iterator<Item = &str> {
         self.words.iter().map(String::as_str)
     }
 

@@ -5,10 +5,10 @@ use super::{Grammar, Tree};
 
 /// The words of a tree, with those of its arguments nested.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Phrase {
+pub(super) enum LinearizedNode {
     Word(String),
     /// An argument: its number, counted from 0, and its words.
-    Part(usize, Vec<Phrase>),
+    Part(usize, Vec<LinearizedNode>),
 }
 
 /// A choice of wordings: called with their number, it returns an index below that.
@@ -20,7 +20,7 @@ impl Grammar {
         tree: &Tree,
         category: NonTerminal,
         choose: ChooseWording<'_>,
-    ) -> Option<Vec<Phrase>> {
+    ) -> Option<Vec<LinearizedNode>> {
         let Tree::Apply {
             function,
             arguments,
@@ -51,26 +51,26 @@ impl Grammar {
         symbols: &[Symbol],
         arguments: &[Tree],
         choose: ChooseWording<'_>,
-    ) -> Option<Vec<Phrase>> {
+    ) -> Option<Vec<LinearizedNode>> {
         let mut phrases = Vec::with_capacity(symbols.len());
         for symbol in symbols {
             match symbol {
-                Symbol::Word(word) => phrases.push(Phrase::Word(word.clone())),
+                Symbol::Word(word) => phrases.push(LinearizedNode::Word(word.clone())),
                 Symbol::Argument(at, kind) => {
-                    let part = self.part(kind, &arguments[*at], choose)?;
-                    phrases.push(Phrase::Part(*at, part));
+                    let part = self.linearize_argument(kind, &arguments[*at], choose)?;
+                    phrases.push(LinearizedNode::Part(*at, part));
                 }
             }
         }
         Some(phrases)
     }
 
-    fn part(
+    fn linearize_argument(
         &self,
         kind: &ArgumentKind,
         tree: &Tree,
         choose: ChooseWording<'_>,
-    ) -> Option<Vec<Phrase>> {
+    ) -> Option<Vec<LinearizedNode>> {
         match (kind, tree) {
             (ArgumentKind::Rules(category), _) => self.linearize_function(tree, *category, choose),
             (ArgumentKind::Entry(class, variant), Tree::Entry { class: own, id })
@@ -83,22 +83,22 @@ impl Grammar {
                     0
                 };
                 let form = forms.get(chosen).or(forms.first())?;
-                Some(form.iter().cloned().map(Phrase::Word).collect())
+                Some(form.iter().cloned().map(LinearizedNode::Word).collect())
             }
             (ArgumentKind::Count, Tree::Number { class, value })
                 if class == super::compile::COUNT =>
             {
-                Some(vec![Phrase::Word(self.lexicon.count(*value))])
+                Some(vec![LinearizedNode::Word(self.lexicon.count(*value))])
             }
             (ArgumentKind::Digits, Tree::Number { class, value })
                 if class == super::compile::DIGITS =>
             {
-                Some(vec![Phrase::Word(value.to_string())])
+                Some(vec![LinearizedNode::Word(value.to_string())])
             }
             (ArgumentKind::Ordinal, Tree::Number { class, value })
                 if class == super::compile::ORDINAL =>
             {
-                Some(vec![Phrase::Word(self.lexicon.ordinal(*value))])
+                Some(vec![LinearizedNode::Word(self.lexicon.ordinal(*value))])
             }
             _ => None,
         }

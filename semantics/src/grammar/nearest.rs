@@ -35,7 +35,7 @@ impl Grammar {
             return Vec::new();
         }
         let rules = self.words.iter().map(|known| (true, known.as_str()));
-        let known = rules.chain(self.lexicon.all_words().map(|known| (false, known)));
+        let known = rules.chain(self.lexicon.entry_words().map(|known| (false, known)));
         let mut found: Vec<(usize, usize, bool, &str)> = known
             .filter(|(_, known)| known.chars().count().abs_diff(length) <= length.div_ceil(3))
             .map(|(of_rule, known)| {

@@ -46,11 +46,13 @@ impl Paraphrases {
         text: &[String],
         is_word: impl Fn(&str) -> bool,
     ) -> Vec<String> {
-        let apart = text.iter().flat_map(|word| self.apart(word, &is_word));
+        let apart = text
+            .iter()
+            .flat_map(|word| self.split_ending(word, &is_word));
         apart.collect()
     }
 
-    fn apart(&self, word: &str, is_word: &impl Fn(&str) -> bool) -> Vec<String> {
+    fn split_ending(&self, word: &str, is_word: &impl Fn(&str) -> bool) -> Vec<String> {
         let whole = self
             .phrases
             .iter()

@@ -32,7 +32,7 @@ enum Child {
 
 /// A derivation step of an item: the item with the dot one symbol before, its set, and the match of that symbol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Step {
+struct Backpointer {
     before: Item,
     set: usize,
     child: Child,
@@ -42,7 +42,7 @@ struct Step {
 #[derive(Default)]
 struct ItemSet {
     order: Vec<Item>,
-    steps: BTreeMap<Item, Vec<Step>>,
+    steps: BTreeMap<Item, Vec<Backpointer>>,
     /// Items with their dot before a category, by that category.
     waiting: BTreeMap<NonTerminal, Vec<Item>>,
     /// Items with nothing after their dot, by category and origin.
@@ -50,7 +50,7 @@ struct ItemSet {
 }
 
 impl ItemSet {
-    fn add(&mut self, item: Item, step: Option<Step>) {
+    fn add(&mut self, item: Item, step: Option<Backpointer>) {
         let order = &mut self.order;
         let steps = self.steps.entry(item).or_insert_with(|| {
             order.push(item);
@@ -109,7 +109,7 @@ impl Parser<'_> {
             dot: item.dot + 1,
             ..item
         };
-        let step = Step {
+        let step = Backpointer {
             before: item,
             set,
             child,
@@ -158,7 +158,7 @@ impl Parser<'_> {
     }
 
     /// Completes, predicts and scans all items that end at `at`.
-    fn close(&mut self, at: usize) {
+    fn process_set(&mut self, at: usize) {
         let mut next = 0;
         while let Some(item) = self.sets[at].order.get(next).copied() {
             next += 1;
@@ -204,7 +204,7 @@ impl Parser<'_> {
         let complete = self.sets[end].complete.get(&(category, origin));
         for item in complete.into_iter().flatten() {
             let production = &self.grammar.productions.all[item.production];
-            for (cost, arguments) in self.arguments(*item, end, known) {
+            for (cost, arguments) in self.argument_readings(*item, end, known) {
                 let Some(arguments) = arguments.into_iter().collect::<Option<Vec<NodeId>>>() else {
                     continue;
                 };
@@ -221,7 +221,7 @@ impl Parser<'_> {
     }
 
     /// The arguments that were read before the dot of an item, with their cost.
-    fn arguments(&self, item: Item, set: usize, known: &mut ParseMemo) -> Vec<PartReading> {
+    fn argument_readings(&self, item: Item, set: usize, known: &mut ParseMemo) -> Vec<PartReading> {
         let production = &self.grammar.productions.all[item.production];
         if item.dot == 0 {
             return vec![(0, vec![None; production.arity])];
@@ -233,7 +233,7 @@ impl Parser<'_> {
         let mut found: Vec<PartReading> = Vec::new();
         for step in &self.sets[set].steps[&item] {
             let last = self.child_readings(symbol, step.child, set, known);
-            for (before_cost, before) in self.arguments(step.before, step.set, known) {
+            for (before_cost, before) in self.argument_readings(step.before, step.set, known) {
                 for (cost, node) in &last {
                     let mut arguments = before.clone();
                     // An argument that occurs twice in a wording is the same both times.
@@ -328,8 +328,8 @@ impl Grammar {
             parser.predict(0, *start);
         }
         for at in 0..=words.len() {
-            interrupt::check();
-            parser.close(at);
+            interrupt::unwind_if_cancelled();
+            parser.process_set(at);
         }
         let filled = parser.sets.iter().rposition(|set| !set.order.is_empty());
         let understood = filled.unwrap_or(0);

@@ -1,6 +1,6 @@
 //! Phrases as written text: spaces, capitals, articles by sound; and the spans of a tree's parts.
 
-use super::linearize::Phrase;
+use super::linearize::LinearizedNode;
 use crate::english::article;
 
 /// The place of a subtree in the text of its tree.
@@ -22,11 +22,11 @@ struct Writer {
 }
 
 impl Writer {
-    fn add(&mut self, phrases: &[Phrase], path: &mut Vec<usize>) {
+    fn add(&mut self, phrases: &[LinearizedNode], path: &mut Vec<usize>) {
         for phrase in phrases {
             match phrase {
-                Phrase::Word(word) => self.words.push(word.clone()),
-                Phrase::Part(at, inside) => {
+                LinearizedNode::Word(word) => self.words.push(word.clone()),
+                LinearizedNode::Part(at, inside) => {
                     let start = self.words.len();
                     path.push(*at);
                     self.add(inside, path);
@@ -43,7 +43,7 @@ impl Writer {
 }
 
 /// Returns the text of `phrases` as a sentence, and the spans of its parts in bytes.
-pub(super) fn write(phrases: &[Phrase]) -> (String, Vec<Span>) {
+pub(super) fn write(phrases: &[LinearizedNode]) -> (String, Vec<Span>) {
     let mut writer = Writer::default();
     writer.add(phrases, &mut Vec::new());
     let Writer { words, mut parts } = writer;

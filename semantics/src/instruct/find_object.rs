@@ -31,7 +31,7 @@ pub(super) fn candidates(scene: &SemanticScene<'_>) -> Vec<Instruction> {
         })
         .filter_map(|object| {
             // Some milliseconds each.
-            interrupt::check();
+            interrupt::unwind_if_cancelled();
             let description = refer(scene, object)?;
             let goal = InstructionGoal {
                 rooms: Vec::new(),

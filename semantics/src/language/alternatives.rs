@@ -1,6 +1,6 @@
 //! Questions for those of several clauses that are true: forms to trees, and trees to forms.
 
-use super::from_tree::{holds, id};
+use super::from_tree::{entry_id, holds};
 use super::phrases::{described, phrase};
 use super::questions::question;
 use super::sets;
@@ -13,8 +13,8 @@ use crate::grammar::Tree;
 pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Vec<Clause>> {
     Some(match (function, arguments) {
         ("alternatives", [first, second]) => {
-            let mut all = whether(first)?;
-            all.extend(whether(second)?);
+            let mut all = whether_clauses(first)?;
+            all.extend(whether_clauses(second)?);
             all
         }
         ("alternatives_of", [subject, one, other]) => {
@@ -39,14 +39,16 @@ pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Vec<Clause
         ("alternatives_bare", [said, one, other]) => {
             subjects(said, [phrase(one)?, phrase(other)?])?
         }
-        ("which_compared", [word, one, other]) => compared(word, phrase(one)?, phrase(other)?)?,
+        ("which_compared", [word, one, other]) => {
+            comparison_both_ways(word, phrase(one)?, phrase(other)?)?
+        }
         ("which_of_compared", [set, word, one, other]) => {
             let kind = sets::set(set)?;
             let [one, other] = with_noun_of(&kind, [phrase(one)?, phrase(other)?]);
-            compared(word, one, other)?
+            comparison_both_ways(word, one, other)?
         }
         ("which_compared_less", [word, one, other]) => {
-            let mut clauses = compared(word, phrase(one)?, phrase(other)?)?;
+            let mut clauses = comparison_both_ways(word, phrase(one)?, phrase(other)?)?;
             // The smaller of two is the one that the other is larger than.
             clauses.reverse();
             clauses
@@ -57,7 +59,7 @@ pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Vec<Clause
     })
 }
 
-fn whether(tree: &Tree) -> Option<Vec<Clause>> {
+fn whether_clauses(tree: &Tree) -> Option<Vec<Clause>> {
     match question(tree)? {
         Question::Whether(clause) => Some(vec![clause]),
         Question::Alternatives(clauses) => Some(clauses),
@@ -70,7 +72,7 @@ fn related(subject: &Tree, relations: [&Tree; 2], landmarks: [&Tree; 2]) -> Opti
     let mut clauses = Vec::with_capacity(2);
     for (relation, landmark) in relations.into_iter().zip(landmarks) {
         clauses.push(holds(
-            &id(relation)?,
+            &entry_id(relation)?,
             vec![subject.clone(), phrase(landmark)?],
         ));
     }
@@ -101,8 +103,8 @@ fn subjects(said: &Tree, subjects: [Phrase; 2]) -> Option<Vec<Clause>> {
     Some(clauses)
 }
 
-fn compared(word: &Tree, one: Phrase, other: Phrase) -> Option<Vec<Clause>> {
-    let name = id(word)?;
+fn comparison_both_ways(word: &Tree, one: Phrase, other: Phrase) -> Option<Vec<Clause>> {
+    let name = entry_id(word)?;
     Some(vec![
         holds(&name, vec![one.clone(), other.clone()]),
         holds(&name, vec![other, one]),

@@ -12,7 +12,7 @@ use crate::grammar::Tree;
 const SEEN: &str = "visible";
 
 /// Returns whether a modifier takes no other thing.
-fn is_seen(modifier: &Modifier) -> bool {
+fn is_visibility_modifier(modifier: &Modifier) -> bool {
     modifier.predicate == SEEN && !modifier.negated && modifier.arguments.is_empty()
 }
 
@@ -88,25 +88,34 @@ impl TreeBuilder<'_> {
             return Some(Tree::apply("exists_not", [self.item(only)?]));
         }
         let shared = shared_modifiers(items, 1);
-        if shared.iter().any(is_seen) {
-            return self.seen(&without_last_modifiers(items, 1)?);
+        if shared.iter().any(is_visibility_modifier) {
+            return self.see_tree(&without_last_modifiers(items, 1)?);
         }
         if let Some((front, number)) = self.fronted_modifiers(items) {
             let rest = self.items(&without_last_modifiers(items, number)?)?;
-            return Some(Tree::apply(list_name("exists_front", items), [front, rest]));
+            return Some(Tree::apply(
+                existence_function("exists_front", items),
+                [front, rest],
+            ));
         }
         let all = self.items(items)?;
-        Some(Tree::apply(list_name("exists", items), [all]))
+        Some(Tree::apply(existence_function("exists", items), [all]))
     }
 
-    fn seen(&self, items: &[Phrase]) -> Option<Tree> {
+    fn see_tree(&self, items: &[Phrase]) -> Option<Tree> {
         let shared = shared_modifiers(items, 1);
         let side = shared.first().and_then(places::side_to_tree);
         if let Some(side) = side {
             let rest = self.items(&without_last_modifiers(items, 1)?)?;
-            return Some(Tree::apply(list_name("see_front", items), [side, rest]));
+            return Some(Tree::apply(
+                existence_function("see_front", items),
+                [side, rest],
+            ));
         }
-        Some(Tree::apply(list_name("see", items), [self.items(items)?]))
+        Some(Tree::apply(
+            existence_function("see", items),
+            [self.items(items)?],
+        ))
     }
 
     /// The place that stands before the verb, and the number of modifiers that it says.
@@ -174,9 +183,10 @@ impl TreeBuilder<'_> {
             (Noun::Storey, Quantifier::Exactly(number)) if is_bare(own) => {
                 Some(Tree::apply("item_storeys", [count(number)]))
             }
-            (Noun::Room(noun), Quantifier::Exactly(1)) if is_bare(own) => {
-                Some(Tree::apply("item_one_room", [self.known(ROOM_NOUN, noun)?]))
-            }
+            (Noun::Room(noun), Quantifier::Exactly(1)) if is_bare(own) => Some(Tree::apply(
+                "item_one_room",
+                [self.lexicon_entry(ROOM_NOUN, noun)?],
+            )),
             (Noun::Room(_), Quantifier::AtLeast(1)) => None,
             (Noun::Room(noun), Quantifier::Exactly(number) | Quantifier::AtLeast(number))
                 if is_bare(own) =>
@@ -185,7 +195,7 @@ impl TreeBuilder<'_> {
                     Quantifier::AtLeast(_) => "item_rooms_at_least",
                     _ => "item_rooms",
                 };
-                let noun = self.known(ROOM_NOUN, noun)?;
+                let noun = self.lexicon_entry(ROOM_NOUN, noun)?;
                 Some(Tree::apply(function, [count(number), noun]))
             }
             (Noun::Room(_), _) => Some(Tree::apply("item_room", [self.room(item)?])),
@@ -200,7 +210,7 @@ pub(super) fn is_bare(description: &Description) -> bool {
     *description == plain
 }
 
-fn list_name(function: &str, items: &[Phrase]) -> &'static str {
+fn existence_function(function: &str, items: &[Phrase]) -> &'static str {
     match (function, items.len()) {
         ("exists", 1) => "exists",
         ("exists", _) => "exists_list",
@@ -219,7 +229,7 @@ struct ExistenceParts<'a> {
     items: &'a Tree,
 }
 
-fn added<'a>(function: &str, arguments: &'a [Tree]) -> Option<ExistenceParts<'a>> {
+fn existence_parts<'a>(function: &str, arguments: &'a [Tree]) -> Option<ExistenceParts<'a>> {
     let seen = || Modifier::new(SEEN, []);
     Some(match (function, arguments) {
         ("exists" | "exists_list" | "whether_exists", [items]) => ExistenceParts {
@@ -273,7 +283,7 @@ pub(super) fn front_from_tree(tree: &Tree) -> Option<Vec<Modifier>> {
 
 /// The clause of a tree of existence; `None` for other trees.
 pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Clause> {
-    let ExistenceParts { modifiers, items } = added(function, arguments)?;
+    let ExistenceParts { modifiers, items } = existence_parts(function, arguments)?;
     let mut found = Vec::new();
     collect(items, &modifiers, &mut found)?;
     // "You can see the sofa from the kitchen" is about the sofa.
@@ -288,7 +298,7 @@ pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Clause> {
         return Some(holds(&seen.predicate, arguments));
     }
     // "Two mats, a gray one and an orange one": the first is the sum of the others.
-    if found.len() > 2 && is_several(&found[0]) && found[1..].iter().all(is_same_noun) {
+    if found.len() > 2 && is_several(&found[0]) && found[1..].iter().all(has_anaphoric_noun) {
         let whole = Clause::Exists(found.remove(0));
         let each = found.into_iter().map(Clause::Exists);
         return Some(Clause::All(std::iter::once(whole).chain(each).collect()));
@@ -311,7 +321,7 @@ fn is_several(phrase: &Phrase) -> bool {
     )
 }
 
-fn is_same_noun(phrase: &Phrase) -> bool {
+fn has_anaphoric_noun(phrase: &Phrase) -> bool {
     matches!(phrase, Phrase::Described(own) if own.noun == Noun::SameNoun)
 }
 
@@ -374,7 +384,7 @@ pub(super) fn item_phrases(clause: &Tree, path: &[usize]) -> Vec<(Vec<usize>, Ph
     let Some((function, arguments)): Option<Parts<'_>> = parts(clause) else {
         return Vec::new();
     };
-    let Some(ExistenceParts { modifiers, items }) = added(function, arguments) else {
+    let Some(ExistenceParts { modifiers, items }) = existence_parts(function, arguments) else {
         return Vec::new();
     };
     let mut path = path.to_vec();

@@ -23,7 +23,7 @@ pub(super) fn parts(tree: &Tree) -> Option<Parts<'_>> {
     }
 }
 
-pub(super) fn id(tree: &Tree) -> Option<String> {
+pub(super) fn entry_id(tree: &Tree) -> Option<String> {
     match tree {
         Tree::Entry { id, .. } => Some(id.clone()),
         Tree::Apply { .. } | Tree::Number { .. } => None,
@@ -61,14 +61,14 @@ pub(super) fn form(tree: &Tree) -> Option<Form> {
 
 fn clause(tree: &Tree) -> Option<Clause> {
     Some(match parts(tree)? {
-        ("one_clause", [inner]) => simple(inner)?,
-        ("all_clauses", [inner]) => Clause::All(list(inner)?),
-        ("any_clause", [inner]) => Clause::Any(list(inner)?),
+        ("one_clause", [inner]) => possibly_negated_clause(inner)?,
+        ("all_clauses", [inner]) => Clause::All(coordinated_clauses(inner)?),
+        ("any_clause", [inner]) => Clause::Any(coordinated_clauses(inner)?),
         _ => return None,
     })
 }
 
-fn list(tree: &Tree) -> Option<Vec<Clause>> {
+fn coordinated_clauses(tree: &Tree) -> Option<Vec<Clause>> {
     let mut trees = Vec::new();
     let mut rest = tree;
     loop {
@@ -86,7 +86,7 @@ fn list(tree: &Tree) -> Option<Vec<Clause>> {
     }
     let mut clauses: Vec<Clause> = trees
         .iter()
-        .map(|tree| simple(tree))
+        .map(|tree| possibly_negated_clause(tree))
         .collect::<Option<_>>()?;
     places::inherit_side_landmarks(&mut clauses, &trees);
     Some(clauses)
@@ -99,7 +99,7 @@ pub(super) fn holds(predicate: &str, arguments: Vec<Phrase>) -> Clause {
     }
 }
 
-pub(super) fn simple(tree: &Tree) -> Option<Clause> {
+pub(super) fn possibly_negated_clause(tree: &Tree) -> Option<Clause> {
     let (function, arguments) = parts(tree)?;
     if let Some(plain) = function.strip_suffix("_not") {
         let inner = affirmed(plain, arguments)?;
@@ -112,7 +112,7 @@ pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
     Some(match (function, arguments) {
         ("holds" | "holds_verb" | "whether_holds" | "whether_verb", [subject, word, object]) => {
             let (subject, object) = (phrase(subject)?, phrase(object)?);
-            let predicate = relation_to(id(word)?, &subject, &object);
+            let predicate = relation_to(entry_id(word)?, &subject, &object);
             holds(&predicate, vec![subject, object])
         }
         ("holds_closer" | "whether_closer", [subject, near, far]) => holds(
@@ -127,10 +127,10 @@ pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
             holds("visible_from_room", vec![room(to)?, room(from)?])
         }
         ("holds_each_other" | "whether_each_other", [subject, word]) => {
-            holds(&id(word)?, vec![phrase(subject)?, Phrase::EachOther])
+            holds(&entry_id(word)?, vec![phrase(subject)?, Phrase::EachOther])
         }
         ("list_holds_each_other", [items, word]) => {
-            holds(&id(word)?, vec![subjects(items)?, Phrase::EachOther])
+            holds(&entry_id(word)?, vec![subjects(items)?, Phrase::EachOther])
         }
         ("holds_between" | "whether_between", [subject, a, b]) => {
             holds("between", vec![phrase(subject)?, phrase(a)?, phrase(b)?])
@@ -139,9 +139,10 @@ pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
             let (predicate, place) = place_of(place)?;
             holds(&predicate, vec![phrase(subject)?, place])
         }
-        ("left_at", [thing, relation, landmark]) => {
-            holds(&id(relation)?, vec![phrase(thing)?, phrase(landmark)?])
-        }
+        ("left_at", [thing, relation, landmark]) => holds(
+            &entry_id(relation)?,
+            vec![phrase(thing)?, phrase(landmark)?],
+        ),
         ("left_in_place", [thing, place]) => {
             let (predicate, place) = place_of(place)?;
             holds(&predicate, vec![phrase(thing)?, place])
@@ -178,7 +179,10 @@ pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
         ("surfaces_and_has", [place, surfaces, items]) => {
             let surfaces = Tree::apply("surfaces", [place.clone(), surfaces.clone()]);
             let has = Tree::apply("room_has", [place.clone(), items.clone()]);
-            Clause::All(vec![simple(&surfaces)?, simple(&has)?])
+            Clause::All(vec![
+                possibly_negated_clause(&surfaces)?,
+                possibly_negated_clause(&has)?,
+            ])
         }
         ("says_and_has", [subject, said, load]) => Clause::All(vec![
             verb_phrases::clause(phrase(subject)?, said)?,
@@ -199,7 +203,7 @@ pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
         ("holds_verb_list", [subject, word, items]) => {
             let items = existence::items_from_tree(items)?;
             let subject = phrase(subject)?;
-            let predicate = relation_to(id(word)?, &subject, &items);
+            let predicate = relation_to(entry_id(word)?, &subject, &items);
             holds(&predicate, vec![subject, items])
         }
         (
@@ -214,7 +218,10 @@ pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
                 vec![phrase(subject)?, existence::items_from_tree(items)?],
             )
         }
-        ("fronted", [front, inner]) => fronted(existence::front_from_tree(front)?, simple(inner)?)?,
+        ("fronted", [front, inner]) => fronted(
+            existence::front_from_tree(front)?,
+            possibly_negated_clause(inner)?,
+        )?,
         ("exists_all", [items, quality]) => {
             let all = Description::new(Quantifier::Every, Noun::SameThings);
             Clause::All(vec![
@@ -234,7 +241,7 @@ pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
             let (subject, other) = (phrase(subject)?, phrase(other)?);
             Clause::All(vec![
                 verb_phrases::clause(subject.clone(), said)?,
-                holds(&id(relation)?, vec![other, subject]),
+                holds(&entry_id(relation)?, vec![other, subject]),
             ])
         }
         ("see_none", [items]) => {
@@ -249,7 +256,7 @@ pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
         }
         ("as_many" | "whether_as_many", [one, other]) => numbers::as_many(one, other)?,
         ("absolute", [first, subject, said]) => Clause::All(vec![
-            simple(first)?,
+            possibly_negated_clause(first)?,
             verb_phrases::clause(phrase(subject)?, said)?,
         ]),
         ("nothing_but" | "only_exists", [added, exception]) => {
@@ -307,7 +314,7 @@ pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
             holds_of(phrase(subject)?, places::side_from_tree(side)?)
         }
         ("list_holds", [items, word, object]) => {
-            holds(&id(word)?, vec![subjects(items)?, phrase(object)?])
+            holds(&entry_id(word)?, vec![subjects(items)?, phrase(object)?])
         }
         ("list_holds_place", [items, place]) => {
             let (predicate, place) = place_of(place)?;
@@ -370,10 +377,10 @@ pub(super) fn subjects(tree: &Tree) -> Option<Phrase> {
 
 pub(super) fn quality_of(tree: &Tree) -> Option<Quality> {
     Some(match parts(tree)? {
-        ("quality_color", [word]) => Quality::Color(id(word)?),
-        ("quality_material", [word]) => Quality::Material(id(word)?),
+        ("quality_color", [word]) => Quality::Color(entry_id(word)?),
+        ("quality_material", [word]) => Quality::Material(entry_id(word)?),
         ("quality_size", [word]) => Quality::Size(size(word)?),
-        ("quality_state", [word]) => Quality::State(id(word)?),
+        ("quality_state", [word]) => Quality::State(entry_id(word)?),
         _ => return None,
     })
 }
@@ -386,9 +393,9 @@ pub(super) fn place_of(tree: &Tree) -> Option<(String, Phrase)> {
     let of = |predicate: &str, phrase| (predicate.to_owned(), phrase);
     Some(match parts(tree)? {
         ("place", [room]) => of("in_room", self::room(room)?),
-        ("place_spot", [spot, room]) => (id(spot)?, self::room(room)?),
+        ("place_spot", [spot, room]) => (entry_id(spot)?, self::room(room)?),
         ("place_room_corner", [noun]) => {
-            let room = Description::new(Quantifier::The, Noun::Room(id(noun)?));
+            let room = Description::new(Quantifier::The, Noun::Room(entry_id(noun)?));
             of("in_corner_of", room.into())
         }
         ("place_same_room", [other]) => {
@@ -397,7 +404,7 @@ pub(super) fn place_of(tree: &Tree) -> Option<(String, Phrase)> {
             of("in_room", room.with_modifier(with).into())
         }
         ("place_same_thing", [relation, noun, other]) => {
-            let relation = id(relation)?;
+            let relation = entry_id(relation)?;
             let converse = match relation.as_str() {
                 "on" => "supports",
                 "in" => "contains",
@@ -420,10 +427,13 @@ pub(super) fn place_of(tree: &Tree) -> Option<(String, Phrase)> {
 /// A room's noun with the colour of its walls; the caller sets the quantifier.
 fn room_kind(tree: &Tree) -> Option<Description> {
     match parts(tree)? {
-        ("room_kind", [word]) => Some(Description::new(Quantifier::Some, Noun::Room(id(word)?))),
+        ("room_kind", [word]) => Some(Description::new(
+            Quantifier::Some,
+            Noun::Room(entry_id(word)?),
+        )),
         ("room_colored", [color, inner]) => {
             let mut room = room_kind(inner)?;
-            room.colors.push(id(color)?);
+            room.colors.push(entry_id(color)?);
             Some(room)
         }
         _ => None,
@@ -447,7 +457,7 @@ pub(super) fn room(tree: &Tree) -> Option<Phrase> {
         ("room_a", [own]) => kind(own, Quantifier::Some)?,
         ("room_with_walls", [own, color]) => {
             let mut room = kind(own, Quantifier::The)?;
-            room.colors.push(id(color)?);
+            room.colors.push(entry_id(color)?);
             room
         }
         ("room_other_than", [own, other]) => {
@@ -460,9 +470,11 @@ pub(super) fn room(tree: &Tree) -> Option<Phrase> {
         }
         ("room_another", [own]) => kind(own, Quantifier::Some)?.other(),
         ("room_other", [own]) => kind(own, Quantifier::The)?.other(),
-        ("room_every_of", [noun]) => Description::new(Quantifier::Every, Noun::Room(id(noun)?)),
+        ("room_every_of", [noun]) => {
+            Description::new(Quantifier::Every, Noun::Room(entry_id(noun)?))
+        }
         ("room_exactly", [count, noun]) => {
-            let noun = Noun::Room(id(noun)?);
+            let noun = Noun::Room(entry_id(noun)?);
             Description::new(Quantifier::Exactly(number(count)?), noun)
         }
         ("room_every", [own]) => kind(own, Quantifier::Every)?,

@@ -1,6 +1,6 @@
 //! Noun phrases: the meanings of the grammar's functions that make them.
 
-use super::from_tree::{id, number, parts, place_of, quality_of, room};
+use super::from_tree::{entry_id, number, parts, place_of, quality_of, room};
 use super::{existence, places, questions, sets, verb_phrases};
 use crate::form::{Description, Modifier, Noun, OrdinalSelection, Phrase, Quality, Quantifier};
 use crate::grammar::Tree;
@@ -14,7 +14,7 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
     let selected =
         |noun: &Tree, order: &Tree, place, reference: Option<Phrase>| -> Option<Phrase> {
             let selection = OrdinalSelection {
-                order: id(order)?,
+                order: entry_id(order)?,
                 place,
                 reference: reference.map(Box::new),
             };
@@ -83,7 +83,7 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
         ("no_piece_of", [noun, place]) => quantified_piece(Quantifier::No, noun, Some(place)),
         ("closer_one", [noun, reference]) => {
             let reference = Some(phrase(reference)?);
-            Some(questions::selected(described(noun)?, "closest_to", reference).into())
+            Some(questions::with_selection(described(noun)?, "closest_to", reference).into())
         }
         ("other" | "i_other", [noun]) => {
             let other = described(noun)?.with_quantifier(Quantifier::The).other();
@@ -93,15 +93,16 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
             "comparative" | "i_comparative" | "comparative_less" | "i_comparative_less",
             [word, noun],
         ) => {
-            let order = questions::superlative_of(&id(word)?, function.ends_with("_less"))?;
-            Some(questions::selected(described(noun)?, order, None).into())
+            let order = questions::superlative_of(&entry_id(word)?, function.ends_with("_less"))?;
+            Some(questions::with_selection(described(noun)?, order, None).into())
         }
         ("superlative_of", [order, of]) => {
-            Some(questions::selected(sets::set(of)?, &id(order)?, None).into())
+            Some(questions::with_selection(sets::set(of)?, &entry_id(order)?, None).into())
         }
         ("comparative_of" | "comparative_less_of", [word, of]) => {
-            let order = questions::superlative_of(&id(word)?, function == "comparative_less_of")?;
-            Some(questions::selected(sets::set(of)?, order, None).into())
+            let order =
+                questions::superlative_of(&entry_id(word)?, function == "comparative_less_of")?;
+            Some(questions::with_selection(sets::set(of)?, order, None).into())
         }
         ("nobody", []) => {
             let person = Noun::Object("person".to_owned());
@@ -111,10 +112,10 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
         ("at_least_one", [noun]) => of(Quantifier::AtLeast(1), noun),
         ("at_least" | "i_at_least", [count, noun]) => of(Quantifier::AtLeast(number(count)?), noun),
         ("i_the_that" | "i_the_that_verb", [noun, relation, other]) => {
-            that(Quantifier::The, noun, id(relation)?, phrase(other)?)
+            that(Quantifier::The, noun, entry_id(relation)?, phrase(other)?)
         }
         ("i_some_that" | "i_some_that_verb", [noun, relation, other]) => {
-            that(Quantifier::Some, noun, id(relation)?, phrase(other)?)
+            that(Quantifier::Some, noun, entry_id(relation)?, phrase(other)?)
         }
         ("i_the_from", [noun, source]) => that(
             Quantifier::The,
@@ -160,16 +161,16 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
             [noun, place],
         ) => places::structure(noun, Some(Modifier::new("in_room", [room(place)?]))),
         ("structure_in" | "i_structure_in", [place, noun]) => {
-            let room = Description::new(Quantifier::The, Noun::Room(id(place)?));
+            let room = Description::new(Quantifier::The, Noun::Room(entry_id(place)?));
             places::structure(noun, Some(Modifier::new("in_room", [room.into()])))
         }
-        ("some_same" | "one_same", []) => Some(named_before(Quantifier::Some, function)),
+        ("some_same" | "one_same", []) => Some(anaphoric_phrase(Quantifier::Some, function)),
         ("other_same" | "i_other_same", []) => {
             let same = Description::new(Quantifier::The, Noun::SameNoun);
             Some(same.other().into())
         }
-        ("every_same" | "i_every_same", []) => Some(named_before(Quantifier::Every, function)),
-        ("no_same", []) => Some(named_before(Quantifier::No, function)),
+        ("every_same" | "i_every_same", []) => Some(anaphoric_phrase(Quantifier::Every, function)),
+        ("no_same", []) => Some(anaphoric_phrase(Quantifier::No, function)),
         ("structure_flank_of" | "i_structure_flank_of", [side, noun, place]) => {
             let wall = places::structure(noun, Some(places::side_from_tree(side)?))?;
             match wall {
@@ -190,12 +191,13 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
         }
         ("one_colored", [color]) => {
             let mut own = Description::new(Quantifier::Some, Noun::SameNoun);
-            own.colors.push(id(color)?);
+            own.colors.push(entry_id(color)?);
             Some(own.into())
         }
-        ("exactly_same", [count]) => {
-            Some(named_before(Quantifier::Exactly(number(count)?), function))
-        }
+        ("exactly_same", [count]) => Some(anaphoric_phrase(
+            Quantifier::Exactly(number(count)?),
+            function,
+        )),
         ("np_nothing" | "np_something", [inner]) => indefinite_pronoun(inner).map(Phrase::from),
         ("at_least_two" | "i_at_least_two" | "bare_plural" | "i_bare_plural", [noun])
         | ("gathering_of", [_, noun]) => of(Quantifier::AtLeast(2), noun),
@@ -242,7 +244,7 @@ fn quantified_piece(quantifier: Quantifier, noun: &Tree, place: Option<&Tree>) -
 }
 
 /// Things that were named before: "one" by their noun, "one of them" by all that was said of them.
-fn named_before(quantifier: Quantifier, function: &str) -> Phrase {
+fn anaphoric_phrase(quantifier: Quantifier, function: &str) -> Phrase {
     let noun = match function {
         "some_same" => Noun::SameNoun,
         _ => Noun::SameThings,
@@ -332,7 +334,7 @@ pub(super) fn described(tree: &Tree) -> Option<Description> {
         ("with_relative", [noun, added]) => verb_phrases::with_relative(described(noun)?, added)?,
         ("with_material", [noun, word]) => {
             let mut description = described(noun)?;
-            verb_phrases::add_quality(&mut description, Quality::Material(id(word)?))?;
+            verb_phrases::add_quality(&mut description, Quality::Material(entry_id(word)?))?;
             description
         }
         ("way_between", [noun, one, other]) => {
@@ -344,10 +346,10 @@ pub(super) fn described(tree: &Tree) -> Option<Description> {
         ("with_apposition", [noun, added]) => described(noun)?.with_modifier(modifier(added)?),
         ("with_apposed_color", [noun, color]) => {
             let mut description = described(noun)?;
-            verb_phrases::add_quality(&mut description, Quality::Color(id(color)?))?;
+            verb_phrases::add_quality(&mut description, Quality::Color(entry_id(color)?))?;
             description
         }
-        ("noun" | "tail", [word]) => plain(id(word)?),
+        ("noun" | "tail", [word]) => plain(entry_id(word)?),
         ("front_door", []) => {
             plain("door".to_owned()).with_modifier(Modifier::new("leads_outside", []))
         }
@@ -357,11 +359,11 @@ pub(super) fn described(tree: &Tree) -> Option<Description> {
             let Noun::Object(tail) = &description.noun else {
                 return None;
             };
-            description.noun = Noun::Object(format!("{} of {tail}", id(head)?));
+            description.noun = Noun::Object(format!("{} of {tail}", entry_id(head)?));
             description
         }
         ("room_compound", [room, noun]) => {
-            let (room, noun) = (id(room)?, id(noun)?);
+            let (room, noun) = (entry_id(room)?, entry_id(noun)?);
             // "The balcony door" leads there, "the kitchen table" stands there.
             let predicate = if noun.ends_with("door") {
                 "leads_to"
@@ -373,7 +375,7 @@ pub(super) fn described(tree: &Tree) -> Option<Description> {
         }
         ("color" | "color_tail", [word, inner]) => {
             let mut description = described(inner)?;
-            description.colors.insert(0, id(word)?);
+            description.colors.insert(0, entry_id(word)?);
             (description.colors.len() == 1).then_some(description)?
         }
         ("two_colors" | "two_colors_tail", [one, two, inner]) => {
@@ -381,12 +383,12 @@ pub(super) fn described(tree: &Tree) -> Option<Description> {
             if !description.colors.is_empty() {
                 return None;
             }
-            description.colors = vec![id(one)?, id(two)?];
+            description.colors = vec![entry_id(one)?, entry_id(two)?];
             description
         }
         ("material" | "material_tail", [word, inner]) => {
             let mut description = described(inner)?;
-            let before = description.material.replace(id(word)?);
+            let before = description.material.replace(entry_id(word)?);
             before.is_none().then_some(description)?
         }
         ("size" | "size_tail", [word, inner]) => {
@@ -396,7 +398,7 @@ pub(super) fn described(tree: &Tree) -> Option<Description> {
         }
         ("state", [word, inner]) => {
             let mut description = described(inner)?;
-            let before = description.state.replace(id(word)?);
+            let before = description.state.replace(entry_id(word)?);
             before.is_none().then_some(description)?
         }
         _ => return None,
@@ -405,11 +407,11 @@ pub(super) fn described(tree: &Tree) -> Option<Description> {
 
 pub(super) fn modifier(tree: &Tree) -> Option<Modifier> {
     let (predicate, arguments) = match parts(tree)? {
-        ("modifier_state", [state]) => (id(state)?, Vec::new()),
+        ("modifier_state", [state]) => (entry_id(state)?, Vec::new()),
         ("modifier_state_not", [state]) => {
             return Some(Modifier {
                 negated: true,
-                ..Modifier::new(&id(state)?, [])
+                ..Modifier::new(&entry_id(state)?, [])
             });
         }
         ("modifier_carries_list", [load]) => (
@@ -447,10 +449,10 @@ pub(super) fn modifier(tree: &Tree) -> Option<Modifier> {
             let thing: Phrase =
                 Description::new(Quantifier::Some, Noun::Object(Noun::ANY_OBJECT.to_owned()))
                     .into();
-            (relation_to(id(word)?, &thing, &other), vec![other])
+            (relation_to(entry_id(word)?, &thing, &other), vec![other])
         }
         ("modifier_between_two", [both]) => ("between".to_owned(), between_two(both)?.into()),
-        ("modifier_from", [word, other]) => (id(word)?, vec![phrase(other)?]),
+        ("modifier_from", [word, other]) => (entry_id(word)?, vec![phrase(other)?]),
         ("modifier_between", [a, b]) => ("between".to_owned(), vec![phrase(a)?, phrase(b)?]),
         ("modifier_place", [place]) => {
             let (predicate, place) = place_of(place)?;
@@ -479,7 +481,7 @@ pub(super) fn relation_to(word: String, subject: &Phrase, landmark: &Phrase) -> 
 }
 
 pub(super) fn size(tree: &Tree) -> Option<SizeClass> {
-    let word = id(tree)?;
+    let word = entry_id(tree)?;
     SizeClass::ALL
         .into_iter()
         .find(|size| size.word() == Some(&word))

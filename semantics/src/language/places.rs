@@ -1,7 +1,7 @@
 //! Places that need no landmark phrase of their own: mounts, ways through doors, sides of the viewer.
 
 use super::existence::is_bare;
-use super::from_tree::{id, parts, room};
+use super::from_tree::{entry_id, parts, room};
 use super::lexicon::STRUCTURE;
 use super::to_tree::{Position, TreeBuilder};
 use crate::form::{Clause, Description, Modifier, Noun, Phrase, Quantifier};
@@ -17,7 +17,7 @@ const SIDES: [(&str, &str); 3] = [
 /// The end of the functions of sides that do not say of what: "to the left".
 const ANY_LANDMARK: &str = "_of_any";
 
-fn mounts() -> [(&'static str, Noun); 3] {
+fn mount_nouns() -> [(&'static str, Noun); 3] {
     [
         ("mount_wall", Noun::Structure("wall".to_owned())),
         ("mount_ceiling", Noun::Structure("ceiling".to_owned())),
@@ -27,29 +27,29 @@ fn mounts() -> [(&'static str, Noun); 3] {
 
 /// A piece of the building: any of its kind, or of those that a modifier holds of.
 pub(super) fn structure(noun: &Tree, modifier: Option<Modifier>) -> Option<Phrase> {
-    let mut own = piece(noun)?;
+    let mut own = structure_description(noun)?;
     own.modifiers.extend(modifier);
     Some(own.into())
 }
 
 /// A piece of the building with its colour and substance: "the white brick wall".
-fn piece(noun: &Tree) -> Option<Description> {
+fn structure_description(noun: &Tree) -> Option<Description> {
     let plain = |noun: &Tree| {
         Some(Description::new(
             Quantifier::Some,
-            Noun::Structure(id(noun)?),
+            Noun::Structure(entry_id(noun)?),
         ))
     };
     match parts(noun) {
         Some(("piece", [noun])) => plain(noun),
         Some(("piece_color", [color, inner])) => {
-            let mut own = piece(inner)?;
-            own.colors.insert(0, id(color)?);
+            let mut own = structure_description(inner)?;
+            own.colors.insert(0, entry_id(color)?);
             (own.colors.len() == 1).then_some(own)
         }
         Some(("piece_material", [material, inner])) => {
-            let mut own = piece(inner)?;
-            let before = own.material.replace(id(material)?);
+            let mut own = structure_description(inner)?;
+            let before = own.material.replace(entry_id(material)?);
             before.is_none().then_some(own)
         }
         _ => plain(noun),
@@ -61,7 +61,7 @@ fn some(noun: Noun) -> Phrase {
 }
 
 pub(super) fn mount_to_tree(mount: &Phrase) -> Option<Tree> {
-    let found = mounts()
+    let found = mount_nouns()
         .into_iter()
         .find(|(_, noun)| *mount == some(noun.clone()));
     if let Some((function, _)) = found {
@@ -89,7 +89,7 @@ pub(super) fn mount_from_tree(tree: &Tree) -> Option<Phrase> {
         let wall = Description::new(Quantifier::Some, wall);
         return Some(wall.with_modifier(side_from_tree(side)?).into());
     }
-    let found = mounts().into_iter().find(|(own, _)| *own == function);
+    let found = mount_nouns().into_iter().find(|(own, _)| *own == function);
     found.map(|(_, noun)| some(noun))
 }
 
@@ -175,7 +175,7 @@ impl TreeBuilder<'_> {
             material: None,
             ..own.clone()
         };
-        let noun = self.known(STRUCTURE, noun)?;
+        let noun = self.lexicon_entry(STRUCTURE, noun)?;
         if own.quantifier == Quantifier::Every && position == Position::Free {
             let any = bare.with_quantifier(Quantifier::Some);
             return is_bare(&any).then(|| self.every_piece(own, noun))?;
@@ -230,12 +230,15 @@ impl TreeBuilder<'_> {
     fn structure_noun_phrase(&self, own: &Description, noun: Tree) -> Option<Tree> {
         let mut tree = Tree::apply("piece", [noun]);
         if let Some(word) = &own.material {
-            tree = Tree::apply("piece_material", [self.known("material", word)?, tree]);
+            tree = Tree::apply(
+                "piece_material",
+                [self.lexicon_entry("material", word)?, tree],
+            );
         }
         match &own.colors[..] {
             [] => {}
             [color] => {
-                tree = Tree::apply("piece_color", [self.known("color", color)?, tree]);
+                tree = Tree::apply("piece_color", [self.lexicon_entry("color", color)?, tree]);
             }
             _ => return None,
         }
@@ -276,9 +279,10 @@ impl TreeBuilder<'_> {
             ("hangs_on", [mount]) => Some(Tree::apply("modifier_mount", [mount_to_tree(mount)?])),
             ("held", []) => Some(Tree::apply("modifier_held", [])),
             ("visible", []) => Some(Tree::apply("modifier_seen", [])),
-            (state, []) if self.known("state", state).is_some() => {
-                Some(Tree::apply("modifier_state", [self.known("state", state)?]))
-            }
+            (state, []) if self.lexicon_entry("state", state).is_some() => Some(Tree::apply(
+                "modifier_state",
+                [self.lexicon_entry("state", state)?],
+            )),
             (predicate, []) if side_of(predicate).is_some() => {
                 Some(Tree::apply("modifier_side", [side_of(predicate)?]))
             }

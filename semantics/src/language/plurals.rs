@@ -4,7 +4,7 @@
 //! pots" have one pot each, and "none of the windows has curtains" is not true of a window with one (Zweig, "Number-neutral
 //! bare plurals and the multiplicity implicature", 2009).
 
-use super::from_tree::{id, number, parts};
+use super::from_tree::{entry_id, number, parts};
 use crate::grammar::Tree;
 
 /// Returns the tree with
@@ -39,7 +39,7 @@ fn distributed(tree: Tree, under_plural: bool) -> Tree {
             parts(&argument).is_some_and(|(function, of)| is_plural(function, of));
         let is_supported = distributed_arguments
             .last()
-            .and_then(id)
+            .and_then(entry_id)
             .is_some_and(|word| word == "on" || word == "in");
         let argument = match parts(&argument) {
             Some(("the_plural", _)) if is_supported => renamed(argument, "some"),

@@ -1,7 +1,9 @@
 //! Questions: forms to trees, and trees to forms.
 
 use super::existence::{self, is_bare};
-use super::from_tree::{affirmed, holds, id, parts, place_of, quality_of, room, simple};
+use super::from_tree::{
+    affirmed, entry_id, holds, parts, place_of, possibly_negated_clause, quality_of, room,
+};
 use super::lexicon::{RELATION, ROOM_NOUN};
 use super::phrases::{described, modifier, phrase};
 use super::to_tree::{Position, TreeBuilder};
@@ -40,11 +42,12 @@ fn read_only_question(function: &str, arguments: &[Tree]) -> Option<Question> {
         }
         ("which_verb", [kind, verb, object]) => which(
             Some(described(kind)?),
-            holds(&id(verb)?, vec![Phrase::Hole, phrase(object)?]),
+            holds(&entry_id(verb)?, vec![Phrase::Hole, phrase(object)?]),
         ),
-        ("what_verb", [verb, object]) => {
-            which(None, holds(&id(verb)?, vec![Phrase::Hole, phrase(object)?]))
-        }
+        ("what_verb", [verb, object]) => which(
+            None,
+            holds(&entry_id(verb)?, vec![Phrase::Hole, phrase(object)?]),
+        ),
         ("what_has", [subject]) => which(
             None,
             holds("belongs_to", vec![Phrase::Hole, phrase(subject)?]),
@@ -56,7 +59,7 @@ fn read_only_question(function: &str, arguments: &[Tree]) -> Option<Question> {
         ("how_many_verb" | "how_many_verb_not", [kind, verb, object]) => {
             count(described(kind)?.with_modifier(Modifier {
                 negated: function == "how_many_verb_not",
-                ..Modifier::new(&id(verb)?, [phrase(object)?])
+                ..Modifier::new(&entry_id(verb)?, [phrase(object)?])
             }))
         }
         ("how_many_has", [noun, subject]) => {
@@ -102,7 +105,7 @@ fn read_only_question(function: &str, arguments: &[Tree]) -> Option<Question> {
         }
         ("which_of_is_closer", [noun, reference]) => {
             let reference = Some(phrase(reference)?);
-            let kind = selected(described(noun)?, "closest_to", reference);
+            let kind = with_selection(described(noun)?, "closest_to", reference);
             which(Some(kind), Clause::Exists(Phrase::Hole))
         }
         ("which_carries", [kind, load]) => which(
@@ -135,14 +138,14 @@ fn read_only_question(function: &str, arguments: &[Tree]) -> Option<Question> {
             )
         }
         ("which_is_most" | "which_is_least" | "which_is_superlative", [word]) => {
-            let word = id(word)?;
+            let word = entry_id(word)?;
             let order = match function {
                 "which_is_superlative" => &word,
                 _ => superlative_of(&word, function == "which_is_least")?,
             };
             let kind = Description::new(Quantifier::The, Noun::SameThings);
             which(
-                Some(selected(kind, order, None)),
+                Some(with_selection(kind, order, None)),
                 Clause::Exists(Phrase::Hole),
             )
         }
@@ -163,7 +166,7 @@ fn read_only_question(function: &str, arguments: &[Tree]) -> Option<Question> {
             None,
             Clause::All(vec![
                 holds("visible", vec![Phrase::Hole]),
-                holds(&id(relation)?, vec![Phrase::Hole, phrase(landmark)?]),
+                holds(&entry_id(relation)?, vec![Phrase::Hole, phrase(landmark)?]),
             ]),
         ),
         ("what_between", [a, b]) => which(
@@ -176,12 +179,12 @@ fn read_only_question(function: &str, arguments: &[Tree]) -> Option<Question> {
         },
         ("which_stranded", [kind, subject, word]) => which(
             Some(described(kind)?),
-            holds(&id(word)?, vec![phrase(subject)?, Phrase::Hole]),
+            holds(&entry_id(word)?, vec![phrase(subject)?, Phrase::Hole]),
         ),
         ("what_stranded", [subject, word]) | ("what_stranded_standing", [subject, _, word]) => {
             which(
                 None,
-                holds(&id(word)?, vec![phrase(subject)?, Phrase::Hole]),
+                holds(&entry_id(word)?, vec![phrase(subject)?, Phrase::Hole]),
             )
         }
         ("what_says", [said]) => which(None, verb_phrases::clause(Phrase::Hole, said)?),
@@ -206,13 +209,13 @@ fn read_only_question(function: &str, arguments: &[Tree]) -> Option<Question> {
             verb_phrases::clause(Phrase::Hole, &standing(posture, said))?,
         ),
         ("which_of_is", [set, order]) => which(
-            Some(selected(sets::set(set)?, &id(order)?, None)),
+            Some(with_selection(sets::set(set)?, &entry_id(order)?, None)),
             Clause::Exists(Phrase::Hole),
         ),
         ("which_of_is_more" | "which_of_is_less", [set, word]) => {
-            let order = superlative_of(&id(word)?, function == "which_of_is_less")?;
+            let order = superlative_of(&entry_id(word)?, function == "which_of_is_less")?;
             which(
-                Some(selected(sets::set(set)?, order, None)),
+                Some(with_selection(sets::set(set)?, order, None)),
                 Clause::Exists(Phrase::Hole),
             )
         }
@@ -233,15 +236,19 @@ fn read_only_question(function: &str, arguments: &[Tree]) -> Option<Question> {
             holds("room_contains", vec![Phrase::Hole, phrase(thing)?]),
         ),
         ("how_many_rooms_have", [noun, thing]) => {
-            let rooms = Description::new(Quantifier::Some, Noun::Room(id(noun)?));
+            let rooms = Description::new(Quantifier::Some, Noun::Room(entry_id(noun)?));
             count(rooms.with_modifier(Modifier::new("room_contains", [phrase(thing)?])))
         }
         ("which_superlative", [noun, order]) => {
-            let kind = selected(described(noun)?, &id(order)?, None);
+            let kind = with_selection(described(noun)?, &entry_id(order)?, None);
             which(Some(kind), Clause::Exists(Phrase::Hole))
         }
         ("which_order_to", [noun, order, reference]) => {
-            let kind = selected(described(noun)?, &id(order)?, Some(phrase(reference)?));
+            let kind = with_selection(
+                described(noun)?,
+                &entry_id(order)?,
+                Some(phrase(reference)?),
+            );
             which(Some(kind), Clause::Exists(Phrase::Hole))
         }
         _ => return None,
@@ -253,7 +260,7 @@ pub(super) fn standing(posture: &Tree, said: &Tree) -> Tree {
     Tree::apply("vp_standing", [posture.clone(), said.clone()])
 }
 
-pub(super) fn selected(
+pub(super) fn with_selection(
     description: Description,
     order: &str,
     reference: Option<Phrase>,
@@ -302,7 +309,7 @@ pub(super) fn question(tree: &Tree) -> Option<Question> {
     match (function, arguments) {
         ("how_many", [what]) => Some(Question::HowMany(Box::new(described(what)?))),
         ("how_many_rooms", [noun]) => {
-            let noun = Noun::Room(id(noun)?);
+            let noun = Noun::Room(entry_id(noun)?);
             let what = Description::new(Quantifier::Some, noun);
             Some(Question::HowMany(Box::new(what)))
         }
@@ -318,11 +325,11 @@ pub(super) fn question(tree: &Tree) -> Option<Question> {
         ("what_holds", [relation @ Tree::Entry { class, .. }, object]) if class == RELATION => {
             which(
                 None,
-                holds(&id(relation)?, vec![Phrase::Hole, phrase(object)?]),
+                holds(&entry_id(relation)?, vec![Phrase::Hole, phrase(object)?]),
             )
         }
         ("which_holds", [kind, relation, object]) => {
-            let clause = holds(&id(relation)?, vec![Phrase::Hole, phrase(object)?]);
+            let clause = holds(&entry_id(relation)?, vec![Phrase::Hole, phrase(object)?]);
             which(Some(kind), clause)
         }
         ("which_place", [kind, place]) => {
@@ -349,7 +356,7 @@ pub(super) fn indirect(tree: &Tree) -> Option<Question> {
         Some(Question::Attribute { kind, of })
     };
     match parts(tree)? {
-        ("indirect_whether", [inner]) => Some(Question::Whether(simple(inner)?)),
+        ("indirect_whether", [inner]) => Some(Question::Whether(possibly_negated_clause(inner)?)),
         ("indirect_question", [inner]) => question(inner),
         ("indirect_where", [of]) => attribute(AttributeKind::Place, of),
         ("indirect_color", [of]) => attribute(AttributeKind::Color, of),
@@ -370,7 +377,7 @@ impl TreeBuilder<'_> {
             Question::Whether(clause) => self.whether(clause)?,
             Question::HowMany(what) => match &what.noun {
                 Noun::Room(noun) if is_bare(what) => {
-                    Tree::apply("how_many_rooms", [self.known(ROOM_NOUN, noun)?])
+                    Tree::apply("how_many_rooms", [self.lexicon_entry(ROOM_NOUN, noun)?])
                 }
                 Noun::Storey if is_bare(what) => Tree::apply("how_many_storeys", []),
                 _ => Tree::apply("how_many", [self.with_modifiers(what)?]),
@@ -453,7 +460,7 @@ impl TreeBuilder<'_> {
                 let [Phrase::Hole, object] = &arguments[..] else {
                     return None;
                 };
-                if let Some(word) = self.known(RELATION, predicate) {
+                if let Some(word) = self.lexicon_entry(RELATION, predicate) {
                     let object = self.phrase(object, Position::Free)?;
                     return Some(match kind {
                         Some(kind) => Tree::apply("which_holds", [kind, word, object]),

@@ -134,7 +134,7 @@ impl Language {
     pub fn read_text(&self, text: &str) -> Result<Vec<SentenceReadings>, SentenceError> {
         let mut read: Vec<SentenceReadings> = Vec::new();
         for (start, end) in sentences(text) {
-            interrupt::check();
+            interrupt::unwind_if_cancelled();
             let fault = |error| SentenceError {
                 start,
                 sentence: text[start..end].to_owned(),

@@ -1,6 +1,6 @@
 //! Requests: forms to trees, and trees to forms.
 
-use super::from_tree::{id, parts, place_of, room, simple, subjects};
+use super::from_tree::{entry_id, parts, place_of, possibly_negated_clause, room, subjects};
 use super::lexicon::{RELATION, VERB};
 use super::phrases::{between_two, phrase};
 use super::places;
@@ -12,19 +12,19 @@ pub(super) fn plan(tree: &Tree) -> Option<Vec<RequestStep>> {
     Some(match parts(tree)? {
         ("one_step", [only]) => vec![step(only)?],
         ("unless" | "step_unless", [condition, then]) => {
-            let not = Clause::Not(Box::new(simple(condition)?));
+            let not = Clause::Not(Box::new(possibly_negated_clause(condition)?));
             vec![conditional(not, plan_or_step(then)?, Vec::new())]
         }
         ("if" | "step_if", [condition, then]) => {
             vec![conditional(
-                simple(condition)?,
+                possibly_negated_clause(condition)?,
                 plan_or_step(then)?,
                 Vec::new(),
             )]
         }
         ("if_else", [condition, then, otherwise]) => {
             vec![conditional(
-                simple(condition)?,
+                possibly_negated_clause(condition)?,
                 plan(then)?,
                 plan(otherwise)?,
             )]
@@ -32,7 +32,7 @@ pub(super) fn plan(tree: &Tree) -> Option<Vec<RequestStep>> {
         // "If the door is closed, open it, otherwise come to me", as people put it.
         ("step_if_else", [then, condition, otherwise]) => {
             vec![conditional(
-                simple(condition)?,
+                possibly_negated_clause(condition)?,
                 vec![step(then)?],
                 plan(otherwise)?,
             )]
@@ -44,9 +44,9 @@ pub(super) fn plan(tree: &Tree) -> Option<Vec<RequestStep>> {
             }
             rest
         }
-        ("group", [only]) => group(only)?,
+        ("group", [only]) => coordinated_steps(only)?,
         ("group_then", [first, rest]) => {
-            let mut steps = group(first)?;
+            let mut steps = coordinated_steps(first)?;
             steps.extend(plan(rest)?);
             steps
         }
@@ -85,14 +85,14 @@ fn merge_fetch_step(tree: &Tree, rest: &mut [RequestStep]) -> Option<bool> {
 }
 
 /// Steps in one clause: "switch off the lamp and the radio".
-fn group(tree: &Tree) -> Option<Vec<RequestStep>> {
+fn coordinated_steps(tree: &Tree) -> Option<Vec<RequestStep>> {
     Some(match parts(tree)? {
         ("do_rather", [verb, object, other]) => {
-            let verb = id(verb)?;
+            let verb = entry_id(verb)?;
             vec![act(&verb, object)?, refrain(&verb, other)?]
         }
         ("do_two", [verb, one, other]) => {
-            let verb = id(verb)?;
+            let verb = entry_id(verb)?;
             vec![act(&verb, one)?, act(&verb, other)?]
         }
         ("put_both", [object, one, first, other, second]) => {
@@ -102,7 +102,7 @@ fn group(tree: &Tree) -> Option<Vec<RequestStep>> {
         | ("put_by_floor", [_, object, one, structure, other, second]) => {
             let floor = RequestStep::Put {
                 object: phrase(object)?,
-                predicate: id(one)?,
+                predicate: entry_id(one)?,
                 to: places::structure(structure, None)?,
             };
             vec![floor, put(object, other, second)?]
@@ -148,7 +148,7 @@ fn refrain(verb: &str, object: &Tree) -> Option<RequestStep> {
 fn put(object: &Tree, relation: &Tree, to: &Tree) -> Option<RequestStep> {
     Some(RequestStep::Put {
         object: phrase(object)?,
-        predicate: id(relation)?,
+        predicate: entry_id(relation)?,
         to: phrase(to)?,
     })
 }
@@ -178,7 +178,7 @@ fn step(tree: &Tree) -> Option<RequestStep> {
             };
             let in_room = Modifier::new("in_room", [room(from)?]);
             RequestStep::Do {
-                verb: id(verb)?,
+                verb: entry_id(verb)?,
                 object: description.with_modifier(in_room).into(),
             }
         }
@@ -190,7 +190,7 @@ fn step(tree: &Tree) -> Option<RequestStep> {
             to: phrase(to)?,
         },
         ("leave_state", [object, state]) => {
-            let verb = match id(state)?.as_str() {
+            let verb = match entry_id(state)?.as_str() {
                 "open" | "half_open" => "close",
                 "closed" => "open",
                 "switched_on" => "switch_off",
@@ -232,7 +232,7 @@ fn step(tree: &Tree) -> Option<RequestStep> {
         },
         ("put_list", [_, items, relation, to]) => RequestStep::Put {
             object: subjects(items)?,
-            predicate: id(relation)?,
+            predicate: entry_id(relation)?,
             to: phrase(to)?,
         },
         ("put_list_in_place", [_, items, place]) => {
@@ -272,7 +272,7 @@ fn step(tree: &Tree) -> Option<RequestStep> {
         }
         ("stand_at", [relation, landmark]) => RequestStep::Put {
             object: Phrase::Listener,
-            predicate: id(relation)?,
+            predicate: entry_id(relation)?,
             to: phrase(landmark)?,
         },
         ("come", []) => RequestStep::Do {
@@ -284,8 +284,8 @@ fn step(tree: &Tree) -> Option<RequestStep> {
         ("do_pick_up", [object]) => act("pick_up", object)?,
         ("do_drop", [object]) => act("drop", object)?,
         ("do_bring_here" | "do_bring_me" | "do_fetch", [object]) => act("bring_me", object)?,
-        ("do", [verb, object]) => act(&id(verb)?, object)?,
-        ("do_not", [verb, object]) => refrain(&id(verb)?, object)?,
+        ("do", [verb, object]) => act(&entry_id(verb)?, object)?,
+        ("do_not", [verb, object]) => refrain(&entry_id(verb)?, object)?,
         ("put" | "put_modified", [object, relation, to]) => put(object, relation, to)?,
         (
             "put_in_place" | "put_modified_in_place" | "put_in_destination" | "leave_in_place",
@@ -349,10 +349,10 @@ impl TreeBuilder<'_> {
         Some(match step {
             RequestStep::GoTo(room) => Tree::apply("go_to", [self.room(room)?]),
             RequestStep::Do { verb, object } => {
-                Tree::apply("do", [self.known(VERB, verb)?, free(object)?])
+                Tree::apply("do", [self.lexicon_entry(VERB, verb)?, free(object)?])
             }
             RequestStep::DoNot { verb, object } => {
-                Tree::apply("do_not", [self.known(VERB, verb)?, free(object)?])
+                Tree::apply("do_not", [self.lexicon_entry(VERB, verb)?, free(object)?])
             }
             RequestStep::Put {
                 object,
@@ -371,12 +371,12 @@ impl TreeBuilder<'_> {
                     return Some(Tree::apply("stand_in_place", [self.place(to)?]));
                 }
                 if *object == Phrase::Listener
-                    && let Some(spot) = self.spot(predicate, to)
+                    && let Some(spot) = self.place_in_room(predicate, to)
                 {
                     return Some(Tree::apply("stand_in_place", [spot]));
                 }
                 if *object == Phrase::Listener {
-                    let relation = self.known(RELATION, predicate)?;
+                    let relation = self.lexicon_entry(RELATION, predicate)?;
                     return Some(Tree::apply("stand_at", [relation, free(to)?]));
                 }
                 let object = self.phrase(object, Position::Landmark)?;
@@ -387,10 +387,10 @@ impl TreeBuilder<'_> {
                     Tree::apply("put_between", [object, free(one)?, free(other)?])
                 } else if predicate == "in_room" {
                     Tree::apply("put_in_place", [object, self.place(to)?])
-                } else if let Some(spot) = self.spot(predicate, to) {
+                } else if let Some(spot) = self.place_in_room(predicate, to) {
                     Tree::apply("put_in_place", [object, spot])
                 } else {
-                    let relation = self.known(RELATION, predicate)?;
+                    let relation = self.lexicon_entry(RELATION, predicate)?;
                     Tree::apply("put", [object, relation, free(to)?])
                 }
             }

@@ -5,7 +5,7 @@ use super::to_tree::{TreeBuilder, digits};
 use crate::form::{Clause, Description, Noun, Phrase, Quantifier, RoomSurface, RoomSurfaceKind};
 use crate::grammar::Tree;
 
-fn entry(tree: &Tree) -> Option<String> {
+fn entry_id(tree: &Tree) -> Option<String> {
     match tree {
         Tree::Entry { id, .. } => Some(id.clone()),
         Tree::Apply { .. } | Tree::Number { .. } => None,
@@ -47,8 +47,8 @@ impl TreeBuilder<'_> {
     }
 
     fn surface(&self, surface: &RoomSurface) -> Option<Tree> {
-        let color = |word: &String| self.known("color", word);
-        let material = |word: &String| self.known("material", word);
+        let color = |word: &String| self.lexicon_entry("color", word);
+        let material = |word: &String| self.lexicon_entry("material", word);
         match (surface.kind, &surface.color, &surface.material) {
             (RoomSurfaceKind::Floor, Some(own), Some(substance)) => Some(Tree::apply(
                 "floor_color_material",
@@ -115,8 +115,8 @@ fn surface_from_tree(tree: &Tree) -> Option<RoomSurface> {
     };
     Some(RoomSurface {
         kind,
-        color: color.and_then(entry),
-        material: material.and_then(entry),
+        color: color.and_then(entry_id),
+        material: material.and_then(entry_id),
     })
 }
 
@@ -141,11 +141,11 @@ pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Clause> {
             }
         }
         ("walls_are" | "room_walls_are" | "floor_is", [place, look]) => {
-            let place = match entry(place) {
+            let place = match entry_id(place) {
                 Some(noun) => Description::new(Quantifier::The, Noun::Room(noun)).into(),
                 None => room(place)?,
             };
-            let surface = match (entry(look), parts(look)) {
+            let surface = match (entry_id(look), parts(look)) {
                 (Some(color), _) => RoomSurface {
                     kind: RoomSurfaceKind::Walls,
                     color: Some(color),
@@ -155,8 +155,8 @@ pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Clause> {
                     let is_color = function == "floor_look_color";
                     RoomSurface {
                         kind: RoomSurfaceKind::Floor,
-                        color: entry(word).filter(|_| is_color),
-                        material: entry(word).filter(|_| !is_color),
+                        color: entry_id(word).filter(|_| is_color),
+                        material: entry_id(word).filter(|_| !is_color),
                     }
                 }
                 _ => return None,

@@ -1,6 +1,6 @@
 //! Things of a set: "one of the chairs", "the two cups", "none of them", "both bedrooms".
 
-use super::from_tree::{id, number, parts};
+use super::from_tree::{entry_id, number, parts};
 use super::phrases::described;
 use crate::form::{Description, Noun, Phrase, Quantifier};
 use crate::grammar::Tree;
@@ -35,7 +35,12 @@ pub(super) fn fewer_than(count: &Tree) -> Option<Quantifier> {
 
 /// The description of the members of a set; the caller sets its quantifier.
 pub(super) fn set(tree: &Tree) -> Option<Description> {
-    let room = |noun: &Tree| Some(Description::new(Quantifier::Some, Noun::Room(id(noun)?)));
+    let room = |noun: &Tree| {
+        Some(Description::new(
+            Quantifier::Some,
+            Noun::Room(entry_id(noun)?),
+        ))
+    };
     match parts(tree)? {
         // How many there are is what the speaker takes for granted, as with "the chair".
         ("set" | "set_counted", [.., noun]) => described(noun),

@@ -47,7 +47,7 @@ impl TreeBuilder<'_> {
         self.lexicon.find(class, id).is_some()
     }
 
-    pub(super) fn known(&self, class: &str, id: &str) -> Option<Tree> {
+    pub(super) fn lexicon_entry(&self, class: &str, id: &str) -> Option<Tree> {
         self.has(class, id).then(|| Tree::entry(class, id))
     }
 
@@ -55,7 +55,7 @@ impl TreeBuilder<'_> {
         Some(match form {
             Form::Claim(clause) => Tree::apply("claim", [self.clause(clause)?]),
             Form::Request(steps) => Tree::apply("request", [self.plan(steps)?]),
-            Form::Several(forms) => self.several(forms)?,
+            Form::Several(forms) => self.form_pair(forms)?,
             Form::Question(question) => Tree::apply("ask", [self.question(question)?]),
             Form::NounPhrase(phrase) => match self.room(phrase) {
                 Some(room) => Tree::apply("phrase_room", [room]),
@@ -64,7 +64,7 @@ impl TreeBuilder<'_> {
         })
     }
 
-    fn several(&self, forms: &[Form]) -> Option<Tree> {
+    fn form_pair(&self, forms: &[Form]) -> Option<Tree> {
         match forms {
             [Form::Question(first), Form::Question(second)] => Some(Tree::apply(
                 "several_questions",
@@ -158,7 +158,7 @@ impl TreeBuilder<'_> {
         };
         match landmark {
             Phrase::Described(own) if predicate == "on" && hung(own) => None,
-            _ => self.known(RELATION, predicate),
+            _ => self.lexicon_entry(RELATION, predicate),
         }
     }
 
@@ -185,9 +185,9 @@ impl TreeBuilder<'_> {
                 "holds_closer",
                 vec![free(subject)?, free(near)?, free(far)?],
             )),
-            (_, [subject, place]) if self.spot(predicate, place).is_some() => Some((
+            (_, [subject, place]) if self.place_in_room(predicate, place).is_some() => Some((
                 "holds_place",
-                vec![free(subject)?, self.spot(predicate, place)?],
+                vec![free(subject)?, self.place_in_room(predicate, place)?],
             )),
             ("open_to", [from, to]) => self.open_to(from, to),
             ("leads_to" | "leads_from" | "leads_outside", [door, others @ ..]) => {
@@ -200,11 +200,14 @@ impl TreeBuilder<'_> {
             )),
             (_, [Phrase::List(items), Phrase::EachOther]) => Some((
                 "list_holds_each_other",
-                vec![self.subjects(items)?, self.known(RELATION, predicate)?],
+                vec![
+                    self.subjects(items)?,
+                    self.lexicon_entry(RELATION, predicate)?,
+                ],
             )),
             (_, [subject, Phrase::EachOther]) => Some((
                 "holds_each_other",
-                vec![free(subject)?, self.known(RELATION, predicate)?],
+                vec![free(subject)?, self.lexicon_entry(RELATION, predicate)?],
             )),
             (side, [subject]) => Some(("holds_side", vec![free(subject)?, places::side_of(side)?])),
             (_, [Phrase::List(items), object]) => {
@@ -222,7 +225,7 @@ impl TreeBuilder<'_> {
                 if let Some(word) = self.relation_word(predicate, landmark) {
                     return Some(("holds", vec![subject, word, object]));
                 }
-                let word = self.known(VERB_RELATION, predicate)?;
+                let word = self.lexicon_entry(VERB_RELATION, predicate)?;
                 Some(("holds_verb", vec![subject, word, object]))
             }
             _ => None,
@@ -244,7 +247,7 @@ impl TreeBuilder<'_> {
     /// The noun of a description alone.
     pub(super) fn noun_of(&self, kind: &Description) -> Option<Tree> {
         match &kind.noun {
-            Noun::Room(noun) => self.known(ROOM_NOUN, noun),
+            Noun::Room(noun) => self.lexicon_entry(ROOM_NOUN, noun),
             _ => self.noun_with_adjectives(kind),
         }
     }
@@ -269,19 +272,25 @@ impl TreeBuilder<'_> {
     }
 
     /// A place within a room: "in the corner of the kitchen".
-    pub(super) fn spot(&self, predicate: &str, place: &Phrase) -> Option<Tree> {
-        let word = self.known(ROOM_SPOT, predicate)?;
+    pub(super) fn place_in_room(&self, predicate: &str, place: &Phrase) -> Option<Tree> {
+        let word = self.lexicon_entry(ROOM_SPOT, predicate)?;
         Some(Tree::apply("place_spot", [word, self.room(place)?]))
     }
 
     pub(super) fn quality(&self, quality: &Quality) -> Option<Tree> {
         Some(match quality {
-            Quality::Color(word) => Tree::apply("quality_color", [self.known("color", word)?]),
-            Quality::Material(word) => {
-                Tree::apply("quality_material", [self.known("material", word)?])
+            Quality::Color(word) => {
+                Tree::apply("quality_color", [self.lexicon_entry("color", word)?])
             }
-            Quality::Size(size) => Tree::apply("quality_size", [self.known("size", size.word()?)?]),
-            Quality::State(name) => Tree::apply("quality_state", [self.known("state", name)?]),
+            Quality::Material(word) => {
+                Tree::apply("quality_material", [self.lexicon_entry("material", word)?])
+            }
+            Quality::Size(size) => {
+                Tree::apply("quality_size", [self.lexicon_entry("size", size.word()?)?])
+            }
+            Quality::State(name) => {
+                Tree::apply("quality_state", [self.lexicon_entry("state", name)?])
+            }
         })
     }
 
@@ -299,7 +308,7 @@ impl TreeBuilder<'_> {
         if !is_plain {
             return None;
         }
-        let kind = Tree::apply("room_kind", [self.known(ROOM, noun)?]);
+        let kind = Tree::apply("room_kind", [self.lexicon_entry(ROOM, noun)?]);
         match (
             &description.selection,
             &description.modifiers[..],
@@ -420,10 +429,10 @@ impl TreeBuilder<'_> {
                 if only.predicate == "belongs_to" {
                     return Some(Tree::apply(&format!("i_{article}_from"), [own, other]));
                 }
-                if let Some(word) = self.known(RELATION, &only.predicate) {
+                if let Some(word) = self.lexicon_entry(RELATION, &only.predicate) {
                     return Some(Tree::apply(&named(""), [own, word, other]));
                 }
-                let word = self.known(VERB_RELATION, &only.predicate)?;
+                let word = self.lexicon_entry(VERB_RELATION, &only.predicate)?;
                 Some(Tree::apply(&named("_verb"), [own, word, other]))
             }
             _ => None,
@@ -467,11 +476,14 @@ impl TreeBuilder<'_> {
         } = selection;
         if let Some(reference) = reference {
             let reference = self.phrase(reference, Position::Landmark)?;
-            let order = self.known(ORDER_TO, order)?;
+            let order = self.lexicon_entry(ORDER_TO, order)?;
             return (*place == 1).then(|| Tree::apply("selected_to", [noun, order, reference]));
         }
-        let superlative = self.known(SUPERLATIVE, order);
-        if let Some(order) = self.known(ORDER, order).filter(|_| superlative.is_none()) {
+        let superlative = self.lexicon_entry(SUPERLATIVE, order);
+        if let Some(order) = self
+            .lexicon_entry(ORDER, order)
+            .filter(|_| superlative.is_none())
+        {
             return Some(Tree::apply("nth", [ordinal(*place), noun, order]));
         }
         Some(match place {
@@ -513,9 +525,10 @@ impl TreeBuilder<'_> {
             ("in_room" | "on_storey", [place]) => {
                 Some(Tree::apply("modifier_place", [self.place(place)?]))
             }
-            (spot, [place]) if self.spot(spot, place).is_some() => {
-                Some(Tree::apply("modifier_place", [self.spot(spot, place)?]))
-            }
+            (spot, [place]) if self.place_in_room(spot, place).is_some() => Some(Tree::apply(
+                "modifier_place",
+                [self.place_in_room(spot, place)?],
+            )),
             ("belongs_to", [source]) => Some(Tree::apply("modifier_source", [landmark(source)?])),
             ("closer_to", [near, far]) => Some(Tree::apply(
                 "modifier_closer",
@@ -529,7 +542,7 @@ impl TreeBuilder<'_> {
                 if let Some(word) = self.relation_word(predicate, other) {
                     return Some(Tree::apply("modifier", [word, landmark(other)?]));
                 }
-                let word = self.known(VERB_RELATION, predicate)?;
+                let word = self.lexicon_entry(VERB_RELATION, predicate)?;
                 Some(Tree::apply("modifier_verb", [word, landmark(other)?]))
             }
             _ => None,
@@ -547,13 +560,16 @@ impl TreeBuilder<'_> {
         });
         let (mut tree, ending) = match split {
             Some((_, tail)) => (Tree::apply("tail", [Tree::entry(GATHERED, tail)]), "_tail"),
-            None => (Tree::apply("noun", [self.known(NOUN, noun)?]), ""),
+            None => (Tree::apply("noun", [self.lexicon_entry(NOUN, noun)?]), ""),
         };
         let named = |plain: &str| format!("{plain}{ending}");
         if let Some(word) = &description.material {
-            tree = Tree::apply(&named("material"), [self.known("material", word)?, tree]);
+            tree = Tree::apply(
+                &named("material"),
+                [self.lexicon_entry("material", word)?, tree],
+            );
         }
-        let color = |word: &String| self.known("color", word);
+        let color = |word: &String| self.lexicon_entry("color", word);
         tree = match &description.colors[..] {
             [] => tree,
             [one] => Tree::apply(&named("color"), [color(one)?, tree]),
@@ -564,10 +580,10 @@ impl TreeBuilder<'_> {
             tree = Tree::apply("gathered", [Tree::entry(GATHERING, head), tree]);
         }
         if let Some(state) = &description.state {
-            tree = Tree::apply("state", [self.known(ADJECTIVE_STATE, state)?, tree]);
+            tree = Tree::apply("state", [self.lexicon_entry(ADJECTIVE_STATE, state)?, tree]);
         }
         if let Some(word) = description.size.map(SizeClass::word) {
-            tree = Tree::apply("size", [self.known("size", word?)?, tree]);
+            tree = Tree::apply("size", [self.lexicon_entry("size", word?)?, tree]);
         }
         Some(tree)
     }

@@ -1,6 +1,6 @@
 //! What is said of a subject: "is red", "stands next to the door but is not open".
 
-use super::from_tree::{holds, id, parts, place_of, quality_of, subjects};
+use super::from_tree::{entry_id, holds, parts, place_of, quality_of, subjects};
 use super::phrases::{between_two, described, phrase, relation_to};
 use super::{places, questions};
 use crate::form::{Clause, Description, Modifier, Noun, Phrase, Quality, Quantifier};
@@ -41,7 +41,10 @@ pub(super) fn predications(tree: &Tree) -> Option<SaidList> {
     Some(match parts(tree)? {
         ("vp_relation", [word, object]) => {
             let object = phrase(object)?;
-            relation(&relation_to(id(word)?, &any_thing(), &object), [object])
+            relation(
+                &relation_to(entry_id(word)?, &any_thing(), &object),
+                [object],
+            )
         }
         ("vp_relation_list", [word, items]) => {
             let items = subjects(items)?;
@@ -53,7 +56,7 @@ pub(super) fn predications(tree: &Tree) -> Option<SaidList> {
             if all.iter().any(stands_for) {
                 return None;
             }
-            relation(&id(word)?, [items])
+            relation(&entry_id(word)?, [items])
         }
         ("vp_between", [a, b]) => relation("between", [phrase(a)?, phrase(b)?]),
         ("vp_between_two", [both]) => relation("between", between_two(both)?),
@@ -75,30 +78,33 @@ pub(super) fn predications(tree: &Tree) -> Option<SaidList> {
             all
         }
         ("vp_converse", [word, object]) => {
-            affirmed(Predication::Converse(id(word)?, phrase(object)?))
+            affirmed(Predication::Converse(entry_id(word)?, phrase(object)?))
         }
         ("vp_superlative", [order, noun]) => {
-            let selected = questions::selected(described(noun)?, &id(order)?, None);
+            let selected = questions::with_selection(described(noun)?, &entry_id(order)?, None);
             relation("identical", [selected.into()])
         }
         ("vp_any_other" | "vp_less_any_other", [word, noun]) => {
-            let order = questions::superlative_of(&id(word)?, tree_is_less(tree))?;
-            let selected = questions::selected(described(noun)?, order, None);
+            let order = questions::superlative_of(&entry_id(word)?, is_less_than_any_other(tree))?;
+            let selected = questions::with_selection(described(noun)?, order, None);
             relation("identical", [selected.into()])
         }
         ("vp_is_a", [noun]) => relation("identical", [described(noun)?.into()]),
         ("vp_both_sides", [landmark]) => affirmed(Predication::BothSides(phrase(landmark)?)),
-        ("vp_one_the_other", [word]) => affirmed(Predication::OneTheOther(id(word)?)),
+        ("vp_one_the_other", [word]) => affirmed(Predication::OneTheOther(entry_id(word)?)),
         ("vp_only", [noun]) => affirmed(Predication::Only(described(noun)?)),
         ("vp_same_color", [other]) => relation("same_color", [phrase(other)?]),
         ("vp_same_material", [other]) => relation("same_material", [phrase(other)?]),
         ("vp_side_by_side", []) => affirmed(Predication::EachOther("next_to".to_owned())),
-        ("vp_each_other", [word]) => affirmed(Predication::EachOther(id(word)?)),
+        ("vp_each_other", [word]) => affirmed(Predication::EachOther(entry_id(word)?)),
         ("vp_color_material", [color, material]) | ("vp_material_color", [material, color]) => {
             vec![
-                (Predication::Quality(Quality::Color(id(color)?)), false),
                 (
-                    Predication::Quality(Quality::Material(id(material)?)),
+                    Predication::Quality(Quality::Color(entry_id(color)?)),
+                    false,
+                ),
+                (
+                    Predication::Quality(Quality::Material(entry_id(material)?)),
                     false,
                 ),
             ]
@@ -125,7 +131,7 @@ pub(super) fn predications(tree: &Tree) -> Option<SaidList> {
             let mut all = predications(first)?;
             match parts(last)? {
                 ("vps_one", [one]) => all.extend(predications(one)?),
-                ("vps_not", [one]) => all.extend(denied(predications(one)?)?),
+                ("vps_not", [one]) => all.extend(negate_single(predications(one)?)?),
                 _ => all.extend(predications(last)?),
             }
             // "Visible in the mirror" is not what is visible and in the mirror.
@@ -167,11 +173,11 @@ fn use_hangs_on(all: &mut SaidList) {
     }
 }
 
-fn tree_is_less(tree: &Tree) -> bool {
+fn is_less_than_any_other(tree: &Tree) -> bool {
     matches!(parts(tree), Some(("vp_less_any_other", _)))
 }
 
-fn denied(mut all: SaidList) -> Option<SaidList> {
+fn negate_single(mut all: SaidList) -> Option<SaidList> {
     // "Not in the left corner" denies both together, which no list of two denials does.
     let [(_, negated)] = &mut all[..] else {
         return None;
@@ -250,7 +256,7 @@ pub(super) fn clause(subject: Phrase, tree: &Tree) -> Option<Clause> {
     match subject {
         Phrase::Described(description) if is_indefinite(&description) => {
             let mut description = *description;
-            add_said(&mut description, own)?;
+            add_predications(&mut description, own)?;
             let subject: Phrase = description.into();
             // "Two chairs are on the balcony side by side": those on the balcony are.
             let mut clauses = conjunction(&subject, others)?;
@@ -273,7 +279,7 @@ fn is_attributive(said: &Predication) -> bool {
 }
 
 /// Adds to a description what a verb phrase says.
-pub(super) fn add_said(description: &mut Description, all: SaidList) -> Option<()> {
+pub(super) fn add_predications(description: &mut Description, all: SaidList) -> Option<()> {
     let mut predicates: Vec<String> = Vec::new();
     for (said, negated) in all {
         match (said, negated) {
@@ -305,7 +311,7 @@ pub(super) fn add_said(description: &mut Description, all: SaidList) -> Option<(
 
 /// The description with what a verb phrase says added.
 pub(super) fn with_said(mut description: Description, tree: &Tree) -> Option<Description> {
-    add_said(&mut description, predications(tree)?)?;
+    add_predications(&mut description, predications(tree)?)?;
     Some(description)
 }
 
@@ -313,7 +319,7 @@ pub(super) fn with_said(mut description: Description, tree: &Tree) -> Option<Des
 pub(super) fn with_relative(mut description: Description, tree: &Tree) -> Option<Description> {
     let all = match parts(tree)? {
         ("relative", [inner]) => predications(inner)?,
-        ("relative_not", [inner]) => denied(predications(inner)?)?,
+        ("relative_not", [inner]) => negate_single(predications(inner)?)?,
         ("relative_stands" | "relative_standing", [posture, inner]) => {
             let mut all = predications(inner)?;
             if hangs(posture) {
@@ -323,7 +329,7 @@ pub(super) fn with_relative(mut description: Description, tree: &Tree) -> Option
         }
         _ => return None,
     };
-    add_said(&mut description, all)?;
+    add_predications(&mut description, all)?;
     Some(description)
 }
 

@@ -19,7 +19,7 @@ impl SemanticScene<'_> {
     fn stands_against(&self, object: ObjectId) -> &[ObjectId] {
         let against = &self.cache(object).against;
         against.get_or_init(|| {
-            interrupt::check();
+            interrupt::unwind_if_cancelled();
             let reach = self.extent(object).bounds.grown(GAP_M);
             self.objects_near(&reach, MOST_NEAR, |other| is_against(self, object, other))
         })

@@ -42,7 +42,7 @@ impl SemanticScene<'_> {
         self.contents.get_or_init(|| {
             let mut contents: BTreeMap<ObjectId, Vec<ObjectId>> = BTreeMap::new();
             for thing in self.house().objects.ids() {
-                interrupt::check();
+                interrupt::unwind_if_cancelled();
                 for around in self.containers(thing) {
                     if !self.is_seat_or_bed(*around) {
                         contents.entry(*around).or_default().push(thing);

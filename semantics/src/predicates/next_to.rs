@@ -39,7 +39,7 @@ fn neighbour_candidates(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<Obje
 
 /// Returns the neighbours of `object`, ascending.
 fn neighbours(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<ObjectId> {
-    interrupt::check();
+    interrupt::unwind_if_cancelled();
     let near = scene.neighbour_candidates(object).iter().copied();
     near.filter(|other| is_next_to(scene, object, *other))
         .collect()

@@ -63,7 +63,7 @@ impl SemanticScene<'_> {
 /// whatever object or structure piece. Nothing carries a curtain that touches a desk, or a picture just above a sofa: they
 /// hang. Where the boxes of more than 128 others touch its own, those about its middle count.
 fn supports_of(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<SurfaceSupport> {
-    interrupt::check();
+    interrupt::unwind_if_cancelled();
     let house = scene.house();
     let extent = scene.extent(object);
     if scene.holder(object).is_some() || extent.sole.is_empty() {

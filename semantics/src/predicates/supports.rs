@@ -12,7 +12,7 @@ impl SemanticScene<'_> {
         let loads = self.loads.get_or_init(|| {
             let mut loads: BTreeMap<Term, Vec<ObjectId>> = BTreeMap::new();
             for thing in self.house().objects.ids() {
-                interrupt::check();
+                interrupt::unwind_if_cancelled();
                 for by in On.related(self, Term::Object(thing)) {
                     loads.entry(by).or_default().push(thing);
                 }

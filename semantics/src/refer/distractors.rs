@@ -80,7 +80,7 @@ impl DistractorSet {
     }
 
     /// Returns the number of them in each room, where there are some.
-    pub(crate) fn in_rooms(&self) -> &BTreeMap<RoomId, usize> {
+    pub(crate) fn counts_by_room(&self) -> &BTreeMap<RoomId, usize> {
         &self.in_rooms
     }
 
@@ -153,7 +153,7 @@ impl DistractorSet {
                 for id in self.things.iter().copied() {
                     pace.turn();
                     for other in predicates::related_objects(scene, *predicate, id) {
-                        let kind = scene.semantics.kinds().of(other);
+                        let kind = scene.semantics.kinds().class_of(other);
                         let list = pairs.entry((predicate.name(), kind)).or_default();
                         list.push((id, other));
                     }

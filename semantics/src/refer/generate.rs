@@ -147,7 +147,7 @@ pub fn refer(scene: &SemanticScene<'_>, target: ObjectId) -> Option<Description>
     }
     let relations = by_relations(scene, target);
     let marked = relations.iter().map(|relation| {
-        interrupt::check();
+        interrupt::unwind_if_cancelled();
         alike.with_landmark(scene, relation)
     });
     let marked: Vec<ObjectList> = marked.collect();

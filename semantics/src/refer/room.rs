@@ -41,7 +41,7 @@ pub fn refer_to_room(scene: &SemanticScene<'_>, room: RoomId) -> Option<Descript
             !row.structure
                 && !["door", "window", "curtain", "blinds", "unknown"].contains(&row.name)
         };
-        interrupt::check();
+        interrupt::unwind_if_cancelled();
         if scene.facts(object).category.is_some_and(worth_naming) {
             let volume = scene.extent(object).bounds.volume();
             let largest = things.entry(&scene.facts(object).noun).or_insert(0.0);
@@ -54,7 +54,7 @@ pub fn refer_to_room(scene: &SemanticScene<'_>, room: RoomId) -> Option<Descript
         let things = scene.distractors(noun);
         let mut holding = alike
             .iter()
-            .filter(|other| things.in_rooms().contains_key(other));
+            .filter(|other| things.counts_by_room().contains_key(other));
         holding.next() == Some(&room) && holding.next().is_none()
     };
     let noun = things.into_iter().map(|(noun, _)| noun).find(alone)?;

@@ -100,7 +100,7 @@ impl<'a> SemanticScene<'a> {
     ) -> Vec<ObjectId> {
         let boxes = self.boxes.get_or_init(|| {
             let boxes = self.house().objects.ids().map(|object| {
-                interrupt::check();
+                interrupt::unwind_if_cancelled();
                 self.extent(object).bounds
             });
             BoxTree::new(boxes.collect())
@@ -159,7 +159,7 @@ impl<'a> SemanticScene<'a> {
         let rooms = self.in_rooms.get_or_init(|| {
             let mut rooms = IdVec::filled(Vec::new(), self.house().rooms.len());
             for object in self.house().objects.ids() {
-                interrupt::check();
+                interrupt::unwind_if_cancelled();
                 if let Some(room) = self.room_of(object) {
                     rooms[room].push(object);
                 }

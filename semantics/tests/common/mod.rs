@@ -60,7 +60,7 @@ impl Builder {
             .expect("a substance of the library");
         let material = Material {
             texture: Some(texture),
-            ..Material::of(name, row).with_srgb([255; 3])
+            ..Material::from_substance(name, row).with_srgb([255; 3])
         };
         self.data.materials.push(material)
     }
@@ -81,7 +81,7 @@ impl Builder {
             .unwrap_or_else(|| panic!("no substance {substance}"));
         self.data
             .materials
-            .push(Material::of(name, row).with_srgb(srgb))
+            .push(Material::from_substance(name, row).with_srgb(srgb))
     }
 
     pub(crate) fn piece(

@@ -102,7 +102,7 @@ impl Target for HeadFiles {
             "Data.SamplingRate",
             "ListenerView",
         ] {
-            let told = file.text(Some(name), "Units");
+            let told = file.attribute_text(Some(name), "Units");
             assert!(told.is_ok() || told.is_err_and(|error| !error.to_string().is_empty()));
             if let Ok(numbers) = file.numbers(name) {
                 assert_eq!(
@@ -111,7 +111,7 @@ impl Target for HeadFiles {
                 );
             }
         }
-        let _ = file.text(None, "SOFAConventions");
+        let _ = file.attribute_text(None, "SOFAConventions");
     }
 }
 

@@ -34,7 +34,7 @@ pub(super) fn faults(house: &House) -> Vec<RuleViolation> {
         ("place", outside_rooms(house, &bodies)),
         ("light", unlit(house)),
         ("name", nameless(house)),
-        ("reach", unreached(house)),
+        ("reach", unreachable_rooms(house)),
     ];
     let faults = rules.into_iter().flat_map(|(rule, found)| {
         let fault = move |what| RuleViolation { rule, what };
@@ -152,7 +152,7 @@ fn outside_rooms(house: &House, bodies: &[Body]) -> Vec<String> {
     faults
 }
 
-fn unreached(house: &House) -> Vec<String> {
+fn unreachable_rooms(house: &House) -> Vec<String> {
     let config = NavConfig {
         doors: DoorPolicy::Open,
         ..NavConfig::default()

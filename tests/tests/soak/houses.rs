@@ -5,7 +5,7 @@
 
 use crate::memory::{LOOKS, Watch};
 use crate::{AGAIN, HASH, Other, SUBSTEPS, steps};
-use dwell::{Batch, DiscreteAction, Engines, Env, EnvConfig, World, viewpoints};
+use dwell::{Batch, DiscreteAction, Engines, Env, EnvConfig, World, best_room_viewpoints};
 use dwell_physics::AgentControl;
 use dwell_scene::AgentId;
 use dwell_scene::parallel::Threads;
@@ -66,7 +66,7 @@ impl Homes {
     fn warm_up(&mut self) {
         for batch in &mut self.batches {
             batch.reset(&[Some(0)]).unwrap();
-            let rooms = viewpoints(batch.envs()[0].world().engines()).unwrap();
+            let rooms = best_room_viewpoints(batch.envs()[0].world().engines()).unwrap();
             for room in &rooms {
                 for k in 0..DIRECTIONS {
                     let yaw_rad = std::f32::consts::TAU * k as f32 / DIRECTIONS as f32;

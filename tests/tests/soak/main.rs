@@ -16,7 +16,7 @@ mod inputs;
 mod memory;
 
 use checks::{check, largest_snapshot, places};
-use dwell::{Engines, RoomViewpoint, World, WorldConfig, viewpoints};
+use dwell::{Engines, RoomViewpoint, World, WorldConfig, best_room_viewpoints};
 use dwell_houses::with_robot;
 use dwell_physics::{AgentControl, OutcomeCode};
 use dwell_scene::random::{RandomKey, RandomStream};
@@ -52,7 +52,7 @@ fn steps() -> usize {
 /// The house with an arm that stands in one of its rooms.
 fn with_arm(house: House) -> Arc<Engines> {
     let engines = Engines::new(Arc::new(house));
-    let rooms = viewpoints(&engines).unwrap();
+    let rooms = best_room_viewpoints(&engines).unwrap();
     let place = Pose::from_position(stand(&rooms, AGENTS));
     let house = with_robot(
         engines.house(),
@@ -91,7 +91,7 @@ impl Play {
         };
         let mut world = World::new(engines.clone(), &config).unwrap();
         world.reset(RandomKey::root(11)).unwrap();
-        let rooms = viewpoints(engines).unwrap();
+        let rooms = best_room_viewpoints(engines).unwrap();
         for k in 0..AGENTS {
             let id = AgentId::from_index(k);
             world.place_agent(id, stand(&rooms, k), k as f32).unwrap();
@@ -199,7 +199,7 @@ fn play_watched(engines: &Arc<Engines>, steps: usize) -> u64 {
         let before = places(&play.world);
         play.step();
         check(&play.world, &before, k);
-        for lost in play.world.notices() {
+        for lost in play.world.delayed_outcomes() {
             if lost.outcome.code == OutcomeCode::NonFiniteState {
                 println!(
                     "  control step {k}: {} Before: {:?}",

@@ -94,7 +94,7 @@ impl HrirMeasurement {
     }
 
     /// Returns one row for each direction, in the order of the sources.
-    pub(super) fn rows(&self) -> Result<Vec<MeasuredDirection<'_>>, AcousticsError> {
+    pub(super) fn measured_directions(&self) -> Result<Vec<MeasuredDirection<'_>>, AcousticsError> {
         self.check()?;
         let samples = self.samples();
         let mut kept: Vec<(f64, MeasuredDirection<'_>)> = Vec::new();

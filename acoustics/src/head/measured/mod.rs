@@ -65,7 +65,7 @@ pub(crate) struct HeadResponses {
 
 impl HeadResponses {
     pub(super) fn new(measurement: &HrirMeasurement) -> Result<Self, AcousticsError> {
-        let rows = measurement.rows()?;
+        let rows = measurement.measured_directions()?;
         let rate_hz = measurement.rate_hz;
         let mut onsets = OnsetDetector::new(rate_hz);
         let mut responses = Vec::with_capacity(rows.len());

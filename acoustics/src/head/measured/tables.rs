@@ -96,7 +96,7 @@ impl HeadResponses {
             let near = WeightedDirections::near(&self.directions[..measured], *direction);
             let pair = [0, 1].map(|ear| {
                 let like = |k: &usize| &rows[*k][ear].rest;
-                let rest = filled(
+                let rest = extrapolated_response(
                     &self.directions,
                     &near,
                     like,
@@ -118,7 +118,7 @@ impl HeadResponses {
 }
 
 /// Returns the response of a sphere in a direction, with the level deviations of those nearby.
-fn filled<'a>(
+fn extrapolated_response<'a>(
     directions: &[DVec3],
     near: &WeightedDirections,
     rest_of: impl Fn(&usize) -> &'a Vec<Complex<f32>>,
@@ -282,7 +282,7 @@ fn band_delays(rest: &[Complex<f32>], step_hz: f64, delay_s: f64, per_hz: f64) -
 
 impl MeasuredHead {
     /// Returns the rows around a direction of an ear, and their weights.
-    fn around(&self, ear: Ear, towards: Vec3) -> ([&DirectionRow; 3], [f32; 3]) {
+    fn interpolation_rows(&self, ear: Ear, towards: Vec3) -> ([&DirectionRow; 3], [f32; 3]) {
         let (corners, weights) = self.mesh.locate(towards);
         let ear = match ear {
             Ear::Left => 0,
@@ -297,7 +297,7 @@ impl MeasuredHead {
         ear: Ear,
         towards: Vec3,
     ) -> (BandValues, BandValues) {
-        let ([a, b, c], [u, v, w]) = self.around(ear, towards);
+        let ([a, b, c], [u, v, w]) = self.interpolation_rows(ear, towards);
         let mix = |of: fn(&DirectionRow) -> &BandValues| {
             let (a, b, c) = (of(a), of(b), of(c));
             std::array::from_fn(|band| u * a[band] + v * b[band] + w * c[band])
@@ -312,7 +312,7 @@ impl MeasuredHead {
         towards: Vec3,
         spectrum: &mut [Complex<f32>],
     ) -> f64 {
-        let ([a, b, c], [u, v, w]) = self.around(ear, towards);
+        let ([a, b, c], [u, v, w]) = self.interpolation_rows(ear, towards);
         let rests = a.rest.iter().zip(&b.rest).zip(&c.rest);
         for (value, ((a, b), c)) in spectrum.iter_mut().zip(rests) {
             // Differing phases must not reduce the level.

@@ -7,14 +7,14 @@ mod score;
 mod write;
 
 pub use model::{ModelParameter, ModelledSubject, SimulationModel};
-pub use score::{EpisodeError, KindErrors, ModelGain};
+pub use score::{EpisodeDeviation, KindMedianDeviations, ModelGain};
 
 use super::refine::sentence as told;
 use super::residuals::{self, ResidualGroups};
 use super::study::folds;
 use super::{
-    REFINEMENT_FACTOR, StepRefinementEffect, WindowOptions, WindowPrediction, WindowScore, ends,
-    refinements, windows,
+    REFINEMENT_FACTOR, StepRefinementEffect, WindowOptions, WindowPrediction, WindowScore,
+    predict_windows, refinements, window_scores,
 };
 use crate::error::CalibrationError;
 use crate::fit::{Variable, least_squares, median};
@@ -67,9 +67,9 @@ pub struct ModelOutcome {
     /// The parameters that each fold chose on the other folds. Shape (fold, parameter).
     pub chosen: Vec<Vec<f64>>,
     /// Every episode, out of fold.
-    pub episodes: Vec<EpisodeError>,
+    pub episodes: Vec<EpisodeDeviation>,
     /// Medians by kind of episode; the first row is of all.
-    pub kinds: Vec<KindErrors>,
+    pub kinds: Vec<KindMedianDeviations>,
     /// The gain over the model that it extends.
     pub gain: Option<ModelGain>,
     /// Windows, each out of fold.
@@ -137,7 +137,7 @@ pub fn run<S: ModelledSubject>(
             .and_then(|name| outcomes.iter().find(|other| other.model.name == name));
         outcome.gain = extended.map(|other| {
             let key = study.key.child("gain");
-            score::gained(subject, other, &outcome, options.bootstrap_draws, key)
+            score::model_gain(subject, other, &outcome, options.bootstrap_draws, key)
         });
         outcomes.push(outcome);
         windows.push(ends);
@@ -147,9 +147,10 @@ pub fn run<S: ModelledSubject>(
     let shown = models.iter().zip(&windows).take(page::COLOURS.len());
     let rows: Vec<residuals::ModelWindows> =
         shown.map(|(model, ends)| (model.name, &ends[..])).collect();
-    let best = outcomes
-        .iter()
-        .min_by(|a, b| a.square_mm2().total_cmp(&b.square_mm2()));
+    let best = outcomes.iter().min_by(|a, b| {
+        a.total_squared_error_mm2()
+            .total_cmp(&b.total_squared_error_mm2())
+    });
     Ok(ModelComparisonReport {
         version: 1,
         title: subject.title().to_owned(),
@@ -245,7 +246,7 @@ impl<S: ModelledSubject> ModelCrossValidation<'_, S> {
         let own: Vec<&S::Rig> = self.fold_of.iter().map(|fold| &rigs[*fold]).collect();
         let finer: Vec<&S::Rig> = self.fold_of.iter().map(|fold| &fine[*fold]).collect();
         let one = |episode: usize| {
-            score::error(self.subject, own[episode], episode, self.fold_of[episode])
+            score::episode_error(self.subject, own[episode], episode, self.fold_of[episode])
         };
         let found = threads.map(self.subject.count(), one);
         let episodes = found.into_iter().collect::<Result<Vec<_>, _>>()?;
@@ -254,20 +255,20 @@ impl<S: ModelledSubject> ModelCrossValidation<'_, S> {
             chaos_guard: Some(self.key.child("windows")),
             threads,
         };
-        let found = ends(self.subject, &own, &windowing)?;
+        let found = predict_windows(self.subject, &own, &windowing)?;
         progress.check()?;
         let unguarded = WindowOptions {
             chaos_guard: None,
             ..windowing
         };
-        let refined = refinements(&found, &ends(self.subject, &finer, &unguarded)?);
+        let refined = refinements(&found, &predict_windows(self.subject, &finer, &unguarded)?);
         let outcome = ModelOutcome {
             model: self.model.clone(),
             chosen,
             kinds: score::by_kind(&episodes),
             episodes,
             gain: None,
-            windows: windows(&found),
+            windows: window_scores(&found),
             refinements: refined,
         };
         Ok((outcome, found))
@@ -323,7 +324,7 @@ impl ModelOutcome {
             .collect()
     }
 
-    fn square_mm2(&self) -> f64 {
+    fn total_squared_error_mm2(&self) -> f64 {
         self.episodes.iter().map(|e| e.square_mm2).sum()
     }
 }

@@ -15,7 +15,7 @@ const FIT_SAMPLES: usize = 60;
 
 /// The error over a whole episode, by parameters that it did not choose.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct EpisodeError {
+pub struct EpisodeDeviation {
     /// Its name.
     pub episode: String,
     /// Its kind.
@@ -36,7 +36,7 @@ pub struct EpisodeError {
 
 /// Medians over episodes of one kind.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct KindErrors {
+pub struct KindMedianDeviations {
     /// The kind; `null`: all episodes.
     pub kind: Option<String>,
     /// Number of episodes.
@@ -81,12 +81,12 @@ fn paired_rollout<S: ModelledSubject>(
 }
 
 /// An episode's error.
-pub(super) fn error<S: ModelledSubject>(
+pub(super) fn episode_error<S: ModelledSubject>(
     subject: &S,
     rig: &S::Rig,
     episode: usize,
     fold: usize,
-) -> Result<EpisodeError, CalibrationError> {
+) -> Result<EpisodeDeviation, CalibrationError> {
     let pairs = paired_rollout(subject, rig, episode)?;
     let deviations: Vec<Deviation> = pairs
         .iter()
@@ -97,7 +97,7 @@ pub(super) fn error<S: ModelledSubject>(
     let mean = |f: &dyn Fn(&Deviation) -> f64| deviations.iter().map(f).sum::<f64>() / count;
     let lever_m = subject.lever_arm_m();
     let square = mean(&|d| d.position_m.powi(2) + (lever_m * d.rotation_rad).powi(2));
-    Ok(EpisodeError {
+    Ok(EpisodeDeviation {
         episode: subject.name(episode).to_owned(),
         kind: subject.kind(episode).to_owned(),
         fold,
@@ -134,21 +134,21 @@ pub(super) fn residuals<S: ModelledSubject>(
 }
 
 /// Medians of all episodes and of each kind.
-pub(super) fn by_kind(episodes: &[EpisodeError]) -> Vec<KindErrors> {
+pub(super) fn by_kind(episodes: &[EpisodeDeviation]) -> Vec<KindMedianDeviations> {
     let mut names: Vec<&str> = episodes.iter().map(|e| e.kind.as_str()).collect();
     names.sort_unstable();
     names.dedup();
     let kinds = std::iter::once(None).chain(names.into_iter().map(Some));
     kinds
         .map(|kind| {
-            let here: Vec<&EpisodeError> = episodes
+            let here: Vec<&EpisodeDeviation> = episodes
                 .iter()
                 .filter(|e| kind.is_none_or(|kind| e.kind == kind))
                 .collect();
-            let middle = |f: &dyn Fn(&EpisodeError) -> f64| {
+            let middle = |f: &dyn Fn(&EpisodeDeviation) -> f64| {
                 median(&mut here.iter().map(|e| f(e)).collect::<Vec<f64>>())
             };
-            KindErrors {
+            KindMedianDeviations {
                 kind: kind.map(str::to_owned),
                 count: here.len(),
                 end_mm: middle(&|e| e.end_mm),
@@ -161,7 +161,7 @@ pub(super) fn by_kind(episodes: &[EpisodeError]) -> Vec<KindErrors> {
 }
 
 /// Returns the gain of `after` over `before`. Groups are drawn, not episodes: those of one session are alike.
-pub(super) fn gained<S: ModelledSubject>(
+pub(super) fn model_gain<S: ModelledSubject>(
     subject: &S,
     before: &ModelOutcome,
     after: &ModelOutcome,

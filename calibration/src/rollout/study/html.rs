@@ -22,10 +22,10 @@ impl StudyReport {
             "<div class=\"verdict named\"><b>Whole episodes</b>{}</div>",
             page::escape(&self.sentence)
         );
-        self.whole(&mut out);
-        self.parameters(&mut out);
+        self.write_whole_episodes(&mut out);
+        self.write_fitted_parameters(&mut out);
         self.write_windows(&mut out);
-        self.pairs(&mut out);
+        self.write_peer_comparison(&mut out);
         let found = serde_json::to_string_pretty(&self.found).unwrap_or_default();
         let _ = writeln!(
             out,
@@ -35,7 +35,7 @@ impl StudyReport {
         out
     }
 
-    fn whole(&self, out: &mut String) {
+    fn write_whole_episodes(&self, out: &mut String) {
         out.push_str(
             "<h2>Whole episodes</h2><div class=\"scroll\"><table><tr><th>Model</th><th>Position, widths: mean / median / sd\
              </th><th>Rotation, degrees</th><th>e_q</th><th>e_q &lt; 0.05</th></tr>",
@@ -81,7 +81,7 @@ impl StudyReport {
                 format_number(m.steady.rotation_deg.median)
             );
         }
-        let curves = |f: fn(&super::Score) -> f64| -> Vec<(String, Vec<f64>)> {
+        let curves = |f: fn(&super::MeanDeviation) -> f64| -> Vec<(String, Vec<f64>)> {
             let models = self.models.iter();
             models
                 .map(|m| {
@@ -113,7 +113,7 @@ impl StudyReport {
         out.push_str(&page::legend(self.models.iter().map(|m| m.model.name)));
     }
 
-    fn parameters(&self, out: &mut String) {
+    fn write_fitted_parameters(&self, out: &mut String) {
         out.push_str(
             "<h2>Fitted parameters</h2><div class=\"scroll\"><table><tr><th>Model</th><th>Parameter</th><th>Searched</th>\
              <th>Chosen by the folds</th></tr>",
@@ -157,7 +157,7 @@ impl StudyReport {
         html::residuals(out, &self.residuals);
     }
 
-    fn pairs(&self, out: &mut String) {
+    fn write_peer_comparison(&self, out: &mut String) {
         if self.models.iter().all(|m| m.against.is_empty()) {
             return;
         }

@@ -10,15 +10,15 @@ mod search_cache;
 mod write;
 
 pub(super) use folds::folds;
-pub use model::{ContactModel, ContactParameter, all as models, further_models};
+pub use model::{ContactModel, ContactParameter, further_models, standard_models as models};
 pub use other_simulator::{PeerScores, SimulatorComparison, SimulatorScoreDifference};
 
 use super::refine::sentence as told;
 use super::residuals::{self, ResidualGroups};
 use super::{
-    BoardRig, PoseTracks, REFINEMENT_FACTOR, RolloutSubject as _, Score, ScoreSummary,
+    BoardRig, MeanDeviation, PoseTracks, REFINEMENT_FACTOR, RolloutSubject as _, ScoreSummary,
     StepRefinementEffect, TrackerNoise, WindowOptions, WindowPrediction, WindowScore,
-    diverges_under_noise, ends, refinements, scores, windows,
+    diverges_under_noise, predict_windows, refinements, scores, window_scores,
 };
 use crate::error::CalibrationError;
 use crate::progress::{CallbackProgress, ProgressReporter};
@@ -78,7 +78,7 @@ pub struct EpisodeScore {
     /// The fold that it was held out with.
     pub fold: usize,
     /// The score.
-    pub score: Score,
+    pub score: MeanDeviation,
     /// True if starts within the tracker's noise end elsewhere.
     pub diverges: bool,
 }
@@ -178,7 +178,7 @@ pub fn run(
             .collect(),
         residuals: residuals::all(&rows, tracks.most_informative_horizon(), true, &[]),
         sentence: best.map_or_else(String::new, |best| sentence(best, &reports)),
-        found: best.map_or_else(FoundEffects::default, |best| found(tracks, best)),
+        found: best.map_or_else(FoundEffects::default, |best| found_effects(tracks, best)),
         models: reports,
     })
 }
@@ -246,7 +246,7 @@ fn study_model(
         chosen.push(values);
     }
     let all: Vec<usize> = (0..fold_of.len()).collect();
-    let mut by_episode = vec![(Score::default(), false); fold_of.len()];
+    let mut by_episode = vec![(MeanDeviation::default(), false); fold_of.len()];
     for (fold, rig) in rigs.iter().enumerate() {
         let held: Vec<usize> = all
             .iter()
@@ -268,16 +268,16 @@ fn study_model(
         chaos_guard: Some(key.child("windows")),
         threads,
     };
-    let found = ends(tracks, &own, &windowing)?;
+    let found = predict_windows(tracks, &own, &windowing)?;
     progress.check()?;
     let unguarded = WindowOptions {
         chaos_guard: None,
         ..windowing
     };
-    let refined = refinements(&found, &ends(tracks, &finer, &unguarded)?);
-    let every: Vec<Score> = by_episode.iter().map(|(score, _)| *score).collect();
+    let refined = refinements(&found, &predict_windows(tracks, &finer, &unguarded)?);
+    let every: Vec<MeanDeviation> = by_episode.iter().map(|(score, _)| *score).collect();
     let steady = by_episode.iter().filter(|(_, diverges)| !diverges);
-    let steady: Vec<Score> = steady.map(|(score, _)| *score).collect();
+    let steady: Vec<MeanDeviation> = steady.map(|(score, _)| *score).collect();
     let against: Result<Vec<SimulatorComparison>, _> = peers
         .iter()
         .map(|peer| {
@@ -290,7 +290,7 @@ fn study_model(
         chosen,
         summary: ScoreSummary::of(&every),
         steady: ScoreSummary::of(&steady),
-        windows: windows(&found),
+        windows: window_scores(&found),
         refinements: refined,
         episodes: all
             .iter()
@@ -338,7 +338,7 @@ fn sentence(best: &ModelReport, all: &[ModelReport]) -> String {
     text + "."
 }
 
-fn found(tracks: &PoseTracks, best: &ModelReport) -> FoundEffects {
+fn found_effects(tracks: &PoseTracks, best: &ModelReport) -> FoundEffects {
     let settings = best
         .model
         .settings(&best.median_parameters(), tracks.nominal);

@@ -64,7 +64,7 @@ const SLOPE: ContactParameter =
 const TORSION: ContactParameter = contact_parameter("torsion_radius_m", "m", [0.0, 0.03], false);
 
 /// The models of a study: as the engine comes; the engine's own two numbers fitted; friction by point with compliance.
-pub fn all() -> Vec<ContactModel> {
+pub fn standard_models() -> Vec<ContactModel> {
     vec![
         ContactModel {
             name: "nominal",

@@ -3,7 +3,7 @@
 use crate::bundle::refused;
 use crate::error::CalibrationError;
 use crate::fit::median;
-use crate::rollout::{PoseTracks, Score, ScoreSummary};
+use crate::rollout::{MeanDeviation, PoseTracks, ScoreSummary};
 use dwell_scene::file;
 use dwell_scene::random::RandomKey;
 use serde::{Deserialize, Serialize};
@@ -19,7 +19,7 @@ pub struct PeerScores {
     /// Its name.
     pub name: String,
     /// By episode.
-    pub scores: BTreeMap<String, Score>,
+    pub scores: BTreeMap<String, MeanDeviation>,
 }
 
 /// The columns of a table of scores.
@@ -51,11 +51,11 @@ impl PeerScores {
                 at: format!("{at} line {}", k + 2),
                 what: format!("{error}; columns are {}", COLUMNS.join(", ")),
             })?;
-            let score = Score {
+            let score = MeanDeviation {
                 position_widths: row.position_widths,
                 rotation_deg: row.rotation_deg,
                 e_q: row.e_q,
-                ..Score::default()
+                ..MeanDeviation::default()
             };
             scores.insert(row.episode, score);
         }
@@ -98,7 +98,7 @@ pub struct SimulatorComparison {
 /// [`CalibrationError::Missing`] when the peer lacks an episode.
 pub(super) fn compare(
     tracks: &PoseTracks,
-    ours: &[Score],
+    ours: &[MeanDeviation],
     peer: &PeerScores,
     draws: usize,
     key: RandomKey,
@@ -114,7 +114,7 @@ pub(super) fn compare(
         };
         theirs.push(*score);
     }
-    let paired = |f: fn(&Score) -> f64, what: &str| {
+    let paired = |f: fn(&MeanDeviation) -> f64, what: &str| {
         let pairs = ours.iter().zip(&theirs);
         let differences: Vec<f64> = pairs.map(|(a, b)| f(a) - f(b)).collect();
         let mut stream = key.child(what).stream();

@@ -5,7 +5,7 @@ use super::model::ContactModel;
 use crate::error::CalibrationError;
 use crate::fit::CmaEs;
 use crate::progress::ProgressReporter;
-use crate::rollout::{BoardRig, PoseTracks, Score, scores};
+use crate::rollout::{BoardRig, MeanDeviation, PoseTracks, scores};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 
@@ -18,8 +18,8 @@ const FIRST_SIGMA: f64 = 0.1;
 /// ln of the mean squared distance plus ln of the mean squared angle, each over the best three quarters of the episodes:
 /// the negative logarithm of the profile likelihood of two quantities whose sizes of error are unknown, so that neither
 /// outweighs the other by its unit.
-pub(super) fn cost(scores: &[Score]) -> f64 {
-    let trimmed = |f: fn(&Score) -> f64| {
+pub(super) fn cost(scores: &[MeanDeviation]) -> f64 {
+    let trimmed = |f: fn(&MeanDeviation) -> f64| {
         let mut values: Vec<f64> = scores.iter().map(f).collect();
         values.sort_by(f64::total_cmp);
         let count = ((TRIMMED_SHARE * values.len() as f64).ceil() as usize).clamp(1, values.len());

@@ -2,7 +2,7 @@
 
 use super::casings::CASING_COLORS;
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black_plastic, chrome, device, plastic, walnut};
+use crate::finishes::{Finish, black_plastic, chrome, electronics, plastic, walnut};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{block, cylinder, rod, rounded_block, tube};
@@ -82,7 +82,7 @@ fn sample_radio(style: &Style, key: RandomKey) -> Model {
 
 /// A loudspeaker on the floor.
 fn loudspeaker(height_m: f32) -> Model {
-    let case = device("black_case", [26, 26, 29]);
+    let case = electronics("black_case", [26, 26, 29]);
     let cone = |y: f32, r: f32| {
         cylinder(r, 0.006, 20)
             .rotated_x(FRAC_PI_2)
@@ -132,7 +132,7 @@ fn stereo(style: &Style, key: RandomKey) -> Model {
     );
     let (x, z) = (0.5 * w, 0.5 * depth);
     let amp = 0.5 * h;
-    let silver = device(
+    let silver = electronics(
         "amplifier_face",
         d.choose("face", [[186, 188, 190], [36, 36, 39], [206, 190, 150]]),
     );

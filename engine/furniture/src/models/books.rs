@@ -1,7 +1,7 @@
 //! Books, rows of books and magazines.
 
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, pages};
+use crate::finishes::{Finish, book_page_edges};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{block, panel};
@@ -53,7 +53,7 @@ fn book(size_m: [f32; 3], k: usize) -> Model {
             block([-x, board, -z], [-x + 0.003, t - board, z]),
         )
         .with(
-            &pages(),
+            &book_page_edges(),
             block(
                 [-x + 0.003, board, -z + 0.004],
                 [x - 0.004, t - board, z - 0.004],

@@ -1,7 +1,7 @@
 //! A camera and a tripod.
 
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black_plastic, chrome, device};
+use crate::finishes::{Finish, black_plastic, chrome, electronics};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{ball, block, cylinder, rod, rounded_block};
@@ -23,7 +23,7 @@ fn camera(_style: &Style, key: RandomKey) -> Model {
         d.sample_m("depth"),
     );
     let (x, z) = (0.5 * w, 0.5 * depth);
-    let skin = device(
+    let skin = electronics(
         "camera_body",
         d.choose("skin", [[34, 34, 36], [170, 172, 176], [90, 60, 40]]),
     );

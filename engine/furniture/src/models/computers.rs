@@ -1,7 +1,7 @@
 //! Desktop computers, towers and laptops.
 
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black_plastic, device};
+use crate::finishes::{Finish, black_plastic, electronics};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{block, cylinder, panel, rounded_block};
@@ -42,9 +42,9 @@ fn computer(_style: &Style, key: RandomKey) -> Model {
     );
     let z = 0.5 * depth;
     let case = if d.chance("light", 0.3) {
-        device("light_case", [206, 208, 212])
+        electronics("light_case", [206, 208, 212])
     } else {
-        device("black_case", [28, 28, 31])
+        electronics("black_case", [28, 28, 31])
     };
     let low = h - 0.59 * w;
     let at = -z + 0.1;
@@ -122,7 +122,7 @@ fn computer_tower(_style: &Style, key: RandomKey) -> Model {
         d.sample_m("depth"),
     );
     let (x, z) = (0.5 * w, 0.5 * depth);
-    let case = device(
+    let case = electronics(
         "tower_case",
         d.choose("tone", [[34, 34, 37], [206, 208, 210], [60, 62, 66]]),
     );
@@ -155,7 +155,7 @@ fn computer_tower(_style: &Style, key: RandomKey) -> Model {
 
 /// A laptop, open.
 fn laptop() -> Model {
-    let case = device("grey_case", [150, 152, 156]);
+    let case = electronics("grey_case", [150, 152, 156]);
     let keys = Finish::picture(
         "keyboard",
         "electronics",
@@ -213,7 +213,7 @@ fn laptop() -> Model {
 
 fn sample_laptop(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("laptop", key);
-    let case = crate::finishes::device(
+    let case = crate::finishes::electronics(
         "laptop_case",
         d.choose(
             "case",

@@ -1,7 +1,7 @@
 //! A game console with its controller.
 
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{black_plastic, device, plastic};
+use crate::finishes::{black_plastic, electronics, plastic};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{block, cylinder, rounded_block};
@@ -32,7 +32,7 @@ fn game_console(_style: &Style, key: RandomKey) -> Model {
             ([60, 62, 66], [170, 40, 44]),
         ],
     );
-    let (case, pad) = (device("console_case", tone), plastic("pad", other));
+    let (case, pad) = (electronics("console_case", tone), plastic("pad", other));
     let top = h - 0.035;
     let grip = |side: f32| {
         rounded_block(

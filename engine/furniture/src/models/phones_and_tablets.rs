@@ -2,7 +2,7 @@
 
 use super::computers::screen;
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, device, plastic};
+use crate::finishes::{Finish, electronics, plastic};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{panel, rounded_block};
@@ -34,7 +34,7 @@ fn slab(name: &'static str, category: &'static str, key: RandomKey) -> Model {
         d.sample_m("depth"),
     );
     let (x, z) = (0.5 * w, 0.5 * depth);
-    let case = device(
+    let case = electronics(
         "slab_case",
         d.choose(
             "tone",

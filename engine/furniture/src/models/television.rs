@@ -1,7 +1,7 @@
 //! A flat television on a foot, and its remote control.
 
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, black_plastic, device, plastic};
+use crate::finishes::{Finish, black_plastic, electronics, plastic};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{block, panel, rounded_block};
@@ -31,7 +31,7 @@ const PROGRAMME: Finish = Finish::picture(
 fn television(width_m: f32) -> Model {
     let (x, height) = (0.5 * width_m, width_m * 0.58);
     let (low, high) = (0.07, 0.07 + height);
-    let case = device("black_case", [26, 26, 29]);
+    let case = electronics("black_case", [26, 26, 29]);
     let body = PartBuilder::new("body")
         .with(
             &black_plastic(),

@@ -121,7 +121,7 @@ pub(super) fn cylinder_stack(profile: &[(f32, f32)]) -> Vec<Collider> {
             break;
         }
         let upper = slabs.remove(k + 1);
-        slabs[k] = slabs[k].with(&upper);
+        slabs[k] = slabs[k].merged(&upper);
     }
     slabs
         .into_iter()
@@ -140,7 +140,7 @@ struct HorizontalSlice {
 }
 
 impl HorizontalSlice {
-    fn with(self, upper: &Self) -> Self {
+    fn merged(self, upper: &Self) -> Self {
         let (a, b) = (self.high - self.low, upper.high - upper.low);
         let square = (self.square * a + upper.square * b) / (a + b);
         Self {

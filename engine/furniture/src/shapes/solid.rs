@@ -52,7 +52,7 @@ impl SolidMesh {
             *normal = pose.transform_vector(*normal);
         }
         for collider in &mut self.colliders {
-            place(collider, pose);
+            transform_collider(collider, pose);
         }
         self
     }
@@ -99,7 +99,7 @@ pub fn axis_rotation(axis: Vec3, angle_rad: f32) -> Quat {
     Quat::from_xyzw(axis.x * sin, axis.y * sin, axis.z * sin, cos)
 }
 
-fn place(collider: &mut Collider, pose: &Pose) {
+fn transform_collider(collider: &mut Collider, pose: &Pose) {
     match collider {
         Collider::Cuboid {
             part_from_box: p, ..

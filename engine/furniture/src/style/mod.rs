@@ -147,15 +147,15 @@ impl Style {
 
     /// Returns how doors and drawers of furniture look.
     pub fn front_style(&self) -> FrontStyle {
-        self.fronts(&self.front)
+        self.front_style_with(&self.front)
     }
 
     /// Returns how doors and drawers of the kitchen look.
     pub fn kitchen_front_style(&self) -> FrontStyle {
-        self.fronts(&self.kitchen_front)
+        self.front_style_with(&self.kitchen_front)
     }
 
-    fn fronts(&self, board: &Finish) -> FrontStyle {
+    fn front_style_with(&self, board: &Finish) -> FrontStyle {
         FrontStyle {
             board: board.clone(),
             handle: self.metal.clone(),

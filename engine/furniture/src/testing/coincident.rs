@@ -187,13 +187,13 @@ fn visible_place(facets: &[Facet], outline: &[Vec3], normal: Vec3) -> Option<Vec
     let towards = outline.iter().map(|corner| middle.lerp(*corner, 0.7));
     std::iter::once(middle)
         .chain(towards)
-        .find(|place| winding(facets, *place + normal * EYE_M).abs() < 0.5)
+        .find(|place| winding_number(facets, *place + normal * EYE_M).abs() < 0.5)
 }
 
 /// The winding number of the thing's surface about a point: 0 outside, the number of solids that hold it inside.
 ///
 /// The solid angle of a triangle: Van Oosterom and Strackee, IEEE Transactions on Biomedical Engineering 30 (1983), equation 8.
-fn winding(facets: &[Facet], point: Vec3) -> f64 {
+fn winding_number(facets: &[Facet], point: Vec3) -> f64 {
     let angle = |facet: &Facet| {
         let [a, b, c] = facet.corners.map(|corner| (corner - point).as_dvec3());
         let lengths = DVec3::new(a.length(), b.length(), c.length());

@@ -66,7 +66,7 @@ impl ConvexPiece {
             }
             Collider::ExactMesh => panic!("built-in things have convex pieces only"),
         }
-        piece.bound();
+        piece.update_bounds();
         piece
     }
 
@@ -75,7 +75,7 @@ impl ConvexPiece {
         Self::new(&Collider::cuboid(bounds.min, bounds.max), &Pose::IDENTITY)
     }
 
-    fn bound(&mut self) {
+    fn update_bounds(&mut self) {
         let far = |d: Vec3| self.support(d);
         let max = Vec3::new(far(Vec3::X), far(Vec3::Y), far(Vec3::Z));
         let min = -Vec3::new(far(Vec3::NEG_X), far(Vec3::NEG_Y), far(Vec3::NEG_Z));
@@ -89,7 +89,7 @@ impl ConvexPiece {
         for point in &mut piece.points {
             *point += by;
         }
-        piece.bound();
+        piece.update_bounds();
         piece
     }
 

@@ -63,7 +63,7 @@ impl PixelCanvas {
         let width = self.width as usize;
         let (mut row, mut column) = (0, 0);
         for pixels in self.pixels.chunks_mut(CHECK_PIXELS) {
-            interrupt::check();
+            interrupt::unwind_if_cancelled();
             for pixel in pixels {
                 let v = 1.0 - (row as f32 + 0.5) * dv;
                 *pixel = color((column as f32 + 0.5) * du, v, *pixel);

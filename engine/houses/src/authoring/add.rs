@@ -243,7 +243,9 @@ fn from_box(
     let mut own = HouseData::default();
     own.meshes.push(Arc::new(Mesh::cuboid(-half, half)));
     let wood = library().get_or_default("wood");
-    let material = own.materials.push(Material::of("box_wood", wood));
+    let material = own
+        .materials
+        .push(Material::from_substance("box_wood", wood));
     let colliders = vec![Collider::cuboid(-half, half)];
     let single = single_rigid_object(own, vec![material], colliders, "box", traits);
     Ok(first(&copy_objects(data, &single, &[ObjectId(0)])))

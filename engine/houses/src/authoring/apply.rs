@@ -64,7 +64,7 @@ pub fn edit(
     }
     let mut session = EditSession::new(house.data().clone(), files);
     for (k, edit) in edits.iter().enumerate() {
-        interrupt::check();
+        interrupt::unwind_if_cancelled();
         let place = format!("edits[{k}].{}", edit.json_name());
         session.apply(edit).map_err(prefix_field(place))?;
     }
@@ -76,7 +76,7 @@ pub fn edit(
     let named = |id: ObjectId| &edited.objects[id].name;
     let state = State::new(&edited);
     for id in &put {
-        interrupt::check();
+        interrupt::unwind_if_cancelled();
         if is_outside(&edited, &state, *id) {
             report.warn(at.field(named(*id)), WarningKind::OutsideRooms);
         } else if intersects_wall(&edited, *id) {
@@ -165,17 +165,17 @@ impl<'a> EditSession<'a> {
         match edit {
             Edit::Add(add) => add::add(self, add).map(drop),
             Edit::Remove(remove) => self.remove(remove),
-            Edit::Move(change) => self.shift(change),
+            Edit::Move(change) => self.move_object(change),
             Edit::ReMaterial(change) => surfaces::change_material(self, change),
             Edit::AddEmitter(emitter) => fixtures::add_emitter(self, emitter),
             Edit::AddLamp(lamp) => fixtures::add_lamp(self, lamp),
-            Edit::AddRobot(robot) => self.robot(robot),
+            Edit::AddRobot(robot) => self.add_robot(robot),
             Edit::AgentStart(start) => agent_start::set(self, start),
             Edit::SetDoor(door) => {
                 let id = self.object("object", &door.object)?;
                 let joints = self.object_index.joints_of(&self.data, id);
                 self.object_index.mark_moved([id]);
-                doors::set_door(&mut self.data, id, &joints, door)
+                doors::set_opening(&mut self.data, id, &joints, door)
             }
             Edit::Describe(change) => {
                 let id = self.object("object", &change.object)?;
@@ -230,7 +230,7 @@ impl<'a> EditSession<'a> {
         Ok(())
     }
 
-    fn shift(&mut self, change: &MoveObject) -> Result<(), HousesError> {
+    fn move_object(&mut self, change: &MoveObject) -> Result<(), HousesError> {
         let id = self.object("object", &change.object)?;
         let all = self.object_with_contents(id, change.with_contents)?;
         let first = place::placement_transform(self, id, &change.place)?;
@@ -256,7 +256,7 @@ impl<'a> EditSession<'a> {
         Ok(())
     }
 
-    fn robot(&mut self, robot: &AddRobot) -> Result<(), HousesError> {
+    fn add_robot(&mut self, robot: &AddRobot) -> Result<(), HousesError> {
         let at = checked_point("at", robot.at)?;
         let yaw =
             check_range("yaw_deg", robot.yaw_deg, [-36_000.0, 36_000.0], "degrees")?.to_radians();

@@ -12,7 +12,7 @@ use crate::error::HousesError;
 ///
 /// # Errors
 /// [`HousesError::Spec`] for an object that has nothing that opens.
-pub(super) fn set_door(
+pub(super) fn set_opening(
     data: &mut HouseData,
     id: ObjectId,
     joints: &[JointId],

@@ -96,7 +96,7 @@ pub enum ObjectSource {
         /// The file; in a plan file, a path below the folder of the plan.
         path: String,
         /// Metres for one unit of the file.
-        #[serde(default = "one")]
+        #[serde(default = "default_scale")]
         scale: f32,
         /// The axis of the file that points up.
         #[serde(default)]
@@ -117,7 +117,7 @@ pub enum ObjectSource {
     },
 }
 
-const fn one() -> f32 {
+const fn default_scale() -> f32 {
     1.0
 }
 
@@ -212,7 +212,7 @@ pub struct SoundSpec {
     /// Level at 1 m in the free field, dB SPL (RMS over the whole sound); -20 to 140.
     pub level_db: f32,
     /// True if it begins again when it is over.
-    #[serde(default = "yes")]
+    #[serde(default = "default_true")]
     pub loops: bool,
     /// Start time, s after the start of a world; 0 to 86400.
     #[serde(default)]
@@ -248,12 +248,12 @@ pub struct MoveObject {
     #[serde(default)]
     pub turn_deg: f32,
     /// True to move what stands on it or lies in it along.
-    #[serde(default = "yes")]
+    #[serde(default = "default_true")]
     #[serde(rename = "with_things")]
     pub with_contents: bool,
 }
 
-const fn yes() -> bool {
+const fn default_true() -> bool {
     true
 }
 
@@ -331,7 +331,7 @@ pub struct AddLamp {
     #[serde(default)]
     pub object: Option<String>,
     /// The kind of the new lamp in the catalogue.
-    #[serde(default = "ceiling_lamp")]
+    #[serde(default = "default_lamp_kind")]
     pub kind: String,
     /// The new lamp's style, as of [`ObjectSource::Catalogue`].
     #[serde(default)]
@@ -352,12 +352,12 @@ pub struct AddLamp {
     #[serde(default)]
     pub srgb: Option<[u8; 3]>,
     /// True if it starts switched on.
-    #[serde(default = "yes")]
+    #[serde(default = "default_true")]
     pub on: bool,
 }
 
-fn ceiling_lamp() -> String {
-    "ceiling_lamp".to_owned()
+fn default_lamp_kind() -> String {
+    "default_lamp_kind".to_owned()
 }
 
 /// Adds a robot.

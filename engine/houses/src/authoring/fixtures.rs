@@ -129,7 +129,7 @@ fn add_emitter_disc(data: &mut HouseData) -> ObjectId {
     let mut own = HouseData::default();
     let mesh = own.meshes.push(Arc::new(Mesh::cuboid(-half, half)));
     let plastic = library().get_or_default("plastic");
-    let black = Material::of("source_black", plastic).with_srgb([24; 3]);
+    let black = Material::from_substance("source_black", plastic).with_srgb([24; 3]);
     let material = own.materials.push(black);
     own.parts.push(Part {
         object: ObjectId(0),

@@ -214,25 +214,28 @@ impl NameMapping {
     pub fn apply(&self, house: &House, report: &mut LoadReport) -> Result<House, HousesError> {
         let mut data = house.data().clone();
         self.apply_materials(&mut data)?;
-        self.nodes_of(&mut data, report)?;
+        self.apply_nodes(&mut data, report)?;
         for room in &mut data.rooms {
             let names = room
                 .kinds
                 .iter()
                 .map(String::as_str)
                 .chain([room.name.as_str()]);
-            if let Some((_, kind)) = best(&self.rooms, names).filter(|(_, kind)| !kind.is_empty()) {
+            if let Some((_, kind)) =
+                most_specific_match(&self.rooms, names).filter(|(_, kind)| !kind.is_empty())
+            {
                 room.kinds = vec![room_kind(kind).unwrap_or_else(|plain| plain)];
             }
         }
         report.retain(|warning| match &warning.kind {
             WarningKind::Unmapped { name, .. } => {
                 let name = || std::iter::once(name.as_str());
-                let material = best(&self.materials, name())
+                let material = most_specific_match(&self.materials, name())
                     .is_some_and(|(_, row)| !row.0.substance.is_empty());
-                let node = best(&self.nodes, name())
+                let node = most_specific_match(&self.nodes, name())
                     .is_some_and(|(_, row)| !row.0.category.is_empty() || row.0.hinge.is_some());
-                let room = best(&self.rooms, name()).is_some_and(|(_, kind)| !kind.is_empty());
+                let room = most_specific_match(&self.rooms, name())
+                    .is_some_and(|(_, kind)| !kind.is_empty());
                 !(material || node || room)
             }
             _ => true,
@@ -247,7 +250,7 @@ impl NameMapping {
             let image = material
                 .texture
                 .map(|texture| data.textures[texture].name.as_str());
-            let Some((pattern, MaterialMappingEntry(row))) = best(
+            let Some((pattern, MaterialMappingEntry(row))) = most_specific_match(
                 &self.materials,
                 image.into_iter().chain([material.name.as_str()]),
             ) else {
@@ -274,7 +277,11 @@ impl NameMapping {
         Ok(())
     }
 
-    fn nodes_of(&self, data: &mut HouseData, report: &mut LoadReport) -> Result<(), HousesError> {
+    fn apply_nodes(
+        &self,
+        data: &mut HouseData,
+        report: &mut LoadReport,
+    ) -> Result<(), HousesError> {
         let mut taken: BTreeSet<String> = data
             .objects
             .iter()
@@ -289,7 +296,9 @@ impl NameMapping {
                 object.model.as_str(),
                 object.name.as_str(),
             ];
-            let Some((pattern, MappedNode(row))) = best(&self.nodes, names.into_iter()) else {
+            let Some((pattern, MappedNode(row))) =
+                most_specific_match(&self.nodes, names.into_iter())
+            else {
                 continue;
             };
             let place = format!("nodes.{pattern:?}");
@@ -362,7 +371,7 @@ impl NameMapping {
 }
 
 /// The row whose pattern fits one of the names with the most plain letters; of equals the first.
-fn best<'a, 'n, T>(
+fn most_specific_match<'a, 'n, T>(
     rows: &'a BTreeMap<String, T>,
     names: impl Iterator<Item = &'n str>,
 ) -> Option<(&'a str, &'a T)> {
@@ -487,7 +496,7 @@ pub fn map_template(house: &str, names: &UnmappedNames) -> String {
             text,
             "# {:.2} m2 on {}; taken for {}\n{} = \"\"\n",
             row.area_m2,
-            many(row.count, "surface"),
+            pluralize(row.count, "surface"),
             row.taken_for,
             quoted(&row.name)
         );
@@ -498,7 +507,7 @@ pub fn map_template(house: &str, names: &UnmappedNames) -> String {
             text,
             "# {:.2} m2 on {}\n{} = \"\"\n",
             row.area_m2,
-            many(row.count, "object"),
+            pluralize(row.count, "object"),
             quoted(&row.name)
         );
     }
@@ -514,7 +523,7 @@ pub fn map_template(house: &str, names: &UnmappedNames) -> String {
     text
 }
 
-fn many(count: usize, noun: &str) -> String {
+fn pluralize(count: usize, noun: &str) -> String {
     let s = if count == 1 { "" } else { "s" };
     format!("{count} {noun}{s}")
 }
@@ -539,7 +548,7 @@ mod tests {
             ("wood_dark*".into(), 2),
         ]
         .into();
-        let of = |name: &str| best(&rows, [name].into_iter()).map(|(_, row)| *row);
+        let of = |name: &str| most_specific_match(&rows, [name].into_iter()).map(|(_, row)| *row);
         assert_eq!(
             (of("Wood_Dark_3"), of("wood_3"), of("x")),
             (Some(2), Some(1), Some(0))

@@ -10,7 +10,7 @@ use super::apply::edit;
 use super::edit_errors::{invalid_field, prefix_field};
 use super::edits::Edit;
 use super::files::FileAccess;
-use super::floor_plan::{BuildingPlan, construct};
+use super::floor_plan::{BuildingPlan, build_house_data};
 use crate::data_root::{UserFile, is_json_with};
 use crate::error::HousesError;
 use crate::formats::{FORMATS, open_by};
@@ -141,7 +141,7 @@ fn build_with(
     let (base, mut report) = match (&plan.house, &plan.building) {
         (Some(house), None) => open_by(FORMATS, &files.house("house", house)?, threads)?,
         (None, Some(building)) => {
-            let data = construct(&plan.name, building).map_err(prefix_field("building"))?;
+            let data = build_house_data(&plan.name, building).map_err(prefix_field("building"))?;
             let house =
                 House::new(data).map_err(HousesError::scene(&FileLocation::file("plan")))?;
             (house, LoadReport::new())

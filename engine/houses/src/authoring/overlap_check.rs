@@ -7,7 +7,7 @@ use dwell_scene::interrupt;
 use dwell_scene::{Aabb, House, Id, ObjectId, RoomId};
 use glam::{Vec2, Vec3};
 
-use super::place::{points, triangles, world_bounds};
+use super::place::{triangles, world_bounds, world_vertices};
 
 /// Smallest penetration depth that is reported, m: less counts as touch.
 const DEEP_M: f32 = 0.01;
@@ -31,7 +31,7 @@ const WAYS: [Vec3; 6] = [
 pub(super) fn overlapping_pairs(house: &House, put: &[ObjectId]) -> Vec<(ObjectId, ObjectId)> {
     let data = house.data();
     let boxes = data.objects.ids().map(|id| {
-        interrupt::check();
+        interrupt::unwind_if_cancelled();
         world_bounds(data, id)
     });
     let tree = BoxTree::new(boxes.collect());
@@ -56,7 +56,7 @@ pub(super) fn overlapping_pairs(house: &House, put: &[ObjectId]) -> Vec<(ObjectI
             if !compared.insert([other.min(*one), other.max(*one)]) {
                 continue;
             }
-            interrupt::check();
+            interrupt::unwind_if_cancelled();
             if any_inside(house, *one, other) || any_inside(house, other, *one) {
                 found.push((*one, other));
             }
@@ -76,7 +76,7 @@ fn any_inside(house: &House, one: ObjectId, other: ObjectId) -> bool {
     let middle = world_bounds(data, one).center();
     let all: Vec<Vec3> = data.objects[one]
         .parts()
-        .flat_map(|part| points(data, part))
+        .flat_map(|part| world_vertices(data, part))
         .collect();
     let triangles = triangles(data, other);
     let bounds = world_bounds(data, other);

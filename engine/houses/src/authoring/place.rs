@@ -22,7 +22,7 @@ const ROOM_M: f32 = 0.3;
 const MOST_PAIRS: usize = 10_000;
 
 /// The corners of a part's boxes for physics and rendering, in the world.
-pub(super) fn points(data: &HouseData, part: PartId) -> impl Iterator<Item = Vec3> {
+pub(super) fn world_vertices(data: &HouseData, part: PartId) -> impl Iterator<Item = Vec3> {
     let part = &data.parts[part];
     let map = part.world_from_part.to_affine() * part.part_from_mesh;
     let positions = data.meshes[part.mesh].positions.iter();
@@ -33,7 +33,7 @@ pub(super) fn points(data: &HouseData, part: PartId) -> impl Iterator<Item = Vec
 pub(super) fn triangles(data: &HouseData, object: ObjectId) -> Vec<[Vec3; 3]> {
     let mut all = Vec::new();
     for part in data.objects[object].parts() {
-        let world: Vec<Vec3> = points(data, part).collect();
+        let world: Vec<Vec3> = world_vertices(data, part).collect();
         let mesh = &data.meshes[data.parts[part].mesh];
         all.extend(mesh.triangles.iter().map(|t| t.map(|k| world[k as usize])));
     }
@@ -43,7 +43,7 @@ pub(super) fn triangles(data: &HouseData, object: ObjectId) -> Vec<[Vec3; 3]> {
 /// The box around an object, m, world space.
 pub(super) fn world_bounds(data: &HouseData, object: ObjectId) -> Aabb {
     let parts = data.objects[object].parts();
-    Aabb::from_points(parts.flat_map(|part| points(data, part)))
+    Aabb::from_points(parts.flat_map(|part| world_vertices(data, part)))
 }
 
 /// A rotation about the vertical.
@@ -62,7 +62,7 @@ fn anchor(data: &HouseData, object: ObjectId, which: Anchor) -> Vec3 {
     let back = upright(-yaw_of(&root));
     let parts = data.objects[object].parts();
     let seen = parts
-        .flat_map(|part| points(data, part))
+        .flat_map(|part| world_vertices(data, part))
         .map(|p| back * (p - root.position));
     let bounds = Aabb::from_points(seen);
     if bounds.is_empty() {
@@ -131,7 +131,7 @@ pub(super) fn placement_transform(
     };
     let parts = data.objects[object].parts();
     let around = parts
-        .flat_map(|part| points(data, part))
+        .flat_map(|part| world_vertices(data, part))
         .map(|p| turn * (p - old));
     let around = Aabb::from_points(around);
     let target = target(session, object, placing, &around)?.unwrap_or(old);
@@ -217,7 +217,7 @@ pub(super) fn with_supported_objects(
     let mut open = vec![object];
     let mut pairs = 0;
     while let Some(carrier) = open.pop() {
-        interrupt::check();
+        interrupt::unwind_if_cancelled();
         let below = &boxes[carrier.index()];
         let reach = below.grown(2.0 * GAP_M);
         for (thing, own) in data.objects.ids().zip(boxes) {
@@ -228,7 +228,7 @@ pub(super) fn with_supported_objects(
             if pairs == MOST_PAIRS || !(over || fits) {
                 continue;
             }
-            interrupt::check();
+            interrupt::unwind_if_cancelled();
             pairs += 1;
             let rests = (over && touches(data, carrier, own))
                 || (fits && data.encloses_at_start(carrier, below, own));

@@ -39,7 +39,7 @@ impl IndexRemap {
 
 /// Removes objects. Those behind them move up; meshes, materials and textures that only they used are removed too.
 pub(super) fn remove(data: &mut HouseData, removed: &BTreeSet<ObjectId>) {
-    let before = UsedAssets::of(data, |object| removed.contains(&object), false);
+    let before = UsedAssets::collect(data, |object| removed.contains(&object), false);
     let objects = IndexRemap::of(data.objects.len(), |k| {
         !removed.contains(&ObjectId::from_index(k))
     });
@@ -105,7 +105,7 @@ fn drop_sounds(data: &mut HouseData, once: &BTreeSet<SoundFileId>) {
 
 /// Removes entries that were used before (`once`) and are not any more.
 fn drop_unused(data: &mut HouseData, once: &UsedAssets) {
-    let now = UsedAssets::of(data, |_| true, true);
+    let now = UsedAssets::collect(data, |_| true, true);
     let unused = |once: &BTreeSet<u32>, now: &BTreeSet<u32>, k: usize| {
         once.contains(&(k as u32)) && !now.contains(&(k as u32))
     };
@@ -172,7 +172,7 @@ struct UsedAssets {
 }
 
 impl UsedAssets {
-    fn of(data: &HouseData, object: impl Fn(ObjectId) -> bool, structure: bool) -> Self {
+    fn collect(data: &HouseData, object: impl Fn(ObjectId) -> bool, structure: bool) -> Self {
         let parts = data.parts.iter().filter(|part| object(part.object));
         let parts = parts.map(|part| (part.mesh, &part.materials));
         let pieces = data.structure.iter().filter(|_| structure);

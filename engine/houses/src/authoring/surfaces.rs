@@ -112,10 +112,10 @@ fn changed(old: &Material, look: &SurfaceStyle) -> Result<Material, HousesError>
                 opacity: old.opacity,
                 metallic: old.metallic,
                 roughness: old.roughness,
-                ..Material::of(old.name.clone(), row)
+                ..Material::from_substance(old.name.clone(), row)
             }
         } else {
-            Material::of(row.name.clone(), row)
+            Material::from_substance(row.name.clone(), row)
         };
     }
     if let Some(srgb) = look.srgb {

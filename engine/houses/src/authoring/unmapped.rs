@@ -38,7 +38,9 @@ pub struct UnmappedNames {
 /// category, and rooms without a known word.
 pub fn unmapped_names(house: &House, report: &LoadReport) -> UnmappedNames {
     let reported = |what: UnmappedKind| {
-        let names = report.unmapped().filter(move |(kind, _, _)| *kind == what);
+        let names = report
+            .unmapped_name_counts()
+            .filter(move |(kind, _, _)| *kind == what);
         names
             .map(|(_, name, _)| name.to_owned())
             .collect::<Vec<_>>()
@@ -77,7 +79,7 @@ pub fn unmapped_names(house: &House, report: &LoadReport) -> UnmappedNames {
         for (id, area_m2) in own.iter().zip(areas).filter(|(_, area_m2)| *area_m2 > 0.0) {
             if let Some(name) = &foreign[id.0 as usize] {
                 let substance = &house.materials[*id].substance;
-                add(&mut materials, name, area_m2, substance);
+                count_unmapped(&mut materials, name, area_m2, substance);
             }
         }
     }
@@ -100,7 +102,7 @@ pub fn unmapped_names(house: &House, report: &LoadReport) -> UnmappedNames {
                     .sum::<f64>()
             })
             .sum();
-        add(&mut nodes, name, area_m2, "");
+        count_unmapped(&mut nodes, name, area_m2, "");
     }
     let types = reported(UnmappedKind::RoomType);
     let open = |room: &&Room| {
@@ -115,7 +117,7 @@ pub fn unmapped_names(house: &House, report: &LoadReport) -> UnmappedNames {
     };
     let mut rooms = BTreeMap::new();
     for room in house.rooms.iter().filter(open) {
-        add(&mut rooms, &room.name, f64::from(room.area_m2()), "");
+        count_unmapped(&mut rooms, &room.name, f64::from(room.area_m2()), "");
     }
     UnmappedNames {
         materials: ranked(materials),
@@ -124,7 +126,12 @@ pub fn unmapped_names(house: &House, report: &LoadReport) -> UnmappedNames {
     }
 }
 
-fn add(names: &mut BTreeMap<String, UnmappedName>, name: &str, area_m2: f64, taken_for: &str) {
+fn count_unmapped(
+    names: &mut BTreeMap<String, UnmappedName>,
+    name: &str,
+    area_m2: f64,
+    taken_for: &str,
+) {
     let row = names
         .entry(name.to_owned())
         .or_insert_with(|| UnmappedName {

@@ -17,7 +17,7 @@ pub(crate) const RAILING_INSET_M: f32 = 0.05;
 
 /// The pose of two flights beside each other.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct StairFlights {
+pub(crate) struct StairPlacement {
     /// The middle of the front edge on the storey's floor, m.
     pub(crate) front: Vec3,
     /// The direction in which the first flight climbs, (x, z): one step along an axis.
@@ -30,7 +30,7 @@ pub(crate) struct StairFlights {
     pub(crate) depth_m: f32,
 }
 
-impl StairFlights {
+impl StairPlacement {
     fn climb(&self) -> Vec3 {
         Vec3::new(self.climb[0] as f32, 0.0, self.climb[1] as f32)
     }
@@ -49,7 +49,7 @@ impl StairFlights {
 /// Puts stairs to the next storey, `rise_m` higher. `goes_on`: another flight starts there.
 pub(crate) fn add_stairs(
     assembly: &mut HouseAssembly,
-    flights: &StairFlights,
+    flights: &StairPlacement,
     rise_m: f32,
     goes_on: bool,
     style: &Style,
@@ -72,7 +72,7 @@ pub(crate) fn add_stairs(
 /// Puts a railing where a first flight would start on the storey where the stairs end.
 pub(crate) fn add_railing(
     assembly: &mut HouseAssembly,
-    flights: &StairFlights,
+    flights: &StairPlacement,
     style: &Style,
     room: RoomId,
 ) {

@@ -20,21 +20,21 @@ pub(super) const FIXED: &[BuiltinHouse] = &[
     BuiltinHouse {
         name: "studio",
         seed: 6,
-        spec: || of_style(HomeKind::Studio, 1, "nordic"),
+        spec: || styled_spec(HomeKind::Studio, 1, "nordic"),
     },
     BuiltinHouse {
         name: "house",
         seed: 2,
-        spec: || of_style(HomeKind::House, 2, "classic"),
+        spec: || styled_spec(HomeKind::House, 2, "classic"),
     },
     BuiltinHouse {
         name: "office",
         seed: 2,
-        spec: || of_style(HomeKind::Office, 1, "modern"),
+        spec: || styled_spec(HomeKind::Office, 1, "modern"),
     },
 ];
 
-fn of_style(home: HomeKind, storeys: usize, style: &str) -> HouseSpec {
+fn styled_spec(home: HomeKind, storeys: usize, style: &str) -> HouseSpec {
     HouseSpec {
         home: Some(home),
         storeys: Some(storeys),
@@ -57,7 +57,7 @@ fn apartment() -> HouseSpec {
         adjacency: vec![[GeneratedRoomKind::LivingRoom, GeneratedRoomKind::Kitchen]],
         furniture_density: 1.0,
         clutter: 1.0,
-        ..of_style(HomeKind::Apartment, 1, "contemporary")
+        ..styled_spec(HomeKind::Apartment, 1, "contemporary")
     }
 }
 

@@ -154,7 +154,7 @@ fn furnished_plan(
                 });
                 if lost(room) || beside {
                     let key = furnish_key.child(1 + round as u64);
-                    *place = furnisher.room(level, &cells, room, share, key);
+                    *place = furnisher.furnish_room(level, &cells, room, share, key);
                 }
             }
         }

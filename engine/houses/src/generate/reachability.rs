@@ -56,7 +56,7 @@ pub(super) fn unreachable_rooms(
         let walk = map.mark_largest_region();
         let reached = map.reached_on(&walk, storey.rooms.len());
         let cut_off = plan.stairs.is_some_and(|stairs| {
-            let ways = stairs_at(&stairs, level, plan.storeys.len());
+            let ways = stair_access_points(&stairs, level, plan.storeys.len());
             ways.iter().any(|at| !map.is_near(*at, &walk))
         });
         for (room, reached) in reached.into_iter().enumerate() {
@@ -75,12 +75,12 @@ pub(super) fn count_unreachable_when_empty(
     holes: &[WallHole],
     stairs: Option<StairwellPlan>,
 ) -> usize {
-    let reached = OccupancyMap::new(storey, holes, stairs).reached(storey.rooms.len());
+    let reached = OccupancyMap::new(storey, holes, stairs).reached_rooms(storey.rooms.len());
     reached.into_iter().filter(|reached| !reached).count()
 }
 
 /// Returns the places before the flights that start or end on a storey.
-fn stairs_at(stairs: &StairwellPlan, level: usize, storeys: usize) -> Vec<[f32; 2]> {
+fn stair_access_points(stairs: &StairwellPlan, level: usize, storeys: usize) -> Vec<[f32; 2]> {
     let [x0, z0, x1, z1] = stairs.area.map(metres);
     let size = [x1 - x0, z1 - z0];
     let along = |k: usize| stairs.climb[k] as f32;
@@ -103,7 +103,7 @@ fn stairs_at(stairs: &StairwellPlan, level: usize, storeys: usize) -> Vec<[f32; 
 
 /// The reachability of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum CellReach {
+enum CellWalkability {
     No,
     Yes,
     /// On the largest walkable floor.
@@ -144,7 +144,7 @@ impl OccupancyMap {
         let cells = StoreyCells::new(&storey.rooms);
         for room in 0..storey.rooms.len() {
             for zone in free_floor(storey, &cells, room) {
-                map.centres(&zone, |map, cell| map.room[cell] = room as u16);
+                map.for_each_cell_in(&zone, |map, cell| map.room[cell] = room as u16);
             }
         }
         for hole in holes {
@@ -161,7 +161,7 @@ impl OccupancyMap {
             for side in [1.0, -1.0] {
                 // A little farther than the wall's face, so that no cell's middle is left out between.
                 let zone = hole.zone_in_front(side, half + 0.5 * CELL_M, frame);
-                map.centres(&zone, |map, cell| {
+                map.for_each_cell_in(&zone, |map, cell| {
                     if map.room[cell] == WALL {
                         map.room[cell] = DOORWAY;
                     }
@@ -185,7 +185,7 @@ impl OccupancyMap {
     }
 
     /// Calls `each` for the cells whose centre lies in a zone.
-    fn centres(&mut self, zone: &ZoneXz, mut each: impl FnMut(&mut Self, usize)) {
+    fn for_each_cell_in(&mut self, zone: &ZoneXz, mut each: impl FnMut(&mut Self, usize)) {
         let at = |value: f32, axis: usize| (value - self.corner[axis]) / CELL_M + 0.5;
         let columns = self.range(at(zone[0], 0), at(zone[2], 0), 0);
         let rows = self.range(at(zone[1], 1), at(zone[3], 1), 1);
@@ -238,11 +238,17 @@ impl OccupancyMap {
     }
 
     /// The walkable cells, those of the largest connected floor marked.
-    fn mark_largest_region(&self) -> Vec<CellReach> {
+    fn mark_largest_region(&self) -> Vec<CellWalkability> {
         let walkable = self.walkable();
-        let mut walk: Vec<CellReach> = walkable
+        let mut walk: Vec<CellWalkability> = walkable
             .iter()
-            .map(|yes| if *yes { CellReach::Yes } else { CellReach::No })
+            .map(|yes| {
+                if *yes {
+                    CellWalkability::Yes
+                } else {
+                    CellWalkability::No
+                }
+            })
             .collect();
         let mut left = walkable;
         let mut best: Vec<usize> = Vec::new();
@@ -268,22 +274,22 @@ impl OccupancyMap {
             }
         }
         for cell in best {
-            walk[cell] = CellReach::Reached;
+            walk[cell] = CellWalkability::Reached;
         }
         walk
     }
 
     /// For each room whether it is reached: no less than half of its walkable floor.
-    fn reached(&self, rooms: usize) -> Vec<bool> {
+    fn reached_rooms(&self, rooms: usize) -> Vec<bool> {
         self.reached_on(&self.mark_largest_region(), rooms)
     }
 
-    fn reached_on(&self, walk: &[CellReach], rooms: usize) -> Vec<bool> {
+    fn reached_on(&self, walk: &[CellWalkability], rooms: usize) -> Vec<bool> {
         let mut counts = vec![[0_usize; 2]; rooms];
         for (room, walk) in self.room.iter().zip(walk) {
             if let Some(count) = counts.get_mut(usize::from(*room)) {
-                count[0] += usize::from(*walk != CellReach::No);
-                count[1] += usize::from(*walk == CellReach::Reached);
+                count[0] += usize::from(*walk != CellWalkability::No);
+                count[1] += usize::from(*walk == CellWalkability::Reached);
             }
         }
         let is_reached = |[walkable, reached]: [usize; 2]| reached > 0 && reached * 2 >= walkable;
@@ -291,7 +297,7 @@ impl OccupancyMap {
     }
 
     /// Returns whether a reached cell lies within a step of a place.
-    fn is_near(&self, [x, z]: [f32; 2], walk: &[CellReach]) -> bool {
+    fn is_near(&self, [x, z]: [f32; 2], walk: &[CellWalkability]) -> bool {
         let near_m = 0.25;
         let at = |value: f32, axis: usize| (value - self.corner[axis]) / CELL_M;
         let columns = self.range(at(x - near_m, 0), at(x + near_m, 0), 0);
@@ -299,7 +305,7 @@ impl OccupancyMap {
         rows.into_iter().any(|row| {
             let first = row * self.columns;
             let cells = &walk[first + columns.start..first + columns.end];
-            cells.contains(&CellReach::Reached)
+            cells.contains(&CellWalkability::Reached)
         })
     }
 }

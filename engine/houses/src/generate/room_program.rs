@@ -28,7 +28,7 @@ pub(crate) struct RoomProgram {
 /// Draws the values that the spec leaves open.
 pub(crate) fn draw_room_program(spec: &HouseSpec, key: RandomKey) -> RoomProgram {
     let mut draw = key.stream();
-    let home = home(spec, &mut draw);
+    let home = draw_home_kind(spec, &mut draw);
     let mut outside = None;
     let mut storeys = if spec.rooms.is_empty() {
         let (rooms, drawn) = sample_room_kinds(home, spec, &mut draw);
@@ -42,7 +42,7 @@ pub(crate) fn draw_room_program(spec: &HouseSpec, key: RandomKey) -> RoomProgram
             .filter(|kind| !kind.is_outside())
             .collect();
         outside = outside.or(spec.rooms.iter().copied().find(|kind| kind.is_outside()));
-        spread(&inside, spec.storeys.unwrap_or(1))
+        assign_to_storeys(&inside, spec.storeys.unwrap_or(1))
     };
     for rooms in &mut storeys {
         rooms.truncate(MAX_ROOMS);
@@ -69,7 +69,7 @@ pub(crate) fn draw_room_program(spec: &HouseSpec, key: RandomKey) -> RoomProgram
     }
 }
 
-fn home(spec: &HouseSpec, draw: &mut RandomStream) -> HomeKind {
+fn draw_home_kind(spec: &HouseSpec, draw: &mut RandomStream) -> HomeKind {
     let drawn = match draw.below(20) {
         0..3 => HomeKind::Studio,
         3..11 => HomeKind::Apartment,
@@ -144,8 +144,8 @@ fn sample_room_kinds(
                     rooms.push(kind);
                 }
             }
-            let mut storeys = spread(&rooms, count);
-            balance(&mut storeys);
+            let mut storeys = assign_to_storeys(&rooms, count);
+            fill_small_storeys(&mut storeys);
             (storeys, maybe(0.6).then_some(Terrace))
         }
         HomeKind::Office => {
@@ -167,7 +167,7 @@ fn sample_room_kinds(
 }
 
 /// Rooms to storeys: each to its usual one, then from fuller storeys to those without a room.
-fn spread(rooms: &[GeneratedRoomKind], count: usize) -> Vec<Vec<GeneratedRoomKind>> {
+fn assign_to_storeys(rooms: &[GeneratedRoomKind], count: usize) -> Vec<Vec<GeneratedRoomKind>> {
     let mut storeys = vec![Vec::new(); count.max(1)];
     let mut above = 0;
     for kind in rooms {
@@ -195,7 +195,7 @@ fn spread(rooms: &[GeneratedRoomKind], count: usize) -> Vec<Vec<GeneratedRoomKin
 }
 
 /// Adds rooms to storeys that are much smaller than the largest: they all stand on one another.
-fn balance(storeys: &mut [Vec<GeneratedRoomKind>]) {
+fn fill_small_storeys(storeys: &mut [Vec<GeneratedRoomKind>]) {
     let usual = |rooms: &[GeneratedRoomKind]| -> f32 {
         rooms
             .iter()

@@ -13,7 +13,7 @@ use crate::building::openings::{add_door, add_window};
 use crate::building::outline::outline;
 use crate::building::room::{CEILING_M, HorizontalSlab, ShellRoom};
 use crate::building::stairs::{
-    RAILING_INSET_M, StairFlights, add_railing, add_stairs, railing_model,
+    RAILING_INSET_M, StairPlacement, add_railing, add_stairs, railing_model,
 };
 use crate::building::wall::{FinishBands, ShellWall, WallAxis, WallOpening};
 use crate::building::yaw::yaw_rotation;
@@ -34,17 +34,17 @@ const FLOOR_SLAB_M: f32 = 0.2;
 pub(crate) const STOREY_M: f32 = CEILING_M + CEILING_SLAB_M + FLOOR_SLAB_M;
 
 /// The building, for later stages.
-pub(crate) struct ShellRoomIds {
+pub(crate) struct BuiltRooms {
     /// The ids of the rooms, by storey.
     pub(crate) rooms: Vec<Vec<RoomId>>,
 }
 
-impl ShellRoomIds {
+impl BuiltRooms {
     /// Puts furniture into the rooms.
     pub(crate) fn furnish(&self, storeys: &[Vec<RoomFurniture>], assembly: &mut HouseAssembly) {
         for (level, rooms) in storeys.iter().enumerate() {
             assembly.level = LevelId(level as u32);
-            let up = Pose::from_position(Vec3::Y * ShellBuilder::floor_m(level));
+            let up = Pose::from_position(Vec3::Y * ShellBuilder::floor_height_m(level));
             for (room, furnished) in rooms.iter().enumerate() {
                 for piece in &furnished.pieces {
                     let model = &piece.model.model;
@@ -150,10 +150,10 @@ fn slab_rectangles(
 
 impl ShellBuilder<'_> {
     /// Adds the building to an empty house.
-    pub(crate) fn build(&self, assembly: &mut HouseAssembly) -> ShellRoomIds {
+    pub(crate) fn build(&self, assembly: &mut HouseAssembly) -> BuiltRooms {
         let mut names = UniqueNames::default();
         let outside = facade_finish(self.key.child("facade"));
-        let mut shell = ShellRoomIds { rooms: Vec::new() };
+        let mut shell = BuiltRooms { rooms: Vec::new() };
         for (level, storey) in self.plan.storeys.iter().enumerate() {
             assembly.add_storey();
             let cells = StoreyCells::new(&storey.rooms);
@@ -169,7 +169,7 @@ impl ShellBuilder<'_> {
                 .collect();
             let ids = self.rooms(level, &cells, &looks, &mut names, assembly);
             self.walls(level, &cells, &looks, &outside, &ids, assembly);
-            self.fillings(level, &ids, assembly);
+            self.add_doors_and_windows(level, &ids, assembly);
             self.stairs(level, &ids, assembly);
             self.railings(level, &cells, &ids, assembly);
             shell.rooms.push(ids);
@@ -181,7 +181,7 @@ impl ShellBuilder<'_> {
         &self.plan.storeys[level]
     }
 
-    fn floor_m(level: usize) -> f32 {
+    fn floor_height_m(level: usize) -> f32 {
         STOREY_M * level as f32
     }
 
@@ -222,7 +222,7 @@ impl ShellBuilder<'_> {
                     .map(|word| (*word).to_owned())
                     .collect(),
                 floor,
-                floor_m: Self::floor_m(level),
+                floor_m: Self::floor_height_m(level),
                 ceiling_m: CEILING_M,
                 storey_m: CEILING_M,
                 slabs: [
@@ -281,8 +281,8 @@ impl ShellBuilder<'_> {
         for (k, run) in runs.iter().enumerate() {
             let half = 0.5 * thickness(storey, run);
             let at = metres(run.at);
-            let from = metres(run.from) - reach(storey, &runs, run, false);
-            let to = metres(run.to) + reach(storey, &runs, run, true);
+            let from = metres(run.from) - wall_end_extension(storey, &runs, run, false);
+            let to = metres(run.to) + wall_end_extension(storey, &runs, run, true);
             // Between two crossings that lie closer than their walls are thick nothing is left.
             if to - from < 0.01 {
                 continue;
@@ -321,7 +321,7 @@ impl ShellBuilder<'_> {
             let wall = ShellWall {
                 name: format!("{level}_{k}"),
                 room: ids[*room],
-                floor_m: Self::floor_m(level),
+                floor_m: Self::floor_height_m(level),
                 height_m: if high { STOREY_M } else { CEILING_M },
                 rect,
                 along: if run.along_x {
@@ -343,9 +343,9 @@ impl ShellBuilder<'_> {
         }
     }
 
-    fn fillings(&self, level: usize, ids: &[RoomId], assembly: &mut HouseAssembly) {
+    fn add_doors_and_windows(&self, level: usize, ids: &[RoomId], assembly: &mut HouseAssembly) {
         let storey = self.storey(level);
-        let floor = Self::floor_m(level);
+        let floor = Self::floor_height_m(level);
         let key = self.key.child("fillings").child(level as u64);
         let cells = StoreyCells::new(&storey.rooms);
         for (k, hole) in self.holes[level].iter().enumerate() {
@@ -380,7 +380,7 @@ impl ShellBuilder<'_> {
                     // Beside an outer wall, which is thicker, the leaf opens square.
                     let beside = hole.zone_beside_hinges(wall_m);
                     let square = beside.is_some_and(|zone| !floor_contains_zone(&free, &zone));
-                    let openness = self.openness(hole, key.child(k as u64));
+                    let openness = self.initial_door_openness(hole, key.child(k as u64));
                     let pose = Pose::new(Vec3::new(x, floor, z), turn);
                     add_door(assembly, &door, square, pose, ids[hole.room], openness);
                 }
@@ -406,7 +406,7 @@ impl ShellBuilder<'_> {
         }
     }
 
-    fn openness(&self, hole: &WallHole, key: RandomKey) -> f32 {
+    fn initial_door_openness(&self, hole: &WallHole, key: RandomKey) -> f32 {
         let outside = hole
             .other_room
             .is_none_or(|_| matches!(hole.contents, HoleContents::Door { entrance: true, .. }));
@@ -448,8 +448,8 @@ impl ShellBuilder<'_> {
         let middle = Vec3::new(0.5 * (x0 + x1), 0.0, 0.5 * (z0 + z1));
         let front = middle - climb * (0.5 * size.dot(climb.abs()));
         // The model climbs towards -Z with its second flight at +X.
-        let flights = StairFlights {
-            front: front + Vec3::Y * Self::floor_m(level),
+        let flights = StairPlacement {
+            front: front + Vec3::Y * Self::floor_height_m(level),
             climb: stairs.climb,
             mirrored: across.dot(Vec3::Y.cross(climb)) > 0.0,
             width_m,
@@ -509,7 +509,10 @@ impl ShellBuilder<'_> {
                 (at, middle, 90.0)
             };
             let kind = assembly.add_model(railing_model(to - from, self.style));
-            let pose = Pose::new(Vec3::new(x, Self::floor_m(level), z), yaw_rotation(turn));
+            let pose = Pose::new(
+                Vec3::new(x, Self::floor_height_m(level), z),
+                yaw_rotation(turn),
+            );
             assembly.add_instance(&kind, pose, ids[*room], 0.0);
         }
     }
@@ -536,7 +539,12 @@ fn thickness(storey: &GeneratedStorey, run: &RoomBoundary) -> f32 {
 
 /// Returns the length by which a wall reaches beyond (or, below 0, ends before) the crossing at one of its ends, so that walls meet without
 /// a gap and without overlap: a straight wall goes through, and at a corner the wall along z does.
-fn reach(storey: &GeneratedStorey, runs: &[RoomBoundary], run: &RoomBoundary, end: bool) -> f32 {
+fn wall_end_extension(
+    storey: &GeneratedStorey,
+    runs: &[RoomBoundary],
+    run: &RoomBoundary,
+    end: bool,
+) -> f32 {
     let at = if end { run.to } else { run.from };
     let here = |other: &&RoomBoundary| {
         let (along, across) = if other.along_x == run.along_x {

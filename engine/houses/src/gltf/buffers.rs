@@ -18,7 +18,7 @@ pub(super) struct Buffers<'a> {
 
 impl<'a> Buffers<'a> {
     /// The GLB's own buffer, and those in the files that `library` holds under their content's name.
-    pub(super) fn of_library(
+    pub(super) fn load_with_library(
         json: &Root,
         blob: &'a [u8],
         library: &DataRoot,

@@ -38,7 +38,7 @@ impl<'a> ParsedGlb<'a> {
         };
         let (json, blob) = super::container::split_glb(bytes).map_err(syntax)?;
         let mut report = LoadReport::new();
-        let buffers = Buffers::of_library(&json, blob, library, &at, &mut report)?;
+        let buffers = Buffers::load_with_library(&json, blob, library, &at, &mut report)?;
         match report.warnings().first() {
             Some(warning) => Err(syntax(warning.kind.to_string())),
             None => Ok(Self {

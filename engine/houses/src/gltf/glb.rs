@@ -33,7 +33,7 @@ struct Buffer {
 }
 
 /// The binary chunk, and buffers beside the file, under construction, with their views and accessors.
-pub(crate) struct BinaryChunk {
+pub(crate) struct GlbBufferBuilder {
     /// The chunk first.
     buffers: Vec<Buffer>,
     /// The buffer that is written to.
@@ -43,7 +43,7 @@ pub(crate) struct BinaryChunk {
     accessors: Vec<Value>,
 }
 
-impl Default for BinaryChunk {
+impl Default for GlbBufferBuilder {
     fn default() -> Self {
         Self {
             buffers: vec![Buffer::default()],
@@ -55,9 +55,9 @@ impl Default for BinaryChunk {
     }
 }
 
-impl BinaryChunk {
+impl GlbBufferBuilder {
     /// Runs `write`, whose data go into the chunk, or, if `apart`, into a file of its own in `folder`, named by its content.
-    pub(crate) fn append_bytes<T>(
+    pub(crate) fn with_buffer<T>(
         &mut self,
         folder: &str,
         apart: bool,
@@ -113,7 +113,7 @@ impl BinaryChunk {
     }
 
     /// Appends rows of floats as an accessor; `bounds` states their smallest and largest values, as positions need.
-    pub(crate) fn floats<const N: usize>(
+    pub(crate) fn add_float_accessor<const N: usize>(
         &mut self,
         rows: impl Iterator<Item = [f32; N]>,
         shape: &str,

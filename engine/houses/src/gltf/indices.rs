@@ -47,17 +47,17 @@ const TABLES: [&str; 2] = ["attributes", "targets"];
 /// Those of JSON, and for a number of more than 32 bits.
 pub(super) fn check_index_widths(text: &[u8]) -> Result<(), serde_json::Error> {
     let mut json = serde_json::Deserializer::from_slice(text);
-    IndexVisitor::default().deserialize(&mut json)?;
+    IndexWidthValidator::default().deserialize(&mut json)?;
     json.end()
 }
 
 #[derive(Debug, Default, Clone, Copy)]
-struct IndexVisitor {
+struct IndexWidthValidator {
     is_index: bool,
     is_table: bool,
 }
 
-impl<'de> DeserializeSeed<'de> for IndexVisitor {
+impl<'de> DeserializeSeed<'de> for IndexWidthValidator {
     type Value = ();
 
     fn deserialize<D: Deserializer<'de>>(self, from: D) -> Result<(), D::Error> {
@@ -65,7 +65,7 @@ impl<'de> DeserializeSeed<'de> for IndexVisitor {
     }
 }
 
-impl<'de> Visitor<'de> for IndexVisitor {
+impl<'de> Visitor<'de> for IndexWidthValidator {
     type Value = ();
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -77,7 +77,7 @@ struct DwellNodeExtras {
 struct PendingNode {
     node: usize,
     /// The place in the file that names it.
-    named: NodeReference,
+    named: NodeReferenceSource,
     world_from_parent: Affine3A,
     /// The name of the topmost node above, which is a storey's in our files.
     top: Option<usize>,
@@ -90,7 +90,7 @@ struct PendingNode {
 
 /// The place in the file that names a node.
 #[derive(Clone, Copy)]
-enum NodeReference {
+enum NodeReferenceSource {
     /// A scene's list, by scene and position.
     Scene(usize, usize),
     /// The table of nodes itself: there are no scenes.
@@ -99,7 +99,7 @@ enum NodeReference {
     Child(usize, usize),
 }
 
-impl fmt::Display for NodeReference {
+impl fmt::Display for NodeReferenceSource {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Scene(scene, k) => write!(f, "scenes[{scene}].nodes[{k}]"),
@@ -124,9 +124,9 @@ pub(super) fn node_tree(
     };
     let roots = scenes.iter().flat_map(|(s, scene)| {
         let nodes = scene.nodes.iter().map(Index::value).enumerate();
-        nodes.map(|(k, node)| (node, NodeReference::Scene(*s, k)))
+        nodes.map(|(k, node)| (node, NodeReferenceSource::Scene(*s, k)))
     });
-    let root = |(node, named): (usize, NodeReference)| PendingNode {
+    let root = |(node, named): (usize, NodeReferenceSource)| PendingNode {
         node,
         named,
         world_from_parent: Affine3A::IDENTITY,
@@ -137,7 +137,9 @@ pub(super) fn node_tree(
     };
     let mut open: Vec<PendingNode> = roots.map(root).collect();
     if json.scenes.is_empty() {
-        open.extend((0..json.nodes.len()).map(|node| root((node, NodeReference::Table(node)))));
+        open.extend(
+            (0..json.nodes.len()).map(|node| root((node, NodeReferenceSource::Table(node)))),
+        );
     }
     open.reverse();
     let mut seen = vec![false; json.nodes.len()];
@@ -197,7 +199,7 @@ pub(super) fn node_tree(
             found.lamps.extend(lamp);
         }
         found.sky = found.sky.or(known.sky);
-        let own = file_room(
+        let own = room_from_extras(
             known.room.as_deref(),
             &known,
             world_from_mesh,
@@ -277,7 +279,7 @@ pub(super) fn node_tree(
                 .rev()
                 .map(|(k, child)| PendingNode {
                     node: child.value(),
-                    named: NodeReference::Child(index, k),
+                    named: NodeReferenceSource::Child(index, k),
                     world_from_parent: world_from_mesh,
                     top: Some(top),
                     room,
@@ -320,7 +322,7 @@ fn read_node_extras(node: &Node, at: &FileLocation, report: &mut LoadReport) -> 
 }
 
 /// The room that a node is; its numbers count in the world, so that a node that is moved is none.
-fn file_room(
+fn room_from_extras(
     name: Option<&str>,
     known: &DwellNodeExtras,
     world_from_node: Affine3A,

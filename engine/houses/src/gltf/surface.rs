@@ -14,8 +14,8 @@ use super::buffers::{Buffers, read_uri};
 use super::extras::dwell_extras;
 use crate::data_root::DataRoot;
 use crate::import::{
-    ImportedMaterial, MaterialTableBuilder, PixelBudget, decode, is_truncated_jpeg, pixels,
-    substance_of, texture_name,
+    ImportedMaterial, MaterialTableBuilder, PixelBudget, decode, header_pixel_count,
+    is_truncated_jpeg, substance_of, texture_name,
 };
 use crate::limits::MAX_IMAGE_BYTES;
 use crate::report::{FileLocation, LoadReport};
@@ -85,7 +85,9 @@ pub(super) fn images(
         }
     };
     // Sizes first: many images may name the same few bytes.
-    let sizes = threads.map(used.len(), |k| pixels(&bytes_of(k)?).map_err(unreadable(k)));
+    let sizes = threads.map(used.len(), |k| {
+        header_pixel_count(&bytes_of(k)?).map_err(unreadable(k))
+    });
     let mut budget = PixelBudget::default();
     let within: Vec<Result<(), WarningKind>> = sizes
         .into_iter()

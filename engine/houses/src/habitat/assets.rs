@@ -32,7 +32,7 @@ pub(super) struct MergedAsset {
 
 /// Assets that were read.
 #[derive(Debug, Default)]
-pub(super) struct Assets {
+pub(super) struct AssetCache {
     pieces: BTreeMap<String, Option<Arc<Vec<AssetMesh>>>>,
     wholes: BTreeMap<String, Option<MergedAsset>>,
     shapes: BTreeMap<String, Option<Arc<MeshPieces>>>,
@@ -40,7 +40,7 @@ pub(super) struct Assets {
     material_names: UniqueNames,
 }
 
-impl Assets {
+impl AssetCache {
     /// The path inside the root of an asset that a template names; `None`, reported, when it leaves the root.
     pub(super) fn path(
         template: &ResolvedTemplate,
@@ -131,7 +131,7 @@ impl Assets {
         whole: &MergedAsset,
         data: &HouseData,
     ) -> Arc<MeshPieces> {
-        let shape = || Arc::new(MeshPieces::of(&data.meshes[whole.mesh]));
+        let shape = || Arc::new(MeshPieces::from_mesh(&data.meshes[whole.mesh]));
         let known = self.whole_shapes.entry(path.to_owned());
         known.or_insert_with(shape).clone()
     }
@@ -154,7 +154,7 @@ impl Assets {
                 for thing in scene.nodes {
                     shape.append(&thing.mesh.transformed(&thing.world_from_mesh), 0);
                 }
-                Some(Arc::new(MeshPieces::of(&shape)))
+                Some(Arc::new(MeshPieces::from_mesh(&shape)))
             }
             Err(reason) => {
                 let path = path.to_owned();

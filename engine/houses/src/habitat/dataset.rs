@@ -33,7 +33,7 @@ pub(super) enum TemplateKind {
 
 impl TemplateKind {
     /// The field of the data set's file that lists the folders of such templates.
-    fn field(self) -> &'static str {
+    fn section_field(self) -> &'static str {
         match self {
             Self::Stage => "stages.paths",
             Self::Object => "objects.paths",
@@ -80,7 +80,7 @@ impl Dataset {
     /// # Errors
     /// [`HousesError::Io`], [`HousesError::TooLarge`], and [`HousesError::Syntax`] when the data set's file is no JSON of
     /// that form.
-    pub(super) fn of_scene(
+    pub(super) fn find_for_scene(
         path: &Path,
         report: &mut LoadReport,
     ) -> Result<(Self, String), HousesError> {
@@ -130,7 +130,7 @@ impl Dataset {
                 &mut *report
             };
             let paths = &dataset.section(kind).paths;
-            let files = dataset.files(paths, kind.ending(), kind.field(), report);
+            let files = dataset.files(paths, kind.ending(), kind.section_field(), report);
             dataset.names.insert(kind.ending(), files);
         }
         Ok((dataset, scene))

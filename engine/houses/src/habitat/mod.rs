@@ -24,7 +24,7 @@ use crate::limits::MAX_NODES;
 use crate::report::{FileLocation, LoadReport};
 use crate::robot::Robot;
 use crate::warning_kind::WarningKind;
-use assets::Assets;
+use assets::AssetCache;
 use dataset::{Dataset, ResolvedTemplate, SCENE_ENDING, TemplateKind};
 use file::{ObjectInstance, SceneFile, Template};
 
@@ -43,7 +43,7 @@ pub(crate) fn recognizes(path: &Path) -> bool {
 /// [`HousesError::Scene`] when the result breaks a rule of the scene. Everything else is reported.
 pub fn open(path: &Path, threads: Threads) -> Result<(House, LoadReport), HousesError> {
     let mut report = LoadReport::new();
-    let (dataset, scene_path) = Dataset::of_scene(path, &mut report)?;
+    let (dataset, scene_path) = Dataset::find_for_scene(path, &mut report)?;
     let at = FileLocation::file(&scene_path);
     let scene: SceneFile = dataset::read_json(&dataset.root, &scene_path)?;
     let count = scene.object_instances.len() + scene.articulated_object_instances.len();
@@ -68,7 +68,7 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, LoadReport), Houses
             source: "habitat".to_owned(),
             ..HouseData::default()
         },
-        assets: Assets::default(),
+        assets: AssetCache::default(),
         robots: BTreeMap::new(),
         names: UniqueNames::default(),
         lexicon,
@@ -77,14 +77,14 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, LoadReport), Houses
     reader.stage(scene.stage_instance, &regions, &at);
     stage::rooms(&mut reader.data, &regions, &semantic_at, reader.report);
     for (k, value) in scene.object_instances.into_iter().enumerate() {
-        interrupt::check();
+        interrupt::unwind_if_cancelled();
         let at = at.field(format_args!("object_instances[{k}]"));
         if let Some(instance) = reader.instance(value, &at) {
             reader.object(&instance, &at);
         }
     }
     for (k, value) in scene.articulated_object_instances.into_iter().enumerate() {
-        interrupt::check();
+        interrupt::unwind_if_cancelled();
         let at = at.field(format_args!("articulated_object_instances[{k}]"));
         if let Some(instance) = reader.instance(value, &at) {
             reader.articulated(&instance, &at);
@@ -114,7 +114,7 @@ struct HabitatReader<'a> {
     threads: Threads,
     report: &'a mut LoadReport,
     data: HouseData,
-    assets: Assets,
+    assets: AssetCache,
     robots: BTreeMap<String, Result<Robot, String>>,
     names: UniqueNames,
     /// Names by semantic id.
@@ -145,7 +145,7 @@ impl HabitatReader<'_> {
             Ok(placement) => placement,
             Err(reason) => return self.report.warn(at, WarningKind::BadTransform { reason }),
         };
-        let Some(path) = Assets::path(&found, &template.render_asset, self.report) else {
+        let Some(path) = AssetCache::path(&found, &template.render_asset, self.report) else {
             return;
         };
         let (root, threads) = (&self.dataset.root, self.threads);

@@ -7,7 +7,7 @@ use dwell_scene::{
 use glam::{Affine3A, Vec2, Vec3};
 
 use super::HabitatReader;
-use super::assets::Assets;
+use super::assets::AssetCache;
 use super::dataset::{ResolvedTemplate, TemplateKind};
 use super::file::{ObjectInstance, Template};
 use super::place;
@@ -36,7 +36,7 @@ impl HabitatReader<'_> {
                     .warn(at.clone(), WarningKind::BadTransform { reason });
             }
         };
-        let Some(path) = Assets::path(&found, &template.render_asset, self.report) else {
+        let Some(path) = AssetCache::path(&found, &template.render_asset, self.report) else {
             return;
         };
         let (root, threads) = (&self.dataset.root, self.threads);
@@ -147,7 +147,7 @@ impl HabitatReader<'_> {
         if template.collision_asset.is_empty() {
             return None;
         }
-        let path = Assets::path(found, &template.collision_asset, self.report)?;
+        let path = AssetCache::path(found, &template.collision_asset, self.report)?;
         if path == render {
             return None;
         }

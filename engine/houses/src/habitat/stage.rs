@@ -229,7 +229,7 @@ pub(super) fn rooms(
             ceiling_y,
             bounds,
         };
-        room.repair();
+        room.repair_footprint_and_ceiling();
         data.rooms.push(room);
     }
     if regions.is_empty() {
@@ -284,6 +284,6 @@ fn one_room(data: &mut HouseData, bounds: Aabb) {
         ceiling_y: bounds.max.y,
         bounds,
     };
-    room.repair();
+    room.repair_footprint_and_ceiling();
     data.rooms.push(room);
 }

@@ -117,14 +117,14 @@ struct AnnotatedEmitter {
     part: String,
     position: Vec3,
     level_db: f32,
-    #[serde(default = "yes")]
+    #[serde(default = "default_looping")]
     loops: bool,
     #[serde(default)]
     start_s: f32,
 }
 
 /// Sounds loop by default.
-const fn yes() -> bool {
+const fn default_looping() -> bool {
     true
 }
 

@@ -19,14 +19,14 @@ pub(crate) struct MeshPieces {
 
 /// Convex pieces that cover `mesh`: one hull for each of its [`MeshPieces`].
 pub(crate) fn convex_pieces(mesh: &Mesh, part_from_mesh: &Affine3A) -> Vec<Collider> {
-    MeshPieces::of(mesh).hulls(part_from_mesh)
+    MeshPieces::from_mesh(mesh).hulls(part_from_mesh)
 }
 
 impl MeshPieces {
     /// The connected pieces of `mesh`, at most 24; the smallest ones are joined to the piece whose box grows least.
     ///
     /// Models of furniture are built from boards and legs that do not touch, so this keeps the room under a table free.
-    pub(crate) fn of(mesh: &Mesh) -> Self {
+    pub(crate) fn from_mesh(mesh: &Mesh) -> Self {
         let points = largest_components(mesh).into_iter().map(|piece| {
             let triangles = piece.triangles.iter();
             let mut vertices: Vec<u32> = triangles

@@ -44,7 +44,7 @@ struct FloorLayer {
 pub(crate) fn floor_faces<'a>(meshes: impl Iterator<Item = &'a Mesh>) -> Option<FloorFaces> {
     let mut faces = Vec::new();
     for mesh in meshes {
-        let up = up_of(mesh);
+        let up = upwardness(mesh);
         let sign = if up.iter().any(|y| *y > LEVEL) {
             1.0
         } else {
@@ -105,7 +105,7 @@ pub(crate) fn floor_without_level_faces() -> WarningKind {
 }
 
 /// How far each triangle looks up: 1 straight up, -1 down. Shape (triangle,).
-fn up_of(mesh: &Mesh) -> Vec<f32> {
+fn upwardness(mesh: &Mesh) -> Vec<f32> {
     let up = |k: usize| {
         let [a, b, c] = mesh.corners(k);
         (b - a).cross(c - a).normalize_or_zero().y

@@ -103,7 +103,7 @@ impl MaterialTableBuilder {
             opacity,
             metallic,
             roughness,
-            ..Material::of(self.names.unique(&name), look.substance)
+            ..Material::from_substance(self.names.unique(&name), look.substance)
         };
         let id = self.materials.push(material);
         self.known.insert(key, id);

@@ -27,5 +27,6 @@ pub(crate) use scene::{
     ImportedScene, NamedRoom, NodeRole, SceneNode, category_of, room_over_floors, structure_kind,
 };
 pub(crate) use textures::{
-    PixelBudget, decode, encode_png, is_truncated_jpeg, pixels, read_images, texture_name,
+    PixelBudget, decode, encode_png, header_pixel_count, is_truncated_jpeg, read_images,
+    texture_name,
 };

@@ -161,7 +161,7 @@ impl ImportedScene {
         }
         let known = builder.data.objects.len();
         for thing in objects {
-            interrupt::check();
+            interrupt::unwind_if_cancelled();
             builder.object(thing, alone, at, report);
         }
         builder.make_floating_objects_fixed(alone, known);
@@ -284,7 +284,7 @@ pub(crate) fn room_over_floors(data: &mut HouseData, at: &FileLocation, report: 
         ceiling_y,
         bounds,
     };
-    room.repair();
+    room.repair_footprint_and_ceiling();
     if room.footprint.is_empty() {
         return;
     }
@@ -334,7 +334,7 @@ impl HouseBuilder {
             ceiling_y: room.ceiling_y,
             bounds,
         };
-        room.repair();
+        room.repair_footprint_and_ceiling();
         self.data.rooms.push(room);
     }
 

@@ -28,7 +28,7 @@ pub(crate) fn texture_name(path: &str) -> String {
 ///
 /// # Errors
 /// A sentence when the bytes are no PNG or JPEG image, or it is too large to be read.
-pub(crate) fn pixels(bytes: &[u8]) -> Result<u64, String> {
+pub(crate) fn header_pixel_count(bytes: &[u8]) -> Result<u64, String> {
     open_decoder(bytes).map(|(_, pixels)| pixels)
 }
 
@@ -192,7 +192,7 @@ pub(crate) fn read_images(
         let bytes = root
             .read(path, MAX_IMAGE_BYTES)
             .map_err(|error| unreadable(error.reason()))?;
-        let pixels = pixels(&bytes).map_err(unreadable)?;
+        let pixels = header_pixel_count(&bytes).map_err(unreadable)?;
         Ok((bytes, pixels))
     });
     let mut budget = PixelBudget::default();
@@ -332,7 +332,7 @@ mod tests {
         let mut huge = bytes.clone();
         huge[frame + 5..frame + 9].copy_from_slice(&[0x1f, 0x40, 0x1f, 0x40]);
         assert_eq!(
-            pixels(&huge),
+            header_pixel_count(&huge),
             Err(format!(
                 "8000 by 8000 pixels in {} bytes, which cannot hold them",
                 huge.len()

@@ -4,7 +4,7 @@ use super::file::{BandCoefficient, MeasuredMaterial, MeasuredRoomFile};
 use super::unknown_names;
 use crate::data_root::DataRoot;
 use crate::error::HousesError;
-use crate::obj::{ObjMeshSource, build_mesh, read_mesh};
+use crate::obj::{ObjGroupSelection, build_mesh, read_mesh};
 use crate::report::{FileLocation, LoadReport};
 use dwell_scene::material::{Bands, library};
 use dwell_scene::{
@@ -62,7 +62,7 @@ fn is_band_list(centres_hz: &[f32]) -> bool {
 }
 
 /// Converts the file's axes to the house's.
-fn upright(p: Vec3) -> Vec3 {
+fn y_up_from_z_up(p: Vec3) -> Vec3 {
     Vec3::new(p.x, p.z, -p.y)
 }
 
@@ -80,7 +80,7 @@ pub(super) fn convert(
     (root, at): (&DataRoot, &FileLocation),
     report: &mut LoadReport,
 ) -> Result<HouseData, HousesError> {
-    unknown_names::check(file, at, report)?;
+    unknown_names::refuse_misspelled_names(file, at, report)?;
     if !is_band_list(&file.bands_hz) {
         return Err(HousesError::Field {
             at: at.field("bands_hz"),
@@ -128,7 +128,7 @@ impl MeasuredRoomBuilder<'_> {
             absorption: self.bands(&at, "absorption", &file.absorption)?,
             scattering: self.bands(&at, "scattering", &file.scattering)?,
             transmission_loss_db: Bands::constant(Material::MAX_TRANSMISSION_LOSS_DB),
-            ..Material::of(name, substance)
+            ..Material::from_substance(name, substance)
         })
     }
 
@@ -193,7 +193,7 @@ impl MeasuredRoomBuilder<'_> {
             let at = self.at.field("walls").field(name);
             let wall = self.file.walls.get(name).map(String::as_str);
             let material = self.material_of(&at, wall)?;
-            let positions = corners.map(|corner| upright(Vec3::from_array(corner) * size));
+            let positions = corners.map(|corner| y_up_from_z_up(Vec3::from_array(corner) * size));
             let mesh = Mesh::rectangle(positions);
             self.add(name, kind, mesh, material);
         }
@@ -233,14 +233,14 @@ impl MeasuredRoomBuilder<'_> {
         let mut bounds = Aabb::EMPTY;
         for (name, runs) in by_material {
             let material = self.material_of(&FileLocation::file(&inside).field("usemtl"), name)?;
-            let shape = ObjMeshSource {
+            let shape = ObjGroupSelection {
                 obj: &files.obj,
                 face_groups: runs,
                 box_mapping: false,
             };
             let mut mesh = build_mesh(&shape, &FileLocation::file(&inside), report);
             for point in mesh.positions.iter_mut().chain(&mut mesh.normals) {
-                *point = upright(*point);
+                *point = y_up_from_z_up(*point);
             }
             bounds = bounds.union(&mesh.bounds());
             meshes.push((name.unwrap_or_default(), mesh, material));

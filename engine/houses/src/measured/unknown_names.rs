@@ -31,7 +31,7 @@ const SHORT: usize = 4;
 ///
 /// # Errors
 /// [`HousesError::Field`] with the field that was meant.
-pub(super) fn check(
+pub(super) fn refuse_misspelled_names(
     file: &MeasuredRoomFile,
     at: &FileLocation,
     report: &mut LoadReport,
@@ -41,7 +41,7 @@ pub(super) fn check(
     let (there, absent): (Vec<_>, Vec<_>) = FIELDS.into_iter().partition(is_there);
     for name in file.other_fields.keys() {
         if !there.contains(&&**name) {
-            refuse_slip(at, name, &absent)?;
+            refuse_misspelling(at, name, &absent)?;
             if let Some(field) = absent.iter().find(|field| is_one_letter_off(name, field)) {
                 let found = format!("{name} (nearly {field})");
                 report.warn(at.clone(), WarningKind::BadStatement { found });
@@ -51,7 +51,7 @@ pub(super) fn check(
     for (material, values) in &file.materials {
         let at = at.field("materials").field(material);
         for name in values.other_fields.keys() {
-            refuse_slip(&at, name, &MATERIAL_FIELDS)?;
+            refuse_misspelling(&at, name, &MATERIAL_FIELDS)?;
             let found = name.chars().take(60).collect();
             report.warn(at.clone(), WarningKind::BadStatement { found });
         }
@@ -59,7 +59,11 @@ pub(super) fn check(
     Ok(())
 }
 
-fn refuse_slip(at: &FileLocation, name: &str, fields: &[&'static str]) -> Result<(), HousesError> {
+fn refuse_misspelling(
+    at: &FileLocation,
+    name: &str,
+    fields: &[&'static str],
+) -> Result<(), HousesError> {
     let meant = fields.iter().find(|field| {
         is_within_edit_distance(name, field, SLIP_LETTERS) || is_short_slip(name, field)
     });

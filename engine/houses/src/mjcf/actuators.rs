@@ -13,7 +13,7 @@ const UNBOUNDED: f64 = 1e6;
 
 /// Adds motors to joints from their actuators. Each joint has one motor that takes every kind of command; values that an actuator
 /// does not state stay 0.
-pub(super) fn add(
+pub(super) fn add_servos(
     model: &Model,
     joints: &mut [RobotJoint],
     at: &FileLocation,

@@ -8,7 +8,7 @@ use super::read::pose;
 use crate::data_root::parent_folder;
 use crate::error::HousesError;
 use crate::report::{FileLocation, LoadReport};
-use crate::robot::{LinkInertia, LinkShape, RobotFiles, ShapeGeometry};
+use crate::robot::{LinkInertia, LinkShape, RobotFileLoader, ShapeGeometry};
 use crate::warning_kind::WarningKind;
 use dwell_scene::{Pose, Texture};
 use std::sync::Arc;
@@ -41,7 +41,7 @@ pub(super) struct BodyGeom {
 pub(super) fn body_geoms(
     model: &Model,
     body: &Body,
-    files: &mut RobotFiles,
+    files: &mut RobotFileLoader,
     at: &FileLocation,
     report: &mut LoadReport,
 ) -> Result<Vec<BodyGeom>, HousesError> {
@@ -74,7 +74,7 @@ fn shape(
     model: &Model,
     geom: &Geom,
     of_world: bool,
-    files: &mut RobotFiles,
+    files: &mut RobotFileLoader,
     at: &FileLocation,
     report: &mut LoadReport,
 ) -> Result<Option<LinkShape>, HousesError> {
@@ -162,7 +162,7 @@ fn shape(
 fn image(
     model: &Model,
     name: &str,
-    files: &mut RobotFiles,
+    files: &mut RobotFileLoader,
     at: &FileLocation,
     report: &mut LoadReport,
 ) -> Option<Arc<Texture>> {
@@ -193,7 +193,7 @@ pub(super) fn mass_of_geoms(
 ) -> Result<Option<LinkInertia>, HousesError> {
     let mut lumps: Vec<LinkInertia> = Vec::new();
     for piece in pieces {
-        let (volume, center, spread) = moments(&piece.shape);
+        let (volume, center, spread) = volume_properties(&piece.shape);
         let mass = piece.mass.unwrap_or(piece.density * volume);
         if !(mass.is_finite() && mass >= 0.0) {
             return Err(HousesError::Field {
@@ -217,7 +217,7 @@ pub(super) fn mass_of_geoms(
 ///
 /// # Source
 /// B. Mirtich, Fast and Accurate Computation of Polyhedral Mass Properties (1996); here the closed form for tetrahedra.
-fn moments(shape: &LinkShape) -> (f64, DVec3, DMat3) {
+fn volume_properties(shape: &LinkShape) -> (f64, DVec3, DMat3) {
     let mesh = shape.geometry.surface();
     let turn = DMat3::from_quat(shape.link_from_shape.rotation.as_dquat().normalize());
     let at = shape.link_from_shape.position.as_dvec3();
@@ -262,7 +262,7 @@ mod tests {
             material: String::new(),
             image: None,
         };
-        let (volume, center, inertia) = moments(&shape);
+        let (volume, center, inertia) = volume_properties(&shape);
         assert!((volume - 0.048).abs() < 1e-6);
         assert!((center - DVec3::new(1.0, 2.0, 3.0)).length() < 1e-6);
         let expected = 0.048 / 3.0 * DVec3::new(0.04 + 0.09, 0.01 + 0.09, 0.01 + 0.04);

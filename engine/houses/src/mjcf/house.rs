@@ -71,7 +71,7 @@ pub(super) fn read(mut source: MjcfSource, report: &mut LoadReport) -> Result<Ho
     let mut objects = Vec::new();
     match source.body_geoms(0, report) {
         Ok(pieces) => reader.building(&source, 0, Pose::IDENTITY, &pieces, report),
-        Err(error) => report_left_out(&error, &source, report),
+        Err(error) => report_skipped_body(&error, &source, report),
     }
     for root in source.root_bodies() {
         if structure_kind(&name_of(&source.model, root)).is_some() {
@@ -84,7 +84,7 @@ pub(super) fn read(mut source: MjcfSource, report: &mut LoadReport) -> Result<Ho
     for root in objects {
         match source.robot(root, report) {
             Ok(thing) => reader.object(&source, root, &thing, report),
-            Err(error) => report_left_out(&error, &source, report),
+            Err(error) => report_skipped_body(&error, &source, report),
         }
     }
     let mut data = reader.data;
@@ -95,7 +95,7 @@ pub(super) fn read(mut source: MjcfSource, report: &mut LoadReport) -> Result<Ho
     House::new(data).map_err(HousesError::scene(&at))
 }
 
-fn report_left_out(error: &HousesError, source: &MjcfSource, report: &mut LoadReport) {
+fn report_skipped_body(error: &HousesError, source: &MjcfSource, report: &mut LoadReport) {
     let what = format!("left out: {error}");
     report.warn(
         source.at.field("worldbody"),
@@ -124,7 +124,7 @@ impl MjcfHouseReader {
             let file_from_body = file_from_parent * pose(&source.model.bodies[id].body.pose);
             match source.body_geoms(id, report) {
                 Ok(pieces) => self.building(source, id, file_from_body, &pieces, report),
-                Err(error) => report_left_out(&error, source, report),
+                Err(error) => report_skipped_body(&error, source, report),
             }
             let children = source.model.bodies_iter();
             let children = children.filter(|(_, entry)| entry.parent == Some(id));
@@ -203,7 +203,7 @@ impl MjcfHouseReader {
         } else {
             &piece.shape.material
         };
-        let mut material = Material::of(word.replace(['/', '\\'], "-"), substance);
+        let mut material = Material::from_substance(word.replace(['/', '\\'], "-"), substance);
         let image = piece.shape.image.as_ref();
         material.texture = image.map(|image| robot::texture(&mut self.data, image));
         if material.texture.is_some() {
@@ -278,7 +278,7 @@ impl MjcfHouseReader {
                 .reduce(f32::min)
                 .or(tops.reduce(f32::max))
                 .unwrap_or(floor_y + CEILING_M);
-            let words = kind_words(&piece.name);
+            let words = room_kind_from_name(&piece.name);
             let kind = words.and_then(|words| room_kind(&words).ok());
             if kind.is_none() {
                 let damage = WarningKind::Unmapped {
@@ -370,7 +370,7 @@ fn substance_by_words(name: &str) -> Option<&'static Substance> {
 }
 
 /// `floor_living_room_2` as `living room`; `None` for a name without more.
-fn kind_words(name: &str) -> Option<String> {
+fn room_kind_from_name(name: &str) -> Option<String> {
     let words: Vec<&str> = name
         .split(|c: char| !c.is_ascii_alphabetic())
         .filter(|word| !word.is_empty())
@@ -428,10 +428,10 @@ mod tests {
 
     #[test]
     fn names_of_floors_mean_rooms() {
-        let kind = |name: &str| kind_words(name).and_then(|words| room_kind(&words).ok());
+        let kind = |name: &str| room_kind_from_name(name).and_then(|words| room_kind(&words).ok());
         assert_eq!(kind("floor_kitchen_1").as_deref(), Some("kitchen"));
         assert_eq!(kind("floor_living_room").as_deref(), Some("living room"));
         assert_eq!(kind("floor"), None);
-        assert_eq!(kind_words("floor_visual_3"), None);
+        assert_eq!(room_kind_from_name("floor_visual_3"), None);
     }
 }

@@ -13,7 +13,7 @@ use crate::data_root::parent_folder;
 use crate::error::HousesError;
 use crate::limits::{MAX_TEXT_BYTES, MAX_XML_ELEMENTS, MAX_XML_FILES};
 use crate::report::{FileLocation, LoadReport};
-use crate::robot::RobotFiles;
+use crate::robot::RobotFileLoader;
 use crate::xml;
 
 /// Checks the text of `files` and everything it includes or attaches; also that all its numbers are finite. Parts that the parser
@@ -23,7 +23,7 @@ use crate::xml;
 /// [`HousesError::PathLeavesRoot`], [`HousesError::Syntax`] for what is no XML or includes itself without end,
 /// [`HousesError::TooLarge`] for elements nested too deep, or too many, [`HousesError::Field`] for numbers that are not finite.
 pub(super) fn check(
-    files: &RobotFiles,
+    files: &RobotFileLoader,
     text: &str,
     report: &mut LoadReport,
 ) -> Result<(), HousesError> {
@@ -40,7 +40,7 @@ pub(super) fn check(
 }
 
 struct IncludeChecker<'a> {
-    files: &'a RobotFiles,
+    files: &'a RobotFileLoader,
     report: &'a mut LoadReport,
     /// Number of checked files, those that are named again counted again.
     seen: usize,
@@ -80,7 +80,7 @@ impl IncludeChecker<'_> {
         for node in document.descendants().filter(Node::is_element) {
             elements = elements.saturating_add(1);
             if elements % 4096 == 0 {
-                interrupt::check();
+                interrupt::unwind_if_cancelled();
             }
             finite_check::check(node, &at)?;
             unread_elements::report_unread_elements(node, &at, self.report);

@@ -15,13 +15,15 @@ use crate::data_root::parent_folder;
 use crate::error::{HousesError, refuse_field};
 use crate::limits::MAX_NODES;
 use crate::report::{FileLocation, LoadReport};
-use crate::robot::{LinkInertia, Robot, RobotFiles, RobotJoint, RobotJointKind, RobotLink, check};
+use crate::robot::{
+    LinkInertia, Robot, RobotFileLoader, RobotJoint, RobotJointKind, RobotLink, check,
+};
 use crate::warning_kind::WarningKind;
 
 /// A parsed file with its folder.
 pub(super) struct MjcfSource {
     pub(super) model: Model,
-    files: RobotFiles,
+    files: RobotFileLoader,
     pub(super) at: FileLocation,
     /// The child bodies of each body.
     children: Vec<Vec<BodyId>>,
@@ -33,7 +35,7 @@ impl MjcfSource {
     /// # Errors
     /// Those of [`open_robot`](crate::open_robot) for files that cannot be read or are not this format.
     pub(super) fn load(path: &Path, report: &mut LoadReport) -> Result<Self, HousesError> {
-        let files = RobotFiles::of_file(path)?;
+        let files = RobotFileLoader::of_file(path)?;
         let text = files.text()?;
         includes::check(&files, &text, report)?;
         let at = FileLocation::file(&files.file);
@@ -78,7 +80,7 @@ impl MjcfSource {
     }
 
     /// A body with its descendants, parents first.
-    fn below(&self, root: BodyId) -> Vec<BodyId> {
+    fn subtree(&self, root: BodyId) -> Vec<BodyId> {
         let mut found = vec![root];
         let mut next = 0;
         while let Some(&id) = found.get(next) {
@@ -112,12 +114,12 @@ impl MjcfSource {
         root: BodyId,
         report: &mut LoadReport,
     ) -> Result<Robot, HousesError> {
-        let bodies = self.below(root);
+        let bodies = self.subtree(root);
         let (mut links, mut joints) = (Vec::new(), Vec::new());
         let root_at = self
             .at
             .field(format_args!("body[{}]", name_of(&self.model, root)));
-        let base = base(&self.model.bodies[root].body, &root_at)?;
+        let base = root_attachment(&self.model.bodies[root].body, &root_at)?;
         let hung = usize::from(base == RootAttachment::Hung);
         if base == RootAttachment::Hung {
             links.push(RobotLink {
@@ -129,7 +131,7 @@ impl MjcfSource {
         }
         let places: BTreeMap<BodyId, usize> = bodies.iter().copied().zip(hung..).collect();
         for id in &bodies {
-            interrupt::check();
+            interrupt::unwind_if_cancelled();
             let pieces = self.body_geoms(*id, report)?;
             let entry = &self.model.bodies[*id];
             let name = name_of(&self.model, *id);
@@ -160,7 +162,7 @@ impl MjcfSource {
         for equality in &self.model.equality {
             apply_joint_equality(equality, &mut joints, &self.at, report);
         }
-        actuators::add(&self.model, &mut joints, &self.at, report);
+        actuators::add_servos(&self.model, &mut joints, &self.at, report);
         check(Robot {
             name: self
                 .model
@@ -233,7 +235,7 @@ enum RootAttachment {
     Hung,
 }
 
-fn base(root: &Body, at: &FileLocation) -> Result<RootAttachment, HousesError> {
+fn root_attachment(root: &Body, at: &FileLocation) -> Result<RootAttachment, HousesError> {
     match root.joints[..] {
         [] => Ok(RootAttachment::Fixed),
         [ref joint] if joint.type_ == JointType::Free => Ok(RootAttachment::Free),

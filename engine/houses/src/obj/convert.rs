@@ -12,7 +12,7 @@ use glam::Affine3A;
 use super::file::FaceGroup;
 use super::load::{ParsedObj, parse_obj_with_mtl};
 use super::read_obj;
-use super::shape::{MaterialSlots, ObjMeshSource, build_mesh};
+use super::shape::{MaterialSlots, ObjGroupSelection, build_mesh};
 use crate::data_root::DataRoot;
 use crate::error::HousesError;
 use crate::import::{
@@ -58,7 +58,7 @@ pub(crate) fn read_scene(
     let files = parse_obj_with_mtl(&bytes, &root, &inside, report);
     let wanted: BTreeSet<String> = files.textures.iter().flatten().cloned().collect();
     let images = read_images(&root, wanted, threads, report);
-    let slots = MaterialSlots::of(&files.obj, &files.mtl, &at, report);
+    let slots = MaterialSlots::from_obj_and_mtl(&files.obj, &files.mtl, &at, report);
     let texture_ids: BTreeMap<&str, TextureId> = images
         .keys()
         .enumerate()
@@ -99,7 +99,7 @@ pub(crate) fn read_scene(
         .into_iter()
         .map(|(name, runs)| {
             let mesh = build_mesh(
-                &ObjMeshSource {
+                &ObjGroupSelection {
                     obj: &files.obj,
                     face_groups: runs,
                     box_mapping,
@@ -138,7 +138,7 @@ pub(crate) fn read_scene(
 /// All faces of an OBJ file as one mesh, without materials.
 pub(crate) fn mesh_without_materials(bytes: &[u8], path: &str, report: &mut LoadReport) -> Mesh {
     let obj = read_obj(bytes, path, report);
-    let shape = ObjMeshSource {
+    let shape = ObjGroupSelection {
         face_groups: obj.face_groups.iter().map(|run| (0, run)).collect(),
         obj: &obj,
         box_mapping: false,

@@ -11,7 +11,7 @@ pub(super) fn lines(text: &[u8]) -> impl Iterator<Item = (u32, std::borrow::Cow<
         loop {
             let (line, number) = raw.next()?;
             if number % 4096 == 0 {
-                dwell_scene::interrupt::check();
+                dwell_scene::interrupt::unwind_if_cancelled();
             }
             let mut line = std::borrow::Cow::Borrowed(line.trim_ascii());
             while line.last() == Some(&b'\\') {

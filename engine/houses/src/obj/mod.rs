@@ -20,5 +20,5 @@ pub use load::ParsedObj;
 pub(crate) use load::read_mesh;
 pub use read_mtl::read_mtl;
 pub use read_obj::read_obj;
-pub(crate) use shape::{MaterialSlots, ObjMeshSource, build_mesh};
+pub(crate) use shape::{MaterialSlots, ObjGroupSelection, build_mesh};
 pub(crate) use write::{ObjWriter, mtl_material};

@@ -30,7 +30,7 @@ pub(crate) struct MaterialSlots {
 
 impl MaterialSlots {
     /// The slots of `obj` with `mtl`.
-    pub(crate) fn of(
+    pub(crate) fn from_obj_and_mtl(
         obj: &ObjFile,
         mtl: &MtlFile,
         at: &FileLocation,
@@ -83,7 +83,7 @@ impl MaterialSlots {
 }
 
 /// Runs of an OBJ file as one mesh.
-pub(crate) struct ObjMeshSource<'a> {
+pub(crate) struct ObjGroupSelection<'a> {
     /// The file.
     pub(crate) obj: &'a ObjFile,
     /// The slot of each run that is taken, with the run.
@@ -95,7 +95,7 @@ pub(crate) struct ObjMeshSource<'a> {
 
 /// Cuts polygons into triangles, merges corners into vertices, replaces numbers that are not finite.
 pub(crate) fn build_mesh(
-    shape: &ObjMeshSource<'_>,
+    shape: &ObjGroupSelection<'_>,
     at: &FileLocation,
     report: &mut LoadReport,
 ) -> Mesh {
@@ -113,7 +113,7 @@ pub(crate) fn build_mesh(
     let mut builder = ObjMeshBuilder {
         obj,
         mesh: Mesh::default(),
-        heads: NewestVertices::of(obj.positions.len(), triangle_count),
+        heads: NewestVertices::with_capacity(obj.positions.len(), triangle_count),
         chain: Vec::new(),
         normals,
         uvs,
@@ -166,7 +166,7 @@ enum NewestVertices {
 }
 
 impl NewestVertices {
-    fn of(positions: usize, triangles: usize) -> Self {
+    fn with_capacity(positions: usize, triangles: usize) -> Self {
         if positions / 64 > triangles {
             return Self::Sparse(BTreeMap::new());
         }
@@ -278,14 +278,15 @@ mod tests {
         let mut report = LoadReport::new();
         let at = FileLocation::file("a.obj");
         let obj = read_obj(text.as_bytes(), "a.obj", &mut report);
-        let slots = MaterialSlots::of(&obj, &MtlFile::default(), &at, &mut LoadReport::new());
+        let slots =
+            MaterialSlots::from_obj_and_mtl(&obj, &MtlFile::default(), &at, &mut LoadReport::new());
         let runs = obj
             .face_groups
             .iter()
             .map(|run| (slots.of_run(run), run))
             .collect();
         let mesh = build_mesh(
-            &ObjMeshSource {
+            &ObjGroupSelection {
                 obj: &obj,
                 face_groups: runs,
                 box_mapping,
@@ -411,7 +412,8 @@ mod tests {
         );
         let mtl = read_mtl(b"newmtl a\nnewmtl b\n", "a.mtl", &mut LoadReport::new());
         let mut report = LoadReport::new();
-        let slots = MaterialSlots::of(&obj, &mtl, &FileLocation::file("a.obj"), &mut report);
+        let slots =
+            MaterialSlots::from_obj_and_mtl(&obj, &mtl, &FileLocation::file("a.obj"), &mut report);
         assert_eq!(
             slots.entries,
             [

@@ -29,7 +29,7 @@ impl FaceTriangulator {
         }
         self.corners.clear();
         self.corners
-            .extend(points.iter().map(|p| in_plane(*p, normal)));
+            .extend(points.iter().map(|p| project_along_normal(*p, normal)));
         if is_convex(&self.corners) {
             return fan();
         }
@@ -50,7 +50,7 @@ impl FaceTriangulator {
 }
 
 /// A point without the coordinate along which the normal is longest, so that faces turn counter-clockwise.
-fn in_plane(p: Vec3, normal: Vec3) -> DVec2 {
+fn project_along_normal(p: Vec3, normal: Vec3) -> DVec2 {
     let [x, y, z] = p.as_dvec3().to_array();
     let long = normal.abs();
     let (u, v, along) = if long.z >= long.x && long.z >= long.y {

@@ -15,30 +15,30 @@ pub(super) struct ProcThorHouse {
     #[serde(deserialize_with = "nullable")]
     pub(super) rooms: Vec<ProcThorRoom>,
     #[serde(deserialize_with = "nullable")]
-    pub(super) walls: Vec<WallFile>,
+    pub(super) walls: Vec<ProcThorWall>,
     #[serde(deserialize_with = "nullable")]
-    pub(super) doors: Vec<HoleFile>,
+    pub(super) doors: Vec<ProcThorOpening>,
     #[serde(deserialize_with = "nullable")]
-    pub(super) windows: Vec<HoleFile>,
+    pub(super) windows: Vec<ProcThorOpening>,
     #[serde(deserialize_with = "nullable")]
-    pub(super) objects: Vec<ObjectFile>,
+    pub(super) objects: Vec<ProcThorObject>,
     #[serde(deserialize_with = "nullable")]
-    pub(super) procedural_parameters: ParametersFile,
+    pub(super) procedural_parameters: ProcThorParameters,
 }
 
 /// A point, m, or Euler angles, degrees; in Unity's left-handed axes: x right, y up, z forward. A number that the file lacks is
 /// NaN: no place, no angle.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 pub(super) struct Vector3 {
-    #[serde(default = "missing")]
+    #[serde(default = "nan_default")]
     pub(super) x: f32,
-    #[serde(default = "missing")]
+    #[serde(default = "nan_default")]
     pub(super) y: f32,
-    #[serde(default = "missing")]
+    #[serde(default = "nan_default")]
     pub(super) z: f32,
 }
 
-fn missing() -> f32 {
+fn nan_default() -> f32 {
     f32::NAN
 }
 
@@ -56,7 +56,7 @@ pub(super) struct ProcThorRoom {
 
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, rename_all = "camelCase")]
-pub(super) struct WallFile {
+pub(super) struct ProcThorWall {
     #[serde(deserialize_with = "nullable")]
     pub(super) id: String,
     #[serde(deserialize_with = "nullable")]
@@ -73,7 +73,7 @@ pub(super) struct WallFile {
 /// A door or a window.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, rename_all = "camelCase")]
-pub(super) struct HoleFile {
+pub(super) struct ProcThorOpening {
     #[serde(deserialize_with = "nullable")]
     pub(super) id: String,
     #[serde(deserialize_with = "nullable")]
@@ -86,7 +86,7 @@ pub(super) struct HoleFile {
     #[serde(deserialize_with = "nullable")]
     pub(super) hole_polygon: Vec<Vector3>,
     /// The same in older files.
-    pub(super) bounding_box: Option<BoxFile>,
+    pub(super) bounding_box: Option<ProcThorBox>,
     /// Openness: 0 shut, 1 open.
     #[serde(deserialize_with = "nullable")]
     pub(super) openness: f32,
@@ -94,14 +94,14 @@ pub(super) struct HoleFile {
 
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(default)]
-pub(super) struct BoxFile {
+pub(super) struct ProcThorBox {
     pub(super) min: Vector3,
     pub(super) max: Vector3,
 }
 
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, rename_all = "camelCase")]
-pub(super) struct ObjectFile {
+pub(super) struct ProcThorObject {
     /// Begins with its type: `Chair|2|0`.
     #[serde(deserialize_with = "nullable")]
     pub(super) id: String,
@@ -115,12 +115,12 @@ pub(super) struct ObjectFile {
     #[serde(deserialize_with = "nullable")]
     pub(super) kinematic: bool,
     #[serde(deserialize_with = "nullable")]
-    pub(super) children: Vec<ObjectFile>,
+    pub(super) children: Vec<ProcThorObject>,
 }
 
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, rename_all = "camelCase")]
-pub(super) struct ParametersFile {
+pub(super) struct ProcThorParameters {
     pub(super) ceiling_material: Value,
     #[serde(deserialize_with = "nullable")]
     pub(super) lights: Vec<ProcThorLight>,
@@ -138,7 +138,7 @@ pub(super) struct ProcThorLight {
 /// A row of `asset-database.json`: for each type its assets.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, rename_all = "camelCase")]
-pub(super) struct AssetFile {
+pub(super) struct ProcThorAsset {
     #[serde(deserialize_with = "nullable")]
     pub(super) asset_id: String,
     /// Width, height and depth, m.
@@ -147,7 +147,7 @@ pub(super) struct AssetFile {
 }
 
 /// `asset-database.json`.
-pub(super) type AssetsFile = BTreeMap<String, Vec<AssetFile>>;
+pub(super) type AssetsFile = BTreeMap<String, Vec<ProcThorAsset>>;
 
 fn nullable<'de, T: Default + Deserialize<'de>, D: Deserializer<'de>>(
     from: D,

@@ -22,7 +22,7 @@ use crate::json;
 use crate::limits::{MAX_NODES, MAX_TEXT_BYTES};
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
-use file::{ObjectFile, ProcThorHouse, Vector3};
+use file::{ProcThorHouse, ProcThorObject, Vector3};
 use sizes::AssetSizes;
 
 /// Returns whether `path` is a house of ProcTHOR: a JSON file that speaks of its parameters and of walls.
@@ -100,7 +100,7 @@ fn convert(
     Ok((house, report))
 }
 
-fn count_with_children(objects: &[ObjectFile]) -> usize {
+fn count_with_children(objects: &[ProcThorObject]) -> usize {
     objects
         .iter()
         .map(|object| 1 + count_with_children(&object.children))

@@ -13,7 +13,7 @@ use dwell_scene::{Aabb, Mobility, Pose, RoomId};
 use glam::Vec3;
 use serde::Deserialize;
 
-use super::file::{ObjectFile, ProcThorLight};
+use super::file::{ProcThorLight, ProcThorObject};
 use super::shell::split_camel_case;
 use super::{ProcThorReader, is_valid_position, point, rotation};
 use crate::building::assembly::AddedModel;
@@ -57,10 +57,10 @@ type AssetKinds = BTreeMap<(String, u32, bool), Option<AddedModel>>;
 
 impl ProcThorReader<'_> {
     /// Adds all objects, those in and on others too.
-    pub(super) fn objects(&mut self, objects: &[ObjectFile]) {
+    pub(super) fn objects(&mut self, objects: &[ProcThorObject]) {
         let mut kinds = AssetKinds::new();
         let mut unsized_count = 0;
-        let mut open: Vec<(&ObjectFile, String, bool)> = objects
+        let mut open: Vec<(&ProcThorObject, String, bool)> = objects
             .iter()
             .enumerate()
             .rev()
@@ -82,7 +82,7 @@ impl ProcThorReader<'_> {
 
     fn object(
         &mut self,
-        object: &ObjectFile,
+        object: &ProcThorObject,
         at: &str,
         inside: bool,
         kinds: &mut AssetKinds,

@@ -11,7 +11,7 @@ use glam::{DVec2, Vec2, Vec3};
 use serde_json::Value;
 
 use super::covers::finish_of_material;
-use super::file::{HoleFile, ProcThorHouse, ProcThorRoom, Vector3, WallFile};
+use super::file::{ProcThorHouse, ProcThorOpening, ProcThorRoom, ProcThorWall, Vector3};
 use super::{ConvertedRoom, ProcThorReader, is_valid_position, point};
 use crate::import::{UniqueNames, room_kind, triangulate};
 use crate::limits::MAX_OUTLINE;
@@ -317,7 +317,7 @@ impl ProcThorReader<'_> {
             ceiling_y,
             bounds,
         };
-        built.repair();
+        built.repair_footprint_and_ceiling();
         let id = self.assembly.data.rooms.push(built);
         let floor = self.finish(&room.floor_material, &format!("{at}.floorMaterial"));
         let above = &file.procedural_parameters.ceiling_material;
@@ -349,7 +349,7 @@ impl ProcThorReader<'_> {
     }
 
     /// The face of a wall; `None` for a wall of no size.
-    fn face(&self, wall: &WallFile) -> Result<Option<WallFace>, String> {
+    fn face(&self, wall: &ProcThorWall) -> Result<Option<WallFace>, String> {
         let mut corners: Vec<Vec3> = wall.polygon.iter().copied().map(point).collect();
         if !corners.iter().all(|p| is_valid_position(*p)) {
             return Err("a corner is no place of x, y and z in metres".to_owned());
@@ -389,7 +389,7 @@ impl ProcThorReader<'_> {
     /// A door or window of the hole's size; a frame without a leaf stays a hole.
     fn filling(
         &mut self,
-        row: &HoleFile,
+        row: &ProcThorOpening,
         face: &WallFace,
         hole: FaceHole,
         at: &str,
@@ -471,7 +471,7 @@ impl ProcThorReader<'_> {
 }
 
 /// The rectangle of a hole on its first wall.
-fn rectangle(row: &HoleFile) -> Option<FaceHole> {
+fn rectangle(row: &ProcThorOpening) -> Option<FaceHole> {
     let corners: Vec<Vector3> = match row.bounding_box {
         Some(bounds) if row.hole_polygon.len() < 2 => vec![bounds.min, bounds.max],
         _ => row.hole_polygon.clone(),

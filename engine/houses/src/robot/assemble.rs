@@ -11,7 +11,7 @@ use dwell_scene::{
 };
 use glam::{Affine3A, Mat3, Quat, Vec2, Vec3};
 
-use super::masses::{FixedLinks, combined_inertia};
+use super::masses::{FixedJointTree, combined_inertia};
 use super::model::{LinkShape, Robot, RobotJointKind};
 use super::shape::colliders;
 use crate::error::HousesError;
@@ -49,7 +49,7 @@ pub(crate) fn add(
     let heads: Vec<usize> = std::iter::once(0)
         .chain(moving().map(|joint| joint.child))
         .collect();
-    let rigid = FixedLinks::new(robot);
+    let rigid = FixedJointTree::new(robot);
     let groups: Vec<Vec<(usize, Pose)>> =
         heads.iter().map(|head| rigid.rigid_group(*head)).collect();
     let mut homes: Vec<Option<(usize, Pose)>> = vec![None; robot.links.len()];
@@ -111,7 +111,7 @@ pub(crate) fn add(
         joints.push(articulation);
     }
     for (k, group) in groups.iter().enumerate() {
-        interrupt::check();
+        interrupt::unwind_if_cancelled();
         let fixed = k == 0 && fixed_base;
         let shapes = |of: fn(&super::RobotLink) -> &Vec<LinkShape>| {
             group.iter().flat_map(move |(link, place)| {
@@ -244,7 +244,7 @@ impl RobotMaterials {
             opacity,
             texture,
             metallic: 0.0,
-            ..Material::of(name, substance)
+            ..Material::from_substance(name, substance)
         });
         self.known.push((bits, shape.material.clone(), texture, id));
         id
@@ -275,7 +275,9 @@ pub(crate) fn house_with_robot_only(robot: &Robot) -> Result<House, HousesError>
         bounds,
     });
     let concrete = library().get_or_default("concrete");
-    let material = data.materials.push(Material::of("ground", concrete));
+    let material = data
+        .materials
+        .push(Material::from_substance("ground", concrete));
     let mesh = data
         .meshes
         .push(Arc::new(Mesh::cuboid(bounds.min, bounds.max)));

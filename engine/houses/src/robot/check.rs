@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use dwell_scene::Pose;
 use glam::DMat3;
 
-use super::masses::FixedLinks;
+use super::masses::FixedJointTree;
 use super::model::{Robot, RobotJoint, RobotJointKind, RobotLink};
 use crate::error::{HousesError, refuse_field};
 use crate::limits::MAX_NODES;
@@ -206,7 +206,7 @@ fn check_link(link: &RobotLink, at: &FileLocation) -> Result<(), HousesError> {
         );
     }
     let m = weight.inertia;
-    let whole = m.is_finite() && positive(&m);
+    let whole = m.is_finite() && is_positive_definite(&m);
     if !whole {
         let found = format!("{:?}", m.to_cols_array());
         return refuse_field(at.field("inertia"), "a positive definite matrix", found);
@@ -215,14 +215,14 @@ fn check_link(link: &RobotLink, at: &FileLocation) -> Result<(), HousesError> {
 }
 
 /// Sylvester's criterion.
-fn positive(m: &DMat3) -> bool {
+fn is_positive_definite(m: &DMat3) -> bool {
     let (a, b) = (m.x_axis, m.y_axis);
     a.x > 0.0 && a.x * b.y - a.y * b.x > 0.0 && m.determinant() > 0.0
 }
 
 /// Checks that moving links have a mass.
 fn check_masses(robot: &Robot, at: &FileLocation) -> Result<(), HousesError> {
-    let fixed = FixedLinks::new(robot);
+    let fixed = FixedJointTree::new(robot);
     for joint in robot
         .joints
         .iter()

@@ -10,7 +10,7 @@ use dwell_scene::{House, Mesh, Texture};
 use super::stl;
 use crate::data_root::{DataRoot, parent_folder};
 use crate::error::HousesError;
-use crate::import::{PixelBudget, decode, is_truncated_jpeg, pixels, texture_name};
+use crate::import::{PixelBudget, decode, header_pixel_count, is_truncated_jpeg, texture_name};
 use crate::limits::{MAX_IMAGE_BYTES, MAX_MESH_BYTES, MAX_TEXT_BYTES};
 use crate::obj;
 use crate::report::{FileLocation, LoadReport};
@@ -20,7 +20,7 @@ use crate::warning_kind::WarningKind;
 const MOST_STEPS: usize = 3;
 
 /// The folder that bounds a robot's files.
-pub(crate) struct RobotFiles {
+pub(crate) struct RobotFileLoader {
     pub(crate) root: DataRoot,
     /// The robot's file, relative to the root.
     pub(crate) file: String,
@@ -30,7 +30,7 @@ pub(crate) struct RobotFiles {
     pixels: PixelBudget,
 }
 
-impl RobotFiles {
+impl RobotFileLoader {
     /// The root of the file at `path`: its package's folder, else its own.
     ///
     /// # Errors
@@ -112,7 +112,7 @@ impl RobotFiles {
         let bytes = self.root.read(path, MAX_IMAGE_BYTES);
         let bytes = bytes.map_err(|error| error.reason());
         let image = bytes.and_then(|bytes| {
-            self.pixels.reserve(pixels(&bytes)?)?;
+            self.pixels.reserve(header_pixel_count(&bytes)?)?;
             let texture = decode(&texture_name(path), &bytes)?;
             if is_truncated_jpeg(&bytes) {
                 let path = path.to_owned();
@@ -188,14 +188,14 @@ impl RobotFiles {
                 format!("{path:?} without one"),
             ));
         }
-        let mesh = Arc::new(bare(mesh));
+        let mesh = Arc::new(strip_normals_and_slots(mesh));
         self.meshes.insert(path.to_owned(), mesh.clone());
         Ok(mesh)
     }
 }
 
 /// Positions, triangles and texture coordinates alone.
-fn bare(mesh: Mesh) -> Mesh {
+fn strip_normals_and_slots(mesh: Mesh) -> Mesh {
     Mesh {
         positions: mesh.positions,
         uvs: mesh.uvs,
@@ -208,11 +208,14 @@ fn bare(mesh: Mesh) -> Mesh {
 fn gathered(house: &House) -> Mesh {
     let mut all = Mesh::default();
     for piece in &house.structure {
-        all.append(&bare(Mesh::clone(&house.meshes[piece.mesh])), 0);
+        all.append(
+            &strip_normals_and_slots(Mesh::clone(&house.meshes[piece.mesh])),
+            0,
+        );
     }
     for part in &house.parts {
         let map = part.world_from_part.to_affine() * part.part_from_mesh;
-        let mesh = bare(Mesh::clone(&house.meshes[part.mesh])).transformed(&map);
+        let mesh = strip_normals_and_slots(Mesh::clone(&house.meshes[part.mesh])).transformed(&map);
         all.append(&mesh, 0);
     }
     all

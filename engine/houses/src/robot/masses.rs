@@ -12,12 +12,12 @@ use super::model::{LinkInertia, Robot, RobotJoint, RobotJointKind};
 const ROUNDING: f64 = 1.01;
 
 /// The links of a robot that fixed joints connect.
-pub(super) struct FixedLinks<'a> {
+pub(super) struct FixedJointTree<'a> {
     /// The fixed joints below each link. Shape (link,).
     below: Vec<Vec<&'a RobotJoint>>,
 }
 
-impl<'a> FixedLinks<'a> {
+impl<'a> FixedJointTree<'a> {
     pub(super) fn new(robot: &'a Robot) -> Self {
         let mut below = vec![Vec::new(); robot.links.len()];
         for joint in &robot.joints {

@@ -16,7 +16,7 @@ pub use model::Robot;
 
 pub(crate) use assemble::{add, dwell_from_robot, house_with_robot_only, texture};
 pub(crate) use check::check;
-pub(crate) use files::RobotFiles;
+pub(crate) use files::RobotFileLoader;
 pub(crate) use model::{
     LinkInertia, LinkShape, RobotJoint, RobotJointKind, RobotLink, ShapeGeometry,
 };

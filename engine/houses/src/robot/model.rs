@@ -103,7 +103,7 @@ impl Robot {
     }
 
     /// The names of its links, the root first.
-    pub fn links(&self) -> impl Iterator<Item = &str> {
+    pub fn link_names(&self) -> impl Iterator<Item = &str> {
         self.links.iter().map(|link| link.name.as_str())
     }
 

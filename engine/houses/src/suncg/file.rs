@@ -46,7 +46,7 @@ pub struct SuncgHouse {
     pub levels: Vec<SuncgLevel>,
     /// The box around everything, m.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub bbox: Option<BoundsFile>,
+    pub bbox: Option<SuncgBounds>,
     /// The table that `materialIndices` point into.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub materials: Vec<SuncgMaterial>,
@@ -70,15 +70,15 @@ pub struct SuncgLevel {
     pub valid: Option<BinaryFlag>,
     /// The box around its nodes, m.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub bbox: Option<BoundsFile>,
+    pub bbox: Option<SuncgBounds>,
     /// Rooms, objects, grounds and boxes.
-    pub nodes: Vec<NodeFile>,
+    pub nodes: Vec<SuncgNode>,
 }
 
 /// A room, an object, a ground or a box.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, rename_all = "camelCase")]
-pub struct NodeFile {
+pub struct SuncgNode {
     /// `<level>_<index>` as a rule.
     #[serde(
         deserialize_with = "lenient_json::text",
@@ -118,7 +118,7 @@ pub struct NodeFile {
     pub dimensions: Option<Vec<f64>>,
     /// The box around it in the world, m.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub bbox: Option<BoundsFile>,
+    pub bbox: Option<SuncgBounds>,
     /// 1 when the transform mirrors.
     #[serde(
         deserialize_with = "lenient_json::flag",
@@ -199,7 +199,7 @@ pub struct SuncgMaterial {
 /// An axis-aligned box.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct BoundsFile {
+pub struct SuncgBounds {
     /// Smallest coordinates, m.
     #[serde(deserialize_with = "lenient_json::numbers")]
     pub min: Option<Vec<f64>>,
@@ -220,7 +220,7 @@ impl Serialize for BinaryFlag {
 
 impl SuncgHouse {
     /// The nodes that are to be used in storeys that are to be used, each with its place: storey, position there.
-    pub(crate) fn valid_nodes(&self) -> impl Iterator<Item = ((usize, usize), &NodeFile)> {
+    pub(crate) fn valid_nodes(&self) -> impl Iterator<Item = ((usize, usize), &SuncgNode)> {
         let levels = self.levels.iter().enumerate();
         let levels = levels.filter(|(_, level)| level.valid != Some(BinaryFlag(false)));
         levels.flat_map(|(k, level)| {
@@ -231,7 +231,7 @@ impl SuncgHouse {
     }
 }
 
-impl NodeFile {
+impl SuncgNode {
     /// Returns whether the node is to be used.
     pub fn is_valid(&self) -> bool {
         self.valid != Some(BinaryFlag(false))

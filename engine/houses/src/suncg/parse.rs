@@ -3,7 +3,7 @@
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
-use super::file::{NodeFile, SuncgHouse, SuncgLevel, SuncgMaterial};
+use super::file::{SuncgHouse, SuncgLevel, SuncgMaterial, SuncgNode};
 use super::lenient_json::{SEPARATOR, shorten};
 use crate::error::HousesError;
 use crate::limits::MAX_NODES;
@@ -56,7 +56,7 @@ pub fn parse(text: &[u8], name: &str, report: &mut LoadReport) -> Result<SuncgHo
         });
     }
     let materials = list::<SuncgMaterial>(top.remove("materials"), &at, "materials", report);
-    let mut house: SuncgHouse = fields(top, &at, report);
+    let mut house: SuncgHouse = parse_fields_leniently(top, &at, report);
     house.materials = materials.unwrap_or_default();
     for (i, level) in levels.into_iter().enumerate() {
         let at = at.field(format_args!("levels[{i}]"));
@@ -78,7 +78,7 @@ fn read_level(
     report: &mut LoadReport,
 ) -> SuncgLevel {
     let nodes = object.remove("nodes");
-    let mut level: SuncgLevel = fields(object, at, report);
+    let mut level: SuncgLevel = parse_fields_leniently(object, at, report);
     match nodes {
         Some(Value::Array(nodes)) => {
             for (i, node) in nodes.into_iter().enumerate() {
@@ -95,17 +95,17 @@ fn read_level(
     level
 }
 
-fn read_node(node: Value, at: &FileLocation, report: &mut LoadReport) -> NodeFile {
+fn read_node(node: Value, at: &FileLocation, report: &mut LoadReport) -> SuncgNode {
     let Value::Object(mut object) = node else {
         bad_field(&node, "an object", at.clone(), report);
-        return NodeFile {
+        return SuncgNode {
             valid: Some(super::file::BinaryFlag(false)),
-            ..NodeFile::default()
+            ..SuncgNode::default()
         };
     };
     let materials = list(object.remove("materials"), at, "materials", report);
-    let node: NodeFile = fields(object, at, report);
-    NodeFile { materials, ..node }
+    let node: SuncgNode = parse_fields_leniently(object, at, report);
+    SuncgNode { materials, ..node }
 }
 
 /// A list of structs whose bad entries count as empty ones, because positions matter.
@@ -123,7 +123,7 @@ fn list<T: DeserializeOwned + Default>(
                 .map(|(i, item)| {
                     let at = at.field(format_args!("{field}[{i}]"));
                     match item {
-                        Value::Object(object) => fields(object, &at, report),
+                        Value::Object(object) => parse_fields_leniently(object, &at, report),
                         Value::Null => T::default(),
                         other => {
                             bad_field(&other, "an object", at, report);
@@ -143,7 +143,7 @@ fn list<T: DeserializeOwned + Default>(
 
 /// Reads a struct field by field when it cannot be read as a whole; fields that cannot be read are reported and count
 /// as absent.
-fn fields<T: DeserializeOwned + Default>(
+fn parse_fields_leniently<T: DeserializeOwned + Default>(
     object: Map<String, Value>,
     at: &FileLocation,
     report: &mut LoadReport,
@@ -207,7 +207,7 @@ mod tests {
         assert_eq!(house.scale_to_meters, Some(1.0));
         let nodes = &house.levels[0].nodes;
         assert_eq!(
-            nodes.iter().map(NodeFile::is_valid).collect::<Vec<_>>(),
+            nodes.iter().map(SuncgNode::is_valid).collect::<Vec<_>>(),
             [true, false, false, true]
         );
         assert_eq!(

@@ -9,7 +9,7 @@ use dwell_scene::parallel::Threads;
 use tracing::debug_span;
 
 use super::arch::{self, ArchFile};
-use super::file::{NodeFile, SuncgHouse};
+use super::file::{SuncgHouse, SuncgNode};
 use super::metadata::{CategoryTable, LightTable, SoundTable, read_table};
 use super::parse;
 use crate::data_root::{DataRoot, parent_folder};
@@ -47,7 +47,7 @@ pub struct ParsedSuncgFiles {
 
 /// Paths of the files of a house, relative to the root.
 pub(super) mod paths {
-    use super::NodeFile;
+    use super::SuncgNode;
     use crate::warning_kind::WarningKind;
 
     /// Returns whether an id can be the name of a file: it comes from the file and must not lead anywhere else.
@@ -89,7 +89,7 @@ pub(super) mod paths {
     }
 
     /// The meshes that a node may use.
-    pub(in super::super) fn node_mesh_paths(scene_id: &str, node: &NodeFile) -> Vec<String> {
+    pub(in super::super) fn node_mesh_paths(scene_id: &str, node: &SuncgNode) -> Vec<String> {
         let Some(model) = node.model_id.as_deref().filter(|id| is_safe_file_name(id)) else {
             return Vec::new();
         };
@@ -196,7 +196,7 @@ impl ParsedSuncgFiles {
     }
 }
 
-fn nodes(house: &SuncgHouse) -> impl Iterator<Item = &NodeFile> {
+fn nodes(house: &SuncgHouse) -> impl Iterator<Item = &SuncgNode> {
     house
         .levels
         .iter()

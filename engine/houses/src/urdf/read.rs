@@ -12,7 +12,7 @@ use crate::error::HousesError;
 use crate::limits::MAX_NODES;
 use crate::report::{FileLocation, LoadReport};
 use crate::robot::{
-    LinkInertia, LinkShape, Robot, RobotFiles, RobotJoint, RobotJointKind, RobotLink,
+    LinkInertia, LinkShape, Robot, RobotFileLoader, RobotJoint, RobotJointKind, RobotLink,
     ShapeGeometry, check,
 };
 use crate::warning_kind::WarningKind;
@@ -27,7 +27,7 @@ const FULL_EFFORT_AT: f32 = 0.02;
 /// # Errors
 /// Those of [`open_robot`](crate::open_robot).
 pub(crate) fn read(path: &Path, report: &mut LoadReport) -> Result<Robot, HousesError> {
-    let files = RobotFiles::of_file(path)?;
+    let files = RobotFileLoader::of_file(path)?;
     let text = files.text()?;
     let at = FileLocation::file(&files.file);
     let document = xml::parse(&text, &at)?;
@@ -83,7 +83,7 @@ fn first<'a, 'b>(node: Node<'a, 'b>, name: &'static str) -> Option<Node<'a, 'b>>
 
 struct UrdfReader<'r> {
     at: FileLocation,
-    files: RobotFiles,
+    files: RobotFileLoader,
     report: &'r mut LoadReport,
     colours: BTreeMap<String, [f32; 4]>,
 }

@@ -14,25 +14,25 @@ mod geometry;
 
 use dwell_houses::obj;
 use dwell_houses::suncg::ParsedSuncgFiles;
-use dwell_houses::suncg::file::NodeFile;
+use dwell_houses::suncg::file::SuncgNode;
 use glam::{DMat4, DVec3};
 
-pub(crate) fn nodes(files: &ParsedSuncgFiles) -> &[NodeFile] {
+pub(crate) fn nodes(files: &ParsedSuncgFiles) -> &[SuncgNode] {
     &files.house.levels[0].nodes
 }
 
-pub(crate) fn model_of(node: &NodeFile) -> &str {
+pub(crate) fn model_of(node: &SuncgNode) -> &str {
     node.model_id.as_deref().unwrap()
 }
 
-pub(crate) fn objects(files: &ParsedSuncgFiles) -> impl Iterator<Item = (usize, &NodeFile)> {
+pub(crate) fn objects(files: &ParsedSuncgFiles) -> impl Iterator<Item = (usize, &SuncgNode)> {
     nodes(files)
         .iter()
         .enumerate()
         .filter(|(_, node)| node.kind.as_deref() == Some("Object"))
 }
 
-pub(crate) fn matrix(node: &NodeFile) -> DMat4 {
+pub(crate) fn matrix(node: &SuncgNode) -> DMat4 {
     DMat4::from_cols_array(node.transform.as_deref().unwrap().try_into().unwrap())
 }
 
@@ -54,7 +54,7 @@ pub(crate) fn positions(mesh: &obj::file::ObjFile) -> impl Iterator<Item = DVec3
     mesh.positions.iter().map(|p| DVec3::from(p.map(f64::from)))
 }
 
-pub(crate) fn stated(node: &NodeFile) -> (DVec3, DVec3) {
+pub(crate) fn stated(node: &SuncgNode) -> (DVec3, DVec3) {
     let corner = |c: &Option<Vec<f64>>| DVec3::from_slice(c.as_deref().unwrap());
     let bbox = node.bbox.as_ref().unwrap();
     (corner(&bbox.min), corner(&bbox.max))

@@ -172,7 +172,7 @@ fn room_types_may_be_several_missing_or_unknown() {
     assert!(
         traps()
             .1
-            .unmapped()
+            .unmapped_name_counts()
             .any(|u| u == (UnmappedKind::RoomType, "Wine_Cellar", 1))
     );
     assert!(reported_at(
@@ -407,7 +407,7 @@ fn tables_give_categories_lights_and_sounds() {
     assert!(
         traps()
             .1
-            .unmapped()
+            .unmapped_name_counts()
             .any(|u| u == (UnmappedKind::Category, "s__9", 2))
     );
     assert_eq!(

@@ -169,7 +169,7 @@ impl CameraRayPacket {
     }
 
     /// Weights of the second and third corner of the triangle that a pixel hits.
-    pub(super) fn weights(&self, scene: SceneBvh<'_>, lane: usize) -> (f32, f32) {
+    pub(super) fn barycentric_weights(&self, scene: SceneBvh<'_>, lane: usize) -> (f32, f32) {
         let hit = match &self.beam {
             None => scene.packet_hit(&self.rays, &self.hits, lane),
             Some(beam) => beam.hits[lane],
@@ -259,7 +259,7 @@ impl CameraRayGenerator {
         }
         match self.view.camera.projection() {
             Projection::Pinhole { fx, fy, cx, cy } => {
-                self.aim(packet, (left as f32, top as f32), (fx, fy, cx, cy));
+                self.pinhole_rays(packet, (left as f32, top as f32), (fx, fy, cx, cy));
             }
             Projection::Orthographic { .. } => self.orthographic_rays(packet, (left, top)),
             _ => self.distorted_rays(packet, (left, top)),
@@ -269,7 +269,7 @@ impl CameraRayGenerator {
 
     /// Directions through the middles of pixels.
     #[inline]
-    fn aim(
+    fn pinhole_rays(
         &self,
         packet: &mut CameraRayPacket,
         (left, top): (f32, f32),
@@ -346,7 +346,7 @@ impl CameraRayGenerator {
     }
 
     /// Returns whether the picture has all light.
-    pub(super) fn is_full(&self) -> bool {
+    pub(super) fn is_path_traced(&self) -> bool {
         self.view.preset == Preset::Full
     }
 

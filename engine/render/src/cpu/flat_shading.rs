@@ -128,7 +128,7 @@ impl ImageBand<'_> {
             let same = seen.hits.same_triangle_mask(lane) & lanes;
             lanes &= !same;
             let (instance, triangle) = (seen.hits.instance(lane), seen.hits.triangle[lane]);
-            let position = renderer.triangle_table.position(instance, triangle);
+            let position = renderer.triangle_table.table_index(instance, triangle);
             let [r, g, b, kind] = renderer.triangle_table.uniform_color(position);
             if kind != NEEDS_SHADING {
                 for lane in set_bit_positions(same) {

@@ -68,7 +68,7 @@ struct PathTracer<'a> {
 
 impl ImageBand<'_> {
     /// sRGB of a pixel with all light.
-    pub(super) fn full_color(
+    pub(super) fn path_traced_color(
         &self,
         renderer: &CpuRenderer,
         (lighting, exposure): (&Lighting, Exposure),
@@ -153,12 +153,12 @@ impl PathTracer<'_> {
         let (renderer, state) = (self.renderer, self.band.state);
         let position = renderer
             .triangle_table
-            .position(sight.instance, sight.triangle);
+            .table_index(sight.instance, sight.triangle);
         let skin = renderer.surface_at_point(&self.band.rays, state, sight, position);
         let (facing, smooth) = renderer.normals(&skin, sight, position, weights);
         let off = sight.point + facing * SHADOW_RAY_OFFSET_M;
         if skin.material.mirror && path.mirrors > 0 {
-            let seen = MicrofacetNormals {
+            let seen = FacetAndGeometricNormals {
                 facet: facing,
                 facing,
             };
@@ -180,7 +180,7 @@ impl PathTracer<'_> {
         if path.bounces == 0 {
             let incoming: IncidentLight<2> = self.lighting.incoming(fixed, self.exposure, &site);
             let light = incoming.total_arriving(|source| {
-                renderer.light_arrives(self.band.scene, self.lighting, source, (off, facing))
+                renderer.is_source_unoccluded(self.band.scene, self.lighting, source, (off, facing))
             });
             return (skin.color * light, skin.opacity);
         }
@@ -197,10 +197,10 @@ impl PathTracer<'_> {
                 };
             });
         let mut shown = skin.color * sum;
-        if path.mirrors > 0 && reflects(skin.material) {
+        if path.mirrors > 0 && has_specular_reflection(skin.material) {
             let facet = sampler.sample_microfacet(smooth, skin.material.roughness);
             let share = reflectance(skin.material, skin.color, -sight.direction.dot(facet));
-            let seen = MicrofacetNormals { facet, facing };
+            let seen = FacetAndGeometricNormals { facet, facing };
             let light = self.reflected(sight, off, seen, path, sampler);
             shown = shown * (Vec3::ONE - share) * (1.0 - skin.material.metallic) + light * share;
         }
@@ -215,7 +215,7 @@ impl PathTracer<'_> {
         &self,
         sight: &PrimaryHit,
         off: Vec3,
-        MicrofacetNormals { facet, facing }: MicrofacetNormals,
+        FacetAndGeometricNormals { facet, facing }: FacetAndGeometricNormals,
         path: BounceBudget,
         sampler: &mut PixelSampler,
     ) -> Vec3 {
@@ -302,13 +302,13 @@ impl PathTracer<'_> {
 
 /// The normal of a facet, and that of the flat triangle that it is on, towards the viewer.
 #[derive(Clone, Copy)]
-struct MicrofacetNormals {
+struct FacetAndGeometricNormals {
     facet: Vec3,
     facing: Vec3,
 }
 
 /// Returns whether a surface reflects more than rays can show.
-fn reflects(look: &ShadingMaterial) -> bool {
+fn has_specular_reflection(look: &ShadingMaterial) -> bool {
     look.metallic > 0.0 || look.roughness < DULL
 }
 

@@ -19,7 +19,7 @@ pub(super) struct PixelSampler {
 impl PixelSampler {
     pub(super) fn new((column, row): (usize, usize), sample: usize) -> Self {
         Self {
-            pixel: mixed(column as u32 ^ mixed(row as u32)),
+            pixel: pcg_hash(column as u32 ^ pcg_hash(row as u32)),
             sample: sample as u32,
             draw: 0,
         }
@@ -29,9 +29,9 @@ impl PixelSampler {
     #[inline]
     pub(super) fn uniform_pair(&mut self) -> (f32, f32) {
         self.draw += 1;
-        let shift = mixed(self.pixel ^ mixed(self.draw));
+        let shift = pcg_hash(self.pixel ^ pcg_hash(self.draw));
         // Draws of one sample would be correlated if all took the samples in one order.
-        let place = (self.sample ^ (mixed(self.draw) & MIXED)) as f32;
+        let place = (self.sample ^ (pcg_hash(self.draw) & MIXED)) as f32;
         let part = |bits: u32, step: f32| {
             let number = f32::from(bits as u16) * (1.0 / 65536.0) + place * step;
             number - number.floor()
@@ -78,7 +78,7 @@ impl PixelSampler {
 }
 
 /// Bits without a pattern. Source: M. Jarzynski and M. Olano, JCGT 9 (2020), 3: the permutation of PCG.
-fn mixed(bits: u32) -> u32 {
+fn pcg_hash(bits: u32) -> u32 {
     let state = bits.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
     let word = ((state >> ((state >> 28) + 4)) ^ state).wrapping_mul(277_803_737);
     (word >> 22) ^ word

@@ -162,7 +162,9 @@ impl CpuRenderer {
         state: &'a State,
         sight: &PrimaryHit,
     ) -> ShadedSurface<'a> {
-        let position = self.triangle_table.position(sight.instance, sight.triangle);
+        let position = self
+            .triangle_table
+            .table_index(sight.instance, sight.triangle);
         self.surface_at_point(rays, state, sight, position)
     }
 
@@ -265,7 +267,7 @@ impl ImageBand<'_> {
         }
         let pending = &mut palette.pending[..count];
         if let Some((lighting, _)) = self.light {
-            renderer.add_light(self.scene, lighting, pending);
+            renderer.add_unoccluded_light(self.scene, lighting, pending);
         }
         for one in pending {
             let (lane, light, opacity) = (one.lane, one.incoming.light, one.opacity);
@@ -301,9 +303,9 @@ impl ImageBand<'_> {
         };
         let position = renderer
             .triangle_table
-            .position(sight.instance, sight.triangle);
+            .table_index(sight.instance, sight.triangle);
         let sent = self.surface(renderer, &sight, position, MAX_MIRROR_BOUNCES, || {
-            packet.weights(self.scene, lane)
+            packet.barycentric_weights(self.scene, lane)
         });
         if self.light.is_none() && sent.opacity >= OPAQUE_THRESHOLD {
             return Ok(self.encode(sent.incoming.light));
@@ -343,9 +345,9 @@ impl ImageBand<'_> {
                 };
                 let position = renderer
                     .triangle_table
-                    .position(sight.instance, sight.triangle);
+                    .table_index(sight.instance, sight.triangle);
                 let sent = self.surface(renderer, &sight, position, MAX_MIRROR_BOUNCES, || {
-                    packet.weights(self.scene, lane)
+                    packet.barycentric_weights(self.scene, lane)
                 });
                 let (more, opacity) = self.shadowed_radiance(renderer, &sent);
                 if opacity >= OPAQUE_THRESHOLD || layer == MAX_TRANSPARENT_LAYERS {
@@ -388,7 +390,7 @@ impl ImageBand<'_> {
     fn shadowed_radiance(&self, renderer: &CpuRenderer, sent: &OutgoingLight) -> (Vec3, f32) {
         let light = self.light.map_or(sent.incoming.light, |(lighting, _)| {
             sent.incoming.total_arriving(|source| {
-                renderer.light_arrives(self.scene, lighting, source, (sent.off, sent.facing))
+                renderer.is_source_unoccluded(self.scene, lighting, source, (sent.off, sent.facing))
             })
         });
         (light, sent.opacity)
@@ -468,7 +470,9 @@ impl ImageBand<'_> {
                 instance: hit.instance,
                 triangle: hit.triangle,
             };
-            let position = renderer.triangle_table.position(hit.instance, hit.triangle);
+            let position = renderer
+                .triangle_table
+                .table_index(hit.instance, hit.triangle);
             let sent = self.surface(renderer, &sight, position, mirrors, || (hit.u, hit.v));
             let (more, opacity) = self.shadowed_radiance(renderer, &sent);
             if opacity >= OPAQUE_THRESHOLD || layer == MAX_TRANSPARENT_LAYERS {

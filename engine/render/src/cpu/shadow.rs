@@ -32,7 +32,7 @@ impl CpuRenderer {
     }
 
     fn is_glass(&self, instance: Option<u32>, triangle: u32) -> bool {
-        let position = self.triangle_table.position(instance, triangle);
+        let position = self.triangle_table.table_index(instance, triangle);
         let material = self.triangle_table.triangle(position).material;
         self.shading_materials[material as usize].opacity <= GLASS
     }
@@ -54,7 +54,7 @@ impl CpuRenderer {
     }
 
     /// Returns whether light of a source arrives at a point off a surface, whose flat normal is `facing`.
-    pub(super) fn light_arrives(
+    pub(super) fn is_source_unoccluded(
         &self,
         scene: SceneBvh<'_>,
         lighting: &Lighting,
@@ -69,14 +69,14 @@ impl CpuRenderer {
             LightSource::Sun => self.is_sun_visible(scene, point),
             LightSource::LampCluster(position) => {
                 let caster = lighting.lamp_cluster(position);
-                ray_from(caster, point, facing)
+                lamp_shadow_ray(caster, point, facing)
                     .is_none_or(|ray| self.is_unoccluded(scene, &ray, caster.entity))
             }
         }
     }
 
     /// Adds to each pixel the light that arrives there. A source's shadow rays are traced together: they start at one point.
-    pub(super) fn add_light(
+    pub(super) fn add_unoccluded_light(
         &self,
         scene: SceneBvh<'_>,
         lighting: &Lighting,
@@ -97,7 +97,9 @@ impl CpuRenderer {
                     let mut used = 0_u64;
                     for (lane, one) in rest.iter().enumerate() {
                         let asked = one.incoming.rays.iter().any(|ray| ray.source == source);
-                        if asked && let Some(ray) = ray_from(caster, one.ray_end, one.flat_normal) {
+                        if asked
+                            && let Some(ray) = lamp_shadow_ray(caster, one.ray_end, one.flat_normal)
+                        {
                             rays.set(lane, ray.direction, ray.near_m, ray.far_m);
                             used |= 1 << lane;
                         }
@@ -139,7 +141,7 @@ impl CpuRenderer {
 }
 
 /// The shadow ray of a caster to a point; `None` for a flat surface that faces away, which light meets only by its rounded normal.
-fn ray_from(caster: &LampCluster, point: Vec3, facing: Vec3) -> Option<Ray> {
+fn lamp_shadow_ray(caster: &LampCluster, point: Vec3, facing: Vec3) -> Option<Ray> {
     let way = point - caster.center;
     let distance = way.length();
     (distance > 1e-3 && facing.dot(way) < 0.0).then(|| Ray {

@@ -63,7 +63,7 @@ impl<'a> ImageBand<'a> {
         let (mut packet, mut palette) = (CameraRayPacket::new(), ShadeScratch::new());
         let end = (self.size.0, self.first_row + self.rows);
         // All light of a packet takes milliseconds.
-        let mut pace = PollEvery::new(if self.rays.is_full() {
+        let mut pace = PollEvery::new(if self.rays.is_path_traced() {
             1
         } else {
             PACKETS_PER_CHECK
@@ -130,12 +130,12 @@ impl<'a> ImageBand<'a> {
         }
         if self.frame.rgb.is_some() {
             match self.light {
-                Some(light) if self.rays.is_full() => {
+                Some(light) if self.rays.is_path_traced() => {
                     for row in 0..rows {
                         for column in 0..columns {
                             let place = (left + column, self.first_row + top + row);
                             palette.bytes[row * PACKET_COLUMNS + column] =
-                                self.full_color(renderer, light, place);
+                                self.path_traced_color(renderer, light, place);
                         }
                     }
                 }

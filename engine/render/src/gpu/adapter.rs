@@ -153,7 +153,7 @@ impl std::fmt::Display for AdapterChoice<'_> {
 
 /// All adapters, the likely quickest first and software last. `ask`: those behind some interfaces. GL is queried where nothing else
 /// answers but software: a card may have no other driver. Its software is listed only where there is no other.
-fn gather<T>(
+fn sorted_adapters<T>(
     mut ask: impl FnMut(wgpu::Backends) -> Vec<(AdapterInfo, T)>,
 ) -> Vec<(AdapterInfo, T)> {
     let is_hardware = |(adapter, _): &(AdapterInfo, T)| adapter.kind != AdapterKind::Software;
@@ -197,7 +197,7 @@ fn may_ask_gl(used_by: &AtomicU32, process: u32) -> bool {
 fn list() -> (Vec<(AdapterInfo, wgpu::Adapter)>, bool) {
     let process = std::process::id();
     let mut is_gl_lost = false;
-    let all = gather(|backends| {
+    let all = sorted_adapters(|backends| {
         let is_gl = backends == wgpu::Backends::GL;
         if is_gl && !may_ask_gl(&GL_USED_BY, process) {
             is_gl_lost = true;
@@ -290,7 +290,7 @@ mod tests {
 
     /// The adapters of a machine whose Vulkan and GL have these.
     fn machine(vulkan: &[AdapterInfo], gl: &[AdapterInfo]) -> Vec<AdapterInfo> {
-        let listed = gather(|backends| {
+        let listed = sorted_adapters(|backends| {
             let of = if backends == wgpu::Backends::GL {
                 gl
             } else {

@@ -57,7 +57,7 @@ impl ImageOffsets {
 }
 
 /// Groups of a kernel for a view of so many pixels.
-pub(super) fn tiles(width: u32, rows: u32) -> usize {
+pub(super) fn workgroup_count(width: u32, rows: u32) -> usize {
     width.div_ceil(TILE) as usize * rows.div_ceil(TILE) as usize
 }
 
@@ -100,7 +100,7 @@ impl LensRayTable {
     }
 
     /// The position of a camera's first ray.
-    fn of(&mut self, camera: &Camera) -> u32 {
+    fn first_ray(&mut self, camera: &Camera) -> u32 {
         if let Some((_, first)) = self.cameras.iter().find(|(known, _)| known == camera) {
             return *first;
         }
@@ -215,7 +215,7 @@ impl PackedBatch {
     }
 
     /// Bytes of all that grows with the batch: rows, rays of lenses, first hits and images.
-    pub(super) fn bytes(&self) -> [u64; 4] {
+    pub(super) fn buffer_sizes(&self) -> [u64; 4] {
         [
             size_of_val(&self.rows[..]) as u64,
             size_of_val(&self.lens_rays.rays[..]) as u64,
@@ -254,7 +254,7 @@ impl PackedBatch {
         let lens_rays = if kind == PINHOLE || kind == ORTHOGRAPHIC {
             0
         } else {
-            self.lens_rays.of(camera)
+            self.lens_rays.first_ray(camera)
         };
         let before = job.before.as_ref().filter(|_| places.flow.is_some());
         let before_rows = before.map_or(0, |before| self.add_previous_poses(job, before));
@@ -286,7 +286,7 @@ impl PackedBatch {
         ];
         let first = 1 + k * VIEW_ROWS;
         self.rows[first..first + written.len()].copy_from_slice(&written);
-        self.tiles += tiles(camera.width(), rows);
+        self.tiles += workgroup_count(camera.width(), rows);
         self.pixels += pixels;
         self.image_offsets.push(places);
         let frame = &job.frame;

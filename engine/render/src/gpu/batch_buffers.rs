@@ -150,7 +150,7 @@ impl BatchBuffers {
         let rows: &[u8] = bytemuck::cast_slice(&self.batch.rows);
         let rays: &[u8] = bytemuck::cast_slice(&self.batch.lens_rays.rays);
         let [row_bytes, lens_bytes, seen_bytes, image_bytes] =
-            self.batch.bytes().map(|bytes| bytes.max(16));
+            self.batch.buffer_sizes().map(|bytes| bytes.max(16));
         let mut changed = self.rows.reserve(gpu, row_bytes)?;
         let new_lenses = self.lenses.reserve(gpu, lens_bytes)?;
         changed |= new_lenses;

@@ -64,7 +64,7 @@ pub(super) struct OccluderScratch {
 }
 
 /// The signed distance of a box's corner furthest along a plane's normal.
-fn furthest(plane: Vec4, bounds: &Aabb) -> f32 {
+fn max_signed_distance(plane: Vec4, bounds: &Aabb) -> f32 {
     let half = bounds.size() * 0.5;
     plane.xyz().dot(bounds.center()) + plane.w + plane.xyz().abs().dot(half)
 }
@@ -79,7 +79,7 @@ impl CullingView {
     fn shows(&self, bounds: &Aabb) -> bool {
         let reach = (bounds.center() - self.position).length() + bounds.size().length();
         let slack = PLANE_SLACK_M + SLACK_PER_M * reach;
-        let outside = |plane: &Vec4| furthest(*plane, bounds) < -slack;
+        let outside = |plane: &Vec4| max_signed_distance(*plane, bounds) < -slack;
         !bounds.is_empty() && !self.planes.iter().any(outside)
     }
 }

@@ -71,7 +71,7 @@ impl DeviceRegistry {
 
     fn known(&mut self, adapter: &AdapterInfo) -> Option<Arc<Gpu>> {
         let gpu = self.gpus.get(adapter)?;
-        if gpu.check_process().is_ok() {
+        if gpu.check_not_forked().is_ok() {
             return Some(gpu.clone());
         }
         // Closing another process's adapter would call its driver, which is not there.
@@ -167,7 +167,7 @@ impl Gpu {
             buffers_made: AtomicUsize::new(0),
             fault,
         };
-        gpu.check("to prepare")?;
+        gpu.take_driver_error("to prepare")?;
         tracing::debug!(adapter = %gpu.adapter, "graphics adapter opened");
         Ok(Arc::new(gpu))
     }
@@ -216,7 +216,7 @@ impl Gpu {
     }
 
     /// Returns whether this process opened the adapter.
-    pub(super) fn check_process(&self) -> Result<(), RenderError> {
+    pub(super) fn check_not_forked(&self) -> Result<(), RenderError> {
         if self.process == std::process::id() {
             return Ok(());
         }
@@ -265,7 +265,7 @@ impl Gpu {
     }
 
     /// Returns the driver's message since the last call, as an error.
-    pub(super) fn check(&self, doing: &'static str) -> Result<(), RenderError> {
+    pub(super) fn take_driver_error(&self, doing: &'static str) -> Result<(), RenderError> {
         match lock_ignoring_poison(&self.fault).take() {
             None => Ok(()),
             Some(message) => Err(self.driver_error(doing, message)),
@@ -339,7 +339,7 @@ impl Gpu {
             mapped_at_creation,
         });
         self.increment_buffer_count();
-        self.check("to make a buffer")?;
+        self.take_driver_error("to make a buffer")?;
         Ok(buffer)
     }
 
@@ -351,7 +351,7 @@ impl Gpu {
             return Ok(kernels.clone());
         }
         let kernels = Arc::new(Kernels::new(&self.device, &self.layouts, stack));
-        self.check("to compile")?;
+        self.take_driver_error("to compile")?;
         made.insert(stack, kernels.clone());
         Ok(kernels)
     }

@@ -169,7 +169,7 @@ impl HouseBuffers {
             layout: &gpu.layouts.house,
             entries: &entries,
         });
-        gpu.check("to take a house")?;
+        gpu.take_driver_error("to take a house")?;
         tracing::debug!(bytes, "house in the adapter's memory");
         Ok(Self {
             group,

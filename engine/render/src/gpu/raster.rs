@@ -371,7 +371,7 @@ impl RenderAtlas {
                 resource: wgpu::BindingResource::TextureView(&noted),
             }],
         });
-        gpu.check("to make a texture")?;
+        gpu.take_driver_error("to make a texture")?;
         Ok(Self {
             size,
             noted,

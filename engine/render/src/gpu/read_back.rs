@@ -57,7 +57,7 @@ impl Gpu {
         };
         let polled = self.device.poll(until);
         polled.map_err(|error| self.driver_error("to render", error.to_string()))?;
-        self.check("to render")?;
+        self.take_driver_error("to render")?;
         match mapped.recv() {
             Ok(Ok(())) => Ok(()),
             Ok(Err(error)) => Err(self.driver_error("to read", error.to_string())),

@@ -1,6 +1,6 @@
 //! Batches of views by an adapter.
 
-use super::batch::{ImageOffsets, tiles, words_per_pixel};
+use super::batch::{ImageOffsets, words_per_pixel, workgroup_count};
 use super::batch_buffers::{BatchBuffers, HIT_BYTES};
 use super::device::{Gpu, buffer_size, lock_ignoring_poison};
 use super::house_buffers::HouseBuffers;
@@ -122,7 +122,7 @@ impl GpuRenderer {
             let submitted = self.submit(jobs, threads)?;
             let frames = jobs.iter_mut().map(|job| &mut job.frame);
             // Work that an adapter has begun is waited for.
-            return interrupt::uninterruptible(|| self.deliver(submitted, frames, threads));
+            return interrupt::uninterruptible(|| self.wait_and_copy(submitted, frames, threads));
         }
         for (k, job) in jobs.iter().enumerate() {
             self.cpu.check(k, job)?;
@@ -147,7 +147,7 @@ impl GpuRenderer {
         jobs: &[RenderJob<'_>],
         threads: Threads,
     ) -> Result<PendingBatch, RenderError> {
-        self.gpu.check_process()?;
+        self.gpu.check_not_forked()?;
         for (k, job) in jobs.iter().enumerate() {
             self.cpu.check(k, job)?;
             if !has_gpu_preset(job) {
@@ -157,8 +157,8 @@ impl GpuRenderer {
         let mut parts = Vec::new();
         let (mut rest, mut most) = (jobs, usize::MAX);
         while !rest.is_empty() {
-            let some = self.fitting(rest).min(most);
-            interrupt::check();
+            let some = self.fitting_job_count(rest).min(most);
+            interrupt::unwind_if_cancelled();
             let part = interrupt::uninterruptible(|| self.submit_part(&rest[..some], threads))?;
             let taken = part.slot.batch.image_offsets.len();
             // What follows is as large as a rule.
@@ -184,11 +184,11 @@ impl GpuRenderer {
         frames: &mut [FrameMut<'_>],
         threads: Threads,
     ) -> Result<(), RenderError> {
-        interrupt::uninterruptible(|| self.deliver(submitted, frames.iter_mut(), threads))
+        interrupt::uninterruptible(|| self.wait_and_copy(submitted, frames.iter_mut(), threads))
     }
 
     /// Returns the number of the first jobs whose images fit into one submission; at least one.
-    fn fitting(&self, jobs: &[RenderJob<'_>]) -> usize {
+    fn fitting_job_count(&self, jobs: &[RenderJob<'_>]) -> usize {
         let (most, most_groups) = (self.gpu.max_buffer_bytes(), self.gpu.max_workgroups());
         let (mut seen, mut words, mut groups) = (0, 0, 0);
         let fits = |job: &&RenderJob<'_>| {
@@ -196,7 +196,7 @@ impl GpuRenderer {
             let pixels = ((end - first) * job.view.camera.width() as usize) as u64;
             seen += pixels * HIT_BYTES;
             words += pixels * words_per_pixel(&job.frame) as u64 * 4;
-            groups += tiles(job.view.camera.width(), (end - first) as u32);
+            groups += workgroup_count(job.view.camera.width(), (end - first) as u32);
             seen.max(words) <= most && groups.div_ceil(most_groups) <= most_groups
         };
         jobs.iter().take_while(fits).count().max(1)
@@ -212,7 +212,7 @@ impl GpuRenderer {
             let batch = &mut slot.batch;
             batch.fill(&self.cpu, &jobs[..count], draws, threads);
             let fits = batch
-                .bytes()
+                .buffer_sizes()
                 .iter()
                 .all(|bytes| buffer_size(*bytes) <= most);
             if fits || (count == 1 && is_fresh) {
@@ -291,7 +291,7 @@ impl GpuRenderer {
             // Nobody waits any more when the batch was dropped.
             let _ = sender.send(result);
         });
-        gpu.check("to render")?;
+        gpu.take_driver_error("to render")?;
         Ok(SubmittedPart {
             slot,
             index,
@@ -299,7 +299,7 @@ impl GpuRenderer {
         })
     }
 
-    fn deliver<'a, 'b: 'a>(
+    fn wait_and_copy<'a, 'b: 'a>(
         &self,
         submitted: PendingBatch,
         frames: impl ExactSizeIterator<Item = &'a mut FrameMut<'b>>,

@@ -7,7 +7,7 @@ use dwell_scene::random::RandomKey;
 use dwell_scene::{LawInfo, LawValues, math};
 use glam::Vec3;
 
-const fn factor(name: &'static str, low: f64, high: f64, plausible: [f64; 2]) -> ParamInfo {
+const fn factor_param(name: &'static str, low: f64, high: f64, plausible: [f64; 2]) -> ParamInfo {
     ParamInfo {
         name,
         unit: "1",
@@ -37,9 +37,9 @@ pub(super) const LAW: RenderLaw = RenderLaw {
                 high: 10.0,
                 plausible: [-3.0, 3.0],
             },
-            factor("red", 0.1, 10.0, [0.5, 2.0]),
-            factor("blue", 0.1, 10.0, [0.5, 2.0]),
-            factor("gamma", 0.2, 5.0, [0.7, 1.4]),
+            factor_param("red", 0.1, 10.0, [0.5, 2.0]),
+            factor_param("blue", 0.1, 10.0, [0.5, 2.0]),
+            factor_param("gamma", 0.2, 5.0, [0.7, 1.4]),
         ],
         rivals: &["light_power", "vignetting"],
         separating_experiment: "switch a lamp: its light changes with place and throws shadows, exposure changes all pixels alike; \

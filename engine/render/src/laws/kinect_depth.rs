@@ -7,7 +7,7 @@ use dwell_scene::{LawInfo, LawValues, math};
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_PI_2, FRAC_PI_3};
 
-const fn multiple(name: &'static str) -> ParamInfo {
+const fn noise_multiple_param(name: &'static str) -> ParamInfo {
     ParamInfo {
         name,
         unit: "1",
@@ -31,7 +31,10 @@ pub(super) const LAW: RenderLaw = RenderLaw {
                  3DIMPVT (2012), equations 2 to 4; row V10 of measured data",
         engine: EngineKind::Render,
         acts_on: "agent",
-        params: &[multiple("axial"), multiple("lateral")],
+        params: &[
+            noise_multiple_param("axial"),
+            noise_multiple_param("lateral"),
+        ],
         rivals: &["redwood_depth", "disparity_quantization", "flying_pixels"],
         separating_experiment: "look at one wall frontally and at 70 degrees, at three distances: axial noise grows with z^2 and with \
                                 the angle, quantization not with the angle; an edge before a far wall shows the lateral noise",

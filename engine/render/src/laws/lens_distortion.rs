@@ -5,7 +5,7 @@ use crate::camera::{Camera, Projection};
 use dwell_scene::law::{EngineKind, ParamInfo};
 use dwell_scene::{LawInfo, LawValues};
 
-const fn coefficient(name: &'static str, plausible: f64) -> ParamInfo {
+const fn coefficient_param(name: &'static str, plausible: f64) -> ParamInfo {
     ParamInfo {
         name,
         unit: "1",
@@ -29,11 +29,11 @@ pub(super) const LAW: RenderLaw = RenderLaw {
         engine: EngineKind::Render,
         acts_on: "agent",
         params: &[
-            coefficient("k1", 0.5),
-            coefficient("k2", 0.5),
-            coefficient("k3", 0.5),
-            coefficient("p1", 0.01),
-            coefficient("p2", 0.01),
+            coefficient_param("k1", 0.5),
+            coefficient_param("k2", 0.5),
+            coefficient_param("k3", 0.5),
+            coefficient_param("p1", 0.01),
+            coefficient_param("p2", 0.01),
         ],
         rivals: &["focal_length_error", "principal_point_error"],
         separating_experiment: "fill the corners of the image: a focal length moves points by r, radial terms by r^3 and r^5, \

@@ -108,7 +108,7 @@ impl Shutter {
 pub fn check(laws: &[LawSpec], agents: usize) -> Result<(), RenderError> {
     for spec in laws {
         let ours = all().any(|info| info.id == spec.id);
-        if let (true, Err(target)) = (ours, spec.agent(agents)) {
+        if let (true, Err(target)) = (ours, spec.target_agent(agents)) {
             return Err(RenderError::LawTarget {
                 law: spec.id.clone(),
                 found: target.to_owned(),

@@ -5,7 +5,7 @@ use crate::camera::Camera;
 use dwell_scene::law::{EngineKind, ParamInfo};
 use dwell_scene::{LawInfo, LawValues};
 
-const fn shift(name: &'static str) -> ParamInfo {
+const fn shift_param(name: &'static str) -> ParamInfo {
     ParamInfo {
         name,
         unit: "px",
@@ -25,7 +25,7 @@ pub(super) const LAW: RenderLaw = RenderLaw {
         source: "R. Hartley, A. Zisserman, Multiple View Geometry (2004), section 6.1; row V2 of measured data",
         engine: EngineKind::Render,
         acts_on: "agent",
-        params: &[shift("right_px"), shift("down_px")],
+        params: &[shift_param("right_px"), shift_param("down_px")],
         rivals: &["camera_yaw", "camera_pitch"],
         separating_experiment: "turn the camera about its axis: the shift stays in the image, that of a turned mount turns along; \
                                 near the corners a turned camera also changes shapes",

@@ -20,13 +20,13 @@ fn words(words: impl IntoIterator<Item = u32>) -> Vec<PackedRow> {
 }
 
 /// A direction and its length.
-fn split(vector: Vec3) -> (Vec3, f32) {
+fn direction_and_length(vector: Vec3) -> (Vec3, f32) {
     let length = vector.length().max(1e-6);
     (vector / length, length)
 }
 
 fn window_rows(window: &WindowLight) -> [PackedRow; 6] {
-    let [(across, width), (along, height)] = window.half_edges.map(split);
+    let [(across, width), (along, height)] = window.half_edges.map(direction_and_length);
     let [up, down] = window.luminance_cd_m2;
     [
         row(window.center, window.area_m2()),

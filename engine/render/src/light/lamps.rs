@@ -161,7 +161,7 @@ mod tests {
         let substance = dwell_scene::material::library().get_or_default("plaster");
         let material = data
             .materials
-            .push(dwell_scene::Material::of("m", substance));
+            .push(dwell_scene::Material::from_substance("m", substance));
         data.objects.push(Object {
             name: "lamp".into(),
             source_id: String::new(),

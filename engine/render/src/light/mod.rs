@@ -216,7 +216,7 @@ impl Lighting {
                 tell(LightSource::Sky, default_outdoor_radiance(normal));
                 return self.lamp_illuminance(None, site, exposure.per_lx, tell);
             };
-            let per_lx = air.exposure_beside(exposure.per_lx);
+            let per_lx = air.capped_exposure(exposure.per_lx);
             let sky = air.sky_illuminance(normal) + air.ground_illuminance(normal);
             tell(LightSource::Sky, sky * per_lx);
             let across = normal.dot(air.to_sun).max(0.0);
@@ -229,7 +229,7 @@ impl Lighting {
         let mut sun = 0.0_f32;
         let first = fixed.window_starts[position];
         for (k, window) in fixed.windows_of(position).iter().enumerate() {
-            let (mut lx, part) = daylight(window, fixed.sun.0, point, normal);
+            let (mut lx, part) = window_illuminance(window, fixed.sun.0, point, normal);
             if fixed.outdoor.is_some() {
                 // Windows side by side let in one and the same sun.
                 sun = sun.max(part);
@@ -305,7 +305,12 @@ fn orientation_factor(normal: Vec3) -> f32 {
 
 /// Illuminance by a window, lx: the sky as a disc of the same area seen through it; and the share of the sun that the surface
 /// has, where its ray passes the window.
-fn daylight(window: &WindowLight, to_sun: Vec3, point: Vec3, normal: Vec3) -> (Vec3, f32) {
+fn window_illuminance(
+    window: &WindowLight,
+    to_sun: Vec3,
+    point: Vec3,
+    normal: Vec3,
+) -> (Vec3, f32) {
     let way = window.center - point;
     let height = -window.normal.dot(way);
     if height <= 0.0 {
@@ -364,7 +369,7 @@ pub(crate) fn sky_luminance(direction: Vec3, light: Option<(&StaticLighting, Exp
         None => plain_sky(direction),
         Some((fixed, exposure)) => match &fixed.outdoor {
             None => plain_sky(direction) * LIT_SKY,
-            Some(air) => air.background_luminance(direction) * air.exposure_beside(exposure.per_lx),
+            Some(air) => air.background_luminance(direction) * air.capped_exposure(exposure.per_lx),
         },
     }
 }

@@ -95,7 +95,7 @@ impl OutdoorLight {
 
     /// Returns the exposure of the open air beside a camera's own exposure: as eyes adapt to it by day, and not brighter than
     /// rooms by night.
-    pub(crate) fn exposure_beside(&self, camera_per_lx: f32) -> f32 {
+    pub(crate) fn capped_exposure(&self, camera_per_lx: f32) -> f32 {
         self.white_per_lx.min(camera_per_lx)
     }
 

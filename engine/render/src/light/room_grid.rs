@@ -91,10 +91,10 @@ impl RoomGrid {
             }
             let mut cells = vec![OUTSIDE; width * depth];
             for id in rooms {
-                grid.draw(&mut cells, house, id);
+                grid.mark_room(&mut cells, house, id);
             }
             for _ in 0..REACH {
-                grid.grow(&mut cells);
+                grid.extend_into_walls(&mut cells);
             }
             grid.storeys.push(StoreyGrid {
                 low_y: low_y - 0.3,
@@ -106,7 +106,7 @@ impl RoomGrid {
     }
 
     /// Marks the cells whose middle lies over a room's floor.
-    fn draw(&self, cells: &mut [u16], house: &House, id: RoomId) {
+    fn mark_room(&self, cells: &mut [u16], house: &House, id: RoomId) {
         let room = &house.rooms[id];
         let clamp = |p: Vec2| (p - self.corner) * self.cells_per_m;
         let (low, high) = room
@@ -128,7 +128,7 @@ impl RoomGrid {
     }
 
     /// Assigns cells outside to a room beside them.
-    fn grow(&self, cells: &mut [u16]) {
+    fn extend_into_walls(&self, cells: &mut [u16]) {
         let before = cells.to_vec();
         let at = |x: usize, z: usize| before[z * self.width + x];
         for z in 1..self.depth.saturating_sub(1) {

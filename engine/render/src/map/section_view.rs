@@ -150,9 +150,9 @@ impl CutawayView<'_> {
         let first = first_row as usize * self.view.camera.width() as usize;
         for (k, rgb) in rgb.chunks_exact_mut(3).enumerate() {
             if k % PIXELS_PER_CHECK == 0 {
-                interrupt::check();
+                interrupt::unwind_if_cancelled();
             }
-            let point = self.point(first + k, beside.depth[k]);
+            let point = self.point_at_depth(first + k, beside.depth[k]);
             if beside.instance[k] == 0 || point.y < self.floor_y || ground(beside.instance[k]) {
                 rgb.copy_from_slice(&PAPER);
                 continue;
@@ -166,7 +166,7 @@ impl CutawayView<'_> {
     }
 
     /// The point that a pixel shows at a depth.
-    fn point(&self, pixel: usize, depth_m: f32) -> Vec3 {
+    fn point_at_depth(&self, pixel: usize, depth_m: f32) -> Vec3 {
         let camera: &Camera = &self.view.camera;
         let width = camera.width() as usize;
         let image = Vec2::new((pixel % width) as f32 + 0.5, (pixel / width) as f32 + 0.5);
@@ -183,14 +183,14 @@ impl CutawayView<'_> {
         );
         let across = self.view.camera.width() as usize;
         for (row, rgb) in (first_row as usize..).zip(rgb.chunks_exact_mut(across * 3)) {
-            interrupt::check();
+            interrupt::unwind_if_cancelled();
             let Some(near_m) = self.near_m(row as u32) else {
                 continue;
             };
             for (column, rgb) in rgb.chunks_exact_mut(3).enumerate() {
                 let place = self
                     .plan
-                    .image_from_world(self.point(row * across + column, near_m));
+                    .image_from_world(self.point_at_depth(row * across + column, near_m));
                 let (x, y) = (place.x.floor(), place.y.floor());
                 if x < 0.0 || y < 0.0 || x >= width as f32 || y >= height as f32 {
                     continue;

@@ -43,7 +43,7 @@ impl Builder {
 
     /// A material of plaster with this name, to be changed.
     pub(crate) fn plaster(name: &str) -> Material {
-        Material::of(name, library().get_or_default("plaster"))
+        Material::from_substance(name, library().get_or_default("plaster"))
     }
 
     /// One thing of one part.

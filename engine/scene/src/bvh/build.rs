@@ -34,7 +34,7 @@ pub(super) fn tree(boxes: &[Aabb]) -> BinaryBvh {
             self.0
         }
     }
-    if boxes.len() <= WIDTH || longest_unmerged(boxes) > MAX_UNMERGED {
+    if boxes.len() <= WIDTH || longest_unmerged_run(boxes) > MAX_UNMERGED {
         return median_tree(boxes);
     }
     let primitives: Vec<Primitive> = boxes
@@ -78,7 +78,7 @@ pub(super) fn tree(boxes: &[Aabb]) -> BinaryBvh {
 ///
 /// # Source
 /// Meister and Bittner, "Parallel Locally-Ordered Clustering" (2018), section 3, with a search distance of 1.
-fn longest_unmerged(boxes: &[Aabb]) -> usize {
+fn longest_unmerged_run(boxes: &[Aabb]) -> usize {
     if boxes.len() <= MAX_UNMERGED {
         return 0;
     }
@@ -144,7 +144,7 @@ mod tests {
             .map(|k| at((k * k) as f32 * 0.37, 50.0))
             .collect();
         boxes.extend((0..20_000).map(alike));
-        assert!(longest_unmerged(&boxes) > MAX_UNMERGED);
+        assert!(longest_unmerged_run(&boxes) > MAX_UNMERGED);
         let tree = tree(&boxes);
         assert!(depth(&tree, 0) <= 16, "{}", depth(&tree, 0));
         let mut order = tree.primitive_order;
@@ -169,6 +169,6 @@ mod tests {
         let boxes: Vec<Aabb> = (0..20_000)
             .map(|_| at(100.0 * stream.uniform_f32(), 100.0 * stream.uniform_f32()))
             .collect();
-        assert!(longest_unmerged(&boxes) < 100);
+        assert!(longest_unmerged_run(&boxes) < 100);
     }
 }

@@ -124,7 +124,7 @@ impl InstanceSet {
                 home: NO_PARENT,
             });
             let last = set.placed.len() - 1;
-            set.placed[last].stand(&world_from_mesh);
+            set.placed[last].set_pose(&world_from_mesh);
         }
         set.rebuild();
         set
@@ -165,7 +165,7 @@ impl InstanceSet {
         let Some(placed) = self.placed.get_mut(instance as usize) else {
             return;
         };
-        placed.stand(world_from_mesh);
+        placed.set_pose(world_from_mesh);
         let (mut place, mut bounds) = (placed.home, placed.bounds);
         while place != NO_PARENT {
             let node = &mut self.tree.nodes[place.0 as usize];
@@ -179,7 +179,7 @@ impl InstanceSet {
     /// Moves all instances, in order, and rebuilds the tree; those beyond the end of `poses` stay.
     pub fn set_poses<'a>(&mut self, poses: impl IntoIterator<Item = &'a Affine3A>) {
         for (placed, pose) in self.placed.iter_mut().zip(poses) {
-            placed.stand(pose);
+            placed.set_pose(pose);
         }
         self.rebuild();
     }
@@ -216,7 +216,7 @@ impl PreparedInstance {
     }
 
     /// Sets the pose.
-    fn stand(&mut self, world_from_mesh: &Affine3A) {
+    fn set_pose(&mut self, world_from_mesh: &Affine3A) {
         let bounds = self.mesh.bounds();
         let inverse = MeshFromWorld::new(world_from_mesh).filter(|_| !bounds.is_empty());
         self.mesh_from_world = inverse.unwrap_or_default();

@@ -81,7 +81,7 @@ impl SceneBvh<'_> {
         hidden: Option<i32>,
         hits: &mut PacketHits<N>,
     ) {
-        self.closest_packet_at_level(
+        self.closest_packet_with_simd(
             SimdLevel::best_available(),
             rays,
             &HitFilter::new(mask, hidden),
@@ -119,7 +119,7 @@ impl SceneBvh<'_> {
             .then(|| self.hit(&rays.ray(k), place, hits.distance_m[k]))
     }
 
-    pub(super) fn closest_packet_at_level<const N: usize>(
+    pub(super) fn closest_packet_with_simd<const N: usize>(
         &self,
         level: SimdLevel,
         rays: &RayPacket<N>,

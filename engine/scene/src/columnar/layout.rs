@@ -18,7 +18,7 @@ pub(super) fn write_floats(floats: &[u32], bytes: &mut Vec<u8>) -> FloatLayout {
         if floats.len() >= MIN_FLOATS && floats.len().is_multiple_of(width) {
             let rows = RowDictionary::of(floats, width);
             let unit = rows.units.is_some();
-            if unit || rows.count_new(width) * MIN_REPEATS < rows.back.len() {
+            if unit || rows.new_row_count(width) * MIN_REPEATS < rows.back.len() {
                 rows.write(bytes);
                 return FloatLayout::Rows { width, unit };
             }
@@ -44,7 +44,7 @@ pub(super) fn read_floats(
     match layout {
         FloatLayout::Rows { width, unit } => read_rows(width, unit, count, bytes),
         _ if count.checked_mul(FLOAT) != Some(bytes.len()) => Err(ColumnsError::UnexpectedEnd),
-        FloatLayout::ByteShuffled => Ok(read_by_byte(bytes)),
+        FloatLayout::ByteShuffled => Ok(read_byte_shuffled(bytes)),
         FloatLayout::Plain => Ok(bytes
             .as_chunks()
             .0
@@ -60,7 +60,7 @@ fn write_byte_shuffled(floats: &[u32], bytes: &mut Vec<u8>) {
     }
 }
 
-fn read_by_byte(bytes: &[u8]) -> Vec<u32> {
+fn read_byte_shuffled(bytes: &[u8]) -> Vec<u32> {
     let count = bytes.len() / FLOAT;
     (0..count)
         .map(|at| u32::from_le_bytes(std::array::from_fn(|k| bytes[k * count + at])))
@@ -115,7 +115,7 @@ impl RowDictionary {
         Self { back, new, units }
     }
 
-    fn count_new(&self, width: usize) -> usize {
+    fn new_row_count(&self, width: usize) -> usize {
         self.units.as_ref().map_or(self.new.len() / width, Vec::len)
     }
 
@@ -149,7 +149,7 @@ fn read_rows(
     } else {
         &[]
     };
-    let kept = read_by_byte(bytes);
+    let kept = read_byte_shuffled(bytes);
     let mut kept_at = 0;
     let mut next = |wanted: usize| {
         let found = kept

@@ -42,7 +42,7 @@ impl FloatLayout {
         }
     }
 
-    fn of(byte: u8) -> Result<Self, ColumnsError> {
+    fn from_byte(byte: u8) -> Result<Self, ColumnsError> {
         let (width, unit) = (usize::from(byte / 2), byte % 2 == 1);
         match byte {
             0 => Ok(Self::ByteShuffled),

@@ -19,7 +19,7 @@ pub fn from_bytes<'de, T: Deserialize<'de>>(bytes: &'de [u8]) -> Result<T, Colum
     let mut sizes = Vec::with_capacity(count as usize);
     for _ in 0..count {
         let floats = length(&mut head)?;
-        let layout = FloatLayout::of(byte(&mut head)?)?;
+        let layout = FloatLayout::from_byte(byte(&mut head)?)?;
         sizes.push((floats, layout, length(&mut head)?, length(&mut head)?));
     }
     let mut columns = Vec::with_capacity(count as usize);
@@ -91,12 +91,12 @@ impl<'de> ColumnarReader<'de> {
         byte(self.non_float_bytes()?)
     }
 
-    fn whole(&mut self) -> Result<u64, ColumnsError> {
+    fn read_unsigned(&mut self) -> Result<u64, ColumnsError> {
         read_varint(self.non_float_bytes()?)
     }
 
     fn signed(&mut self) -> Result<i64, ColumnsError> {
-        let number = self.whole()?;
+        let number = self.read_unsigned()?;
         Ok((number >> 1).cast_signed() ^ -(number & 1).cast_signed())
     }
 
@@ -104,7 +104,7 @@ impl<'de> ColumnarReader<'de> {
         length(self.non_float_bytes()?)
     }
 
-    fn taken(&mut self) -> Result<&'de [u8], ColumnsError> {
+    fn read_bytes(&mut self) -> Result<&'de [u8], ColumnsError> {
         let length = self.length()?;
         take(self.non_float_bytes()?, length)
     }
@@ -134,9 +134,9 @@ impl<'de> Deserializer<'de> for &mut ColumnarReader<'de> {
         deserialize_i16 signed i16, visit_i16, "a signed number of 16 bits";
         deserialize_i32 signed i32, visit_i32, "a signed number of 32 bits";
         deserialize_i64 signed i64, visit_i64, "a signed number of 64 bits";
-        deserialize_u16 whole u16, visit_u16, "a number of 16 bits";
-        deserialize_u32 whole u32, visit_u32, "a number of 32 bits";
-        deserialize_u64 whole u64, visit_u64, "a number of 64 bits";
+        deserialize_u16 read_unsigned u16, visit_u16, "a number of 16 bits";
+        deserialize_u32 read_unsigned u32, visit_u32, "a number of 32 bits";
+        deserialize_u64 read_unsigned u64, visit_u64, "a number of 64 bits";
     }
 
     fn deserialize_any<V: Visitor<'de>>(self, _visitor: V) -> Result<V::Value, ColumnsError> {
@@ -176,7 +176,7 @@ impl<'de> Deserializer<'de> for &mut ColumnarReader<'de> {
     }
 
     fn deserialize_u128<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ColumnsError> {
-        let (low, high) = (self.whole()?, self.whole()?);
+        let (low, high) = (self.read_unsigned()?, self.read_unsigned()?);
         visitor.visit_u128(u128::from(low) | u128::from(high) << 64)
     }
 
@@ -193,14 +193,14 @@ impl<'de> Deserializer<'de> for &mut ColumnarReader<'de> {
     }
 
     fn deserialize_char<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ColumnsError> {
-        let found = self.whole()?;
+        let found = self.read_unsigned()?;
         let letter = u32::try_from(found).ok().and_then(char::from_u32);
         let place = "a letter";
         visitor.visit_char(letter.ok_or(ColumnsError::OutOfRange { found, place })?)
     }
 
     fn deserialize_str<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ColumnsError> {
-        let text = std::str::from_utf8(self.taken()?).map_err(de::Error::custom)?;
+        let text = std::str::from_utf8(self.read_bytes()?).map_err(de::Error::custom)?;
         visitor.visit_borrowed_str(text)
     }
 
@@ -209,7 +209,7 @@ impl<'de> Deserializer<'de> for &mut ColumnarReader<'de> {
     }
 
     fn deserialize_bytes<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ColumnsError> {
-        visitor.visit_borrowed_bytes(self.taken()?)
+        visitor.visit_borrowed_bytes(self.read_bytes()?)
     }
 
     fn deserialize_byte_buf<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ColumnsError> {
@@ -404,7 +404,7 @@ impl<'de> de::EnumAccess<'de> for EnumReader<'_, 'de> {
         mut self,
         seed: V,
     ) -> Result<(V::Value, Self), ColumnsError> {
-        let found = self.reader.whole()?;
+        let found = self.reader.read_unsigned()?;
         let place = "one of its kinds";
         let index = u32::try_from(found).map_err(|_| ColumnsError::OutOfRange { found, place })?;
         let chosen = self.variants.get(index as usize);

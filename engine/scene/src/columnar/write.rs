@@ -53,13 +53,13 @@ impl ColumnarWriter {
         head
     }
 
-    fn rest(&mut self) -> &mut Vec<u8> {
+    fn non_float_bytes(&mut self) -> &mut Vec<u8> {
         &mut self.columns[self.at].rest
     }
 
     #[expect(clippy::unnecessary_wraps, reason = "as serde's methods end")]
     fn whole(&mut self, number: u64) -> Result<(), ColumnsError> {
-        push_varint(self.rest(), number);
+        push_varint(self.non_float_bytes(), number);
         Ok(())
     }
 
@@ -134,7 +134,7 @@ impl<'a> Serializer for &'a mut ColumnarWriter {
     }
 
     fn serialize_u8(self, v: u8) -> Result<(), ColumnsError> {
-        self.rest().push(v);
+        self.non_float_bytes().push(v);
         Ok(())
     }
 
@@ -162,7 +162,7 @@ impl<'a> Serializer for &'a mut ColumnarWriter {
     }
 
     fn serialize_f64(self, v: f64) -> Result<(), ColumnsError> {
-        self.rest().extend_from_slice(&v.to_le_bytes());
+        self.non_float_bytes().extend_from_slice(&v.to_le_bytes());
         Ok(())
     }
 
@@ -176,7 +176,7 @@ impl<'a> Serializer for &'a mut ColumnarWriter {
 
     fn serialize_bytes(self, v: &[u8]) -> Result<(), ColumnsError> {
         self.whole(v.len() as u64)?;
-        self.rest().extend_from_slice(v);
+        self.non_float_bytes().extend_from_slice(v);
         Ok(())
     }
 
@@ -185,7 +185,7 @@ impl<'a> Serializer for &'a mut ColumnarWriter {
     }
 
     fn serialize_some<T: Serialize + ?Sized>(self, value: &T) -> Result<(), ColumnsError> {
-        self.rest().push(1);
+        self.non_float_bytes().push(1);
         value.serialize(self)
     }
 

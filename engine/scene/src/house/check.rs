@@ -4,7 +4,7 @@ use super::check_rooms;
 use super::data::{AgentStart, HouseData, Mobility, Room};
 use crate::articulation::Joint;
 use crate::collider::Collider;
-use crate::error::{SceneError, range};
+use crate::error::{SceneError, check_range};
 use crate::fixtures::{LightShape, SoundFile};
 use crate::ids::{Id, IdVec, JointId, MaterialId, MeshId};
 use crate::space::is_singular;
@@ -35,7 +35,7 @@ fn unique<'a>(table: &str, names: impl Iterator<Item = &'a str>) -> Result<(), S
     let mut seen = BTreeSet::new();
     for (k, name) in names.enumerate() {
         let at = format!("{table}[{k}]");
-        range(
+        check_range(
             &at,
             "name",
             !name.is_empty(),
@@ -63,7 +63,7 @@ fn slots(
         check_id(at, "materials", &data.materials, *material)?;
     }
     let used = data.meshes[mesh].slot_count();
-    range(
+    check_range(
         at,
         "materials",
         used <= materials.len(),
@@ -79,7 +79,7 @@ pub(super) fn is_within_coordinate_limit(coordinate_m: f32) -> bool {
 /// Checks every index, name and range of `data`.
 pub(super) fn check(data: &HouseData) -> Result<(), SceneError> {
     let rooms = data.rooms.len();
-    range(
+    check_range(
         "house",
         "rooms",
         rooms <= Room::MAX_PER_HOUSE,
@@ -100,7 +100,7 @@ pub(super) fn check(data: &HouseData) -> Result<(), SceneError> {
         data.materials.iter().map(|material| material.name.as_str()),
     )?;
     let entities = data.structure.len() + data.objects.len();
-    range(
+    check_range(
         "house",
         "structure and objects",
         entities < 1 << 30,
@@ -130,7 +130,7 @@ pub(super) fn check(data: &HouseData) -> Result<(), SceneError> {
         slots(data, &at, piece.mesh, &piece.materials)?;
         let bounds = data.meshes[piece.mesh].bounds();
         let far = bounds.min.abs().max(bounds.max.abs()).max_element();
-        range(
+        check_range(
             &at,
             "mesh",
             bounds.is_empty() || far <= LARGEST_COORDINATE_M,
@@ -139,7 +139,7 @@ pub(super) fn check(data: &HouseData) -> Result<(), SceneError> {
         )?;
     }
     objects(data)?;
-    check_rooms::boxes(data)?;
+    check_rooms::level_and_room_bounds(data)?;
     joints(data)?;
     fixtures(data)?;
     data.sky.map_or(Ok(()), |sky| sky.check())
@@ -154,7 +154,7 @@ fn objects(data: &HouseData) -> Result<(), SceneError> {
             check_id(&at, "rooms", &data.rooms, room)?;
         }
         let follows = object.first_part.0 == next_part && object.part_count > 0;
-        range(
+        check_range(
             &at,
             "first_part",
             follows,
@@ -162,7 +162,7 @@ fn objects(data: &HouseData) -> Result<(), SceneError> {
             "parts in the order of the objects, at least one each",
         )?;
         next_part += object.part_count;
-        range(
+        check_range(
             &at,
             "part_count",
             next_part as usize <= data.parts.len(),
@@ -172,21 +172,21 @@ fn objects(data: &HouseData) -> Result<(), SceneError> {
         for part in object.parts() {
             let part = &data.parts[part];
             let at = format!("{at} part {:?}", part.name);
-            range(
+            check_range(
                 &at,
                 "object",
                 part.object == id,
                 part.object.0,
                 "the object that lists it",
             )?;
-            range(
+            check_range(
                 &at,
                 "fixed",
                 part.fixed || object.mobility != Mobility::Fixed,
                 part.fixed,
                 "true in a fixed object",
             )?;
-            range(
+            check_range(
                 &at,
                 "world_from_part",
                 part.world_from_part.is_valid(),
@@ -194,21 +194,21 @@ fn objects(data: &HouseData) -> Result<(), SceneError> {
                 "finite with a unit quaternion",
             )?;
             let far = part.world_from_part.position.abs().max_element();
-            range(
+            check_range(
                 &at,
                 "world_from_part",
                 far <= LARGEST_COORDINATE_M,
                 far,
                 "within 32768 m of the origin",
             )?;
-            range(
+            check_range(
                 &at,
                 "part_from_mesh",
                 part.part_from_mesh.is_finite(),
                 "not finite",
                 "finite numbers",
             )?;
-            range(
+            check_range(
                 &at,
                 "part_from_mesh",
                 !is_singular(&part.part_from_mesh.matrix3),
@@ -221,7 +221,7 @@ fn objects(data: &HouseData) -> Result<(), SceneError> {
                 let map = &part.part_from_mesh;
                 let far = map.matrix3.abs() * reach + map.translation.abs();
                 let far = far.max_element();
-                range(
+                check_range(
                     &at,
                     "mesh",
                     bounds.is_empty() || far <= LARGEST_COORDINATE_M,
@@ -229,7 +229,7 @@ fn objects(data: &HouseData) -> Result<(), SceneError> {
                     "coordinates within 32768 m of the part's origin",
                 )?;
             }
-            range(
+            check_range(
                 &at,
                 "density_kg_m3",
                 (0.01..=30_000.0).contains(&part.density_kg_m3),
@@ -237,7 +237,7 @@ fn objects(data: &HouseData) -> Result<(), SceneError> {
                 "0.01 to 30000",
             )?;
             if let Some(mass) = part.mass_kg {
-                range(
+                check_range(
                     &at,
                     "mass_kg",
                     (1e-6..=1e6).contains(&mass),
@@ -249,7 +249,7 @@ fn objects(data: &HouseData) -> Result<(), SceneError> {
                 let (ok, found) = (inertial.is_valid(), format!("{:?}", inertial.moments));
                 let allowed =
                     "finite, principal moments above 0 with none above the sum of the other two";
-                range(
+                check_range(
                     &at,
                     "inertial",
                     ok && part.mass_kg.is_some(),
@@ -262,7 +262,7 @@ fn objects(data: &HouseData) -> Result<(), SceneError> {
                 collider.check(&at, LARGEST_COORDINATE_M)?;
             }
             let exact = part.colliders.contains(&Collider::ExactMesh);
-            range(
+            check_range(
                 &at,
                 "colliders",
                 part.fixed || !exact,
@@ -272,7 +272,7 @@ fn objects(data: &HouseData) -> Result<(), SceneError> {
             slots(data, &at, part.mesh, &part.materials)?;
         }
     }
-    range(
+    check_range(
         "parts",
         "count",
         next_part as usize == data.parts.len(),
@@ -287,21 +287,21 @@ fn joints(data: &HouseData) -> Result<(), SceneError> {
         let at = format!("joints[{}] {:?}", id.0, joint.name);
         check_id(&at, "objects", &data.objects, joint.object)?;
         check_id(&at, "parts", &data.parts, joint.child)?;
-        range(
+        check_range(
             &at,
             "child",
             data.parts[joint.child].object == joint.object,
             joint.child.0,
             "a part of its object",
         )?;
-        range(
+        check_range(
             &at,
             "child",
             !data.parts[joint.child].fixed,
             "a fixed part",
             "a part that moves",
         )?;
-        range(
+        check_range(
             &at,
             "child",
             moved.insert(joint.child),
@@ -310,7 +310,7 @@ fn joints(data: &HouseData) -> Result<(), SceneError> {
         )?;
         if let Some(parent) = joint.parent {
             check_id(&at, "parts", &data.parts, parent)?;
-            range(
+            check_range(
                 &at,
                 "parent",
                 parent < joint.child,
@@ -318,7 +318,7 @@ fn joints(data: &HouseData) -> Result<(), SceneError> {
                 "a part that stands before the child",
             )?;
         }
-        range(
+        check_range(
             &at,
             "axis",
             (joint.axis.length() - 1.0).abs() < 1e-3,
@@ -326,7 +326,7 @@ fn joints(data: &HouseData) -> Result<(), SceneError> {
             "a unit vector",
         )?;
         let poses = joint.parent_from_joint.is_valid() && joint.child_from_joint.is_valid();
-        range(
+        check_range(
             &at,
             "parent_from_joint, child_from_joint",
             poses,
@@ -334,7 +334,7 @@ fn joints(data: &HouseData) -> Result<(), SceneError> {
             "finite with unit quaternions",
         )?;
         let [low, high] = joint.limits.unwrap_or([f32::MIN, f32::MAX]);
-        range(
+        check_range(
             &at,
             "limits",
             low.is_finite() && high.is_finite() && low <= high,
@@ -346,7 +346,7 @@ fn joints(data: &HouseData) -> Result<(), SceneError> {
             ("open", joint.open),
             ("initial", joint.initial),
         ] {
-            range(
+            check_range(
                 &at,
                 field,
                 (low - 1e-6..=high + 1e-6).contains(&value),
@@ -354,21 +354,21 @@ fn joints(data: &HouseData) -> Result<(), SceneError> {
                 "a position within the limits",
             )?;
         }
-        range(
+        check_range(
             &at,
             "friction",
             (0.0..=1e6).contains(&joint.friction),
             joint.friction,
             "0 to 1e6",
         )?;
-        range(
+        check_range(
             &at,
             "damping",
             (0.0..=1e6).contains(&joint.damping),
             joint.damping,
             "0 to 1e6",
         )?;
-        range(
+        check_range(
             &at,
             "armature",
             (0.0..=1e6).contains(&joint.armature),
@@ -376,7 +376,7 @@ fn joints(data: &HouseData) -> Result<(), SceneError> {
             "0 to 1e6",
         )?;
         let switches = joint.is_openable() && data.objects[joint.object].switch.is_some();
-        range(
+        check_range(
             &at,
             "switches",
             !joint.toggles_switch || switches,
@@ -397,10 +397,10 @@ fn motor(data: &HouseData, at: &str, id: JointId, joint: &Joint) -> Result<(), S
             ("servo.velocity_gain", servo.velocity_gain),
             ("servo.max_effort", servo.max_effort),
         ] {
-            range(at, field, (0.0..=1e9).contains(&value), value, "0 to 1e9")?;
+            check_range(at, field, (0.0..=1e9).contains(&value), value, "0 to 1e9")?;
         }
         let gear = servo.gear;
-        range(
+        check_range(
             at,
             "servo.gear",
             (1e-6..=1e6).contains(&gear),
@@ -409,7 +409,7 @@ fn motor(data: &HouseData, at: &str, id: JointId, joint: &Joint) -> Result<(), S
         )?;
         if let Some(velocity) = servo.max_velocity {
             let ok = (0.0..=1e6).contains(&velocity);
-            range(at, "servo.max_velocity", ok, velocity, "0 to 1e6")?;
+            check_range(at, "servo.max_velocity", ok, velocity, "0 to 1e6")?;
         }
     }
     if let Some(mimic) = &joint.mimic {
@@ -419,9 +419,9 @@ fn motor(data: &HouseData, at: &str, id: JointId, joint: &Joint) -> Result<(), S
             mimic.leader.0,
             "a joint that stands before and follows none",
         );
-        range(at, "mimic.leader", leads, found, allowed)?;
+        check_range(at, "mimic.leader", leads, found, allowed)?;
         let finite = mimic.multiplier.is_finite() && mimic.offset.is_finite();
-        range(at, "mimic", finite, "not finite", "finite numbers")?;
+        check_range(at, "mimic", finite, "not finite", "finite numbers")?;
     }
     Ok(())
 }
@@ -436,7 +436,7 @@ fn fixtures(data: &HouseData) -> Result<(), SceneError> {
     ) {
         check_id(table, "objects", &data.objects, object)?;
         check_id(table, "parts", &data.parts, part)?;
-        range(
+        check_range(
             table,
             "part",
             data.parts[part].object == object,
@@ -463,14 +463,14 @@ fn fixtures(data: &HouseData) -> Result<(), SceneError> {
         let far = numbers
             .into_iter()
             .find(|x| !is_within_coordinate_limit(*x));
-        range(
+        check_range(
             "lights",
             "position, shape",
             far.is_none(),
             far.unwrap_or_default(),
             "finite numbers, and places within 32768 m of the origin",
         )?;
-        range(
+        check_range(
             "lights",
             "power_w",
             (0.0..=1e5).contains(&light.power_w),
@@ -482,7 +482,7 @@ fn fixtures(data: &HouseData) -> Result<(), SceneError> {
             .iter()
             .chain(&light.color)
             .all(|x| x.is_finite() && *x >= 0.0);
-        range(
+        check_range(
             "lights",
             "attenuation, color",
             finite,
@@ -491,7 +491,7 @@ fn fixtures(data: &HouseData) -> Result<(), SceneError> {
         )?;
     }
     for emitter in &data.emitters {
-        range(
+        check_range(
             "emitters",
             "level_db",
             (-20.0..=140.0).contains(&emitter.level_db),
@@ -501,7 +501,7 @@ fn fixtures(data: &HouseData) -> Result<(), SceneError> {
         if let Some(file) = emitter.sound_file {
             check_id("emitters", "sound_files", &data.sound_files, file)?;
         }
-        range(
+        check_range(
             "emitters",
             "start_s",
             (0.0..=86_400.0).contains(&emitter.start_s),
@@ -528,7 +528,7 @@ fn sounds_and_starts(data: &HouseData) -> Result<(), SceneError> {
         data.sound_files.iter().map(|sound| sound.name.as_str()),
     )?;
     for (id, sound) in data.sound_files.iter_ids() {
-        range(
+        check_range(
             &format!("sound_files[{}] {:?}", id.0, sound.name),
             "bytes",
             (1..=SoundFile::MAX_BYTES).contains(&(sound.bytes.len() as u64)),
@@ -536,7 +536,7 @@ fn sounds_and_starts(data: &HouseData) -> Result<(), SceneError> {
             "1 to 67108864",
         )?;
     }
-    range(
+    check_range(
         "agent_starts",
         "count",
         data.agent_starts.len() <= AgentStart::MAX_PER_HOUSE,
@@ -547,14 +547,14 @@ fn sounds_and_starts(data: &HouseData) -> Result<(), SceneError> {
         let at = format!("agent_starts[{k}]");
         let mut numbers = start.position.to_array().into_iter();
         let far = numbers.find(|x| !is_within_coordinate_limit(*x));
-        range(
+        check_range(
             &at,
             "position",
             far.is_none(),
             far.unwrap_or_default(),
             "within 32768 m of the origin",
         )?;
-        range(
+        check_range(
             &at,
             "yaw_rad",
             start.yaw_rad.abs() <= 1000.0,

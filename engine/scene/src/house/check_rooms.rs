@@ -3,7 +3,7 @@
 use super::check::{LARGEST_COORDINATE_M, check_id, is_within_coordinate_limit};
 use super::data::{HouseData, Room};
 use crate::bounds::Aabb;
-use crate::error::{SceneError, range};
+use crate::error::{SceneError, check_range};
 use glam::Vec2;
 
 /// Checks the heights and floors of rooms.
@@ -17,7 +17,7 @@ pub(super) fn check(data: &HouseData) -> Result<(), SceneError> {
 }
 
 /// Checks the boxes of storeys and rooms; after all that stands in them, whose faults have a name of their own.
-pub(super) fn boxes(data: &HouseData) -> Result<(), SceneError> {
+pub(super) fn level_and_room_bounds(data: &HouseData) -> Result<(), SceneError> {
     for (id, level) in data.levels.iter_ids() {
         let at = format!("levels[{}] {:?}", id.0, level.name);
         bounds(&at, "bounds", &level.bounds)?;
@@ -35,21 +35,21 @@ fn heights_and_floor(at: &str, room: &Room) -> Result<(), SceneError> {
         .flat_map(Vec2::to_array)
         .chain([room.floor_y, room.ceiling_y])
         .find(|x| !is_within_coordinate_limit(*x));
-    range(
+    check_range(
         at,
         "footprint, floor_y, ceiling_y",
         far.is_none(),
         far.unwrap_or_default(),
         "coordinates within 32768 m of the origin",
     )?;
-    range(
+    check_range(
         at,
         "ceiling_y",
         room.ceiling_y >= room.floor_y,
         format!("{} with floor_y {}", room.ceiling_y, room.floor_y),
         "at least floor_y",
     )?;
-    range(
+    check_range(
         at,
         "footprint",
         !room.footprint.is_empty(),
@@ -57,7 +57,7 @@ fn heights_and_floor(at: &str, room: &Room) -> Result<(), SceneError> {
         "one triangle with an area, or more",
     )?;
     let flat = room.footprint.iter().position(|t| !has_area(t));
-    range(
+    check_range(
         at,
         "footprint",
         flat.is_none(),
@@ -76,7 +76,7 @@ pub(super) fn bounds(at: &str, field: &'static str, of: &Aabb) -> Result<(), Sce
     if *of == Aabb::EMPTY {
         return Ok(());
     }
-    range(
+    check_range(
         at,
         field,
         of.min.cmple(of.max).all(),
@@ -84,7 +84,7 @@ pub(super) fn bounds(at: &str, field: &'static str, of: &Aabb) -> Result<(), Sce
         "a smallest corner with no coordinate above the largest corner's",
     )?;
     let far = of.min.abs().max(of.max.abs()).max_element();
-    range(
+    check_range(
         at,
         field,
         far <= LARGEST_COORDINATE_M,

@@ -108,7 +108,7 @@ impl Room {
 
     /// Puts right what importers cannot rule out: leaves triangles without area out of the footprint, and lifts a ceiling below
     /// the floor to the floor. Returns the height of such a ceiling, m.
-    pub fn repair(&mut self) -> Option<f32> {
+    pub fn repair_footprint_and_ceiling(&mut self) -> Option<f32> {
         self.footprint.retain(super::check_rooms::has_area);
         let below = (self.ceiling_y < self.floor_y).then_some(self.ceiling_y);
         self.ceiling_y = self.ceiling_y.max(self.floor_y);

@@ -85,7 +85,7 @@ impl Geometry {
                 movable.push(id);
                 let mesh = &data.meshes[part.mesh];
                 mesh_bvh[part.mesh].get_or_insert_with(|| {
-                    interrupt::check();
+                    interrupt::unwind_if_cancelled();
                     Arc::new(TriangleBvh::build(&mesh.positions, &mesh.triangles))
                 });
             }
@@ -98,7 +98,7 @@ impl Geometry {
             {
                 continue;
             }
-            interrupt::check();
+            interrupt::unwind_if_cancelled();
             let mesh = &data.meshes[thing.mesh];
             let base = baked.positions.len() as u32;
             baked.positions.extend(

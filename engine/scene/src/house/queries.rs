@@ -119,7 +119,7 @@ impl House {
             .stream();
         let total = room.area_m2();
         let mut points = Vec::with_capacity(count);
-        crate::interrupt::check();
+        crate::interrupt::unwind_if_cancelled();
         for k in 0..count {
             let mut left = (k as f32 + 0.5) / count as f32 * total;
             let triangle = room.footprint.iter().find(|[a, b, c]| {

@@ -47,8 +47,9 @@ impl ShoeboxMaterials {
 
 impl Default for ShoeboxMaterials {
     fn default() -> Self {
-        let of =
-            |name: &str, substance: &str| Material::of(name, library().get_or_default(substance));
+        let of = |name: &str, substance: &str| {
+            Material::from_substance(name, library().get_or_default(substance))
+        };
         Self {
             floor: of("floor", "parquet"),
             ..Self::uniform(&of("plaster", "plaster"))

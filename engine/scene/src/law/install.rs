@@ -10,7 +10,7 @@ use crate::house::House;
 /// # Errors
 /// [`SceneError::UnknownLaw`] lists the laws there are; [`SceneError::Range`] and [`SceneError::Unknown`] name a parameter out
 /// of bounds or one that there is not, a version other than this build's, or a target that is there in two spellings.
-pub fn install(
+pub fn check_and_canonicalize(
     house: &House,
     known: &[&LawInfo],
     specs: &[LawSpec],

@@ -12,7 +12,7 @@ mod target;
 mod values;
 
 pub use info::{EngineKind, LawInfo, ParamInfo};
-pub use install::install;
+pub use install::check_and_canonicalize;
 pub use registry::{ActiveLaw, Law, LawRegistry};
 pub use spec::LawSpec;
 pub use target::{is_joint_named, is_part_named};

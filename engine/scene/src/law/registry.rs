@@ -113,7 +113,7 @@ impl<A> LawRegistry<A> {
 mod tests {
     use super::*;
     use crate::house::ShoeboxMaterials;
-    use crate::law::{EngineKind, ParamInfo, install};
+    use crate::law::{EngineKind, ParamInfo};
 
     const FACTOR: ParamInfo = ParamInfo {
         name: "factor",
@@ -197,7 +197,7 @@ mod tests {
     #[test]
     fn installed_laws_have_one_spelling_and_no_defaults() {
         let known = [&GAIN, &LAG];
-        let installed = install(
+        let installed = crate::law::check_and_canonicalize(
             &house(),
             &known,
             &[
@@ -208,7 +208,8 @@ mod tests {
         );
         let expected = GAIN.spec(&[("offset", 0.5)]).with_target("1");
         assert_eq!(installed, Ok(vec![expected]));
-        let unknown = install(&house(), &known, &[LawSpec::new("lift", 1, &[])]);
+        let unknown =
+            crate::law::check_and_canonicalize(&house(), &known, &[LawSpec::new("lift", 1, &[])]);
         assert_eq!(
             unknown.unwrap_err().to_string(),
             "no law \"lift\"; there are [\"gain\", \"lag\"]"

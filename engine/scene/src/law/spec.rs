@@ -134,7 +134,7 @@ impl LawSpec {
     ///
     /// # Errors
     /// The target, where it is not one of their numbers.
-    pub fn agent(&self, count: usize) -> Result<Option<AgentId>, &str> {
+    pub fn target_agent(&self, count: usize) -> Result<Option<AgentId>, &str> {
         let Some(target) = self.target.as_deref() else {
             return Ok(None);
         };
@@ -167,14 +167,14 @@ mod tests {
     #[test]
     fn a_target_on_agents_is_the_number_of_one() {
         let law = LawSpec::new("noise", 1, &[]);
-        assert_eq!(law.agent(0), Ok(None));
+        assert_eq!(law.target_agent(0), Ok(None));
         assert!(law.is_on_agent(AgentId(3)));
         let law = law.with_target("1");
-        assert_eq!(law.agent(2), Ok(Some(AgentId(1))));
+        assert_eq!(law.target_agent(2), Ok(Some(AgentId(1))));
         assert!(law.is_on_agent(AgentId(1)) && !law.is_on_agent(AgentId(0)));
-        assert_eq!(law.agent(1), Err("1"));
+        assert_eq!(law.target_agent(1), Err("1"));
         let law = law.with_target("robot");
-        assert_eq!(law.agent(9), Err("robot"));
+        assert_eq!(law.target_agent(9), Err("robot"));
         assert!(!law.is_on_agent(AgentId(0)));
     }
 }

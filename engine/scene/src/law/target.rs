@@ -16,7 +16,7 @@ impl LawSpec {
     pub fn canonical_target(house: &House, info: &LawInfo, target: &str) -> String {
         let found = match info.acts_on {
             "joint" => canonical_joint(house, target),
-            "object" => body(house, target),
+            "object" => canonical_part(house, target),
             "agent" => target.parse::<u32>().ok().map(|agent| agent.to_string()),
             _ => None,
         };
@@ -131,7 +131,7 @@ fn canonical_joint(house: &House, target: &str) -> Option<String> {
         .find(|spelling| named(spelling) == Some(id))
 }
 
-fn body(house: &House, target: &str) -> Option<String> {
+fn canonical_part(house: &House, target: &str) -> Option<String> {
     let mut found = house.objects.iter().filter_map(|object| {
         let mut parts = object.parts();
         let id = parts.find(|id| is_part_named(house, *id, target))?;

@@ -171,7 +171,7 @@ impl Library {
                     .into(),
                 name: row.name,
             };
-            super::Material::of("row", &substance)
+            super::Material::from_substance("row", &substance)
                 .check(&format!("materials.toml: {}", substance.name))?;
             let at = || format!("materials.toml: {}", substance.name);
             if let Some(old) = substances.insert(substance.name.clone(), substance.clone()) {

@@ -49,7 +49,7 @@ impl Material {
     pub const MAX_TRANSMISSION_LOSS_DB: f32 = 200.0;
 
     /// A material of a substance, with its properties and default colour.
-    pub fn of(name: impl Into<String>, substance: &Substance) -> Self {
+    pub fn from_substance(name: impl Into<String>, substance: &Substance) -> Self {
         Self {
             name: name.into(),
             substance: substance.name.clone(),

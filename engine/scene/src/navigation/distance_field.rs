@@ -50,7 +50,7 @@ impl NavGrid {
             [(x, z), (-z, x), (-x, -z), (z, -x)]
                 .into_iter()
                 .filter_map(move |(dx, dz)| {
-                    let crossing = self.straight_path_by(cell, dx, dz)?;
+                    let crossing = self.straight_path_to_offset(cell, dx, dz)?;
                     let counts = !(only_uneven && crossing.level);
                     counts.then(|| (crossing.to, self.cost_m(&crossing)))
                 })

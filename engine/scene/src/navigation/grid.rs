@@ -158,7 +158,7 @@ impl NavGrid {
         linked: &[usize],
     ) -> Result<(), SceneError> {
         for &column in filled {
-            interrupt::check();
+            interrupt::unwind_if_cancelled();
             self.merge_column_spans(column);
             let spans = spans_at(&self.mixed, &self.ground, column);
             self.layers
@@ -171,7 +171,7 @@ impl NavGrid {
         }
         self.layers.drop_empty_top_layers();
         for &column in near {
-            interrupt::check();
+            interrupt::unwind_if_cancelled();
             let cells: Vec<usize> = self.layers.cells_of(column).collect();
             for (layer, cell) in cells.into_iter().enumerate() {
                 self.layers.flags[cell] = self.flags(house, column, layer, cell);
@@ -179,7 +179,7 @@ impl NavGrid {
         }
         self.mark_doorways();
         for &column in linked {
-            interrupt::check();
+            interrupt::unwind_if_cancelled();
             self.layers.link(column, &self.ground.frame, &self.config);
         }
         self.island = self.layers.islands();

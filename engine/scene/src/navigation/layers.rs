@@ -223,7 +223,7 @@ impl Layers {
             if island[start] != NO_CELL || !self.is_free(start) {
                 continue;
             }
-            interrupt::check();
+            interrupt::unwind_if_cancelled();
             let label = found.len() as u32;
             let (mut indoors, mut size, mut kept) = (0, 0, false);
             island[start] = label;

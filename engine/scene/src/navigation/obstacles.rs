@@ -74,7 +74,7 @@ impl Obstacles {
             columns: Vec::new(),
         };
         for (k, obstacle) in self.parts.iter_mut().enumerate() {
-            let place = place_of(house, state, ground, config, obstacle.part);
+            let place = unheld_part_transform(house, state, ground, config, obstacle.part);
             if place == obstacle.world_from_part {
                 continue;
             }
@@ -124,7 +124,7 @@ pub(super) fn is_passable(openness: f32) -> bool {
 }
 
 /// Returns the pose of a part for navigation; `None` while it is held.
-fn place_of(
+fn unheld_part_transform(
     house: &House,
     state: &State,
     ground: &StaticGrid,

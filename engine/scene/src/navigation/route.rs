@@ -112,7 +112,7 @@ impl NavGrid {
             };
             let around = (-1..=1).flat_map(|dz| (-1..=1).map(move |dx| (dx, dz)));
             let best = around
-                .filter_map(|(dx, dz)| self.straight_path_by(corners[k], dx, dz))
+                .filter_map(|(dx, dz)| self.straight_path_to_offset(corners[k], dx, dz))
                 .filter_map(|crossing| Some((cost(crossing.to)?, crossing.to)))
                 .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             if let Some((cost, cell)) = best

@@ -65,7 +65,7 @@ impl StaticGrid {
             next.map_or(f32::INFINITY, |next| next.max(levels[k].1.min.y + 1.0))
         };
         let tops = (0..levels.len()).map(|k| (levels[k].0, top(k))).collect();
-        let (fixed, floors) = fixed_columns(house, &frame);
+        let (fixed, floors) = static_heightfields(house, &frame);
         let mut ground = Self {
             frame,
             fixed,
@@ -185,7 +185,7 @@ pub(super) fn leaf_transform(state: &State, joint: &Joint, position: f32) -> Aff
 }
 
 /// Returns the columns of all static geometry, and of floors alone.
-fn fixed_columns(house: &House, frame: &GridFrame) -> (Heightfield, Heightfield) {
+fn static_heightfields(house: &House, frame: &GridFrame) -> (Heightfield, Heightfield) {
     let (mut fixed, mut floors) = (Vec::new(), Vec::new());
     for placed in &house.geometry().placed {
         if matches!(placed.owner, SurfaceOwner::Part(part) if !house.parts[part].fixed) {
@@ -200,7 +200,7 @@ fn fixed_columns(house: &House, frame: &GridFrame) -> (Heightfield, Heightfield)
             .map(|p| placed.world_from_mesh.transform_point3(*p))
             .collect();
         for triangle in &mesh.triangles {
-            interrupt::check();
+            interrupt::unwind_if_cancelled();
             frame.rasterize_triangle(triangle.map(|v| points[v as usize]), |column, span| {
                 fixed.push((column as u32, span));
                 if is_floor {

@@ -29,7 +29,7 @@ impl NavGrid {
     ///
     /// # Source
     /// The integer form of J. Amanatides and A. Woo, Eurographics 1987, 3: which border comes next is decided exactly.
-    pub(super) fn straight_path_by(
+    pub(super) fn straight_path_to_offset(
         &self,
         from: NavCell,
         dx: isize,
@@ -96,7 +96,7 @@ impl NavGrid {
             return None;
         }
         let (dx, dz) = self.offset(from, to);
-        self.straight_path_by(from, dx, dz)
+        self.straight_path_to_offset(from, dx, dz)
             .filter(|crossing| crossing.to == to)
     }
 

@@ -8,7 +8,7 @@ mod thread_count;
 
 use crate::error::SceneError;
 use crate::interrupt;
-pub use thread_count::{available_cores, available_threads, threads_variable};
+pub use thread_count::{available_cores, hardware_threads, threads_variable};
 
 /// The number of threads that a call may use; at least one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,7 +30,7 @@ impl Threads {
     ///
     /// # Errors
     /// [`SceneError::Threads`] for zero or too many, requested or in the variable, and for a variable that is no number.
-    pub fn requested(requested: Option<usize>) -> Result<Self, SceneError> {
+    pub fn try_resolve(requested: Option<usize>) -> Result<Self, SceneError> {
         match requested {
             Some(count) if (1..=Self::MAX).contains(&count) => Ok(Self(count)),
             Some(count) => Err(thread_count::refuse("threads", count.to_string())),
@@ -77,7 +77,7 @@ impl Threads {
             return;
         }
         for (k, item) in items.iter_mut().enumerate() {
-            interrupt::check();
+            interrupt::unwind_if_cancelled();
             work(k, item);
         }
     }
@@ -117,7 +117,7 @@ impl Threads {
             });
         }
         let work = |k| {
-            interrupt::check();
+            interrupt::unwind_if_cancelled();
             work(k)
         };
         (0..count).map(work).collect()
@@ -137,11 +137,11 @@ mod tests {
     #[test]
     fn more_threads_than_a_machine_can_have_are_refused_and_never_started() {
         for count in [0, 1025, 100_000, usize::MAX] {
-            let error = Threads::requested(Some(count)).unwrap_err().to_string();
+            let error = Threads::try_resolve(Some(count)).unwrap_err().to_string();
             assert_eq!(error, format!("threads is {count}; allowed are 1 to 1024"));
             assert!((1..=Threads::MAX).contains(&Threads::new(count).count()));
         }
-        assert_eq!(Threads::requested(Some(1024)).unwrap().count(), 1024);
+        assert_eq!(Threads::try_resolve(Some(1024)).unwrap().count(), 1024);
     }
 
     #[test]

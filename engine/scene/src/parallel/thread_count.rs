@@ -23,7 +23,7 @@ pub fn available_cores() -> usize {
 }
 
 /// Returns the hardware threads of the machine, whoever may use them; `None` where unknown.
-pub fn available_threads() -> Option<usize> {
+pub fn hardware_threads() -> Option<usize> {
     let text = std::fs::read_to_string("/proc/cpuinfo").ok()?;
     let count = text
         .lines()

@@ -50,7 +50,7 @@ impl SkyDome {
             spread,
             scale_cd_m2: 1.0,
         };
-        let sum = dome.level_lx();
+        let sum = dome.horizontal_illuminance_lx();
         dome.scale_cd_m2 = sky.diffuse_lx / sum.max(1e-6);
         dome
     }
@@ -102,7 +102,7 @@ impl SkyDome {
     }
 
     /// Illuminance on a horizontal surface, lx: the sum of luminance times sine of elevation.
-    fn level_lx(&self) -> f32 {
+    fn horizontal_illuminance_lx(&self) -> f32 {
         let [rows, columns] = STEPS;
         let mut sum = 0.0;
         for row in 0..rows {

@@ -5,7 +5,7 @@ mod sun;
 
 pub use dome::SkyDome;
 
-use crate::error::{SceneError, range};
+use crate::error::{SceneError, check_range};
 use crate::math;
 use crate::space;
 use glam::Vec3;
@@ -130,14 +130,14 @@ impl Sky {
     /// [`SceneError::Range`] names the field, the value found, and the allowed ones.
     pub(crate) fn check(&self) -> Result<(), SceneError> {
         let unit = |v: Vec3| (v.length() - 1.0).abs() < 1e-3;
-        range(
+        check_range(
             AT,
             "north",
             unit(self.north) && self.north.y.abs() < 1e-3,
             self.north,
             "a level unit vector",
         )?;
-        range(
+        check_range(
             AT,
             "to_sun",
             unit(self.to_sun),
@@ -145,14 +145,14 @@ impl Sky {
             "a unit vector",
         )?;
         let lx = 0.0..=200_000.0;
-        range(
+        check_range(
             AT,
             "sun_lx",
             self.sun_lx.iter().all(|x| lx.contains(x)),
             format!("{:?}", self.sun_lx),
             "0 to 200000",
         )?;
-        range(
+        check_range(
             AT,
             "diffuse_lx",
             lx.contains(&self.diffuse_lx),
@@ -167,7 +167,7 @@ impl Weather {
     fn check(self) -> Result<(), SceneError> {
         match self {
             Self::Overcast => Ok(()),
-            Self::Clear { turbidity } => range(
+            Self::Clear { turbidity } => check_range(
                 AT,
                 "weather.turbidity",
                 (2.0..=10.0).contains(&turbidity),
@@ -181,15 +181,15 @@ impl Weather {
 impl Daytime {
     fn check(&self) -> Result<(), SceneError> {
         let hour = self.hour_h;
-        range(AT, "hour_h", (0.0..=24.0).contains(&hour), hour, "0 to 24")?;
+        check_range(AT, "hour_h", (0.0..=24.0).contains(&hour), hour, "0 to 24")?;
         let day = self.day;
-        range(AT, "day", (1..=366).contains(&day), day, "1 to 366")?;
+        check_range(AT, "day", (1..=366).contains(&day), day, "1 to 366")?;
         let latitude = self.latitude_deg;
         let ok = (-90.0..=90.0).contains(&latitude);
-        range(AT, "latitude_deg", ok, latitude, "-90 to 90")?;
+        check_range(AT, "latitude_deg", ok, latitude, "-90 to 90")?;
         let yaw = self.north_yaw_deg;
         let ok = (-360.0..=360.0).contains(&yaw);
-        range(AT, "north_yaw_deg", ok, yaw, "-360 to 360")?;
+        check_range(AT, "north_yaw_deg", ok, yaw, "-360 to 360")?;
         self.weather.check()
     }
 }

@@ -25,7 +25,7 @@ pub use body::AgentBody;
 pub use joint::JointParameters;
 pub use locomotion::{DifferentialDrive, HolonomicBase, LeggedLocomotion, Locomotion};
 pub use parameter::Parameter;
-pub use relations::{Contact, SupportRelation};
+pub use relations::{Contact, SupportDirection};
 
 use crate::articulation::JointCommand;
 use crate::house::House;

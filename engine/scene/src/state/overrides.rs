@@ -57,24 +57,24 @@ impl State {
     /// Returns the absorption of a material, with overrides.
     pub fn absorption(&self, house: &House, material: MaterialId) -> Bands {
         let material = &house.materials[material];
-        self.bands(&material.name, "absorption", &material.absorption)
+        self.bands_with_overrides(&material.name, "absorption", &material.absorption)
     }
 
     /// Returns the scattering of a material, with overrides.
     pub fn scattering(&self, house: &House, material: MaterialId) -> Bands {
         let material = &house.materials[material];
-        self.bands(&material.name, "scattering", &material.scattering)
+        self.bands_with_overrides(&material.name, "scattering", &material.scattering)
     }
 
     /// Returns the transmission loss of a material, dB, with overrides.
     pub fn transmission_loss_db(&self, house: &House, material: MaterialId) -> Bands {
         let material = &house.materials[material];
         let base = &material.transmission_loss_db;
-        self.bands(&material.name, "transmission_loss_db", base)
+        self.bands_with_overrides(&material.name, "transmission_loss_db", base)
     }
 
     /// Returns the bands of one material field, with bands replaced or added by overrides.
-    fn bands(&self, material: &str, field: &str, base: &Bands) -> Bands {
+    fn bands_with_overrides(&self, material: &str, field: &str, base: &Bands) -> Bands {
         let prefix = format!("material/{material}/{field}/");
         let mut bands = base.clone();
         // A slash sorts before '0', so that this range holds exactly the addresses that begin with the prefix.

@@ -162,7 +162,7 @@ impl State {
             (self.overrides, self.agents) = before;
             return set;
         }
-        self.keep_crouching(&before.1);
+        self.keep_crouched_heights(&before.1);
         Ok(())
     }
 
@@ -176,7 +176,7 @@ impl State {
                     address.invalid("it is set twice at once, in one or two spellings; allowed is each parameter once")
                 );
             }
-            self.put(canonical, *value);
+            self.store_value(canonical, *value);
         }
         for (address, value) in values {
             let now = self.parameter(house, address)?;
@@ -187,13 +187,13 @@ impl State {
         for canonical in &known {
             self.check_axis(house, canonical)?;
         }
-        self.forget_defaults(house, &known)
+        self.remove_default_overrides(house, &known)
     }
 
     /// Removes overrides equal to the value without them, so that setting a value and setting it back leaves no trace. Only
     /// when all are set: that value may follow from the others. A band of a material is kept, since bands without a value
     /// of their own lie between their neighbours: one that is pinned stays when a neighbour changes.
-    fn forget_defaults(
+    fn remove_default_overrides(
         &mut self,
         house: &House,
         known: &BTreeSet<Address>,
@@ -209,7 +209,7 @@ impl State {
         Ok(())
     }
 
-    fn put(&mut self, canonical: Address, value: f64) {
+    fn store_value(&mut self, canonical: Address, value: f64) {
         if let ["agent", agent, "body", field] = canonical.words()[..] {
             let agent = agent.parse().ok().map(AgentId);
             if let Some(agent) = agent.and_then(|agent| self.agents.get_mut(agent)) {
@@ -221,7 +221,7 @@ impl State {
     }
 
     /// Keeps the height of a crouching agent when its body changes, as far as its radius allows.
-    fn keep_crouching(&mut self, before: &IdVec<AgentId, super::AgentState>) {
+    fn keep_crouched_heights(&mut self, before: &IdVec<AgentId, super::AgentState>) {
         for (now, before) in self.agents.iter_mut().zip(before) {
             if now.crouched_by_m > 0.0 && now.body != before.body {
                 let most = (now.body.height_m - 2.0 * now.body.radius_m).max(0.0);

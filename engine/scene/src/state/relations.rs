@@ -22,7 +22,7 @@ const MIN_ENCLOSING_RAYS: usize = 4;
 /// The support relation of two things in contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum SupportRelation {
+pub enum SupportDirection {
     /// Neither supports the other.
     #[default]
     NoSupport,
@@ -40,7 +40,7 @@ pub struct Contact {
     /// The other part; `None`: the structure of the house.
     pub b: Option<PartId>,
     /// The support relation.
-    pub support_relation: SupportRelation,
+    pub support_relation: SupportDirection,
 }
 
 impl State {
@@ -80,9 +80,9 @@ impl State {
         let pairs = self.contacts.iter().filter_map(move |contact| {
             let (a, b) = (owner(contact.a), contact.b.map(owner));
             match contact.support_relation {
-                SupportRelation::AOnB => Some((a, b)),
-                SupportRelation::BOnA => b.map(|b| (b, Some(a))),
-                SupportRelation::NoSupport => None,
+                SupportDirection::AOnB => Some((a, b)),
+                SupportDirection::BOnA => b.map(|b| (b, Some(a))),
+                SupportDirection::NoSupport => None,
             }
         });
         pairs.filter(|(carried, by)| *by != Some(*carried))
@@ -295,9 +295,9 @@ mod tests {
             support_relation: rest,
         };
         state.contacts = vec![
-            contact(0, None, SupportRelation::NoSupport),
-            contact(0, Some(1), SupportRelation::AOnB),
-            contact(1, None, SupportRelation::AOnB),
+            contact(0, None, SupportDirection::NoSupport),
+            contact(0, Some(1), SupportDirection::AOnB),
+            contact(1, None, SupportDirection::AOnB),
         ];
         assert_eq!(state.supports_of(&house, ObjectId(0)), [Some(ObjectId(1))]);
         assert_eq!(state.supports_of(&house, ObjectId(1)), [None]);

@@ -104,7 +104,7 @@ impl World {
             };
             target = Some(object.into());
         }
-        let action = kind.read(target, Map::new())?;
+        let action = kind.parse_hand_action(target, Map::new())?;
         Ok(Some(self.act(agent, &*action)))
     }
 }

@@ -17,14 +17,14 @@ const TARGET: &str = "target";
 pub struct ActionKind {
     /// The name, as in lists, requests and files.
     pub name: &'static str,
-    about: About,
+    about: DescriptionSource,
     control: ControlFn,
-    hand: Option<HandReader>,
+    hand: Option<HandActionParser>,
 }
 
 /// The source of the sentence about a kind.
 #[derive(Clone, Copy, Debug)]
-enum About {
+enum DescriptionSource {
     Here(&'static str),
     DocComment(fn() -> String),
 }
@@ -34,7 +34,7 @@ pub(super) type ControlFn = fn(&StepSizes, f64) -> AgentControl;
 
 /// The reader of an action of the hand.
 #[derive(Clone, Copy, Debug)]
-struct HandReader {
+struct HandActionParser {
     field_names: fn() -> &'static [&'static str],
     fields: fn() -> Vec<FieldSchema>,
     read: fn(&Value) -> Result<Box<dyn HandAction>, WorldError>,
@@ -48,7 +48,7 @@ pub(super) const fn movement(
 ) -> ActionKind {
     ActionKind {
         name,
-        about: About::Here(about),
+        about: DescriptionSource::Here(about),
         control,
         hand: None,
     }
@@ -61,9 +61,9 @@ where
 {
     ActionKind {
         name,
-        about: About::DocComment(schema::doc_comment::<A>),
+        about: DescriptionSource::DocComment(schema::doc_comment::<A>),
         control: zero_velocity,
-        hand: Some(HandReader {
+        hand: Some(HandActionParser {
             field_names: schema::field_names::<A>,
             fields: schema::fields_of::<A>,
             read: |fields| {
@@ -83,8 +83,8 @@ impl ActionKind {
     /// One sentence about it.
     pub fn about(&self) -> String {
         match self.about {
-            About::Here(about) => about.to_owned(),
-            About::DocComment(about) => about(),
+            DescriptionSource::Here(about) => about.to_owned(),
+            DescriptionSource::DocComment(about) => about(),
         }
     }
 
@@ -135,7 +135,7 @@ impl ActionKind {
     /// # Errors
     /// [`WorldError::Config`] for a field that is missing, [`WorldError::Settings`] for one that cannot be read,
     /// [`WorldError::InvalidCall`] for an action that is not of the hand.
-    pub(super) fn read(
+    pub(super) fn parse_hand_action(
         &self,
         target: Option<Target>,
         mut fields: Map<String, Value>,

@@ -89,7 +89,7 @@ impl World {
         }
         let target: TargetRequest =
             crate::parse_settings::parse_settings("action", &Value::Object(of_target))?;
-        kind.read(target.resolve(self, agent)?, own)
+        kind.parse_hand_action(target.resolve(self, agent)?, own)
     }
 
     /// Performs an agent's requested action, without a step of time.
@@ -106,7 +106,7 @@ impl World {
     }
 
     /// Returns the outcomes, in the last step, of actions that take time.
-    pub fn notices(&self) -> &[DelayedOutcome] {
+    pub fn delayed_outcomes(&self) -> &[DelayedOutcome] {
         self.physics().delayed_outcomes()
     }
 }

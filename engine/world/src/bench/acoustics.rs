@@ -1,9 +1,9 @@
 //! Impulse responses a second; streams against real time and against the reference.
 
-use super::{BenchOptions, BenchProgress, median, open, timed};
+use super::{BenchOptions, BenchProgress, median, open, sorted_run_times_s};
 use crate::engines::Engines;
 use crate::error::WorldError;
-use crate::info::viewpoints;
+use crate::info::best_room_viewpoints;
 use dwell_acoustics::metrics::{self, BandMetrics, Metrics};
 use dwell_acoustics::{ActiveSource, Receiver, SoundSourcePose, Stream, StreamConfig, signals};
 use dwell_scene::bvh::{Ray, RayMask};
@@ -22,11 +22,11 @@ pub(super) fn run(
 ) -> Result<Value, WorldError> {
     let engines = open(house)?;
     let rays = RayScene::new(engines.house().clone());
-    let spots: Vec<Vec3> = viewpoints(&engines)?
+    let spots: Vec<Vec3> = best_room_viewpoints(&engines)?
         .iter()
         .map(|room| Vec3::new(room.stand[0], room.eye[1], room.stand[2]))
         .collect();
-    let threads = Threads::requested(options.threads)?;
+    let threads = Threads::try_resolve(options.threads)?;
     let rooms: Vec<WalkPaths> = spots
         .iter()
         .filter_map(|spot| WalkPaths::find_unobstructed(&rays, *spot))
@@ -39,7 +39,7 @@ pub(super) fn run(
         progress.begin_part(&format!("impulse responses, {preset}"))?;
         let scene = engines.acoustic_scene(preset, 16_000)?;
         let mut pairs = 0;
-        let seconds = timed(options.repeats.min(3), || {
+        let seconds = sorted_run_times_s(options.repeats.min(3), || {
             pairs = 0;
             for (k, source) in spots.iter().enumerate() {
                 let ear = spots[(k + 1) % spots.len()];
@@ -154,15 +154,16 @@ impl WalkPaths {
             let mut ways = ways.map(|(a, b)| Ray::segment(a, b, 0.0)).into_iter();
             ways.all(|way| !rays.occluded(&way, RayMask::EAR))
         };
-        let ends = [-Self::REACH_M, Self::REACH_M].map(|off| self.at(off));
-        let between = [-Self::REACH_M, 0.0, Self::REACH_M].map(|off| self.at(off));
+        let ends = [-Self::REACH_M, Self::REACH_M].map(|off| self.source_and_listener_at(off));
+        let between =
+            [-Self::REACH_M, 0.0, Self::REACH_M].map(|off| self.source_and_listener_at(off));
         clear(ends[0].0, ends[1].0)
             && clear(ends[0].1, ends[1].1)
             && between.iter().all(|(radio, head)| clear(*radio, *head))
     }
 
     /// The radio and the head, when the listener is `off_m` from the middle.
-    fn at(&self, off_m: f32) -> (Vec3, Vec3) {
+    fn source_and_listener_at(&self, off_m: f32) -> (Vec3, Vec3) {
         let radio = (0.3 - 0.7 * off_m) * self.ahead + (0.8 + 0.5 * off_m) * self.right;
         (
             self.spot + radio - 0.4 * Vec3::Y,
@@ -175,7 +176,7 @@ impl WalkPaths {
     fn poses_after_block(&self, k: usize) -> (Vec3, Pose) {
         let way_m = (0.05 * k as f32 + Self::REACH_M).rem_euclid(4.0 * Self::REACH_M);
         let off_m = Self::REACH_M - (way_m - 2.0 * Self::REACH_M).abs();
-        let (radio, head) = self.at(off_m);
+        let (radio, head) = self.source_and_listener_at(off_m);
         (radio, Pose::from_position_yaw(head, 0.031 * k as f32))
     }
 }

@@ -22,7 +22,7 @@ pub(super) fn run(
     let envs = (0..options.envs)
         .map(|_| Env::new(engines.clone(), &config))
         .collect::<Result<Vec<_>, _>>()?;
-    let mut batch = Batch::new(envs, Threads::requested(options.threads)?)?;
+    let mut batch = Batch::new(envs, Threads::try_resolve(options.threads)?)?;
     let seeds: Vec<Option<u64>> = (0..options.envs as u64).map(Some).collect();
     let start = Instant::now();
     batch.reset(&seeds)?;

@@ -1,6 +1,6 @@
 //! Opening a house with its ray tree, and starting a world over again.
 
-use super::{BenchOptions, BenchProgress, median, open, timed};
+use super::{BenchOptions, BenchProgress, median, open, sorted_run_times_s};
 use crate::config::WorldConfig;
 use crate::error::WorldError;
 use crate::world::World;
@@ -15,7 +15,7 @@ pub(super) fn run(
     progress.set_part_count(2);
     progress.begin_part("opening the house")?;
     let mut triangles = 0;
-    let seconds = timed(options.repeats, || {
+    let seconds = sorted_run_times_s(options.repeats, || {
         let (house, _) = dwell_houses::open(house)?;
         house.geometry();
         triangles = house.triangle_count();
@@ -24,7 +24,7 @@ pub(super) fn run(
     progress.begin_part("starting over")?;
     let engines = open(house)?;
     let mut world = World::new(engines, &WorldConfig::default())?;
-    let reset = timed(options.repeats, || world.reset(RandomKey::root(0)))?;
+    let reset = sorted_run_times_s(options.repeats, || world.reset(RandomKey::root(0)))?;
     Ok(
         json!({"load_ms": median(&seconds) * 1e3, "reset_ms": median(&reset) * 1e3, "triangles": triangles}),
     )

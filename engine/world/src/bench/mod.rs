@@ -139,13 +139,13 @@ impl BenchOptions {
 }
 
 /// Seconds of each of `repeats` runs, sorted.
-fn timed(
+fn sorted_run_times_s(
     repeats: usize,
     mut run: impl FnMut() -> Result<(), WorldError>,
 ) -> Result<Vec<f64>, WorldError> {
     let mut seconds = Vec::with_capacity(repeats);
     for _ in 0..repeats {
-        interrupt::check();
+        interrupt::unwind_if_cancelled();
         let start = Instant::now();
         run()?;
         seconds.push(start.elapsed().as_secs_f64());

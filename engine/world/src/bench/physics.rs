@@ -59,7 +59,7 @@ fn with_box_objects(house: &House, boxes: &BenchBoxes) -> Result<House, WorldErr
     data.receptacles.clear();
     let material = data.materials.push(Material {
         name: "bench box".into(),
-        ..Material::of("bench box", library().get_or_default("oak"))
+        ..Material::from_substance("bench box", library().get_or_default("oak"))
     });
     let all = boxes.fixed.iter().map(|one| (one, true));
     for (one, fixed) in all.chain(boxes.dynamic.iter().map(|one| (one, false))) {
@@ -126,7 +126,7 @@ impl BenchWorld {
         let mut events = Vec::new();
         let start = Instant::now();
         for _ in 0..physics_steps.div_ceil(STEPS_PER_CONTROL) {
-            interrupt::check();
+            interrupt::unwind_if_cancelled();
             self.world.step(&mut self.state, &[], &mut events)?;
             events.clear();
         }
@@ -180,7 +180,7 @@ pub(super) fn run(
         .filter(|pose| pose.position.y < lowest - FALLEN_M)
         .count();
     settled.run(10 * config.physics_rate_hz as usize)?;
-    let threads = Threads::requested(options.threads)?;
+    let threads = Threads::try_resolve(options.threads)?;
     progress.begin_part("worlds together")?;
     let together = parallel_speedup(&start, options, threads)?;
     let mut rate = |what: &str, start: &BenchWorld| -> Result<f64, WorldError> {
@@ -220,7 +220,7 @@ fn parallel_speedup(
         let alone = start.clone().run(options.steps)?;
         let mut worlds = DropOnThread(Vec::with_capacity(options.worlds));
         for _ in 0..options.worlds {
-            interrupt::check();
+            interrupt::unwind_if_cancelled();
             worlds.push((start.clone(), Ok(0.0)));
         }
         let begun = Instant::now();

@@ -1,9 +1,9 @@
 //! Pictures a second.
 
-use super::{BenchOptions, BenchProgress, median, open, table, timed};
+use super::{BenchOptions, BenchProgress, median, open, sorted_run_times_s, table};
 use crate::engines::Engines;
 use crate::error::WorldError;
-use crate::info::viewpoints;
+use crate::info::best_room_viewpoints;
 use dwell_render::{Camera, Frame, RenderJob, View};
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
@@ -32,7 +32,7 @@ pub(super) fn views(engines: &Engines, options: &BenchOptions) -> Result<Vec<Pos
             .collect();
     }
     let mut around = Vec::new();
-    for room in viewpoints(engines)? {
+    for room in best_room_viewpoints(engines)? {
         for k in 0..8_u8 {
             let eye = Vec3::new(room.stand[0], room.eye[1], room.stand[2]);
             around.push(Pose::new(
@@ -58,7 +58,7 @@ pub(super) fn run(
         State::new(engines.house()),
         RayScene::new(engines.house().clone()),
     );
-    let threads = Threads::requested(options.threads)?;
+    let threads = Threads::try_resolve(options.threads)?;
     let camera =
         Camera::from_fov(options.resolution, options.resolution, 90.0)?.with_range(0.05, 50.0)?;
     let views = views(&engines, options)?;
@@ -70,7 +70,7 @@ pub(super) fn run(
         .map(|_| Frame::new(&camera, dwell_render::ImageChannels::default()))
         .collect();
     let renderer = engines.image_renderer(&options.backend)?;
-    let seconds = timed(options.repeats + 1, || {
+    let seconds = sorted_run_times_s(options.repeats + 1, || {
         let mut jobs: Vec<RenderJob<'_>> = poses
             .iter()
             .zip(&mut frames)

@@ -1,6 +1,6 @@
 //! Pictures a second by size of batch and picture, each view of a world of its own: the workload of a graphics card.
 
-use super::{BenchOptions, BenchProgress, median, open, render, timed};
+use super::{BenchOptions, BenchProgress, median, open, render, sorted_run_times_s};
 use crate::engines::Engines;
 use crate::error::WorldError;
 use dwell_render::{
@@ -43,7 +43,7 @@ pub(super) fn run(
     progress: &mut BenchProgress<'_>,
 ) -> Result<Value, WorldError> {
     let engines = open(house)?;
-    let threads = Threads::requested(options.threads)?;
+    let threads = Threads::try_resolve(options.threads)?;
     let most = options.batch.iter().copied().max().unwrap_or(1);
     let stage = RenderBenchWorlds {
         poses: render::views(&engines, options)?,
@@ -65,7 +65,13 @@ pub(super) fn run(
                     batch: *batch,
                     resolution: *resolution,
                 };
-                rows.push(row(&stage, &renderer, options, size, (threads, read_back))?);
+                rows.push(measure_size(
+                    &stage,
+                    &renderer,
+                    options,
+                    size,
+                    (threads, read_back),
+                )?);
             }
         }
     }
@@ -88,7 +94,7 @@ fn world(engines: &Engines) -> (RayScene, State) {
 }
 
 /// One size of batch and picture: colour, depth and ids.
-fn row(
+fn measure_size(
     stage: &RenderBenchWorlds,
     renderer: &Renderer,
     options: &BenchOptions,
@@ -100,12 +106,12 @@ fn row(
     let wanted = ImageChannels::default();
     let mut frames: Vec<Frame> = (0..batch).map(|_| Frame::new(&camera, wanted)).collect();
     let jobs = |frames: &mut [Frame]| -> Result<(), WorldError> {
-        let mut jobs = list(stage, camera, options, frames);
+        let mut jobs = render_jobs(stage, camera, options, frames);
         renderer.render_batch(&mut jobs, threads)?;
         Ok(())
     };
     jobs(&mut frames)?;
-    let seconds = timed(options.repeats, || jobs(&mut frames))?;
+    let seconds = sorted_run_times_s(options.repeats, || jobs(&mut frames))?;
     let views_per_s = batch as f64 / median(&seconds);
     let mut row = json!({
         "backend": renderer.description(),
@@ -120,13 +126,13 @@ fn row(
         let mut next = || {
             let start = std::time::Instant::now();
             let mut frames: Vec<Frame> = (0..batch).map(|_| Frame::new(&camera, wanted)).collect();
-            let jobs = list(stage, camera, options, &mut frames);
+            let jobs = render_jobs(stage, camera, options, &mut frames);
             let submitted = gpu.submit(&jobs, threads);
             submit.push(start.elapsed().as_secs_f64());
             submitted
         };
         let mut waiting = next()?;
-        let seconds = timed(options.repeats, || {
+        let seconds = sorted_run_times_s(options.repeats, || {
             let following = next()?;
             let waited = std::mem::replace(&mut waiting, following);
             let mut into: Vec<FrameMut<'_>> = frames.iter_mut().map(Frame::as_mut).collect();
@@ -145,7 +151,7 @@ fn row(
     Ok(row)
 }
 
-fn list<'a>(
+fn render_jobs<'a>(
     stage: &'a RenderBenchWorlds,
     camera: Camera,
     options: &BenchOptions,

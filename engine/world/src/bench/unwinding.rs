@@ -57,7 +57,7 @@ mod tests {
             || {
                 let _items = DropOnThread(vec![Slow(told, may)]);
                 std::thread::sleep(interrupt::INTERVAL);
-                interrupt::check();
+                interrupt::unwind_if_cancelled();
             },
         );
         assert!(stopped.is_err());

@@ -55,7 +55,10 @@ impl World {
             CameraMount::Agent(agent, eye_from_camera) => {
                 let is = state.agents.get(agent).map(AgentState::world_from_eye);
                 let is = is.unwrap_or_default();
-                let was = self.motion_history().eye(agent, state).unwrap_or(is);
+                let was = self
+                    .motion_history()
+                    .previous_eye_pose(agent, state)
+                    .unwrap_or(is);
                 let hide = self.house().entity_of_agent(agent);
                 (is * eye_from_camera, was * eye_from_camera, Some(hide))
             }

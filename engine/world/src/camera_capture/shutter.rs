@@ -191,7 +191,7 @@ struct PastStates {
 
 impl PastStates {
     fn new(world: &World, longest: f32) -> Self {
-        let still = longest <= 0.0 || world.motion_history().is_still(world.state());
+        let still = longest <= 0.0 || world.motion_history().is_scene_still(world.state());
         let copies = (1..MOMENTS).map(|k| {
             let share = longest * k as f32 / (MOMENTS - 1) as f32;
             let (mut state, mut scene) = (world.state().clone(), world.rays().clone());

@@ -26,7 +26,7 @@ pub(super) struct DoorOpening {
 }
 
 impl DoorOpening {
-    pub(super) fn of(door: ObjectId) -> Self {
+    pub(super) fn new(door: ObjectId) -> Self {
         Self {
             door,
             openness: 0.0,

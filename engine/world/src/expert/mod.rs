@@ -100,7 +100,7 @@ impl ShortestPathFollower {
         if let Some(step) = self.escape(agent.collided) {
             return Some(step);
         }
-        let aim = self.aim(field, here, agent.position)?;
+        let aim = self.next_waypoint(field, here, agent.position)?;
         Some(
             turn_towards(agent.yaw_rad, aim - agent.position, &self.stride)
                 .unwrap_or(DiscreteAction::MoveForward),
@@ -148,7 +148,7 @@ impl ShortestPathFollower {
     }
 
     /// The point of the path that it walks to next: the furthest one within reach of the eye.
-    fn aim(&self, field: &DistanceField, here: NavCell, position: Vec3) -> Option<Vec3> {
+    fn next_waypoint(&self, field: &DistanceField, here: NavCell, position: Vec3) -> Option<Vec3> {
         let way = self.grid.follow_gradient(field, here)?;
         let near = way
             .iter()
@@ -203,7 +203,7 @@ impl ShortestPathFollower {
             return DiscreteAction::MoveForward;
         }
         let opening = self.opening.take().filter(|opening| opening.door == door);
-        let mut opening = opening.unwrap_or_else(|| DoorOpening::of(door));
+        let mut opening = opening.unwrap_or_else(|| DoorOpening::new(door));
         opening.count_open_request(world, &self.grid, self.agent);
         self.opening = Some(opening);
         DiscreteAction::Open

@@ -2,7 +2,7 @@
 
 mod snapshot_base;
 
-pub(crate) use snapshot_base::{SnapshotBase, SnapshotParts, unpacked_body};
+pub(crate) use snapshot_base::{SnapshotBase, SnapshotParts, serialize_snapshot_parts};
 
 use crate::config::WorldConfig;
 use crate::error::WorldError;

@@ -42,7 +42,7 @@ impl SnapshotBase {
         let bytes = start.map_or_else(
             |_| Vec::new(),
             |start| {
-                unpacked_body(
+                serialize_snapshot_parts(
                     model.house(),
                     &start.state,
                     &start.physics,
@@ -59,7 +59,7 @@ impl SnapshotBase {
 }
 
 /// The parts of a world as bytes, before they are packed.
-pub(crate) fn unpacked_body(
+pub(crate) fn serialize_snapshot_parts(
     house: &House,
     state: &State,
     physics: &PhysicsWorld,

@@ -43,7 +43,7 @@ fn write(look: ImageContext<'_>, out: ObservationBuffer<'_>) {
     let ObservationBuffer::Int32(out) = out else {
         return;
     };
-    object_list::fill(&look, out, |sighting| {
+    object_list::write_object_rows(&look, out, |sighting| {
         let ([left, top], [right, bottom]) = (sighting.first_pixel, sighting.end_pixel);
         [
             sighting.entity.0 as u32,

@@ -49,7 +49,7 @@ fn write(look: ImageContext<'_>, out: ObservationBuffer<'_>) {
     let Ok(renderer) = world.engines().cpu_renderer() else {
         return;
     };
-    object_list::fill(&look, out, |sighting| {
+    object_list::write_object_rows(&look, out, |sighting| {
         let mut row = [0.0; 11];
         row[0] = sighting.entity.0 as f32;
         if let Some(bounds) = renderer.oriented_box(world.state(), sighting.entity) {

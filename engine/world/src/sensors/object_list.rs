@@ -5,7 +5,7 @@ use dwell_render::{VisibleObject, visible_objects};
 use dwell_scene::Entity;
 
 /// Writes a row for every object and agent in the picture, by id; of more than fit those with most pixels. Unused rows are 0.
-pub(super) fn fill<T: Copy + Default, const N: usize>(
+pub(super) fn write_object_rows<T: Copy + Default, const N: usize>(
     look: &ImageContext<'_>,
     out: &mut [T],
     row: impl Fn(&VisibleObject) -> [T; N],

@@ -49,7 +49,7 @@ fn write(look: ImageContext<'_>, out: ObservationBuffer<'_>) {
     let Ok(renderer) = world.engines().cpu_renderer() else {
         return;
     };
-    object_list::fill(&look, out, |sighting| {
+    object_list::write_object_rows(&look, out, |sighting| {
         let (scene, state) = (world.rays(), world.state());
         let alone = renderer.unoccluded_pixels(scene, state, &view, sighting.entity);
         let hidden = 1.0 - sighting.pixels as f32 / alone.max(sighting.pixels) as f32;

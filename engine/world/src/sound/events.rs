@@ -154,7 +154,7 @@ impl WorldSound {
                     event.relative_tangential_speed_m_s,
                 ),
             };
-            let [a, b] = [event.a, event.b].map(number);
+            let [a, b] = [event.a, event.b].map(contact_entity_key);
             let place = step.key.child("rub").child(a).child(b);
             // The mean over the step: what touched for half of it sounds half as loud as what touched all along.
             let sound = FrictionSound {
@@ -329,7 +329,7 @@ fn closed_within(kind: JointKind) -> f32 {
 }
 
 /// A number that identifies a contact's body.
-fn number(toucher: ContactEntity) -> u64 {
+fn contact_entity_key(toucher: ContactEntity) -> u64 {
     match toucher {
         ContactEntity::Structure(id) => id.index() as u64,
         ContactEntity::Part(id) => (1 << 40) + id.index() as u64,
@@ -350,7 +350,7 @@ fn partners(step: &StepContext<'_>, event: &ContactEvent) -> [ContactPartner; 2]
             let size = part_size_m(step.house, id);
             ContactPartner::body(substance, part_mass_kg(step.house, step.state, id), size)
         }
-        ContactEntity::Agent(id) => agent(step.state, id, substance),
+        ContactEntity::Agent(id) => partner_of_agent(step.state, id, substance),
     };
     [
         partner(event.a, event.substance_a),
@@ -364,7 +364,7 @@ fn panel_partner(substance: &str, floor: bool) -> ContactPartner {
     ContactPartner::panel(substance, own.max(least))
 }
 
-fn agent(state: &State, id: AgentId, substance: &str) -> ContactPartner {
+fn partner_of_agent(state: &State, id: AgentId, substance: &str) -> ContactPartner {
     let height_m = state
         .agents
         .get(id)

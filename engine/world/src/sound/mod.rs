@@ -98,7 +98,7 @@ impl WorldSound {
     }
 
     /// The signals of emitters that are on, each once, and the rate at which they are heard.
-    pub(crate) fn signals(&self, house: &House, state: &State) -> (Vec<String>, u32) {
+    pub(crate) fn active_signals(&self, house: &House, state: &State) -> (Vec<String>, u32) {
         let emitters = house.emitters.iter().enumerate();
         let on = emitters.filter(|(k, emitter)| {
             emitter.sound_file.is_none() && self.emitters.is_on(house, state, *k)
@@ -116,7 +116,7 @@ impl WorldSound {
     ) -> Result<(), WorldError> {
         self.emitters.update(engines.house(), state);
         for playing in &mut self.playing {
-            let target = playing.target();
+            let target = playing.target_pressure_pa();
             playing.state.fade.update(target);
         }
         if !self.ears.is_empty() {
@@ -273,7 +273,7 @@ impl WorldSound {
         handle: u64,
         silent: bool,
     ) -> Result<(), WorldError> {
-        match self.played(handle) {
+        match self.playback_mut(handle) {
             Some(playing) => playing.state.stopped = silent,
             None => self.emitter_override_mut(house, handle)?.silent = silent,
         }
@@ -286,14 +286,14 @@ impl WorldSound {
         handle: u64,
         level_db: f32,
     ) -> Result<(), WorldError> {
-        match self.played(handle) {
+        match self.playback_mut(handle) {
             Some(playing) => playing.state.request.level_db = level_db,
             None => self.emitter_override_mut(house, handle)?.level_db = Some(level_db),
         }
         Ok(())
     }
 
-    fn played(&mut self, handle: u64) -> Option<&mut Playback> {
+    fn playback_mut(&mut self, handle: u64) -> Option<&mut Playback> {
         let mut playing = self.playing.iter_mut();
         playing.find(|playing| playing.state.id == handle)
     }
@@ -313,7 +313,11 @@ impl WorldSound {
         )))
     }
 
-    pub(crate) fn list(&self, house: &House, state: &State) -> Vec<SoundState> {
+    pub(crate) fn list_emitters_and_playbacks(
+        &self,
+        house: &House,
+        state: &State,
+    ) -> Vec<SoundState> {
         let own = house
             .emitters
             .iter()

@@ -172,7 +172,7 @@ impl Playback {
     }
 
     /// The target pressure at 1 m, Pa.
-    pub(super) fn target(&self) -> f32 {
+    pub(super) fn target_pressure_pa(&self) -> f32 {
         if self.state.stopped {
             0.0
         } else {

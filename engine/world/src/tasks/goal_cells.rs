@@ -13,7 +13,7 @@ const SQUARE_M: f32 = 1.0;
 const CELLS_PER_CHECK: usize = 256;
 
 /// The cells of the largest island, collected once for all goals.
-pub(super) struct IslandCellIndex<'a> {
+pub(super) struct LargestIslandIndex<'a> {
     pub(super) grid: &'a NavGrid,
     /// Rising.
     cells: Vec<NavCell>,
@@ -27,7 +27,7 @@ fn cell_block_of(value: f32) -> i32 {
     (value / SQUARE_M).floor() as i32
 }
 
-impl<'a> IslandCellIndex<'a> {
+impl<'a> LargestIslandIndex<'a> {
     pub(super) fn of(grid: &'a NavGrid) -> Self {
         let on_island = |cell: &NavCell| grid.island(*cell) == Some(0);
         let cells: Vec<NavCell> = grid.walkable().filter(on_island).collect();
@@ -89,7 +89,7 @@ mod tests {
         let house = dwell_houses::builtin::build("studio").unwrap();
         let state = State::new(&house);
         let grid = NavGrid::build(&house, &state, &NavConfig::default()).unwrap();
-        let ground = IslandCellIndex::of(&grid);
+        let ground = LargestIslandIndex::of(&grid);
         let all = || grid.walkable().filter(|cell| grid.island(*cell) == Some(0));
         let mut asked = 0;
         for object in house.objects.ids() {

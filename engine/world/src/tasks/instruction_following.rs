@@ -4,7 +4,7 @@
 //! instruction is fulfilled. The episode ends with `stop`.
 
 use super::door_leaves::DoorLeaves;
-use super::goal_cells::IslandCellIndex;
+use super::goal_cells::LargestIslandIndex;
 use super::standing_room::FreeStartCells;
 use super::{Task, TaskKind, TaskSetup};
 use crate::actions::{DiscreteAction, StepSizes};
@@ -160,7 +160,7 @@ impl InstructionFollowing {
     /// All at once: who is stopped on the way has found nothing.
     fn find_playable(&self, world: &World, grid: &NavGrid) -> Vec<PlayableInstruction> {
         let mut offers = Vec::new();
-        let ground = IslandCellIndex::of(grid);
+        let ground = LargestIslandIndex::of(grid);
         let engines = world.engines().clone();
         let state: &State = world.state();
         let scene = engines.semantics().scene(state);
@@ -180,7 +180,7 @@ impl InstructionFollowing {
 fn goal_cells(
     world: &World,
     agent: AgentId,
-    ground: &IslandCellIndex<'_>,
+    ground: &LargestIslandIndex<'_>,
     instruction: &Instruction,
 ) -> Vec<NavCell> {
     if !instruction.goal.rooms.is_empty() {
@@ -227,7 +227,7 @@ impl Task for InstructionFollowing {
         serde_json::json!(self.settings)
     }
 
-    fn prepare_house(&mut self, world: &World) -> Result<(), WorldError> {
+    fn survey_house(&mut self, world: &World) -> Result<(), WorldError> {
         if self.offers.is_empty() {
             let grid = world.engines().nav_grid(&self.body(world)?)?;
             self.offers = self.find_playable(world, &grid);
@@ -254,7 +254,7 @@ impl Task for InstructionFollowing {
         let mut order: Vec<usize> = (0..self.offers.len()).collect();
         key.child("order").stream().shuffle(&mut order);
         let found = order.into_iter().find_map(|k| {
-            interrupt::check();
+            interrupt::unwind_if_cancelled();
             let offer = &self.offers[k];
             let guide =
                 ShortestPathFollower::new(agent, grid.clone(), &offer.goals, self.setup.stride);

@@ -24,7 +24,7 @@ pub trait Task: Debug + Send + Sync {
     ///
     /// # Errors
     /// As [`Self::reset`].
-    fn prepare_house(&mut self, _world: &World) -> Result<(), WorldError> {
+    fn survey_house(&mut self, _world: &World) -> Result<(), WorldError> {
         Ok(())
     }
 

@@ -2,7 +2,7 @@
 
 use super::TargetMotors;
 use crate::error::PhysicsError;
-use crate::joints::{MotorLaw, MotorStep, StatefulLaw};
+use crate::joints::{MotorLaw, MotorState, StatefulLaw};
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
@@ -74,7 +74,7 @@ fn install(
     model: &PhysicsModel,
     state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
-    let motors = TargetMotors::of(values, model)?.0.into_iter();
+    let motors = TargetMotors::resolve(values, model)?.0.into_iter();
     Ok(vec![LawEffect::Motor(Box::new(Backlash {
         half_width: values.get_f32("half_width"),
         motor_inertia: values.get_f32("motor_inertia"),
@@ -98,7 +98,7 @@ impl BacklashState {
     }
 
     /// Lets the motor run ahead of the joint with `velocity` for a step. Returns whether it is then in contact with a flank.
-    fn cross(&mut self, motor: &MotorStep, velocity: f32, half_width: f32) -> bool {
+    fn advance_in_gap(&mut self, motor: &MotorState, velocity: f32, half_width: f32) -> bool {
         self.gap += (velocity - motor.velocity) * motor.dt_s;
         let meets = self.gap.abs() >= half_width;
         self.gap = self.gap.clamp(-half_width, half_width);
@@ -106,7 +106,7 @@ impl BacklashState {
     }
 
     /// Makes one step under an effort. Returns whether it reaches the joint.
-    fn press(&mut self, motor: &MotorStep, effort: f32, half_width: f32, inertia: f32) -> bool {
+    fn press(&mut self, motor: &MotorState, effort: f32, half_width: f32, inertia: f32) -> bool {
         let presses = effort != 0.0 && effort.signum() * self.gap >= half_width;
         if presses || inertia == 0.0 {
             if effort != 0.0 {
@@ -118,7 +118,7 @@ impl BacklashState {
         // J dw/dt = u, alone between the flanks.
         let before = self.velocity;
         self.velocity += effort / inertia * motor.dt_s;
-        if self.cross(motor, 0.5 * (before + self.velocity), half_width) {
+        if self.advance_in_gap(motor, 0.5 * (before + self.velocity), half_width) {
             self.velocity = motor.velocity;
         }
         false
@@ -126,7 +126,7 @@ impl BacklashState {
 }
 
 impl MotorLaw for Backlash {
-    fn modify_command(&mut self, motor: &MotorStep, command: &mut JointCommand) {
+    fn modify_command(&mut self, motor: &MotorState, command: &mut JointCommand) {
         let (half_width, inertia) = (self.half_width, self.motor_inertia);
         let Some(gear) = self.motors.get_mut(&motor.joint) else {
             return;
@@ -141,7 +141,7 @@ impl MotorLaw for Backlash {
             }
             JointCommand::Velocity(target) => {
                 gear.velocity = *target;
-                gear.cross(motor, *target, half_width)
+                gear.advance_in_gap(motor, *target, half_width)
             }
             JointCommand::Effort(effort) => gear.press(motor, *effort, half_width, inertia),
             JointCommand::Off => {
@@ -161,7 +161,7 @@ impl MotorLaw for Backlash {
 }
 
 impl StatefulLaw for Backlash {
-    fn joint_set(&mut self, joint: JointId, position: f32) {
+    fn on_joint_set(&mut self, joint: JointId, position: f32) {
         if let Some(play) = self.motors.get_mut(&joint) {
             *play = BacklashState::at(position);
         }
@@ -199,7 +199,7 @@ mod tests {
 
     /// Returns the time for which a motor gives no effort to a joint at rest, s.
     fn silent_s(law: &mut Backlash, command: JointCommand) -> f32 {
-        let motor = MotorStep {
+        let motor = MotorState {
             joint: JointId(0),
             position: 0.0,
             velocity: 0.0,

@@ -52,7 +52,7 @@ fn install(
     _state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
     Ok(vec![LawEffect::Motor(Box::new(JointCompliance {
-        motors: TargetMotors::of(values, model)?,
+        motors: TargetMotors::resolve(values, model)?,
         compliance: values.get_f32("compliance"),
     }))])
 }

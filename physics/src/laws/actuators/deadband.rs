@@ -2,7 +2,7 @@
 
 use super::TargetMotors;
 use crate::error::PhysicsError;
-use crate::joints::{MotorLaw, MotorStep, StatefulLaw};
+use crate::joints::{MotorLaw, MotorState, StatefulLaw};
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
@@ -57,14 +57,14 @@ fn install(
     _state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
     Ok(vec![LawEffect::Motor(Box::new(Deadband {
-        motors: TargetMotors::of(values, model)?,
+        motors: TargetMotors::resolve(values, model)?,
         half_width: values.get_f32("half_width"),
         min_effort: values.get_f32("min_effort"),
     }))])
 }
 
 impl MotorLaw for Deadband {
-    fn modify_command(&mut self, motor: &MotorStep, command: &mut JointCommand) {
+    fn modify_command(&mut self, motor: &MotorState, command: &mut JointCommand) {
         if !self.motors.contains(motor.joint) {
             return;
         }

@@ -2,7 +2,7 @@
 
 use super::FilteredCommands;
 use crate::error::PhysicsError;
-use crate::joints::{MotorLaw, MotorStep, StatefulLaw};
+use crate::joints::{MotorLaw, MotorState, StatefulLaw};
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
@@ -61,7 +61,7 @@ fn relax(y: f32, u: f32, steps: f32) -> (f32, f32) {
 }
 
 impl MotorLaw for FirstOrderLag {
-    fn modify_command(&mut self, motor: &MotorStep, command: &mut JointCommand) {
+    fn modify_command(&mut self, motor: &MotorState, command: &mut JointCommand) {
         let steps = motor.dt_s / self.tau_s;
         self.outputs
             .filter_command(motor, command, |y, told| relax(y, told, steps));

@@ -120,7 +120,7 @@ impl ResistanceLaw for Hysteresis {
 }
 
 impl StatefulLaw for Hysteresis {
-    fn joint_set(&mut self, joint: JointId, position: f32) {
+    fn on_joint_set(&mut self, joint: JointId, position: f32) {
         if let Some(spring) = self.springs.get_mut(&joint) {
             *spring = HysteresisSpring {
                 effort: 0.0,

@@ -92,7 +92,7 @@ struct Friction {
 
 impl Friction {
     /// Returns the largest effort of friction besides the viscous one, N·m or N.
-    fn bound(&self, load: &JointLoad) -> f32 {
+    fn max_dry_friction(&self, load: &JointLoad) -> f32 {
         let (motor, external) = (load.motor_effort, load.external_effort);
         let transmitted = (motor - external).abs();
         let speed = (load.velocity / self.stribeck_velocity).abs();
@@ -156,7 +156,7 @@ impl ResistanceLaw for JointFriction {
         resistance: &mut JointResistance,
     ) {
         if self.hinges.contains(joint) {
-            resistance.friction += self.friction.bound(load);
+            resistance.friction += self.friction.max_dry_friction(load);
             resistance.damping += self.friction.viscous;
         }
     }
@@ -268,12 +268,12 @@ mod tests {
                 + 7.326_92e-5 * 2.25,
         ];
         for (friction, expected) in mx106().iter().zip(expected_at_rest) {
-            let found = friction.bound(&load(0.0, 2.0, -1.5));
+            let found = friction.max_dry_friction(&load(0.0, 2.0, -1.5));
             assert!((found - expected).abs() < 1e-6, "{found} {expected}");
         }
         // At high speed stiction vanishes: M2 keeps its Coulomb term, M4 its load, M5 and M6 the moving direction terms.
         let fast = load(50.0, 2.0, -1.5);
-        let [m1, m2, m3, m4, m5, _] = mx106().map(|friction| friction.bound(&fast));
+        let [m1, m2, m3, m4, m5, _] = mx106().map(|friction| friction.max_dry_friction(&fast));
         assert!((m1 - 0.103_520_27).abs() < 1e-7 && m2 < 1e-5);
         assert!((m3 - expected_at_rest[2]).abs() < 1e-6);
         assert!((m4 - 0.009_150_334 * 3.5).abs() < 1e-6);
@@ -285,7 +285,7 @@ mod tests {
             external_quadratic: 0.0,
             ..m6
         };
-        let extra = |load: &JointLoad| m6.bound(load) - without.bound(load);
+        let extra = |load: &JointLoad| m6.max_dry_friction(load) - without.max_dry_friction(load);
         assert!((extra(&load(0.0, 1.0, -3.0)) - 0.009_999_93).abs() < 1e-6);
         assert_eq!(extra(&load(0.0, 1.0, 3.0)), 0.0);
     }

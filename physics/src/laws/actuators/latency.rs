@@ -1,8 +1,8 @@
 //! Latency: commands reach a motor late.
 
-use super::{TargetMotors, number, same_kind, with};
+use super::{TargetMotors, command_value, same_kind, with};
 use crate::error::PhysicsError;
-use crate::joints::{MotorLaw, MotorStep, StatefulLaw, motor_command};
+use crate::joints::{MotorLaw, MotorState, StatefulLaw, motor_command};
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
@@ -52,7 +52,7 @@ fn install(
     model: &PhysicsModel,
     state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
-    let mut motors = TargetMotors::of(values, model)?.each(CommandDelayLine::default);
+    let mut motors = TargetMotors::resolve(values, model)?.each(CommandDelayLine::default);
     // What motors are told at that moment they have been told for long: no motor lets go because a cable grew.
     for (joint, past) in &mut motors {
         past.0.push_back(motor_command(state, *joint));
@@ -73,7 +73,7 @@ impl CommandDelayLine {
         self.0.resize(whole + 2, oldest);
         let sent = |steps: usize| self.0.get(steps).copied().unwrap_or_default();
         let (late, early) = (sent(whole), sent(whole + 1));
-        match (number(early), number(late)) {
+        match (command_value(early), command_value(late)) {
             // Both are of one kind: the mean of a step in which the command changes.
             (Some(before), Some(after)) if same_kind(late, early) => {
                 with(late, before * part + after * (1.0 - part))
@@ -85,7 +85,7 @@ impl CommandDelayLine {
 }
 
 impl MotorLaw for Latency {
-    fn modify_command(&mut self, motor: &MotorStep, command: &mut JointCommand) {
+    fn modify_command(&mut self, motor: &MotorState, command: &mut JointCommand) {
         if let Some(past) = self.past.get_mut(&motor.joint) {
             *command = past.shift(*command, self.delay_s / motor.dt_s);
         }
@@ -134,7 +134,7 @@ mod tests {
                 if step as f32 >= delay + 1.0 {
                     let expected = step as f32 - delay;
                     assert!(
-                        (number(now).unwrap() - expected).abs() < 1e-5,
+                        (command_value(now).unwrap() - expected).abs() < 1e-5,
                         "{delay} {step} {now:?}"
                     );
                 }
@@ -150,7 +150,7 @@ mod tests {
         let mut run = |delay: f32, steps: usize| {
             let arrived = (0..steps).map(|_| {
                 told += 1.0;
-                number(past.shift(JointCommand::Effort(told), delay)).unwrap_or(0.0)
+                command_value(past.shift(JointCommand::Effort(told), delay)).unwrap_or(0.0)
             });
             arrived.collect::<Vec<f32>>()
         };

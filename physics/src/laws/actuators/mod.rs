@@ -16,7 +16,7 @@ pub(super) mod rate_limit;
 pub(super) mod saturation;
 
 use crate::error::PhysicsError;
-use crate::joints::MotorStep;
+use crate::joints::MotorState;
 use crate::model::PhysicsModel;
 use dwell_scene::law::is_joint_named;
 use dwell_scene::{Joint, JointCommand, JointId, LawValues};
@@ -50,7 +50,7 @@ fn target_joints(
 struct TargetMotors(Vec<JointId>);
 
 impl TargetMotors {
-    fn of(values: LawValues<'_>, model: &PhysicsModel) -> Result<Self, PhysicsError> {
+    fn resolve(values: LawValues<'_>, model: &PhysicsModel) -> Result<Self, PhysicsError> {
         let kind = "joint with a servo";
         target_joints(values, model, kind, |joint| joint.servo.is_some()).map(Self)
     }
@@ -86,7 +86,7 @@ struct FilteredCommands(BTreeMap<JointId, JointCommand>);
 impl FilteredCommands {
     fn of(values: LawValues<'_>, model: &PhysicsModel) -> Result<Self, PhysicsError> {
         Ok(Self(
-            TargetMotors::of(values, model)?.each(JointCommand::default),
+            TargetMotors::resolve(values, model)?.each(JointCommand::default),
         ))
     }
 
@@ -94,21 +94,21 @@ impl FilteredCommands {
     /// and returns the output at the end of the step and its mean over it. An output begins at the joint's position.
     fn filter_command(
         &mut self,
-        motor: &MotorStep,
+        motor: &MotorState,
         command: &mut JointCommand,
         step: impl FnOnce(f32, f32) -> (f32, f32),
     ) {
         let Some(output) = self.0.get_mut(&motor.joint) else {
             return;
         };
-        let Some(told) = number(*command) else {
+        let Some(told) = command_value(*command) else {
             *output = *command;
             return;
         };
         if !same_kind(*output, *command) {
             *output = with(*command, motor.holding_value(*command));
         }
-        let (end, mean) = step(number(*output).unwrap_or(told), told);
+        let (end, mean) = step(command_value(*output).unwrap_or(told), told);
         *output = with(*command, end);
         *command = with(*command, mean);
     }
@@ -125,7 +125,7 @@ impl FilteredCommands {
 }
 
 /// Returns the value of a command; `None` when the motor is off.
-fn number(command: JointCommand) -> Option<f32> {
+fn command_value(command: JointCommand) -> Option<f32> {
     match command {
         JointCommand::Off => None,
         JointCommand::Position(x) | JointCommand::Velocity(x) | JointCommand::Effort(x) => Some(x),
@@ -154,7 +154,7 @@ fn pack(command: JointCommand) -> [f32; 2] {
         JointCommand::Velocity(_) => 2.0,
         JointCommand::Effort(_) => 3.0,
     };
-    [kind, number(command).unwrap_or(0.0)]
+    [kind, command_value(command).unwrap_or(0.0)]
 }
 
 /// Returns the command that [`pack`] packed.

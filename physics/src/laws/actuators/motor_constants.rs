@@ -103,7 +103,7 @@ fn install(
     let resistance = number("resistance_ohm");
     let supply = number("supply_v");
     let law = MotorConstants {
-        motors: TargetMotors::of(values, model)?,
+        motors: TargetMotors::resolve(values, model)?,
         torque_scale: number("torque_scale"),
         stall_effort: if supply > 0.0 {
             geared * supply / resistance

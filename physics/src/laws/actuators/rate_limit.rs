@@ -2,7 +2,7 @@
 
 use super::FilteredCommands;
 use crate::error::PhysicsError;
-use crate::joints::{MotorLaw, MotorStep, StatefulLaw};
+use crate::joints::{MotorLaw, MotorState, StatefulLaw};
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
@@ -63,7 +63,7 @@ fn approach(y: f32, u: f32, most: f32) -> (f32, f32) {
 }
 
 impl MotorLaw for RateLimit {
-    fn modify_command(&mut self, motor: &MotorStep, command: &mut JointCommand) {
+    fn modify_command(&mut self, motor: &MotorState, command: &mut JointCommand) {
         let most = self.max_rate * motor.dt_s;
         self.outputs
             .filter_command(motor, command, |y, told| approach(y, told, most));

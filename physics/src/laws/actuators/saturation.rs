@@ -45,7 +45,7 @@ fn install(
     _state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
     Ok(vec![LawEffect::Motor(Box::new(Saturation {
-        motors: TargetMotors::of(values, model)?,
+        motors: TargetMotors::resolve(values, model)?,
         max_effort: values.get_f32("max_effort"),
     }))])
 }

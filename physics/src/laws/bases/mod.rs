@@ -25,7 +25,7 @@ impl RequiredBase {
         }
     }
 
-    fn words(self) -> &'static str {
+    fn requirement_message(self) -> &'static str {
         match self {
             Self::DrivenWheels => "the law needs the two wheels of a differential drive",
             Self::Wheels => "the law needs a base on wheels",
@@ -46,11 +46,11 @@ impl TargetAgents {
             why: format!(
                 "its body is of the kind {:?}; {}",
                 state.agents[agent].body.locomotion.name(),
-                needs.words()
+                needs.requirement_message()
             ),
         };
         let fits = |agent: &AgentId| needs.are_met_by(&state.agents[*agent].body.locomotion);
-        match values.spec.agent(state.agents.len()) {
+        match values.spec.target_agent(state.agents.len()) {
             Ok(Some(agent)) if fits(&agent) => Ok(Self(Some(agent))),
             Ok(Some(agent)) => Err(unfit(format!("agent {}", agent.index()), agent)),
             Ok(None) => match state.agents.ids().next() {

@@ -2,7 +2,7 @@
 
 use super::size::cross_section_m2;
 use crate::error::PhysicsError;
-use crate::joints::LinkStep;
+use crate::joints::LinkState;
 use crate::laws::target::moving_bodies;
 use crate::model::PhysicsModel;
 use dwell_scene::LawValues;
@@ -36,7 +36,7 @@ pub(super) fn drag_factor_of(bodies: &[(u32, f32)], body: u32) -> Option<f64> {
 }
 
 /// Returns the force of `gain |u| u` against the velocity `u` of a jointed body, N.
-pub(super) fn drag_force(link: &LinkStep, gain: f64, against: DVec3) -> DVec3 {
+pub(super) fn drag_force(link: &LinkState, gain: f64, against: DVec3) -> DVec3 {
     if link.mass_kg <= 0.0 {
         return DVec3::ZERO;
     }

@@ -1,7 +1,7 @@
 //! Viscous damping: in proportion to velocity.
 
 use crate::error::PhysicsError;
-use crate::joints::{ExternalWrench, LinkLaw, LinkStep};
+use crate::joints::{ExternalWrench, LinkLaw, LinkState};
 use crate::laws::target::moving_bodies;
 use crate::laws::{BodyLaw, LawContext, LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
@@ -81,7 +81,7 @@ impl BodyLaw for ViscousDamping {
 }
 
 impl LinkLaw for ViscousDamping {
-    fn wrench(&self, link: &LinkStep) -> ExternalWrench {
+    fn wrench(&self, link: &LinkState) -> ExternalWrench {
         if self.bodies.binary_search(&link.body).is_err() {
             return ExternalWrench::default();
         }

@@ -2,7 +2,7 @@
 
 use super::air::{AIR_DENSITY, AREA, drag_factor_of, drag_factors, drag_force};
 use crate::error::PhysicsError;
-use crate::joints::{ExternalWrench, LinkLaw, LinkStep};
+use crate::joints::{ExternalWrench, LinkLaw, LinkState};
 use crate::laws::{BodyLaw, LawContext, LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
@@ -134,7 +134,7 @@ impl BodyLaw for Wind {
 }
 
 impl LinkLaw for Wind {
-    fn wrench(&self, link: &LinkStep) -> ExternalWrench {
+    fn wrench(&self, link: &LinkState) -> ExternalWrench {
         let Some(gain) = drag_factor_of(&self.bodies, link.body) else {
             return ExternalWrench::default();
         };

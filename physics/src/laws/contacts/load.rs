@@ -1,6 +1,6 @@
 //! Contact loads of the last step, and torques between the two bodies.
 
-use crate::contact::{ColliderEntry, ContactScope, ContactSide, entry_index};
+use crate::contact::{ColliderMetadata, ContactScope, ContactSide, entry_index};
 use crate::laws::LawContext;
 use glam::{Quat, Vec3};
 use rapier3d::dynamics::{RigidBody, RigidBodyHandle};
@@ -67,7 +67,7 @@ pub(super) fn loads(stage: &LawContext<'_>, scope: &ContactScope) -> Vec<Contact
                 a.surface.class(plane.subshape1),
                 b.surface.class(plane.subshape2),
             );
-            let side = |entry: &ColliderEntry, class: u16| ContactSide {
+            let side = |entry: &ColliderMetadata, class: u16| ContactSide {
                 contact_entity: entry.contact_entity,
                 substance: stage.table.substance(class),
                 rotation: Quat::IDENTITY,

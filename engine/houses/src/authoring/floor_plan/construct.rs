@@ -22,7 +22,7 @@ use crate::building::assembly::HouseAssembly;
 use crate::building::openings::{add_door, add_window};
 use crate::building::outline::outline;
 use crate::building::room::{HorizontalSlab, ShellRoom};
-use crate::building::stairs::{StairFlights, add_railing, add_stairs};
+use crate::building::stairs::{StairPlacement, add_railing, add_stairs};
 use crate::building::wall::{FinishBands, ShellWall, WallAxis};
 use crate::building::yaw::yaw_rotation;
 use crate::error::HousesError;
@@ -44,7 +44,7 @@ const LEAST_STAIRS_M: [f32; 2] = [1.6, 2.4];
 ///
 /// # Errors
 /// [`HousesError::Spec`] names storey, room or opening, what was found and what is possible.
-pub(in crate::authoring) fn construct(
+pub(in crate::authoring) fn build_house_data(
     name: &str,
     building: &BuildingPlan,
 ) -> Result<HouseData, HousesError> {
@@ -130,7 +130,7 @@ impl StoreyBuilder<'_> {
         let mut cuts = Vec::new();
         for well in wells {
             cuts.push(
-                well.map(Self::well)
+                well.map(Self::stairwell_rect)
                     .transpose()
                     .map_err(prefix_field("stairs"))?,
             );
@@ -175,7 +175,7 @@ impl StoreyBuilder<'_> {
         Ok(rise)
     }
 
-    fn well(stairs: &StairsPlan) -> Result<[Millimetres; 4], HousesError> {
+    fn stairwell_rect(stairs: &StairsPlan) -> Result<[Millimetres; 4], HousesError> {
         let mut rect = [0; 4];
         for (to, from) in rect.iter_mut().zip(stairs.rect) {
             *to = millimetres("rect", from)?;
@@ -454,7 +454,7 @@ impl StoreyBuilder<'_> {
         let middle = Vec2::new(0.5 * (x0 + x1), 0.5 * (z0 + z1));
         let depth_m = size.dot(along.abs());
         let front = middle - along * 0.5 * depth_m;
-        let flights = StairFlights {
+        let flights = StairPlacement {
             front: Vec3::new(front.x, self.floor_m, front.y),
             climb,
             mirrored: false,

@@ -189,10 +189,10 @@ pub struct WindowPlan {
     #[serde(default)]
     pub at_m: Option<f32>,
     /// m; 0.2 to 20.
-    #[serde(default = "window_m")]
+    #[serde(default = "default_window_size_m")]
     pub width_m: f32,
     /// m.
-    #[serde(default = "window_m")]
+    #[serde(default = "default_window_size_m")]
     pub height_m: f32,
     /// Height of its lower edge above the floor, m.
     #[serde(default = "sill_m")]
@@ -205,7 +205,7 @@ pub struct WindowPlan {
     pub name: Option<String>,
 }
 
-fn window_m() -> f32 {
+fn default_window_size_m() -> f32 {
     1.2
 }
 

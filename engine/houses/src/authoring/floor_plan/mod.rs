@@ -10,7 +10,7 @@ mod grid;
 mod openings;
 mod walls;
 
-pub(super) use construct::construct;
+pub(super) use construct::build_house_data;
 pub use data::{
     BuildingPlan, CardinalDirection, DoorLeaf, DoorPlan, HingeSide, OUTSIDE, RoomPlan, StairsPlan,
     StoreyPlan, SurfaceFinish, WindowPlan,

@@ -44,8 +44,8 @@ pub(super) fn plan_openings<'a>(
 ) -> Result<Vec<PlanOpening<'a>>, HousesError> {
     let mut holes: Vec<PlanOpening<'a>> = Vec::new();
     for (k, door) in storey.doors.iter().enumerate() {
-        let hole =
-            of_door(storey, door, stretches).map_err(prefix_field(format_args!("doors[{k}]")))?;
+        let hole = door_opening(storey, door, stretches)
+            .map_err(prefix_field(format_args!("doors[{k}]")))?;
         check_no_overlap(&holes, &hole).map_err(prefix_field(format_args!("doors[{k}]")))?;
         holes.push(hole);
     }
@@ -66,7 +66,7 @@ fn room(storey: &StoreyPlan, field: &str, name: &str) -> Result<usize, HousesErr
     })
 }
 
-fn of_door<'a>(
+fn door_opening<'a>(
     storey: &StoreyPlan,
     door: &'a DoorPlan,
     stretches: &[WallSegment],
@@ -95,7 +95,10 @@ fn of_door<'a>(
     check_range("open", door.open, [0.0, 1.0], "")?;
     let between = match door.side {
         None => format!("{front:?} and {behind:?}"),
-        Some(_) => format!("{front:?} and, on its {}side, {behind:?}", word(door.side)),
+        Some(_) => format!(
+            "{front:?} and, on its {}side, {behind:?}",
+            side_adjective(door.side)
+        ),
     };
     let fits = |stretch: &WallSegment| is_wall_on_side(stretch, own, other, door.side);
     let (stretch, along) = locate_in_wall(stretches, fits, (&between, door.at_m, width))?;
@@ -144,7 +147,11 @@ fn of_window<'a>(
     )?;
     let fits =
         |stretch: &WallSegment| is_wall_on_side(stretch, own, PlanCell::Outside, window.side);
-    let between = format!("{:?} and its {}outside", window.room, word(window.side));
+    let between = format!(
+        "{:?} and its {}outside",
+        window.room,
+        side_adjective(window.side)
+    );
     let (stretch, along) = locate_in_wall(stretches, fits, (&between, window.at_m, width))?;
     Ok(PlanOpening {
         wall_segment: stretch,
@@ -179,7 +186,7 @@ fn is_wall_on_side(
 }
 
 /// A side before a noun.
-fn word(side: Option<CardinalDirection>) -> String {
+fn side_adjective(side: Option<CardinalDirection>) -> String {
     side.map_or_else(String::new, |side| format!("{side:?} ").to_lowercase())
 }
 

@@ -36,7 +36,7 @@ impl WallSegment {
 
 /// The run of wall that a cell belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum WallRun {
+enum WallCellKind {
     /// In a wall along x, with the cells north and south of it.
     X([PlanCell; 2]),
     /// In a wall along z, with the cells west and east of it.
@@ -52,7 +52,7 @@ pub(super) fn wall_segments(grid: &PlanGrid, thickest: Millimetres) -> Vec<WallS
     for j in 0..rows {
         for i in 0..columns {
             let wall = grid.cell(i, j) == PlanCell::Wall;
-            runs.push(wall.then(|| run_of(grid, i, j, thickest)));
+            runs.push(wall.then(|| wall_cell_kind(grid, i, j, thickest)));
         }
     }
     let run = |i: usize, j: usize| runs[j * columns + i];
@@ -70,7 +70,7 @@ pub(super) fn wall_segments(grid: &PlanGrid, thickest: Millimetres) -> Vec<WallS
             let mut slices: Vec<WallSegment> = Vec::new();
             for k in 0..cross {
                 let (i, j) = at(k);
-                let ((Some(WallRun::X(sides)), true) | (Some(WallRun::Z(sides)), false)) =
+                let ((Some(WallCellKind::X(sides)), true) | (Some(WallCellKind::Z(sides)), false)) =
                     (run(i, j), along_x)
                 else {
                     continue;
@@ -104,7 +104,7 @@ pub(super) fn wall_segments(grid: &PlanGrid, thickest: Millimetres) -> Vec<WallS
     }
     for j in 0..rows {
         for i in 0..columns {
-            if run(i, j) != Some(WallRun::Corner) {
+            if run(i, j) != Some(WallCellKind::Corner) {
                 continue;
             }
             let around = |dj: usize, up: bool| {
@@ -136,17 +136,17 @@ fn room_of(sides: [PlanCell; 2]) -> Option<usize> {
     })
 }
 
-fn run_of(grid: &PlanGrid, i: usize, j: usize, thickest: Millimetres) -> WallRun {
+fn wall_cell_kind(grid: &PlanGrid, i: usize, j: usize, thickest: Millimetres) -> WallCellKind {
     let upright = cells_across_wall(&grid.zs, j, |j| grid.cell(i, j));
     let level = cells_across_wall(&grid.xs, i, |i| grid.cell(i, j));
     let fits = |(sides, thick): &([PlanCell; 2], Millimetres)| {
         *thick <= thickest && sides.iter().any(|side| matches!(side, PlanCell::Room(_)))
     };
     match (fits(&upright), fits(&level)) {
-        (true, true) if upright.1 <= level.1 => WallRun::X(upright.0),
-        (true, false) => WallRun::X(upright.0),
-        (_, true) => WallRun::Z(level.0),
-        (false, false) => WallRun::Corner,
+        (true, true) if upright.1 <= level.1 => WallCellKind::X(upright.0),
+        (true, false) => WallCellKind::X(upright.0),
+        (_, true) => WallCellKind::Z(level.0),
+        (false, false) => WallCellKind::Corner,
     }
 }
 

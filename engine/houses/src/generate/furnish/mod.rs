@@ -55,14 +55,14 @@ impl HouseFurnisher<'_> {
             .map(|(level, storey)| {
                 let cells = StoreyCells::new(&storey.rooms);
                 (0..storey.rooms.len())
-                    .map(|room| self.room(level, &cells, room, 1.0, self.key))
+                    .map(|room| self.furnish_room(level, &cells, room, 1.0, self.key))
                     .collect()
             })
             .collect()
     }
 
     /// Furnishes a room of a storey with a share of the furniture that it can do without.
-    pub(crate) fn room(
+    pub(crate) fn furnish_room(
         &self,
         level: usize,
         cells: &StoreyCells,
@@ -103,7 +103,9 @@ impl HouseFurnisher<'_> {
         let mut missing = Vec::new();
         let rules = rules();
         for (k, run) in rules.run.iter().enumerate() {
-            if run.rooms.contains(&kind) && !furnishing.run(run, key.child("run").child(k as u64)) {
+            if run.rooms.contains(&kind)
+                && !furnishing.place_fitted_run(run, key.child("run").child(k as u64))
+            {
                 let name = kind.requirements().name;
                 missing.push(format!("{name}: no wall for fitted units ({})", run.reason));
             }
@@ -114,14 +116,14 @@ impl HouseFurnisher<'_> {
             }
             // Rules are distinguished by their content, so that a new rule reshuffles no other.
             let key = key.child(rule.kinds[0].as_str()).child(k as u64);
-            let mut done = furnishing.follow(rule, key);
+            let mut done = furnishing.apply_rule(rule, key);
             // Needed furniture may narrow the paths.
             while !done && rule.required && path + 1 < PATHS_M.len() {
                 path += 1;
                 furnishing
                     .space
                     .compute_walkable(room, storey, PATHS_M[path]);
-                done = furnishing.follow(rule, key.child(path as u64));
+                done = furnishing.apply_rule(rule, key.child(path as u64));
             }
             if !done && rule.required {
                 let (name, what) = (kind.requirements().name, &rule.kinds[0]);
@@ -152,7 +154,7 @@ struct RoomFurnisher<'a> {
 
 impl RoomFurnisher<'_> {
     /// Applies a rule; false when a wanted thing found no place.
-    fn follow(&mut self, rule: &FurnishingRule, key: RandomKey) -> bool {
+    fn apply_rule(&mut self, rule: &FurnishingRule, key: RandomKey) -> bool {
         let mut draw = key.stream();
         let chance = rule.chance * (self.density / 0.8);
         if self.area_m2 < rule.from_m2 || (!rule.required && draw.uniform_f32() >= chance) {
@@ -163,7 +165,7 @@ impl RoomFurnisher<'_> {
             return true;
         }
         if rule.place == PlacementKind::Window {
-            return self.at_windows(rule, key);
+            return self.furnish_windows(rule, key);
         }
         let mut anchors: Vec<Option<usize>> = (0..self.space.pieces.len())
             .filter(|k| {
@@ -202,7 +204,7 @@ impl RoomFurnisher<'_> {
                 let Some(stock) = cached_model(kind, self.style, key) else {
                     break;
                 };
-                if rule.differ && self.shows(stock.picture_id) {
+                if rule.differ && self.has_picture(stock.picture_id) {
                     continue;
                 }
                 let host = anchor.map(|k| &self.space.pieces[k]);
@@ -228,12 +230,12 @@ impl RoomFurnisher<'_> {
     }
 
     /// Returns whether a picture in the room shows this already.
-    fn shows(&self, picture_id: Option<&'static str>) -> bool {
+    fn has_picture(&self, picture_id: Option<&'static str>) -> bool {
         let mut pieces = self.space.pieces.iter();
         picture_id.is_some() && pieces.any(|piece| piece.model.picture_id == picture_id)
     }
 
-    fn at_windows(&mut self, rule: &FurnishingRule, key: RandomKey) -> bool {
+    fn furnish_windows(&mut self, rule: &FurnishingRule, key: RandomKey) -> bool {
         let holes = self.space.holes.clone();
         let windows = holes
             .iter()
@@ -259,7 +261,7 @@ impl RoomFurnisher<'_> {
     }
 
     /// Fitted units along the wall that holds the first row; false without a place.
-    fn run(&mut self, run: &FittedRunRule, key: RandomKey) -> bool {
+    fn place_fitted_run(&mut self, run: &FittedRunRule, key: RandomKey) -> bool {
         let mut draw = key.stream();
         for row in &run.rows {
             let units: Vec<Option<Arc<CachedModel>>> = row

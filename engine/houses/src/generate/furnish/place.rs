@@ -42,11 +42,11 @@ pub(crate) fn candidate_poses(
     stream: &mut RandomStream,
 ) -> Vec<Pose> {
     let mut ideas: Vec<CandidatePose> = match (rule.place, anchor) {
-        (PlacementKind::Wall, _) => walls(space, stock, None, false, stream),
-        (PlacementKind::Corner, _) => walls(space, stock, None, true, stream),
-        (PlacementKind::Hung, None) => walls(space, stock, Some(rule.height_m), false, stream),
+        (PlacementKind::Wall, _) => wall_poses(space, stock, None, false, stream),
+        (PlacementKind::Corner, _) => wall_poses(space, stock, None, true, stream),
+        (PlacementKind::Hung, None) => wall_poses(space, stock, Some(rule.height_m), false, stream),
         (PlacementKind::Hung, Some(anchor)) => near(
-            walls(space, stock, Some(rule.height_m), false, stream),
+            wall_poses(space, stock, Some(rule.height_m), false, stream),
             anchor,
             rule.gap_m[1],
         ),
@@ -66,7 +66,7 @@ pub(crate) fn candidate_poses(
 }
 
 /// With the back to a wall; hung at a height, or standing.
-fn walls(
+fn wall_poses(
     space: &RoomLayout,
     stock: &CachedModel,
     height_m: Option<f32>,

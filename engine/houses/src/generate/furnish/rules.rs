@@ -48,10 +48,10 @@ pub(crate) struct FurnishingRule {
     #[serde(default)]
     pub(crate) of: Vec<String>,
     /// The smallest and the largest number.
-    #[serde(default = "one")]
+    #[serde(default = "default_count_range")]
     pub(crate) count: [usize; 2],
     /// Probability that a home has it; `furniture_density` scales it.
-    #[serde(default = "always")]
+    #[serde(default = "default_chance")]
     pub(crate) chance: f32,
     /// True if a room is none of its kind without it.
     #[serde(default)]
@@ -118,7 +118,7 @@ pub(crate) struct SmallItemRule {
     pub(crate) reason: String,
 }
 
-const fn one() -> [usize; 2] {
+const fn default_count_range() -> [usize; 2] {
     [1, 1]
 }
 
@@ -126,7 +126,7 @@ const fn default_turn_deg() -> f32 {
     180.0
 }
 
-const fn always() -> f32 {
+const fn default_chance() -> f32 {
     1.0
 }
 

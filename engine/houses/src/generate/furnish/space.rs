@@ -258,7 +258,7 @@ impl RoomLayout {
             shut: false,
         };
         for cell in 0..grid.free.len() {
-            let [x, z] = grid.place(cell);
+            let [x, z] = grid.cell_centre(cell);
             let r = radius_m;
             grid.free[cell] = self.contains_zone(&[x - r, z - r, x + r, z + r]);
         }
@@ -298,7 +298,7 @@ impl RoomLayout {
 
     /// Returns whether all doors of the room are joined by paths of the chosen width.
     pub(crate) fn are_doors_connected(&self) -> bool {
-        !self.grid.shut && self.grid.is_joined(&[])
+        !self.grid.shut && self.grid.keeps_doors_joined(&[])
     }
 
     /// Returns whether a rectangle lies over the floor entirely.
@@ -345,7 +345,7 @@ impl RoomLayout {
             }
         }
         for (k, other) in self.pieces.iter().enumerate() {
-            if !apart(piece, other, piece.anchor == Some(k)) {
+            if !are_compatible(piece, other, piece.anchor == Some(k)) {
                 return false;
             }
         }
@@ -359,7 +359,7 @@ impl RoomLayout {
             .filter(|b| is_walking_obstacle(b))
             .map(zone_of_box)
             .collect();
-        blocking.is_empty() || (!self.grid.shut && self.grid.is_joined(&blocking))
+        blocking.is_empty() || (!self.grid.shut && self.grid.keeps_doors_joined(&blocking))
     }
 
     /// Returns whether a small thing can lie there, on or (`inside`) in its host.
@@ -415,7 +415,7 @@ impl RoomLayout {
 }
 
 /// Returns whether two things leave each other alone; those that belong together may share free floor.
-fn apart(a: &PlacedFurniture, b: &PlacedFurniture, together: bool) -> bool {
+fn are_compatible(a: &PlacedFurniture, b: &PlacedFurniture, together: bool) -> bool {
     let touch = |p: &[Aabb], around_p: &Aabb, q: &[Aabb], around_q: &Aabb| {
         meets(around_p, around_q)
             && p.iter()
@@ -440,7 +440,7 @@ fn apart(a: &PlacedFurniture, b: &PlacedFurniture, together: bool) -> bool {
 }
 
 impl ClearanceGrid {
-    fn place(&self, cell: usize) -> [f32; 2] {
+    fn cell_centre(&self, cell: usize) -> [f32; 2] {
         let (column, row) = (cell % self.columns, cell / self.columns);
         [
             self.corner[0] + (column as f32 + 0.5) * CELL_M,
@@ -477,7 +477,7 @@ impl ClearanceGrid {
 
     fn nearest_free(&self, at: [f32; 2], within_m: f32) -> Option<usize> {
         let far = |cell: &usize| {
-            let [x, z] = self.place(*cell);
+            let [x, z] = self.cell_centre(*cell);
             (x - at[0]).hypot(z - at[1])
         };
         (0..self.free.len())
@@ -487,7 +487,7 @@ impl ClearanceGrid {
     }
 
     /// Returns whether all doors are on one free island when `zones` are blocked, too, and half of the free floor is on it.
-    fn is_joined(&self, zones: &[ZoneXz]) -> bool {
+    fn keeps_doors_joined(&self, zones: &[ZoneXz]) -> bool {
         let mut free = self.free.clone();
         for zone in zones {
             self.for_each_blocked_cell(zone, |cell| free[cell] = false);

@@ -28,7 +28,7 @@ pub(crate) fn best_plan(
             break;
         }
         let mut stream = key.child(round).stream();
-        let Some((score, plan)) = attempt(programme, adjacency, &mut stream) else {
+        let Some((score, plan)) = draw_scored_plan(programme, adjacency, &mut stream) else {
             continue;
         };
         if best.as_ref().is_none_or(|(least, _)| score < *least) {
@@ -41,12 +41,12 @@ pub(crate) fn best_plan(
         programme.outside,
         &mut key.child("outside").stream(),
     );
-    turn(&mut plan, &mut key.child("turn").stream());
+    randomly_orient(&mut plan, &mut key.child("turn").stream());
     Some(plan)
 }
 
 /// One plan with its faults: the less the better.
-fn attempt(
+fn draw_scored_plan(
     programme: &RoomProgram,
     adjacency: &[[GeneratedRoomKind; 2]],
     stream: &mut RandomStream,
@@ -58,12 +58,12 @@ fn attempt(
         .enumerate()
         .map(|(k, rooms)| arrange(rooms, programme.home, stairs, k == 0, stream))
         .collect();
-    let frame = frame(&arrangements, programme.home, stairs, stream)?;
+    let frame = draw_frame(&arrangements, programme.home, stairs, stream)?;
     let mut storeys = Vec::new();
     let mut score = 0.0;
     for (k, (arrangement, wanted)) in arrangements.iter().zip(&programme.storeys).enumerate() {
         let rooms = draw_storey(&frame, arrangement, k == 0, stream)?;
-        score += faults(&rooms, wanted)?;
+        score += deviation_cost(&rooms, wanted)?;
         let links = connect_rooms(&rooms, k == 0, adjacency)?;
         storeys.push(GeneratedStorey {
             rooms,
@@ -146,7 +146,7 @@ fn arrange(
 }
 
 /// Depths and width for the first storey; the others follow.
-fn frame(
+fn draw_frame(
     arrangements: &[StripLayout],
     home: HomeKind,
     stairs: bool,
@@ -213,7 +213,7 @@ fn frame(
 }
 
 /// Returns the cost of the rooms' deviations from the programme; `None` when one cannot be used.
-fn faults(rooms: &[GeneratedRoom], wanted: &[RequiredRoom]) -> Option<f32> {
+fn deviation_cost(rooms: &[GeneratedRoom], wanted: &[RequiredRoom]) -> Option<f32> {
     let mut score = 0.0;
     let mut open: Vec<&RequiredRoom> = wanted.iter().collect();
     for room in rooms {
@@ -321,7 +321,7 @@ fn add_outside(
 }
 
 /// Mirrors and turns the plan in one of eight ways and moves its corner to the origin.
-fn turn(plan: &mut GeneratedPlan, stream: &mut RandomStream) {
+fn randomly_orient(plan: &mut GeneratedPlan, stream: &mut RandomStream) {
     let [swap, flip_x, flip_z] = [0; 3].map(|_| stream.below(2) == 1);
     let point = |x: GridSteps, z: GridSteps| {
         let (x, z) = if swap { (z, x) } else { (x, z) };

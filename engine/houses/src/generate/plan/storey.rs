@@ -30,7 +30,7 @@ impl StoreyFrame {
     }
 
     /// Returns the ends of the corridor from north to south.
-    fn aisle(&self) -> [GridSteps; 2] {
+    fn corridor_span(&self) -> [GridSteps; 2] {
         [self.strips[0], self.strips[0] + self.corridor]
     }
 }
@@ -69,7 +69,11 @@ pub(super) fn width_of(room: &RequiredRoom, depth: GridSteps) -> GridSteps {
 }
 
 /// Widths of rooms that fill `length` exactly, in proportion to their preferred ones; `None` when they do not fit.
-fn fill(rooms: &[RequiredRoom], depth: GridSteps, length: GridSteps) -> Option<Vec<GridSteps>> {
+fn fit_widths(
+    rooms: &[RequiredRoom],
+    depth: GridSteps,
+    length: GridSteps,
+) -> Option<Vec<GridSteps>> {
     let wishes: Vec<GridSteps> = rooms.iter().map(|room| width_of(room, depth)).collect();
     let total: GridSteps = wishes.iter().sum();
     if total == 0 {
@@ -99,7 +103,7 @@ pub(super) fn draw_storey(
     let east_width = end_width(arrangement.east_m2(), depth);
     let west_width = end_width(arrangement.west.map_or(0.0, |room| room.area_m2), depth);
     let (from, to) = (west_width, frame.width - east_width);
-    let [north, south] = frame.aisle();
+    let [north, south] = frame.corridor_span();
     let mut rooms = Vec::new();
     let mut hallway = Vec::new();
     let has_strips = arrangement.strips.iter().any(|strip| !strip.is_empty());
@@ -135,7 +139,7 @@ pub(super) fn draw_storey(
             left.push([x, z0, to, z1]);
             continue;
         }
-        for (room, width) in strip.iter().zip(fill(strip, z1 - z0, to - x)?) {
+        for (room, width) in strip.iter().zip(fit_widths(strip, z1 - z0, to - x)?) {
             rooms.push(GeneratedRoom {
                 kind: room.kind,
                 areas: vec![[x, z0, x + width, z1]],

@@ -19,13 +19,13 @@ use crate::export_loss::ExportLosses;
 pub(super) const EXTENSION: &str = "KHR_lights_punctual";
 
 /// A light of the file, and the node that carries it: in the world, as it stands at the start.
-pub(super) struct WrittenLamp {
+pub(super) struct LightWithNode {
     pub(super) light: Value,
     pub(super) node: Value,
 }
 
 /// The `index`-th light of the file.
-pub(super) fn lamp(house: &HouseData, light: &Light, index: usize) -> WrittenLamp {
+pub(super) fn lamp(house: &HouseData, light: &Light, index: usize) -> LightWithNode {
     let object = &house.objects[light.object];
     let part = &house.parts[light.part];
     let lumens = light.power_w * LUMENS_PER_WATT;
@@ -66,16 +66,16 @@ pub(super) fn lamp(house: &HouseData, light: &Light, index: usize) -> WrittenLam
             },
         }},
     });
-    WrittenLamp { light: value, node }
+    LightWithNode { light: value, node }
 }
 
 /// The sun: a directional light along -Z of its node, its intensity in lx. All of the sky stands in the node's extras.
-pub(super) fn sun(sky: &Sky, index: usize) -> WrittenLamp {
+pub(super) fn sun(sky: &Sky, index: usize) -> LightWithNode {
     let rgb = Vec3::from_array(sky.sun_lx);
     let most = rgb.max_element();
     let color = if most > 0.0 { rgb / most } else { Vec3::ONE };
     let turn = Quat::from_rotation_arc(Vec3::NEG_Z, -sky.to_sun);
-    WrittenLamp {
+    LightWithNode {
         light: json!({
             "name": "sun", "type": "directional", "color": color.to_array(), "intensity": most,
         }),

@@ -6,7 +6,7 @@ use dwell_scene::{HouseData, Id, MaterialId, Mesh, MeshId};
 use glam::{Vec2, Vec3};
 use serde_json::{Value, json};
 
-use super::super::glb::{BinaryChunk, UNSIGNED_INT, UNSIGNED_SHORT};
+use super::super::glb::{GlbBufferBuilder, UNSIGNED_INT, UNSIGNED_SHORT};
 
 /// The accessors of a mesh in the file.
 #[derive(Debug, Clone, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -32,16 +32,18 @@ pub(super) struct MeshInFile {
 }
 
 /// Writes the numbers of a mesh.
-pub(super) fn store(binary: &mut BinaryChunk, mesh: &Mesh) -> MeshInFile {
+pub(super) fn store(binary: &mut GlbBufferBuilder, mesh: &Mesh) -> MeshInFile {
     let some = |count: usize| (count > 0).then_some(());
-    let positions = some(mesh.positions.len())
-        .map(|()| binary.floats(mesh.positions.iter().map(Vec3::to_array), "VEC3", true));
-    let normals = some(mesh.normals.len())
-        .map(|()| binary.floats(mesh.normals.iter().map(Vec3::to_array), "VEC3", false));
+    let positions = some(mesh.positions.len()).map(|()| {
+        binary.add_float_accessor(mesh.positions.iter().map(Vec3::to_array), "VEC3", true)
+    });
+    let normals = some(mesh.normals.len()).map(|()| {
+        binary.add_float_accessor(mesh.normals.iter().map(Vec3::to_array), "VEC3", false)
+    });
     let uvs = some(mesh.uvs.len())
-        .map(|()| binary.floats(mesh.uvs.iter().map(Vec2::to_array), "VEC2", false));
-    let triangles =
-        some(mesh.triangles.len()).map(|()| indices(binary, mesh.triangles.iter().copied()));
+        .map(|()| binary.add_float_accessor(mesh.uvs.iter().map(Vec2::to_array), "VEC2", false));
+    let triangles = some(mesh.triangles.len())
+        .map(|()| add_index_accessor(binary, mesh.triangles.iter().copied()));
     let slots = some(mesh.slots.len()).map(|()| {
         let bytes: Vec<u8> = mesh
             .slots
@@ -59,7 +61,7 @@ pub(super) fn store(binary: &mut BinaryChunk, mesh: &Mesh) -> MeshInFile {
             .into_iter()
             .map(|(slot, triangles)| {
                 let of_slot = triangles.iter().map(|k| mesh.triangles[*k]);
-                (slot, indices(binary, of_slot))
+                (slot, add_index_accessor(binary, of_slot))
             })
             .collect(),
     };
@@ -75,7 +77,10 @@ pub(super) fn store(binary: &mut BinaryChunk, mesh: &Mesh) -> MeshInFile {
     }
 }
 
-fn indices(binary: &mut BinaryChunk, triangles: impl Iterator<Item = [u32; 3]>) -> usize {
+fn add_index_accessor(
+    binary: &mut GlbBufferBuilder,
+    triangles: impl Iterator<Item = [u32; 3]>,
+) -> usize {
     let bytes: Vec<u8> = triangles.flatten().flat_map(u32::to_le_bytes).collect();
     let view = binary.add_buffer_view(&bytes);
     binary.add_accessor(view, 0, UNSIGNED_INT, bytes.len() / 4, "SCALAR")
@@ -91,7 +96,7 @@ fn groups(mesh: &Mesh) -> BTreeMap<u16, Vec<usize>> {
 }
 
 /// glTF binds materials to meshes where we bind them to instances: a mesh of the file for each pair in use.
-pub(super) struct MeshTable<'a> {
+pub(super) struct GltfMeshCache<'a> {
     house: &'a HouseData,
     stored: &'a [MeshInFile],
     known: BTreeMap<(MeshId, &'a [MaterialId]), usize>,
@@ -99,7 +104,7 @@ pub(super) struct MeshTable<'a> {
     pub(super) meshes: Vec<Value>,
 }
 
-impl<'a> MeshTable<'a> {
+impl<'a> GltfMeshCache<'a> {
     pub(super) fn new(house: &'a HouseData, stored: &'a [MeshInFile]) -> Self {
         Self {
             house,
@@ -110,7 +115,7 @@ impl<'a> MeshTable<'a> {
     }
 
     /// The mesh of the file; `None` when it has no triangle.
-    pub(super) fn mesh(&mut self, id: MeshId, materials: &'a [MaterialId]) -> Option<usize> {
+    pub(super) fn mesh_index(&mut self, id: MeshId, materials: &'a [MaterialId]) -> Option<usize> {
         if let Some(known) = self.known.get(&(id, materials)) {
             return Some(*known);
         }

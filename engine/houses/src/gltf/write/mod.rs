@@ -16,11 +16,11 @@ use dwell_scene::{House, HouseData, Id, LevelId, Mobility, RoomId};
 use glam::Affine3A;
 use serde_json::{Value, json};
 
-use super::glb::{BinaryChunk, SidecarFile};
+use super::glb::{GlbBufferBuilder, SidecarFile};
 use crate::error::HousesError;
 use crate::export_loss::{ExportLoss, ExportLosses};
 use crate::import::encode_png;
-use meshes::MeshTable;
+use meshes::GltfMeshCache;
 
 /// A written house: the file, and the files beside it.
 pub(crate) struct WrittenGlb {
@@ -101,7 +101,7 @@ fn losses(house: &HouseData) -> Vec<ExportLoss> {
 
 /// The file's bytes.
 pub(crate) fn encode(house: &HouseData, storage: Storage) -> Result<WrittenGlb, String> {
-    let mut binary = BinaryChunk::default();
+    let mut binary = GlbBufferBuilder::default();
     let mut of_building = vec![false; house.meshes.len()];
     for piece in &house.structure {
         of_building[piece.mesh.index()] = true;
@@ -111,7 +111,7 @@ pub(crate) fn encode(house: &HouseData, storage: Storage) -> Result<WrittenGlb, 
         .iter_ids()
         .map(|(id, mesh)| {
             let apart = storage == Storage::Shared && !of_building[id.index()];
-            binary.append_bytes("object", apart, |binary| meshes::store(binary, mesh))
+            binary.with_buffer("object", apart, |binary| meshes::store(binary, mesh))
         })
         .collect();
     let images: Vec<Value> = house
@@ -129,7 +129,7 @@ pub(crate) fn encode(house: &HouseData, storage: Storage) -> Result<WrittenGlb, 
             Ok(image)
         })
         .collect::<Result<_, String>>()?;
-    let mut tree = NodeTreeBuilder::new(house, MeshTable::new(house, &stored));
+    let mut tree = NodeTreeBuilder::new(house, GltfMeshCache::new(house, &stored));
     tree.fill();
     let NodeTreeBuilder {
         nodes,
@@ -177,7 +177,7 @@ pub(crate) fn encode(house: &HouseData, storage: Storage) -> Result<WrittenGlb, 
 /// The nodes under construction.
 struct NodeTreeBuilder<'a> {
     house: &'a HouseData,
-    shapes: MeshTable<'a>,
+    shapes: GltfMeshCache<'a>,
     nodes: Vec<Value>,
     /// Nodes of storeys, and of the sun.
     roots: Vec<usize>,
@@ -188,7 +188,7 @@ struct NodeTreeBuilder<'a> {
 }
 
 impl<'a> NodeTreeBuilder<'a> {
-    fn new(house: &'a HouseData, shapes: MeshTable<'a>) -> Self {
+    fn new(house: &'a HouseData, shapes: GltfMeshCache<'a>) -> Self {
         Self {
             house,
             shapes,
@@ -213,7 +213,7 @@ impl<'a> NodeTreeBuilder<'a> {
             self.of_room.push(id);
         }
         for piece in &house.structure {
-            let mesh = self.shapes.mesh(piece.mesh, &piece.materials);
+            let mesh = self.shapes.mesh_index(piece.mesh, &piece.materials);
             let node = mesh_node(&piece.name, mesh, None, &extras::structure(piece));
             self.add(node, Some(self.parent_node(piece.level, piece.room)));
         }
@@ -227,7 +227,7 @@ impl<'a> NodeTreeBuilder<'a> {
                 } else {
                     format!("{}.{}", object.name, part.name)
                 };
-                let mesh = self.shapes.mesh(part.mesh, &part.materials);
+                let mesh = self.shapes.mesh_index(part.mesh, &part.materials);
                 let place = part.world_from_part.to_affine() * part.part_from_mesh;
                 self.add(
                     mesh_node(&name, mesh, Some(place), &extras::part(part)),

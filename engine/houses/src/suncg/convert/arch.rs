@@ -5,7 +5,7 @@ use std::sync::Arc;
 use dwell_scene::{LevelId, RoomId, Structure, StructureKind};
 
 use super::super::arch::{ArchElement, ElementKind, slab, wall};
-use super::super::file::NodeFile;
+use super::super::file::SuncgNode;
 use super::Converter;
 use crate::report::FileLocation;
 use crate::warning_kind::WarningKind;
@@ -19,7 +19,7 @@ impl<'a> Converter<'a> {
     /// The elements of a room's or a ground's node; one that two rooms share goes to the first.
     pub(super) fn arch_of_node(
         &mut self,
-        node: &NodeFile,
+        node: &SuncgNode,
         level: LevelId,
         room: Option<RoomId>,
         hidden: &[StructureKind],
@@ -35,7 +35,7 @@ impl<'a> Converter<'a> {
     }
 
     /// Adds the elements that no node claimed.
-    pub(super) fn arch_leftovers(&mut self) {
+    pub(super) fn add_unclaimed_arch_elements(&mut self) {
         if !self.data.levels.is_empty() {
             self.add_arch_elements(|_| true, LevelId(0), None, &[]);
         }

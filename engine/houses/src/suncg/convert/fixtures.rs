@@ -52,9 +52,9 @@ impl Converter<'_> {
         let mesh = &self.data.meshes[part.mesh];
         let position = part.part_from_mesh.transform_point3(mesh.bounds().center());
         let before = self.data.emitters.len();
-        for (event, recording) in self.files.sounds.of(model, categories) {
+        for (event, recording) in self.files.sounds.sounds_of_model(model, categories) {
             let Some((signal, level_db)) =
-                signal_of(recording).filter(|_| is_continuous_event(event))
+                substitute_signal(recording).filter(|_| is_continuous_event(event))
             else {
                 let what =
                     format!("the sound {recording:?} of {event:?} has no lasting signal; left out");
@@ -121,7 +121,7 @@ fn is_continuous_event(event: &str) -> bool {
 
 /// The signal that stands for a recording, which SUNCG names and does not ship, and its level at 1 m, dB SPL; the nearest
 /// one where ours has other machines. Levels are estimates of ours. Other names are signals already.
-fn signal_of(recording: &str) -> Option<(&str, f32)> {
+fn substitute_signal(recording: &str) -> Option<(&str, f32)> {
     let stem = recording.rsplit('/').next().unwrap_or(recording);
     let stem = stem.rsplit_once('.').map_or(stem, |(stem, _)| stem);
     Some(match stem {
@@ -143,13 +143,16 @@ mod tests {
 
     #[test]
     fn recordings_name_signals() {
-        assert_eq!(signal_of("tv.wav"), Some(("television", 62.0)));
+        assert_eq!(substitute_signal("tv.wav"), Some(("television", 62.0)));
         assert_eq!(
-            signal_of("sounds/dishwasher.wav").map(|s| s.0),
+            substitute_signal("sounds/dishwasher.wav").map(|s| s.0),
             Some("washing_machine")
         );
-        assert_eq!(signal_of("kettle.wav").map(|s| s.0), Some("kettle"));
-        assert_eq!((signal_of("dog.wav"), signal_of(".wav")), (None, None));
+        assert_eq!(substitute_signal("kettle.wav").map(|s| s.0), Some("kettle"));
+        assert_eq!(
+            (substitute_signal("dog.wav"), substitute_signal(".wav")),
+            (None, None)
+        );
         assert!(
             is_continuous_event("on")
                 && is_continuous_event("on_2")

@@ -62,8 +62,8 @@ pub(super) fn fit(meshes: [&Mesh; 2], pieces: &[Vec<Component>; 2]) -> Option<Hi
         moving[1].extend(&piece.triangles);
     }
     let [first, second] = [
-        PlanMoments::of(meshes[0], &moving[0])?,
-        PlanMoments::of(meshes[1], &moving[1])?,
+        PlanMoments::from_triangles(meshes[0], &moving[0])?,
+        PlanMoments::from_triangles(meshes[1], &moving[1])?,
     ];
     // The states are meshed apart and may differ a little in hidden faces; the turned box below decides.
     if (first.area - second.area).abs() > 0.15 * first.area {
@@ -128,7 +128,7 @@ struct PlanMoments {
 }
 
 impl PlanMoments {
-    fn of(mesh: &Mesh, triangles: &[u32]) -> Option<Self> {
+    fn from_triangles(mesh: &Mesh, triangles: &[u32]) -> Option<Self> {
         let (mut area, mut sum) = (0.0, DVec2::ZERO);
         let (mut xx, mut xz, mut zz) = (0.0, 0.0, 0.0);
         for &k in triangles {

@@ -138,7 +138,7 @@ impl Converter<'_> {
                 _ => {}
             }
         }
-        self.arch_leftovers();
+        self.add_unclaimed_arch_elements();
     }
 
     /// The room of a point, by floors: the smallest that holds it.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use dwell_scene::{Category, Pose, RoomId, space};
 use glam::{Affine3A, DAffine3, Vec3};
 
-use super::super::file::{BinaryFlag, NodeFile, SuncgMaterial};
+use super::super::file::{BinaryFlag, SuncgMaterial, SuncgNode};
 use super::super::read::paths;
 use super::parts::{ObjectDraft, PartMesh, hinge_on_part};
 use super::{Converter, NodeKey, boxes, mobility, place};
@@ -34,7 +34,7 @@ impl<'a> Converter<'a> {
         self.fix_floating_objects();
     }
 
-    fn object(&mut self, key: NodeKey, node: &'a NodeFile, room: Option<RoomId>) {
+    fn object(&mut self, key: NodeKey, node: &'a SuncgNode, room: Option<RoomId>) {
         let at = self.node_at(key);
         let Some(model) = node.model_id.as_deref() else {
             let damage = WarningKind::MissingField {
@@ -85,7 +85,7 @@ impl<'a> Converter<'a> {
     }
 
     /// Returns a node's rigid pose, and the scale and mirror that its mesh keeps.
-    fn placement(&mut self, node: &NodeFile, at: &FileLocation) -> Option<(Pose, Affine3A)> {
+    fn placement(&mut self, node: &SuncgNode, at: &FileLocation) -> Option<(Pose, Affine3A)> {
         let at = at.field("transform");
         let matrix = match place::transform(node.transform.as_deref()) {
             Ok(matrix) => matrix,
@@ -113,7 +113,12 @@ impl<'a> Converter<'a> {
     }
 
     /// The OBJ file of a node's state: `_0` for state 1 where it exists.
-    fn mesh_of_state(&mut self, model: &str, node: &NodeFile, at: &FileLocation) -> Option<String> {
+    fn mesh_of_state(
+        &mut self,
+        model: &str,
+        node: &SuncgNode,
+        at: &FileLocation,
+    ) -> Option<String> {
         let second = node.state.is_some_and(|state| (state - 1.0).abs() < 1e-9);
         let path = paths::model_mesh_path(model, second);
         if self.shapes.get_mut(&path).is_some() {
@@ -135,7 +140,7 @@ impl<'a> Converter<'a> {
         None
     }
 
-    fn model_object(&mut self, plan: &ObjectDraft<'a>, path: &str, node: &'a NodeFile) {
+    fn model_object(&mut self, plan: &ObjectDraft<'a>, path: &str, node: &'a SuncgNode) {
         let overrides = self.overrides(node, &plan.at);
         let Some(files) = self.files.meshes.get(path) else {
             return;
@@ -199,7 +204,7 @@ impl<'a> Converter<'a> {
     }
 
     /// A node's overrides, spelled out or as indices into the house's table.
-    fn overrides(&mut self, node: &'a NodeFile, at: &FileLocation) -> Vec<&'a SuncgMaterial> {
+    fn overrides(&mut self, node: &'a SuncgNode, at: &FileLocation) -> Vec<&'a SuncgMaterial> {
         if let Some(materials) = &node.materials {
             return materials.iter().collect();
         }
@@ -222,7 +227,7 @@ impl<'a> Converter<'a> {
         found
     }
 
-    fn box_object(&mut self, key: NodeKey, node: &'a NodeFile, room: Option<RoomId>) {
+    fn box_object(&mut self, key: NodeKey, node: &'a SuncgNode, room: Option<RoomId>) {
         let at = self.node_at(key);
         let size = match node.dimensions.as_deref() {
             Some(&[x, y, z]) => Vec3::new(x as f32, y as f32, z as f32),

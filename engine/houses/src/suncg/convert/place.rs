@@ -3,7 +3,7 @@
 use dwell_scene::Aabb;
 use glam::{Affine3A, DMat4, DVec3, Mat3A, Vec3};
 
-use super::super::file::{BoundsFile, SuncgHouse};
+use super::super::file::{SuncgBounds, SuncgHouse};
 use crate::error::HousesError;
 use crate::report::FileLocation;
 
@@ -104,7 +104,7 @@ pub(super) fn without_rotation_rounding(mut rest: Affine3A) -> Affine3A {
 }
 
 /// A box of the file in the world; `None` when it is not one.
-pub(super) fn bounds(file: Option<&BoundsFile>, world_from_file: &Affine3A) -> Option<Aabb> {
+pub(super) fn bounds(file: Option<&SuncgBounds>, world_from_file: &Affine3A) -> Option<Aabb> {
     let corner = |numbers: &Option<Vec<f64>>| match numbers.as_deref() {
         Some(&[x, y, z]) => Some(Vec3::new(x as f32, y as f32, z as f32)).filter(|p| p.is_finite()),
         _ => None,

@@ -5,14 +5,14 @@ use std::sync::Arc;
 use dwell_scene::{Aabb, LevelId, Mesh, Room, RoomId, Structure, StructureKind};
 use glam::{Vec2, Vec3};
 
-use super::super::file::{BinaryFlag, NodeFile};
+use super::super::file::{BinaryFlag, SuncgNode};
 use super::super::read::paths;
 use super::{Converter, NodeKey, place};
 use crate::import::room_kind;
 use crate::limits::MAX_CORNERS_SHOWN;
 use crate::obj::ParsedObj;
 use crate::obj::file::FaceGroup;
-use crate::obj::{MaterialSlots, ObjMeshSource, build_mesh};
+use crate::obj::{MaterialSlots, ObjGroupSelection, build_mesh};
 use crate::report::FileLocation;
 use crate::warning_kind::{UnmappedKind, WarningKind};
 
@@ -29,7 +29,7 @@ const PARTS: [(char, StructureKind); 3] = [
 ];
 
 impl<'a> Converter<'a> {
-    pub(super) fn room(&mut self, key: NodeKey, node: &'a NodeFile) {
+    pub(super) fn room(&mut self, key: NodeKey, node: &'a SuncgNode) {
         let at = self.node_at(key);
         let name = self.node_names[key.0][key.1].clone();
         let kinds = self.room_kinds(node, &at);
@@ -62,7 +62,7 @@ impl<'a> Converter<'a> {
         self.data.rooms.push(room);
     }
 
-    pub(super) fn ground(&mut self, key: NodeKey, node: &'a NodeFile) {
+    pub(super) fn ground(&mut self, key: NodeKey, node: &'a SuncgNode) {
         let at = self.node_at(key);
         let name = self.node_names[key.0][key.1].clone();
         if node.hide_floor == Some(BinaryFlag(true)) {
@@ -84,7 +84,7 @@ impl<'a> Converter<'a> {
         }
     }
 
-    fn room_model(&mut self, node: &'a NodeFile, at: &FileLocation) -> Option<&'a str> {
+    fn room_model(&mut self, node: &'a SuncgNode, at: &FileLocation) -> Option<&'a str> {
         let model = node.model_id.as_deref();
         match model {
             None => {
@@ -104,7 +104,7 @@ impl<'a> Converter<'a> {
         model
     }
 
-    fn room_kinds(&mut self, node: &NodeFile, at: &FileLocation) -> Vec<String> {
+    fn room_kinds(&mut self, node: &SuncgNode, at: &FileLocation) -> Vec<String> {
         let mut kinds = Vec::new();
         for given in node.room_types.iter().flatten() {
             let kind = room_kind(given).unwrap_or_else(|plain| {
@@ -163,7 +163,7 @@ impl<'a> Converter<'a> {
             return;
         }
         self.corners_shown = all;
-        let slots = MaterialSlots::of(&files.obj, &files.mtl, &mesh_at, self.report);
+        let slots = MaterialSlots::from_obj_and_mtl(&files.obj, &files.mtl, &mesh_at, self.report);
         // A group may be interrupted by others: pieces are gathered by name, in the order of their first faces.
         let mut groups: Vec<(&str, Vec<&FaceGroup>)> = Vec::new();
         for run in &files.obj.face_groups {
@@ -252,7 +252,7 @@ impl<'a> Converter<'a> {
         name: String,
         level: LevelId,
         kinds: Vec<String>,
-        node: &NodeFile,
+        node: &SuncgNode,
         at: &FileLocation,
     ) -> Room {
         let pieces = &self.data.structure.as_slice()[pieces];
@@ -275,13 +275,13 @@ impl<'a> Converter<'a> {
             .reduce(f32::max);
         let (mut footprint, mut top) = (Vec::new(), floor_y.unwrap_or(bounds.min.y));
         for mesh in meshes(StructureKind::Floor) {
-            footprint.extend(facing(mesh, 1.0, top - FLOOR_STEP_M..=top));
+            footprint.extend(horizontal_faces(mesh, 1.0, top - FLOOR_STEP_M..=top));
         }
         if footprint.is_empty() {
             // Without a floor, the ceiling's outline; without that, the box of the walls.
             let under = ceiling_y.unwrap_or(bounds.max.y);
             for mesh in meshes(StructureKind::Ceiling) {
-                footprint.extend(facing(mesh, -1.0, under..=under + FLOOR_STEP_M));
+                footprint.extend(horizontal_faces(mesh, -1.0, under..=under + FLOOR_STEP_M));
             }
             if node.hide_floor != Some(BinaryFlag(true)) {
                 let consequence =
@@ -315,7 +315,7 @@ impl<'a> Converter<'a> {
             ceiling_y,
             bounds,
         };
-        if let Some(below) = room.repair() {
+        if let Some(below) = room.repair_footprint_and_ceiling() {
             let what = format!(
                 "the ceiling is at {below} m, below the floor at {top} m; taken for at the floor"
             );
@@ -353,7 +353,7 @@ fn piece_mesh(
     });
     (
         build_mesh(
-            &ObjMeshSource {
+            &ObjGroupSelection {
                 obj: &files.obj,
                 face_groups: own,
                 box_mapping,
@@ -366,7 +366,11 @@ fn piece_mesh(
 }
 
 /// Triangles of (x, z) whose faces look up (`sign` 1) or down (-1) at a height.
-fn facing(mesh: &Mesh, sign: f32, height: std::ops::RangeInclusive<f32>) -> Vec<[Vec2; 3]> {
+fn horizontal_faces(
+    mesh: &Mesh,
+    sign: f32,
+    height: std::ops::RangeInclusive<f32>,
+) -> Vec<[Vec2; 3]> {
     let mut found = Vec::new();
     for k in 0..mesh.triangles.len() {
         let corners = mesh.corners(k);

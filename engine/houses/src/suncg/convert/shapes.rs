@@ -6,12 +6,12 @@ use std::sync::Arc;
 use dwell_scene::parallel::Threads;
 use dwell_scene::{IdVec, Mesh, MeshId};
 
-use super::super::file::NodeFile;
+use super::super::file::SuncgNode;
 use super::super::read::{ParsedSuncgFiles, paths};
 use super::hinge::{self, MeshHinge};
 use crate::import::{components, submesh};
 use crate::obj::ParsedObj;
-use crate::obj::{MaterialSlots, ObjMeshSource, build_mesh};
+use crate::obj::{MaterialSlots, ObjGroupSelection, build_mesh};
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
 
@@ -85,7 +85,7 @@ impl ModelShapes {
         let built = threads.map(models.len(), |k| {
             let (model, textured) = models[k];
             let mut report = LoadReport::new();
-            let shapes = of_model(files, model, textured, &mut report);
+            let shapes = shapes_of_states(files, model, textured, &mut report);
             (shapes, report)
         });
         let mut shapes = BTreeMap::new();
@@ -102,7 +102,7 @@ impl ModelShapes {
     }
 }
 
-fn overrides_texture(files: &ParsedSuncgFiles, node: &NodeFile) -> bool {
+fn overrides_texture(files: &ParsedSuncgFiles, node: &SuncgNode) -> bool {
     let table = node
         .material_indices
         .as_ref()
@@ -115,7 +115,7 @@ fn overrides_texture(files: &ParsedSuncgFiles, node: &NodeFile) -> bool {
 }
 
 /// The shapes of a model's one or two states.
-fn of_model(
+fn shapes_of_states(
     files: &ParsedSuncgFiles,
     model: &str,
     textured: bool,
@@ -128,7 +128,7 @@ fn of_model(
             continue;
         };
         let at = FileLocation::file(&path);
-        let slots = MaterialSlots::of(&mesh_files.obj, &mesh_files.mtl, &at, report);
+        let slots = MaterialSlots::from_obj_and_mtl(&mesh_files.obj, &mesh_files.mtl, &at, report);
         let mesh = model_mesh(mesh_files, &slots, textured, &at, report);
         if mesh.triangles.is_empty() {
             report.warn(at, WarningKind::EmptyMesh { path });
@@ -164,7 +164,7 @@ fn model_mesh(
         .map(|run| (slots.of_run(run), run))
         .collect();
     build_mesh(
-        &ObjMeshSource {
+        &ObjGroupSelection {
             obj: &files.obj,
             face_groups: runs,
             box_mapping,

@@ -84,11 +84,11 @@ impl<'a> CsvRows<'a> {
         let mut record = csv::StringRecord::new();
         loop {
             if self.reader.position().line().is_multiple_of(4096) {
-                dwell_scene::interrupt::check();
+                dwell_scene::interrupt::unwind_if_cancelled();
             }
             let result = match self.reader.read_record(&mut record) {
                 Ok(false) => return,
-                Ok(true) => match lines_of_cells(&record) {
+                Ok(true) => match embedded_newlines(&record) {
                     0 => row(&CsvRow {
                         record: &record,
                         columns: &self.columns,
@@ -111,7 +111,7 @@ impl<'a> CsvRows<'a> {
 }
 
 /// Ends of lines in the cells of a row: no cell of these tables has one.
-fn lines_of_cells(record: &csv::StringRecord) -> usize {
+fn embedded_newlines(record: &csv::StringRecord) -> usize {
     record
         .iter()
         .map(|cell| cell.bytes().filter(|byte| *byte == b'\n').count())

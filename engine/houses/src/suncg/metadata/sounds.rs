@@ -68,7 +68,7 @@ impl SoundTable {
 
     /// Event and recording of every sound that a model makes. An entry for the model itself goes before one for its
     /// category.
-    pub fn of<'a>(
+    pub fn sounds_of_model<'a>(
         &'a self,
         model: &str,
         categories: &[&str],

@@ -8,7 +8,7 @@ use dwell_scene::{House, Material, Mobility};
 use crate::export_loss::ExportLosses;
 
 /// Losses that follow from the house's tables alone.
-pub(super) fn of_house(house: &House) -> ExportLosses {
+pub(super) fn house_losses(house: &House) -> ExportLosses {
     let mut losses = ExportLosses::default();
     losses.add(
         "names of rooms and objects",

@@ -15,7 +15,7 @@ use dwell_scene::file::StagedPath;
 use dwell_scene::{Aabb, House, LevelId, Material, MaterialId, RoomId, State, TextureId, units};
 use glam::Vec3;
 
-use super::file::{BoundsFile, NodeFile, SuncgHouse, SuncgLevel};
+use super::file::{SuncgBounds, SuncgHouse, SuncgLevel, SuncgNode};
 use crate::atomic::write_folder;
 use crate::data_root::DataRoot;
 use crate::error::HousesError;
@@ -29,13 +29,13 @@ use crate::obj::mtl_material;
 /// [`HousesError::NotRepresentable`] when something stands at `path` already or a texture cannot be written,
 /// [`HousesError::Io`] when the system refuses.
 pub fn write(house: &House, path: &Path) -> Result<Vec<ExportLoss>, HousesError> {
-    let mut losses = losses::of_house(house);
+    let mut losses = losses::house_losses(house);
     write_folder(
         path,
         |_| false,
         |folder| {
             let mut writer = SuncgWriter::new(house, folder, plain_name(&house.name), false);
-            writer.everything(&mut losses)?;
+            writer.write_all_but_tables(&mut losses)?;
             tables::write_tables(folder, &writer.models.rows)
         },
     )?;
@@ -53,9 +53,10 @@ pub fn write_into(
     name: &str,
 ) -> Result<(PathBuf, Vec<ExportLoss>), HousesError> {
     let scene_id = plain_name(name);
-    let mut losses = losses::of_house(house);
+    let mut losses = losses::house_losses(house);
     let draft = StagedPath::folder(&root.join(&scene_id)).map_err(HousesError::io(root))?;
-    SuncgWriter::new(house, draft.path(), scene_id.clone(), true).everything(&mut losses)?;
+    SuncgWriter::new(house, draft.path(), scene_id.clone(), true)
+        .write_all_but_tables(&mut losses)?;
     // Shared files come first and the house last: a house that exists is complete.
     for (folder, is_shared) in [
         ("texture", true),
@@ -153,7 +154,7 @@ impl<'a> SuncgWriter<'a> {
     }
 
     /// Writes everything but the tables.
-    fn everything(
+    fn write_all_but_tables(
         &mut self,
         losses: &mut crate::export_loss::ExportLosses,
     ) -> Result<(), HousesError> {
@@ -221,7 +222,7 @@ impl<'a> SuncgWriter<'a> {
         &mut self,
         level: LevelId,
         losses: &mut crate::export_loss::ExportLosses,
-    ) -> Result<Vec<NodeFile>, HousesError> {
+    ) -> Result<Vec<SuncgNode>, HousesError> {
         let mut nodes = Vec::new();
         let mut node_of_room: BTreeMap<RoomId, usize> = BTreeMap::new();
         for (id, room) in self
@@ -288,9 +289,9 @@ impl<'a> SuncgWriter<'a> {
 }
 
 /// A box of the file; `None` for an empty one.
-fn bounds(bounds: &Aabb) -> Option<BoundsFile> {
+fn bounds(bounds: &Aabb) -> Option<SuncgBounds> {
     let corner = |p: Vec3| Some(p.to_array().map(f64::from).to_vec());
-    (!bounds.is_empty()).then(|| BoundsFile {
+    (!bounds.is_empty()).then(|| SuncgBounds {
         min: corner(bounds.min),
         max: corner(bounds.max),
     })

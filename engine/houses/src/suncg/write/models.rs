@@ -7,8 +7,8 @@ use dwell_scene::{
 };
 use glam::{Affine3A, Mat4, Vec3};
 
-use super::super::file::{BinaryFlag, NodeFile, SuncgMaterial};
-use super::tables::{ModelRow, model_lights};
+use super::super::file::{BinaryFlag, SuncgMaterial, SuncgNode};
+use super::tables::{ModelRow, light_in_model_space};
 use super::{SuncgWriter, bounds, hex, model_name, short_name};
 use crate::error::HousesError;
 use crate::export_loss::ExportLosses;
@@ -62,11 +62,11 @@ impl SuncgWriter<'_> {
         object_id: ObjectId,
         id: String,
         losses: &mut ExportLosses,
-    ) -> Result<NodeFile, HousesError> {
+    ) -> Result<SuncgNode, HousesError> {
         let house = self.house;
         let object = &house.objects[object_id];
         let root = &house.parts[object.first_part];
-        let states = two_states(house, object_id);
+        let states = two_state_hinge(house, object_id);
         let joints = house.joints_of(object_id).count();
         if object.mobility == Mobility::Articulated || joints > 0 {
             losses.add(
@@ -92,7 +92,7 @@ impl SuncgWriter<'_> {
         let overrides = (!as_written).then(|| self.overrides(&materials, losses));
         let matrix = Mat4::from(world_from_model).to_cols_array().map(f64::from);
         let mirrored = world_from_model.matrix3.determinant() < 0.0;
-        Ok(NodeFile {
+        Ok(SuncgNode {
             id: Some(id),
             kind: Some("Object".to_owned()),
             valid: Some(BinaryFlag(true)),
@@ -102,7 +102,7 @@ impl SuncgWriter<'_> {
             is_mirrored: mirrored.then_some(BinaryFlag(true)),
             state: states.filter(|states| states.starts_closed).map(|_| 1.0),
             materials: overrides,
-            ..NodeFile::default()
+            ..SuncgNode::default()
         })
     }
 
@@ -124,7 +124,7 @@ impl SuncgWriter<'_> {
             slots: materials.len(),
             bounds: dwell_scene::Aabb::EMPTY,
             lights: lights
-                .map(|light| model_lights(light, &model_from_part(light.part)))
+                .map(|light| light_in_model_space(light, &model_from_part(light.part)))
                 .collect(),
             signals: house
                 .emitters
@@ -326,7 +326,7 @@ fn pieces<'a>(
 }
 
 /// The two states of an object, when its only joint is an upright hinge of a leaf on a frame.
-fn two_states(house: &House, id: ObjectId) -> Option<TwoStateHinge> {
+fn two_state_hinge(house: &House, id: ObjectId) -> Option<TwoStateHinge> {
     let object = &house.objects[id];
     let mut joints = house.joints_of(id);
     let (joint_id, None) = (joints.next()?, joints.next()) else {

@@ -3,7 +3,7 @@
 use dwell_scene::{LevelId, MaterialId, Room, RoomId, Structure, StructureKind};
 use glam::Affine3A;
 
-use super::super::file::{BinaryFlag, NodeFile};
+use super::super::file::{BinaryFlag, SuncgNode};
 use super::{SuncgWriter, bounds};
 use crate::error::HousesError;
 use crate::obj::ObjWriter;
@@ -14,7 +14,7 @@ pub(super) fn needs_own_room(piece: &Structure, level: LevelId) -> bool {
 }
 
 /// The file that a piece belongs to.
-fn letter(kind: StructureKind) -> char {
+fn mesh_file_letter(kind: StructureKind) -> char {
     match kind {
         StructureKind::Ceiling => 'c',
         StructureKind::Floor | StructureKind::Ground => 'f',
@@ -46,14 +46,14 @@ impl SuncgWriter<'_> {
         level: LevelId,
         index: usize,
         room: Option<(RoomId, &Room)>,
-    ) -> Result<NodeFile, HousesError> {
+    ) -> Result<SuncgNode, HousesError> {
         let model = format!("fr_{}rm_{index}", level.0);
         let id = room.map(|(id, _)| id);
         let belongs = |piece: &Structure| match id {
             Some(id) => piece.room == Some(id),
             None => needs_own_room(piece, level),
         };
-        let mut node = NodeFile {
+        let mut node = SuncgNode {
             id: Some(format!("{}_{index}", level.0)),
             kind: Some("Room".to_owned()),
             valid: Some(BinaryFlag(true)),
@@ -62,14 +62,14 @@ impl SuncgWriter<'_> {
                 room.kinds.iter().map(|kind| room_type(kind)).collect()
             })),
             bbox: room.and_then(|(_, room)| bounds(&room.bounds)),
-            ..NodeFile::default()
+            ..SuncgNode::default()
         };
         for part in ['c', 'f', 'w'] {
             let pieces: Vec<&Structure> = self
                 .house
                 .structure
                 .iter()
-                .filter(|piece| belongs(piece) && letter(piece.kind) == part)
+                .filter(|piece| belongs(piece) && mesh_file_letter(piece.kind) == part)
                 .collect();
             if pieces.is_empty() {
                 let hidden = match part {
@@ -90,7 +90,7 @@ impl SuncgWriter<'_> {
         &self,
         level: LevelId,
         first: usize,
-    ) -> Result<Vec<NodeFile>, HousesError> {
+    ) -> Result<Vec<SuncgNode>, HousesError> {
         let pieces =
             self.house.structure.iter().filter(|p| {
                 p.level == level && p.room.is_none() && p.kind == StructureKind::Ground
@@ -99,13 +99,13 @@ impl SuncgWriter<'_> {
         for (k, piece) in pieces.enumerate() {
             let model = format!("fr_{}gd_{k}", level.0);
             self.pieces(&format!("{model}f"), &[piece])?;
-            nodes.push(NodeFile {
+            nodes.push(SuncgNode {
                 id: Some(format!("{}_{}", level.0, first + k)),
                 kind: Some("Ground".to_owned()),
                 valid: Some(BinaryFlag(true)),
                 model_id: Some(model),
                 bbox: bounds(&self.house.meshes[piece.mesh].bounds()),
-                ..NodeFile::default()
+                ..SuncgNode::default()
             });
         }
         Ok(nodes)

@@ -205,7 +205,7 @@ fn csv_text(header: &[&str], rows: impl Iterator<Item = Vec<String>>) -> Result<
 }
 
 /// A light in the space of its model.
-pub(super) fn model_lights(light: &Light, model_from_part: &Affine3A) -> SuncgLight {
+pub(super) fn light_in_model_space(light: &Light, model_from_part: &Affine3A) -> SuncgLight {
     let point = |p: Vec3| {
         model_from_part
             .transform_point3(p)

@@ -85,7 +85,7 @@ impl ClosestHit {
     /// Starts again, with the smallest distance from a first pass.
     pub(in super::super) fn second_pass(&self, far: f32) -> Self {
         let mut again = Self::new(far);
-        again.shorten(self.distance);
+        again.set_nearest_distance(self.distance);
         again
     }
 
@@ -97,7 +97,7 @@ impl ClosestHit {
     }
 
     #[inline(always)]
-    fn shorten(&mut self, distance: f32) {
+    fn set_nearest_distance(&mut self, distance: f32) {
         let horizon = coincidence_max_distance(distance);
         self.distance = distance;
         self.limit = if horizon < self.limit {
@@ -118,7 +118,7 @@ impl ClosestHit {
         if coincidence_max_distance(distance) < self.distance {
             // Clearly nearer than all before: none of them can be coincident with it.
             self.closest = hit;
-            self.shorten(distance);
+            self.set_nearest_distance(distance);
         } else {
             self.consider_coincident(distance, hit, &claim);
         }
@@ -156,7 +156,7 @@ impl ClosestHit {
             }
         }
         if shorter {
-            self.shorten(distance);
+            self.set_nearest_distance(distance);
         }
     }
 }

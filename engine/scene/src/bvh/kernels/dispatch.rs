@@ -81,7 +81,7 @@ mod tests {
             let filter = HitFilter::new(RayMask::ALL, Some(3));
             let answer = |level: SimdLevel| {
                 let mut hits = PacketHits::<N>::new();
-                scene.closest_packet_at_level(level, &rays, &filter, &mut hits);
+                scene.closest_packet_with_simd(level, &rays, &filter, &mut hits);
                 let blocked = level.run(OccludedPacketQuery {
                     scene,
                     rays: &rays,

@@ -19,7 +19,7 @@ use super::ray::RayMask;
 
 /// The three results of `f`. Array methods with closures compile into calls; this does not.
 #[inline(always)]
-fn three<T>(f: impl Fn(usize) -> T) -> [T; 3] {
+fn array3<T>(f: impl Fn(usize) -> T) -> [T; 3] {
     [f(0), f(1), f(2)]
 }
 

@@ -3,10 +3,10 @@
 use glam::Vec4;
 
 use super::super::node::Node;
+use super::array3;
 use super::slab::{
     LARGEST_INVERSE, PaddedOrigin, box_margin, max_f32, min_f32, safe_inverse, slab_range,
 };
-use super::three;
 use super::triangle::{OriginTriangles, clamped_hit_distance, dot, is_inside};
 use crate::bounds::Aabb;
 
@@ -71,8 +71,8 @@ impl<const N: usize> PreparedPacket<N> {
             start[k] = if used { near[k] } else { f32::INFINITY };
         }
         let margin = box_margin(origin, all);
-        let mixed = three(|axis| lowest[axis] <= 0.0 && highest[axis] >= 0.0);
-        let up = three(|axis| lowest[axis] > 0.0);
+        let mixed = array3(|axis| lowest[axis] <= 0.0 && highest[axis] >= 0.0);
+        let up = array3(|axis| lowest[axis] > 0.0);
         Self {
             direction: *direction,
             inverse: inverses,
@@ -86,29 +86,29 @@ impl<const N: usize> PreparedPacket<N> {
             max_limit: highest_of(limit),
             min_direction: lowest,
             max_direction: highest,
-            slow: three(|axis| {
+            slow: array3(|axis| {
                 if mixed[axis] {
                     -LARGEST_INVERSE
                 } else {
                     safe_inverse(highest[axis])
                 }
             }),
-            fast: three(|axis| {
+            fast: array3(|axis| {
                 if mixed[axis] {
                     LARGEST_INVERSE
                 } else {
                     safe_inverse(lowest[axis])
                 }
             }),
-            leave_at_least: three(|axis| {
+            leave_at_least: array3(|axis| {
                 if mixed[axis] {
                     f32::INFINITY
                 } else {
                     f32::NEG_INFINITY
                 }
             }),
-            first: three(|axis| if up[axis] { axis } else { axis + 3 }),
-            last: three(|axis| if up[axis] { axis + 3 } else { axis }),
+            first: array3(|axis| if up[axis] { axis } else { axis + 3 }),
+            last: array3(|axis| if up[axis] { axis + 3 } else { axis }),
             mixed: mixed != [false; 3],
         }
     }
@@ -174,7 +174,7 @@ impl<const N: usize> PreparedPacket<N> {
         while rest != 0 {
             let k = rest.trailing_zeros() as usize;
             rest &= rest - 1;
-            if !self.any_enters(&three(|p| planes[p][k]), &three(|p| planes[p + 3][k])) {
+            if !self.any_enters(&array3(|p| planes[p][k]), &array3(|p| planes[p + 3][k])) {
                 bits &= !(1 << k);
             }
         }
@@ -247,12 +247,12 @@ impl<const N: usize> PreparedPacket<N> {
         lane: usize,
         cross: impl Fn(&[f32; 3], &[f32; 3], [f32; 3]) -> (f32, f32),
     ) -> Option<[f32; N]> {
-        let [u, v, w] = three(|edge| three(|axis| facets.edges[edge][axis][lane]));
-        let tolerances = three(|edge| facets.tolerances[edge][lane]);
-        let normal = three(|axis| facets.normal[axis][lane]);
+        let [u, v, w] = array3(|edge| array3(|axis| facets.edges[edge][axis][lane]));
+        let tolerances = array3(|edge| facets.tolerances[edge][lane]);
+        let normal = array3(|axis| facets.normal[axis][lane]);
         let height = facets.height[lane];
-        let first = three(|axis| facets.bounds[self.first[axis]][lane]);
-        let last = three(|axis| facets.bounds[self.last[axis]][lane]);
+        let first = array3(|axis| facets.bounds[self.first[axis]][lane]);
+        let last = array3(|axis| facets.bounds[self.last[axis]][lane]);
         let ([x, y, z], [ix, iy, iz]) = (&self.direction, &self.inverse);
         let mut distances = [0.0; N];
         let mut any = 0_u32;

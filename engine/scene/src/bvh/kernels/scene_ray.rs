@@ -35,7 +35,7 @@ impl<H: HitVisitor> SimdKernel for SceneRayQuery<'_, '_, H> {
         let probe = &self::probe(self.ray, &set.tree.bounds);
         let limit = min_f32(self.hits.limit(), probe.far);
         let hits = self.hits;
-        let mut moving = InstanceLeafVisitor {
+        let mut moving = LeafInstanceIntersector {
             set,
             probe,
             filter,
@@ -52,14 +52,14 @@ fn probe(ray: &Ray, bounds: &Aabb) -> PreparedRay {
 }
 
 /// The moving instances.
-struct InstanceLeafVisitor<'a, H> {
+struct LeafInstanceIntersector<'a, H> {
     set: &'a InstanceSet,
     probe: &'a PreparedRay,
     filter: &'a HitFilter,
     hits: &'a mut H,
 }
 
-impl<H: HitVisitor> RayLeafVisitor for InstanceLeafVisitor<'_, H> {
+impl<H: HitVisitor> RayLeafVisitor for LeafInstanceIntersector<'_, H> {
     #[inline(always)]
     fn visit_leaf(&mut self, instance: usize, limit: &mut f32) -> bool {
         let placed = &self.set.placed[instance];

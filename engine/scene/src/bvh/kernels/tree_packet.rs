@@ -96,7 +96,7 @@ impl<const N: usize> PacketClosestHits<N> {
 
     #[cold]
     #[inline(never)]
-    fn weigh(
+    fn consider_coincident(
         &mut self,
         k: usize,
         limit: &mut f32,
@@ -227,10 +227,13 @@ impl<const N: usize, C: Fn(usize, HitIndex) -> TieBreak> ClosestLeafVisitor<'_, 
                         source: self.source,
                         slot,
                     };
-                    self.hits
-                        .weigh(k, &mut fan.limit[k], distances[k], hit, &|place| {
-                            (self.tie_break)(k, place)
-                        });
+                    self.hits.consider_coincident(
+                        k,
+                        &mut fan.limit[k],
+                        distances[k],
+                        hit,
+                        &|place| (self.tie_break)(k, place),
+                    );
                 }
             }
         }

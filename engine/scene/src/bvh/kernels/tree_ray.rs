@@ -10,7 +10,7 @@ use super::slab::{
     PaddedOrigin, box_margin, max_f32, min_f32, safe_inverse, slab_range, slab_range4,
 };
 use super::triangle::{EdgePlanes, bounds, clamped_hit_distance, dot, plane_distance};
-use super::{HitFilter, three};
+use super::{HitFilter, array3};
 use crate::bounds::Aabb;
 
 /// A ray in the space of a tree, prepared. Its direction need not have unit length: distances are multiples of it.
@@ -39,7 +39,7 @@ impl PreparedRay {
     ) -> Self {
         let margin = box_margin(origin, all);
         let wide = PaddedOrigin::new(origin, margin);
-        let inverse = three(|axis| safe_inverse(direction[axis]));
+        let inverse = array3(|axis| safe_inverse(direction[axis]));
         Self {
             origin,
             direction,
@@ -73,7 +73,7 @@ impl PreparedRay {
         let (enter, leave) = slab_range4(
             node,
             &self.wide,
-            &three(|axis| Vec4::splat(self.inverse[axis])),
+            &array3(|axis| Vec4::splat(self.inverse[axis])),
         );
         let enter = enter.max(Vec4::splat(self.near));
         (
@@ -161,7 +161,7 @@ pub(super) fn intersect_tree<H: HitVisitor>(
     hits: &mut H,
 ) -> bool {
     let limit = min_f32(hits.limit(), probe.far);
-    let mut triangles = TriangleLeafVisitor {
+    let mut triangles = LeafTriangleIntersector {
         bvh,
         probe,
         filter,
@@ -172,7 +172,7 @@ pub(super) fn intersect_tree<H: HitVisitor>(
 }
 
 /// The triangles of a tree.
-struct TriangleLeafVisitor<'a, H> {
+struct LeafTriangleIntersector<'a, H> {
     bvh: &'a TriangleBvh,
     probe: &'a PreparedRay,
     filter: &'a HitFilter,
@@ -180,7 +180,7 @@ struct TriangleLeafVisitor<'a, H> {
     hits: &'a mut H,
 }
 
-impl<H: HitVisitor> RayLeafVisitor for TriangleLeafVisitor<'_, H> {
+impl<H: HitVisitor> RayLeafVisitor for LeafTriangleIntersector<'_, H> {
     #[inline(always)]
     fn visit_leaf(&mut self, block: usize, limit: &mut f32) -> bool {
         let (probe, source) = (self.probe, self.source);

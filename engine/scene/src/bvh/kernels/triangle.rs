@@ -10,8 +10,8 @@
 use glam::Vec4;
 
 use super::super::node::TriangleBlock;
+use super::array3;
 use super::slab::{PaddedOrigin, max_f32, min_f32};
-use super::three;
 
 /// Four triangles as seen from an origin.
 #[derive(Clone, Copy, Debug)]
@@ -64,7 +64,7 @@ impl EdgePlanes {
     /// `longest`: no component of a direction exceeds it.
     #[inline(always)]
     pub(in super::super) fn new(block: &TriangleBlock, origin: [f32; 3], longest: f32) -> Self {
-        let origin = three(|axis| Vec4::splat(origin[axis]));
+        let origin = array3(|axis| Vec4::splat(origin[axis]));
         let a = minus(&block.a, &origin);
         let b = minus(&block.b, &origin);
         let c = minus(&block.c, &origin);
@@ -105,8 +105,8 @@ impl EdgePlanes {
     #[inline(always)]
     pub(in super::super) fn triangles_hit_by_any(&self, low: [f32; 3], high: [f32; 3]) -> u32 {
         let bounds = |n: &[Vec4; 3]| {
-            let least = three(|k| (n[k] * low[k]).min(n[k] * high[k]));
-            let most = three(|k| (n[k] * low[k]).max(n[k] * high[k]));
+            let least = array3(|k| (n[k] * low[k]).min(n[k] * high[k]));
+            let most = array3(|k| (n[k] * low[k]).max(n[k] * high[k]));
             (
                 (least[0] + least[1]) + least[2],
                 (most[0] + most[1]) + most[2],
@@ -147,16 +147,16 @@ impl OriginTriangles {
         origin: [f32; 3],
         wide: &PaddedOrigin,
     ) -> Self {
-        let corner = minus(&block.a, &three(|axis| Vec4::splat(origin[axis])));
+        let corner = minus(&block.a, &array3(|axis| Vec4::splat(origin[axis])));
         let n = &block.normal;
         let height = (n[0] * corner[0] + n[1] * corner[1]) + n[2] * corner[2];
         let low = |k: usize| (block.a[k].min(block.b[k]).min(block.c[k]) - wide.0[k]).to_array();
         let high =
             |k: usize| (block.a[k].max(block.b[k]).max(block.c[k]) - wide.0[k + 3]).to_array();
         Self {
-            edges: three(|edge| three(|axis| planes.normals[edge][axis].to_array())),
-            tolerances: three(|edge| planes.tolerances[edge].to_array()),
-            normal: three(|axis| n[axis].to_array()),
+            edges: array3(|edge| array3(|axis| planes.normals[edge][axis].to_array())),
+            tolerances: array3(|edge| planes.tolerances[edge].to_array()),
+            normal: array3(|axis| n[axis].to_array()),
             height: height.to_array(),
             bounds: [low(0), low(1), low(2), high(0), high(1), high(2)],
         }
@@ -170,7 +170,7 @@ pub(in super::super) fn plane_distance(
     lane: usize,
     origin: [f32; 3],
 ) -> f32 {
-    let [x, y, z] = three(|axis| block.a[axis][lane] - origin[axis]);
+    let [x, y, z] = array3(|axis| block.a[axis][lane] - origin[axis]);
     dot(block.normal_of(lane), x, y, z)
 }
 
