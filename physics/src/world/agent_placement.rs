@@ -110,7 +110,7 @@ impl AgentPlacement {
     }
 
     /// Returns the placed agent, and its velocity that is not commanded. `truth`: its locomotion in this world.
-    fn to_agent_state(
+    fn agent_state(
         &self,
         before: &AgentState,
         truth: &Locomotion,
@@ -264,7 +264,7 @@ impl PhysicsWorld {
                 });
             };
             let (agent, passive_velocities) =
-                placement.to_agent_state(before, &state.locomotion(id))?;
+                placement.agent_state(before, &state.locomotion(id))?;
             put.push((id, agent, passive_velocities));
         }
         for (id, agent, passive_velocities) in put {

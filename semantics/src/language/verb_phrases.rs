@@ -301,7 +301,7 @@ pub(super) fn add_predications(description: &mut Description, all: SaidList) -> 
                 description.modifiers.push(Modifier {
                     negated: true,
                     ..Modifier::new(&state, [])
-                })
+                });
             }
             _ => return None,
         }

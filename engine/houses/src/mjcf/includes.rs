@@ -87,7 +87,7 @@ impl IncludeChecker<'_> {
             self.classes.record(node, &at, self.report);
             match node.tag_name().name() {
                 "include" => {
-                    elements = elements.saturating_add(self.check_referenced_file(node, name)?)
+                    elements = elements.saturating_add(self.check_referenced_file(node, name)?);
                 }
                 // Models of `<asset>` are copied by each `<attach>`.
                 "model" if node.has_attribute("file") => {
