@@ -300,7 +300,7 @@ class Batch:
     def specs(self) -> list[dict[str, Any]]:
         """``[{name, shape, dtype, unit, low, high, about}, ...]``, one for each sensor: those of the first agent, of the second, and so on."""
     def reset(self, seeds: Sequence[int | None]) -> None: ...
-    def put(self, env: int, spare: PreparedEnv) -> None:
+    def replace_env(self, env: int, spare: PreparedEnv) -> None:
         """``spare`` takes the place of environment ``env``, once; worlds of :meth:`World.of_env` are its from then on."""
     def steps(self) -> NDArray[np.int64]:
         """Number of steps of each environment's episode so far."""
@@ -312,7 +312,7 @@ class Batch:
     def render(self, env: int, view: _Data) -> NDArray[np.uint8]:
         """What environment ``env``'s first agent sees, lit; ``view``: as :meth:`World.render`."""
     def instruction(self, env: int, agent: int = ...) -> str: ...
-    def ask(
+    def set_goal(
         self,
         env: int,
         instruction: str | None = ...,
@@ -320,7 +320,7 @@ class Batch:
         agent: int = ...,
     ) -> None:
         """Asks something else (``None``: the same) of the episode that has just begun; the agent starts where it stands."""
-    def rule(self, env: int, ruling: _Data, agent: int = ...) -> dict[str, Any]:
+    def set_step_result(self, env: int, ruling: _Data, agent: int = ...) -> dict[str, Any]:
         """Judges the latest step anew: ``{reward, terminated, success, distance_m}``; gives ``{distance_to_goal, spl, soft_spl}``; ``None`` without a goal."""
     def expert_actions(self) -> NDArray[np.int64]:
         """For each environment and agent."""

@@ -56,12 +56,12 @@ fn stage(name: &str, most: usize) -> Stage {
     }
 }
 
-/// Views of the sample house and of each generated one: 8 and 5, or 200 and 100 with `DWELL_TEST_ALL=1`.
+/// Views of the sample house and of each generated one: 16 and 10, or 200 and 100 with `DWELL_TEST_ALL=1`.
 fn stages() -> Vec<Stage> {
     let (of_sample, of_seed) = if dwell_tests::runs_all() {
         (200, 100)
     } else {
-        (8, 5)
+        (16, 10)
     };
     let mut all: Vec<Stage> = ["seed:3", "seed:12"]
         .map(|seed| stage(seed, of_seed))

@@ -76,7 +76,7 @@ class NativeBatch:
 
     def move(self, env: int, spare: PreparedEnv) -> None:
         """Puts ``spare`` in the place of an environment, which is in another house from then on."""
-        self.batch.put(env, spare.native)
+        self.batch.replace_env(env, spare.native)
         self.houses[env] = spare.house
         if self.plays:
             self.plays[env].move(spare.house)

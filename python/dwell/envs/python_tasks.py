@@ -187,7 +187,7 @@ class PythonEpisode:
 
     def _ask(self, asked: object) -> None:
         if asked is None:
-            self._batch.ask(self._env)
+            self._batch.set_goal(self._env)
             return
         if not isinstance(asked, TaskGoal):
             raise ConfigError(
@@ -196,7 +196,7 @@ class PythonEpisode:
         distance_m = asked.distance_m
         if distance_m is not None:
             distance_m = finite_number("distance_m", distance_m)
-        self._batch.ask(self._env, text("instruction", asked.instruction), distance_m)
+        self._batch.set_goal(self._env, text("instruction", asked.instruction), distance_m)
 
     def _name(self) -> str:
         return type(self._task).__name__
@@ -228,7 +228,7 @@ class PythonEpisode:
             "success": verdict.success,
             "distance_m": verdict.distance_m,
         }
-        ruled = {**ruling, **self._batch.rule(k, ruling)}
+        ruled = {**ruling, **self._batch.set_step_result(k, ruling)}
         for key, value in ruled.items():
             if key in answer:
                 answer[key][k] = math.nan if value is None else value
