@@ -576,11 +576,13 @@ def test_the_borders_of_batches_hold() -> None:
     env = DwellEnv("Free", sensors=["gps"])
     batch = env._runner.batch
     with pytest.raises(dwell.UsageError, match="reset first"):
-        batch.ask(0, "Go.", None)
+        batch.set_goal(0, "Go.", None)
     with pytest.raises(dwell.UsageError, match="reset first"):
-        batch.rule(0, {"reward": 0.0, "terminated": False, "success": False, "distance_m": None})
+        batch.set_step_result(
+            0, {"reward": 0.0, "terminated": False, "success": False, "distance_m": None}
+        )
     with pytest.raises(dwell.UsageError, match="no environment 3"):
         _native.World.of_env(batch, 3)
     with pytest.raises(dwell.ConfigError):
-        batch.rule(0, {})
+        batch.set_step_result(0, {})
     assert isinstance(_native.World.of_env(batch, 0), _native.World)
