@@ -23,7 +23,7 @@ pub(crate) trait EngineCall {
     /// Calls `work` without the GIL; its error becomes the exception it stands for, a panic `EngineBug`.
     ///
     /// On Python's main thread handlers of signals run meanwhile; what one raises stops `work` at its next
-    /// [`interrupt::check`] and is raised here.
+    /// [`interrupt::unwind_if_cancelled`] and is raised here.
     fn engine<T, E>(self, work: impl FnOnce() -> Result<T, E> + Send) -> PyResult<T>
     where
         T: Send,

@@ -30,7 +30,7 @@ const ENGINE_CALL_PATTERNS: &[&str] = &[
     ".engine(",
     ".with(py",
     ".with(slf.py()",
-    ".look(py",
+    ".read_interruptible(py",
     ".prepare(py",
 ];
 

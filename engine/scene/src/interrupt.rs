@@ -1,12 +1,12 @@
 //! Cancellation of long calls.
 //!
-//! Long loops call [`check`] between pieces of at most some 20 ms; `parallel` does so between all pieces that it hands out.
+//! Long loops call [`unwind_if_cancelled`] between pieces of at most some 20 ms; `parallel` does so between all pieces that it hands out.
 //! A caller wraps a cancellable call in [`interruptible`], with a function that is polled every [`INTERVAL`] on the calling
-//! thread. When it returns true, `check` unwinds the stack, of pool threads too, with [`Interrupted`], and `interruptible`
+//! thread. When it returns true, `unwind_if_cancelled` unwinds the stack, of pool threads too, with [`Interrupted`], and `interruptible`
 //! returns it. That is no panic: no hook sees it. (salsa cancels its queries in the same way.)
 //!
 //! Code that must not stop half-way runs in [`uninterruptible`], where polling goes on; code that holds a lock or half a result
-//! meanwhile uses [`catch_interrupt`]. The initializer of a `LazyLock` must not meet a `check`: interrupted once, it is poisoned for
+//! meanwhile uses [`catch_interrupt`]. The initializer of a `LazyLock` must not meet it: interrupted once, it is poisoned for
 //! good. A `OnceLock` stays empty, and is filled the next time.
 
 use std::cell::RefCell;
@@ -74,7 +74,7 @@ impl Drop for ScopeGuard {
 /// `work`: it must not call engines, whose locks `work` may hold.
 ///
 /// # Errors
-/// [`Interrupted`] when the work was cancelled. Work that ends before it meets a [`check`] is done, whatever `ask` returned.
+/// [`Interrupted`] when the work was cancelled. Work that ends before it meets a [`unwind_if_cancelled`] is done, whatever `ask` returned.
 pub fn interruptible<R>(ask: fn() -> bool, work: impl FnOnce() -> R) -> Result<R, Interrupted> {
     let token = Arc::new(AtomicBool::new(false));
     let schedule = PollSchedule {
@@ -98,7 +98,7 @@ pub fn catch_interrupt<R>(work: impl FnOnce() -> R) -> Result<R, Interrupted> {
     })
 }
 
-/// Runs `work` to its end: it is not cancelled. Polling goes on, and a cancellation meanwhile stops the call at its next [`check`]
+/// Runs `work` to its end: it is not cancelled. Polling goes on, and a cancellation meanwhile stops the call at its next [`unwind_if_cancelled`]
 /// after this work.
 pub fn uninterruptible<R>(work: impl FnOnce() -> R) -> R {
     let _restore = ScopeGuard::set_and_guard(None, schedule());
@@ -115,7 +115,7 @@ pub fn unwind_if_cancelled() {
     }
 }
 
-/// Calls [`check`] once in a number of turns: for loops whose turns are hardly longer than a check.
+/// Calls [`unwind_if_cancelled`] once in a number of turns: for loops whose turns are hardly longer than a check.
 #[derive(Debug)]
 pub struct PollEvery {
     every: usize,

@@ -5,6 +5,7 @@
 
 mod antecedent;
 mod clause;
+mod mention;
 mod phrase;
 mod question;
 mod request;
