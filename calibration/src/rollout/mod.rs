@@ -1,6 +1,6 @@
 //! Roll-outs: a measured motion is put into the simulation, which predicts what comes after it.
 //!
-//! Whole episodes start where the bundle says ([`scores`]); windows ([`ends`]) start at any sample and look 1 to 40 samples
+//! Whole episodes start where the bundle says ([`scores`]); windows ([`predict_windows`]) start at any sample and look 1 to 40 samples
 //! ahead. A [`RolloutSubject`] is what can be rolled out: tosses of a box onto a board ([`PoseTracks`]), a robot on two wheels
 //! ([`drive`]), falling balls ([`mod@drop`]). Models of tosses are compared by a [`study`], those of the others by [`series`].
 

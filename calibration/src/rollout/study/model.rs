@@ -87,7 +87,7 @@ pub fn standard_models() -> Vec<ContactModel> {
     ]
 }
 
-/// Further models that were tried beside [`all`].
+/// Further models that were tried beside [`standard_models`].
 pub fn further_models() -> Vec<ContactModel> {
     vec![
         ContactModel {
