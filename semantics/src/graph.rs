@@ -255,7 +255,7 @@ pub fn default_relation_codes(with_viewer: bool) -> Vec<usize> {
 
 /// Everything that can be said about the scene, as data; with a viewer, sides too, of the 1,000 things nearest before it.
 ///
-/// Relations are those of objects and agents that [`listed`] has.
+/// Relations are those of objects and agents that [`default_relation_codes`] has.
 pub fn scene_graph(scene: &SemanticScene<'_>, viewer: Option<&Viewer>) -> SceneGraph {
     let house = scene.house();
     let rooms = house.rooms.iter_ids().map(|(id, room)| {

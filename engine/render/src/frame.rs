@@ -161,7 +161,7 @@ pub struct FrameMut<'a> {
     pub normals: Option<&'a mut [f32]>,
     /// Reflectance of the surface, linear, 0 to 1; zeros for nothing. Shape (height, width, 3).
     pub albedo: Option<&'a mut [f32]>,
-    /// Motion of the seen point in the image since [`PreviousFrame`], pixels to the right and down; zeros where it was not seen
+    /// Motion of the seen point in the image since [`PreviousPoses`], pixels to the right and down; zeros where it was not seen
     /// by the camera. Shape (height, width, 2).
     pub flow: Option<&'a mut [f32]>,
 }

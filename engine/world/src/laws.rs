@@ -62,7 +62,7 @@ pub const DEFAULT_VALUES: &[LawPreset] = &[
     },
 ];
 
-/// Checks laws of all engines and leaves out those at their default, as [`dwell_scene::law::install`] says.
+/// Checks laws of all engines and leaves out those at their default, as [`dwell_scene::law::check_and_canonicalize`] says.
 ///
 /// # Errors
 /// [`WorldError::Unknown`] lists the laws there are; [`WorldError::Scene`] names a parameter out of bounds, or a target that
@@ -82,7 +82,7 @@ pub fn normalize_laws(house: &House, specs: &[LawSpec]) -> Result<Vec<LawSpec>, 
 /// The initial state of a house under laws and parameters (values by address), for engines that work without a world. Nobody is in it.
 ///
 /// # Errors
-/// As [`install`], and [`WorldError::Scene`] for an address that names nothing or a value out of range.
+/// As [`normalize_laws`], and [`WorldError::Scene`] for an address that names nothing or a value out of range.
 pub fn state_with_laws<'a>(
     house: &House,
     specs: &[LawSpec],

@@ -15,7 +15,7 @@ use rapier3d::geometry::ColliderHandle;
 
 impl PhysicsWorld {
     /// Applies the state's overrides and laws: masses, friction and restitution of pairs and materials, gravity, all joint
-    /// parameters of [`State::joint_values`]. All sleeping bodies are woken if something changed. Where a link's length or
+    /// parameters of [`State::joint_parameters`]. All sleeping bodies are woken if something changed. Where a link's length or
     /// a joint's axis changed, jointed bodies move there, in `state` too; a joint beyond a new limit is put at it, at rest.
     /// Agents get the bodies of the state.
     ///

@@ -10,7 +10,7 @@ use dwell_scene::{State, interrupt};
 impl PhysicsWorld {
     /// Makes one control step: agents move by `controls` (those without one stand still), then bodies, joints and contacts;
     /// `state` is updated, and impacts, sliding and rolling are appended to `events` in the order of time and pair: at most
-    /// [`max_events_per_step`](crate::PhysicsConfig::max_events_per_step), see [`PhysicsWorld::merged_events`].
+    /// [`max_events_per_step`](crate::PhysicsConfig::max_events_per_step), see [`PhysicsWorld::events_beyond_limit`].
     ///
     /// The state's `time_s` and `step` belong to the caller and are left alone.
     ///

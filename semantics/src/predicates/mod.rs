@@ -167,12 +167,12 @@ pub trait Predicate: Sync {
     }
 
     /// Returns whether tables of relations list it by default: it takes two arguments and no viewer, a thing has it to few others,
-    /// [`Self::related`] finds these without a test of each pair, and it is decided of all arguments of the kinds in [`Self::places`].
+    /// [`Self::related`] finds these without a test of each pair, and it is decided of all arguments of the kinds in [`Self::argument_kinds`].
     fn is_listed(&self) -> bool {
         false
     }
 
-    /// Evaluates it for arguments that exist and are of the kinds in [`Self::places`], with a viewer if it needs one.
+    /// Evaluates it for arguments that exist and are of the kinds in [`Self::argument_kinds`], with a viewer if it needs one.
     fn decide(&self, scene: &SemanticScene<'_>, args: &[Term], viewer: Option<&Viewer>) -> Truth;
 
     /// Returns whether it holds of `args`, the subject first. Undecided for kinds of things that it is not defined for, and without

@@ -20,7 +20,7 @@ pub(crate) fn recognizes(path: &Path) -> bool {
 /// Opens a `house.json`, the folder that holds it, or a data root with one house.
 ///
 /// # Errors
-/// [`HousesError::NotOneHouse`] for a data root with no house or several, else those of [`SuncgFiles::read`] and
+/// [`HousesError::NotOneHouse`] for a data root with no house or several, else those of [`ParsedSuncgFiles::read`] and
 /// [`convert`].
 pub fn open(path: &Path, threads: Threads) -> Result<(House, LoadReport), HousesError> {
     let house_json = house_json(path)?;
