@@ -142,9 +142,9 @@ fn caption_with(
         writer.say_of(description.into(), Term::Object(object));
         return writer.finish();
     }
-    writer.there_are(&[description], &[]);
+    writer.there_are(std::slice::from_ref(&description), &[]);
     if let Some(subject) = refer(scene, object) {
-        say_surroundings(&mut writer, scene, object, &subject.clone().into());
+        say_surroundings(&mut writer, scene, object, &subject, Some(&description));
         say_load(&mut writer, scene, object, &subject);
     }
     writer.finish()

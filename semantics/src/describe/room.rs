@@ -281,7 +281,7 @@ fn say_places(writer: &mut TextWriter<'_>, scene: &SemanticScene<'_>, standing: 
     let largest = groups.iter().flat_map(|group| &group.objects);
     for object in largest.take(MAX_PLACED) {
         if let Some(subject) = refer(scene, *object) {
-            say_surroundings(writer, scene, *object, &subject.into());
+            say_surroundings(writer, scene, *object, &subject, None);
         }
     }
 }

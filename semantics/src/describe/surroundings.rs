@@ -1,5 +1,6 @@
 //! What surrounds a thing: where it stands in its room, and what is around it.
 
+use super::hanging::MountedObject;
 use super::item::items;
 use super::text::TextWriter;
 use crate::form::{Clause, Description, Form, Modifier, Noun, Phrase, Quantifier};
@@ -56,15 +57,32 @@ fn landmarks(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<(&'static str, 
     found
 }
 
+/// Returns whether a thing stands on the floor, as far as relations tell: it is in and on nothing, and mounted on nothing.
+fn stands(scene: &SemanticScene<'_>, object: ObjectId) -> bool {
+    let is_carried = ["in", "on"].into_iter().any(|name| {
+        predicates::find(name).is_ok_and(|predicate| {
+            !predicates::related_objects(scene, predicate, object).is_empty()
+        })
+    });
+    !is_carried && MountedObject::of(scene, object).is_none()
+}
+
 /// Says where a thing that `subject` describes stands: its spot in the room, then the landmarks around it, those of one relation
-/// in one sentence.
+/// in one sentence. Relations by which it is described are not said again.
 pub(super) fn say_surroundings(
     writer: &mut TextWriter<'_>,
     scene: &SemanticScene<'_>,
     object: ObjectId,
-    subject: &Phrase,
+    subject: &Description,
+    caption: Option<&Description>,
 ) {
-    if let Some(room) = scene.room_of(object) {
+    let is_told = |name: &str| {
+        let described = [Some(subject), caption].into_iter().flatten();
+        let mut modifiers = described.flat_map(|description| &description.modifiers);
+        modifiers.any(|modifier| modifier.predicate == name)
+    };
+    let subject: Phrase = subject.clone().into();
+    if let Some(room) = scene.room_of(object).filter(|_| stands(scene, object)) {
         let in_spot = |name: &&str| {
             predicates::find(name).is_ok_and(|predicate| {
                 let terms = [Term::Object(object), Term::Room(room)];
@@ -75,7 +93,8 @@ pub(super) fn say_surroundings(
             writer.say(claim(spot, vec![subject.clone(), room_phrase(scene, room)]));
         }
     }
-    let landmarks = landmarks(scene, object);
+    let mut landmarks = landmarks(scene, object);
+    landmarks.retain(|(name, _)| !is_told(name));
     for of_one in landmarks.chunk_by(|(one, _), (other, _)| one == other) {
         let phrases = of_one.iter().map(|(_, phrase)| phrase.clone());
         let mut phrases: Vec<Phrase> = phrases.collect();
