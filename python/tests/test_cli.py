@@ -486,3 +486,15 @@ def test_counts_that_nothing_counts_to_are_refused(
     told = capsys.readouterr().err
     assert "expected a whole number from 1 to 9223372036854775807, found '999999" in told
     assert "islice" not in told
+
+
+def test_describe_has_three_lengths(command: Command) -> None:
+    texts = {}
+    for length in ("short", "normal", "long"):
+        told = command("describe", "builtin:studio", "--level", "room", "--length", length)
+        assert told.returncode == 0
+        texts[length] = told.stdout
+    assert len(texts["short"]) < len(texts["normal"]) < len(texts["long"])
+    refused = command("describe", "builtin:studio", "--level", "graph", "--length", "long")
+    assert refused.returncode == 2
+    assert "only the levels object, room and house have lengths" in refused.stderr
