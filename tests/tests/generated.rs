@@ -6,10 +6,15 @@ use dwell_scene::parallel::Threads;
 use dwell_tests::validity::{CheckCounts, CheckDepth, check_house, thread_dependent_seeds};
 use std::collections::BTreeMap;
 
-/// Seeds that are looked at in every run.
-const SEEDS: u64 = 120;
-/// Of these, seeds whose houses settle for two seconds.
-const SETTLED: u64 = 15;
+/// Number of seeds that are looked at.
+fn seeds() -> usize {
+    if dwell_tests::runs_all() { 300 } else { 120 }
+}
+
+/// Of these, the number of seeds whose houses settle for two seconds.
+fn settled() -> usize {
+    if dwell_tests::runs_all() { 30 } else { 15 }
+}
 
 fn assert_valid(all: &[CheckCounts]) {
     let mut faults = Vec::new();
@@ -39,13 +44,13 @@ fn assert_valid(all: &[CheckCounts]) {
 fn houses_of_seeds_are_valid_as_they_stand() {
     let check =
         |seed: usize| check_house(seed as u64, &HouseSpec::default(), CheckDepth::Geometric);
-    assert_valid(&Threads::default().map(SEEDS as usize, check));
+    assert_valid(&Threads::default().map(seeds(), check));
 }
 
 #[test]
 fn houses_of_seeds_stay_as_they_are_when_physics_begins() {
     let check = |seed: usize| check_house(seed as u64, &HouseSpec::default(), CheckDepth::Settled);
-    assert_valid(&Threads::default().map(SETTLED as usize, check));
+    assert_valid(&Threads::default().map(settled(), check));
 }
 
 #[test]
