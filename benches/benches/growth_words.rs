@@ -283,7 +283,12 @@ fn words(rows: &mut Rows, shape: Shape, house: &Arc<House>) {
             viewer: Some(viewer),
             agent: None,
         };
-        describe::describe_view(&semantics.scene(&state), listener, None)
+        describe::describe_view(
+            &semantics.scene(&state),
+            listener,
+            describe::TextLength::Normal,
+            None,
+        )
     });
     rows.row(shape, count, "instructions", || {
         let scene = semantics.scene(&state);

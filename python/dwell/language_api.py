@@ -46,8 +46,12 @@ class LanguageApi(RelationApi):
         """As :meth:`House.describe`, of the house as it is now.
 
         Args:
-            level: Also ``view``: what is seen, side by side, as one text.
-            length: Of the levels object, room and house.
+            level: Also ``view``: what is seen, as a person would tell it: floor and walls, the things
+                by side, the largest first, how far they are and where to each other, what lies on
+                them, and what is seen of other rooms. One text. What covers less than 100 of
+                256 x 256 pixels of a picture of 90 degrees, or is hidden to more than three
+                quarters, is left out. "The lamp" is the one in sight.
+            length: Of the levels object, room, house and view.
             seed: Draws the wordings.
             viewer: Whose view: an agent's number or a camera, as for :meth:`holds`. Without it the
                 eyes of ``agent``.
@@ -61,8 +65,8 @@ class LanguageApi(RelationApi):
             >>> world = dwell.World("builtin:apartment", agents=0)
             >>> room = world.house.rooms()[0]
             >>> viewer = {"position": room["eye"], "yaw_deg": room["yaw_deg"]}
-            >>> world.describe("view", viewer=viewer)[0].split(" you see ")[0]
-            'On your left'
+            >>> world.describe("view", viewer=viewer)[0].split(". ")[0]
+            'The first bedroom has a beige parquet floor and cream walls'
         """
         seed = None if seed is None else integer_in_range("seed", seed)
         listener = None if agent is None else integer_in_range("agent", agent, high=2**31 - 1)

@@ -126,12 +126,12 @@ fn text_length(level: &str, name: &str) -> Result<TextLength, PyFault> {
             "length is {name:?}; allowed are {allowed}"
         )));
     };
-    let has_lengths = ["object", "room", "house"].contains(&level);
+    let has_lengths = ["object", "room", "house", "view"].contains(&level);
     if has_lengths || length == TextLength::Normal {
         return Ok(length);
     }
     Err(PyFault::Config(format!(
-        "length is {name:?} with level {level:?}; only the levels object, room and house have lengths"
+        "length is {name:?} with level {level:?}; only the levels object, room, house and view have lengths"
     )))
 }
 
@@ -159,7 +159,7 @@ pub(crate) fn describe_level(
                 "level is \"view\": World.describe has it, with viewer or agent".to_owned(),
             ));
         }
-        "view" => vec![describe_view(scene, listener, wording)],
+        "view" => vec![describe_view(scene, listener, length, wording)],
         "graph" => {
             let text = serde_json::to_string(&scene_graph(scene, None))?;
             return PyValue::of(&[json!({ "text": text })]);

@@ -1,13 +1,14 @@
 //! State-independent facts about an object: kind, colours, substances, size.
 
 use crate::category::{SemanticCategory, categories};
-use crate::color::{ColorShare, ColorVocabulary, MaterialColors, Pattern, color_words};
+use crate::color::{ColorShare, ColorVocabulary, MaterialColors, Pattern, color_words, divides};
 use crate::english::counted_noun;
 use crate::form::{Description, Noun};
 use crate::geometry::mapped_area_m2;
 use crate::kind_noun::{KindNoun, kind_nouns};
 use crate::material_family::family_of;
 use crate::size::SizeClass;
+use crate::truth::{Truth, UndecidedReason};
 use dwell_scene::material::{Substance, library};
 use dwell_scene::{Aabb, House, MaterialId, ObjectId};
 use glam::Vec3;
@@ -31,7 +32,8 @@ pub struct ObjectFacts {
     /// Spoken noun, for several.
     pub plural: String,
     /// Its sorts of colour by share of what is seen of it where it stands at the start, from around and a little above (below, for
-    /// what hangs), largest first; by share of its whole surface where nothing of it is seen. Screens, clear glass, mirrors and the pots of plants are left out.
+    /// what hangs), largest first; by share of its whole surface where nothing of it is seen. Screens, clear glass, mirrors, the pots of plants and the
+    /// cabinets of sinks are left out.
     pub patches: Vec<ColorShare>,
     /// Its colours in plain words with their shares, largest first; empty for things that are nearly all clear glass or mirror.
     pub colors: Vec<(&'static str, f32)>,
@@ -72,7 +74,7 @@ impl ObjectFacts {
         let pattern = pattern(paints, category, &named);
         let substances = substances(house, &areas);
         let extents_m = own_box(house, id).size();
-        let colors = color_words(&patches, ColorVocabulary::Plain);
+        let colors = color_words(&patches, ColorVocabulary::Spoken);
         Self {
             category,
             kind,
@@ -104,6 +106,14 @@ impl ObjectFacts {
             .collect()
     }
 
+    /// Returns whether it shows a colour; undecided for a colour on which people divide, and of things that have none.
+    pub(crate) fn shows_color(&self, word: &str) -> Truth {
+        if self.colors.is_empty() {
+            return Truth::Undecided(UndecidedReason::NoColor);
+        }
+        shows_color(self.colors.iter().map(|(own, _)| *own), word)
+    }
+
     /// The colours a speaker would use: the one of most of the surface, else the two largest; none without a surface,
     /// when no two cover most of it, and for pictures that are not nearly all of one.
     pub fn spoken_colors(&self) -> &[(&'static str, f32)] {
@@ -118,10 +128,13 @@ impl ObjectFacts {
         }
     }
 
-    /// The adjective of its main substance; `None` when none prevails, or when the kind of thing implies it
-    /// already.
+    /// The adjective of its main substance; `None` when none prevails, when the kind of thing implies it
+    /// already, and for things with a part that stands for them.
     pub fn material_word(&self) -> Option<&'static str> {
         let (substance, share) = self.substances.first()?;
+        if self.category.and_then(defining_substance).is_some() {
+            return None;
+        }
         let dull = [
             "hard_surface",
             "hollow_door",
@@ -176,10 +189,20 @@ impl ObjectFacts {
 
     /// Returns whether noun, size, colours and material of a description fit it; its state and modifiers are left aside.
     pub(crate) fn fits(&self, description: &Description) -> bool {
+        self.fits_with(description, Truth::is_true)
+    }
+
+    /// The same, or whether some people would say that they fit.
+    pub(crate) fn may_fit(&self, description: &Description) -> bool {
+        self.fits_with(description, |color| !color.is_false())
+            && (description.colors.is_empty() || !self.colors.is_empty())
+    }
+
+    fn fits_with(&self, description: &Description, accepts: impl Fn(Truth) -> bool) -> bool {
         let Noun::Object(noun) = &description.noun else {
             return false;
         };
-        let shows = |color: &String| self.colors.iter().any(|(word, _)| word == color);
+        let shows = |color: &String| accepts(self.shows_color(color));
         let made_of = |word: &String| self.material_words().any(|own| own == *word);
         self.is_called(noun)
             && description.colors.iter().all(shows)
@@ -310,16 +333,32 @@ fn named_surfaces(
     if area_m2(&own) < FRAME_SHARE * area_m2(areas) {
         return Vec::new();
     }
-    // A plant has the colour of its leaves or flowers, not of its pot.
-    let is_leaf = |id: MaterialId| house.materials[id].substance == "leaves";
-    let leaves = own.iter().copied();
-    let leaves: Vec<_> = leaves.filter(|(id, _)| is_leaf(*id)).collect();
-    let is_plant = category.is_some_and(|row| row.substances.first() == Some(&"leaves"));
-    if is_plant && !leaves.is_empty() {
-        leaves
-    } else {
-        own
+    let Some(substance) = category.and_then(defining_substance) else {
+        return own;
+    };
+    let defining = own.iter().copied();
+    let defining = defining.filter(|(id, _)| house.materials[*id].substance == substance);
+    let defining: Vec<_> = defining.collect();
+    if defining.is_empty() { own } else { defining }
+}
+
+/// Returns whether `word` is among the words of a surface; undecided where people divide on it.
+pub(crate) fn shows_color<'a>(words: impl Iterator<Item = &'a str> + Clone, word: &str) -> Truth {
+    if words.clone().any(|own| own == word) {
+        return Truth::True;
     }
+    let mut words = words;
+    if words.any(|own| divides(own, word)) {
+        return Truth::Undecided(UndecidedReason::DividedColor);
+    }
+    Truth::False
+}
+
+/// The substance of the part that a thing has its colour from, where it has others, too: the leaves or flowers of a plant, not its pot; the
+/// basin of a sink, not its cabinet.
+fn defining_substance(category: &SemanticCategory) -> Option<&'static str> {
+    let first = category.substances.first().copied();
+    first.filter(|first| *first == "leaves" || category.name == "sink")
 }
 
 /// The sorts of colour by opacity-weighted share of `areas`, largest first.

@@ -34,6 +34,7 @@ mod semantics;
 mod size;
 mod structure_facts;
 mod truth;
+pub mod view_survey;
 mod visible_area;
 pub mod vocabulary;
 
@@ -41,7 +42,7 @@ pub use attributes::{ObjectAttributes, object_attributes};
 pub use doorways::RoomDoorway;
 pub use error::SemanticsError;
 pub use facts::ObjectFacts;
-pub use line_of_sight::is_in_line_of_sight;
+pub use line_of_sight::{FieldOfView, is_in_line_of_sight};
 pub use rooms::RoomProperties;
 pub use scene::{SemanticScene, Term, TermKind, Viewer};
 pub use semantics::Semantics;

@@ -20,6 +20,8 @@ const POINTS: usize = 256;
 const LOOKS: usize = 12;
 /// Number of directions from each.
 const DIRECTIONS: usize = 48;
+/// Their slopes, in turn: walls may be tiled below and painted above.
+const SLOPES: [f32; 3] = [-0.3, 0.0, 0.3];
 
 /// The lasting facts about a room.
 #[derive(Clone, Debug)]
@@ -195,7 +197,7 @@ impl RoomSurfaces {
 
 /// The colour word of at least half of a surface.
 fn dominant_color_word(patches: &[ColorShare]) -> Option<&'static str> {
-    let words = color_words(patches, ColorVocabulary::Plain);
+    let words = color_words(patches, ColorVocabulary::Spoken);
     let (word, _) = words.first().filter(|(_, share)| *share >= 0.5)?;
     Some(word)
 }
@@ -210,7 +212,8 @@ fn visible_wall_areas(rays: &RayScene, points: &[Vec3]) -> BTreeMap<MaterialId, 
         for k in 0..DIRECTIONS {
             let turn = std::f32::consts::TAU * (k as f32 + 0.5) / DIRECTIONS as f32;
             let (x, z) = math::sin_cos(turn);
-            let hit = rays.closest(&Ray::new(*eye, Vec3::new(x, 0.2, z)), RayMask::EYE);
+            let slope = SLOPES[k % SLOPES.len()];
+            let hit = rays.closest(&Ray::new(*eye, Vec3::new(x, slope, z)), RayMask::EYE);
             let Some(surface) = hit.map(|hit| rays.surface(&hit)) else {
                 continue;
             };

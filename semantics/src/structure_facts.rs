@@ -1,8 +1,10 @@
 //! Colours and substances of walls, floors and ceilings.
 
 use crate::color::{ColorVocabulary, color_words};
+use crate::facts::shows_color;
 use crate::material_family::family_of;
 use crate::semantics::Semantics;
+use crate::truth::Truth;
 use dwell_scene::material::library;
 use dwell_scene::{MaterialId, StructureId, StructureKind};
 use std::collections::BTreeMap;
@@ -33,14 +35,14 @@ fn shares(semantics: &Semantics, piece: StructureId) -> BTreeMap<MaterialId, f32
     areas
 }
 
-/// Returns whether a piece of the building shows a plain colour.
-pub(crate) fn has_color(semantics: &Semantics, piece: StructureId, word: &str) -> bool {
+/// Returns whether a piece of the building shows a colour; undecided where people divide on it.
+pub(crate) fn has_color(semantics: &Semantics, piece: StructureId, word: &str) -> Truth {
     let patches = semantics
         .material_colors()
         .patches(shares(semantics, piece));
-    let words = color_words(&patches, ColorVocabulary::Plain);
-    let mut large = words.iter().filter(|(_, share)| *share >= LEAST_SHARE);
-    large.any(|(own, _)| *own == word)
+    let words = color_words(&patches, ColorVocabulary::Spoken);
+    let large = words.iter().filter(|(_, share)| *share >= LEAST_SHARE);
+    shows_color(large.map(|(own, _)| *own), word)
 }
 
 /// Returns whether a piece of the building is made of a substance, or of one of its family.

@@ -32,6 +32,8 @@ pub enum UndecidedReason {
     NoContainer,
     /// One of the things has no colour of its own, like glass and mirrors.
     NoColor,
+    /// The thing's colour lies between two words, and people divide on which it is.
+    DividedColor,
     /// One of the things has no main substance.
     NoMaterial,
     /// The agent does not stand on walkable floor.
@@ -61,6 +63,9 @@ impl UndecidedReason {
             Self::NoSwitch => "It has no switch.",
             Self::NoContainer => "Nothing goes into it.",
             Self::NoColor => "One of the things has no colour of its own.",
+            Self::DividedColor => {
+                "Its colour lies between two words: some would call it so, others not."
+            }
             Self::NoMaterial => "One of the things is made of no one substance.",
             Self::NotOnFloor => "The agent stands where nobody can walk.",
             Self::TooFew => "There are not so many of them.",

@@ -1,8 +1,8 @@
-//! Colours of things against the words of readers who saw pictures alone: three runs of a vision-language model, no people. The table
-//! of names was fitted to two of them, so this keeps what is reached and measures nothing on new things.
+//! Colours of things against the words of readers who saw pictures alone: three runs of a vision-language model, no people. The things
+//! are of ten generated houses of which none was used when the table of names was fitted.
 #![allow(clippy::unwrap_used, reason = "tests stop at the first surprise")]
 
-use dwell_semantics::Semantics;
+use dwell_semantics::{Semantics, color};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -48,20 +48,19 @@ fn colours_are_those_that_readers_name() {
                 continue;
             };
             asked += 1;
-            // Things of two colours are named by both.
-            let both = spoken.len() > 1 && spoken[1].0 == majority;
-            main += u32::from(*word == majority || both);
-            close += u32::from(
-                readers
-                    .iter()
-                    .any(|(named, other)| named.contains(word) || other.contains(word)),
-            );
+            // Things of two colours are named by both; cream is what some call white, others beige.
+            let meets = |own: &str, given: &&str| own == *given || color::divides(own, given);
+            main += u32::from(spoken.iter().any(|(own, _)| meets(own, &majority)));
+            let mut given = readers
+                .iter()
+                .flat_map(|(named, other)| named.iter().chain(other));
+            close += u32::from(given.any(|given| meets(word, given)));
         }
     }
     println!(
         "{asked} things: {main} by the word of the majority, {close} by any that was given; {silent} without a colour"
     );
     assert!(asked >= 250);
-    assert!(main * 100 >= asked * 87, "{main} of {asked}");
+    assert!(main * 100 >= asked * 92, "{main} of {asked}");
     assert!(close * 100 >= asked * 96, "{close} of {asked}");
 }

@@ -77,12 +77,10 @@ fn examine_house(name: &str) {
             viewer: Some(viewer),
             agent: None,
         };
-        examine(
-            &scene,
-            listener,
-            &describe_view(&scene, listener, None),
-            name,
-        );
+        for length in TextLength::ALL {
+            let text = describe_view(&scene, listener, length, None);
+            examine(&scene, listener, &text, name);
+        }
     }
     for kind in InstructionKind::ALL {
         for instruction in candidates(&scene, kind) {

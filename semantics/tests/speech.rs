@@ -171,14 +171,24 @@ fn descriptions_read_aloud() {
     };
     state.agents.push(AgentState::new(body, feet, 0.0));
     let scene = semantics.scene(&state);
-    let view = describe_view(&scene, Listener::agent(&scene, AgentId(0)), None);
+    let view = describe_view(
+        &scene,
+        Listener::agent(&scene, AgentId(0)),
+        TextLength::Normal,
+        None,
+    );
     assert_eq!(
         view.text,
-        "You are in the kitchen. On your left you see a red plastic chair. Straight ahead you see a brown wooden table, a white \
-         porcelain bowl, a yellow picture and a white porcelain cup. On your right you see a blue plastic chair."
+        "You are in the kitchen. The kitchen has a brown parquet floor and white walls. Straight ahead you see a \
+         brown wooden table and a yellow picture. On your left you see a red plastic chair. On your right you see \
+         a blue plastic chair. The table is about 2 metres away. The red chair is next to the table. The blue \
+         chair is next to the table. You see a white porcelain bowl on the table."
     );
     // Without eyes nothing is seen.
-    assert_eq!(describe_view(&scene, Listener::default(), None).text, "");
+    assert_eq!(
+        describe_view(&scene, Listener::default(), TextLength::Normal, None).text,
+        ""
+    );
 }
 
 /// The colour is that of the surfaces that the room sees, not of those behind a front or before a wall.
@@ -212,7 +222,7 @@ fn the_colour_is_that_of_what_is_seen() {
     assert!(colors[0].1 > 0.5, "{colors:?}");
     let state = State::new(&house);
     let text = describe_house(&semantics.scene(&state), TextLength::Normal, None).text;
-    assert!(text.contains("an orange and gray wardrobe"), "{text}");
+    assert!(text.contains("an orange and light gray wardrobe"), "{text}");
 }
 
 #[test]

@@ -10,7 +10,9 @@ use dwell_semantics::describe::{TextLength, captions, describe_rooms};
 use dwell_semantics::english::ordinal;
 use dwell_semantics::form::{Clause, Description, Form, Noun, Phrase, Quantifier};
 use dwell_semantics::graph::{ObjectNode, SceneGraph, scene_graph};
-use dwell_semantics::{ObjectAttributes, SemanticScene, Semantics, Truth, object_attributes};
+use dwell_semantics::{
+    ObjectAttributes, SemanticScene, Semantics, Truth, UndecidedReason, object_attributes,
+};
 use std::sync::Arc;
 
 /// The swaps of each house; eight houses: 10,000 in all with `DWELL_TEST_ALL=1`.
@@ -189,7 +191,7 @@ fn swapped(
     let mut other = description.clone();
     match stream.below(4) {
         0 => {
-            let words = ColorVocabulary::Plain.words();
+            let words = ColorVocabulary::Spoken.words();
             let word = stream.choose(&words)?;
             (*word).clone_into(other.colors.first_mut()?);
         }
@@ -241,22 +243,28 @@ fn swap_in(name: &str) -> usize {
         .map(|room| dwell_semantics::refer::room_phrase(&scene, room))
         .collect();
     let mut stream = RandomKey::root(11).child(name).stream();
-    let (wanted, mut swaps, mut wrong) = (swaps(), 0, 0);
+    let (wanted, mut swaps, mut wrong, mut divided) = (swaps(), 0, 0, 0);
     while swaps < wanted {
         let description = stream.choose(&all).unwrap();
         assert!(facts.exists(description), "{name}: {description:?}");
         let Some(other) = swapped(description, &nouns, &rooms, &mut stream) else {
             continue;
         };
-        swaps += 1;
         let expected = facts.exists(&other);
         let verdict = checker.check(&Clause::Exists(other.clone().into()));
+        if verdict.truth == Truth::Undecided(UndecidedReason::DividedColor) {
+            divided += 1;
+            continue;
+        }
+        swaps += 1;
         assert_eq!(verdict.truth, Truth::from(expected), "{name}: {other:?}");
         // Whoever is told that a swapped sentence happens to be true gets the things that make it so.
         let named = !verdict.witnesses.is_empty();
         assert!(!expected || named, "{name}: {other:?}");
         wrong += usize::from(!expected);
     }
+    // Of a cream thing that is called white: few swaps hit a word on which people divide.
+    assert!(divided * 10 < swaps, "{name}: {divided} of {swaps}");
     wrong
 }
 

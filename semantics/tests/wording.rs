@@ -299,7 +299,13 @@ fn one_is_on_a_balcony_and_in_a_kitchen() {
         let agent = AgentState::new(AgentBody::default(), feet, 0.0);
         state.agents.push(agent);
         let scene = told.semantics.scene(&state);
-        describe_view(&scene, Listener::agent(&scene, AgentId(0)), None).text
+        describe_view(
+            &scene,
+            Listener::agent(&scene, AgentId(0)),
+            TextLength::Normal,
+            None,
+        )
+        .text
     };
     assert!(view(2.0).starts_with("You are on the balcony."));
     assert!(view(6.0).starts_with("You are in the kitchen."));
@@ -334,12 +340,15 @@ fn pairs_are_counted_as_pairs() {
     );
     assert_eq!(
         told.caption(scissors),
-        "a pair of gray steel scissors in the kitchen"
+        "a pair of light gray steel scissors in the kitchen"
     );
     assert_eq!(told.refers(scissors), "the pair of scissors");
     // Neither is a pair, though their names end in s.
     assert_eq!(told.caption(tumbler), "a glass in the kitchen");
-    assert_eq!(told.caption(compass), "a gray steel compass in the kitchen");
+    assert_eq!(
+        told.caption(compass),
+        "a light gray steel compass in the kitchen"
+    );
     let text = told.room(kitchen);
     for wrong in ["a scissors", "pair of glass", "set of compass"] {
         assert!(!text.contains(wrong), "{text}");

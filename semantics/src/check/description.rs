@@ -37,9 +37,11 @@ fn structure_noun(kind: StructureKind) -> Option<&'static str> {
 
 impl Checker<'_> {
     pub(super) fn extension(&self, description: &Description) -> Rc<Extension> {
-        let key = description
-            .clone()
-            .with_quantifier(crate::form::Quantifier::Some);
+        // Who looks at things says "the lamp" of the one in sight; all other quantifiers have the same extension.
+        let key = match (self.listener.viewer, description.quantifier) {
+            (Some(_), Quantifier::The) => description.clone(),
+            _ => description.clone().with_quantifier(Quantifier::Some),
+        };
         if let Some(known) = self.extensions.borrow().get(&key) {
             return known.clone();
         }
@@ -62,10 +64,31 @@ impl Checker<'_> {
         if matches!(description.noun, Noun::SameNoun | Noun::SameThings) {
             found.fault = Some(UndecidedReason::NoAntecedent);
         }
+        if description.quantifier == Quantifier::The {
+            self.keep_visible(&mut found);
+        }
         if let Some(selection) = &description.selection {
             return self.apply_selection(selection, &found.fits);
         }
         found
+    }
+
+    /// Where a definite description fits several things and the listener sees some of them, keeps these: they are what is talked of.
+    fn keep_visible(&self, found: &mut Extension) {
+        let several = found.fits.len() + found.undecided.len() > 1;
+        let (Some(viewer), Ok(visible)) = (&self.listener.viewer, predicates::find("visible"))
+        else {
+            return;
+        };
+        let is_visible = |term: &Term| {
+            let truth = visible.holds(self.scene, &[*term], Some(viewer));
+            truth.is_true()
+        };
+        let fits: Vec<Term> = found.fits.iter().copied().filter(is_visible).collect();
+        if several && !fits.is_empty() {
+            found.fits = fits;
+            found.undecided.retain(|(term, _)| is_visible(term));
+        }
     }
 
     /// The comparison of the numbers of two kinds of things; undecided where those that are undecided could turn it.
@@ -240,7 +263,11 @@ impl Checker<'_> {
         match (extension.fault, &extension.fits[..]) {
             (Some(reason), _) => Err(reason),
             (None, [only]) => Ok(*only),
-            (None, []) => Err(UndecidedReason::UnknownTerm),
+            // Who says "the white mug" where one is cream and none white means that one.
+            (None, []) => match extension.undecided[..] {
+                [(only, UndecidedReason::DividedColor)] => Ok(only),
+                _ => Err(UndecidedReason::UnknownTerm),
+            },
             (None, _) => Err(UndecidedReason::SeveralFit),
         }
     }

@@ -11,6 +11,7 @@
 mod ambiguity;
 mod answer;
 mod description;
+mod distance;
 mod quantify;
 mod room;
 mod text;
@@ -18,6 +19,7 @@ mod witness;
 
 pub use ambiguity::Ambiguity;
 pub use answer::Answer;
+pub(crate) use distance::spoken_distance_m;
 pub(crate) use room::spoken_area_m2;
 pub use text::{CheckedText, GroundedPhrase};
 pub use witness::Witness;
@@ -109,6 +111,21 @@ impl<'a> Checker<'a> {
         self.extension(description).fits.clone()
     }
 
+    /// Returns the one thing that a description certainly denotes, said of what the listener sees where it sees some that fit; `None`
+    /// where nothing or several things fit, or may fit.
+    pub fn denotes(&self, description: &Description) -> Option<Term> {
+        let extension = self.extension(description);
+        match (&extension.fits[..], extension.fault) {
+            ([only], None) if extension.undecided.is_empty() => Some(*only),
+            _ => None,
+        }
+    }
+
+    /// The listener.
+    pub fn listener(&self) -> &Listener {
+        &self.listener
+    }
+
     fn judge(&self, clause: &Clause) -> WitnessedTruth {
         interrupt::unwind_if_cancelled();
         match clause {
@@ -148,6 +165,11 @@ impl<'a> Checker<'a> {
                 let body = |terms: &[Term]| self.has_area(terms[0], *square_metres);
                 self.quantify(std::slice::from_ref(room), &mut Vec::new(), &body)
             }
+            Clause::Distance {
+                subject,
+                from,
+                metres,
+            } => self.is_at_distance(subject, from, *metres),
             Clause::HasSurfaces { room, surfaces } => {
                 let body = |terms: &[Term]| self.has_surfaces(terms[0], surfaces);
                 self.quantify(std::slice::from_ref(room), &mut Vec::new(), &body)
@@ -221,7 +243,7 @@ impl<'a> Checker<'a> {
             (Term::Room(_), Quality::Color(word)) => return self.has_walls(term, word),
             (Term::Structure(piece), Quality::Color(word)) => {
                 let truth = structure_facts::has_color(self.scene.semantics, piece, word);
-                return WitnessedTruth::fact(word, &[term], truth.into());
+                return WitnessedTruth::fact(word, &[term], truth);
             }
             (Term::Structure(piece), Quality::Material(word)) => {
                 let truth = structure_facts::has_material(self.scene.semantics, piece, word);
@@ -231,13 +253,7 @@ impl<'a> Checker<'a> {
         };
         let facts = self.scene.facts(object);
         let (name, truth) = match quality {
-            Quality::Color(word) if facts.colors.is_empty() => {
-                (word.as_str(), Truth::Undecided(UndecidedReason::NoColor))
-            }
-            Quality::Color(word) => (
-                word.as_str(),
-                facts.colors.iter().any(|(known, _)| known == word).into(),
-            ),
+            Quality::Color(word) => (word.as_str(), facts.shows_color(word)),
             Quality::Material(word) => (
                 word.as_str(),
                 facts.material_words().any(|own| own == word).into(),

@@ -2,6 +2,7 @@
 
 use super::Checker;
 use super::witness::WitnessedTruth;
+use crate::facts::shows_color;
 use crate::form::{RoomSurface, RoomSurfaceKind};
 use crate::scene::Term;
 use crate::truth::{Truth, UndecidedReason};
@@ -41,13 +42,13 @@ impl Checker<'_> {
                 RoomSurfaceKind::Floor => ("floor", facts.floor_color, facts.floor_word),
                 RoomSurfaceKind::Walls => ("walls", facts.wall_color, None),
             };
-            let is = |own: Option<&str>, stated: &Option<String>| match (own, stated) {
-                (_, None) => Truth::True,
-                (Some(own), Some(stated)) => Truth::from(own == stated),
-                // No colour or substance covers half of it.
-                (None, Some(_)) => Truth::False,
-            };
-            let truth = is(color, &surface.color).and(is(material, &surface.material));
+            // No colour or substance may cover half of it.
+            let color = surface
+                .color
+                .as_ref()
+                .map_or(Truth::True, |stated| shows_color(color.into_iter(), stated));
+            let stated = surface.material.as_deref();
+            let truth = color.and(Truth::from(stated.is_none() || stated == material));
             WitnessedTruth::fact(name, &[term], truth)
         }))
     }

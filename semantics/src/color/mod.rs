@@ -7,6 +7,7 @@ mod paint;
 mod pattern;
 mod vocabulary;
 
+pub use naming::divides;
 pub use oklab::Oklab;
 pub(crate) use paint::MaterialColors;
 pub use paint::{ColorShare, MENTION_SHARE, color_words};

@@ -118,13 +118,88 @@ fn corner(at: [i32; 3]) -> Option<usize> {
     Some(place)
 }
 
-/// The word that most answers give to a colour in linear light, each component 0 to 1, of a surface under white light.
+/// Everyday English words for the colours between two of [`WORDS`].
+const BETWEEN: [(&str, [&str; 2]); 29] = [
+    ("cream", ["white", "beige"]),
+    ("light gray", ["white", "gray"]),
+    ("dark gray", ["black", "gray"]),
+    ("dark brown", ["black", "brown"]),
+    ("dark green", ["black", "green"]),
+    ("navy", ["black", "blue"]),
+    ("dark purple", ["black", "purple"]),
+    ("dark red", ["black", "red"]),
+    ("tan", ["beige", "brown"]),
+    ("taupe", ["brown", "gray"]),
+    ("gray-beige", ["beige", "gray"]),
+    ("terracotta", ["brown", "orange"]),
+    ("red-orange", ["orange", "red"]),
+    ("maroon", ["brown", "red"]),
+    ("ochre", ["brown", "yellow"]),
+    ("coral", ["orange", "pink"]),
+    ("mauve", ["pink", "purple"]),
+    ("pale pink", ["pink", "white"]),
+    ("salmon", ["beige", "pink"]),
+    ("peach", ["beige", "orange"]),
+    ("amber", ["orange", "yellow"]),
+    ("pale yellow", ["white", "yellow"]),
+    ("yellow-green", ["green", "yellow"]),
+    ("teal", ["blue", "green"]),
+    ("blue-gray", ["blue", "gray"]),
+    ("sage", ["gray", "green"]),
+    ("pale blue", ["blue", "white"]),
+    ("pale green", ["green", "white"]),
+    ("violet", ["blue", "purple"]),
+];
+
+/// The share of the second word, by that of the first, from which a colour has a word of its own between the two.
+///
+/// Of 592 things of 29 houses, named by a table without their house: below it the first word is that of most readers for 94.3 %; above
+/// it, for a quarter of them, one of the two is for 96.1 %, the first for 60 %.
+const DIVIDED: f32 = 0.4;
+
+/// The places in [`WORDS`] of the words that most and next most answers give to a colour in linear light, each component 0 to 1, of a
+/// surface under white light, and the share of the second by that of the first.
 ///
 /// # Source
 /// The survey: R. Munroe, *Color Survey Results*, xkcd 2010, as counted by cells of
 /// CIELAB in J. Heer and M. Stone, *Color Naming Models for Color Selection, Image Editing and Palette Design*, CHI 2012.
-pub(super) fn common_word(linear: [f32; 3]) -> &'static str {
+fn most_common(linear: [f32; 3]) -> ([&'static str; 2], f32) {
     let shares = ColorNamingModel::shared().shares(cielab_from_linear(linear));
-    let most = (0..WORDS.len()).max_by(|p, q| shares[*p].total_cmp(&shares[*q]).then(q.cmp(p)));
-    most.map_or(WORDS[0], |k| WORDS[k])
+    let mut order: [usize; WORDS.len()] = std::array::from_fn(|k| k);
+    order.sort_by(|p, q| shares[*q].total_cmp(&shares[*p]).then(p.cmp(q)));
+    let [first, second, ..] = order;
+    (
+        [WORDS[first], WORDS[second]],
+        shares[second] / shares[first],
+    )
+}
+
+/// The word of [`WORDS`] that most answers give to a colour in linear light, each component 0 to 1, of a surface under white light.
+pub(super) fn basic_word(linear: [f32; 3]) -> &'static str {
+    most_common(linear).0[0]
+}
+
+/// The word that a speaker gives to a colour: that of most answers, or where answers are divided the word between the two.
+pub(super) fn spoken_word(linear: [f32; 3]) -> &'static str {
+    let ([first, second], ratio) = most_common(linear);
+    let is_between = |pair: &[&str; 2]| pair.contains(&first) && pair.contains(&second);
+    let between = BETWEEN.iter().find(|(_, pair)| is_between(pair));
+    between
+        .filter(|_| ratio >= DIVIDED)
+        .map_or(first, |(word, _)| word)
+}
+
+/// All words that speakers use: the basic ones, then those between two.
+pub(super) fn spoken_words() -> Vec<&'static str> {
+    let between = BETWEEN.iter().map(|(word, _)| *word);
+    WORDS.into_iter().chain(between).collect()
+}
+
+/// Returns whether people divide on `word` for what is called `known`: one of them lies between the other and a third.
+pub fn divides(known: &str, word: &str) -> bool {
+    let is_part = |between: &str, part: &str| {
+        let mut found = BETWEEN.iter().filter(|(name, _)| *name == between);
+        found.any(|(_, pair)| pair.contains(&part))
+    };
+    is_part(known, word) || is_part(word, known)
 }

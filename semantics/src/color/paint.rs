@@ -1,5 +1,6 @@
 //! The colours of a thing.
 
+use super::naming::divides;
 use super::pattern::{Pattern, pattern};
 use super::{ColorVocabulary, Oklab};
 use dwell_scene::parallel::Threads;
@@ -211,7 +212,7 @@ fn decoded() -> [f32; 256] {
 
 /// The words for the colours of `patches`, the largest share first.
 ///
-/// Patches of equal words count together; pictures and patterns have none; words under [`MENTION_SHARE`] are dropped, unless
+/// Patches of equal words count together, as do those of a word and one between it and another, by the larger; pictures and patterns have none; words under [`MENTION_SHARE`] are dropped, unless
 /// that leaves none of a thing without pictures and patterns.
 pub fn color_words(
     patches: &[ColorShare],
@@ -229,6 +230,9 @@ pub fn color_words(
         }
     }
     words.sort_by(|p, q| q.1.total_cmp(&p.1).then(p.0.cmp(q.0)));
+    if vocabulary == ColorVocabulary::Spoken {
+        merge_divided(&mut words);
+    }
     let mentioned = words
         .iter()
         .filter(|(_, share)| *share >= MENTION_SHARE)
@@ -236,6 +240,23 @@ pub fn color_words(
     let plain = patches.iter().all(|patch| patch.linear.is_some());
     words.truncate(mentioned.max(usize::from(plain)));
     words
+}
+
+/// Counts what people may call by a larger share's word with it: a cream thing with white parts is cream. Of the words on both sides
+/// of one between them only the larger: white and gray parts do not make a light gray thing.
+fn merge_divided(words: &mut Vec<(&'static str, f32)>) {
+    // Each word with its share, and the share of the one that was counted with it.
+    let mut merged: Vec<(&'static str, f32, f32)> = Vec::new();
+    for (word, share) in words.drain(..) {
+        let mut known = merged.iter_mut();
+        match known.find(|(known, _, joined)| *joined == 0.0 && divides(known, word)) {
+            Some((_, _, joined)) => *joined = share,
+            None => merged.push((word, share, 0.0)),
+        }
+    }
+    let merged = merged.into_iter();
+    words.extend(merged.map(|(word, share, joined)| (word, share + joined)));
+    words.sort_by(|p, q| q.1.total_cmp(&p.1).then(p.0.cmp(q.0)));
 }
 
 #[cfg(test)]

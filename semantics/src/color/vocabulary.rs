@@ -12,9 +12,12 @@ use std::sync::OnceLock;
 #[serde(rename_all = "snake_case")]
 pub enum ColorVocabulary {
     /// Twelve words of everyday speech: black, white, gray, brown, beige, red, orange, yellow, green, blue, purple,
-    /// pink. What text is made of.
-    #[default]
+    /// pink.
     Plain,
+    /// The plain words, and words for the colours between two of them on which people divide: cream, teal, light gray. What text is
+    /// made of.
+    #[default]
+    Spoken,
     /// The 16 colours of HTML 4.
     Basic,
     /// The 148 named colours of CSS.
@@ -68,16 +71,23 @@ impl ColorVocabulary {
     }
 
     /// All lists, from the shortest.
-    pub const ALL: [Self; 4] = [Self::Plain, Self::Basic, Self::Web, Self::Xkcd];
+    pub const ALL: [Self; 5] = [
+        Self::Plain,
+        Self::Spoken,
+        Self::Basic,
+        Self::Web,
+        Self::Xkcd,
+    ];
 
-    /// The named colours; none for plain words, which name regions.
+    /// The named colours; none for plain and spoken words, which name regions.
     fn entries(self) -> &'static [NamedColor] {
-        static TABLES: OnceLock<[Vec<NamedColor>; 4]> = OnceLock::new();
+        static TABLES: OnceLock<[Vec<NamedColor>; 5]> = OnceLock::new();
         let tables = TABLES.get_or_init(|| {
             let read = |file, text| {
                 parse(file, text).expect("the colour tables are checked by this crate's tests")
             };
             [
+                Vec::new(),
                 Vec::new(),
                 read(
                     "colors/basic.csv",
@@ -100,26 +110,28 @@ impl ColorVocabulary {
     pub fn words(self) -> Vec<&'static str> {
         match self {
             Self::Plain => naming::WORDS.to_vec(),
+            Self::Spoken => naming::spoken_words(),
             _ => self.entries().iter().map(|entry| entry.name).collect(),
         }
     }
 
-    /// The sRGB value of a word, 0 to 255; `None` for a word outside the list, and for plain words, which name regions.
+    /// The sRGB value of a word, 0 to 255; `None` for a word outside the list, and for plain and spoken words, which name regions.
     pub fn srgb(self, word: &str) -> Option<[u8; 3]> {
-        let found = self.entries().iter().find(|entry| entry.name == word);
-        found
-            .filter(|_| self != Self::Plain)
-            .map(|entry| entry.srgb)
+        let mut entries = self.entries().iter();
+        let found = entries.find(|entry| entry.name == word);
+        found.map(|entry| entry.srgb)
     }
 
     /// The word for a colour given in linear light, each 0 to 1.
     ///
-    /// Plain words: the one that most answers give. Else the nearest entry in `OKLab`, the first of equals: CIEDE2000 is a
+    /// Plain words: the one that most answers give. Spoken words: the same, or where answers are divided a word between. Else the nearest entry in `OKLab`, the first of equals: CIEDE2000 is a
     /// formula for small differences (it is no metric and jumps at opposite hues), names lie far apart, and `OKLab` is uniform
     /// there and cheap.
     pub fn word(self, linear: [f32; 3]) -> &'static str {
-        if self == Self::Plain {
-            return naming::common_word(linear);
+        match self {
+            Self::Plain => return naming::basic_word(linear),
+            Self::Spoken => return naming::spoken_word(linear),
+            _ => {}
         }
         let color = Oklab::from_linear(linear);
         nearest(self.entries(), |entry| entry.lab.distance(color))
@@ -161,7 +173,7 @@ mod tests {
 
     #[test]
     fn the_lists_have_the_published_lengths() {
-        for (list, length) in ColorVocabulary::ALL.into_iter().zip([12, 16, 148, 949]) {
+        for (list, length) in ColorVocabulary::ALL.into_iter().zip([12, 41, 16, 148, 949]) {
             let unique: BTreeSet<_> = list.words().into_iter().collect();
             assert_eq!((list.words().len(), unique.len()), (length, length));
         }
@@ -226,6 +238,7 @@ mod tests {
             ([186, 104, 76], "orange"),
             ([178, 118, 62], "brown"),
             ([230, 150, 180], "pink"),
+            ([122, 167, 173], "blue"),
             ([110, 40, 140], "purple"),
             ([236, 228, 212], "white"),
             ([176, 206, 224], "blue"),

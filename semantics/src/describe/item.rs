@@ -79,8 +79,14 @@ impl NounGroup {
         let noun = &scene.facts(self.objects[0]).noun;
         let alike = |object: &ObjectId| scene.facts(*object).noun == *noun;
         let number = self.objects.len() as u32;
-        // "Two tables" would be false beside a coffee table, which is a table, too.
-        let quantifier = match (number, fitting.iter().all(alike)) {
+        let is_divided = |object: &ObjectId| {
+            let facts = scene.facts(*object);
+            facts.may_fit(&shared) && !facts.fits(&shared)
+        };
+        let is_exact = fitting.iter().all(alike) && !candidates.iter().any(is_divided);
+        // "Two tables" would be false beside a coffee table, which is a table, too; of "two white chairs" beside a cream one people
+        // could count three.
+        let quantifier = match (number, is_exact) {
             (1, _) => Quantifier::Some,
             (_, true) => Quantifier::Exactly(fitting.len() as u32),
             (number, false) => Quantifier::AtLeast(number),

@@ -31,10 +31,9 @@ fn say_area(writer: &mut TextWriter<'_>, scene: &SemanticScene<'_>, room: RoomId
     }));
 }
 
-/// Says the room's area and the look of its floor and walls.
-fn say_shell(writer: &mut TextWriter<'_>, scene: &SemanticScene<'_>, room: RoomId) {
+/// The look of a room's floor and walls, as far as one colour or substance prevails.
+pub(super) fn surfaces(scene: &SemanticScene<'_>, room: RoomId) -> Vec<RoomSurface> {
     let facts = scene.semantics.room(room);
-    say_area(writer, scene, room);
     let mut surfaces = Vec::new();
     if facts.floor_color.is_some() || facts.floor_word.is_some() {
         surfaces.push(RoomSurface {
@@ -48,6 +47,13 @@ fn say_shell(writer: &mut TextWriter<'_>, scene: &SemanticScene<'_>, room: RoomI
         color: Some(word.to_owned()),
         material: None,
     }));
+    surfaces
+}
+
+/// Says the room's area and the look of its floor and walls.
+fn say_shell(writer: &mut TextWriter<'_>, scene: &SemanticScene<'_>, room: RoomId) {
+    say_area(writer, scene, room);
+    let surfaces = surfaces(scene, room);
     if !surfaces.is_empty() {
         let room = room_phrase(scene, room);
         writer.say(Form::Claim(Clause::HasSurfaces { room, surfaces }));

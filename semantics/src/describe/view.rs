@@ -1,58 +1,394 @@
 //! The description of a view.
 
-use super::item::items;
+use super::item::{grouped, items};
+use super::length::TextLength;
 use super::text::{GroundedText, TextWriter};
-use crate::check::{Checker, Listener};
-use crate::form::{Clause, Description, Form, Modifier, Noun, Phrase, Quantifier};
+use crate::check::{Checker, Listener, spoken_distance_m};
+use crate::form::{Clause, Description, Form, Modifier, Noun, Phrase, Quantifier, RoomSurfaceKind};
 use crate::predicates;
-use crate::refer::room_phrase;
-use crate::scene::{SemanticScene, Term};
+use crate::refer::{holds_in_view, refer_in_view, room_phrase};
+use crate::scene::{SemanticScene, Term, Viewer};
+use crate::view_survey::{Sighting, ViewSurvey};
 use dwell_scene::random::RandomKey;
-use dwell_scene::{AgentId, ObjectId};
+use dwell_scene::{ObjectId, RoomId, StructureKind};
+use std::cell::RefCell;
+use std::collections::BTreeMap;
 
-/// The sides of a viewer, in the order of telling.
-const SIDES: [&str; 3] = ["on_left", "straight_ahead", "on_right"];
+/// Share of the picture below which a thing is not told: 100 pixels of 256 by 256.
+const LEAST_SHARE: f32 = 100.0 / 65536.0;
+/// Share of a thing that must be in sight: less is a sliver that people do not recognize.
+const LEAST_UNHIDDEN: f32 = 0.25;
+/// Share of the picture from which floor or walls are told.
+const LEAST_SURFACE: f32 = 0.03;
+/// Share of the picture from which a thing is told with its place among others.
+const LEAST_ANCHOR: f32 = 0.01;
+/// Distance up to which things are told by their place to each other, m.
+const MAX_BESIDE_M: f32 = 1.5;
+/// Tangent up to which a thing on one side may reach over to the other: 6 degrees.
+const MAX_OVERLAP: f32 = 0.1;
 
-/// The description of what a listener sees, side by side: "You are in the kitchen. On your left you see a table." Without a viewer
-/// nothing is seen. `wording` draws the wordings.
+/// The sides of a viewer.
+const SIDES: [&str; 3] = ["straight_ahead", "on_left", "on_right"];
+/// Relations between two things in view, the most telling first.
+const RELATIONS: [&str; 8] = [
+    "above",
+    "under",
+    "next_to",
+    "opposite",
+    "in_front_of",
+    "behind",
+    "left_of",
+    "right_of",
+];
+
+/// How much is told at each length.
+struct ViewLimits {
+    kinds: usize,
+    relations: usize,
+    distances: usize,
+}
+
+impl ViewLimits {
+    fn of(length: TextLength) -> Self {
+        let (kinds, relations, distances) = match length {
+            TextLength::Short => (3, 0, 0),
+            TextLength::Normal => (usize::MAX, 2, 1),
+            TextLength::Long => (usize::MAX, 6, 4),
+        };
+        Self {
+            kinds,
+            relations,
+            distances,
+        }
+    }
+}
+
+/// Things that stand in view, by how they are told.
+struct ViewContents {
+    /// Things of the viewer's room by their side; those that reach over several sides have none. The largest group first.
+    sides: Vec<(Option<&'static str>, Vec<ObjectId>)>,
+    /// Things in and on others that are told, too.
+    carried: BTreeMap<(ObjectId, &'static str), Vec<ObjectId>>,
+    /// Things in other rooms.
+    elsewhere: BTreeMap<RoomId, Vec<ObjectId>>,
+}
+
+struct ViewTeller<'a, 'b> {
+    writer: TextWriter<'b>,
+    checker: &'b Checker<'a>,
+    viewer: Viewer,
+    survey: ViewSurvey,
+    room: Option<RoomId>,
+    /// The things worth telling, ascending.
+    told: Vec<ObjectId>,
+    /// How things are referred to.
+    names: RefCell<BTreeMap<ObjectId, Option<Description>>>,
+}
+
+fn claim(predicate: &str, arguments: Vec<Phrase>) -> Form {
+    Form::Claim(Clause::Holds {
+        predicate: predicate.to_owned(),
+        arguments,
+    })
+}
+
+impl ViewTeller<'_, '_> {
+    fn scene(&self) -> &SemanticScene<'_> {
+        self.checker.scene()
+    }
+
+    fn holds(&self, name: &str, object: ObjectId) -> bool {
+        predicates::find(name).is_ok_and(|predicate| {
+            let terms = [Term::Object(object)];
+            predicate
+                .holds(self.scene(), &terms, Some(&self.viewer))
+                .is_true()
+        })
+    }
+
+    /// The description that fits a thing alone.
+    fn name(&self, object: ObjectId) -> Option<Description> {
+        if let Some(known) = self.names.borrow().get(&object) {
+            return known.clone();
+        }
+        let name = refer_in_view(self.checker, &self.survey, object);
+        self.names.borrow_mut().insert(object, name.clone());
+        name
+    }
+
+    fn share(&self, object: ObjectId) -> f32 {
+        self.survey
+            .objects
+            .get(&object)
+            .map_or(0.0, |own| own.share)
+    }
+
+    /// The side on which a thing is told: that of its middle, if it does not reach over to another.
+    fn side(&self, object: ObjectId) -> Option<&'static str> {
+        let side = SIDES.into_iter().find(|side| self.holds(side, object))?;
+        let [left, right] = self.survey.objects.get(&object)?.span;
+        let clear = match side {
+            "on_left" => right <= MAX_OVERLAP,
+            "on_right" => left >= -MAX_OVERLAP,
+            _ => true,
+        };
+        clear.then_some(side)
+    }
+
+    /// What a thing lies in or on, if that is told, too, and has a name of its own.
+    fn carrier(&self, object: ObjectId) -> Option<(ObjectId, &'static str)> {
+        ["in", "on"].into_iter().find_map(|name| {
+            let predicate = predicates::find(name).ok()?;
+            let others = predicates::related_objects(self.scene(), predicate, object);
+            let carrier = others.into_iter().find(|other| {
+                let is_rug = self.scene().facts(*other).noun.ends_with("rug");
+                self.told.binary_search(other).is_ok() && !is_rug && self.name(*other).is_some()
+            })?;
+            Some((carrier, name))
+        })
+    }
+
+    fn contents(&self) -> ViewContents {
+        let mut sides: BTreeMap<Option<&'static str>, (f32, Vec<ObjectId>)> = BTreeMap::new();
+        let mut carried: BTreeMap<(ObjectId, &'static str), Vec<ObjectId>> = BTreeMap::new();
+        let mut elsewhere: BTreeMap<RoomId, Vec<ObjectId>> = BTreeMap::new();
+        for object in self.told.iter().copied() {
+            let own = self.scene().room_of(object);
+            let is_elsewhere = |own: &RoomId| {
+                self.room.is_some_and(|room| room != *own)
+                    && !self.scene().facts(object).is_opening()
+            };
+            if let Some(other) = own.filter(is_elsewhere) {
+                elsewhere.entry(other).or_default().push(object);
+                continue;
+            }
+            if let Some(carrier) = self.carrier(object) {
+                carried.entry(carrier).or_default().push(object);
+                continue;
+            }
+            let (share, objects) = sides.entry(self.side(object)).or_default();
+            *share = share.max(self.share(object));
+            objects.push(object);
+        }
+        let mut sides: Vec<_> = sides.into_iter().collect();
+        sides.sort_by(|(_, (p, _)), (_, (q, _))| q.total_cmp(p));
+        ViewContents {
+            sides: sides
+                .into_iter()
+                .map(|(side, (_, objects))| (side, objects))
+                .collect(),
+            carried,
+            elsewhere,
+        }
+    }
+
+    /// The items of a list of things in view: a number is exact only where no others that fit are seen in the same place.
+    fn items(&self, objects: &[ObjectId], in_place: impl Fn(ObjectId) -> bool) -> Vec<Description> {
+        let visible = self.survey.objects.keys().copied();
+        let visible: Vec<ObjectId> = visible
+            .filter(|object| self.holds("visible", *object) && in_place(*object))
+            .collect();
+        let groups = grouped(self.scene(), objects);
+        let mut found = items(self.scene(), objects, &visible);
+        for (item, group) in found.iter_mut().zip(groups) {
+            let number = group.objects.len() as u32;
+            item.quantifier = match item.quantifier {
+                _ if number == 1 => Quantifier::Some,
+                Quantifier::Exactly(all) if all == number => item.quantifier,
+                _ => Quantifier::AtLeast(number),
+            };
+        }
+        found
+    }
+
+    /// Returns whether a thing is in or on another.
+    fn is_carried_by(&self, object: ObjectId, carrier: ObjectId, name: &str) -> bool {
+        predicates::find(name).is_ok_and(|predicate| {
+            predicates::related_objects(self.scene(), predicate, object).contains(&carrier)
+        })
+    }
+
+    fn say_surfaces(&mut self) {
+        let Some(room) = self.room else {
+            return;
+        };
+        let scene = self.checker.scene();
+        let kinds = [
+            (StructureKind::Floor, RoomSurfaceKind::Floor),
+            (StructureKind::Wall, RoomSurfaceKind::Walls),
+        ];
+        let seen = kinds
+            .into_iter()
+            .filter(|(kind, _)| self.survey.structure_share(scene, *kind) >= LEAST_SURFACE);
+        let seen: Vec<RoomSurfaceKind> = seen.map(|(_, surface)| surface).collect();
+        let mut surfaces = super::room::surfaces(scene, room);
+        surfaces.retain(|surface| seen.contains(&surface.kind));
+        if !surfaces.is_empty() {
+            let room = room_phrase(scene, room);
+            self.writer
+                .say(Form::Claim(Clause::HasSurfaces { room, surfaces }));
+        }
+    }
+
+    /// Says how far a thing is, in whole metres, where it is no nearer than that.
+    fn say_distance(&mut self, subject: &Description, sighting: Sighting) {
+        let clause = |metres| Clause::Distance {
+            subject: subject.clone().into(),
+            from: Phrase::Listener,
+            metres,
+        };
+        // By the box around the thing, which may be nearer than what is seen of it.
+        let metres = spoken_distance_m(sighting.distance_m);
+        let true_one = [metres, metres.saturating_sub(1)]
+            .into_iter()
+            .find(|metres| *metres > 0 && self.checker.check(&clause(*metres)).truth.is_true());
+        if let Some(metres) = true_one {
+            self.writer.say(Form::Claim(clause(metres)));
+        }
+    }
+
+    /// Says where a thing is to one of those that were named before: by the most telling relation, to the largest.
+    fn say_relation(
+        &mut self,
+        object: ObjectId,
+        subject: &Description,
+        before: &[(ObjectId, Description)],
+    ) -> bool {
+        let near = |other: ObjectId| {
+            let (own, other) = (self.scene().extent(object), self.scene().extent(other));
+            own.bounds.grown(MAX_BESIDE_M).intersects(&other.bounds)
+        };
+        let near: Vec<&(ObjectId, Description)> =
+            before.iter().filter(|(other, _)| near(*other)).collect();
+        for name in RELATIONS {
+            let held = |other: ObjectId| holds_in_view(self.checker, name, [object, other]);
+            let Some((_, landmark)) = near.iter().find(|(other, _)| held(*other)) else {
+                continue;
+            };
+            let arguments = vec![subject.clone().into(), landmark.clone().into()];
+            self.writer.say(claim(name, arguments));
+            return true;
+        }
+        false
+    }
+
+    fn say(&mut self, limits: &ViewLimits) {
+        if let Some(room) = self
+            .room
+            .filter(|_| self.checker.listener().agent.is_some())
+        {
+            let room = room_phrase(self.checker.scene(), room);
+            self.writer
+                .say(claim("in_room", vec![Phrase::Listener, room]));
+        }
+        if limits.relations > 0 {
+            self.say_surfaces();
+        }
+        let contents = self.contents();
+        let seen = Modifier::new("visible", []);
+        let mut kinds = limits.kinds;
+        for (side, objects) in &contents.sides {
+            let mut items = self.items(objects, |other| {
+                side.is_none_or(|side| self.holds(side, other))
+            });
+            items.truncate(kinds);
+            kinds -= items.len();
+            let side = side.map(|side| Modifier::new(side, []));
+            let place: Vec<Modifier> = side.into_iter().chain([seen.clone()]).collect();
+            self.writer.there_are(&items, &place);
+        }
+        if self.told.is_empty() {
+            let nothing = Noun::Object(Noun::ANY_OBJECT.to_owned());
+            self.writer
+                .there_are(&[Description::new(Quantifier::No, nothing)], &[seen]);
+            return;
+        }
+        if limits.relations == 0 {
+            return;
+        }
+        self.say_places(&contents, limits);
+        for ((carrier, name), objects) in &contents.carried {
+            let items = self.items(objects, |other| self.is_carried_by(other, *carrier, name));
+            let Some(carrier) = self.name(*carrier) else {
+                continue;
+            };
+            let place = [Modifier::new(name, [carrier.into()]), seen.clone()];
+            self.writer.there_are(&items, &place);
+        }
+        for (room, objects) in &contents.elsewhere {
+            let items = self.items(objects, |other| self.scene().room_of(other) == Some(*room));
+            let room = room_phrase(self.checker.scene(), *room);
+            let place = [Modifier::new("in_room", [room]), seen.clone()];
+            self.writer.there_are(&items, &place);
+        }
+    }
+
+    /// Says how far the largest things are, and where they are to each other.
+    fn say_places(&mut self, contents: &ViewContents, limits: &ViewLimits) {
+        let mut anchors: Vec<ObjectId> = contents
+            .sides
+            .iter()
+            .flat_map(|(_, objects)| objects.iter().copied())
+            .filter(|object| self.share(*object) >= LEAST_ANCHOR)
+            .collect();
+        anchors.sort_by(|p, q| self.share(*q).total_cmp(&self.share(*p)).then(p.cmp(q)));
+        let (mut relations, mut distances) = (limits.relations, limits.distances);
+        let mut before: Vec<(ObjectId, Description)> = Vec::new();
+        for object in anchors {
+            // What is told by its place already needs no other.
+            let Some(subject) = self.name(object).filter(|own| own.modifiers.is_empty()) else {
+                continue;
+            };
+            if !self.scene().facts(object).is_opening() {
+                if distances > 0 {
+                    let sighting = self.survey.objects[&object];
+                    self.say_distance(&subject, sighting);
+                    distances -= 1;
+                }
+                if relations > 0 && self.say_relation(object, &subject, &before) {
+                    relations -= 1;
+                }
+            }
+            before.push((object, subject));
+        }
+    }
+}
+
+/// The description of what a listener sees, as a person would tell it: the room with its floor and walls as far as they are in the
+/// picture, the things by side with the largest first, how far the largest are and where they are to each other, what lies on them,
+/// and what is seen in other rooms. What covers less than 100 pixels of 256 by 256, or is hidden to more than three quarters, is left
+/// out. Without a viewer nothing is seen. `wording` draws the wordings.
 pub fn describe_view(
     scene: &SemanticScene<'_>,
     listener: Listener,
+    length: TextLength,
     wording: Option<RandomKey>,
 ) -> GroundedText {
-    let checker = Checker::new(scene, listener);
-    let mut writer = TextWriter::new(&checker, wording);
-    let room = listener
-        .agent
-        .and_then(|agent: AgentId| scene.room_of_agent(agent));
-    if let Some(room) = room {
-        writer.say(Form::Claim(Clause::Holds {
-            predicate: "in_room".to_owned(),
-            arguments: vec![Phrase::Listener, room_phrase(scene, room)],
-        }));
-    }
-    let holds = |name: &str, object: &ObjectId| {
-        let viewer = listener.viewer.as_ref();
-        predicates::find(name).is_ok_and(|predicate| {
-            let truth = predicate.holds(scene, &[Term::Object(*object)], viewer);
-            truth.is_true()
-        })
+    let Some(viewer) = listener.viewer else {
+        return GroundedText::default();
     };
-    let objects = scene.house().objects.ids();
-    let visible: Vec<ObjectId> = objects.filter(|object| holds("visible", object)).collect();
-    let seen = Modifier::new("visible", []);
-    for side in SIDES {
-        let here: Vec<ObjectId> = visible
-            .iter()
-            .copied()
-            .filter(|object| holds(side, object))
-            .collect();
-        let place = [Modifier::new(side, []), seen.clone()];
-        writer.there_are(&items(scene, &here, &here), &place);
-    }
-    if visible.is_empty() && listener.viewer.is_some() {
-        let nothing = Noun::Object(Noun::ANY_OBJECT.to_owned());
-        writer.there_are(&[Description::new(Quantifier::No, nothing)], &[seen]);
-    }
-    writer.finish()
+    let checker = Checker::new(scene, listener);
+    let survey = ViewSurvey::of(scene, &viewer);
+    let room = match listener.agent {
+        Some(agent) => scene.room_of_agent(agent),
+        None => scene.house().room_at(viewer.world_from_camera.position),
+    };
+    let mut teller = ViewTeller {
+        writer: TextWriter::new(&checker, wording),
+        checker: &checker,
+        viewer,
+        room,
+        told: Vec::new(),
+        names: RefCell::default(),
+        survey,
+    };
+    let told = teller.survey.objects.iter().filter(|(object, own)| {
+        own.share >= LEAST_SHARE
+            && own.unhidden >= LEAST_UNHIDDEN
+            && scene.holder(**object).is_none()
+            && teller.holds("visible", **object)
+    });
+    teller.told = told.map(|(object, _)| *object).collect();
+    teller.say(&ViewLimits::of(length));
+    teller.writer.finish()
 }

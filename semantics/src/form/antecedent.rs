@@ -19,7 +19,7 @@ impl Form {
         };
         let subject = match clause {
             Clause::Holds { arguments, .. } => arguments.first()?,
-            Clause::Is { subject, .. } => subject,
+            Clause::Is { subject, .. } | Clause::Distance { subject, .. } => subject,
             Clause::Area { room, .. } | Clause::HasSurfaces { room, .. } => room,
             // "There is a chair in the hall. It is red." A list has no one thing but its place: "On the table there is a cup and a
             // plate. It is wooden."

@@ -73,6 +73,15 @@ pub enum Clause {
         /// Its area, m².
         square_metres: u32,
     },
+    /// The distance between two things, rounded to whole metres and at least 1: "the sofa is about three metres away".
+    Distance {
+        /// The thing.
+        subject: Phrase,
+        /// The other thing, or the listener.
+        from: Phrase,
+        /// The distance, m.
+        metres: u32,
+    },
     /// The look of a room's surfaces: "the kitchen has a brown wooden floor and white walls".
     HasSurfaces {
         /// The room.

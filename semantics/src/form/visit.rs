@@ -145,6 +145,10 @@ pub(super) fn visit_clause(clause: &mut Clause, visit: Visit<'_>) {
         | Clause::Exists(phrase)
         | Clause::Area { room: phrase, .. }
         | Clause::HasSurfaces { room: phrase, .. } => visit_phrase(phrase, Role::Topic, visit),
+        Clause::Distance { subject, from, .. } => {
+            visit_phrase(subject, Role::Topic, visit);
+            visit_phrase(from, Role::Landmark, visit);
+        }
         Clause::More { more, than } => {
             visit_description(more, visit);
             visit_description(than, visit);

@@ -5,7 +5,7 @@ use crate::check::{Checker, GroundedPhrase, Listener};
 use crate::error::SemanticsError;
 use crate::form::{Form, RequestStep};
 use crate::language::{Language, PhraseSpan, Sentence};
-use crate::line_of_sight::is_in_line_of_sight;
+use crate::line_of_sight::{FieldOfView, is_in_line_of_sight};
 use crate::scene::{SemanticScene, Viewer};
 use crate::vocabulary;
 use dwell_scene::random::RandomKey;
@@ -173,7 +173,15 @@ impl Instruction {
             let level =
                 extent.bounds.max.y > body.position.y - 0.5 && extent.bounds.min.y < overhead;
             let near = extent.footprint.distance_to(here) <= self.goal.radius_m;
-            let seen = || is_in_line_of_sight(scene, rays, &viewer, *object, FOUND_HALF_ANGLE_RAD);
+            let seen = || {
+                is_in_line_of_sight(
+                    scene,
+                    rays,
+                    &viewer,
+                    *object,
+                    FieldOfView::Cone(FOUND_HALF_ANGLE_RAD),
+                )
+            };
             body.holding == Some(*object) || (level && near && (!self.goal.in_sight || seen()))
         };
         if in_room() || self.goal.objects.iter().any(found) {

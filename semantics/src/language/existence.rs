@@ -112,6 +112,13 @@ impl TreeBuilder<'_> {
                 [side, rest],
             ));
         }
+        if let Some((front, number)) = self.fronted_modifiers(items) {
+            let rest = self.items(&without_last_modifiers(items, number)?)?;
+            return Some(Tree::apply(
+                existence_function("see_place", items),
+                [front, rest],
+            ));
+        }
         Some(Tree::apply(
             existence_function("see", items),
             [self.items(items)?],
@@ -218,6 +225,8 @@ fn existence_function(function: &str, items: &[Phrase]) -> &'static str {
         ("exists_front", _) => "exists_front_list",
         ("see", 1) => "see",
         ("see", _) => "see_list",
+        ("see_place", 1) => "see_place",
+        ("see_place", _) => "see_place_list",
         (_, 1) => "see_front",
         _ => "see_front_list",
     }
@@ -257,6 +266,11 @@ fn existence_parts<'a>(function: &str, arguments: &'a [Tree]) -> Option<Existenc
             modifiers: vec![places::side_from_tree(side)?, seen()],
             items,
         },
+        ("see_place" | "see_place_list", [front, items]) => {
+            let mut modifiers = front_from_tree(front)?;
+            modifiers.push(seen());
+            ExistenceParts { modifiers, items }
+        }
         _ => return None,
     })
 }

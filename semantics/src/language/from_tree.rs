@@ -1,7 +1,9 @@
 //! Trees to forms: the meanings of the grammar's functions.
 
 use super::phrases::{described, modifier, phrase, relation_to, size};
-use super::{existence, numbers, places, questions, requests, rooms, sets, verb_phrases};
+use super::{
+    distances, existence, numbers, places, questions, requests, rooms, sets, verb_phrases,
+};
 use crate::form::{
     Clause, Description, Form, Modifier, Noun, OrdinalSelection, Phrase, Quality, Quantifier,
     Question,
@@ -326,7 +328,8 @@ pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
         },
         _ => {
             return existence::from_tree(function, arguments)
-                .or_else(|| rooms::from_tree(function, arguments));
+                .or_else(|| rooms::from_tree(function, arguments))
+                .or_else(|| distances::from_tree(function, arguments));
         }
     })
 }

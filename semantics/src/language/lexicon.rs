@@ -185,7 +185,7 @@ pub(super) fn english(file: &str) -> Result<Lexicon, GrammarError> {
             add_room(&mut lexicon, synonym, &plural(synonym), kind.preposition);
         }
     }
-    for word in ColorVocabulary::Plain.words() {
+    for word in ColorVocabulary::Spoken.words() {
         let texts: &[&str] = if word == "gray" {
             &["gray", "grey"]
         } else {

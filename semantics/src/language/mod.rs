@@ -4,6 +4,7 @@
 //! the grammar.
 
 mod alternatives;
+mod distances;
 mod existence;
 mod from_tree;
 mod lexicon;

@@ -140,8 +140,14 @@ impl TreeBuilder<'_> {
                 room,
                 square_metres,
             } if !negated => self.area(room, *square_metres)?,
+            Clause::Distance {
+                subject,
+                from,
+                metres,
+            } if !negated => self.distance(subject, from, *metres)?,
             Clause::HasSurfaces { room, surfaces } if !negated => self.surfaces(room, surfaces)?,
             Clause::Area { .. }
+            | Clause::Distance { .. }
             | Clause::More { .. }
             | Clause::HasSurfaces { .. }
             | Clause::Not(_)

@@ -1,6 +1,7 @@
 //! The predicate `same_color`.
 
 use super::{OBJECT, Predicate, RelationProperties};
+use crate::facts::shows_color;
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::{Truth, UndecidedReason};
 
@@ -26,8 +27,8 @@ impl Predicate for SameColor {
 
     fn definition(&self) -> &'static str {
         "Two things have the same plain words for their colours: the one of at least 60 % of what \
-         is seen of each, else its two largest. Undecided for what is nearly all clear glass or mirror, and \
-         for what shows many colours."
+         is seen of each, else its two largest. Undecided for what is nearly all clear glass or mirror, \
+         for what shows many colours, and where people divide on one of the words for the other."
     }
 
     fn source(&self) -> &'static str {
@@ -46,7 +47,18 @@ impl Predicate for SameColor {
 
     fn decide(&self, scene: &SemanticScene<'_>, args: &[Term], _: Option<&Viewer>) -> Truth {
         match (words(scene, args[0]), words(scene, args[1])) {
-            (Some(a), Some(b)) => Truth::from(a == b),
+            (Some(a), Some(b)) if a == b => Truth::True,
+            (Some(a), Some(b)) => {
+                let met = |of: &[&str], by: &[&str]| {
+                    let fits = |word: &&str| !shows_color(by.iter().copied(), word).is_false();
+                    of.iter().all(fits)
+                };
+                if met(&a, &b) && met(&b, &a) {
+                    Truth::Undecided(UndecidedReason::DividedColor)
+                } else {
+                    Truth::False
+                }
+            }
             _ => Truth::Undecided(UndecidedReason::NoColor),
         }
     }

@@ -1,12 +1,9 @@
 //! The predicate `visible`.
 
 use super::{OBJECT, Predicate};
-use crate::line_of_sight::is_in_line_of_sight;
+use crate::line_of_sight::{FieldOfView, is_in_line_of_sight};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::Truth;
-
-/// Half the field of view, rad.
-const HALF_ANGLE_RAD: f32 = std::f32::consts::FRAC_PI_4;
 
 /// See [`Predicate::definition`]; [`super::visible_from::VisibleFrom`] does not depend on the direction of view.
 pub(super) struct Visible;
@@ -22,8 +19,8 @@ impl Predicate for Visible {
 
     fn definition(&self) -> &'static str {
         "From the viewer, one of nine rays to the middle of the thing's box and to points 60 % of \
-         the way to its corners meets the thing before anything else, at most 45 degrees from \
-         where the viewer looks."
+         the way to its corners meets the thing before anything else, within a square picture of \
+         90 degrees."
     }
 
     fn source(&self) -> &'static str {
@@ -38,7 +35,7 @@ impl Predicate for Visible {
         let (Term::Object(object), Some(viewer)) = (args[0], viewer) else {
             return Truth::False;
         };
-        let seen = is_in_line_of_sight(scene, scene.rays(), viewer, object, HALF_ANGLE_RAD);
+        let seen = is_in_line_of_sight(scene, scene.rays(), viewer, object, FieldOfView::Picture);
         Truth::from(seen)
     }
 }

@@ -1,7 +1,7 @@
 //! The predicate `visible_from`, in any direction of view.
 
 use super::{AGENT, OBJECT, Predicate, RelationProperties};
-use crate::line_of_sight::is_in_line_of_sight;
+use crate::line_of_sight::{FieldOfView, is_in_line_of_sight};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::Truth;
 
@@ -40,7 +40,7 @@ impl Predicate for VisibleFrom {
             return Truth::False;
         };
         let seen = Viewer::of_agent(scene.state, agent).is_some_and(|viewer| {
-            is_in_line_of_sight(scene, scene.rays(), &viewer, object, std::f32::consts::PI)
+            is_in_line_of_sight(scene, scene.rays(), &viewer, object, FieldOfView::Around)
         });
         Truth::from(seen)
     }

@@ -1,7 +1,7 @@
 //! The predicate `visible_from_room`.
 
 use super::{OBJECT_OR_ROOM, Predicate, ROOM, RelationProperties};
-use crate::line_of_sight::is_in_line_of_sight;
+use crate::line_of_sight::{FieldOfView, is_in_line_of_sight};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::Truth;
 use dwell_scene::bvh::{Ray, RayMask};
@@ -49,7 +49,7 @@ impl Predicate for VisibleFromRoom {
                 let viewer = Viewer {
                     world_from_camera: Pose::from_position_yaw(eye, 0.0),
                 };
-                is_in_line_of_sight(scene, scene.rays(), &viewer, object, std::f32::consts::PI)
+                is_in_line_of_sight(scene, scene.rays(), &viewer, object, FieldOfView::Around)
             }),
             Term::Room(room) if room == from => true,
             Term::Room(room) => {

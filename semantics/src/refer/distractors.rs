@@ -1,5 +1,6 @@
 //! Distinguishing attributes of things of one noun, counted once for all of them.
 
+use crate::color::ColorVocabulary;
 use crate::form::{Description, Modifier, Noun, Phrase};
 use crate::predicates;
 use crate::scene::{
@@ -92,8 +93,11 @@ impl DistractorSet {
                 pace.turn();
                 let facts = scene.facts(id);
                 push(&mut lists, Attribute::Size(facts.size), id);
-                for (word, _) in &facts.colors {
-                    push(&mut lists, Attribute::Color((*word).to_owned()), id);
+                // Also the words on which people divide: what some would call white is not told apart from it as the white one.
+                for word in ColorVocabulary::Spoken.words() {
+                    if !facts.colors.is_empty() && !facts.shows_color(word).is_false() {
+                        push(&mut lists, Attribute::Color(word.to_owned()), id);
+                    }
                 }
                 for word in facts.material_words() {
                     push(&mut lists, Attribute::Material(word.to_owned()), id);
@@ -189,7 +193,7 @@ impl DistractorSet {
         for kind in scene.semantics.kinds_called(noun) {
             let pairs = name.and_then(|name| pairs.get(&(*name, kind)));
             for (id, other) in pairs.into_iter().flatten() {
-                if found.last() != Some(id) && scene.facts(*other).fits(landmark) {
+                if found.last() != Some(id) && scene.facts(*other).may_fit(landmark) {
                     found.push(*id);
                 }
             }

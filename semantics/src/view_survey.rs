@@ -1,0 +1,123 @@
+//! What a viewer sees of each thing: shares of the picture, what is hidden, where it falls and how far it is.
+
+use crate::scene::{SemanticScene, Viewer};
+use dwell_scene::bvh::{Hit, Ray, RayMask};
+use dwell_scene::interrupt::PollEvery;
+use dwell_scene::{Entity, EntityId, ObjectId, StructureId, StructureKind};
+use glam::Vec3;
+use std::collections::BTreeMap;
+
+/// Rays along each edge of the picture. A mug 3 m away meets two or three.
+const RAYS: usize = 64;
+/// Tangent of half the field of view: 90 degrees, that of the default camera.
+const HALF_WIDTH: f32 = 1.0;
+/// Rays between checks for cancellation.
+const RAYS_PER_CHECK: usize = 256;
+
+/// What is seen of one thing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sighting {
+    /// Its share of the picture, 0 to 1.
+    pub share: f32,
+    /// The share of the rays towards it within the picture that nothing nearer stops, 0 to 1.
+    pub unhidden: f32,
+    /// The tangents of the leftmost and the rightmost ray that meets it: -1 at the left edge of the picture, 1 at the right.
+    pub span: [f32; 2],
+    /// The distance from the eye to the nearest point that is seen, m.
+    pub distance_m: f32,
+}
+
+/// What a viewer sees: a picture of 90 degrees in both directions, by [`RAYS`] times [`RAYS`] rays.
+#[derive(Clone, Debug, Default)]
+pub struct ViewSurvey {
+    /// The things that at least one ray meets first.
+    pub objects: BTreeMap<ObjectId, Sighting>,
+    /// The share of the picture that is each piece of the building.
+    pub structure: BTreeMap<StructureId, f32>,
+}
+
+/// Rays that meet a thing.
+#[derive(Clone, Copy, Default)]
+struct RayCounts {
+    first: u32,
+    any: u32,
+    span: Option<[f32; 2]>,
+    nearest_m: f32,
+}
+
+impl RayCounts {
+    fn sighting(self) -> Option<Sighting> {
+        Some(Sighting {
+            share: self.first as f32 / (RAYS * RAYS) as f32,
+            unhidden: self.first as f32 / self.any as f32,
+            span: self.span?,
+            distance_m: self.nearest_m,
+        })
+    }
+}
+
+impl ViewSurvey {
+    /// Traces the rays of a viewer's picture.
+    pub fn of(scene: &SemanticScene<'_>, viewer: &Viewer) -> Self {
+        let (house, rays) = (scene.house(), scene.rays());
+        let eye = viewer.world_from_camera.position;
+        let mut counts: BTreeMap<i32, RayCounts> = BTreeMap::new();
+        let mut hits: Vec<Hit> = Vec::new();
+        let mut met: Vec<i32> = Vec::new();
+        let mut poll = PollEvery::new(RAYS_PER_CHECK);
+        let tangent = |k: usize| ((k as f32 + 0.5) / RAYS as f32 * 2.0 - 1.0) * HALF_WIDTH;
+        for k in 0..RAYS * RAYS {
+            poll.turn();
+            let (x, y) = (tangent(k % RAYS), tangent(k / RAYS));
+            let direction = viewer
+                .world_from_camera
+                .transform_vector(Vec3::new(x, y, -1.0));
+            rays.bvh()
+                .all_hits(&Ray::new(eye, direction), RayMask::EYE, &mut hits);
+            met.clear();
+            for (place, hit) in hits.iter().enumerate() {
+                if met.contains(&hit.id) {
+                    continue;
+                }
+                met.push(hit.id);
+                let own = counts.entry(hit.id).or_default();
+                own.any += 1;
+                if place == 0 {
+                    let nearest = if own.first == 0 {
+                        f32::INFINITY
+                    } else {
+                        own.nearest_m
+                    };
+                    own.nearest_m = nearest.min(hit.distance_m);
+                    own.first += 1;
+                    let [left, right] = own.span.unwrap_or([x, x]);
+                    own.span = Some([left.min(x), right.max(x)]);
+                }
+            }
+        }
+        let mut survey = Self::default();
+        for (id, own) in counts {
+            let Some(sighting) = own.sighting() else {
+                continue;
+            };
+            match house.entity(EntityId(id)) {
+                Some(Entity::Object(object)) => {
+                    survey.objects.insert(object, sighting);
+                }
+                Some(Entity::Structure(piece)) => {
+                    survey.structure.insert(piece, sighting.share);
+                }
+                _ => {}
+            }
+        }
+        survey
+    }
+
+    /// The share of the picture that pieces of the building of one kind cover, 0 to 1.
+    pub fn structure_share(&self, scene: &SemanticScene<'_>, kind: StructureKind) -> f32 {
+        let own = self.structure.iter();
+        own.filter(|(piece, _)| scene.house().structure[**piece].kind == kind)
+            .map(|(_, share)| share)
+            .sum()
+    }
+}
