@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Any, Literal, overload
 
-from dwell import _native
-from dwell.arguments import integer_in_range
+from dwell import ConfigError, _native
+from dwell.arguments import integer_in_range, quoted
 from dwell.arguments import text as checked_text
 from dwell.grounded_text import Length, Text, texts
-from dwell.relation_api import RelationApi, Viewer, viewer_argument
+from dwell.relation_api import RelationApi, Thing, Viewer, thing_argument, viewer_argument
 
 
 class LanguageApi(RelationApi):
@@ -17,12 +17,14 @@ class LanguageApi(RelationApi):
     @overload
     def describe(
         self,
-        level: Literal["object", "room", "house", "view"] = ...,
+        level: Literal["object", "room", "house", "view", "route", "changes"] = ...,
         *,
         length: Length = ...,
         seed: int | None = ...,
         viewer: Viewer | None = ...,
         agent: int | None = ...,
+        to: Thing | None = ...,
+        since: bytes | None = ...,
     ) -> list[Text]: ...
     @overload
     def describe(
@@ -33,6 +35,8 @@ class LanguageApi(RelationApi):
         seed: int | None = ...,
         viewer: Viewer | None = ...,
         agent: int | None = ...,
+        to: Thing | None = ...,
+        since: bytes | None = ...,
     ) -> list[str]: ...
     def describe(
         self,
@@ -42,6 +46,8 @@ class LanguageApi(RelationApi):
         seed: int | None = None,
         viewer: Viewer | None = None,
         agent: int | None = None,
+        to: Thing | None = None,
+        since: bytes | None = None,
     ) -> list[Text] | list[str]:
         """As :meth:`House.describe`, of the house as it is now.
 
@@ -50,15 +56,22 @@ class LanguageApi(RelationApi):
                 by side, the largest first, how far they are and where to each other, what lies on
                 them, and what is seen of other rooms. One text. What covers less than 100 of
                 256 x 256 pixels of a picture of 90 degrees, or is hidden to more than three
-                quarters, is left out. "The lamp" is the one in sight.
-            length: Of the levels object, room, house and view.
+                quarters, is left out. "The lamp" is the one in sight. ``route``: the way to ``to`` from
+                where the viewer stands and looks, as requests: turns, doors, what one goes past; one
+                text, none where no way leads there. A body that opens doors walks it. ``changes``:
+                what is otherwise than in the snapshot ``since``, as claims of the present; one text,
+                empty where nothing has changed that can be said.
+            length: Of the levels object, room, house, view and route.
             seed: Draws the wordings.
             viewer: Whose view: an agent's number or a camera, as for :meth:`holds`. Without it the
                 eyes of ``agent``.
             agent: Who "you" is.
+            to: The goal of a route: a thing by name or id, or a room as ``room:NAME``.
+            since: What :meth:`snapshot` gave before, of this world.
 
         Raises:
-            ConfigError: A view without viewer and agent.
+            ConfigError: A level without what it needs; a goal that there is not.
+            DwellError: ``since`` is no snapshot of this world.
 
         Examples:
             >>> import dwell
@@ -67,12 +80,27 @@ class LanguageApi(RelationApi):
             >>> viewer = {"position": room["eye"], "yaw_deg": room["yaw_deg"]}
             >>> world.describe("view", viewer=viewer)[0].split(". ")[0]
             'The first bedroom has a beige parquet floor and cream walls'
+            >>> route = world.describe("route", viewer=viewer, to="room:bathroom", length="short")
+            >>> route[0].split(". ")[0]
+            'Turn left, then go through the door from the first bedroom to the hallway'
+            >>> before = world.snapshot()
+            >>> world.set_joints({0: (1.2, 0.0)})
+            >>> world.describe("changes", since=before)[0]
+            'The door in the hallway is open now.'
         """
+        if since is not None and not isinstance(since, bytes):
+            raise ConfigError(f"since is {quoted(since)}; expected the bytes of snapshot()")
         seed = None if seed is None else integer_in_range("seed", seed)
         listener = None if agent is None else integer_in_range("agent", agent, high=2**31 - 1)
         looks = viewer_argument(viewer)
         rows = self._native.describe(
-            checked_text("level", level), checked_text("length", length), looks, listener, seed
+            checked_text("level", level),
+            checked_text("length", length),
+            looks,
+            listener,
+            seed,
+            None if to is None else thing_argument("to", to),
+            since,
         )
         return texts(level, rows)
 

@@ -75,7 +75,7 @@ class RelationApi(StateApi):
     def _truth(
         self, name: str, things: Sequence[Thing], viewer: Viewer | None
     ) -> tuple[bool | None, str | None]:
-        named = [_thing("things", thing) for thing in things]
+        named = [thing_argument("things", thing) for thing in things]
         return _native.world_holds(self._native, text("name", name), named, viewer_argument(viewer))
 
     def relations(
@@ -144,8 +144,8 @@ class RelationApi(StateApi):
             'refrigerator_1'
         """
         rows = sequence_items("things", things, "expected a list of names or ids of things")
-        named = [_thing("things", thing) for thing in rows]
-        compared = None if reference is None else _thing("reference", reference)
+        named = [thing_argument("things", thing) for thing in rows]
+        compared = None if reference is None else thing_argument("reference", reference)
         place = integer_in_range("n", n, low=1, high=2**31 - 1)
         found: tuple[str | None, str | None] = _native.world_select(
             self._native, text("order", order), named, place, compared, viewer_argument(viewer)
@@ -171,7 +171,7 @@ class RelationApi(StateApi):
             >>> row["synset"], row["switched_on"]
             ('radio_receiver.n.01', False)
         """
-        found: dict[str, Any] = _native.world_attributes(self._native, _thing("thing", thing))
+        found: dict[str, Any] = _native.world_attributes(self._native, thing_argument("thing", thing))
         return found
 
     def color_names(self, thing: Thing, vocabulary: int = 16) -> list[tuple[str, float]]:
@@ -186,7 +186,7 @@ class RelationApi(StateApi):
             The largest share first; empty for what is nearly all clear glass or mirror.
         """
         count = integer_in_range("vocabulary", vocabulary)
-        return _native.world_color_names(self._native, _thing("thing", thing), count)
+        return _native.world_color_names(self._native, thing_argument("thing", thing), count)
 
     def scene_graph(self, *, viewer: Viewer | None = None) -> dict[str, Any]:
         """Storeys, rooms, objects and agents as nodes, relations as edges.
@@ -203,7 +203,7 @@ class RelationApi(StateApi):
         return graph
 
 
-def _thing(name: str, thing: object) -> Thing:
+def thing_argument(name: str, thing: object) -> Thing:
     """A name or an id.
 
     Raises:

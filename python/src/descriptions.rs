@@ -6,7 +6,8 @@ use dwell_scene::House;
 use dwell_scene::random::RandomKey;
 use dwell_semantics::check::{GroundedPhrase, Listener};
 use dwell_semantics::describe::{
-    GroundedText, TextLength, captions, describe_house, describe_rooms, describe_view,
+    GroundedText, TextLength, captions, describe_changes, describe_house, describe_rooms,
+    describe_route, describe_view,
 };
 use dwell_semantics::graph::scene_graph;
 use dwell_semantics::instruct::{
@@ -17,7 +18,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 /// The levels of texts, in the order of the documentation.
-const LEVELS: &str = "object, room, house, view, graph, instructions";
+const LEVELS: &str = "object, room, house, view, route, changes, graph, instructions";
 
 /// The things of a text by their ids.
 #[derive(Serialize)]
@@ -118,7 +119,7 @@ fn goal(house: &House, goal: &InstructionGoal) -> Value {
     })
 }
 
-/// The length of a name; other levels than those of texts about the house have only one.
+/// The length of a name; some levels have only one.
 fn text_length(level: &str, name: &str) -> Result<TextLength, PyFault> {
     let Some(length) = TextLength::find(name) else {
         let allowed = TextLength::ALL.map(TextLength::name).join(", ");
@@ -126,40 +127,65 @@ fn text_length(level: &str, name: &str) -> Result<TextLength, PyFault> {
             "length is {name:?}; allowed are {allowed}"
         )));
     };
-    let has_lengths = ["object", "room", "house", "view"].contains(&level);
+    let has_lengths = ["object", "room", "house", "view", "route"].contains(&level);
     if has_lengths || length == TextLength::Normal {
         return Ok(length);
     }
     Err(PyFault::Config(format!(
-        "length is {name:?} with level {level:?}; only the levels object, room, house and view have lengths"
+        "length is {name:?} with level {level:?}; only the levels object, room, house, view and route have lengths"
     )))
+}
+
+/// What is to be described.
+pub(crate) struct DescriptionRequest<'a> {
+    /// The level.
+    pub(crate) level: &'a str,
+    /// The name of the length.
+    pub(crate) length: &'a str,
+    /// Draws the wordings.
+    pub(crate) seed: Option<u64>,
+    /// Who listens.
+    pub(crate) listener: Listener,
+    /// The goal of a route.
+    pub(crate) to: Option<Term>,
+    /// The scene before the changes.
+    pub(crate) before: Option<&'a SemanticScene<'a>>,
 }
 
 /// Texts about a house as it stands in a state: a mapping each.
 ///
 /// # Errors
-/// [`PyFault::Config`] for an unknown level or length.
+/// [`PyFault::Config`] for an unknown level or length, and for a level without what it needs.
 pub(crate) fn describe_level(
     scene: &SemanticScene<'_>,
-    listener: Listener,
-    level: &str,
-    length: &str,
-    seed: Option<u64>,
+    request: &DescriptionRequest<'_>,
 ) -> Result<PyValue, PyFault> {
-    let house = scene.house();
-    let length = text_length(level, length)?;
+    let (house, level, listener) = (scene.house(), request.level, request.listener);
+    let (seed, needs) = (request.seed, |what: &str| {
+        PyFault::Config(format!(
+            "level is {level:?}: World.describe has it, with {what}"
+        ))
+    });
+    let length = text_length(level, request.length)?;
     // One seed does not choose the same wordings in every house.
     let wording = seed.map(|seed| RandomKey::root(seed).child(house.name.as_str()));
     let texts = match level {
         "house" => vec![describe_house(scene, length, wording)],
         "room" => describe_rooms(scene, length, wording),
         "object" => captions(scene, length, wording),
-        "view" if listener.viewer.is_none() => {
-            return Err(PyFault::Config(
-                "level is \"view\": World.describe has it, with viewer or agent".to_owned(),
-            ));
+        "view" | "route" if listener.viewer.is_none() => {
+            return Err(needs("viewer or agent"));
         }
         "view" => vec![describe_view(scene, listener, length, wording)],
+        "route" => {
+            let to = request.to.ok_or_else(|| needs("to, a thing or a room"))?;
+            let route = describe_route(scene, listener, to, length, wording);
+            route.into_iter().collect()
+        }
+        "changes" => {
+            let before = request.before.ok_or_else(|| needs("since, a snapshot"))?;
+            vec![describe_changes(before, scene, listener, wording)]
+        }
         "graph" => {
             let text = serde_json::to_string(&scene_graph(scene, None))?;
             return PyValue::of(&[json!({ "text": text })]);

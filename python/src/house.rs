@@ -2,7 +2,7 @@
 
 use crate::answers::PyValue;
 use crate::authoring;
-use crate::descriptions::describe_level;
+use crate::descriptions::{DescriptionRequest, describe_level};
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use crate::hrtf::PyHead;
@@ -200,7 +200,17 @@ impl PyHouse {
         py.engine(|| {
             let state = State::new(self.house());
             let scene = self.engines.semantics().scene(&state);
-            describe_level(&scene, Listener::default(), level, length, key)
+            describe_level(
+                &scene,
+                &DescriptionRequest {
+                    level,
+                    length,
+                    seed: key,
+                    listener: Listener::default(),
+                    to: None,
+                    before: None,
+                },
+            )
         })
     }
 

@@ -48,7 +48,7 @@ impl WorldAccess<'_> {
     }
 
     /// A term by its name or the sensors' id: `chair_2`, `room:kitchen`, `storey:0`, `agent:0`, `part:door_1/leaf`.
-    fn term(&self, named: &Value) -> Result<Term, PyFault> {
+    pub(crate) fn term(&self, named: &Value) -> Result<Term, PyFault> {
         let (house, state) = (self.world.house(), self.world.state());
         if let Some(id) = named.as_i64() {
             let entity = i32::try_from(id).ok().map(EntityId);

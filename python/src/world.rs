@@ -3,7 +3,7 @@
 use crate::answers::PyValue;
 use crate::arrays;
 use crate::batch::PyBatch;
-use crate::descriptions::describe_level;
+use crate::descriptions::{DescriptionRequest, describe_level};
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use crate::house::PyHouse;
@@ -539,7 +539,8 @@ impl PyWorld {
         })
     }
 
-    #[pyo3(signature = (level, length, viewer, agent=None, key=None))]
+    #[pyo3(signature = (level, length, viewer, agent=None, key=None, to=None, since=None))]
+    #[expect(clippy::too_many_arguments, reason = "those of the Python function")]
     fn describe(
         &self,
         py: Python<'_>,
@@ -548,10 +549,26 @@ impl PyWorld {
         viewer: JsonArgument,
         agent: Option<usize>,
         key: Option<u64>,
+        to: Option<JsonArgument>,
+        since: Option<&[u8]>,
     ) -> PyResult<PyValue> {
         self.read_interruptible(py, |running| {
-            let listener = running.listener(viewer, agent)?;
-            describe_level(&running.scene(), listener, level, length, key)
+            let to = to.map(|to| running.term(&to.read()?)).transpose()?;
+            let before = since.map(|bytes| running.world.state_of_snapshot(bytes));
+            let before = before.transpose()?;
+            let semantics = running.world.engines().semantics();
+            let before = before.as_ref().map(|state| semantics.scene(state));
+            describe_level(
+                &running.scene(),
+                &DescriptionRequest {
+                    level,
+                    length,
+                    seed: key,
+                    listener: running.listener(viewer, agent)?,
+                    to,
+                    before: before.as_ref(),
+                },
+            )
         })
     }
 

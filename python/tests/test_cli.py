@@ -497,4 +497,4 @@ def test_describe_has_three_lengths(command: Command) -> None:
     assert len(texts["short"]) < len(texts["normal"]) < len(texts["long"])
     refused = command("describe", "builtin:studio", "--level", "graph", "--length", "long")
     assert refused.returncode == 1
-    assert "only the levels object, room and house have lengths" in refused.stderr
+    assert "texts of level graph have one length" in refused.stderr

@@ -1,13 +1,18 @@
 //! Lines of sight from a viewer to a thing.
 
 use crate::scene::{SemanticScene, Viewer};
-use dwell_scene::ObjectId;
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::rays::RayScene;
-use glam::Vec3;
+use dwell_scene::{Aabb, ObjectId};
+use glam::{Vec2, Vec3, Vec3Swizzles};
 
 /// Distance of the aims of rays from the middle of a thing's box towards its corners, a share of the way; the middle is aimed at too.
 const AIM: f32 = 0.6;
+
+/// Rays along each edge of the part of a picture that a box covers.
+const ACROSS: usize = 4;
+/// Least depth of what is in front of a viewer, m.
+const LEAST_DEPTH_M: f32 = 0.05;
 
 /// Where a thing must be to count as seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,7 +43,8 @@ impl FieldOfView {
 
 /// Returns whether a straight line from the viewer meets `object` before anything else, within the `field` of view.
 ///
-/// Nine rays are aimed at the thing's box; one that meets it first is enough. `rays` must be up to date with the scene's
+/// Nine rays are aimed at the thing's box, and in a picture 16 more at the part of it that the box covers; one that meets it first is
+/// enough. `rays` must be up to date with the scene's
 /// state.
 pub fn is_in_line_of_sight(
     scene: &SemanticScene<'_>,
@@ -50,13 +56,44 @@ pub fn is_in_line_of_sight(
     let eye = viewer.world_from_camera.position;
     let bounds = scene.extent(object).bounds;
     let (center, half) = (bounds.center(), bounds.size() * (0.5 * AIM));
-    let corners = dwell_scene::Aabb::new(center - half, center + half).corners();
+    let corners = Aabb::new(center - half, center + half).corners();
     let id = scene.house().entity_of_object(object).0;
-    std::iter::once(center).chain(corners).any(|point| {
-        let ray = Ray::new(eye, point - eye);
+    let meets = |direction: Vec3| {
+        let ray = Ray::new(eye, direction);
         field.contains(viewer, ray.direction)
             && rays
                 .closest(&ray, RayMask::EYE)
                 .is_some_and(|hit| hit.id == id)
-    })
+    };
+    let mut aims = std::iter::once(center).chain(corners);
+    aims.any(|point| meets(point - eye))
+        || (field == FieldOfView::Picture && covered(viewer, &bounds).into_iter().any(meets))
+}
+
+/// Directions over the part of a picture that a box covers, [`ACROSS`] by [`ACROSS`]; none of a box behind the viewer.
+fn covered(viewer: &Viewer, bounds: &Aabb) -> Vec<Vec3> {
+    let camera_from_world = viewer.world_from_camera.inverse();
+    let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
+    let corners = bounds
+        .corners()
+        .map(|corner| camera_from_world.transform_point(corner));
+    if corners.iter().all(|corner| corner.z > -LEAST_DEPTH_M) {
+        return Vec::new();
+    }
+    for corner in corners {
+        // What reaches behind the viewer reaches to the edges of the picture.
+        let place = corner.xy() / (-corner.z).max(LEAST_DEPTH_M);
+        (low, high) = (low.min(place), high.max(place));
+    }
+    let (low, high) = (low.max(Vec2::NEG_ONE), high.min(Vec2::ONE));
+    if low.cmpge(high).any() {
+        return Vec::new();
+    }
+    let places = (0..ACROSS * ACROSS).map(|k| {
+        let share = Vec2::new((k % ACROSS) as f32 + 0.5, (k / ACROSS) as f32 + 0.5);
+        let place = low + (high - low) * share / ACROSS as f32;
+        let direction = Vec3::new(place.x, place.y, -1.0);
+        viewer.world_from_camera.transform_vector(direction)
+    });
+    places.collect()
 }

@@ -71,26 +71,49 @@ pub(crate) struct NavGridPool {
     grids: Mutex<Vec<NavGrid>>,
 }
 
-fn walker(body: &AgentBody) -> NavConfig {
+fn walker(body: &AgentBody, doors: DoorPolicy) -> NavConfig {
     NavConfig {
         radius_m: body.radius_m,
         height_m: body.height_m,
         step_m: body.step_height_m,
-        doors: DoorPolicy::AsTheyStand,
+        doors,
         ..NavConfig::default()
     }
 }
 
 impl NavGridPool {
-    /// Returns where an agent can get to; `None` where it can't walk. A grid that was used before is updated, which gives the
-    /// same bits as a new one.
+    /// Returns where an agent can get to; `None` where it can't walk.
     pub(crate) fn reachable_area(
         &self,
         house: &House,
         state: &State,
         agent: &AgentState,
     ) -> Option<ReachableArea> {
-        let config = walker(&agent.body);
+        let config = walker(&agent.body, DoorPolicy::AsTheyStand);
+        self.with_grid(house, state, config, |grid| {
+            ReachableArea::gather(grid, agent)
+        })?
+    }
+
+    /// Returns what `query` finds on the grid of a body that opens doors; `None` where it can't walk.
+    pub(crate) fn with_open_doors<T>(
+        &self,
+        house: &House,
+        state: &State,
+        body: &AgentBody,
+        query: impl FnOnce(&NavGrid) -> T,
+    ) -> Option<T> {
+        self.with_grid(house, state, walker(body, DoorPolicy::Open), query)
+    }
+
+    /// A grid that was used before is updated, which gives the same bits as a new one.
+    fn with_grid<T>(
+        &self,
+        house: &House,
+        state: &State,
+        config: NavConfig,
+        query: impl FnOnce(&NavGrid) -> T,
+    ) -> Option<T> {
         let kept = {
             let mut grids = self.grids.lock().unwrap_or_else(PoisonError::into_inner);
             let place = grids.iter().rposition(|grid| *grid.config() == config);
@@ -100,12 +123,12 @@ impl NavGridPool {
             Some(mut grid) => grid.update(house, state).ok().map(|_| grid)?,
             None => NavGrid::build(house, state, &config).ok()?,
         };
-        let area = ReachableArea::gather(&grid, agent);
+        let found = query(&grid);
         let mut grids = self.grids.lock().unwrap_or_else(PoisonError::into_inner);
         grids.push(grid);
         if grids.len() > KEPT {
             grids.remove(0);
         }
-        area
+        Some(found)
     }
 }

@@ -13,9 +13,12 @@ use crate::room_outline::RoomOutline;
 use crate::rooms::RoomProperties;
 use crate::visible_area::visible_surface_areas;
 use dwell_scene::bvh::BoxTree;
+use dwell_scene::navigation::NavGrid;
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
-use dwell_scene::{Aabb, AgentId, House, Id, IdVec, ObjectId, RoomId, State, StructureId};
+use dwell_scene::{
+    Aabb, AgentBody, AgentId, House, Id, IdVec, ObjectId, RoomId, State, StructureId,
+};
 use glam::Vec2;
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
@@ -116,6 +119,17 @@ impl Semantics {
     pub(crate) fn reachable_area(&self, state: &State, agent: AgentId) -> Option<ReachableArea> {
         let agent = state.agents.get(agent)?;
         self.walkers.reachable_area(&self.house, state, agent)
+    }
+
+    /// Returns what `query` finds on the navigation grid of a body that opens doors; `None` where it can't walk.
+    pub(crate) fn with_open_doors<T>(
+        &self,
+        state: &State,
+        body: &AgentBody,
+        query: impl FnOnce(&NavGrid) -> T,
+    ) -> Option<T> {
+        self.walkers
+            .with_open_doors(&self.house, state, body, query)
     }
 
     /// A room seen from above.

@@ -60,6 +60,42 @@ impl World {
     /// # Errors
     /// [`WorldError`] with the reason; the world is then as it was before.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
+        let (parts, mut state) = self.unpack_snapshot(bytes)?;
+        let sound = WorldSound::from_bytes(
+            &self.config,
+            (&self.engines, &state),
+            parts.key.child("sound"),
+            &parts.sound,
+        )?;
+        let parts_of_past = parts
+            .motion_history
+            .previous_part_poses
+            .iter()
+            .map(|(part, _)| part.index());
+        if parts_of_past.max() >= Some(state.part_pose.len()) {
+            return Err(WorldError::Snapshot(
+                "parts moved that the house does not have".to_owned(),
+            ));
+        }
+        self.physics.restore(&mut state, &parts.physics)?;
+        self.state = state;
+        self.sound = sound;
+        self.key = parts.key;
+        self.motion_history = parts.motion_history;
+        self.events.clear();
+        self.rays.update(&self.state);
+        Ok(())
+    }
+
+    /// Returns the state that a snapshot of this world holds, to compare it with the present one.
+    ///
+    /// # Errors
+    /// [`WorldError`] as [`World::restore`].
+    pub fn state_of_snapshot(&self, bytes: &[u8]) -> Result<State, WorldError> {
+        self.unpack_snapshot(bytes).map(|(_, state)| state)
+    }
+
+    fn unpack_snapshot(&self, bytes: &[u8]) -> Result<(SnapshotParts, State), WorldError> {
         let refuse = |why: String| WorldError::Snapshot(why);
         let told = bytes
             .strip_prefix(MAGIC)
@@ -95,34 +131,11 @@ impl World {
         let body = unpack(packed, &base.bytes)?;
         let parts: SnapshotParts =
             postcard::from_bytes(&body).map_err(|error| refuse(error.to_string()))?;
-        let mut state = State::from_bytes(self.house(), &parts.state)?;
+        let state = State::from_bytes(self.house(), &parts.state)?;
         if state.agents.len() != head.agents.len() {
             return Err(refuse("its state has other agents than it says".to_owned()));
         }
-        let sound = WorldSound::from_bytes(
-            &self.config,
-            (&self.engines, &state),
-            parts.key.child("sound"),
-            &parts.sound,
-        )?;
-        let parts_of_past = parts
-            .motion_history
-            .previous_part_poses
-            .iter()
-            .map(|(part, _)| part.index());
-        if parts_of_past.max() >= Some(state.part_pose.len()) {
-            return Err(refuse(
-                "parts moved that the house does not have".to_owned(),
-            ));
-        }
-        self.physics.restore(&mut state, &parts.physics)?;
-        self.state = state;
-        self.sound = sound;
-        self.key = parts.key;
-        self.motion_history = parts.motion_history;
-        self.events.clear();
-        self.rays.update(&self.state);
-        Ok(())
+        Ok((parts, state))
     }
 
     fn base(&self) -> &SnapshotBase {

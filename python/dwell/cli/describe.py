@@ -5,25 +5,42 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from dwell.cli.common import ProgressBar, count, path
 from dwell.cli.job_journal import Journal, contents_of
 from dwell.files import open_file
 
-_LEVELS = ("object", "room", "house", "graph", "instructions")
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from typing import Literal
+
+    from dwell.grounded_text import Length, Text
+    from dwell.house import House
+    from dwell.world import World
+
+_LEVELS = ("object", "room", "house", "view", "route", "changes", "graph", "instructions")
 _LENGTHS = ("short", "normal", "long")
+#: Levels of which there is one length.
+_OF_ONE_LENGTH = ("changes", "graph", "instructions")
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Adds the options."""
     parser.add_argument("houses", metavar="HOUSE", nargs="+")
-    parser.add_argument("--level", choices=_LEVELS, default="house")
+    parser.add_argument(
+        "--level",
+        choices=_LEVELS,
+        default="house",
+        help="view: from the best viewpoint of each room; route: from each room to each other; "
+        "changes: HOUSE is a replay, and its end is compared with its start",
+    )
     parser.add_argument(
         "--length",
         choices=_LENGTHS,
         default="normal",
-        help="of objects, rooms and houses; long ones also say where things stand to each other",
+        help="of objects, rooms, houses, views and routes; long ones also say where things stand to "
+        "each other",
     )
     parser.add_argument("--seed", type=count, help="draws the wordings, with the name of the house")
     parser.add_argument(
@@ -40,10 +57,8 @@ def run(args: argparse.Namespace) -> int:
     from dwell.house_list import HouseList
 
     houses = HouseList(args.houses)
-    if args.length != "normal" and args.level not in ("object", "room", "house"):
-        raise ValueError(
-            f"--length {args.length}: only the levels object, room and house have lengths"
-        )
+    if args.length != "normal" and args.level in _OF_ONE_LENGTH:
+        raise ValueError(f"--length {args.length}: texts of level {args.level} have one length")
     settings = {"level": args.level, "length": args.length, "seed": args.seed}
     job = {"command": "describe", **settings, "houses": args.houses}
     journal = Journal(args.out, job) if args.out else None
@@ -105,18 +120,74 @@ def _describe(
 ) -> list[dict[str, Any]] | None:
     """The rows of a house; ``None``, and a sentence, for one that cannot be opened."""
     from dwell import DwellError
-    from dwell.house import House
 
     try:
-        texts = House.open(name).describe(level, length=length, seed=seed)
+        return list(_rows(name, level, length, seed))
     except DwellError as error:
         said = str(error)
         where = "" if said.startswith(name) else f"{name}: "
         print(f"dwell describe: {where}{said}", file=sys.stderr)
         return None
-    if level in ("graph", "instructions"):
-        return [{"house": name, "level": level, "text": json.loads(text)} for text in texts]
-    return [{"house": name, "level": level, **text.as_dict()} for text in texts]
+
+
+def _rows(
+    name: str,
+    level: Any,  # noqa: ANN401
+    length: Any,  # noqa: ANN401
+    seed: int | None,
+) -> Iterator[dict[str, Any]]:
+    from dwell.house import House
+
+    about = {"house": name, "level": level}
+    if level == "changes":
+        yield {**about, **_changes(name, seed).as_dict()}
+        return
+    house = House.open(name)
+    if level in ("view", "route"):
+        yield from ({**about, **row} for row in _from_viewpoints(house, level, length, seed))
+        return
+    for text in house.describe(level, length=length, seed=seed):
+        if level in ("graph", "instructions"):
+            yield {**about, "text": json.loads(text)}
+        else:
+            yield {**about, **text.as_dict()}
+
+
+def _from_viewpoints(
+    house: House, level: Literal["view", "route"], length: Length, seed: int | None
+) -> Iterator[dict[str, Any]]:
+    """What is seen from the best viewpoint of each room, and the ways from there."""
+    from dwell.world import World
+
+    world, rooms = World(house, agents=0), house.rooms()
+    for number, room in enumerate(rooms):
+        viewer = {"position": room["eye"], "yaw_deg": room["yaw_deg"]}
+        # Each text has a wording of its own.
+        key = None if seed is None else seed + 1_000_003 * number
+        if level == "view":
+            (text,) = world.describe(level, length=length, seed=key, viewer=viewer)
+            yield {"viewer": viewer, **text.as_dict()}
+            continue
+        for goal in rooms:
+            to = f"room:{goal['name']}"
+            if goal is not room:
+                found = world.describe(level, length=length, seed=key, viewer=viewer, to=to)
+                for text in found:
+                    yield {"viewer": viewer, "to": to, **text.as_dict()}
+
+
+def _changes(path: str, seed: int | None) -> Text:
+    """What an episode changed, told to its agent."""
+    from dwell.replays import Replay
+
+    before: bytes | None = None
+    world: World | None = None
+    for step in Replay.read(path).play():
+        world = step.world
+        before = world.snapshot() if before is None else before
+    assert world is not None, "a replay has a start"
+    (text,) = world.describe("changes", seed=seed, agent=0, since=before)
+    return text
 
 
 def _say(row: dict[str, Any]) -> None:

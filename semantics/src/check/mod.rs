@@ -174,6 +174,7 @@ impl<'a> Checker<'a> {
                 let body = |terms: &[Term]| self.has_surfaces(terms[0], surfaces);
                 self.quantify(std::slice::from_ref(room), &mut Vec::new(), &body)
             }
+            Clause::Now(inner) => self.judge(inner),
             Clause::Not(inner) => self.judge(inner).negated(),
             Clause::All(clauses) => {
                 WitnessedTruth::all(clauses.iter().map(|clause| self.judge(clause)))

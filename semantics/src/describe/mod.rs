@@ -1,5 +1,6 @@
 //! Texts about objects, rooms, houses and views. Each is made of forms, so that it can be checked.
 
+mod changes;
 mod hanging;
 mod house;
 mod item;
@@ -7,13 +8,16 @@ mod length;
 mod object;
 mod openings;
 mod room;
+mod route;
 mod surroundings;
 mod text;
 mod view;
 
+pub use changes::describe_changes;
 pub use house::describe_house;
 pub use length::TextLength;
 pub use object::{caption, captions};
 pub use room::{describe_room, describe_rooms};
+pub use route::describe_route;
 pub use text::{GroundedText, TextClaim};
 pub use view::describe_view;

@@ -187,7 +187,7 @@ fn carrier_groups(
 }
 
 /// "A table in the kitchen."
-fn in_room(scene: &SemanticScene<'_>, object: ObjectId, room: RoomId) -> Description {
+pub(super) fn in_room(scene: &SemanticScene<'_>, object: ObjectId, room: RoomId) -> Description {
     let noun = Noun::Object(scene.facts(object).noun.clone());
     let in_room = Modifier::new("in_room", [room_phrase(scene, room)]);
     Description::new(Quantifier::Some, noun).with_modifier(in_room)

@@ -1,5 +1,6 @@
 //! The description of a view.
 
+use super::hanging::MountedObject;
 use super::item::{grouped, items};
 use super::length::TextLength;
 use super::text::{GroundedText, TextWriter};
@@ -258,10 +259,24 @@ impl ViewTeller<'_, '_> {
             let (own, other) = (self.scene().extent(object), self.scene().extent(other));
             own.bounds.grown(MAX_BESIDE_M).intersects(&other.bounds)
         };
-        let near: Vec<&(ObjectId, Description)> =
-            before.iter().filter(|(other, _)| near(*other)).collect();
+        // "The first chair is next to the second chair" tells nobody where they are.
+        let near: Vec<&(ObjectId, Description)> = before
+            .iter()
+            .filter(|(other, own)| near(*other) && own.selection.is_none())
+            .collect();
         for name in RELATIONS {
-            let held = |other: ObjectId| holds_in_view(self.checker, name, [object, other]);
+            let held = |other: ObjectId| {
+                let [own, mark] = [object, other].map(|id| self.scene().extent(id).bounds);
+                let level = own.min.y < mark.max.y && mark.min.y < own.max.y;
+                let hangs = |id| MountedObject::of(self.scene(), id).is_some();
+                let fits = match name {
+                    "above" | "under" => true,
+                    "opposite" => level && !hangs(object) && !hangs(other),
+                    // A lamp on the ceiling is not to the left of a chair.
+                    _ => level,
+                };
+                fits && holds_in_view(self.checker, name, [object, other])
+            };
             let Some((_, landmark)) = near.iter().find(|(other, _)| held(*other)) else {
                 continue;
             };
@@ -298,9 +313,13 @@ impl ViewTeller<'_, '_> {
             self.writer.there_are(&items, &place);
         }
         if self.told.is_empty() {
-            let nothing = Noun::Object(Noun::ANY_OBJECT.to_owned());
-            self.writer
-                .there_are(&[Description::new(Quantifier::No, nothing)], &[seen]);
+            // Specks and slivers are not told, and not denied.
+            let mut objects = self.scene().house().objects.ids();
+            if !objects.any(|object| self.holds("visible", object)) {
+                let nothing = Noun::Object(Noun::ANY_OBJECT.to_owned());
+                self.writer
+                    .there_are(&[Description::new(Quantifier::No, nothing)], &[seen]);
+            }
             return;
         }
         if limits.relations == 0 {

@@ -17,6 +17,10 @@ impl Form {
         let Self::Claim(clause) = self else {
             return None;
         };
+        let clause = match clause {
+            Clause::Now(inner) => inner,
+            clause => clause,
+        };
         let subject = match clause {
             Clause::Holds { arguments, .. } => arguments.first()?,
             Clause::Is { subject, .. } | Clause::Distance { subject, .. } => subject,
@@ -27,7 +31,11 @@ impl Form {
                 Phrase::Described(own) if own.quantifier == Quantifier::Some => return Some(what),
                 what => Self::shared_landmark(what)?,
             },
-            Clause::More { .. } | Clause::Not(_) | Clause::All(_) | Clause::Any(_) => return None,
+            Clause::More { .. }
+            | Clause::Now(_)
+            | Clause::Not(_)
+            | Clause::All(_)
+            | Clause::Any(_) => return None,
         };
         is_singular(subject).then_some(subject)
     }
@@ -200,7 +208,7 @@ impl Resolver {
                     self.clause(clause);
                 }
             }
-            Clause::Not(inner) => self.clause(inner),
+            Clause::Now(inner) | Clause::Not(inner) => self.clause(inner),
             one => {
                 let verb = match &*one {
                     Clause::Is {
@@ -237,7 +245,7 @@ impl Resolver {
         let verb = match &*step {
             RequestStep::Do { verb, .. } | RequestStep::DoNot { verb, .. } => Some(verb.clone()),
             RequestStep::Put { .. } | RequestStep::Bring { .. } => Some("pick_up".to_owned()),
-            RequestStep::GoTo(_) | RequestStep::If { .. } => None,
+            RequestStep::GoTo(_) | RequestStep::Turn(_) | RequestStep::If { .. } => None,
         };
         let RequestStep::If {
             condition,

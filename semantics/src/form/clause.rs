@@ -89,6 +89,8 @@ pub enum Clause {
         /// Its surfaces, the floor before the walls.
         surfaces: Vec<RoomSurface>,
     },
+    /// A clause that is true since a change: "the door is open now". Of one scene it says no more than the clause.
+    Now(Box<Clause>),
     /// The negation of a clause.
     Not(Box<Clause>),
     /// The conjunction of clauses.

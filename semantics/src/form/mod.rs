@@ -14,7 +14,7 @@ mod visit;
 pub use clause::{Clause, Quality, RoomSurface, RoomSurfaceKind};
 pub use phrase::{Description, Modifier, Noun, OrdinalSelection, Phrase, Quantifier};
 pub use question::{AttributeKind, Question};
-pub use request::RequestStep;
+pub use request::{RequestStep, TurnDirection};
 
 use serde::{Deserialize, Serialize};
 

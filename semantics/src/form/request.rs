@@ -4,12 +4,26 @@ use super::clause::Clause;
 use super::phrase::Phrase;
 use serde::{Deserialize, Serialize};
 
+/// A direction to turn to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TurnDirection {
+    /// A quarter turn to the left.
+    Left,
+    /// A quarter turn to the right.
+    Right,
+    /// Half a turn.
+    Around,
+}
+
 /// A step of a request.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RequestStep {
     /// Go to a room.
     GoTo(Phrase),
+    /// Turn on the spot.
+    Turn(TurnDirection),
     /// Act on a thing, by a verb of the lexicon such as `"pick_up"`.
     Do {
         /// The verb.

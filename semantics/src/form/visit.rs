@@ -80,7 +80,7 @@ fn landmark_modifiers(clause: &Clause) -> usize {
             });
             modifiers.sum()
         }
-        Clause::Not(inner) => landmark_modifiers(inner),
+        Clause::Now(inner) | Clause::Not(inner) => landmark_modifiers(inner),
         Clause::All(clauses) | Clause::Any(clauses) => clauses.iter().map(landmark_modifiers).sum(),
         _ => 0,
     }
@@ -153,7 +153,7 @@ pub(super) fn visit_clause(clause: &mut Clause, visit: Visit<'_>) {
             visit_description(more, visit);
             visit_description(than, visit);
         }
-        Clause::Not(inner) => visit_clause(inner, visit),
+        Clause::Now(inner) | Clause::Not(inner) => visit_clause(inner, visit),
         Clause::All(clauses) | Clause::Any(clauses) => {
             for clause in clauses {
                 visit_clause(clause, visit);
@@ -164,6 +164,7 @@ pub(super) fn visit_clause(clause: &mut Clause, visit: Visit<'_>) {
 
 pub(super) fn visit_step(step: &mut RequestStep, visit: Visit<'_>) {
     match step {
+        RequestStep::Turn(_) => {}
         RequestStep::GoTo(phrase)
         | RequestStep::Do { object: phrase, .. }
         | RequestStep::DoNot { object: phrase, .. } => visit_phrase(phrase, Role::Topic, visit),

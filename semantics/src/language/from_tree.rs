@@ -64,6 +64,7 @@ pub(super) fn form(tree: &Tree) -> Option<Form> {
 fn clause(tree: &Tree) -> Option<Clause> {
     Some(match parts(tree)? {
         ("one_clause", [inner]) => possibly_negated_clause(inner)?,
+        ("now" | "no_longer", [inner]) => Clause::Now(Box::new(possibly_negated_clause(inner)?)),
         ("all_clauses", [inner]) => Clause::All(coordinated_clauses(inner)?),
         ("any_clause", [inner]) => Clause::Any(coordinated_clauses(inner)?),
         _ => return None,

@@ -5,7 +5,9 @@ use super::lexicon::{RELATION, VERB};
 use super::phrases::{between_two, phrase};
 use super::places;
 use super::to_tree::{Position, TreeBuilder};
-use crate::form::{Clause, Description, Modifier, Noun, Phrase, Quantifier, RequestStep};
+use crate::form::{
+    Clause, Description, Modifier, Noun, Phrase, Quantifier, RequestStep, TurnDirection,
+};
 use crate::grammar::Tree;
 
 pub(super) fn plan(tree: &Tree) -> Option<Vec<RequestStep>> {
@@ -172,6 +174,9 @@ fn plan_or_step(tree: &Tree) -> Option<Vec<RequestStep>> {
 fn step(tree: &Tree) -> Option<RequestStep> {
     Some(match parts(tree)? {
         ("go_to", [to]) => RequestStep::GoTo(room(to)?),
+        ("turn_left", []) => RequestStep::Turn(TurnDirection::Left),
+        ("turn_right", []) => RequestStep::Turn(TurnDirection::Right),
+        ("turn_around", []) => RequestStep::Turn(TurnDirection::Around),
         ("do_from_room", [verb, object, from]) => {
             let Phrase::Described(description) = phrase(object)? else {
                 return None;
@@ -348,6 +353,14 @@ impl TreeBuilder<'_> {
         let free = |phrase: &Phrase| self.phrase(phrase, Position::Free);
         Some(match step {
             RequestStep::GoTo(room) => Tree::apply("go_to", [self.room(room)?]),
+            RequestStep::Turn(direction) => {
+                let function = match direction {
+                    TurnDirection::Left => "turn_left",
+                    TurnDirection::Right => "turn_right",
+                    TurnDirection::Around => "turn_around",
+                };
+                Tree::apply(function, [])
+            }
             RequestStep::Do { verb, object } => {
                 Tree::apply("do", [self.lexicon_entry(VERB, verb)?, free(object)?])
             }

@@ -89,6 +89,13 @@ impl TreeBuilder<'_> {
             Clause::Any(clauses) => {
                 Tree::apply("any_clause", [self.list(clauses, "or_pair", "or_more")?])
             }
+            Clause::Now(inner) => {
+                let function = match **inner {
+                    Clause::Not(_) => "no_longer",
+                    _ => "now",
+                };
+                Tree::apply(function, [self.simple(inner)?])
+            }
             _ => Tree::apply("one_clause", [self.simple(clause)?]),
         })
     }
@@ -150,6 +157,7 @@ impl TreeBuilder<'_> {
             | Clause::Distance { .. }
             | Clause::More { .. }
             | Clause::HasSurfaces { .. }
+            | Clause::Now(_)
             | Clause::Not(_)
             | Clause::All(_)
             | Clause::Any(_) => return None,

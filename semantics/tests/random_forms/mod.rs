@@ -7,7 +7,7 @@ pub(crate) use requests_and_questions::form;
 use dwell_semantics::SizeClass;
 use dwell_semantics::form::{
     AttributeKind, Clause, Description, Form, Modifier, Noun, OrdinalSelection, Phrase, Quality,
-    Quantifier, Question, RequestStep, RoomSurface, RoomSurfaceKind,
+    Quantifier, Question, RequestStep, RoomSurface, RoomSurfaceKind, TurnDirection,
 };
 use proptest::prelude::*;
 
@@ -141,7 +141,7 @@ fn landmark() -> BoxedStrategy<Phrase> {
         outer
     };
     let to_thing = (plain(), relation(), plain());
-    let by_verb = (plain(), word(&["contains", "holds"]), plain());
+    let by_verb = (plain(), word(&["contains", "supports"]), plain());
     let nested = prop_oneof![
         to_thing.prop_map(move |(outer, name, inner)| of(outer, name, inner.into())),
         by_verb.prop_map(move |(outer, name, inner)| of(outer, name, inner.into())),
@@ -397,6 +397,16 @@ fn of_room() -> BoxedStrategy<Clause> {
             square_metres
         }),
         (room(), surfaces()).prop_map(|(room, surfaces)| Clause::HasSurfaces { room, surfaces }),
+        (
+            phrase(),
+            prop_oneof![Just(Phrase::Listener), phrase()],
+            1..99_u32
+        )
+            .prop_map(|(subject, from, metres)| Clause::Distance {
+                subject,
+                from,
+                metres
+            }),
         (room(), room()).prop_map(move |(from, to)| open(from, to)),
         (room(), proptest::collection::vec(room(), 2..4))
             .prop_map(move |(from, to)| open(from, Phrase::List(to))),

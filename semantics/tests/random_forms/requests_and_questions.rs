@@ -6,6 +6,12 @@ fn step() -> BoxedStrategy<RequestStep> {
     let verb = || word(&["find", "pick_up", "open", "switch_off", "bring_me"]);
     prop_oneof![
         room().prop_map(RequestStep::GoTo),
+        prop_oneof![
+            Just(TurnDirection::Left),
+            Just(TurnDirection::Right),
+            Just(TurnDirection::Around)
+        ]
+        .prop_map(RequestStep::Turn),
         (verb(), phrase()).prop_map(|(verb, object)| RequestStep::Do { verb, object }),
         (verb(), phrase()).prop_map(|(verb, object)| RequestStep::DoNot { verb, object }),
         (phrase(), room()).prop_map(|(object, to)| RequestStep::Bring { object, to }),
@@ -43,6 +49,11 @@ fn step() -> BoxedStrategy<RequestStep> {
 pub(crate) fn form() -> BoxedStrategy<Form> {
     prop_oneof![
         4 => simple().prop_map(Form::Claim),
+        1 => simple()
+            .prop_filter("of lists and comparisons nothing is said to be so now", |clause| {
+                !matches!(clause, Clause::All(_) | Clause::Any(_))
+            })
+            .prop_map(|clause| Form::Claim(Clause::Now(Box::new(clause)))),
         2 => proptest::collection::vec(step(), 1..4)
             .prop_map(Form::Request),
         1 => (
