@@ -52,15 +52,15 @@ class LanguageApi(RelationApi):
         """As :meth:`House.describe`, of the house as it is now.
 
         Args:
-            level: Also ``view``: what is seen, as a person would tell it: floor and walls, the things
-                by side, the largest first, how far they are and where to each other, what lies on
-                them, and what is seen of other rooms. One text. What covers less than 100 of
-                256 x 256 pixels of a picture of 90 degrees, or is hidden to more than three
-                quarters, is left out. "The lamp" is the one in sight. ``route``: the way to ``to`` from
-                where the viewer stands and looks, as requests: turns, doors, what one goes past; one
-                text, none where no way leads there. A body that opens doors walks it. ``changes``:
-                what is otherwise than in the snapshot ``since``, as claims of the present; one text,
-                empty where nothing has changed that can be said.
+            level: Also ``view``: what is seen, as a person would tell it: floor and walls, the
+                things by side, the largest first, how far they are and where to each other, what
+                lies on them, and what is seen of other rooms. One text. What covers less than 100
+                of 256 x 256 pixels of a picture of 90 degrees, or is hidden to more than three
+                quarters, is left out. "The lamp" is the one in sight. ``route``: the way to ``to``
+                from where the viewer stands and looks, as requests: turns, doors, what one goes
+                past; one text, none where no way leads there. A body that opens doors walks it.
+                ``changes``: what is otherwise than in the snapshot ``since``, as claims of the
+                present; one text, empty where nothing has changed that can be said.
             length: Of the levels object, room, house, view and route.
             seed: Draws the wordings.
             viewer: Whose view: an agent's number or a camera, as for :meth:`holds`. Without it the

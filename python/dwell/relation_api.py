@@ -171,7 +171,9 @@ class RelationApi(StateApi):
             >>> row["synset"], row["switched_on"]
             ('radio_receiver.n.01', False)
         """
-        found: dict[str, Any] = _native.world_attributes(self._native, thing_argument("thing", thing))
+        found: dict[str, Any] = _native.world_attributes(
+            self._native, thing_argument("thing", thing)
+        )
         return found
 
     def color_names(self, thing: Thing, vocabulary: int = 16) -> list[tuple[str, float]]:

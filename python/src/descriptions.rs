@@ -2,6 +2,8 @@
 
 use crate::answers::PyValue;
 use crate::errors::PyFault;
+use crate::values::JsonArgument;
+use crate::world_access::WorldAccess;
 use dwell_scene::House;
 use dwell_scene::random::RandomKey;
 use dwell_semantics::check::{GroundedPhrase, Listener};
@@ -212,4 +214,30 @@ pub(crate) fn describe_level(
     let rows: Result<Vec<Value>, PyFault> =
         texts.iter().map(|text| text_row(house, text)).collect();
     PyValue::of(&rows?)
+}
+
+impl WorldAccess<'_> {
+    /// Texts of a level and length about the world as it is, `since` a snapshot or `to` a goal where the level needs them.
+    pub(crate) fn describe(
+        &self,
+        (level, length, seed): (&str, &str, Option<u64>),
+        listener: Listener,
+        to: Option<JsonArgument>,
+        since: Option<&[u8]>,
+    ) -> Result<PyValue, PyFault> {
+        let to = to.map(|to| self.term(&to.read()?)).transpose()?;
+        let before = since.map(|bytes| self.world.state_of_snapshot(bytes));
+        let before = before.transpose()?;
+        let semantics = self.world.engines().semantics();
+        let before = before.as_ref().map(|state| semantics.scene(state));
+        let request = DescriptionRequest {
+            level,
+            length,
+            seed,
+            listener,
+            to,
+            before: before.as_ref(),
+        };
+        describe_level(&self.scene(), &request)
+    }
 }

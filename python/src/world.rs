@@ -3,7 +3,6 @@
 use crate::answers::PyValue;
 use crate::arrays;
 use crate::batch::PyBatch;
-use crate::descriptions::{DescriptionRequest, describe_level};
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use crate::house::PyHouse;
@@ -553,22 +552,8 @@ impl PyWorld {
         since: Option<&[u8]>,
     ) -> PyResult<PyValue> {
         self.read_interruptible(py, |running| {
-            let to = to.map(|to| running.term(&to.read()?)).transpose()?;
-            let before = since.map(|bytes| running.world.state_of_snapshot(bytes));
-            let before = before.transpose()?;
-            let semantics = running.world.engines().semantics();
-            let before = before.as_ref().map(|state| semantics.scene(state));
-            describe_level(
-                &running.scene(),
-                &DescriptionRequest {
-                    level,
-                    length,
-                    seed: key,
-                    listener: running.listener(viewer, agent)?,
-                    to,
-                    before: before.as_ref(),
-                },
-            )
+            let listener = running.listener(viewer, agent)?;
+            running.describe((level, length, key), listener, to, since)
         })
     }
 

@@ -24,7 +24,7 @@ def viewpoints(world: dwell.World) -> list[dict[str, object]]:
 
 
 def test_what_a_view_tells_is_in_the_picture() -> None:
-    """By the instance image, which the texts do not use: what is told covers pixels, and the largest things are told."""
+    """By the instance image, which texts do not use: what is told is seen, the largest is told."""
     camera = dwell.Camera(width=256, height=256, fov_deg=90)
     told = large = missed = 0
     for name in ("builtin:apartment", "seed:12"):

@@ -34,7 +34,7 @@ mod semantics;
 mod size;
 mod structure_facts;
 mod truth;
-pub mod view_survey;
+pub mod view;
 mod visible_area;
 pub mod vocabulary;
 

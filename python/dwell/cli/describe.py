@@ -39,8 +39,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--length",
         choices=_LENGTHS,
         default="normal",
-        help="of objects, rooms, houses, views and routes; long ones also say where things stand to "
-        "each other",
+        help="of objects, rooms, houses, views and routes; long ones also say where things stand "
+        "to each other",
     )
     parser.add_argument("--seed", type=count, help="draws the wordings, with the name of the house")
     parser.add_argument(

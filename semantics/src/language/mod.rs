@@ -17,6 +17,7 @@ mod read;
 mod requests;
 mod rooms;
 mod say;
+mod sentences;
 mod sets;
 mod to_tree;
 mod verb_phrases;

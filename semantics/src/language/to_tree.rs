@@ -8,7 +8,6 @@ use super::lexicon::{
 use super::places;
 use crate::form::{
     Clause, Description, Form, Modifier, Noun, OrdinalSelection, Phrase, Quality, Quantifier,
-    Question,
 };
 use crate::grammar::{Lexicon, Tree};
 use crate::size::SizeClass;
@@ -62,53 +61,6 @@ impl TreeBuilder<'_> {
                 None => Tree::apply("phrase", [self.phrase(phrase, Position::Free)?]),
             },
         })
-    }
-
-    fn form_pair(&self, forms: &[Form]) -> Option<Tree> {
-        match forms {
-            [Form::Question(first), Form::Question(second)] => Some(Tree::apply(
-                "several_questions",
-                [self.question(first)?, self.question(second)?],
-            )),
-            [
-                Form::Request(steps),
-                Form::Question(Question::Whether(clause)),
-            ] => {
-                let whether = Tree::apply("indirect_whether", [self.simple(clause)?]);
-                Some(Tree::apply("request_ask", [self.plan(steps)?, whether]))
-            }
-            _ => None,
-        }
-    }
-
-    fn clause(&self, clause: &Clause) -> Option<Tree> {
-        Some(match clause {
-            Clause::All(clauses) => {
-                Tree::apply("all_clauses", [self.list(clauses, "and_pair", "and_more")?])
-            }
-            Clause::Any(clauses) => {
-                Tree::apply("any_clause", [self.list(clauses, "or_pair", "or_more")?])
-            }
-            Clause::Now(inner) => {
-                let function = match **inner {
-                    Clause::Not(_) => "no_longer",
-                    _ => "now",
-                };
-                Tree::apply(function, [self.simple(inner)?])
-            }
-            _ => Tree::apply("one_clause", [self.simple(clause)?]),
-        })
-    }
-
-    fn list(&self, clauses: &[Clause], pair: &str, more: &str) -> Option<Tree> {
-        match clauses {
-            [first, last] => Some(Tree::apply(pair, [self.simple(first)?, self.simple(last)?])),
-            [first, rest @ ..] if rest.len() > 1 => Some(Tree::apply(
-                more,
-                [self.simple(first)?, self.list(rest, pair, more)?],
-            )),
-            _ => None,
-        }
     }
 
     pub(super) fn simple(&self, clause: &Clause) -> Option<Tree> {

@@ -9,7 +9,7 @@ use dwell_scene::interrupt;
 use std::collections::BTreeSet;
 
 /// The descriptions of `target` by its own properties, shortest first.
-pub(super) fn by_properties(scene: &SemanticScene<'_>, target: ObjectId) -> Vec<Description> {
+pub(crate) fn by_properties(scene: &SemanticScene<'_>, target: ObjectId) -> Vec<Description> {
     let facts = scene.facts(target);
     let noun = Description::new(Quantifier::The, Noun::Object(facts.noun.clone()));
     // A thing without a prevailing colour is not identified by one.
@@ -57,7 +57,7 @@ pub(super) fn by_properties(scene: &SemanticScene<'_>, target: ObjectId) -> Vec<
 }
 
 /// The relations of `target` to other things, each named by its noun and at most one adjective; each once.
-pub(super) fn by_relations(scene: &SemanticScene<'_>, target: ObjectId) -> Vec<Modifier> {
+pub(crate) fn by_relations(scene: &SemanticScene<'_>, target: ObjectId) -> Vec<Modifier> {
     let mut found: Vec<Modifier> = Vec::new();
     let mut known: BTreeSet<(&str, &str, Option<&str>)> = BTreeSet::new();
     for name in TELLING {

@@ -27,7 +27,7 @@ pub struct Sighting {
     pub distance_m: f32,
 }
 
-/// What a viewer sees: a picture of 90 degrees in both directions, by [`RAYS`] times [`RAYS`] rays.
+/// What a viewer sees: a picture of 90 degrees in both directions, by 64 times 64 rays.
 #[derive(Clone, Debug, Default)]
 pub struct ViewSurvey {
     /// The things that at least one ray meets first.

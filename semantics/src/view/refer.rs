@@ -1,11 +1,11 @@
 //! Referring expressions for a listener who sees the thing.
 
-use super::generate::{by_properties, by_relations};
+use super::ViewSurvey;
 use crate::check::Checker;
 use crate::form::{Description, Modifier, Noun, OrdinalSelection, Phrase, Quantifier};
 use crate::predicates;
+use crate::refer::{by_properties, by_relations};
 use crate::scene::Term;
-use crate::view_survey::ViewSurvey;
 use dwell_scene::ObjectId;
 use dwell_scene::interrupt;
 

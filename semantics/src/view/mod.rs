@@ -1,0 +1,8 @@
+//! What a viewer sees, and how things are referred to for whoever sees them.
+
+mod refer;
+mod survey;
+
+pub(crate) use refer::holds_in_view;
+pub use refer::refer_in_view;
+pub use survey::{Sighting, ViewSurvey};
