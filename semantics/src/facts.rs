@@ -39,6 +39,8 @@ pub struct ObjectFacts {
     pub colors: Vec<(&'static str, f32)>,
     /// The pattern of most of it; `None` for plain things, and for pictures, screens and books.
     pub pattern: Option<Pattern>,
+    /// Whether at least half of what is seen of it is clear glass or mirror.
+    pub(crate) is_mostly_clear: bool,
     /// Its substances with their shares of the surface, largest first.
     pub substances: Vec<(&'static Substance, f32)>,
     /// Edges of the box around it in the axes of its root part, m.
@@ -70,11 +72,18 @@ impl ObjectFacts {
         let areas = areas_m2(house, id);
         let shown: &[(MaterialId, f32)] = if seen.is_empty() { &areas } else { seen };
         let named = named_surfaces(house, category, shown);
+        let clear = shown.iter().filter(|(id, _)| is_clear(house, *id));
+        let is_mostly_clear = 2.0 * area_m2(clear) >= area_m2(shown.iter()) && !shown.is_empty();
         let patches = patches(house, paints, &named);
         let pattern = pattern(paints, category, &named);
         let substances = substances(house, &areas);
         let extents_m = own_box(house, id).size();
-        let colors = color_words(&patches, ColorVocabulary::Spoken);
+        let mut colors = color_words(&patches, ColorVocabulary::Spoken);
+        // Flowers have the colour of their petals.
+        let is_petal = |(word, _): &(&str, f32)| !word.contains("green") && *word != "sage";
+        if category.is_some_and(|row| row.name == "flowers") && colors.iter().any(is_petal) {
+            colors.retain(is_petal);
+        }
         Self {
             category,
             kind,
@@ -83,9 +92,11 @@ impl ObjectFacts {
             colors,
             patches,
             pattern,
+            is_mostly_clear,
             substances,
             extents_m,
-            size: SizeClass::of(extents_m, category),
+            // Kinds within a category have no usual size in its table.
+            size: SizeClass::of(extents_m, category.filter(|_| kind.is_none())),
         }
     }
 
@@ -106,6 +117,22 @@ impl ObjectFacts {
             .collect()
     }
 
+    /// Returns whether its looks do not say its main substance: chrome under paint, the cloth of a toy, the glass of a window.
+    fn hides(&self, substance: &Substance) -> bool {
+        let classes = |names: &[&str]| {
+            self.category
+                .is_some_and(|row| names.contains(&row.nyu40_name) || names.contains(&row.name))
+        };
+        let is_gray = |word: &str| word.contains("gray");
+        match substance.adjective.as_str() {
+            "glass" => classes(&["window", "mirror"]),
+            "upholstered" => !classes(&["sofa", "chair", "bed", "ottoman", "armchair"]),
+            "chrome" => self.colors.first().is_some_and(|(word, _)| !is_gray(word)),
+            "steel" => classes(&["whiteboard"]),
+            _ => false,
+        }
+    }
+
     /// Returns whether it shows a colour; undecided for a colour on which people divide, and of things that have none.
     pub(crate) fn shows_color(&self, word: &str) -> Truth {
         if self.colors.is_empty() {
@@ -119,6 +146,13 @@ impl ObjectFacts {
     pub fn spoken_colors(&self) -> &[(&'static str, f32)] {
         // "A white picture" leaves open whether paper, mat or frame is meant.
         let is_picture = self.category.is_some_and(|row| row.nyu40_name == "picture");
+        let is_window = self.category.is_some_and(|row| row.nyu40_name == "window");
+        // A coat rack has the colours of what hangs on it to some, its own to others.
+        let is_rack = self.category.is_some_and(|row| row.name == "hanger");
+        // Nobody says a yellow glass table of a clear one with a golden frame.
+        if is_rack || self.is_mostly_clear && !is_window {
+            return &[];
+        }
         match self.colors[..] {
             [(_, share), ..] if is_picture && share < 0.9 => &[],
             [(_, share), ..] if share >= 0.6 => &self.colors[..1],
@@ -132,7 +166,7 @@ impl ObjectFacts {
     /// already, and for things with a part that stands for them.
     pub fn material_word(&self) -> Option<&'static str> {
         let (substance, share) = self.substances.first()?;
-        if self.category.and_then(defining_substance).is_some() {
+        if self.category.and_then(defining_substance).is_some() || self.hides(substance) {
             return None;
         }
         let dull = [
@@ -321,23 +355,19 @@ fn named_surfaces(
         material.texture.is_some() || material.emission.iter().any(|light| *light > 0.0)
     };
     // Clear glass and mirrors have the colour of what lies behind or before them.
-    let is_clear = |id: MaterialId| {
-        let material = &house.materials[id];
-        material.opacity < CLEAR_OPACITY || material.substance == "mirror"
-    };
-    let area_m2 = |of: &[(MaterialId, f32)]| of.iter().map(|(_, area_m2)| area_m2).sum::<f32>();
     let own = areas.iter().copied();
     let own: Vec<_> = own
-        .filter(|(id, _)| !(screened && is_screen(*id) || is_clear(*id)))
+        .filter(|(id, _)| !(screened && is_screen(*id) || is_clear(house, *id)))
         .collect();
-    if area_m2(&own) < FRAME_SHARE * area_m2(areas) {
+    if area_m2(own.iter()) < FRAME_SHARE * area_m2(areas.iter()) {
         return Vec::new();
     }
     let Some(substance) = category.and_then(defining_substance) else {
         return own;
     };
+    let is_defining = |id: MaterialId| house.materials[id].substance == substance;
     let defining = own.iter().copied();
-    let defining = defining.filter(|(id, _)| house.materials[*id].substance == substance);
+    let defining = defining.filter(|(id, _)| is_defining(*id));
     let defining: Vec<_> = defining.collect();
     if defining.is_empty() { own } else { defining }
 }
@@ -352,6 +382,15 @@ pub(crate) fn shows_color<'a>(words: impl Iterator<Item = &'a str> + Clone, word
         return Truth::Undecided(UndecidedReason::DividedColor);
     }
     Truth::False
+}
+
+fn is_clear(house: &House, id: MaterialId) -> bool {
+    let material = &house.materials[id];
+    material.opacity < CLEAR_OPACITY || material.substance == "mirror"
+}
+
+fn area_m2<'a>(of: impl Iterator<Item = &'a (MaterialId, f32)>) -> f32 {
+    of.map(|(_, area_m2)| area_m2).sum()
 }
 
 /// The substance of the part that a thing has its colour from, where it has others, too: the leaves or flowers of a plant, not its pot; the

@@ -1,9 +1,9 @@
 //! Lines of sight from a viewer to a thing.
 
 use crate::scene::{SemanticScene, Viewer};
-use dwell_scene::bvh::{Ray, RayMask};
+use dwell_scene::bvh::{Hit, Ray, RayMask};
 use dwell_scene::rays::RayScene;
-use dwell_scene::{Aabb, ObjectId};
+use dwell_scene::{Aabb, EntityId, ObjectId};
 use glam::{Vec2, Vec3, Vec3Swizzles};
 
 /// Distance of the aims of rays from the middle of a thing's box towards its corners, a share of the way; the middle is aimed at too.
@@ -41,7 +41,7 @@ impl FieldOfView {
     }
 }
 
-/// Returns whether a straight line from the viewer meets `object` before anything else, within the `field` of view.
+/// Returns whether a straight line from the viewer meets `object` before anything that one does not see through, within the `field` of view.
 ///
 /// Nine rays are aimed at the thing's box, and in a picture 16 more at the part of it that the box covers; one that meets it first is
 /// enough. `rays` must be up to date with the scene's
@@ -57,17 +57,45 @@ pub fn is_in_line_of_sight(
     let bounds = scene.extent(object).bounds;
     let (center, half) = (bounds.center(), bounds.size() * (0.5 * AIM));
     let corners = Aabb::new(center - half, center + half).corners();
-    let id = scene.house().entity_of_object(object).0;
+    let id = scene.house().entity_of_object(object);
     let meets = |direction: Vec3| {
         let ray = Ray::new(eye, direction);
-        field.contains(viewer, ray.direction)
-            && rays
-                .closest(&ray, RayMask::EYE)
-                .is_some_and(|hit| hit.id == id)
+        field.contains(viewer, ray.direction) && meets_first(rays, &ray, id)
     };
     let mut aims = std::iter::once(center).chain(corners);
     aims.any(|point| meets(point - eye))
         || (field == FieldOfView::Picture && covered(viewer, &bounds).into_iter().any(meets))
+}
+
+/// Opacity below which one sees through a surface.
+const CLEAR_OPACITY: f32 = 0.6;
+/// Panes of clear glass that one sees through.
+const MAX_PANES: usize = 8;
+/// Distance behind a pane from which a ray goes on, m.
+const BEHIND_M: f32 = 1e-3;
+
+/// Returns whether one sees through a surface.
+pub(crate) fn is_clear(rays: &RayScene, hit: &Hit) -> bool {
+    let material = rays.surface(hit).material;
+    rays.house().materials[material].opacity < CLEAR_OPACITY
+}
+
+/// Returns whether a ray meets the entity `id` before anything that one does not see through.
+fn meets_first(rays: &RayScene, ray: &Ray, id: EntityId) -> bool {
+    let mut ray = *ray;
+    for _ in 0..MAX_PANES {
+        let Some(hit) = rays.closest(&ray, RayMask::EYE) else {
+            return false;
+        };
+        if hit.id == id.0 {
+            return true;
+        }
+        if !is_clear(rays, &hit) {
+            return false;
+        }
+        ray = ray.with_range(hit.distance_m + BEHIND_M, ray.far_m);
+    }
+    false
 }
 
 /// Directions over the part of a picture that a box covers, [`ACROSS`] by [`ACROSS`]; none of a box behind the viewer.

@@ -197,7 +197,7 @@ impl RoomSurfaces {
 
 /// The colour word of at least half of a surface.
 fn dominant_color_word(patches: &[ColorShare]) -> Option<&'static str> {
-    let words = color_words(patches, ColorVocabulary::Spoken);
+    let words = color_words(patches, ColorVocabulary::Surface);
     let (word, _) = words.first().filter(|(_, share)| *share >= 0.5)?;
     Some(word)
 }

@@ -40,7 +40,7 @@ pub(crate) fn has_color(semantics: &Semantics, piece: StructureId, word: &str) -
     let patches = semantics
         .material_colors()
         .patches(shares(semantics, piece));
-    let words = color_words(&patches, ColorVocabulary::Spoken);
+    let words = color_words(&patches, ColorVocabulary::Surface);
     let large = words.iter().filter(|(_, share)| *share >= LEAST_SHARE);
     shows_color(large.map(|(own, _)| *own), word)
 }

@@ -166,6 +166,8 @@ fn lies_between(own: &str, word: &str) -> bool {
         "pale blue" => ["blue", "white"].contains(&word),
         "pale green" => ["green", "white"].contains(&word),
         "pale yellow" => ["yellow", "white"].contains(&word),
+        "peach" => ["beige", "orange"].contains(&word),
+        "taupe" => ["brown", "gray"].contains(&word),
         "gray-beige" => ["gray", "beige"].contains(&word),
         _ => false,
     }
@@ -174,7 +176,7 @@ fn lies_between(own: &str, word: &str) -> bool {
 /// The colour word of nine tenths of the pixels of a material, where it has one.
 fn only_color(house: &House, material: MaterialId) -> Option<&'static str> {
     let material = &house.materials[material];
-    let word = |linear: [f32; 3]| ColorVocabulary::Spoken.word(linear);
+    let word = |linear: [f32; 3]| ColorVocabulary::Surface.word(linear);
     let Some(texture) = material.texture else {
         return Some(word(material.base_color));
     };

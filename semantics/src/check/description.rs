@@ -80,9 +80,14 @@ impl Checker<'_> {
         else {
             return;
         };
-        let is_visible = |term: &Term| {
-            let truth = visible.holds(self.scene, &[*term], Some(viewer));
-            truth.is_true()
+        let eye = viewer.world_from_camera.position;
+        let is_visible = |term: &Term| match term {
+            // "The bedroom" is the one that the listener is in.
+            Term::Room(room) => self.scene.house().room_at(eye) == Some(*room),
+            term => {
+                let truth = visible.holds(self.scene, &[*term], Some(viewer));
+                truth.is_true()
+            }
         };
         let fits: Vec<Term> = found.fits.iter().copied().filter(is_visible).collect();
         if several && !fits.is_empty() {

@@ -189,6 +189,56 @@ pub(super) fn spoken_word(linear: [f32; 3]) -> &'static str {
         .map_or(first, |(word, _)| word)
 }
 
+/// Distance in CIELAB over which the names of walls and floors count: the standard deviation of a Gaussian.
+const SURFACE_REACH: f32 = 2.5;
+/// Number of names near a colour from which walls and floors are named by them.
+const LEAST_NAMES: f32 = 0.5;
+
+/// Names that readers gave to walls and floors: the colour in CIELAB, the word, and how often.
+fn surface_names() -> &'static [(Vec3, &'static str, f32)] {
+    static NAMES: OnceLock<Vec<(Vec3, &'static str, f32)>> = OnceLock::new();
+    let parse = || -> Result<Vec<(Vec3, &'static str, f32)>, SemanticsError> {
+        let text = include_str!("../../../assets/colors/naming_surfaces.csv");
+        let table = CsvTable::parse("colors/naming_surfaces.csv", text)?;
+        let words = spoken_words();
+        let rows = table.rows().map(|row| {
+            let lab = Vec3::new(row.number("l")?, row.number("a")?, row.number("b")?);
+            let word = row.text("word")?;
+            let word = words.iter().find(|known| **known == word);
+            let word = word.ok_or_else(|| row.fault("no word that is spoken".to_owned()))?;
+            Ok((lab, *word, row.number("count")?))
+        });
+        rows.collect()
+    };
+    NAMES.get_or_init(|| parse().expect("the tables are checked by this crate's tests"))
+}
+
+/// The word that a speaker gives to the colour of a wall or a floor: a tint that nobody names on a vase shows on a wall. By the names of walls and
+/// floors nearby, else as of things.
+pub(super) fn surface_word(linear: [f32; 3]) -> &'static str {
+    let lab = cielab_from_linear(linear);
+    let mut sums: Vec<(&'static str, f32)> = Vec::new();
+    for (at, word, count) in surface_names() {
+        let distance = lab.distance_squared(*at) / (SURFACE_REACH * SURFACE_REACH);
+        if distance > 9.0 {
+            continue;
+        }
+        let weight = math::exp(-0.5 * distance) * count;
+        match sums.iter_mut().find(|(known, _)| known == word) {
+            Some((_, sum)) => *sum += weight,
+            None => sums.push((word, weight)),
+        }
+    }
+    let whole: f32 = sums.iter().map(|(_, sum)| sum).sum();
+    let most = sums
+        .into_iter()
+        .max_by(|p, q| p.1.total_cmp(&q.1).then(q.0.cmp(p.0)));
+    match most {
+        Some((word, _)) if whole >= LEAST_NAMES => word,
+        _ => spoken_word(linear),
+    }
+}
+
 /// All words that speakers use: the basic ones, then those between two.
 pub(super) fn spoken_words() -> Vec<&'static str> {
     let between = BETWEEN.iter().map(|(word, _)| *word);

@@ -230,7 +230,7 @@ pub fn color_words(
         }
     }
     words.sort_by(|p, q| q.1.total_cmp(&p.1).then(p.0.cmp(q.0)));
-    if vocabulary == ColorVocabulary::Spoken {
+    if [ColorVocabulary::Spoken, ColorVocabulary::Surface].contains(&vocabulary) {
         merge_divided(&mut words);
     }
     let mentioned = words

@@ -18,6 +18,8 @@ pub enum ColorVocabulary {
     /// made of.
     #[default]
     Spoken,
+    /// The spoken words, as they are used of walls and floors: tints that nobody names on a vase show on a wall.
+    Surface,
     /// The 16 colours of HTML 4.
     Basic,
     /// The 148 named colours of CSS.
@@ -71,9 +73,10 @@ impl ColorVocabulary {
     }
 
     /// All lists, from the shortest.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Plain,
         Self::Spoken,
+        Self::Surface,
         Self::Basic,
         Self::Web,
         Self::Xkcd,
@@ -81,12 +84,13 @@ impl ColorVocabulary {
 
     /// The named colours; none for plain and spoken words, which name regions.
     fn entries(self) -> &'static [NamedColor] {
-        static TABLES: OnceLock<[Vec<NamedColor>; 5]> = OnceLock::new();
+        static TABLES: OnceLock<[Vec<NamedColor>; 6]> = OnceLock::new();
         let tables = TABLES.get_or_init(|| {
             let read = |file, text| {
                 parse(file, text).expect("the colour tables are checked by this crate's tests")
             };
             [
+                Vec::new(),
                 Vec::new(),
                 Vec::new(),
                 read(
@@ -110,7 +114,7 @@ impl ColorVocabulary {
     pub fn words(self) -> Vec<&'static str> {
         match self {
             Self::Plain => naming::WORDS.to_vec(),
-            Self::Spoken => naming::spoken_words(),
+            Self::Spoken | Self::Surface => naming::spoken_words(),
             _ => self.entries().iter().map(|entry| entry.name).collect(),
         }
     }
@@ -131,6 +135,7 @@ impl ColorVocabulary {
         match self {
             Self::Plain => return naming::basic_word(linear),
             Self::Spoken => return naming::spoken_word(linear),
+            Self::Surface => return naming::surface_word(linear),
             _ => {}
         }
         let color = Oklab::from_linear(linear);
@@ -173,7 +178,10 @@ mod tests {
 
     #[test]
     fn the_lists_have_the_published_lengths() {
-        for (list, length) in ColorVocabulary::ALL.into_iter().zip([12, 41, 16, 148, 949]) {
+        for (list, length) in ColorVocabulary::ALL
+            .into_iter()
+            .zip([12, 41, 41, 16, 148, 949])
+        {
             let unique: BTreeSet<_> = list.words().into_iter().collect();
             assert_eq!((list.words().len(), unique.len()), (length, length));
         }

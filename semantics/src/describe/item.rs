@@ -4,6 +4,7 @@ use crate::color::Pattern;
 use crate::form::{Description, Noun, Quantifier};
 use crate::predicates;
 use crate::scene::{SemanticScene, Term};
+use crate::size::SizeClass;
 use dwell_scene::ObjectId;
 use std::collections::BTreeMap;
 
@@ -38,7 +39,10 @@ pub(super) fn appearance(scene: &SemanticScene<'_>, object: ObjectId) -> Descrip
     let facts = scene.facts(object);
     let colors = facts.spoken_colors().iter();
     Description {
-        size: facts.size.word().map(|_| facts.size),
+        // A usual size is an estimate: "tiny" and "huge" are told of nothing unasked.
+        size: [SizeClass::Small, SizeClass::Large]
+            .contains(&facts.size)
+            .then_some(facts.size),
         state: joint_state(scene, object)
             .or_else(|| facts.pattern.map(Pattern::name))
             .map(str::to_owned),

@@ -1,6 +1,5 @@
 //! The description of a view.
 
-use super::hanging::MountedObject;
 use super::item::{grouped, items};
 use super::length::TextLength;
 use super::text::{GroundedText, TextWriter};
@@ -31,11 +30,10 @@ const MAX_OVERLAP: f32 = 0.1;
 /// The sides of a viewer.
 const SIDES: [&str; 3] = ["straight_ahead", "on_left", "on_right"];
 /// Relations between two things in view, the most telling first.
-const RELATIONS: [&str; 8] = [
+const RELATIONS: [&str; 7] = [
     "above",
     "under",
     "next_to",
-    "opposite",
     "in_front_of",
     "behind",
     "left_of",
@@ -112,7 +110,9 @@ impl ViewTeller<'_, '_> {
         if let Some(known) = self.names.borrow().get(&object) {
             return known.clone();
         }
+        // A place in an order is a clumsy name for what the text tells of anyway.
         let name = refer_in_view(self.checker, &self.survey, object);
+        let name = name.filter(|own| own.selection.is_none());
         self.names.borrow_mut().insert(object, name.clone());
         name
     }
@@ -209,6 +209,25 @@ impl ViewTeller<'_, '_> {
         })
     }
 
+    /// "The bedroom" that the listener is in.
+    fn own_room(&self, room: RoomId) -> Phrase {
+        let noun = Noun::Room(self.scene().semantics.room(room).noun.clone());
+        let plain = Description::new(Quantifier::The, noun);
+        match self.checker.denotes(&plain) {
+            Some(Term::Room(found)) if found == room => plain.into(),
+            _ => room_phrase(self.scene(), room),
+        }
+    }
+
+    /// "The kitchen", or of several kitchens "a kitchen": nobody sees its number in the house's list.
+    fn other_room(&self, room: RoomId) -> Phrase {
+        let facts = self.scene().semantics.room(room);
+        match facts.number {
+            None => room_phrase(self.scene(), room),
+            Some(_) => Description::new(Quantifier::Some, Noun::Room(facts.noun.clone())).into(),
+        }
+    }
+
     fn say_surfaces(&mut self) {
         let Some(room) = self.room else {
             return;
@@ -225,7 +244,7 @@ impl ViewTeller<'_, '_> {
         let mut surfaces = super::room::surfaces(scene, room);
         surfaces.retain(|surface| seen.contains(&surface.kind));
         if !surfaces.is_empty() {
-            let room = room_phrase(scene, room);
+            let room = self.own_room(room);
             self.writer
                 .say(Form::Claim(Clause::HasSurfaces { room, surfaces }));
         }
@@ -259,19 +278,16 @@ impl ViewTeller<'_, '_> {
             let (own, other) = (self.scene().extent(object), self.scene().extent(other));
             own.bounds.grown(MAX_BESIDE_M).intersects(&other.bounds)
         };
-        // "The first chair is next to the second chair" tells nobody where they are.
-        let near: Vec<&(ObjectId, Description)> = before
-            .iter()
-            .filter(|(other, own)| near(*other) && own.selection.is_none())
-            .collect();
+        let near: Vec<&(ObjectId, Description)> =
+            before.iter().filter(|(other, _)| near(*other)).collect();
         for name in RELATIONS {
             let held = |other: ObjectId| {
                 let [own, mark] = [object, other].map(|id| self.scene().extent(id).bounds);
                 let level = own.min.y < mark.max.y && mark.min.y < own.max.y;
-                let hangs = |id| MountedObject::of(self.scene(), id).is_some();
                 let fits = match name {
-                    "above" | "under" => true,
-                    "opposite" => level && !hangs(object) && !hangs(other),
+                    "above" => true,
+                    // A chair at a table is not under it.
+                    "under" => own.max.y < mark.max.y,
                     // A lamp on the ceiling is not to the left of a chair.
                     _ => level,
                 };
@@ -336,8 +352,10 @@ impl ViewTeller<'_, '_> {
         }
         for (room, objects) in &contents.elsewhere {
             let items = self.items(objects, |other| self.scene().room_of(other) == Some(*room));
-            let room = room_phrase(self.checker.scene(), *room);
-            let place = [Modifier::new("in_room", [room]), seen.clone()];
+            let place = [
+                Modifier::new("in_room", [self.other_room(*room)]),
+                seen.clone(),
+            ];
             self.writer.there_are(&items, &place);
         }
     }

@@ -18,12 +18,12 @@ impl Predicate for OnLeft {
     }
 
     fn definition(&self) -> &'static str {
-        "Its middle lies more than 12 degrees to the left of \
+        "Its middle lies more than 18.4 degrees to the left of \
          where the viewer looks, seen from above."
     }
 
     fn source(&self) -> &'static str {
-        "Chosen here."
+        "The middle and the outer thirds of a picture of 90 degrees."
     }
 
     fn properties(&self) -> RelationProperties {

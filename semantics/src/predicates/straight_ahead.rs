@@ -18,12 +18,12 @@ impl Predicate for StraightAhead {
     }
 
     fn definition(&self) -> &'static str {
-        "Its middle lies at most 12 degrees to either side of \
+        "Its middle lies at most 18.4 degrees to either side of \
          where the viewer looks, seen from above."
     }
 
     fn source(&self) -> &'static str {
-        "Chosen here."
+        "The middle and the outer thirds of a picture of 90 degrees."
     }
 
     fn properties(&self) -> RelationProperties {

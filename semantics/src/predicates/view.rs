@@ -11,8 +11,8 @@ const LEAST_DEPTH_M: f32 = 0.05;
 /// The largest tangent that is still in front: 75 degrees to the side.
 const WIDEST_TANGENT: f32 = 3.73;
 
-/// Half the width of "straight ahead", rad: 12 degrees.
-pub(super) const AHEAD_RAD: f32 = 0.21;
+/// Half the width of "straight ahead", rad: the middle third of a picture of 90 degrees, atan(1/3) = 18.4 degrees.
+pub(super) const AHEAD_RAD: f32 = 0.321_750_55;
 
 /// The direction of a thing's middle, rad to the left of where the viewer looks, seen from above.
 pub(super) fn azimuth_rad(scene: &SemanticScene<'_>, viewer: &Viewer, term: Term) -> Option<f32> {

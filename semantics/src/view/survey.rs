@@ -1,5 +1,6 @@
 //! What a viewer sees of each thing: shares of the picture, what is hidden, where it falls and how far it is.
 
+use crate::line_of_sight::is_clear;
 use crate::scene::{SemanticScene, Viewer};
 use dwell_scene::bvh::{Hit, Ray, RayMask};
 use dwell_scene::interrupt::PollEvery;
@@ -30,7 +31,7 @@ pub struct Sighting {
 /// What a viewer sees: a picture of 90 degrees in both directions, by 64 times 64 rays.
 #[derive(Clone, Debug, Default)]
 pub struct ViewSurvey {
-    /// The things that at least one ray meets first.
+    /// The things that at least one ray meets first, or through clear glass.
     pub objects: BTreeMap<ObjectId, Sighting>,
     /// The share of the picture that is each piece of the building.
     pub structure: BTreeMap<StructureId, f32>,
@@ -75,14 +76,17 @@ impl ViewSurvey {
             rays.bvh()
                 .all_hits(&Ray::new(eye, direction), RayMask::EYE, &mut hits);
             met.clear();
-            for (place, hit) in hits.iter().enumerate() {
+            let mut is_seen = true;
+            for hit in &hits {
+                let was_seen = is_seen;
+                is_seen = is_seen && is_clear(rays, hit);
                 if met.contains(&hit.id) {
                     continue;
                 }
                 met.push(hit.id);
                 let own = counts.entry(hit.id).or_default();
                 own.any += 1;
-                if place == 0 {
+                if was_seen {
                     let nearest = if own.first == 0 {
                         f32::INFINITY
                     } else {
