@@ -70,6 +70,7 @@ __all__ = [
     "world_color_names",
     "world_graph_json",
     "world_holds",
+    "world_refer",
     "world_relation_array",
     "world_relations",
     "world_select",
@@ -472,6 +473,11 @@ def language_read(text: str) -> list[dict[str, Any]]:
 
 def language_say(form: Mapping[str, Any], seed: int | None) -> str | None:
     """A form in English; ``None`` where there are no words for it."""
+
+def world_refer(
+    world: World, named: str | int, viewer: object, strategy: str, seed: int | None
+) -> list[dict[str, Any]]:
+    """The words by which a listener finds an object; none where no words do."""
 
 def world_check_text(world: World, text: str, viewer: object, agent: int | None) -> dict[str, Any]:
     """A sentence read, checked and grounded."""

@@ -79,7 +79,7 @@ class LanguageApi(RelationApi):
             >>> room = world.house.rooms()[0]
             >>> viewer = {"position": room["eye"], "yaw_deg": room["yaw_deg"]}
             >>> world.describe("view", viewer=viewer)[0].split(". ")[0]
-            'The first bedroom has a beige parquet floor and cream walls'
+            'The bedroom has a beige parquet floor and gray-beige walls'
             >>> route = world.describe("route", viewer=viewer, to="room:bathroom", length="short")
             >>> route[0].split(". ")[0]
             'Turn left, then go through the door from the first bedroom to the hallway'
@@ -103,6 +103,49 @@ class LanguageApi(RelationApi):
             since,
         )
         return texts(level, rows)
+
+    def refer(
+        self,
+        thing: Thing,
+        *,
+        viewer: Viewer | None = None,
+        strategy: Literal["shortest", "incremental", "relational"] = "shortest",
+        seed: int | None = None,
+    ) -> Text | None:
+        """The words by which a listener finds a thing and nothing else.
+
+        Args:
+            thing: Its name, or its id.
+            viewer: From where the listener looks, as for :meth:`holds`: where it sees the thing, the
+                words need to fit nothing else in sight; places from the left and to the sides of
+                other things count. Without it, or out of sight, nothing else in the house.
+            strategy: ``shortest``: properties before relations. ``incremental``: colour, material,
+                size and room as far as each rules something out (Dale and Reiter 1995).
+                ``relational``: by another thing, wherever that tells it apart.
+            seed: Draws the wording.
+
+        Returns:
+            A noun phrase; ``None`` where no words tell the thing apart. Colours on which people
+            divide tell nothing apart.
+
+        Examples:
+            >>> import dwell
+            >>> world = dwell.World("builtin:apartment", agents=0)
+            >>> for strategy in ("shortest", "incremental", "relational"):
+            ...     print(world.refer("vase_1", strategy=strategy))
+            the vase in the children's room
+            the blue-gray vase
+            the blue-gray vase in a bookshelf
+        """
+        seed = None if seed is None else integer_in_range("seed", seed)
+        rows = _native.world_refer(
+            self._native,
+            thing_argument("thing", thing),
+            viewer_argument(viewer),
+            checked_text("strategy", strategy),
+            seed,
+        )
+        return Text(**rows[0]) if rows else None
 
     def check(
         self, sentence: str, *, viewer: Viewer | None = None, agent: int | None = None

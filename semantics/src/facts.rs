@@ -128,7 +128,13 @@ impl ObjectFacts {
             "glass" => classes(&["window", "mirror"]),
             "upholstered" => !classes(&["sofa", "chair", "bed", "ottoman", "armchair"]),
             "chrome" => self.colors.first().is_some_and(|(word, _)| !is_gray(word)),
-            "steel" => classes(&["whiteboard"]),
+            // Painted.
+            "steel" => {
+                let plain =
+                    |word: &str| is_gray(word) || ["black", "white", "cream"].contains(&word);
+                classes(&["whiteboard"])
+                    || self.colors.first().is_some_and(|(word, _)| !plain(word))
+            }
             _ => false,
         }
     }
@@ -144,17 +150,20 @@ impl ObjectFacts {
     /// The colours a speaker would use: the one of most of the surface, else the two largest; none without a surface,
     /// when no two cover most of it, and for pictures that are not nearly all of one.
     pub fn spoken_colors(&self) -> &[(&'static str, f32)] {
-        // "A white picture" leaves open whether paper, mat or frame is meant.
-        let is_picture = self.category.is_some_and(|row| row.nyu40_name == "picture");
-        let is_window = self.category.is_some_and(|row| row.nyu40_name == "window");
-        // A coat rack has the colours of what hangs on it to some, its own to others.
-        let is_rack = self.category.is_some_and(|row| row.name == "hanger");
-        // Nobody says a yellow glass table of a clear one with a golden frame.
-        if is_rack || self.is_mostly_clear && !is_window {
+        let classes = |names: &[&str]| {
+            self.category
+                .is_some_and(|row| names.contains(&row.nyu40_name) || names.contains(&row.name))
+        };
+        // "A white picture" leaves open whether paper, mat or frame is meant; racks have the colours of what hangs on them to some,
+        // their own to others; nobody says a yellow glass table of a clear one with a golden frame.
+        if classes(&["hanger", "towel_rack"]) || self.is_mostly_clear && !classes(&["window"]) {
             return &[];
         }
+        let is_picture = classes(&["picture"]);
+        let is_paper = |word: &str| ["white", "cream", "light gray"].contains(&word);
         match self.colors[..] {
-            [(_, share), ..] if is_picture && share < 0.9 => &[],
+            [(word, share), ..] if is_picture && (share < 0.9 || is_paper(word)) => &[],
+            [(_, p), (_, q), ..] if self.pattern.is_some() && p + q >= 0.75 => &self.colors[..2],
             [(_, share), ..] if share >= 0.6 => &self.colors[..1],
             [(_, p), (_, q), ..] if p + q >= 0.75 => &self.colors[..2],
             [(_, share)] if share >= 0.5 => &self.colors[..1],

@@ -121,6 +121,12 @@ impl<'a> Checker<'a> {
         }
     }
 
+    /// The number of things that a description fits or may fit.
+    pub(crate) fn possible(&self, description: &Description) -> usize {
+        let extension = self.extension(description);
+        extension.fits.len() + extension.undecided.len()
+    }
+
     /// The listener.
     pub fn listener(&self) -> &Listener {
         &self.listener

@@ -37,7 +37,10 @@ fn holds(scene: &SemanticScene<'_>, name: &str, object: ObjectId) -> bool {
 /// A description of a thing by its noun, size, openness, colours and main substance.
 pub(super) fn appearance(scene: &SemanticScene<'_>, object: ObjectId) -> Description {
     let facts = scene.facts(object);
+    // No white whiteboard.
+    let is_said = |word: &str| facts.noun.contains(word);
     let colors = facts.spoken_colors().iter();
+    let colors = colors.filter(|(word, _)| !is_said(word));
     Description {
         // A usual size is an estimate: "tiny" and "huge" are told of nothing unasked.
         size: [SizeClass::Small, SizeClass::Large]

@@ -22,6 +22,8 @@ const LEAST_UNHIDDEN: f32 = 0.25;
 const LEAST_SURFACE: f32 = 0.03;
 /// Share of the picture from which a thing is told with its place among others.
 const LEAST_ANCHOR: f32 = 0.01;
+/// Distance before a window or door at which its room is looked up, m.
+const BEFORE_M: f32 = 0.4;
 /// Distance up to which things are told by their place to each other, m.
 const MAX_BESIDE_M: f32 = 1.5;
 /// Tangent up to which a thing on one side may reach over to the other: 6 degrees.
@@ -110,9 +112,11 @@ impl ViewTeller<'_, '_> {
         if let Some(known) = self.names.borrow().get(&object) {
             return known.clone();
         }
-        // A place in an order is a clumsy name for what the text tells of anyway.
+        // A place in an order, or beside something small, is a clumsy name for what the text tells of anyway.
         let name = refer_in_view(self.checker, &self.survey, object);
-        let name = name.filter(|own| own.selection.is_none());
+        let is_carried = |own: &Modifier| ["in", "on"].contains(&own.predicate.as_str());
+        let name =
+            name.filter(|own| own.selection.is_none() && own.modifiers.iter().all(is_carried));
         self.names.borrow_mut().insert(object, name.clone());
         name
     }
@@ -136,6 +140,18 @@ impl ViewTeller<'_, '_> {
         clear.then_some(side)
     }
 
+    /// The room in which a thing is seen: of a window or door the one on the viewer's side of it.
+    fn room_seen(&self, object: ObjectId) -> Option<RoomId> {
+        if !self.scene().facts(object).is_opening() {
+            return self.scene().room_of(object);
+        }
+        let middle = self.scene().extent(object).bounds.center();
+        let towards = self.viewer.world_from_camera.position - middle;
+        let before = middle + towards.normalize_or_zero() * BEFORE_M;
+        let room = self.scene().house().room_at(before);
+        room.or_else(|| self.scene().room_of(object))
+    }
+
     /// What a thing lies in or on, if that is told, too, and has a name of its own.
     fn carrier(&self, object: ObjectId) -> Option<(ObjectId, &'static str)> {
         ["in", "on"].into_iter().find_map(|name| {
@@ -154,7 +170,7 @@ impl ViewTeller<'_, '_> {
         let mut carried: BTreeMap<(ObjectId, &'static str), Vec<ObjectId>> = BTreeMap::new();
         let mut elsewhere: BTreeMap<RoomId, Vec<ObjectId>> = BTreeMap::new();
         for object in self.told.iter().copied() {
-            let own = self.scene().room_of(object);
+            let own = self.room_seen(object);
             let is_elsewhere = |own: &RoomId| {
                 self.room.is_some_and(|room| room != *own)
                     && !self.scene().facts(object).is_opening()
@@ -284,8 +300,10 @@ impl ViewTeller<'_, '_> {
             let held = |other: ObjectId| {
                 let [own, mark] = [object, other].map(|id| self.scene().extent(id).bounds);
                 let level = own.min.y < mark.max.y && mark.min.y < own.max.y;
+                let is_opening = self.scene().facts(other).is_opening();
                 let fits = match name {
                     "above" => true,
+                    "in_front_of" | "behind" if is_opening => false,
                     // A chair at a table is not under it.
                     "under" => own.max.y < mark.max.y,
                     // A lamp on the ceiling is not to the left of a chair.

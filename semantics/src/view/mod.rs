@@ -1,8 +1,10 @@
 //! What a viewer sees, and how things are referred to for whoever sees them.
 
 mod refer;
+mod strategy;
 mod survey;
 
 pub(crate) use refer::holds_in_view;
 pub use refer::refer_in_view;
+pub use strategy::{ReferStrategy, refer_to};
 pub use survey::{Sighting, ViewSurvey};
