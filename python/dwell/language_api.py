@@ -116,9 +116,9 @@ class LanguageApi(RelationApi):
 
         Args:
             thing: Its name, or its id.
-            viewer: From where the listener looks, as for :meth:`holds`: where it sees the thing, the
-                words need to fit nothing else in sight; places from the left and to the sides of
-                other things count. Without it, or out of sight, nothing else in the house.
+            viewer: From where the listener looks, as for :meth:`holds`: where it sees the thing,
+                the words need to fit nothing else in sight; places from the left and to the sides
+                of other things count. Without it, or out of sight, nothing else in the house.
             strategy: ``shortest``: properties before relations. ``incremental``: colour, material,
                 size and room as far as each rules something out (Dale and Reiter 1995).
                 ``relational``: by another thing, wherever that tells it apart.

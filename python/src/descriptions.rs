@@ -3,22 +3,19 @@
 use crate::answers::PyValue;
 use crate::errors::PyFault;
 use crate::values::JsonArgument;
-use crate::world::PyWorld;
 use crate::world_access::WorldAccess;
 use dwell_scene::House;
 use dwell_scene::random::RandomKey;
 use dwell_semantics::check::{GroundedPhrase, Listener};
 use dwell_semantics::describe::{
-    GroundedText, TextLength, captions, describe_changes, describe_house, describe_reference,
-    describe_rooms, describe_route, describe_view,
+    GroundedText, TextLength, captions, describe_changes, describe_house, describe_rooms,
+    describe_route, describe_view,
 };
 use dwell_semantics::graph::scene_graph;
 use dwell_semantics::instruct::{
     Instruction, InstructionGoal, InstructionKind, candidates, choose,
 };
-use dwell_semantics::view::ReferStrategy;
 use dwell_semantics::{SemanticScene, Term};
-use pyo3::prelude::*;
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -74,7 +71,7 @@ fn spans(house: &House, text: &str, phrases: &[GroundedPhrase]) -> Value {
     spans.collect()
 }
 
-fn text_row(house: &House, text: &GroundedText) -> Result<Value, PyFault> {
+pub(crate) fn text_row(house: &House, text: &GroundedText) -> Result<Value, PyFault> {
     let mut claims = Vec::with_capacity(text.claims.len());
     let mut all: Vec<Term> = Vec::new();
     for claim in &text.claims {
@@ -243,31 +240,4 @@ impl WorldAccess<'_> {
         };
         describe_level(&self.scene(), &request)
     }
-}
-
-/// The words by which a listener finds an object, a text of one row; none where no words do.
-#[pyfunction]
-pub(crate) fn world_refer(
-    py: Python<'_>,
-    world: &Bound<'_, PyWorld>,
-    named: JsonArgument,
-    viewer: JsonArgument,
-    strategy: &str,
-    seed: Option<u64>,
-) -> PyResult<PyValue> {
-    world.get().read_interruptible(py, |running| {
-        let strategy = ReferStrategy::find(strategy).ok_or_else(|| {
-            let allowed = ReferStrategy::ALL.map(ReferStrategy::name).join(", ");
-            PyFault::Config(format!("strategy is {strategy:?}; allowed are {allowed}"))
-        })?;
-        let object = running.object(&named.read()?)?;
-        let listener = running.listener(viewer, None)?;
-        let scene = running.scene();
-        let house = scene.house();
-        let wording = seed.map(|seed| RandomKey::root(seed).child(house.name.as_str()));
-        let text = describe_reference(&scene, listener, object, strategy, wording);
-        let rows: Result<Vec<Value>, PyFault> =
-            text.iter().map(|text| text_row(house, text)).collect();
-        PyValue::of(&rows?)
-    })
 }

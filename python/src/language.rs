@@ -1,7 +1,7 @@
 //! Forms and sentences for Python.
 
 use crate::answers;
-use crate::descriptions::char_offset;
+use crate::descriptions::{char_offset, text_row};
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use crate::values::JsonArgument;
@@ -11,8 +11,10 @@ use dwell_scene::AgentId;
 use dwell_scene::Id;
 use dwell_scene::random::RandomKey;
 use dwell_semantics::check::{Answer, CheckResult, Checker, Listener};
+use dwell_semantics::describe::describe_reference;
 use dwell_semantics::form::Form;
 use dwell_semantics::language::Language;
+use dwell_semantics::view::ReferStrategy;
 use dwell_semantics::{Term, Truth, UndecidedReason};
 use pyo3::prelude::*;
 use serde_json::{Value, json};
@@ -146,5 +148,32 @@ pub(crate) fn world_check_text(
             "ambiguities": ambiguities.collect::<Vec<Value>>(),
             "answer": checked.answer.map(|answer| running.answer(&answer)),
         }))
+    })
+}
+
+/// The words by which a listener finds an object, a text of one row; none where no words do.
+#[pyfunction]
+pub(crate) fn world_refer(
+    py: Python<'_>,
+    world: &Bound<'_, PyWorld>,
+    named: JsonArgument,
+    viewer: JsonArgument,
+    strategy: &str,
+    seed: Option<u64>,
+) -> PyResult<answers::PyValue> {
+    world.get().read_interruptible(py, |running| {
+        let strategy = ReferStrategy::find(strategy).ok_or_else(|| {
+            let allowed = ReferStrategy::ALL.map(ReferStrategy::name).join(", ");
+            PyFault::Config(format!("strategy is {strategy:?}; allowed are {allowed}"))
+        })?;
+        let object = running.object(&named.read()?)?;
+        let listener = running.listener(viewer, None)?;
+        let scene = running.scene();
+        let house = scene.house();
+        let wording = seed.map(|seed| RandomKey::root(seed).child(house.name.as_str()));
+        let text = describe_reference(&scene, listener, object, strategy, wording);
+        let rows: Result<Vec<Value>, PyFault> =
+            text.iter().map(|text| text_row(house, text)).collect();
+        answers::PyValue::of(&rows?)
     })
 }

@@ -77,7 +77,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(prepared_env::prepared_envs, module)?)?;
     module.add_function(wrap_pyfunction!(language::language_read, module)?)?;
     module.add_function(wrap_pyfunction!(language::language_say, module)?)?;
-    module.add_function(wrap_pyfunction!(descriptions::world_refer, module)?)?;
+    module.add_function(wrap_pyfunction!(language::world_refer, module)?)?;
     module.add_function(wrap_pyfunction!(language::world_check_text, module)?)?;
     module.add_function(wrap_pyfunction!(relations::predicates_json, module)?)?;
     module.add_function(wrap_pyfunction!(relations::world_holds, module)?)?;
