@@ -127,6 +127,8 @@ impl ObjectFacts {
         match substance.adjective.as_str() {
             "glass" => classes(&["window", "mirror"]),
             "upholstered" => !classes(&["sofa", "chair", "bed", "ottoman", "armchair"]),
+            // A wicker front makes no wicker wardrobe.
+            "wicker" => !classes(&["chair", "sofa", "box", "bag", "basket", "ottoman"]),
             "chrome" => self.colors.first().is_some_and(|(word, _)| !is_gray(word)),
             // Painted.
             "steel" => {

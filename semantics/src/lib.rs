@@ -25,6 +25,7 @@ mod open_passages;
 pub mod predicates;
 mod reachable_area;
 pub mod refer;
+mod room_contents;
 pub mod room_kind;
 mod room_outline;
 mod rooms;

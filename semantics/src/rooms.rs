@@ -4,6 +4,7 @@ use crate::color::{ColorShare, ColorVocabulary, MaterialColors, color_words};
 use crate::english;
 use crate::form::Noun;
 use crate::open_passages::passages;
+use crate::room_contents::RoomContents;
 use crate::room_kind::{RoomCategory, preposition, room_kinds};
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::material::library;
@@ -55,6 +56,7 @@ impl RoomProperties {
         rays: &RayScene,
         paints: &MaterialColors,
         doors: &[Aabb],
+        contents: &RoomContents,
     ) -> IdVec<RoomId, Self> {
         let house = rays.house();
         let surfaces = RoomSurfaces::gather(rays, paints);
@@ -62,7 +64,7 @@ impl RoomProperties {
         let mut rooms: IdVec<RoomId, Self> = house
             .rooms
             .ids()
-            .map(|id| Self::of(house, &surfaces, id))
+            .map(|id| Self::of(house, &surfaces, contents, id))
             .collect();
         for (room, open) in rooms.iter_mut().zip(passages.iter()) {
             room.passages.clone_from(open);
@@ -86,13 +88,15 @@ impl RoomProperties {
         rooms
     }
 
-    fn of(house: &House, surfaces: &RoomSurfaces, id: RoomId) -> Self {
+    fn of(house: &House, surfaces: &RoomSurfaces, contents: &RoomContents, id: RoomId) -> Self {
         let room = &house.rooms[id];
-        let kinds: Vec<Option<&RoomCategory>> = room
-            .kinds
-            .iter()
-            .map(|kind| room_kinds().get(kind))
-            .collect();
+        let labels = room.kinds.iter();
+        let mut kinds: Vec<Option<&RoomCategory>> =
+            labels.map(|kind| room_kinds().get(kind)).collect();
+        // It may still be called by its label.
+        if let Some(kind) = contents.kind(id, kinds.first().copied().flatten()) {
+            kinds.insert(0, Some(kind));
+        }
         let kind = kinds.first().copied().flatten();
         let said = room.kinds.first().map(String::as_str);
         let said = said.filter(|kind| kind.chars().any(char::is_alphanumeric));

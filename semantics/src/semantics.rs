@@ -8,6 +8,7 @@ use crate::geometry::{Extent, Hull};
 use crate::language::Language;
 use crate::noun_index::NounIndex;
 use crate::reachable_area::{NavGridPool, ReachableArea};
+use crate::room_contents::RoomContents;
 use crate::room_kind::preposition;
 use crate::room_outline::RoomOutline;
 use crate::rooms::RoomProperties;
@@ -75,11 +76,12 @@ impl Semantics {
             .map(|(id, _)| (id, RoomDoorway::gather(&rays, &state, id, bounds[id])))
             .collect();
         let doors: Vec<Aabb> = doorways.keys().map(|id| bounds[*id]).collect();
+        let contents = RoomContents::gather(house, &bounds, &facts);
         Self {
             structure_boxes: BoxTree::new(structure.iter().map(|(bounds, _)| *bounds).collect()),
             structure,
             kinds: NounIndex::gather(&facts),
-            rooms: RoomProperties::gather(&rays, &paints, &doors),
+            rooms: RoomProperties::gather(&rays, &paints, &doors, &contents),
             outlines: house.rooms.iter().map(RoomOutline::gather).collect(),
             walkers: NavGridPool::default(),
             doorways,

@@ -249,7 +249,7 @@ fn the_house_is_described_and_its_things_can_be_asked_for() {
     println!("{text}");
     assert!(
         text.starts_with(
-            "There are four rooms and 43 things. There is a bedroom and a storage room.\n"
+            "There are four rooms and 43 things. There is a bathroom, a bedroom and a dining room.\n"
         ),
         "{text}"
     );

@@ -96,6 +96,8 @@ class Glimpse:
     hidden: float
     #: It reaches past the picture, or the camera is too near.
     cut: bool
+    #: Something with a pane of glass is in the picture: ids end at it, people see through it.
+    glazed: bool = False
 
     @property
     def pixels(self) -> int:
@@ -125,6 +127,7 @@ class Scene:
         self.low: Floats = lowest.min(axis=0) - 0.6
         self.high: Floats = highest.max(axis=0) + 0.6
         self._floors: dict[float, Floor] = {}
+        self._glass: list[int] | None = None
 
     def aim(self, name: str) -> tuple[Floats, Floats]:
         """The box at which cameras are aimed for a thing, a little larger than it."""
@@ -214,7 +217,19 @@ class Scene:
         row = listed[listed[:, 0] == self.rows[name]["id"]]
         hidden = float(row[0, 2]) if len(row) else 1.0
         border = np.concatenate((mine[0], mine[-1], mine[:, 0], mine[:, -1]))
-        return Glimpse(rays, points, hidden, bool(border.any()))
+        glazed = bool(np.isin(ids, self.glass()).any())
+        return Glimpse(rays, points, hidden, bool(border.any()), glazed)
+
+    def glass(self) -> list[int]:
+        """The ids of all that has glass on it."""
+        if self._glass is None:
+            has = ((row, self.world.attributes(name)) for name, row in self.rows.items())
+            self._glass = [
+                row["id"]
+                for row, attributes in has
+                if any(substance == "glass" for substance, _ in attributes["substances"])
+            ]
+        return self._glass
 
     def floor(self, height: float) -> Floor:
         """The floor of a storey."""

@@ -73,21 +73,23 @@ def before_by_masks(scene: Scene, viewer: Viewer, a: str, b: str) -> Answer:
 
 
 def seen(scene: Scene, eye: Floats, name: str, look: View | None) -> Answer:
-    """Pixels that show a thing, all around or at most 45 degrees from where somebody looks.
+    """Pixels that show a thing, all around or in a square picture of 90 degrees from somewhere.
 
-    Seen if a third of it is, and 12 pixels; unseen if no pixel shows it. Between these a sight
-    of some of it may or may not be among the nine rays of the definition.
+    Seen if a third of it is, and 12 pixels; unseen if no pixel shows it and no glass is about.
+    Between these a sight of some of it may or may not be among the rays of the definition.
     """
     glimpse = scene.glimpse(eye, name)
     if glimpse.cut and glimpse.pixels == 0:
         return "grey"
     count = glimpse.pixels
     if look is not None and count:
-        apart = np.rad2deg(np.arccos(np.clip(glimpse.directions @ frame(*look)[2], -1, 1)))
-        count = int((apart < 45).sum())
+        right, up, ahead = (glimpse.directions @ axis for axis in frame(*look))
+        # How far beyond the edge of the picture, as a share of half its width; behind it far.
+        beyond = np.where(ahead > 0.01, np.maximum(abs(right), abs(up)) / ahead.clip(0.01), 100.0)
+        count = int((beyond < 1).sum())
         if count == 0:
-            return "no" if apart.min() > 45.5 else "grey"
+            return "no" if beyond.min() > 1.02 and not glimpse.glazed else "grey"
     if count == 0:
-        return "no"
+        return "grey" if glimpse.glazed else "no"
     share = (1 - glimpse.hidden) * count / glimpse.pixels
     return "yes" if share >= 1 / 3 and count >= 12 else "grey"

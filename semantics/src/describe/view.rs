@@ -22,8 +22,8 @@ const LEAST_UNHIDDEN: f32 = 0.25;
 const LEAST_SURFACE: f32 = 0.03;
 /// Share of the picture from which a thing is told with its place among others.
 const LEAST_ANCHOR: f32 = 0.01;
-/// Distance before a window or door at which its room is looked up, m.
-const BEFORE_M: f32 = 0.4;
+/// Distances before a window or door at which its room is looked up, m: along a wall the first may lie within it.
+const BEFORE_M: [f32; 3] = [0.4, 0.8, 1.6];
 /// Distance up to which things are told by their place to each other, m.
 const MAX_BESIDE_M: f32 = 1.5;
 /// Tangent up to which a thing on one side may reach over to the other: 6 degrees.
@@ -31,16 +31,8 @@ const MAX_OVERLAP: f32 = 0.1;
 
 /// The sides of a viewer.
 const SIDES: [&str; 3] = ["straight_ahead", "on_left", "on_right"];
-/// Relations between two things in view, the most telling first.
-const RELATIONS: [&str; 7] = [
-    "above",
-    "under",
-    "next_to",
-    "in_front_of",
-    "behind",
-    "left_of",
-    "right_of",
-];
+/// Relations between two things in view, the most telling first. "Behind" is left out: people take it of a sofa's back, not of the view.
+const RELATIONS: [&str; 5] = ["above", "under", "next_to", "left_of", "right_of"];
 
 /// How much is told at each length.
 struct ViewLimits {
@@ -128,6 +120,12 @@ impl ViewTeller<'_, '_> {
             .map_or(0.0, |own| own.share)
     }
 
+    /// Returns whether a thing reaches over more than half of the picture.
+    fn is_wide(&self, object: ObjectId) -> bool {
+        let seen = self.survey.objects.get(&object);
+        seen.is_some_and(|own| own.span[1] - own.span[0] > 1.0)
+    }
+
     /// The side on which a thing is told: that of its middle, if it does not reach over to another.
     fn side(&self, object: ObjectId) -> Option<&'static str> {
         let side = SIDES.into_iter().find(|side| self.holds(side, object))?;
@@ -147,8 +145,10 @@ impl ViewTeller<'_, '_> {
         }
         let middle = self.scene().extent(object).bounds.center();
         let towards = self.viewer.world_from_camera.position - middle;
-        let before = middle + towards.normalize_or_zero() * BEFORE_M;
-        let room = self.scene().house().room_at(before);
+        let towards = towards.normalize_or_zero();
+        let mut before = BEFORE_M.into_iter();
+        let room =
+            before.find_map(|reach_m| self.scene().house().room_at(middle + towards * reach_m));
         room.or_else(|| self.scene().room_of(object))
     }
 
@@ -300,10 +300,9 @@ impl ViewTeller<'_, '_> {
             let held = |other: ObjectId| {
                 let [own, mark] = [object, other].map(|id| self.scene().extent(id).bounds);
                 let level = own.min.y < mark.max.y && mark.min.y < own.max.y;
-                let is_opening = self.scene().facts(other).is_opening();
                 let fits = match name {
                     "above" => true,
-                    "in_front_of" | "behind" if is_opening => false,
+                    "left_of" | "right_of" if self.is_wide(object) => false,
                     // A chair at a table is not under it.
                     "under" => own.max.y < mark.max.y,
                     // A lamp on the ceiling is not to the left of a chair.

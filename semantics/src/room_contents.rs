@@ -1,0 +1,60 @@
+//! The kind of a room by what stands in it.
+
+use crate::facts::ObjectFacts;
+use crate::room_kind::{RoomCategory, room_kinds};
+use dwell_scene::{Aabb, House, IdVec, ObjectId, RoomId};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Kinds with the categories of things that make a room one of them: all of a list at least once. The first that fits counts.
+const KINDS: [(&str, &[&str]); 11] = [
+    ("bathroom", &["bathtub"]),
+    ("bathroom", &["shower"]),
+    ("toilet", &["toilet"]),
+    ("kitchen", &["cooker"]),
+    ("kitchen", &["refrigerator", "sink"]),
+    ("bedroom", &["double_bed"]),
+    ("bedroom", &["single_bed"]),
+    ("bedroom", &["bed"]),
+    ("living_room", &["sofa", "television"]),
+    ("dining_room", &["dining_table"]),
+    ("office", &["desk", "office_chair"]),
+];
+
+/// Labels that say nothing of what a room is used for.
+const VAGUE: [&str; 2] = ["room", "storage"];
+
+/// The categories of the things in each room, as a house starts.
+pub(crate) struct RoomContents(BTreeMap<RoomId, BTreeSet<&'static str>>);
+
+impl RoomContents {
+    pub(crate) fn gather(
+        house: &House,
+        bounds: &IdVec<ObjectId, Aabb>,
+        facts: &IdVec<ObjectId, ObjectFacts>,
+    ) -> Self {
+        let mut contents: BTreeMap<RoomId, BTreeSet<&'static str>> = BTreeMap::new();
+        for (id, own) in facts.iter_ids() {
+            let here = house.room_at(bounds[id].center());
+            if let (Some(room), Some(row)) = (here.or(house.objects[id].room), own.category) {
+                contents.entry(room).or_default().insert(row.name);
+            }
+        }
+        Self(contents)
+    }
+
+    /// The kind that the things in a room make it, where its label `kind` is none or says nothing of its use: in files of houses
+    /// bathrooms are "storage".
+    pub(crate) fn kind(
+        &self,
+        room: RoomId,
+        kind: Option<&RoomCategory>,
+    ) -> Option<&'static RoomCategory> {
+        if kind.is_some_and(|kind| !VAGUE.contains(&kind.name)) {
+            return None;
+        }
+        let own = self.0.get(&room)?;
+        let fits = |needed: &&[&str]| needed.iter().all(|name| own.contains(name));
+        let found = KINDS.iter().find(|(_, needed)| fits(needed))?;
+        room_kinds().get(found.0)
+    }
+}
