@@ -157,7 +157,7 @@ class RelationApi(StateApi):
 
         Returns:
             ``id``, ``name``, ``noun``; ``category``, its row in the table of categories, with
-            ``synset`` (a name of WordNet 3.0), ``nyu40_id`` and ``nyu40_name``; ``colors`` (plain
+            ``synset`` (a name of WordNet 3.0), ``nyu40_id`` and ``nyu40_name``; ``colors`` (spoken
             words) and ``substances`` with their shares, largest first; ``pattern``: ``striped``,
             ``checked``, ``patterned`` or ``None``; ``size`` for its kind:
             ``tiny``, ``small``, ``normal``, ``large`` or ``huge``; ``center`` and ``extents`` of

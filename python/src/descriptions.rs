@@ -139,6 +139,7 @@ fn text_length(level: &str, name: &str) -> Result<TextLength, PyFault> {
 }
 
 /// What is to be described.
+#[derive(Default)]
 pub(crate) struct DescriptionRequest<'a> {
     /// The level.
     pub(crate) level: &'a str,

@@ -11,7 +11,6 @@ use dwell_houses::ExportLoss;
 use dwell_scene::material::library;
 use dwell_scene::parallel::Threads;
 use dwell_scene::{Bands, House, Material, Pose, ShoeboxMaterials, State};
-use dwell_semantics::check::Listener;
 use glam::Vec3;
 use pyo3::prelude::*;
 use serde_json::{Value, json};
@@ -206,9 +205,7 @@ impl PyHouse {
                     level,
                     length,
                     seed: key,
-                    listener: Listener::default(),
-                    to: None,
-                    before: None,
+                    ..DescriptionRequest::default()
                 },
             )
         })

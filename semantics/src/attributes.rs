@@ -23,7 +23,7 @@ pub struct ObjectAttributes {
     pub nyu40_id: u8,
     /// Name of its NYU-40 class; empty where none is known.
     pub nyu40_name: String,
-    /// Plain colour words with their shares of what is seen of it, largest first.
+    /// Spoken colour words with their shares of what is seen of it, largest first.
     pub colors: Vec<(String, f32)>,
     /// The pattern of most of it, by its predicate's name; `None` for plain things.
     pub pattern: Option<Pattern>,

@@ -6,6 +6,7 @@ use crate::english::counted_noun;
 use crate::form::{Description, Noun};
 use crate::geometry::mapped_area_m2;
 use crate::kind_noun::{KindNoun, kind_nouns};
+use crate::line_of_sight::CLEAR_OPACITY;
 use crate::material_family::family_of;
 use crate::size::SizeClass;
 use crate::truth::{Truth, UndecidedReason};
@@ -15,8 +16,6 @@ use glam::Vec3;
 
 /// Share of the surface from which a substance gives a thing its adjective.
 const MADE_OF_SHARE: f32 = 0.5;
-/// Opacity below which a material has no colour of its own.
-const CLEAR_OPACITY: f32 = 0.6;
 /// Share of what is seen of a thing from which its frame gives it its colour, where the rest is clear.
 const FRAME_SHARE: f32 = 0.1;
 
@@ -35,7 +34,7 @@ pub struct ObjectFacts {
     /// what hangs), largest first; by share of its whole surface where nothing of it is seen. Screens, clear glass, mirrors, the pots of plants and the
     /// cabinets of sinks are left out.
     pub patches: Vec<ColorShare>,
-    /// Its colours in plain words with their shares, largest first; empty for things that are nearly all clear glass or mirror.
+    /// Its colours in spoken words with their shares, largest first; empty for things that are nearly all clear glass or mirror.
     pub colors: Vec<(&'static str, f32)>,
     /// The pattern of most of it; `None` for plain things, and for pictures, screens and books.
     pub pattern: Option<Pattern>,
@@ -117,24 +116,26 @@ impl ObjectFacts {
             .collect()
     }
 
+    /// Returns whether its category, or that of NYU-40, is one of `names`.
+    fn is_one_of(&self, names: &[&str]) -> bool {
+        self.category
+            .is_some_and(|row| names.contains(&row.nyu40_name) || names.contains(&row.name))
+    }
+
     /// Returns whether its looks do not say its main substance: chrome under paint, the cloth of a toy, the glass of a window.
     fn hides(&self, substance: &Substance) -> bool {
-        let classes = |names: &[&str]| {
-            self.category
-                .is_some_and(|row| names.contains(&row.nyu40_name) || names.contains(&row.name))
-        };
         let is_gray = |word: &str| word.contains("gray");
         match substance.adjective.as_str() {
-            "glass" => classes(&["window", "mirror"]),
-            "upholstered" => !classes(&["sofa", "chair", "bed", "ottoman", "armchair"]),
+            "glass" => self.is_one_of(&["window", "mirror"]),
+            "upholstered" => !self.is_one_of(&["sofa", "chair", "bed", "ottoman", "armchair"]),
             // A wicker front makes no wicker wardrobe.
-            "wicker" => !classes(&["chair", "sofa", "box", "bag", "basket", "ottoman"]),
+            "wicker" => !self.is_one_of(&["chair", "sofa", "box", "bag", "basket", "ottoman"]),
             "chrome" => self.colors.first().is_some_and(|(word, _)| !is_gray(word)),
             // Painted.
             "steel" => {
                 let plain =
                     |word: &str| is_gray(word) || ["black", "white", "cream"].contains(&word);
-                classes(&["whiteboard"])
+                self.is_one_of(&["whiteboard"])
                     || self.colors.first().is_some_and(|(word, _)| !plain(word))
             }
             _ => false,
@@ -149,19 +150,18 @@ impl ObjectFacts {
         shows_color(self.colors.iter().map(|(own, _)| *own), word)
     }
 
-    /// The colours a speaker would use: the one of most of the surface, else the two largest; none without a surface,
-    /// when no two cover most of it, and for pictures that are not nearly all of one.
+    /// The colours a speaker would use: the one of most of the surface, else the two largest, as of a pattern; none without a surface,
+    /// when no two cover most of it, for racks and what is mostly clear glass, and for pictures that are not nearly all of one or that one
+    /// is the paper's.
     pub fn spoken_colors(&self) -> &[(&'static str, f32)] {
-        let classes = |names: &[&str]| {
-            self.category
-                .is_some_and(|row| names.contains(&row.nyu40_name) || names.contains(&row.name))
-        };
         // "A white picture" leaves open whether paper, mat or frame is meant; racks have the colours of what hangs on them to some,
         // their own to others; nobody says a yellow glass table of a clear one with a golden frame.
-        if classes(&["hanger", "towel_rack"]) || self.is_mostly_clear && !classes(&["window"]) {
+        if self.is_one_of(&["hanger", "towel_rack"])
+            || self.is_mostly_clear && !self.is_one_of(&["window"])
+        {
             return &[];
         }
-        let is_picture = classes(&["picture"]);
+        let is_picture = self.is_one_of(&["picture"]);
         let is_paper = |word: &str| ["white", "cream", "light gray"].contains(&word);
         match self.colors[..] {
             [(word, share), ..] if is_picture && (share < 0.9 || is_paper(word)) => &[],

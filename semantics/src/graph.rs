@@ -92,7 +92,7 @@ pub struct ObjectNode {
     /// Number of its NYU-40 class; 0 where none is known.
     #[serde(default)]
     pub nyu40_id: u8,
-    /// Plain colour words, largest share first.
+    /// Spoken colour words, largest share first.
     pub colors: Vec<String>,
     /// Substances by name, largest share first.
     pub substances: Vec<String>,

@@ -26,16 +26,18 @@ pub enum FieldOfView {
 }
 
 impl FieldOfView {
+    /// Returns whether a direction, of unit length, is within the field.
     fn contains(self, viewer: &Viewer, direction: Vec3) -> bool {
-        let seen = viewer
-            .world_from_camera
-            .inverse()
-            .transform_vector(direction);
+        let camera = &viewer.world_from_camera;
         match self {
             Self::Cone(half_angle_rad) => {
-                -seen.z >= dwell_scene::math::cos(half_angle_rad) * seen.length()
+                let ahead = camera.transform_vector(Vec3::NEG_Z);
+                direction.dot(ahead) >= dwell_scene::math::cos(half_angle_rad)
             }
-            Self::Picture => seen.x.abs() <= -seen.z && seen.y.abs() <= -seen.z,
+            Self::Picture => {
+                let seen = camera.inverse().transform_vector(direction);
+                seen.x.abs() <= -seen.z && seen.y.abs() <= -seen.z
+            }
             Self::Around => true,
         }
     }
@@ -44,8 +46,7 @@ impl FieldOfView {
 /// Returns whether a straight line from the viewer meets `object` before anything that one does not see through, within the `field` of view.
 ///
 /// Nine rays are aimed at the thing's box, and in a picture 16 more at the part of it that the box covers; one that meets it first is
-/// enough. `rays` must be up to date with the scene's
-/// state.
+/// enough. `rays` must be up to date with the scene's state.
 pub fn is_in_line_of_sight(
     scene: &SemanticScene<'_>,
     rays: &RayScene,
@@ -68,7 +69,7 @@ pub fn is_in_line_of_sight(
 }
 
 /// Opacity below which one sees through a surface.
-const CLEAR_OPACITY: f32 = 0.6;
+pub(crate) const CLEAR_OPACITY: f32 = 0.6;
 /// Panes of clear glass that one sees through.
 const MAX_PANES: usize = 8;
 /// Distance behind a pane from which a ray goes on, m.

@@ -162,8 +162,8 @@ def _from_viewpoints(
     world, rooms = World(house, agents=0), house.rooms()
     for number, room in enumerate(rooms):
         viewer = {"position": room["eye"], "yaw_deg": room["yaw_deg"]}
-        # Each text has a wording of its own.
-        key = None if seed is None else seed + 1_000_003 * number
+        # Each room has wordings of its own.
+        key = None if seed is None else (seed + 1_000_003 * number) % 2**64
         if level == "view":
             (text,) = world.describe(level, length=length, seed=key, viewer=viewer)
             yield {"viewer": viewer, **text.as_dict()}

@@ -75,22 +75,20 @@ impl Checker<'_> {
 
     /// Where a definite description fits several things and the listener sees some of them, keeps these: they are what is talked of.
     fn keep_visible(&self, found: &mut Extension) {
-        let several = found.fits.len() + found.undecided.len() > 1;
-        let (Some(viewer), Ok(visible)) = (&self.listener.viewer, predicates::find("visible"))
-        else {
+        let Some(viewer) = &self.listener.viewer else {
             return;
         };
+        if found.fits.len() + found.undecided.len() < 2 {
+            return;
+        }
         let eye = viewer.world_from_camera.position;
         let is_visible = |term: &Term| match term {
             // "The bedroom" is the one that the listener is in.
             Term::Room(room) => self.scene.house().room_at(eye) == Some(*room),
-            term => {
-                let truth = visible.holds(self.scene, &[*term], Some(viewer));
-                truth.is_true()
-            }
+            term => predicates::is_true(self.scene, "visible", &[*term], Some(viewer)),
         };
         let fits: Vec<Term> = found.fits.iter().copied().filter(is_visible).collect();
-        if several && !fits.is_empty() {
+        if !fits.is_empty() {
             found.fits = fits;
             found.undecided.retain(|(term, _)| is_visible(term));
         }

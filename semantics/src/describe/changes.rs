@@ -17,10 +17,6 @@ const STATES: [&str; 5] = ["open", "half_open", "closed", "switched_on", "switch
 /// Relations by which the place of a thing is told, the most telling first.
 const PLACES: [&str; 2] = ["in", "on"];
 
-fn holds(scene: &SemanticScene<'_>, name: &str, terms: &[Term]) -> bool {
-    predicates::find(name).is_ok_and(|found| found.holds(scene, terms, None).is_true())
-}
-
 /// What a thing is in or on.
 fn carrier(scene: &SemanticScene<'_>, object: ObjectId) -> Option<(&'static str, ObjectId)> {
     PLACES.into_iter().find_map(|name| {
@@ -153,8 +149,9 @@ pub fn describe_changes(
         interrupt::unwind_if_cancelled();
         let term = [Term::Object(object)];
         for state in STATES {
-            if holds(after, state, &term)
-                && !holds(before, state, &term)
+            let is_so = |scene| predicates::is_true(scene, state, &term, None);
+            if is_so(after)
+                && !is_so(before)
                 && let Some(subject) = refer(after, object)
             {
                 writer.say(now(Clause::Is {

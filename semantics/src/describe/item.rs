@@ -27,11 +27,7 @@ fn joint_state(scene: &SemanticScene<'_>, object: ObjectId) -> Option<&'static s
 }
 
 fn holds(scene: &SemanticScene<'_>, name: &str, object: ObjectId) -> bool {
-    predicates::find(name).is_ok_and(|predicate| {
-        predicate
-            .holds(scene, &[Term::Object(object)], None)
-            .is_true()
-    })
+    predicates::is_true(scene, name, &[Term::Object(object)], None)
 }
 
 /// A description of a thing by its noun, size, openness, colours and main substance.

@@ -18,7 +18,7 @@ use dwell_scene::random::RandomKey;
 use dwell_scene::{ObjectId, RoomId};
 use std::collections::{BTreeMap, BTreeSet};
 
-fn is_rug(scene: &SemanticScene<'_>, object: ObjectId) -> bool {
+pub(super) fn is_rug(scene: &SemanticScene<'_>, object: ObjectId) -> bool {
     let row = scene.facts(object).category;
     row.is_some_and(|row| row.name == "rug")
 }

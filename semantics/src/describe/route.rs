@@ -2,10 +2,10 @@
 
 use super::length::TextLength;
 use super::room::in_room;
-use super::text::{GroundedText, TextWriter};
+use super::text::{GroundedText, TextWriter, claim};
 use crate::check::{Checker, Listener};
 use crate::form::{
-    Clause, Description, Form, Modifier, Noun, Phrase, Quantifier, RequestStep, TurnDirection,
+    Description, Form, Modifier, Noun, Phrase, Quantifier, RequestStep, TurnDirection,
 };
 use crate::refer::{refer, room_phrase};
 use crate::scene::{SemanticScene, Term, Viewer};
@@ -29,8 +29,8 @@ const DOOR_M: f32 = 1.0;
 const PAST_M: f32 = 1.0;
 /// Smallest volume of a landmark, m3: a chair is one, a vase is none.
 const LANDMARK_M3: f32 = 0.1;
-/// Distance from a goal at which the way ends, m.
-const ARRIVAL_M: f32 = 1.0;
+/// Distance from the box around a goal at which the way ends, m.
+const ARRIVAL_M: f32 = 0.5;
 /// Distance from the feet at which the way begins, m.
 const NEAR_M: f32 = 0.5;
 /// Places around a thing and in a room that are tried as its goal.
@@ -141,11 +141,10 @@ fn goals(scene: &SemanticScene<'_>, to: Term) -> Vec<Vec3> {
             let around = (0..AROUND).map(|k| {
                 let turn = std::f32::consts::TAU * k as f32 / AROUND as f32;
                 let (sine, cosine) = dwell_scene::math::sin_cos(turn);
-                let reach = 0.5 * ARRIVAL_M;
                 Vec3::new(
-                    middle.x + (half.x + reach) * cosine,
+                    middle.x + (half.x + ARRIVAL_M) * cosine,
                     y,
-                    middle.z + (half.z + reach) * sine,
+                    middle.z + (half.z + ARRIVAL_M) * sine,
                 )
             });
             let own = scene.room_of(object);
@@ -381,25 +380,17 @@ pub fn describe_route(
     // On the way the listener sees other things than now.
     let checker = Checker::new(scene, Listener::default());
     let mut writer = TextWriter::new(&checker, wording);
+    if let Term::Room(room) = to
+        && teller.room_at(0) == Some(room)
+    {
+        let here = vec![Phrase::Listener, room_phrase(scene, room)];
+        writer.say(claim("in_room", here));
+        return Some(writer.finish());
+    }
     let entries = teller.entries();
     let mut events = teller.turns(flat(looks).normalize_or_zero());
     if length != TextLength::Short {
         events.extend(teller.landmarks(&entries));
-    }
-    let is_here = match to {
-        Term::Room(room) => teller.room_at(0) == Some(room),
-        _ => false,
-    };
-    if is_here {
-        let here = Phrase::Listener;
-        let Term::Room(room) = to else {
-            return None;
-        };
-        writer.say(Form::Claim(Clause::Holds {
-            predicate: "in_room".to_owned(),
-            arguments: vec![here, room_phrase(scene, room)],
-        }));
-        return Some(writer.finish());
     }
     // A way to a room ends at its door.
     if let (Term::Room(_), Some((end, _))) = (to, entries.last()) {

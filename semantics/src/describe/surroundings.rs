@@ -2,8 +2,8 @@
 
 use super::hanging::MountedObject;
 use super::item::items;
-use super::text::TextWriter;
-use crate::form::{Clause, Description, Form, Modifier, Noun, Phrase, Quantifier};
+use super::text::{TextWriter, claim};
+use crate::form::{Description, Modifier, Noun, Phrase, Quantifier};
 use crate::predicates;
 use crate::refer::{refer, room_phrase};
 use crate::scene::{SemanticScene, Term};
@@ -18,13 +18,6 @@ const MIN_LANDMARK_SHARE: f32 = 0.3;
 const RELATIONS: [&str; 4] = ["above", "below", "facing", "next_to"];
 /// Places within a room, the first that holds is told.
 const SPOTS: [&str; 2] = ["in_corner_of", "in_middle_of"];
-
-fn claim(predicate: &str, arguments: Vec<Phrase>) -> Form {
-    Form::Claim(Clause::Holds {
-        predicate: predicate.to_owned(),
-        arguments,
-    })
-}
 
 /// The landmarks that no description confuses with others, by their relation to a thing, the largest first. Rugs, openings and
 /// what lies on the thing are none.
@@ -84,10 +77,8 @@ pub(super) fn say_surroundings(
     let subject: Phrase = subject.clone().into();
     if let Some(room) = scene.room_of(object).filter(|_| stands(scene, object)) {
         let in_spot = |name: &&str| {
-            predicates::find(name).is_ok_and(|predicate| {
-                let terms = [Term::Object(object), Term::Room(room)];
-                predicate.holds(scene, &terms, None).is_true()
-            })
+            let terms = [Term::Object(object), Term::Room(room)];
+            predicates::is_true(scene, name, &terms, None)
         };
         if let Some(spot) = SPOTS.iter().find(|name| in_spot(name)) {
             writer.say(claim(spot, vec![subject.clone(), room_phrase(scene, room)]));
@@ -122,8 +113,7 @@ pub(super) fn say_load(
         if !load.is_empty() {
             writer.there_are(&items(scene, &load, &load), &[there]);
         } else if place == "in"
-            && predicates::find("empty")
-                .is_ok_and(|empty| empty.holds(scene, &[Term::Object(object)], None).is_true())
+            && predicates::is_true(scene, "empty", &[Term::Object(object)], None)
         {
             let nothing = Noun::Object(Noun::ANY_OBJECT.to_owned());
             writer.there_are(&[Description::new(Quantifier::No, nothing)], &[there]);

@@ -33,6 +33,14 @@ pub struct GroundedText {
     pub claims: Vec<TextClaim>,
 }
 
+/// The claim that a predicate holds of its arguments.
+pub(super) fn claim(predicate: &str, arguments: Vec<Phrase>) -> Form {
+    Form::Claim(Clause::Holds {
+        predicate: predicate.to_owned(),
+        arguments,
+    })
+}
+
 /// A writer of a text: says forms one after the other.
 pub(super) struct TextWriter<'a> {
     checker: &'a Checker<'a>,

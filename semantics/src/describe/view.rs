@@ -2,13 +2,14 @@
 
 use super::item::{grouped, items};
 use super::length::TextLength;
-use super::text::{GroundedText, TextWriter};
+use super::room::{is_rug, surfaces};
+use super::text::{GroundedText, TextWriter, claim};
 use crate::check::{Checker, Listener, spoken_distance_m};
 use crate::form::{Clause, Description, Form, Modifier, Noun, Phrase, Quantifier, RoomSurfaceKind};
 use crate::predicates;
 use crate::refer::room_phrase;
 use crate::scene::{SemanticScene, Term, Viewer};
-use crate::view::{Sighting, ViewSurvey, holds_in_view, refer_in_view};
+use crate::view::{Sighting, ViewSurvey, refer_in_view};
 use dwell_scene::random::RandomKey;
 use dwell_scene::{ObjectId, RoomId, StructureKind};
 use std::cell::RefCell;
@@ -22,8 +23,6 @@ const LEAST_UNHIDDEN: f32 = 0.25;
 const LEAST_SURFACE: f32 = 0.03;
 /// Share of the picture from which a thing is told with its place among others.
 const LEAST_ANCHOR: f32 = 0.01;
-/// Distances before a window or door at which its room is looked up, m: along a wall the first may lie within it.
-const BEFORE_M: [f32; 3] = [0.4, 0.8, 1.6];
 /// Distance up to which things are told by their place to each other, m.
 const MAX_BESIDE_M: f32 = 1.5;
 /// Tangent up to which a thing on one side may reach over to the other: 6 degrees.
@@ -78,25 +77,14 @@ struct ViewTeller<'a, 'b> {
     names: RefCell<BTreeMap<ObjectId, Option<Description>>>,
 }
 
-fn claim(predicate: &str, arguments: Vec<Phrase>) -> Form {
-    Form::Claim(Clause::Holds {
-        predicate: predicate.to_owned(),
-        arguments,
-    })
-}
-
 impl ViewTeller<'_, '_> {
     fn scene(&self) -> &SemanticScene<'_> {
         self.checker.scene()
     }
 
     fn holds(&self, name: &str, object: ObjectId) -> bool {
-        predicates::find(name).is_ok_and(|predicate| {
-            let terms = [Term::Object(object)];
-            predicate
-                .holds(self.scene(), &terms, Some(&self.viewer))
-                .is_true()
-        })
+        let terms = [Term::Object(object)];
+        predicates::is_true(self.scene(), name, &terms, Some(&self.viewer))
     }
 
     /// The description that fits a thing alone.
@@ -138,28 +126,15 @@ impl ViewTeller<'_, '_> {
         clear.then_some(side)
     }
 
-    /// The room in which a thing is seen: of a window or door the one on the viewer's side of it.
-    fn room_seen(&self, object: ObjectId) -> Option<RoomId> {
-        if !self.scene().facts(object).is_opening() {
-            return self.scene().room_of(object);
-        }
-        let middle = self.scene().extent(object).bounds.center();
-        let towards = self.viewer.world_from_camera.position - middle;
-        let towards = towards.normalize_or_zero();
-        let mut before = BEFORE_M.into_iter();
-        let room =
-            before.find_map(|reach_m| self.scene().house().room_at(middle + towards * reach_m));
-        room.or_else(|| self.scene().room_of(object))
-    }
-
     /// What a thing lies in or on, if that is told, too, and has a name of its own.
     fn carrier(&self, object: ObjectId) -> Option<(ObjectId, &'static str)> {
         ["in", "on"].into_iter().find_map(|name| {
             let predicate = predicates::find(name).ok()?;
             let others = predicates::related_objects(self.scene(), predicate, object);
             let carrier = others.into_iter().find(|other| {
-                let is_rug = self.scene().facts(*other).noun.ends_with("rug");
-                self.told.binary_search(other).is_ok() && !is_rug && self.name(*other).is_some()
+                self.told.binary_search(other).is_ok()
+                    && !is_rug(self.scene(), *other)
+                    && self.name(*other).is_some()
             })?;
             Some((carrier, name))
         })
@@ -170,7 +145,7 @@ impl ViewTeller<'_, '_> {
         let mut carried: BTreeMap<(ObjectId, &'static str), Vec<ObjectId>> = BTreeMap::new();
         let mut elsewhere: BTreeMap<RoomId, Vec<ObjectId>> = BTreeMap::new();
         for object in self.told.iter().copied() {
-            let own = self.room_seen(object);
+            let own = self.scene().room_of(object);
             let is_elsewhere = |own: &RoomId| {
                 self.room.is_some_and(|room| room != *own)
                     && !self.scene().facts(object).is_opening()
@@ -257,7 +232,7 @@ impl ViewTeller<'_, '_> {
             .into_iter()
             .filter(|(kind, _)| self.survey.structure_share(scene, *kind) >= LEAST_SURFACE);
         let seen: Vec<RoomSurfaceKind> = seen.map(|(_, surface)| surface).collect();
-        let mut surfaces = super::room::surfaces(scene, room);
+        let mut surfaces = surfaces(scene, room);
         surfaces.retain(|surface| seen.contains(&surface.kind));
         if !surfaces.is_empty() {
             let room = self.own_room(room);
@@ -308,7 +283,8 @@ impl ViewTeller<'_, '_> {
                     // A lamp on the ceiling is not to the left of a chair.
                     _ => level,
                 };
-                fits && holds_in_view(self.checker, name, [object, other])
+                let pair = [object, other].map(Term::Object);
+                fits && predicates::is_true(self.scene(), name, &pair, Some(&self.viewer))
             };
             let Some((_, landmark)) = near.iter().find(|(other, _)| held(*other)) else {
                 continue;

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Quality {
-    /// A plain colour word.
+    /// A colour word.
     Color(String),
     /// The adjective of a substance.
     Material(String),
@@ -23,7 +23,7 @@ pub enum Quality {
 pub struct RoomSurface {
     /// The surface.
     pub kind: RoomSurfaceKind,
-    /// The plain colour word of most of it.
+    /// The colour word of most of it.
     pub color: Option<String>,
     /// The adjective of the substance of most of it; floors alone have one.
     pub material: Option<String>,

@@ -100,7 +100,7 @@ pub struct Description {
     pub size: Option<SizeClass>,
     /// A state by name: `"open"`, `"switched_off"`.
     pub state: Option<String>,
-    /// Plain colour words, at most two; the thing shows all of them.
+    /// Colour words, at most two; the thing shows all of them.
     pub colors: Vec<String>,
     /// The adjective of a substance.
     pub material: Option<String>,

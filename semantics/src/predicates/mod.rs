@@ -303,6 +303,16 @@ pub(crate) fn related_objects(
     objects
 }
 
+/// Returns whether the predicate called `name` is true of `terms`; false of a name that there is not.
+pub(crate) fn is_true(
+    scene: &SemanticScene<'_>,
+    name: &str,
+    terms: &[Term],
+    viewer: Option<&Viewer>,
+) -> bool {
+    find(name).is_ok_and(|predicate| predicate.holds(scene, terms, viewer).is_true())
+}
+
 /// The predicate called `name`.
 ///
 /// # Errors

@@ -26,14 +26,14 @@ impl Predicate for SameColor {
     }
 
     fn definition(&self) -> &'static str {
-        "Two things have the same plain words for their colours: the one of at least 60 % of what \
+        "Two things have the same words for their colours: the one of at least 60 % of what \
          is seen of each, else its two largest. Undecided for what is nearly all clear glass or mirror, \
          for what shows many colours, and where people divide on one of the words for the other."
     }
 
     fn source(&self) -> &'static str {
-        "The words are those of captions; twelve plain terms, after B. Berlin, P. Kay, Basic \
-         Color Terms, California 1969, with beige."
+        "The words are those of captions: twelve plain terms, after B. Berlin, P. Kay, Basic \
+         Color Terms, California 1969, with beige, and words between two of them."
     }
 
     fn properties(&self) -> RelationProperties {

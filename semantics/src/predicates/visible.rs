@@ -19,8 +19,9 @@ impl Predicate for Visible {
 
     fn definition(&self) -> &'static str {
         "From the viewer, a ray within a square picture of 90 degrees meets the thing before \
-         anything else: one of nine to the middle of its box and to points 60 % of the way to its \
-         corners, or one of 4 by 4 over the part of the picture that its box covers."
+         anything that one does not see through: one of nine to the middle of its box and to points \
+         60 % of the way to its corners, or one of 4 by 4 over the part of the picture that its box \
+         covers."
     }
 
     fn source(&self) -> &'static str {

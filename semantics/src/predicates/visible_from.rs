@@ -19,8 +19,8 @@ impl Predicate for VisibleFrom {
 
     fn definition(&self) -> &'static str {
         "One of nine rays from the agent's eyes to the middle of the thing's box and to points 60 \
-         % of the way to its corners meets the thing before anything else, whichever way the \
-         agent looks."
+         % of the way to its corners meets the thing before anything that one does not see through, \
+         whichever way the agent looks."
     }
 
     fn source(&self) -> &'static str {

@@ -88,16 +88,16 @@ impl DistractorSet {
     fn with_attribute(&self, scene: &SemanticScene<'_>) -> &BTreeMap<Attribute, ObjectList> {
         self.having.get_or_init(|| {
             let mut pace = PollEvery::new(THINGS_PER_CHECK);
+            let words = ColorVocabulary::Spoken.words();
             let mut lists: BTreeMap<Attribute, Vec<ObjectId>> = BTreeMap::new();
             for id in self.things.iter().copied() {
                 pace.turn();
                 let facts = scene.facts(id);
                 push(&mut lists, Attribute::Size(facts.size), id);
                 // Also the words on which people divide: what some would call white is not told apart from it as the white one.
-                for word in ColorVocabulary::Spoken.words() {
-                    if !facts.colors.is_empty() && !facts.shows_color(word).is_false() {
-                        push(&mut lists, Attribute::Color(word.to_owned()), id);
-                    }
+                let words = words.iter().filter(|_| !facts.colors.is_empty());
+                for word in words.filter(|word| !facts.shows_color(word).is_false()) {
+                    push(&mut lists, Attribute::Color((*word).to_owned()), id);
                 }
                 for word in facts.material_words() {
                     push(&mut lists, Attribute::Material(word.to_owned()), id);

@@ -4,7 +4,6 @@ mod refer;
 mod strategy;
 mod survey;
 
-pub(crate) use refer::holds_in_view;
 pub use refer::refer_in_view;
 pub use strategy::{ReferStrategy, refer_to};
 pub use survey::{Sighting, ViewSurvey};

@@ -3,7 +3,6 @@
 use super::ViewSurvey;
 use crate::check::Checker;
 use crate::form::{Description, Modifier, Noun, OrdinalSelection, Phrase, Quantifier};
-use crate::predicates;
 use crate::refer::{by_properties, by_relations};
 use crate::scene::Term;
 use dwell_scene::ObjectId;
@@ -104,16 +103,5 @@ fn counted_from_left(
             ..Description::new(Quantifier::The, Noun::Object(noun.clone()))
         };
         (checker.denotes(&description) == Some(Term::Object(target))).then_some(description)
-    })
-}
-
-/// Returns whether a relation in the picture or in space holds of two things, seen by the checker's listener.
-pub(crate) fn holds_in_view(checker: &Checker<'_>, name: &str, pair: [ObjectId; 2]) -> bool {
-    predicates::find(name).is_ok_and(|predicate| {
-        let viewer = checker.listener().viewer;
-        let terms = pair.map(Term::Object);
-        predicate
-            .holds(checker.scene(), &terms, viewer.as_ref())
-            .is_true()
     })
 }

@@ -51,9 +51,6 @@ pub fn refer_to(
     strategy: ReferStrategy,
 ) -> Option<Description> {
     let scene = checker.scene();
-    let survey = checker.listener().viewer.as_ref();
-    let survey = survey.map(|viewer| ViewSurvey::of(scene, viewer));
-    let survey = survey.filter(|survey| survey.objects.contains_key(&target));
     let denotes = |own: &Description| {
         interrupt::unwind_if_cancelled();
         checker.denotes(own) == Some(Term::Object(target))
@@ -73,9 +70,13 @@ pub fn refer_to(
             related.into_iter().find(denotes)
         }
     };
-    let shortest = || match &survey {
-        Some(survey) => refer_in_view(checker, survey, target),
-        None => refer(scene, target).filter(denotes),
+    let shortest = || {
+        let viewer = checker.listener().viewer.as_ref();
+        let survey = viewer.map(|viewer| ViewSurvey::of(scene, viewer));
+        match survey.filter(|survey| survey.objects.contains_key(&target)) {
+            Some(survey) => refer_in_view(checker, &survey, target),
+            None => refer(scene, target).filter(denotes),
+        }
     };
     found.or_else(shortest)
 }

@@ -38,20 +38,27 @@ pub struct ViewSurvey {
 }
 
 /// Rays that meet a thing.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 struct RayCounts {
     first: u32,
     any: u32,
-    span: Option<[f32; 2]>,
+    span: [f32; 2],
     nearest_m: f32,
 }
 
 impl RayCounts {
+    const NONE: Self = Self {
+        first: 0,
+        any: 0,
+        span: [f32::INFINITY, f32::NEG_INFINITY],
+        nearest_m: f32::INFINITY,
+    };
+
     fn sighting(self) -> Option<Sighting> {
-        Some(Sighting {
+        (self.first > 0).then(|| Sighting {
             share: self.first as f32 / (RAYS * RAYS) as f32,
             unhidden: self.first as f32 / self.any as f32,
-            span: self.span?,
+            span: self.span,
             distance_m: self.nearest_m,
         })
     }
@@ -84,18 +91,12 @@ impl ViewSurvey {
                     continue;
                 }
                 met.push(hit.id);
-                let own = counts.entry(hit.id).or_default();
+                let own = counts.entry(hit.id).or_insert(RayCounts::NONE);
                 own.any += 1;
                 if was_seen {
-                    let nearest = if own.first == 0 {
-                        f32::INFINITY
-                    } else {
-                        own.nearest_m
-                    };
-                    own.nearest_m = nearest.min(hit.distance_m);
                     own.first += 1;
-                    let [left, right] = own.span.unwrap_or([x, x]);
-                    own.span = Some([left.min(x), right.max(x)]);
+                    own.span = [own.span[0].min(x), own.span[1].max(x)];
+                    own.nearest_m = own.nearest_m.min(hit.distance_m);
                 }
             }
         }
