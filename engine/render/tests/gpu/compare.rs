@@ -5,6 +5,7 @@
 //! pixels, and what lies elsewhere is counted.
 
 use dwell_render::{Camera, Frame, VisibilityPath};
+use std::collections::BTreeMap;
 
 /// Tolerance of depths, m.
 const DEPTH_M: f32 = 1e-3;
@@ -45,6 +46,8 @@ pub(crate) struct Count {
     levels: f64,
     /// Other pixels whose value lies beyond those around, by image.
     beyond: [usize; IMAGES.len()],
+    /// The same by the id that the pixel shows, with the first such pixel.
+    by_id: BTreeMap<i32, ([usize; IMAGES.len()], String)>,
 }
 
 /// One view by both.
@@ -188,8 +191,20 @@ impl Count {
             one.is_among(&cpu.albedo, &gpu.albedo, ALBEDO, 0.0),
             one.is_among(&colors.0, &colors.1, LEVELS, 0.0),
         ];
-        for (beyond, is_there) in self.beyond.iter_mut().zip(is_there) {
-            *beyond += usize::from(!is_there);
+        if is_there.contains(&false) {
+            let first = || {
+                let images = [&cpu.albedo, &gpu.albedo, &cpu.normals, &gpu.normals];
+                let values = images.map(|image| one.of(image, pixel));
+                format!("{place}: albedo and normals of cpu, gpu: {values:?}")
+            };
+            let (counts, _) = self
+                .by_id
+                .entry(other)
+                .or_insert_with(|| (Default::default(), first()));
+            for (k, is_there) in is_there.into_iter().enumerate() {
+                self.beyond[k] += usize::from(!is_there);
+                counts[k] += usize::from(!is_there);
+            }
         }
     }
 
