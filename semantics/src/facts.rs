@@ -1,12 +1,12 @@
 //! State-independent facts about an object: kind, colours, substances, size.
 
 use crate::category::{SemanticCategory, categories};
+use crate::clear_glass::CLEAR_OPACITY;
 use crate::color::{ColorShare, ColorVocabulary, MaterialColors, Pattern, color_words, divides};
 use crate::english::counted_noun;
 use crate::form::{Description, Noun};
 use crate::geometry::mapped_area_m2;
 use crate::kind_noun::{KindNoun, kind_nouns};
-use crate::line_of_sight::CLEAR_OPACITY;
 use crate::material_family::family_of;
 use crate::size::SizeClass;
 use crate::truth::{Truth, UndecidedReason};

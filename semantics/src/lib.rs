@@ -2,6 +2,7 @@
 
 mod attributes;
 pub mod category;
+mod clear_glass;
 pub mod check;
 pub mod color;
 mod csv_table;

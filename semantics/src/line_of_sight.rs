@@ -1,7 +1,8 @@
 //! Lines of sight from a viewer to a thing.
 
+use crate::clear_glass::is_clear;
 use crate::scene::{SemanticScene, Viewer};
-use dwell_scene::bvh::{Hit, Ray, RayMask};
+use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::rays::RayScene;
 use dwell_scene::{Aabb, EntityId, ObjectId};
 use glam::{Vec2, Vec3, Vec3Swizzles};
@@ -68,18 +69,10 @@ pub fn is_in_line_of_sight(
         || (field == FieldOfView::Picture && covered(viewer, &bounds).into_iter().any(meets))
 }
 
-/// Opacity below which one sees through a surface.
-pub(crate) const CLEAR_OPACITY: f32 = 0.6;
 /// Panes of clear glass that one sees through.
 const MAX_PANES: usize = 8;
 /// Distance behind a pane from which a ray goes on, m.
 const BEHIND_M: f32 = 1e-3;
-
-/// Returns whether one sees through a surface.
-pub(crate) fn is_clear(rays: &RayScene, hit: &Hit) -> bool {
-    let material = rays.surface(hit).material;
-    rays.house().materials[material].opacity < CLEAR_OPACITY
-}
 
 /// Returns whether a ray meets the entity `id` before anything that one does not see through.
 fn meets_first(rays: &RayScene, ray: &Ray, id: EntityId) -> bool {

@@ -28,6 +28,9 @@ const MAX_BESIDE_M: f32 = 1.5;
 /// Tangent up to which a thing on one side may reach over to the other: 6 degrees.
 const MAX_OVERLAP: f32 = 0.1;
 
+/// Distance before what fills an opening at which the room that it is seen in is looked up, m.
+const BEFORE_M: f32 = 0.3;
+
 /// The sides of a viewer.
 const SIDES: [&str; 3] = ["straight_ahead", "on_left", "on_right"];
 /// Relations between two things in view, the most telling first. "Behind" is left out: people take it of a sofa's back, not of the view.
@@ -140,18 +143,34 @@ impl ViewTeller<'_, '_> {
         })
     }
 
+    /// The room that a thing is seen in: for what fills an opening in a wall, the viewer's own if a door leads from there, else the one
+    /// before it.
+    fn seen_in(&self, object: ObjectId) -> Option<RoomId> {
+        let scene = self.scene();
+        if !scene.facts(object).is_opening() {
+            return scene.room_of(object).or(self.room);
+        }
+        let doorway = scene.semantics.doorway(object);
+        let leads_from = |room: &RoomId| doorway.is_some_and(|own| own.rooms.contains(room));
+        self.room.filter(leads_from).or_else(|| {
+            let eye = self.viewer.world_from_camera.position;
+            let sighting = self.survey.objects.get(&object)?;
+            let share = 1.0 - BEFORE_M / sighting.distance_m.max(BEFORE_M);
+            scene.house().room_at(eye.lerp(sighting.nearest, share))
+        })
+    }
+
     fn contents(&self) -> ViewContents {
         let mut sides: BTreeMap<Option<&'static str>, (f32, Vec<ObjectId>)> = BTreeMap::new();
         let mut carried: BTreeMap<(ObjectId, &'static str), Vec<ObjectId>> = BTreeMap::new();
         let mut elsewhere: BTreeMap<RoomId, Vec<ObjectId>> = BTreeMap::new();
         for object in self.told.iter().copied() {
-            let own = self.scene().room_of(object);
-            let is_elsewhere = |own: &RoomId| {
-                self.room.is_some_and(|room| room != *own)
-                    && !self.scene().facts(object).is_opening()
-            };
-            if let Some(other) = own.filter(is_elsewhere) {
-                elsewhere.entry(other).or_default().push(object);
+            let seen_in = self.seen_in(object);
+            if self.room.is_some() && seen_in != self.room {
+                // What belongs to no room, or to another than it is seen in, cannot be told truly.
+                if let Some(other) = seen_in.filter(|_| seen_in == self.scene().room_of(object)) {
+                    elsewhere.entry(other).or_default().push(object);
+                }
                 continue;
             }
             if let Some(carrier) = self.carrier(object) {

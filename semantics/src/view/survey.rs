@@ -1,6 +1,6 @@
 //! What a viewer sees of each thing: shares of the picture, what is hidden, where it falls and how far it is.
 
-use crate::line_of_sight::is_clear;
+use crate::clear_glass::is_clear;
 use crate::scene::{SemanticScene, Viewer};
 use dwell_scene::bvh::{Hit, Ray, RayMask};
 use dwell_scene::interrupt::PollEvery;
@@ -26,6 +26,8 @@ pub struct Sighting {
     pub span: [f32; 2],
     /// The distance from the eye to the nearest point that is seen, m.
     pub distance_m: f32,
+    /// That point, in the house.
+    pub nearest: Vec3,
 }
 
 /// What a viewer sees: a picture of 90 degrees in both directions, by 64 times 64 rays.
@@ -44,6 +46,7 @@ struct RayCounts {
     any: u32,
     span: [f32; 2],
     nearest_m: f32,
+    nearest: Vec3,
 }
 
 impl RayCounts {
@@ -52,6 +55,7 @@ impl RayCounts {
         any: 0,
         span: [f32::INFINITY, f32::NEG_INFINITY],
         nearest_m: f32::INFINITY,
+        nearest: Vec3::ZERO,
     };
 
     fn sighting(self) -> Option<Sighting> {
@@ -60,6 +64,7 @@ impl RayCounts {
             unhidden: self.first as f32 / self.any as f32,
             span: self.span,
             distance_m: self.nearest_m,
+            nearest: self.nearest,
         })
     }
 }
@@ -80,8 +85,8 @@ impl ViewSurvey {
             let direction = viewer
                 .world_from_camera
                 .transform_vector(Vec3::new(x, y, -1.0));
-            rays.bvh()
-                .all_hits(&Ray::new(eye, direction), RayMask::EYE, &mut hits);
+            let ray = Ray::new(eye, direction);
+            rays.bvh().all_hits(&ray, RayMask::EYE, &mut hits);
             met.clear();
             let mut is_seen = true;
             for hit in &hits {
@@ -96,7 +101,10 @@ impl ViewSurvey {
                 if was_seen {
                     own.first += 1;
                     own.span = [own.span[0].min(x), own.span[1].max(x)];
-                    own.nearest_m = own.nearest_m.min(hit.distance_m);
+                    if hit.distance_m < own.nearest_m {
+                        own.nearest_m = hit.distance_m;
+                        own.nearest = eye + ray.direction * hit.distance_m;
+                    }
                 }
             }
         }

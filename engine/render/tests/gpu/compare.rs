@@ -29,6 +29,10 @@ const COINCIDENT: [f64; 2] = [1e-3, 2.5e-2];
 /// in what they show and not in depth or id.
 const BEYOND: [f64; 2] = [1e-3, 6e-3];
 
+/// The share of inner pixels whose normal may be none of those around, by rays and by raster: a triangle narrower than a pixel of a
+/// rounded surface, which the other does not hit.
+const TURNED: [f64; 2] = [0.0, 1e-4];
+
 /// Images whose values are counted where they lie beyond what is around.
 const IMAGES: [&str; 6] = ["depth", "instance", "normals", "flow", "albedo", "rgb"];
 
@@ -42,6 +46,8 @@ pub(crate) struct Count {
     pub(crate) coincident: usize,
     /// Inner pixels whose colour or reflectance differs.
     colors: usize,
+    /// Inner pixels whose normal is none of those around.
+    turned: usize,
     /// Sum of the differences of colour at inner pixels, levels.
     levels: f64,
     /// Other pixels whose value lies beyond those around, by image.
@@ -172,10 +178,7 @@ impl Count {
                 cpu.depth[pixel]
             );
             // A pixel on an edge between triangles may show the one or the other.
-            assert!(
-                turn_deg < TURN_DEG,
-                "{place}: normal off by {turn_deg} degrees"
-            );
+            self.turned += usize::from(turn_deg >= TURN_DEG);
             assert!(has_flow, "{place}: flow {:?}", one.of(&gpu.flow, pixel));
             let off_color = one.off(&colors.0, &colors.1);
             let off = one.off(&cpu.albedo, &gpu.albedo);
@@ -227,6 +230,8 @@ impl Count {
         assert!((self.colors as f64) < 2e-3 * inner, "{name}: {self:?}");
         assert!(self.levels < 0.05 * inner, "{name}: {self:?}");
         let by = usize::from(path == VisibilityPath::Raster);
+        let most = TURNED[by];
+        assert!(self.turned as f64 <= most * inner, "{name}: {self:?}");
         let most = COINCIDENT[by];
         assert!(self.coincident as f64 <= most * pixels, "{name}: {self:?}");
         for (beyond, image) in self.beyond.iter().zip(IMAGES) {

@@ -4,14 +4,20 @@ use super::agreement::Pair;
 use super::compare::Count;
 use dwell_render::{Camera, Preset, View, VisibilityPath};
 use dwell_scene::random::RandomKey;
-use dwell_scene::{House, Pose, space};
+use dwell_scene::{Aabb, House, Pose, State, space};
 use glam::Vec3;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Views from places in rooms, in all directions.
+/// Views from places in rooms, in all directions; none from within the box around a thing, where surfaces coincide that nobody sees
+/// from outside (a mattress on its frame).
 pub(crate) fn views(house: &House, camera: Camera, count: usize) -> Vec<View> {
     let mut stream = RandomKey::root(11).stream();
+    let state = State::new(house);
+    let things = house.objects.ids();
+    let boxes: Vec<Aabb> = things
+        .map(|id| house.object_bounds(&state, id))
+        .collect();
     let mut views = Vec::new();
     while views.len() < count {
         let room = &house.rooms[dwell_scene::RoomId(stream.below(house.rooms.len()) as u32)];
@@ -24,6 +30,9 @@ pub(crate) fn views(house: &House, camera: Camera, count: usize) -> Vec<View> {
         };
         let place = triangle[0] + (triangle[1] - triangle[0]) * a + (triangle[2] - triangle[0]) * b;
         let eye = Vec3::new(place.x, room.floor_y + stream.range(0.4, 1.8), place.y);
+        if boxes.iter().any(|bounds| bounds.contains(eye)) {
+            continue;
+        }
         let rotation =
             space::rotation_from_yaw_pitch(stream.range(-3.1, 3.1), stream.range(-0.7, 0.4));
         views.push(View::new(camera, Pose::new(eye, rotation)));
@@ -54,7 +63,7 @@ fn agree(name: &str, house: &Arc<House>, count: usize, path: VisibilityPath) {
     let Some(pair) = Pair::new(house.clone(), path) else {
         return;
     };
-    let camera = Camera::from_fov(64, 48, 90.0).unwrap();
+    let camera = Camera::from_fov(128, 96, 90.0).unwrap();
     let views = views(&pair.house, camera, count);
     let mut compared = Count::default();
     for (k, frames) in pair.shoot(&views).iter().enumerate() {
@@ -67,8 +76,8 @@ fn agree(name: &str, house: &Arc<House>, count: usize, path: VisibilityPath) {
 #[test]
 fn the_sample_house_looks_the_same_by_cpu_and_gpu() {
     if let Some(house) = suncg() {
-        agree("SUNCG", &house, 200, VisibilityPath::Compute);
-        agree("SUNCG", &house, 200, VisibilityPath::Raster);
+        agree("SUNCG", &house, 50, VisibilityPath::Compute);
+        agree("SUNCG", &house, 50, VisibilityPath::Raster);
     }
 }
 
@@ -123,7 +132,7 @@ fn lit_houses_look_the_same_by_cpu_and_gpu() {
 fn generated_houses_look_the_same_by_cpu_and_gpu() {
     for seed in ["seed:3", "seed:8"] {
         let house = Arc::new(dwell_houses::open(seed).unwrap().0);
-        let count = if tests_all() { 200 } else { 40 };
+        let count = if tests_all() { 200 } else { 20 };
         agree(seed, &house, count, VisibilityPath::Compute);
         agree(seed, &house, count, VisibilityPath::Raster);
     }
