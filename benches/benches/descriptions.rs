@@ -9,7 +9,7 @@ use dwell_scene::parallel::Threads;
 use dwell_scene::{House, Pose, State};
 use dwell_semantics::check::Listener;
 use dwell_semantics::describe::{
-    TextLength, captions, describe_rooms, describe_route, describe_view,
+    TextOptions, captions, describe_rooms, describe_route, describe_view,
 };
 use dwell_semantics::{Semantics, Term, Viewer};
 use std::sync::Arc;
@@ -64,7 +64,7 @@ fn main() {
             let house = open(seed);
             let semantics = Semantics::new(&house);
             let state = State::new(&house);
-            describe_rooms(&semantics.scene(&state), TextLength::Normal, None).len()
+            describe_rooms(&semantics.scene(&state), TextOptions::default()).len()
         })
         .into_iter()
         .sum();
@@ -87,13 +87,13 @@ fn main() {
         &houses,
         |semantics| {
             let state = State::new(semantics.house());
-            describe_rooms(&semantics.scene(&state), TextLength::Normal, None);
+            describe_rooms(&semantics.scene(&state), TextOptions::default());
             1
         },
     );
     rate("captions", &threads, &houses, |semantics| {
         let state = State::new(semantics.house());
-        captions(&semantics.scene(&state), TextLength::Normal, None).len()
+        captions(&semantics.scene(&state), TextOptions::default()).len()
     });
     let listener = |viewer| Listener {
         viewer: Some(viewer),
@@ -104,7 +104,7 @@ fn main() {
         let scene = semantics.scene(&state);
         let viewers = viewers(semantics.house());
         for viewer in &viewers {
-            describe_view(&scene, listener(*viewer), TextLength::Normal, None);
+            describe_view(&scene, listener(*viewer), TextOptions::default());
         }
         viewers.len()
     });
@@ -116,7 +116,7 @@ fn main() {
         for viewer in viewers(semantics.house()) {
             for room in &rooms {
                 let to = Term::Room(*room);
-                let route = describe_route(&scene, listener(viewer), to, TextLength::Normal, None);
+                let route = describe_route(&scene, listener(viewer), to, TextOptions::default());
                 made += usize::from(route.is_some());
             }
         }

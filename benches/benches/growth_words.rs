@@ -264,10 +264,10 @@ fn words(rows: &mut Rows, shape: Shape, house: &Arc<House>) {
     let state = State::new(house);
     rows.row(shape, count, "facts", || Semantics::new(house));
     rows.row(shape, count, "house", || {
-        describe::describe_house(&semantics.scene(&state), describe::TextLength::Normal, None)
+        describe::describe_house(&semantics.scene(&state), describe::TextOptions::default())
     });
     rows.row(shape, count, "object", || {
-        describe::captions(&semantics.scene(&state), describe::TextLength::Normal, None)
+        describe::captions(&semantics.scene(&state), describe::TextOptions::default())
     });
     rows.row(shape, count, "graph", || {
         scene_graph(&semantics.scene(&state), None)
@@ -286,8 +286,7 @@ fn words(rows: &mut Rows, shape: Shape, house: &Arc<House>) {
         describe::describe_view(
             &semantics.scene(&state),
             listener,
-            describe::TextLength::Normal,
-            None,
+            describe::TextOptions::default(),
         )
     });
     rows.row(shape, count, "instructions", || {

@@ -166,7 +166,7 @@ class House:
         """The same number for houses that hold the same; 64 bits."""
     def info(self) -> dict[str, Any]:
         """Counts, rooms, objects, categories, report of damage: one JSON object."""
-    def describe(self, level: str, length: str, key: int | None = ...) -> list[dict[str, Any]]:
+    def describe(self, level: str, options: tuple[str, str, int | None]) -> list[dict[str, Any]]:
         """Sentences, or JSON lines, of one level: object, room, house, graph, instructions."""
     def semantic_classes(self, table: str = ...) -> list[str]:
         """Names of semantic classes: ``coarse``, ``fine`` or ``nyu40``; 0 is void."""
@@ -266,10 +266,9 @@ class World:
     def describe(
         self,
         level: str,
-        length: str,
+        options: tuple[str, str, int | None],
         viewer: _Data | int | None,
         agent: int | None = ...,
-        key: int | None = ...,
         to: str | int | None = ...,
         since: bytes | None = ...,
     ) -> list[dict[str, Any]]: ...

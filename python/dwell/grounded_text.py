@@ -13,6 +13,8 @@ __all__ = ["Text"]
 
 # How much a text tells.
 Length: TypeAlias = Literal["short", "normal", "long"]
+# Whether things are told with their colours, materials and sizes.
+Style: TypeAlias = Literal["plain", "rich"]
 
 
 class Text(str):

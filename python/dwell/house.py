@@ -19,7 +19,7 @@ from dwell.arguments import (
     point,
     text,
 )
-from dwell.grounded_text import Length, Text, texts
+from dwell.grounded_text import Length, Style, Text, texts
 from dwell.house_list import HouseList
 from dwell.navigation import Navigation, Walker, walker_settings
 
@@ -265,14 +265,25 @@ class House:
         level: Literal["object", "room", "house"] = ...,
         *,
         length: Length = ...,
+        style: Style = ...,
         seed: int | None = ...,
     ) -> list[Text]: ...
     @overload
     def describe(
-        self, level: Level, *, length: Length = ..., seed: int | None = ...
+        self,
+        level: Level,
+        *,
+        length: Length = ...,
+        style: Style = ...,
+        seed: int | None = ...,
     ) -> list[str]: ...
     def describe(
-        self, level: Level = "house", *, length: Length = "normal", seed: int | None = None
+        self,
+        level: Level = "house",
+        *,
+        length: Length = "normal",
+        style: Style = "rich",
+        seed: int | None = None,
     ) -> list[Text] | list[str]:
         """Sentences about the house as it starts.
 
@@ -285,6 +296,9 @@ class House:
             length: Of the levels object, room and house: ``short`` (a thing's looks, the area and
                 the largest things of a room, the rooms of a house), ``normal``, or ``long``, which
                 also says where things stand to each other.
+            style: Of the same levels: ``plain``, by nouns and places, with adjectives only where
+                these tell things apart, or ``rich``, also by colours, patterns, materials and
+                sizes, and rooms by the look of floor and walls.
             seed: Draws the wordings, with the name of the house; without it each sentence has its
                 first wording.
 
@@ -295,9 +309,12 @@ class House:
             >>> sizes = [len(house.describe("room", length=name)[0]) for name in lengths]
             >>> sizes == sorted(sizes)
             True
+            >>> house.describe("object", style="plain")[0]
+            'a closed door from the hallway to the outside'
         """
         seed = None if seed is None else integer_in_range("seed", seed)
-        rows = self._native.describe(text("level", level), text("length", length), seed)
+        options = (text("length", length), text("style", style), seed)
+        rows = self._native.describe(text("level", level), options)
         return texts(level, rows)
 
     def semantic_classes(self, table: Classes = "coarse") -> list[str]:

@@ -7,7 +7,7 @@ from typing import Any, Literal, overload
 from dwell import ConfigError, _native
 from dwell.arguments import integer_in_range, quoted
 from dwell.arguments import text as checked_text
-from dwell.grounded_text import Length, Text, texts
+from dwell.grounded_text import Length, Style, Text, texts
 from dwell.relation_api import RelationApi, Thing, Viewer, thing_argument, viewer_argument
 
 
@@ -20,6 +20,7 @@ class LanguageApi(RelationApi):
         level: Literal["object", "room", "house", "view", "route", "changes"] = ...,
         *,
         length: Length = ...,
+        style: Style = ...,
         seed: int | None = ...,
         viewer: Viewer | None = ...,
         agent: int | None = ...,
@@ -32,6 +33,7 @@ class LanguageApi(RelationApi):
         level: str,
         *,
         length: Length = ...,
+        style: Style = ...,
         seed: int | None = ...,
         viewer: Viewer | None = ...,
         agent: int | None = ...,
@@ -43,6 +45,7 @@ class LanguageApi(RelationApi):
         level: str = "house",
         *,
         length: Length = "normal",
+        style: Style = "rich",
         seed: int | None = None,
         viewer: Viewer | None = None,
         agent: int | None = None,
@@ -62,6 +65,7 @@ class LanguageApi(RelationApi):
                 ``changes``: what is otherwise than in the snapshot ``since``, as claims of the
                 present; one text, empty where nothing has changed that can be said.
             length: Of the levels object, room, house, view and route.
+            style: Of the levels object, room, house and view.
             seed: Draws the wordings.
             viewer: Whose view: an agent's number or a camera, as for :meth:`holds`. Without it the
                 eyes of ``agent``.
@@ -95,10 +99,9 @@ class LanguageApi(RelationApi):
         looks = viewer_argument(viewer)
         rows = self._native.describe(
             checked_text("level", level),
-            checked_text("length", length),
+            (checked_text("length", length), checked_text("style", style), seed),
             looks,
             listener,
-            seed,
             None if to is None else thing_argument("to", to),
             since,
         )

@@ -8,8 +8,8 @@ use dwell_scene::House;
 use dwell_scene::random::RandomKey;
 use dwell_semantics::check::{GroundedPhrase, Listener};
 use dwell_semantics::describe::{
-    GroundedText, TextLength, captions, describe_changes, describe_house, describe_rooms,
-    describe_route, describe_view,
+    GroundedText, TextLength, TextOptions, TextStyle, captions, describe_changes, describe_house,
+    describe_rooms, describe_route, describe_view,
 };
 use dwell_semantics::graph::scene_graph;
 use dwell_semantics::instruct::{
@@ -20,6 +20,8 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 /// The levels of texts, in the order of the documentation.
+const LEVELS_WITH_LENGTHS: [&str; 5] = ["object", "room", "house", "view", "route"];
+const LEVELS_WITH_STYLES: [&str; 4] = ["object", "room", "house", "view"];
 const LEVELS: &str = "object, room, house, view, route, changes, graph, instructions";
 
 /// The things of a text by their ids.
@@ -121,21 +123,40 @@ fn goal(house: &House, goal: &InstructionGoal) -> Value {
     })
 }
 
-/// The length of a name; some levels have only one.
-fn text_length(level: &str, name: &str) -> Result<TextLength, PyFault> {
-    let Some(length) = TextLength::find(name) else {
-        let allowed = TextLength::ALL.map(TextLength::name).join(", ");
-        return Err(PyFault::Config(format!(
-            "length is {name:?}; allowed are {allowed}"
-        )));
+/// How a text is told: the names of its length and its style, and the seed of its wording.
+pub(crate) type TextArguments<'a> = (&'a str, &'a str, Option<u64>);
+
+/// The options of a text; some levels have only one length or style. One seed does not choose the same wordings in every house.
+fn text_options(
+    house: &House,
+    level: &str,
+    (length, style, seed): TextArguments<'_>,
+) -> Result<TextOptions, PyFault> {
+    let unknown = |what: &str, name: &str, allowed: &[&str]| {
+        let allowed = allowed.join(", ");
+        PyFault::Config(format!("{what} is {name:?}; allowed are {allowed}"))
     };
-    let has_lengths = ["object", "room", "house", "view", "route"].contains(&level);
-    if has_lengths || length == TextLength::Normal {
-        return Ok(length);
+    let only = |what: &str, name: &str, levels: &[&str]| {
+        let levels = levels.join(", ");
+        PyFault::Config(format!(
+            "{what} is {name:?} with level {level:?}; only the levels {levels} have others than the default"
+        ))
+    };
+    let lengths = TextLength::ALL.map(TextLength::name);
+    let found = TextLength::find(length).ok_or_else(|| unknown("length", length, &lengths))?;
+    if found != TextLength::default() && !LEVELS_WITH_LENGTHS.contains(&level) {
+        return Err(only("length", length, &LEVELS_WITH_LENGTHS));
     }
-    Err(PyFault::Config(format!(
-        "length is {name:?} with level {level:?}; only the levels object, room, house, view and route have lengths"
-    )))
+    let styles = TextStyle::ALL.map(TextStyle::name);
+    let told = TextStyle::find(style).ok_or_else(|| unknown("style", style, &styles))?;
+    if told != TextStyle::default() && !LEVELS_WITH_STYLES.contains(&level) {
+        return Err(only("style", style, &LEVELS_WITH_STYLES));
+    }
+    Ok(TextOptions {
+        length: found,
+        style: told,
+        wording: seed.map(|seed| RandomKey::root(seed).child(house.name.as_str())),
+    })
 }
 
 /// What is to be described.
@@ -143,10 +164,8 @@ fn text_length(level: &str, name: &str) -> Result<TextLength, PyFault> {
 pub(crate) struct DescriptionRequest<'a> {
     /// The level.
     pub(crate) level: &'a str,
-    /// The name of the length.
-    pub(crate) length: &'a str,
-    /// Draws the wordings.
-    pub(crate) seed: Option<u64>,
+    /// How it is told.
+    pub(crate) options: TextArguments<'a>,
     /// Who listens.
     pub(crate) listener: Listener,
     /// The goal of a route.
@@ -158,36 +177,34 @@ pub(crate) struct DescriptionRequest<'a> {
 /// Texts about a house as it stands in a state: a mapping each.
 ///
 /// # Errors
-/// [`PyFault::Config`] for an unknown level or length, and for a level without what it needs.
+/// [`PyFault::Config`] for an unknown level, length or style, and for a level without what it needs.
 pub(crate) fn describe_level(
     scene: &SemanticScene<'_>,
     request: &DescriptionRequest<'_>,
 ) -> Result<PyValue, PyFault> {
     let (house, level, listener) = (scene.house(), request.level, request.listener);
-    let (seed, needs) = (request.seed, |what: &str| {
+    let needs = |what: &str| {
         PyFault::Config(format!(
             "level is {level:?}: World.describe has it, with {what}"
         ))
-    });
-    let length = text_length(level, request.length)?;
-    // One seed does not choose the same wordings in every house.
-    let wording = seed.map(|seed| RandomKey::root(seed).child(house.name.as_str()));
+    };
+    let options = text_options(house, level, request.options)?;
     let texts = match level {
-        "house" => vec![describe_house(scene, length, wording)],
-        "room" => describe_rooms(scene, length, wording),
-        "object" => captions(scene, length, wording),
+        "house" => vec![describe_house(scene, options)],
+        "room" => describe_rooms(scene, options),
+        "object" => captions(scene, options),
         "view" | "route" if listener.viewer.is_none() => {
             return Err(needs("viewer or agent"));
         }
-        "view" => vec![describe_view(scene, listener, length, wording)],
+        "view" => vec![describe_view(scene, listener, options)],
         "route" => {
             let to = request.to.ok_or_else(|| needs("to, a thing or a room"))?;
-            let route = describe_route(scene, listener, to, length, wording);
+            let route = describe_route(scene, listener, to, options);
             route.into_iter().collect()
         }
         "changes" => {
             let before = request.before.ok_or_else(|| needs("since, a snapshot"))?;
-            vec![describe_changes(before, scene, listener, wording)]
+            vec![describe_changes(before, scene, listener, options.wording)]
         }
         "graph" => {
             let text = serde_json::to_string(&scene_graph(scene, None))?;
@@ -197,7 +214,7 @@ pub(crate) fn describe_level(
             let mut rows = Vec::new();
             for kind in InstructionKind::ALL {
                 for (k, instruction) in candidates(scene, kind).into_iter().enumerate() {
-                    let worded = seed.and_then(|seed| {
+                    let worded = request.options.2.and_then(|seed| {
                         let key = RandomKey::root(seed).child(k as u64);
                         choose(scene.semantics, std::slice::from_ref(&instruction), key)
                     });
@@ -218,10 +235,11 @@ pub(crate) fn describe_level(
 }
 
 impl WorldAccess<'_> {
-    /// Texts of a level and length about the world as it is, `since` a snapshot or `to` a goal where the level needs them.
+    /// Texts of a level about the world as it is, `since` a snapshot or `to` a goal where the level needs them.
     pub(crate) fn describe(
         &self,
-        (level, length, seed): (&str, &str, Option<u64>),
+        level: &str,
+        options: TextArguments<'_>,
         listener: Listener,
         to: Option<JsonArgument>,
         since: Option<&[u8]>,
@@ -233,8 +251,7 @@ impl WorldAccess<'_> {
         let before = before.as_ref().map(|state| semantics.scene(state));
         let request = DescriptionRequest {
             level,
-            length,
-            seed,
+            options,
             listener,
             to,
             before: before.as_ref(),

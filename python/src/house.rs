@@ -2,7 +2,7 @@
 
 use crate::answers::PyValue;
 use crate::authoring;
-use crate::descriptions::{DescriptionRequest, describe_level};
+use crate::descriptions::{DescriptionRequest, TextArguments, describe_level};
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use crate::hrtf::PyHead;
@@ -188,13 +188,11 @@ impl PyHouse {
         py.engine(|| PyValue::of(&dwell::best_room_viewpoints(&self.engines)?))
     }
 
-    #[pyo3(signature = (level, length, key=None))]
     fn describe(
         &self,
         py: Python<'_>,
         level: &str,
-        length: &str,
-        key: Option<u64>,
+        options: TextArguments<'_>,
     ) -> PyResult<PyValue> {
         py.engine(|| {
             let state = State::new(self.house());
@@ -203,8 +201,7 @@ impl PyHouse {
                 &scene,
                 &DescriptionRequest {
                     level,
-                    length,
-                    seed: key,
+                    options,
                     ..DescriptionRequest::default()
                 },
             )

@@ -3,6 +3,7 @@
 use crate::answers::PyValue;
 use crate::arrays;
 use crate::batch::PyBatch;
+use crate::descriptions::TextArguments;
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use crate::house::PyHouse;
@@ -538,22 +539,21 @@ impl PyWorld {
         })
     }
 
-    #[pyo3(signature = (level, length, viewer, agent=None, key=None, to=None, since=None))]
+    #[pyo3(signature = (level, options, viewer, agent=None, to=None, since=None))]
     #[expect(clippy::too_many_arguments, reason = "those of the Python function")]
     fn describe(
         &self,
         py: Python<'_>,
         level: &str,
-        length: &str,
+        options: TextArguments<'_>,
         viewer: JsonArgument,
         agent: Option<usize>,
-        key: Option<u64>,
         to: Option<JsonArgument>,
         since: Option<&[u8]>,
     ) -> PyResult<PyValue> {
         self.read_interruptible(py, |running| {
             let listener = running.listener(viewer, agent)?;
-            running.describe((level, length, key), listener, to, since)
+            running.describe(level, options, listener, to, since)
         })
     }
 

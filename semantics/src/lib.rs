@@ -2,8 +2,8 @@
 
 mod attributes;
 pub mod category;
-mod clear_glass;
 pub mod check;
+mod clear_glass;
 pub mod color;
 mod csv_table;
 pub mod describe;

@@ -20,6 +20,12 @@ const KINDS: [(&str, &[&str]); 11] = [
     ("office", &["desk", "office_chair"]),
 ];
 
+/// Categories of which a living room has one of each if it is a studio.
+const STUDIO: [&[&str]; 2] = [
+    &["bed", "single_bed", "double_bed"],
+    &["refrigerator", "cooker"],
+];
+
 /// Labels that say nothing of what a room is used for.
 const VAGUE: [&str; 2] = ["room", "storage"];
 
@@ -42,17 +48,22 @@ impl RoomContents {
         Self(contents)
     }
 
-    /// The kind that the things in a room make it, where its label `kind` is none or says nothing of its use: in files of houses
-    /// bathrooms are "storage".
+    /// The kind that the things in a room make it, where its label `kind` is none or says nothing of its use (in files of houses
+    /// bathrooms are "storage"), or only a part of it (a living room with a bed and a cooker is a studio).
     pub(crate) fn kind(
         &self,
         room: RoomId,
         kind: Option<&RoomCategory>,
     ) -> Option<&'static RoomCategory> {
-        if kind.is_some_and(|kind| !VAGUE.contains(&kind.name)) {
+        let own = self.0.get(&room)?;
+        let label = kind.map_or("room", |kind| kind.name);
+        let has_one = |of: &&[&str]| of.iter().any(|name| own.contains(name));
+        if label == "living_room" && STUDIO.iter().all(has_one) {
+            return room_kinds().get("studio");
+        }
+        if !VAGUE.contains(&label) {
             return None;
         }
-        let own = self.0.get(&room)?;
         let fits = |needed: &&[&str]| needed.iter().all(|name| own.contains(name));
         let found = KINDS.iter().find(|(_, needed)| fits(needed))?;
         room_kinds().get(found.0)

@@ -124,10 +124,10 @@ mod tests {
             assert!(room_kinds().get(label).is_some(), "{label}");
         }
         // Kinds that the format lacks.
-        for kind in ["porch", "roof"] {
+        for kind in ["porch", "roof", "studio"] {
             assert!(room_kinds().get(kind).is_some(), "{kind}");
         }
-        assert_eq!(room_kinds().rows().len(), labels.len() + 2);
+        assert_eq!(room_kinds().rows().len(), labels.len() + 3);
         assert_eq!(
             room_kinds().get("Living_Room").unwrap().singular,
             "living room"

@@ -3,7 +3,7 @@
 use dwell_scene::rays::RayScene;
 use dwell_scene::{AgentBody, AgentId, AgentState, House, ObjectId, ReceptacleKind, State};
 use dwell_semantics::color::ColorVocabulary;
-use dwell_semantics::describe::{TextLength, caption, describe_house};
+use dwell_semantics::describe::{TextOptions, caption, describe_house};
 use dwell_semantics::graph::scene_graph;
 use dwell_semantics::instruct::{InstructionKind, InstructionProgress, candidates};
 use dwell_semantics::refer::{refer, refer_to_room};
@@ -23,7 +23,7 @@ fn every_room_and_thing_has_its_words() {
     let semantics = Semantics::new(house);
     let state = State::new(house);
     let scene = semantics.scene(&state);
-    println!("{}", describe_house(&scene, TextLength::Normal, None).text);
+    println!("{}", describe_house(&scene, TextOptions::default()).text);
     for room in house.rooms.ids() {
         let facts = semantics.room(room);
         assert!(
@@ -51,7 +51,7 @@ fn every_room_and_thing_has_its_words() {
             object.room,
             "{}: {}",
             object.name,
-            caption(&scene, id, TextLength::Normal, None).text
+            caption(&scene, id, TextOptions::default()).text
         );
     }
 }
@@ -89,7 +89,7 @@ fn words_say_what_one_sees() {
     assert!(semantics.room(room("hallway")).passages.is_empty());
     let graph = scene_graph(&scene, None);
     assert_eq!(graph.rooms[kitchen.0 as usize].passages, [living_room.0]);
-    let text = describe_house(&scene, TextLength::Normal, None).text;
+    let text = describe_house(&scene, TextOptions::default()).text;
     for (one, other) in [("kitchen", "living room"), ("living room", "kitchen")] {
         let opening = format!("\nThe {one} is about ");
         let told = text
@@ -120,7 +120,7 @@ fn every_thing_is_mentioned_once() {
     let house = &*HOUSE;
     let semantics = Semantics::new(house);
     let state = State::new(house);
-    let mut text = describe_house(&semantics.scene(&state), TextLength::Normal, None).text;
+    let mut text = describe_house(&semantics.scene(&state), TextOptions::default()).text;
     // "Gray and black candles": the "and" between colours splits no list.
     for one in ColorVocabulary::Plain.words() {
         for other in ColorVocabulary::Plain.words() {

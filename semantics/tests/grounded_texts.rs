@@ -9,7 +9,8 @@ use dwell_scene::random::RandomKey;
 use dwell_scene::{House, State};
 use dwell_semantics::check::{Checker, Listener};
 use dwell_semantics::describe::{
-    GroundedText, TextLength, captions, describe_house, describe_rooms, describe_view,
+    GroundedText, TextLength, TextOptions, TextStyle, captions, describe_house, describe_rooms,
+    describe_view,
 };
 use dwell_semantics::form::Form;
 use dwell_semantics::instruct::{InstructionKind, candidates};
@@ -51,16 +52,28 @@ fn examine_house(name: &str) {
     let state = State::new(&house);
     let scene = semantics.scene(&state);
     let nobody = Listener::default();
-    let drawn = Some(RandomKey::root(5));
-    for (length, wording) in [
-        (TextLength::Normal, None),
-        (TextLength::Normal, drawn),
-        (TextLength::Short, None),
-        (TextLength::Long, drawn),
+    let drawn = TextOptions {
+        wording: Some(RandomKey::root(5)),
+        ..TextOptions::default()
+    };
+    let long = TextOptions {
+        length: TextLength::Long,
+        ..drawn
+    };
+    let plain = TextOptions {
+        style: TextStyle::Plain,
+        ..long
+    };
+    for options in [
+        TextOptions::default(),
+        drawn,
+        TextLength::Short.into(),
+        long,
+        plain,
     ] {
-        let mut texts = vec![describe_house(&scene, length, wording)];
-        texts.extend(describe_rooms(&scene, length, wording));
-        texts.extend(captions(&scene, length, wording));
+        let mut texts = vec![describe_house(&scene, options)];
+        texts.extend(describe_rooms(&scene, options));
+        texts.extend(captions(&scene, options));
         for text in texts {
             examine(&scene, nobody, &text, name);
         }
@@ -77,8 +90,9 @@ fn examine_house(name: &str) {
             viewer: Some(viewer),
             agent: None,
         };
-        for length in TextLength::ALL {
-            let text = describe_view(&scene, listener, length, None);
+        let lengths = TextLength::ALL.map(TextOptions::from);
+        for options in lengths.into_iter().chain([plain]) {
+            let text = describe_view(&scene, listener, options);
             examine(&scene, listener, &text, name);
         }
     }
@@ -133,13 +147,13 @@ fn odd_nouns_are_said_and_their_texts_are_true() {
         let semantics = Semantics::new(&house);
         let state = State::new(&house);
         let scene = semantics.scene(&state);
-        let mut texts = captions(&scene, TextLength::Normal, None);
-        texts.extend(describe_rooms(
-            &scene,
-            TextLength::Normal,
-            Some(RandomKey::root(3)),
-        ));
-        texts.push(describe_house(&scene, TextLength::Normal, None));
+        let mut texts = captions(&scene, TextOptions::default());
+        let drawn = TextOptions {
+            wording: Some(RandomKey::root(3)),
+            ..TextOptions::default()
+        };
+        texts.extend(describe_rooms(&scene, drawn));
+        texts.push(describe_house(&scene, TextOptions::default()));
         assert!(house.rooms.get(room).is_some());
         let checker = Checker::new(&scene, Listener::default());
         for text in texts {

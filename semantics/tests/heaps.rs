@@ -132,10 +132,10 @@ fn what_is_referred_to_in_a_heap_is_one_thing() {
                 let fits = checker.fitting(&expression);
                 assert_eq!(fits, [Term::Object(id)], "{expression:?}");
             }
-            let caption = describe::caption(&scene, id, describe::TextLength::Normal, None).text;
+            let caption = describe::caption(&scene, id, describe::TextOptions::default()).text;
             assert!(caption.contains("in the kitchen"), "{caption}");
         }
-        let text = describe::describe_house(&scene, describe::TextLength::Normal, None).text;
+        let text = describe::describe_house(&scene, describe::TextOptions::default()).text;
         assert!(
             text.starts_with("There is a room and 200 things."),
             "{text}"

@@ -4,7 +4,7 @@ mod common;
 
 use common::Builder;
 use dwell_scene::{ObjectId, State};
-use dwell_semantics::describe::{TextLength, caption};
+use dwell_semantics::describe::{TextOptions, caption};
 use dwell_semantics::{Semantics, Term, predicates};
 
 #[test]
@@ -28,7 +28,7 @@ fn patterns_are_told_of_things() {
     let (semantics, state) = (Semantics::new(&house), State::new(&house));
     let scene = semantics.scene(&state);
     for (rug, own) in rugs.into_iter().zip(names) {
-        let text = caption(&scene, rug, TextLength::Normal, None).text;
+        let text = caption(&scene, rug, TextOptions::default()).text;
         assert!(text.starts_with(&format!("a {own} ")), "{text}");
         for name in names {
             let predicate = predicates::find(name).expect("it exists");

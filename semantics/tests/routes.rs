@@ -7,7 +7,7 @@ use common::Builder;
 use dwell_houses::open;
 use dwell_scene::{Id, Pose, RoomId, State};
 use dwell_semantics::check::{Checker, Listener};
-use dwell_semantics::describe::{TextLength, describe_route};
+use dwell_semantics::describe::{TextLength, TextOptions, describe_route};
 use dwell_semantics::form::{Description, Form, Phrase, RequestStep, TurnDirection};
 use dwell_semantics::{SemanticScene, Semantics, Term, Viewer};
 use glam::Vec3;
@@ -108,7 +108,7 @@ fn whoever_follows_the_words_arrives() {
                 .step_by(3)
                 .map(|room| Term::Room(*room));
             for goal in goals.chain(things) {
-                let text = describe_route(&scene, listener, goal, TextLength::Normal, None);
+                let text = describe_route(&scene, listener, goal, TextOptions::default());
                 let Some(text) = text else {
                     none += 1;
                     continue;
@@ -182,7 +182,7 @@ fn turns_are_those_of_the_body() {
         };
         for (k, thing) in things.iter().enumerate() {
             let goal = Term::Object(*thing);
-            let text = describe_route(&scene, listener, goal, TextLength::Short, None).unwrap();
+            let text = describe_route(&scene, listener, goal, TextLength::Short.into()).unwrap();
             let turn = text.claims.iter().find_map(|claim| match &claim.form {
                 Form::Request(steps) => steps.iter().find_map(|step| match step {
                     RequestStep::Turn(direction) => Some(*direction),
@@ -203,7 +203,7 @@ fn turns_are_those_of_the_body() {
     // Without a viewer, and for what is no place, there is none.
     let goal = Term::Object(things[0]);
     assert_eq!(
-        describe_route(&scene, Listener::default(), goal, TextLength::Short, None),
+        describe_route(&scene, Listener::default(), goal, TextLength::Short.into()),
         None
     );
     let _ = things[0].index();

@@ -8,7 +8,7 @@ use dwell_scene::rays::RayScene;
 use dwell_scene::{AgentBody, AgentId, AgentState, Pose, State};
 use dwell_semantics::check::{Checker, Listener};
 use dwell_semantics::describe::{
-    TextLength, caption, describe_house, describe_room, describe_view,
+    TextOptions, caption, describe_house, describe_room, describe_view,
 };
 use dwell_semantics::form::{Description, Form, Noun, Phrase, Quantifier};
 use dwell_semantics::graph::{SceneGraph, scene_graph};
@@ -38,27 +38,27 @@ fn captions_read_aloud() {
     let mut state = State::new(&s.house);
     let scene = semantics.scene(&state);
     assert_eq!(
-        caption(&scene, s.cup, TextLength::Normal, None).text,
+        caption(&scene, s.cup, TextOptions::default()).text,
         "a white porcelain cup on the table in the kitchen"
     );
     assert_eq!(
-        caption(&scene, s.red_chair, TextLength::Normal, None).text,
+        caption(&scene, s.red_chair, TextOptions::default()).text,
         "a red plastic chair next to the table in the kitchen"
     );
     assert_eq!(
-        caption(&scene, s.apple, TextLength::Normal, None).text,
+        caption(&scene, s.apple, TextOptions::default()).text,
         "a red plastic portion of food in the bowl in the kitchen"
     );
     assert_eq!(
-        caption(&scene, s.stool, TextLength::Normal, None).text,
+        caption(&scene, s.stool, TextOptions::default()).text,
         "a brown wooden stool on the rug in the hallway"
     );
     assert_eq!(
-        caption(&scene, s.picture, TextLength::Normal, None).text,
+        caption(&scene, s.picture, TextOptions::default()).text,
         "a yellow picture on the wall in the kitchen"
     );
     assert_eq!(
-        caption(&scene, s.bed_b, TextLength::Normal, None).text,
+        caption(&scene, s.bed_b, TextOptions::default()).text,
         "a green double bed in the second bedroom"
     );
     state.agents.push(AgentState::new(
@@ -69,7 +69,7 @@ fn captions_read_aloud() {
     state.held_by[s.cup] = Some(AgentId(0));
     let scene = semantics.scene(&state);
     assert_eq!(
-        caption(&scene, s.cup, TextLength::Normal, None).text,
+        caption(&scene, s.cup, TextOptions::default()).text,
         "a white porcelain cup in somebody's hand in the hallway"
     );
 }
@@ -109,7 +109,7 @@ fn words_know_what_is_open_and_what_is_on() {
     let semantics = Semantics::new(&house);
     let mut state = State::new(&house);
     let says = |state: &State, object| {
-        caption(&semantics.scene(state), object, TextLength::Normal, None).text
+        caption(&semantics.scene(state), object, TextOptions::default()).text
     };
     assert_eq!(
         says(&state, door),
@@ -148,13 +148,13 @@ fn descriptions_read_aloud() {
     let state = State::new(&s.house);
     let scene = semantics.scene(&state);
     assert_eq!(
-        describe_room(&scene, s.kitchen, TextLength::Normal, None).text,
+        describe_room(&scene, s.kitchen, TextOptions::default()).text,
         "The kitchen is about 15 square metres. It has a brown parquet floor and white walls. In the kitchen there is a brown \
          wooden table, a white refrigerator and two plastic chairs. On the table there is a white porcelain bowl and a white \
          porcelain cup. There is a red plastic portion of food in the bowl. There is a yellow picture on the wall in the \
          kitchen."
     );
-    let text = describe_house(&scene, TextLength::Normal, None).text;
+    let text = describe_house(&scene, TextOptions::default()).text;
     println!("{text}");
     assert!(text.starts_with(
         "There are four rooms and 13 things. There are two bedrooms, a hallway and a kitchen.\n"
@@ -174,8 +174,7 @@ fn descriptions_read_aloud() {
     let view = describe_view(
         &scene,
         Listener::agent(&scene, AgentId(0)),
-        TextLength::Normal,
-        None,
+        TextOptions::default(),
     );
     assert_eq!(
         view.text,
@@ -186,7 +185,7 @@ fn descriptions_read_aloud() {
     );
     // Without eyes nothing is seen.
     assert_eq!(
-        describe_view(&scene, Listener::default(), TextLength::Normal, None).text,
+        describe_view(&scene, Listener::default(), TextOptions::default()).text,
         ""
     );
 }
@@ -221,7 +220,7 @@ fn the_colour_is_that_of_what_is_seen() {
     assert_eq!(colors[0].0, "orange", "{colors:?}");
     assert!(colors[0].1 > 0.5, "{colors:?}");
     let state = State::new(&house);
-    let text = describe_house(&semantics.scene(&state), TextLength::Normal, None).text;
+    let text = describe_house(&semantics.scene(&state), TextOptions::default()).text;
     assert!(text.contains("an orange and light gray wardrobe"), "{text}");
 }
 
@@ -233,7 +232,7 @@ fn texts_are_the_same_every_time() {
         let state = State::new(&s.house);
         let scene = semantics.scene(&state);
         let graph = serde_json::to_string(&scene_graph(&scene, None)).unwrap();
-        (describe_house(&scene, TextLength::Normal, None).text, graph)
+        (describe_house(&scene, TextOptions::default()).text, graph)
     };
     assert_eq!(text(), text());
 }

@@ -6,7 +6,7 @@ use dwell_scene::random::{RandomKey, RandomStream};
 use dwell_scene::{Entity, EntityId, House, ObjectId, State, StructureKind};
 use dwell_semantics::check::{Checker, Listener};
 use dwell_semantics::color::ColorVocabulary;
-use dwell_semantics::describe::{TextLength, captions, describe_rooms};
+use dwell_semantics::describe::{TextOptions, captions, describe_rooms};
 use dwell_semantics::english::ordinal;
 use dwell_semantics::form::{Clause, Description, Form, Noun, Phrase, Quantifier};
 use dwell_semantics::graph::{ObjectNode, SceneGraph, scene_graph};
@@ -156,8 +156,8 @@ impl Facts<'_> {
 
 /// The descriptions of things whose existence true texts claim, and that are about places and landmarks alone.
 fn true_descriptions(scene: &SemanticScene<'_>) -> Vec<Description> {
-    let texts = describe_rooms(scene, TextLength::Normal, None).into_iter();
-    let texts = texts.chain(captions(scene, TextLength::Normal, None));
+    let texts = describe_rooms(scene, TextOptions::default()).into_iter();
+    let texts = texts.chain(captions(scene, TextOptions::default()));
     let forms = texts.flat_map(|text| text.claims).map(|claim| claim.form);
     let mut found = Vec::new();
     for form in forms {

@@ -8,7 +8,7 @@ use dwell_scene::{
 };
 use dwell_semantics::check::{Checker, Listener};
 use dwell_semantics::describe::{
-    TextLength, caption, describe_house, describe_room, describe_view,
+    TextOptions, caption, describe_house, describe_room, describe_view,
 };
 use dwell_semantics::form::Form;
 use dwell_semantics::refer::refer;
@@ -35,8 +35,7 @@ impl Told {
         caption(
             &self.semantics.scene(&self.state),
             object,
-            TextLength::Normal,
-            None,
+            TextOptions::default(),
         )
         .text
     }
@@ -45,8 +44,7 @@ impl Told {
         describe_room(
             &self.semantics.scene(&self.state),
             room,
-            TextLength::Normal,
-            None,
+            TextOptions::default(),
         )
         .text
     }
@@ -302,8 +300,7 @@ fn one_is_on_a_balcony_and_in_a_kitchen() {
         describe_view(
             &scene,
             Listener::agent(&scene, AgentId(0)),
-            TextLength::Normal,
-            None,
+            TextOptions::default(),
         )
         .text
     };
@@ -487,7 +484,7 @@ fn doors_are_named_by_where_they_lead() {
         "From the bedroom there are two doors to the hallway"
     );
     assert!(
-        !describe_house(&told.semantics.scene(&told.state), TextLength::Normal, None)
+        !describe_house(&told.semantics.scene(&told.state), TextOptions::default())
             .text
             .contains("further")
     );

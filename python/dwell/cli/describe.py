@@ -15,14 +15,16 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from typing import Literal
 
-    from dwell.grounded_text import Length, Text
+    from dwell.grounded_text import Text
     from dwell.house import House
     from dwell.world import World
 
 _LEVELS = ("object", "room", "house", "view", "route", "changes", "graph", "instructions")
 _LENGTHS = ("short", "normal", "long")
-#: Levels of which there is one length.
+_STYLES = ("plain", "rich")
+#: Levels of which there is one length, and one style.
 _OF_ONE_LENGTH = ("changes", "graph", "instructions")
+_OF_ONE_STYLE = ("route", *_OF_ONE_LENGTH)
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -42,6 +44,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="of objects, rooms, houses, views and routes; long ones also say where things stand "
         "to each other",
     )
+    parser.add_argument(
+        "--style",
+        choices=_STYLES,
+        default="rich",
+        help="of objects, rooms, houses and views: plain ones name things without their colours, "
+        "materials and sizes",
+    )
     parser.add_argument("--seed", type=count, help="draws the wordings, with the name of the house")
     parser.add_argument(
         "--out",
@@ -59,8 +68,10 @@ def run(args: argparse.Namespace) -> int:
     houses = HouseList(args.houses)
     if args.length != "normal" and args.level in _OF_ONE_LENGTH:
         raise ValueError(f"--length {args.length}: texts of level {args.level} have one length")
-    settings = {"level": args.level, "length": args.length, "seed": args.seed}
-    job = {"command": "describe", **settings, "houses": args.houses}
+    if args.style != "rich" and args.level in _OF_ONE_STYLE:
+        raise ValueError(f"--style {args.style}: texts of level {args.level} have one style")
+    options = {"length": args.length, "style": args.style, "seed": args.seed}
+    job = {"command": "describe", "level": args.level, **options, "houses": args.houses}
     journal = Journal(args.out, job) if args.out else None
     printer = _Printer(args.level) if args.json else None
     told, failed = set() if journal is None else set(journal.done), 0
@@ -72,7 +83,7 @@ def run(args: argparse.Namespace) -> int:
             if name not in told:
                 told.add(name)
                 contents = None if journal is None else contents_of(name)
-                rows = _describe(name, args.level, args.length, args.seed)
+                rows = _describe(name, args.level, options)
                 failed += rows is None
                 if journal is not None and rows is not None:
                     journal.add(name, rows, contents)
@@ -115,14 +126,13 @@ class _Printer:
 def _describe(
     name: str,
     level: Any,  # noqa: ANN401
-    length: Any,  # noqa: ANN401
-    seed: int | None,
+    options: dict[str, Any],
 ) -> list[dict[str, Any]] | None:
     """The rows of a house; ``None``, and a sentence, for one that cannot be opened."""
     from dwell import DwellError
 
     try:
-        return list(_rows(name, level, length, seed))
+        return list(_rows(name, level, options))
     except DwellError as error:
         said = str(error)
         where = "" if said.startswith(name) else f"{name}: "
@@ -133,20 +143,19 @@ def _describe(
 def _rows(
     name: str,
     level: Any,  # noqa: ANN401
-    length: Any,  # noqa: ANN401
-    seed: int | None,
+    options: dict[str, Any],
 ) -> Iterator[dict[str, Any]]:
     from dwell.house import House
 
     about = {"house": name, "level": level}
     if level == "changes":
-        yield {**about, **_changes(name, seed).as_dict()}
+        yield {**about, **_changes(name, options["seed"]).as_dict()}
         return
     house = House.open(name)
     if level in ("view", "route"):
-        yield from ({**about, **row} for row in _from_viewpoints(house, level, length, seed))
+        yield from ({**about, **row} for row in _from_viewpoints(house, level, options))
         return
-    for text in house.describe(level, length=length, seed=seed):
+    for text in house.describe(level, **options):
         if level in ("graph", "instructions"):
             yield {**about, "text": json.loads(text)}
         else:
@@ -154,7 +163,7 @@ def _rows(
 
 
 def _from_viewpoints(
-    house: House, level: Literal["view", "route"], length: Length, seed: int | None
+    house: House, level: Literal["view", "route"], options: dict[str, Any]
 ) -> Iterator[dict[str, Any]]:
     """What is seen from the best viewpoint of each room, and the ways from there."""
     from dwell.world import World
@@ -163,16 +172,17 @@ def _from_viewpoints(
     for number, room in enumerate(rooms):
         viewer = {"position": room["eye"], "yaw_deg": room["yaw_deg"]}
         # Each room has wordings of its own.
+        seed = options["seed"]
         key = None if seed is None else (seed + 1_000_003 * number) % 2**64
+        own = {**options, "seed": key, "viewer": viewer}
         if level == "view":
-            (text,) = world.describe(level, length=length, seed=key, viewer=viewer)
+            (text,) = world.describe(level, **own)
             yield {"viewer": viewer, **text.as_dict()}
             continue
         for goal in rooms:
             to = f"room:{goal['name']}"
             if goal is not room:
-                found = world.describe(level, length=length, seed=key, viewer=viewer, to=to)
-                for text in found:
+                for text in world.describe(level, **own, to=to):
                     yield {"viewer": viewer, "to": to, **text.as_dict()}
 
 

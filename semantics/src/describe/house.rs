@@ -1,12 +1,11 @@
 //! The description of a house.
 
-use super::length::TextLength;
+use super::options::{TextLength, TextOptions};
 use super::room::say_room;
 use super::text::{GroundedText, TextWriter};
 use crate::check::{Checker, Listener};
 use crate::form::{Description, Modifier, Noun, Phrase, Quantifier};
 use crate::scene::SemanticScene;
-use dwell_scene::random::RandomKey;
 use dwell_scene::{Id, LevelId, RoomId};
 use std::collections::BTreeMap;
 
@@ -40,14 +39,10 @@ fn room_items(scene: &SemanticScene<'_>, rooms: &[RoomId]) -> Vec<Description> {
 }
 
 /// The description of a house: the numbers of storeys, rooms and things, its rooms, then each of them, storey by storey; a short one
-/// ends before the rooms' own texts. `wording` draws the wordings.
-pub fn describe_house(
-    scene: &SemanticScene<'_>,
-    length: TextLength,
-    wording: Option<RandomKey>,
-) -> GroundedText {
+/// ends before the rooms' own texts.
+pub fn describe_house(scene: &SemanticScene<'_>, options: TextOptions) -> GroundedText {
     let checker = Checker::new(scene, Listener::default());
-    let mut writer = TextWriter::new(&checker, wording);
+    let mut writer = TextWriter::new(&checker, options.wording);
     let house = scene.house();
     let storeys = house.levels.len();
     let mut numbers = Vec::new();
@@ -84,10 +79,10 @@ pub fn describe_house(
         };
         writer.there_are(&items, &place);
     }
-    if length > TextLength::Short {
+    if options.length > TextLength::Short {
         for room in order {
             writer.end_paragraph();
-            say_room(&mut writer, scene, room, length);
+            say_room(&mut writer, scene, room, options);
         }
     }
     writer.finish()

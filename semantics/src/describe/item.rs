@@ -1,5 +1,6 @@
 //! Things of one kind as an item of a list: "four brown wooden chairs".
 
+use super::options::TextStyle;
 use crate::color::Pattern;
 use crate::form::{Description, Noun, Quantifier};
 use crate::predicates;
@@ -30,9 +31,21 @@ fn holds(scene: &SemanticScene<'_>, name: &str, object: ObjectId) -> bool {
     predicates::is_true(scene, name, &[Term::Object(object)], None)
 }
 
-/// A description of a thing by its noun, size, openness, colours and main substance.
-pub(super) fn appearance(scene: &SemanticScene<'_>, object: ObjectId) -> Description {
+/// A description of a thing by its noun and openness, in rich style also by its size, pattern, colours and main substance.
+pub(super) fn appearance(
+    scene: &SemanticScene<'_>,
+    object: ObjectId,
+    style: TextStyle,
+) -> Description {
     let facts = scene.facts(object);
+    let state = joint_state(scene, object);
+    let plain = Description::new(Quantifier::Some, Noun::Object(facts.noun.clone()));
+    if style == TextStyle::Plain {
+        return Description {
+            state: state.map(str::to_owned),
+            ..plain
+        };
+    }
     // No white whiteboard.
     let is_said = |word: &str| facts.noun.contains(word);
     let colors = facts.spoken_colors().iter();
@@ -42,12 +55,12 @@ pub(super) fn appearance(scene: &SemanticScene<'_>, object: ObjectId) -> Descrip
         size: [SizeClass::Small, SizeClass::Large]
             .contains(&facts.size)
             .then_some(facts.size),
-        state: joint_state(scene, object)
+        state: state
             .or_else(|| facts.pattern.map(Pattern::name))
             .map(str::to_owned),
         colors: colors.map(|(word, _)| (*word).to_owned()).collect(),
         material: facts.material_word().map(str::to_owned),
-        ..Description::new(Quantifier::Some, Noun::Object(facts.noun.clone()))
+        ..plain
     }
 }
 
@@ -60,10 +73,15 @@ fn fits(scene: &SemanticScene<'_>, object: ObjectId, description: &Description) 
 impl NounGroup {
     /// The group as an item of the list of what is in a place: with the adjectives that all of it share, and with the number of
     /// things in that place that fit. `candidates` are all things in the place.
-    pub(super) fn item(&self, scene: &SemanticScene<'_>, candidates: &[ObjectId]) -> Description {
-        let mut shared = appearance(scene, self.objects[0]);
+    pub(super) fn item(
+        &self,
+        scene: &SemanticScene<'_>,
+        candidates: &[ObjectId],
+        style: TextStyle,
+    ) -> Description {
+        let mut shared = appearance(scene, self.objects[0], style);
         for object in &self.objects[1..] {
-            let other = appearance(scene, *object);
+            let other = appearance(scene, *object, style);
             shared.size = shared.size.filter(|size| other.size == Some(*size));
             shared.state = shared
                 .state
@@ -124,9 +142,10 @@ pub(super) fn items(
     scene: &SemanticScene<'_>,
     objects: &[ObjectId],
     candidates: &[ObjectId],
+    style: TextStyle,
 ) -> Vec<Description> {
     grouped(scene, objects)
         .iter()
-        .map(|group| group.item(scene, candidates))
+        .map(|group| group.item(scene, candidates, style))
         .collect()
 }

@@ -2,7 +2,7 @@
 
 use super::hanging::MountedObject;
 use super::item::appearance;
-use super::length::TextLength;
+use super::options::{TextLength, TextOptions};
 use super::surroundings::{say_load, say_surroundings};
 use super::text::{GroundedText, TextWriter};
 use crate::check::{Checker, Listener};
@@ -10,7 +10,6 @@ use crate::form::{Description, Modifier, Noun, Quantifier};
 use crate::predicates;
 use crate::refer::{refer, room_phrase};
 use crate::scene::{SemanticScene, Term};
-use dwell_scene::random::RandomKey;
 use dwell_scene::{ObjectId, RoomId};
 
 /// A landmark by its noun: "the table" where the house has one only, else "a table".
@@ -76,14 +75,14 @@ fn place(scene: &SemanticScene<'_>, object: ObjectId) -> Option<Modifier> {
 }
 
 /// A description of an object by its looks, place and room; in a short text by its looks.
-fn description(scene: &SemanticScene<'_>, object: ObjectId, length: TextLength) -> Description {
+fn description(scene: &SemanticScene<'_>, object: ObjectId, options: TextOptions) -> Description {
     let room = scene.room_of(object);
-    let mut description = appearance(scene, object);
+    let mut description = appearance(scene, object, options.style);
     let is_on = scene.house().objects[object].switch.is_some() && scene.state.switched_on[object];
     if is_on && description.state.is_none() {
         description.state = Some("switched_on".to_owned());
     }
-    if length == TextLength::Short {
+    if options.length == TextLength::Short {
         return description;
     }
     if let Some(passage) = door_side_modifiers(scene, object, room) {
@@ -101,51 +100,33 @@ fn description(scene: &SemanticScene<'_>, object: ObjectId, length: TextLength) 
 }
 
 /// A caption: "a brown wooden chair next to the table in the kitchen"; short: "a brown wooden chair". A long one is made of
-/// sentences, and goes on with where the thing stands and what lies on it, as far as a description fits it alone. `wording` draws the
-/// wordings.
-pub fn caption(
-    scene: &SemanticScene<'_>,
-    object: ObjectId,
-    length: TextLength,
-    wording: Option<RandomKey>,
-) -> GroundedText {
+/// sentences, and goes on with where the thing stands and what lies on it, as far as a description fits it alone.
+pub fn caption(scene: &SemanticScene<'_>, object: ObjectId, options: TextOptions) -> GroundedText {
     let checker = Checker::new(scene, Listener::default());
-    caption_with(&checker, object, length, wording)
+    caption_with(&checker, object, options)
 }
 
 /// The captions of all objects, in order.
-pub fn captions(
-    scene: &SemanticScene<'_>,
-    length: TextLength,
-    wording: Option<RandomKey>,
-) -> Vec<GroundedText> {
+pub fn captions(scene: &SemanticScene<'_>, options: TextOptions) -> Vec<GroundedText> {
     let checker = Checker::new(scene, Listener::default());
     let objects = scene.house().objects.ids().enumerate();
     objects
-        .map(|(k, object)| {
-            let wording = wording.map(|key| key.child(k as u64));
-            caption_with(&checker, object, length, wording)
-        })
+        .map(|(k, object)| caption_with(&checker, object, options.of_text(k)))
         .collect()
 }
 
-fn caption_with(
-    checker: &Checker<'_>,
-    object: ObjectId,
-    length: TextLength,
-    wording: Option<RandomKey>,
-) -> GroundedText {
+fn caption_with(checker: &Checker<'_>, object: ObjectId, options: TextOptions) -> GroundedText {
     let scene = checker.scene();
-    let mut writer = TextWriter::new(checker, wording);
-    let description = description(scene, object, length);
-    if length < TextLength::Long {
+    let mut writer = TextWriter::new(checker, options.wording);
+    let description = description(scene, object, options);
+    if options.length < TextLength::Long {
         writer.say_of(description.into(), Term::Object(object));
         return writer.finish();
     }
     writer.there_are(std::slice::from_ref(&description), &[]);
     if let Some(subject) = refer(scene, object) {
         say_surroundings(&mut writer, scene, object, &subject, Some(&description));
-        say_load(&mut writer, scene, object, &subject);
+        say_load(&mut writer, scene, object, &subject, options.style);
     }
     writer.finish()
 }

@@ -2,8 +2,8 @@
 
 use super::hanging::{MountKind, MountedObject};
 use super::item::{grouped, items};
-use super::length::TextLength;
 use super::openings::{say_doors, say_passages};
+use super::options::{TextLength, TextOptions, TextStyle};
 use super::surroundings::say_surroundings;
 use super::text::{GroundedText, TextWriter};
 use crate::check::{Checker, Listener, spoken_area_m2};
@@ -14,7 +14,6 @@ use crate::predicates;
 use crate::refer::{refer, room_phrase};
 use crate::scene::SemanticScene;
 use dwell_scene::interrupt;
-use dwell_scene::random::RandomKey;
 use dwell_scene::{ObjectId, RoomId};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -50,9 +49,8 @@ pub(super) fn surfaces(scene: &SemanticScene<'_>, room: RoomId) -> Vec<RoomSurfa
     surfaces
 }
 
-/// Says the room's area and the look of its floor and walls.
-fn say_shell(writer: &mut TextWriter<'_>, scene: &SemanticScene<'_>, room: RoomId) {
-    say_area(writer, scene, room);
+/// Says the look of the room's floor and walls.
+fn say_surfaces(writer: &mut TextWriter<'_>, scene: &SemanticScene<'_>, room: RoomId) {
     let surfaces = surfaces(scene, room);
     if !surfaces.is_empty() {
         let room = room_phrase(scene, room);
@@ -108,11 +106,11 @@ struct CarrierGroup {
 }
 
 impl CarrierGroup {
-    fn items(&self, scene: &SemanticScene<'_>) -> Vec<Description> {
+    fn items(&self, scene: &SemanticScene<'_>, style: TextStyle) -> Vec<Description> {
         if let Some(candidates) = &self.candidates {
-            return items(scene, &self.objects, candidates);
+            return items(scene, &self.objects, candidates, style);
         }
-        let mut items = items(scene, &self.objects, &self.objects);
+        let mut items = items(scene, &self.objects, &self.objects, style);
         // "On a table there are two cups" of this table, whatever is on the others that are tables, too.
         for item in &mut items {
             if let Quantifier::Exactly(number) = item.quantifier {
@@ -221,12 +219,16 @@ pub(super) fn say_room(
     writer: &mut TextWriter<'_>,
     scene: &SemanticScene<'_>,
     room: RoomId,
-    length: TextLength,
+    options: TextOptions,
 ) {
+    let TextOptions { length, style, .. } = options;
     if length == TextLength::Short {
         say_area(writer, scene, room);
     } else {
-        say_shell(writer, scene, room);
+        say_area(writer, scene, room);
+        if style == TextStyle::Rich {
+            say_surfaces(writer, scene, room);
+        }
         say_passages(writer, scene, room);
         say_doors(writer, scene, room);
     }
@@ -248,7 +250,7 @@ pub(super) fn say_room(
         standing,
     } = contents(scene, room, &told);
     let place = std::slice::from_ref(&in_room);
-    let mut largest = items(scene, &standing, all);
+    let mut largest = items(scene, &standing, all, style);
     if length == TextLength::Short {
         largest.truncate(MAX_SHORT_KINDS);
         writer.there_are(&largest, place);
@@ -259,7 +261,7 @@ pub(super) fn say_room(
         say_places(writer, scene, &standing);
     }
     for group in carrier_groups(scene, room, carried) {
-        let items = group.items(scene);
+        let items = group.items(scene, style);
         let carrier = Phrase::from(group.carrier);
         writer.there_are(&items, &[Modifier::new(group.predicate, [carrier])]);
     }
@@ -276,7 +278,7 @@ pub(super) fn say_room(
             let own = all.iter().filter(|one| one.mount == mount);
             own.map(|one| one.object).collect()
         };
-        let items = items(scene, &on_mount(&hanging), &on_mount(&mounted));
+        let items = items(scene, &on_mount(&hanging), &on_mount(&mounted), style);
         writer.there_are(&items, &[mount.modifier(), in_room.clone()]);
     }
 }
@@ -292,40 +294,27 @@ fn say_places(writer: &mut TextWriter<'_>, scene: &SemanticScene<'_>, standing: 
     }
 }
 
-/// The description of a room. `wording` draws the wordings.
+/// The description of a room.
 pub fn describe_room(
     scene: &SemanticScene<'_>,
     room: RoomId,
-    length: TextLength,
-    wording: Option<RandomKey>,
+    options: TextOptions,
 ) -> GroundedText {
     let checker = Checker::new(scene, Listener::default());
-    describe_with(&checker, room, length, wording)
+    describe_with(&checker, room, options)
 }
 
 /// The descriptions of all rooms, in order.
-pub fn describe_rooms(
-    scene: &SemanticScene<'_>,
-    length: TextLength,
-    wording: Option<RandomKey>,
-) -> Vec<GroundedText> {
+pub fn describe_rooms(scene: &SemanticScene<'_>, options: TextOptions) -> Vec<GroundedText> {
     let checker = Checker::new(scene, Listener::default());
     let rooms = scene.house().rooms.ids().enumerate();
     rooms
-        .map(|(k, room)| {
-            let wording = wording.map(|key| key.child(k as u64));
-            describe_with(&checker, room, length, wording)
-        })
+        .map(|(k, room)| describe_with(&checker, room, options.of_text(k)))
         .collect()
 }
 
-fn describe_with(
-    checker: &Checker<'_>,
-    room: RoomId,
-    length: TextLength,
-    wording: Option<RandomKey>,
-) -> GroundedText {
-    let mut writer = TextWriter::new(checker, wording);
-    say_room(&mut writer, checker.scene(), room, length);
+fn describe_with(checker: &Checker<'_>, room: RoomId, options: TextOptions) -> GroundedText {
+    let mut writer = TextWriter::new(checker, options.wording);
+    say_room(&mut writer, checker.scene(), room, options);
     writer.finish()
 }

@@ -1,6 +1,6 @@
 //! The way from a place to a thing or a room, by doors, turns and landmarks.
 
-use super::length::TextLength;
+use super::options::{TextLength, TextOptions};
 use super::room::in_room;
 use super::text::{GroundedText, TextWriter, claim};
 use crate::check::{Checker, Listener};
@@ -10,7 +10,6 @@ use crate::form::{
 use crate::refer::{refer, room_phrase};
 use crate::scene::{SemanticScene, Term, Viewer};
 use dwell_scene::navigation::{NavCell, NavGrid};
-use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentBody, ObjectId, RoomId};
 use glam::{Vec2, Vec3};
 
@@ -340,7 +339,7 @@ fn feet(scene: &SemanticScene<'_>, listener: &Listener, viewer: &Viewer) -> Vec3
 
 /// The way from where a listener stands and looks to a thing or a room, as requests: turns, doors, what one goes past, and the goal. A
 /// body that opens doors walks it; stairs count. The shortest text has doors and turns alone. `None` without a viewer, for other terms,
-/// and where no way leads there. `wording` draws the wordings.
+/// and where no way leads there.
 ///
 /// Turns are changes of direction of 45 degrees and more over 0.8 m of the way, "around" from 140; the first is from where the
 /// viewer looks.
@@ -348,8 +347,7 @@ pub fn describe_route(
     scene: &SemanticScene<'_>,
     listener: Listener,
     to: Term,
-    length: TextLength,
-    wording: Option<RandomKey>,
+    options: TextOptions,
 ) -> Option<GroundedText> {
     let viewer = listener.viewer?;
     let agent = listener
@@ -379,7 +377,7 @@ pub fn describe_route(
     };
     // On the way the listener sees other things than now.
     let checker = Checker::new(scene, Listener::default());
-    let mut writer = TextWriter::new(&checker, wording);
+    let mut writer = TextWriter::new(&checker, options.wording);
     if let Term::Room(room) = to
         && teller.room_at(0) == Some(room)
     {
@@ -389,7 +387,7 @@ pub fn describe_route(
     }
     let entries = teller.entries();
     let mut events = teller.turns(flat(looks).normalize_or_zero());
-    if length != TextLength::Short {
+    if options.length != TextLength::Short {
         events.extend(teller.landmarks(&entries));
     }
     // A way to a room ends at its door.

@@ -2,6 +2,7 @@
 
 use super::hanging::MountedObject;
 use super::item::items;
+use super::options::TextStyle;
 use super::text::{TextWriter, claim};
 use crate::form::{Description, Modifier, Noun, Phrase, Quantifier};
 use crate::predicates;
@@ -103,6 +104,7 @@ pub(super) fn say_load(
     scene: &SemanticScene<'_>,
     object: ObjectId,
     subject: &Description,
+    style: TextStyle,
 ) {
     for (place, converse) in [("on", "supports"), ("in", "contains")] {
         let Ok(predicate) = predicates::find(converse) else {
@@ -111,7 +113,7 @@ pub(super) fn say_load(
         let load = predicates::related_objects(scene, predicate, object);
         let there = Modifier::new(place, [subject.clone().into()]);
         if !load.is_empty() {
-            writer.there_are(&items(scene, &load, &load), &[there]);
+            writer.there_are(&items(scene, &load, &load, style), &[there]);
         } else if place == "in"
             && predicates::is_true(scene, "empty", &[Term::Object(object)], None)
         {

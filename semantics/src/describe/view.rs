@@ -1,7 +1,7 @@
 //! The description of a view.
 
 use super::item::{grouped, items};
-use super::length::TextLength;
+use super::options::{TextLength, TextOptions, TextStyle};
 use super::room::{is_rug, surfaces};
 use super::text::{GroundedText, TextWriter, claim};
 use crate::check::{Checker, Listener, spoken_distance_m};
@@ -10,7 +10,6 @@ use crate::predicates;
 use crate::refer::room_phrase;
 use crate::scene::{SemanticScene, Term, Viewer};
 use crate::view::{Sighting, ViewSurvey, refer_in_view};
-use dwell_scene::random::RandomKey;
 use dwell_scene::{ObjectId, RoomId, StructureKind};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -73,6 +72,7 @@ struct ViewTeller<'a, 'b> {
     checker: &'b Checker<'a>,
     viewer: Viewer,
     survey: ViewSurvey,
+    style: TextStyle,
     room: Option<RoomId>,
     /// The things worth telling, ascending.
     told: Vec<ObjectId>,
@@ -200,7 +200,7 @@ impl ViewTeller<'_, '_> {
             .filter(|object| self.holds("visible", *object) && in_place(*object))
             .collect();
         let groups = grouped(self.scene(), objects);
-        let mut found = items(self.scene(), objects, &visible);
+        let mut found = items(self.scene(), objects, &visible, self.style);
         for (item, group) in found.iter_mut().zip(groups) {
             let number = group.objects.len() as u32;
             item.quantifier = match item.quantifier {
@@ -324,7 +324,7 @@ impl ViewTeller<'_, '_> {
             self.writer
                 .say(claim("in_room", vec![Phrase::Listener, room]));
         }
-        if limits.relations > 0 {
+        if limits.relations > 0 && self.style == TextStyle::Rich {
             self.say_surfaces();
         }
         let contents = self.contents();
@@ -406,12 +406,11 @@ impl ViewTeller<'_, '_> {
 /// The description of what a listener sees, as a person would tell it: the room with its floor and walls as far as they are in the
 /// picture, the things by side with the largest first, how far the largest are and where they are to each other, what lies on them,
 /// and what is seen in other rooms. What covers less than 100 pixels of 256 by 256, or is hidden to more than three quarters, is left
-/// out. Without a viewer nothing is seen. `wording` draws the wordings.
+/// out. Without a viewer nothing is seen.
 pub fn describe_view(
     scene: &SemanticScene<'_>,
     listener: Listener,
-    length: TextLength,
-    wording: Option<RandomKey>,
+    options: TextOptions,
 ) -> GroundedText {
     let Some(viewer) = listener.viewer else {
         return GroundedText::default();
@@ -423,9 +422,10 @@ pub fn describe_view(
         None => scene.house().room_at(viewer.world_from_camera.position),
     };
     let mut teller = ViewTeller {
-        writer: TextWriter::new(&checker, wording),
+        writer: TextWriter::new(&checker, options.wording),
         checker: &checker,
         viewer,
+        style: options.style,
         room,
         told: Vec::new(),
         names: RefCell::default(),
@@ -438,6 +438,6 @@ pub fn describe_view(
             && teller.holds("visible", **object)
     });
     teller.told = told.map(|(object, _)| *object).collect();
-    teller.say(&ViewLimits::of(length));
+    teller.say(&ViewLimits::of(options.length));
     teller.writer.finish()
 }

@@ -15,9 +15,7 @@ pub(crate) fn views(house: &House, camera: Camera, count: usize) -> Vec<View> {
     let mut stream = RandomKey::root(11).stream();
     let state = State::new(house);
     let things = house.objects.ids();
-    let boxes: Vec<Aabb> = things
-        .map(|id| house.object_bounds(&state, id))
-        .collect();
+    let boxes: Vec<Aabb> = things.map(|id| house.object_bounds(&state, id)).collect();
     let mut views = Vec::new();
     while views.len() < count {
         let room = &house.rooms[dwell_scene::RoomId(stream.below(house.rooms.len()) as u32)];
