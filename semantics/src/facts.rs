@@ -16,6 +16,8 @@ use glam::Vec3;
 
 /// Share of the surface from which a substance gives a thing its adjective.
 const MADE_OF_SHARE: f32 = 0.5;
+/// Height below which what files call a wardrobe is a cabinet, m: nothing hangs in it.
+const LEAST_WARDROBE_M: f32 = 1.3;
 /// Share of what is seen of a thing from which its frame gives it its colour, where the rest is clear.
 const FRAME_SHARE: f32 = 0.1;
 
@@ -68,6 +70,15 @@ impl ObjectFacts {
             "wall" | "floor" | "ceiling" => counted_noun(&format!("{noun} piece")),
             _ => (noun, plural),
         };
+        let extents_m = own_box(house, id).size();
+        let is_low = extents_m.y < LEAST_WARDROBE_M;
+        let (noun, plural) = if kind.is_none()
+            && category.is_some_and(|row| is_low && row.name == "wardrobe_cabinet")
+        {
+            counted_noun("cabinet")
+        } else {
+            (noun, plural)
+        };
         let areas = areas_m2(house, id);
         let shown: &[(MaterialId, f32)] = if seen.is_empty() { &areas } else { seen };
         let named = named_surfaces(house, category, shown);
@@ -76,7 +87,6 @@ impl ObjectFacts {
         let patches = patches(house, paints, &named);
         let pattern = pattern(paints, category, &named);
         let substances = substances(house, &areas);
-        let extents_m = own_box(house, id).size();
         let mut colors = color_words(&patches, ColorVocabulary::Spoken);
         // Flowers have the colour of their petals.
         let is_petal = |(word, _): &(&str, f32)| !word.contains("green") && *word != "sage";

@@ -26,6 +26,9 @@ const STUDIO: [&[&str]; 2] = [
     &["refrigerator", "cooker"],
 ];
 
+/// Categories of which a boiler room has one if it is a laundry room: rooms for machines are labelled after the boiler.
+const LAUNDRY: &[&str] = &["washer", "dryer"];
+
 /// Labels that say nothing of what a room is used for.
 const VAGUE: [&str; 2] = ["room", "storage"];
 
@@ -49,7 +52,8 @@ impl RoomContents {
     }
 
     /// The kind that the things in a room make it, where its label `kind` is none or says nothing of its use (in files of houses
-    /// bathrooms are "storage"), or only a part of it (a living room with a bed and a cooker is a studio).
+    /// bathrooms are "storage"), or only a part of it (a living room with a bed and a cooker is a studio, a boiler room with a washing machine
+    /// a laundry room).
     pub(crate) fn kind(
         &self,
         room: RoomId,
@@ -60,6 +64,9 @@ impl RoomContents {
         let has_one = |of: &&[&str]| of.iter().any(|name| own.contains(name));
         if label == "living_room" && STUDIO.iter().all(has_one) {
             return room_kinds().get("studio");
+        }
+        if label == "boiler_room" && has_one(&LAUNDRY) {
+            return room_kinds().get("laundry_room");
         }
         if !VAGUE.contains(&label) {
             return None;

@@ -124,10 +124,10 @@ mod tests {
             assert!(room_kinds().get(label).is_some(), "{label}");
         }
         // Kinds that the format lacks.
-        for kind in ["porch", "roof", "studio"] {
+        for kind in ["porch", "roof", "studio", "laundry_room"] {
             assert!(room_kinds().get(kind).is_some(), "{kind}");
         }
-        assert_eq!(room_kinds().rows().len(), labels.len() + 3);
+        assert_eq!(room_kinds().rows().len(), labels.len() + 4);
         assert_eq!(
             room_kinds().get("Living_Room").unwrap().singular,
             "living room"

@@ -34,6 +34,8 @@ fn a_room_that_is_labelled_by_no_use_is_called_by_what_stands_in_it() {
         ("living_room", &["sofa", "cooker"], "living room"),
         ("living_room", &["double_bed", "sofa"], "living room"),
         ("kitchen", &["double_bed", "cooker"], "kitchen"),
+        ("boiler_room", &["washer"], "laundry room"),
+        ("boiler_room", &["shelving"], "boiler room"),
     ] {
         let (found, _) = called(label, things);
         assert_eq!(found, noun, "{label} with {things:?}");

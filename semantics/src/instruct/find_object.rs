@@ -6,8 +6,8 @@ use crate::refer::refer;
 use crate::scene::SemanticScene;
 use dwell_scene::interrupt;
 
-/// Categories that are not looked for: parts of the building, things between rooms, and those without a name of their own.
-const NOT_SOUGHT: [&str; 11] = [
+/// Categories that are not looked for: parts of the building, things between rooms, and those whose names are vague.
+const NOT_SOUGHT: [&str; 13] = [
     "door",
     "garage_door",
     "window",
@@ -19,6 +19,8 @@ const NOT_SOUGHT: [&str; 11] = [
     "unknown",
     "box",
     "ground",
+    "trinket",
+    "household_appliance",
 ];
 
 pub(super) fn candidates(scene: &SemanticScene<'_>) -> Vec<Instruction> {

@@ -56,6 +56,9 @@ pub(crate) fn by_properties(scene: &SemanticScene<'_>, target: ObjectId) -> Vec<
     found
 }
 
+/// Categories whose nouns are too vague for a landmark.
+const VAGUE: [&str; 4] = ["trinket", "household_appliance", "unknown", "box"];
+
 /// The relations of `target` to other things, each named by its noun and at most one adjective; each once.
 pub(crate) fn by_relations(scene: &SemanticScene<'_>, target: ObjectId) -> Vec<Modifier> {
     let mut found: Vec<Modifier> = Vec::new();
@@ -65,7 +68,8 @@ pub(crate) fn by_relations(scene: &SemanticScene<'_>, target: ObjectId) -> Vec<M
             continue;
         };
         for landmark in predicates::related_objects(scene, predicate, target) {
-            if scene.facts(landmark).category.is_none()
+            let row = scene.facts(landmark).category;
+            if row.is_none_or(|row| VAGUE.contains(&row.name))
                 || scene.facts(landmark).is_opening()
                 || (name == "in" && scene.is_seat_or_bed(landmark))
             {
