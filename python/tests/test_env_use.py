@@ -340,3 +340,11 @@ def test_so_many_laws_are_refused_and_bytes_are_no_numbers() -> None:
 def test_relative_modules_are_refused_by_a_sentence(name: str) -> None:
     with pytest.raises(dwell.ConfigError, match="expected 'module:Name'"):
         DwellEnv(name, houses="builtin:studio")
+
+
+def test_an_environment_describes_its_house() -> None:
+    env = DwellEnv("Free", houses="builtin:studio", sensors=["gps"])
+    env.reset(seed=1)
+    house = dwell.House.open("builtin:studio")
+    for level in ("house", "room", "object"):
+        assert env.describe(level) == house.describe(level)

@@ -357,7 +357,8 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
     def describe(self, level: str = "house") -> list[Text] | list[str]:
         """Sentences about the house as it starts; see :meth:`dwell.House.describe`."""
         self._refuse_closed()
-        rows = self._shelf[self._house].native.describe(text("level", level), "normal")
+        options = ("normal", "rich", None)
+        rows = self._shelf[self._house].native.describe(text("level", level), options)
         return texts(level, rows)
 
     def actions(self) -> list[str]:
