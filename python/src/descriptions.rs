@@ -19,9 +19,10 @@ use dwell_semantics::{SemanticScene, Term};
 use serde::Serialize;
 use serde_json::{Value, json};
 
-/// The levels of texts, in the order of the documentation.
+/// The levels of which there are texts of several lengths, and of both styles.
 const LEVELS_WITH_LENGTHS: [&str; 5] = ["object", "room", "house", "view", "route"];
 const LEVELS_WITH_STYLES: [&str; 4] = ["object", "room", "house", "view"];
+/// The levels of texts, in the order of the documentation.
 const LEVELS: &str = "object, room, house, view, route, changes, graph, instructions";
 
 /// The things of a text by their ids.
@@ -189,6 +190,7 @@ pub(crate) fn describe_level(
         ))
     };
     let options = text_options(house, level, request.options)?;
+    let (_, _, seed) = request.options;
     let texts = match level {
         "house" => vec![describe_house(scene, options)],
         "room" => describe_rooms(scene, options),
@@ -214,7 +216,7 @@ pub(crate) fn describe_level(
             let mut rows = Vec::new();
             for kind in InstructionKind::ALL {
                 for (k, instruction) in candidates(scene, kind).into_iter().enumerate() {
-                    let worded = request.options.2.and_then(|seed| {
+                    let worded = seed.and_then(|seed| {
                         let key = RandomKey::root(seed).child(k as u64);
                         choose(scene.semantics, std::slice::from_ref(&instruction), key)
                     });

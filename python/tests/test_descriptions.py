@@ -7,6 +7,7 @@ import re
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -135,3 +136,21 @@ def test_a_reference_is_checked_to_mean_its_thing() -> None:
     viewer = viewpoints(world)[0]
     seen = world.describe("view", viewer=viewer)[0].ids
     assert any(world.refer(number, viewer=viewer) for number in seen)
+
+
+def test_styles_are_those_of_texts_about_things() -> None:
+    house = dwell.House.open("builtin:studio")
+    world = dwell.World(house, agents=0)
+    for level in ("object", "room", "house"):
+        plain, rich = (house.describe(level, style=style) for style in ("plain", "rich"))
+        assert rich == house.describe(level)
+        assert sum(map(len, plain)) < sum(map(len, rich))
+        assert world.describe(level, style="plain") == plain
+    told: Any = "gaudy"
+    with pytest.raises(dwell.ConfigError, match='style is "gaudy"; allowed are plain, rich'):
+        house.describe("room", style=told)
+    for level in ("graph", "instructions"):
+        with pytest.raises(dwell.ConfigError, match="only the levels object, room, house, view"):
+            house.describe(level, style="plain")
+    with pytest.raises(dwell.ConfigError, match="style"):
+        world.describe("room", style=b"plain")  # type: ignore[call-overload] # tried

@@ -57,6 +57,13 @@ pub struct SemanticCategory {
     pub rooms: Vec<&'static str>,
 }
 
+impl SemanticCategory {
+    /// Returns whether its noun says too little of a thing to find it by.
+    pub(crate) fn is_vague(&self) -> bool {
+        ["trinket", "household_appliance", "unknown", "box"].contains(&self.name)
+    }
+}
+
 /// All categories.
 #[derive(Debug)]
 pub struct Categories {

@@ -60,7 +60,12 @@ impl ObjectFacts {
         let object = &house.objects[id];
         let category = categories().of(&object.category);
         let kind = kind_nouns().get(object.category.fine.as_str());
+        let extents_m = own_box(house, id).size();
+        let is_low = extents_m.y < LEAST_WARDROBE_M;
         let (noun, plural) = match (kind, category) {
+            (None, Some(row)) if is_low && row.name == "wardrobe_cabinet" => {
+                counted_noun("cabinet")
+            }
             (Some(kind), _) => (kind.singular.to_owned(), kind.plural.to_owned()),
             (None, Some(row)) => (row.singular.to_owned(), row.plural.to_owned()),
             (None, None) => unknown_noun(&object.category),
@@ -69,15 +74,6 @@ impl ObjectFacts {
             // An object, as opposed to a piece of the building.
             "wall" | "floor" | "ceiling" => counted_noun(&format!("{noun} piece")),
             _ => (noun, plural),
-        };
-        let extents_m = own_box(house, id).size();
-        let is_low = extents_m.y < LEAST_WARDROBE_M;
-        let (noun, plural) = if kind.is_none()
-            && category.is_some_and(|row| is_low && row.name == "wardrobe_cabinet")
-        {
-            counted_noun("cabinet")
-        } else {
-            (noun, plural)
         };
         let areas = areas_m2(house, id);
         let shown: &[(MaterialId, f32)] = if seen.is_empty() { &areas } else { seen };

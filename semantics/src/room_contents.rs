@@ -26,8 +26,13 @@ const STUDIO: [&[&str]; 2] = [
     &["refrigerator", "cooker"],
 ];
 
-/// Categories of which a boiler room has one if it is a laundry room: rooms for machines are labelled after the boiler.
-const LAUNDRY: &[&str] = &["washer", "dryer"];
+/// The same of a boiler room that is a laundry room: rooms for machines are labelled after the boiler.
+const LAUNDRY: [&[&str]; 1] = [&["washer", "dryer"]];
+/// Kinds by the label that they replace, and by what makes a room one of them.
+const BY_LABEL: [(&str, &str, &[&[&str]]); 2] = [
+    ("living_room", "studio", &STUDIO),
+    ("boiler_room", "laundry_room", &LAUNDRY),
+];
 
 /// Labels that say nothing of what a room is used for.
 const VAGUE: [&str; 2] = ["room", "storage"];
@@ -62,11 +67,11 @@ impl RoomContents {
         let own = self.0.get(&room)?;
         let label = kind.map_or("room", |kind| kind.name);
         let has_one = |of: &&[&str]| of.iter().any(|name| own.contains(name));
-        if label == "living_room" && STUDIO.iter().all(has_one) {
-            return room_kinds().get("studio");
-        }
-        if label == "boiler_room" && has_one(&LAUNDRY) {
-            return room_kinds().get("laundry_room");
+        let mut by_label = BY_LABEL.iter();
+        if let Some((_, found, _)) =
+            by_label.find(|(from, _, needed)| *from == label && needed.iter().all(has_one))
+        {
+            return room_kinds().get(found);
         }
         if !VAGUE.contains(&label) {
             return None;

@@ -168,11 +168,10 @@ def _from_viewpoints(
     """What is seen from the best viewpoint of each room, and the ways from there."""
     from dwell.world import World
 
-    world, rooms = World(house, agents=0), house.rooms()
+    world, rooms, seed = World(house, agents=0), house.rooms(), options["seed"]
     for number, room in enumerate(rooms):
         viewer = {"position": room["eye"], "yaw_deg": room["yaw_deg"]}
         # Each room has wordings of its own.
-        seed = options["seed"]
         key = None if seed is None else (seed + 1_000_003 * number) % 2**64
         own = {**options, "seed": key, "viewer": viewer}
         if level == "view":

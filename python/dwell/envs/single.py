@@ -18,7 +18,7 @@ from gymnasium.wrappers import TimeLimit
 from numpy.typing import NDArray
 
 from dwell import ConfigError, UsageError, _native
-from dwell.arguments import integer_in_range, kept, mapping, quoted, refuse_unknown, text
+from dwell.arguments import integer_in_range, kept, mapping, quoted, refuse_unknown
 from dwell.camera import Camera, camera_settings
 from dwell.envs.config import (
     CACHED_HOUSES,
@@ -34,8 +34,9 @@ from dwell.envs.native_batch import GOAL_KEYS, INFO_KEYS, NativeBatch
 from dwell.envs.python_tasks import PythonTask, RewardChoice, Sensors, TaskChoice, split
 from dwell.envs.snapshots import check_and_strip, with_checksum
 from dwell.envs.spaces import action_space
-from dwell.grounded_text import Text, texts
+from dwell.grounded_text import Text
 from dwell.heads import Head
+from dwell.house import Level
 from dwell.object_state_api import agent_states
 from dwell.world_settings import Laws, with_head
 
@@ -354,12 +355,10 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         """The agents' states, as :meth:`dwell.World.agents` tells them."""
         return agent_states(self._runner.batch.agent_states(0))
 
-    def describe(self, level: str = "house") -> list[Text] | list[str]:
+    def describe(self, level: Level = "house") -> list[Text] | list[str]:
         """Sentences about the house as it starts; see :meth:`dwell.House.describe`."""
         self._refuse_closed()
-        options = ("normal", "rich", None)
-        rows = self._shelf[self._house].native.describe(text("level", level), options)
-        return texts(level, rows)
+        return self._shelf[self._house].describe(level)
 
     def actions(self) -> list[str]:
         """The names of the actions, in the order of their numbers."""

@@ -222,10 +222,8 @@ pub(super) fn say_room(
     options: TextOptions,
 ) {
     let TextOptions { length, style, .. } = options;
-    if length == TextLength::Short {
-        say_area(writer, scene, room);
-    } else {
-        say_area(writer, scene, room);
+    say_area(writer, scene, room);
+    if length != TextLength::Short {
         if style == TextStyle::Rich {
             say_surfaces(writer, scene, room);
         }

@@ -6,8 +6,8 @@ use crate::refer::refer;
 use crate::scene::SemanticScene;
 use dwell_scene::interrupt;
 
-/// Categories that are not looked for: parts of the building, things between rooms, and those whose names are vague.
-const NOT_SOUGHT: [&str; 13] = [
+/// Categories that are not looked for: parts of the building and things between rooms.
+const NOT_SOUGHT: [&str; 9] = [
     "door",
     "garage_door",
     "window",
@@ -16,11 +16,7 @@ const NOT_SOUGHT: [&str; 13] = [
     "arch",
     "stairs",
     "switch",
-    "unknown",
-    "box",
     "ground",
-    "trinket",
-    "household_appliance",
 ];
 
 pub(super) fn candidates(scene: &SemanticScene<'_>) -> Vec<Instruction> {
@@ -28,8 +24,9 @@ pub(super) fn candidates(scene: &SemanticScene<'_>) -> Vec<Instruction> {
     objects
         .filter(|object| {
             let row = scene.facts(*object).category;
-            row.is_some_and(|row| !row.structure && !NOT_SOUGHT.contains(&row.name))
-                && scene.room_of(*object).is_some()
+            row.is_some_and(|row| {
+                !row.structure && !row.is_vague() && !NOT_SOUGHT.contains(&row.name)
+            }) && scene.room_of(*object).is_some()
         })
         .filter_map(|object| {
             // Some milliseconds each.

@@ -1,6 +1,7 @@
 //! The shortest description that fits exactly one thing.
 
 use super::distractors::{TELLING, common};
+use crate::category::SemanticCategory;
 use crate::form::{Description, Modifier, Noun, Quantifier};
 use crate::predicates;
 use crate::scene::{ObjectList, SemanticScene};
@@ -56,9 +57,6 @@ pub(crate) fn by_properties(scene: &SemanticScene<'_>, target: ObjectId) -> Vec<
     found
 }
 
-/// Categories whose nouns are too vague for a landmark.
-const VAGUE: [&str; 4] = ["trinket", "household_appliance", "unknown", "box"];
-
 /// The relations of `target` to other things, each named by its noun and at most one adjective; each once.
 pub(crate) fn by_relations(scene: &SemanticScene<'_>, target: ObjectId) -> Vec<Modifier> {
     let mut found: Vec<Modifier> = Vec::new();
@@ -69,7 +67,7 @@ pub(crate) fn by_relations(scene: &SemanticScene<'_>, target: ObjectId) -> Vec<M
         };
         for landmark in predicates::related_objects(scene, predicate, target) {
             let row = scene.facts(landmark).category;
-            if row.is_none_or(|row| VAGUE.contains(&row.name))
+            if row.is_none_or(SemanticCategory::is_vague)
                 || scene.facts(landmark).is_opening()
                 || (name == "in" && scene.is_seat_or_bed(landmark))
             {

@@ -32,6 +32,8 @@ const BEYOND: [f64; 2] = [1e-3, 6e-3];
 /// The share of inner pixels whose normal may be none of those around, by rays and by raster: a triangle narrower than a pixel of a
 /// rounded surface, which the other does not hit.
 const TURNED: [f64; 2] = [0.0, 1e-4];
+/// The greatest angle of such a normal, degrees.
+const MOST_TURN_DEG: f32 = 1.0;
 
 /// Images whose values are counted where they lie beyond what is around.
 const IMAGES: [&str; 6] = ["depth", "instance", "normals", "flow", "albedo", "rgb"];
@@ -178,6 +180,10 @@ impl Count {
                 cpu.depth[pixel]
             );
             // A pixel on an edge between triangles may show the one or the other.
+            assert!(
+                turn_deg < MOST_TURN_DEG,
+                "{place}: normal off by {turn_deg} degrees"
+            );
             self.turned += usize::from(turn_deg >= TURN_DEG);
             assert!(has_flow, "{place}: flow {:?}", one.of(&gpu.flow, pixel));
             let off_color = one.off(&colors.0, &colors.1);
