@@ -51,6 +51,7 @@ mod reflection;
 mod response;
 mod scene;
 pub mod signals;
+mod spectrogram;
 mod sphere_sequences;
 mod stream;
 mod surface;
@@ -73,4 +74,5 @@ pub use receiver::{MAX_MICROPHONES, Microphone, Receiver, ReceiverKind, SoundSou
 pub use recordings::Recording;
 pub use response::ImpulseResponse;
 pub use scene::{AcousticScene, EarlyPath};
+pub use spectrogram::Spectrogram;
 pub use stream::{ActiveSource, BlockReport, Stream, StreamConfig};

@@ -28,6 +28,7 @@ def navigation() -> list[dict[str, object]]:
         {"Home": "index.md"},
         {"Guide": guide.paths()},
         {"Tutorials": sources.documents("docs/tutorials")},
+        {"Tasks": sources.documents("docs/tasks")},
         {
             "Reference": [
                 "environments.md",

@@ -6,7 +6,7 @@ import json
 from typing import Any
 
 from dwell import _native
-from dwell.envs.native_batch import GOAL_KEYS, INFO_KEYS
+from dwell.envs.info_keys import EPISODE_KEYS, GOAL_KEYS, INFO_KEYS
 from dwell.schemas import settings
 from pages import rust
 from pages.observations import fields_table, observation_table, specifications
@@ -50,6 +50,7 @@ def page() -> str:
     sections = "\n".join(_section(task) for task in tasks)
     info = ", ".join(code(key) for key in (*INFO_KEYS, "action_error", "audio_clipped"))
     goal = ", ".join(code(key) for key in GOAL_KEYS)
+    episode = ", ".join(code(key) for key in EPISODE_KEYS[2:])
     return f"""# Environments
 
 `gymnasium.make(ID, houses=..., sensors=..., ...)` makes one, `gymnasium.make_vec` many that step
@@ -57,7 +58,8 @@ together; [`DwellEnv`](api/envs.md) lists the arguments, and
 [Configure an environment](configuring-environments.md) shows them.
 
 Every step's `info` holds {info}, `scene_id` and `episode_id`. Where a task has no goal there are no
-{goal}; in vector environments they are NaN.
+{goal}; in vector environments they are NaN. Where it has one, {episode} say what is asked,
+as soon as the episode begins.
 
 {sections}
 ## Settings of worlds

@@ -8,13 +8,14 @@ from __future__ import annotations
 import json
 import re
 import textwrap
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from dwell import _native
 from dwell.schemas import settings
 from dwell.schemas import words as schema_words_of
-from pages.observations import observation_table, specifications
-from pages.sources import text
+from pages.observations import fields_table, observation_table, specifications
+from pages.sources import documents, text
 from pages.tables import code, table
 
 #: A part of a page, by its name, between two comments.
@@ -46,10 +47,15 @@ _PYTHON = {"boolean": "bool", "integer": "int", "number": "float", "string": "st
 
 def files() -> dict[str, str]:
     """Path and content of every file, as they should be."""
-    parts = {"sensors": _sensors(), "sensors of pictures": _sensors_of_pictures()}
+    parts = {
+        "environments": _environments(),
+        "sensors": _sensors(),
+        "sensors of pictures": _sensors_of_pictures(),
+        **{f"task {task['name']}": _task(task) for task in _native.tasks()},
+    }
     pages = {
         path: _PART.sub(lambda part: f"{part[1]}\n{parts[part[2]]}\n{part[4]}", text(path))
-        for path in _PAGES
+        for path in (*_PAGES, *(f"docs/{page}" for page in documents("docs/tasks")))
     }
     return {_TYPES: _types(), **pages}
 
@@ -57,6 +63,25 @@ def files() -> dict[str, str]:
 def stale() -> list[str]:
     """The files that are not as they should be."""
     return [path for path, content in files().items() if text(path) != content]
+
+
+def _environments() -> str:
+    rows = [
+        (code(f"dwell/{task['name']}-v{task['version']}"), task["about"], _names(task["sensors"]))
+        for task in _native.tasks()
+    ]
+    return table(("id", "what is asked", "sensors without `sensors=`"), rows)
+
+
+def _task(task: Mapping[str, Any]) -> str:
+    env_id = f"dwell/{task['name']}-v{task['version']}"
+    return f"""`{env_id}`. Sensors without `sensors=`: {_names(task["sensors"])}. `task_settings`:
+
+{fields_table(task["settings"])}"""
+
+
+def _names(names: Iterable[str]) -> str:
+    return ", ".join(map(code, names))
 
 
 def _styles() -> dict[str, str | None]:
@@ -69,10 +94,9 @@ def _sensors() -> str:
     groups = {
         "images": [name for name, style in styles.items() if style not in (None, "list")],
         "things in view": [name for name, style in styles.items() if style == "list"],
-        "sound, words, movement": [name for name, style in styles.items() if style is None],
+        "sound, words, goals, movement": [name for name, style in styles.items() if style is None],
     }
-    rows = [(group, ", ".join(map(code, names))) for group, names in groups.items()]
-    return table(("what", "names"), rows)
+    return table(("what", "names"), [(group, _names(names)) for group, names in groups.items()])
 
 
 def _sensors_of_pictures() -> str:

@@ -28,8 +28,22 @@ def specifications(sensors: NativeSensors, task: str = "InstructionFollowing") -
     return specs(_native.Batch([room.native], config))
 
 
+def all_specifications() -> list[SensorSpace]:
+    """What every sensor gives by default; those of goals in the first task that has such goals."""
+    found: dict[str, SensorSpace] = {}
+    for name, row in _sensors().items():
+        tasks = row["goal_tasks"]
+        found[name] = specifications([name], *(tasks[:1] if tasks else ()))[0]
+    return [*found.values()]
+
+
 def _sensors() -> dict[str, dict[str, Any]]:
     return {row["name"]: row for row in _native.sensors()}
+
+
+def _of_goals() -> str:
+    rows = [(row["name"], row["goal_tasks"]) for row in _sensors().values() if row["goal_tasks"]]
+    return "; ".join(f"{code(name)} with {', '.join(map(code, tasks))}" for name, tasks in rows)
 
 
 def _by_settings() -> list[tuple[list[str], list[dict[str, Any]]]]:
@@ -94,7 +108,9 @@ env = gymnasium.make(
 )
 ```
 
-{observation_table(specifications(sensor_names()))}
+Sensors of goals go with the tasks that have such goals: {_of_goals()}.
+
+{observation_table(all_specifications())}
 ## Settings
 
 {chr(10).join(sections)}"""

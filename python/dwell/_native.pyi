@@ -314,6 +314,7 @@ class Batch:
     def render(self, env: int, view: _Data) -> NDArray[np.uint8]:
         """What environment ``env``'s first agent sees, lit; ``view``: as :meth:`World.render`."""
     def instruction(self, env: int, agent: int = ...) -> str: ...
+    def episode_goal(self, env: int, agent: int = ...) -> dict[str, Any]: ...
     def set_goal(
         self,
         env: int,

@@ -17,7 +17,7 @@ use numpy::{
     PyReadwriteArrayDyn, PyUntypedArrayMethods,
 };
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict};
+use pyo3::types::{PyBytes, PyDict, PyTuple};
 
 /// Environments stepped together; observations are written into arrays of the caller. In each the same agents act, which are
 /// told by their place among those who act.
@@ -306,6 +306,38 @@ impl PyBatch {
         self.with(py, |batch| {
             Ok(batch.env(env)?.episode(agent)?.instruction.clone())
         })
+    }
+
+    /// What an episode asks for, as infos have it; keys that do not apply are left out.
+    #[pyo3(signature = (env, agent=0))]
+    fn episode_goal<'py>(
+        &self,
+        py: Python<'py>,
+        env: usize,
+        agent: usize,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let (goal, start_distance_m) = self.with(py, |batch| {
+            let episode = batch.env(env)?.episode(agent)?;
+            Ok((episode.goal.clone(), episode.progress.start_distance_m))
+        })?;
+        let out = PyDict::new(py);
+        if !goal.kind.is_empty() {
+            out.set_item("goal_kind", goal.kind)?;
+            let objects = goal.objects.iter().map(|object| object.0);
+            out.set_item(
+                "goal_objects",
+                PyTuple::new(py, objects.collect::<Vec<_>>())?,
+            )?;
+            let rooms = goal.rooms.iter().map(|room| room.0);
+            out.set_item("goal_rooms", PyTuple::new(py, rooms.collect::<Vec<_>>())?)?;
+        }
+        if let Some(name) = goal.class_name() {
+            out.set_item("goal_class", name)?;
+        }
+        if let Some(distance_m) = start_distance_m {
+            out.set_item("start_distance_to_goal", distance_m)?;
+        }
+        Ok(out)
     }
 
     #[pyo3(signature = (env, instruction=None, distance_m=None, agent=0))]

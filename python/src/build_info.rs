@@ -57,7 +57,8 @@ pub(crate) fn tasks() -> PyResult<PyValue> {
     table(&tasks.collect::<Value>())
 }
 
-/// The sensors: `[{name, about, settings, picture_style}]`; the style is null where a sensor is not one of pictures.
+/// The sensors: `[{name, about, settings, picture_style, goal_tasks}]`; the style is null where a sensor is not one of pictures, and
+/// the tasks where it is not one of goals.
 #[pyfunction]
 pub(crate) fn sensors() -> PyResult<PyValue> {
     let sensors = dwell::sensors::all().iter();
@@ -67,6 +68,11 @@ pub(crate) fn sensors() -> PyResult<PyValue> {
             "about": kind.about,
             "settings": (kind.settings)(),
             "picture_style": kind.picture_style(),
+            "goal_tasks": kind.goal_part.map(|part| {
+                let tasks = dwell::tasks::all().iter();
+                let having = tasks.filter(|task| task.goal_parts.contains(&part));
+                having.map(|task| task.name).collect::<Vec<_>>()
+            }),
         })
     });
     table(&rows.collect::<Value>())

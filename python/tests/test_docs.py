@@ -21,7 +21,7 @@ import dwell
 import dwell.envs
 import dwell.world
 from dwell import _native
-from dwell.envs.native_batch import INFO_KEYS
+from dwell.envs.info_keys import EPISODE_KEYS, INFO_KEYS
 from dwell.schemas import settings
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -128,9 +128,13 @@ def test_every_sensor_stands_in_the_table_with_its_space(pages: ModuleType) -> N
     rows = {row[0]: row for row in rows_of(pages.observations.page(), "# Observations")}
     sensors = {sensor["name"]: sensor["about"] for sensor in _native.sensors()}
     assert list(rows) == list(sensors)
-    env = gymnasium.make("dwell/InstructionFollowing-v0", sensors=list(sensors))
-    spaces = env.observation_space
-    assert isinstance(spaces, gymnasium.spaces.Dict)
+    spaces = {}
+    for row in _native.sensors():
+        (task, *_) = row["goal_tasks"] or ["InstructionFollowing"]
+        env = gymnasium.make(f"dwell/{task}-v0", sensors=[row["name"]])
+        assert isinstance(env.observation_space, gymnasium.spaces.Dict)
+        spaces |= env.observation_space.spaces
+        env.close()
     for name, (_, kind, shape, dtype, _, low, high, about) in rows.items():
         space = spaces[name]
         assert (kind, about) == (type(space).__name__, sensors[name])
@@ -144,7 +148,6 @@ def test_every_sensor_stands_in_the_table_with_its_space(pages: ModuleType) -> N
             assert isinstance(space, gymnasium.spaces.Box)
             bounds = (float(low.replace(",", "")), float(high.replace(",", "")))
             assert bounds == pytest.approx((space.low.min(), space.high.max()), rel=1e-5)
-    env.close()
 
 
 def test_every_sensor_is_under_settings_once(pages: ModuleType) -> None:
@@ -275,7 +278,7 @@ def test_the_page_for_who_begins_says_what_the_engine_does() -> None:
     ]
     assert {task["max_steps"] for task in tasks} == {1000}
     info = text.split("## Info")[1].split("## Sensors")[0]
-    assert [key for key in INFO_KEYS if f"`{key}`" not in info] == []
+    assert [key for key in (*INFO_KEYS, *EPISODE_KEYS) if f"`{key}`" not in info] == []
 
 
 def test_the_wheel_for_this_machine_is_chosen_among_several(tmp_path: Path) -> None:

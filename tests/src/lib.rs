@@ -7,7 +7,7 @@ pub mod observations;
 pub mod pixel_counts;
 pub mod validity;
 
-use dwell::{Engines, Env, EnvConfig, SensorConfig};
+use dwell::{Engines, Env, EnvConfig, SensorConfig, WorldError};
 use dwell_houses::{Robot, open_robot};
 use dwell_scene::{LawInfo, LawSpec};
 use serde_json::json;
@@ -89,18 +89,31 @@ pub fn env_with(config: EnvConfig, sensors: &[&str]) -> Env {
 /// # Panics
 /// When the task, a law or a sensor does not exist.
 pub fn env_in(engines: Arc<Engines>, config: EnvConfig, sensors: &[&str]) -> Env {
+    try_env_in(engines, config, sensors).expect("task, laws and sensors exist")
+}
+
+/// As [`env_in`], for what may not exist.
+///
+/// # Errors
+/// Those of [`Env::new`].
+pub fn try_env_in(
+    engines: Arc<Engines>,
+    config: EnvConfig,
+    sensors: &[&str],
+) -> Result<Env, WorldError> {
     let sensors = sensors.iter().map(|name| small_sensor(name));
     let config = EnvConfig {
         sensors: Some(sensors.collect()),
         ..config
     };
-    Env::new(engines, &config).expect("task, laws and sensors exist")
+    Env::new(engines, &config)
 }
 
 /// A sensor by its name, small where it is one of pictures.
 fn small_sensor(name: &str) -> SensorConfig {
     let mut all = dwell::sensors::all().iter();
-    let shows_pictures = all.any(|kind| kind.name == name && kind.is_image_sensor());
+    let shows_pictures =
+        name == "imagegoal" || all.any(|kind| kind.name == name && kind.is_image_sensor());
     SensorConfig {
         kind: name.to_owned(),
         settings: if shows_pictures {
@@ -111,13 +124,14 @@ fn small_sensor(name: &str) -> SensorConfig {
     }
 }
 
-/// An environment in the apartment with every sensor, `semantic` by each table of classes, all small.
+/// An environment in the apartment with every sensor but those of goals, `semantic` by each table of classes, all small.
 ///
 /// # Panics
 /// When the task or a law does not exist.
 pub fn env_of_every_sensor(config: EnvConfig) -> Env {
     let mut sensors = Vec::new();
-    for kind in dwell::sensors::all() {
+    let kinds = dwell::sensors::all().iter();
+    for kind in kinds.filter(|kind| kind.goal_part.is_none()) {
         let one = small_sensor(kind.name);
         let tables = if kind.name == "semantic" {
             &["fine", "nyu40"][..]

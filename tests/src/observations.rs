@@ -2,10 +2,23 @@
 
 use dwell::Batch;
 use dwell::sensors::{self, Dtype, ObservationBuffer};
+use dwell::tasks::TaskKind;
 
-/// The names of all sensors.
+/// The names of the sensors that go with every task.
 pub fn all_sensors() -> Vec<&'static str> {
-    sensors::all().iter().map(|kind| kind.name).collect()
+    let kinds = sensors::all().iter();
+    let kinds = kinds.filter(|kind| kind.goal_part.is_none());
+    kinds.map(|kind| kind.name).collect()
+}
+
+/// The names of the sensors that observe the goals of a task.
+pub fn goal_sensors(task: &TaskKind) -> Vec<&'static str> {
+    let kinds = sensors::all().iter();
+    let kinds = kinds.filter(|kind| {
+        kind.goal_part
+            .is_some_and(|part| task.goal_parts.contains(&part))
+    });
+    kinds.map(|kind| kind.name).collect()
 }
 
 /// The observations of every sensor of a batch, as bits: all environments of the first sensor, of the second, and so on.

@@ -1,6 +1,6 @@
 //! Every registered sensor, task and law keeps its contract.
 
-use dwell::{Batch, DiscreteAction, tasks};
+use dwell::{Batch, DiscreteAction, sensors, tasks};
 use dwell_scene::parallel::Threads;
 use dwell_tests::observations::{all_sensors, observe};
 
@@ -96,7 +96,7 @@ fn every_task_can_be_solved_by_its_expert() {
 
 #[test]
 fn names_are_unique_over_all_registers() {
-    let mut names: Vec<&str> = all_sensors();
+    let mut names: Vec<&str> = sensors::all().iter().map(|kind| kind.name).collect();
     names.extend(tasks::all().iter().map(|kind| kind.name));
     names.extend(dwell::laws::all().map(|info| info.id));
     let count = names.len();

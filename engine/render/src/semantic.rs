@@ -152,7 +152,8 @@ pub struct EntityClasses {
 }
 
 impl EntityClasses {
-    pub(crate) fn new(house: &House, table: ClassSet) -> Self {
+    /// The classes of the entities of `house`, by a table.
+    pub fn new(house: &House, table: ClassSet) -> Self {
         let strange = table.unlisted_classes(house);
         let named = |name: &str| {
             let row = TABLE.class.get(name).copied().unwrap_or(VOID);

@@ -48,6 +48,11 @@ pub fn ln(x: f32) -> f32 {
     libm::logf(x)
 }
 
+/// Natural logarithm of 1 + x, exact near 0.
+pub fn ln_1p(x: f32) -> f32 {
+    libm::log1pf(x)
+}
+
 /// Power.
 pub fn pow(x: f32, y: f32) -> f32 {
     libm::powf(x, y)

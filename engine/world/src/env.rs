@@ -163,6 +163,9 @@ impl Env {
             placed.push(agent.id);
         }
         for (agent, episode) in order.into_iter().zip(begun) {
+            for sensor in &mut agent.sensors {
+                sensor.begin_episode(&self.world, &episode)?;
+            }
             agent.episode = Some(episode);
         }
         (self.seed, self.episode_key) = (seed, key);

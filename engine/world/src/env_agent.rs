@@ -28,6 +28,26 @@ pub(crate) struct EnvAgent {
     pub(crate) success: bool,
 }
 
+/// Refuses a sensor of goals that a task does not have.
+fn refuse_goal_sensor(name: &str, task: &TaskKind) -> Result<(), WorldError> {
+    let part = sensors::find(name).and_then(|sensor| sensor.goal_part);
+    if part.is_none_or(|part| task.goal_parts.contains(&part)) {
+        return Ok(());
+    }
+    let of_tasks = tasks::all().iter();
+    let having = of_tasks.filter(|task| part.is_some_and(|part| task.goal_parts.contains(&part)));
+    let names: Vec<&str> = having.map(|task| task.name).collect();
+    Err(WorldError::Config {
+        field: "sensors",
+        found: format!("{name:?}"),
+        allowed: format!(
+            "that with the task {} alone, not with {}",
+            names.join(" or "),
+            task.name
+        ),
+    })
+}
+
 impl EnvAgent {
     /// Builds task and sensors.
     ///
@@ -55,6 +75,9 @@ impl EnvAgent {
             Some(wanted) => wanted.to_vec(),
             None => kind.sensors.iter().map(own_choice).collect(),
         };
+        for sensor in &wanted {
+            refuse_goal_sensor(&sensor.kind, kind)?;
+        }
         let sensors: Vec<_> = wanted
             .iter()
             .map(|sensor| sensors::build(&sensor.kind, &sensor.settings, site))

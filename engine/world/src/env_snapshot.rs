@@ -3,14 +3,14 @@
 use crate::actions::StepSizes;
 use crate::env::Env;
 use crate::env_agent::EnvAgent;
-use crate::episode::Episode;
+use crate::episode::{Episode, EpisodeGoal};
 use crate::error::WorldError;
 use crate::metrics::NavigationMetrics;
 use dwell_scene::{AgentId, IdVec, Pose};
 use serde::{Deserialize, Serialize};
 
 /// The first bytes of an [`Env::snapshot`]: its kind and version.
-const MAGIC: &[u8] = b"dwenv6";
+const MAGIC: &[u8] = b"dwenv7";
 
 /// Episodes at one moment. Their goals come from the seed again.
 #[derive(Serialize, Deserialize)]
@@ -36,6 +36,8 @@ struct AgentSnapshot {
     instruction: String,
     start: Pose,
     progress: NavigationMetrics,
+    /// Whether a task outside of this crate asks for something else than the seed's goal.
+    goal_replaced: bool,
 }
 
 impl AgentSnapshot {
@@ -50,6 +52,7 @@ impl AgentSnapshot {
             instruction: episode.instruction.clone(),
             start: episode.start,
             progress: episode.progress,
+            goal_replaced: episode.goal.kind.is_empty(),
         }
     }
 
@@ -86,6 +89,9 @@ impl AgentSnapshot {
         if let Some(episode) = &mut agent.episode {
             (episode.instruction, episode.tokens) = (self.instruction, tokens);
             (episode.start, episode.progress) = (self.start, self.progress);
+            if self.goal_replaced {
+                episode.goal = EpisodeGoal::default();
+            }
         }
         (agent.done, agent.success) = (self.done, self.success);
     }
@@ -129,7 +135,7 @@ impl Env {
         let refuse = |why: String| WorldError::Snapshot(why);
         let body = bytes
             .strip_prefix(MAGIC)
-            .ok_or_else(|| refuse("it does not begin with \"dwenv6\"".to_owned()))?;
+            .ok_or_else(|| refuse("it does not begin with \"dwenv7\"".to_owned()))?;
         let moment: EnvSnapshot =
             postcard::from_bytes(body).map_err(|error| refuse(error.to_string()))?;
         if moment.agents.len() != self.agents.len() {

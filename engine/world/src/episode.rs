@@ -1,8 +1,54 @@
 //! Episodes: their goals, the verdicts on their steps, and the reports of these.
 
 use crate::metrics::NavigationMetrics;
-use dwell_scene::{AgentId, Pose};
+use dwell_scene::{AgentId, ObjectId, Pose, RoomId};
+use dwell_semantics::category::categories;
+use dwell_semantics::room_kind::room_kinds;
+use glam::Vec3;
 use serde::Serialize;
+
+/// What the goals of a task have, which sensors of goals observe.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GoalPart {
+    /// A place.
+    Position,
+    /// The class of a thing.
+    Class,
+    /// The kind of a room.
+    Room,
+    /// A place and heading from which a picture is taken.
+    Image,
+}
+
+/// What an episode asks for, as sensors of goals and infos tell it. What does not belong to its kind is empty.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct EpisodeGoal {
+    /// `"point"`, `"room"`, `"object"`, `"image"`, `"sound"`, or the kind of an instruction (`"go_to_room"`, `"find_object"`); empty
+    /// where the task asks for nothing, or a task outside of this crate asks.
+    pub kind: &'static str,
+    /// A place on the floor, m.
+    pub position: Option<Vec3>,
+    /// The heading of a picture taken there, rad.
+    pub yaw_rad: f32,
+    /// The rooms of which one counts.
+    pub rooms: Vec<RoomId>,
+    /// The things of which one counts.
+    pub objects: Vec<ObjectId>,
+    /// The class of the things, as the sensor `semantic` numbers them by default; 0 for none.
+    pub class: i32,
+    /// The kind of the rooms, a row of `assets/rooms.csv` counted from 1; 0 for none.
+    pub room_kind: i32,
+}
+
+impl EpisodeGoal {
+    /// The name of the class of the things, as `assets/categories.csv` has it, or of the kind of the rooms, as `assets/rooms.csv`
+    /// has it; `None` where the goal has neither.
+    pub fn class_name(&self) -> Option<&'static str> {
+        let row = |number: i32| usize::try_from(number - 1).ok();
+        let class = row(self.class).and_then(|row| Some(categories().rows().get(row)?.name));
+        class.or_else(|| Some(room_kinds().rows().get(row(self.room_kind)?)?.name))
+    }
+}
 
 /// The goal of an episode, and its progress.
 #[derive(Clone, Debug)]
@@ -17,6 +63,8 @@ pub struct Episode {
     pub start: Pose,
     /// Distance, path, collisions.
     pub progress: NavigationMetrics,
+    /// What is asked, beside the words.
+    pub goal: EpisodeGoal,
 }
 
 /// The task's verdict on a step.

@@ -2,7 +2,7 @@
 
 use crate::env::Env;
 use crate::env_agent::EnvAgent;
-use crate::episode::StepResult;
+use crate::episode::{EpisodeGoal, StepResult};
 use crate::error::WorldError;
 use crate::metrics::NavigationMetrics;
 use crate::sensors::Dtype;
@@ -40,6 +40,7 @@ impl Env {
         if let (Some((text, way_m)), Some(tokens)) = (asked, tokens) {
             text.clone_into(&mut episode.instruction);
             (episode.tokens, distance_m) = (tokens, way_m);
+            episode.goal = EpisodeGoal::default();
         }
         episode.progress = NavigationMetrics::new(episode.start.position, distance_m);
         self.record_start_poses();

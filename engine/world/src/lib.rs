@@ -57,7 +57,7 @@ pub use current_objects::{ObjectState, effective_agents, object_state, object_st
 pub use engines::Engines;
 pub use env::Env;
 pub use env_config::{AgentConfig, EnvConfig, SensorConfig};
-pub use episode::{Episode, StepInfo, StepResult};
+pub use episode::{Episode, EpisodeGoal, GoalPart, StepInfo, StepResult};
 pub use error::WorldError;
 pub use expert::{ShortestPathFollower, action_towards_object};
 pub use fixtures::{

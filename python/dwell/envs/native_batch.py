@@ -11,25 +11,11 @@ from numpy.typing import NDArray
 
 from dwell import ConfigError, _native
 from dwell.envs.env_pool import PreparedEnv, add_heads
+from dwell.envs.info_keys import GOAL_KEYS
 from dwell.envs.python_tasks import PythonEpisode, PythonTask
 from dwell.envs.spaces import shareable, specs
 from dwell.heads import Head
 from dwell.house import House
-
-#: Keys of a step's answer that become ``info``; those of :data:`GOAL_KEYS` are NaN without a goal.
-INFO_KEYS = (
-    "success",
-    "action_success",
-    "collision",
-    "distance_to_goal",
-    "spl",
-    "soft_spl",
-    "path_length",
-    "collisions",
-)
-
-#: What there is only where a task has a goal to go to.
-GOAL_KEYS = ("distance_to_goal", "spl", "soft_spl")
 
 
 class NativeBatch:
@@ -115,6 +101,10 @@ class NativeBatch:
         self.batch.restore(env, snapshot)
         if states is not None:
             self.plays[env].load(states, seed)
+
+    def episode_goal(self, env: int) -> dict[str, Any]:
+        """What the episode of an environment asks for, for infos."""
+        return self.batch.episode_goal(env)
 
     def step(self, numbers: NDArray[np.int64]) -> tuple[dict[str, Any], list[Mapping[str, Any]]]:
         """One control step by the numbers of actions, -1 for none.

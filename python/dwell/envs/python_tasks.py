@@ -27,6 +27,7 @@ from dwell.arguments import (
     text,
     to_json,
 )
+from dwell.envs.info_keys import EPISODE_KEYS
 from dwell.house import House
 from dwell.plugin_parts import factory
 from dwell.rewards import Reward
@@ -233,7 +234,7 @@ class PythonEpisode:
             if key in answer:
                 answer[key][k] = math.nan if value is None else value
         info = mapping(f"{self._name()}.judge: info", verdict.info)
-        if taken := sorted(set(info) & {*answer, "scene_id", "episode_id"}):
+        if taken := sorted(set(info) & {*answer, *EPISODE_KEYS}):
             raise ConfigError(f"{self._name()}.judge: info has {taken[0]!r}, which exists already")
         return info
 

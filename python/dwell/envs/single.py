@@ -30,7 +30,8 @@ from dwell.envs.config import (
     kept_houses,
     step_limit,
 )
-from dwell.envs.native_batch import GOAL_KEYS, INFO_KEYS, NativeBatch
+from dwell.envs.info_keys import GOAL_KEYS, INFO_KEYS
+from dwell.envs.native_batch import NativeBatch
 from dwell.envs.python_tasks import PythonTask, RewardChoice, Sensors, TaskChoice, split
 from dwell.envs.snapshots import check_and_strip, with_checksum
 from dwell.envs.spaces import action_space
@@ -145,6 +146,8 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         self._house = 0
         self._episode = 0
         self._seed = 0
+        #: What the episode asks for, as infos have it.
+        self._goal: dict[str, Any] = {}
         #: Whether there is no episode to go on with: none has begun, or a call did not come to its
         #: end that began, restored or stepped one.
         self._stopped = True
@@ -192,6 +195,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         return {
             "scene_id": self._shelf.names[self._house],
             "episode_id": self._shelf.episode_id(self._house, self._seed),
+            **self._goal,
         }
 
     def reset(
@@ -203,6 +207,12 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
             seed: Seeds this and all following episodes.
             options: ``house``: the number of the house to play in; else it is drawn.
                 ``episode_id``: that of an earlier ``info``, to play the same episode again.
+
+        Returns:
+            Observation and info: ``scene_id``, ``episode_id``, and what is asked, where the task
+            has a goal: ``goal_kind``, ``goal_class`` (of things or rooms of a class),
+            ``goal_objects`` and ``goal_rooms`` (ids of those that count), and
+            ``start_distance_to_goal`` (m). Every step's info has them, too.
 
         Raises:
             ConfigError: There is no such option, house or episode; nothing has changed then.
@@ -220,6 +230,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
             drawn = int(self.np_random.integers(2**63))
             self._seed = drawn if episode is None else episode
             self._runner.reset([self._seed])
+            self._goal = self._runner.episode_goal(0)
             observation = self._observation()
         return observation, self._info()
 
@@ -341,6 +352,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         with self._playing("restore"):
             runner.restore(rest, parts, seed)
             self._house, self._seed = house, seed
+            self._goal = runner.episode_goal(0)
             for counter in self._counters:
                 if (wrapper := counter()) is not None:
                     wrapper._elapsed_steps = self._steps()  # type: ignore[assignment] # None first

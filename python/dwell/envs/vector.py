@@ -37,7 +37,8 @@ from dwell.envs.config import (
 )
 from dwell.envs.env_pool import EnvPool
 from dwell.envs.house_assignment import HouseAssignment
-from dwell.envs.native_batch import INFO_KEYS, NativeBatch
+from dwell.envs.info_keys import INFO_KEYS
+from dwell.envs.native_batch import NativeBatch
 from dwell.envs.python_tasks import RewardChoice, Sensors, TaskChoice, split
 from dwell.envs.single import (
     RENDER_CAMERA,
@@ -206,6 +207,8 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         self._streams: list[np.random.Generator | None] = [None] * num_envs
         #: The seed of every environment's episode, once it has one.
         self._seeds: list[int | None] = [None] * num_envs
+        #: What :meth:`_ids` gives; ``None`` where episodes have begun since.
+        self._episode_infos: dict[str, Any] | None = None
         self._done = np.ones(num_envs, np.bool_)
         #: Who writes down what is played.
         self._recorders: list[Recorder] = []
@@ -247,6 +250,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         self._runner.reset(seeds, moved)
         for k, (_, seed) in episodes.items():
             self._seeds[k] = seed
+        self._episode_infos = None
         self._done[which] = False
         self._stopped[which] = False
         self._look_ahead(which)
@@ -286,7 +290,8 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
                 same episodes again; ``None`` where one is drawn.
 
         Returns:
-            Observations and infos: ``scene_id`` and ``episode_id`` of every environment.
+            Observations and infos: ``scene_id``, ``episode_id`` and what is asked, as
+            :meth:`DwellEnv.reset` gives them, of every environment.
         """
         self._refuse_closed()
         options = {} if options is None else mapping("options", options)
@@ -346,18 +351,26 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         }
 
     def _ids(self) -> dict[str, Any]:
-        """``scene_id`` and ``episode_id`` of every environment that has an episode, for infos."""
+        """Infos that stay the same in an episode, of every environment that has one."""
+        if self._episode_infos is None:
+            self._episode_infos = self._gathered_ids()
+        return {key: value.copy() for key, value in self._episode_infos.items()}
+
+    def _gathered_ids(self) -> dict[str, Any]:
         has = np.array([seed is not None for seed in self._seeds], np.bool_) & ~self._stopped
         scenes, episodes = (np.full(self.num_envs, None, object) for _ in range(2))
         for k in np.flatnonzero(has).tolist():
             scenes[k] = self._places.name(k)
             episodes[k] = self._places.episode_id(k, self._seeds[k] or 0)
-        return {
+        infos = {
             "scene_id": scenes,
             "_scene_id": has,
             "episode_id": episodes,
             "_episode_id": has.copy(),
         }
+        for k in np.flatnonzero(has).tolist():
+            infos = self._add_info(infos, self._runner.episode_goal(k), k)
+        return infos
 
     def step(
         self, actions: NDArray[np.int64]
@@ -458,7 +471,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             }
         final_info: dict[str, Any] = {}
         for key in (*INFO_KEYS, "action_error", "audio_clipped", *own):
-            final_info |= {key: infos[key].copy(), f"_{key}": ended}
+            final_info |= {key: infos[key].copy(), f"_{key}": ended & infos[f"_{key}"]}
         self._start(ended)
         self._runner.observe(ended)
         return {
@@ -528,6 +541,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         for k, (saved, _, seed) in rows.items():
             self._runner.restore(saved.world, saved.parts, seed, env=k)
             self._seeds[k], self._streams[k], self._done[k] = seed, saved.stream, saved.done
+        self._episode_infos = None
         self._look_ahead(which)
         self._runner.observe(which)
         self._stopped[which] = False

@@ -1,6 +1,7 @@
 //! "Find the red chair in the bedroom."
 
 use super::task::{FOUND_M, Instruction, InstructionGoal, InstructionKind};
+use crate::category::SemanticCategory;
 use crate::form::RequestStep;
 use crate::refer::refer;
 use crate::scene::SemanticScene;
@@ -19,25 +20,22 @@ const NOT_SOUGHT: [&str; 9] = [
     "ground",
 ];
 
+/// Returns whether things of a category are looked for.
+pub fn is_sought(category: &SemanticCategory) -> bool {
+    !category.structure && !category.is_vague() && !NOT_SOUGHT.contains(&category.name)
+}
+
 pub(super) fn candidates(scene: &SemanticScene<'_>) -> Vec<Instruction> {
     let objects = scene.house().objects.ids();
     objects
         .filter(|object| {
-            let row = scene.facts(*object).category;
-            row.is_some_and(|row| {
-                !row.structure && !row.is_vague() && !NOT_SOUGHT.contains(&row.name)
-            }) && scene.room_of(*object).is_some()
+            scene.facts(*object).category.is_some_and(is_sought) && scene.room_of(*object).is_some()
         })
         .filter_map(|object| {
             // Some milliseconds each.
             interrupt::unwind_if_cancelled();
             let description = refer(scene, object)?;
-            let goal = InstructionGoal {
-                rooms: Vec::new(),
-                objects: vec![object],
-                radius_m: FOUND_M,
-                in_sight: true,
-            };
+            let goal = InstructionGoal::objects(vec![object], FOUND_M);
             let step = RequestStep::Do {
                 verb: "find".to_owned(),
                 object: description.into(),

@@ -10,12 +10,7 @@ pub(super) fn candidates(scene: &SemanticScene<'_>) -> Vec<Instruction> {
     rooms
         .filter_map(|room| {
             let description = refer_to_room(scene, room)?;
-            let goal = InstructionGoal {
-                rooms: vec![room],
-                objects: Vec::new(),
-                radius_m: 0.0,
-                in_sight: false,
-            };
+            let goal = InstructionGoal::rooms(vec![room]);
             let step = RequestStep::GoTo(description.into());
             let language = scene.semantics.language();
             Instruction::new(language, InstructionKind::GoToRoom, step, goal)

@@ -7,6 +7,7 @@ mod go_to_room;
 mod needed_words;
 mod task;
 
+pub use find_object::is_sought;
 pub use needed_words::needed_words;
 pub use task::{Instruction, InstructionGoal, InstructionKind, InstructionProgress};
 

@@ -10,7 +10,7 @@ pub fn needed_words() -> BTreeSet<String> {
     let words = Language::english().grammar().words();
     words
         .map(str::to_owned)
-        .chain(["explore".to_owned()])
+        .chain(["explore", "sound"].map(str::to_owned))
         .collect()
 }
 

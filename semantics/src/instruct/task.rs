@@ -94,6 +94,68 @@ pub struct Instruction {
     pub goal: InstructionGoal,
 }
 
+impl InstructionGoal {
+    /// To stand in one of some rooms.
+    pub fn rooms(rooms: Vec<RoomId>) -> Self {
+        Self {
+            rooms,
+            objects: Vec::new(),
+            radius_m: 0.0,
+            in_sight: false,
+        }
+    }
+
+    /// To stand within `radius_m` of the outline of one of some things and look at it.
+    pub fn objects(objects: Vec<ObjectId>, radius_m: f32) -> Self {
+        Self {
+            rooms: Vec::new(),
+            objects,
+            radius_m,
+            in_sight: true,
+        }
+    }
+
+    /// Returns whether an agent has reached it: it stands in one of the rooms; or it stands within the goal's radius of the outline
+    /// of one of the things and sees it at most 45 degrees from where it looks, or holds it. `false` for an agent that does not exist.
+    ///
+    /// `rays` must be up to date with the scene's state.
+    pub fn is_reached(&self, scene: &SemanticScene<'_>, rays: &RayScene, agent: AgentId) -> bool {
+        let (Some(body), Some(viewer)) = (
+            scene.state.agents.get(agent),
+            Viewer::of_agent(scene.state, agent),
+        ) else {
+            return false;
+        };
+        let room = scene.room_of_agent(agent);
+        if room.is_some_and(|room| self.rooms.contains(&room)) {
+            return true;
+        }
+        let here = Vec2::new(body.position.x, body.position.z);
+        let ceiling = room.map_or(f32::MIN, |room| scene.house().rooms[room].ceiling_y);
+        let overhead = ceiling.max(body.position.y + body.body.height_m + 1.0);
+        self.objects.iter().any(|object| {
+            if body.holding == Some(*object) {
+                return true;
+            }
+            let extent = scene.extent(*object);
+            // A thing on another storey is not near, even straight above or below; a lamp under the ceiling is.
+            let level =
+                extent.bounds.max.y > body.position.y - 0.5 && extent.bounds.min.y < overhead;
+            let near = extent.footprint.distance_to(here) <= self.radius_m;
+            let seen = || {
+                is_in_line_of_sight(
+                    scene,
+                    rays,
+                    &viewer,
+                    *object,
+                    FieldOfView::Cone(FOUND_HALF_ANGLE_RAD),
+                )
+            };
+            level && near && (!self.in_sight || seen())
+        })
+    }
+}
+
 impl Instruction {
     /// Returns the instruction to carry out `step`; `None` where the language has no words for it, or too many.
     pub(super) fn new(
@@ -142,8 +204,7 @@ impl Instruction {
         vocabulary::tokenize(&self.text)
     }
 
-    /// Returns whether the agent has fulfilled it in this scene: it stands in the room; or it stands within the goal's radius of the
-    /// thing's outline and sees it at most 45 degrees from where it looks, or holds it.
+    /// Returns whether the agent has fulfilled it in this scene: [`InstructionGoal::is_reached`].
     ///
     /// `rays` must be up to date with the scene's state. [`InstructionProgress::Failure`] when the agent does not exist.
     pub fn verify(
@@ -152,39 +213,9 @@ impl Instruction {
         rays: &RayScene,
         agent: AgentId,
     ) -> InstructionProgress {
-        let (Some(body), Some(viewer)) = (
-            scene.state.agents.get(agent),
-            Viewer::of_agent(scene.state, agent),
-        ) else {
-            return InstructionProgress::Failure;
-        };
-        let here = Vec2::new(body.position.x, body.position.z);
-        let in_room = || {
-            scene
-                .room_of_agent(agent)
-                .is_some_and(|room| self.goal.rooms.contains(&room))
-        };
-        let found = |object: &ObjectId| {
-            let extent = scene.extent(*object);
-            // A thing on another storey is not near, even straight above or below; a lamp under the ceiling is.
-            let room = scene.room_of_agent(agent);
-            let ceiling = room.map_or(f32::MIN, |room| scene.house().rooms[room].ceiling_y);
-            let overhead = ceiling.max(body.position.y + body.body.height_m + 1.0);
-            let level =
-                extent.bounds.max.y > body.position.y - 0.5 && extent.bounds.min.y < overhead;
-            let near = extent.footprint.distance_to(here) <= self.goal.radius_m;
-            let seen = || {
-                is_in_line_of_sight(
-                    scene,
-                    rays,
-                    &viewer,
-                    *object,
-                    FieldOfView::Cone(FOUND_HALF_ANGLE_RAD),
-                )
-            };
-            body.holding == Some(*object) || (level && near && (!self.goal.in_sight || seen()))
-        };
-        if in_room() || self.goal.objects.iter().any(found) {
+        if scene.state.agents.get(agent).is_none() {
+            InstructionProgress::Failure
+        } else if self.goal.is_reached(scene, rays, agent) {
             InstructionProgress::Success
         } else {
             InstructionProgress::Continue

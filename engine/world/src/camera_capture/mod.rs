@@ -28,6 +28,8 @@ pub enum CameraMount {
     Agent(AgentId, Pose),
     /// Anywhere in the world, at rest and without laws.
     World(Pose),
+    /// As [`Self::World`], without the body of an agent in the picture.
+    WorldWithout(AgentId, Pose),
 }
 
 /// A view with its camera's previous pose.
@@ -43,7 +45,7 @@ impl World {
     pub(crate) fn optics(&self, place: &CameraMount) -> Optics<'_> {
         match place {
             CameraMount::Agent(agent, _) => Optics::of(&self.state().laws, *agent),
-            CameraMount::World(_) => Optics::ideal(),
+            CameraMount::World(_) | CameraMount::WorldWithout(..) => Optics::ideal(),
         }
     }
 
@@ -52,6 +54,9 @@ impl World {
         let camera = self.optics(&request.mount).camera(request.camera);
         let (is, was, hide): (Pose, Pose, Option<EntityId>) = match request.mount {
             CameraMount::World(pose) => (pose, pose, None),
+            CameraMount::WorldWithout(agent, pose) => {
+                (pose, pose, Some(self.house().entity_of_agent(agent)))
+            }
             CameraMount::Agent(agent, eye_from_camera) => {
                 let is = state.agents.get(agent).map(AgentState::world_from_eye);
                 let is = is.unwrap_or_default();

@@ -24,6 +24,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     build,
     settings: schema::fields_of::<AudioConfig>,
     image: None,
+    goal_part: None,
 };
 
 /// The settings of the ears.
@@ -61,19 +62,10 @@ fn build(value: &serde_json::Value, site: SensorSetup<'_>) -> Result<Box<dyn Sen
     let config: AudioConfig = parse_sensor_settings(value)?;
     let agent = site.agent(config.agent)?;
     let window_s = config.window_s.unwrap_or_else(|| site.config.step_s());
-    let samples = (window_s * f64::from(site.config.sound_rate_hz)).round();
-    if !(window_s <= 10.0 && samples >= 1.0) {
-        let allowed = "one sample to 10 s".to_owned();
-        return Err(WorldError::Config {
-            field: "window_s",
-            found: window_s.to_string(),
-            allowed,
-        });
-    }
     Ok(Box::new(AudioSensor {
         name: super::key(KIND.name, config.name)?,
         agent,
-        samples: samples as usize,
+        samples: super::window_samples(site, window_s)?,
         clipped: AtomicU64::new(0),
     }))
 }

@@ -15,6 +15,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     build,
     settings: schema::fields_of::<AgentSensorSettings>,
     image: None,
+    goal_part: None,
 };
 
 #[derive(Debug)]

@@ -16,6 +16,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     build,
     settings: schema::fields_of::<NoSettings>,
     image: None,
+    goal_part: None,
 };
 
 #[derive(Debug)]

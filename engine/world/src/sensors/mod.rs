@@ -14,14 +14,19 @@ mod flow;
 mod gps;
 mod gyro;
 mod image;
+mod imagegoal;
 mod instance;
 mod instruction;
 mod instruction_tokens;
 mod normals;
 mod object_list;
+mod objectgoal;
 mod picture_memory;
+mod pointgoal_with_gps_compass;
 mod rgb;
+mod roomgoal;
 mod semantic;
+mod spectrogram;
 mod surfels;
 mod visible_objects;
 mod wheel_odometry;
@@ -32,7 +37,7 @@ pub(crate) use camera::mount;
 pub use image::{DisplayStyle, ImageObservationOptions, Observation, ObservationData};
 pub(crate) use picture_memory::{image_bytes, observation_bytes};
 
-use crate::episode::Episode;
+use crate::episode::{Episode, GoalPart};
 use crate::error::WorldError;
 use crate::schema::FieldSchema;
 use crate::sensor_requests::{RenderedImages, SensorRequests};
@@ -136,6 +141,14 @@ pub trait Sensor: Debug + Send + Sync {
         None
     }
 
+    /// Looks at the start of an episode; most sensors keep nothing of it.
+    ///
+    /// # Errors
+    /// [`WorldError::Render`] for a picture that cannot be made.
+    fn begin_episode(&mut self, _world: &World, _episode: &Episode) -> Result<(), WorldError> {
+        Ok(())
+    }
+
     /// States the requests to the engines; most sensors that read the state need nothing.
     fn request(&self, _world: &World, _requests: &mut SensorRequests) {}
 
@@ -173,6 +186,30 @@ impl SensorSetup<'_> {
             allowed: format!("below the number of agents, {}", self.config.agents.len()),
         })
     }
+}
+
+/// The number of samples of a window of sound.
+///
+/// # Errors
+/// [`WorldError::Config`] for less than a sample or more than 10 s.
+fn window_samples(site: SensorSetup<'_>, window_s: f64) -> Result<usize, WorldError> {
+    let samples = (window_s * f64::from(site.config.sound_rate_hz)).round();
+    if window_s <= 10.0 && samples >= 1.0 {
+        return Ok(samples as usize);
+    }
+    Err(WorldError::Config {
+        field: "window_s",
+        found: window_s.to_string(),
+        allowed: "one sample to 10 s".to_owned(),
+    })
+}
+
+/// The settings of a sensor that has only a name.
+#[derive(Debug, Default, serde::Deserialize, schemars::JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+struct NameSettings {
+    /// The key in the observation; by default the sensor's kind.
+    name: Option<String>,
 }
 
 /// The settings of a sensor of an agent that has no others.
@@ -243,6 +280,8 @@ pub struct SensorKind {
     pub settings: fn() -> Vec<FieldSchema>,
     /// The image sensor's part in [`World::image_observations`].
     pub(crate) image: Option<image::ClassImageSensor>,
+    /// What it observes of the goal; `None` for sensors that observe nothing of it, or in words.
+    pub goal_part: Option<GoalPart>,
 }
 
 impl SensorKind {
@@ -273,6 +312,11 @@ pub fn all() -> &'static [SensorKind] {
         boxes_2d::KIND,
         boxes_3d::KIND,
         audio::KIND,
+        spectrogram::KIND,
+        pointgoal_with_gps_compass::KIND,
+        roomgoal::KIND,
+        objectgoal::KIND,
+        imagegoal::KIND,
         instruction::KIND,
         instruction_tokens::KIND,
         gps::KIND,
@@ -280,6 +324,11 @@ pub fn all() -> &'static [SensorKind] {
         wheel_odometry::KIND,
         gyro::KIND,
     ]
+}
+
+/// The kind called `name`.
+pub(crate) fn find(name: &str) -> Option<&'static SensorKind> {
+    all().iter().find(|kind| kind.name == name)
 }
 
 /// Builds the sensor called `name` from `settings`.
@@ -291,7 +340,7 @@ pub fn build(
     settings: &serde_json::Value,
     site: SensorSetup<'_>,
 ) -> Result<Box<dyn Sensor>, WorldError> {
-    let Some(kind) = all().iter().find(|kind| kind.name == name) else {
+    let Some(kind) = find(name) else {
         return Err(unknown("sensor", name, all().iter()));
     };
     (kind.build)(settings, site).map_err(|error| match &error {

@@ -17,6 +17,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     build,
     settings: schema::fields_of::<CameraConfig>,
     image: Some(of_classes),
+    goal_part: None,
 };
 
 static COARSE: ImageSensorKind = ImageSensorKind {

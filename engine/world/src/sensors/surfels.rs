@@ -17,6 +17,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     build,
     settings: schema::fields_of::<CameraConfig>,
     image: Some(|_| &IMAGE),
+    goal_part: None,
 };
 
 static IMAGE: ImageSensorKind = ImageSensorKind {

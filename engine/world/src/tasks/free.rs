@@ -7,7 +7,7 @@ use super::door_leaves::DoorLeaves;
 use super::standing_room::FreeStartCells;
 use super::{Task, TaskKind, TaskSetup};
 use crate::actions::DiscreteAction;
-use crate::episode::{Episode, StepResult};
+use crate::episode::{Episode, EpisodeGoal, StepResult};
 use crate::error::WorldError;
 use crate::metrics::NavigationMetrics;
 use crate::schema;
@@ -28,6 +28,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     version: 0,
     about: "Nothing is asked; explore, or build a task of your own upon it.",
     has_goal: false,
+    goal_parts: &[],
     max_steps: 1000,
     sensors: &["rgb", "depth", "semantic", "audio"],
     settings: schema::fields_of::<FreeSettings>,
@@ -139,6 +140,7 @@ impl Task for FreeTask {
             tokens: vocabulary::tokenize(INSTRUCTION)?,
             start: Pose::from_position_yaw(position, yaw_rad),
             progress: NavigationMetrics::new(position, None),
+            goal: EpisodeGoal::default(),
         })
     }
 

@@ -1,13 +1,20 @@
 //! Tasks: goals of episodes and verdicts on steps. One file each, and one line in [`all`].
 
+mod audio_nav;
 mod door_leaves;
 mod free;
 mod goal_cells;
+mod image_nav;
 mod instruction_following;
+mod navigation;
+mod object_nav;
+mod point_nav;
+mod room_nav;
+mod semantic_audio_nav;
 mod standing_room;
 
 use crate::actions::{DiscreteAction, StepSizes};
-use crate::episode::{Episode, StepResult};
+use crate::episode::{Episode, GoalPart, StepResult};
 use crate::error::WorldError;
 use crate::schema::FieldSchema;
 use crate::world::World;
@@ -75,6 +82,8 @@ pub struct TaskKind {
     pub about: &'static str,
     /// True if the task has a goal, so that an episode can succeed.
     pub has_goal: bool,
+    /// What its goals have in every episode.
+    pub goal_parts: &'static [GoalPart],
     /// Control steps after which an episode is cut off.
     pub max_steps: u64,
     /// The sensors of its environment by default.
@@ -87,7 +96,16 @@ pub struct TaskKind {
 
 /// All tasks.
 pub fn all() -> &'static [TaskKind] {
-    &[instruction_following::KIND, free::KIND]
+    &[
+        instruction_following::KIND,
+        free::KIND,
+        point_nav::KIND,
+        room_nav::KIND,
+        object_nav::KIND,
+        image_nav::KIND,
+        audio_nav::KIND,
+        semantic_audio_nav::KIND,
+    ]
 }
 
 /// The kind called `name`.

@@ -1,0 +1,137 @@
+//! Go to where a sound comes from; then stop.
+//!
+//! # Source
+//! `AudioGoal` of C. Chen et al., "SoundSpaces: Audio-Visual Navigation in 3D Environments", ECCV 2020: the source stands 1.5 m over
+//! the floor and sounds all the time; success within 1 m.
+
+use super::navigation::{GoalKind, NavigationGoal, NavigationTask, navigation_settings};
+use super::point_nav::{check_success_distance, place_goal};
+use super::{Task, TaskKind, TaskSetup};
+use crate::error::WorldError;
+use crate::schema;
+use crate::sound::{PlayRequest, SoundName, SoundPlace, check_level};
+use crate::world::World;
+use dwell_acoustics::signals;
+use dwell_scene::navigation::{NavCell, NavGrid};
+use dwell_scene::random::RandomKey;
+use glam::Vec3;
+
+/// The words of the instruction.
+pub(super) const ASKED: &str = "Go to the sound.";
+/// Height of the source over the floor, m.
+const SOURCE_HEIGHT_M: f32 = 1.5;
+/// Sounds that are drawn by default: of the kinds that people at home walk to.
+const SOUNDS: [&str; 8] = [
+    "alarm",
+    "doorbell",
+    "kettle",
+    "phone",
+    "radio",
+    "speech",
+    "television",
+    "vacuum_cleaner",
+];
+
+pub(super) const KIND: TaskKind = TaskKind {
+    name: AudioNav::NAME,
+    version: 0,
+    about: "Go to where a sound comes from, then stop within 1 m of there.",
+    has_goal: true,
+    goal_parts: &[],
+    max_steps: 1000,
+    sensors: &["rgb", "depth", "audio", "spectrogram"],
+    settings: schema::fields_of::<AudioNavSettings>,
+    build,
+};
+
+navigation_settings! {
+    /// The task's settings.
+    AudioNavSettings {
+        /// Signals to draw from, as `dwell sounds` names them; default eight of a household.
+        sounds: Vec<String> = SOUNDS.map(str::to_owned).to_vec(),
+        /// Level at 1 m, dB SPL; default the typical level of each signal.
+        level_db: Option<f32> = None,
+        /// Success below this geodesic distance to the place under the source, m; default 1.
+        success_distance_m: f64 = 1.0,
+    }
+}
+
+fn build(value: &serde_json::Value, setup: TaskSetup) -> Result<Box<dyn Task>, WorldError> {
+    let (settings, rules) = AudioNavSettings::parse(value)?;
+    check_success_distance(settings.success_distance_m)?;
+    check_sounds(&settings.sounds, settings.level_db)?;
+    Ok(Box::new(NavigationTask::new(
+        AudioNav { settings },
+        rules,
+        setup,
+    )))
+}
+
+/// Refuses signals that do not exist, none at all, and levels out of range.
+pub(super) fn check_sounds(sounds: &[String], level_db: Option<f32>) -> Result<(), WorldError> {
+    if sounds.is_empty() {
+        return Err(WorldError::Config {
+            field: "sounds",
+            found: "none".to_owned(),
+            allowed: "at least one signal".to_owned(),
+        });
+    }
+    for name in sounds {
+        signals::info(name)?;
+    }
+    level_db.map_or(Ok(()), check_level)
+}
+
+#[derive(Debug)]
+struct AudioNav {
+    settings: AudioNavSettings,
+}
+
+impl GoalKind for AudioNav {
+    const NAME: &'static str = "AudioNav";
+    const LACKS: &'static str = "nobody of the agent's size can stand anywhere";
+
+    fn settings(&self) -> serde_json::Value {
+        serde_json::json!(self.settings)
+    }
+
+    fn draw(
+        &self,
+        grid: &NavGrid,
+        key: RandomKey,
+        allowed: &dyn Fn(NavCell) -> bool,
+    ) -> Option<NavigationGoal> {
+        let cell = grid.sample(key, allowed)?;
+        Some(place_goal(
+            "sound",
+            grid,
+            cell,
+            self.settings.success_distance_m,
+        ))
+    }
+
+    fn begin(
+        &self,
+        world: &mut World,
+        goal: &NavigationGoal,
+        key: RandomKey,
+    ) -> Result<String, WorldError> {
+        let sounds = &self.settings.sounds;
+        let (Some(floor), Some(name)) = (
+            goal.told.position,
+            key.child("sound").stream().choose(sounds),
+        ) else {
+            return Ok(ASKED.to_owned());
+        };
+        world.play(PlayRequest {
+            sound: SoundName::Signal(name.clone()),
+            place: SoundPlace::Point(floor + Vec3::Y * SOURCE_HEIGHT_M),
+            level_db: match self.settings.level_db {
+                Some(level_db) => level_db,
+                None => signals::info(name)?.typical_level_db,
+            },
+            loops: true,
+        })?;
+        Ok(ASKED.to_owned())
+    }
+}

@@ -1,0 +1,130 @@
+//! Find a thing of a class, such as a chair: stand near it and look at it; then stop.
+//!
+//! # Source
+//! The success rule of `RoboTHOR` (M. Deitke et al., CVPR 2020): `stop` within 1 m of a thing of the class that is in view.
+
+use super::goal_cells::LargestIslandIndex;
+use super::navigation::{
+    GoalKind, NavigationGoal, NavigationTask, SuccessRule, cells_that_reach, navigation_settings,
+};
+use super::point_nav::check_success_distance;
+use super::{Task, TaskKind, TaskSetup};
+use crate::episode::{EpisodeGoal, GoalPart};
+use crate::error::WorldError;
+use crate::schema;
+use crate::world::World;
+use dwell_render::{ClassSet, EntityClasses};
+use dwell_scene::random::RandomKey;
+use dwell_scene::{AgentId, ObjectId};
+use dwell_semantics::category::{SemanticCategory, categories};
+use dwell_semantics::english;
+use dwell_semantics::instruct::{InstructionGoal, is_sought};
+use std::collections::BTreeMap;
+
+pub(super) const KIND: TaskKind = TaskKind {
+    name: ObjectNav::NAME,
+    version: 0,
+    about: "Find a thing of a class, such as a chair, and stop within 1 m of it with the thing in view.",
+    has_goal: true,
+    goal_parts: &[GoalPart::Class],
+    max_steps: 1000,
+    sensors: &["rgb", "depth", "semantic", "gps", "compass", "objectgoal"],
+    settings: schema::fields_of::<ObjectNavSettings>,
+    build,
+};
+
+navigation_settings! {
+    /// The task's settings.
+    ObjectNavSettings {
+        /// Classes to draw from, by the names of `assets/categories.csv`; default all that can be looked for.
+        classes: Vec<String> = Vec::new(),
+        /// Success within this distance of the thing's outline, seen from above, m; default 1.
+        success_distance_m: f64 = 1.0,
+    }
+}
+
+fn build(value: &serde_json::Value, setup: TaskSetup) -> Result<Box<dyn Task>, WorldError> {
+    let (settings, rules) = ObjectNavSettings::parse(value)?;
+    check_success_distance(settings.success_distance_m)?;
+    let rows = categories().rows();
+    let known = |name: &String| rows.iter().any(|row| row.name == name);
+    if let Some(name) = settings.classes.iter().find(|name| !known(name)) {
+        return Err(WorldError::Unknown {
+            kind: "class",
+            name: name.clone(),
+            known: rows.iter().map(|row| row.name.to_owned()).collect(),
+        });
+    }
+    Ok(Box::new(NavigationTask::new(
+        ObjectNav { settings },
+        rules,
+        setup,
+    )))
+}
+
+/// The row of `assets/categories.csv` of a class, as the sensor `semantic` numbers them by default.
+pub(super) fn row_of_class(class: i32) -> Option<&'static SemanticCategory> {
+    categories().rows().get(usize::try_from(class - 1).ok()?)
+}
+
+#[derive(Debug)]
+struct ObjectNav {
+    settings: ObjectNavSettings,
+}
+
+impl GoalKind for ObjectNav {
+    const NAME: &'static str = "ObjectNav";
+    const LACKS: &'static str = "it has no thing of the classes that are asked for, or none that one can stand near and see";
+
+    fn settings(&self) -> serde_json::Value {
+        serde_json::json!(self.settings)
+    }
+
+    fn survey(
+        &self,
+        world: &World,
+        agent: AgentId,
+        ground: &LargestIslandIndex<'_>,
+    ) -> Vec<NavigationGoal> {
+        let house = world.house();
+        let classes = EntityClasses::new(house, ClassSet::Coarse);
+        let asked = &self.settings.classes;
+        let mut by_class: BTreeMap<i32, Vec<ObjectId>> = BTreeMap::new();
+        for object in house.objects.ids() {
+            let class = classes.of(house.entity_of_object(object).0);
+            let sought = row_of_class(class).is_some_and(|row| {
+                is_sought(row) && (asked.is_empty() || asked.iter().any(|name| name == row.name))
+            });
+            if sought {
+                by_class.entry(class).or_default().push(object);
+            }
+        }
+        let goals = by_class.into_iter().filter_map(|(class, objects)| {
+            let radius_m = self.settings.success_distance_m as f32;
+            let goal = InstructionGoal::objects(objects.clone(), radius_m);
+            let cells = cells_that_reach(world, agent, ground, &goal);
+            (!cells.is_empty()).then(|| NavigationGoal {
+                cells,
+                success: SuccessRule::Fulfilled(goal),
+                told: EpisodeGoal {
+                    kind: "object",
+                    objects,
+                    class,
+                    ..EpisodeGoal::default()
+                },
+                instruction: None,
+            })
+        });
+        goals.collect()
+    }
+
+    fn begin(
+        &self,
+        _world: &mut World,
+        goal: &NavigationGoal,
+        _key: RandomKey,
+    ) -> Result<String, WorldError> {
+        let noun = row_of_class(goal.told.class).map_or("thing", |row| row.singular);
+        Ok(format!("Find {}.", english::with_article(noun)))
+    }
+}

@@ -1,0 +1,115 @@
+//! Go to a point, given by distance and direction; then stop.
+//!
+//! # Source
+//! `PointNav` of P. Anderson et al., "On Evaluation of Embodied Navigation Agents", arXiv:1807.06757 (2018); the success distance of
+//! habitat-lab: 0.2 m, twice the radius of its agent.
+
+use super::navigation::{
+    GoalKind, NavigationGoal, NavigationTask, SuccessRule, navigation_settings,
+};
+use super::{Task, TaskKind, TaskSetup};
+use crate::episode::{EpisodeGoal, GoalPart};
+use crate::error::WorldError;
+use crate::schema;
+use crate::world::World;
+use dwell_scene::navigation::{NavCell, NavGrid};
+use dwell_scene::random::RandomKey;
+
+pub(super) const KIND: TaskKind = TaskKind {
+    name: PointNav::NAME,
+    version: 0,
+    about: "Go to a point that is given by distance and direction, then stop within 0.2 m of it.",
+    has_goal: true,
+    goal_parts: &[GoalPart::Position],
+    max_steps: 1000,
+    sensors: &["rgb", "depth", "pointgoal_with_gps_compass"],
+    settings: schema::fields_of::<PointNavSettings>,
+    build,
+};
+
+navigation_settings! {
+    /// The task's settings.
+    PointNavSettings {
+        /// Success below this geodesic distance to the point, m; default 0.2.
+        success_distance_m: f64 = 0.2,
+    }
+}
+
+fn build(value: &serde_json::Value, setup: TaskSetup) -> Result<Box<dyn Task>, WorldError> {
+    let (settings, rules) = PointNavSettings::parse(value)?;
+    check_success_distance(settings.success_distance_m)?;
+    Ok(Box::new(NavigationTask::new(
+        PointNav { settings },
+        rules,
+        setup,
+    )))
+}
+
+/// Refuses distances within which nobody can stop.
+pub(super) fn check_success_distance(success_distance_m: f64) -> Result<(), WorldError> {
+    if (0.05..=10.0).contains(&success_distance_m) {
+        return Ok(());
+    }
+    Err(WorldError::Config {
+        field: "success_distance_m",
+        found: success_distance_m.to_string(),
+        allowed: "0.05 to 10".to_owned(),
+    })
+}
+
+#[derive(Debug)]
+struct PointNav {
+    settings: PointNavSettings,
+}
+
+impl GoalKind for PointNav {
+    const NAME: &'static str = "PointNav";
+    const LACKS: &'static str = "nobody of the agent's size can stand anywhere";
+
+    fn settings(&self) -> serde_json::Value {
+        serde_json::json!(self.settings)
+    }
+
+    fn draw(
+        &self,
+        grid: &NavGrid,
+        key: RandomKey,
+        allowed: &dyn Fn(NavCell) -> bool,
+    ) -> Option<NavigationGoal> {
+        let cell = grid.sample(key, allowed)?;
+        Some(place_goal(
+            "point",
+            grid,
+            cell,
+            self.settings.success_distance_m,
+        ))
+    }
+
+    fn begin(
+        &self,
+        _world: &mut World,
+        _goal: &NavigationGoal,
+        _key: RandomKey,
+    ) -> Result<String, WorldError> {
+        Ok("Go to the goal.".to_owned())
+    }
+}
+
+/// The goal to come near a cell.
+pub(super) fn place_goal(
+    kind: &'static str,
+    grid: &NavGrid,
+    cell: NavCell,
+    success_distance_m: f64,
+) -> NavigationGoal {
+    NavigationGoal {
+        cells: vec![cell],
+        success: SuccessRule::Within(success_distance_m),
+        told: EpisodeGoal {
+            kind,
+            position: Some(grid.position(cell)),
+            ..EpisodeGoal::default()
+        },
+        instruction: None,
+    }
+}
