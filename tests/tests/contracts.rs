@@ -1,5 +1,6 @@
 //! Every registered sensor, task and law keeps its contract.
 
+use dwell::tasks::TaskKind;
 use dwell::{Batch, DiscreteAction, sensors, tasks};
 use dwell_scene::parallel::Threads;
 use dwell_tests::observations::{all_sensors, observe};
@@ -77,7 +78,7 @@ fn episodes_do_not_remember_earlier_ones() {
 #[test]
 fn every_task_can_be_solved_by_its_expert() {
     for kind in tasks::all().iter().filter(|kind| kind.has_goal) {
-        let mut env = dwell_tests::env_of(kind.name, &["instruction"]);
+        let mut env = dwell_tests::env_of(&kind.request_name(), &["instruction"]);
         let mut solved = 0;
         for seed in 0..20 {
             env.reset(seed).unwrap();
@@ -90,14 +91,16 @@ fn every_task_can_be_solved_by_its_expert() {
                 }
             }
         }
-        assert_eq!(solved, 20, "{}: the expert solved {solved}", kind.name);
+        let name = kind.request_name();
+        assert_eq!(solved, 20, "{name}: the expert solved {solved}");
     }
 }
 
 #[test]
 fn names_are_unique_over_all_registers() {
     let mut names: Vec<&str> = sensors::all().iter().map(|kind| kind.name).collect();
-    names.extend(tasks::all().iter().map(|kind| kind.name));
+    let tasks: Vec<String> = tasks::all().iter().map(TaskKind::request_name).collect();
+    names.extend(tasks.iter().map(String::as_str));
     names.extend(dwell::laws::all().map(|info| info.id));
     let count = names.len();
     names.sort_unstable();

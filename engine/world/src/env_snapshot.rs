@@ -38,13 +38,15 @@ struct AgentSnapshot {
     progress: NavigationMetrics,
     /// Whether a task outside of this crate asks for something else than the seed's goal.
     goal_replaced: bool,
+    /// What the task keeps beside the world.
+    task_state: Vec<u8>,
 }
 
 impl AgentSnapshot {
     fn of(agent: &EnvAgent, episode: &Episode) -> Self {
         Self {
             agent: agent.id.0,
-            task: agent.kind.name.to_owned(),
+            task: agent.kind.request_name(),
             settings: agent.task.settings().to_string(),
             step_sizes: agent.step_sizes,
             done: agent.done,
@@ -53,6 +55,7 @@ impl AgentSnapshot {
             start: episode.start,
             progress: episode.progress,
             goal_replaced: episode.goal.kind.is_empty(),
+            task_state: agent.task.snapshot(),
         }
     }
 
@@ -69,7 +72,7 @@ impl AgentSnapshot {
                 "agent {found} acts in it where agent {allowed} does in the environment"
             ));
         }
-        if self.task != own.kind.name {
+        if self.task != own.kind.request_name() {
             return Some(format!("it is of the task {}", self.task));
         }
         if self.settings != settings {
@@ -172,6 +175,9 @@ impl Env {
         let tokens = agents.map(|(agent, saved)| agent.instruction_tokens(&saved.instruction));
         let tokens: Result<Vec<_>, _> = tokens.collect();
         self.world.restore(&moment.world)?;
+        for (agent, saved) in self.agents.iter_mut().zip(&moment.agents) {
+            agent.task.restore(&self.world, &saved.task_state)?;
+        }
         tokens
     }
 }

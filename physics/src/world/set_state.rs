@@ -232,6 +232,13 @@ impl PhysicsWorld {
         }
     }
 
+    /// Returns the mass of the free body that a part belongs to, kg; `None` for what does not move.
+    pub fn body_mass_kg(&self, part: PartId) -> Option<f32> {
+        let index = (*self.dynamics.model.body_of_part.get(part)?)? as usize;
+        let handle = self.dynamics.bodies[index].handle;
+        Some(self.dynamics.engine.bodies.get(handle)?.mass())
+    }
+
     /// Returns the motion of a free body as physics has it, by one of its parts; `None` for a body that does not move.
     pub fn measure_body(&self, part: PartId) -> Option<BodyState> {
         let index = (*self.dynamics.model.body_of_part.get(part)?)? as usize;

@@ -2,13 +2,17 @@
 //!
 //! To add a kind: a file here with its candidates, and a line in [`candidates`].
 
+mod condition;
 mod find_object;
 mod go_to_room;
 mod needed_words;
+mod steps;
 mod task;
 
+pub use condition::StepCondition;
 pub use find_object::is_sought;
 pub use needed_words::needed_words;
+pub use steps::{InstructionStep, StepKind, compose, steps};
 pub use task::{Instruction, InstructionGoal, InstructionKind, InstructionProgress};
 
 use crate::error::SemanticsError;

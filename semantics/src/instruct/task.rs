@@ -71,7 +71,11 @@ pub struct InstructionGoal {
 }
 
 /// The text of a form, where it keeps to the limits of instructions.
-fn say(language: &Language, form: &Form, wording: Option<RandomKey>) -> Option<Sentence> {
+pub(super) fn say(
+    language: &Language,
+    form: &Form,
+    wording: Option<RandomKey>,
+) -> Option<Sentence> {
     language.say(form, wording).filter(|Sentence { text, .. }| {
         text.len() <= MAX_TEXT_LEN
             && text.chars().all(|c| CHARSET.contains(c))

@@ -194,6 +194,14 @@ impl ShortestPathFollower {
         None
     }
 
+    /// The next step of opening a thing in front of which it stands: towards it, or out of the way of its leaf.
+    pub fn open_thing(&mut self, world: &World, thing: ObjectId) -> DiscreteAction {
+        let agent = world.state().agents.get(self.agent);
+        let here = agent.and_then(|agent| self.grid.nearest(agent.position, 0.6));
+        let aside = here.and_then(|here| self.avoid_swinging_door(world, here));
+        aside.unwrap_or_else(|| self.open(world, thing))
+    }
+
     /// Turns to a door and opens it; waits while it opens.
     fn open(&mut self, world: &World, door: ObjectId) -> DiscreteAction {
         if let Some(turn) = action_towards_object(world, self.agent, door, &self.stride) {

@@ -6,6 +6,7 @@ mod free;
 mod goal_cells;
 mod image_nav;
 mod instruction_following;
+mod instruction_following_v1;
 mod navigation;
 mod object_nav;
 mod point_nav;
@@ -50,6 +51,22 @@ pub trait Task: Debug + Send + Sync {
         placed: &[AgentId],
         key: RandomKey,
     ) -> Result<Episode, WorldError>;
+
+    /// What it keeps of the episode beside the world, as bytes for snapshots; nothing for most.
+    fn snapshot(&self) -> Vec<u8> {
+        Vec::new()
+    }
+
+    /// Goes to a [`Self::snapshot`] of the episode that was just begun from the same key.
+    ///
+    /// # Errors
+    /// [`WorldError::Snapshot`] for bytes that are none.
+    fn restore(&mut self, _world: &World, bytes: &[u8]) -> Result<(), WorldError> {
+        match bytes {
+            [] => Ok(()),
+            _ => Err(WorldError::Snapshot("its task keeps nothing".to_owned())),
+        }
+    }
 
     /// Judges the step that has just been made with `action`.
     fn judge(&mut self, world: &World, episode: &mut Episode, action: DiscreteAction)
@@ -105,16 +122,30 @@ pub fn all() -> &'static [TaskKind] {
         image_nav::KIND,
         audio_nav::KIND,
         semantic_audio_nav::KIND,
+        instruction_following_v1::KIND,
     ]
 }
 
-/// The kind called `name`.
+impl TaskKind {
+    /// The name by which it is requested: without a version for the first one.
+    pub fn request_name(&self) -> String {
+        match self.version {
+            0 => self.name.to_owned(),
+            version => format!("{}-v{version}", self.name),
+        }
+    }
+}
+
+/// The kind called `name`: `"PointNav"`, or with its version, `"InstructionFollowing-v1"`.
 ///
 /// # Errors
 /// [`WorldError::Unknown`] lists the names there are.
 pub fn find(name: &str) -> Result<&'static TaskKind, WorldError> {
-    all().iter().find(|kind| kind.name == name).ok_or_else(|| {
-        let known = all().iter().map(|kind| kind.name.to_owned()).collect();
+    let named = |kind: &&TaskKind| {
+        kind.request_name() == name || format!("{}-v{}", kind.name, kind.version) == name
+    };
+    all().iter().find(named).ok_or_else(|| {
+        let known = all().iter().map(TaskKind::request_name).collect();
         WorldError::Unknown {
             kind: "task",
             name: name.to_owned(),

@@ -54,38 +54,78 @@ pub(in crate::tasks) fn cells_that_reach(
     if !goal.rooms.is_empty() {
         return ground.cells_in_rooms(world.house(), &goal.rooms);
     }
-    let (house, state, grid) = (world.house(), world.state(), ground.grid);
+    let scene = world.engines().semantics().scene(world.state());
+    // A little nearer than asked, so that an agent that stops on the cell's border still counts.
+    let radius_m = goal.radius_m * 0.8;
+    let mut cells = Vec::new();
+    for object in &goal.objects {
+        let footprint = &scene.extent(*object).footprint;
+        let near = |feet: Vec3| footprint.distance_to(Vec2::new(feet.x, feet.z)) <= radius_m;
+        cells.extend(cells_in_sight(
+            world,
+            agent,
+            ground,
+            (*object, radius_m),
+            near,
+        ));
+    }
+    cells.sort_unstable();
+    cells.dedup();
+    cells
+}
+
+/// The walkable cells of the largest island from which a hand reaches a thing in sight.
+pub(in crate::tasks) fn cells_in_reach(
+    world: &World,
+    agent: AgentId,
+    ground: &LargestIslandIndex<'_>,
+    object: ObjectId,
+) -> Vec<NavCell> {
+    let Some(body) = world.state().agents.get(agent).map(|agent| agent.body) else {
+        return Vec::new();
+    };
+    // Reach is measured from the eye to the nearest point; a little less, as from the border of a cell.
+    let reach_m = body.reach_m * 0.85;
+    let bounds = world.house().object_bounds(world.state(), object);
+    let near = |feet: Vec3| {
+        let eye = feet + Vec3::Y * body.eye_height_m;
+        eye.clamp(bounds.min, bounds.max).distance(eye) <= reach_m
+    };
+    cells_in_sight(world, agent, ground, (object, reach_m), near)
+}
+
+/// The cells around a thing that are `near` and from all over which one looks at the middle of its box; rising.
+fn cells_in_sight(
+    world: &World,
+    agent: AgentId,
+    ground: &LargestIslandIndex<'_>,
+    (object, radius_m): (ObjectId, f32),
+    near: impl Fn(Vec3) -> bool,
+) -> Vec<NavCell> {
+    let (state, grid) = (world.state(), ground.grid);
     let scene = world.engines().semantics().scene(state);
     let eye_m = state
         .agents
         .get(agent)
         .map_or(1.25, |agent| agent.body.eye_height_m);
-    // A little nearer than asked, so that an agent that stops on the cell's border still counts.
-    let radius_m = goal.radius_m * 0.8;
+    let bounds = scene.extent(object).bounds;
+    let entity = world.house().entity_of_object(object);
+    let edge = grid.config().cell_m;
     let mut pace = PollEvery::new(CELLS_PER_CHECK);
-    let mut goals = Vec::new();
-    for object in &goal.objects {
-        let extent = scene.extent(*object);
-        let entity = house.entity_of_object(*object);
-        let found = ground.cells_around(&extent.bounds.grown(radius_m + 0.01));
-        goals.extend(found.into_iter().filter(|cell| {
-            pace.turn();
-            let at = grid.position(*cell);
-            if extent.footprint.distance_to(Vec2::new(at.x, at.z)) > radius_m {
-                return false;
-            }
-            let edge = grid.config().cell_m;
-            let sides = [(0.0, 0.0), (-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0)];
-            sides.iter().all(|(dx, dz)| {
+    let mut cells = ground.cells_around(&bounds.grown(radius_m + 0.01));
+    cells.retain(|cell| {
+        pace.turn();
+        let at = grid.position(*cell);
+        let sides = [(0.0, 0.0), (-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0)];
+        near(at)
+            && sides.iter().all(|(dx, dz)| {
                 let beside = Vec3::new(*dx, 0.0, *dz) * (0.5 * edge);
                 let eye = at + beside + Vec3::Y * eye_m;
-                let ray = Ray::new(eye, extent.bounds.center() - eye);
+                let ray = Ray::new(eye, bounds.center() - eye);
                 let hit = world.rays().closest(&ray, RayMask::EYE);
                 hit.is_some_and(|hit| world.rays().surface(&hit).entity == entity)
             })
-        }));
-    }
-    goals.sort_unstable();
-    goals.dedup();
-    goals
+    });
+    cells.sort_unstable();
+    cells
 }

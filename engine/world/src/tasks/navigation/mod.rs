@@ -4,19 +4,20 @@
 //! expert are the same for all.
 
 mod goal;
+mod leg;
 mod settings;
 
-pub(super) use goal::{NavigationGoal, SuccessRule, cells_that_reach};
+pub(super) use goal::{NavigationGoal, SuccessRule, cells_in_reach, cells_that_reach};
+pub(super) use leg::Leg;
 pub(super) use settings::{NavigationRewards, NavigationRules, navigation_settings};
 
 use super::door_leaves::DoorLeaves;
 use super::goal_cells::LargestIslandIndex;
 use super::standing_room::FreeStartCells;
 use super::{Task, TaskSetup};
-use crate::actions::{DiscreteAction, StepSizes};
+use crate::actions::DiscreteAction;
 use crate::episode::{Episode, StepResult};
 use crate::error::WorldError;
-use crate::expert::{ShortestPathFollower, action_towards_object};
 use crate::metrics::NavigationMetrics;
 use crate::world::World;
 use dwell_scene::interrupt;
@@ -27,8 +28,6 @@ use dwell_semantics::vocabulary;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// Distance from a place where the expert looked in vain within which goals are not tried again, m.
-const ELSEWHERE_M: f32 = 0.3;
 /// Places that are tried as goals, where a kind draws them.
 const DRAWS: u64 = 64;
 /// Starts that are tried for a goal, where one has it reached already.
@@ -76,58 +75,6 @@ pub(super) trait GoalKind: Debug + Send + Sync {
     ) -> Result<String, WorldError>;
 }
 
-/// The goal of the episode that is played.
-#[derive(Clone, Debug)]
-struct ActiveGoal {
-    goal: NavigationGoal,
-    /// The guide that measures the remaining distance.
-    guide: ShortestPathFollower,
-    /// The expert's guide, to those goals from which it has not looked in vain.
-    expert_path: ShortestPathFollower,
-    /// Those goals.
-    expert_cells: Vec<NavCell>,
-}
-
-impl ActiveGoal {
-    /// Leads to goals elsewhere from now on; `false` when there are none. Of a cell on whose border the agent stands the
-    /// thing may be hidden, though it is seen from the middle.
-    fn leave_out_goals_here(&mut self, world: &World, stride: &StepSizes) -> bool {
-        let id = self.expert_path.agent();
-        let Some(agent) = world.state().agents.get(id) else {
-            return false;
-        };
-        let grid = self.expert_path.grid().clone();
-        let before = self.expert_cells.len();
-        self.expert_cells
-            .retain(|cell| (grid.position(*cell) - agent.position).length() > ELSEWHERE_M);
-        if self.expert_cells.is_empty() || self.expert_cells.len() == before {
-            return false;
-        }
-        self.expert_path = ShortestPathFollower::new(id, grid, &self.expert_cells, *stride);
-        true
-    }
-
-    /// Returns whether the agent has reached the goal; `distance_m`: how far it is from there.
-    fn is_reached(&self, world: &World, distance_m: Option<f64>) -> bool {
-        is_reached(world, self.guide.agent(), &self.goal, distance_m)
-    }
-}
-
-fn is_reached(
-    world: &World,
-    agent: AgentId,
-    goal: &NavigationGoal,
-    distance_m: Option<f64>,
-) -> bool {
-    match &goal.success {
-        SuccessRule::Within(radius_m) => distance_m.is_some_and(|left| left < *radius_m),
-        SuccessRule::Fulfilled(asked) => {
-            let scene = world.engines().semantics().scene(world.state());
-            asked.is_reached(&scene, world.rays(), agent)
-        }
-    }
-}
-
 /// A task of navigation.
 #[derive(Debug)]
 pub(super) struct NavigationTask<K> {
@@ -136,7 +83,7 @@ pub(super) struct NavigationTask<K> {
     setup: TaskSetup,
     /// Goals that the house offers at its start; found once.
     offers: Vec<Arc<NavigationGoal>>,
-    active: Option<ActiveGoal>,
+    active: Option<Leg>,
 }
 
 impl<K: GoalKind> NavigationTask<K> {
@@ -159,8 +106,9 @@ impl<K: GoalKind> NavigationTask<K> {
     }
 
     /// Returns whether an episode may start in a cell.
-    fn is_start(&self, guide: &ShortestPathFollower, goal: &NavigationGoal, cell: NavCell) -> bool {
+    fn is_start(&self, leg: &Leg, cell: NavCell) -> bool {
         let [least, most] = self.rules.distance_m;
+        let (guide, goal) = (&leg.guide, &leg.goal);
         let Some(distance_m) = guide.distance_at(cell) else {
             return false;
         };
@@ -193,7 +141,7 @@ impl<K: GoalKind> NavigationTask<K> {
     fn place(
         &self,
         world: &mut World,
-        (goal, guide): (&NavigationGoal, &ShortestPathFollower),
+        leg: &Leg,
         key: RandomKey,
         sample: impl Fn(RandomKey) -> Option<NavCell>,
     ) -> Result<Option<Start>, WorldError> {
@@ -208,8 +156,8 @@ impl<K: GoalKind> NavigationTask<K> {
             let (low, high) = (-std::f32::consts::PI, std::f32::consts::PI);
             let yaw_rad = of("yaw").stream().range(low, high);
             let agent = self.setup.agent;
-            world.place_agent(agent, guide.grid().position(cell), yaw_rad)?;
-            if !is_reached(world, agent, goal, guide.distance_at(cell)) {
+            world.place_agent(agent, leg.guide.grid().position(cell), yaw_rad)?;
+            if !leg.is_reached(world, leg.guide.distance_at(cell)) {
                 return Ok(Some((cell, yaw_rad)));
             }
         }
@@ -255,19 +203,16 @@ impl<K: GoalKind> Task for NavigationTask<K> {
         for goal in surveyed.chain(drawn) {
             interrupt::unwind_if_cancelled();
             seen += 1;
-            let guide =
-                ShortestPathFollower::new(agent, grid.clone(), &goal.cells, self.setup.stride);
+            let leg = Leg::new(agent, grid.clone(), goal, self.setup.stride);
             let sample = |key: RandomKey| {
-                room.sample(&grid, key, |cell| {
-                    free(cell) && self.is_start(&guide, &goal, cell)
-                })
+                room.sample(&grid, key, |cell| free(cell) && self.is_start(&leg, cell))
             };
-            if let Some(start) = self.place(world, (&goal, &guide), key, sample)? {
-                found = Some((goal, guide, start));
+            if let Some(start) = self.place(world, &leg, key, sample)? {
+                found = Some((leg, start));
                 break;
             }
         }
-        let Some((goal, guide, (start, yaw_rad))) = found else {
+        let Some((leg, (start, yaw_rad))) = found else {
             let [least, most] = self.rules.distance_m;
             let why = match seen {
                 0 => K::LACKS.to_owned(),
@@ -281,23 +226,17 @@ impl<K: GoalKind> Task for NavigationTask<K> {
                 why,
             });
         };
-        let goal = Arc::unwrap_or_clone(goal);
-        let instruction = self.kind.begin(world, &goal, key)?;
+        let instruction = self.kind.begin(world, &leg.goal, key)?;
         let position = grid.position(start);
         let episode = Episode {
             agent,
             tokens: vocabulary::tokenize(&instruction)?,
             instruction,
             start: Pose::from_position_yaw(position, yaw_rad),
-            progress: NavigationMetrics::new(position, guide.distance_at(start)),
-            goal: goal.told.clone(),
+            progress: NavigationMetrics::new(position, leg.guide.distance_at(start)),
+            goal: leg.goal.told.clone(),
         };
-        self.active = Some(ActiveGoal {
-            expert_path: guide.clone(),
-            expert_cells: goal.cells.clone(),
-            guide,
-            goal,
-        });
+        self.active = Some(leg);
         Ok(episode)
     }
 
@@ -336,39 +275,16 @@ impl<K: GoalKind> Task for NavigationTask<K> {
     }
 
     fn expert(&mut self, world: &mut World, _episode: &Episode) -> DiscreteAction {
-        let (agent, stride) = (self.setup.agent, self.setup.stride);
-        let Some(active) = &mut self.active else {
+        let Some(leg) = &mut self.active else {
             return DiscreteAction::Stop;
         };
-        if let Some(step) = active.expert_path.next_action(world) {
+        if let Some(step) = leg.approach(world) {
             return step;
         }
-        let Some(object) = nearest(world, agent, active.goal.objects()) else {
-            return DiscreteAction::Stop;
-        };
-        if let Some(turn) = action_towards_object(world, agent, object, &stride) {
-            return turn;
-        }
-        if !active.is_reached(world, None) && active.leave_out_goals_here(world, &stride) {
+        let looks_in_vain = !leg.goal.objects().is_empty() && !leg.is_reached(world, None);
+        if looks_in_vain && leg.leave_out_goals_here(world) {
             return DiscreteAction::Wait;
         }
         DiscreteAction::Stop
     }
-}
-
-/// The nearest of some things to an agent.
-fn nearest(
-    world: &World,
-    agent: AgentId,
-    objects: &[dwell_scene::ObjectId],
-) -> Option<dwell_scene::ObjectId> {
-    let here = world.state().agents.get(agent)?.position;
-    let distance = |object: &dwell_scene::ObjectId| {
-        let bounds = world.house().object_bounds(world.state(), *object);
-        here.clamp(bounds.min, bounds.max).distance(here)
-    };
-    objects
-        .iter()
-        .copied()
-        .min_by(|a, b| distance(a).total_cmp(&distance(b)))
 }

@@ -1,0 +1,115 @@
+//! A way to one goal, and the expert's manoeuvres on it.
+
+use super::goal::{NavigationGoal, SuccessRule};
+use crate::actions::{DiscreteAction, StepSizes};
+use crate::expert::{ShortestPathFollower, action_towards_object};
+use crate::world::World;
+use dwell_scene::navigation::{NavCell, NavGrid};
+use dwell_scene::{AgentId, ObjectId};
+use std::sync::Arc;
+
+/// Distance from a place where the expert looked in vain within which goals are not tried again, m.
+const ELSEWHERE_M: f32 = 0.3;
+
+/// The way to a goal.
+#[derive(Clone, Debug)]
+pub(in crate::tasks) struct Leg {
+    pub(in crate::tasks) goal: Arc<NavigationGoal>,
+    /// The guide that measures the remaining distance.
+    pub(in crate::tasks) guide: ShortestPathFollower,
+    /// The expert's guide, to those goals from which it has not looked in vain.
+    expert_path: ShortestPathFollower,
+    /// Those goals.
+    expert_cells: Vec<NavCell>,
+    stride: StepSizes,
+}
+
+impl Leg {
+    pub(in crate::tasks) fn new(
+        agent: AgentId,
+        grid: Arc<NavGrid>,
+        goal: Arc<NavigationGoal>,
+        stride: StepSizes,
+    ) -> Self {
+        let guide = ShortestPathFollower::new(agent, grid, &goal.cells, stride);
+        Self {
+            expert_path: guide.clone(),
+            expert_cells: goal.cells.clone(),
+            guide,
+            goal,
+            stride,
+        }
+    }
+
+    /// Leads to goals elsewhere from now on; `false` when there are none. Of a cell on whose border the agent stands the
+    /// thing may be hidden, though it is seen from the middle.
+    pub(in crate::tasks) fn leave_out_goals_here(&mut self, world: &World) -> bool {
+        let id = self.expert_path.agent();
+        let Some(agent) = world.state().agents.get(id) else {
+            return false;
+        };
+        let grid = self.expert_path.grid().clone();
+        let before = self.expert_cells.len();
+        self.expert_cells
+            .retain(|cell| (grid.position(*cell) - agent.position).length() > ELSEWHERE_M);
+        if self.expert_cells.is_empty() || self.expert_cells.len() == before {
+            return false;
+        }
+        self.expert_path = ShortestPathFollower::new(id, grid, &self.expert_cells, self.stride);
+        true
+    }
+
+    /// Returns whether the agent has reached the goal; `distance_m`: how far it is from there.
+    pub(in crate::tasks) fn is_reached(&self, world: &World, distance_m: Option<f64>) -> bool {
+        match &self.goal.success {
+            SuccessRule::Within(radius_m) => distance_m.is_some_and(|left| left < *radius_m),
+            SuccessRule::Fulfilled(asked) => {
+                let scene = world.engines().semantics().scene(world.state());
+                asked.is_reached(&scene, world.rays(), self.guide.agent())
+            }
+        }
+    }
+
+    /// The way of the same agent to another goal.
+    pub(in crate::tasks) fn to(&self, goal: Arc<NavigationGoal>) -> Self {
+        Self::new(
+            self.guide.agent(),
+            self.guide.grid().clone(),
+            goal,
+            self.stride,
+        )
+    }
+
+    /// The expert's next step on the way, and then towards the nearest thing of the goal; `None` once it stands and looks right.
+    pub(in crate::tasks) fn approach(&mut self, world: &World) -> Option<DiscreteAction> {
+        if let Some(step) = self.expert_path.next_action(world) {
+            return Some(step);
+        }
+        let agent = self.guide.agent();
+        let object = nearest(world, agent, self.goal.objects())?;
+        action_towards_object(world, agent, object, &self.stride)
+    }
+
+    /// The expert's next step to open a thing in front of which it stands.
+    pub(in crate::tasks) fn open(&mut self, world: &World, object: ObjectId) -> DiscreteAction {
+        self.expert_path.open_thing(world, object)
+    }
+}
+
+/// The nearest of some things to an agent.
+fn nearest(world: &World, agent: AgentId, objects: &[ObjectId]) -> Option<ObjectId> {
+    let here = world.state().agents.get(agent)?.position;
+    let distance = |object: &ObjectId| {
+        let bounds = world.house().object_bounds(world.state(), *object);
+        here.clamp(bounds.min, bounds.max).distance(here)
+    };
+    let mut nearest = objects.iter().copied();
+    let first = nearest.next()?;
+    Some(nearest.fold(first, |best, other| {
+        if distance(&other) < distance(&best) {
+            other
+        } else {
+            best
+        }
+    }))
+}
