@@ -10,16 +10,17 @@ from dwell.envs.info_keys import EPISODE_KEYS, GOAL_KEYS, INFO_KEYS
 from dwell.schemas import settings
 from pages import rust
 from pages.observations import fields_table, observation_table, specifications
+from pages.sources import ROOT
 from pages.tables import code
 
 _TASKS = "engine/world/src/tasks"
 
 
 def _section(task: dict[str, Any]) -> str:
-    name = str(task["name"])
-    file = f"{_TASKS}/{rust.snake(name)}.rs"
+    name = str(task["request_name"])
+    file = _file(name)
     sensors = [str(sensor) for sensor in json.loads(json.dumps(task["sensors"]))]
-    return f"""## dwell/{name}-v{task["version"]}
+    return f"""## dwell/{task["name"]}-v{task["version"]}
 
 {rust.module(file)}
 
@@ -34,6 +35,12 @@ Without `sensors`; [all that can be asked for](observations.md).
 ### Settings of {name}
 
 {_settings(task["settings"])}"""
+
+
+def _file(name: str) -> str:
+    """The source of a task: a file, or a folder's first file."""
+    stem = f"{_TASKS}/{rust.snake(name.replace('-v', 'V'))}"
+    return f"{stem}.rs" if (ROOT / f"{stem}.rs").is_file() else f"{stem}/mod.rs"
 
 
 def _settings(fields: list[dict[str, Any]]) -> str:

@@ -3,6 +3,7 @@
 use super::condition::StepCondition;
 use super::find_object::is_sought;
 use super::task::say;
+use crate::category::SemanticCategory;
 use crate::form::{Description, Form, RequestStep};
 use crate::language::{Language, Sentence};
 use crate::predicates;
@@ -14,6 +15,10 @@ use dwell_scene::random::RandomKey;
 use dwell_scene::{ObjectId, RoomId};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+
+/// Things with a joint of which nobody says that one opens them, and things with a switch that nobody switches.
+const NOT_OPENED: [&str; 3] = ["tap", "television", "toilet"];
+const NOT_SWITCHED: [&str; 4] = ["candle", "fireplace", "sink", "toilet"];
 
 /// What a step asks for.
 #[derive(
@@ -87,14 +92,20 @@ impl StepKind {
                 .is_ok_and(|found| found.holds(scene, &[Term::Object(object)], None) == Truth::True)
         };
         let thing = &scene.house().objects[object];
+        let category = scene.facts(object).category;
+        let is_sort = |flag: fn(&SemanticCategory) -> bool, but: &[&str]| {
+            category.is_some_and(|row| flag(row) && !but.contains(&row.name))
+        };
+        let opens = || is_sort(|row| row.openable, &NOT_OPENED);
+        let switches = || is_sort(|row| row.switchable, &NOT_SWITCHED);
         match self {
             Self::GoToRoom => false,
             Self::FindObject => true,
             Self::PickUp | Self::Bring => thing.pickable && scene.holder(object).is_none(),
-            Self::Open => is("closed"),
-            Self::Close => is("open"),
-            Self::SwitchOn => is("switched_off"),
-            Self::SwitchOff => is("switched_on"),
+            Self::Open => opens() && is("closed"),
+            Self::Close => opens() && is("open"),
+            Self::SwitchOn => switches() && is("switched_off"),
+            Self::SwitchOff => switches() && is("switched_on"),
         }
     }
 }

@@ -1,6 +1,9 @@
 //! A guide that knows the house: it follows shortest paths, opens doors, turns to things.
 
 mod door_opening;
+mod look_at;
+
+pub(crate) use look_at::{LookStep, look_at};
 
 use crate::actions::{DiscreteAction, StepSizes};
 use crate::world::World;

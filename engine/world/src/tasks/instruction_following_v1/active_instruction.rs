@@ -1,8 +1,8 @@
 //! The instruction of an episode: what is done of it, and what the expert does next.
 
 use crate::actions::DiscreteAction;
-use crate::expert::ShortestPathFollower;
-use crate::tasks::navigation::{Leg, NavigationGoal};
+use crate::expert::{LookStep, ShortestPathFollower};
+use crate::tasks::navigation::{BESIDE_M, ELSEWHERE_M, Leg, NavigationGoal};
 use crate::world::World;
 use dwell_scene::navigation::NavCell;
 use dwell_scene::{AgentId, ObjectId};
@@ -11,6 +11,8 @@ use std::sync::Arc;
 
 /// Control steps for which the expert waits for what its hand has begun.
 const PATIENCE: u32 = 60;
+/// How often the expert tries all places of a leg again.
+const ROUNDS: u32 = 2;
 /// Control steps for which it keeps opening a thing.
 const OPENING: u32 = 240;
 
@@ -52,6 +54,8 @@ pub(super) struct ActiveInstruction {
     pub(super) later_m: Vec<Vec<f64>>,
     /// Control steps for which the expert has been busy with its hand.
     pub(super) busy: u32,
+    /// How often it has tried all places of the leg in vain.
+    rounds: u32,
 }
 
 impl ActiveInstruction {
@@ -64,6 +68,7 @@ impl ActiveInstruction {
             at: (0, 0),
             leg,
             busy: 0,
+            rounds: 0,
         }
     }
 
@@ -95,7 +100,7 @@ impl ActiveInstruction {
         if at != self.at {
             let goal = self.steps[at.0].legs[at.1].goal.clone();
             self.leg = self.leg.to(goal);
-            (self.at, self.busy) = (at, 0);
+            (self.at, self.busy, self.rounds) = (at, 0, 0);
         }
         self.done - before
     }
@@ -125,7 +130,7 @@ impl ActiveInstruction {
     }
 
     /// The action of the expert: the way, then the hand.
-    pub(super) fn expert(&mut self, world: &World, agent: AgentId) -> DiscreteAction {
+    pub(super) fn expert(&mut self, world: &World) -> DiscreteAction {
         if self.done == self.steps.len() {
             return DiscreteAction::Stop;
         }
@@ -137,46 +142,55 @@ impl ActiveInstruction {
             if self.busy < OPENING {
                 return self.leg.open(world, object);
             }
-            return self.elsewhere(world);
+            return self.elsewhere(world, ELSEWHERE_M);
         }
         if self.busy > 0 {
             self.busy += 1;
             if self.busy < PATIENCE {
                 return DiscreteAction::Wait;
             }
-            return self.elsewhere(world);
-        }
-        if let Some(step) = self.leg.approach(world) {
-            return step;
+            return self.elsewhere(world, ELSEWHERE_M);
         }
         match end {
-            EndOfLeg::Arrive => self.elsewhere(world),
-            EndOfLeg::Drop => {
+            EndOfLeg::Arrive => {
+                let step = self.leg.approach(world);
+                step.unwrap_or_else(|| self.elsewhere(world, ELSEWHERE_M))
+            }
+            EndOfLeg::Drop => self.leg.walk(world).unwrap_or_else(|| {
                 self.busy = 1;
                 DiscreteAction::Drop
-            }
-            EndOfLeg::Hand(DiscreteAction::Open, object) => {
-                self.busy = 1;
-                self.leg.open(world, object)
-            }
+            }),
             EndOfLeg::Hand(action, object) => {
-                if world.object_in_view_centre(agent) != Some(object) {
-                    return self.elsewhere(world);
+                if let Some(step) = self.leg.walk(world) {
+                    return step;
                 }
-                self.busy = 1;
-                action
+                match self.leg.look_at(world, object) {
+                    LookStep::Turn(step) => step,
+                    LookStep::Missed => self.elsewhere(world, BESIDE_M),
+                    LookStep::Done => {
+                        self.busy = 1;
+                        action
+                    }
+                }
             }
         }
     }
 
     /// Goes on from another place; gives up where there is none.
-    fn elsewhere(&mut self, world: &World) -> DiscreteAction {
+    fn elsewhere(&mut self, world: &World, radius_m: f32) -> DiscreteAction {
         self.busy = 0;
-        if self.leg.leave_out_goals_here(world) {
-            DiscreteAction::Wait
-        } else {
-            DiscreteAction::Stop
+        if self.leg.leave_out_goals_here(world, radius_m) {
+            return DiscreteAction::Wait;
         }
+        // It stands elsewhere in a cell when it comes again.
+        if self.rounds < ROUNDS {
+            self.rounds += 1;
+            self.leg.try_all_goals_again();
+            if self.leg.leave_out_goals_here(world, radius_m) {
+                return DiscreteAction::Wait;
+            }
+        }
+        DiscreteAction::Stop
     }
 }
 

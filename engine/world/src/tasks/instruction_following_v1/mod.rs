@@ -305,7 +305,7 @@ impl Task for InstructionSteps {
         match &mut self.active {
             Some(active) => {
                 active.advance(world, agent);
-                active.expert(world, agent)
+                active.expert(world)
             }
             None => DiscreteAction::Stop,
         }

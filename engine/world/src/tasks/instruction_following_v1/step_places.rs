@@ -13,6 +13,9 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+/// Cells from which a thing must be reached: from fewer, a view that turns by steps may miss it everywhere.
+const LEAST_CELLS: usize = 6;
+
 /// The places that steps lead to, found when they are asked for.
 pub(super) struct StepPlaces<'a> {
     world: &'a World,
@@ -98,10 +101,10 @@ impl<'a> StepPlaces<'a> {
                 let mass_kg = self.world.physics.body_mass_kg(part);
                 size <= self.body.max_carry_size_m
                     && mass_kg.is_some_and(|mass_kg| mass_kg <= self.body.lift_kg)
-                    && !self.in_reach(object).cells.is_empty()
+                    && self.in_reach(object).cells.len() >= LEAST_CELLS
             }
             StepKind::Open | StepKind::Close | StepKind::SwitchOn | StepKind::SwitchOff => {
-                !self.in_reach(object).cells.is_empty()
+                self.in_reach(object).cells.len() >= LEAST_CELLS
             }
         }
     }

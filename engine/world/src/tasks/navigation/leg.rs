@@ -2,14 +2,16 @@
 
 use super::goal::{NavigationGoal, SuccessRule};
 use crate::actions::{DiscreteAction, StepSizes};
-use crate::expert::{ShortestPathFollower, action_towards_object};
+use crate::expert::{LookStep, ShortestPathFollower, action_towards_object, look_at};
 use crate::world::World;
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::{AgentId, ObjectId};
 use std::sync::Arc;
 
 /// Distance from a place where the expert looked in vain within which goals are not tried again, m.
-const ELSEWHERE_M: f32 = 0.3;
+pub(in crate::tasks) const ELSEWHERE_M: f32 = 0.3;
+/// The same where the expert's view, which turns by steps, missed a thing that is small from there.
+pub(in crate::tasks) const BESIDE_M: f32 = 0.1;
 
 /// The way to a goal.
 #[derive(Clone, Debug)]
@@ -41,9 +43,9 @@ impl Leg {
         }
     }
 
-    /// Leads to goals elsewhere from now on; `false` when there are none. Of a cell on whose border the agent stands the
+    /// Leads to goals further than `radius_m` from here from now on; `false` when there are none. Of a cell on whose border the agent stands the
     /// thing may be hidden, though it is seen from the middle.
-    pub(in crate::tasks) fn leave_out_goals_here(&mut self, world: &World) -> bool {
+    pub(in crate::tasks) fn leave_out_goals_here(&mut self, world: &World, radius_m: f32) -> bool {
         let id = self.expert_path.agent();
         let Some(agent) = world.state().agents.get(id) else {
             return false;
@@ -51,12 +53,18 @@ impl Leg {
         let grid = self.expert_path.grid().clone();
         let before = self.expert_cells.len();
         self.expert_cells
-            .retain(|cell| (grid.position(*cell) - agent.position).length() > ELSEWHERE_M);
+            .retain(|cell| (grid.position(*cell) - agent.position).length() > radius_m);
         if self.expert_cells.is_empty() || self.expert_cells.len() == before {
             return false;
         }
         self.expert_path = ShortestPathFollower::new(id, grid, &self.expert_cells, self.stride);
         true
+    }
+
+    /// Leads to all goals again.
+    pub(in crate::tasks) fn try_all_goals_again(&mut self) {
+        self.expert_cells.clone_from(&self.goal.cells);
+        self.expert_path = self.guide.clone();
     }
 
     /// Returns whether the agent has reached the goal; `distance_m`: how far it is from there.
@@ -80,9 +88,19 @@ impl Leg {
         )
     }
 
+    /// The expert's next step on the way; `None` where it ends.
+    pub(in crate::tasks) fn walk(&mut self, world: &World) -> Option<DiscreteAction> {
+        self.expert_path.next_action(world)
+    }
+
+    /// What brings the middle of the view onto a thing from here.
+    pub(in crate::tasks) fn look_at(&self, world: &World, object: ObjectId) -> LookStep {
+        look_at(world, self.guide.agent(), object, &self.stride)
+    }
+
     /// The expert's next step on the way, and then towards the nearest thing of the goal; `None` once it stands and looks right.
     pub(in crate::tasks) fn approach(&mut self, world: &World) -> Option<DiscreteAction> {
-        if let Some(step) = self.expert_path.next_action(world) {
+        if let Some(step) = self.walk(world) {
             return Some(step);
         }
         let agent = self.guide.agent();

@@ -8,7 +8,7 @@ mod leg;
 mod settings;
 
 pub(super) use goal::{NavigationGoal, SuccessRule, cells_in_reach, cells_that_reach};
-pub(super) use leg::Leg;
+pub(super) use leg::{BESIDE_M, ELSEWHERE_M, Leg};
 pub(super) use settings::{NavigationRewards, NavigationRules, navigation_settings};
 
 use super::door_leaves::DoorLeaves;
@@ -282,7 +282,7 @@ impl<K: GoalKind> Task for NavigationTask<K> {
             return step;
         }
         let looks_in_vain = !leg.goal.objects().is_empty() && !leg.is_reached(world, None);
-        if looks_in_vain && leg.leave_out_goals_here(world) {
+        if looks_in_vain && leg.leave_out_goals_here(world, ELSEWHERE_M) {
             return DiscreteAction::Wait;
         }
         DiscreteAction::Stop

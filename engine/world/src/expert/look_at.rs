@@ -1,0 +1,82 @@
+//! Turns and tilts of a view that moves by steps, until its middle is on a thing.
+
+use crate::actions::{DiscreteAction, StepSizes};
+use crate::world::World;
+use dwell_scene::bvh::{Ray, RayMask};
+use dwell_scene::math::wrap_angle;
+use dwell_scene::space::{pitch_from_forward, rotation_from_yaw_pitch, yaw_from_forward};
+use dwell_scene::{AgentId, ObjectId};
+use glam::Vec3;
+
+/// Steps of the view beyond the corners of a thing's box that are tried.
+const BEYOND: i32 = 1;
+/// The most steps to either side that are tried.
+const MOST: i32 = 20;
+/// Steepest view, rad.
+const STEEPEST_RAD: f32 = 1.5;
+
+/// What brings the middle of the view onto a thing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum LookStep {
+    /// Nothing: it is there.
+    Done,
+    /// A turn or tilt.
+    Turn(DiscreteAction),
+    /// No number of steps from here does: the thing is too small between two of them, or hidden.
+    Missed,
+}
+
+/// The next turn or tilt of the shortest way by steps that brings the middle of an agent's view onto a thing.
+pub(crate) fn look_at(
+    world: &World,
+    agent: AgentId,
+    object: ObjectId,
+    stride: &StepSizes,
+) -> LookStep {
+    let Some(agent) = world.state().agents.get(agent) else {
+        return LookStep::Missed;
+    };
+    let eye = agent.eye_position();
+    let entity = world.house().entity_of_object(object);
+    let (turn, look) = (stride.turn_deg.to_radians(), stride.look_deg.to_radians());
+    let bounds = world.house().object_bounds(world.state(), object);
+    let middle = bounds.center() - eye;
+    let corners = bounds.corners();
+    let yaw = yaw_from_forward(middle);
+    // Steps of the view from where it is to the corners' directions.
+    let turns = corners.map(|corner| {
+        let beside = wrap_angle(yaw_from_forward(corner - eye) - yaw);
+        (wrap_angle(yaw - agent.yaw_rad) + beside) / turn
+    });
+    let tilts = corners.map(|corner| (pitch_from_forward(corner - eye) - agent.pitch_rad) / look);
+    let span = |steps: [f32; 8]| {
+        let low = steps.into_iter().fold(f32::INFINITY, f32::min).floor() as i32;
+        let high = steps.into_iter().fold(f32::NEG_INFINITY, f32::max).ceil() as i32;
+        (low - BEYOND).max(-MOST)..=(high + BEYOND).min(MOST)
+    };
+    let meets = |(across, up): (i32, i32)| {
+        let yaw_rad = agent.yaw_rad + across as f32 * turn;
+        let pitch_rad = agent.pitch_rad + up as f32 * look;
+        if pitch_rad.abs() > STEEPEST_RAD {
+            return false;
+        }
+        let ray = Ray::new(
+            eye,
+            rotation_from_yaw_pitch(yaw_rad, pitch_rad) * Vec3::NEG_Z,
+        );
+        let hit = world.rays().closest(&ray, RayMask::EYE);
+        hit.is_some_and(|hit| world.rays().surface(&hit).entity == entity)
+    };
+    let tilts = span(tilts);
+    let steps = span(turns).flat_map(|across| tilts.clone().map(move |up| (across, up)));
+    let mut steps: Vec<(i32, i32)> = steps.collect();
+    steps.sort_by_key(|(across, up)| (across.abs() + up.abs(), *across, *up));
+    match steps.into_iter().find(|steps| meets(*steps)) {
+        None => LookStep::Missed,
+        Some((0, 0)) => LookStep::Done,
+        Some((across, _)) if across > 0 => LookStep::Turn(DiscreteAction::TurnLeft),
+        Some((across, _)) if across < 0 => LookStep::Turn(DiscreteAction::TurnRight),
+        Some((_, up)) if up > 0 => LookStep::Turn(DiscreteAction::LookUp),
+        Some(_) => LookStep::Turn(DiscreteAction::LookDown),
+    }
+}
