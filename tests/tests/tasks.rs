@@ -60,7 +60,7 @@ fn stopping_at_the_start_is_no_success() {
         let settings =
             json!({"reward": {"wrong_stop": -0.5, "step": -0.25}, "min_distance_m": 0.0});
         let mut env = env_with(&kind.request_name(), settings, &[]);
-        for seed in 0..40 {
+        for seed in 0..20 {
             env.reset(seed).unwrap();
             let info = &env.step(&[Some(DiscreteAction::Stop)]).unwrap()[0];
             assert!(
@@ -124,7 +124,7 @@ fn an_episode_that_ends_at_its_goal_needs_no_stop() {
             sparse["step_done_reward"] = json!(0.0);
         }
         let mut env = env_with(&kind.request_name(), sparse, &[]);
-        for seed in 0..5 {
+        for seed in 0..3 {
             env.reset(seed).unwrap();
             let ended = (0..kind.max_steps).find_map(|_| {
                 let action = env.expert_action(0).unwrap();
