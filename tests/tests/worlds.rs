@@ -350,9 +350,17 @@ fn settings_that_a_sensor_does_not_know_are_refused() {
             kind: kind.name.to_owned(),
             settings: serde_json::json!({"foo": 1}),
         };
+        // Sensors of goals go with the tasks that have such goals.
+        let has_goal = |task: &&dwell::tasks::TaskKind| {
+            kind.goal_part
+                .is_some_and(|part| task.goal_parts.contains(&part))
+        };
+        let of_goal = dwell::tasks::all().iter().find(has_goal);
+        let usual = dwell::EnvConfig::default();
         let config = dwell::EnvConfig {
+            task: of_goal.map_or(usual.task.clone(), dwell::tasks::TaskKind::request_name),
             sensors: Some(vec![sensor]),
-            ..dwell::EnvConfig::default()
+            ..usual
         };
         let error = dwell::Env::new(dwell_tests::apartment(), &config)
             .unwrap_err()
