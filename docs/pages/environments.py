@@ -17,7 +17,7 @@ _TASKS = "engine/world/src/tasks"
 
 
 def _section(task: dict[str, Any]) -> str:
-    name = str(task["request_name"])
+    name = str(task["name"])
     file = _file(name)
     sensors = [str(sensor) for sensor in json.loads(json.dumps(task["sensors"]))]
     return f"""## dwell/{task["name"]}-v{task["version"]}
@@ -39,7 +39,7 @@ Without `sensors`; [all that can be asked for](observations.md).
 
 def _file(name: str) -> str:
     """The source of a task: a file, or a folder's first file."""
-    stem = f"{_TASKS}/{rust.snake(name.replace('-v', 'V'))}"
+    stem = f"{_TASKS}/{rust.snake(name)}"
     return f"{stem}.rs" if (ROOT / f"{stem}.rs").is_file() else f"{stem}/mod.rs"
 
 

@@ -51,7 +51,7 @@ def files() -> dict[str, str]:
         "environments": _environments(),
         "sensors": _sensors(),
         "sensors of pictures": _sensors_of_pictures(),
-        **{f"task {task['request_name']}": _task(task) for task in _native.tasks()},
+        **{f"task {task['name']}": _task(task) for task in _native.tasks()},
     }
     pages = {
         path: _PART.sub(lambda part: f"{part[1]}\n{parts[part[2]]}\n{part[4]}", text(path))

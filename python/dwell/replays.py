@@ -359,7 +359,7 @@ def _without_pictures(config: dict[str, Any]) -> dict[str, Any]:
     own_tasks = isinstance(agents, list) and any("task" in row for row in agents)
     if config.get("sensors") is None and not own_tasks:
         name = config.get("task", "InstructionFollowing")
-        tasks = [row for row in _native.tasks() if row["request_name"] == name]
+        tasks = [row for row in _native.tasks() if row["name"] == name]
         usual = [{"kind": kind} for row in tasks for kind in row["sensors"]]
         config = config | ({"sensors": usual} if tasks else {})
     if isinstance(agents, list):

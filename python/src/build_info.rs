@@ -40,13 +40,12 @@ pub(crate) fn action_table() -> PyResult<PyValue> {
     table(&json!({"kinds": kinds, "target": target, "codes": codes}))
 }
 
-/// The tasks: `[{name, request_name, version, about, asks, max_steps, sensors, settings}]`.
+/// The tasks: `[{name, version, about, asks, max_steps, sensors, settings}]`.
 #[pyfunction]
 pub(crate) fn tasks() -> PyResult<PyValue> {
     let tasks = dwell::tasks::all().iter().map(|kind| {
         json!({
             "name": kind.name,
-            "request_name": kind.request_name(),
             "version": kind.version,
             "about": kind.about,
             "asks": kind.has_goal,
@@ -72,7 +71,7 @@ pub(crate) fn sensors() -> PyResult<PyValue> {
             "goal_tasks": kind.goal_part.map(|part| {
                 let tasks = dwell::tasks::all().iter();
                 let having = tasks.filter(|task| task.goal_parts.contains(&part));
-                having.map(|task| task.request_name()).collect::<Vec<_>>()
+                having.map(|task| task.name).collect::<Vec<_>>()
             }),
         })
     });

@@ -193,7 +193,7 @@ def test_every_environment_has_its_section(pages: ModuleType) -> None:
     page = pages.environments.page()
     for task in _native.tasks():
         assert f"## dwell/{task['name']}-v{task['version']}\n" in page
-        rows = rows_of(page, f"### Observations of {task['request_name']}")
+        rows = rows_of(page, f"### Observations of {task['name']}")
         assert [row[0] for row in rows] == task["sensors"]
 
 

@@ -46,7 +46,7 @@ def test_spectrograms_are_those_of_the_same_window_of_sound(
     env.close()
 
 
-@pytest.mark.parametrize("task", [task["request_name"] for task in _native.tasks()])
+@pytest.mark.parametrize("task", [task["name"] for task in _native.tasks()])
 def test_infos_say_what_is_asked_alone_and_in_a_batch(task: str) -> None:
     houses = ["builtin:apartment", "builtin:studio"]
     one = DwellEnv(task, houses=houses, sensors=["gps"])

@@ -1,6 +1,5 @@
 //! Every registered sensor, task and law keeps its contract.
 
-use dwell::tasks::TaskKind;
 use dwell::{Batch, DiscreteAction, sensors, tasks};
 use dwell_scene::parallel::Threads;
 use dwell_tests::observations::{all_sensors, observe};
@@ -78,7 +77,7 @@ fn episodes_do_not_remember_earlier_ones() {
 #[test]
 fn every_task_can_be_solved_by_its_expert() {
     for kind in tasks::all().iter().filter(|kind| kind.has_goal) {
-        let mut env = dwell_tests::env_of(&kind.request_name(), &["instruction"]);
+        let mut env = dwell_tests::env_of(kind.name, &["instruction"]);
         let mut solved = 0;
         for seed in 0..20 {
             env.reset(seed).unwrap();
@@ -91,16 +90,14 @@ fn every_task_can_be_solved_by_its_expert() {
                 }
             }
         }
-        let name = kind.request_name();
-        assert_eq!(solved, 20, "{name}: the expert solved {solved}");
+        assert_eq!(solved, 20, "{}: the expert solved {solved}", kind.name);
     }
 }
 
 #[test]
 fn names_are_unique_over_all_registers() {
     let mut names: Vec<&str> = sensors::all().iter().map(|kind| kind.name).collect();
-    let tasks: Vec<String> = tasks::all().iter().map(TaskKind::request_name).collect();
-    names.extend(tasks.iter().map(String::as_str));
+    names.extend(tasks::all().iter().map(|kind| kind.name));
     names.extend(dwell::laws::all().map(|info| info.id));
     let count = names.len();
     names.sort_unstable();

@@ -157,7 +157,7 @@ fn play(
 
 fn env_in(house: dwell_scene::House, settings: Value) -> Env {
     let config = EnvConfig {
-        task: "InstructionFollowing-v1".to_owned(),
+        task: "InstructionSteps".to_owned(),
         task_settings: settings,
         ..EnvConfig::default()
     };
@@ -288,7 +288,7 @@ fn a_restored_instruction_knows_what_is_done() {
 fn settings_out_of_range_are_refused() {
     let told = |settings: Value| {
         let config = EnvConfig {
-            task: "InstructionFollowing-v1".to_owned(),
+            task: "InstructionSteps".to_owned(),
             task_settings: settings,
             ..EnvConfig::default()
         };

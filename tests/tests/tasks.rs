@@ -59,7 +59,7 @@ fn stopping_at_the_start_is_no_success() {
     for kind in with_goal() {
         let settings =
             json!({"reward": {"wrong_stop": -0.5, "step": -0.25}, "min_distance_m": 0.0});
-        let mut env = env_with(&kind.request_name(), settings, &[]);
+        let mut env = env_with(kind.name, settings, &[]);
         for seed in 0..20 {
             env.reset(seed).unwrap();
             let info = &env.step(&[Some(DiscreteAction::Stop)]).unwrap()[0];
@@ -82,7 +82,7 @@ fn stopping_at_the_start_is_no_success() {
 fn starts_lie_as_far_as_asked() {
     for kind in with_goal() {
         let settings = json!({"min_distance_m": 3.0, "max_distance_m": 5.0});
-        let mut env = env_with(&kind.request_name(), settings, &[]);
+        let mut env = env_with(kind.name, settings, &[]);
         for seed in 0..10 {
             env.reset(seed).unwrap();
             let start_m = env.episode(0).unwrap().progress.start_distance_m.unwrap();
@@ -120,10 +120,10 @@ fn starts_lie_as_far_as_asked() {
 fn an_episode_that_ends_at_its_goal_needs_no_stop() {
     for kind in with_goal() {
         let mut sparse = json!({"ends_at_goal": true, "reward": {"distance": 0.0}});
-        if kind.version == 1 {
+        if kind.name == "InstructionSteps" {
             sparse["step_done_reward"] = json!(0.0);
         }
-        let mut env = env_with(&kind.request_name(), sparse, &[]);
+        let mut env = env_with(kind.name, sparse, &[]);
         for seed in 0..3 {
             env.reset(seed).unwrap();
             let ended = (0..kind.max_steps).find_map(|_| {
@@ -150,7 +150,7 @@ fn an_episode_that_ends_at_its_goal_needs_no_stop() {
 fn sensors_of_goals_give_the_same_after_restoring_and_with_threads() {
     for kind in with_goal() {
         let sensors = goal_sensors(kind);
-        let made = || env_with(&kind.request_name(), Value::Null, &sensors);
+        let made = || env_with(kind.name, Value::Null, &sensors);
         let mut pair = Batch::new(vec![made(), made()], Threads::new(2)).unwrap();
         pair.reset(&[Some(4), Some(9)]).unwrap();
         let forward = [Some(DiscreteAction::MoveForward); 2];

@@ -358,7 +358,7 @@ fn settings_that_a_sensor_does_not_know_are_refused() {
         let of_goal = dwell::tasks::all().iter().find(has_goal);
         let usual = dwell::EnvConfig::default();
         let config = dwell::EnvConfig {
-            task: of_goal.map_or(usual.task.clone(), dwell::tasks::TaskKind::request_name),
+            task: of_goal.map_or(usual.task.clone(), |task| task.name.to_owned()),
             sensors: Some(vec![sensor]),
             ..usual
         };

@@ -46,7 +46,7 @@ impl AgentSnapshot {
     fn of(agent: &EnvAgent, episode: &Episode) -> Self {
         Self {
             agent: agent.id.0,
-            task: agent.kind.request_name(),
+            task: agent.kind.name.to_owned(),
             settings: agent.task.settings().to_string(),
             step_sizes: agent.step_sizes,
             done: agent.done,
@@ -72,7 +72,7 @@ impl AgentSnapshot {
                 "agent {found} acts in it where agent {allowed} does in the environment"
             ));
         }
-        if self.task != own.kind.request_name() {
+        if self.task != own.kind.name {
             return Some(format!("it is of the task {}", self.task));
         }
         if self.settings != settings {

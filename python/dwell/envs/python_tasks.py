@@ -423,7 +423,7 @@ def _checked(task: str, verdict: object) -> StepResult:
 @functools.cache
 def _asks(base: str) -> bool:
     """Returns whether a task of the engine states a goal, by which its expert acts."""
-    return any(row["request_name"] == base and row["asks"] for row in _native.tasks())
+    return any(row["name"] == base and row["asks"] for row in _native.tasks())
 
 
 def _element(at: str, space: spaces.Space[Any], value: object) -> Any:  # noqa: ANN401 - of the space

@@ -33,7 +33,7 @@ def register_envs() -> None:
             entry_point="dwell.envs:DwellEnv",
             vector_entry_point="dwell.envs:DwellVectorEnv",
             max_episode_steps=task["max_steps"],
-            kwargs={"task": task["request_name"]},
+            kwargs={"task": task["name"]},
         )
 
 

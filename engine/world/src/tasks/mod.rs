@@ -6,7 +6,7 @@ mod free;
 mod goal_cells;
 mod image_nav;
 mod instruction_following;
-mod instruction_following_v1;
+mod instruction_steps;
 mod navigation;
 mod object_nav;
 mod point_nav;
@@ -122,30 +122,17 @@ pub fn all() -> &'static [TaskKind] {
         image_nav::KIND,
         audio_nav::KIND,
         semantic_audio_nav::KIND,
-        instruction_following_v1::KIND,
+        instruction_steps::KIND,
     ]
 }
 
-impl TaskKind {
-    /// The name by which it is requested: without a version for the first one.
-    pub fn request_name(&self) -> String {
-        match self.version {
-            0 => self.name.to_owned(),
-            version => format!("{}-v{version}", self.name),
-        }
-    }
-}
-
-/// The kind called `name`: `"PointNav"`, or with its version, `"InstructionFollowing-v1"`.
+/// The kind called `name`.
 ///
 /// # Errors
 /// [`WorldError::Unknown`] lists the names there are.
 pub fn find(name: &str) -> Result<&'static TaskKind, WorldError> {
-    let named = |kind: &&TaskKind| {
-        kind.request_name() == name || format!("{}-v{}", kind.name, kind.version) == name
-    };
-    all().iter().find(named).ok_or_else(|| {
-        let known = all().iter().map(TaskKind::request_name).collect();
+    all().iter().find(|kind| kind.name == name).ok_or_else(|| {
+        let known = all().iter().map(|kind| kind.name.to_owned()).collect();
         WorldError::Unknown {
             kind: "task",
             name: name.to_owned(),

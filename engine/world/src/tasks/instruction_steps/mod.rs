@@ -29,13 +29,13 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use step_places::StepPlaces;
 
-const NAME: &str = "InstructionFollowing";
+const NAME: &str = "InstructionSteps";
 /// Instructions that are tried for an episode.
 const DRAWS: u64 = 64;
 
 pub(super) const KIND: TaskKind = TaskKind {
     name: NAME,
-    version: 1,
+    version: 0,
     about: "Follow an instruction with feet and hands: go, find, pick up, open, close, switch, bring, step by step, then stop.",
     has_goal: true,
     goal_parts: &[],
