@@ -83,7 +83,7 @@ impl Meant {
 
 /// The steps of the instruction of an episode that has just begun.
 fn meant(env: &Env) -> Vec<Meant> {
-    let text = &env.episode(0).unwrap().instruction;
+    let text = &env.episode(0).expect("an episode has begun").instruction;
     let semantics = env.world().engines().semantics();
     let scene = semantics.scene(env.world().state());
     let checker = Checker::new(&scene, Listener::default());
@@ -100,7 +100,7 @@ fn meant(env: &Env) -> Vec<Meant> {
         other => panic!("{text:?}: {phrase:?} means {other:?}"),
     };
     let read = semantics.language().read(text);
-    let Form::Request(steps) = read.unwrap().forms.swap_remove(0) else {
+    let Form::Request(steps) = read.expect("the words can be read").forms.swap_remove(0) else {
         panic!("{text:?} is no request");
     };
     let one = |step: &RequestStep| match step {
@@ -126,7 +126,7 @@ fn play(
     seed: u64,
     mut policy: impl FnMut(usize, &mut Env) -> DiscreteAction,
 ) -> (Vec<DiscreteAction>, bool, bool) {
-    env.reset(seed).unwrap();
+    env.reset(seed).expect("the task can be played");
     let steps = meant(env);
     let (mut done, mut actions) = (0, Vec::new());
     for k in 0..1500 {
@@ -136,7 +136,8 @@ fn play(
             policy(k, env)
         };
         actions.push(action);
-        let info = env.step(&[Some(action)]).unwrap().swap_remove(0);
+        let info = env.step(&[Some(action)]);
+        let info = info.expect("the episode goes on").swap_remove(0);
         while done < steps.len() && steps[done].is_so(env) {
             done += 1;
         }
@@ -236,7 +237,7 @@ fn verdicts_are_those_of_the_words() {
 
 /// Whether the instruction of a seed asks for something of the hands.
 fn meant_hands(env: &mut Env, seed: u64) -> bool {
-    env.reset(seed).unwrap();
+    env.reset(seed).expect("the task can be played");
     meant(env).iter().any(|step| !step.is_passing())
 }
 
