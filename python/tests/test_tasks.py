@@ -86,6 +86,11 @@ def test_a_task_in_python_asks_for_its_own() -> None:
     told = {key: info[key] for key in info if key not in ("scene_id", "episode_id")}
     assert told == {"start_distance_to_goal": 2.5}
     assert env.restore(env.snapshot())[1] == info
+    # What a sensor of the base's goal showed before does not stay.
+    pointing = DwellEnv(Own, sensors=["pointgoal_with_gps_compass"])
+    for seed in (1, 2):
+        observation, _ = pointing.reset(seed=seed)
+        assert observation["pointgoal_with_gps_compass"].tolist() == [0.0, 0.0]
 
 
 def test_a_curriculum_is_a_setting() -> None:

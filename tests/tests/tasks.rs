@@ -93,6 +93,11 @@ fn starts_lie_as_far_as_asked() {
             );
         }
     }
+    // No way is a hundred times as long as the straight line, in any task.
+    for kind in with_goal() {
+        let mut env = env_with(kind.name, json!({"min_path_ratio": 100.0}), &[]);
+        assert!(env.reset(0).is_err(), "{}", kind.name);
+    }
     let settings = json!({"min_path_ratio": 1.5});
     let mut env = env_with("PointNav", settings, &[]);
     for seed in 0..10 {

@@ -162,10 +162,12 @@ impl Env {
             begun.push(agent.task.reset(&mut self.world, &placed, own)?);
             placed.push(agent.id);
         }
-        for (agent, episode) in order.into_iter().zip(begun) {
+        for (agent, episode) in order.iter_mut().zip(&begun) {
             for sensor in &mut agent.sensors {
-                sensor.begin_episode(&self.world, &episode)?;
+                sensor.begin_episode(&self.world, episode)?;
             }
+        }
+        for (agent, episode) in order.into_iter().zip(begun) {
             agent.episode = Some(episode);
         }
         (self.seed, self.episode_key) = (seed, key);

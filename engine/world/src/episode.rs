@@ -2,7 +2,7 @@
 
 use crate::metrics::NavigationMetrics;
 use dwell_scene::{AgentId, ObjectId, Pose, RoomId};
-use dwell_semantics::category::categories;
+use dwell_semantics::category::{SemanticCategory, categories};
 use dwell_semantics::room_kind::room_kinds;
 use glam::Vec3;
 use serde::Serialize;
@@ -44,10 +44,19 @@ impl EpisodeGoal {
     /// The name of the class of the things, as `assets/categories.csv` has it, or of the kind of the rooms, as `assets/rooms.csv`
     /// has it; `None` where the goal has neither.
     pub fn class_name(&self) -> Option<&'static str> {
-        let row = |number: i32| usize::try_from(number - 1).ok();
-        let class = row(self.class).and_then(|row| Some(categories().rows().get(row)?.name));
-        class.or_else(|| Some(room_kinds().rows().get(row(self.room_kind)?)?.name))
+        let class = category_of_class(self.class).map(|row| row.name);
+        class.or_else(|| Some(row_numbered(room_kinds().rows(), self.room_kind)?.name))
     }
+}
+
+/// The row of `assets/categories.csv` of a class, as the sensor `semantic` numbers them by default.
+pub(crate) fn category_of_class(class: i32) -> Option<&'static SemanticCategory> {
+    row_numbered(categories().rows(), class)
+}
+
+/// The row of a number from 1 on.
+fn row_numbered<T>(rows: &[T], number: i32) -> Option<&T> {
+    rows.get(usize::try_from(number).ok()?.checked_sub(1)?)
 }
 
 /// The goal of an episode, and its progress.

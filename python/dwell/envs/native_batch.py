@@ -102,10 +102,6 @@ class NativeBatch:
         if states is not None:
             self.plays[env].load(states, seed)
 
-    def episode_goal(self, env: int) -> dict[str, Any]:
-        """What the episode of an environment asks for, for infos."""
-        return self.batch.episode_goal(env)
-
     def step(self, numbers: NDArray[np.int64]) -> tuple[dict[str, Any], list[Mapping[str, Any]]]:
         """One control step by the numbers of actions, -1 for none.
 

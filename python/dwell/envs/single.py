@@ -230,7 +230,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
             drawn = int(self.np_random.integers(2**63))
             self._seed = drawn if episode is None else episode
             self._runner.reset([self._seed])
-            self._goal = self._runner.episode_goal(0)
+            self._goal = self._runner.batch.episode_goal(0)
             observation = self._observation()
         return observation, self._info()
 
@@ -352,7 +352,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         with self._playing("restore"):
             runner.restore(rest, parts, seed)
             self._house, self._seed = house, seed
-            self._goal = runner.episode_goal(0)
+            self._goal = runner.batch.episode_goal(0)
             for counter in self._counters:
                 if (wrapper := counter()) is not None:
                     wrapper._elapsed_steps = self._steps()  # type: ignore[assignment] # None first

@@ -369,7 +369,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             "_episode_id": has.copy(),
         }
         for k in np.flatnonzero(has).tolist():
-            infos = self._add_info(infos, self._runner.episode_goal(k), k)
+            infos = self._add_info(infos, self._runner.batch.episode_goal(k), k)
         return infos
 
     def step(

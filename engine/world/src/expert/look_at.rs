@@ -12,7 +12,7 @@ use glam::Vec3;
 const BEYOND: i32 = 1;
 /// The most steps to either side that are tried.
 const MOST: i32 = 20;
-/// Steepest view, rad.
+/// Steepest view, rad; as far as necks of `dwell_physics` go.
 const STEEPEST_RAD: f32 = 1.5;
 
 /// What brings the middle of the view onto a thing.

@@ -46,9 +46,12 @@ impl Sensor for PointGoalSensor {
     }
 
     fn write_observation(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>) {
-        if let (Some(agent), Some(goal), ObservationBuffer::Float32(out)) =
-            (self.0.state(seen), seen.episode.goal.position, out)
-        {
+        let ObservationBuffer::Float32(out) = out else {
+            return;
+        };
+        // A task in Python may ask for something else: nothing of an earlier episode stays.
+        out.fill(0.0);
+        if let (Some(agent), Some(goal)) = (self.0.state(seen), seen.episode.goal.position) {
             let away = goal - agent.position;
             let distance_m = (away.x * away.x + away.z * away.z).sqrt();
             // Straight ahead at yaw 0 is -z, and yaw grows to the left.

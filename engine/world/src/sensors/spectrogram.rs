@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 
 const ABOUT: &str = "Spectrograms of the sound at the ears: ln(1 + mean magnitude of 4 by 4 values of a transform of 512 samples); shape (frequencies, times, 2), left ear first.";
 
-/// The highest value: 700 Pa, the loudest sine that 10 s of `audio` hold, has 18.
+/// The highest value; a sine of 200 Pa has 24 at the least reference. What is louder is clipped.
 const HIGHEST: f64 = 50.0;
 
 pub(super) const KIND: SensorKind = SensorKind {
@@ -98,6 +98,9 @@ impl Sensor for SpectrogramSensor {
         for channel in 0..2 {
             seen.world.newest_samples(self.agent, channel, &mut window);
             self.spectrogram.write(&window, &mut out[channel..], 2);
+        }
+        for value in out {
+            *value = value.min(HIGHEST as f32);
         }
     }
 }

@@ -5,7 +5,7 @@
 //! the floor and sounds all the time; success within 1 m.
 
 use super::navigation::{GoalKind, NavigationGoal, NavigationTask, navigation_settings};
-use super::point_nav::{check_success_distance, place_goal};
+use super::point_nav::check_success_distance;
 use super::{Task, TaskKind, TaskSetup};
 use crate::error::WorldError;
 use crate::schema;
@@ -47,7 +47,7 @@ pub(super) const KIND: TaskKind = TaskKind {
 navigation_settings! {
     /// The task's settings.
     AudioNavSettings {
-        /// Signals to draw from, as `dwell sounds` names them; default eight of a household.
+        /// Signals to draw from, as `dwell.sounds.signals` names them; default eight of a household.
         sounds: Vec<String> = SOUNDS.map(str::to_owned).to_vec(),
         /// Level at 1 m, dB SPL; default the typical level of each signal.
         level_db: Option<f32> = None,
@@ -68,7 +68,7 @@ fn build(value: &serde_json::Value, setup: TaskSetup) -> Result<Box<dyn Task>, W
 }
 
 /// Refuses signals that do not exist, none at all, and levels out of range.
-pub(super) fn check_sounds(sounds: &[String], level_db: Option<f32>) -> Result<(), WorldError> {
+fn check_sounds(sounds: &[String], level_db: Option<f32>) -> Result<(), WorldError> {
     if sounds.is_empty() {
         return Err(WorldError::Config {
             field: "sounds",
@@ -80,6 +80,24 @@ pub(super) fn check_sounds(sounds: &[String], level_db: Option<f32>) -> Result<(
         signals::info(name)?;
     }
     level_db.map_or(Ok(()), check_level)
+}
+
+/// Plays a signal at a place, by default at its typical level, once or for ever.
+pub(super) fn play_signal(
+    world: &mut World,
+    name: &str,
+    (place, level_db, loops): (SoundPlace, Option<f32>, bool),
+) -> Result<(), WorldError> {
+    let request = PlayRequest {
+        sound: SoundName::Signal(name.to_owned()),
+        place,
+        level_db: match level_db {
+            Some(level_db) => level_db,
+            None => signals::info(name)?.typical_level_db,
+        },
+        loops,
+    };
+    world.play(request).map(|_| ())
 }
 
 #[derive(Debug)]
@@ -102,7 +120,7 @@ impl GoalKind for AudioNav {
         allowed: &dyn Fn(NavCell) -> bool,
     ) -> Option<NavigationGoal> {
         let cell = grid.sample(key, allowed)?;
-        Some(place_goal(
+        Some(NavigationGoal::place(
             "sound",
             grid,
             cell,
@@ -123,15 +141,8 @@ impl GoalKind for AudioNav {
         ) else {
             return Ok(ASKED.to_owned());
         };
-        world.play(PlayRequest {
-            sound: SoundName::Signal(name.clone()),
-            place: SoundPlace::Point(floor + Vec3::Y * SOURCE_HEIGHT_M),
-            level_db: match self.settings.level_db {
-                Some(level_db) => level_db,
-                None => signals::info(name)?.typical_level_db,
-            },
-            loops: true,
-        })?;
+        let place = SoundPlace::Point(floor + Vec3::Y * SOURCE_HEIGHT_M);
+        play_signal(world, name, (place, self.settings.level_db, true))?;
         Ok(ASKED.to_owned())
     }
 }

@@ -5,7 +5,7 @@
 
 use super::door_leaves::DoorLeaves;
 use super::standing_room::FreeStartCells;
-use super::{Task, TaskKind, TaskSetup};
+use super::{Task, TaskKind, TaskSetup, random_yaw_rad};
 use crate::actions::DiscreteAction;
 use crate::episode::{Episode, EpisodeGoal, StepResult};
 use crate::error::WorldError;
@@ -64,16 +64,13 @@ fn build(value: &serde_json::Value, setup: TaskSetup) -> Result<Box<dyn Task>, W
     } else {
         crate::parse_settings::parse_settings("task_settings", value)?
     };
-    Ok(Box::new(FreeTask {
-        settings,
-        agent: setup.agent,
-    }))
+    Ok(Box::new(FreeTask { settings, setup }))
 }
 
 #[derive(Debug)]
 struct FreeTask {
     settings: FreeSettings,
-    agent: AgentId,
+    setup: TaskSetup,
 }
 
 impl FreeTask {
@@ -90,7 +87,7 @@ impl FreeTask {
             why,
         };
         let grid = world.engines().nav_grid(body)?;
-        let of_house = world.house().agent_starts.get(self.agent.index());
+        let of_house = world.house().agent_starts.get(self.setup.agent.index());
         if let Some(start) = of_house.filter(|_| self.settings.start == StartChoice::House) {
             if grid.nearest(start.position, NEAR_M).is_none() {
                 let at = start.position.to_array();
@@ -108,9 +105,7 @@ impl FreeTask {
             let why = "nobody of the agent's size can stand anywhere";
             return Err(unplayable(why.to_owned()));
         };
-        let (low, high) = (-std::f32::consts::PI, std::f32::consts::PI);
-        let yaw_rad = key.child("yaw").stream().range(low, high);
-        Ok((grid.position(cell), yaw_rad))
+        Ok((grid.position(cell), random_yaw_rad(key)))
     }
 }
 
@@ -125,13 +120,8 @@ impl Task for FreeTask {
         placed: &[AgentId],
         key: RandomKey,
     ) -> Result<Episode, WorldError> {
-        let agent = self.agent;
-        let Some(body) = world.state().agents.get(agent).map(|agent| agent.body) else {
-            return Err(WorldError::InvalidCall(format!(
-                "{NAME} needs a world with agent {}",
-                agent.0
-            )));
-        };
+        let agent = self.setup.agent;
+        let body = self.setup.body(world, NAME)?;
         let (position, yaw_rad) = self.choose_start(world, &body, (placed, key))?;
         world.place_agent(agent, position, yaw_rad)?;
         Ok(Episode {
@@ -150,7 +140,7 @@ impl Task for FreeTask {
         episode: &mut Episode,
         action: DiscreteAction,
     ) -> StepResult {
-        if let Some(agent) = world.state().agents.get(self.agent) {
+        if let Some(agent) = world.state().agents.get(self.setup.agent) {
             let progress = &mut episode.progress;
             progress.advance(agent.position, None, agent.collided);
         }

@@ -4,8 +4,8 @@
 //! The success distance of L. Mezghani et al., "Memory-Augmented Reinforcement Learning for Image-Goal Navigation", IROS 2022: 1 m.
 
 use super::navigation::{GoalKind, NavigationGoal, NavigationTask, navigation_settings};
-use super::point_nav::{check_success_distance, place_goal};
-use super::{Task, TaskKind, TaskSetup};
+use super::point_nav::check_success_distance;
+use super::{Task, TaskKind, TaskSetup, random_yaw_rad};
 use crate::episode::GoalPart;
 use crate::error::WorldError;
 use crate::schema;
@@ -63,9 +63,8 @@ impl GoalKind for ImageNav {
         allowed: &dyn Fn(NavCell) -> bool,
     ) -> Option<NavigationGoal> {
         let cell = grid.sample(key, allowed)?;
-        let mut goal = place_goal("image", grid, cell, self.settings.success_distance_m);
-        let (low, high) = (-std::f32::consts::PI, std::f32::consts::PI);
-        goal.told.yaw_rad = key.child("yaw").stream().range(low, high);
+        let mut goal = NavigationGoal::place("image", grid, cell, self.settings.success_distance_m);
+        goal.told.yaw_rad = random_yaw_rad(key);
         Some(goal)
     }
 

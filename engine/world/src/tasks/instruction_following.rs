@@ -4,9 +4,7 @@
 //! instruction is fulfilled. The episode ends with `stop`.
 
 use super::goal_cells::LargestIslandIndex;
-use super::navigation::{
-    GoalKind, NavigationGoal, NavigationTask, SuccessRule, cells_that_reach, navigation_settings,
-};
+use super::navigation::{GoalKind, NavigationGoal, NavigationTask, navigation_settings};
 use super::{Task, TaskKind, TaskSetup};
 use crate::episode::EpisodeGoal;
 use crate::error::WorldError;
@@ -85,20 +83,18 @@ impl GoalKind for InstructionFollowing {
         let mut offers = Vec::new();
         for kind in &self.settings.kinds {
             for instruction in instruct::candidates(&scene, *kind) {
-                let cells = cells_that_reach(world, agent, ground, &instruction.goal);
-                if !cells.is_empty() {
-                    offers.push(NavigationGoal {
-                        cells,
-                        success: SuccessRule::Fulfilled(instruction.goal.clone()),
-                        told: EpisodeGoal {
-                            kind: kind.name(),
-                            rooms: instruction.goal.rooms.clone(),
-                            objects: instruction.goal.objects.clone(),
-                            ..EpisodeGoal::default()
-                        },
-                        instruction: Some(instruction),
-                    });
-                }
+                let asked = instruction.goal.clone();
+                let told = EpisodeGoal {
+                    kind: kind.name(),
+                    rooms: asked.rooms.clone(),
+                    objects: asked.objects.clone(),
+                    ..EpisodeGoal::default()
+                };
+                let offer = NavigationGoal::fulfilled((world, agent), ground, asked, told);
+                offers.extend(offer.map(|offer| NavigationGoal {
+                    instruction: Some(instruction),
+                    ..offer
+                }));
             }
         }
         offers

@@ -19,8 +19,8 @@ use crate::episode::{Episode, GoalPart, StepResult};
 use crate::error::WorldError;
 use crate::schema::FieldSchema;
 use crate::world::World;
-use dwell_scene::AgentId;
 use dwell_scene::random::RandomKey;
+use dwell_scene::{AgentBody, AgentId};
 use std::fmt::Debug;
 
 /// A task of one agent. One value plays one episode after another in one world.
@@ -83,6 +83,25 @@ pub struct TaskSetup {
     pub agent: AgentId,
     /// Step sizes of its movement actions.
     pub stride: StepSizes,
+}
+
+impl TaskSetup {
+    /// The body of the agent that acts in `task`.
+    ///
+    /// # Errors
+    /// [`WorldError::InvalidCall`] for a world without the agent.
+    fn body(&self, world: &World, task: &str) -> Result<AgentBody, WorldError> {
+        let id = self.agent;
+        let agent = world.state().agents.get(id);
+        let none = || WorldError::InvalidCall(format!("{task} needs a world with agent {}", id.0));
+        Ok(agent.ok_or_else(none)?.body)
+    }
+}
+
+/// A heading, rad, drawn from all.
+fn random_yaw_rad(key: RandomKey) -> f32 {
+    let (low, high) = (-std::f32::consts::PI, std::f32::consts::PI);
+    key.child("yaw").stream().range(low, high)
 }
 
 /// Builds a task from its settings (a JSON object; `null` gives the defaults).

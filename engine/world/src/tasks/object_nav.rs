@@ -4,19 +4,17 @@
 //! The success rule of `RoboTHOR` (M. Deitke et al., CVPR 2020): `stop` within 1 m of a thing of the class that is in view.
 
 use super::goal_cells::LargestIslandIndex;
-use super::navigation::{
-    GoalKind, NavigationGoal, NavigationTask, SuccessRule, cells_that_reach, navigation_settings,
-};
+use super::navigation::{GoalKind, NavigationGoal, NavigationTask, navigation_settings};
 use super::point_nav::check_success_distance;
 use super::{Task, TaskKind, TaskSetup};
-use crate::episode::{EpisodeGoal, GoalPart};
+use crate::episode::{EpisodeGoal, GoalPart, category_of_class};
 use crate::error::WorldError;
 use crate::schema;
 use crate::world::World;
 use dwell_render::{ClassSet, EntityClasses};
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, ObjectId};
-use dwell_semantics::category::{SemanticCategory, categories};
+use dwell_semantics::category::categories;
 use dwell_semantics::english;
 use dwell_semantics::instruct::{InstructionGoal, is_sought};
 use std::collections::BTreeMap;
@@ -62,11 +60,6 @@ fn build(value: &serde_json::Value, setup: TaskSetup) -> Result<Box<dyn Task>, W
     )))
 }
 
-/// The row of `assets/categories.csv` of a class, as the sensor `semantic` numbers them by default.
-pub(super) fn row_of_class(class: i32) -> Option<&'static SemanticCategory> {
-    categories().rows().get(usize::try_from(class - 1).ok()?)
-}
-
 #[derive(Debug)]
 struct ObjectNav {
     settings: ObjectNavSettings,
@@ -92,7 +85,7 @@ impl GoalKind for ObjectNav {
         let mut by_class: BTreeMap<i32, Vec<ObjectId>> = BTreeMap::new();
         for object in house.objects.ids() {
             let class = classes.of(house.entity_of_object(object).0);
-            let sought = row_of_class(class).is_some_and(|row| {
+            let sought = category_of_class(class).is_some_and(|row| {
                 is_sought(row) && (asked.is_empty() || asked.iter().any(|name| name == row.name))
             });
             if sought {
@@ -102,18 +95,13 @@ impl GoalKind for ObjectNav {
         let goals = by_class.into_iter().filter_map(|(class, objects)| {
             let radius_m = self.settings.success_distance_m as f32;
             let goal = InstructionGoal::objects(objects.clone(), radius_m);
-            let cells = cells_that_reach(world, agent, ground, &goal);
-            (!cells.is_empty()).then(|| NavigationGoal {
-                cells,
-                success: SuccessRule::Fulfilled(goal),
-                told: EpisodeGoal {
-                    kind: "object",
-                    objects,
-                    class,
-                    ..EpisodeGoal::default()
-                },
-                instruction: None,
-            })
+            let told = EpisodeGoal {
+                kind: "object",
+                objects,
+                class,
+                ..EpisodeGoal::default()
+            };
+            NavigationGoal::fulfilled((world, agent), ground, goal, told)
         });
         goals.collect()
     }
@@ -124,7 +112,7 @@ impl GoalKind for ObjectNav {
         goal: &NavigationGoal,
         _key: RandomKey,
     ) -> Result<String, WorldError> {
-        let noun = row_of_class(goal.told.class).map_or("thing", |row| row.singular);
+        let noun = category_of_class(goal.told.class).map_or("thing", |row| row.singular);
         Ok(format!("Find {}.", english::with_article(noun)))
     }
 }

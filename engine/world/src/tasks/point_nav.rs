@@ -4,11 +4,9 @@
 //! `PointNav` of P. Anderson et al., "On Evaluation of Embodied Navigation Agents", arXiv:1807.06757 (2018); the success distance of
 //! habitat-lab: 0.2 m, twice the radius of its agent.
 
-use super::navigation::{
-    GoalKind, NavigationGoal, NavigationTask, SuccessRule, navigation_settings,
-};
+use super::navigation::{GoalKind, NavigationGoal, NavigationTask, navigation_settings};
 use super::{Task, TaskKind, TaskSetup};
-use crate::episode::{EpisodeGoal, GoalPart};
+use crate::episode::GoalPart;
 use crate::error::WorldError;
 use crate::schema;
 use crate::world::World;
@@ -77,7 +75,7 @@ impl GoalKind for PointNav {
         allowed: &dyn Fn(NavCell) -> bool,
     ) -> Option<NavigationGoal> {
         let cell = grid.sample(key, allowed)?;
-        Some(place_goal(
+        Some(NavigationGoal::place(
             "point",
             grid,
             cell,
@@ -92,24 +90,5 @@ impl GoalKind for PointNav {
         _key: RandomKey,
     ) -> Result<String, WorldError> {
         Ok("Go to the goal.".to_owned())
-    }
-}
-
-/// The goal to come near a cell.
-pub(super) fn place_goal(
-    kind: &'static str,
-    grid: &NavGrid,
-    cell: NavCell,
-    success_distance_m: f64,
-) -> NavigationGoal {
-    NavigationGoal {
-        cells: vec![cell],
-        success: SuccessRule::Within(success_distance_m),
-        told: EpisodeGoal {
-            kind,
-            position: Some(grid.position(cell)),
-            ..EpisodeGoal::default()
-        },
-        instruction: None,
     }
 }

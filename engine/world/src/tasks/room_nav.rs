@@ -1,9 +1,7 @@
 //! Go to a room of a kind, such as a kitchen; then stop in it.
 
 use super::goal_cells::LargestIslandIndex;
-use super::navigation::{
-    GoalKind, NavigationGoal, NavigationTask, SuccessRule, cells_that_reach, navigation_settings,
-};
+use super::navigation::{GoalKind, NavigationGoal, NavigationTask, navigation_settings};
 use super::{Task, TaskKind, TaskSetup};
 use crate::episode::{EpisodeGoal, GoalPart};
 use crate::error::WorldError;
@@ -90,18 +88,13 @@ impl GoalKind for RoomNav {
                 return None;
             }
             let goal = InstructionGoal::rooms(rooms.clone());
-            let cells = cells_that_reach(world, agent, ground, &goal);
-            (!cells.is_empty()).then(|| NavigationGoal {
-                cells,
-                success: SuccessRule::Fulfilled(goal),
-                told: EpisodeGoal {
-                    kind: "room",
-                    rooms,
-                    room_kind: row as i32 + 1,
-                    ..EpisodeGoal::default()
-                },
-                instruction: None,
-            })
+            let told = EpisodeGoal {
+                kind: "room",
+                rooms,
+                room_kind: row as i32 + 1,
+                ..EpisodeGoal::default()
+            };
+            NavigationGoal::fulfilled((world, agent), ground, goal, told)
         });
         goals.collect()
     }

@@ -4,20 +4,16 @@
 //! C. Chen et al., "Semantic Audio-Visual Navigation", CVPR 2021: things sound as their kind does, for a time; success within 1 m of
 //! the thing; a second thing may sound, too (distractor).
 
-use super::audio_nav::ASKED;
+use super::audio_nav::{ASKED, play_signal};
 use super::goal_cells::LargestIslandIndex;
-use super::navigation::{
-    GoalKind, NavigationGoal, NavigationTask, SuccessRule, cells_that_reach, navigation_settings,
-};
-use super::object_nav::row_of_class;
+use super::navigation::{GoalKind, NavigationGoal, NavigationTask, navigation_settings};
 use super::point_nav::check_success_distance;
 use super::{Task, TaskKind, TaskSetup};
-use crate::episode::{EpisodeGoal, GoalPart};
+use crate::episode::{EpisodeGoal, GoalPart, category_of_class};
 use crate::error::WorldError;
 use crate::schema;
-use crate::sound::{PlayRequest, SoundName, SoundPlace, check_level};
+use crate::sound::{SoundPlace, check_level};
 use crate::world::World;
-use dwell_acoustics::signals;
 use dwell_render::{ClassSet, EntityClasses};
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, ObjectId};
@@ -107,7 +103,7 @@ fn sounding_things(world: &World) -> Vec<SoundingThing> {
     let classes = EntityClasses::new(house, ClassSet::Coarse);
     let of = |object: ObjectId| {
         let class = classes.of(house.entity_of_object(object).0);
-        let name = row_of_class(class)?.name;
+        let name = category_of_class(class)?.name;
         let (_, signal) = SIGNALS.iter().find(|(class, _)| *class == name)?;
         Some(SoundingThing {
             object,
@@ -125,16 +121,11 @@ struct SemanticAudioNav {
 
 impl SemanticAudioNav {
     fn play(&self, world: &mut World, thing: &SoundingThing) -> Result<(), WorldError> {
-        world.play(PlayRequest {
-            sound: SoundName::Signal(thing.signal.to_owned()),
-            place: SoundPlace::Object(thing.object),
-            level_db: match self.settings.level_db {
-                Some(level_db) => level_db,
-                None => signals::info(thing.signal)?.typical_level_db,
-            },
-            loops: self.settings.loops,
-        })?;
-        Ok(())
+        let SemanticAudioNavSettings {
+            level_db, loops, ..
+        } = self.settings;
+        let place = SoundPlace::Object(thing.object);
+        play_signal(world, thing.signal, (place, level_db, loops))
     }
 }
 
@@ -157,18 +148,13 @@ impl GoalKind for SemanticAudioNav {
             let SoundingThing { object, class, .. } = thing;
             let radius_m = self.settings.success_distance_m as f32;
             let goal = InstructionGoal::objects(vec![object], radius_m);
-            let cells = cells_that_reach(world, agent, ground, &goal);
-            (!cells.is_empty()).then(|| NavigationGoal {
-                cells,
-                success: SuccessRule::Fulfilled(goal),
-                told: EpisodeGoal {
-                    kind: "sound",
-                    objects: vec![object],
-                    class,
-                    ..EpisodeGoal::default()
-                },
-                instruction: None,
-            })
+            let told = EpisodeGoal {
+                kind: "sound",
+                objects: vec![object],
+                class,
+                ..EpisodeGoal::default()
+            };
+            NavigationGoal::fulfilled((world, agent), ground, goal, told)
         });
         sounding.collect()
     }

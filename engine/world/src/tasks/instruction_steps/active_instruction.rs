@@ -1,10 +1,10 @@
 //! The instruction of an episode: what is done of it, and what the expert does next.
 
-use crate::actions::DiscreteAction;
-use crate::expert::{LookStep, ShortestPathFollower};
+use crate::actions::{DiscreteAction, StepSizes};
+use crate::expert::LookStep;
 use crate::tasks::navigation::{BESIDE_M, ELSEWHERE_M, Leg, NavigationGoal};
 use crate::world::World;
-use dwell_scene::navigation::NavCell;
+use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::{AgentId, ObjectId};
 use dwell_semantics::instruct::{InstructionStep, StepCondition};
 use std::sync::Arc;
@@ -48,28 +48,37 @@ pub(super) struct ActiveInstruction {
     /// Steps that are done, in order.
     pub(super) done: usize,
     /// The leg that is gone, by step and its place in the step.
-    pub(super) at: (usize, usize),
-    pub(super) leg: Leg,
+    at: (usize, usize),
+    leg: Leg,
     /// The walkable way from the end of each leg to the end of the last one, m. Shape (step, leg).
-    pub(super) later_m: Vec<Vec<f64>>,
+    later_m: Vec<Vec<f64>>,
     /// Control steps for which the expert has been busy with its hand.
-    pub(super) busy: u32,
+    busy: u32,
     /// How often it has tried all places of the leg in vain.
     rounds: u32,
 }
 
 impl ActiveInstruction {
     /// Begins with the first leg of the first step.
-    pub(super) fn new(steps: Vec<StepOffer>, leg: Leg) -> Self {
+    pub(super) fn new(
+        steps: Vec<StepOffer>,
+        (agent, grid, stride): (AgentId, &Arc<NavGrid>, StepSizes),
+    ) -> Self {
+        let first = steps[0].legs[0].goal.clone();
         Self {
-            later_m: later_distances(&steps, &leg),
+            later_m: later_distances(&steps, grid),
+            leg: Leg::new(agent, grid.clone(), first, stride),
             steps,
             done: 0,
             at: (0, 0),
-            leg,
             busy: 0,
             rounds: 0,
         }
+    }
+
+    /// The straight distance of a cell to the nearest place of the first leg, and the walkable way from there on, m.
+    pub(super) fn straight_from(&self, cell: NavCell) -> f64 {
+        self.leg.straight_m(cell) + self.later_m[0][0]
     }
 
     /// The walkable way of the whole instruction from a cell, m.
@@ -195,20 +204,22 @@ impl ActiveInstruction {
 }
 
 /// The walkable way from the end of each leg to the end of the last one, m: from the nearest cell of one goal to the next goal.
-fn later_distances(steps: &[StepOffer], leg: &Leg) -> Vec<Vec<f64>> {
+fn later_distances(steps: &[StepOffer], grid: &NavGrid) -> Vec<Vec<f64>> {
     let mut later_m: Vec<Vec<f64>> = Vec::new();
-    let (mut after_m, mut next): (f64, Option<ShortestPathFollower>) = (0.0, None);
+    let mut after_m = 0.0;
+    let mut next: Option<&NavigationGoal> = None;
     for offer in steps.iter().rev() {
         let mut of_step = Vec::new();
         for planned in offer.legs.iter().rev() {
-            if let Some(next) = &next {
+            if let Some(next) = next {
+                let field = grid.distance_field(&next.cells);
                 let ways = planned.goal.cells.iter();
-                let ways = ways.filter_map(|cell| next.distance_at(*cell));
+                let ways = ways.filter_map(|cell| field.at(*cell));
                 let shortest = ways.fold(f64::INFINITY, f64::min);
                 after_m += if shortest.is_finite() { shortest } else { 0.0 };
             }
             of_step.insert(0, after_m);
-            next = Some(leg.to(planned.goal.clone()).guide);
+            next = Some(&planned.goal);
         }
         later_m.insert(0, of_step);
     }

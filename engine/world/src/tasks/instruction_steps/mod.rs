@@ -9,9 +9,9 @@ mod active_instruction;
 mod step_places;
 
 use super::door_leaves::DoorLeaves;
-use super::navigation::{Leg, NavigationRules, navigation_settings};
+use super::navigation::{NavigationRules, navigation_settings};
 use super::standing_room::FreeStartCells;
-use super::{Task, TaskKind, TaskSetup};
+use super::{Task, TaskKind, TaskSetup, random_yaw_rad};
 use crate::actions::DiscreteAction;
 use crate::episode::{Episode, EpisodeGoal, StepResult};
 use crate::error::WorldError;
@@ -22,7 +22,7 @@ use active_instruction::{ActiveInstruction, StepOffer};
 use dwell_scene::interrupt;
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::random::RandomKey;
-use dwell_scene::{AgentBody, AgentId, Pose};
+use dwell_scene::{AgentId, Pose};
 use dwell_semantics::instruct::{self, InstructionStep, StepCondition, StepKind};
 use dwell_semantics::vocabulary;
 use std::collections::BTreeMap;
@@ -118,13 +118,6 @@ struct InstructionSteps {
 }
 
 impl InstructionSteps {
-    fn body(&self, world: &World) -> Result<AgentBody, WorldError> {
-        let id = self.setup.agent;
-        let agent = world.state().agents.get(id);
-        let none = || WorldError::InvalidCall(format!("{NAME} needs a world with agent {}", id.0));
-        Ok(agent.ok_or_else(none)?.body)
-    }
-
     /// Some steps, drawn from `key`, that can be done one after the other by one hand; `None` where those that were drawn cannot.
     fn draw(&self, key: RandomKey) -> Option<Vec<StepOffer>> {
         let mut stream = key.stream();
@@ -164,7 +157,7 @@ impl Task for InstructionSteps {
         if !self.offers.is_empty() {
             return Ok(());
         }
-        let body = self.body(world)?;
+        let body = self.setup.body(world, NAME)?;
         let grid = world.engines().nav_grid(&body)?;
         let places = StepPlaces::new(world, self.setup.agent, body, &grid);
         let scene = world.engines().semantics().scene(world.state());
@@ -185,7 +178,7 @@ impl Task for InstructionSteps {
         key: RandomKey,
     ) -> Result<Episode, WorldError> {
         let (agent, stride) = (self.setup.agent, self.setup.stride);
-        let body = self.body(world)?;
+        let body = self.setup.body(world, NAME)?;
         let grid: Arc<NavGrid> = world.engines().nav_grid(&body)?;
         let leaves = DoorLeaves::of(world, &grid);
         let room = FreeStartCells::excluding_agents(world, placed, &body);
@@ -203,20 +196,18 @@ impl Task for InstructionSteps {
             let Some(sentence) = instruct::compose(language, &asked, Some(wording)) else {
                 continue;
             };
-            let leg = Leg::new(agent, grid.clone(), steps[0].legs[0].goal.clone(), stride);
-            let mut active = ActiveInstruction::new(steps, leg);
-            let [least, most] = self.rules.distance_m;
+            let mut active = ActiveInstruction::new(steps, (agent, &grid, stride));
             let allowed = |cell: NavCell| {
-                let way_m = active.way_from(cell);
                 grid.island(cell) == Some(0)
-                    && way_m.is_some_and(|way_m| (least..=most).contains(&way_m))
+                    && active.way_from(cell).is_some_and(|way_m| {
+                        self.rules.allow_start(way_m, || active.straight_from(cell))
+                    })
                     && !leaves.is_blocked(&grid, cell)
             };
             let Some(start) = room.sample(&grid, key.child("start"), allowed) else {
                 continue;
             };
-            let (low, high) = (-std::f32::consts::PI, std::f32::consts::PI);
-            let yaw_rad = key.child("yaw").stream().range(low, high);
+            let yaw_rad = random_yaw_rad(key);
             let position = grid.position(start);
             world.place_agent(agent, position, yaw_rad)?;
             if active.advance(world, agent) > 0 {
@@ -280,35 +271,16 @@ impl Task for InstructionSteps {
         let gain_m = episode
             .progress
             .advance(agent.position, left_m, agent.collided);
-        let pay = &self.rules.rewards;
         let stops = action == DiscreteAction::Stop;
-        let success = (stops || self.rules.ends_at_goal) && active.is_fulfilled(world, id);
-        let mut reward = pay.distance * gain_m + pay.step;
-        reward += self.settings.step_done_reward * newly_done as f64;
-        if agent.collided {
-            reward += pay.collision;
-        }
-        if success {
-            reward += pay.success;
-        } else if stops {
-            reward += pay.wrong_stop;
-        }
-        StepResult {
-            reward,
-            terminated: stops || success,
-            success,
-        }
+        let is_reached = || active.is_fulfilled(world, id);
+        let mut result = (self.rules).step_result((gain_m, agent.collided), stops, is_reached);
+        result.reward += self.settings.step_done_reward * newly_done as f64;
+        result
     }
 
     fn expert(&mut self, world: &mut World, _episode: &Episode) -> DiscreteAction {
-        let agent = self.setup.agent;
-        match &mut self.active {
-            Some(active) => {
-                active.advance(world, agent);
-                active.expert(world)
-            }
-            None => DiscreteAction::Stop,
-        }
+        let active = self.active.as_mut();
+        active.map_or(DiscreteAction::Stop, |active| active.expert(world))
     }
 }
 

@@ -5,7 +5,7 @@ use crate::tasks::goal_cells::LargestIslandIndex;
 use crate::world::World;
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::interrupt::PollEvery;
-use dwell_scene::navigation::NavCell;
+use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::{AgentId, ObjectId};
 use dwell_semantics::instruct::{Instruction, InstructionGoal};
 use glam::{Vec2, Vec3};
@@ -35,6 +35,41 @@ pub(in crate::tasks) struct NavigationGoal {
 }
 
 impl NavigationGoal {
+    /// The goal to be where `asked` is fulfilled; `None` where that is nowhere on the largest island.
+    pub(in crate::tasks) fn fulfilled(
+        (world, agent): (&World, AgentId),
+        ground: &LargestIslandIndex<'_>,
+        asked: InstructionGoal,
+        told: EpisodeGoal,
+    ) -> Option<Self> {
+        let cells = cells_that_reach(world, agent, ground, &asked);
+        (!cells.is_empty()).then(|| Self {
+            cells,
+            success: SuccessRule::Fulfilled(asked),
+            told,
+            instruction: None,
+        })
+    }
+
+    /// The goal to come near a cell.
+    pub(in crate::tasks) fn place(
+        kind: &'static str,
+        grid: &NavGrid,
+        cell: NavCell,
+        success_distance_m: f64,
+    ) -> Self {
+        Self {
+            cells: vec![cell],
+            success: SuccessRule::Within(success_distance_m),
+            told: EpisodeGoal {
+                kind,
+                position: Some(grid.position(cell)),
+                ..EpisodeGoal::default()
+            },
+            instruction: None,
+        }
+    }
+
     /// The things of which one must be looked at.
     pub(in crate::tasks) fn objects(&self) -> &[ObjectId] {
         match &self.success {

@@ -43,8 +43,17 @@ impl Leg {
         }
     }
 
-    /// Leads to goals further than `radius_m` from here from now on; `false` when there are none. Of a cell on whose border the agent stands the
-    /// thing may be hidden, though it is seen from the middle.
+    /// The straight distance of a cell to the nearest goal, m.
+    pub(in crate::tasks) fn straight_m(&self, cell: NavCell) -> f64 {
+        let grid = self.guide.grid();
+        let from = grid.position(cell);
+        let straight = self.goal.cells.iter();
+        let straight = straight.map(|to| grid.position(*to).distance(from));
+        f64::from(straight.fold(f32::INFINITY, f32::min))
+    }
+
+    /// Leads to goals further than `radius_m` from here from now on; `false` when there are none. Of a cell on whose border the agent
+    /// stands the thing may be hidden, though it is seen from the middle.
     pub(in crate::tasks) fn leave_out_goals_here(&mut self, world: &World, radius_m: f32) -> bool {
         let id = self.expert_path.agent();
         let Some(agent) = world.state().agents.get(id) else {

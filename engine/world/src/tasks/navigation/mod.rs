@@ -23,8 +23,9 @@ use crate::world::World;
 use dwell_scene::interrupt;
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::random::RandomKey;
-use dwell_scene::{AgentBody, AgentId, Pose};
+use dwell_scene::{AgentId, Pose};
 use dwell_semantics::vocabulary;
+use std::f32::consts::PI;
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -97,39 +98,16 @@ impl<K: GoalKind> NavigationTask<K> {
         }
     }
 
-    fn body(&self, world: &World) -> Result<AgentBody, WorldError> {
-        let id = self.setup.agent;
-        let agent = world.state().agents.get(id);
-        let none =
-            || WorldError::InvalidCall(format!("{} needs a world with agent {}", K::NAME, id.0));
-        Ok(agent.ok_or_else(none)?.body)
-    }
-
     /// Returns whether an episode may start in a cell.
     fn is_start(&self, leg: &Leg, cell: NavCell) -> bool {
-        let [least, most] = self.rules.distance_m;
-        let (guide, goal) = (&leg.guide, &leg.goal);
-        let Some(distance_m) = guide.distance_at(cell) else {
+        let Some(way_m) = leg.guide.distance_at(cell) else {
             return false;
         };
-        let within = match goal.success {
-            SuccessRule::Within(radius_m) => distance_m < radius_m,
+        let within = match leg.goal.success {
+            SuccessRule::Within(radius_m) => way_m < radius_m,
             SuccessRule::Fulfilled(_) => false,
         };
-        if within || !(least..=most).contains(&distance_m) {
-            return false;
-        }
-        let ratio = self.rules.min_path_ratio;
-        ratio <= 1.0 || {
-            let grid = guide.grid();
-            let from = grid.position(cell);
-            let straight = goal
-                .cells
-                .iter()
-                .map(|to| grid.position(*to).distance(from));
-            let straight_m = straight.fold(f32::INFINITY, f32::min);
-            distance_m >= ratio * f64::from(straight_m)
-        }
+        !within && self.rules.allow_start(way_m, || leg.straight_m(cell))
     }
 }
 
@@ -146,15 +124,14 @@ impl<K: GoalKind> NavigationTask<K> {
         sample: impl Fn(RandomKey) -> Option<NavCell>,
     ) -> Result<Option<Start>, WorldError> {
         for attempt in 0..STARTS {
-            let of = |name: &str| match attempt {
-                0 => key.child(name),
-                _ => key.child(name).child(attempt),
+            let of = |key: RandomKey| match attempt {
+                0 => key,
+                _ => key.child(attempt),
             };
-            let Some(cell) = sample(of("start")) else {
+            let Some(cell) = sample(of(key.child("start"))) else {
                 return Ok(None);
             };
-            let (low, high) = (-std::f32::consts::PI, std::f32::consts::PI);
-            let yaw_rad = of("yaw").stream().range(low, high);
+            let yaw_rad = of(key.child("yaw")).stream().range(-PI, PI);
             let agent = self.setup.agent;
             world.place_agent(agent, leg.guide.grid().position(cell), yaw_rad)?;
             if !leg.is_reached(world, leg.guide.distance_at(cell)) {
@@ -172,7 +149,9 @@ impl<K: GoalKind> Task for NavigationTask<K> {
 
     fn survey_house(&mut self, world: &World) -> Result<(), WorldError> {
         if self.offers.is_empty() {
-            let grid = world.engines().nav_grid(&self.body(world)?)?;
+            let grid = world
+                .engines()
+                .nav_grid(&self.setup.body(world, K::NAME)?)?;
             let ground = LargestIslandIndex::of(&grid);
             let found = self.kind.survey(world, self.setup.agent, &ground);
             self.offers = found.into_iter().map(Arc::new).collect();
@@ -187,7 +166,7 @@ impl<K: GoalKind> Task for NavigationTask<K> {
         key: RandomKey,
     ) -> Result<Episode, WorldError> {
         let agent = self.setup.agent;
-        let body = self.body(world)?;
+        let body = self.setup.body(world, K::NAME)?;
         let grid = world.engines().nav_grid(&body)?;
         let leaves = DoorLeaves::of(world, &grid);
         let room = FreeStartCells::excluding_agents(world, placed, &body);
@@ -255,23 +234,10 @@ impl<K: GoalKind> Task for NavigationTask<K> {
         let gain_m = episode
             .progress
             .advance(agent.position, left_m, agent.collided);
-        let (rules, pay) = (&self.rules, &self.rules.rewards);
         let stops = action == DiscreteAction::Stop;
-        let success = (stops || rules.ends_at_goal) && active.is_reached(world, left_m);
-        let mut reward = pay.distance * gain_m + pay.step;
-        if agent.collided {
-            reward += pay.collision;
-        }
-        if success {
-            reward += pay.success;
-        } else if stops {
-            reward += pay.wrong_stop;
-        }
-        StepResult {
-            reward,
-            terminated: stops || success,
-            success,
-        }
+        let is_reached = || active.is_reached(world, left_m);
+        self.rules
+            .step_result((gain_m, agent.collided), stops, is_reached)
     }
 
     fn expert(&mut self, world: &mut World, _episode: &Episode) -> DiscreteAction {

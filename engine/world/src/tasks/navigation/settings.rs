@@ -1,5 +1,6 @@
 //! Settings that all tasks of navigation have: where episodes start, how they end, and what is paid.
 
+use crate::episode::StepResult;
 use crate::error::WorldError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -48,6 +49,43 @@ pub(in crate::tasks) struct NavigationRules {
 }
 
 impl NavigationRules {
+    /// What a step is paid, and whether it ends the episode. `gain_m`: by how much the distance fell; `stops`: whether the agent
+    /// called `stop`; `is_reached`: whether it has done what is asked, which is looked at where it counts.
+    pub(in crate::tasks) fn step_result(
+        &self,
+        (gain_m, collided): (f64, bool),
+        stops: bool,
+        is_reached: impl FnOnce() -> bool,
+    ) -> StepResult {
+        let pay = &self.rewards;
+        let success = (stops || self.ends_at_goal) && is_reached();
+        let mut reward = pay.distance * gain_m + pay.step;
+        if collided {
+            reward += pay.collision;
+        }
+        if success {
+            reward += pay.success;
+        } else if stops {
+            reward += pay.wrong_stop;
+        }
+        StepResult {
+            reward,
+            terminated: stops || success,
+            success,
+        }
+    }
+
+    /// Returns whether an episode may start where the walkable way to the goal is `way_m` and the straight one as `straight_m` says.
+    pub(in crate::tasks) fn allow_start(
+        &self,
+        way_m: f64,
+        straight_m: impl FnOnce() -> f64,
+    ) -> bool {
+        let [least, most] = self.distance_m;
+        (least..=most).contains(&way_m)
+            && (self.min_path_ratio <= 1.0 || way_m >= self.min_path_ratio * straight_m())
+    }
+
     /// Refuses numbers that no episode can keep to.
     pub(in crate::tasks) fn check(&self) -> Result<(), WorldError> {
         let fault = |field: &'static str, found: f64, allowed: String| {
