@@ -8,5 +8,5 @@ cold=
 started=$(date +%s)
 sh xtask/sh/stage.sh 'build of tests' cargo test "$@" --workspace --no-run
 sh xtask/sh/stage.sh 'extension and .venv' sh xtask/sh/venv.sh
-# For the ceiling in xtask/ceilings.toml.
+# Shown by `cargo xtask sizes`.
 [ -z "$cold" ] || echo "$(($(date +%s) - started))" >"$target/cold-build-seconds"

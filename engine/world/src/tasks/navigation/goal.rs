@@ -43,7 +43,7 @@ impl NavigationGoal {
         told: EpisodeGoal,
     ) -> Option<Self> {
         let cells = cells_that_reach(world, agent, ground, &asked);
-        (!cells.is_empty()).then(|| Self {
+        (!cells.is_empty()).then_some(Self {
             cells,
             success: SuccessRule::Fulfilled(asked),
             told,
