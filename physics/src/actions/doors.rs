@@ -5,23 +5,29 @@ use super::target::ResolvedTarget;
 use super::{ActionContext, ActionResult, Actor};
 use crate::articulation::{CLOSED_THRESHOLD, OPEN_THRESHOLD};
 use crate::joints::HandDrive;
-use crate::outcome::{OutcomeCode, done, fail};
+use crate::outcome::{ActionOutcome, OutcomeCode, done, fail};
 use dwell_scene::{JointCommand, JointId, ObjectId, State};
 
 /// Tolerance of the openness that an action asks for.
 const OPENNESS_TOLERANCE: f32 = 0.02;
 
+/// What a door does on its way to an openness.
+fn verb(fraction: f32) -> &'static str {
+    if fraction > 0.0 { "open" } else { "close" }
+}
+
 impl ActionContext<'_> {
-    pub(super) fn swing_door(
-        &mut self,
-        state: &mut State,
+    /// Returns the object that opens or closes, and its joints that move.
+    pub(super) fn joints_to_swing(
+        &self,
+        state: &State,
         actor: Actor<'_>,
         target: &Target,
         fraction: f32,
-    ) -> ActionResult {
+    ) -> Result<(ObjectId, Vec<JointId>), Box<ActionOutcome>> {
         let (object, aim) = self.resolve_object_target(state, actor, target)?;
         let name = self.dynamics.name_of(object);
-        let refuse = |code, sentence: String| Ok(fail(code, sentence, Some(object)));
+        let refuse = |code, sentence: String| Err(Box::new(fail(code, sentence, Some(object))));
         if !(0.0..=1.0).contains(&fraction) {
             let sentence =
                 format!("Nothing opens to {fraction}; give a number from 0 (closed) to 1 (open).");
@@ -29,7 +35,7 @@ impl ActionContext<'_> {
         }
         let house = self.dynamics.model.house.clone();
         let ids = self.joints_meant(object, &aim);
-        let verb = if fraction > 0.0 { "open" } else { "close" };
+        let verb = verb(fraction);
         if ids.is_empty() {
             let sentence =
                 format!("The {name} has nothing to {verb}. Choose a door, drawer or lid.");
@@ -51,9 +57,21 @@ impl ActionContext<'_> {
             return refuse(OutcomeCode::AlreadyOpen, sentence);
         }
         if let Some(refusal) = self.check_reach(state, actor, object) {
-            return Ok(refusal);
+            return Err(Box::new(refusal));
         }
+        Ok((object, ids))
+    }
+
+    pub(super) fn swing_door(
+        &mut self,
+        state: &mut State,
+        actor: Actor<'_>,
+        target: &Target,
+        fraction: f32,
+    ) -> ActionResult {
+        let (object, ids) = self.joints_to_swing(state, actor, target, fraction)?;
         self.drive_joints(state, actor, &ids, fraction);
+        let (verb, name) = (verb(fraction), self.dynamics.name_of(object));
         let sentence = format!("You {verb} the {name}; it takes a moment.");
         Ok(done(OutcomeCode::Started, sentence, Some(object)))
     }

@@ -2,6 +2,7 @@
 
 use super::ActionResult;
 use super::hand_action::{HandAction, HandContext};
+use crate::outcome::ActionOutcome;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -13,5 +14,9 @@ pub struct Drop {}
 impl HandAction for Drop {
     fn perform(&self, hand: &mut HandContext<'_>) -> ActionResult {
         Ok(hand.context.release(hand.state, hand.actor.id))
+    }
+
+    fn check(&self, hand: &HandContext<'_>) -> Result<(), Box<ActionOutcome>> {
+        hand.context.held_object_of(hand.actor).map(|_| ())
     }
 }

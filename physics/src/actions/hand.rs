@@ -6,21 +6,22 @@ use crate::body::BodyStatus;
 use crate::convert::{from_rapier, to_rapier};
 use crate::hands::{Grasp, HeldObject, held_body_target_pose};
 use crate::outcome::{ActionOutcome, OutcomeCode, done, fail};
-use dwell_scene::{AgentId, Mobility, State};
+use dwell_scene::{AgentId, Mobility, ObjectId, State};
 use glam::Vec3;
 
 impl ActionContext<'_> {
-    pub(super) fn pick(
-        &mut self,
-        state: &mut State,
+    /// Returns the object that a hand can take, and its body.
+    pub(super) fn object_to_pick(
+        &self,
+        state: &State,
         actor: Actor<'_>,
         target: &Target,
         grasp: Grasp,
-    ) -> ActionResult {
+    ) -> Result<(ObjectId, usize), Box<ActionOutcome>> {
         let holder = actor.body;
         let (object, _) = self.resolve_object_target(state, actor, target)?;
         let name = self.dynamics.name_of(object);
-        let refuse = |code, sentence: String| Ok(fail(code, sentence, Some(object)));
+        let refuse = |code, sentence: String| Err(Box::new(fail(code, sentence, Some(object))));
         if !grasp.is_valid() {
             let sentence = format!(
                 "{grasp} cannot be; a spring's frequency is 0.5 to 20 Hz, its damping ratio 0.05 to 4."
@@ -45,10 +46,10 @@ impl ActionContext<'_> {
         }
         let body = bodies[0];
         if let Some(refusal) = self.check_not_stood_on(state, actor.id, object) {
-            return Ok(refusal);
+            return Err(Box::new(refusal));
         }
         if let Some(refusal) = self.check_reach(state, actor, object) {
-            return Ok(refusal);
+            return Err(Box::new(refusal));
         }
         if self.dynamics.statuses[body] != BodyStatus::Free {
             let sentence = format!("The {name} is stuck where it stands. Choose something else.");
@@ -62,9 +63,8 @@ impl ActionContext<'_> {
             );
             return refuse(OutcomeCode::TooHeavy, sentence);
         }
-        let place = *rigid.position();
         let size = self.dynamics.model.bodies[body]
-            .bounds(&place)
+            .bounds(rigid.position())
             .size()
             .max_element();
         let most = holder.body.max_carry_size_m;
@@ -74,6 +74,20 @@ impl ActionContext<'_> {
             );
             return refuse(OutcomeCode::TooLarge, sentence);
         }
+        Ok((object, body))
+    }
+
+    pub(super) fn pick(
+        &mut self,
+        state: &mut State,
+        actor: Actor<'_>,
+        target: &Target,
+        grasp: Grasp,
+    ) -> ActionResult {
+        let (object, body) = self.object_to_pick(state, actor, target, grasp)?;
+        let holder = actor.body;
+        let name = self.dynamics.name_of(object);
+        let place = *self.dynamics.engine.bodies[self.dynamics.bodies[body].handle].position();
         // Objects on it or in it come along if it is moved gently.
         let house = &self.dynamics.model.house;
         let loaded = house

@@ -12,11 +12,22 @@ pub trait HandAction: Debug + Send + Sync {
     /// # Errors
     /// The outcome with the reason why it is refused.
     fn perform(&self, hand: &mut HandContext<'_>) -> ActionResult;
+
+    /// Returns whether anything known beforehand rules it out: a full hand, a thing out of reach, a door that is open already.
+    /// Whatever passes may still fail, as where a search finds no free spot.
+    ///
+    /// # Errors
+    /// The outcome with the reason why it would be refused.
+    fn check(&self, hand: &HandContext<'_>) -> Result<(), Box<ActionOutcome>>;
 }
 
 impl<A: HandAction + ?Sized> HandAction for &A {
     fn perform(&self, hand: &mut HandContext<'_>) -> ActionResult {
         (**self).perform(hand)
+    }
+
+    fn check(&self, hand: &HandContext<'_>) -> Result<(), Box<ActionOutcome>> {
+        (**self).check(hand)
     }
 }
 
@@ -37,7 +48,7 @@ impl Debug for HandContext<'_> {
 
 impl HandContext<'_> {
     /// Performs an action, and returns its outcome.
-    pub(super) fn perform(&mut self, action: &dyn HandAction) -> ActionOutcome {
+    pub(crate) fn perform(&mut self, action: &dyn HandAction) -> ActionOutcome {
         action.perform(self).unwrap_or_else(|refusal| *refusal)
     }
 }

@@ -64,25 +64,23 @@ pub(crate) struct ActionContext<'a> {
 }
 
 impl<'a> ActionContext<'a> {
-    /// Performs an agent's hand action. `rays` must show `state` as it is.
-    pub(crate) fn perform(
+    /// Returns the hand of an agent that exists. `rays` must show `state` as it is.
+    pub(crate) fn hand_of(
         self,
         state: &'a mut State,
         rays: &'a RayScene,
         agent: AgentId,
-        action: &dyn HandAction,
-    ) -> ActionOutcome {
+    ) -> HandContext<'a> {
         let actor = Actor {
             id: agent,
             body: state.agents[agent],
             rays,
         };
-        let mut hand = HandContext {
+        HandContext {
             context: self,
             state,
             actor,
-        };
-        hand.perform(action)
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 use super::ActionResult;
 use super::hand_action::{HandAction, HandContext};
 use super::request::Target;
+use crate::outcome::ActionOutcome;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -40,5 +41,12 @@ impl HandAction for Open {
     fn perform(&self, hand: &mut HandContext<'_>) -> ActionResult {
         hand.context
             .swing_door(hand.state, hand.actor, &self.target, self.fraction)
+    }
+
+    fn check(&self, hand: &HandContext<'_>) -> Result<(), Box<ActionOutcome>> {
+        let found =
+            hand.context
+                .joints_to_swing(hand.state, hand.actor, &self.target, self.fraction);
+        found.map(|_| ())
     }
 }

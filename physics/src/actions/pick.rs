@@ -4,6 +4,7 @@ use super::ActionResult;
 use super::hand_action::{HandAction, HandContext};
 use super::request::Target;
 use crate::hands::Grasp;
+use crate::outcome::ActionOutcome;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -31,5 +32,12 @@ impl HandAction for Pick {
     fn perform(&self, hand: &mut HandContext<'_>) -> ActionResult {
         hand.context
             .pick(hand.state, hand.actor, &self.target, self.grasp)
+    }
+
+    fn check(&self, hand: &HandContext<'_>) -> Result<(), Box<ActionOutcome>> {
+        let found = hand
+            .context
+            .object_to_pick(hand.state, hand.actor, &self.target, self.grasp);
+        found.map(|_| ())
     }
 }

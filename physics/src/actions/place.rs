@@ -56,6 +56,10 @@ impl HandAction for Place {
         hand.context
             .place_on(hand.state, hand.actor, self.target.as_ref())
     }
+
+    fn check(&self, hand: &HandContext<'_>) -> Result<(), Box<ActionOutcome>> {
+        hand.context.held_object_of(hand.actor).map(|_| ())
+    }
 }
 
 impl ActionContext<'_> {

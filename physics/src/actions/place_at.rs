@@ -3,7 +3,7 @@
 use super::hand_action::{HandAction, HandContext};
 use super::{ActionContext, ActionResult, Actor};
 use crate::dynamics::SupportFilter;
-use crate::outcome::{OutcomeCode, done, fail};
+use crate::outcome::{ActionOutcome, OutcomeCode, done, fail};
 use dwell_scene::State;
 use glam::Vec3;
 use schemars::JsonSchema;
@@ -24,6 +24,10 @@ pub struct PlaceAt {
 impl HandAction for PlaceAt {
     fn perform(&self, hand: &mut HandContext<'_>) -> ActionResult {
         hand.context.place_at(hand.state, hand.actor, self.point)
+    }
+
+    fn check(&self, hand: &HandContext<'_>) -> Result<(), Box<ActionOutcome>> {
+        hand.context.held_object_of(hand.actor).map(|_| ())
     }
 }
 

@@ -3,7 +3,7 @@
 use super::hand_action::{HandAction, HandContext};
 use super::request::Target;
 use super::{ActionContext, ActionResult, Actor};
-use crate::outcome::{OutcomeCode, PointedTarget, done, fail};
+use crate::outcome::{ActionOutcome, OutcomeCode, PointedTarget, done, fail};
 use dwell_scene::{Entity, EntityId, State, SurfaceOwner};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -19,6 +19,13 @@ pub struct Point {
 impl HandAction for Point {
     fn perform(&self, hand: &mut HandContext<'_>) -> ActionResult {
         hand.context.point(hand.state, hand.actor, &self.target)
+    }
+
+    fn check(&self, hand: &HandContext<'_>) -> Result<(), Box<ActionOutcome>> {
+        let found = hand
+            .context
+            .resolve_target(hand.state, hand.actor, &self.target);
+        found.map(|_| ())
     }
 }
 

@@ -3,6 +3,7 @@
 use super::ActionResult;
 use super::hand_action::{HandAction, HandContext};
 use super::request::Target;
+use crate::outcome::ActionOutcome;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -20,5 +21,12 @@ impl HandAction for Pull {
     fn perform(&self, hand: &mut HandContext<'_>) -> ActionResult {
         hand.context
             .start_push(hand.state, hand.actor, &self.target, self.force_n, -1.0)
+    }
+
+    fn check(&self, hand: &HandContext<'_>) -> Result<(), Box<ActionOutcome>> {
+        let found =
+            hand.context
+                .object_to_push(hand.state, hand.actor, &self.target, self.force_n, -1.0);
+        found.map(|_| ())
     }
 }

@@ -37,6 +37,20 @@ pub(crate) struct OngoingPush {
     left: bool,
 }
 
+/// What a hand pushes.
+pub(super) struct PushTarget {
+    object: ObjectId,
+    body: usize,
+    /// Where, if that is stated, m.
+    point: Option<Vec3>,
+    /// The force that is asked for, N.
+    wanted_n: f32,
+}
+
+fn verb(way: f32) -> &'static str {
+    if way > 0.0 { "push" } else { "pull" }
+}
+
 /// Pushes an object away for a quarter of a second.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
@@ -52,9 +66,60 @@ impl HandAction for Push {
         hand.context
             .start_push(hand.state, hand.actor, &self.target, self.force_n, 1.0)
     }
+
+    fn check(&self, hand: &HandContext<'_>) -> Result<(), Box<ActionOutcome>> {
+        let found =
+            hand.context
+                .object_to_push(hand.state, hand.actor, &self.target, self.force_n, 1.0);
+        found.map(|_| ())
+    }
 }
 
 impl ActionContext<'_> {
+    /// Returns the object that a hand pushes or pulls, its body, where, and the force that is asked for, N.
+    pub(super) fn object_to_push(
+        &self,
+        state: &State,
+        actor: Actor<'_>,
+        target: &Target,
+        force_n: Option<f32>,
+        way: f32,
+    ) -> Result<PushTarget, Box<ActionOutcome>> {
+        let verb = verb(way);
+        let (object, aim) = self.resolve_object_target(state, actor, target)?;
+        let name = self.dynamics.name_of(object);
+        let refuse = |code, sentence: String| Err(Box::new(fail(code, sentence, Some(object))));
+        let wanted_n = force_n.unwrap_or(actor.body.body.push_force_n);
+        if !wanted_n.is_finite() || wanted_n <= 0.0 {
+            let sentence = format!("You cannot {verb} with {wanted_n} N; give a force above 0.");
+            return refuse(OutcomeCode::BadNumber, sentence);
+        }
+        if way < 0.0 && actor.body.holding.is_some() {
+            let sentence = "Your hand is full. Drop what you hold before you pull.";
+            return refuse(OutcomeCode::HandFull, sentence.to_owned());
+        }
+        if let Some(holder) = state.held_by[object] {
+            let sentence = format!(
+                "Agent {} holds the {name}. Choose something else.",
+                holder.0
+            );
+            return refuse(OutcomeCode::HeldByOther, sentence);
+        }
+        let body = self.body_to_push(object, &aim)?;
+        let refusal = self
+            .check_not_stood_on(state, actor.id, object)
+            .or_else(|| self.check_reach(state, actor, object));
+        match refusal {
+            Some(refusal) => Err(Box::new(refusal)),
+            None => Ok(PushTarget {
+                object,
+                body,
+                point: aim.point,
+                wanted_n,
+            }),
+        }
+    }
+
     pub(super) fn start_push(
         &mut self,
         state: &State,
@@ -63,33 +128,10 @@ impl ActionContext<'_> {
         force_n: Option<f32>,
         way: f32,
     ) -> ActionResult {
+        let found = self.object_to_push(state, actor, target, force_n, way)?;
+        let (object, body) = (found.object, found.body);
         let most = actor.body.body.push_force_n;
-        let verb = if way > 0.0 { "push" } else { "pull" };
-        let (object, aim) = self.resolve_object_target(state, actor, target)?;
-        let name = self.dynamics.name_of(object);
-        let wanted = force_n.unwrap_or(most);
-        if !wanted.is_finite() || wanted <= 0.0 {
-            let sentence = format!("You cannot {verb} with {wanted} N; give a force above 0.");
-            return Ok(fail(OutcomeCode::BadNumber, sentence, Some(object)));
-        }
-        if way < 0.0 && actor.body.holding.is_some() {
-            let sentence = "Your hand is full. Drop what you hold before you pull.";
-            return Ok(fail(OutcomeCode::HandFull, sentence, Some(object)));
-        }
-        if let Some(holder) = state.held_by[object] {
-            let sentence = format!(
-                "Agent {} holds the {name}. Choose something else.",
-                holder.0
-            );
-            return Ok(fail(OutcomeCode::HeldByOther, sentence, Some(object)));
-        }
-        let body = self.body_to_push(object, &aim)?;
-        if let Some(refusal) = self.check_not_stood_on(state, actor.id, object) {
-            return Ok(refusal);
-        }
-        if let Some(refusal) = self.check_reach(state, actor, object) {
-            return Ok(refusal);
-        }
+        let (verb, name) = (verb(way), self.dynamics.name_of(object));
         let handle = self.dynamics.bodies[body].handle;
         let Some(rigid) = self.dynamics.engine.bodies.get(handle) else {
             return Ok(fail(
@@ -104,7 +146,7 @@ impl ActionContext<'_> {
             .bounds(rigid.position())
             .center();
         let jointed = self.dynamics.model.bodies[body].joint.is_some();
-        let point = aim.point.unwrap_or(if jointed {
+        let point = found.point.unwrap_or(if jointed {
             middle
         } else {
             rigid.center_of_mass()
@@ -112,7 +154,7 @@ impl ActionContext<'_> {
         let level = Vec3::new(point.x - eye.x, 0.0, point.z - eye.z);
         let ahead = dwell_scene::space::forward_from_yaw(actor.body.yaw_rad);
         let direction = level.try_normalize().unwrap_or(ahead) * way;
-        let force = wanted.min(most);
+        let force = found.wanted_n.min(most);
         let point_in_body = rigid.position().inverse() * point;
         // One push a hand: its previous push ends in the next step, with an outcome.
         for shove in self
@@ -133,7 +175,11 @@ impl ActionContext<'_> {
             left: false,
         });
         self.pushes.sort_by_key(|shove| shove.agent);
-        let limit = if force < wanted { ", all you have" } else { "" };
+        let limit = if force < found.wanted_n {
+            ", all you have"
+        } else {
+            ""
+        };
         let sentence = format!("You {verb} the {name} with {force:.0} N{limit}.");
         Ok(done(OutcomeCode::Started, sentence, Some(object)))
     }

@@ -8,9 +8,10 @@ use super::{ActionContext, ActionResult, Actor};
 use crate::contact::ContactEntity;
 use crate::convert::to_rapier;
 use crate::dynamics::SupportFilter;
+use crate::hands::HeldObject;
 use crate::model::BodyPlan;
-use crate::outcome::{OutcomeCode, done, fail};
-use dwell_scene::{Aabb, ObjectId, Pose, Receptacle, ReceptacleKind, State};
+use crate::outcome::{ActionOutcome, OutcomeCode, done, fail};
+use dwell_scene::{Aabb, House, ObjectId, Pose, Receptacle, ReceptacleKind, State};
 use glam::Vec3;
 use rapier3d::geometry::{Collider, ColliderHandle, Ray};
 use rapier3d::math::Pose as RapierPose;
@@ -47,26 +48,37 @@ pub struct PutIn {
     pub target: Target,
 }
 
+/// The spaces within an object that hold things.
+fn spaces_inside(house: &House, object: ObjectId) -> impl Iterator<Item = &Receptacle> {
+    let own = house.receptacles.iter();
+    own.filter(move |space| space.object == object && space.holding == ReceptacleKind::In)
+}
+
 impl HandAction for PutIn {
     fn perform(&self, hand: &mut HandContext<'_>) -> ActionResult {
         hand.context.place_in(hand.state, hand.actor, &self.target)
     }
+
+    fn check(&self, hand: &HandContext<'_>) -> Result<(), Box<ActionOutcome>> {
+        let found = hand
+            .context
+            .container_to_fill(hand.state, hand.actor, &self.target);
+        found.map(|_| ())
+    }
 }
 
 impl ActionContext<'_> {
-    pub(super) fn place_in(
-        &mut self,
-        state: &mut State,
+    /// Returns what the hand holds and the container that it can reach, with the target as it was meant.
+    fn container_to_fill(
+        &self,
+        state: &State,
         actor: Actor<'_>,
         container: &Target,
-    ) -> ActionResult {
+    ) -> Result<(HeldObject, ObjectId, ResolvedTarget), Box<ActionOutcome>> {
         let grip = self.held_object_of(actor)?;
         let (object, aim) = self.resolve_object_target(state, actor, container)?;
-        let (held, name) = (
-            self.dynamics.name_of(grip.object),
-            self.dynamics.name_of(object),
-        );
-        let refuse = |code, sentence: String| Ok(fail(code, sentence, Some(object)));
+        let name = self.dynamics.name_of(object);
+        let refuse = |code, sentence: String| Err(Box::new(fail(code, sentence, Some(object))));
         if grip.object == object {
             let sentence = "A thing cannot be put into itself. Choose something else.";
             return refuse(OutcomeCode::NoSpace, sentence.to_owned());
@@ -78,25 +90,38 @@ impl ActionContext<'_> {
             );
             return refuse(OutcomeCode::HeldByOther, sentence);
         }
-        let house = self.dynamics.model.house.clone();
-        let spaces: Vec<&Receptacle> = house
-            .receptacles
-            .iter()
-            .filter(|space| space.object == object && space.holding == ReceptacleKind::In)
-            .collect();
-        if spaces.is_empty() {
+        if spaces_inside(&self.dynamics.model.house, object)
+            .next()
+            .is_none()
+        {
             let sentence = format!(
                 "The {name} holds nothing inside. Choose a drawer, cupboard, bowl, box or basin."
             );
             return refuse(OutcomeCode::NotContainer, sentence);
         }
-        if let Some(refusal) = self.check_reach(state, actor, object) {
-            return Ok(refusal);
+        match self.check_reach(state, actor, object) {
+            Some(refusal) => Err(Box::new(refusal)),
+            None => Ok((grip, object, aim)),
         }
+    }
+
+    pub(super) fn place_in(
+        &mut self,
+        state: &mut State,
+        actor: Actor<'_>,
+        container: &Target,
+    ) -> ActionResult {
+        let (grip, object, aim) = self.container_to_fill(state, actor, container)?;
+        let (held, name) = (
+            self.dynamics.name_of(grip.object),
+            self.dynamics.name_of(object),
+        );
+        let refuse = |code, sentence: String| Ok(fail(code, sentence, Some(object)));
+        let house = self.dynamics.model.house.clone();
         let mut search = InsertionSearch::default();
         // The space that was pointed at comes first, then the others.
         let meant = |space: &&Receptacle| is_meant(space, &aim, state);
-        let (first, rest): (Vec<_>, Vec<_>) = spaces.into_iter().partition(meant);
+        let (first, rest): (Vec<_>, Vec<_>) = spaces_inside(&house, object).partition(meant);
         for space in first.into_iter().chain(rest) {
             self.search_space(state, actor, grip.body as usize, space, &mut search);
             if search.pose.is_some() {

@@ -3,8 +3,8 @@
 use super::hand_action::{HandAction, HandContext};
 use super::request::Target;
 use super::{ActionContext, ActionResult, Actor};
-use crate::outcome::{OutcomeCode, done, fail};
-use dwell_scene::{JointId, State};
+use crate::outcome::{ActionOutcome, OutcomeCode, done, fail};
+use dwell_scene::{JointId, ObjectId, State};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -29,24 +29,44 @@ impl HandAction for Toggle {
     fn perform(&self, hand: &mut HandContext<'_>) -> ActionResult {
         hand.context.toggle(hand.state, hand.actor, &self.target)
     }
+
+    fn check(&self, hand: &HandContext<'_>) -> Result<(), Box<ActionOutcome>> {
+        let found = hand
+            .context
+            .object_to_switch(hand.state, hand.actor, &self.target);
+        found.map(|_| ())
+    }
 }
 
 impl ActionContext<'_> {
+    /// Returns the thing with a switch.
+    fn object_to_switch(
+        &self,
+        state: &State,
+        actor: Actor<'_>,
+        target: &Target,
+    ) -> Result<ObjectId, Box<ActionOutcome>> {
+        let (object, _) = self.resolve_object_target(state, actor, target)?;
+        let name = self.dynamics.name_of(object);
+        if self.dynamics.model.house.objects[object].switch.is_none() {
+            let sentence = format!("The {name} has no switch. Choose a lamp, radio or television.");
+            let refusal = fail(OutcomeCode::NoSwitch, sentence, Some(object));
+            return Err(Box::new(refusal));
+        }
+        match self.check_reach(state, actor, object) {
+            Some(refusal) => Err(Box::new(refusal)),
+            None => Ok(object),
+        }
+    }
+
     pub(super) fn toggle(
         &mut self,
         state: &mut State,
         actor: Actor<'_>,
         target: &Target,
     ) -> ActionResult {
-        let (object, _) = self.resolve_object_target(state, actor, target)?;
+        let object = self.object_to_switch(state, actor, target)?;
         let name = self.dynamics.name_of(object);
-        if self.dynamics.model.house.objects[object].switch.is_none() {
-            let sentence = format!("The {name} has no switch. Choose a lamp, radio or television.");
-            return Ok(fail(OutcomeCode::NoSwitch, sentence, Some(object)));
-        }
-        if let Some(refusal) = self.check_reach(state, actor, object) {
-            return Ok(refusal);
-        }
         let house = self.dynamics.model.house.clone();
         let levers: Vec<JointId> = house
             .joints_of(object)

@@ -2,7 +2,7 @@
 
 use super::hand_action::{HandAction, HandContext};
 use super::{ActionContext, ActionResult, Actor};
-use crate::outcome::{OutcomeCode, done, fail};
+use crate::outcome::{ActionOutcome, OutcomeCode, done, fail};
 use dwell_scene::State;
 use glam::Vec3;
 use rapier3d::dynamics::RigidBody;
@@ -49,6 +49,10 @@ impl HandAction for Throw {
         let direction = self.direction.unwrap_or(ahead);
         hand.context
             .throw(hand.state, actor, direction, self.speed_m_s)
+    }
+
+    fn check(&self, hand: &HandContext<'_>) -> Result<(), Box<ActionOutcome>> {
+        hand.context.held_object_of(hand.actor).map(|_| ())
     }
 }
 

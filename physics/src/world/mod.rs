@@ -13,7 +13,7 @@ mod step;
 pub use agent_placement::AgentPlacement;
 pub use set_state::{BodyState, JointState};
 
-use crate::actions::{ActionContext, HandAction, OngoingPush};
+use crate::actions::{ActionContext, HandAction, HandContext, OngoingPush};
 use crate::agents::Agents;
 use crate::articulation::WorldJoints;
 use crate::body::{BodyHandle, BodyStatus};
@@ -164,14 +164,43 @@ impl PhysicsWorld {
         agent: AgentId,
         action: &dyn HandAction,
     ) -> ActionOutcome {
+        match self.hand_of(state, rays, agent) {
+            Ok(mut hand) => hand.perform(action),
+            Err(refusal) => *refusal,
+        }
+    }
+
+    /// Returns whether anything known beforehand rules an action of an agent's hand out; see [`HandAction::check`]. Nothing changes.
+    ///
+    /// `rays` must show `state` as it is.
+    ///
+    /// # Errors
+    /// The outcome with the reason why [`Self::act`] would refuse it.
+    pub fn check_action(
+        &mut self,
+        state: &mut State,
+        rays: &RayScene,
+        agent: AgentId,
+        action: &dyn HandAction,
+    ) -> Result<(), Box<ActionOutcome>> {
+        action.check(&self.hand_of(state, rays, agent)?)
+    }
+
+    /// Returns the hand of an agent.
+    fn hand_of<'a>(
+        &'a mut self,
+        state: &'a mut State,
+        rays: &'a RayScene,
+        agent: AgentId,
+    ) -> Result<HandContext<'a>, Box<ActionOutcome>> {
         let count = self.agents.list.len();
         if agent.index() >= count || agent.index() >= state.agents.len() {
             let sentence = format!("There is no agent {}; there are {count}.", agent.0);
-            return fail(OutcomeCode::UnknownAgent, sentence, None);
+            return Err(Box::new(fail(OutcomeCode::UnknownAgent, sentence, None)));
         }
         if let Err(error) = self.check_state(state) {
             let sentence = format!("Nothing was done: {error}.");
-            return fail(OutcomeCode::ForeignState, sentence, None);
+            return Err(Box::new(fail(OutcomeCode::ForeignState, sentence, None)));
         }
         let context = ActionContext {
             dynamics: &mut self.dynamics,
@@ -180,7 +209,7 @@ impl PhysicsWorld {
             hands: &mut self.hands,
             pushes: &mut self.pushes,
         };
-        context.perform(state, rays, agent, action)
+        Ok(context.hand_of(state, rays, agent))
     }
 
     /// Returns the model that this world shares with others over its house.

@@ -61,15 +61,15 @@ actions! {
         Open = of_hand::<hand::Open>("open"),
         Close = of_hand::<hand::Close>("close"),
         Toggle = of_hand::<hand::Toggle>("toggle"),
+        Place = of_hand::<hand::Place>("place"),
+        PutIn = of_hand::<hand::PutIn>("put_in"),
+        Throw = of_hand::<hand::Throw>("throw"),
+        Push = of_hand::<hand::Push>("push"),
+        Pull = of_hand::<hand::Pull>("pull"),
+        Point = of_hand::<hand::Point>("point"),
     ]
     others: [
-        of_hand::<hand::Place>("place"),
         of_hand::<hand::PlaceAt>("place_at"),
-        of_hand::<hand::PutIn>("put_in"),
-        of_hand::<hand::Throw>("throw"),
-        of_hand::<hand::Push>("push"),
-        of_hand::<hand::Pull>("pull"),
-        of_hand::<hand::Point>("point"),
     ]
 }
 
