@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import inspect
 import re
 from typing import Any
 
 import dwell
 from dwell import _native
 from dwell.actions import action_table
-from dwell.envs.spaces import action_space
+from dwell.envs.action_modes import ACTION_MODES, STOP_BELOW, action_form
 from dwell.schemas import settings
 from pages.observations import fields_table
 from pages.schema_words import schema_words
@@ -21,7 +22,7 @@ _UNITS = {"rad_s": "rad/s", "m_s": "m/s"}
 
 
 def discrete() -> list[tuple[int, str, str]]:
-    """Number, name and text of an environment's actions."""
+    """Number, name and text of the discrete actions."""
     said = {kind["name"]: kind["about"] for kind in action_table()["kinds"]}
     return [(k, name, said[name]) for k, name in enumerate(_native.actions())]
 
@@ -63,7 +64,7 @@ def _limits(base: str) -> list[tuple[str, ...]]:
 
 def page() -> str:
     """The page."""
-    space = action_space()
+    space = action_form("{}").space
     stride = fields_table(settings()["StepSizes"])
     head = ("address", "default", "unit", "lowest", "highest")
     bases = "\n".join(f"### {_words(base)}\n\n{table(head, _limits(base))}" for base in _BASES)
@@ -71,13 +72,21 @@ def page() -> str:
 
 ## Discrete
 
-The action space of every environment is `{space}`; `World.do` takes the same numbers and names.
-The hand acts on what the agent looks at.
+The action space of every environment is `{space}`, the first of these; `actions=` names others.
+`World.do` takes the same numbers and names. The hand acts on what the agent looks at.
 
 {table(("number", "name", "what it does"), ((k, code(n), a) for k, n, a in discrete()))}
 How far the movement actions go is the environment's `stride`:
 
 {stride}
+## Modes
+
+`action_mode=` gives an environment another form of actions:
+
+{table(("action_mode", "action space", "what it says"), _modes())}
+Velocities are shares of what the movement actions make in a step. In `velocity` those that are all
+below {STOP_BELOW:g} say `stop`, and there is no hand: doors stand open at the start.
+
 ## Continuous
 
 `World.step(controls)` takes an array of shape (agent, 4), float32, whose columns are those below,
@@ -113,6 +122,16 @@ at:
             ((code(one["name"]), one["about"]) for one in action_table()["codes"]),
         )
     }"""
+
+
+def _modes() -> list[tuple[str, str, str]]:
+    """The forms of actions, with their spaces."""
+    rows = []
+    for mode, form in ACTION_MODES.items():
+        made = action_form(f'{{"action_mode": "{mode}"}}')
+        about = (inspect.getdoc(form) or "").partition("\n\n")[0].replace("\n", " ")
+        rows.append((code(mode), code(str(made.space)), about))
+    return rows
 
 
 def _hand_row(kind: dict[str, Any]) -> tuple[str, ...]:

@@ -306,8 +306,16 @@ class Batch:
         """``spare`` takes the place of environment ``env``, once; worlds of :meth:`World.of_env` are its from then on."""
     def steps(self) -> NDArray[np.int64]:
         """Number of steps of each environment's episode so far."""
-    def step(self, actions: NDArray[np.int64]) -> dict[str, NDArray[Any] | list[str]]:
-        """``actions``: for each environment and agent; -1 for all agents: that environment is not stepped. Of an agent whose episode has ended none is looked at. Keys: reward, terminated, success, action_success, collision, distance_to_goal (NaN without a goal), spl, soft_spl, path_length, collisions (arrays of that shape) and action_error (list)."""
+    def step(
+        self,
+        actions: NDArray[np.int64],
+        velocities: NDArray[np.float32] | None = ...,
+        places: NDArray[np.float32] | None = ...,
+        objects: NDArray[np.int64] | None = ...,
+    ) -> dict[str, NDArray[Any] | list[str]]:
+        """``actions``: for each environment and agent; -1 for all agents: that environment is not stepped. Of an agent whose episode has ended none is looked at. Keys: reward, terminated, success, action_success, collision, distance_to_goal (NaN without a goal), spl, soft_spl, path_length, collisions (arrays of that shape) and action_error (list). ``velocities``: forward, right, turn, look, -1 to 1, flat; ``places``: of pictures, 0 to 1, flat; ``objects``: ids, 0 for what is looked at."""
+    def action_masks(self) -> NDArray[np.bool_]:
+        """For each environment and agent, which discrete actions nothing known beforehand rules out, flat."""
     def observe(self, which: NDArray[np.bool_], outs: Sequence[NDArray[Any] | None]) -> None:
         """``outs``: one C-contiguous array (n, *shape) for each sensor, None for text."""
     def texts(self, sensor: int) -> list[str]: ...
@@ -398,6 +406,9 @@ def prepared_envs(
     """An environment over each house, with the episode of its seed begun where it has one."""
 
 def actions() -> list[str]: ...
+def chosen_actions(config_json: str) -> list[str]:
+    """The discrete actions to choose from under settings of an environment, in the order of their numbers."""
+
 def action_table() -> dict[str, list[dict[str, Any]]]:
     """``{kinds: [{name, about, is_of_hand, target, fields}], target: [{name, about, required, schema}], codes}``."""
 

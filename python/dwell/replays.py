@@ -10,8 +10,6 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from dwell import ConfigError, DwellError, MeasuredDataError, UsageError, _native, arguments
 from dwell.arguments import (
     boolean,
@@ -20,6 +18,7 @@ from dwell.arguments import (
     integer_in_range,
     mapping,
     quoted,
+    sequence_items,
     text,
     text_list,
     to_json,
@@ -28,12 +27,15 @@ from dwell.files import atomic_write, read_json
 from dwell.house import House
 
 if TYPE_CHECKING:
+    from dwell.envs.action_modes import EngineActions
     from dwell.envs.native_batch import NativeBatch
     from dwell.envs.python_tasks import RewardChoice, TaskChoice
     from dwell.world import World
 
 #: What a file says of itself.
-_FORMAT, _VERSION = "dwell-replay", 2
+_FORMAT = "dwell-replay"
+#: Of files whose actions are names alone, and of those that say more of an action.
+_VERSION, _VERSION_WITH_TARGETS = 2, 3
 #: More than any episode is long; its file stays below what is read.
 MAX_STEPS = 1_000_000
 
@@ -72,7 +74,8 @@ class Replay:
         seed: The episode's seed.
         config: Task, sensors, laws, parameters and rates as JSON for the native side.
         parts: Names of the classes of the Python parts it was played with, empty for most.
-        actions: Names of the actions, in order.
+        actions: The actions, in order: names, or mappings with ``action`` and what else is said:
+            ``velocity``, ``pixel``, ``object``.
         hashes: The state's hash at the start and after each action, hexadecimal.
         instruction: What was asked.
         success: Whether it was done at the end.
@@ -85,7 +88,7 @@ class Replay:
     seed: int
     config: str
     parts: tuple[str, ...]
-    actions: tuple[str, ...]
+    actions: tuple[str | dict[str, Any], ...]
     hashes: tuple[str, ...]
     instruction: str
     success: bool
@@ -110,9 +113,10 @@ class Replay:
         if not isinstance(row, dict) or row.get("format") != _FORMAT:
             raise MeasuredDataError(f"{path}: format: no {_FORMAT} file")
         version = row.get("version")
-        if version not in (1, _VERSION):
+        if version not in (1, _VERSION, _VERSION_WITH_TARGETS):
             raise MeasuredDataError(
-                f"{path}: version is {quoted(version)}; this dwell reads 1 and {_VERSION}"
+                f"{path}: version is {quoted(version)}; this dwell reads 1 to "
+                f"{_VERSION_WITH_TARGETS}"
             )
         known = set(_FIELDS) - ({"sums"} if version == 1 else set())
         if wrong := sorted(known ^ set(row)):
@@ -124,7 +128,7 @@ class Replay:
                 seed=integer_in_range("seed", row["seed"]),
                 config=to_json(mapping("config", row["config"])),
                 parts=tuple(text_list("parts", row["parts"])),
-                actions=tuple(text_list("actions", row["actions"])),
+                actions=tuple(sequence_items("actions", row["actions"], "expected actions")),
                 hashes=tuple(text_list("hashes", row["hashes"])),
                 instruction=text("instruction", row["instruction"]),
                 success=boolean("success", row["success"]),
@@ -153,22 +157,39 @@ class Replay:
                 mapping("sums", self.sums)
         except ConfigError as error:
             raise MeasuredDataError(f"{self._at()}: {error}") from None
-        names = _native.actions()
-        for k, action in enumerate(self.actions):
-            if action not in names:
-                raise MeasuredDataError(
-                    f"{self._at()}: actions[{k}] is {quoted(action)}; "
-                    f"allowed are {', '.join(names)}"
-                )
+        try:
+            self._engine_actions()
+        except ConfigError as error:
+            raise MeasuredDataError(f"{self._at()}: {error}") from None
         if len(self.hashes) != len(self.actions) + 1 or len(self.actions) > MAX_STEPS:
             raise MeasuredDataError(
                 f"{self._at()}: {len(self.actions)} actions and {len(self.hashes)} hashes; "
                 f"expected at most {MAX_STEPS} actions and one hash more"
             )
 
+    def _engine_actions(self) -> list[EngineActions]:
+        """The actions as the engine takes them; of equal names the same object.
+
+        Raises:
+            ConfigError: One is none.
+        """
+        from dwell.envs.action_modes import EngineActions
+
+        by_name: dict[str, EngineActions] = {}
+        found = []
+        for k, action in enumerate(self.actions):
+            if isinstance(action, str) and action in by_name:
+                found.append(by_name[action])
+                continue
+            found.append(EngineActions.of_row(f"actions[{k}]", action))
+            if isinstance(action, str):
+                by_name[action] = found[-1]
+        return found
+
     def _stated(self) -> dict[str, Any]:
         """The fields of a file, but for its check sums."""
-        row = {"format": _FORMAT, "version": _VERSION}
+        plain = all(isinstance(action, str) for action in self.actions)
+        row = {"format": _FORMAT, "version": _VERSION if plain else _VERSION_WITH_TARGETS}
         row |= {name: getattr(self, name) for name in _FIELDS if name not in (*row, "sums")}
         row["config"] = self._settings()
         return row
@@ -227,10 +248,9 @@ class Replay:
             world = World.of_env(runner.houses[0], _native.World.of_env(runner.batch, 0))
             moment = self._moment(0, runner, world)
         yield moment
-        numbers = {name: number for number, name in enumerate(_native.actions())}
-        for step, action in enumerate(self.actions, 1):
+        for step, action in enumerate(self._engine_actions(), 1):
             with self._named(f"actions[{step - 1}]: "):
-                answer, _ = runner.step(np.array([numbers[action]], np.int64))
+                answer, _ = runner.step(action)
                 moment = self._moment(step, runner, world, answer)
             yield moment
 
@@ -274,7 +294,7 @@ class Replay:
     ) -> ReplayStep:
         return ReplayStep(
             step=step,
-            action=self.actions[step - 1] if step else None,
+            action=_name(self.actions[step - 1]) if step else None,
             reward=0.0 if answer is None else float(answer["reward"][0]),
             world=world,
             is_same=f"{world.state_hash():016x}" == self.hashes[step],
@@ -383,12 +403,17 @@ _CHECKS: dict[str, Callable[[str, object], Any]] = {
     "seed": integer_in_range,
     "config": text,
     "parts": text_list,
-    "actions": text_list,
+    "actions": lambda name, given: sequence_items(name, given, "expected actions"),
     "hashes": text_list,
     "instruction": text,
     "success": boolean,
     "made_by": text,
 }
+
+
+def _name(action: str | Mapping[str, Any]) -> str:
+    """The name of an action of a file."""
+    return action if isinstance(action, str) else str(action["action"])
 
 
 def _sum(value: object) -> str:

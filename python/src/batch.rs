@@ -9,7 +9,10 @@ use crate::picture;
 use crate::prepared_env::PyPreparedEnv;
 use crate::values::JsonArgument;
 use dwell::sensors::{Dtype, ObservationBuffer};
-use dwell::{Batch, DiscreteAction, Engines, Env, EnvConfig, StepInfo, StepResult};
+use dwell::{
+    ActionTarget, Batch, DiscreteAction, Engines, Env, EnvConfig, StepAction, StepInfo, StepResult,
+};
+use dwell_scene::EntityId;
 use dwell_scene::interrupt;
 use dwell_scene::parallel::Threads;
 use numpy::{
@@ -88,6 +91,71 @@ fn action(number: i64) -> Result<Option<DiscreteAction>, PyFault> {
             "action {number}; allowed are 0 to {last}, or -1 for none"
         ))
     })
+}
+
+/// Actions as arrays: one row for each environment and agent.
+struct ActionRows {
+    numbers: Vec<i64>,
+    velocities: Option<Vec<f32>>,
+    places: Option<Vec<f32>>,
+    objects: Option<Vec<i64>>,
+}
+
+fn row_copy<T: numpy::Element + Copy>(
+    name: &str,
+    given: Option<&PyReadonlyArray1<'_, T>>,
+) -> PyResult<Option<Vec<T>>> {
+    let copy = |array| Ok(arrays::as_contiguous_slice(name, array)?.to_vec());
+    given.map(copy).transpose()
+}
+
+impl ActionRows {
+    fn read(&self) -> Result<Vec<Option<StepAction>>, PyFault> {
+        let count = self.numbers.len();
+        for (name, found, wanted) in [
+            (
+                "velocities",
+                self.velocities.as_ref().map(Vec::len),
+                4 * count,
+            ),
+            ("places", self.places.as_ref().map(Vec::len), 2 * count),
+            ("objects", self.objects.as_ref().map(Vec::len), count),
+        ] {
+            if let Some(found) = found.filter(|found| *found != wanted) {
+                let told = format!("{name}: expected {wanted} numbers, found {found}");
+                return Err(PyFault::Config(told));
+            }
+        }
+        (0..count).map(|row| self.row(row)).collect()
+    }
+
+    fn row(&self, row: usize) -> Result<Option<StepAction>, PyFault> {
+        let Some(action) = action(self.numbers[row])? else {
+            return Ok(None);
+        };
+        let velocities = self
+            .velocities
+            .as_ref()
+            .map(|all| &all[4 * row..4 * row + 4]);
+        let places = self.places.as_ref().map(|all| &all[2 * row..2 * row + 2]);
+        let mut step = StepAction::from(action);
+        if let Some([forward, right, turn, look]) = velocities {
+            step.velocity = Some([*forward, *right, *turn, *look]);
+        }
+        if let Some([across, down]) = places {
+            step.target = ActionTarget::Picture([*across, *down]);
+        }
+        match self.objects.as_ref().map(|all| all[row]) {
+            None | Some(0) => {}
+            Some(id) => {
+                let id = i32::try_from(id).map_err(|_| {
+                    PyFault::Config(format!("object is {id}; allowed are ids that sensors give"))
+                })?;
+                step.target = ActionTarget::Entity(EntityId(id));
+            }
+        }
+        Ok(Some(step))
+    }
 }
 
 impl PyBatch {
@@ -198,6 +266,12 @@ impl PyBatch {
         })
     }
 
+    /// Returns which discrete actions nothing known beforehand rules out, shape (environment x agent, action) flat.
+    fn action_masks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<bool>>> {
+        let masks = self.with(py, |batch| Ok(batch.action_masks()?))?;
+        Ok(masks.into_flattened().into_pyarray(py))
+    }
+
     /// Returns the number of steps of each environment's episode.
     fn steps<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<i64>>> {
         let steps = self.with(py, |batch| {
@@ -207,20 +281,25 @@ impl PyBatch {
         Ok(steps.into_pyarray(py))
     }
 
-    /// Steps by actions of shape (environment x agent,), -1 for none; all that is answered has that shape.
+    /// Steps by actions of shape (environment x agent,), -1 for none; all that is answered has that shape. `velocities`: as
+    /// [`StepAction::velocity`], shape (environment x agent x 4,); `places`: places in pictures, shape (environment x agent x 2,);
+    /// `objects`: ids of things, 0 for what is looked at.
+    #[pyo3(signature = (actions, velocities=None, places=None, objects=None))]
     fn step<'py>(
         &self,
         py: Python<'py>,
         actions: PyReadonlyArray1<'py, i64>,
+        velocities: Option<PyReadonlyArray1<'py, f32>>,
+        places: Option<PyReadonlyArray1<'py, f32>>,
+        objects: Option<PyReadonlyArray1<'py, i64>>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let numbers = arrays::as_contiguous_slice("actions", &actions)?.to_vec();
-        let infos = self.with(py, |batch| {
-            let actions = numbers
-                .iter()
-                .map(|number| action(*number))
-                .collect::<Result<Vec<_>, PyFault>>()?;
-            Ok(batch.step(&actions)?)
-        })?;
+        let rows = ActionRows {
+            numbers: arrays::as_contiguous_slice("actions", &actions)?.to_vec(),
+            velocities: row_copy("velocities", velocities.as_ref())?,
+            places: row_copy("places", places.as_ref())?,
+            objects: row_copy("objects", objects.as_ref())?,
+        };
+        let infos = self.with(py, |batch| Ok(batch.step(&rows.read()?)?))?;
         let out = PyDict::new(py);
         let of = |read: fn(&StepInfo) -> f64| -> Bound<'py, PyArray1<f64>> {
             infos

@@ -20,6 +20,17 @@ pub(crate) fn actions() -> Vec<&'static str> {
     DiscreteAction::ALL.map(DiscreteAction::name).to_vec()
 }
 
+/// The discrete actions to choose from under settings of an environment, in the order of their numbers.
+#[pyfunction]
+pub(crate) fn chosen_actions(config_json: &str) -> PyResult<Vec<&'static str>> {
+    let read = || -> Result<Vec<_>, PyFault> {
+        let config: dwell::EnvConfig = serde_json::from_str(config_json)?;
+        Ok(config.chosen_actions()?)
+    };
+    let actions = read().map_err(to_python)?;
+    Ok(actions.into_iter().map(DiscreteAction::name).collect())
+}
+
 /// The actions: `{kinds: [{name, about, is_of_hand, target, fields}], target: [field], codes: [{name, about}]}`, the discrete ones first,
 /// in the order of their numbers. A field is `{name, about, required, schema}`; a kind's `target` describes its target, and is null
 /// without one; the fields that name a target are listed once.

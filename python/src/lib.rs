@@ -56,6 +56,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<hrtf::PyHead>()?;
     module.add_function(wrap_pyfunction!(build_info::actions, module)?)?;
     module.add_function(wrap_pyfunction!(build_info::action_table, module)?)?;
+    module.add_function(wrap_pyfunction!(build_info::chosen_actions, module)?)?;
     module.add_function(wrap_pyfunction!(build_info::tasks, module)?)?;
     module.add_function(wrap_pyfunction!(build_info::settings, module)?)?;
     module.add_function(wrap_pyfunction!(build_info::sensors, module)?)?;

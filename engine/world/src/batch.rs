@@ -1,6 +1,6 @@
 //! Several environments stepped together: all views in one submission, results in the caller's buffers.
 
-use crate::actions::DiscreteAction;
+use crate::actions::{DiscreteAction, StepAction};
 use crate::batch_pictures::{self, PendingImages};
 use crate::env::Env;
 use crate::episode::StepInfo;
@@ -153,6 +153,19 @@ impl Batch {
         let all = vec![true; self.envs.len()];
         let actions = self.for_active(&all, |_, env| env.expert_actions())?;
         Ok(actions.into_iter().flatten().flatten().collect())
+    }
+
+    /// Returns the actions that are not ruled out, as [`Env::action_masks`]; all where no episode has begun. Shape (environment, agent).
+    ///
+    /// # Errors
+    /// [`WorldError`] for an action that cannot be read.
+    pub fn action_masks(&mut self) -> Result<Vec<[bool; DiscreteAction::ALL.len()]>, WorldError> {
+        let all = vec![true; self.envs.len()];
+        let masks = self.for_active(&all, |_, env| match env.has_episode() {
+            true => env.action_masks(),
+            false => Ok(vec![[true; DiscreteAction::ALL.len()]; env.agents.len()]),
+        })?;
+        Ok(masks.into_iter().flatten().flatten().collect())
     }
 
     /// Returns who acts in every environment, in the order of actions. Shape (agent,).
@@ -345,9 +358,9 @@ impl Batch {
     ///
     /// # Errors
     /// Those of [`Env::check_can_step`] for any environment; then none is stepped.
-    pub fn step(
+    pub fn step<A: Into<StepAction> + Copy + Sync>(
         &mut self,
-        actions: &[Option<DiscreteAction>],
+        actions: &[Option<A>],
     ) -> Result<Vec<Option<StepInfo>>, WorldError> {
         let agents = self.acting_agents().len();
         if actions.len() != self.envs.len() * agents {
@@ -357,7 +370,7 @@ impl Batch {
                 actions.len()
             )));
         }
-        let own: Vec<&[Option<DiscreteAction>]> = actions.chunks(agents).collect();
+        let own: Vec<&[Option<A>]> = actions.chunks(agents).collect();
         let active: Vec<bool> = own
             .iter()
             .map(|own| own.iter().any(Option::is_some))

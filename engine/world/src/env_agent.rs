@@ -61,6 +61,7 @@ impl EnvAgent {
         let setup = TaskSetup {
             agent: role.agent,
             stride: role.stride,
+            opens: role.opens,
         };
         let task = (kind.build)(role.task_settings, setup)?;
         let site = SensorSetup {

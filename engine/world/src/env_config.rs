@@ -1,6 +1,6 @@
 //! Configuration of environments.
 
-use crate::actions::StepSizes;
+use crate::actions::{self, ActionMode, DiscreteAction, StepSizes};
 use crate::config::WorldConfig;
 use crate::error::WorldError;
 use dwell_scene::{AgentId, Id};
@@ -21,6 +21,10 @@ pub struct EnvConfig {
     pub world: WorldConfig,
     /// Lengths and angles of movement actions.
     pub stride: StepSizes,
+    /// The form of actions.
+    pub action_mode: ActionMode,
+    /// The discrete actions to choose from, by name, in the order of their numbers; `None`: those that are usual in the mode.
+    pub actions: Option<Vec<String>>,
     /// Sensors by name with their settings; `None`: the task's own choice.
     pub sensors: Option<Vec<SensorConfig>>,
     /// Those who act, each once, in the order of actions, infos and observations; default agent 0 alone. All others stand
@@ -66,6 +70,8 @@ impl Default for EnvConfig {
             task_settings: Value::Null,
             world: WorldConfig::default(),
             stride: StepSizes::default(),
+            action_mode: ActionMode::Discrete,
+            actions: None,
             sensors: None,
             agents: vec![AgentConfig::default()],
         }
@@ -79,11 +85,30 @@ pub(crate) struct ResolvedAgentConfig<'a> {
     pub(crate) task: &'a str,
     pub(crate) task_settings: &'a Value,
     pub(crate) stride: StepSizes,
+    /// True if its hand opens doors.
+    pub(crate) opens: bool,
     /// `None`: the task's own choice.
     pub(crate) sensors: Option<&'a [SensorConfig]>,
 }
 
 impl EnvConfig {
+    /// The discrete actions to choose from, in the order of their numbers.
+    ///
+    /// # Errors
+    /// [`WorldError::Unknown`] for a name that no action has; [`WorldError::Config`] for none, one twice, and names in a mode that
+    /// has none to choose from.
+    pub fn chosen_actions(&self) -> Result<Vec<DiscreteAction>, WorldError> {
+        match (&self.actions, self.action_mode) {
+            (None, mode) => Ok(mode.default_actions().to_vec()),
+            (Some(names), ActionMode::Velocity) => Err(WorldError::Config {
+                field: "actions",
+                found: names.join(", "),
+                allowed: "none with action_mode velocity: velocities are all it has".to_owned(),
+            }),
+            (Some(names), _) => actions::actions_named(names),
+        }
+    }
+
     /// The agents that act, in order.
     ///
     /// # Errors
@@ -113,13 +138,15 @@ impl EnvConfig {
                 return Err(fault("agents", found, "each agent once".to_owned()));
             }
         }
-        let roles = self.agents.iter().map(|own| self.resolve_agent(own));
+        let opens = self.chosen_actions()?.contains(&DiscreteAction::Open);
+        let roles = self.agents.iter().map(|own| self.resolve_agent(own, opens));
         roles.collect()
     }
 
     fn resolve_agent<'a>(
         &'a self,
         own: &'a AgentConfig,
+        opens: bool,
     ) -> Result<ResolvedAgentConfig<'a>, WorldError> {
         let general = match own.task {
             Some(_) => &Value::Null,
@@ -132,6 +159,7 @@ impl EnvConfig {
             task: own.task.as_deref().unwrap_or(&self.task),
             task_settings: own.task_settings.as_ref().unwrap_or(general),
             stride,
+            opens,
             sensors: own.sensors.as_deref().or(self.sensors.as_deref()),
         })
     }

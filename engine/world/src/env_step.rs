@@ -1,6 +1,6 @@
 //! The step of an environment: one control step of all its agents together.
 
-use crate::actions::{AgentAction, DiscreteAction};
+use crate::actions::{AgentAction, DiscreteAction, StepAction};
 use crate::env::{Env, no_agent, no_episode};
 use crate::episode::StepInfo;
 use crate::error::WorldError;
@@ -11,7 +11,11 @@ impl Env {
     /// # Errors
     /// [`WorldError::InvalidCall`] before the first reset, when all episodes have ended, and where the actions are not one for each
     /// agent whose episode goes on.
-    pub fn check_can_step(&self, actions: &[Option<DiscreteAction>]) -> Result<(), WorldError> {
+    /// [`WorldError::Config`] for numbers out of range.
+    pub fn check_can_step<A: Into<StepAction> + Copy>(
+        &self,
+        actions: &[Option<A>],
+    ) -> Result<(), WorldError> {
         if !self.has_episode() {
             return Err(no_episode("step"));
         }
@@ -25,6 +29,10 @@ impl Env {
                 self.agents.len(),
                 actions.len()
             )));
+        }
+        for action in actions.iter().flatten() {
+            let action: StepAction = (*action).into();
+            action.check()?;
         }
         let mut idle = self.agents.iter().zip(actions);
         match idle.find(|(agent, action)| !agent.done && action.is_none()) {
@@ -45,20 +53,17 @@ impl Env {
     ///
     /// # Errors
     /// Those of [`Self::check_can_step`]; nothing has changed then.
-    pub fn step(
+    pub fn step<A: Into<StepAction> + Copy>(
         &mut self,
-        actions: &[Option<DiscreteAction>],
+        actions: &[Option<A>],
     ) -> Result<Vec<StepInfo>, WorldError> {
         self.check_can_step(actions)?;
         let acting = self.agents.iter().zip(actions);
         let acting = acting.filter(|(agent, _)| !agent.done);
         let steps: Vec<AgentAction> = acting
             .filter_map(|(agent, action)| {
-                Some(AgentAction {
-                    agent: agent.id,
-                    action: (*action)?,
-                    step_sizes: agent.step_sizes,
-                })
+                let action: StepAction = (*action)?.into();
+                Some(action.of_agent(&self.world, agent))
             })
             .collect();
         let outcomes = self.world.step_discrete_actions(&steps)?;
@@ -75,6 +80,27 @@ impl Env {
             infos.push(info.ok_or_else(|| no_episode("step"))?);
         }
         Ok(infos)
+    }
+
+    /// Returns, for each discrete action of each agent, whether nothing known beforehand rules it out; what is not ruled out may
+    /// still fail. All are possible for an agent whose episode has ended. Shape (agent, [`DiscreteAction::ALL`]).
+    ///
+    /// # Errors
+    /// [`WorldError::InvalidCall`] before the first reset.
+    pub fn action_masks(&mut self) -> Result<Vec<[bool; DiscreteAction::ALL.len()]>, WorldError> {
+        if !self.has_episode() {
+            return Err(no_episode("action_masks"));
+        }
+        let mut masks = vec![[true; DiscreteAction::ALL.len()]; self.agents.len()];
+        let agents = self.agents.iter().zip(&mut masks);
+        for (agent, mask) in agents.filter(|(agent, _)| !agent.done) {
+            for (possible, action) in mask.iter_mut().zip(DiscreteAction::ALL) {
+                *possible = self
+                    .world
+                    .is_action_possible(agent.id, action, agent.step_sizes)?;
+            }
+        }
+        Ok(masks)
     }
 
     /// Returns what each agent's scripted expert would do now. Shape (agent,).

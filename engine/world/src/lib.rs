@@ -48,7 +48,8 @@ mod world_snapshot;
 mod world_sounds;
 
 pub use actions::{
-    AgentAction, DiscreteAction, HandActionRequest, ObjectRef, PixelCamera, StepSizes,
+    ActionMode, ActionTarget, AgentAction, DiscreteAction, HandActionRequest, HandTarget,
+    ObjectRef, PixelCamera, StepAction, StepSizes,
 };
 pub use batch::Batch;
 pub use camera_capture::{CameraMount, ImageRequest};

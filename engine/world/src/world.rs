@@ -129,6 +129,19 @@ impl World {
         outcome
     }
 
+    /// Returns whether anything known beforehand rules an action of an agent's hand out; nothing changes.
+    ///
+    /// # Errors
+    /// The outcome with the reason why [`World::act`] would refuse it.
+    pub fn check_action(
+        &mut self,
+        agent: AgentId,
+        action: &dyn HandAction,
+    ) -> Result<(), Box<ActionOutcome>> {
+        self.physics
+            .check_action(&mut self.state, &self.rays, agent, action)
+    }
+
     /// Places an agent, at rest.
     ///
     /// # Errors

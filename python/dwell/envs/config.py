@@ -24,6 +24,7 @@ from dwell.arguments import (
     text_list,
     to_json,
 )
+from dwell.envs.action_modes import checked_mode
 from dwell.envs.python_tasks import NativeSettings, RewardChoice, Sensors
 from dwell.house import House
 from dwell.house_list import HouseList
@@ -44,6 +45,11 @@ class EnvSettings(TypedDict, total=False):
     task_settings: Mapping[str, Any] | None
     #: ``forward_m``, ``turn_deg``, ``look_deg``.
     stride: Mapping[str, float] | None
+    #: ``discrete``, ``velocity``, ``pointer``, ``object`` or ``dict``.
+    action_mode: str
+    #: Names of the actions to choose from.
+    actions: Sequence[str] | None
+    action_mask: bool
     world: Mapping[str, Any] | None
     agent: int
     threads: int | None
@@ -182,6 +188,8 @@ def env_json(
     laws: Laws = None,
     parameters: Mapping[str, float] | None = None,
     stride: Mapping[str, float] | None = None,
+    action_mode: str = "discrete",
+    actions: Sequence[str] | None = None,
     world: Mapping[str, Any] | None = None,
     agent: int = 0,
 ) -> str:
@@ -194,6 +202,11 @@ def env_json(
         config["task_settings"] = mapping("task_settings", native.settings)
     if stride is not None:
         config["stride"] = checked_fields("stride", stride, setting_checks("StepSizes"))
+    # What is usual is not stated: files say it as they always did.
+    if checked_mode(action_mode) != "discrete":
+        config["action_mode"] = action_mode
+    if actions is not None:
+        config["actions"] = text_list("actions", actions)
     if native.sensors is not None:
         config["sensors"] = _sensors(native.sensors)
     if agent:

@@ -10,6 +10,7 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from dwell import ConfigError, _native
+from dwell.envs.action_modes import EngineActions
 from dwell.envs.env_pool import PreparedEnv, add_heads
 from dwell.envs.info_keys import GOAL_KEYS
 from dwell.envs.python_tasks import PythonEpisode, PythonTask
@@ -102,17 +103,16 @@ class NativeBatch:
         if states is not None:
             self.plays[env].load(states, seed)
 
-    def step(self, numbers: NDArray[np.int64]) -> tuple[dict[str, Any], list[Mapping[str, Any]]]:
-        """One control step by the numbers of actions, -1 for none.
+    def step(self, actions: EngineActions) -> tuple[dict[str, Any], list[Mapping[str, Any]]]:
+        """One control step.
 
         Returns:
             The engine's answer, as changed by tasks in Python, and what these add to each info.
         """
-        answer: dict[str, Any] = self.batch.step(numbers)
-        names = _native.actions()
+        answer: dict[str, Any] = actions.step(self.batch)
         further = [
-            play.judge(names[number], answer) if number >= 0 else {}
-            for play, number in zip(self.plays, numbers, strict=False)
+            play.judge(name, answer) if name else {}
+            for play, name in zip(self.plays, actions.names() if self.plays else (), strict=False)
         ]
         # The engine's shares of a way that there is not are 0, as if it had been missed.
         aimless = np.isnan(answer["distance_to_goal"])
@@ -120,8 +120,12 @@ class NativeBatch:
             answer[key][aimless] = np.nan
         return answer, further
 
+    def action_masks(self) -> NDArray[np.bool_]:
+        """Which actions of the engine nothing known beforehand rules out, (environment, action)."""
+        return self.batch.action_masks().reshape(self.count, -1)
+
     def expert_actions(self) -> NDArray[np.int64]:
-        """The actions of the tasks' experts now."""
+        """The actions of the tasks' experts now, by the numbers that the engine has for them."""
         own = [play.expert() for play in self.plays]
         if own and None not in own:
             return np.array(own, np.int64)

@@ -234,7 +234,7 @@ class PythonEpisode:
             if key in answer:
                 answer[key][k] = math.nan if value is None else value
         info = mapping(f"{self._name()}.judge: info", verdict.info)
-        if taken := sorted(set(info) & {*answer, *EPISODE_KEYS}):
+        if taken := sorted(set(info) & {*answer, *EPISODE_KEYS, "action_mask"}):
             raise ConfigError(f"{self._name()}.judge: info has {taken[0]!r}, which exists already")
         return info
 

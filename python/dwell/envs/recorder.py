@@ -13,8 +13,9 @@ import numpy as np
 from gymnasium.vector import VectorEnv, VectorWrapper
 from numpy.typing import NDArray
 
-from dwell import ConfigError, UsageError, __version__, _native
+from dwell import ConfigError, UsageError, __version__
 from dwell.arguments import file_path
+from dwell.envs.action_modes import EngineActions
 from dwell.envs.single import DwellEnv
 from dwell.envs.vector import DwellVectorEnv
 from dwell.files import make_folder
@@ -45,7 +46,7 @@ class _EpisodeInProgress:
             success=False,
             made_by=__version__,
         )
-        self._actions: list[str] = []
+        self._actions: list[str | dict[str, Any]] = []
         self._hashes = [f"{state_hash:016x}"]
         self._success = False
 
@@ -62,9 +63,9 @@ class _EpisodeInProgress:
                 "recorded further; reset begins another"
             )
 
-    def stepped(self, action: int, state_hash: int, success: bool) -> None:
-        """A step was made."""
-        self._actions.append(_native.actions()[action])
+    def stepped(self, action: str | dict[str, Any], state_hash: int, success: bool) -> None:
+        """A step was made, by an action as files hold it."""
+        self._actions.append(action)
         self._hashes.append(f"{state_hash:016x}")
         self._success = success
 
@@ -112,7 +113,7 @@ def write_numbered(replay: Replay, folder: Path) -> Path:
         number += 1
 
 
-class ReplayRecorder(gymnasium.Wrapper[dict[str, Any], np.int64, dict[str, Any], np.int64]):
+class ReplayRecorder(gymnasium.Wrapper[dict[str, Any], Any, dict[str, Any], Any]):
     """Writes every episode of an environment into a folder, as ``episode_0000.replay`` and so on.
 
     A file is written when its episode ends, when the next one begins, or at ``close``; numbers go
@@ -135,7 +136,7 @@ class ReplayRecorder(gymnasium.Wrapper[dict[str, Any], np.int64, dict[str, Any],
     """
 
     def __init__(
-        self, env: gymnasium.Env[dict[str, Any], np.int64], folder: str | os.PathLike[str]
+        self, env: gymnasium.Env[dict[str, Any], Any], folder: str | os.PathLike[str]
     ) -> None:
         """Wraps an environment of dwell, whatever other wrappers are around it.
 
@@ -165,7 +166,10 @@ class ReplayRecorder(gymnasium.Wrapper[dict[str, Any], np.int64, dict[str, Any],
         self._running = _EpisodeInProgress(self._env, info, instruction, state_hash)
         return observation, info
 
-    def step(self, action: np.int64) -> tuple[dict[str, Any], Any, bool, bool, dict[str, Any]]:
+    def step(
+        self,
+        action: Any,  # noqa: ANN401 - of the action space
+    ) -> tuple[dict[str, Any], Any, bool, bool, dict[str, Any]]:
         """Makes a step.
 
         Raises:
@@ -184,7 +188,8 @@ class ReplayRecorder(gymnasium.Wrapper[dict[str, Any], np.int64, dict[str, Any],
                 raise UsageError(_FULL)
         observation, reward, terminated, truncated, info = self.env.step(action)
         if running is not None:
-            running.stepped(int(action), self._env.state_hash(), bool(info["success"]))
+            row = self._env._actions.one(action).row(0)
+            running.stepped(row, self._env.state_hash(), bool(info["success"]))
         if terminated or truncated:
             self._write()
         return observation, reward, terminated, truncated, info
@@ -200,11 +205,7 @@ class ReplayRecorder(gymnasium.Wrapper[dict[str, Any], np.int64, dict[str, Any],
         self._running = None
 
 
-class VectorReplayRecorder(
-    VectorWrapper[
-        dict[str, Any], NDArray[np.int64], dict[str, Any], NDArray[np.int64], NDArray[Any]
-    ]
-):
+class VectorReplayRecorder(VectorWrapper[dict[str, Any], Any, dict[str, Any], Any, NDArray[Any]]):
     """Writes every episode of every environment of a :class:`DwellVectorEnv` into a folder.
 
     Each is a file of its own, ``episode_0000.replay`` and so on, in the order in which they end. A
@@ -226,7 +227,7 @@ class VectorReplayRecorder(
 
     def __init__(
         self,
-        env: VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
+        env: VectorEnv[dict[str, Any], Any, NDArray[Any]],
         folder: str | os.PathLike[str],
     ) -> None:
         """Wraps environments of dwell that step together, whatever other wrappers are around them.
@@ -276,15 +277,15 @@ class VectorReplayRecorder(
 
     def stepped(
         self,
-        actions: NDArray[np.int64],
+        actions: EngineActions,
         success: NDArray[np.bool_],
         ended: NDArray[np.bool_],
     ) -> None:
         """A step was made; episodes that ended are written."""
-        for k in np.flatnonzero(actions >= 0).tolist():
+        for k in np.flatnonzero(actions.numbers >= 0).tolist():
             if k in self._running:
                 state_hash = self._envs._runner.batch.state_hash(k)
-                self._running[k].stepped(int(actions[k]), state_hash, bool(success[k]))
+                self._running[k].stepped(actions.row(k), state_hash, bool(success[k]))
                 if ended[k]:
                     self._write(k)
 

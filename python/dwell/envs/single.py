@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from dwell import ConfigError, UsageError, _native
 from dwell.arguments import integer_in_range, kept, mapping, quoted, refuse_unknown
 from dwell.camera import Camera, camera_settings
+from dwell.envs.action_modes import action_form, first_of, masked_form
 from dwell.envs.config import (
     CACHED_HOUSES,
     HouseCache,
@@ -34,7 +35,6 @@ from dwell.envs.info_keys import GOAL_KEYS, INFO_KEYS
 from dwell.envs.native_batch import NativeBatch
 from dwell.envs.python_tasks import PythonTask, RewardChoice, Sensors, TaskChoice, split
 from dwell.envs.snapshots import check_and_strip, with_checksum
-from dwell.envs.spaces import action_space
 from dwell.grounded_text import Text
 from dwell.heads import Head
 from dwell.house import Level
@@ -45,7 +45,7 @@ from dwell.world_settings import Laws, with_head
 RENDER_CAMERA = Camera(width=320, height=240)
 
 
-class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
+class DwellEnv(gymnasium.Env[dict[str, Any], Any], EzPickle):
     """A task in a house, with one agent.
 
     An episode's house is drawn from ``houses``, and everything else in it from the seed. The step
@@ -70,6 +70,9 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         parameters: Mapping[str, float] | None = None,
         task_settings: Mapping[str, Any] | None = None,
         stride: Mapping[str, float] | None = None,
+        action_mode: str = "discrete",
+        actions: Sequence[str] | None = None,
+        action_mask: bool = False,
         world: Mapping[str, Any] | None = None,
         agent: int = 0,
         threads: int | None = None,
@@ -90,6 +93,14 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
             parameters: Values by address; they go before those that calibration found.
             task_settings: The task's own settings; the arguments of a task in Python.
             stride: How far movement actions go: ``forward_m``, ``turn_deg``, ``look_deg``.
+            action_mode: The form of actions: ``discrete`` (the number of an action; hands act on
+                what the agent looks at), ``velocity`` (velocities of the body), ``pointer`` (an
+                action, and a place in the picture on which hands act), ``object`` (an action, and
+                the id of a thing) or ``dict`` (velocities and a hand together).
+            actions: Names of the actions to choose from, in the order of their numbers; default the
+                twelve of ``discrete``, all in the other modes.
+            action_mask: Whether ``info["action_mask"]`` says which actions are not ruled out, as
+                :meth:`gymnasium.spaces.Discrete.sample` takes it; in the mode ``discrete``.
             world: Further fields of the native WorldConfig; ``sound_head`` may be a
                 :class:`dwell.Head` or the path of its SOFA file.
             agent: Which of the world's agents acts, observes and is judged, by its place in
@@ -104,7 +115,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         # Copies: a pickle makes this environment anew, whatever the caller does with his own.
         houses, sensors, laws = kept_houses(houses), kept(sensors), kept(laws)
         parameters, task_settings = kept(parameters), kept(task_settings)
-        stride, world = kept(stride), kept(world)
+        stride, world, actions = kept(stride), kept(world), kept(actions)
         EzPickle.__init__(
             self,
             task,
@@ -115,6 +126,9 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
             parameters=parameters,
             task_settings=task_settings,
             stride=stride,
+            action_mode=action_mode,
+            actions=actions,
+            action_mask=action_mask,
             world=world,
             agent=agent,
             threads=threads,
@@ -132,9 +146,13 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
             laws=laws,
             parameters=parameters,
             stride=stride,
+            action_mode=action_mode,
+            actions=actions,
             world=world,
             agent=agent_number(agent),
         )
+        self._actions = action_form(self._config)
+        self._masks = masked_form(action_mask, self._actions)
         self._shelf = HouseCache(houses)
         threads = None if threads is None else integer_in_range("threads", threads, low=1)
         self._closed = False
@@ -156,7 +174,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         self._alone = np.ones(1, np.bool_)
         self.metadata = {**self.metadata, "render_fps": steps_a_second(self._runner.batch)}
         self.observation_space = self._runner.space
-        self.action_space = action_space()
+        self.action_space = self._actions.space
 
     def _refuse_closed(self) -> None:
         if self._closed:
@@ -196,7 +214,14 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
             "scene_id": self._shelf.names[self._house],
             "episode_id": self._shelf.episode_id(self._house, self._seed),
             **self._goal,
+            **self._mask(),
         }
+
+    def _mask(self) -> dict[str, NDArray[np.int8]]:
+        """The actions that are not ruled out, where that is asked for."""
+        if self._masks is None:
+            return {}
+        return {"action_mask": self._masks.masks(self._runner.action_masks())[0]}
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -251,17 +276,18 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         return None, None
 
     def step(
-        self, action: np.int64 | int
+        self,
+        action: Any,  # noqa: ANN401 - of the action space
     ) -> tuple[dict[str, Any], float, bool, bool, dict[str, Any]]:
-        """Makes one control step; ``action``: a number of :meth:`actions`.
+        """Makes one control step; ``action``: an element of the action space.
 
         ``info`` has no ``distance_to_goal``, ``spl`` and ``soft_spl`` where the task has no goal.
         """
         self._refuse_stopped("step")
-        number = integer_in_range("action", action, high=len(_native.actions()) - 1)
+        taken = self._actions.one(action)
         # A step that the task did not judge to its end is none.
         with self._playing("step"):
-            answer, further = self._runner.step(np.array([number], np.int64))
+            answer, further = self._runner.step(taken)
         info: dict[str, Any] = {key: np.asarray(answer[key])[0].item() for key in INFO_KEYS}
         info = {k: value for k, value in info.items() if k not in GOAL_KEYS or not isnan(value)}
         info["action_error"] = answer["action_error"][0]
@@ -298,10 +324,15 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         self._runner_of.cache_clear()
         self._closed = True
 
-    def expert_action(self) -> int:
-        """The action of the task's scripted expert now."""
+    def expert_action(self) -> Any:  # noqa: ANN401 - of the action space
+        """The action of the task's scripted expert now, an element of the action space.
+
+        Raises:
+            UsageError: It wants to do what the environment's actions do not have.
+        """
         self._refuse_stopped("expert_action")
-        return int(self._runner.expert_actions()[0])
+        action = first_of(self._actions.expert(self._runner.expert_actions()))
+        return int(action) if isinstance(action, np.integer) else action
 
     def state_hash(self) -> int:
         """A number that changes with any bit of state, physics, sound queues or random streams."""
@@ -375,7 +406,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
     def actions(self) -> list[str]:
         """The names of the actions, in the order of their numbers."""
         self._refuse_closed()
-        return _native.actions()
+        return [*self._actions.names]
 
 
 def _run(

@@ -126,8 +126,3 @@ class SensorSpace:
 def specs(batch: _native.Batch) -> list[SensorSpace]:
     """The specifications of a batch's sensors, in order."""
     return [SensorSpace(**{**row, "shape": tuple(row["shape"])}) for row in batch.specs()]
-
-
-def action_space() -> spaces.Discrete:
-    """The space of one environment's action."""
-    return spaces.Discrete(len(_native.actions()))

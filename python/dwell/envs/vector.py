@@ -12,7 +12,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from dwell import ConfigError, UsageError, _native
+from dwell import ConfigError, UsageError
 from dwell.arguments import (
     abbreviated_list,
     boolean,
@@ -25,6 +25,7 @@ from dwell.arguments import (
     sequence_items,
 )
 from dwell.camera import camera_settings
+from dwell.envs.action_modes import EngineActions, action_form, masked_form
 from dwell.envs.config import (
     CACHED_HOUSES,
     HouseCache,
@@ -48,7 +49,6 @@ from dwell.envs.single import (
     steps_a_second,
 )
 from dwell.envs.snapshots import BatchSnapshot
-from dwell.envs.spaces import action_space
 from dwell.world_settings import Laws, with_head
 
 
@@ -63,11 +63,11 @@ class Recorder(Protocol):
 
     def stepped(
         self,
-        actions: NDArray[np.int64],
+        actions: EngineActions,
         success: NDArray[np.bool_],
         ended: NDArray[np.bool_],
     ) -> None:
-        """A step was made: by the numbers of actions, -1 for none. Those that ended still stand."""
+        """A step was made: by actions with the number -1 for none. Those that ended still stand."""
 
 
 def _autoreset_mode(mode: object) -> AutoresetMode:
@@ -78,7 +78,7 @@ def _autoreset_mode(mode: object) -> AutoresetMode:
         raise ConfigError(f"autoreset_mode is {quoted(mode)}; allowed are {allowed}") from None
 
 
-class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]], EzPickle):
+class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
     """``num_envs`` environments stepped together, rendered in one submission.
 
     Seeded with ``s``, environment k plays to the bit the episodes that a :class:`DwellEnv` with the
@@ -107,6 +107,9 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         parameters: Mapping[str, float] | None = None,
         task_settings: Mapping[str, Any] | None = None,
         stride: Mapping[str, float] | None = None,
+        action_mode: str = "discrete",
+        actions: Sequence[str] | None = None,
+        action_mask: bool = False,
         world: Mapping[str, Any] | None = None,
         agent: int = 0,
         threads: int | None = None,
@@ -130,6 +133,9 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             parameters: Values by address.
             task_settings: The task's own settings.
             stride: How far movement actions go.
+            action_mode: As of a single environment.
+            actions: As of a single environment.
+            action_mask: As of a single environment.
             world: Further fields of the native WorldConfig.
             agent: Which of each world's agents acts.
             threads: How many threads to use; results do not depend on it.
@@ -152,7 +158,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         # Copies: a pickle makes these environments anew, whatever the caller does with his own.
         houses, sensors, laws = kept_houses(houses), kept(sensors), kept(laws)
         parameters, task_settings = kept(parameters), kept(task_settings)
-        stride, world = kept(stride), kept(world)
+        stride, world, actions = kept(stride), kept(world), kept(actions)
         EzPickle.__init__(
             self,
             num_envs,
@@ -164,6 +170,9 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             parameters=parameters,
             task_settings=task_settings,
             stride=stride,
+            action_mode=action_mode,
+            actions=actions,
+            action_mask=action_mask,
             world=world,
             agent=agent,
             threads=threads,
@@ -188,9 +197,13 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             laws=laws,
             parameters=parameters,
             stride=stride,
+            action_mode=action_mode,
+            actions=actions,
             world=world,
             agent=agent_number(agent),
         )
+        self._actions = action_form(config)
+        self._masks = masked_form(action_mask, self._actions)
         shelf = HouseCache(houses)
         threads = None if threads is None else integer_in_range("threads", threads, low=1)
         self._shelf = shelf
@@ -217,7 +230,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         #: The call that plays episodes at this moment.
         self._call: str | None = None
         self.single_observation_space = self._runner.space
-        self.single_action_space = action_space()
+        self.single_action_space = self._actions.space
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
 
@@ -354,7 +367,11 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         """Infos that stay the same in an episode, of every environment that has one."""
         if self._episode_infos is None:
             self._episode_infos = self._gathered_ids()
-        return {key: value.copy() for key, value in self._episode_infos.items()}
+        infos = {key: value.copy() for key, value in self._episode_infos.items()}
+        if self._masks is not None:
+            infos["action_mask"] = self._masks.masks(self._runner.action_masks())
+            infos["_action_mask"] = infos["_episode_id"].copy()
+        return infos
 
     def _gathered_ids(self) -> dict[str, Any]:
         has = np.array([seed is not None for seed in self._seeds], np.bool_) & ~self._stopped
@@ -373,7 +390,8 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         return infos
 
     def step(
-        self, actions: NDArray[np.int64]
+        self,
+        actions: Any,  # noqa: ANN401 - of the action space
     ) -> tuple[
         dict[str, Any], NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]
     ]:
@@ -390,26 +408,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         if self._stopped.any():
             which = abbreviated_list(np.flatnonzero(self._stopped).tolist())
             raise UsageError(f"step: no episode of environments {which} has begun; reset them")
-        refuse_masked("actions", actions)
-        try:
-            numbers = np.asarray(actions)
-        except ValueError:
-            raise ConfigError(
-                f"actions are {quoted(actions)}; expected whole numbers of shape ({self.num_envs},)"
-            ) from None
-        if numbers.shape != (self.num_envs,) or numbers.dtype.kind not in "iu":
-            raise ConfigError(
-                f"actions: expected whole numbers of shape ({self.num_envs},), "
-                f"found {numbers.dtype} of shape {numbers.shape}"
-            )
-        last = len(_native.actions()) - 1
-        wrong = np.flatnonzero((numbers < 0) | (numbers > last)).tolist()
-        if wrong:
-            found = abbreviated_list(numbers[wrong].tolist())
-            raise ConfigError(
-                f"actions of environments {abbreviated_list(wrong)} are {found}; "
-                f"allowed are 0 to {last}"
-            )
+        taken = self._actions.many(actions, self.num_envs)
         begins = self._done.copy()
         if begins.any() and self.autoreset_mode is not AutoresetMode.NEXT_STEP:
             which = abbreviated_list(np.flatnonzero(begins).tolist())
@@ -418,11 +417,11 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             self._start(begins)
         for recorder in self._recorders:
             recorder.check()
-        numbers = np.where(begins, -1, numbers.astype(np.int64))
+        taken = taken.without(begins)
         # Steps that the tasks did not judge to their end are none.
         self._stopped[~begins], self._call = True, "step"
         try:
-            answer, further = self._runner.step(numbers)
+            answer, further = self._runner.step(taken)
         finally:
             self._call = None
         self._stopped[~begins] = False
@@ -452,7 +451,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
                 ) from None
         self._done = terminated | truncated
         for recorder in self._recorders:
-            recorder.stepped(numbers, infos["success"], self._done)
+            recorder.stepped(taken, infos["success"], self._done)
         if self._done.any() and self.autoreset_mode is AutoresetMode.SAME_STEP:
             own = [key for key in infos if key not in (*INFO_KEYS, "action_error", "audio_clipped")]
             infos |= self._restart(infos, [key for key in own if not key.startswith("_")])
@@ -551,9 +550,9 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         if self.closed:
             raise UsageError("these environments are closed; make new ones")
 
-    def expert_actions(self) -> NDArray[np.int64]:
-        """The actions of the task's scripted expert now, in every environment."""
-        return self._runner.expert_actions()
+    def expert_actions(self) -> Any:  # noqa: ANN401 - of the action space
+        """The actions of the task's scripted expert now, an element of the action space."""
+        return self._actions.expert(self._runner.expert_actions())
 
     def state_hashes(self) -> list[int]:
         """The state hash of every environment."""

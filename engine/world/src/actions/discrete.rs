@@ -1,10 +1,11 @@
 //! A control step of discrete actions.
 
+use super::step_sizes::turn_rate_rad_s;
 use super::{DiscreteAction, StepSizes};
 use crate::error::WorldError;
 use crate::world::World;
-use dwell_physics::{ActionOutcome, AgentControl, OutcomeCode};
-use dwell_scene::{AgentId, Id};
+use dwell_physics::{ActionOutcome, AgentControl, HandAction, OutcomeCode, Target};
+use dwell_scene::{AgentId, Id, Locomotion};
 use serde_json::Map;
 
 /// A discrete action of one agent in a control step.
@@ -14,8 +15,56 @@ pub struct AgentAction {
     pub agent: AgentId,
     /// The action.
     pub action: DiscreteAction,
+    /// Velocities in place of the action's own: forward, right, turn to the left, look up, as shares of what movement actions
+    /// make, -1 to 1. Wheels that do not go sideways leave the second out.
+    pub velocity: Option<[f32; 4]>,
+    /// What a hand is used on.
+    pub target: HandTarget,
     /// Lengths and angles of its movement actions.
     pub step_sizes: StepSizes,
+}
+
+/// What a hand is used on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum HandTarget {
+    /// The thing in the middle of the view.
+    Gaze,
+    /// What is stated.
+    At(Target),
+    /// A place of a picture that shows nothing.
+    Nothing,
+}
+
+impl AgentAction {
+    /// An action on what the agent looks at, with the velocities of its own.
+    pub fn new(agent: AgentId, action: DiscreteAction, step_sizes: StepSizes) -> Self {
+        Self {
+            agent,
+            action,
+            velocity: None,
+            target: HandTarget::Gaze,
+            step_sizes,
+        }
+    }
+
+    /// The velocities of the body in a step of `step_s`.
+    fn control(&self, world: &World, step_s: f64) -> AgentControl {
+        let Some([forward, right, turn, look]) = self.velocity else {
+            return self.action.kind().control(&self.step_sizes, step_s);
+        };
+        let sizes = &self.step_sizes;
+        let step_m_s = (f64::from(sizes.forward_m) / step_s) as f32;
+        let body = world.state().agents.get(self.agent);
+        let rolls = body
+            .is_some_and(|agent| matches!(agent.body.locomotion, Locomotion::DifferentialDrive(_)));
+        AgentControl {
+            forward_m_s: forward * step_m_s,
+            right_m_s: if rolls { 0.0 } else { right * step_m_s },
+            yaw_rate_rad_s: turn * turn_rate_rad_s(sizes.turn_deg, step_s),
+            pitch_rate_rad_s: look * turn_rate_rad_s(sizes.look_deg, step_s),
+            ..AgentControl::default()
+        }
+    }
 }
 
 impl World {
@@ -29,12 +78,7 @@ impl World {
         action: DiscreteAction,
         stride: &StepSizes,
     ) -> Result<ActionOutcome, WorldError> {
-        let stride = *stride;
-        let step = AgentAction {
-            agent,
-            action,
-            step_sizes: stride,
-        };
+        let step = AgentAction::new(agent, action, *stride);
         let mut outcomes = self.step_discrete_actions(&[step])?;
         let none = || WorldError::InvalidCall("no action was made".to_owned());
         outcomes.pop().ok_or_else(none)
@@ -53,19 +97,20 @@ impl World {
         let mut controls = vec![AgentControl::default(); self.state().agents.len()];
         for step in steps {
             let count = controls.len();
+            let own = step.control(self, step_s);
             let Some(control) = controls.get_mut(step.agent.index()) else {
                 return Err(WorldError::InvalidCall(format!(
                     "no agent {}; there are {count}",
                     step.agent.0
                 )));
             };
-            *control = step.action.kind().control(&step.step_sizes, step_s);
+            *control = own;
         }
         let mut order: Vec<usize> = (0..steps.len()).collect();
         order.sort_unstable_by_key(|place| steps[*place].agent);
         let mut hands = vec![None; steps.len()];
         for place in order {
-            hands[place] = self.use_hand(steps[place].agent, steps[place].action)?;
+            hands[place] = self.use_hand(&steps[place])?;
         }
         self.step(&controls)?;
         let outcomes = steps.iter().zip(hands);
@@ -84,27 +129,45 @@ impl World {
         }
     }
 
-    /// Returns the hand's action on the thing that the agent looks at; `None` for an action of the feet or neck.
-    fn use_hand(
-        &mut self,
-        agent: AgentId,
-        action: DiscreteAction,
-    ) -> Result<Option<ActionOutcome>, WorldError> {
-        let kind = action.kind();
+    /// Performs the hand's part of an action; `None` for an action of the feet or neck.
+    fn use_hand(&mut self, step: &AgentAction) -> Result<Option<ActionOutcome>, WorldError> {
+        Ok(self.hand_action(step)?.map(|action| match action {
+            Ok(action) => self.act(step.agent, &*action),
+            Err(refusal) => refusal,
+        }))
+    }
+
+    /// Returns the hand's part of an action, or the refusal where it has no target; `None` for an action of the feet or neck.
+    pub(super) fn hand_action(&self, step: &AgentAction) -> Result<Option<HandPart>, WorldError> {
+        let kind = step.action.kind();
         if !kind.is_hand_action() {
             return Ok(None);
         }
-        let mut target = None;
-        if kind.takes_target() {
-            let Some(object) = self.object_in_view_centre(agent) else {
-                let sentence =
-                    "You look at nothing that you could take, open or switch. Turn towards it.";
-                let outcome = ActionOutcome::failed(OutcomeCode::NoTarget, sentence, None);
-                return Ok(Some(outcome));
-            };
-            target = Some(object.into());
-        }
-        let action = kind.parse_hand_action(target, Map::new())?;
-        Ok(Some(self.act(agent, &*action)))
+        let refuse = |sentence: &str| {
+            let outcome = ActionOutcome::failed(OutcomeCode::NoTarget, sentence, None);
+            Ok(Some(Err(outcome)))
+        };
+        // These two find themselves what is in view: a surface, or whatever is pointed at.
+        let finds = matches!(step.action, DiscreteAction::Place | DiscreteAction::Point);
+        let target = match step.target {
+            _ if !kind.takes_target() => None,
+            HandTarget::At(target) => Some(target),
+            HandTarget::Nothing => {
+                return refuse("That place of the picture shows nothing. Choose another.");
+            }
+            HandTarget::Gaze if finds => None,
+            HandTarget::Gaze => match self.object_in_view_centre(step.agent) {
+                Some(object) => Some(object.into()),
+                None => {
+                    return refuse(
+                        "You look at nothing that you could take, open or switch. Turn towards it.",
+                    );
+                }
+            },
+        };
+        Ok(Some(Ok(kind.parse_hand_action(target, Map::new())?)))
     }
 }
+
+/// The hand's part of an action, or why it is refused.
+pub(super) type HandPart = Result<Box<dyn HandAction>, ActionOutcome>;

@@ -9,6 +9,7 @@ mod look_up;
 mod move_forward;
 mod pixel_target;
 mod request;
+mod step_action;
 mod step_sizes;
 mod stop;
 mod target;
@@ -16,9 +17,11 @@ mod turn_left;
 mod turn_right;
 mod wait;
 
-pub use discrete::AgentAction;
+pub use discrete::{AgentAction, HandTarget};
 pub use kind::ActionKind;
 pub use request::HandActionRequest;
+pub(crate) use step_action::actions_named;
+pub use step_action::{ActionMode, ActionTarget, StepAction};
 pub use step_sizes::StepSizes;
 pub use target::{ObjectRef, PixelCamera, TargetRequest};
 
@@ -74,6 +77,9 @@ actions! {
 }
 
 impl DiscreteAction {
+    /// Those that environments have unless others are named: the first twelve.
+    pub const DEFAULT: &[Self] = Self::ALL.split_at(12).0;
+
     /// The row of the table.
     pub fn kind(self) -> &'static ActionKind {
         &all()[self as usize]

@@ -38,17 +38,24 @@ impl World {
             )));
         };
         let eye = state.world_from_eye() * eye_from_camera;
-        let (start, direction) = camera.ray_in_camera(Vec2::new(column + 0.5, row + 0.5));
-        if direction == Vec3::ZERO {
-            return Err(WorldError::Config {
-                field: "pixel",
-                found: format!("[{column}, {row}]"),
-                allowed: "a pixel that sees something".to_owned(),
-            });
-        }
-        Ok(Target::Ray {
-            origin: eye.transform_point(start),
-            direction: eye.transform_vector(direction),
+        let place = Vec2::new(column + 0.5, row + 0.5);
+        Self::image_target(camera, eye, place).ok_or_else(|| WorldError::Config {
+            field: "pixel",
+            found: format!("[{column}, {row}]"),
+            allowed: "a pixel that sees something".to_owned(),
+        })
+    }
+
+    /// Returns the ray through a place of an image, pixels from its left and upper edge; `None` where the camera sees nothing.
+    pub(super) fn image_target(
+        camera: &Camera,
+        world_from_camera: Pose,
+        place: Vec2,
+    ) -> Option<Target> {
+        let (start, direction) = camera.ray_in_camera(place);
+        (direction != Vec3::ZERO).then(|| Target::Ray {
+            origin: world_from_camera.transform_point(start),
+            direction: world_from_camera.transform_vector(direction),
         })
     }
 }

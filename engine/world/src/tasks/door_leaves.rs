@@ -1,8 +1,9 @@
 //! Door leaves as they stand, since the grid of a walker takes all doors as open.
 
+use crate::error::WorldError;
 use crate::world::World;
 use dwell_scene::navigation::{NavCell, NavDoor, NavGrid};
-use dwell_scene::{Aabb, Pose};
+use dwell_scene::{Aabb, JointId, Pose};
 use glam::Vec3;
 
 /// A door's leaf as it stands now: a box in its own frame.
@@ -29,6 +30,20 @@ impl DoorLeafBox {
         let point = self.leaf_from_world.transform_point(at + Vec3::Y);
         (point.clamp(self.bounds.min, self.bounds.max) - point).length()
     }
+}
+
+/// Opens all doors of a grid as far as they go.
+pub(super) fn open_all(world: &mut World, grid: &NavGrid) -> Result<(), WorldError> {
+    let house = world.house().clone();
+    let state = world.state();
+    let all = grid.doors();
+    let doors = all.iter().map(|door| {
+        let open = house.joints[door.joint].open;
+        let reachable = state.joint_parameters(&house, door.joint).clamp(open);
+        (door.joint, reachable, 0.0)
+    });
+    let open: Vec<(JointId, f32, f32)> = doors.collect();
+    world.set_joints(&open)
 }
 
 /// The leaves of all doors of a grid.

@@ -83,6 +83,8 @@ pub struct TaskSetup {
     pub agent: AgentId,
     /// Step sizes of its movement actions.
     pub stride: StepSizes,
+    /// True if its hand opens doors.
+    pub opens: bool,
 }
 
 impl TaskSetup {

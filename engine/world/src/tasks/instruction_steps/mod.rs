@@ -180,6 +180,7 @@ impl Task for InstructionSteps {
         let (agent, stride) = (self.setup.agent, self.setup.stride);
         let body = self.setup.body(world, NAME)?;
         let grid: Arc<NavGrid> = world.engines().nav_grid(&body)?;
+        self.rules.arrange_doors(world, &grid, &self.setup)?;
         let leaves = DoorLeaves::of(world, &grid);
         let room = FreeStartCells::excluding_agents(world, placed, &body);
         let engines = world.engines().clone();

@@ -168,6 +168,7 @@ impl<K: GoalKind> Task for NavigationTask<K> {
         let agent = self.setup.agent;
         let body = self.setup.body(world, K::NAME)?;
         let grid = world.engines().nav_grid(&body)?;
+        self.rules.arrange_doors(world, &grid, &self.setup)?;
         let leaves = DoorLeaves::of(world, &grid);
         let room = FreeStartCells::excluding_agents(world, placed, &body);
         let free = |cell: NavCell| grid.island(cell) == Some(0) && !leaves.is_blocked(&grid, cell);

@@ -2,6 +2,9 @@
 
 use crate::episode::StepResult;
 use crate::error::WorldError;
+use crate::tasks::{TaskSetup, door_leaves};
+use crate::world::World;
+use dwell_scene::navigation::NavGrid;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -45,10 +48,25 @@ pub(in crate::tasks) struct NavigationRules {
     pub(in crate::tasks) min_path_ratio: f64,
     /// True if reaching the goal ends the episode, without `stop`.
     pub(in crate::tasks) ends_at_goal: bool,
+    /// Whether all doors stand open at the start; `None`: where the agent has no hand to open them.
+    pub(in crate::tasks) open_doors: Option<bool>,
     pub(in crate::tasks) rewards: NavigationRewards,
 }
 
 impl NavigationRules {
+    /// Opens the doors of an episode that is about to begin, where they stand open at its start.
+    pub(in crate::tasks) fn arrange_doors(
+        &self,
+        world: &mut World,
+        grid: &NavGrid,
+        setup: &TaskSetup,
+    ) -> Result<(), WorldError> {
+        match self.open_doors.unwrap_or(!setup.opens) {
+            true => door_leaves::open_all(world, grid),
+            false => Ok(()),
+        }
+    }
+
     /// What a step is paid, and whether it ends the episode. `gain_m`: by how much the distance fell; `stops`: whether the agent
     /// called `stop`; `is_reached`: whether it has done what is asked, which is looked at where it counts.
     pub(in crate::tasks) fn step_result(
@@ -154,6 +172,8 @@ macro_rules! navigation_settings {
             min_path_ratio: f64,
             /// Whether the episode ends in success as soon as the goal is reached, without `stop`; default false.
             ends_at_goal: bool,
+            /// Whether all doors stand open at the start; default where the agent has no action `open`.
+            open_doors: Option<bool>,
             /// What a step is paid: `distance` (a metre nearer; default 1), `success` (default 2.5), `step` (default -0.01),
             /// `wrong_stop` and `collision` (default 0).
             reward: $crate::tasks::navigation::NavigationRewards,
@@ -167,6 +187,7 @@ macro_rules! navigation_settings {
                     max_distance_m: 30.0,
                     min_path_ratio: 1.0,
                     ends_at_goal: false,
+                    open_doors: None,
                     reward: Default::default(),
                 }
             }
@@ -186,6 +207,7 @@ macro_rules! navigation_settings {
                     distance_m: [settings.min_distance_m, settings.max_distance_m],
                     min_path_ratio: settings.min_path_ratio,
                     ends_at_goal: settings.ends_at_goal,
+                    open_doors: settings.open_doors,
                     rewards: settings.reward.clone(),
                 };
                 rules.check()?;
@@ -206,6 +228,7 @@ mod tests {
             distance_m: [3.0, 3.0],
             min_path_ratio: 1.0,
             ends_at_goal: false,
+            open_doors: None,
             rewards: NavigationRewards::default(),
         };
         rules.check().unwrap();

@@ -1,0 +1,194 @@
+//! What an agent does in one step of an environment: an action, velocities of its own, and what its hand is used on.
+
+use super::{AgentAction, DiscreteAction, HandTarget, StepSizes};
+use crate::env_agent::EnvAgent;
+use crate::error::WorldError;
+use crate::eye_camera::EyeCamera;
+use crate::world::World;
+use dwell_physics::Target;
+use dwell_render::Camera;
+use dwell_scene::{AgentId, EntityId, Pose};
+use glam::Vec2;
+use serde::{Deserialize, Serialize};
+
+/// The form that actions have.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ActionMode {
+    /// The number of an action; hands are used on what the agent looks at.
+    #[default]
+    Discrete,
+    /// Velocities of the body; no hand.
+    Velocity,
+    /// An action, and a place in the picture on which hands are used.
+    Pointer,
+    /// An action, and the id of a thing on which hands are used.
+    Object,
+    /// Velocities and an action of the hand with a place in the picture, together.
+    Dict,
+}
+
+impl ActionMode {
+    /// The actions to choose from by default.
+    pub(crate) fn default_actions(self) -> &'static [DiscreteAction] {
+        match self {
+            Self::Discrete => DiscreteAction::DEFAULT,
+            Self::Velocity => &[DiscreteAction::Stop],
+            Self::Pointer | Self::Object | Self::Dict => &DiscreteAction::ALL,
+        }
+    }
+}
+
+/// What a hand is used on.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum ActionTarget {
+    /// What the agent looks at.
+    #[default]
+    Gaze,
+    /// What the picture of the agent's first camera shows at a place: shares of its width from the left and of its height from
+    /// the top, 0 to 1. Without a camera that of a square picture with the agent's own field of view.
+    Picture([f32; 2]),
+    /// The thing with an id that sensors report.
+    Entity(EntityId),
+}
+
+/// An agent's part of a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepAction {
+    /// The action.
+    pub action: DiscreteAction,
+    /// Velocities in place of those of the action: forward, right, turn to the left, look up, each as a share of what a movement
+    /// action makes, -1 to 1.
+    pub velocity: Option<[f32; 4]>,
+    /// What its hand is used on.
+    pub target: ActionTarget,
+}
+
+impl From<DiscreteAction> for StepAction {
+    fn from(action: DiscreteAction) -> Self {
+        Self {
+            action,
+            velocity: None,
+            target: ActionTarget::Gaze,
+        }
+    }
+}
+
+impl StepAction {
+    /// Refuses numbers out of range.
+    ///
+    /// # Errors
+    /// [`WorldError::Config`] names the number.
+    pub(crate) fn check(&self) -> Result<(), WorldError> {
+        let fault = |field: &'static str, found: String, allowed: &str| {
+            Err(WorldError::Config {
+                field,
+                found,
+                allowed: allowed.to_owned(),
+            })
+        };
+        let outside =
+            |numbers: &[f32], low: f32| numbers.iter().any(|number| !(low..=1.0).contains(number));
+        if let Some(velocity) = self.velocity.filter(|velocity| outside(velocity, -1.0)) {
+            return fault("velocity", format!("{velocity:?}"), "numbers from -1 to 1");
+        }
+        match self.target {
+            ActionTarget::Picture(place) if outside(&place, 0.0) => {
+                fault("pixel", format!("{place:?}"), "numbers from 0 to 1")
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The action as the world takes it from an agent.
+    pub(crate) fn of_agent(self, world: &World, agent: &EnvAgent) -> AgentAction {
+        let target = match self.target {
+            ActionTarget::Gaze => HandTarget::Gaze,
+            ActionTarget::Entity(id) => HandTarget::At(Target::Entity(id)),
+            ActionTarget::Picture(place) => {
+                let eye = agent.sensors.iter().find_map(|sensor| sensor.camera());
+                picture_target(world, agent, eye, place)
+            }
+        };
+        AgentAction {
+            agent: agent.id,
+            action: self.action,
+            velocity: self.velocity,
+            target,
+            step_sizes: agent.step_sizes,
+        }
+    }
+}
+
+/// The ray through a place of a picture.
+fn picture_target(
+    world: &World,
+    agent: &EnvAgent,
+    eye: Option<&EyeCamera>,
+    [across, down]: [f32; 2],
+) -> HandTarget {
+    let state = world.state();
+    let camera = match eye {
+        Some(eye) => Some(eye.camera_in(state)),
+        None => Camera::from_fov(1, 1, state.camera_fov_deg(agent.id)).ok(),
+    };
+    let mount = eye.map_or(Pose::IDENTITY, |eye| eye.eye_from_camera);
+    let (Some(camera), Some(body)) = (camera, state.agents.get(agent.id)) else {
+        return HandTarget::Nothing;
+    };
+    let (width, height) = (camera.width() as f32, camera.height() as f32);
+    let place = Vec2::new(across * width, down * height);
+    World::image_target(&camera, body.world_from_eye() * mount, place)
+        .map_or(HandTarget::Nothing, HandTarget::At)
+}
+
+/// Reads names of actions.
+///
+/// # Errors
+/// [`WorldError::Unknown`] lists those there are; [`WorldError::Config`] for none, or one twice.
+pub(crate) fn actions_named(names: &[String]) -> Result<Vec<DiscreteAction>, WorldError> {
+    let find = |name: &String| {
+        let known = DiscreteAction::ALL.into_iter();
+        known
+            .clone()
+            .find(|action| action.name() == name)
+            .ok_or_else(|| WorldError::Unknown {
+                kind: "discrete action",
+                name: name.clone(),
+                known: known.map(|action| action.name().to_owned()).collect(),
+            })
+    };
+    let found: Vec<DiscreteAction> = names.iter().map(find).collect::<Result<_, _>>()?;
+    let fault = |found: String, allowed: &str| {
+        Err(WorldError::Config {
+            field: "actions",
+            found,
+            allowed: allowed.to_owned(),
+        })
+    };
+    if found.is_empty() {
+        return fault("[]".to_owned(), "at least one action");
+    }
+    match (1..found.len()).find(|k| found[..*k].contains(&found[*k])) {
+        Some(k) => fault(format!("{} twice", found[k].name()), "each action once"),
+        None => Ok(found),
+    }
+}
+
+impl World {
+    /// Returns whether nothing known beforehand rules an action out that uses a hand on what the agent looks at; true for all other
+    /// actions. What is not ruled out may still fail.
+    pub(crate) fn is_action_possible(
+        &mut self,
+        agent: AgentId,
+        action: DiscreteAction,
+        step_sizes: StepSizes,
+    ) -> Result<bool, WorldError> {
+        let step = AgentAction::new(agent, action, step_sizes);
+        match self.hand_action(&step)? {
+            None => Ok(true),
+            Some(Err(_)) => Ok(false),
+            Some(Ok(hand)) => Ok(self.check_action(agent, &*hand).is_ok()),
+        }
+    }
+}

@@ -1,0 +1,483 @@
+"""Forms of actions: the space of an environment's action, and what the engine takes for it.
+
+Adding a form is one class and one line in :data:`ACTION_MODES`; the engine knows its name
+(``ActionMode``).
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from gymnasium import spaces
+from numpy.typing import NDArray
+
+from dwell import ConfigError, UsageError, _native
+from dwell.arguments import (
+    abbreviated_list,
+    boolean,
+    from_json,
+    integer_in_range,
+    mapping,
+    quoted,
+    refuse_masked,
+)
+
+#: Of the first axis of velocities: forward, right, turn to the left, look up.
+_VELOCITY_NAMES = ("forward", "right", "turn", "look")
+#: Below this, all of them, velocities alone say ``stop``.
+STOP_BELOW = 0.05
+#: The turn by which ``wait`` is said in velocities alone, of which the least stand for ``stop``.
+_LEAST_TURN = 0.06
+#: Ids of things that an action can name: more than any house has.
+_IDS = 1 << 20
+
+
+@dataclasses.dataclass(frozen=True)
+class EngineActions:
+    """Actions of several environments as the engine takes them.
+
+    Attributes:
+        numbers: Of the discrete actions, -1 for none, shape (n,) int64.
+        velocities: Shares of what movement actions make, shape (n, 4) float32; ``None``: theirs.
+        places: Of pictures, shares of width and height, shape (n, 2) float32.
+        objects: Ids of things, 0 for what is looked at, shape (n,) int64.
+    """
+
+    numbers: NDArray[np.int64]
+    velocities: NDArray[np.float32] | None = None
+    places: NDArray[np.float32] | None = None
+    objects: NDArray[np.int64] | None = None
+
+    def step(self, batch: _native.Batch) -> dict[str, Any]:
+        """One control step of all environments of a batch; what its ``step`` answers."""
+        parts = (self.velocities, self.places, self.objects)
+        flat = (None if part is None else np.ascontiguousarray(part).ravel() for part in parts)
+        return batch.step(np.ascontiguousarray(self.numbers), *flat)
+
+    def without(self, idle: NDArray[np.bool_]) -> EngineActions:
+        """The same, with none in the environments of ``idle``."""
+        return dataclasses.replace(self, numbers=np.where(idle, -1, self.numbers))
+
+    def names(self) -> list[str]:
+        """The names of the discrete actions; none is ''."""
+        known = [*_native.actions(), ""]
+        return [known[number] for number in self.numbers.tolist()]
+
+    def row(self, env: int) -> str | dict[str, Any]:
+        """One environment's action as files hold it: a name, or a mapping that says more."""
+        row: dict[str, Any] = {"action": _native.actions()[self.numbers[env]]}
+        if self.velocities is not None:
+            row["velocity"] = self.velocities[env].tolist()
+        if self.places is not None:
+            row["pixel"] = self.places[env].tolist()
+        if self.objects is not None:
+            row["object"] = int(self.objects[env])
+        return row if len(row) > 1 else str(row["action"])
+
+    @classmethod
+    def of_row(cls, at: str, row: object) -> EngineActions:
+        """The action of one environment that :meth:`row` gave.
+
+        Raises:
+            ConfigError: It is none; the message begins with ``at``.
+        """
+        fields = {"action": row} if isinstance(row, str) else mapping(at, row)
+        names = _native.actions()
+        if unknown := sorted(set(fields) - {"action", "velocity", "pixel", "object"}):
+            raise ConfigError(
+                f"{at} has {unknown[0]!r}; allowed are action, velocity, pixel, object"
+            )
+        if fields.get("action") not in names:
+            found = quoted(fields.get("action"))
+            raise ConfigError(f"{at} is {found}; allowed are {', '.join(names)}")
+        numbers = np.array([names.index(fields["action"])], np.int64)
+        one = (1,)
+        velocity, pixel, thing = (fields.get(key) for key in ("velocity", "pixel", "object"))
+        return cls(
+            numbers,
+            None if velocity is None else _numbers(f"{at}: velocity", velocity, one, 4, -1.0),
+            None if pixel is None else _numbers(f"{at}: pixel", pixel, one, 2, 0.0),
+            None if thing is None else _whole(f"{at}: object", thing, one, _IDS - 1),
+        )
+
+
+class DiscreteActions:
+    """The number of an action; hands are used on what the agent looks at."""
+
+    def __init__(self, names: Sequence[str]) -> None:
+        """Takes the names of the actions, in the order of their numbers."""
+        self.names = [*names]
+        known = _native.actions()
+        self._native = np.array([known.index(name) for name in names], np.int64)
+        self.space: spaces.Space[Any] = spaces.Discrete(len(self.names))
+
+    def one(self, action: object) -> EngineActions:
+        """The action of one environment.
+
+        Raises:
+            ConfigError: It is none of the space.
+        """
+        number = integer_in_range("action", action, high=len(self.names) - 1)
+        return EngineActions(self._native[[number]])
+
+    def many(self, actions: object, count: int) -> EngineActions:
+        """The actions of several environments.
+
+        Raises:
+            ConfigError: They are none of the space, or not one for each.
+        """
+        return EngineActions(self._native[_choices("actions", actions, count, len(self.names))])
+
+    def expert(self, numbers: NDArray[np.int64]) -> Any:  # noqa: ANN401 - of the space
+        """Actions of the engine's experts as elements of the batched space.
+
+        Raises:
+            UsageError: One cannot be said in this form.
+        """
+        return self._of_engine(numbers)
+
+    def masks(self, possible: NDArray[np.bool_]) -> NDArray[np.int8]:
+        """What :meth:`gymnasium.spaces.Discrete.sample` takes, out of all of the engine's actions.
+
+        Args:
+            possible: Shape (environment, action of the engine).
+        """
+        return possible[:, self._native].astype(np.int8)
+
+    def _of_engine(self, numbers: NDArray[np.int64]) -> NDArray[np.int64]:
+        places = np.full(len(_native.actions()) + 1, -1, np.int64)
+        places[self._native] = np.arange(len(self.names))
+        found = places[numbers]
+        missing = np.flatnonzero((found < 0) & (numbers >= 0)).tolist()
+        if missing:
+            name = _native.actions()[numbers[missing[0]]]
+            raise UsageError(
+                f"the expert wants to {name}, which is none of the environment's actions: "
+                f"{', '.join(self.names)}"
+            )
+        return found
+
+
+class _Targeted:
+    """An action, and what a hand is used on."""
+
+    #: The key of what a hand is used on.
+    _key: str
+
+    def __init__(self, names: Sequence[str], target: spaces.Space[Any]) -> None:
+        self._verbs = DiscreteActions(names)
+        self.names = self._verbs.names
+        self.space: spaces.Space[Any] = spaces.Dict(
+            {"action": self._verbs.space, self._key: target}
+        )
+
+    def one(self, action: object) -> EngineActions:
+        """As :meth:`DiscreteActions.one`."""
+        return self.many(_stacked("action", action, ("action", self._key)), 1)
+
+    def many(self, actions: object, count: int) -> EngineActions:
+        """As :meth:`DiscreteActions.many`."""
+        parts = _fields("actions", actions, ("action", self._key))
+        verbs = self._verbs.many(parts["action"], count)
+        return self._with_target(verbs, parts[self._key], (count,))
+
+    def _with_target(
+        self, verbs: EngineActions, target: object, shape: tuple[int]
+    ) -> EngineActions:
+        raise NotImplementedError
+
+    def expert(self, numbers: NDArray[np.int64]) -> Any:  # noqa: ANN401 - of the space
+        """As :meth:`DiscreteActions.expert`."""
+        count = len(numbers)
+        return {"action": self._verbs.expert(numbers), self._key: self._looked_at(count)}
+
+    def _looked_at(self, count: int) -> NDArray[Any]:
+        raise NotImplementedError
+
+
+class PointerActions(_Targeted):
+    """An action, and a place in the picture on which hands are used."""
+
+    _key = "pixel"
+
+    def __init__(self, names: Sequence[str]) -> None:
+        """As :class:`DiscreteActions`."""
+        super().__init__(names, spaces.Box(0.0, 1.0, (2,), np.float32))
+
+    def _with_target(
+        self, verbs: EngineActions, target: object, shape: tuple[int]
+    ) -> EngineActions:
+        places = _numbers("pixel", target, shape, 2, 0.0)
+        return dataclasses.replace(verbs, places=places)
+
+    def _looked_at(self, count: int) -> NDArray[np.float32]:
+        return np.full((count, 2), 0.5, np.float32)
+
+
+class ObjectActions(_Targeted):
+    """An action, and the id of a thing on which hands are used; 0 for what is looked at."""
+
+    _key = "object"
+
+    def __init__(self, names: Sequence[str]) -> None:
+        """As :class:`DiscreteActions`."""
+        super().__init__(names, spaces.Discrete(_IDS))
+
+    def _with_target(
+        self, verbs: EngineActions, target: object, shape: tuple[int]
+    ) -> EngineActions:
+        return dataclasses.replace(verbs, objects=_whole("object", target, shape, _IDS - 1))
+
+    def _looked_at(self, count: int) -> NDArray[np.int64]:
+        return np.zeros(count, np.int64)
+
+
+class VelocityActions:
+    """Velocities of the body: forward, right, turn to the left, look up.
+
+    Each is a share of what the movement actions make in a step, -1 to 1; all within
+    :data:`STOP_BELOW` of 0 say ``stop``.
+    """
+
+    def __init__(self, names: Sequence[str]) -> None:
+        """Takes ``stop``, which small velocities say."""
+        self.names = [*names]
+        self.space: spaces.Space[Any] = spaces.Box(-1.0, 1.0, (len(_VELOCITY_NAMES),), np.float32)
+        known = _native.actions()
+        self._stop, self._wait = known.index("stop"), known.index("wait")
+
+    def one(self, action: object) -> EngineActions:
+        """As :meth:`DiscreteActions.one`."""
+        return self._of(_numbers("action", action, (1,), 4, -1.0))
+
+    def many(self, actions: object, count: int) -> EngineActions:
+        """As :meth:`DiscreteActions.many`."""
+        return self._of(_numbers("actions", actions, (count,), 4, -1.0))
+
+    def _of(self, velocities: NDArray[np.float32]) -> EngineActions:
+        stops = (np.abs(velocities) < STOP_BELOW).all(axis=1)
+        return EngineActions(np.where(stops, self._stop, self._wait), velocities)
+
+    def expert(self, numbers: NDArray[np.int64]) -> Any:  # noqa: ANN401 - of the space
+        """As :meth:`DiscreteActions.expert`; to wait is to turn by less than half a degree."""
+        velocities = _velocities_of(numbers)
+        for k, number in enumerate(numbers.tolist()):
+            if number == self._wait:
+                velocities[k, 2] = _LEAST_TURN
+        return velocities
+
+
+class DictActions:
+    """Velocities of base and head, and an action of the hand at a place in the picture, together.
+
+    ``base``: forward, right, turn to the left; ``head``: look up; each as in
+    :class:`VelocityActions`. ``hand``: 0 for none, then the actions of the hand in order.
+    ``pixel``: as in :class:`PointerActions`. ``stop``: 1 declares the task done.
+    """
+
+    def __init__(self, names: Sequence[str]) -> None:
+        """As :class:`DiscreteActions`; of the names those of hands are numbered."""
+        of_hand = {kind["name"]: kind["is_of_hand"] for kind in _native.action_table()["kinds"]}
+        self.names = [*names]
+        self._hands = [name for name in names if of_hand[name]]
+        known = _native.actions()
+        self._stop, self._wait = known.index("stop"), known.index("wait")
+        self._native = np.array([self._wait, *map(known.index, self._hands)], np.int64)
+        self.space: spaces.Space[Any] = spaces.Dict(
+            {
+                "base": spaces.Box(-1.0, 1.0, (3,), np.float32),
+                "head": spaces.Box(-1.0, 1.0, (1,), np.float32),
+                "hand": spaces.Discrete(1 + len(self._hands)),
+                "pixel": spaces.Box(0.0, 1.0, (2,), np.float32),
+                "stop": spaces.Discrete(2),
+            }
+        )
+
+    def one(self, action: object) -> EngineActions:
+        """As :meth:`DiscreteActions.one`."""
+        return self.many(_stacked("action", action, self._keys()), 1)
+
+    def _keys(self) -> tuple[str, ...]:
+        return ("base", "head", "hand", "pixel", "stop")
+
+    def many(self, actions: object, count: int) -> EngineActions:
+        """As :meth:`DiscreteActions.many`."""
+        parts = _fields("actions", actions, self._keys())
+        shape = (count,)
+        base = _numbers("base", parts["base"], shape, 3, -1.0)
+        head = _numbers("head", parts["head"], shape, 1, -1.0)
+        hands = self._native[_choices("hand", parts["hand"], count, len(self._native))]
+        stops = _choices("stop", parts["stop"], count, 2) == 1
+        return EngineActions(
+            np.where(stops, self._stop, hands),
+            np.concatenate([base, head], axis=1),
+            _numbers("pixel", parts["pixel"], shape, 2, 0.0),
+        )
+
+    def expert(self, numbers: NDArray[np.int64]) -> Any:  # noqa: ANN401 - of the space
+        """As :meth:`DiscreteActions.expert`."""
+        known = self._native.tolist()
+        movements = ("move_forward", "turn_left", "turn_right", "look_up", "look_down", "stop")
+        names = _native.actions()
+        hands = [
+            0 if number < 0 or names[number] in movements else _place_of(number, known, self._hands)
+            for number in numbers.tolist()
+        ]
+        moves = np.where(np.array(hands) > 0, self._wait, numbers)
+        velocities = _velocities_of(moves)
+        return {
+            "base": velocities[:, :3],
+            "head": velocities[:, 3:],
+            "hand": np.array(hands, np.int64),
+            "pixel": np.full((len(numbers), 2), 0.5, np.float32),
+            "stop": (numbers == self._stop).astype(np.int64),
+        }
+
+
+ActionForm = DiscreteActions | PointerActions | ObjectActions | VelocityActions | DictActions
+
+#: By ``action_mode``.
+ACTION_MODES: dict[str, Callable[[Sequence[str]], ActionForm]] = {
+    "discrete": DiscreteActions,
+    "velocity": VelocityActions,
+    "pointer": PointerActions,
+    "object": ObjectActions,
+    "dict": DictActions,
+}
+
+
+def action_form(config: str) -> ActionForm:
+    """The form of actions under the native ``EnvConfig`` as JSON.
+
+    Raises:
+        ConfigError: An action is unknown, or there is none to choose from.
+    """
+    settings = mapping("config", from_json("config", config))
+    return ACTION_MODES[settings.get("action_mode", "discrete")](_native.chosen_actions(config))
+
+
+def masked_form(action_mask: object, form: ActionForm) -> DiscreteActions | None:
+    """The form of actions whose masks are asked for, if they are.
+
+    Raises:
+        ConfigError: The form has none.
+    """
+    if not boolean("action_mask", action_mask):
+        return None
+    if isinstance(form, DiscreteActions):
+        return form
+    raise ConfigError("action_mask is True; masks are of the action_mode discrete alone")
+
+
+def checked_mode(mode: object) -> str:
+    """``action_mode`` of an environment.
+
+    Raises:
+        ConfigError: There is none of this name.
+    """
+    if isinstance(mode, str) and mode in ACTION_MODES:
+        return mode
+    raise ConfigError(f"action_mode is {quoted(mode)}; allowed are {', '.join(ACTION_MODES)}")
+
+
+def first_of(batched: Any) -> Any:  # noqa: ANN401 - of any action space
+    """The only element of actions of one environment."""
+    if isinstance(batched, Mapping):
+        return {key: first_of(value) for key, value in batched.items()}
+    return batched[0]
+
+
+def _place_of(number: int, known: list[int], hands: list[str]) -> int:
+    if number in known:
+        return known.index(number)
+    name = _native.actions()[number]
+    raise UsageError(
+        f"the expert wants to {name}, which is none of the hand's actions: {', '.join(hands)}"
+    )
+
+
+def _velocities_of(numbers: NDArray[np.int64]) -> NDArray[np.float32]:
+    """The velocities of discrete movement actions, shape (n, 4).
+
+    Raises:
+        UsageError: One is of the hand, which velocities cannot say.
+    """
+    moves = {
+        "move_forward": (1, 0, 0, 0),
+        "turn_left": (0, 0, 1, 0),
+        "turn_right": (0, 0, -1, 0),
+        "look_up": (0, 0, 0, 1),
+        "look_down": (0, 0, 0, -1),
+        "stop": (0, 0, 0, 0),
+        "wait": (0, 0, 0, 0),
+    }
+    names = [*_native.actions(), "wait"]
+    rows = []
+    for number in numbers.tolist():
+        if names[number] not in moves:
+            raise UsageError(f"the expert wants to {names[number]}, which velocities cannot say")
+        rows.append(moves[names[number]])
+    return np.array(rows, np.float32).reshape(-1, 4)
+
+
+def _stacked(at: str, action: object, keys: Sequence[str]) -> dict[str, Any]:
+    """An action of one environment as those of several."""
+    return {key: [value] for key, value in _fields(at, action, keys).items()}
+
+
+def _fields(at: str, actions: object, keys: Sequence[str]) -> dict[str, Any]:
+    given = mapping(at, actions, f"a mapping with {', '.join(keys)}")
+    if set(given) != set(keys):
+        raise ConfigError(f"{at} has {sorted(map(str, given))}; expected {sorted(keys)}")
+    return given
+
+
+def _array(at: str, given: object, expected: str) -> NDArray[Any]:
+    refuse_masked(at, given)
+    try:
+        return np.asarray(given)
+    except ValueError:
+        raise ConfigError(f"{at} are {quoted(given)}; expected {expected}") from None
+
+
+def _choices(at: str, given: object, count: int, choices: int) -> NDArray[np.int64]:
+    """Whole numbers below ``choices``, one for each of ``count`` environments."""
+    expected = f"whole numbers of shape ({count},)"
+    numbers = _array(at, given, expected)
+    if numbers.shape != (count,) or numbers.dtype.kind not in "iu":
+        raise ConfigError(
+            f"{at}: expected {expected}, found {numbers.dtype} of shape {numbers.shape}"
+        )
+    wrong = np.flatnonzero((numbers < 0) | (numbers >= choices)).tolist()
+    if wrong:
+        raise ConfigError(
+            f"{at} of environments {abbreviated_list(wrong)} are "
+            f"{abbreviated_list(numbers[wrong].tolist())}; allowed are 0 to {choices - 1}"
+        )
+    return numbers.astype(np.int64)
+
+
+def _whole(at: str, given: object, shape: tuple[int], last: int) -> NDArray[np.int64]:
+    numbers = _array(at, np.atleast_1d(np.asarray(given)), "whole numbers")
+    return _choices(at, numbers, shape[0], last + 1)
+
+
+def _numbers(
+    at: str, given: object, shape: tuple[int], width: int, low: float
+) -> NDArray[np.float32]:
+    """Numbers from ``low`` to 1, shape (environment, ``width``)."""
+    wanted = (*shape, width)
+    expected = f"numbers of shape {wanted if shape != (1,) else (width,)} from {low:g} to 1"
+    numbers = _array(at, given, expected)
+    if shape == (1,) and numbers.shape == (width,):
+        numbers = numbers[np.newaxis]
+    if numbers.shape != wanted or numbers.dtype.kind not in "iuf":
+        raise ConfigError(
+            f"{at}: expected {expected}, found {numbers.dtype} of shape {numbers.shape}"
+        )
+    if not ((numbers >= low) & (numbers <= 1.0)).all():
+        raise ConfigError(f"{at}: expected {expected}, found {quoted(numbers.tolist())}")
+    return numbers.astype(np.float32)
