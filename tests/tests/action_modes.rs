@@ -44,7 +44,7 @@ fn what_a_mask_rules_out_fails() {
         let mut env = env(house, "Free");
         let mut trial = Env::new(env.world().engines().clone(), &config("Free")).unwrap();
         let mut stream = RandomKey::root(8).child(house).stream();
-        for step in 0..400 {
+        for step in 0..120 {
             let object = ObjectId(stream.below(env.world().house().objects.len()) as u32);
             if step % 4 == 0 {
                 stand_before(
@@ -86,7 +86,7 @@ fn what_a_mask_rules_out_fails() {
             env.step(&[Some(action)]).unwrap();
         }
     }
-    assert!(ruled_out > 300 && allowed > 150, "{ruled_out} {allowed}");
+    assert!(ruled_out > 100 && allowed > 60, "{ruled_out} {allowed}");
     assert!(
         f64::from(done) > 0.7 * f64::from(allowed),
         "{done} of {allowed}"
@@ -107,6 +107,7 @@ fn stand_before(env: &mut Env, object: ObjectId, apart_m: f32, around_rad: f32) 
         velocity: Vec3::ZERO,
         yaw_rate_rad_s: 0.0,
         crouched_by_m: 0.0,
+        wheel_rad_s: None,
     };
     if let Err(error) = world.set_agents(&[placement]) {
         panic!("{error}");
@@ -161,7 +162,16 @@ fn hands_take_what_places_of_pictures_and_ids_mean() {
         .ids()
         .find(|id| house.objects[*id].switch.is_some())
         .unwrap();
-    stand_before(&mut env, lamp, 0.8, 0.4);
+    // From some side one reaches its switch.
+    let toggle = DiscreteAction::ALL
+        .iter()
+        .position(|action| *action == DiscreteAction::Toggle)
+        .unwrap();
+    let reached = (0..24).any(|side| {
+        stand_before(&mut env, lamp, 0.8, 0.26 * side as f32);
+        env.action_masks().unwrap()[0][toggle]
+    });
+    assert!(reached);
     let saved = env.snapshot().unwrap();
     let mut told = |action: StepAction| {
         env.restore(&saved).unwrap();

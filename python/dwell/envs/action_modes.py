@@ -53,9 +53,13 @@ class EngineActions:
 
     def step(self, batch: _native.Batch) -> dict[str, Any]:
         """One control step of all environments of a batch; what its ``step`` answers."""
-        parts = (self.velocities, self.places, self.objects)
-        flat = (None if part is None else np.ascontiguousarray(part).ravel() for part in parts)
-        return batch.step(np.ascontiguousarray(self.numbers), *flat)
+        velocities, places, objects = self.velocities, self.places, self.objects
+        return batch.step(
+            np.ascontiguousarray(self.numbers),
+            None if velocities is None else np.ascontiguousarray(velocities).ravel(),
+            None if places is None else np.ascontiguousarray(places).ravel(),
+            None if objects is None else np.ascontiguousarray(objects),
+        )
 
     def without(self, idle: NDArray[np.bool_]) -> EngineActions:
         """The same, with none in the environments of ``idle``."""

@@ -31,21 +31,21 @@ from dwell.envs.config import (
     kept_houses,
     step_limit,
 )
+from dwell.envs.current_state import CurrentStateApi
 from dwell.envs.info_keys import GOAL_KEYS, INFO_KEYS
 from dwell.envs.native_batch import NativeBatch
 from dwell.envs.python_tasks import PythonTask, RewardChoice, Sensors, TaskChoice, split
 from dwell.envs.snapshots import check_and_strip, with_checksum
-from dwell.grounded_text import Text
 from dwell.heads import Head
-from dwell.house import Level
 from dwell.object_state_api import agent_states
+from dwell.world import World
 from dwell.world_settings import Laws, with_head
 
 #: The image that ``render()`` gives.
 RENDER_CAMERA = Camera(width=320, height=240)
 
 
-class DwellEnv(gymnasium.Env[dict[str, Any], Any], EzPickle):
+class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
     """A task in a house, with one agent.
 
     An episode's house is drawn from ``houses``, and everything else in it from the seed. The step
@@ -153,6 +153,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], Any], EzPickle):
         )
         self._actions = action_form(self._config)
         self._masks = masked_form(action_mask, self._actions)
+        self._agent = agent_number(agent)
         self._shelf = HouseCache(houses)
         threads = None if threads is None else integer_in_range("threads", threads, low=1)
         self._closed = False
@@ -398,10 +399,15 @@ class DwellEnv(gymnasium.Env[dict[str, Any], Any], EzPickle):
         """The agents' states, as :meth:`dwell.World.agents` tells them."""
         return agent_states(self._runner.batch.agent_states(0))
 
-    def describe(self, level: Level = "house") -> list[Text] | list[str]:
-        """Sentences about the house as it starts; see :meth:`dwell.House.describe`."""
+    @property
+    def world(self) -> World:
+        """The world in which the episode is played; it goes on with the environment's steps.
+
+        A change that is no action is in no recorded file, and ends with the episode.
+        """
         self._refuse_closed()
-        return self._shelf[self._house].describe(level)
+        runner = self._runner
+        return World.of_env(runner.houses[0], _native.World.of_env(runner.batch, 0))
 
     def actions(self) -> list[str]:
         """The names of the actions, in the order of their numbers."""

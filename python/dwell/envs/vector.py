@@ -12,7 +12,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from dwell import ConfigError, UsageError
+from dwell import ConfigError, UsageError, _native
 from dwell.arguments import (
     abbreviated_list,
     boolean,
@@ -36,6 +36,7 @@ from dwell.envs.config import (
     kept_houses,
     step_limit,
 )
+from dwell.envs.current_state import forked
 from dwell.envs.env_pool import EnvPool
 from dwell.envs.house_assignment import HouseAssignment
 from dwell.envs.info_keys import INFO_KEYS
@@ -49,6 +50,7 @@ from dwell.envs.single import (
     steps_a_second,
 )
 from dwell.envs.snapshots import BatchSnapshot
+from dwell.world import World
 from dwell.world_settings import Laws, with_head
 
 
@@ -545,6 +547,21 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
         self._runner.observe(which)
         self._stopped[which] = False
         return self._observation(), self._ids()
+
+    def world(self, env: int) -> World:
+        """The world of an environment; see :attr:`DwellEnv.world`."""
+        self._refuse_closed()
+        k = integer_in_range("env", env, high=self.num_envs - 1)
+        return World.of_env(self._runner.houses[k], _native.World.of_env(self._runner.batch, k))
+
+    def fork(self) -> DwellVectorEnv:
+        """Other environments at the same moments of the same episodes, which go on by themselves.
+
+        Raises:
+            UsageError: No episode has begun in one of them.
+        """
+        made: DwellVectorEnv = forked(self)
+        return made
 
     def _refuse_closed(self) -> None:
         if self.closed:
