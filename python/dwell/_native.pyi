@@ -312,8 +312,15 @@ class Batch:
         velocities: NDArray[np.float32] | None = ...,
         places: NDArray[np.float32] | None = ...,
         objects: NDArray[np.int64] | None = ...,
+        answers: NDArray[np.float32] | None = ...,
     ) -> dict[str, NDArray[Any] | list[str]]:
         """``actions``: for each environment and agent; -1 for all agents: that environment is not stepped. Of an agent whose episode has ended none is looked at. Keys: reward, terminated, success, action_success, collision, distance_to_goal (NaN without a goal), spl, soft_spl, path_length, collisions (arrays of that shape) and action_error (list). ``velocities``: forward, right, turn, look, -1 to 1, flat; ``places``: of pictures, 0 to 1, flat; ``objects``: ids, 0 for what is looked at."""
+    def answer_fields(self) -> list[dict[str, Any]]:
+        """``[{name, about, unit, range, choices}, ...]``: what the task expects with ``stop``."""
+    def measures(self) -> list[str]:
+        """Names of what the task measures beside distance and path; keys of what ``step`` gives."""
+    def expert_answers(self) -> NDArray[np.float32]:
+        """For each environment and agent all the fields that an answer can have, flat."""
     def action_masks(self) -> NDArray[np.bool_]:
         """For each environment and agent, which discrete actions nothing known beforehand rules out, flat."""
     def observe(self, which: NDArray[np.bool_], outs: Sequence[NDArray[Any] | None]) -> None:

@@ -10,7 +10,8 @@ use crate::prepared_env::PyPreparedEnv;
 use crate::values::JsonArgument;
 use dwell::sensors::{Dtype, ObservationBuffer};
 use dwell::{
-    ActionTarget, Batch, DiscreteAction, Engines, Env, EnvConfig, StepAction, StepInfo, StepResult,
+    ActionTarget, Batch, DiscreteAction, Engines, Env, EnvConfig, MAX_ANSWER_FIELDS, StepAction,
+    StepInfo, StepResult,
 };
 use dwell_scene::EntityId;
 use dwell_scene::interrupt;
@@ -99,6 +100,7 @@ struct ActionRows {
     velocities: Option<Vec<f32>>,
     places: Option<Vec<f32>>,
     objects: Option<Vec<i64>>,
+    answers: Option<Vec<f32>>,
 }
 
 fn row_copy<T: numpy::Element + Copy>(
@@ -120,6 +122,11 @@ impl ActionRows {
             ),
             ("places", self.places.as_ref().map(Vec::len), 2 * count),
             ("objects", self.objects.as_ref().map(Vec::len), count),
+            (
+                "answers",
+                self.answers.as_ref().map(Vec::len),
+                MAX_ANSWER_FIELDS * count,
+            ),
         ] {
             if let Some(found) = found.filter(|found| *found != wanted) {
                 let told = format!("{name}: expected {wanted} numbers, found {found}");
@@ -144,6 +151,13 @@ impl ActionRows {
         }
         if let Some([across, down]) = places {
             step.target = ActionTarget::Picture([*across, *down]);
+        }
+        if let Some((own, _)) = self
+            .answers
+            .as_ref()
+            .and_then(|all| all[MAX_ANSWER_FIELDS * row..].split_first_chunk())
+        {
+            step.answer = *own;
         }
         match self.objects.as_ref().map(|all| all[row]) {
             None | Some(0) => {}
@@ -266,6 +280,25 @@ impl PyBatch {
         })
     }
 
+    /// Returns the fields of the answer that the first agent's task expects with `stop`: `[{name, about, unit, range, choices}]`.
+    fn answer_fields(&self, py: Python<'_>) -> PyResult<PyValue> {
+        self.with(py, |batch| PyValue::of(&batch.env(0)?.answer_fields(0)?))
+    }
+
+    /// Returns the names of what the first agent's task measures beside distance and path.
+    fn measures(&self, py: Python<'_>) -> PyResult<Vec<&'static str>> {
+        self.with(py, |batch| {
+            let measures = batch.env(0)?.task_measures(0)?;
+            Ok(measures.iter().map(|measure| measure.name).collect())
+        })
+    }
+
+    /// Returns what the experts would answer now, shape (environment x agent x field,).
+    fn expert_answers<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let answers = self.with(py, |batch| Ok(batch.expert_answers()?))?;
+        Ok(answers.into_flattened().into_pyarray(py))
+    }
+
     /// Returns which discrete actions nothing known beforehand rules out, shape (environment x agent, action) flat.
     fn action_masks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<bool>>> {
         let masks = self.with(py, |batch| Ok(batch.action_masks()?))?;
@@ -284,7 +317,8 @@ impl PyBatch {
     /// Steps by actions of shape (environment x agent,), -1 for none; all that is answered has that shape. `velocities`: as
     /// [`StepAction::velocity`], shape (environment x agent x 4,); `places`: places in pictures, shape (environment x agent x 2,);
     /// `objects`: ids of things, 0 for what is looked at.
-    #[pyo3(signature = (actions, velocities=None, places=None, objects=None))]
+    /// `answers`: shape (environment x agent x field,) of all the fields that an answer can have.
+    #[pyo3(signature = (actions, velocities=None, places=None, objects=None, answers=None))]
     fn step<'py>(
         &self,
         py: Python<'py>,
@@ -292,12 +326,14 @@ impl PyBatch {
         velocities: Option<PyReadonlyArray1<'py, f32>>,
         places: Option<PyReadonlyArray1<'py, f32>>,
         objects: Option<PyReadonlyArray1<'py, i64>>,
+        answers: Option<PyReadonlyArray1<'py, f32>>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let rows = ActionRows {
             numbers: arrays::as_contiguous_slice("actions", &actions)?.to_vec(),
             velocities: row_copy("velocities", velocities.as_ref())?,
             places: row_copy("places", places.as_ref())?,
             objects: row_copy("objects", objects.as_ref())?,
+            answers: row_copy("answers", answers.as_ref())?,
         };
         let infos = self.with(py, |batch| Ok(batch.step(&rows.read()?)?))?;
         let out = PyDict::new(py);
@@ -328,6 +364,15 @@ impl PyBatch {
         out.set_item("soft_spl", of(|info| info.progress.soft_spl()))?;
         out.set_item("path_length", of(|info| info.progress.path_m))?;
         out.set_item("collisions", of(|info| info.progress.collisions as f64))?;
+        let measures = self.with(py, |batch| Ok(batch.env(0)?.task_measures(0)?))?;
+        for (k, measure) in measures.iter().enumerate() {
+            let row = |info: &Option<StepInfo>| {
+                let own = info.as_ref().and_then(|info| info.measures.get(k));
+                own.copied().unwrap_or(f64::NAN)
+            };
+            let values: Vec<f64> = infos.iter().map(row).collect();
+            out.set_item(measure.name, values.into_pyarray(py))?;
+        }
         let errors: Vec<String> = infos
             .into_iter()
             .map(|info| info.map_or(String::new(), |info| info.action_error))

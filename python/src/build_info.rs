@@ -51,7 +51,7 @@ pub(crate) fn action_table() -> PyResult<PyValue> {
     table(&json!({"kinds": kinds, "target": target, "codes": codes}))
 }
 
-/// The tasks: `[{name, version, about, asks, max_steps, sensors, settings}]`.
+/// The tasks: `[{name, version, about, asks, max_steps, measures, sensors, settings}]`.
 #[pyfunction]
 pub(crate) fn tasks() -> PyResult<PyValue> {
     let tasks = dwell::tasks::all().iter().map(|kind| {
@@ -61,6 +61,7 @@ pub(crate) fn tasks() -> PyResult<PyValue> {
             "about": kind.about,
             "asks": kind.has_goal,
             "max_steps": kind.max_steps,
+            "measures": kind.measures,
             "sensors": kind.sensors,
             "settings": (kind.settings)(),
         })

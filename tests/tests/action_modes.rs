@@ -280,9 +280,9 @@ fn a_batch_takes_what_an_environment_takes() {
     )
     .unwrap();
     let action = StepAction {
-        action: DiscreteAction::Push,
         velocity: Some([0.5, -0.5, 0.2, -0.1]),
         target: ActionTarget::Picture([0.4, 0.6]),
+        ..DiscreteAction::Push.into()
     };
     for _ in 0..5 {
         single.step(&[Some(action)]).unwrap();

@@ -82,7 +82,7 @@ fn every_task_can_be_solved_by_its_expert() {
         for seed in 0..20 {
             env.reset(seed).unwrap();
             for _ in 0..kind.max_steps {
-                let action = env.expert_action(0).unwrap();
+                let action = env.expert_step(0).unwrap();
                 let info = &env.step(&[Some(action)]).unwrap()[0];
                 if info.result.terminated {
                     solved += usize::from(info.result.success);

@@ -7,8 +7,13 @@ use dwell_scene::parallel::Threads;
 use dwell_tests::observations::{goal_sensors, observe};
 use serde_json::{Value, json};
 
+/// The tasks with a goal to walk to.
 fn with_goal() -> impl Iterator<Item = &'static TaskKind> {
-    tasks::all().iter().filter(|kind| kind.has_goal)
+    let walks = |kind: &&TaskKind| {
+        let mut settings = (kind.settings)().into_iter();
+        settings.any(|field| field.name == "min_path_ratio")
+    };
+    tasks::all().iter().filter(walks)
 }
 
 fn env_with(task: &str, settings: Value, sensors: &[&str]) -> Env {

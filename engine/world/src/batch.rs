@@ -3,7 +3,7 @@
 use crate::actions::{DiscreteAction, StepAction};
 use crate::batch_pictures::{self, PendingImages};
 use crate::env::Env;
-use crate::episode::StepInfo;
+use crate::episode::{Answer, StepInfo};
 use crate::error::WorldError;
 use crate::sensors::{Dtype, ObservationBuffer, SensorSpec};
 use dwell_acoustics::signals;
@@ -153,6 +153,15 @@ impl Batch {
         let all = vec![true; self.envs.len()];
         let actions = self.for_active(&all, |_, env| env.expert_actions())?;
         Ok(actions.into_iter().flatten().flatten().collect())
+    }
+
+    /// Returns what each agent's scripted expert would answer now. Shape (environment, agent).
+    ///
+    /// # Errors
+    /// [`WorldError::InvalidCall`] before the first reset.
+    pub fn expert_answers(&self) -> Result<Vec<Answer>, WorldError> {
+        let answers = self.envs.iter().map(Env::expert_answers);
+        Ok(answers.collect::<Result<Vec<_>, _>>()?.concat())
     }
 
     /// Returns the actions that are not ruled out, as [`Env::action_masks`]; all where no episode has begun. Shape (environment, agent).

@@ -233,7 +233,7 @@ fn eye_camera_fov_deg(agents: &[EnvAgent], whose: AgentId) -> Option<f32> {
 mod tests {
     use super::*;
     use crate::Batch;
-    use crate::actions::DiscreteAction;
+    use crate::actions::{DiscreteAction, StepAction};
     use crate::config::WorldConfig;
     use crate::env_config::SensorConfig;
     use crate::episode::StepResult;
@@ -324,7 +324,7 @@ mod tests {
             })
         }
 
-        fn judge(&mut self, _: &World, _: &mut Episode, _: DiscreteAction) -> StepResult {
+        fn judge(&mut self, _: &World, _: &mut Episode, _: &StepAction) -> StepResult {
             StepResult::default()
         }
 

@@ -1,6 +1,6 @@
 //! One of the agents that act in an environment.
 
-use crate::actions::{DiscreteAction, StepSizes};
+use crate::actions::{StepAction, StepSizes};
 use crate::config::WorldConfig;
 use crate::env_config::{ResolvedAgentConfig, SensorConfig};
 use crate::episode::{Episode, StepInfo, StepResult};
@@ -124,7 +124,7 @@ impl EnvAgent {
     pub(crate) fn judge(
         &mut self,
         world: &World,
-        action: DiscreteAction,
+        action: &StepAction,
         outcome: ActionOutcome,
     ) -> Option<StepInfo> {
         let episode = self.episode.as_mut()?;
@@ -144,6 +144,7 @@ impl EnvAgent {
             },
             progress,
             collision,
+            measures: self.task.measures(),
         })
     }
 
@@ -165,6 +166,7 @@ impl EnvAgent {
             action_error: "Its episode has ended.".to_owned(),
             progress: self.episode.as_ref()?.progress,
             collision: false,
+            measures: self.task.measures(),
         })
     }
 }

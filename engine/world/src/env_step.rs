@@ -2,7 +2,7 @@
 
 use crate::actions::{AgentAction, DiscreteAction, StepAction};
 use crate::env::{Env, no_agent, no_episode};
-use crate::episode::StepInfo;
+use crate::episode::{Answer, AnswerField, StepInfo, TaskMeasure};
 use crate::error::WorldError;
 
 impl Env {
@@ -68,14 +68,17 @@ impl Env {
             .collect();
         let outcomes = self.world.step_discrete_actions(&steps)?;
         self.steps += 1;
-        let mut done = steps.into_iter().zip(outcomes);
+        let mut outcomes = outcomes.into_iter();
         let mut infos = Vec::with_capacity(self.agents.len());
-        for agent in &mut self.agents {
+        for (agent, action) in self.agents.iter_mut().zip(actions) {
             let info = if agent.done {
                 agent.step_info_after_end()
             } else {
-                done.next()
-                    .and_then(|(step, outcome)| agent.judge(&self.world, step.action, outcome))
+                let step: Option<StepAction> = action.map(Into::into);
+                outcomes
+                    .next()
+                    .zip(step)
+                    .and_then(|(outcome, step)| agent.judge(&self.world, &step, outcome))
             };
             infos.push(info.ok_or_else(|| no_episode("step"))?);
         }
@@ -111,6 +114,49 @@ impl Env {
         (0..self.agents.len())
             .map(|agent| self.expert_action(agent))
             .collect()
+    }
+
+    /// Returns what each agent's scripted expert would answer now. Shape (agent,).
+    ///
+    /// # Errors
+    /// [`WorldError::InvalidCall`] before the first reset.
+    pub fn expert_answers(&self) -> Result<Vec<Answer>, WorldError> {
+        if !self.has_episode() {
+            return Err(no_episode("expert"));
+        }
+        let agents = self.agents.iter();
+        Ok(agents
+            .map(|agent| agent.task.expert_answer(&self.world))
+            .collect())
+    }
+
+    /// Returns what the scripted expert of one agent would do now, its answer included.
+    ///
+    /// # Errors
+    /// As [`Self::expert_action`].
+    pub fn expert_step(&mut self, agent: usize) -> Result<StepAction, WorldError> {
+        let action = self.expert_action(agent)?;
+        let answer = self.agents[agent].task.expert_answer(&self.world);
+        Ok(StepAction {
+            answer,
+            ..action.into()
+        })
+    }
+
+    /// Returns the fields of the answer that an agent's task expects with `stop`.
+    ///
+    /// # Errors
+    /// [`WorldError::InvalidCall`] for an agent that does not act.
+    pub fn answer_fields(&self, agent: usize) -> Result<Vec<AnswerField>, WorldError> {
+        Ok(self.agent(agent)?.task.answer_fields())
+    }
+
+    /// Returns what an agent's task measures beside distance and path.
+    ///
+    /// # Errors
+    /// [`WorldError::InvalidCall`] for an agent that does not act.
+    pub fn task_measures(&self, agent: usize) -> Result<&'static [TaskMeasure], WorldError> {
+        Ok(self.agent(agent)?.kind.measures)
     }
 
     /// Returns what the scripted expert of one agent would do now.

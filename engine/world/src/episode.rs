@@ -87,6 +87,36 @@ pub struct StepResult {
     pub success: bool,
 }
 
+/// The most fields that an answer has.
+pub const MAX_ANSWER_FIELDS: usize = 4;
+
+/// An answer that an agent gives with `stop`; what its task does not ask for is not looked at.
+pub type Answer = [f32; MAX_ANSWER_FIELDS];
+
+/// A field of the answer that a task expects.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AnswerField {
+    /// The name.
+    pub name: &'static str,
+    /// One sentence about it.
+    pub about: &'static str,
+    /// Its unit; empty for a choice.
+    pub unit: &'static str,
+    /// Lowest and highest value.
+    pub range: [f32; 2],
+    /// The choices, by number from 0, where it is one.
+    pub choices: Option<Vec<String>>,
+}
+
+/// A number that a task measures.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct TaskMeasure {
+    /// The key in infos.
+    pub name: &'static str,
+    /// One sentence about it.
+    pub about: &'static str,
+}
+
 /// The report of a step beside the observation.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StepInfo {
@@ -102,4 +132,6 @@ pub struct StepInfo {
     pub progress: NavigationMetrics,
     /// True if this step was cut short by something in the way.
     pub collision: bool,
+    /// What the task measures, in the order of its kind's `measures`; NaN for what is not known yet.
+    pub measures: Vec<f64>,
 }

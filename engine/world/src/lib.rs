@@ -58,7 +58,10 @@ pub use current_objects::{ObjectState, effective_agents, object_state, object_st
 pub use engines::Engines;
 pub use env::Env;
 pub use env_config::{AgentConfig, EnvConfig, SensorConfig};
-pub use episode::{Episode, EpisodeGoal, GoalPart, StepInfo, StepResult};
+pub use episode::{
+    Answer, AnswerField, Episode, EpisodeGoal, GoalPart, MAX_ANSWER_FIELDS, StepInfo, StepResult,
+    TaskMeasure,
+};
 pub use error::WorldError;
 pub use expert::{ShortestPathFollower, action_towards_object};
 pub use fixtures::{

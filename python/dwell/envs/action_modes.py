@@ -33,6 +33,8 @@ STOP_BELOW = 0.05
 _LEAST_TURN = 0.06
 #: Ids of things that an action can name: more than any house has.
 _IDS = 1 << 20
+#: Numbers that an answer can have, whatever the task.
+ANSWER_FIELDS = 4
 
 
 @dataclasses.dataclass(frozen=True)
@@ -44,12 +46,14 @@ class EngineActions:
         velocities: Shares of what movement actions make, shape (n, 4) float32; ``None``: theirs.
         places: Of pictures, shares of width and height, shape (n, 2) float32.
         objects: Ids of things, 0 for what is looked at, shape (n,) int64.
+        answers: Numbers that the task expects with ``stop``, shape (n, 4) float32.
     """
 
     numbers: NDArray[np.int64]
     velocities: NDArray[np.float32] | None = None
     places: NDArray[np.float32] | None = None
     objects: NDArray[np.int64] | None = None
+    answers: NDArray[np.float32] | None = None
 
     def step(self, batch: _native.Batch) -> dict[str, Any]:
         """One control step of all environments of a batch; what its ``step`` answers."""
@@ -59,6 +63,7 @@ class EngineActions:
             None if velocities is None else np.ascontiguousarray(velocities).ravel(),
             None if places is None else np.ascontiguousarray(places).ravel(),
             None if objects is None else np.ascontiguousarray(objects),
+            None if self.answers is None else np.ascontiguousarray(self.answers).ravel(),
         )
 
     def without(self, idle: NDArray[np.bool_]) -> EngineActions:
@@ -79,6 +84,8 @@ class EngineActions:
             row["pixel"] = self.places[env].tolist()
         if self.objects is not None:
             row["object"] = int(self.objects[env])
+        if self.answers is not None:
+            row["answer"] = self.answers[env].tolist()
         return row if len(row) > 1 else str(row["action"])
 
     @classmethod
@@ -90,21 +97,25 @@ class EngineActions:
         """
         fields = {"action": row} if isinstance(row, str) else mapping(at, row)
         names = _native.actions()
-        if unknown := sorted(set(fields) - {"action", "velocity", "pixel", "object"}):
-            raise ConfigError(
-                f"{at} has {unknown[0]!r}; allowed are action, velocity, pixel, object"
-            )
+        allowed = ("action", "velocity", "pixel", "object", "answer")
+        if unknown := sorted(set(fields) - {*allowed}):
+            raise ConfigError(f"{at} has {unknown[0]!r}; allowed are {', '.join(allowed)}")
         if fields.get("action") not in names:
             found = quoted(fields.get("action"))
             raise ConfigError(f"{at} is {found}; allowed are {', '.join(names)}")
         numbers = np.array([names.index(fields["action"])], np.int64)
         one = (1,)
-        velocity, pixel, thing = (fields.get(key) for key in ("velocity", "pixel", "object"))
+        velocity, pixel, thing, answer = (fields.get(key) for key in allowed[1:])
         return cls(
             numbers,
-            None if velocity is None else _numbers(f"{at}: velocity", velocity, one, 4, -1.0),
-            None if pixel is None else _numbers(f"{at}: pixel", pixel, one, 2, 0.0),
+            None
+            if velocity is None
+            else _numbers(f"{at}: velocity", velocity, one, 4, (-1.0, 1.0)),
+            None if pixel is None else _numbers(f"{at}: pixel", pixel, one, 2, (0.0, 1.0)),
             None if thing is None else _whole(f"{at}: object", thing, one, _IDS - 1),
+            None
+            if answer is None
+            else _numbers(f"{at}: answer", answer, one, ANSWER_FIELDS, (-1e6, 1e6)),
         )
 
 
@@ -214,7 +225,7 @@ class PointerActions(_Targeted):
     def _with_target(
         self, verbs: EngineActions, target: object, shape: tuple[int]
     ) -> EngineActions:
-        places = _numbers("pixel", target, shape, 2, 0.0)
+        places = _numbers("pixel", target, shape, 2, (0.0, 1.0))
         return dataclasses.replace(verbs, places=places)
 
     def _looked_at(self, count: int) -> NDArray[np.float32]:
@@ -255,11 +266,11 @@ class VelocityActions:
 
     def one(self, action: object) -> EngineActions:
         """As :meth:`DiscreteActions.one`."""
-        return self._of(_numbers("action", action, (1,), 4, -1.0))
+        return self._of(_numbers("action", action, (1,), 4, (-1.0, 1.0)))
 
     def many(self, actions: object, count: int) -> EngineActions:
         """As :meth:`DiscreteActions.many`."""
-        return self._of(_numbers("actions", actions, (count,), 4, -1.0))
+        return self._of(_numbers("actions", actions, (count,), 4, (-1.0, 1.0)))
 
     def _of(self, velocities: NDArray[np.float32]) -> EngineActions:
         stops = (np.abs(velocities) < STOP_BELOW).all(axis=1)
@@ -311,14 +322,14 @@ class DictActions:
         """As :meth:`DiscreteActions.many`."""
         parts = _fields("actions", actions, self._keys())
         shape = (count,)
-        base = _numbers("base", parts["base"], shape, 3, -1.0)
-        head = _numbers("head", parts["head"], shape, 1, -1.0)
+        base = _numbers("base", parts["base"], shape, 3, (-1.0, 1.0))
+        head = _numbers("head", parts["head"], shape, 1, (-1.0, 1.0))
         hands = self._native[_choices("hand", parts["hand"], count, len(self._native))]
         stops = _choices("stop", parts["stop"], count, 2) == 1
         return EngineActions(
             np.where(stops, self._stop, hands),
             np.concatenate([base, head], axis=1),
-            _numbers("pixel", parts["pixel"], shape, 2, 0.0),
+            _numbers("pixel", parts["pixel"], shape, 2, (0.0, 1.0)),
         )
 
     def expert(self, numbers: NDArray[np.int64]) -> Any:  # noqa: ANN401 - of the space
@@ -341,6 +352,68 @@ class DictActions:
         }
 
 
+class AnsweredActions:
+    """Actions of another form, and the answer that the task expects with ``stop``."""
+
+    def __init__(self, form: ActionForm, fields: Sequence[Mapping[str, Any]]) -> None:
+        """Adds to ``form`` the fields that a batch's ``answer_fields`` names."""
+        self._form, self._fields = form, [*fields]
+        self.names = form.names
+        answer = spaces.Dict({field["name"]: _answer_space(field) for field in fields})
+        own = form.space
+        self._is_dict = isinstance(own, spaces.Dict)
+        parts = dict(own.spaces) if isinstance(own, spaces.Dict) else {"action": own}
+        self.space: spaces.Space[Any] = spaces.Dict({**parts, "answer": answer})
+
+    def one(self, action: object) -> EngineActions:
+        """As :meth:`DiscreteActions.one`."""
+        parts = _fields("action", action, list(self.space))  # type: ignore[call-overload] # a Dict
+        names = [field["name"] for field in self._fields]
+        answer = _stacked("answer", parts.pop("answer"), names)
+        return self._with(self._form.one(parts if self._is_dict else parts["action"]), answer, 1)
+
+    def many(self, actions: object, count: int) -> EngineActions:
+        """As :meth:`DiscreteActions.many`."""
+        parts = _fields("actions", actions, list(self.space))  # type: ignore[call-overload] # a Dict
+        answer = parts.pop("answer")
+        form = self._form.many(parts if self._is_dict else parts["action"], count)
+        return self._with(form, answer, count)
+
+    def _with(self, actions: EngineActions, answer: object, count: int) -> EngineActions:
+        given = _fields("answer", answer, [field["name"] for field in self._fields])
+        columns = np.zeros((count, ANSWER_FIELDS), np.float32)
+        for k, field in enumerate(self._fields):
+            at, value = f"answer: {field['name']}", given[field["name"]]
+            if field["choices"] is not None:
+                columns[:, k] = _choices(at, value, count, len(field["choices"]))
+                continue
+            low, high = np.array(field["range"], np.float32).tolist()
+            numbers = np.asarray(_array(at, value, "numbers")).reshape(-1, 1)
+            columns[:, k] = _numbers(at, numbers, (count,), 1, (low, high))[:, 0]
+        return dataclasses.replace(actions, answers=columns)
+
+    def expert(self, numbers: NDArray[np.int64], answers: NDArray[np.float32]) -> Any:  # noqa: ANN401 - of the space
+        """As :meth:`DiscreteActions.expert`, with the experts' answers, shape (n, 4)."""
+        own = self._form.expert(numbers)
+        answer: dict[str, NDArray[Any]] = {}
+        for k, field in enumerate(self._fields):
+            column = answers[:, k]
+            is_choice = field["choices"] is not None
+            answer[field["name"]] = (
+                column.astype(np.int64) if is_choice else column.astype(np.float32)[:, np.newaxis]
+            )
+        return {**(own if self._is_dict else {"action": own}), "answer": answer}
+
+
+def _answer_space(field: Mapping[str, Any]) -> spaces.Space[Any]:
+    """The space of a field of an answer."""
+    if field["choices"] is not None:
+        return spaces.Discrete(len(field["choices"]))
+    low, high = field["range"]
+    box: spaces.Box[Any] = spaces.Box(low, high, (1,), np.float32)
+    return box
+
+
 ActionForm = DiscreteActions | PointerActions | ObjectActions | VelocityActions | DictActions
 
 #: By ``action_mode``.
@@ -353,17 +426,24 @@ ACTION_MODES: dict[str, Callable[[Sequence[str]], ActionForm]] = {
 }
 
 
-def action_form(config: str) -> ActionForm:
+def action_form(
+    config: str, answer_fields: Sequence[Mapping[str, Any]] = ()
+) -> ActionForm | AnsweredActions:
     """The form of actions under the native ``EnvConfig`` as JSON.
+
+    Args:
+        config: The settings.
+        answer_fields: Those of a batch: what the task expects with ``stop``.
 
     Raises:
         ConfigError: An action is unknown, or there is none to choose from.
     """
     settings = mapping("config", from_json("config", config))
-    return ACTION_MODES[settings.get("action_mode", "discrete")](_native.chosen_actions(config))
+    form = ACTION_MODES[settings.get("action_mode", "discrete")](_native.chosen_actions(config))
+    return AnsweredActions(form, answer_fields) if answer_fields else form
 
 
-def masked_form(action_mask: object, form: ActionForm) -> DiscreteActions | None:
+def masked_form(action_mask: object, form: ActionForm | AnsweredActions) -> DiscreteActions | None:
     """The form of actions whose masks are asked for, if they are.
 
     Raises:
@@ -371,8 +451,9 @@ def masked_form(action_mask: object, form: ActionForm) -> DiscreteActions | None
     """
     if not boolean("action_mask", action_mask):
         return None
-    if isinstance(form, DiscreteActions):
-        return form
+    own = form._form if isinstance(form, AnsweredActions) else form
+    if isinstance(own, DiscreteActions):
+        return own
     raise ConfigError("action_mask is True; masks are of the action_mode discrete alone")
 
 
@@ -470,11 +551,11 @@ def _whole(at: str, given: object, shape: tuple[int], last: int) -> NDArray[np.i
 
 
 def _numbers(
-    at: str, given: object, shape: tuple[int], width: int, low: float
+    at: str, given: object, shape: tuple[int], width: int, span: tuple[float, float]
 ) -> NDArray[np.float32]:
-    """Numbers from ``low`` to 1, shape (environment, ``width``)."""
-    wanted = (*shape, width)
-    expected = f"numbers of shape {wanted if shape != (1,) else (width,)} from {low:g} to 1"
+    """Numbers within bounds, shape (environment, ``width``)."""
+    (low, high), wanted = span, (*shape, width)
+    expected = f"numbers of shape {wanted if shape != (1,) else (width,)} from {low:g} to {high:g}"
     numbers = _array(at, given, expected)
     if shape == (1,) and numbers.shape == (width,):
         numbers = numbers[np.newaxis]
@@ -482,6 +563,6 @@ def _numbers(
         raise ConfigError(
             f"{at}: expected {expected}, found {numbers.dtype} of shape {numbers.shape}"
         )
-    if not ((numbers >= low) & (numbers <= 1.0)).all():
+    if not ((numbers >= low) & (numbers <= high)).all():
         raise ConfigError(f"{at}: expected {expected}, found {quoted(numbers.tolist())}")
     return numbers.astype(np.float32)

@@ -10,7 +10,7 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from dwell import ConfigError, _native
-from dwell.envs.action_modes import EngineActions
+from dwell.envs.action_modes import ActionForm, AnsweredActions, EngineActions
 from dwell.envs.env_pool import PreparedEnv, add_heads
 from dwell.envs.info_keys import GOAL_KEYS
 from dwell.envs.python_tasks import PythonEpisode, PythonTask
@@ -130,6 +130,14 @@ class NativeBatch:
         if own and None not in own:
             return np.array(own, np.int64)
         return self.batch.expert_actions()
+
+    def expert(self, actions: ActionForm | AnsweredActions) -> Any:  # noqa: ANN401 - of the action space
+        """The actions of the tasks' experts now, elements of the batched action space."""
+        numbers = self.expert_actions()
+        if isinstance(actions, AnsweredActions):
+            answers = self.batch.expert_answers().reshape(self.count, -1)
+            return actions.expert(numbers, answers)
+        return actions.expert(numbers)
 
     def observe(self, which: NDArray[np.bool_]) -> None:
         """Writes the observations of the environments in ``which`` into the buffers."""

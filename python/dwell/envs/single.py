@@ -151,8 +151,6 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
             world=world,
             agent=agent_number(agent),
         )
-        self._actions = action_form(self._config)
-        self._masks = masked_form(action_mask, self._actions)
         self._agent = agent_number(agent)
         self._shelf = HouseCache(houses)
         threads = None if threads is None else integer_in_range("threads", threads, low=1)
@@ -174,6 +172,9 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
         self._call: str | None = None
         self._alone = np.ones(1, np.bool_)
         self.metadata = {**self.metadata, "render_fps": steps_a_second(self._runner.batch)}
+        self._actions = action_form(self._config, self._runner.batch.answer_fields())
+        self._masks = masked_form(action_mask, self._actions)
+        self._measures = self._runner.batch.measures()
         self.observation_space = self._runner.space
         self.action_space = self._actions.space
 
@@ -289,8 +290,11 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
         # A step that the task did not judge to its end is none.
         with self._playing("step"):
             answer, further = self._runner.step(taken)
-        info: dict[str, Any] = {key: np.asarray(answer[key])[0].item() for key in INFO_KEYS}
-        info = {k: value for k, value in info.items() if k not in GOAL_KEYS or not isnan(value)}
+        info: dict[str, Any] = {
+            key: np.asarray(answer[key])[0].item() for key in (*INFO_KEYS, *self._measures)
+        }
+        unknown = (*GOAL_KEYS, *self._measures)
+        info = {k: value for k, value in info.items() if k not in unknown or not isnan(value)}
         info["action_error"] = answer["action_error"][0]
         terminated = bool(answer["terminated"][0])
         observation = self._observation()
@@ -332,7 +336,7 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
             UsageError: It wants to do what the environment's actions do not have.
         """
         self._refuse_stopped("expert_action")
-        action = first_of(self._actions.expert(self._runner.expert_actions()))
+        action = first_of(self._runner.expert(self._actions))
         return int(action) if isinstance(action, np.integer) else action
 
     def state_hash(self) -> int:

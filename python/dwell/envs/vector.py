@@ -204,8 +204,6 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
             world=world,
             agent=agent_number(agent),
         )
-        self._actions = action_form(config)
-        self._masks = masked_form(action_mask, self._actions)
         shelf = HouseCache(houses)
         threads = None if threads is None else integer_in_range("threads", threads, low=1)
         self._shelf = shelf
@@ -231,6 +229,10 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
         self._stopped = np.zeros(num_envs, np.bool_)
         #: The call that plays episodes at this moment.
         self._call: str | None = None
+        self._actions = action_form(config, self._runner.batch.answer_fields())
+        self._masks = masked_form(action_mask, self._actions)
+        #: Keys of a step's answer that become infos.
+        self._info_keys = (*INFO_KEYS, *self._runner.batch.measures())
         self.single_observation_space = self._runner.space
         self.single_action_space = self._actions.space
         self.observation_space = batch_space(self.single_observation_space, num_envs)
@@ -435,7 +437,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
         self._runner.observe(np.ones(self.num_envs, np.bool_))
         stepped = ~begins
         infos: dict[str, Any] = {}
-        for key in INFO_KEYS:
+        for key in self._info_keys:
             infos[key] = np.asarray(answer[key])
             infos[f"_{key}"] = stepped
         infos["action_error"] = np.array(answer["action_error"], object)
@@ -455,7 +457,11 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
         for recorder in self._recorders:
             recorder.stepped(taken, infos["success"], self._done)
         if self._done.any() and self.autoreset_mode is AutoresetMode.SAME_STEP:
-            own = [key for key in infos if key not in (*INFO_KEYS, "action_error", "audio_clipped")]
+            own = [
+                key
+                for key in infos
+                if key not in (*self._info_keys, "action_error", "audio_clipped")
+            ]
             infos |= self._restart(infos, [key for key in own if not key.startswith("_")])
             infos |= self._ids()
         return self._observation(), rewards, terminated, truncated, infos
@@ -471,7 +477,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
                 for key, value in last.items()
             }
         final_info: dict[str, Any] = {}
-        for key in (*INFO_KEYS, "action_error", "audio_clipped", *own):
+        for key in (*self._info_keys, "action_error", "audio_clipped", *own):
             final_info |= {key: infos[key].copy(), f"_{key}": ended & infos[f"_{key}"]}
         self._start(ended)
         self._runner.observe(ended)
@@ -569,7 +575,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
 
     def expert_actions(self) -> Any:  # noqa: ANN401 - of the action space
         """The actions of the task's scripted expert now, an element of the action space."""
-        return self._actions.expert(self._runner.expert_actions())
+        return self._runner.expert(self._actions)
 
     def state_hashes(self) -> list[int]:
         """The state hash of every environment."""

@@ -2,6 +2,7 @@
 
 use super::{AgentAction, DiscreteAction, HandTarget, StepSizes};
 use crate::env_agent::EnvAgent;
+use crate::episode::{Answer, MAX_ANSWER_FIELDS};
 use crate::error::WorldError;
 use crate::eye_camera::EyeCamera;
 use crate::world::World;
@@ -62,6 +63,8 @@ pub struct StepAction {
     pub velocity: Option<[f32; 4]>,
     /// What its hand is used on.
     pub target: ActionTarget,
+    /// With `stop`, the answer that its task expects; NaN for none.
+    pub answer: Answer,
 }
 
 impl From<DiscreteAction> for StepAction {
@@ -70,6 +73,7 @@ impl From<DiscreteAction> for StepAction {
             action,
             velocity: None,
             target: ActionTarget::Gaze,
+            answer: [f32::NAN; MAX_ANSWER_FIELDS],
         }
     }
 }

@@ -21,7 +21,7 @@ pub(super) const ASKED: &str = "Go to the sound.";
 /// Height of the source over the floor, m.
 const SOURCE_HEIGHT_M: f32 = 1.5;
 /// Sounds that are drawn by default: of the kinds that people at home walk to.
-const SOUNDS: [&str; 8] = [
+pub(super) const SOUNDS: [&str; 8] = [
     "alarm",
     "doorbell",
     "kettle",
@@ -40,6 +40,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     goal_parts: &[],
     max_steps: 1000,
     sensors: &["rgb", "depth", "audio", "spectrogram"],
+    measures: &[],
     settings: schema::fields_of::<AudioNavSettings>,
     build,
 };
@@ -68,7 +69,7 @@ fn build(value: &serde_json::Value, setup: TaskSetup) -> Result<Box<dyn Task>, W
 }
 
 /// Refuses signals that do not exist, none at all, and levels out of range.
-fn check_sounds(sounds: &[String], level_db: Option<f32>) -> Result<(), WorldError> {
+pub(super) fn check_sounds(sounds: &[String], level_db: Option<f32>) -> Result<(), WorldError> {
     if sounds.is_empty() {
         return Err(WorldError::Config {
             field: "sounds",

@@ -6,7 +6,7 @@
 use super::door_leaves::DoorLeaves;
 use super::standing_room::FreeStartCells;
 use super::{Task, TaskKind, TaskSetup, random_yaw_rad};
-use crate::actions::DiscreteAction;
+use crate::actions::{DiscreteAction, StepAction};
 use crate::episode::{Episode, EpisodeGoal, StepResult};
 use crate::error::WorldError;
 use crate::metrics::NavigationMetrics;
@@ -31,6 +31,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     goal_parts: &[],
     max_steps: 1000,
     sensors: &["rgb", "depth", "semantic", "audio"],
+    measures: &[],
     settings: schema::fields_of::<FreeSettings>,
     build,
 };
@@ -134,18 +135,13 @@ impl Task for FreeTask {
         })
     }
 
-    fn judge(
-        &mut self,
-        world: &World,
-        episode: &mut Episode,
-        action: DiscreteAction,
-    ) -> StepResult {
+    fn judge(&mut self, world: &World, episode: &mut Episode, action: &StepAction) -> StepResult {
         if let Some(agent) = world.state().agents.get(self.setup.agent) {
             let progress = &mut episode.progress;
             progress.advance(agent.position, None, agent.collided);
         }
         StepResult {
-            terminated: action == DiscreteAction::Stop,
+            terminated: action.action == DiscreteAction::Stop,
             ..StepResult::default()
         }
     }

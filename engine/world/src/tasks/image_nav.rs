@@ -21,6 +21,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     goal_parts: &[GoalPart::Image],
     max_steps: 1000,
     sensors: &["rgb", "depth", "imagegoal"],
+    measures: &[],
     settings: schema::fields_of::<ImageNavSettings>,
     build,
 };

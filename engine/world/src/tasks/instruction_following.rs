@@ -29,6 +29,7 @@ pub(super) const KIND: TaskKind = TaskKind {
         "instruction",
         "instruction_tokens",
     ],
+    measures: &[],
     settings: schema::fields_of::<InstructionFollowingSettings>,
     build,
 };

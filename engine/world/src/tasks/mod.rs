@@ -12,10 +12,13 @@ mod object_nav;
 mod point_nav;
 mod room_nav;
 mod semantic_audio_nav;
+mod sound_localization;
 mod standing_room;
 
-use crate::actions::{DiscreteAction, StepSizes};
-use crate::episode::{Episode, GoalPart, StepResult};
+use crate::actions::{DiscreteAction, StepAction, StepSizes};
+use crate::episode::{
+    Answer, AnswerField, Episode, GoalPart, MAX_ANSWER_FIELDS, StepResult, TaskMeasure,
+};
 use crate::error::WorldError;
 use crate::schema::FieldSchema;
 use crate::world::World;
@@ -69,8 +72,22 @@ pub trait Task: Debug + Send + Sync {
     }
 
     /// Judges the step that has just been made with `action`.
-    fn judge(&mut self, world: &World, episode: &mut Episode, action: DiscreteAction)
-    -> StepResult;
+    fn judge(&mut self, world: &World, episode: &mut Episode, action: &StepAction) -> StepResult;
+
+    /// The fields of the answer that it expects with `stop`, in order, at most [`MAX_ANSWER_FIELDS`]; none for most.
+    fn answer_fields(&self) -> Vec<AnswerField> {
+        Vec::new()
+    }
+
+    /// The answer of the scripted expert now.
+    fn expert_answer(&self, _world: &World) -> Answer {
+        [0.0; MAX_ANSWER_FIELDS]
+    }
+
+    /// What [`TaskKind::measures`] names, after the latest step; NaN for what is not known yet.
+    fn measures(&self) -> Vec<f64> {
+        Vec::new()
+    }
 
     /// Returns the action of a scripted expert, which knows the house, now.
     fn expert(&mut self, world: &mut World, episode: &Episode) -> DiscreteAction;
@@ -126,6 +143,8 @@ pub struct TaskKind {
     pub max_steps: u64,
     /// The sensors of its environment by default.
     pub sensors: &'static [&'static str],
+    /// What it measures beside distance and path, in order.
+    pub measures: &'static [TaskMeasure],
     /// The fields of its settings.
     pub settings: fn() -> Vec<FieldSchema>,
     /// Builds one.
@@ -144,6 +163,7 @@ pub fn all() -> &'static [TaskKind] {
         audio_nav::KIND,
         semantic_audio_nav::KIND,
         instruction_steps::KIND,
+        sound_localization::KIND,
     ]
 }
 

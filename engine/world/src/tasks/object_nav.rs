@@ -27,6 +27,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     goal_parts: &[GoalPart::Class],
     max_steps: 1000,
     sensors: &["rgb", "depth", "semantic", "gps", "compass", "objectgoal"],
+    measures: &[],
     settings: schema::fields_of::<ObjectNavSettings>,
     build,
 };

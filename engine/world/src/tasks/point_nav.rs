@@ -21,6 +21,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     goal_parts: &[GoalPart::Position],
     max_steps: 1000,
     sensors: &["rgb", "depth", "pointgoal_with_gps_compass"],
+    measures: &[],
     settings: schema::fields_of::<PointNavSettings>,
     build,
 };

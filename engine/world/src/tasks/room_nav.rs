@@ -22,6 +22,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     goal_parts: &[GoalPart::Room],
     max_steps: 1000,
     sensors: &["rgb", "depth", "gps", "compass", "roomgoal"],
+    measures: &[],
     settings: schema::fields_of::<RoomNavSettings>,
     build,
 };

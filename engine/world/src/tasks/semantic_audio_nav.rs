@@ -54,6 +54,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     goal_parts: &[GoalPart::Class],
     max_steps: 1000,
     sensors: &["rgb", "depth", "gps", "compass", "audio", "spectrogram"],
+    measures: &[],
     settings: schema::fields_of::<SemanticAudioNavSettings>,
     build,
 };

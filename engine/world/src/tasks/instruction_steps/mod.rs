@@ -12,7 +12,7 @@ use super::door_leaves::DoorLeaves;
 use super::navigation::{NavigationRules, navigation_settings};
 use super::standing_room::FreeStartCells;
 use super::{Task, TaskKind, TaskSetup, random_yaw_rad};
-use crate::actions::DiscreteAction;
+use crate::actions::{DiscreteAction, StepAction};
 use crate::episode::{Episode, EpisodeGoal, StepResult};
 use crate::error::WorldError;
 use crate::metrics::NavigationMetrics;
@@ -48,6 +48,7 @@ pub(super) const KIND: TaskKind = TaskKind {
         "instruction",
         "instruction_tokens",
     ],
+    measures: &[],
     settings: schema::fields_of::<InstructionStepsSettings>,
     build,
 };
@@ -257,12 +258,7 @@ impl Task for InstructionSteps {
         }
     }
 
-    fn judge(
-        &mut self,
-        world: &World,
-        episode: &mut Episode,
-        action: DiscreteAction,
-    ) -> StepResult {
+    fn judge(&mut self, world: &World, episode: &mut Episode, action: &StepAction) -> StepResult {
         let id = self.setup.agent;
         let (Some(active), Some(agent)) = (&mut self.active, world.state().agents.get(id)) else {
             return StepResult::default();
@@ -272,7 +268,7 @@ impl Task for InstructionSteps {
         let gain_m = episode
             .progress
             .advance(agent.position, left_m, agent.collided);
-        let stops = action == DiscreteAction::Stop;
+        let stops = action.action == DiscreteAction::Stop;
         let is_reached = || active.is_fulfilled(world, id);
         let mut result = (self.rules).step_result((gain_m, agent.collided), stops, is_reached);
         result.reward += self.settings.step_done_reward * newly_done as f64;

@@ -15,7 +15,7 @@ use super::door_leaves::DoorLeaves;
 use super::goal_cells::LargestIslandIndex;
 use super::standing_room::FreeStartCells;
 use super::{Task, TaskSetup};
-use crate::actions::DiscreteAction;
+use crate::actions::{DiscreteAction, StepAction};
 use crate::episode::{Episode, StepResult};
 use crate::error::WorldError;
 use crate::metrics::NavigationMetrics;
@@ -220,12 +220,7 @@ impl<K: GoalKind> Task for NavigationTask<K> {
         Ok(episode)
     }
 
-    fn judge(
-        &mut self,
-        world: &World,
-        episode: &mut Episode,
-        action: DiscreteAction,
-    ) -> StepResult {
+    fn judge(&mut self, world: &World, episode: &mut Episode, action: &StepAction) -> StepResult {
         let (Some(active), Some(agent)) =
             (&self.active, world.state().agents.get(self.setup.agent))
         else {
@@ -235,7 +230,7 @@ impl<K: GoalKind> Task for NavigationTask<K> {
         let gain_m = episode
             .progress
             .advance(agent.position, left_m, agent.collided);
-        let stops = action == DiscreteAction::Stop;
+        let stops = action.action == DiscreteAction::Stop;
         let is_reached = || active.is_reached(world, left_m);
         self.rules
             .step_result((gain_m, agent.collided), stops, is_reached)
