@@ -14,7 +14,7 @@ pub use agent_placement::AgentPlacement;
 pub use set_state::{BodyState, JointState};
 
 use crate::actions::{ActionContext, HandAction, OngoingPush};
-use crate::agents::Agents;
+use crate::agents::{AgentTouch, Agents};
 use crate::articulation::WorldJoints;
 use crate::body::{BodyHandle, BodyStatus};
 use crate::config::PhysicsConfig;
@@ -181,6 +181,11 @@ impl PhysicsWorld {
             pushes: &mut self.pushes,
         };
         context.perform(state, rays, agent, action)
+    }
+
+    /// Returns what an agent's body and the object in its hand touch where `state` has them; nothing for an agent that does not exist.
+    pub fn touch(&self, state: &State, agent: AgentId) -> AgentTouch {
+        self.agents.touch(&self.dynamics, state, agent)
     }
 
     /// Returns the model that this world shares with others over its house.
