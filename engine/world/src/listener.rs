@@ -96,9 +96,21 @@ mod tests {
         let position = wide.receiver_at(head, None).pose.position;
         assert!((position - Vec3::new(0.5, 1.5, 2.0)).length() < 1e-6);
         assert_eq!(wide.channels(), 9);
-        assert!(wide.check(None).is_ok() && mounted(ReceiverKind::Ambisonics { order: 4 }).check(None).is_err());
-        assert!(mounted(ReceiverKind::Array(Vec::new())).check(None).is_err());
+        assert!(
+            wide.check(None).is_ok()
+                && mounted(ReceiverKind::Ambisonics { order: 4 })
+                    .check(None)
+                    .is_err()
+        );
+        assert!(
+            mounted(ReceiverKind::Array(Vec::new()))
+                .check(None)
+                .is_err()
+        );
         assert!(mounted(ReceiverKind::Head(HeadId(7))).check(None).is_err());
-        assert_ne!(wide.receiver_text(), mounted(ReceiverKind::Omni).receiver_text());
+        assert_ne!(
+            wide.receiver_text(),
+            mounted(ReceiverKind::Omni).receiver_text()
+        );
     }
 }

@@ -30,7 +30,8 @@ impl MemoryEstimate {
         let views = requests.views.iter();
         let pictures = views.map(|view| image_bytes(&view.eye.camera, view.channels));
         let ears = requests.listeners.iter();
-        let heard: u64 = ears.map(|(listener, samples)| (listener.channels() * samples) as u64)
+        let heard: u64 = ears
+            .map(|(listener, samples)| (listener.channels() * samples) as u64)
             .sum();
         let specs = env.specs();
         Self {

@@ -114,7 +114,9 @@ impl SightedCells {
         let storeys = self.0.iter();
         let memory = SightedCellRuns {
             settings,
-            storeys: storeys.map(|(level, cells)| (*level, runs(cells))).collect(),
+            storeys: storeys
+                .map(|(level, cells)| (*level, runs(cells)))
+                .collect(),
         };
         postcard::to_stdvec(&memory).expect("plain data can always be written to memory")
     }
@@ -142,7 +144,8 @@ impl SightedCells {
                 return Err(format!("a map of {total} cells of storey {}", level.0));
             }
             let runs = runs.iter();
-            let cells = runs.flat_map(|(value, length)| std::iter::repeat_n(*value, *length as usize));
+            let cells =
+                runs.flat_map(|(value, length)| std::iter::repeat_n(*value, *length as usize));
             all.insert(level, cells.collect());
         }
         Ok(Self(all))
@@ -170,7 +173,11 @@ fn for_each_column(
     for axis in 0..2 {
         if way[axis] != 0.0 {
             let inside = from[axis] - from[axis].floor();
-            let left = if way[axis] > 0.0 { 1.0 - inside } else { inside };
+            let left = if way[axis] > 0.0 {
+                1.0 - inside
+            } else {
+                inside
+            };
             (next[axis], apart[axis]) = (left / way[axis].abs(), 1.0 / way[axis].abs());
         }
     }
@@ -248,7 +255,11 @@ mod tests {
             SightedCells::from_bytes("settings", 2, 100, &bytes),
             Ok(seen)
         );
-        for (settings, levels, columns) in [("others", 2, 100), ("settings", 1, 100), ("settings", 2, 99)] {
+        for (settings, levels, columns) in [
+            ("others", 2, 100),
+            ("settings", 1, 100),
+            ("settings", 2, 99),
+        ] {
             assert!(SightedCells::from_bytes(settings, levels, columns, &bytes).is_err());
         }
         for cut in 0..bytes.len() {

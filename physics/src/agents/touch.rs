@@ -47,13 +47,12 @@ impl Agents {
     }
 
     /// Returns the obstacles that stop the body's movements where it stands.
-    fn obstacles_beside(
-        &self,
-        dynamics: &Dynamics,
-        state: &State,
-        id: AgentId,
-    ) -> Vec<BodyTouch> {
-        let Some(agent) = state.agents.get(id).filter(|_| id.index() < self.list.len()) else {
+    fn obstacles_beside(&self, dynamics: &Dynamics, state: &State, id: AgentId) -> Vec<BodyTouch> {
+        let Some(agent) = state
+            .agents
+            .get(id)
+            .filter(|_| id.index() < self.list.len())
+        else {
             return Vec::new();
         };
         let others = movement::other_agents(state, id);
@@ -121,9 +120,7 @@ fn held_object_force(dynamics: &Dynamics, state: &State, agent: AgentId) -> Opti
         let entry = dynamics.entries.get(entry_index(collider))?;
         entry.contact_entity
     };
-    let is_held = |entity: ContactEntity| {
-        matches!(entity, ContactEntity::Part(part) if house.parts[part].object == held)
-    };
+    let is_held = |entity: ContactEntity| matches!(entity, ContactEntity::Part(part) if house.parts[part].object == held);
     let distance_m = dynamics.settings.config.touch_distance_m;
     let impulse = |pair: &ContactPair| {
         let colliders = [pair.collider1, pair.collider2];

@@ -111,7 +111,8 @@ impl Sensor for ContactSensor {
             return;
         };
         for touch in &felt.body {
-            let [touches, force_n] = &mut around[sector(touch.direction, agent.yaw_rad, self.sectors)];
+            let [touches, force_n] =
+                &mut around[sector(touch.direction, agent.yaw_rad, self.sectors)];
             *touches = 1.0;
             *force_n = (*force_n + touch.force_n).min(FULL_SCALE_N);
         }

@@ -129,11 +129,18 @@ impl LidarConfig {
                 return fault("elevations_deg", found, "either the angles or their range");
             }
         }
-        let rings = self.elevations_deg.as_ref().map_or(u64::from(self.rings), |all| all.len() as u64);
+        let rings = self
+            .elevations_deg
+            .as_ref()
+            .map_or(u64::from(self.rings), |all| all.len() as u64);
         let rays = rings * u64::from(self.beams);
         if rays > MOST_RAYS {
             let allowed = format!("at most {MOST_RAYS} rays in all rings together");
-            return fault("beams", format!("{} in {rings} rings", self.beams), &allowed);
+            return fault(
+                "beams",
+                format!("{} in {rings} rings", self.beams),
+                &allowed,
+            );
         }
         if !(self.min_range_m > 0.0 && self.min_range_m < 1000.0) {
             let allowed = "above 0, below 1000 m";
@@ -160,7 +167,11 @@ impl LidarConfig {
     /// Returns the angle of each beam from ahead, rad to the left. Shape (beam,).
     fn beam_angles_rad(&self) -> Vec<f32> {
         let beams = self.beams as usize;
-        let gaps = if self.fov_deg < 360.0 { beams - 1 } else { beams };
+        let gaps = if self.fov_deg < 360.0 {
+            beams - 1
+        } else {
+            beams
+        };
         let angle = |k: usize| match (beams, gaps) {
             (1, _) => 0.0,
             (_, gaps) => self.fov_deg * (k as f32 / gaps as f32 - 0.5),
@@ -222,7 +233,11 @@ impl LidarSensor {
             .iter()
             .map(|left_rad| math::sin_cos(ahead_rad + left_rad))
             .collect();
-        for ((up, level), row) in self.rings.iter().zip(out.chunks_exact_mut(directions.len())) {
+        for ((up, level), row) in self
+            .rings
+            .iter()
+            .zip(out.chunks_exact_mut(directions.len()))
+        {
             interrupt::unwind_if_cancelled();
             for (beams, ranges) in directions.chunks(PACKET).zip(row.chunks_mut(PACKET)) {
                 let mut rays = RayPacket::<PACKET>::new(origin);

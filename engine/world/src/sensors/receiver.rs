@@ -96,7 +96,11 @@ impl ReceiverName {
                     [1.0, 1.0, 1.0],
                 ];
                 let scale = 1.0 / 3.0_f32.sqrt();
-                Some(corners.map(|corner| Vec3::from_array(corner) * scale).into())
+                Some(
+                    corners
+                        .map(|corner| Vec3::from_array(corner) * scale)
+                        .into(),
+                )
             }
             Self::Circular4 => Some(circle(4)),
             Self::Circular8 => Some(circle(8)),
@@ -125,7 +129,11 @@ impl ReceiverConfig {
         match &self.microphones_m {
             Some(all) if !is_array => {
                 let found = format!("{} positions with the kind {kind}", all.len());
-                return fault("receiver.microphones_m", found, "given with \"array\" alone");
+                return fault(
+                    "receiver.microphones_m",
+                    found,
+                    "given with \"array\" alone",
+                );
             }
             None if is_array => {
                 let found = "missing".to_owned();
@@ -137,7 +145,11 @@ impl ReceiverConfig {
             }
             Some(all) if !all.iter().flatten().all(|part| part.abs() <= 10.0) => {
                 let found = format!("{all:?}");
-                return fault("receiver.microphones_m", found, "-10 to 10 m along each axis");
+                return fault(
+                    "receiver.microphones_m",
+                    found,
+                    "-10 to 10 m along each axis",
+                );
             }
             _ => {}
         }
@@ -262,7 +274,10 @@ mod tests {
             (json!({"kind": "ambisonics", "order": 3}), 16),
             (json!({"kind": "tetrahedral"}), 4),
             (json!({"kind": "circular_8", "directivity": "cardioid"}), 8),
-            (json!({"kind": "array", "microphones_m": [[0, 0, 0], [0, 1, 0], [0, -1, 0]]}), 3),
+            (
+                json!({"kind": "array", "microphones_m": [[0, 0, 0], [0, 1, 0], [0, -1, 0]]}),
+                3,
+            ),
         ] {
             let told = settings.to_string();
             assert_eq!(built(settings).unwrap().channels(), channels, "{told}");
@@ -281,7 +296,10 @@ mod tests {
         assert!((line[0] - Vec3::NEG_X).length() < 1e-6 && (line[3] - Vec3::X).length() < 1e-6);
         for position in [Vec3::X, Vec3::Y, Vec3::NEG_Y, Vec3::new(1.0, 2.0, -1.0)] {
             let faces = rotation_outwards(position) * Vec3::NEG_Z;
-            assert!((faces - position.normalize_or_zero()).length() < 1e-5, "{position}");
+            assert!(
+                (faces - position.normalize_or_zero()).length() < 1e-5,
+                "{position}"
+            );
         }
     }
 
@@ -316,6 +334,9 @@ mod tests {
             assert_eq!(built(settings).unwrap_err().to_string(), told);
         }
         let told = built(json!({"kind": "stereo"})).unwrap_err().to_string();
-        assert!(told.contains("stereo") && told.contains("circular_4"), "{told}");
+        assert!(
+            told.contains("stereo") && told.contains("circular_4"),
+            "{told}"
+        );
     }
 }

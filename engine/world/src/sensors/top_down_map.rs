@@ -113,7 +113,10 @@ impl TopDownMapConfig {
         if !within(self.cell_m, 0.02, 1.0) {
             return fault("cell_m", self.cell_m.to_string(), "0.02 to 1 m");
         }
-        if let Some(radius_m) = self.radius_m.filter(|radius_m| !within(*radius_m, 0.0, 2.0)) {
+        if let Some(radius_m) = self
+            .radius_m
+            .filter(|radius_m| !within(*radius_m, 0.0, 2.0))
+        {
             return fault("radius_m", radius_m.to_string(), "0 to 2 m");
         }
         let furthest_m = (1000.0 * self.cell_m).min(100.0);
@@ -121,8 +124,15 @@ impl TopDownMapConfig {
             let allowed = format!("above 0, at most {furthest_m} m: 1000 cells, or 100 m");
             return fault("range_m", self.range_m.to_string(), &allowed);
         }
-        if let Some(fov_deg) = self.fov_deg.filter(|fov_deg| !(*fov_deg > 0.0 && *fov_deg <= 360.0)) {
-            return fault("fov_deg", fov_deg.to_string(), "above 0, at most 360 degrees");
+        if let Some(fov_deg) = self
+            .fov_deg
+            .filter(|fov_deg| !(*fov_deg > 0.0 && *fov_deg <= 360.0))
+        {
+            return fault(
+                "fov_deg",
+                fov_deg.to_string(),
+                "above 0, at most 360 degrees",
+            );
         }
         match self.sight_height_m {
             Some(height_m) if !within(height_m, 0.0, 10.0) => {
@@ -303,9 +313,8 @@ impl Sensor for TopDownMapSensor {
         let columns = Self::update_grid(&mut self.grid, &self.walker, world)?.columns();
         let levels = world.house().levels.len();
         let found = SightedCells::from_bytes(&self.fingerprint(), levels, columns.count(), bytes);
-        self.seen = found.map_err(|why| {
-            WorldError::Snapshot(format!("the sensor {:?}: {why}", self.of.name))
-        })?;
+        self.seen = found
+            .map_err(|why| WorldError::Snapshot(format!("the sensor {:?}: {why}", self.of.name)))?;
         Ok(())
     }
 
@@ -345,7 +354,10 @@ mod tests {
             agent: AgentId(0),
         };
         for (settings, told) in [
-            (json!({"width": 0}), "width is 0; allowed is 1 to 2048 cells"),
+            (
+                json!({"width": 0}),
+                "width is 0; allowed is 1 to 2048 cells",
+            ),
             (
                 json!({"cell_m": 0.02, "range_m": 21.0}),
                 "range_m is 21; allowed is above 0, at most 20 m: 1000 cells, or 100 m",

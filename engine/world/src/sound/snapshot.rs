@@ -11,8 +11,8 @@ use crate::engines::Engines;
 use crate::error::WorldError;
 use crate::listener::Listener;
 use dwell_acoustics::HeadId;
-use dwell_scene::random::RandomKey;
 use dwell_scene::State;
+use dwell_scene::random::RandomKey;
 use serde::{Deserialize, Serialize};
 
 #[derive(Serialize, Deserialize)]
