@@ -74,9 +74,8 @@ fn step(batch: &mut Batch, action: DiscreteAction) {
 /// Actions of a walk that turns and goes, now into something, now on.
 fn walk(count: usize) -> Vec<DiscreteAction> {
     let action = |k: usize| match k % 9 {
-        0..5 => DiscreteAction::MoveForward,
         5 | 6 => DiscreteAction::TurnLeft,
-        7 if k % 2 == 0 => DiscreteAction::TurnRight,
+        7 if k.is_multiple_of(2) => DiscreteAction::TurnRight,
         _ => DiscreteAction::MoveForward,
     };
     (0..count).map(action).collect()

@@ -1,7 +1,5 @@
 //! Several sensors of one kind: microphones by arrival times and levels, and cameras, each with its own mount.
 
-#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
-
 use dwell::{
     Batch, DiscreteAction, EnvConfig, PlayRequest, SensorConfig, SoundName, SoundPlace, WorldConfig,
 };

@@ -117,6 +117,20 @@ impl Sensor for AudioSensor {
 mod tests {
     use super::*;
 
+    /// The fields within `receiver` are in the schema by which callers check them, and its text is its own.
+    #[test]
+    fn the_receiver_has_a_schema_of_its_own() {
+        let fields = (KIND.settings)();
+        let receiver = fields.iter().find(|field| field.name == "receiver");
+        let receiver = receiver.unwrap();
+        assert!(
+            receiver.about.starts_with("The microphones in place"),
+            "{receiver:?}"
+        );
+        assert_eq!(receiver.schema["type"], "object");
+        assert!(receiver.schema["properties"]["microphones_m"].is_object());
+    }
+
     #[test]
     fn what_is_too_loud_is_cut_off_and_counted() {
         let mut samples = [0.0, 199.0, 200.0, 200.1, -1e9, -200.0];

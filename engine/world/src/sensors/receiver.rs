@@ -254,13 +254,13 @@ mod tests {
     use dwell_scene::AgentId;
     use serde_json::{Value, json};
 
-    fn built(value: Value) -> Result<Listener, WorldError> {
+    fn built(value: &Value) -> Result<Listener, WorldError> {
         let config = WorldConfig::default();
         let setup = SensorSetup {
             config: &config,
             agent: AgentId(0),
         };
-        let receiver: ReceiverConfig = crate::parse_settings::parse_settings("receiver", &value)?;
+        let receiver: ReceiverConfig = crate::parse_settings::parse_settings("receiver", value)?;
         receiver.build(setup, None)
     }
 
@@ -279,10 +279,9 @@ mod tests {
                 3,
             ),
         ] {
-            let told = settings.to_string();
-            assert_eq!(built(settings).unwrap().channels(), channels, "{told}");
+            assert_eq!(built(&settings).unwrap().channels(), channels, "{settings}");
         }
-        assert_eq!(built(json!({})).unwrap(), Listener::ears(AgentId(0)));
+        assert_eq!(built(&json!({})).unwrap(), Listener::ears(AgentId(0)));
         for name in [
             ReceiverName::Tetrahedral,
             ReceiverName::Circular4,
@@ -331,9 +330,9 @@ mod tests {
                 "receiver.directivity is \"cardioid\" with the kind \"mono\"; allowed is given with arrays alone",
             ),
         ] {
-            assert_eq!(built(settings).unwrap_err().to_string(), told);
+            assert_eq!(built(&settings).unwrap_err().to_string(), told);
         }
-        let told = built(json!({"kind": "stereo"})).unwrap_err().to_string();
+        let told = built(&json!({"kind": "stereo"})).unwrap_err().to_string();
         assert!(
             told.contains("stereo") && told.contains("circular_4"),
             "{told}"
