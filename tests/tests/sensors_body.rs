@@ -329,8 +329,11 @@ fn proprioception_weighs_what_the_hand_holds() {
     let held = held.expect("something in the apartment can be picked up");
     let expected = world.state().mass_of_parts_kg(&house, held);
     let found = observed(&mut batch, "proprioception").0;
-    assert_eq!(found[9..11], [1.0, expected]);
-    assert!(expected > 0.0);
+    assert!(found[9] == 1.0 && found[10] > 0.0, "{found:?}");
+    assert!(
+        (found[10] - expected).abs() < 0.01 * expected,
+        "{found:?}, {expected} kg"
+    );
     let (rows, _) = observed(&mut batch, "contact");
     assert!([0.0, 1.0].contains(&rows[16]));
 }

@@ -12,13 +12,16 @@ fn a_thrown_ball_presses_with_its_momentum_from_where_it_comes() {
         ..PhysicsConfig::default()
     };
     let mut build = Build::room([6.0, 3.0, 6.0]);
-    let ball = build.movable("ball", Piece::ball(0.12, Vec3::new(4.2, 1.0, 3.0)));
+    let ball = build.movable(
+        "ball",
+        Piece::ball(0.12, Vec3::new(4.2, 1.0, 3.0)).density(300.0),
+    );
     let mut run = build.run_with(config);
     let id = run.agent(Vec3::new(3.0, 0.0, 3.0), 0.4);
     assert_eq!(run.world.touch(&run.state, id).body, []);
     run.throw(ball, Vec3::new(-4.0, 1.0, 0.0));
     let root = run.root(ball);
-    let mass_kg = run.state.mass_of_parts_kg(&run.house, ball);
+    let mass_kg = 300.0 * 4.0 / 3.0 * std::f32::consts::PI * 0.12_f32.powi(3);
     let (mut pressed, mut momentum) = (0.0, 0.0);
     for _ in 0..60 {
         let before = run.state.part_velocity[root].linear.x;
@@ -53,8 +56,14 @@ fn a_held_thing_feels_the_wall_it_is_held_against() {
     run.steps(20);
     let id = run.agent(Vec3::new(3.0, 0.0, 2.3), 0.0);
     assert_eq!(run.world.touch(&run.state, id).held_force_n, None);
+    assert_eq!(run.world.held_mass_kg(id), 0.0);
     let outcome = run.act(id, &Pick::new(thing));
     assert!(outcome.success, "{}", outcome.sentence);
+    let (held_kg, expected_kg) = (run.world.held_mass_kg(id), 200.0 * 0.18_f32.powi(3));
+    assert!(
+        (held_kg - expected_kg).abs() < 0.01 * expected_kg,
+        "{held_kg} kg"
+    );
     run.steps(20);
     assert_eq!(run.world.touch(&run.state, id).held_force_n, None);
     // Towards the wall behind it, with the thing before it.

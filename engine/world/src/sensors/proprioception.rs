@@ -55,10 +55,7 @@ impl Sensor for ProprioceptionSensor {
         };
         let world_from_agent = Pose::from_position_yaw(agent.position, agent.yaw_rad);
         let velocity = world_from_agent.rotation.inverse() * agent.velocity;
-        let (state, house) = (seen.world.state(), seen.world.house());
-        let held_kg = agent
-            .holding
-            .map_or(0.0, |object| state.mass_of_parts_kg(house, object));
+        let held_kg = seen.world.physics().held_mass_kg(self.0.agent);
         let flag = |is: bool| f32::from(u8::from(is));
         let [left_rad_s, right_rad_s] = agent.base.wheel_rad_s;
         let felt: [f32; LENGTH] = [
