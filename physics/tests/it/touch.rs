@@ -57,7 +57,7 @@ fn a_held_thing_feels_the_wall_it_is_held_against() {
     let id = run.agent(Vec3::new(3.0, 0.0, 2.3), 0.0);
     assert_eq!(run.world.touch(&run.state, id).held_force_n, None);
     assert_eq!(run.world.held_mass_kg(id), 0.0);
-    let outcome = run.act(id, &Pick::new(thing));
+    let outcome = run.act(id, Pick::new(thing));
     assert!(outcome.success, "{}", outcome.sentence);
     let (held_kg, expected_kg) = (run.world.held_mass_kg(id), 200.0 * 0.18_f32.powi(3));
     assert!(
