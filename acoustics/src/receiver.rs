@@ -205,7 +205,10 @@ impl Receiver {
     }
 
     /// Checks that its position is finite and all its parts are in range.
-    pub(crate) fn check(&self) -> Result<(), AcousticsError> {
+    ///
+    /// # Errors
+    /// [`AcousticsError`] names what is not.
+    pub fn check(&self) -> Result<(), AcousticsError> {
         const AT: &str = "receiver";
         finite("the receiver", self.pose.position)?;
         check_unit_rotation("the receiver", self.pose.rotation)?;

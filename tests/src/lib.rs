@@ -5,6 +5,7 @@ pub mod golden;
 pub mod hostile;
 pub mod observations;
 pub mod pixel_counts;
+pub mod sensing;
 pub mod validity;
 
 use dwell::{Engines, Env, EnvConfig, SensorConfig, WorldError};

@@ -79,6 +79,8 @@ pub struct Stream {
     key: RandomKey,
     /// Random key of the place.
     room: RandomKey,
+    /// Random key of the microphones' own noise.
+    microphone: RandomKey,
     threads: Threads,
     partitions: usize,
     large_parts: Vec<PartId>,
@@ -132,6 +134,7 @@ impl Stream {
             scene,
             config,
             room: key.child("room"),
+            microphone: key.child("microphone"),
             key,
             threads,
             block: 0,
@@ -144,6 +147,13 @@ impl Stream {
     #[must_use]
     pub fn with_room_key(self, room: RandomKey) -> Self {
         Self { room, ..self }
+    }
+
+    /// Returns the same stream with microphones of the random key `microphone`: streams of one key whose receivers have one centre are
+    /// in one sound field, and differ in the noise of their microphones.
+    #[must_use]
+    pub fn with_microphone_key(self, microphone: RandomKey) -> Self {
+        Self { microphone, ..self }
     }
 
     /// Returns the scene.
@@ -318,7 +328,7 @@ impl Stream {
         self.voices.retain(|voice| {
             !voice.input.is_silent() || sources.iter().any(|source| source.id == voice.id)
         });
-        let own = self.key.child("microphone").child(self.block);
+        let own = self.microphone.child(self.block);
         let listener = self.scene.stage_context(receiver, self.room, own);
         self.microphones.process_block(&state.laws, &listener, out);
         self.parts = self.large_part_poses(state);

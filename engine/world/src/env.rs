@@ -207,7 +207,7 @@ impl Env {
 
     /// Opens the ears that the sensors ask for, where they are not open yet.
     pub(crate) fn enable_listeners(&mut self) -> Result<(), WorldError> {
-        self.world.enable_listeners(&self.requests.listeners)
+        self.world.enable_receivers(&self.requests.listeners)
     }
 }
 

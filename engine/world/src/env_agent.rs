@@ -89,7 +89,7 @@ impl EnvAgent {
                 return Err(WorldError::Config {
                     field: "sensors",
                     found: format!("{name:?} twice"),
-                    allowed: "each sensor once".to_owned(),
+                    allowed: "each name once: give one of them another \"name\"".to_owned(),
                 });
             }
         }

@@ -10,7 +10,7 @@ use dwell_scene::{AgentId, IdVec, Pose};
 use serde::{Deserialize, Serialize};
 
 /// The first bytes of an [`Env::snapshot`]: its kind and version.
-const MAGIC: &[u8] = b"dwenv7";
+const MAGIC: &[u8] = b"dwenv8";
 
 /// Episodes at one moment. Their goals come from the seed again.
 #[derive(Serialize, Deserialize)]
@@ -40,6 +40,8 @@ struct AgentSnapshot {
     goal_replaced: bool,
     /// What the task keeps beside the world.
     task_state: Vec<u8>,
+    /// What sensors remember, by their names; those that remember nothing are left out.
+    sensor_states: Vec<(String, Vec<u8>)>,
 }
 
 impl AgentSnapshot {
@@ -56,6 +58,7 @@ impl AgentSnapshot {
             progress: episode.progress,
             goal_replaced: episode.goal.kind.is_empty(),
             task_state: agent.task.snapshot(),
+            sensor_states: sensor_states(agent),
         }
     }
 
@@ -129,7 +132,8 @@ impl Env {
 
     /// Goes to where [`Self::snapshot`] was taken in an environment of the same house, world, agents, tasks with their settings, and
     /// step sizes; the next steps give the same bits as
-    /// they did then. Only scripted experts forget manoeuvres that they were about.
+    /// they did then. Only scripted experts forget manoeuvres that they were about. Sensors may be others: those that remember and
+    /// were not there begin with what they sense now.
     ///
     /// # Errors
     /// [`WorldError::Snapshot`] with the reason. No episode runs then, except after one that names another task, settings or step sizes:
@@ -138,7 +142,7 @@ impl Env {
         let refuse = |why: String| WorldError::Snapshot(why);
         let body = bytes
             .strip_prefix(MAGIC)
-            .ok_or_else(|| refuse("it does not begin with \"dwenv7\"".to_owned()))?;
+            .ok_or_else(|| refuse("it does not begin with \"dwenv8\"".to_owned()))?;
         let moment: EnvSnapshot =
             postcard::from_bytes(body).map_err(|error| refuse(error.to_string()))?;
         if moment.agents.len() != self.agents.len() {
@@ -177,9 +181,25 @@ impl Env {
         self.world.restore(&moment.world)?;
         for (agent, saved) in self.agents.iter_mut().zip(&moment.agents) {
             agent.task.restore(&self.world, &saved.task_state)?;
+            for sensor in &mut agent.sensors {
+                let name = sensor.spec().name;
+                let mut states = saved.sensor_states.iter();
+                match states.find(|(other, _)| *other == name) {
+                    Some((_, state)) => sensor.restore(&self.world, state)?,
+                    // It was taken without this sensor.
+                    None => sensor.forget(&self.world)?,
+                }
+            }
         }
         tokens
     }
+}
+
+/// Returns what the sensors of an agent remember, by their names.
+fn sensor_states(agent: &EnvAgent) -> Vec<(String, Vec<u8>)> {
+    let sensors = agent.sensors.iter();
+    let states = sensors.map(|sensor| (sensor.spec().name, sensor.snapshot()));
+    states.filter(|(_, state)| !state.is_empty()).collect()
 }
 
 #[cfg(test)]

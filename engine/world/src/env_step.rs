@@ -82,6 +82,11 @@ impl Env {
             };
             infos.push(info.ok_or_else(|| no_episode("step"))?);
         }
+        for agent in &mut self.agents {
+            for sensor in &mut agent.sensors {
+                sensor.advance(&self.world)?;
+            }
+        }
         Ok(infos)
     }
 

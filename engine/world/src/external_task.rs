@@ -44,6 +44,12 @@ impl Env {
         }
         episode.progress = NavigationMetrics::new(episode.start.position, distance_m);
         self.record_start_poses();
+        // What was sensed before the world was arranged does not belong to the episode.
+        if let Some(own) = self.agents.get_mut(agent) {
+            for sensor in &mut own.sensors {
+                sensor.forget(&self.world)?;
+            }
+        }
         Ok(())
     }
 

@@ -12,8 +12,8 @@ const WORLD_BYTES: u64 = 64 << 10;
 const BODY_BYTES: u64 = 9 << 10;
 /// Memory of a fixed piece of the house in a world, bytes.
 const PIECE_BYTES: u64 = 768;
-/// Memory of a sample of an agent's window of sound, with the echoes and filters on their way to it, bytes.
-const SAMPLE_BYTES: u64 = 256;
+/// Memory of a sample of a channel of an agent's window of sound, with the echoes and filters on their way to it, bytes.
+const SAMPLE_BYTES: u64 = 128;
 
 /// The memory of one environment beside what it shares with others over its house, bytes: rather more than it comes to need where
 /// most lies still.
@@ -30,7 +30,9 @@ impl MemoryEstimate {
         let views = requests.views.iter();
         let pictures = views.map(|view| image_bytes(&view.eye.camera, view.channels));
         let ears = requests.listeners.iter();
-        let heard: u64 = ears.map(|(_, samples)| *samples as u64).sum();
+        let heard: u64 = ears
+            .map(|(listener, samples)| (listener.channels() * samples) as u64)
+            .sum();
         let specs = env.specs();
         Self {
             world: world_bytes(env.world()) + heard * SAMPLE_BYTES,

@@ -1,9 +1,9 @@
 //! Requests of sensors to the engines, and their results.
 
 use crate::eye_camera::EyeCamera;
+use crate::listener::Listener;
 use crate::world::World;
 use dwell_render::{Camera, Frame, ImageChannels};
-use dwell_scene::AgentId;
 
 /// A view that some sensor wants.
 #[derive(Clone, Debug)]
@@ -19,8 +19,8 @@ pub struct ViewRequest {
 pub struct SensorRequests {
     /// Pictures.
     pub views: Vec<ViewRequest>,
-    /// Agents that listen, with the longest requested window, samples.
-    pub listeners: Vec<(AgentId, usize)>,
+    /// Agents that listen with a receiver, with the longest requested window, samples.
+    pub listeners: Vec<(Listener, usize)>,
 }
 
 impl SensorRequests {
@@ -35,11 +35,12 @@ impl SensorRequests {
         }
     }
 
-    /// Requests the sound at an agent's ears.
-    pub fn request_sound(&mut self, agent: AgentId, samples: usize) {
-        match self.listeners.iter_mut().find(|(other, _)| *other == agent) {
+    /// Requests the sound at a receiver of an agent.
+    pub fn request_sound(&mut self, listener: &Listener, samples: usize) {
+        let mut listeners = self.listeners.iter_mut();
+        match listeners.find(|(other, _)| other == listener) {
             Some((_, longest)) => *longest = samples.max(*longest),
-            None => self.listeners.push((agent, samples)),
+            None => self.listeners.push((listener.clone(), samples)),
         }
     }
 }

@@ -4,6 +4,7 @@ use crate::config::WorldConfig;
 use crate::engines::Engines;
 use crate::error::WorldError;
 use crate::initial_state::InitialWorld;
+use crate::listener::Listener;
 use crate::motion_history::{LastStepMotion, PreviousState};
 use crate::sound::{StepContext, WorldSound};
 use dwell_physics::{
@@ -183,11 +184,21 @@ impl World {
     /// # Errors
     /// [`WorldError::Acoustics`] for a source or receiver that cannot be simulated.
     pub fn enable_listeners(&mut self, ears: &[(AgentId, usize)]) -> Result<(), WorldError> {
+        let ears = ears.iter();
+        let ears = ears.map(|(agent, samples)| (Listener::ears(*agent), *samples));
+        self.enable_receivers(&ears.collect::<Vec<_>>())
+    }
+
+    /// As [`World::enable_listeners`], for any receivers of agents.
+    ///
+    /// # Errors
+    /// [`WorldError::Acoustics`] for a source or receiver that cannot be simulated.
+    pub fn enable_receivers(&mut self, listeners: &[(Listener, usize)]) -> Result<(), WorldError> {
         self.sound.enable_listeners(
             &self.engines,
             &self.rays,
             &self.state,
-            ears,
+            listeners,
             self.key.child("sound"),
         )
     }

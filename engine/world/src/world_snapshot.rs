@@ -12,7 +12,7 @@ use dwell_scene::{AgentBody, Id, State};
 use xxhash_rust::xxh3::xxh3_64;
 
 /// Header of a world's snapshot: its kind and version.
-const MAGIC: &[u8] = b"dwworld7";
+const MAGIC: &[u8] = b"dwworld8";
 
 /// The fields that are checked before the rest is unpacked.
 #[derive(serde::Serialize, serde::Deserialize)]
@@ -99,7 +99,7 @@ impl World {
         let refuse = |why: String| WorldError::Snapshot(why);
         let told = bytes
             .strip_prefix(MAGIC)
-            .ok_or_else(|| refuse("it does not begin with \"dwworld7\"".to_owned()))?;
+            .ok_or_else(|| refuse("it does not begin with \"dwworld8\"".to_owned()))?;
         let (sum, told) = told
             .split_first_chunk::<8>()
             .ok_or_else(|| refuse("it is too short".to_owned()))?;

@@ -1,6 +1,7 @@
 //! Sounds that are started, stopped and made louder while a world runs.
 
 use crate::error::WorldError;
+use crate::listener::Listener;
 use crate::sound::{PlayRequest, SoundState, check_level};
 use crate::world::World;
 use dwell_scene::AgentId;
@@ -57,6 +58,11 @@ impl World {
 
     /// The newest samples at an agent's ear (0 left, 1 right), Pa; zeros before it listened that long.
     pub fn newest_samples(&self, agent: AgentId, channel: usize, out: &mut [f32]) {
-        self.sound.newest_samples(agent, channel, out);
+        self.newest_samples_of(&Listener::ears(agent), channel, out);
+    }
+
+    /// The newest samples at a channel of an agent's receiver, Pa; zeros before it listened that long.
+    pub fn newest_samples_of(&self, listener: &Listener, channel: usize, out: &mut [f32]) {
+        self.sound.newest_samples(listener, channel, out);
     }
 }

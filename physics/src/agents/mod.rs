@@ -8,10 +8,12 @@ mod resize;
 mod shape_queries;
 mod slope_sliding;
 mod spawn;
+mod touch;
 mod wheeled_step;
 
 pub use control::AgentControl;
 pub(crate) use control::STEEPEST_LOOK_RAD;
+pub use touch::{AgentTouch, BodyTouch};
 
 pub(crate) use character_controller::{
     CharacterController, CharacterPush, FASTEST_FALL_M_S, PassiveVelocity,

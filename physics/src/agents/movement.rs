@@ -197,7 +197,7 @@ pub(crate) fn finish_movement(dynamics: &Dynamics, state: &mut State, ways: &[Mo
 }
 
 /// Returns the surroundings of an agent, for its present height.
-fn current_agent_queries<'a>(
+pub(super) fn current_agent_queries<'a>(
     dynamics: &'a Dynamics,
     agent: &AgentState,
     id: AgentId,

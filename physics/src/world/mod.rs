@@ -14,7 +14,7 @@ pub use agent_placement::AgentPlacement;
 pub use set_state::{BodyState, JointState};
 
 use crate::actions::{ActionContext, HandAction, HandContext, OngoingPush};
-use crate::agents::Agents;
+use crate::agents::{AgentTouch, Agents};
 use crate::articulation::WorldJoints;
 use crate::body::{BodyHandle, BodyStatus};
 use crate::config::PhysicsConfig;
@@ -34,6 +34,7 @@ use begin::align_joints;
 use dwell_scene::material::PairContact;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{Address, AgentId, AgentState, House, Id, State};
+use rapier3d::dynamics::RigidBody;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
@@ -210,6 +211,20 @@ impl PhysicsWorld {
             pushes: &mut self.pushes,
         };
         Ok(context.hand_of(state, rays, agent))
+    }
+
+    /// Returns what an agent's body and the object in its hand touch where `state` has them; nothing for an agent that does not exist.
+    pub fn touch(&self, state: &State, agent: AgentId) -> AgentTouch {
+        self.agents.touch(&self.dynamics, state, agent)
+    }
+
+    /// Returns the mass of what an agent holds, kg, as its hand lifts it; 0 where it holds nothing.
+    pub fn held_mass_kg(&self, agent: AgentId) -> f32 {
+        let mut grips = self.hands.held_objects.iter();
+        let grip = grips.find(|grip| grip.agent == agent);
+        let body = grip.and_then(|grip| self.dynamics.bodies.get(grip.body as usize));
+        let body = body.and_then(|body| self.dynamics.engine.bodies.get(body.handle));
+        body.map_or(0.0, RigidBody::mass)
     }
 
     /// Returns the model that this world shares with others over its house.

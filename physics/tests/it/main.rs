@@ -48,6 +48,7 @@ mod standing;
 mod start;
 mod stops;
 mod surfaces;
+mod touch;
 mod truth;
 mod turns;
 mod wheels;

@@ -98,6 +98,10 @@ impl NavGrid {
             changed_columns: moved.columns.len(),
             rechecked_cells: 0,
         };
+        // Prices of doors may change although their leaves stay.
+        if moved.columns.is_empty() && self.config.doors != DoorPolicy::Priced {
+            return Ok(rebuilt);
+        }
         let filled: Vec<usize> = moved
             .columns
             .iter()

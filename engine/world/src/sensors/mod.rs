@@ -9,6 +9,7 @@ mod boxes_2d;
 mod boxes_3d;
 mod camera;
 mod compass;
+mod contact;
 mod depth;
 mod flow;
 mod gps;
@@ -18,16 +19,20 @@ mod imagegoal;
 mod instance;
 mod instruction;
 mod instruction_tokens;
+mod lidar;
 mod normals;
 mod object_list;
 mod objectgoal;
 mod picture_memory;
 mod pointgoal_with_gps_compass;
+mod proprioception;
+mod receiver;
 mod rgb;
 mod roomgoal;
 mod semantic;
 mod spectrogram;
 mod surfels;
+mod top_down_map;
 mod visible_objects;
 mod wheel_odometry;
 
@@ -147,6 +152,41 @@ pub trait Sensor: Debug + Send + Sync {
     /// [`WorldError::Render`] for a picture that cannot be made.
     fn begin_episode(&mut self, _world: &World, _episode: &Episode) -> Result<(), WorldError> {
         Ok(())
+    }
+
+    /// Takes in the world after a control step, whether or not somebody observes it; most sensors keep nothing of it.
+    ///
+    /// # Errors
+    /// [`WorldError::Scene`] for a world of another house.
+    fn advance(&mut self, _world: &World) -> Result<(), WorldError> {
+        Ok(())
+    }
+
+    /// Begins its memory of the episode anew, with what it senses in the world as it is now; nothing for most.
+    ///
+    /// # Errors
+    /// As [`Self::advance`].
+    fn forget(&mut self, _world: &World) -> Result<(), WorldError> {
+        Ok(())
+    }
+
+    /// What it remembers of the episode, as bytes for snapshots; nothing for most.
+    fn snapshot(&self) -> Vec<u8> {
+        Vec::new()
+    }
+
+    /// Goes to a [`Self::snapshot`] of a sensor with equal settings in the same house.
+    ///
+    /// # Errors
+    /// [`WorldError::Snapshot`] for bytes that are none.
+    fn restore(&mut self, _world: &World, bytes: &[u8]) -> Result<(), WorldError> {
+        match bytes {
+            [] => Ok(()),
+            _ => Err(WorldError::Snapshot(format!(
+                "the sensor {:?} remembers nothing",
+                self.spec().name
+            ))),
+        }
     }
 
     /// States the requests to the engines; most sensors that read the state need nothing.
@@ -323,6 +363,10 @@ pub fn all() -> &'static [SensorKind] {
         compass::KIND,
         wheel_odometry::KIND,
         gyro::KIND,
+        lidar::KIND,
+        top_down_map::KIND,
+        contact::KIND,
+        proprioception::KIND,
     ]
 }
 

@@ -1,19 +1,20 @@
-//! Spectrograms of the sound at an agent's two ears.
+//! Spectrograms of the sound at an agent's ears, or at other microphones on its head.
 
+use super::receiver::ReceiverConfig;
 use super::{
     Dtype, ObservationBuffer, Sensor, SensorContext, SensorKind, SensorSetup, SensorSpec,
     parse_sensor_settings,
 };
 use crate::error::WorldError;
+use crate::listener::Listener;
 use crate::schema;
 use crate::sensor_requests::SensorRequests;
 use crate::world::World;
 use dwell_acoustics::Spectrogram;
-use dwell_scene::AgentId;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-const ABOUT: &str = "Spectrograms of the sound at the ears: ln(1 + mean magnitude of 4 by 4 values of a transform of 512 samples); shape (frequencies, times, 2), left ear first.";
+const ABOUT: &str = "Spectrograms of the sound at the ears: ln(1 + mean magnitude of 4 by 4 values of a transform of 512 samples); shape (frequencies, times, 2), left ear first. With the setting receiver at other microphones: shape (frequencies, times, channels).";
 
 /// The highest value; a sine of 200 Pa has 24 at the least reference. What is louder is clipped.
 const HIGHEST: f64 = 50.0;
@@ -40,6 +41,8 @@ struct SpectrogramConfig {
     /// The pressure that counts as 1, Pa, 0.000001 to 1,000; default 0.001 (34 dB SPL). Softer sounds come out linear, louder ones
     /// by their logarithm.
     reference_pa: f32,
+    /// The microphones in place of the ears, and where they are mounted, as for `audio`.
+    receiver: ReceiverConfig,
 }
 
 impl Default for SpectrogramConfig {
@@ -49,6 +52,7 @@ impl Default for SpectrogramConfig {
             agent: None,
             window_s: 1.0,
             reference_pa: 1e-3,
+            receiver: ReceiverConfig::default(),
         }
     }
 }
@@ -56,7 +60,8 @@ impl Default for SpectrogramConfig {
 #[derive(Debug)]
 struct SpectrogramSensor {
     name: String,
-    agent: AgentId,
+    listener: Listener,
+    channels: usize,
     samples: usize,
     spectrogram: Spectrogram,
 }
@@ -64,9 +69,11 @@ struct SpectrogramSensor {
 fn build(value: &serde_json::Value, site: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
     let config: SpectrogramConfig = parse_sensor_settings(value)?;
     let samples = super::window_samples(site, config.window_s)?;
+    let listener = config.receiver.build(site, config.agent)?;
     Ok(Box::new(SpectrogramSensor {
         name: super::key(KIND.name, config.name)?,
-        agent: site.agent(config.agent)?,
+        channels: listener.channels(),
+        listener,
         samples,
         spectrogram: Spectrogram::new(samples, config.reference_pa)?,
     }))
@@ -77,7 +84,7 @@ impl Sensor for SpectrogramSensor {
         let [frequencies, times] = self.spectrogram.shape();
         SensorSpec {
             name: self.name.clone(),
-            shape: vec![frequencies, times, 2],
+            shape: vec![frequencies, times, self.channels],
             dtype: Dtype::Float32,
             unit: "1",
             low: 0.0,
@@ -87,7 +94,7 @@ impl Sensor for SpectrogramSensor {
     }
 
     fn request(&self, _world: &World, requests: &mut SensorRequests) {
-        requests.request_sound(self.agent, self.samples);
+        requests.request_sound(&self.listener, self.samples);
     }
 
     fn write_observation(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>) {
@@ -95,9 +102,11 @@ impl Sensor for SpectrogramSensor {
             return;
         };
         let mut window = vec![0.0; self.samples];
-        for channel in 0..2 {
-            seen.world.newest_samples(self.agent, channel, &mut window);
-            self.spectrogram.write(&window, &mut out[channel..], 2);
+        for channel in 0..self.channels {
+            seen.world
+                .newest_samples_of(&self.listener, channel, &mut window);
+            self.spectrogram
+                .write(&window, &mut out[channel..], self.channels);
         }
         for value in out {
             *value = value.min(HIGHEST as f32);

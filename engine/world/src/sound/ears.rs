@@ -1,11 +1,12 @@
-//! One agent's ears: a stream, and the newest samples that it gave.
+//! One receiver of an agent: a stream, and the newest samples that it gave.
 
 use super::BlockSource;
 use crate::error::WorldError;
-use dwell_acoustics::{ActiveSource, HeadId, Receiver, Stream};
+use crate::listener::Listener;
+use dwell_acoustics::{ActiveSource, HeadId, Stream};
 use dwell_scene::rays::RayScene;
 use dwell_scene::units::db_spl_from_pa;
-use dwell_scene::{AgentId, House, State};
+use dwell_scene::{House, State};
 use glam::Vec3;
 
 /// Attenuation by a wall or a closed door when the loudness of a source in another room is estimated, dB.
@@ -13,19 +14,38 @@ const OTHER_ROOM_DB: f32 = 20.0;
 /// Sources estimated below this at the ear are not followed, dB SPL: quieter than a quiet room's own noise.
 const INAUDIBLE_DB: f32 = 15.0;
 
-/// One agent's ears.
+/// One receiver of an agent, such as its ears.
 #[derive(Debug)]
 pub(super) struct AgentListener {
-    pub(super) agent: AgentId,
+    pub(super) listener: Listener,
+    pub(super) channels: usize,
     pub(super) stream: Stream,
-    /// The head of these ears; `None`: the built-in sphere.
+    /// The head of ears; `None`: the built-in sphere.
     pub(super) head: Option<HeadId>,
-    /// The newest samples. Shape (2, length), oldest first.
+    /// The newest samples. Shape (channel, length), oldest first.
     pub(super) recent_samples: Vec<f32>,
     pub(super) length: usize,
 }
 
 impl AgentListener {
+    /// One that has heard nothing yet.
+    pub(super) fn new(
+        listener: Listener,
+        stream: Stream,
+        head: Option<HeadId>,
+        length: usize,
+    ) -> Self {
+        let channels = listener.channels();
+        Self {
+            listener,
+            channels,
+            stream,
+            head,
+            recent_samples: vec![0.0; channels * length],
+            length,
+        }
+    }
+
     /// Hears the next block.
     pub(super) fn render_block(
         &mut self,
@@ -34,17 +54,14 @@ impl AgentListener {
         state: &State,
         sources: &[BlockSource],
     ) -> Result<(), WorldError> {
-        let Some(agent) = state.agents.get(self.agent) else {
+        let Some(agent) = state.agents.get(self.listener.agent) else {
             return Ok(());
         };
         let pose = agent.world_from_head();
-        let receiver = match self.head {
-            Some(head) => Receiver::with_head(head, pose),
-            None => Receiver::binaural(pose),
-        };
-        let active = sort_by_loudness(house, sources, agent.eye_position());
+        let receiver = self.listener.receiver_at(pose, self.head);
+        let active = sort_by_loudness(house, sources, receiver.position());
         let size = self.stream.config().block_samples;
-        let mut heard = vec![0.0; 2 * size];
+        let mut heard = vec![0.0; self.channels * size];
         self.stream
             .render_block(rays, state, &active, &receiver, &mut heard)?;
         for (window, block) in self
@@ -63,7 +80,7 @@ impl AgentListener {
         if length <= self.length {
             return;
         }
-        let mut longer = vec![0.0; 2 * length];
+        let mut longer = vec![0.0; self.channels * length];
         for (new, old) in longer
             .chunks_exact_mut(length)
             .zip(self.recent_samples.chunks_exact(self.length))

@@ -2,7 +2,7 @@
 //!
 //! - `emitters`: the sounds of the house's own objects; `playback`: sounds played on request; `sound_state`: both for people.
 //! - `events`: the one file that turns contacts, swinging joints and footsteps into sounds; `gait`: when feet come down.
-//! - `ears`: a stream for each agent that listens; `fade`: levels without clicks; `snapshot`: all of it as bytes.
+//! - `ears`: a stream for each receiver of an agent that listens; `fade`: levels without clicks; `snapshot`: all of it as bytes.
 
 mod ears;
 mod emitters;
@@ -22,11 +22,12 @@ use crate::air_position::nearest_open_air_point;
 use crate::config::WorldConfig;
 use crate::engines::Engines;
 use crate::error::WorldError;
+use crate::listener::Listener;
 use dwell_acoustics::{AcousticConfig, HeadId, Stream, StreamConfig};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
-use dwell_scene::{AgentId, House, State};
+use dwell_scene::{House, State};
 use ears::AgentListener;
 use emitters::EmitterStates;
 use events::ActiveContactSound;
@@ -134,33 +135,33 @@ impl WorldSound {
         Ok(())
     }
 
-    /// Opens the ears of these agents, each with a window of at least so many samples. New ears hear the block that
-    /// has just ended; ears that listen already keep what they heard.
+    /// Opens these receivers, each with a window of at least so many samples. New ones hear the block that
+    /// has just ended; those that listen already keep what they heard.
     pub(crate) fn enable_listeners(
         &mut self,
         engines: &Engines,
         rays: &RayScene,
         state: &State,
-        agents: &[(AgentId, usize)],
+        listeners: &[(Listener, usize)],
         key: RandomKey,
     ) -> Result<(), WorldError> {
-        for (agent, samples) in agents {
+        for (listener, samples) in listeners {
             let length = samples.next_multiple_of(self.block).max(self.block);
-            if let Some(ears) = self.ears.iter_mut().find(|ears| ears.agent == *agent) {
+            let mut known = self.ears.iter_mut();
+            if let Some(ears) = known.find(|ears| ears.listener == *listener) {
                 ears.extend_window(length);
                 continue;
             }
-            let mut ears = AgentListener {
-                agent: *agent,
-                stream: self.new_stream(engines, *agent, key)?,
-                head: self.head,
-                recent_samples: vec![0.0; 2 * length],
-                length,
-            };
+            listener.check(self.head)?;
+            let stream = self.new_stream(engines, listener, key)?;
+            let mut ears = AgentListener::new(listener.clone(), stream, self.head, length);
             let sources = self.sources(engines, rays, state, self.blocks - 1)?;
             ears.render_block(engines.house(), rays, state, &sources)?;
-            // In the order of agents, whichever began first.
-            let place = self.ears.partition_point(|other| other.agent < *agent);
+            // In the order of agents and receivers, whichever began first.
+            let order = |listener: &Listener| (listener.agent, listener.receiver_text());
+            let own = order(listener);
+            let before = |other: &AgentListener| order(&other.listener) < own;
+            let place = self.ears.partition_point(before);
             self.ears.insert(place, ears);
         }
         Ok(())
@@ -169,7 +170,7 @@ impl WorldSound {
     fn new_stream(
         &self,
         engines: &Engines,
-        agent: AgentId,
+        listener: &Listener,
         key: RandomKey,
     ) -> Result<Stream, WorldError> {
         let mut scene = engines.acoustic_scene(&self.preset, self.rate_hz)?;
@@ -188,9 +189,16 @@ impl WorldSound {
             block_samples: self.block,
             ..config
         };
-        let own = key.child("ears").child(u64::from(agent.0));
+        let own = key.child("ears").child(u64::from(listener.agent.0));
         // One background noise for all ears of a world.
-        Ok(Stream::new(scene, config, own, Threads::ONE)?.with_room_key(key.child("room")))
+        let stream =
+            Stream::new(scene, config, own, Threads::ONE)?.with_room_key(key.child("room"));
+        if listener.receiver.is_none() {
+            return Ok(stream);
+        }
+        // The receivers of an agent are in one sound field, each with a noise of its own.
+        let receiver = own.child("receiver");
+        Ok(stream.with_microphone_key(receiver.child(listener.receiver_text().as_str())))
     }
 
     /// Returns the sources of the block that has just ended or ends now: emitters, playbacks, and contacts.
@@ -242,14 +250,12 @@ impl WorldSound {
         Ok(sources)
     }
 
-    /// The newest samples at an ear, Pa; zeros before it listened that long, and for agents that never listened.
-    pub(crate) fn newest_samples(&self, agent: AgentId, channel: usize, out: &mut [f32]) {
+    /// The newest samples of a channel, Pa; zeros before it listened that long, and for receivers that never listened.
+    pub(crate) fn newest_samples(&self, listener: &Listener, channel: usize, out: &mut [f32]) {
         out.fill(0.0);
-        if let Some(ears) = self
-            .ears
-            .iter()
-            .find(|ears| ears.agent == agent && channel < 2)
-        {
+        let mut ears = self.ears.iter();
+        let heard = ears.find(|ears| ears.listener == *listener && channel < ears.channels);
+        if let Some(ears) = heard {
             ears.copy_newest(channel, out);
         }
     }

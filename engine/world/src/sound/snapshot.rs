@@ -9,9 +9,10 @@ use super::{FIRST_PLAYED_ID, WorldSound};
 use crate::config::WorldConfig;
 use crate::engines::Engines;
 use crate::error::WorldError;
+use crate::listener::Listener;
 use dwell_acoustics::HeadId;
+use dwell_scene::State;
 use dwell_scene::random::RandomKey;
-use dwell_scene::{AgentId, State};
 use serde::{Deserialize, Serialize};
 
 #[derive(Serialize, Deserialize)]
@@ -28,14 +29,14 @@ struct SoundSnapshot {
     emitters: EmitterStates,
     playing: Vec<PlaybackState>,
     next_played: u64,
-    ears: Vec<(AgentId, Vec<f32>, Vec<u8>)>,
+    ears: Vec<(Listener, Vec<f32>, Vec<u8>)>,
 }
 
 impl WorldSound {
     pub(crate) fn to_bytes(&self) -> Vec<u8> {
         let ears = self.ears.iter().map(|ears| {
             (
-                ears.agent,
+                ears.listener.clone(),
                 ears.recent_samples.clone(),
                 ears.stream.snapshot(),
             )
@@ -107,22 +108,20 @@ impl WorldSound {
             sound.playing.push(playing);
         }
         sound.next_played = memory.next_played;
-        for (agent, window, stream) in memory.ears {
-            let length = window.len() / 2;
-            if length == 0 || length % sound.block != 0 || window.len() != 2 * length {
+        for (listener, window, stream) in memory.ears {
+            listener.check(sound.head)?;
+            let channels = listener.channels();
+            let length = window.len() / channels;
+            if length == 0 || length % sound.block != 0 || window.len() != channels * length {
                 return Err(WorldError::Snapshot(format!(
                     "a window of {} samples",
                     window.len()
                 )));
             }
-            let mut ears = AgentListener {
-                agent,
-                stream: sound.new_stream(engines, agent, key)?,
-                head: sound.head,
-                recent_samples: window,
-                length,
-            };
-            ears.stream.restore(&stream)?;
+            let mut own = sound.new_stream(engines, &listener, key)?;
+            own.restore(&stream)?;
+            let mut ears = AgentListener::new(listener, own, sound.head, length);
+            ears.recent_samples = window;
             sound.ears.push(ears);
         }
         Ok(sound)
