@@ -103,6 +103,7 @@ _MODULES = {
     "navigation",
     "places",
     "plans",
+    "policies",
     "relations",
     "replays",
     "rewards",

@@ -236,20 +236,26 @@ class EpisodeMaker:
             start_position=(float(x), float(y), float(z)),
             start_yaw_deg=float(agent["yaw_deg"]),
             **asked,
-            **(self._played(env) if self._expert and self._asks else {}),
+            **(expert_run(env, self._max_steps) if self._expert and self._asks else {}),
         )
 
-    def _played(self, env: NativeBatch) -> dict[str, Any]:
-        """What the expert needs, and whether it succeeds."""
-        for count in itertools.count(1):
-            answer, _ = env.step(env.expert_actions())
-            if answer["terminated"][0] or count == self._max_steps:
-                break
-        return {
-            "expert_actions": count,
-            "expert_path_length": float(answer["path_length"][0]),
-            "expert_success": bool(answer["success"][0]),
-        }
+
+def expert_run(env: NativeBatch, most_steps: int) -> dict[str, Any]:
+    """Plays the episode that has begun with the task's expert.
+
+    Returns:
+        ``expert_actions``: how many it took, ``stop`` included; ``expert_path_length``, m;
+        ``expert_success``.
+    """
+    for count in itertools.count(1):
+        answer, _ = env.step(env.expert_actions())
+        if answer["terminated"][0] or count == most_steps:
+            break
+    return {
+        "expert_actions": count,
+        "expert_path_length": float(answer["path_length"][0]),
+        "expert_success": bool(answer["success"][0]),
+    }
 
 
 @functools.lru_cache(_OPEN_HOUSES)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import dataclasses
 import json
 import os
+import shutil
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
@@ -256,7 +257,9 @@ def _fields(
         raise ConfigError(f"found {quoted(row, 60)}; expected {of}, one JSON object")
     for name in row:
         if name not in checks:
-            raise ConfigError(f"{quoted(name, 60)}: no field of {of}; {allowed_values(name, checks)}")
+            raise ConfigError(
+                f"{quoted(name, 60)}: no field of {of}; {allowed_values(name, checks)}"
+            )
     for name in checks:
         if name not in row and name not in optional:
             raise ConfigError(f"{name}: missing; {of} has it")
@@ -324,9 +327,7 @@ _CHECKS: dict[str, Callable[[str, object], Any]] = {
     "expert_success": boolean,
 }
 _OPTIONAL = {
-    field.name
-    for field in dataclasses.fields(Episode)
-    if field.default is not dataclasses.MISSING
+    field.name for field in dataclasses.fields(Episode) if field.default is not dataclasses.MISSING
 }
 
 
@@ -370,27 +371,28 @@ def write(path: str | os.PathLike[str], header: Header, episodes: Iterable[Episo
     """
     given: object = header
     if not isinstance(given, Header):
-        raise ConfigError(f"header is {quoted(given)}; expected that of a file, dwell.episodes.Header")
+        raise ConfigError(
+            f"header is {quoted(given)}; expected that of a file, dwell.episodes.Header"
+        )
     place = arguments.file_path("path", path)
     with atomic_write(place) as draft:
         # The header says how many follow, which is known at the end.
         body = draft.with_name(f"{draft.name}-body")
         count = 0
         with body.open("w", encoding="utf-8") as file:
-            for count, one in enumerate(episodes, start=1):
-                given = one
-                if not isinstance(given, Episode):
-                    at = f"episodes[{count - 1}] is {quoted(given)}"
+            rows: Iterable[object] = episodes
+            for count, one in enumerate(rows, start=1):
+                if not isinstance(one, Episode):
+                    at = f"episodes[{count - 1}] is {quoted(one)}"
                     raise ConfigError(f"{at}; expected a dwell.episodes.Episode")
-                row = given.as_dict()
+                row = one.as_dict()
                 Episode.of_dict(row)
                 file.write(line_of(row))
         if not count:
             raise ConfigError("episodes: there are none; a file has at least one")
-        with draft.open("w", encoding="utf-8") as file, body.open(encoding="utf-8") as rows:
+        with draft.open("w", encoding="utf-8") as file, body.open(encoding="utf-8") as made:
             file.write(line_of(dataclasses.replace(header, count=count, shard=(0, 1)).as_dict()))
-            for row_text in rows:
-                file.write(row_text)
+            shutil.copyfileobj(made, file)
     return count
 
 

@@ -82,9 +82,7 @@ def read(path: _Name, most_bytes: int = MAX_TEXT_BYTES) -> bytes:
     return found
 
 
-def lines(
-    file: IO[bytes], name: _Name, most_bytes: int = MAX_TEXT_BYTES
-) -> Iterator[bytes]:
+def lines(file: IO[bytes], name: _Name, most_bytes: int = MAX_TEXT_BYTES) -> Iterator[bytes]:
     """The lines of an open file, none of them longer than ``most_bytes``.
 
     Raises:

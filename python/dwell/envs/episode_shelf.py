@@ -70,10 +70,10 @@ class EpisodeIndex:
         same &= self._seeds[order][1:] == self._seeds[order][:-1]
         if same.any():
             first = int(np.flatnonzero(same)[0])
-            one, other = sorted(map(int, order[first : first + 2]))
+            before, again = sorted(map(int, order[first : first + 2]))
             raise MeasuredDataError(
-                f"{self._place(other)}: episode_id {quoted(self.id_of(other))} stands in "
-                f"{self._place(one)} already; an episode stands once"
+                f"{self._place(again)}: episode_id {quoted(self.id_of(again))} stands in "
+                f"{self._place(before)} already; an episode stands once"
             )
 
     def __len__(self) -> int:

@@ -36,8 +36,8 @@ from dwell.envs.config import (
     step_limit,
 )
 from dwell.envs.env_pool import EnvPool
-from dwell.envs.house_assignment import HouseAssignment
 from dwell.envs.episode_shelf import EpisodeIndex, settings_as_stated, shelf_of
+from dwell.envs.house_assignment import HouseAssignment
 from dwell.envs.info_keys import INFO_KEYS
 from dwell.envs.native_batch import NativeBatch
 from dwell.envs.python_tasks import RewardChoice, Sensors, TaskChoice, split
