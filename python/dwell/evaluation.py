@@ -263,9 +263,9 @@ def episode_set(
     if episodes is not None:
         if task is not None or houses is not None or count is not None:
             raise ConfigError("episodes: task, houses and count are those of the file; leave them")
-        is_one = isinstance(episodes, str | os.PathLike)
-        paths: list[Any] = [episodes] if is_one else [*episodes]
-        return EpisodeSet.of_files(paths)
+        if isinstance(episodes, str | os.PathLike):
+            return EpisodeSet.of_files([episodes])
+        return EpisodeSet.of_files(episodes)
     if task is None or houses is None or count is None:
         raise ConfigError("expected a file of episodes; or task, houses and count to make some")
     maker = EpisodeMaker(

@@ -1,4 +1,4 @@
-"""Episodes in files: made, read, filtered, played; and the HOUSES strings that they are made over."""
+"""Episodes in files: made, read, filtered, played; and the HOUSES strings they are made over."""
 
 from __future__ import annotations
 
@@ -207,11 +207,11 @@ def test_a_run_that_was_stopped_goes_on(
     monkeypatch.setattr(EpisodeMaker.parts, "__defaults__", (2,))
     out, add, left = tmp_path / "cut.jsonl", Journal.add, [3]
 
-    def stop(self: Journal, *args: Any) -> None:
+    def stop(self: Journal, *args: object) -> None:
         left[0] -= 1
         if left[0] < 0:
             raise KeyboardInterrupt
-        add(self, *args)
+        add(self, *args)  # type: ignore[arg-type]
 
     monkeypatch.setattr(Journal, "add", stop)
     args = ("episodes", "PointNav", "--houses", *HOUSES, "--count", "8", "--seed", "5")
@@ -226,9 +226,7 @@ def test_a_run_that_was_stopped_goes_on(
     assert "is there already" in command(*args, "--out", out).stderr
 
 
-def test_houses_that_cannot_host_are_skipped_and_told(
-    tmp_path: Path, command: Command
-) -> None:
+def test_houses_that_cannot_host_are_skipped_and_told(tmp_path: Path, command: Command) -> None:
     # Only one of the two is large enough.
     args = ("episodes", "PointNav", "--count", "2", "--set", "min_distance_m=12")
     done = command(
@@ -353,8 +351,9 @@ def test_a_damaged_file_is_told_by_line(
 
 
 def test_what_contradicts_a_file_is_refused(made: Path, tmp_path: Path) -> None:
-    def env(task: str = "PointNav", **settings: Any) -> DwellEnv:
-        return DwellEnv(task, **{"episodes": made, "sensors": ["gps"], **settings})
+    def env(**settings: object) -> DwellEnv:
+        usual: dict[str, Any] = {"task": "PointNav", "episodes": made, "sensors": ["gps"]}
+        return DwellEnv(**usual | settings)
 
     for settings, told in (
         ({"task": "RoomNav"}, "the file is of the task PointNav, this environment of 'RoomNav'"),
