@@ -248,7 +248,7 @@ def expert_run(env: NativeBatch, most_steps: int) -> dict[str, Any]:
         ``expert_success``.
     """
     for count in itertools.count(1):
-        answer, _ = env.step(env.expert_actions())
+        answer = env.batch.step(env.expert_actions())
         if answer["terminated"][0] or count == most_steps:
             break
     return {

@@ -169,7 +169,7 @@ class Evaluation:
         numbers: list[int] = []
         reward, is_over = 0.0, False
         while not is_over:
-            numbers.append(checked_action(self._policy.act(observation)))
+            numbers.append(checked_action(self._policy.act(observation), self.env))
             observation, paid, terminated, truncated, info = self.env.step(numbers[-1])
             reward, is_over = reward + paid, terminated or truncated
         return _row(one, info, numbers, reward, self.env.state_hash())

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from dwell import ConfigError, _native
+from dwell import ConfigError
 from dwell.arguments import allowed_values, integer_in_range, quoted
 from dwell.plugin_parts import imported
 
@@ -119,7 +119,7 @@ def policy_of(policy: object, env: DwellEnv) -> Policy:
     return chosen
 
 
-def checked_action(action: object) -> int:
+def checked_action(action: object, env: DwellEnv) -> int:
     """The number of an action that a policy gave.
 
     Raises:
@@ -127,4 +127,4 @@ def checked_action(action: object) -> int:
     """
     if isinstance(action, np.ndarray) and action.size == 1:
         action = action.reshape(())[()]
-    return integer_in_range("the policy's action", action, high=len(_native.actions()) - 1)
+    return integer_in_range("the policy's action", action, high=len(env.actions()) - 1)

@@ -127,8 +127,12 @@ def _episode(
     at: str, row: Mapping[str, Any], job: Evaluation, stated: _Stated, names: object
 ) -> Iterator[str]:
     """What of an episode does not hold."""
-    own = dict(zip(text_list("actions", names), range(10_000), strict=False))
-    now = {number: _native.actions().index(name) for name, number in own.items()}
+    there = job.env.actions()
+    now = {
+        number: there.index(name)
+        for number, name in enumerate(text_list("actions", names))
+        if name in there
+    }
     numbers = unpacked(f"{at}.actions", row["actions"])
     if unknown := next((number for number in numbers if number not in now), None):
         yield f"{at}.actions: no action has the number {unknown}"
