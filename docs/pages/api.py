@@ -15,6 +15,10 @@ from pages.tables import code, table
 _BESIDE = {
     "dwell.calibration": ("write_example",),
     "dwell.echogram": ("Echogram",),
+    "dwell.episode_maker": ("EpisodeMaker",),
+    "dwell.episodes": ("read", "write", "Episode", "EpisodeFile", "Header"),
+    "dwell.evaluation": ("evaluate", "differences", "read_result", "write_result"),
+    "dwell.policies": ("Policy",),
     "dwell.house": ("split_of_seed",),
     "dwell.measures": ("response_metrics", "binaural_metrics"),
     "dwell.navigation": ("Route", "Occupancy"),

@@ -82,15 +82,17 @@ def read(path: _Name, most_bytes: int = MAX_TEXT_BYTES) -> bytes:
     return found
 
 
-def lines(file: IO[bytes], name: _Name) -> Iterator[bytes]:
-    """The lines of an open file, none of them longer than a text may be.
+def lines(file: IO[bytes], name: _Name, most_bytes: int = MAX_TEXT_BYTES) -> Iterator[bytes]:
+    """The lines of an open file, none of them longer than ``most_bytes``.
 
     Raises:
         ValueError: One is.
     """
-    while line := file.readline(MAX_TEXT_BYTES + 1):
-        if len(line) > MAX_TEXT_BYTES:
-            _refuse_large(f"{os.fspath(name)}: a line", len(line), MAX_TEXT_BYTES)
+    number = 0
+    while line := file.readline(most_bytes + 1):
+        number += 1
+        if len(line) > most_bytes:
+            _refuse_large(f"{os.fspath(name)} line {number}: a line", len(line), most_bytes)
         yield line
 
 

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, overload
 
-from dwell import ConfigError, UsageError, _native, arguments
+from dwell import ConfigError, HouseNotFoundError, UsageError, _native, arguments
 from dwell.arguments import (
     boolean,
     file_name,
@@ -21,6 +21,7 @@ from dwell.arguments import (
 )
 from dwell.grounded_text import Length, Style, Text, texts
 from dwell.house_list import HouseList
+from dwell.house_strings import stands_for_several
 from dwell.navigation import Navigation, Walker, walker_settings
 
 if TYPE_CHECKING:
@@ -100,22 +101,29 @@ class House:
         """Opens a HOUSE string by so many threads; ``None``: as many as there are."""
         name = text("name", name)
         threads = None if threads is None else integer_in_range("threads", threads, low=1)
+        if stands_for_several(name):
+            raise HouseNotFoundError(
+                f"{name!r} stands for several houses; dwell.House.expand lists them, and houses= "
+                "and the commands that take several houses take it"
+            )
         return cls(_native.House.open(name, threads), (House.open, (name,)))
 
     @staticmethod
     def expand(house: str) -> list[str]:
-        """The houses that a HOUSE string stands for where several are taken.
+        """The houses that a HOUSES string stands for where several are taken.
 
-        ``seed:3..5?home=studio`` is ``seed:3?home=studio`` and ``seed:4?home=studio``; any other
-        string is itself. :class:`dwell.house_list.HouseList` holds longer ranges.
+        ``seed:3..5?home=studio`` is ``seed:3?home=studio`` and ``seed:4?home=studio``;
+        ``split:val``, ``data/*.dwell`` and ``@FILE`` stand for several, too, and what stands for
+        one is itself. :class:`dwell.house_list.HouseList` holds longer ranges.
 
         Raises:
-            HouseError: The range is empty or none of whole numbers.
-            ConfigError: It is longer than 1,000,000 seeds.
+            HouseError: A range, a split, a pattern or a list is wrong.
+            ConfigError: These are more than 1,000,000 houses.
+            OSError: A list cannot be read.
         """
         names = HouseList([house])
         if len(names) > _MAX_LISTED:
-            raise ConfigError(f"{house}: {len(names)} seeds; at most {_MAX_LISTED} are listed")
+            raise ConfigError(f"{house}: {len(names)} houses; at most {_MAX_LISTED} are listed")
         return list(names)
 
     @staticmethod

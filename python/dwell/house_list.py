@@ -8,49 +8,58 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import overload
 
-from dwell import ConfigError, _native
+from dwell import ConfigError
 from dwell.arguments import quoted, sequence_items, text
+from dwell.house_strings import Seeds, parts_of
 
 #: One house of a seed, as ranges name theirs.
 _SEED = re.compile(r"seed:(0|[1-9][0-9]{0,19})((?s:\?.*)?)")
 
 
 class HouseList(Sequence[str]):
-    """HOUSE strings in order; ``seed:A..B`` stands for its houses and takes no memory for them.
+    """HOUSE strings in order, out of HOUSES strings, each of which may stand for several houses.
+
+    ``seed:A..B`` stands for the houses of its seeds and takes no memory for them, ``split:val`` for
+    those of a split (``split:train``, ``split:test``), ``split:val:A..B`` for some of them,
+    ``data/*.dwell`` for the paths of that pattern, and ``@FILE`` for the HOUSES strings of a file.
 
     >>> from dwell.house_list import HouseList
     >>> names = HouseList(["builtin:studio", "seed:0..1000000000?home=studio"])
     >>> len(names), names[1000000000], names.index("seed:7?home=studio")
     (1000000001, 'seed:999999999?home=studio', 8)
+    >>> names = HouseList(["split:val:0..50000?home=studio"])
+    >>> len(names), names[49999]
+    (50000, 'seed:499998?split=val&home=studio')
     """
 
     def __init__(self, houses: Iterable[str] = ()) -> None:
         """Keeps the names; opens nothing. Raises as :meth:`append`."""
-        #: One house by its name, or seeds and what follows them.
-        self._parts: list[str | tuple[range, str]] = []
+        #: One house by its name, or houses of seeds.
+        self._parts: list[str | Seeds] = []
         #: How many houses there are up to the end of each part.
         self._ends: list[int] = []
         for house in sequence_items("houses", houses, "expected HOUSE strings"):
             self.append(house)
 
     def append(self, house: str) -> None:
-        """Adds a house, or those of a range of seeds.
+        """Adds the houses that a HOUSES string stands for.
 
         Raises:
-            HouseError: A range is empty or none of whole numbers.
+            HouseError: A range is empty or none of whole numbers, a split is none, a pattern finds
+                nothing, or a line of a list is wrong.
             ConfigError: There are more than any sequence of Python holds, or it is no text that
                 UTF-8 can hold.
+            OSError: The system refuses to read a list, or it is no regular file.
         """
-        found = _native.seed_range(text("house", house))
-        if found is None:
-            self.append_name(house)
-            return
-        seeds = range(found[0], found[1])
-        end = len(self) + seeds.stop - seeds.start
-        if end >= 2**63:
-            raise ConfigError(f"{end} houses; allowed are fewer than 2**63")
-        self._parts.append((seeds, found[2]))
-        self._ends.append(end)
+        for part in parts_of(text("house", house)):
+            if isinstance(part, str):
+                self.append_name(part)
+                continue
+            end = len(self) + part.end - part.begin
+            if end >= 2**63:
+                raise ConfigError(f"{end} houses; allowed are fewer than 2**63")
+            self._parts.append(part)
+            self._ends.append(end)
 
     def append_name(self, name: str) -> None:
         """Adds one house by its name, whatever that is."""
@@ -67,7 +76,7 @@ class HouseList(Sequence[str]):
             if isinstance(part, str):
                 yield part
             else:
-                yield from (f"seed:{seed}{part[1]}" for seed in part[0])
+                yield from map(part.name, range(part.end - part.begin))
 
     @overload
     def __getitem__(self, index: int) -> str: ...
@@ -87,28 +96,24 @@ class HouseList(Sequence[str]):
         part = self._parts[which]
         if isinstance(part, str):
             return part
-        return f"seed:{part[0][at - self._ends[which]]}{part[1]}"
+        return part.name(at - (self._ends[which - 1] if which else 0))
 
     def __eq__(self, other: object) -> bool:
         """Returns whether both have the same names in order, however they were given."""
-        return self._runs() == other._runs() if isinstance(other, HouseList) else NotImplemented
+        if not isinstance(other, HouseList):
+            return NotImplemented
+        if len(self) != len(other):
+            return False
+        begin = 0
+        for end in sorted({*self._ends, *other._ends}):
+            # Up to here each goes on by one rule: seeds with the same last digits, which are the
+            # same from there on where eleven in a row are.
+            if any(self[k] != other[k] for k in range(begin, min(begin + 11, end))):
+                return False
+            begin = end
+        return True
 
     __hash__ = None  # type: ignore[assignment] # houses may be appended
-
-    def _runs(self) -> list[str | tuple[range, str]]:
-        """The names in the fewest parts: seeds that follow each other as one range."""
-        runs: list[str | tuple[range, str]] = []
-        for part in self._parts:
-            if isinstance(part, str) and (one := _SEED.fullmatch(part)):
-                part = range(int(one[1]), int(one[1]) + 1), one[2]
-            last = runs[-1] if runs else ""
-            if isinstance(part, str) or isinstance(last, str):
-                runs.append(part)
-            elif last[1] == part[1] and last[0].stop == part[0].start:
-                runs[-1] = range(last[0].start, part[0].stop), part[1]
-            else:
-                runs.append(part)
-        return runs
 
     def __contains__(self, name: object) -> bool:
         """Returns whether a house of this name is among them; none is made to find it."""
@@ -142,8 +147,10 @@ class HouseList(Sequence[str]):
             if isinstance(part, str):
                 if part == name:
                     yield begin
-            elif wanted and wanted[2] == part[1] and int(wanted[1]) in part[0]:
-                yield begin + part[0].index(int(wanted[1]))
+            elif wanted and wanted[2] == part.fields:
+                place = part.find(int(wanted[1]))
+                if place is not None:
+                    yield begin + place
             begin = end
 
 

@@ -47,7 +47,7 @@ def factory(
     Raises:
         ConfigError: It is none of these, lacks a method, or there is no such module or name.
     """
-    make = _imported(at, given) if isinstance(given, str) else given
+    make = imported(at, given) if isinstance(given, str) else given
     if isinstance(make, kind):
         name = type(make).__name__
         raise ConfigError(
@@ -100,7 +100,12 @@ def _refuse_unknown_settings(
     refuse_unknown(at, [name for name in fields if name not in known], known)
 
 
-def _imported(at: str, given: str) -> object:
+def imported(at: str, given: str) -> object:
+    """What ``"module:Name"`` stands for; nothing of it is called.
+
+    Raises:
+        ConfigError: There is no such module or name.
+    """
     module, _, name = given.partition(":")
     try:
         return getattr(importlib.import_module(text(at, module)), name)

@@ -301,7 +301,7 @@ CALLS = [
     ("env.reset(options=5)", "options is 5"),
     ('DwellEnv("nope")', 'no task "nope"'),
     ("DwellEnv(5)", "task is 5"),
-    ("DwellEnv(houses=None)", "houses is None"),
+    ("DwellEnv(houses=3)", "houses is 3"),
     ('DwellEnv(houses="builtin:nothing")', 'no built-in house "nothing"'),
     ("DwellEnv(houses=[5])", "houses[0] is 5"),
     ("DwellEnv(sensors=5)", "sensors is 5"),

@@ -53,7 +53,8 @@ def test_a_task_is_registered_with_what_environments_know() -> None:
     with pytest.raises(dwell.ConfigError) as env:
         _native.Batch([room.native], '{"nope": 1}')
     # Laws and parameters are the world's there; the others are of Python alone.
-    own = {"houses", "reward", "laws", "parameters", "threads", "max_episode_steps", "render_mode"}
+    own = {"houses", "episodes", "reward", "laws", "parameters", "threads"}
+    own |= {"max_episode_steps", "render_mode"}
     # The engine takes several agents; Python's environments are about one.
     assert _allowed(str(env.value)) - {"agents"} == arguments - own - {"agent"}
 

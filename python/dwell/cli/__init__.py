@@ -21,6 +21,8 @@ COMMANDS = {
     "check-text": "whether sentences are true of a house",
     "ir": "an impulse response between two points",
     "generate": "houses from seeds, in bulk, written as files",
+    "episodes": "seeded episodes of a task over many houses, as a file",
+    "evaluate": "a policy plays episodes; its result, and whether a result holds",
     "measure": "tables of measurements into a bundle that calibrate reads",
     "calibrate": "measured data against the simulation: what is missing, and what it gains",
     "bench": "throughput of a stage",

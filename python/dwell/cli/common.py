@@ -14,6 +14,8 @@ from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 from typing import Any, TextIO
 
+from dwell.files import parse_json
+
 #: A name of which an error shows the beginning alone.
 _LONG_WORD = re.compile(r"(\S{200})\S{100,}")
 
@@ -58,6 +60,35 @@ def count(text: str, low: int = 0) -> int:
 def count_from_1(text: str) -> int:
     """Reads a whole number of which there is at least one."""
     return count(text, low=1)
+
+
+def shard(text: str) -> tuple[int, int]:
+    """Reads ``K/N``: the K-th of N parts, from 0."""
+    match = re.fullmatch(r"([0-9]{1,5})/([0-9]{1,5})", text)
+    which, shards = map(int, match.groups()) if match else (0, 0)
+    if not which < shards:
+        raise argparse.ArgumentTypeError(f"expected K/N with K below N, found {text!r}")
+    return which, shards
+
+
+def settings_of(option: str, fields: Sequence[str], whole: dict[str, Any]) -> dict[str, Any]:
+    """Settings, ``whole`` and those of ``FIELD=VALUE``; a value that is no JSON is text.
+
+    Raises:
+        ValueError: One of ``fields`` is of another form, or stands twice.
+    """
+    found = dict(whole)
+    for field in fields:
+        name, equals, value = field.partition("=")
+        if not equals or not name.isidentifier():
+            raise ValueError(f"{option}: expected FIELD=VALUE, found {field!r:.60}")
+        if name in found:
+            raise ValueError(f"{option}: {name} is given twice")
+        try:
+            found[name] = parse_json(value.encode(errors="surrogatepass"), name)
+        except ValueError:
+            found[name] = value
+    return found
 
 
 def path(text: str) -> Path:

@@ -19,7 +19,7 @@ from typing import Any
 
 from dwell import _native
 from dwell.arguments import integer_in_range
-from dwell.cli.common import ProgressBar, count, count_from_1, path, print_json
+from dwell.cli.common import ProgressBar, count, count_from_1, path, print_json, shard
 from dwell.cli.job_journal import Journal, claim
 from dwell.files import MAX_TEXT_BYTES, lines, open_file, parse_json, read, read_json
 
@@ -51,7 +51,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="what shall not be drawn, as in seed:N?FIELD=VALUE; several times",
     )
     parser.add_argument(
-        "--shard", type=_shard, default=(0, 1), metavar="K/N", help="the K-th of N parts, from 0"
+        "--shard", type=shard, default=(0, 1), metavar="K/N", help="the K-th of N parts, from 0"
     )
     parser.add_argument(
         "--workers", type=count_from_1, help="threads (default: as many as processors)"
@@ -76,14 +76,14 @@ def run(args: argparse.Namespace) -> int:
     # Before the folder is begun with them.
     _native.seed_range(f"seed:0..1?{'&'.join(args.spec)}")
     claim(args.out, dataset)
-    shard, shards = args.shard
-    name = "manifest" if shards == 1 else f"manifest-{shard:05}-of-{shards:05}"
+    which, shards = args.shard
+    name = "manifest" if shards == 1 else f"manifest-{which:05}-of-{shards:05}"
     manifest = args.out / f"{name}.jsonl"
     start, made = time.perf_counter(), 0
     if not manifest.exists():
         # Another process of this job may have ended it since.
         with contextlib.suppress(FileExistsError):
-            made = _make(args, manifest, {**dataset, "shard": [shard, shards]})
+            made = _make(args, manifest, {**dataset, "shard": [which, shards]})
     made += _regenerate_missing(args, manifest)
     seconds = time.perf_counter() - start
     rows, failed, told = 0, 0, []
@@ -379,12 +379,3 @@ def _field(text: str) -> str:
             f"--spec {text}: each seed has the looks of its own split; --split chooses seeds"
         )
     return text
-
-
-def _shard(text: str) -> tuple[int, int]:
-    """Reads ``K/N``."""
-    match = re.fullmatch(r"([0-9]{1,5})/([0-9]{1,5})", text)
-    shard, shards = map(int, match.groups()) if match else (0, 0)
-    if not shard < shards:
-        raise argparse.ArgumentTypeError(f"expected K/N with K below N, found {text!r}")
-    return shard, shards

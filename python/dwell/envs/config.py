@@ -12,7 +12,9 @@ from collections.abc import Mapping, Sequence
 from copy import deepcopy
 from typing import Any, TypedDict
 
-from dwell import ConfigError
+import numpy as np
+
+from dwell import ConfigError, _native
 from dwell.arguments import (
     checked_fields,
     integer_in_range,
@@ -32,12 +34,15 @@ from dwell.schemas import setting_checks
 from dwell.world_settings import Laws, world_settings
 
 Houses = str | os.PathLike[str] | House | Sequence[str | os.PathLike[str] | House]
+#: A file of episodes, or several, as the shards of one.
+EpisodeFiles = str | os.PathLike[str] | Sequence[str | os.PathLike[str]]
 
 
 class EnvSettings(TypedDict, total=False):
     """The settings of :class:`dwell.envs.DwellEnv` beside its task; it explains them."""
 
-    houses: Houses
+    houses: Houses | None
+    episodes: EpisodeFiles | None
     sensors: Sensors
     reward: RewardChoice
     laws: Laws
@@ -99,9 +104,13 @@ def agent_number(agent: object) -> int:
     return integer_in_range("agent", agent, high=2**32 - 1)
 
 
-def kept_houses(houses: Houses) -> Houses:
+#: The house of environments that are told of none.
+USUAL_HOUSE = "builtin:apartment"
+
+
+def kept_houses(houses: Houses | None) -> Houses | None:
     """A copy of the houses of an environment; those of a range of seeds are not made for it."""
-    found: Houses = deepcopy(houses) if isinstance(houses, HouseList) else kept(houses)
+    found: Houses | None = deepcopy(houses) if isinstance(houses, HouseList) else kept(houses)
     return found
 
 
@@ -162,6 +171,21 @@ class HouseCache:
         while len(self._kept) > CACHED_HOUSES:
             self._kept.popitem(last=False)
         return house
+
+    def draw(self, stream: np.random.Generator) -> tuple[int, int]:
+        """House and seed of the next episode."""
+        return int(stream.integers(len(self.names))), int(stream.integers(2**63))
+
+    def chosen(self, house: object) -> int:
+        """The number of a house that somebody asks for.
+
+        Raises:
+            ConfigError: There is none of the number.
+        """
+        return integer_in_range("options: house, an index,", house, high=len(self.names) - 1)
+
+    def check(self, house: int, seed: int, batch: _native.Batch, env: int = 0) -> None:
+        """Refuses an episode that has begun and is not the one that was promised; none is here."""
 
     def episode_id(self, index: int, seed: int) -> str:
         """The id of an episode with a seed in house ``index`` modulo their number."""

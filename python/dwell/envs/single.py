@@ -23,6 +23,7 @@ from dwell.camera import Camera, camera_settings
 from dwell.envs.action_modes import action_form, first_of, masked_form
 from dwell.envs.config import (
     CACHED_HOUSES,
+    EpisodeFiles,
     HouseCache,
     Houses,
     agent_number,
@@ -32,6 +33,7 @@ from dwell.envs.config import (
     step_limit,
 )
 from dwell.envs.current_state import CurrentStateApi
+from dwell.envs.episode_shelf import EpisodeIndex, settings_as_stated, shelf_of
 from dwell.envs.info_keys import GOAL_KEYS, INFO_KEYS
 from dwell.envs.native_batch import NativeBatch
 from dwell.envs.python_tasks import PythonTask, RewardChoice, Sensors, TaskChoice, split
@@ -63,7 +65,8 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
         self,
         task: TaskChoice = "InstructionFollowing",
         *,
-        houses: Houses = "builtin:apartment",
+        houses: Houses | None = None,
+        episodes: EpisodeFiles | None = None,
         sensors: Sensors = None,
         reward: RewardChoice = None,
         laws: Laws = None,
@@ -84,7 +87,10 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
 
         Args:
             task: The task's name, or a subclass of :class:`dwell.Task`, or its ``"module:Name"``.
-            houses: A HOUSE string or a :class:`dwell.House`, or several.
+            houses: A HOUSES string or a :class:`dwell.House`, or several; default
+                ``"builtin:apartment"``, or the houses of ``episodes``.
+            episodes: A file of ``dwell episodes``, or several, whose episodes are played: each
+                reset draws one. Houses and the task's settings are theirs.
             sensors: Names of sensors, or settings by name; default the task's own choice. Among
                 names, or in place of settings, may be subclasses of :class:`dwell.Sensor`.
             reward: A subclass of :class:`dwell.Reward`, in place of the task's own reward.
@@ -116,10 +122,12 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
         houses, sensors, laws = kept_houses(houses), kept(sensors), kept(laws)
         parameters, task_settings = kept(parameters), kept(task_settings)
         stride, world, actions = kept(stride), kept(world), kept(actions)
+        episodes = kept(episodes)
         EzPickle.__init__(
             self,
             task,
             houses=houses,
+            episodes=episodes,
             sensors=sensors,
             reward=reward,
             laws=laws,
@@ -140,6 +148,8 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
         #: Gymnasium's wrappers around this environment that count steps, too.
         self._counters: list[weakref.ref[TimeLimit[Any, Any]]] = []
         world, self._heads = with_head(world)
+        stated = None if episodes is None else EpisodeIndex(episodes)
+        task_settings = settings_as_stated(stated, task, task_settings)
         native, self._custom = split(task, task_settings, reward, sensors)
         self._config = env_json(
             native,
@@ -152,7 +162,7 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
             agent=agent_number(agent),
         )
         self._agent = agent_number(agent)
-        self._shelf = HouseCache(houses)
+        self._shelf = shelf_of(houses, stated)
         threads = None if threads is None else integer_in_range("threads", threads, low=1)
         self._closed = False
         # Not of this environment: one that nobody holds any more goes at once, with its worlds.
@@ -233,7 +243,8 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
         Args:
             seed: Seeds this and all following episodes.
             options: ``house``: the number of the house to play in; else it is drawn.
-                ``episode_id``: that of an earlier ``info``, to play the same episode again.
+                ``episode_id``: that of an earlier ``info``, to play the same episode again, or of
+                an episode of ``episodes``.
 
         Returns:
             Observation and info: ``scene_id``, ``episode_id``, and what is asked, where the task
@@ -243,6 +254,7 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
 
         Raises:
             ConfigError: There is no such option, house or episode; nothing has changed then.
+            MeasuredDataError: The episode is not as the file of ``episodes`` states it.
             DwellError: The episode cannot begin; the one before is over.
         """
         self._refuse_closed()
@@ -252,11 +264,11 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
         with self._playing("reset"):
             super().reset(seed=number)
             # Both are drawn whatever is asked for, so that the episodes that follow are the same.
-            drawn = int(self.np_random.integers(len(self._shelf.names)))
-            self._house = drawn if house is None else house
-            drawn = int(self.np_random.integers(2**63))
-            self._seed = drawn if episode is None else episode
+            drawn = self._shelf.draw(self.np_random)
+            self._house = drawn[0] if house is None else house
+            self._seed = drawn[1] if episode is None else episode
             self._runner.reset([self._seed])
+            self._shelf.check(self._house, self._seed, self._runner.batch)
             self._goal = self._runner.batch.episode_goal(0)
             observation = self._observation()
         return observation, self._info()
@@ -273,8 +285,7 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
         if "episode_id" in options:
             return self._shelf.episode(options["episode_id"])
         if "house" in options:
-            last = len(self._shelf.names) - 1
-            return integer_in_range("options: house, an index,", options["house"], high=last), None
+            return self._shelf.chosen(options["house"]), None
         return None, None
 
     def step(

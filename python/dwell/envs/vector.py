@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
-from typing import Any, NoReturn, Protocol
+from typing import Any, NoReturn, Protocol, cast
 
 import numpy as np
 from gymnasium.utils import EzPickle
@@ -28,7 +28,7 @@ from dwell.camera import camera_settings
 from dwell.envs.action_modes import EngineActions, action_form, masked_form
 from dwell.envs.config import (
     CACHED_HOUSES,
-    HouseCache,
+    EpisodeFiles,
     Houses,
     agent_number,
     arguments_of,
@@ -38,6 +38,7 @@ from dwell.envs.config import (
 )
 from dwell.envs.current_state import forked
 from dwell.envs.env_pool import EnvPool
+from dwell.envs.episode_shelf import EpisodeIndex, settings_as_stated, shelf_of
 from dwell.envs.house_assignment import HouseAssignment
 from dwell.envs.info_keys import INFO_KEYS
 from dwell.envs.native_batch import NativeBatch
@@ -102,7 +103,8 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
         num_envs: int = 1,
         task: TaskChoice = "InstructionFollowing",
         *,
-        houses: Houses = "builtin:apartment",
+        houses: Houses | None = None,
+        episodes: EpisodeFiles | None = None,
         sensors: Sensors = None,
         reward: RewardChoice = None,
         laws: Laws = None,
@@ -128,7 +130,8 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
         Args:
             num_envs: How many.
             task: The task's name, or a subclass of :class:`dwell.Task`.
-            houses: A HOUSE string or a :class:`dwell.House`, or several.
+            houses: A HOUSES string or a :class:`dwell.House`, or several.
+            episodes: A file of episodes, or several, of which each reset draws one.
             sensors: Names of sensors, or settings by name; subclasses of :class:`dwell.Sensor`.
             reward: A subclass of :class:`dwell.Reward`.
             laws: Laws to install, or what calibration found.
@@ -161,11 +164,13 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
         houses, sensors, laws = kept_houses(houses), kept(sensors), kept(laws)
         parameters, task_settings = kept(parameters), kept(task_settings)
         stride, world, actions = kept(stride), kept(world), kept(actions)
+        episodes = kept(episodes)
         EzPickle.__init__(
             self,
             num_envs,
             task,
             houses=houses,
+            episodes=episodes,
             sensors=sensors,
             reward=reward,
             laws=laws,
@@ -193,6 +198,8 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
         self._limit = step_limit(max_episode_steps)
         load_ahead = integer_in_range("load_ahead", load_ahead)
         world, heads = with_head(world)
+        stated = None if episodes is None else EpisodeIndex(episodes)
+        task_settings = settings_as_stated(stated, task, task_settings)
         native, custom = split(task, task_settings, reward, sensors)
         config = env_json(
             native,
@@ -204,7 +211,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
             world=world,
             agent=agent_number(agent),
         )
-        shelf = HouseCache(houses)
+        shelf = shelf_of(houses, stated)
         threads = None if threads is None else integer_in_range("threads", threads, low=1)
         self._shelf = shelf
         self._config, self._custom, self._heads = config, custom, heads
@@ -265,7 +272,8 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
         for k, (_, seed) in episodes.items():
             seeds[k] = seed
         self._runner.reset(seeds, moved)
-        for k, (_, seed) in episodes.items():
+        for k, (house, seed) in episodes.items():
+            self._shelf.check(house, seed, self._runner.batch, k)
             self._seeds[k] = seed
         self._episode_infos = None
         self._done[which] = False
@@ -282,7 +290,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
 
     def _draw(self, stream: np.random.Generator) -> tuple[int, int]:
         """The next episode's house and seed, drawn as a single environment draws them."""
-        return int(stream.integers(len(self._shelf.names))), int(stream.integers(2**63))
+        return self._shelf.draw(stream)
 
     def _look_ahead(self, which: NDArray[np.bool_]) -> None:
         """Opens ahead the houses in which environments of ``which`` go on after this episode."""
@@ -561,13 +569,8 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
         return World.of_env(self._runner.houses[k], _native.World.of_env(self._runner.batch, k))
 
     def fork(self) -> DwellVectorEnv:
-        """Other environments at the same moments of the same episodes, which go on by themselves.
-
-        Raises:
-            UsageError: No episode has begun in one of them.
-        """
-        made: DwellVectorEnv = forked(self)
-        return made
+        """Other environments at the same moments of their episodes, which all have begun."""
+        return cast("DwellVectorEnv", forked(self))
 
     def _refuse_closed(self) -> None:
         if self.closed:

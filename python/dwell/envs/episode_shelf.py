@@ -1,0 +1,272 @@
+"""Environments that play the episodes of files."""
+
+from __future__ import annotations
+
+import array
+import hashlib
+import json
+import os
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from dwell import ConfigError, MeasuredDataError, _native, arguments
+from dwell.arguments import mapping, plain_settings, quoted, sequence_items
+from dwell.envs.config import USUAL_HOUSE, EpisodeFiles, HouseCache, Houses
+from dwell.envs.python_tasks import TaskChoice
+from dwell.episodes import Episode, Header, read, task_of
+from dwell.house_list import HouseList
+
+#: What the settings of a task say about steps, not about which episodes there are: who plays the
+#: episodes of a file may choose them anew.
+_OF_STEPS = ("reward", "ends_at_goal", "step_done_reward")
+
+
+class EpisodeIndex:
+    """Episodes of files, in 20 bytes each and the names of their houses.
+
+    Attributes:
+        header: The header of the first file; the others have the same task and settings.
+        names: The houses, in the order in which they come first.
+    """
+
+    def __init__(self, episodes: EpisodeFiles) -> None:
+        """Reads the files.
+
+        Raises:
+            MeasuredDataError: A file is none of episodes, or a line of it is wrong; or an episode
+                stands there twice; the message names file, line and field.
+            ConfigError: The files do not go together, or are none.
+            OSError: The system refuses to read one, or it is no regular file.
+        """
+        is_one = isinstance(episodes, str | os.PathLike)
+        expected = "expected the path of a file of episodes, or a list of such"
+        given = [episodes] if is_one else sequence_items("episodes", episodes, expected)
+        if not given:
+            raise ConfigError(f"episodes is []; {expected}")
+        self._files = [read(arguments.file_path("episodes", one)) for one in given]
+        self.header = self._files[0].header
+        for file in self._files[1:]:
+            _refuse_other(self._files[0].path, self.header, file.path, file.header)
+        numbers: dict[str, int] = {}
+        houses, seeds, digests = array.array("i"), array.array("Q"), array.array("Q")
+        #: Up to which episode each file's go.
+        self._ends: list[int] = []
+        for file in self._files:
+            for one in file:
+                houses.append(numbers.setdefault(one.scene_id, len(numbers)))
+                seeds.append(one.seed)
+                digests.append(_digest(one.asked()))
+            self._ends.append(len(seeds))
+        if not seeds:
+            raise ConfigError(f"episodes: {self._files[0].path} holds no episode")
+        self.names = [*numbers]
+        self._houses = np.frombuffer(houses, np.int32)
+        self._seeds = np.frombuffer(seeds, np.uint64)
+        self._digests = np.frombuffer(digests, np.uint64)
+        order = np.lexsort((self._seeds, self._houses))
+        same = np.diff(self._houses[order]) == 0
+        same &= self._seeds[order][1:] == self._seeds[order][:-1]
+        if same.any():
+            first = int(np.flatnonzero(same)[0])
+            before, again = sorted(map(int, order[first : first + 2]))
+            raise MeasuredDataError(
+                f"{self._place(again)}: episode_id {quoted(self.id_of(again))} stands in "
+                f"{self._place(before)} already; an episode stands once"
+            )
+
+    def __len__(self) -> int:
+        """How many episodes there are."""
+        return len(self._seeds)
+
+    def __getitem__(self, number: int) -> tuple[int, int]:
+        """House, by its place in :attr:`names`, and seed of an episode."""
+        return int(self._houses[number]), int(self._seeds[number])
+
+    def id_of(self, number: int) -> str:
+        """The id of an episode."""
+        house, seed = self[number]
+        return f"{self.names[house]}#{seed}"
+
+    def number(self, house: int, seed: int) -> int | None:
+        """Which episode it is that is in a house and of a seed."""
+        if not 0 <= seed < 2**64:
+            return None
+        found = np.flatnonzero((self._seeds == np.uint64(seed)) & (self._houses == house))
+        return int(found[0]) if found.size else None
+
+    def check(self, number: int, asked: Mapping[str, Any]) -> None:
+        """Refuses what an episode asks when it is played, where the file states something else.
+
+        Raises:
+            MeasuredDataError: The message has the field, what the file states and what was found.
+        """
+        if _digest(asked) == int(self._digests[number]):
+            return
+        stated = self._stated(self.id_of(number))
+        name = next((key for key in asked if stated.get(key) != asked[key]), "what is asked")
+        raise MeasuredDataError(
+            f"{self._place(number)}: {name}: the file states {quoted(stated.get(name))}, played it "
+            f"is {quoted(asked.get(name))}: the file was made by something else than this "
+            f"environment (it by dwell {self.header.made_by}, with the default world), or changed"
+        )
+
+    def _stated(self, episode_id: str) -> dict[str, Any]:
+        """What the file states of an episode; empty where it is gone since."""
+        try:
+            for file in self._files:
+                for one in file:
+                    if one.episode_id == episode_id:
+                        return one.asked()
+        except (OSError, MeasuredDataError):
+            pass
+        return {}
+
+    def _place(self, number: int) -> str:
+        """File and line of an episode."""
+        which = int(np.searchsorted(self._ends, number, "right"))
+        begin = self._ends[which - 1] if which else 0
+        return f"{self._files[which].path} line {number - begin + 2}"
+
+
+class EpisodeShelf(HouseCache):
+    """The houses of episodes of files, of which each draw gives one."""
+
+    def __init__(self, houses: Houses | None, index: EpisodeIndex) -> None:
+        """Opens nothing.
+
+        Raises:
+            ConfigError: ``houses`` are given, and an episode is in another.
+        """
+        names = HouseList()
+        for name in index.names if houses is None else ():
+            names.append_name(name)
+        super().__init__(names if houses is None else houses)
+        self._index = index
+        #: The houses of :attr:`names` that the index numbers, and back.
+        self._house_of = [*range(len(index.names))]
+        if houses is not None:
+            for number, name in enumerate(index.names):
+                if name not in self.names:
+                    raise ConfigError(
+                        f"houses: an episode of the file is in {quoted(name)}, which is not among "
+                        f"them: {quoted(self.names[:12])}; leave houses out, or give its houses"
+                    )
+                self._house_of[number] = self.names.index(name)
+        self._number_of = {house: number for number, house in enumerate(self._house_of)}
+
+    def draw(self, stream: np.random.Generator) -> tuple[int, int]:
+        """House and seed of one of the episodes."""
+        house, seed = self._index[int(stream.integers(len(self._index)))]
+        return self._house_of[house], seed
+
+    def chosen(self, house: object) -> int:
+        """Refuses: an episode has its own house.
+
+        Raises:
+            ConfigError: Always.
+        """
+        raise ConfigError(
+            f"options: house is {quoted(house)}; episodes of a file have their own houses, give "
+            "episode_id"
+        )
+
+    def episode(self, episode_id: object) -> tuple[int, int]:
+        """House and seed of an id of the file.
+
+        Raises:
+            ConfigError: It is none.
+        """
+        house, seed = super().episode(episode_id)
+        if self._number(house, seed) is None:
+            raise ConfigError(
+                f"episode_id is {quoted(episode_id)}; expected one of the {len(self._index)} "
+                f"episodes of the file, such as {quoted(self._index.id_of(0))}"
+            )
+        return house, seed
+
+    def _number(self, house: int, seed: int) -> int | None:
+        number = self._number_of.get(house)
+        return None if number is None else self._index.number(number, seed)
+
+    def check(self, house: int, seed: int, batch: _native.Batch, env: int = 0) -> None:
+        """Refuses an episode that has begun and is not as the file states it.
+
+        Raises:
+            MeasuredDataError: As of :meth:`EpisodeIndex.check`.
+        """
+        number = self._number(house, seed)
+        if number is None:
+            return
+        found = batch.episode_goal(env)
+        played = Episode(
+            episode_id="",
+            scene_id="",
+            seed=seed,
+            start_position=(0.0, 0.0, 0.0),
+            start_yaw_deg=0.0,
+            instruction=batch.instruction(env),
+            **found,
+        )
+        self._index.check(number, played.asked())
+
+
+def shelf_of(houses: Houses | None, index: EpisodeIndex | None) -> HouseCache:
+    """The houses of an environment.
+
+    Raises:
+        ConfigError: They are none, or not those of its episodes.
+    """
+    if index is not None:
+        return EpisodeShelf(houses, index)
+    return HouseCache(USUAL_HOUSE if houses is None else houses)
+
+
+def settings_as_stated(
+    index: EpisodeIndex | None, task: TaskChoice, given: Mapping[str, Any] | None
+) -> Mapping[str, Any] | None:
+    """The task's settings: those of the file of episodes, and what ``given`` may choose anew.
+
+    Raises:
+        ConfigError: The file is of another task or version, or ``given`` contradicts it.
+    """
+    if index is None:
+        return given
+    stated = index.header
+    if task != stated.task:
+        raise ConfigError(
+            f"episodes: the file is of the task {stated.task}, this environment of "
+            f"{quoted(task)}; make dwell/{stated.task}-v{stated.task_version}"
+        )
+    version = task_of(stated.task)["version"]
+    if version != stated.task_version:
+        raise ConfigError(
+            f"episodes: the file is of version {stated.task_version} of {stated.task}, this "
+            f"environment of version {version}, which has other episodes"
+        )
+    own = plain_settings({} if given is None else mapping("task_settings", given), "task_settings")
+    for name, value in own.items():
+        if name not in _OF_STEPS and value != stated.task_settings.get(name, value):
+            raise ConfigError(
+                f"task_settings.{name} is {quoted(value)}; the episodes were made with "
+                f"{quoted(stated.task_settings[name])}: leave it out, or make others; "
+                f"{', '.join(_OF_STEPS)} alone may differ"
+            )
+    return {**stated.task_settings, **own}
+
+
+def _refuse_other(path: str, header: Header, other_path: str, other: Header) -> None:
+    for name in ("task", "task_version", "task_settings"):
+        one, two = getattr(header, name), getattr(other, name)
+        if one != two:
+            raise ConfigError(
+                f"episodes: {name} of {other_path} is {quoted(two)}, that of {path} is "
+                f"{quoted(one)}; files that are played together have the same"
+            )
+
+
+def _digest(asked: Mapping[str, Any]) -> int:
+    """A short hash of what an episode asks."""
+    written = json.dumps(asked, sort_keys=True).encode()
+    return int.from_bytes(hashlib.blake2b(written, digest_size=8).digest(), "little")
