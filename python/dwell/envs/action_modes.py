@@ -353,7 +353,11 @@ class DictActions:
 
 
 class AnsweredActions:
-    """Actions of another form, and the answer that the task expects with ``stop``."""
+    """Actions of another form, and the answer that the task expects with ``stop``.
+
+    Numbers of an answer are shares of their highest value, as gymnasium recommends: from -1 or 0 on
+    to 1. Choices are whole numbers.
+    """
 
     def __init__(self, form: ActionForm, fields: Sequence[Mapping[str, Any]]) -> None:
         """Adds to ``form`` the fields that a batch's ``answer_fields`` names."""
@@ -387,9 +391,10 @@ class AnsweredActions:
             if field["choices"] is not None:
                 columns[:, k] = _choices(at, value, count, len(field["choices"]))
                 continue
-            low, high = np.array(field["range"], np.float32).tolist()
+            low, high = _shares(field)
             numbers = np.asarray(_array(at, value, "numbers")).reshape(-1, 1)
-            columns[:, k] = _numbers(at, numbers, (count,), 1, (low, high))[:, 0]
+            shares = _numbers(at, numbers, (count,), 1, (low, high))[:, 0]
+            columns[:, k] = shares * field["range"][1]
         return dataclasses.replace(actions, answers=columns)
 
     def expert(self, numbers: NDArray[np.int64], answers: NDArray[np.float32]) -> Any:  # noqa: ANN401 - of the space
@@ -399,9 +404,11 @@ class AnsweredActions:
         for k, field in enumerate(self._fields):
             column = answers[:, k]
             is_choice = field["choices"] is not None
-            answer[field["name"]] = (
-                column.astype(np.int64) if is_choice else column.astype(np.float32)[:, np.newaxis]
-            )
+            if is_choice:
+                answer[field["name"]] = column.astype(np.int64)
+                continue
+            shares = np.clip(column / field["range"][1], *_shares(field))
+            answer[field["name"]] = shares.astype(np.float32)[:, np.newaxis]
         return {**(own if self._is_dict else {"action": own}), "answer": answer}
 
 
@@ -409,9 +416,13 @@ def _answer_space(field: Mapping[str, Any]) -> spaces.Space[Any]:
     """The space of a field of an answer."""
     if field["choices"] is not None:
         return spaces.Discrete(len(field["choices"]))
-    low, high = field["range"]
-    box: spaces.Box[Any] = spaces.Box(low, high, (1,), np.float32)
+    box: spaces.Box[Any] = spaces.Box(*_shares(field), (1,), np.float32)
     return box
+
+
+def _shares(field: Mapping[str, Any]) -> tuple[float, float]:
+    """Lowest and highest number of a field that is no choice, as shares of its highest value."""
+    return (-1.0 if field["range"][0] < 0 else 0.0), 1.0
 
 
 ActionForm = DiscreteActions | PointerActions | ObjectActions | VelocityActions | DictActions
