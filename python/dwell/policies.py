@@ -138,7 +138,8 @@ def with_answer(
             answer[name] = 0 if stream is None else int(stream.integers(space.n))
         else:
             low, high = float(space.low[0]), float(space.high[0])
-            answer[name] = 0.0 if stream is None else float(stream.uniform(low, high))
+            share = 0.0 if stream is None else stream.uniform(low, high)
+            answer[name] = np.array([share], np.float32)
     return {"action": number, "answer": answer}
 
 

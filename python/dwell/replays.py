@@ -128,7 +128,9 @@ class Replay:
                 seed=integer_in_range("seed", row["seed"]),
                 config=to_json(mapping("config", row["config"])),
                 parts=tuple(text_list("parts", row["parts"])),
-                actions=tuple(sequence_items("actions", row["actions"], "expected actions")),
+                actions=tuple(
+                    sequence_items("actions", row["actions"], "expected a list of actions")
+                ),
                 hashes=tuple(text_list("hashes", row["hashes"])),
                 instruction=text("instruction", row["instruction"]),
                 success=boolean("success", row["success"]),
@@ -403,7 +405,7 @@ _CHECKS: dict[str, Callable[[str, object], Any]] = {
     "seed": integer_in_range,
     "config": text,
     "parts": text_list,
-    "actions": lambda name, given: sequence_items(name, given, "expected actions"),
+    "actions": lambda name, given: sequence_items(name, given, "expected a list of actions"),
     "hashes": text_list,
     "instruction": text,
     "success": boolean,

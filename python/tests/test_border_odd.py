@@ -156,7 +156,10 @@ CALLS = [
     ("next(replace(REPLAY, hashes=()).play())", "replay: 0 actions and 0 hashes; expected at mo"),
     ("next(replace(REPLAY, seed=-1).play())", "replay: seed is -1; allowed are whole numbers"),
     ('replace(REPLAY, seed="x").check()', "replay: seed is 'x'; allowed are whole numbers from 0"),
-    ("replace(REPLAY, actions=None).check()", "replay: actions is None; expected a list of text"),
+    (
+        "replace(REPLAY, actions=None).check()",
+        "replay: actions is None; expected a list of actions",
+    ),
     ("replace(REPLAY, house=5).check()", "replay: house is 5; expected text"),
     ('replace(REPLAY, success="x").write(NEVER)', "replay: success is 'x'; allowed are True and F"),
     ("replace(REPLAY, hashes=()).write(NEVER)", "replay: 0 actions and 0 hashes"),

@@ -54,7 +54,7 @@ def test_a_task_is_registered_with_what_environments_know() -> None:
         _native.Batch([room.native], '{"nope": 1}')
     # Laws and parameters are the world's there; the others are of Python alone.
     own = {"houses", "episodes", "reward", "laws", "parameters", "threads"}
-    own |= {"max_episode_steps", "render_mode"}
+    own |= {"max_episode_steps", "render_mode", "action_mask"}
     # The engine takes several agents; Python's environments are about one.
     assert _allowed(str(env.value)) - {"agents"} == arguments - own - {"agent"}
 
