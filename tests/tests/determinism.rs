@@ -53,7 +53,7 @@ fn batch(count: usize, threads: usize) -> Batch {
 fn actions() -> Vec<DiscreteAction> {
     let mut stream = RandomKey::root(31).child("actions").stream();
     let draw = |_| match stream.below(3) {
-        0 => DiscreteAction::ALL[1 + stream.below(DiscreteAction::ALL.len() - 1)],
+        0 => DiscreteAction::DEFAULT[1 + stream.below(DiscreteAction::DEFAULT.len() - 1)],
         _ => DiscreteAction::ALL[1 + stream.below(3)],
     };
     (0..STEPS).map(draw).collect()

@@ -75,7 +75,7 @@ fn the_right_answer_points_at_the_source() {
             .unwrap()
             .remove(0);
         assert!(info.result.success && info.result.terminated);
-        // Bits of 32 cost about a thousandth of a degree near the cosine's end.
+        // The agent may still come to rest by fractions of a millimetre.
         assert!(
             info.measures[..3].iter().all(|error| *error < 0.05),
             "{:?}",
@@ -105,7 +105,7 @@ fn errors_are_angles_on_the_sphere() {
         for (turn, rise) in [(0.2_f32, 0.1_f32), (0.4, -0.1), (-3.0, 0.3), (0.0, -0.6)] {
             let told = [azimuth + turn, elevation + rise, 1.5 * distance_m, class];
             let info = answered(&mut env, seed, told);
-            // Haversines (R. W. Sinnott, Sky and Telescope 68, 1984), where the engine takes the cosine.
+            // Haversines (R. W. Sinnott, Sky and Telescope 68, 1984), where the engine takes half angles between vectors.
             let half = |angle: f32| f64::from(angle / 2.0).sin().powi(2);
             let level = f64::from(elevation).cos() * f64::from(elevation + rise).cos();
             let expected_deg = 2.0 * (half(rise) + level * half(turn)).sqrt().asin().to_degrees();

@@ -20,11 +20,12 @@ use crate::sound::SoundPlace;
 use crate::world::World;
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::interrupt;
+use dwell_scene::math;
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, Pose};
 use dwell_semantics::vocabulary;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f32::consts::{FRAC_PI_2, PI};
@@ -219,31 +220,27 @@ impl RelativePlace {
     /// Of a point as a head hears it that is upright at `world_from_head`.
     fn of(world_from_head: Pose, point: Vec3) -> Self {
         let at = world_from_head.inverse().transform_point(point);
-        let distance_m = at.length();
+        let level_m = Vec2::new(at.x, at.z).length();
         Self {
-            azimuth: (-at.x).atan2(-at.z),
-            elevation: (at.y / distance_m.max(f32::MIN_POSITIVE))
-                .clamp(-1.0, 1.0)
-                .asin(),
-            distance_m,
+            azimuth: math::atan2(-at.x, -at.z),
+            elevation: math::atan2(at.y, level_m),
+            distance_m: at.length(),
         }
     }
 
-    fn direction(&self) -> [f64; 3] {
-        let (azimuth, elevation) = (f64::from(self.azimuth), f64::from(self.elevation));
-        let level = elevation.cos();
-        [
-            -azimuth.sin() * level,
-            elevation.sin(),
-            -azimuth.cos() * level,
-        ]
+    /// The unit vector that points there: X to the right, Y up, -Z ahead.
+    fn direction(&self) -> Vec3 {
+        let (left, ahead) = math::sin_cos(self.azimuth);
+        let (up, level) = math::sin_cos(self.elevation);
+        Vec3::new(-left * level, up, -ahead * level)
     }
 
-    /// The angle between two directions along a great circle, degrees.
+    /// The angle between two directions along a great circle, degrees: exact for small and for large ones (W. Kahan, "How Futile are
+    /// Mindless Assessments of Roundoff in Floating-Point Computation?", 2006, section 12).
     fn angle_to_deg(&self, other: &Self) -> f64 {
         let (a, b) = (self.direction(), other.direction());
-        let cosine: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();
-        cosine.clamp(-1.0, 1.0).acos().to_degrees()
+        let half = math::atan2((a - b).length(), (a + b).length());
+        f64::from(2.0 * half).to_degrees()
     }
 }
 
