@@ -41,6 +41,7 @@ __all__ = [
     "calibration_example",
     "charset",
     "check_measured",
+    "chosen_actions",
     "doctor",
     "dollhouse",
     "ear_metrics",

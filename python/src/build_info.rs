@@ -22,13 +22,12 @@ pub(crate) fn actions() -> Vec<&'static str> {
 
 /// The discrete actions to choose from under settings of an environment, in the order of their numbers.
 #[pyfunction]
-pub(crate) fn chosen_actions(config_json: &str) -> PyResult<Vec<&'static str>> {
-    let read = || -> Result<Vec<_>, PyFault> {
+pub(crate) fn chosen_actions(py: Python<'_>, config_json: &str) -> PyResult<Vec<&'static str>> {
+    py.engine(|| -> Result<_, PyFault> {
         let config: dwell::EnvConfig = serde_json::from_str(config_json)?;
-        Ok(config.chosen_actions()?)
-    };
-    let actions = read().map_err(to_python)?;
-    Ok(actions.into_iter().map(DiscreteAction::name).collect())
+        let actions = config.chosen_actions()?.into_iter();
+        Ok(actions.map(DiscreteAction::name).collect())
+    })
 }
 
 /// The actions: `{kinds: [{name, about, is_of_hand, target, fields}], target: [field], codes: [{name, about}]}`, the discrete ones first,

@@ -25,14 +25,16 @@ fn stop(answer: [f32; 4]) -> StepAction {
 
 fn answered(env: &mut Env, seed: u64, answer: [f32; 4]) -> StepInfo {
     begin(env, seed);
-    env.step(&[Some(stop(answer))]).unwrap().remove(0)
+    let infos = env.step(&[Some(stop(answer))]);
+    infos.expect("an episode runs").remove(0)
 }
 
 /// Begins an episode and lets the agent come to rest.
 fn begin(env: &mut Env, seed: u64) {
-    env.reset(seed).unwrap();
+    env.reset(seed).expect("the task can be played");
     for _ in 0..4 {
-        env.step(&[Some(DiscreteAction::Wait)]).unwrap();
+        env.step(&[Some(DiscreteAction::Wait)])
+            .expect("an episode runs");
     }
 }
 

@@ -170,9 +170,12 @@ impl Batch {
     /// [`WorldError`] for an action that cannot be read.
     pub fn action_masks(&mut self) -> Result<Vec<[bool; DiscreteAction::ALL.len()]>, WorldError> {
         let all = vec![true; self.envs.len()];
-        let masks = self.for_active(&all, |_, env| match env.has_episode() {
-            true => env.action_masks(),
-            false => Ok(vec![[true; DiscreteAction::ALL.len()]; env.agents.len()]),
+        let masks = self.for_active(&all, |_, env| {
+            if env.has_episode() {
+                env.action_masks()
+            } else {
+                Ok(vec![[true; DiscreteAction::ALL.len()]; env.agents.len()])
+            }
         })?;
         Ok(masks.into_iter().flatten().flatten().collect())
     }

@@ -1,6 +1,6 @@
 //! One of the agents that act in an environment.
 
-use crate::actions::{StepAction, StepSizes};
+use crate::actions::{ActionTarget, AgentAction, HandTarget, StepAction, StepSizes};
 use crate::config::WorldConfig;
 use crate::env_config::{ResolvedAgentConfig, SensorConfig};
 use crate::episode::{Episode, StepInfo, StepResult};
@@ -8,9 +8,11 @@ use crate::error::WorldError;
 use crate::sensors::{self, Sensor, SensorSetup};
 use crate::tasks::{self, Task, TaskKind, TaskSetup};
 use crate::world::World;
-use dwell_physics::ActionOutcome;
+use dwell_physics::{ActionOutcome, Target};
+use dwell_render::Camera;
 use dwell_scene::random::RandomKey;
-use dwell_scene::{AgentId, Id};
+use dwell_scene::{AgentId, Id, Pose};
+use glam::Vec2;
 use serde_json::Value;
 
 /// The task, sensors and episode of an agent.
@@ -118,6 +120,40 @@ impl EnvAgent {
     pub(crate) fn clear_episode(&mut self) {
         self.episode = None;
         (self.done, self.success) = (false, false);
+    }
+
+    /// Returns its action in a step as the world takes it.
+    pub(crate) fn world_action(&self, world: &World, step: &StepAction) -> AgentAction {
+        let target = match step.target {
+            ActionTarget::Gaze => HandTarget::Gaze,
+            ActionTarget::Entity(id) => HandTarget::At(Target::Entity(id)),
+            ActionTarget::Picture(place) => self.picture_target(world, place),
+        };
+        AgentAction {
+            agent: self.id,
+            action: step.action,
+            velocity: step.velocity,
+            target,
+            step_sizes: self.step_sizes,
+        }
+    }
+
+    /// Returns the ray through a place of its first camera's picture.
+    fn picture_target(&self, world: &World, [across, down]: [f32; 2]) -> HandTarget {
+        let state = world.state();
+        let eye = self.sensors.iter().find_map(|sensor| sensor.camera());
+        let camera = match eye {
+            Some(eye) => Some(eye.camera_in(state)),
+            None => Camera::from_fov(1, 1, state.camera_fov_deg(self.id)).ok(),
+        };
+        let mount = eye.map_or(Pose::IDENTITY, |eye| eye.eye_from_camera);
+        let (Some(camera), Some(body)) = (camera, state.agents.get(self.id)) else {
+            return HandTarget::Nothing;
+        };
+        let (width, height) = (camera.width() as f32, camera.height() as f32);
+        let place = Vec2::new(across * width, down * height);
+        World::image_target(&camera, body.world_from_eye() * mount, place)
+            .map_or(HandTarget::Nothing, HandTarget::At)
     }
 
     /// Judges the step that has just been made with `action`; `outcome`: what became of it.

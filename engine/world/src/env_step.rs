@@ -63,7 +63,7 @@ impl Env {
         let steps: Vec<AgentAction> = acting
             .filter_map(|(agent, action)| {
                 let action: StepAction = (*action)?.into();
-                Some(action.of_agent(&self.world, agent))
+                Some(agent.world_action(&self.world, &action))
             })
             .collect();
         let outcomes = self.world.step_discrete_actions(&steps)?;

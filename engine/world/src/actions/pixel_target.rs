@@ -47,7 +47,7 @@ impl World {
     }
 
     /// Returns the ray through a place of an image, pixels from its left and upper edge; `None` where the camera sees nothing.
-    pub(super) fn image_target(
+    pub(crate) fn image_target(
         camera: &Camera,
         world_from_camera: Pose,
         place: Vec2,

@@ -1,15 +1,10 @@
 //! What an agent does in one step of an environment: an action, velocities of its own, and what its hand is used on.
 
-use super::{AgentAction, DiscreteAction, HandTarget, StepSizes};
-use crate::env_agent::EnvAgent;
+use super::{AgentAction, DiscreteAction, StepSizes};
 use crate::episode::{Answer, MAX_ANSWER_FIELDS};
 use crate::error::WorldError;
-use crate::eye_camera::EyeCamera;
 use crate::world::World;
-use dwell_physics::Target;
-use dwell_render::Camera;
-use dwell_scene::{AgentId, EntityId, Pose};
-use glam::Vec2;
+use dwell_scene::{AgentId, EntityId};
 use serde::{Deserialize, Serialize};
 
 /// The form that actions have.
@@ -103,47 +98,6 @@ impl StepAction {
             _ => Ok(()),
         }
     }
-
-    /// The action as the world takes it from an agent.
-    pub(crate) fn of_agent(self, world: &World, agent: &EnvAgent) -> AgentAction {
-        let target = match self.target {
-            ActionTarget::Gaze => HandTarget::Gaze,
-            ActionTarget::Entity(id) => HandTarget::At(Target::Entity(id)),
-            ActionTarget::Picture(place) => {
-                let eye = agent.sensors.iter().find_map(|sensor| sensor.camera());
-                picture_target(world, agent, eye, place)
-            }
-        };
-        AgentAction {
-            agent: agent.id,
-            action: self.action,
-            velocity: self.velocity,
-            target,
-            step_sizes: agent.step_sizes,
-        }
-    }
-}
-
-/// The ray through a place of a picture.
-fn picture_target(
-    world: &World,
-    agent: &EnvAgent,
-    eye: Option<&EyeCamera>,
-    [across, down]: [f32; 2],
-) -> HandTarget {
-    let state = world.state();
-    let camera = match eye {
-        Some(eye) => Some(eye.camera_in(state)),
-        None => Camera::from_fov(1, 1, state.camera_fov_deg(agent.id)).ok(),
-    };
-    let mount = eye.map_or(Pose::IDENTITY, |eye| eye.eye_from_camera);
-    let (Some(camera), Some(body)) = (camera, state.agents.get(agent.id)) else {
-        return HandTarget::Nothing;
-    };
-    let (width, height) = (camera.width() as f32, camera.height() as f32);
-    let place = Vec2::new(across * width, down * height);
-    World::image_target(&camera, body.world_from_eye() * mount, place)
-        .map_or(HandTarget::Nothing, HandTarget::At)
 }
 
 /// Reads names of actions.

@@ -61,10 +61,10 @@ impl NavigationRules {
         grid: &NavGrid,
         setup: &TaskSetup,
     ) -> Result<(), WorldError> {
-        match self.open_doors.unwrap_or(!setup.opens) {
-            true => door_leaves::open_all(world, grid),
-            false => Ok(()),
+        if self.open_doors.unwrap_or(!setup.opens) {
+            door_leaves::open_all(world, grid)?;
         }
+        Ok(())
     }
 
     /// What a step is paid, and whether it ends the episode. `gain_m`: by how much the distance fell; `stops`: whether the agent
