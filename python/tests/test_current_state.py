@@ -54,6 +54,13 @@ def test_a_fork_goes_on_alone_with_the_same_bits() -> None:
     for _ in range(3):
         env.step(1)
     assert env.state_hash() == other.state_hash()
+    # The episodes that follow are the same, too, in houses that are drawn.
+    houses = ["builtin:studio", "builtin:apartment"]
+    first = DwellEnv("Free", houses=houses, sensors=["gps"])
+    first.reset(seed=6)
+    second = first.fork()
+    for _ in range(3):
+        assert second.reset()[1] == first.reset()[1]
     many = DwellVectorEnv(2, "Free", houses="builtin:studio", sensors=["gps"])
     with pytest.raises(dwell.UsageError, match="no episode"):
         many.fork()

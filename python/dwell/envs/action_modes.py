@@ -557,7 +557,7 @@ def _choices(at: str, given: object, count: int, choices: int) -> NDArray[np.int
 
 
 def _whole(at: str, given: object, shape: tuple[int], last: int) -> NDArray[np.int64]:
-    numbers = _array(at, np.atleast_1d(np.asarray(given)), "whole numbers")
+    numbers = np.atleast_1d(_array(at, given, "whole numbers"))
     return _choices(at, numbers, shape[0], last + 1)
 
 

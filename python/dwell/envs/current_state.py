@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import deepcopy
 from typing import TYPE_CHECKING, Any, Self, cast
 
 import gymnasium
@@ -63,6 +64,8 @@ class CurrentStateApi:
     def fork(self) -> Self:
         """Another environment at the same moment of the same episode, which goes on by itself.
 
+        The episodes that follow are the same, too. Each has a world of its own in memory.
+
         Examples:
             >>> from dwell.envs import DwellEnv
             >>> env = DwellEnv("Free", houses="builtin:studio", sensors=["gps"])
@@ -81,7 +84,8 @@ def forked(env: Any) -> Any:  # noqa: ANN401 - of the environment's own class
     snapshot = env.snapshot()
     kwargs = cast("dict[str, Any]", env._ezpickle_kwargs)
     other = type(env)(*env._ezpickle_args, **kwargs)
-    if isinstance(env, gymnasium.Env):
-        other.spec = env.spec
     other.restore(snapshot)
+    if isinstance(env, gymnasium.Env):
+        # Of several environments the snapshots hold the streams from which episodes are drawn.
+        other.spec, other.np_random = env.spec, deepcopy(env.np_random)
     return other

@@ -418,7 +418,8 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
     def world(self) -> World:
         """The world in which the episode is played; it goes on with the environment's steps.
 
-        A change that is no action is in no recorded file, and ends with the episode.
+        A change that is no action is in no recorded file, and ends with the episode. The next
+        episode may be in another house, and then in another world: ask anew after ``reset``.
         """
         self._refuse_closed()
         runner = self._runner
