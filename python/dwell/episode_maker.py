@@ -273,7 +273,11 @@ def whole_settings(task: str, given: Mapping[str, Any] | None) -> dict[str, Any]
     fields = {row["name"]: row["schema"] for row in task_of(task)["settings"]}
     own = plain_settings({} if given is None else mapping("task_settings", given), "task_settings")
     refuse_unknown("task_settings", [name for name in own if name not in fields], fields)
-    return {name: _whole(schema, own.get(name)) for name, schema in fields.items()}
+    whole = {name: _whole(schema, own.get(name)) for name, schema in fields.items()}
+    # Else doors would stand as the actions of whoever plays the episodes have it: here all act.
+    if whole.get("open_doors", True) is None:
+        whole["open_doors"] = False
+    return whole
 
 
 def _whole(schema: Mapping[str, Any], given: Any) -> Any:  # noqa: ANN401 - any JSON value

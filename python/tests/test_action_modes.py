@@ -114,6 +114,7 @@ def test_stop_by_velocities_and_by_dict() -> None:
         ("object", {"action": 1, "object": -1}, "allowed are 0 to"),
         ("object", {"action": 1, "object": "mug"}, "object: expected whole numbers"),
         ("object", {"action": 1, "object": [[1], [1, 2]]}, "expected whole numbers"),
+        ("object", {"action": 1, "object": np.ma.masked_array(30, True)}, "expected whole numbers"),
     ],
 )
 def test_what_is_no_action_is_refused(mode: str, action: object, part: str) -> None:

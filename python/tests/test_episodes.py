@@ -473,3 +473,14 @@ def test_an_index_takes_little_memory_for_many_episodes(made: Path, tmp_path: Pa
     index = env._shelf._index  # type: ignore[attr-defined]
     assert len(index) == 5000
     assert sum(part.nbytes for part in (index._houses, index._seeds, index._digests)) == 100_000
+
+
+def test_who_cannot_open_doors_plays_the_episodes_of_a_file(tmp_path: Path) -> None:
+    file = tmp_path / "all.jsonl"
+    maker = EpisodeMaker("PointNav", "builtin:apartment", count=4, seed=1)
+    dwell.episodes.write(file, maker.header, maker.episodes())
+    four = ["stop", "move_forward", "turn_left", "turn_right"]
+    for settings in ({"actions": four}, {"action_mode": "velocity"}):
+        env = DwellEnv("PointNav", episodes=file, sensors=["gps"], **settings)  # type: ignore[arg-type] # of one
+        for _ in range(4):
+            env.reset()

@@ -100,7 +100,7 @@ def run(args: argparse.Namespace) -> int:
         if row["mean"] is not None:
             print(f"{name}: {row['mean']:.4g} ({row['low']:.4g} to {row['high']:.4g})")
     for kind, row in result["by_goal_kind"].items():
-        print(f"{kind}: success {row['success']:.4g} of {row['episodes']}")
+        print(f"{kind}: success {100 * row['success']:.4g} % of {row['episodes']} episodes")
     if args.out:
         print(args.out)
     return 0

@@ -535,7 +535,7 @@ def _array(at: str, given: object, expected: str) -> NDArray[Any]:
     refuse_masked(at, given)
     try:
         return np.asarray(given)
-    except ValueError:
+    except (ValueError, np.ma.MaskError):
         raise ConfigError(f"{at} are {quoted(given)}; expected {expected}") from None
 
 
