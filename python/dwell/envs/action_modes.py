@@ -6,6 +6,7 @@ Adding a form is one class and one line in :data:`ACTION_MODES`; the engine know
 
 from __future__ import annotations
 
+import abc
 import dataclasses
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
@@ -176,7 +177,7 @@ class DiscreteActions:
         return found
 
 
-class _Targeted:
+class _Targeted(abc.ABC):
     """An action, and what a hand is used on."""
 
     #: The key of what a hand is used on.
@@ -199,18 +200,20 @@ class _Targeted:
         verbs = self._verbs.many(parts["action"], count)
         return self._with_target(verbs, parts[self._key], (count,))
 
+    @abc.abstractmethod
     def _with_target(
         self, verbs: EngineActions, target: object, shape: tuple[int]
     ) -> EngineActions:
-        raise NotImplementedError
+        """The actions with what their hands are used on."""
 
     def expert(self, numbers: NDArray[np.int64]) -> Any:  # noqa: ANN401 - of the space
         """As :meth:`DiscreteActions.expert`."""
         count = len(numbers)
         return {"action": self._verbs.expert(numbers), self._key: self._looked_at(count)}
 
+    @abc.abstractmethod
     def _looked_at(self, count: int) -> NDArray[Any]:
-        raise NotImplementedError
+        """What says that hands are used on what is looked at."""
 
 
 class PointerActions(_Targeted):

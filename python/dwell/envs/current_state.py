@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import abc
 from copy import deepcopy
 from typing import TYPE_CHECKING, Any, Self, cast
 
@@ -14,16 +15,16 @@ if TYPE_CHECKING:
     from dwell.world import World
 
 
-class CurrentStateApi:
+class CurrentStateApi(abc.ABC):
     """Methods about the state as it is now; of an environment with :meth:`world` and snapshots."""
 
     #: The number of the agent that acts.
     _agent: int
 
     @property
+    @abc.abstractmethod
     def world(self) -> World:
         """The world in which the episode is played; it goes on with the environment's steps."""
-        raise NotImplementedError
 
     def scene_graph(self, *, viewer: Viewer | None = None) -> dict[str, Any]:
         """The rooms, things and relations now; see :meth:`dwell.World.scene_graph`."""

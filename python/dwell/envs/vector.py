@@ -563,7 +563,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
         return self._observation(), self._ids()
 
     def world(self, env: int) -> World:
-        """The world of an environment; see :attr:`DwellEnv.world`."""
+        """The world of an environment until its next episode; see :attr:`DwellEnv.world`."""
         self._refuse_closed()
         k = integer_in_range("env", env, high=self.num_envs - 1)
         return World.of_env(self._runner.houses[k], _native.World.of_env(self._runner.batch, k))
