@@ -335,7 +335,10 @@ impl PyBatch {
             objects: row_copy("objects", objects.as_ref())?,
             answers: row_copy("answers", answers.as_ref())?,
         };
-        let infos = self.with(py, |batch| Ok(batch.step(&rows.read()?)?))?;
+        let (infos, measures) = self.with(py, |batch| {
+            let infos = batch.step(&rows.read()?)?;
+            Ok((infos, batch.env(0)?.task_measures(0)?))
+        })?;
         let out = PyDict::new(py);
         let of = |read: fn(&StepInfo) -> f64| -> Bound<'py, PyArray1<f64>> {
             infos
@@ -364,7 +367,6 @@ impl PyBatch {
         out.set_item("soft_spl", of(|info| info.progress.soft_spl()))?;
         out.set_item("path_length", of(|info| info.progress.path_m))?;
         out.set_item("collisions", of(|info| info.progress.collisions as f64))?;
-        let measures = self.with(py, |batch| Ok(batch.env(0)?.task_measures(0)?))?;
         for (k, measure) in measures.iter().enumerate() {
             let row = |info: &Option<StepInfo>| {
                 let own = info.as_ref().and_then(|info| info.measures.get(k));

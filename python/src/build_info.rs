@@ -50,12 +50,13 @@ pub(crate) fn action_table() -> PyResult<PyValue> {
     table(&json!({"kinds": kinds, "target": target, "codes": codes}))
 }
 
-/// The tasks: `[{name, version, about, asks, max_steps, measures, sensors, settings}]`.
+/// The tasks: `[{name, id, version, about, asks, max_steps, measures, sensors, settings}]`.
 #[pyfunction]
 pub(crate) fn tasks() -> PyResult<PyValue> {
     let tasks = dwell::tasks::all().iter().map(|kind| {
         json!({
             "name": kind.name,
+            "id": format!("dwell/{}", kind.id()),
             "version": kind.version,
             "about": kind.about,
             "asks": kind.has_goal,

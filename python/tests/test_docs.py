@@ -192,7 +192,7 @@ def test_the_tables_of_limits_are_those_of_a_world(pages: ModuleType) -> None:
 def test_every_environment_has_its_section(pages: ModuleType) -> None:
     page = pages.environments.page()
     for task in _native.tasks():
-        assert f"## dwell/{task['name']}-v{task['version']}\n" in page
+        assert f"## {task['id']}\n" in page
         rows = rows_of(page, f"### Observations of {task['name']}")
         assert [row[0] for row in rows] == task["sensors"]
 
@@ -275,7 +275,7 @@ def test_the_page_for_who_begins_says_what_the_engine_does() -> None:
     assert "the episode ends" in actions[0][2]
     tasks = _native.tasks()
     assert [(row[0], row[1], named(row[2])) for row in rows_of(text, "## Environments")] == [
-        (f"dwell/{task['name']}-v{task['version']}", task["about"], task["sensors"])
+        (task["id"], task["about"], task["sensors"])
         for task in tasks
     ]
     assert {task["max_steps"] for task in tasks} == {1000}

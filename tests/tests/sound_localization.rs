@@ -198,6 +198,10 @@ fn settings_that_no_episode_can_keep_to_are_refused() {
     };
     for (settings, part) in [
         (json!({"sounds": []}), "at least one signal"),
+        (
+            json!({"sounds": ["vacuum_cleaner", "vacuum_cleaner"]}),
+            "each sound once",
+        ),
         (json!({"sounds": ["no"]}), "no"),
         (json!({"max_distance_m": 60.0}), "max_distance_m is 60"),
         (json!({"min_distance_m": 7.0}), "min_distance_m is 7"),

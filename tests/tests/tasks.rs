@@ -130,7 +130,7 @@ fn starts_lie_as_far_as_asked() {
 fn an_episode_that_ends_at_its_goal_needs_no_stop() {
     for kind in with_goal() {
         let mut sparse = json!({"ends_at_goal": true, "reward": {"distance": 0.0}});
-        if kind.name == "InstructionSteps" {
+        if kind.name == "InstructionFollowing-v1" {
             sparse["step_done_reward"] = json!(0.0);
         }
         let mut env = env_with(kind.name, sparse, &[]);

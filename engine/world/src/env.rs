@@ -324,7 +324,7 @@ mod tests {
             })
         }
 
-        fn judge(&mut self, _: &World, _: &mut Episode, _: &StepAction) -> StepResult {
+        fn judge(&mut self, _: &World, _: &mut Episode, _: &PlayedAction<'_>) -> StepResult {
             StepResult::default()
         }
 

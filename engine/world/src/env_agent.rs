@@ -6,7 +6,7 @@ use crate::env_config::{ResolvedAgentConfig, SensorConfig};
 use crate::episode::{Episode, StepInfo, StepResult};
 use crate::error::WorldError;
 use crate::sensors::{self, Sensor, SensorSetup};
-use crate::tasks::{self, Task, TaskKind, TaskSetup};
+use crate::tasks::{self, PlayedAction, Task, TaskKind, TaskSetup};
 use crate::world::World;
 use dwell_physics::{ActionOutcome, Target};
 use dwell_render::Camera;
@@ -63,7 +63,7 @@ impl EnvAgent {
         let setup = TaskSetup {
             agent: role.agent,
             stride: role.stride,
-            opens: role.opens,
+            actions: role.actions,
         };
         let task = (kind.build)(role.task_settings, setup)?;
         let site = SensorSetup {
@@ -164,7 +164,11 @@ impl EnvAgent {
         outcome: ActionOutcome,
     ) -> Option<StepInfo> {
         let episode = self.episode.as_mut()?;
-        let verdict = self.task.judge(world, episode, action);
+        let played = PlayedAction {
+            action,
+            outcome: &outcome,
+        };
+        let verdict = self.task.judge(world, episode, &played);
         let agent = world.state().agents.get(self.id);
         let collision = agent.is_some_and(|agent| agent.collided);
         let progress = episode.progress;

@@ -1,8 +1,9 @@
 //! Configuration of environments.
 
-use crate::actions::{self, ActionMode, DiscreteAction, StepSizes};
+use crate::actions::{self, ActionMode, ActionSet, DiscreteAction, StepSizes};
 use crate::config::WorldConfig;
 use crate::error::WorldError;
+use crate::tasks;
 use dwell_scene::{AgentId, Id};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -85,8 +86,8 @@ pub(crate) struct ResolvedAgentConfig<'a> {
     pub(crate) task: &'a str,
     pub(crate) task_settings: &'a Value,
     pub(crate) stride: StepSizes,
-    /// True if its hand opens doors.
-    pub(crate) opens: bool,
+    /// The discrete actions that it has.
+    pub(crate) actions: ActionSet,
     /// `None`: the task's own choice.
     pub(crate) sensors: Option<&'a [SensorConfig]>,
 }
@@ -99,7 +100,7 @@ impl EnvConfig {
     /// has none to choose from.
     pub fn chosen_actions(&self) -> Result<Vec<DiscreteAction>, WorldError> {
         match (&self.actions, self.action_mode) {
-            (None, mode) => Ok(mode.default_actions().to_vec()),
+            (None, mode) => Ok(mode.default_actions(self.task_actions())),
             (Some(names), ActionMode::Velocity) => Err(WorldError::Config {
                 field: "actions",
                 found: names.join(", "),
@@ -107,6 +108,18 @@ impl EnvConfig {
             }),
             (Some(names), _) => actions::actions_named(names),
         }
+    }
+
+    /// The actions that its tasks have by default, in the order of their numbers; the usual ones of a task that does not exist.
+    fn task_actions(&self) -> Vec<DiscreteAction> {
+        let own = self.agents.iter().map(|agent| agent.task.as_deref());
+        let named = own.map(|name| name.unwrap_or(&self.task));
+        let kinds: Vec<_> = named.filter_map(|name| tasks::find(name).ok()).collect();
+        let of_tasks = |action: &DiscreteAction| {
+            kinds.iter().any(|kind| kind.actions.contains(action))
+                || (kinds.is_empty() && DiscreteAction::DEFAULT.contains(action))
+        };
+        DiscreteAction::ALL.into_iter().filter(of_tasks).collect()
     }
 
     /// The agents that act, in order.
@@ -138,15 +151,16 @@ impl EnvConfig {
                 return Err(fault("agents", found, "each agent once".to_owned()));
             }
         }
-        let opens = self.chosen_actions()?.contains(&DiscreteAction::Open);
-        let roles = self.agents.iter().map(|own| self.resolve_agent(own, opens));
+        let actions = ActionSet::of(&self.chosen_actions()?);
+        let roles = self.agents.iter();
+        let roles = roles.map(|own| self.resolve_agent(own, actions));
         roles.collect()
     }
 
     fn resolve_agent<'a>(
         &'a self,
         own: &'a AgentConfig,
-        opens: bool,
+        actions: ActionSet,
     ) -> Result<ResolvedAgentConfig<'a>, WorldError> {
         let general = match own.task {
             Some(_) => &Value::Null,
@@ -159,7 +173,7 @@ impl EnvConfig {
             task: own.task.as_deref().unwrap_or(&self.task),
             task_settings: own.task_settings.as_ref().unwrap_or(general),
             stride,
-            opens,
+            actions,
             sensors: own.sensors.as_deref().or(self.sensors.as_deref()),
         })
     }

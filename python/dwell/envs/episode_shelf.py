@@ -237,7 +237,7 @@ def settings_as_stated(
     if task != stated.task:
         raise ConfigError(
             f"episodes: the file is of the task {stated.task}, this environment of "
-            f"{quoted(task)}; make dwell/{stated.task}-v{stated.task_version}"
+            f"{quoted(task)}; make {task_of(stated.task)['id']}"
         )
     version = task_of(stated.task)["version"]
     if version != stated.task_version:

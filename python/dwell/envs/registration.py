@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 
 def env_ids() -> list[str]:
     """The ids of all environments."""
-    return [f"dwell/{task['name']}-v{task['version']}" for task in _native.tasks()]
+    return [task["id"] for task in _native.tasks()]
 
 
 def register_envs() -> None:
     """Registers every task; again does nothing."""
     for task in _native.tasks():
-        name = f"dwell/{task['name']}-v{task['version']}"
+        name = task["id"]
         if name in gymnasium.registry:
             continue
         gymnasium.register(

@@ -6,14 +6,20 @@ mod condition;
 mod find_object;
 mod go_to_room;
 mod needed_words;
+mod step_kind;
 mod steps;
 mod task;
+mod thing_group;
+mod word_split;
 
-pub use condition::StepCondition;
+pub use condition::{StepCondition, StepView};
 pub use find_object::is_sought;
 pub use needed_words::needed_words;
-pub use steps::{InstructionStep, StepKind, compose, steps};
+pub use step_kind::{StepKind, states_of};
+pub use steps::{InstructionStep, conditional};
 pub use task::{Instruction, InstructionGoal, InstructionKind, InstructionProgress};
+pub use thing_group::{ThingGroup, ThingSet, groups, thing_sets};
+pub use word_split::WordSplit;
 
 use crate::error::SemanticsError;
 use crate::scene::SemanticScene;

@@ -1,195 +1,137 @@
-//! Steps of instructions: what they ask for, in words and as a condition.
+//! Steps of instructions: what they ask for, in words and as conditions.
 
 use super::condition::StepCondition;
-use super::find_object::is_sought;
-use super::task::say;
-use crate::category::SemanticCategory;
-use crate::form::{Description, Form, RequestStep};
-use crate::language::{Language, Sentence};
-use crate::predicates;
-use crate::refer::{refer, refer_to_room};
-use crate::scene::{SemanticScene, Term};
-use crate::truth::Truth;
-use dwell_scene::interrupt;
-use dwell_scene::random::RandomKey;
+use super::step_kind::StepKind;
+use super::thing_group::ThingGroup;
+use crate::form::{Clause, Description, Quality, RequestStep};
+use crate::scene::Term;
 use dwell_scene::{ObjectId, RoomId};
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-/// Things with a joint of which nobody says that one opens them, and things with a switch that nobody switches.
-const NOT_OPENED: [&str; 3] = ["tap", "television", "toilet"];
-const NOT_SWITCHED: [&str; 4] = ["candle", "fireplace", "sink", "toilet"];
-
-/// What a step asks for.
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
-)]
-#[serde(rename_all = "snake_case")]
-pub enum StepKind {
-    /// Go to a room.
-    GoToRoom,
-    /// Find a thing: stand near it and look at it.
-    FindObject,
-    /// Pick a thing up, and hold it.
-    PickUp,
-    /// Open a thing.
-    Open,
-    /// Close a thing.
-    Close,
-    /// Switch a thing on.
-    SwitchOn,
-    /// Switch a thing off.
-    SwitchOff,
-    /// Bring a thing to a room, and leave it there.
-    Bring,
-}
-
-impl StepKind {
-    /// All kinds.
-    pub const ALL: [Self; 8] = [
-        Self::GoToRoom,
-        Self::FindObject,
-        Self::PickUp,
-        Self::Open,
-        Self::Close,
-        Self::SwitchOn,
-        Self::SwitchOff,
-        Self::Bring,
-    ];
-
-    /// The name, in letters and underscores.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::GoToRoom => "go_to_room",
-            Self::FindObject => "find_object",
-            Self::PickUp => "pick_up",
-            Self::Open => "open",
-            Self::Close => "close",
-            Self::SwitchOn => "switch_on",
-            Self::SwitchOff => "switch_off",
-            Self::Bring => "bring",
-        }
-    }
-
-    /// The verb of its request, and the condition, where it is about a thing alone.
-    fn of_thing(self, object: ObjectId) -> Option<(&'static str, StepCondition)> {
-        Some(match self {
-            Self::GoToRoom | Self::Bring => return None,
-            Self::FindObject => ("find", StepCondition::Found(object)),
-            Self::PickUp => ("pick_up", StepCondition::Held(object)),
-            Self::Open => ("open", StepCondition::Open(object)),
-            Self::Close => ("close", StepCondition::Closed(object)),
-            Self::SwitchOn => ("switch_on", StepCondition::SwitchedOn(object)),
-            Self::SwitchOff => ("switch_off", StepCondition::SwitchedOff(object)),
-        })
-    }
-
-    /// Returns whether a thing is of the sort that it asks about, and not yet as it asks: one opens what is closed.
-    fn applies(self, scene: &SemanticScene<'_>, object: ObjectId) -> bool {
-        let is = |predicate: &str| {
-            let found = predicates::find(predicate);
-            found
-                .is_ok_and(|found| found.holds(scene, &[Term::Object(object)], None) == Truth::True)
-        };
-        let thing = &scene.house().objects[object];
-        let category = scene.facts(object).category;
-        let is_sort = |flag: fn(&SemanticCategory) -> bool, but: &[&str]| {
-            category.is_some_and(|row| flag(row) && !but.contains(&row.name))
-        };
-        let opens = || is_sort(|row| row.openable, &NOT_OPENED);
-        let switches = || is_sort(|row| row.switchable, &NOT_SWITCHED);
-        match self {
-            Self::GoToRoom => false,
-            Self::FindObject => true,
-            Self::PickUp | Self::Bring => thing.pickable && scene.holder(object).is_none(),
-            Self::Open => opens() && is("closed"),
-            Self::Close => opens() && is("open"),
-            Self::SwitchOn => switches() && is("switched_off"),
-            Self::SwitchOff => switches() && is("switched_on"),
-        }
-    }
-}
 
 /// A step of an instruction.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct InstructionStep {
     /// What it asks for.
     pub kind: StepKind,
-    /// The request, whose phrases each mean exactly one thing or room of the house.
+    /// The request, whose phrases each mean exactly one thing or room of the house, or those that are counted.
     pub request: RequestStep,
-    /// What is so when it is done.
-    pub condition: StepCondition,
+    /// What is so when it is done, of each thing that counts.
+    pub conditions: Vec<StepCondition>,
+    /// Of how many of `conditions`.
+    pub needed: usize,
+    /// True if it must be so of no more than these: "two cups" are not three.
+    pub is_exact: bool,
 }
 
-/// Every step of some kinds that the scene offers, in order. `is_possible`: whether the listener can do it to a thing; what it denies is
-/// left out.
-pub fn steps(
-    scene: &SemanticScene<'_>,
-    kinds: &[StepKind],
-    is_possible: impl Fn(StepKind, ObjectId) -> bool,
-) -> Vec<InstructionStep> {
-    let rooms: Vec<(RoomId, Description)> = scene
-        .house()
-        .rooms
-        .ids()
-        .filter_map(|room| Some((room, refer_to_room(scene, room)?)))
-        .collect();
-    let mut found = Vec::new();
-    if kinds.contains(&StepKind::GoToRoom) {
-        found.extend(rooms.iter().map(|(room, words)| InstructionStep {
-            kind: StepKind::GoToRoom,
-            request: RequestStep::GoTo(words.clone().into()),
-            condition: StepCondition::AgentIn(*room),
-        }));
-    }
-    for object in scene.house().objects.ids() {
-        let sought = scene.facts(object).category.is_some_and(is_sought);
-        let Some(own_room) = scene.room_of(object).filter(|_| sought) else {
-            continue;
-        };
-        let apply = |kind: &&StepKind| kind.applies(scene, object) && is_possible(**kind, object);
-        let kinds: Vec<StepKind> = kinds.iter().filter(apply).copied().collect();
-        if kinds.is_empty() {
-            continue;
+impl InstructionStep {
+    fn of_one(kind: StepKind, request: RequestStep, condition: StepCondition) -> Self {
+        Self {
+            kind,
+            request,
+            conditions: vec![condition],
+            needed: 1,
+            is_exact: false,
         }
-        // Some milliseconds each.
-        interrupt::unwind_if_cancelled();
-        let Some(words) = refer(scene, object) else {
-            continue;
+    }
+
+    /// To go to a room.
+    pub fn go_to(room: RoomId, words: Description) -> Self {
+        let request = RequestStep::GoTo(words.into());
+        Self::of_one(StepKind::GoToRoom, request, StepCondition::AgentIn(room))
+    }
+
+    /// To do something to a thing; `None` for kinds that need a destination.
+    pub fn of_thing(kind: StepKind, object: ObjectId, words: Description) -> Option<Self> {
+        let (verb, condition) = kind.of_thing(object)?;
+        let request = RequestStep::Do {
+            verb: verb.to_owned(),
+            object: words.into(),
         };
-        for kind in kinds {
-            if let Some((verb, condition)) = kind.of_thing(object) {
-                found.push(InstructionStep {
-                    kind,
-                    request: RequestStep::Do {
-                        verb: verb.to_owned(),
-                        object: words.clone().into(),
-                    },
-                    condition,
-                });
-                continue;
+        Some(Self::of_one(kind, request, condition))
+    }
+
+    /// To take a thing to a room, onto a thing or into one; `None` for other kinds.
+    pub fn to_destination(
+        kind: StepKind,
+        (object, words): (ObjectId, Description),
+        (to, destination): (Term, Description),
+    ) -> Option<Self> {
+        let condition = kind.at_destination(object, to)?;
+        let request = request_to(kind, words, destination)?;
+        Some(Self::of_one(kind, request, condition))
+    }
+
+    /// To do something to several things of a kind; `to`: the room of kinds that need one. `None` for kinds that are not done to several.
+    pub fn of_group(
+        kind: StepKind,
+        group: &ThingGroup,
+        to: Option<(RoomId, Description)>,
+    ) -> Option<Self> {
+        let words = group.words.clone();
+        let (request, conditions): (RequestStep, Option<Vec<StepCondition>>) = match to {
+            Some((room, destination)) => {
+                let left = |object: &ObjectId| kind.at_destination(*object, Term::Room(room));
+                let request = request_to(kind, words, destination)?;
+                (request, group.objects.iter().map(left).collect())
             }
-            let elsewhere = rooms.iter().filter(|(room, _)| *room != own_room);
-            found.extend(elsewhere.map(|(room, to)| InstructionStep {
-                kind,
-                request: RequestStep::Bring {
-                    object: words.clone().into(),
-                    to: to.clone().into(),
-                },
-                condition: StepCondition::LeftIn(object, *room),
-            }));
+            None => {
+                let (verb, _) = kind.of_thing(*group.objects.first()?)?;
+                let request = RequestStep::Do {
+                    verb: verb.to_owned(),
+                    object: words.into(),
+                };
+                let done = |object: &ObjectId| Some(kind.of_thing(*object)?.1);
+                (request, group.objects.iter().map(done).collect())
+            }
+        };
+        Some(Self {
+            kind,
+            request,
+            conditions: conditions?,
+            needed: group.needed,
+            is_exact: group.is_exact,
+        })
+    }
+
+    /// The request not to do it; `None` for what is not done to one thing.
+    pub fn forbidden(&self) -> Option<RequestStep> {
+        match &self.request {
+            RequestStep::Do { verb, object } => Some(RequestStep::DoNot {
+                verb: verb.clone(),
+                object: object.clone(),
+            }),
+            _ => None,
         }
     }
-    found
 }
 
-/// The instruction to do some steps one after the other, in a wording drawn from `key`, or a fixed one; `None` where there are no words
-/// for it, or too many.
-pub fn compose(
-    language: &Language,
-    steps: &[InstructionStep],
-    key: Option<RandomKey>,
-) -> Option<Sentence> {
-    let requests = steps.iter().map(|step| step.request.clone());
-    say(language, &Form::Request(requests.collect()), key)
+fn request_to(kind: StepKind, words: Description, destination: Description) -> Option<RequestStep> {
+    let (object, to) = (words.into(), destination.into());
+    let put = |predicate: &str, object, to| RequestStep::Put {
+        object,
+        predicate: predicate.to_owned(),
+        to,
+    };
+    match kind {
+        StepKind::Bring => Some(RequestStep::Bring { object, to }),
+        StepKind::PutOn => Some(put("on", object, to)),
+        StepKind::PutIn => Some(put("inside", object, to)),
+        _ => None,
+    }
+}
+
+/// The request to do one step if a thing is in a state, and another if it is not.
+pub fn conditional(
+    (words, state): (Description, &str),
+    then: RequestStep,
+    otherwise: RequestStep,
+) -> RequestStep {
+    RequestStep::If {
+        condition: Clause::Is {
+            subject: words.into(),
+            quality: Quality::State(state.to_owned()),
+        },
+        then: vec![then],
+        otherwise: vec![otherwise],
+    }
 }

@@ -76,11 +76,14 @@ pub(super) fn say(
     form: &Form,
     wording: Option<RandomKey>,
 ) -> Option<Sentence> {
-    language.say(form, wording).filter(|Sentence { text, .. }| {
-        text.len() <= MAX_TEXT_LEN
-            && text.chars().all(|c| CHARSET.contains(c))
-            && vocabulary::tokenize(text).is_ok()
-    })
+    language.say(form, wording).filter(keeps_to_limits)
+}
+
+/// Returns whether a text keeps to the limits of instructions.
+pub(super) fn keeps_to_limits(Sentence { text, .. }: &Sentence) -> bool {
+    text.len() <= MAX_TEXT_LEN
+        && text.chars().all(|c| CHARSET.contains(c))
+        && vocabulary::tokenize(text).is_ok()
 }
 
 /// An instruction in words, grounded at reset: later changes of the scene do not change the things that it denotes.

@@ -4,7 +4,7 @@ use super::Language;
 use super::from_tree;
 use super::to_tree::{TreeBuilder, count};
 use crate::form::{Description, Form, Noun, Phrase};
-use crate::grammar::{Span, Tree};
+use crate::grammar::{ChooseWording, Span, Tree};
 use dwell_scene::random::RandomKey;
 use serde::{Deserialize, Serialize};
 
@@ -68,15 +68,18 @@ impl Language {
     /// # Determinism
     /// Equal forms and keys give equal texts.
     pub fn say(&self, form: &Form, key: Option<RandomKey>) -> Option<Sentence> {
-        let builder = self.builder();
-        let tree = builder.form(form)?;
         let mut stream = key.map(|key| key.child("wording").stream());
-        let mut choose = |count: usize| {
+        self.say_choosing(form, &mut |count| {
             stream
                 .as_mut()
                 .map_or(0, |stream| (stream.bits() % count as u64) as usize)
-        };
-        let (mut text, spans) = self.grammar.linearize(&tree, &mut choose)?;
+        })
+    }
+
+    /// As [`Self::say`], with wordings that `choose` chooses.
+    pub(crate) fn say_choosing(&self, form: &Form, choose: ChooseWording<'_>) -> Option<Sentence> {
+        let tree = self.builder().form(form)?;
+        let (mut text, spans) = self.grammar.linearize(&tree, choose)?;
         if matches!(form, Form::NounPhrase(_))
             && let Some(first) = text.get_mut(..1)
         {

@@ -2,6 +2,7 @@
 //!
 //! From the table come the discrete actions and their numbers, the reader of requests, the package's checks, and the pages.
 
+mod action_set;
 mod discrete;
 mod kind;
 mod look_down;
@@ -17,6 +18,7 @@ mod turn_left;
 mod turn_right;
 mod wait;
 
+pub use action_set::ActionSet;
 pub use discrete::{AgentAction, HandTarget};
 pub use kind::ActionKind;
 pub use request::HandActionRequest;

@@ -25,12 +25,12 @@ pub enum ActionMode {
 }
 
 impl ActionMode {
-    /// The actions to choose from by default.
-    pub(crate) fn default_actions(self) -> &'static [DiscreteAction] {
+    /// The actions to choose from by default, out of those of the task.
+    pub(crate) fn default_actions(self, of_task: Vec<DiscreteAction>) -> Vec<DiscreteAction> {
         match self {
-            Self::Discrete => DiscreteAction::DEFAULT,
-            Self::Velocity => &[DiscreteAction::Stop],
-            Self::Pointer | Self::Object | Self::Dict => &DiscreteAction::ALL,
+            Self::Discrete => of_task,
+            Self::Velocity => vec![DiscreteAction::Stop],
+            Self::Pointer | Self::Object | Self::Dict => DiscreteAction::ALL.to_vec(),
         }
     }
 }

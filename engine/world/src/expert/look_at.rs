@@ -12,6 +12,8 @@ use glam::Vec3;
 const BEYOND: i32 = 1;
 /// The most steps to either side that are tried.
 const MOST: i32 = 20;
+/// Vertical part of the normal of a level surface.
+const LEVEL: f32 = 0.9;
 /// Steepest view, rad; as far as necks of `dwell_physics` go.
 const STEEPEST_RAD: f32 = 1.5;
 
@@ -26,17 +28,29 @@ pub(crate) enum LookStep {
     Missed,
 }
 
+/// What of a thing is looked at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum LookedAt {
+    /// Anything.
+    Anywhere,
+    /// A level surface, on which things can be put.
+    LevelSurface,
+}
+
 /// The next turn or tilt of the shortest way by steps that brings the middle of an agent's view onto a thing.
 pub(crate) fn look_at(
     world: &World,
     agent: AgentId,
-    object: ObjectId,
+    (object, part): (ObjectId, LookedAt),
     stride: &StepSizes,
 ) -> LookStep {
     let Some(agent) = world.state().agents.get(agent) else {
         return LookStep::Missed;
     };
     let eye = agent.eye_position();
+    // What is in the hand is looked past where something is put down, as the hand does.
+    let in_hand = agent.holding.filter(|_| part == LookedAt::LevelSurface);
+    let held = in_hand.map(|held| world.house().entity_of_object(held));
     let entity = world.house().entity_of_object(object);
     let (turn, look) = (stride.turn_deg.to_radians(), stride.look_deg.to_radians());
     let bounds = world.house().object_bounds(world.state(), object);
@@ -64,8 +78,15 @@ pub(crate) fn look_at(
             eye,
             rotation_from_yaw_pitch(yaw_rad, pitch_rad) * Vec3::NEG_Z,
         );
-        let hit = world.rays().closest(&ray, RayMask::EYE);
-        hit.is_some_and(|hit| world.rays().surface(&hit).entity == entity)
+        let hit = match held {
+            Some(held) => world.rays().closest_excluding(&ray, RayMask::EYE, held),
+            None => world.rays().closest(&ray, RayMask::EYE),
+        };
+        hit.is_some_and(|hit| {
+            let surface = world.rays().surface(&hit);
+            let fits = part == LookedAt::Anywhere || surface.normal.y.abs() > LEVEL;
+            surface.entity == entity && fits
+        })
     };
     let tilts = span(tilts);
     let steps = span(turns).flat_map(|across| tilts.clone().map(move |up| (across, up)));

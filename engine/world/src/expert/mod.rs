@@ -3,7 +3,7 @@
 mod door_opening;
 mod look_at;
 
-pub(crate) use look_at::{LookStep, look_at};
+pub(crate) use look_at::{LookStep, LookedAt, look_at};
 
 use crate::actions::{DiscreteAction, StepSizes};
 use crate::world::World;

@@ -3,10 +3,9 @@
 //! The agent starts where the house says; without that, or where the settings ask for it, anywhere on the largest piece of
 //! floor that it can walk, looking anywhere. Every reward is 0, and an episode ends with `stop`, without success.
 
-use super::door_leaves::DoorLeaves;
-use super::standing_room::FreeStartCells;
-use super::{Task, TaskKind, TaskSetup, random_yaw_rad};
-use crate::actions::{DiscreteAction, StepAction};
+use super::standing_room::sample_start;
+use super::{PlayedAction, Task, TaskKind, TaskSetup, random_yaw_rad};
+use crate::actions::DiscreteAction;
 use crate::episode::{Episode, EpisodeGoal, StepResult};
 use crate::error::WorldError;
 use crate::metrics::NavigationMetrics;
@@ -30,6 +29,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     has_goal: false,
     goal_parts: &[],
     max_steps: 1000,
+    actions: DiscreteAction::DEFAULT,
     sensors: &["rgb", "depth", "semantic", "audio"],
     measures: &[],
     settings: schema::fields_of::<FreeSettings>,
@@ -98,10 +98,7 @@ impl FreeTask {
             }
             return Ok((start.position, start.yaw_rad));
         }
-        let leaves = DoorLeaves::of(world, &grid);
-        let on_island = |cell| grid.island(cell) == Some(0) && !leaves.is_blocked(&grid, cell);
-        let room = FreeStartCells::excluding_agents(world, placed, body);
-        let start = room.sample(&grid, key.child("start"), on_island);
+        let start = sample_start(world, placed, (&grid, body), key.child("start"));
         let Some(cell) = start else {
             let why = "nobody of the agent's size can stand anywhere";
             return Err(unplayable(why.to_owned()));
@@ -135,13 +132,18 @@ impl Task for FreeTask {
         })
     }
 
-    fn judge(&mut self, world: &World, episode: &mut Episode, action: &StepAction) -> StepResult {
+    fn judge(
+        &mut self,
+        world: &World,
+        episode: &mut Episode,
+        played: &PlayedAction<'_>,
+    ) -> StepResult {
         if let Some(agent) = world.state().agents.get(self.setup.agent) {
             let progress = &mut episode.progress;
             progress.advance(agent.position, None, agent.collided);
         }
         StepResult {
-            terminated: action.action == DiscreteAction::Stop,
+            terminated: played.is_stop(),
             ..StepResult::default()
         }
     }

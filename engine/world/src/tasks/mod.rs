@@ -6,7 +6,7 @@ mod free;
 mod goal_cells;
 mod image_nav;
 mod instruction_following;
-mod instruction_steps;
+mod instruction_following_v1;
 mod navigation;
 mod object_nav;
 mod point_nav;
@@ -15,13 +15,14 @@ mod semantic_audio_nav;
 mod sound_localization;
 mod standing_room;
 
-use crate::actions::{DiscreteAction, StepAction, StepSizes};
+use crate::actions::{ActionSet, DiscreteAction, StepAction, StepSizes};
 use crate::episode::{
     Answer, AnswerField, Episode, GoalPart, MAX_ANSWER_FIELDS, StepResult, TaskMeasure,
 };
 use crate::error::WorldError;
 use crate::schema::FieldSchema;
 use crate::world::World;
+use dwell_physics::ActionOutcome;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentBody, AgentId};
 use std::fmt::Debug;
@@ -71,8 +72,13 @@ pub trait Task: Debug + Send + Sync {
         }
     }
 
-    /// Judges the step that has just been made with `action`.
-    fn judge(&mut self, world: &World, episode: &mut Episode, action: &StepAction) -> StepResult;
+    /// Judges the step that has just been made.
+    fn judge(
+        &mut self,
+        world: &World,
+        episode: &mut Episode,
+        played: &PlayedAction<'_>,
+    ) -> StepResult;
 
     /// The fields of the answer that it expects with `stop`, in order, at most [`MAX_ANSWER_FIELDS`]; none for most.
     fn answer_fields(&self) -> Vec<AnswerField> {
@@ -93,6 +99,22 @@ pub trait Task: Debug + Send + Sync {
     fn expert(&mut self, world: &mut World, episode: &Episode) -> DiscreteAction;
 }
 
+/// An action that was made, and what became of it.
+#[derive(Clone, Copy, Debug)]
+pub struct PlayedAction<'a> {
+    /// The action.
+    pub action: &'a StepAction,
+    /// What became of it.
+    pub outcome: &'a ActionOutcome,
+}
+
+impl PlayedAction<'_> {
+    /// Returns whether it declares the task done.
+    pub fn is_stop(&self) -> bool {
+        self.action.action == DiscreteAction::Stop
+    }
+}
+
 /// The agent and the steps of a task.
 #[derive(Clone, Copy, Debug)]
 pub struct TaskSetup {
@@ -100,8 +122,8 @@ pub struct TaskSetup {
     pub agent: AgentId,
     /// Step sizes of its movement actions.
     pub stride: StepSizes,
-    /// True if its hand opens doors.
-    pub opens: bool,
+    /// The discrete actions that it has.
+    pub actions: ActionSet,
 }
 
 impl TaskSetup {
@@ -129,7 +151,7 @@ pub type TaskBuilder = fn(&serde_json::Value, TaskSetup) -> Result<Box<dyn Task>
 /// A kind of task, requested by name.
 #[derive(Clone, Copy, Debug)]
 pub struct TaskKind {
-    /// The name: the environment is `dwell/<name>-v<version>`.
+    /// The name, unique: of a version that stands beside an older one with the version.
     pub name: &'static str,
     /// The version, raised whenever an episode would go another way.
     pub version: u32,
@@ -141,6 +163,8 @@ pub struct TaskKind {
     pub goal_parts: &'static [GoalPart],
     /// Control steps after which an episode is cut off.
     pub max_steps: u64,
+    /// The discrete actions of its environment by default.
+    pub actions: &'static [DiscreteAction],
     /// The sensors of its environment by default.
     pub sensors: &'static [&'static str],
     /// What it measures beside distance and path, in order.
@@ -151,10 +175,20 @@ pub struct TaskKind {
     pub build: TaskBuilder,
 }
 
+impl TaskKind {
+    /// The name of its environment, without the `dwell/` before it: `PointNav-v0`.
+    pub fn id(&self) -> String {
+        let version = format!("-v{}", self.version);
+        let name = self.name.strip_suffix(&version).unwrap_or(self.name);
+        format!("{name}{version}")
+    }
+}
+
 /// All tasks.
 pub fn all() -> &'static [TaskKind] {
     &[
         instruction_following::KIND,
+        instruction_following_v1::KIND,
         free::KIND,
         point_nav::KIND,
         room_nav::KIND,
@@ -162,7 +196,6 @@ pub fn all() -> &'static [TaskKind] {
         image_nav::KIND,
         audio_nav::KIND,
         semantic_audio_nav::KIND,
-        instruction_steps::KIND,
         sound_localization::KIND,
     ]
 }

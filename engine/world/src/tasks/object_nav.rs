@@ -7,6 +7,7 @@ use super::goal_cells::LargestIslandIndex;
 use super::navigation::{GoalKind, NavigationGoal, NavigationTask, navigation_settings};
 use super::point_nav::check_success_distance;
 use super::{Task, TaskKind, TaskSetup};
+use crate::actions::DiscreteAction;
 use crate::episode::{EpisodeGoal, GoalPart, category_of_class};
 use crate::error::WorldError;
 use crate::schema;
@@ -26,6 +27,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     has_goal: true,
     goal_parts: &[GoalPart::Class],
     max_steps: 1000,
+    actions: DiscreteAction::DEFAULT,
     sensors: &["rgb", "depth", "semantic", "gps", "compass", "objectgoal"],
     measures: &[],
     settings: schema::fields_of::<ObjectNavSettings>,

@@ -6,10 +6,9 @@
 //! Sound Events", WASPAA 2019).
 
 use super::audio_nav::{SOUNDS, check_sounds, play_signal};
-use super::door_leaves::DoorLeaves;
-use super::standing_room::FreeStartCells;
-use super::{Task, TaskKind, TaskSetup, random_yaw_rad};
-use crate::actions::{DiscreteAction, StepAction};
+use super::standing_room::sample_start;
+use super::{PlayedAction, Task, TaskKind, TaskSetup, random_yaw_rad};
+use crate::actions::DiscreteAction;
 use crate::episode::{
     Answer, AnswerField, Episode, EpisodeGoal, MAX_ANSWER_FIELDS, StepResult, TaskMeasure,
 };
@@ -70,6 +69,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     has_goal: true,
     goal_parts: &[],
     max_steps: 1000,
+    actions: DiscreteAction::DEFAULT,
     sensors: &["audio", "spectrogram"],
     measures: MEASURES,
     settings: schema::fields_of::<SoundLocalizationSettings>,
@@ -148,6 +148,15 @@ impl Default for SoundLocalizationSettings {
 impl SoundLocalizationSettings {
     fn check(&self) -> Result<(), WorldError> {
         check_sounds(&self.sounds, self.level_db)?;
+        let sounds = &self.sounds;
+        if let Some(k) = (1..sounds.len()).find(|k| sounds[..*k].contains(&sounds[*k])) {
+            // Each is a class of its own.
+            return Err(WorldError::Config {
+                field: "sounds",
+                found: format!("{:?} twice", sounds[k]),
+                allowed: "each sound once".to_owned(),
+            });
+        }
         let fault = |field: &'static str, found: f64, allowed: String| {
             Err(WorldError::Config {
                 field,
@@ -369,14 +378,10 @@ impl Task for SoundLocalization {
         let agent = self.setup.agent;
         let body = self.setup.body(world, NAME)?;
         let grid = world.engines().nav_grid(&body)?;
-        let leaves = DoorLeaves::of(world, &grid);
-        let room = FreeStartCells::excluding_agents(world, placed, &body);
-        let allowed =
-            |cell: NavCell| grid.island(cell) == Some(0) && !leaves.is_blocked(&grid, cell);
         for k in 0..STARTS {
             interrupt::unwind_if_cancelled();
             let key = key.child("start").child(k);
-            let Some(start) = room.sample(&grid, key, allowed) else {
+            let Some(start) = sample_start(world, placed, (&grid, &body), key) else {
                 break;
             };
             let (position, yaw_rad) = (grid.position(start), random_yaw_rad(key));
@@ -419,7 +424,12 @@ impl Task for SoundLocalization {
         })
     }
 
-    fn judge(&mut self, world: &World, episode: &mut Episode, action: &StepAction) -> StepResult {
+    fn judge(
+        &mut self,
+        world: &World,
+        episode: &mut Episode,
+        played: &PlayedAction<'_>,
+    ) -> StepResult {
         let Some(agent) = world.state().agents.get(self.setup.agent) else {
             return StepResult::default();
         };
@@ -427,7 +437,7 @@ impl Task for SoundLocalization {
             .progress
             .advance(agent.position, None, agent.collided);
         let pay = &self.settings.reward;
-        if action.action != DiscreteAction::Stop {
+        if !played.is_stop() {
             return StepResult {
                 reward: pay.step,
                 ..StepResult::default()
@@ -435,7 +445,7 @@ impl Task for SoundLocalization {
         }
         self.errors = self.source.and_then(|source| {
             let truth = self.truth(world, &source)?;
-            AnswerErrors::of(&action.answer, &truth, source.class)
+            AnswerErrors::of(&played.action.answer, &truth, source.class)
         });
         let success = self.errors.is_some_and(|errors| {
             errors.angular_deg < self.settings.success_angle_deg

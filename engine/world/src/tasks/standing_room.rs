@@ -1,5 +1,6 @@
 //! Free places to start for agents, beside those that have their starts already.
 
+use super::door_leaves::DoorLeaves;
 use crate::world::World;
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::random::RandomKey;
@@ -8,6 +9,18 @@ use glam::Vec3;
 
 /// Between the bodies of two agents at their starts, m.
 const APART_M: f32 = 0.1;
+
+/// A start anywhere on the largest island of a grid, drawn from `key`: clear of the leaves of doors and of those who have their starts.
+pub(super) fn sample_start(
+    world: &World,
+    placed: &[AgentId],
+    (grid, body): (&NavGrid, &AgentBody),
+    key: RandomKey,
+) -> Option<NavCell> {
+    let leaves = DoorLeaves::of(world, grid);
+    let allowed = |cell: NavCell| grid.island(cell) == Some(0) && !leaves.is_blocked(grid, cell);
+    FreeStartCells::excluding_agents(world, placed, body).sample(grid, key, allowed)
+}
 
 /// The floor that agents with a start leave free.
 pub(super) struct FreeStartCells {

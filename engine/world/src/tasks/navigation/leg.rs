@@ -2,7 +2,7 @@
 
 use super::goal::{NavigationGoal, SuccessRule};
 use crate::actions::{DiscreteAction, StepSizes};
-use crate::expert::{LookStep, ShortestPathFollower, action_towards_object, look_at};
+use crate::expert::{LookStep, LookedAt, ShortestPathFollower, action_towards_object, look_at};
 use crate::world::World;
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::{AgentId, ObjectId};
@@ -104,7 +104,14 @@ impl Leg {
 
     /// What brings the middle of the view onto a thing from here.
     pub(in crate::tasks) fn look_at(&self, world: &World, object: ObjectId) -> LookStep {
-        look_at(world, self.guide.agent(), object, &self.stride)
+        let at = (object, LookedAt::Anywhere);
+        look_at(world, self.guide.agent(), at, &self.stride)
+    }
+
+    /// What brings the middle of the view onto a level surface of a thing from here.
+    pub(in crate::tasks) fn look_on(&self, world: &World, object: ObjectId) -> LookStep {
+        let at = (object, LookedAt::LevelSurface);
+        look_at(world, self.guide.agent(), at, &self.stride)
     }
 
     /// The expert's next step on the way, and then towards the nearest thing of the goal; `None` once it stands and looks right.

@@ -14,8 +14,8 @@ pub(super) use settings::{NavigationRewards, NavigationRules, navigation_setting
 use super::door_leaves::DoorLeaves;
 use super::goal_cells::LargestIslandIndex;
 use super::standing_room::FreeStartCells;
-use super::{Task, TaskSetup};
-use crate::actions::{DiscreteAction, StepAction};
+use super::{PlayedAction, Task, TaskSetup};
+use crate::actions::DiscreteAction;
 use crate::episode::{Episode, StepResult};
 use crate::error::WorldError;
 use crate::metrics::NavigationMetrics;
@@ -220,7 +220,12 @@ impl<K: GoalKind> Task for NavigationTask<K> {
         Ok(episode)
     }
 
-    fn judge(&mut self, world: &World, episode: &mut Episode, action: &StepAction) -> StepResult {
+    fn judge(
+        &mut self,
+        world: &World,
+        episode: &mut Episode,
+        played: &PlayedAction<'_>,
+    ) -> StepResult {
         let (Some(active), Some(agent)) =
             (&self.active, world.state().agents.get(self.setup.agent))
         else {
@@ -230,7 +235,7 @@ impl<K: GoalKind> Task for NavigationTask<K> {
         let gain_m = episode
             .progress
             .advance(agent.position, left_m, agent.collided);
-        let stops = action.action == DiscreteAction::Stop;
+        let stops = played.is_stop();
         let is_reached = || active.is_reached(world, left_m);
         self.rules
             .step_result((gain_m, agent.collided), stops, is_reached)

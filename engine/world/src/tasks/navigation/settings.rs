@@ -1,5 +1,6 @@
 //! Settings that all tasks of navigation have: where episodes start, how they end, and what is paid.
 
+use crate::actions::DiscreteAction;
 use crate::episode::StepResult;
 use crate::error::WorldError;
 use crate::tasks::{TaskSetup, door_leaves};
@@ -61,7 +62,10 @@ impl NavigationRules {
         grid: &NavGrid,
         setup: &TaskSetup,
     ) -> Result<(), WorldError> {
-        if self.open_doors.unwrap_or(!setup.opens) {
+        if self
+            .open_doors
+            .unwrap_or(!setup.actions.contains(DiscreteAction::Open))
+        {
             door_leaves::open_all(world, grid)?;
         }
         Ok(())
@@ -154,29 +158,29 @@ impl NavigationRules {
 macro_rules! navigation_settings {
     (
         $(#[$meta:meta])*
-        $name:ident {
+        $vis:vis $name:ident {
             $($(#[$field_meta:meta])* $field:ident: $type:ty = $default:expr,)*
         }
     ) => {
         $(#[$meta])*
         #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
         #[serde(default, deny_unknown_fields)]
-        struct $name {
-            $($(#[$field_meta])* $field: $type,)*
+        $vis struct $name {
+            $($(#[$field_meta])* $vis $field: $type,)*
             /// The nearest a start may lie to the goal, geodesic m; default 1.
-            min_distance_m: f64,
+            $vis min_distance_m: f64,
             /// The furthest, m; default 30.
-            max_distance_m: f64,
+            $vis max_distance_m: f64,
             /// The least ratio of the geodesic distance at the start to the straight one, 1 to 100; default 1. Above 1 no goal lies
             /// straight ahead.
-            min_path_ratio: f64,
+            $vis min_path_ratio: f64,
             /// Whether the episode ends in success as soon as the goal is reached, without `stop`; default false.
-            ends_at_goal: bool,
+            $vis ends_at_goal: bool,
             /// Whether all doors stand open at the start; default where the agent has no action `open`.
-            open_doors: Option<bool>,
+            $vis open_doors: Option<bool>,
             /// What a step is paid: `distance` (a metre nearer; default 1), `success` (default 2.5), `step` (default -0.01),
             /// `wrong_stop` and `collision` (default 0).
-            reward: $crate::tasks::navigation::NavigationRewards,
+            $vis reward: $crate::tasks::navigation::NavigationRewards,
         }
 
         impl Default for $name {

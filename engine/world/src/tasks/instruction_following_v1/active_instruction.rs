@@ -1,0 +1,422 @@
+//! The instruction of an episode: what is done of it, and what the expert does next.
+
+use super::planned_step::{EndOfLeg, PlannedStep};
+use crate::actions::{DiscreteAction, StepSizes};
+use crate::error::WorldError;
+use crate::expert::LookStep;
+use crate::tasks::navigation::{BESIDE_M, ELSEWHERE_M, Leg, NavigationGoal};
+use crate::world::World;
+use dwell_scene::navigation::{NavCell, NavGrid};
+use dwell_scene::{AgentId, ObjectId};
+use dwell_semantics::instruct::{StepCondition, StepView};
+use std::sync::Arc;
+
+/// Control steps for which the expert waits for what its hand has begun.
+const PATIENCE: u32 = 60;
+/// How often the expert tries all places of a leg again.
+const ROUNDS: u32 = 2;
+/// Control steps for which it keeps opening a thing.
+const OPENING: u32 = 240;
+
+/// The place of a leg: its step, target and number.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct LegPlace {
+    step: usize,
+    target: usize,
+    leg: usize,
+}
+
+/// What has come about of an instruction, beside what is so in the world.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct StepProgress {
+    /// Steps that are done, in order.
+    done: usize,
+    /// The conditions of the step after them that were so once, where that is enough.
+    met: Vec<bool>,
+    /// True once something was done that was not to be done.
+    is_broken: bool,
+}
+
+/// The instruction of the episode that is played.
+#[derive(Debug)]
+pub(super) struct ActiveInstruction {
+    pub(super) steps: Vec<PlannedStep>,
+    /// What must never be so.
+    forbidden: Vec<StepCondition>,
+    progress: StepProgress,
+    /// The leg that is gone.
+    at: LegPlace,
+    leg: Leg,
+    /// The walkable way from the end of each leg to the end of the last one, m. Shape (step, target, leg).
+    later_m: Vec<Vec<Vec<f64>>>,
+    /// Control steps for which the expert has been busy with its hand.
+    busy: u32,
+    /// How often it has tried all places of the leg in vain.
+    rounds: u32,
+}
+
+impl ActiveInstruction {
+    /// Begins with the first leg of the first step.
+    pub(super) fn new(
+        steps: Vec<PlannedStep>,
+        forbidden: Vec<StepCondition>,
+        (agent, grid, stride): (AgentId, &Arc<NavGrid>, StepSizes),
+    ) -> Self {
+        let first = steps[0].targets[0].legs[0].goal.clone();
+        Self {
+            later_m: later_distances(&steps, grid),
+            leg: Leg::new(agent, grid.clone(), first, stride),
+            steps,
+            forbidden,
+            progress: StepProgress::default(),
+            at: LegPlace::default(),
+            busy: 0,
+            rounds: 0,
+        }
+    }
+
+    /// The straight distance of a cell to the nearest place of the first leg, and the walkable way from there on, m.
+    pub(super) fn straight_from(&self, cell: NavCell) -> f64 {
+        self.leg.straight_m(cell) + self.later_m[0][0][0]
+    }
+
+    /// The walkable way of the whole instruction from a cell, m.
+    pub(super) fn way_from(&self, cell: NavCell) -> Option<f64> {
+        Some(self.leg.guide.distance_at(cell)? + self.later_m[0][0][0])
+    }
+
+    /// Returns whether all steps are done.
+    fn is_done(&self) -> bool {
+        self.progress.done == self.steps.len()
+    }
+
+    /// Returns whether something was done that was not to be done.
+    pub(super) fn is_broken(&self) -> bool {
+        self.progress.is_broken
+    }
+
+    /// The share of the conditions of all steps that hold, 0 to 1; 0 once something was done that was not to be done.
+    pub(super) fn condition_success(&self, world: &World, agent: AgentId) -> f64 {
+        if self.progress.is_broken {
+            return 0.0;
+        }
+        let scene = world.engines().semantics().scene(world.state());
+        let view = StepView {
+            scene: &scene,
+            rays: world.rays(),
+            agent,
+            pointed_at: None,
+        };
+        let needed = |step: &PlannedStep| step.step.needed;
+        let all: usize = self.steps.iter().map(needed).sum();
+        let met = self.progress.met.iter().filter(|met| **met).count();
+        let of_step = |step: usize| self.lasting(step, &view).min(self.steps[step].step.needed);
+        let done = (0..self.progress.done).map(of_step);
+        (done.sum::<usize>() + met) as f64 / all as f64
+    }
+
+    /// Counts the steps that are done; returns how many became so. `pointed_at`: what the agent has just pointed at.
+    pub(super) fn advance(
+        &mut self,
+        world: &World,
+        agent: AgentId,
+        pointed_at: Option<ObjectId>,
+    ) -> usize {
+        let before = self.progress.done;
+        let scene = world.engines().semantics().scene(world.state());
+        let mut view = StepView {
+            scene: &scene,
+            rays: world.rays(),
+            agent,
+            pointed_at,
+        };
+        let progress = &mut self.progress;
+        progress.is_broken |= self
+            .forbidden
+            .iter()
+            .any(|condition| condition.holds(&view));
+        while let Some(PlannedStep { step, .. }) = self.steps.get(progress.done) {
+            progress.met.resize(step.conditions.len(), false);
+            for (condition, met) in step.conditions.iter().zip(&mut progress.met) {
+                let was = *met && condition.is_passing();
+                *met = was || condition.holds(&view);
+            }
+            if progress.met.iter().filter(|met| **met).count() < step.needed {
+                break;
+            }
+            progress.done += 1;
+            progress.met.clear();
+            // What happened counts for one step alone.
+            view.pointed_at = None;
+        }
+        let at = self.leg_place(&view);
+        if at != self.at {
+            let goal = self.steps[at.step].targets[at.target].legs[at.leg]
+                .goal
+                .clone();
+            self.leg = self.leg.to(goal);
+            (self.at, self.busy, self.rounds) = (at, 0, 0);
+        }
+        self.progress.done - before
+    }
+
+    /// The leg that is to be gone: of the first target of the plan that is not as it should be.
+    fn leg_place(&self, view: &StepView<'_>) -> LegPlace {
+        let Some(planned) = self.steps.get(self.progress.done) else {
+            return self.at;
+        };
+        let conditions = &planned.step.conditions;
+        let is_met = |condition: StepCondition| {
+            let number = conditions.iter().position(|own| *own == condition);
+            number.is_some_and(|number| self.progress.met[number])
+        };
+        let targets = &planned.targets;
+        let left = targets.iter().position(|target| !is_met(target.condition));
+        let target = left.unwrap_or(targets.len() - 1);
+        let legs = &targets[target].legs;
+        let is_needed = |condition: &Option<StepCondition>| {
+            condition.is_none_or(|condition| !condition.holds(view))
+        };
+        let leg = legs.iter().position(|leg| is_needed(&leg.unless));
+        LegPlace {
+            step: self.progress.done,
+            target,
+            leg: leg.unwrap_or(legs.len() - 1),
+        }
+    }
+
+    /// The walkable way that is left, m.
+    pub(super) fn distance_m(&self, world: &World) -> Option<f64> {
+        if self.is_done() {
+            return Some(0.0);
+        }
+        let LegPlace { step, target, leg } = self.at;
+        Some(self.leg.guide.distance_m(world)? + self.later_m[step][target][leg])
+    }
+
+    /// Returns whether all is done, and still so, and nothing that was not to be done.
+    pub(super) fn is_fulfilled(&self, world: &World, agent: AgentId) -> bool {
+        if self.progress.is_broken || !self.is_done() {
+            return false;
+        }
+        let scene = world.engines().semantics().scene(world.state());
+        let view = StepView {
+            scene: &scene,
+            rays: world.rays(),
+            agent,
+            pointed_at: None,
+        };
+        (0..self.steps.len()).all(|step| self.is_still_done(step, &view))
+    }
+
+    /// Returns whether a step that was done is as it should be at the end.
+    fn is_still_done(&self, number: usize, view: &StepView<'_>) -> bool {
+        let step = &self.steps[number].step;
+        let lasting = self.lasting(number, view);
+        lasting == step.needed || (lasting > step.needed && !step.is_exact)
+    }
+
+    /// Of how many of its things a step that was done is as it should be at the end: of all that were needed, or more, where it is.
+    fn lasting(&self, number: usize, view: &StepView<'_>) -> usize {
+        let step = &self.steps[number].step;
+        let is_last = number + 1 == self.steps.len();
+        if step.conditions[0].is_passing() {
+            // Where the agent is and looks counts for the last step alone, and for one place: it cannot be at two.
+            let lasts = is_last && step.conditions.len() == 1 && !step.conditions[0].is_event();
+            return if !lasts || step.conditions[0].holds(view) {
+                step.needed
+            } else {
+                0
+            };
+        }
+        // Of things that a later step is about nothing is asked any more.
+        let later = &self.steps[number + 1..];
+        let is_undone = |condition: &StepCondition| {
+            let object = condition.object();
+            let changes = |planned: &PlannedStep| {
+                let own = planned.step.conditions.iter();
+                let mut own = own.filter(|condition| !condition.is_passing());
+                own.any(|condition| condition.object() == object)
+            };
+            later.iter().any(changes)
+        };
+        let so = |condition: &&StepCondition| is_undone(condition) || condition.holds(view);
+        step.conditions.iter().filter(so).count()
+    }
+
+    /// The action of the expert: the way, then the hand.
+    pub(super) fn expert(&mut self, world: &World) -> DiscreteAction {
+        if self.is_done() {
+            return DiscreteAction::Stop;
+        }
+        let LegPlace { step, target, leg } = self.at;
+        let end = self.steps[step].targets[target].legs[leg].end;
+        if let EndOfLeg::Hand(DiscreteAction::Open, object) = end
+            && self.busy > 0
+        {
+            self.busy += 1;
+            if self.busy < OPENING {
+                return self.leg.open(world, object);
+            }
+            return self.elsewhere(world, ELSEWHERE_M);
+        }
+        if self.busy > 0 {
+            self.busy += 1;
+            if self.busy < PATIENCE {
+                return DiscreteAction::Wait;
+            }
+            return self.elsewhere(world, ELSEWHERE_M);
+        }
+        match end {
+            EndOfLeg::Arrive => {
+                let step = self.leg.approach(world);
+                step.unwrap_or_else(|| self.elsewhere(world, ELSEWHERE_M))
+            }
+            EndOfLeg::Drop => self.leg.walk(world).unwrap_or_else(|| {
+                self.busy = 1;
+                DiscreteAction::Drop
+            }),
+            EndOfLeg::Hand(action, object) => {
+                if let Some(step) = self.leg.walk(world) {
+                    return step;
+                }
+                let look = self.leg.look_at(world, object);
+                self.use_hand(world, look, action)
+            }
+            EndOfLeg::Above(action, object) => {
+                if let Some(step) = self.leg.walk(world) {
+                    return step;
+                }
+                let look = self.leg.look_on(world, object);
+                self.use_hand(world, look, action)
+            }
+        }
+    }
+
+    /// Looks where the hand is to act, then uses it; goes elsewhere where it cannot look there.
+    fn use_hand(
+        &mut self,
+        world: &World,
+        look: LookStep,
+        action: DiscreteAction,
+    ) -> DiscreteAction {
+        match look {
+            LookStep::Turn(step) => step,
+            LookStep::Missed => self.elsewhere(world, BESIDE_M),
+            LookStep::Done => {
+                self.busy = 1;
+                action
+            }
+        }
+    }
+
+    /// Goes on from another place; gives up where there is none.
+    fn elsewhere(&mut self, world: &World, radius_m: f32) -> DiscreteAction {
+        self.busy = 0;
+        if self.leg.leave_out_goals_here(world, radius_m) {
+            return DiscreteAction::Wait;
+        }
+        // It stands elsewhere in a cell when it comes again.
+        if self.rounds < ROUNDS {
+            self.rounds += 1;
+            self.leg.try_all_goals_again();
+            if self.leg.leave_out_goals_here(world, radius_m) {
+                return DiscreteAction::Wait;
+            }
+        }
+        DiscreteAction::Stop
+    }
+
+    /// What it keeps beside the world: the number of steps that are done, whether it is broken, and what was so once of the next.
+    pub(super) fn snapshot(&self) -> Vec<u8> {
+        let StepProgress {
+            done,
+            met,
+            is_broken,
+        } = &self.progress;
+        let met = met.iter().map(|met| u8::from(*met));
+        [*done as u8, u8::from(*is_broken)]
+            .into_iter()
+            .chain(met)
+            .collect()
+    }
+
+    /// Takes over what a snapshot keeps.
+    ///
+    /// # Errors
+    /// [`WorldError::Snapshot`] for bytes that are none of this instruction.
+    pub(super) fn restore(
+        &mut self,
+        world: &World,
+        agent: AgentId,
+        bytes: &[u8],
+    ) -> Result<(), WorldError> {
+        let fault = || {
+            Err(WorldError::Snapshot(format!(
+                "the progress of its instruction is {bytes:?}; allowed are the number of steps that are done, up to {}, and 0 or 1 \
+                 for each condition",
+                self.steps.len()
+            )))
+        };
+        let [done, flags @ ..] = bytes else {
+            return fault();
+        };
+        let done = usize::from(*done);
+        let conditions = self
+            .steps
+            .get(done)
+            .map_or(0, |own| own.step.conditions.len());
+        let sizes = [0, conditions];
+        match flags {
+            [is_broken, met @ ..]
+                if done <= self.steps.len()
+                    && sizes.contains(&met.len())
+                    && flags.iter().all(|flag| *flag <= 1) =>
+            {
+                self.progress = StepProgress {
+                    done,
+                    met: met.iter().map(|met| *met == 1).collect(),
+                    is_broken: *is_broken == 1,
+                };
+                self.advance(world, agent, None);
+                Ok(())
+            }
+            _ => fault(),
+        }
+    }
+}
+
+/// The walkable way from the end of each leg to the end of the last one, m: from the nearest cell of one goal to the next goal.
+fn later_distances(steps: &[PlannedStep], grid: &NavGrid) -> Vec<Vec<Vec<f64>>> {
+    let mut later_m: Vec<Vec<Vec<f64>>> = steps
+        .iter()
+        .map(|step| {
+            step.targets
+                .iter()
+                .map(|own| vec![0.0; own.legs.len()])
+                .collect()
+        })
+        .collect();
+    let mut after_m = 0.0;
+    let mut next: Option<&NavigationGoal> = None;
+    for (step, planned) in steps.iter().enumerate().rev() {
+        for (target, own) in planned.targets.iter().enumerate().rev() {
+            for (leg, planned) in own.legs.iter().enumerate().rev() {
+                if let Some(next) = next {
+                    after_m += shortest_m(&planned.goal, next, grid);
+                }
+                later_m[step][target][leg] = after_m;
+                next = Some(&planned.goal);
+            }
+        }
+    }
+    later_m
+}
+
+/// The walkable way from the nearest cell of a goal to another goal, m; 0 where there is none.
+pub(super) fn shortest_m(from: &NavigationGoal, to: &NavigationGoal, grid: &NavGrid) -> f64 {
+    let field = grid.distance_field(&to.cells);
+    let ways = from.cells.iter().filter_map(|cell| field.at(*cell));
+    let shortest = ways.fold(f64::INFINITY, f64::min);
+    if shortest.is_finite() { shortest } else { 0.0 }
+}

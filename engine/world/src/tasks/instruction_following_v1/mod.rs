@@ -1,0 +1,324 @@
+//! Do what an instruction says with feet and hands; then stop.
+//!
+//! Each step has conditions. A step is done as soon as enough of them hold after the steps before it are done. At the end the conditions
+//! of things must still hold (a fridge that was to be opened is open), but for those that a later step undoes; where the agent is and
+//! looks counts for the last step alone. What was not to be done must never have been so.
+
+mod active_instruction;
+mod drawn_instruction;
+mod planned_step;
+mod settings;
+mod step_places;
+mod step_pool;
+
+use super::door_leaves::DoorLeaves;
+use super::navigation::NavigationRules;
+use super::standing_room::FreeStartCells;
+use super::{PlayedAction, Task, TaskKind, TaskSetup, random_yaw_rad};
+use crate::actions::DiscreteAction;
+use crate::episode::{Episode, EpisodeGoal, StepResult, TaskMeasure};
+use crate::error::WorldError;
+use crate::metrics::NavigationMetrics;
+use crate::schema;
+use crate::world::World;
+use active_instruction::ActiveInstruction;
+use drawn_instruction::{DrawnInstruction, InstructionDraw, InstructionForm};
+use dwell_scene::interrupt;
+use dwell_scene::navigation::{NavCell, NavGrid};
+use dwell_scene::random::RandomKey;
+use dwell_scene::{AgentId, Entity, ObjectId, Pose};
+use dwell_semantics::instruct::{StepCondition, StepKind};
+use dwell_semantics::vocabulary;
+use settings::InstructionFollowingV1Settings;
+use std::sync::Arc;
+use step_pool::{StepPool, is_carried_out};
+
+const NAME: &str = "InstructionFollowing-v1";
+/// Instructions that are tried for an episode.
+const DRAWS: u64 = 128;
+
+pub(super) const KIND: TaskKind = TaskKind {
+    name: NAME,
+    version: 1,
+    about: "Follow an instruction with feet and hands: one step or several, with conditions, numbers and what is not to be done; then stop.",
+    has_goal: true,
+    goal_parts: &[],
+    max_steps: 1000,
+    actions: &[
+        DiscreteAction::Stop,
+        DiscreteAction::MoveForward,
+        DiscreteAction::TurnLeft,
+        DiscreteAction::TurnRight,
+        DiscreteAction::LookUp,
+        DiscreteAction::LookDown,
+        DiscreteAction::Wait,
+        DiscreteAction::Pick,
+        DiscreteAction::Drop,
+        DiscreteAction::Open,
+        DiscreteAction::Close,
+        DiscreteAction::Toggle,
+        DiscreteAction::Place,
+        DiscreteAction::PutIn,
+        DiscreteAction::Point,
+    ],
+    sensors: &[
+        "rgb",
+        "depth",
+        "semantic",
+        "audio",
+        "instruction",
+        "instruction_tokens",
+    ],
+    measures: &[TaskMeasure {
+        name: "goal_condition_success",
+        about: "Share of the instruction's conditions that hold, 0 to 1.",
+    }],
+    settings: schema::fields_of::<InstructionFollowingV1Settings>,
+    build,
+};
+
+fn build(value: &serde_json::Value, setup: TaskSetup) -> Result<Box<dyn Task>, WorldError> {
+    let (settings, rules) = InstructionFollowingV1Settings::read(value)?;
+    let asked = settings.kinds.iter().copied();
+    let kinds: Vec<StepKind> = asked
+        .filter(|kind| is_carried_out(*kind, setup.actions))
+        .collect();
+    if kinds.is_empty() {
+        let names: Vec<&str> = settings.kinds.iter().map(|kind| kind.name()).collect();
+        return Err(WorldError::Config {
+            field: "kinds",
+            found: names.join(", "),
+            allowed: "at least one that the agent's actions can carry out".to_owned(),
+        });
+    }
+    Ok(Box::new(InstructionFollowingV1 {
+        settings,
+        kinds,
+        rules,
+        setup,
+        pool: None,
+        active: None,
+        condition_success: f64::NAN,
+    }))
+}
+
+#[derive(Debug)]
+struct InstructionFollowingV1 {
+    settings: InstructionFollowingV1Settings,
+    /// Kinds of steps that the agent's actions can carry out.
+    kinds: Vec<StepKind>,
+    rules: NavigationRules,
+    setup: TaskSetup,
+    /// What the house offers at its start; found once.
+    pool: Option<StepPool>,
+    active: Option<ActiveInstruction>,
+    condition_success: f64,
+}
+
+impl InstructionFollowingV1 {
+    /// Why nothing can be asked in a house.
+    fn lack(&self, world: &World) -> WorldError {
+        let offers = |kind: &&StepKind| self.pool.as_ref().is_some_and(|pool| pool.has(**kind));
+        let offered: Vec<&str> = self
+            .kinds
+            .iter()
+            .filter(offers)
+            .map(|own| own.name())
+            .collect();
+        let forms: Vec<&str> = self.settings.forms.iter().map(|own| own.name()).collect();
+        let why = if offered.is_empty() {
+            "it has nothing to do of the kinds that are asked for, or nothing that one can go to and reach".to_owned()
+        } else {
+            format!(
+                "it offers {}, but no instruction of the forms {} was found that can be walked to from the asked distance",
+                offered.join(", "),
+                forms.join(", ")
+            )
+        };
+        WorldError::TaskNotPlayable {
+            task: NAME,
+            house: world.house().name.clone(),
+            why,
+        }
+    }
+}
+
+impl Task for InstructionFollowingV1 {
+    fn settings(&self) -> serde_json::Value {
+        serde_json::json!(self.settings)
+    }
+
+    fn survey_house(&mut self, world: &World) -> Result<(), WorldError> {
+        if self.pool.is_some() {
+            return Ok(());
+        }
+        let body = self.setup.body(world, NAME)?;
+        let grid = world.engines().nav_grid(&body)?;
+        let with_groups = self.settings.forms.contains(&InstructionForm::Quantity);
+        let agent = (self.setup.agent, body);
+        let pool = StepPool::survey(world, agent, &grid, &self.kinds, with_groups);
+        self.pool = Some(pool);
+        Ok(())
+    }
+
+    fn reset(
+        &mut self,
+        world: &mut World,
+        placed: &[AgentId],
+        key: RandomKey,
+    ) -> Result<Episode, WorldError> {
+        let (agent, stride) = (self.setup.agent, self.setup.stride);
+        let body = self.setup.body(world, NAME)?;
+        let grid: Arc<NavGrid> = world.engines().nav_grid(&body)?;
+        self.rules.arrange_doors(world, &grid, &self.setup)?;
+        let leaves = DoorLeaves::of(world, &grid);
+        let room = FreeStartCells::excluding_agents(world, placed, &body);
+        let engines = world.engines().clone();
+        let language = engines.semantics().language();
+        for k in 0..DRAWS {
+            interrupt::unwind_if_cancelled();
+            let key = key.child("instruction").child(k);
+            let Some((form, drawn)) = self.draw(world, &grid, key.child("steps")) else {
+                continue;
+            };
+            let wording = key.child("wording").child(world.house().name.as_str());
+            let sentence = self
+                .settings
+                .words
+                .compose(language, drawn.requests, wording);
+            let Some(sentence) = sentence else {
+                continue;
+            };
+            let goal = told(form, &drawn.steps);
+            let plan = (agent, &grid, stride);
+            let mut active = ActiveInstruction::new(drawn.steps, drawn.forbidden, plan);
+            let allowed = |cell: NavCell| {
+                grid.island(cell) == Some(0)
+                    && active.way_from(cell).is_some_and(|way_m| {
+                        self.rules.allow_start(way_m, || active.straight_from(cell))
+                    })
+                    && !leaves.is_blocked(&grid, cell)
+            };
+            let Some(start) = room.sample(&grid, key.child("start"), allowed) else {
+                continue;
+            };
+            let yaw_rad = random_yaw_rad(key);
+            let position = grid.position(start);
+            world.place_agent(agent, position, yaw_rad)?;
+            if active.advance(world, agent, None) > 0 || active.is_broken() {
+                continue;
+            }
+            let distance_m = active.distance_m(world);
+            let episode = Episode {
+                agent,
+                tokens: vocabulary::tokenize(&sentence.text)?,
+                instruction: sentence.text,
+                start: Pose::from_position_yaw(position, yaw_rad),
+                progress: NavigationMetrics::new(position, distance_m),
+                goal,
+            };
+            self.condition_success = active.condition_success(world, agent);
+            self.active = Some(active);
+            return Ok(episode);
+        }
+        Err(self.lack(world))
+    }
+
+    fn snapshot(&self) -> Vec<u8> {
+        let active = self.active.as_ref();
+        active.map_or_else(Vec::new, ActiveInstruction::snapshot)
+    }
+
+    fn restore(&mut self, world: &World, bytes: &[u8]) -> Result<(), WorldError> {
+        let Some(active) = &mut self.active else {
+            return Err(WorldError::Snapshot("no instruction has begun".to_owned()));
+        };
+        active.restore(world, self.setup.agent, bytes)?;
+        self.condition_success = active.condition_success(world, self.setup.agent);
+        Ok(())
+    }
+
+    fn judge(
+        &mut self,
+        world: &World,
+        episode: &mut Episode,
+        played: &PlayedAction<'_>,
+    ) -> StepResult {
+        let id = self.setup.agent;
+        let (Some(active), Some(agent)) = (&mut self.active, world.state().agents.get(id)) else {
+            return StepResult::default();
+        };
+        let newly_done = active.advance(world, id, pointed_object(world, played));
+        let left_m = active.distance_m(world);
+        let gain_m = episode
+            .progress
+            .advance(agent.position, left_m, agent.collided);
+        let is_reached = || active.is_fulfilled(world, id);
+        let stops = played.is_stop();
+        let mut result = (self.rules).step_result((gain_m, agent.collided), stops, is_reached);
+        result.reward += self.settings.step_done_reward * newly_done as f64;
+        self.condition_success = active.condition_success(world, id);
+        result
+    }
+
+    fn measures(&self) -> Vec<f64> {
+        vec![self.condition_success]
+    }
+
+    fn expert(&mut self, world: &mut World, _episode: &Episode) -> DiscreteAction {
+        let active = self.active.as_mut();
+        active.map_or(DiscreteAction::Stop, |active| active.expert(world))
+    }
+}
+
+impl InstructionFollowingV1 {
+    /// An instruction, drawn from `key`; `None` where that which was drawn cannot be done.
+    fn draw(
+        &self,
+        world: &World,
+        grid: &NavGrid,
+        key: RandomKey,
+    ) -> Option<(InstructionForm, DrawnInstruction)> {
+        let pool = self.pool.as_ref()?;
+        let offered = self.kinds.iter().copied().filter(|kind| pool.has(*kind));
+        let scene = world.engines().semantics().scene(world.state());
+        let draw = InstructionDraw {
+            pool,
+            scene: &scene,
+            grid,
+            kinds: &offered.collect::<Vec<StepKind>>(),
+            max_sequence_steps: self.settings.max_sequence_steps as usize,
+        };
+        let mut stream = key.stream();
+        let form = *stream.choose(&self.settings.forms)?;
+        Some((form, draw.draw(form, &mut stream)?))
+    }
+}
+
+/// The thing that a step pointed at.
+fn pointed_object(world: &World, played: &PlayedAction<'_>) -> Option<ObjectId> {
+    let pointed = played.outcome.pointed.filter(|_| played.outcome.success)?;
+    match world.house().entity(pointed.entity)? {
+        Entity::Object(object) => Some(object),
+        _ => None,
+    }
+}
+
+/// What sensors and infos tell of an instruction.
+fn told(form: InstructionForm, steps: &[planned_step::PlannedStep]) -> EpisodeGoal {
+    let kind = match form {
+        InstructionForm::Single => steps[0].step.kind.name(),
+        form => form.name(),
+    };
+    let conditions = || {
+        steps
+            .iter()
+            .flat_map(|own| own.step.conditions.iter().copied())
+    };
+    EpisodeGoal {
+        kind,
+        objects: conditions().flat_map(StepCondition::objects).collect(),
+        rooms: conditions().filter_map(StepCondition::room).collect(),
+        ..EpisodeGoal::default()
+    }
+}

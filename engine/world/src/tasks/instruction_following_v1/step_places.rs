@@ -1,0 +1,151 @@
+//! Where the steps of instructions are carried out.
+
+use super::planned_step::{EndOfLeg, PlannedLeg, StepTarget};
+use crate::actions::DiscreteAction;
+use crate::episode::EpisodeGoal;
+use crate::tasks::goal_cells::LargestIslandIndex;
+use crate::tasks::navigation::{NavigationGoal, SuccessRule, cells_in_reach, cells_that_reach};
+use crate::world::World;
+use dwell_scene::navigation::NavCell;
+use dwell_scene::{AgentBody, AgentId, ObjectId, RoomId};
+use dwell_semantics::instruct::{InstructionGoal, StepCondition};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Cells from which a thing must be reached: from fewer, a view that turns by steps may miss it everywhere.
+const LEAST_CELLS: usize = 6;
+
+/// The places of rooms, and of things that a hand reaches or that are found; those that were asked for.
+#[derive(Debug, Default)]
+pub(super) struct StepPlaces {
+    rooms: BTreeMap<RoomId, Arc<NavigationGoal>>,
+    in_reach: BTreeMap<ObjectId, Arc<NavigationGoal>>,
+    found: BTreeMap<ObjectId, Arc<NavigationGoal>>,
+}
+
+fn goal(cells: Vec<NavCell>, asked: InstructionGoal) -> Arc<NavigationGoal> {
+    Arc::new(NavigationGoal {
+        cells,
+        success: SuccessRule::Fulfilled(asked),
+        told: EpisodeGoal::default(),
+        instruction: None,
+    })
+}
+
+/// A finder of places in a house at its start.
+pub(super) struct PlaceFinder<'a> {
+    pub(super) world: &'a World,
+    pub(super) agent: AgentId,
+    pub(super) body: AgentBody,
+    pub(super) ground: LargestIslandIndex<'a>,
+    pub(super) places: StepPlaces,
+}
+
+impl PlaceFinder<'_> {
+    /// Returns whether a hand reaches a thing that the agent looks at, from enough places.
+    pub(super) fn is_in_reach(&mut self, object: ObjectId) -> bool {
+        let (world, agent, ground) = (self.world, self.agent, &self.ground);
+        let known = self.places.in_reach.entry(object);
+        let reached = known.or_insert_with(|| {
+            let cells = cells_in_reach(world, agent, ground, object);
+            let asked = InstructionGoal::objects(vec![object], self.body.reach_m);
+            goal(cells, asked)
+        });
+        reached.cells.len() >= LEAST_CELLS
+    }
+
+    /// Returns whether a thing can be found.
+    pub(super) fn is_found(&mut self, object: ObjectId) -> bool {
+        let (world, agent, ground) = (self.world, self.agent, &self.ground);
+        let known = self.places.found.entry(object);
+        let found = known.or_insert_with(|| {
+            let asked = StepCondition::found_goal(object);
+            goal(cells_that_reach(world, agent, ground, &asked), asked)
+        });
+        !found.cells.is_empty()
+    }
+
+    /// Returns whether one can go to a room.
+    pub(super) fn is_walkable(&mut self, room: RoomId) -> bool {
+        let (house, ground) = (self.world.house(), &self.ground);
+        let known = self.places.rooms.entry(room);
+        let walkable = known.or_insert_with(|| {
+            goal(
+                ground.cells_in_rooms(house, &[room]),
+                InstructionGoal::rooms(vec![room]),
+            )
+        });
+        !walkable.cells.is_empty()
+    }
+
+    /// Returns whether the agent can pick a thing up.
+    pub(super) fn is_carried(&mut self, object: ObjectId) -> bool {
+        let (house, state) = (self.world.house(), self.world.state());
+        let size = house.object_bounds(state, object).size().max_element();
+        let part = house.objects[object].first_part;
+        let mass_kg = self.world.physics.body_mass_kg(part);
+        size <= self.body.max_carry_size_m
+            && mass_kg.is_some_and(|mass_kg| mass_kg <= self.body.lift_kg)
+            && self.is_in_reach(object)
+    }
+}
+
+impl StepPlaces {
+    /// How a condition is brought about; `None` where its places were not found. `opens_first`: a container that must be opened.
+    pub(super) fn target(
+        &self,
+        condition: StepCondition,
+        opens_first: impl Fn(ObjectId) -> bool,
+    ) -> Option<StepTarget> {
+        let leg = |goal: &Arc<NavigationGoal>, end| PlannedLeg {
+            goal: goal.clone(),
+            end,
+            unless: None,
+        };
+        let hand = |action, object| {
+            let reached = self.in_reach.get(&object)?;
+            Some(leg(reached, EndOfLeg::Hand(action, object)))
+        };
+        let unless = |leg: PlannedLeg, condition| PlannedLeg {
+            unless: Some(condition),
+            ..leg
+        };
+        let pick = |object| {
+            let leg = hand(DiscreteAction::Pick, object)?;
+            Some(unless(leg, StepCondition::Held(object)))
+        };
+        let legs = match condition {
+            StepCondition::AgentIn(room) => vec![leg(self.rooms.get(&room)?, EndOfLeg::Arrive)],
+            StepCondition::Found(object) | StepCondition::Faced(object) => {
+                vec![leg(self.found.get(&object)?, EndOfLeg::Arrive)]
+            }
+            StepCondition::PointedAt(object) => {
+                let end = EndOfLeg::Hand(DiscreteAction::Point, object);
+                vec![leg(self.found.get(&object)?, end)]
+            }
+            StepCondition::Held(object) => vec![hand(DiscreteAction::Pick, object)?],
+            StepCondition::Open(object) => vec![hand(DiscreteAction::Open, object)?],
+            StepCondition::Closed(object) => vec![hand(DiscreteAction::Close, object)?],
+            StepCondition::SwitchedOn(object) | StepCondition::SwitchedOff(object) => {
+                vec![hand(DiscreteAction::Toggle, object)?]
+            }
+            StepCondition::LeftIn(object, room) => {
+                vec![pick(object)?, leg(self.rooms.get(&room)?, EndOfLeg::Drop)]
+            }
+            StepCondition::On(object, support) => {
+                let end = EndOfLeg::Above(DiscreteAction::Place, support);
+                vec![pick(object)?, leg(self.in_reach.get(&support)?, end)]
+            }
+            StepCondition::Inside(object, container) => {
+                let mut legs = Vec::new();
+                if opens_first(container) {
+                    let open = hand(DiscreteAction::Open, container)?;
+                    legs.push(unless(open, StepCondition::Open(container)));
+                }
+                legs.extend([pick(object)?, hand(DiscreteAction::PutIn, container)?]);
+                legs
+            }
+        };
+        Some(StepTarget { condition, legs })
+    }
+}
