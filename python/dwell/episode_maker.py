@@ -165,13 +165,12 @@ class EpisodeMaker:
             ConfigError: There is no house in which the task can be played, by the engine's words.
         """
         envs = {} if envs is None else envs
-        sources = np.random.SeedSequence(self.header.seed, spawn_key=(place,))
-        stream = np.random.default_rng(sources)
+        drawn = drawn_seeds(self.header.seed, place)
         first = place * len(self.houses) // self.header.count
         tries, sentence = min(len(self.houses), _MOST_HOUSES_IN_VAIN), ""
         for house in range(first, first + tries):
             name = self.houses[house % len(self.houses)]
-            found = self._in_house(name, stream, envs, threads)
+            found = self._in_house(name, next(drawn), envs, threads)
             if isinstance(found, Episode):
                 return found
             sentence = found
@@ -182,13 +181,12 @@ class EpisodeMaker:
     def _in_house(
         self,
         name: str,
-        stream: np.random.Generator,
+        seeds: Sequence[int],
         envs: dict[str, NativeBatch],
         threads: int | None,
     ) -> Episode | str:
         """An episode in a house, or why there is none."""
         sentence = ""
-        seeds = [int(stream.integers(2**63)) for _ in range(_SEEDS_IN_A_HOUSE)]
         try:
             if name not in envs:
                 # One world at a time: the house before is not come back to.
@@ -238,6 +236,18 @@ class EpisodeMaker:
             **asked,
             **(expert_run(env, self._max_steps) if self._expert and self._asks else {}),
         )
+
+
+def drawn_seeds(seed: int, place: int) -> Iterator[list[int]]:
+    """The seeds that are tried for the episode at a place, those of each house that is tried.
+
+    Args:
+        seed: What the episodes of a file are drawn from.
+        place: The episode's place among all of them, from 0.
+    """
+    stream = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(place,)))
+    while True:
+        yield [int(stream.integers(2**63)) for _ in range(_SEEDS_IN_A_HOUSE)]
 
 
 def expert_run(env: NativeBatch, most_steps: int) -> dict[str, Any]:

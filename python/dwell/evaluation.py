@@ -5,58 +5,49 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import itertools
 import json
-import math
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
-
-import numpy as np
 
 from dwell import ConfigError, MeasuredDataError, __version__, _native, arguments
 from dwell.arguments import integer_in_range, mapping, plain_settings, quoted
 from dwell.episode_maker import EpisodeMaker, whole_settings
 from dwell.episodes import Episode, EpisodeFile, Header, read, task_of
+from dwell.evaluation_summary import summary
 from dwell.files import atomic_write, read_json
 from dwell.house_list import HouseList
-from dwell.policies import checked_action, name_of, policy_of
+from dwell.played_actions import element_of, packed, written_action
+from dwell.policies import BASELINES, name_of, naming_policy, policy_of
+from dwell.policy_source import file_digest, source_hash
 from dwell.schemas import settings
 
 #: What a result says of itself.
 _FORMAT, _VERSION = "dwell-evaluation", 1
-#: Of the intervals: how many samples of episodes, with what seed, and how wide.
-_RESAMPLES, _BOOTSTRAP_SEED, _LEVEL = 1000, 0, 0.95
-#: What is averaged over episodes.
-METRICS = (
-    "success",
-    "spl",
-    "soft_spl",
-    "sna",
-    "distance_to_goal",
-    "normalized_distance_to_goal",
-    "path_length",
-    "collisions",
-    "steps",
-    "reward",
-)
-#: What success is counted by.
-_GROUPS = ("goal_kind", "goal_class")
-#: Metrics of floats: equal where they differ by less than a text of JSON may round.
-_TOLERANCE = 1e-9
-
 Sensors = Sequence[str] | Mapping[str, Mapping[str, Any]]
 Progress = Callable[[float, str], None]
 
 
 @dataclasses.dataclass(frozen=True)
 class EpisodeSet:
-    """The episodes of an evaluation, and where they come from."""
+    """The episodes of an evaluation, and where they come from.
+
+    Attributes:
+        header: What they have in common; of several files that of the first.
+        episodes: The episodes.
+        files: The files that they are read from.
+        houses: The HOUSES strings of all files; ``None``: those of the header.
+        has_one_seed: Whether all files were drawn from the header's seed.
+    """
 
     header: Header
     episodes: Iterable[Episode]
     files: tuple[str, ...] = ()
+    houses: tuple[str, ...] | None = None
+    has_one_seed: bool = True
 
     @classmethod
     def of_files(cls, paths: Sequence[str | os.PathLike[str]]) -> EpisodeSet:
@@ -71,7 +62,14 @@ class EpisodeSet:
 
         header = EpisodeIndex([*paths]).header
         files = [read(path) for path in paths]
-        return cls(header, _Chained(files), tuple(file.path for file in files))
+        houses = dict.fromkeys(house for file in files for house in file.header.houses)
+        return cls(
+            header,
+            _Chained(files),
+            tuple(file.path for file in files),
+            tuple(houses),
+            all(file.header.seed == header.seed for file in files),
+        )
 
 
 class _Chained:
@@ -95,16 +93,27 @@ class Evaluation:
         sensors: Sensors | None = None,
         task_settings: Mapping[str, Any] | None = None,
         stride: Mapping[str, float] | None = None,
+        action_mode: str = "discrete",
         max_steps: int | None = None,
         threads: int | None = None,
     ) -> None:
         """Makes the environment; arguments as :func:`evaluate`."""
         from dwell.envs import DwellEnv
-        from dwell.policies import BASELINES
 
         header = episodes.header
         about = task_of(header.task)
         self.episodes = [*episodes.episodes]
+        #: What makes the same evaluation in another process.
+        self.recipe: dict[str, Any] = {
+            "policy": policy,
+            "episodes": dataclasses.replace(episodes, episodes=self.episodes),
+            "sensors": sensors,
+            "task_settings": task_settings,
+            "stride": stride,
+            "action_mode": action_mode,
+            "max_steps": max_steps,
+            "threads": threads,
+        }
         houses = HouseList()
         for name in dict.fromkeys(one.scene_id for one in self.episodes):
             houses.append_name(name)
@@ -124,28 +133,35 @@ class Evaluation:
             sensors=sensors,
             task_settings=own if episodes.files else used,
             stride=stride,
+            action_mode=action_mode,
             max_episode_steps=most,
             threads=threads,
         )
         self._policy = policy_of(policy, self.env)
+        self._name = name_of(policy)
+        #: Whose errors are told as those of a policy.
+        self._is_own = self._name not in BASELINES and not self._name.startswith("dwell.")
         usual = {row["name"]: row["schema"]["default"] for row in settings()["StepSizes"]}
         whole_stride = {**usual, **({} if stride is None else dict(stride))}
-        #: The expert's actions were counted with the usual steps.
-        self._has_usual_steps = whole_stride == usual
-        files = [] if not episodes.files else [os.path.basename(file) for file in episodes.files]
+        #: The expert's actions were counted with the usual steps, as discrete ones.
+        self._is_as_counted = whole_stride == usual and action_mode == "discrete"
         #: What the result says beside its numbers.
         self.about: dict[str, Any] = {
             "format": _FORMAT,
             "version": _VERSION,
             "made_by": __version__,
-            "policy": name_of(policy),
+            "policy": self._name,
+            "policy_source": source_hash(policy, self._policy) if self._is_own else None,
             "task": {"name": header.task, "version": header.task_version, "settings": used},
             "success_distance_m": used.get("success_distance_m"),
-            "houses": [*header.houses],
+            "houses": [*(header.houses if episodes.houses is None else episodes.houses)],
             "scene_ids": [*houses],
             "splits": sorted({_split_of(name) for name in houses}),
-            "episode_files": files,
-            "seed": header.seed,
+            "episode_files": [
+                {"name": os.path.basename(file), "sha256": file_digest(file)}
+                for file in episodes.files
+            ],
+            "seed": header.seed if episodes.has_one_seed else None,
             "count": len(self.episodes),
             "sensors": {
                 "settings": plain_settings(_by_name(sensors), "sensors"),
@@ -153,28 +169,48 @@ class Evaluation:
             },
             "stride": whole_stride,
             "max_steps": most,
+            "action_mode": action_mode,
             "actions": self.env.actions(),
             "sliding": True,
             "world": _native.World.of_env(self.env._runner.batch, 0).config(),
         }
 
+    def _naming(self, one: Episode, step: int) -> contextlib.AbstractContextManager[None]:
+        """Errors of a user's policy say where they were raised."""
+        if not self._is_own:
+            return contextlib.nullcontext()
+        where = f"at step {step}" if step else "in reset, at the start"
+        return naming_policy(self._name, f"{where} of episode {one.episode_id}")
+
     def play(self, one: Episode) -> dict[str, Any]:
-        """Plays an episode; gives what the result says of it."""
-        if not self._has_usual_steps:
+        """Plays an episode; gives what the result says of it.
+
+        Raises:
+            PolicyError: The policy raised something.
+            ConfigError: Its action is none of the environment's; the message names the step.
+        """
+        if not self._is_as_counted:
             one = dataclasses.replace(one, expert_actions=None)
         observation, info = self.env.reset(seed=0, options={"episode_id": one.episode_id})
         reset = getattr(self._policy, "reset", None)
         if reset is not None:
-            reset(observation, info)
-        numbers: list[int] = []
+            with self._naming(one, 0):
+                reset(observation, info)
+        actions: list[Any] = []
         reward, is_over = 0.0, False
         while not is_over:
-            number, answer = checked_action(self._policy.act(observation), self.env)
-            numbers.append(number)
-            action = number if answer is None else {"action": number, "answer": answer}
-            observation, paid, terminated, truncated, info = self.env.step(action)
+            with self._naming(one, len(actions) + 1):
+                given = self._policy.act(observation)
+            try:
+                action, answer = written_action(given, self.env)
+            except ConfigError as error:
+                at = f"step {len(actions) + 1} of episode {one.episode_id}"
+                raise ConfigError(f"{error}; at {at}") from None
+            actions.append(action)
+            element = element_of(action, answer, self.env)
+            observation, paid, terminated, truncated, info = self.env.step(element)
             reward, is_over = reward + paid, terminated or truncated
-        row = _row(one, info, numbers, reward, self.env.state_hash())
+        row = _row(one, info, actions, reward, self.env.state_hash())
         if answer is not None:
             row["answer"] = answer
         return row | {name: info.get(name) for name in self.env._measures}
@@ -191,8 +227,10 @@ def evaluate(
     sensors: Sensors | None = None,
     task_settings: Mapping[str, Any] | None = None,
     stride: Mapping[str, float] | None = None,
+    action_mode: str = "discrete",
     max_steps: int | None = None,
     threads: int | None = None,
+    workers: int = 1,
     progress: Progress = lambda fraction, what: None,
 ) -> dict[str, Any]:
     """Plays episodes with a policy.
@@ -210,8 +248,11 @@ def evaluate(
             alone, the task's own sensors for others.
         task_settings: The task's settings; with ``episodes`` only ``reward`` and ``ends_at_goal``.
         stride: How far movement actions go.
+        action_mode: The form of actions, as of :class:`dwell.envs.DwellEnv`.
         max_steps: Steps after which an episode is cut off; default the task's.
         threads: How many threads to use; results do not depend on it.
+        workers: How many processes play, each with a policy of its own: the result is the same
+            where an episode goes the same way whichever was played before it.
         progress: Is told how much is done, 0 to 1, and of which house.
 
     Returns:
@@ -233,6 +274,8 @@ def evaluate(
         >>> differences(result)
         []
     """
+    from dwell.evaluation_workers import played_rows
+
     which = episode_set(episodes, task, houses, count, seed, task_settings)
     job = Evaluation(
         policy,
@@ -240,13 +283,14 @@ def evaluate(
         sensors=sensors,
         task_settings=task_settings,
         stride=stride,
+        action_mode=action_mode,
         max_steps=max_steps,
         threads=threads,
     )
     rows = []
-    for k, one in enumerate(job.episodes, start=1):
-        rows.append(job.play(one))
-        progress(k / len(job.episodes), one.scene_id)
+    for row in played_rows(job, job.episodes, workers=workers):
+        rows.append(row)
+        progress(len(rows) / len(job.episodes), row["scene_id"])
     return result_of(job.about, rows)
 
 
@@ -292,14 +336,14 @@ def _by_name(sensors: Sensors) -> dict[str, Mapping[str, Any]]:
 
 
 def _row(
-    one: Episode, info: Mapping[str, Any], numbers: Sequence[int], reward: float, state_hash: int
+    one: Episode, info: Mapping[str, Any], actions: Sequence[Any], reward: float, state_hash: int
 ) -> dict[str, Any]:
     """What the result says of an episode."""
     first_m, last_m = one.start_distance_to_goal, info.get("distance_to_goal")
     success = bool(info["success"])
     sna = None
     if one.expert_actions is not None and one.expert_success:
-        sna = success * one.expert_actions / max(one.expert_actions, len(numbers))
+        sna = success * one.expert_actions / max(one.expert_actions, len(actions))
     return {
         "episode_id": one.episode_id,
         "scene_id": one.scene_id,
@@ -311,84 +355,22 @@ def _row(
         "success": success,
         "spl": info.get("spl"),
         "soft_spl": info.get("soft_spl"),
+        "na": len(actions),
         "sna": sna,
         "distance_to_goal": last_m,
         "normalized_distance_to_goal": last_m / first_m if last_m is not None and first_m else None,
         "path_length": float(info["path_length"]),
         "collisions": int(info["collisions"]),
-        "steps": len(numbers),
+        "steps": len(actions),
         "reward": reward,
-        "actions": packed(numbers),
+        "actions": packed(actions),
         "state_hash": f"{state_hash:016x}",
     }
-
-
-def packed(numbers: Iterable[int]) -> str:
-    """Actions as text, equal ones in a row together: ``1*12 3 0``."""
-    runs = ((number, len([*same])) for number, same in itertools.groupby(numbers))
-    return " ".join(f"{number}*{count}" if count > 1 else f"{number}" for number, count in runs)
-
-
-def unpacked(name: str, written: object) -> list[int]:
-    """The actions of :func:`packed`.
-
-    Raises:
-        ConfigError: It is none.
-    """
-    numbers: list[int] = []
-    for word in arguments.text(name, written).split():
-        number, _, count = word.partition("*")
-        if not number.isdecimal() or not (count or "1").isdecimal() or len(word) > 20:
-            raise ConfigError(f"{name}: found {quoted(word)}; expected NUMBER or NUMBER*COUNT")
-        times = int(count or 1)
-        if len(numbers) + times > 10_000_000:
-            raise ConfigError(f"{name}: more than 10000000 actions")
-        numbers += [int(number)] * times
-    return numbers
 
 
 def result_of(about: Mapping[str, Any], rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     """The result of an evaluation: what it was, means, groups, episodes."""
     return {**about, **summary(rows), "episodes": [*rows]}
-
-
-def summary(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """Means with their intervals, and success by what was asked."""
-    groups = {}
-    for key in _GROUPS:
-        names = sorted({row[key] for row in rows if row[key] is not None})
-        groups[f"by_{key}"] = {
-            name: _group([row for row in rows if row[key] == name]) for name in names
-        }
-    own = (measure["name"] for task in _native.tasks() for measure in task["measures"])
-    measured = [name for name in own if all(name in row for row in rows)]
-    return {
-        "bootstrap": {"resamples": _RESAMPLES, "seed": _BOOTSTRAP_SEED, "level": _LEVEL},
-        "metrics": {name: _mean([row[name] for row in rows]) for name in (*METRICS, *measured)},
-        **groups,
-    }
-
-
-def _group(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    found: dict[str, Any] = {"episodes": len(rows)}
-    for name in ("success", "spl"):
-        values = [float(row[name]) for row in rows if row[name] is not None]
-        found[name] = math.fsum(values) / len(values) if values else None
-    return found
-
-
-def _mean(values: Sequence[float | None]) -> dict[str, Any]:
-    """The mean of those that there are, and a percentile interval by a bootstrap."""
-    known = np.array([float(value) for value in values if value is not None])
-    if not known.size:
-        return {"episodes": 0, "mean": None, "low": None, "high": None}
-    stream = np.random.default_rng(_BOOTSTRAP_SEED)
-    means = [
-        float(known[stream.integers(known.size, size=known.size)].mean()) for _ in range(_RESAMPLES)
-    ]
-    low, high = np.quantile(means, [(1 - _LEVEL) / 2, (1 + _LEVEL) / 2])
-    mean = math.fsum(known.tolist()) / known.size
-    return {"episodes": int(known.size), "mean": mean, "low": float(low), "high": float(high)}
 
 
 def write_result(path: str | os.PathLike[str], result: Mapping[str, Any]) -> None:
@@ -433,15 +415,22 @@ def read_result(path: str | os.PathLike[str]) -> dict[str, Any]:
 def differences(
     result: Mapping[str, Any] | str | os.PathLike[str],
     *,
+    policy: object = None,
+    episodes: str | os.PathLike[str] | Sequence[str | os.PathLike[str]] | None = None,
     progress: Progress = lambda fraction, what: None,
 ) -> list[str]:
     """What of a result does not hold when its actions are played again, a sentence each.
 
     Every stated number is compared: those of each episode, the hash of its end, means, intervals,
-    groups, and how the episodes were played.
+    groups, how the episodes were played, and that they come from the stated houses and seed. A
+    baseline's actions are compared with what it does; of another policy the actions are taken as
+    they are.
 
     Args:
         result: A result, or its file.
+        policy: The policy that the result is of, as for :func:`evaluate`: its source is compared.
+        episodes: The files of episodes that the result is of; they are compared. Needed where the
+            episodes are not those that ``dwell episodes`` draws from the seed.
         progress: Is told how much is done, 0 to 1, and of which house.
 
     Returns:
@@ -454,18 +443,5 @@ def differences(
     from dwell.verification import compared
 
     row = result if isinstance(result, Mapping) else read_result(result)
-    return compared(row, progress)
-
-
-def is_same(one: object, other: object) -> bool:
-    """Returns whether two values of JSON are the same, floats but for rounding."""
-    if isinstance(one, Mapping) and isinstance(other, Mapping):
-        return one.keys() == other.keys() and all(is_same(one[key], other[key]) for key in one)
-    if isinstance(one, list | tuple) and isinstance(other, list | tuple):
-        pairs = zip(one, other, strict=False)
-        return len(one) == len(other) and all(itertools.starmap(is_same, pairs))
-    if isinstance(one, bool) or isinstance(other, bool):
-        return one is other
-    if isinstance(one, int | float) and isinstance(other, int | float):
-        return math.isclose(one, other, rel_tol=_TOLERANCE, abs_tol=_TOLERANCE)
-    return one == other
+    files = None if episodes is None else episode_set(episodes, None, None, None)
+    return compared(row, progress, policy=policy, files=files)

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from dwell import ConfigError, HouseError, HouseNotFoundError, _native
 from dwell.arguments import text
 from dwell.files import read
+from dwell.path_patterns import matching_paths
 
 #: Splits are the seeds below this; of a split's houses each has a number, its place among them.
 SPLIT_SEEDS_END = 1_000_000
@@ -127,7 +128,7 @@ def _paths(house: str, folder: str) -> Iterator[str]:
     if not glob.has_magic(head) or "\0" in head or os.path.lexists(place):
         yield f"{place}{has_map}{mapping}"
         return
-    names = sorted(glob.glob(head, root_dir=folder or None, recursive=True))
+    names = matching_paths(head, folder)
     if not names:
         raise HouseNotFoundError(
             f"{place}: no path is of this pattern; * stands for any letters of a name, ** for any "

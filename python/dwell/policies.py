@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import contextlib
+import importlib
 import inspect
+import os
+import traceback
 import types
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
-from gymnasium import spaces
 
-from dwell import ConfigError
-from dwell.arguments import allowed_values, integer_in_range, mapping, quoted
+from dwell import ConfigError, DwellError
+from dwell.arguments import allowed_values, quoted
+from dwell.played_actions import said_action, spoken_actions
 from dwell.plugin_parts import imported
 
 if TYPE_CHECKING:
@@ -30,9 +34,57 @@ class Policy(Protocol):
         """The next action, an element of the environment's action space."""
 
 
+class PolicyError(DwellError):
+    """What a user's policy raised; ``trace`` is the traceback, from the policy's own code on.
+
+    It goes through processes: its arguments are texts.
+    """
+
+    def __init__(self, sentence: str, trace: str) -> None:
+        """Takes the sentence and the traceback's text."""
+        super().__init__(sentence, trace)
+        self.trace = trace
+
+    def __str__(self) -> str:
+        """The sentence."""
+        return str(self.args[0])
+
+
+@contextlib.contextmanager
+def naming_policy(name: str, where: str) -> Iterator[None]:
+    """Errors in the block are told as those of a policy, with the traceback of its own code.
+
+    Args:
+        name: What a result calls the policy.
+        where: What it was doing.
+
+    Raises:
+        PolicyError: Something was raised that is no interruption.
+    """
+    try:
+        yield
+    except Exception as error:
+        shown = "".join(traceback.format_exception(type(error), error, _own_trace(error)))
+        said = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+        raise PolicyError(f"the policy {name} raised {said}, {where}", shown) from error
+
+
+def _own_trace(error: BaseException) -> types.TracebackType | None:
+    """The traceback from the first frame on that is not dwell's; all of it where every one is."""
+    package = os.path.join(os.path.dirname(os.path.abspath(__file__)), "")
+    outside = ("contextlib.py", "importlib")
+    trace = error.__traceback__
+    while trace is not None:
+        file = trace.tb_frame.f_code.co_filename
+        if not file.startswith(package) and not any(part in file for part in outside):
+            return trace
+        trace = trace.tb_next
+    return error.__traceback__
+
+
 class _Constant:
     def __init__(self, env: DwellEnv, action: str) -> None:
-        self._action = with_answer(env.actions().index(action), env)
+        self._action = said_action(action, env)
 
     def act(self, observation: Mapping[str, Any]) -> Any:  # noqa: ANN401 - of the action space
         del observation
@@ -40,10 +92,15 @@ class _Constant:
 
 
 class _Random:
-    """Every action is equally likely, ``stop`` too."""
+    """Every action is equally likely, ``stop`` too; hands act on what the agent looks at.
+
+    In the action mode ``velocity``, which has no other names, these are the actions of feet and
+    head.
+    """
 
     def __init__(self, env: DwellEnv) -> None:
-        self._env, self._count = env, len(env.actions())
+        self._env = env
+        self._names = spoken_actions(env)
         self._stream = np.random.default_rng(0)
 
     def reset(self, observation: Mapping[str, Any], info: Mapping[str, Any]) -> None:
@@ -53,7 +110,8 @@ class _Random:
 
     def act(self, observation: Mapping[str, Any]) -> Any:  # noqa: ANN401 - of the action space
         del observation
-        return with_answer(int(self._stream.integers(self._count)), self._env, self._stream)
+        name = self._names[int(self._stream.integers(len(self._names)))]
+        return said_action(name, self._env, self._stream)
 
 
 class _Expert:
@@ -102,7 +160,9 @@ def policy_of(policy: object, env: DwellEnv) -> Policy:
             f"policy is {quoted(policy)}; {allowed_values(policy, BASELINES)} and 'module:Name'"
         )
     made: Any = policy
+    name = name_of(policy)
     if isinstance(policy, str):
+        _import(policy)
         made = imported("policy", policy)
         # Nothing is called that its module has from elsewhere or that is no policy's maker.
         is_own = getattr(made, "__module__", None) == policy.partition(":")[0]
@@ -113,62 +173,28 @@ def policy_of(policy: object, env: DwellEnv) -> Policy:
                 "a function of that module that makes a policy"
             )
     if isinstance(made, type | types.FunctionType | types.MethodType):
-        made = made()
+        with naming_policy(name, "when it was made"):
+            made = made()
     if not callable(getattr(made, "act", None)) or inspect.isclass(made):
         raise ConfigError(f"policy is {quoted(made)}; expected an object with act(observation)")
     chosen: Policy = made
     return chosen
 
 
-def with_answer(
-    number: int, env: DwellEnv, stream: np.random.Generator | None = None
-) -> int | dict[str, Any]:
-    """An action of an environment with an answer, where its task expects one.
-
-    Args:
-        number: The action's number.
-        env: The environment.
-        stream: Draws every field of the answer, each value equally likely; without it they are 0.
-    """
-    if not isinstance(env.action_space, spaces.Dict):
-        return number
-    answer: dict[str, Any] = {}
-    for name, space in env.action_space["answer"].items():  # type: ignore[attr-defined] # a Dict
-        if isinstance(space, spaces.Discrete):
-            answer[name] = 0 if stream is None else int(stream.integers(space.n))
-        else:
-            low, high = float(space.low[0]), float(space.high[0])
-            share = 0.0 if stream is None else stream.uniform(low, high)
-            answer[name] = np.array([share], np.float32)
-    return {"action": number, "answer": answer}
-
-
-def checked_action(action: object, env: DwellEnv) -> tuple[int, dict[str, Any] | None]:
-    """The number of an action that a policy gave, and the answer in it, as JSON holds them.
+def _import(policy: str) -> None:
+    """Imports the module of ``"module:Name"``; that there is none is told by others.
 
     Raises:
-        ConfigError: It is none.
+        PolicyError: The module raised something.
     """
-    answer = None
-    if isinstance(env.action_space, spaces.Dict):
-        parts = mapping("the policy's action", action, "a mapping with action and answer")
-        if set(parts) != {"action", "answer"}:
-            raise ConfigError(
-                f"the policy's action has {sorted(parts)}; expected action and answer"
-            )
-        action = parts["action"]
-        given = mapping("the policy's answer", parts["answer"])
-        answer = {name: _number(f"the policy's answer: {name}", given[name]) for name in given}
-    if isinstance(action, np.ndarray) and action.size == 1:
-        action = action.reshape(())[()]
-    number = integer_in_range("the policy's action", action, high=len(env.actions()) - 1)
-    return number, answer
-
-
-def _number(at: str, value: object) -> float | int:
-    """A number, also as an array of one."""
-    array = np.asarray(value)
-    if array.size != 1 or array.dtype.kind not in "iuf":
-        raise ConfigError(f"{at} is {quoted(value)}; expected a number")
-    number: float | int = array.reshape(())[()].item()
-    return number
+    module = policy.partition(":")[0]
+    with naming_policy(policy, "when its module was imported"):
+        try:
+            importlib.import_module(module)
+        except ModuleNotFoundError as error:
+            if error.name is None or not f"{module}.".startswith(f"{error.name}."):
+                raise
+        except (TypeError, ValueError):
+            # A name that is none, as ''.
+            if module.strip(".") == module and module:
+                raise

@@ -4,90 +4,128 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from dwell import ConfigError, DwellError, _native
-from dwell.arguments import integer_in_range, mapping, quoted, text, text_list
+from dwell.arguments import quoted
 from dwell.episode_maker import expert_run
 from dwell.episodes import Episode, Header, task_of
-from dwell.evaluation import METRICS, EpisodeSet, Evaluation, is_same, summary, unpacked
+from dwell.evaluation import EpisodeSet, Evaluation
+from dwell.evaluation_summary import METRICS, is_same, summary
+from dwell.played_actions import element_of, refuse_other_form, unpacked, written_action
+from dwell.policies import BASELINES, name_of, policy_of
+from dwell.policy_source import source_hash
+from dwell.result_fields import checked_result
+from dwell.verified_origin import origin_differences
+
+if TYPE_CHECKING:
+    from dwell.envs import DwellEnv
 
 #: Of an episode that is played again, what is given and not found.
 _GIVEN = ("episode_id", "scene_id", "seed")
-#: What an evaluation says of itself that follows from nothing else here.
-_TOLD = ("policy", "houses", "seed", "made_by", "sensors", "episode_files")
+#: What an evaluation says of itself that is checked in another way than by comparing.
+_TOLD = (
+    "policy",
+    "policy_source",
+    "houses",
+    "seed",
+    "made_by",
+    "sensors",
+    "episode_files",
+)
+
+
+class _EndError(Exception):
+    """There are no actions left, and the episode goes on."""
 
 
 class _Stated:
-    """A policy that does what a result states."""
+    """A policy that does what a result states, and compares it with what a baseline does."""
 
     def __init__(self) -> None:
-        self.numbers: Iterator[int] = iter(())
-        #: The answer, which counts with the last action.
-        self.answer: object = None
+        self.env: DwellEnv | None = None
+        #: The baseline that the result is said to be of.
+        self.rule: Any = None
+        self.begin([], None)
+
+    def begin(self, actions: list[Any], answer: Mapping[str, Any] | None) -> None:
+        """The actions of the next episode; the answer counts with the last."""
+        self.actions, self.answer, self.at = actions, answer, 0
+        #: The first action that the baseline does not take: its place and what it does.
+        self.other: tuple[int, Any] | None = None
+
+    def reset(self, observation: Mapping[str, Any], info: Mapping[str, Any]) -> None:
+        """Begins an episode."""
+        if hasattr(self.rule, "reset"):
+            self.rule.reset(observation, info)
 
     def act(self, observation: Mapping[str, Any]) -> Any:  # noqa: ANN401 - of the action space
-        """The next action; ``-1``, which is none, behind the last."""
-        del observation
-        number = next(self.numbers, -1)
-        return number if self.answer is None else {"action": number, "answer": self.answer}
+        """The next action."""
+        if self.at == len(self.actions):
+            raise _EndError
+        assert self.env is not None
+        action = self.actions[self.at]
+        if self.rule is not None and self.other is None:
+            own, answer = written_action(self.rule.act(observation), self.env)
+            is_last = self.at == len(self.actions) - 1
+            if not is_same(own, action) or (is_last and not is_same(answer, self.answer)):
+                self.other = self.at, own if not is_same(own, action) else answer
+        self.at += 1
+        return element_of(action, self.answer, self.env)
 
 
-def compared(result: Mapping[str, Any], progress: Callable[[float, str], None]) -> list[str]:
+def compared(
+    result: Mapping[str, Any],
+    progress: Callable[[float, str], None],
+    *,
+    policy: object = None,
+    files: EpisodeSet | None = None,
+) -> list[str]:
     """What of a result does not hold, a sentence each; see :func:`dwell.evaluation.differences`."""
-    told: list[str] = []
+    row, told = checked_result(result)
+    if told:
+        return told
+    stated = _Stated()
     try:
-        rows = result["episodes"]
-        if not isinstance(rows, list) or not rows:
-            return [f"episodes: found {quoted(rows)}; expected a list of episodes"]
-        stated = _Stated()
-        job = _job(result, stated)
+        job = _job(row, stated)
         for name, value in job.about.items():
-            if name not in _TOLD and name not in result:
-                told.append(f"{name}: missing; it is {quoted(value)}")
-            elif name not in _TOLD and not is_same(value, result[name]):
-                told.append(_differs(name, result[name], value))
-        told += _specs(result, job)
-        for k, row in enumerate(rows):
-            told += _episode(f"episodes[{k}]", row, job, stated, result["actions"])
+            if name not in _TOLD and not is_same(value, row[name]):
+                told.append(_differs(name, row[name], value))
+        told += _policy(row, job, stated, policy)
+        told += origin_differences(row, files)
+        told += _specs(row, job)
+        rows = row["episodes"]
+        for k, episode in enumerate(rows):
+            told += _episode(k, episode, job, stated, row["actions"])
             progress((k + 1) / len(rows), job.episodes[k].scene_id)
-        for name, value in summary(rows).items():
-            told += _parts(name, result.get(name), value)
-        known = {*job.about, *summary(rows), "episodes"}
-        told += [f"{name}: no field of a result" for name in result if name not in known]
-    except KeyError as error:
-        told.append(f"{error.args[0]}: missing; a result has it")
-    except (DwellError, TypeError, AttributeError) as error:
+        for name, value in summary(_with_measures(rows, job)).items():
+            told += _parts(name, row[name], value)
+    except DwellError as error:
         told.append(str(error))
     return told
 
 
 def _job(result: Mapping[str, Any], stated: _Stated) -> Evaluation:
     """The evaluation that a result is of."""
-    task = mapping("task", result["task"])
-    episodes = []
-    for k, row in enumerate(result["episodes"]):
-        fields = mapping(f"episodes[{k}]", row)
-        scene = text(f"episodes[{k}].scene_id", fields["scene_id"])
-        seed = integer_in_range(f"episodes[{k}].seed", fields["seed"])
-        count = fields["expert_actions"]
-        episodes.append(
-            Episode(
-                episode_id=f"{scene}#{seed}",
-                scene_id=scene,
-                seed=seed,
-                start_position=(0.0, 0.0, 0.0),
-                start_yaw_deg=0.0,
-                expert_actions=None if count is None else integer_in_range("expert_actions", count),
-                expert_success=count is not None,
-            )
+    task = result["task"]
+    episodes = [
+        Episode(
+            episode_id=f"{row['scene_id']}#{row['seed']}",
+            scene_id=row["scene_id"],
+            seed=row["seed"],
+            start_position=(0.0, 0.0, 0.0),
+            start_yaw_deg=0.0,
+            expert_actions=row["expert_actions"],
+            expert_success=row["expert_actions"] is not None,
         )
+        for row in result["episodes"]
+    ]
     header = Header(
-        task=text("task.name", task["name"]),
-        task_version=integer_in_range("task.version", task["version"]),
-        task_settings=mapping("task.settings", task["settings"]),
-        houses=tuple(text_list("houses", result["houses"])),
-        seed=integer_in_range("seed", result["seed"]),
+        task=task["name"],
+        task_version=task["version"],
+        task_settings=task["settings"],
+        houses=tuple(result["houses"]),
+        seed=result["seed"] or 0,
         count=len(episodes),
     )
     known = {row["name"]: row["version"] for row in _native.tasks()}
@@ -96,66 +134,100 @@ def _job(result: Mapping[str, Any], stated: _Stated) -> Evaluation:
             f"task: the result is of version {header.task_version} of {header.task}, this dwell "
             f"has version {known[header.task]}"
         )
-    sensors = mapping("sensors.settings", mapping("sensors", result["sensors"])["settings"])
-    return Evaluation(
+    job = Evaluation(
         stated,
         EpisodeSet(header, episodes),
-        sensors=_without_pictures(sensors),
-        stride=mapping("stride", result["stride"]),
-        max_steps=integer_in_range("max_steps", result["max_steps"], low=1),
+        sensors=_without_pictures(result["sensors"]["settings"]),
+        stride=result["stride"],
+        action_mode=result["action_mode"],
+        max_steps=result["max_steps"],
     )
+    stated.env = job.env
+    return job
+
+
+def _policy(
+    result: Mapping[str, Any], job: Evaluation, stated: _Stated, policy: object
+) -> Iterator[str]:
+    """What is said of the policy and is not so."""
+    name, source = result["policy"], result["policy_source"]
+    if name in BASELINES:
+        stated.rule = policy_of(name, job.env)
+        if source is not None:
+            yield f"policy_source: the file states {quoted(source)}; {name} is dwell's own, of None"
+    elif ":" not in name:
+        known = ", ".join(BASELINES)
+        yield f"policy: the file states {quoted(name)}; allowed are {known} and 'module:Name'"
+    if policy is None:
+        return
+    if name_of(policy) != name:
+        yield f"policy: the file states {quoted(name)}, given is {quoted(name_of(policy))}"
+        return
+    own = None if name in BASELINES else source_hash(policy, policy_of(policy, job.env))
+    if own != source:
+        yield (
+            f"policy_source: the file states {quoted(source)}, that of the policy given is "
+            f"{quoted(own)}: it has changed since"
+        )
 
 
 def _without_pictures(sensors: Mapping[str, Any]) -> dict[str, Any]:
     """Those that are no pictures, on which no bit of a world depends; one at least."""
     pictures = {row["name"] for row in _native.sensors() if row["picture_style"] is not None}
-    kept = {
-        name: own
-        for name, own in sensors.items()
-        if (own.get("kind", name) if isinstance(own, Mapping) else name) not in pictures
-    }
+    kept = {name: own for name, own in sensors.items() if own.get("kind", name) not in pictures}
     return kept or {"gps": {}}
 
 
 def _specs(result: Mapping[str, Any], job: Evaluation) -> Iterator[str]:
-    """The sensors' specifications that do not hold: of those that are played again."""
-    stated = {row["name"]: row for row in mapping("sensors", result["sensors"])["observations"]}
-    for row in job.about["sensors"]["observations"]:
-        found = stated.get(row["name"])
-        if found is not None and not is_same(row, found):
-            yield _differs(f"sensors.observations: {row['name']}", found, row)
+    """The sensors' specifications that do not follow from their settings, pictures included."""
+    from dwell.envs import DwellEnv
+
+    settings = result["sensors"]["settings"]
+    if not settings:
+        yield "sensors.settings: found none; expected at least one sensor"
+        return
+    try:
+        env = DwellEnv(
+            result["task"]["name"],
+            houses=job.episodes[0].scene_id,
+            sensors=settings,
+            task_settings=result["task"]["settings"],
+        )
+    except DwellError as error:
+        yield f"sensors.settings: {error}"
+        return
+    found = {row["name"]: row for row in env._runner.batch.specs()}
+    env.close()
+    stated = {row["name"]: row for row in result["sensors"]["observations"]}
+    for name in dict.fromkeys([*found, *stated]):
+        if not is_same(stated.get(name), found.get(name)):
+            at = f"sensors.observations: {name}"
+            yield _differs(at, stated.get(name), found.get(name))
 
 
 def _episode(
-    at: str, row: Mapping[str, Any], job: Evaluation, stated: _Stated, names: object
+    k: int, row: Mapping[str, Any], job: Evaluation, stated: _Stated, names: list[str]
 ) -> Iterator[str]:
     """What of an episode does not hold."""
-    there = job.env.actions()
-    now = {
-        number: there.index(name)
-        for number, name in enumerate(text_list("actions", names))
-        if name in there
-    }
-    numbers = unpacked(f"{at}.actions", row["actions"])
-    if unknown := next((number for number in numbers if number not in now), None):
-        yield f"{at}.actions: no action has the number {unknown}"
-        return
-    stated.answer = row.get("answer")
-    stated.numbers = (now[number] for number in numbers)
-    one = job.episodes[int(at.partition("[")[2][:-1])]
-    if row.get("episode_id") != one.episode_id:
-        yield _differs(f"{at}.episode_id", row.get("episode_id"), one.episode_id)
+    at, one = f"episodes[{k}]", job.episodes[k]
     try:
+        actions = _as_numbered_here(at, unpacked(f"{at}.actions", row["actions"]), job, names)
+        stated.begin(actions, row.get("answer"))
+        if row["episode_id"] != one.episode_id:
+            yield _differs(f"{at}.episode_id", row["episode_id"], one.episode_id)
         played = job.play(_asked(job, one))
-    except ConfigError as error:
-        if "the policy's action" in str(error):
-            yield f"{at}.actions: after all {len(numbers)} the episode goes on"
-        else:
-            yield f"{at}: {error}"
+    except _EndError:
+        yield f"{at}.actions: after all {len(actions)} the episode goes on"
         return
-    left = len([*stated.numbers])
-    if left:
+    except DwellError as error:
+        yield f"{error}" if str(error).startswith(at) else f"{at}: {error}"
+        return
+    if left := len(actions) - stated.at:
         yield f"{at}.actions: the episode ends, and {left} actions are left"
+    if stated.other is not None:
+        place, own = stated.other
+        told = f"{_said(actions[place], names)}, the policy does {_said(own, names)}"
+        yield f"{at}.actions: action {place} of {len(actions)}: the file states {told}"
     for name, value in played.items():
         if name in _GIVEN or name == "actions":
             continue
@@ -166,6 +238,29 @@ def _episode(
     for name in row:
         if name not in played:
             yield f"{at}.{name}: no field of an episode; metrics are {', '.join(METRICS)}"
+
+
+def _as_numbered_here(at: str, actions: list[Any], job: Evaluation, names: list[str]) -> list[Any]:
+    """The actions by the numbers that this version of dwell has for them.
+
+    Raises:
+        ConfigError: One is none.
+    """
+    if job.about["action_mode"] != "discrete":
+        refuse_other_form(f"{at}.actions", actions, job.env)
+        return actions
+    there = job.env.actions()
+    now = {number: there.index(name) for number, name in enumerate(names) if name in there}
+    for number in actions:
+        if not isinstance(number, int) or number not in now:
+            raise ConfigError(f"{at}.actions: no action has the number {quoted(number, 60)}")
+    return [now[number] for number in actions]
+
+
+def _said(action: object, names: list[str]) -> str:
+    if isinstance(action, int) and 0 <= action < len(names):
+        return f"{action} ({names[action]})"
+    return quoted(action)
 
 
 def _asked(job: Evaluation, one: Episode) -> Episode:
@@ -182,6 +277,21 @@ def _asked(job: Evaluation, one: Episode) -> Episode:
         start_distance_to_goal=info.get("start_distance_to_goal"),
         **expert,
     )
+
+
+def _with_measures(rows: list[dict[str, Any]], job: Evaluation) -> list[dict[str, Any]]:
+    """The rows with the task's measures alone, as numbers; what else there is was told."""
+    measures = job.env._measures
+    known = [{name: row.get(name) for name in measures} for row in rows]
+    for k, row in enumerate(known):
+        for name, value in row.items():
+            if value is not None and not isinstance(value, bool | int | float):
+                raise ConfigError(f"episodes[{k}].{name} is {quoted(value)}; expected a number")
+    of_tasks = {measure["name"] for task in _native.tasks() for measure in task["measures"]}
+    return [
+        {name: part for name, part in row.items() if name not in of_tasks} | own
+        for row, own in zip(rows, known, strict=True)
+    ]
 
 
 def _parts(name: str, stated: object, value: Mapping[str, Any]) -> Iterator[str]:

@@ -223,3 +223,17 @@ def test_a_file_with_a_wrong_action_names_it(tmp_path: Path) -> None:
     file.write_text(written.replace("0.25", "2.5"), "utf-8")
     with pytest.raises(dwell.MeasuredDataError, match=r"actions\[0\]: pixel"):
         dwell.Replay.read(file)
+
+
+def test_actions_that_a_mode_cannot_leave_out_are_refused() -> None:
+    settings: dict[str, Any] = {"houses": "builtin:studio", "sensors": ["gps"]}
+    body = ["stop", "move_forward", "turn_left", "turn_right", "look_up", "look_down"]
+    for make in (DwellEnv, lambda *args, **kwargs: DwellVectorEnv(2, *args, **kwargs)):
+        with pytest.raises(dwell.ConfigError, match="actions have no stop, move_forward, turn_le"):
+            make("Free", action_mode="dict", actions=["pick"], **settings)
+        with pytest.raises(dwell.ConfigError, match="actions have no look_down; in the action_mo"):
+            make("Free", action_mode="dict", actions=[*body[:-1], "pick"], **settings)
+        with pytest.raises(dwell.ConfigError, match="velocities are all it has"):
+            make("Free", action_mode="velocity", actions=["pick"], **settings)
+    env = DwellEnv("Free", action_mode="dict", actions=[*body, "pick"], **settings)
+    assert env.action_space["hand"].n == 2  # type: ignore[index] # a Dict

@@ -9,10 +9,12 @@ import gymnasium
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
+from gymnasium.vector.utils import concatenate, create_empty_array
 
 import dwell
 from dwell.envs import DwellEnv, DwellVectorEnv, ReplayRecorder
 from dwell.evaluation import differences, evaluate
+from dwell.played_actions import said_action
 
 pytestmark = pytest.mark.usefixtures("open_once")
 
@@ -114,3 +116,28 @@ def test_files_and_results_hold_answers(tmp_path: Path) -> None:
     assert differences(guessed) == []
     guessed["episodes"][2]["answer"]["azimuth"] += 0.5
     assert any("episodes[2]" in sentence for sentence in differences(guessed))
+
+
+def known(infos: dict[str, Any], k: int) -> set[str]:
+    """The keys that a vector's masks say one of its environments has."""
+    return {key for key in infos if not key.startswith("_") and infos[f"_{key}"][k]}
+
+
+@pytest.mark.parametrize("task", [TASK, "Free", "PointNav", "SemanticAudioNav"])
+def test_a_vector_knows_the_keys_that_single_environments_have(task: str) -> None:
+    settings: dict[str, Any] = {"houses": "builtin:apartment", "sensors": ["gps"]}
+    many = DwellVectorEnv(2, task, **settings)
+    singles = [DwellEnv(task, **settings) for _ in range(2)]
+    many.reset(seed=4)
+    for k, single in enumerate(singles):
+        single.reset(seed=4 + k)
+    one = singles[0]
+    for names in (("turn_left", "turn_left"), ("stop", "move_forward")):
+        rows = [said_action(name, one) for name in names]
+        empty = create_empty_array(many.single_action_space, 2)
+        infos = many.step(concatenate(many.single_action_space, rows, empty))[4]
+        for k, (single, row) in enumerate(zip(singles, rows, strict=True)):
+            info = single.step(row)[4]
+            assert known(infos, k) == {*info}
+            for key, value in info.items():
+                assert infos[key][k] == value, key

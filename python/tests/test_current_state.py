@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 
 import dwell
@@ -72,3 +74,58 @@ def test_a_fork_goes_on_alone_with_the_same_bits() -> None:
     assert many.world(1).state_hash() == many.state_hashes()[1]
     with pytest.raises(dwell.ConfigError, match="env is 2"):
         many.world(2)
+
+
+@pytest.mark.parametrize("many", [False, True])
+def test_episodes_after_a_restore_are_those_that_followed_the_snapshot(many: bool) -> None:
+    houses = ["builtin:studio", "builtin:apartment"]
+
+    def made() -> Any:  # noqa: ANN401 - of one kind or the other
+        if many:
+            return DwellVectorEnv(1, "Free", houses=houses, sensors=["gps"])
+        return DwellEnv("Free", houses=houses, sensors=["gps"])
+
+    def following(env: Any) -> list[str]:  # noqa: ANN401 - of one kind or the other
+        found = [env.reset()[1]["episode_id"] for _ in range(4)]
+        return [one[0] for one in found] if many else found
+
+    env, other = made(), made()
+    env.reset(seed=6)
+    saved = env.snapshot()
+    expected = following(env)
+    assert len(set(expected)) == 4
+    other.reset(seed=77)
+    for again in (env, other, made()):
+        again.restore(saved)
+        assert following(again) == expected
+    # A seed goes before it.
+    other.restore(saved)
+    fresh = made()
+    assert other.reset(seed=5)[1]["episode_id"] == fresh.reset(seed=5)[1]["episode_id"]
+    assert following(other) == following(fresh)
+
+
+def test_the_world_of_one_of_several_has_the_house_in_which_it_is() -> None:
+    houses = ["builtin:studio", "builtin:apartment"]
+    many = DwellVectorEnv(2, "Free", houses=houses, sensors=["gps"])
+    many.reset(seed=1)
+    worlds, seen = [many.world(k) for k in range(2)], set()
+    for _ in range(8):
+        _, infos = many.reset()
+        for k, world in enumerate(worlds):
+            seen.add((k, world.house.name))
+            assert infos["scene_id"][k] == f"builtin:{world.house.name}"
+            assert world.house is many.world(k).house
+            # What the house and the world say of things is of the same one.
+            assert world.house.info()["objects"] == len(world.objects())
+    assert len(seen) == 4
+
+
+def test_an_option_of_texts_that_there_is_not_is_refused_by_its_name() -> None:
+    env = DwellEnv("Free", houses="builtin:studio", sensors=["gps"])
+    env.reset(seed=1)
+    with pytest.raises(dwell.ConfigError, match="no argument 'foo'; allowed are length, style"):
+        env.describe("room", foo=1)
+    with pytest.raises(dwell.ConfigError, match="did you mean length"):
+        env.describe("room", lenght="short")
+    assert env.describe("room", length="short") == env.world.describe("room", length="short")

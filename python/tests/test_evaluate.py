@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
@@ -16,7 +17,8 @@ import dwell
 from dwell.cli.job_journal import Journal
 from dwell.envs import DwellEnv
 from dwell.episode_maker import EpisodeMaker
-from dwell.evaluation import differences, evaluate, packed, read_result, unpacked, write_result
+from dwell.evaluation import differences, evaluate, read_result, write_result
+from dwell.played_actions import packed, unpacked
 
 pytestmark = pytest.mark.usefixtures("open_once")
 
@@ -177,6 +179,20 @@ def at(*place: str | int, to: object) -> Callable[[dict[str, Any]], None]:
         (at("world", "control_rate_hz", to=10.0), "world: the file states"),
         (lambda row: row.pop("max_steps"), "max_steps: missing"),
         (at("prize", to=1), "prize: no field of a result"),
+        (at("policy", to="expert"), "the policy does"),
+        (at("policy", to="mine"), "policy: the file states 'mine'; allowed are random, expert"),
+        (at("policy_source", to="1234"), "policy_source is '1234'; expected 64 hexadecimal digits"),
+        (at("made_by", to="somebody"), "made_by is 'somebody'; expected a version of dwell"),
+        (at("houses", to=HOUSES[:1]), "no 'seed:0?home=studio' of scene_ids"),
+        (at("houses", to=["split:none"]), "houses: split:none: no such split"),
+        (at("seed", to=6), "seed: the file states 6, from which `dwell episodes` draws other"),
+        (at("seed", to=None), "seed: the file states None"),
+        (at("sensors", "settings", to={"gps": {"far": 1}}), "unknown field `far`"),
+        (at("sensors", "settings", to={"rgb": {}}), "sensors.observations: rgb: the file states"),
+        (at("sensors", "observations", to=[]), "sensors.observations: gps: the file states None"),
+        (at("episode_files", 0, "sha256", to="0"), "episode_files[0].sha256 is '0'; expected 64"),
+        (at("action_mode", to="velocity"), "episodes[0].actions: action 0 of"),
+        (at("metrics", "spl", "mean", to=9 * 10**308), "metrics.spl.mean: the file states 9000"),
     ],
 )
 def test_what_was_edited_is_found(
@@ -185,6 +201,73 @@ def test_what_was_edited_is_found(
     other = json.loads(json.dumps(result))
     edit(other)
     assert any(told in sentence for sentence in differences(other)), differences(other)
+
+
+@pytest.mark.parametrize("wrong", [10**400, math.nan, [[]], object(), "\ud800", {"a": {}}])
+def test_what_is_no_result_is_told_by_its_place(wrong: object, result: dict[str, Any]) -> None:
+    takes_mappings = {"world", "bootstrap", "metrics", "by_goal_kind", "by_goal_class", "settings"}
+    places: list[tuple[Any, ...]] = [(name,) for name in result if name not in takes_mappings]
+    places += [("episodes", 1, name) for name in result["episodes"][1]]
+    places += [("sensors", "observations"), ("task", "version"), ("stride", "forward_m")]
+    for place in places:
+        other = json.loads(json.dumps(result))
+        at(*place, to=wrong)(other)
+        told = differences(other)
+        where = ".".join(f"[{one}]" if isinstance(one, int) else one for one in place)
+        where = where.replace(".[", "[")
+        assert len(told) >= 1
+        assert any(sentence.startswith(where) for sentence in told), (place, told)
+        for sentence in told:
+            assert len(sentence) < 500
+            assert not re.search("object (is not|has no)|argument must|convert", sentence), sentence
+
+
+@pytest.mark.parametrize("count", ["99999999", "9" * 300, "x", "-1", "", "1.5"])
+def test_actions_that_are_none_are_told(count: str, result: dict[str, Any]) -> None:
+    other = json.loads(json.dumps(result))
+    other["episodes"][0]["actions"] = f"1*{count}"
+    (told,) = (one for one in differences(other) if one.startswith("episodes[0].actions"))
+    assert "more than 10000000 actions" in told or "expected NUMBER or NUMBER*COUNT" in told
+
+
+def test_the_files_that_were_played_are_compared(
+    made: Path, result: dict[str, Any], tmp_path: Path, command: Command
+) -> None:
+    path = tmp_path / "result.json"
+    write_result(path, result)
+    assert command("evaluate", "--verify", path, "--episodes", made).returncode == 0
+    # Of a part of a file, the file says what the seed alone does not.
+    stated = dwell.episodes.read(made)
+    some = tmp_path / "some.jsonl"
+    dwell.episodes.write(some, stated.header, [*stated][1::2])
+    of_some = evaluate("stop", episodes=some)
+    assert differences(of_some) == []
+    assert differences(of_some, episodes=some) == []
+    (told,) = differences(of_some, episodes=made)
+    assert told.startswith("episode_files: the file states")
+    reversed_ones = tmp_path / "reversed.jsonl"
+    dwell.episodes.write(reversed_ones, stated.header, [*stated][::-1])
+    of_reversed = evaluate("stop", episodes=reversed_ones)
+    (told,) = differences(of_reversed)
+    assert told.endswith("where they were chosen or made otherwise, give reversed.jsonl")
+    assert differences(of_reversed, episodes=reversed_ones) == []
+    of_reversed["seed"] = 77
+    assert any("the episodes' 5" in one for one in differences(of_reversed, episodes=reversed_ones))
+
+
+def test_a_baseline_is_asked_what_it_does() -> None:
+    result = evaluate("random", task="PointNav", houses="builtin:studio", count=2, seed=4)
+    assert differences(result) == []
+    # Made here, each is the one at its place, of the seed and in the house that is tried for it.
+    for houses in (
+        ["builtin:studio", "builtin:apartment"],
+        ["builtin:apartment", "builtin:studio"],
+    ):
+        (told,) = differences({**result, "houses": houses})
+        assert told.startswith("seed: the file states 4, from which `dwell episodes` draws other")
+    result["policy"] = "stop"
+    told = "action 0 of"
+    assert any(told in one and "the policy does 0 (stop)" in one for one in differences(result))
 
 
 def test_a_file_with_an_edited_mean_fails_the_command(

@@ -86,3 +86,27 @@ def test_a_vector_whose_tasks_were_stopped_in_their_judging_wants_a_reset(
         envs.snapshot()
     envs.reset(seed=1)
     envs.step([1, 1])
+
+
+def test_a_step_after_the_end_is_refused_and_leaves_the_episode() -> None:
+    env = DwellEnv("Free", houses="builtin:studio", sensors=["gps"])
+    env.reset(seed=1)
+    env.step(1)
+    assert env.step(0)[2]
+    saved, state = env.snapshot(), env.state_hash()
+    for _ in range(2):
+        with pytest.raises(dwell.UsageError, match="the episode has ended; call reset first"):
+            env.step(1)
+        assert env.state_hash() == state
+    # What has ended can still be kept, copied and told.
+    assert env.snapshot() == saved
+    assert env.fork().state_hash() == state
+    env.reset(seed=2)
+    env.step(1)
+    # Restored, it has ended as before.
+    env.restore(saved)
+    assert env.state_hash() == state
+    with pytest.raises(dwell.UsageError, match="the episode has ended"):
+        env.step(1)
+    env.reset(seed=2)
+    env.step(1)

@@ -79,3 +79,33 @@ def test_pictures_follow_as_fast_as_steps() -> None:
         envs = DwellVectorEnv(1, "Free", houses="builtin:studio", sensors=["gps"], world=world)
         assert env.metadata["render_fps"] == envs.metadata["render_fps"] == told
     assert DwellEnv.metadata["render_fps"] == 20
+
+
+def test_calls_of_a_vector_beside_a_step_of_another_thread_are_told_as_such() -> None:
+    envs = DwellVectorEnv(2, Nesting, houses="builtin:studio")
+    envs.reset(seed=1)
+    saved = envs.snapshot()
+    inside, over = threading.Event(), threading.Event()
+    NESTED[:] = [inside.set, over.wait]
+    thread = threading.Thread(target=envs.step, args=(np.array([1, 1]),))
+    thread.start()
+    inside.wait()
+    try:
+        for call in (
+            envs.snapshot,
+            lambda: envs.restore(saved),
+            lambda: envs.reset(seed=3),
+            lambda: envs.step(np.array([1, 1])),
+        ):
+            with pytest.raises(dwell.UsageError, match=r"another call \(step\) .* another thread"):
+                call()
+    finally:
+        over.set()
+        thread.join()
+    NESTED.clear()
+    # Nothing of it has harmed the step.
+    twins = DwellVectorEnv(2, Nesting, houses="builtin:studio")
+    twins.reset(seed=1)
+    twins.step(np.array([1, 1]))
+    assert envs.state_hashes() == twins.state_hashes()
+    assert len(envs.snapshot()) == 2

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from dwell import _native
 from dwell.envs import DwellEnv, DwellVectorEnv
-from dwell.policies import with_answer
+from dwell.played_actions import said_action
 
 
 def spectrogram(signal: NDArray[np.float32], reference_pa: float) -> NDArray[np.float64]:
@@ -55,7 +55,7 @@ def test_infos_say_what_is_asked_alone_and_in_a_batch(task: str) -> None:
     many = DwellVectorEnv(2, task, houses=houses, sensors=["gps"], autoreset_mode="SameStep")
     _, infos = many.reset(seed=4)
     numbers = (0, 6)
-    elements = [with_answer(number, one) for number in numbers]
+    elements = [said_action(one.actions()[number], one) for number in numbers]
     empty = create_empty_array(many.single_action_space, 2)
     stopped = many.step(concatenate(many.single_action_space, elements, empty))[4]
     for k, episode_id in enumerate(infos["episode_id"].tolist()):

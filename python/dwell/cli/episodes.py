@@ -126,7 +126,8 @@ def run(args: argparse.Namespace) -> int:
 def _make(args: argparse.Namespace, maker: Any) -> int:  # noqa: ANN401 - an EpisodeMaker
     """Makes what is not there yet; returns how many."""
     header = maker.header.as_dict()
-    journal = Journal(args.out, {"command": "episodes", "expert": args.expert, **header})
+    job = {"command": "episodes", "expert": args.expert, **header}
+    journal = Journal(args.out, job, preliminary=(_HEADER,))
     contents = functools.lru_cache(64)(contents_of)
 
     def of(item: str) -> str | None:

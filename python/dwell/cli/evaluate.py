@@ -22,7 +22,7 @@ from dwell.cli.episodes import add_task_settings, task_settings
 from dwell.cli.job_journal import Journal
 
 #: What is printed for people of the means.
-_SHOWN = ("success", "spl", "soft_spl", "sna", "distance_to_goal", "steps", "reward")
+_SHOWN = ("success", "spl", "soft_spl", "sna", "sws", "distance_to_goal", "steps", "reward")
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -53,7 +53,19 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "the policies by name alone",
     )
     parser.add_argument("--stride", metavar="JSON", help="forward_m, turn_deg, look_deg")
+    parser.add_argument(
+        "--action-mode",
+        choices=("discrete", "velocity", "pointer", "object", "dict"),
+        default="discrete",
+        help="the form of the policy's actions",
+    )
     parser.add_argument("--max-steps", type=count_from_1, help="default: the task's")
+    parser.add_argument(
+        "--workers",
+        type=count_from_1,
+        default=1,
+        help="processes that play, each with a policy of its own (default: this one)",
+    )
     parser.add_argument(
         "--out",
         type=path,
@@ -64,7 +76,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--verify",
         type=path,
         metavar="FILE.json",
-        help="play the actions of a result again: all that it states holds, or fail",
+        help="play the actions of a result again: all that it states holds, or fail; with POLICY "
+        "its source is compared, with --episodes the files that were played",
     )
     parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
 
@@ -75,19 +88,26 @@ def run(args: argparse.Namespace) -> int:
     Returns:
         1 when a result does not hold.
     """
-    if args.verify is not None:
-        refuse_unused(args, {"verify", "json"}, "a result that is verified")
-        return _verify(args)
-    if args.policy is None:
-        raise ValueError("expected a POLICY, or --verify FILE.json")
-    if ":" in args.policy:
+    from dwell.policies import PolicyError
+
+    if args.policy is not None and ":" in args.policy:
         # A policy lies where the command is given more often than in an installed package.
         sys.path.insert(0, "")
+    try:
+        return _verify(args) if args.verify is not None else _evaluate(args)
+    except PolicyError as error:
+        print(error.trace, end="", file=sys.stderr)
+        raise
+
+
+def _evaluate(args: argparse.Namespace) -> int:
+    if args.policy is None:
+        raise ValueError("expected a POLICY, or --verify FILE.json")
     if args.episodes is not None:
         refuse_unused(
             args,
-            {"policy", "episodes", "sensors", "stride", "max_steps", "out", "json", "set"}
-            | {"settings"},
+            {"policy", "episodes", "sensors", "stride", "action_mode", "max_steps", "workers"}
+            | {"out", "json", "set", "settings"},
             "an evaluation of episodes of a file",
         )
     result = _result(args)
@@ -96,8 +116,8 @@ def run(args: argparse.Namespace) -> int:
         return 0
     print(f"{result['policy']}: {result['count']} episodes of {result['task']['name']}")
     for name in _SHOWN:
-        row = result["metrics"][name]
-        if row["mean"] is not None:
+        row = result["metrics"].get(name)
+        if row is not None and row["mean"] is not None:
             print(f"{name}: {row['mean']:.4g} ({row['low']:.4g} to {row['high']:.4g})")
     for kind, row in result["by_goal_kind"].items():
         print(f"{kind}: success {100 * row['success']:.4g} % of {row['episodes']} episodes")
@@ -108,12 +128,18 @@ def run(args: argparse.Namespace) -> int:
 
 def _verify(args: argparse.Namespace) -> int:
     from dwell.evaluation import differences, read_result
+    from dwell.policies import BASELINES
 
-    told = differences(read_result(args.verify), progress=ProgressBar())
+    refuse_unused(args, {"policy", "verify", "episodes", "json"}, "a result that is verified")
+    result = read_result(args.verify)
+    told = differences(result, policy=args.policy, episodes=args.episodes, progress=ProgressBar())
     if args.json:
         print_json({"file": str(args.verify), "differences": told})
     elif not told:
-        print(f"{args.verify}: all that it states holds")
+        who = result["policy"]
+        is_unknown = args.policy is None and who not in BASELINES
+        but = f", but for who chose the actions: give {who} to compare its source"
+        print(f"{args.verify}: all that it states holds{but if is_unknown else ''}")
     for sentence in told:
         print(f"{args.verify}: {sentence}", file=sys.stderr)
     return 1 if told else 0
@@ -121,6 +147,7 @@ def _verify(args: argparse.Namespace) -> int:
 
 def _result(args: argparse.Namespace) -> dict[str, Any]:
     from dwell.evaluation import Evaluation, episode_set, result_of, text_of
+    from dwell.evaluation_workers import played_rows
 
     houses = args.houses
     if args.split is not None:
@@ -137,25 +164,30 @@ def _result(args: argparse.Namespace) -> dict[str, Any]:
         sensors=_sensors(args.sensors),
         task_settings=own,
         stride=None if args.stride is None else from_json("--stride", args.stride),
+        action_mode=args.action_mode,
         max_steps=args.max_steps,
     )
-    bar = ProgressBar()
+    bar, all_episodes = ProgressBar(), len(job.episodes)
     if args.out is None:
         rows = []
-        for k, one in enumerate(job.episodes, start=1):
-            rows.append(job.play(one))
-            bar(k / len(job.episodes), one.scene_id)
+        for row in played_rows(job, job.episodes, workers=args.workers):
+            rows.append(row)
+            bar(len(rows) / all_episodes, row["scene_id"])
         return result_of(job.about, rows)
     listed = "\n".join(json.dumps(one.as_dict(), sort_keys=True) for one in job.episodes)
     digest = hashlib.sha256(listed.encode()).hexdigest()
-    about = {key: value for key, value in job.about.items() if key != "scene_ids"}
-    journal = Journal(args.out, {"command": "evaluate", "episodes": digest, **about})
+    source = job.about["policy_source"]
+    apart = ("scene_ids", "policy_source")
+    about = {key: value for key, value in job.about.items() if key not in apart}
+    # Told by these names where they are others: results of two policies are not mixed.
+    hashes = {"the episodes (a hash)": digest, "the policy's source (a hash)": source}
+    journal = Journal(args.out, {"command": "evaluate", **about, **hashes})
     result: dict[str, Any] = {}
     try:
-        for k, one in enumerate(job.episodes, start=1):
-            if one.episode_id not in journal.done:
-                journal.add(one.episode_id, [job.play(one)])
-            bar(k / len(job.episodes), one.scene_id)
+        left = [one for one in job.episodes if one.episode_id not in journal.done]
+        for one, row in zip(left, played_rows(job, left, workers=args.workers), strict=True):
+            journal.add(one.episode_id, [row])
+            bar(len(journal.done) / all_episodes, one.scene_id)
 
         def whole(rows: Iterator[dict[str, Any]]) -> str:
             result.update(result_of(job.about, [*rows]))
@@ -164,8 +196,9 @@ def _result(args: argparse.Namespace) -> dict[str, Any]:
         journal.finish(whole)
     except BaseException:
         journal.close()
-        kept = f"{len(journal.done)} of {len(job.episodes)} are kept; run again"
-        print(f"dwell evaluate: {kept}", file=sys.stderr)
+        if journal.done:
+            kept = f"{len(journal.done)} of {all_episodes} are kept; run again"
+            print(f"dwell evaluate: {kept}", file=sys.stderr)
         raise
     return result
 

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import hashlib
 import json
 import os
 import zlib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from pathlib import Path
 from typing import IO, Any
 
+from dwell.arguments import quoted
 from dwell.files import (
     atomic_write,
     is_draft,
@@ -21,7 +23,9 @@ from dwell.files import (
     read_json,
 )
 
-_JOB, _DONE, _OF = "job", "done", "of"
+_JOB, _DONE, _OF, _SUM = "job", "done", "of", "sum"
+#: What differs between two jobs and is told of.
+_MOST_DIFFERENCES = 3
 #: Of a result's name, in that of its journal; file systems have names of up to 255 bytes.
 _NAME_BYTES = 230
 #: What is the same for a whole folder; it stands there from the beginning.
@@ -77,9 +81,36 @@ def _line(row: object) -> bytes:
     return (json.dumps(row, ensure_ascii=False) + "\n").encode()
 
 
+def _is_begin_of_job(line: bytes) -> bool:
+    """Returns whether a line that was cut began as the first one of a journal does."""
+    head = b'{"%s": ' % _JOB.encode()
+    return line.startswith(head) or head.startswith(line)
+
+
 def _is_mark(row: object) -> bool:
     """Returns whether a row of a journal says that those above it are whole."""
-    return isinstance(row, dict) and _DONE in row and set(row) <= {_DONE, _OF}
+    return isinstance(row, dict) and _DONE in row and set(row) <= {_DONE, _OF, _SUM}
+
+
+def _sum_with(before: str, rows: bytes) -> str:
+    """The check sum of rows and all before them, which detects damage, but no forgery."""
+    return hashlib.blake2b(before.encode() + rows, digest_size=8).hexdigest()
+
+
+def job_differences(before: object, now: object, at: str = "") -> list[str]:
+    """What is another in two jobs, by its place, a clause each."""
+    if isinstance(before, dict) and isinstance(now, dict):
+        names = [*now, *(name for name in before if name not in now)]
+        return [
+            clause
+            for name in names
+            for clause in job_differences(
+                before.get(name), now.get(name), f"{at}.{name}" if at else str(name)
+            )
+        ]
+    if before == now:
+        return []
+    return [f"{at} was {quoted(before, 80)} and is {quoted(now, 80)}"]
 
 
 def is_of_files(house: str) -> bool:
@@ -103,15 +134,21 @@ def contents_of(house: str) -> str | None:
 class Journal:
     """A file beside the result: rows of each item, then a mark that they are whole."""
 
-    def __init__(self, out: Path, job: dict[str, Any]) -> None:
+    def __init__(
+        self, out: Path, job: dict[str, Any], *, preliminary: Collection[str] = ()
+    ) -> None:
         """Opens the journal of an earlier, interrupted run of the same job, or a new one.
+
+        One in which nothing was finished is begun anew, whatever job it is of.
 
         Args:
             out: Where the result will stand.
             job: What the rows depend on.
+            preliminary: Items that are no work: what is kept of them alone is nothing finished.
 
         Raises:
-            ValueError: There are rows of another job, which stay, or another process writes them.
+            ValueError: There are rows of another job, which stay, or another process writes them;
+                or they were damaged.
             FileExistsError: The result stands there, or another file by that name.
             OSError: The system refuses, or ``out`` is a folder.
         """
@@ -119,64 +156,117 @@ class Journal:
             raise IsADirectoryError(errno.EISDIR, "is a folder, not a file", os.fspath(out))
         self._out = out
         self._path = out.with_name(_hidden_name(out.name))
+        self._preliminary = {*preliminary}
         out.parent.mkdir(parents=True, exist_ok=True)
         #: Items whose rows are there, in the order they came, with what they were made of.
         self.done: dict[str, str | None] = {}
-        is_new = not os.path.lexists(self._path)
+        self._sum = ""
         self._file: IO[bytes] = open_exclusive(self._path)
         try:
             keep = self._read(job)
+        except BaseException:
+            self._close_file()
+            raise
+        try:
             if not keep and os.path.lexists(out):
                 # Nothing was begun for it here: it is somebody else's, or whole.
-                if is_new:
-                    os.unlink(self._path)
                 why = "is there already; name a new file, or remove it first"
                 raise FileExistsError(errno.EEXIST, why, os.fspath(out))
             self._file.seek(keep)
             self._file.truncate()
             if not keep:
-                self._write([{_JOB: job}])
+                self._add_rows([{_JOB: job}])
         except BaseException:
             self.close()
             raise
 
     def _read(self, job: dict[str, Any]) -> int:
         """Number of bytes of the old journal that are whole; 0 for none."""
-        keep = at = 0
-        for k, line in enumerate(lines(self._file, self._path)):
+        found: object = None
+        keep = at = number = 0
+        since = b""
+        for number, line in enumerate(lines(self._file, self._path), start=1):
             at += len(line)
             try:
                 row = parse_json(line, str(self._path))
             except ValueError:
-                if k == 0 and not _line({_JOB: job}).startswith(line):
-                    raise ValueError(
-                        f"{self._path} is no journal of {self._out}, and stays as it is; remove "
-                        "it, or give another --out"
-                    ) from None
-                break
-            if k == 0 and row != {_JOB: job}:
-                raise ValueError(
-                    f"{self._path} keeps what another job has done for {self._out}; run that one "
-                    f"again to its end, give another --out, or remove {self._path}"
-                )
-            if k == 0 or _is_mark(row):
-                keep = at
-                if k:
+                # What has no end was cut, as by a power cut.
+                is_cut = not line.endswith(b"\n")
+                if number == 1 and not (is_cut and _is_begin_of_job(line)):
+                    raise self._not_ours() from None
+                if is_cut:
+                    break
+                if found == job:
+                    raise self._damaged(number) from None
+                continue
+            if number == 1:
+                if not isinstance(row, dict) or set(row) != {_JOB}:
+                    raise self._not_ours()
+                found = row[_JOB]
+            since += line
+            # A mark without an end was cut, too.
+            if (number == 1 or _is_mark(row)) and line.endswith(b"\n"):
+                said = {key: part for key, part in row.items() if key != _SUM}
+                rows = since if number == 1 else since[: -len(line)] + _line(said)
+                self._sum = _sum_with(self._sum, rows)
+                if number > 1:
+                    # Of another job nothing is read.
+                    if row.get(_SUM) != self._sum and found == job:
+                        raise self._damaged(number)
                     self.done[str(row[_DONE])] = row.get(_OF)
+                keep, since = at, b""
+        if not self._has_work():
+            self.done.clear()
+            self._sum = ""
+            return 0
+        if found != job:
+            told = job_differences(found, job)
+            more = len(told) - _MOST_DIFFERENCES
+            clauses = "; ".join(told[:_MOST_DIFFERENCES]) + (
+                f"; and {more} more" if more > 0 else ""
+            )
+            raise ValueError(
+                f"{self._path} keeps what another job has done for {self._out}: {clauses}. To go "
+                f"on with that job, give its options again; to begin this one, remove {self._path} "
+                f"or give another --out"
+            )
         return keep
 
-    def _write(self, rows: Sequence[object]) -> None:
+    def _has_work(self) -> bool:
+        """Returns whether an item is finished that is work."""
+        return any(item not in self._preliminary for item in self.done)
+
+    def _not_ours(self) -> ValueError:
+        return ValueError(
+            f"{self._path} is no journal of {self._out}, and stays as it is; remove it, or give "
+            "another --out"
+        )
+
+    def _damaged(self, number: int) -> ValueError:
+        return ValueError(
+            f"{self._path} line {number}: what is kept up to here is not what was written: it was "
+            f"changed or damaged, or is of another version; remove {self._path}, so that all is "
+            "done anew, or give another --out"
+        )
+
+    def _add_rows(self, rows: Sequence[object], mark: dict[str, Any] | None = None) -> None:
+        """Writes rows, and the mark that they are whole with the check sum of all so far."""
+        written = b"".join(map(_line, rows))
+        after = _sum_with(self._sum, written if mark is None else written + _line(mark))
+        if mark is not None:
+            written += _line({**mark, _SUM: after})
         try:
-            self._file.write(b"".join(map(_line, rows)))
+            self._file.write(written)
             self._file.flush()
         except OSError as error:
             # People know the result by its name; the journal is where there is no room.
             error.filename = error.filename or os.fspath(self._path)
             raise
+        self._sum = after
 
     def add(self, item: str, rows: Sequence[object], of: str | None = None) -> None:
         """Keeps the rows of an item; ``of`` says what they were made of."""
-        self._write([*rows, {_DONE: item} if of is None else {_DONE: item, _OF: of}])
+        self._add_rows(rows, {_DONE: item} if of is None else {_DONE: item, _OF: of})
         self.done[item] = of
 
     def refuse_changed(self, of: Callable[[str], str | None]) -> None:
@@ -209,7 +299,14 @@ class Journal:
             os.unlink(self._path)
 
     def close(self) -> None:
-        """Leaves the journal for the next run."""
+        """Leaves the journal for the next run; one in which nothing was finished is removed."""
+        if not self._file.closed and not self._has_work():
+            # While it is locked: nobody else has begun it anew.
+            with contextlib.suppress(OSError):
+                os.unlink(self._path)
+        self._close_file()
+
+    def _close_file(self) -> None:
         # A row that has no room on the disk is cut, and left out by the next run.
         with contextlib.suppress(OSError):
             self._file.close()

@@ -17,17 +17,25 @@ from numpy.typing import NDArray
 
 from dwell import ConfigError, UsageError, _native
 from dwell.arguments import (
-    abbreviated_list,
     boolean,
     from_json,
     integer_in_range,
     mapping,
     quoted,
-    refuse_masked,
+)
+from dwell.envs.action_arrays import (
+    choices_below,
+    exact_fields,
+    numbers_within,
+    plain_array,
+    stacked_fields,
+    whole_numbers,
 )
 
 #: Of the first axis of velocities: forward, right, turn to the left, look up.
 _VELOCITY_NAMES = ("forward", "right", "turn", "look")
+#: What velocities and ``stop`` say, whatever the hands can do.
+OF_BODY = ("stop", "move_forward", "turn_left", "turn_right", "look_up", "look_down")
 #: Below this, all of them, velocities alone say ``stop``.
 STOP_BELOW = 0.05
 #: The turn by which ``wait`` is said in velocities alone, of which the least stand for ``stop``.
@@ -111,12 +119,12 @@ class EngineActions:
             numbers,
             None
             if velocity is None
-            else _numbers(f"{at}: velocity", velocity, one, 4, (-1.0, 1.0)),
-            None if pixel is None else _numbers(f"{at}: pixel", pixel, one, 2, (0.0, 1.0)),
-            None if thing is None else _whole(f"{at}: object", thing, one, _IDS - 1),
+            else numbers_within(f"{at}: velocity", velocity, one, 4, (-1.0, 1.0)),
+            None if pixel is None else numbers_within(f"{at}: pixel", pixel, one, 2, (0.0, 1.0)),
+            None if thing is None else whole_numbers(f"{at}: object", thing, one, _IDS - 1),
             None
             if answer is None
-            else _numbers(f"{at}: answer", answer, one, ANSWER_FIELDS, (-1e6, 1e6)),
+            else numbers_within(f"{at}: answer", answer, one, ANSWER_FIELDS, (-1e6, 1e6)),
         )
 
 
@@ -145,7 +153,9 @@ class DiscreteActions:
         Raises:
             ConfigError: They are none of the space, or not one for each.
         """
-        return EngineActions(self._native[_choices("actions", actions, count, len(self.names))])
+        return EngineActions(
+            self._native[choices_below("actions", actions, count, len(self.names))]
+        )
 
     def expert(self, numbers: NDArray[np.int64]) -> Any:  # noqa: ANN401 - of the space
         """Actions of the engine's experts as elements of the batched space.
@@ -192,11 +202,11 @@ class _Targeted(abc.ABC):
 
     def one(self, action: object) -> EngineActions:
         """As :meth:`DiscreteActions.one`."""
-        return self.many(_stacked("action", action, ("action", self._key)), 1)
+        return self.many(stacked_fields("action", action, ("action", self._key)), 1)
 
     def many(self, actions: object, count: int) -> EngineActions:
         """As :meth:`DiscreteActions.many`."""
-        parts = _fields("actions", actions, ("action", self._key))
+        parts = exact_fields("actions", actions, ("action", self._key))
         verbs = self._verbs.many(parts["action"], count)
         return self._with_target(verbs, parts[self._key], (count,))
 
@@ -228,7 +238,7 @@ class PointerActions(_Targeted):
     def _with_target(
         self, verbs: EngineActions, target: object, shape: tuple[int]
     ) -> EngineActions:
-        places = _numbers("pixel", target, shape, 2, (0.0, 1.0))
+        places = numbers_within("pixel", target, shape, 2, (0.0, 1.0))
         return dataclasses.replace(verbs, places=places)
 
     def _looked_at(self, count: int) -> NDArray[np.float32]:
@@ -247,7 +257,7 @@ class ObjectActions(_Targeted):
     def _with_target(
         self, verbs: EngineActions, target: object, shape: tuple[int]
     ) -> EngineActions:
-        return dataclasses.replace(verbs, objects=_whole("object", target, shape, _IDS - 1))
+        return dataclasses.replace(verbs, objects=whole_numbers("object", target, shape, _IDS - 1))
 
     def _looked_at(self, count: int) -> NDArray[np.int64]:
         return np.zeros(count, np.int64)
@@ -269,11 +279,11 @@ class VelocityActions:
 
     def one(self, action: object) -> EngineActions:
         """As :meth:`DiscreteActions.one`."""
-        return self._of(_numbers("action", action, (1,), 4, (-1.0, 1.0)))
+        return self._of(numbers_within("action", action, (1,), 4, (-1.0, 1.0)))
 
     def many(self, actions: object, count: int) -> EngineActions:
         """As :meth:`DiscreteActions.many`."""
-        return self._of(_numbers("actions", actions, (count,), 4, (-1.0, 1.0)))
+        return self._of(numbers_within("actions", actions, (count,), 4, (-1.0, 1.0)))
 
     def _of(self, velocities: NDArray[np.float32]) -> EngineActions:
         stops = (np.abs(velocities) < STOP_BELOW).all(axis=1)
@@ -297,7 +307,17 @@ class DictActions:
     """
 
     def __init__(self, names: Sequence[str]) -> None:
-        """As :class:`DiscreteActions`; of the names those of hands are numbered."""
+        """As :class:`DiscreteActions`; of the names those of hands are numbered.
+
+        Raises:
+            ConfigError: A name is missing of what feet and head do, or ``stop``.
+        """
+        if missing := [name for name in OF_BODY if name not in names]:
+            raise ConfigError(
+                f"actions have no {', '.join(missing)}; in the action_mode dict feet, head and "
+                f"stop are always there: name {', '.join(OF_BODY)} and the actions of hands to "
+                "choose from, or leave actions out"
+            )
         of_hand = {kind["name"]: kind["is_of_hand"] for kind in _native.action_table()["kinds"]}
         self.names = [*names]
         self._hands = [name for name in names if of_hand[name]]
@@ -316,32 +336,31 @@ class DictActions:
 
     def one(self, action: object) -> EngineActions:
         """As :meth:`DiscreteActions.one`."""
-        return self.many(_stacked("action", action, self._keys()), 1)
+        return self.many(stacked_fields("action", action, self._keys()), 1)
 
     def _keys(self) -> tuple[str, ...]:
         return ("base", "head", "hand", "pixel", "stop")
 
     def many(self, actions: object, count: int) -> EngineActions:
         """As :meth:`DiscreteActions.many`."""
-        parts = _fields("actions", actions, self._keys())
+        parts = exact_fields("actions", actions, self._keys())
         shape = (count,)
-        base = _numbers("base", parts["base"], shape, 3, (-1.0, 1.0))
-        head = _numbers("head", parts["head"], shape, 1, (-1.0, 1.0))
-        hands = self._native[_choices("hand", parts["hand"], count, len(self._native))]
-        stops = _choices("stop", parts["stop"], count, 2) == 1
+        base = numbers_within("base", parts["base"], shape, 3, (-1.0, 1.0))
+        head = numbers_within("head", parts["head"], shape, 1, (-1.0, 1.0))
+        hands = self._native[choices_below("hand", parts["hand"], count, len(self._native))]
+        stops = choices_below("stop", parts["stop"], count, 2) == 1
         return EngineActions(
             np.where(stops, self._stop, hands),
             np.concatenate([base, head], axis=1),
-            _numbers("pixel", parts["pixel"], shape, 2, (0.0, 1.0)),
+            numbers_within("pixel", parts["pixel"], shape, 2, (0.0, 1.0)),
         )
 
     def expert(self, numbers: NDArray[np.int64]) -> Any:  # noqa: ANN401 - of the space
         """As :meth:`DiscreteActions.expert`."""
         known = self._native.tolist()
-        movements = ("move_forward", "turn_left", "turn_right", "look_up", "look_down", "stop")
         names = _native.actions()
         hands = [
-            0 if number < 0 or names[number] in movements else _place_of(number, known, self._hands)
+            0 if number < 0 or names[number] in OF_BODY else _place_of(number, known, self._hands)
             for number in numbers.tolist()
         ]
         moves = np.where(np.array(hands) > 0, self._wait, numbers)
@@ -364,7 +383,7 @@ class AnsweredActions:
 
     def __init__(self, form: ActionForm, fields: Sequence[Mapping[str, Any]]) -> None:
         """Adds to ``form`` the fields that a batch's ``answer_fields`` names."""
-        self._form, self._fields = form, [*fields]
+        self.form, self._fields = form, [*fields]
         self.names = form.names
         answer = spaces.Dict({field["name"]: _answer_space(field) for field in fields})
         own = form.space
@@ -374,35 +393,35 @@ class AnsweredActions:
 
     def one(self, action: object) -> EngineActions:
         """As :meth:`DiscreteActions.one`."""
-        parts = _fields("action", action, list(self.space))  # type: ignore[call-overload] # a Dict
+        parts = exact_fields("action", action, list(self.space))  # type: ignore[call-overload] # a Dict
         names = [field["name"] for field in self._fields]
-        answer = _stacked("answer", parts.pop("answer"), names)
-        return self._with(self._form.one(parts if self._is_dict else parts["action"]), answer, 1)
+        answer = stacked_fields("answer", parts.pop("answer"), names)
+        return self._with(self.form.one(parts if self._is_dict else parts["action"]), answer, 1)
 
     def many(self, actions: object, count: int) -> EngineActions:
         """As :meth:`DiscreteActions.many`."""
-        parts = _fields("actions", actions, list(self.space))  # type: ignore[call-overload] # a Dict
+        parts = exact_fields("actions", actions, list(self.space))  # type: ignore[call-overload] # a Dict
         answer = parts.pop("answer")
-        form = self._form.many(parts if self._is_dict else parts["action"], count)
+        form = self.form.many(parts if self._is_dict else parts["action"], count)
         return self._with(form, answer, count)
 
     def _with(self, actions: EngineActions, answer: object, count: int) -> EngineActions:
-        given = _fields("answer", answer, [field["name"] for field in self._fields])
+        given = exact_fields("answer", answer, [field["name"] for field in self._fields])
         columns = np.zeros((count, ANSWER_FIELDS), np.float32)
         for k, field in enumerate(self._fields):
             at, value = f"answer: {field['name']}", given[field["name"]]
             if field["choices"] is not None:
-                columns[:, k] = _choices(at, value, count, len(field["choices"]))
+                columns[:, k] = choices_below(at, value, count, len(field["choices"]))
                 continue
             low, high = _shares(field)
-            numbers = np.asarray(_array(at, value, "numbers")).reshape(-1, 1)
-            shares = _numbers(at, numbers, (count,), 1, (low, high))[:, 0]
+            numbers = np.asarray(plain_array(at, value, "numbers")).reshape(-1, 1)
+            shares = numbers_within(at, numbers, (count,), 1, (low, high))[:, 0]
             columns[:, k] = shares * field["range"][1]
         return dataclasses.replace(actions, answers=columns)
 
     def expert(self, numbers: NDArray[np.int64], answers: NDArray[np.float32]) -> Any:  # noqa: ANN401 - of the space
         """As :meth:`DiscreteActions.expert`, with the experts' answers, shape (n, 4)."""
-        own = self._form.expert(numbers)
+        own = self.form.expert(numbers)
         answer: dict[str, NDArray[Any]] = {}
         for k, field in enumerate(self._fields):
             column = answers[:, k]
@@ -465,7 +484,7 @@ def masked_form(action_mask: object, form: ActionForm | AnsweredActions) -> Disc
     """
     if not boolean("action_mask", action_mask):
         return None
-    own = form._form if isinstance(form, AnsweredActions) else form
+    own = form.form if isinstance(form, AnsweredActions) else form
     if isinstance(own, DiscreteActions):
         return own
     raise ConfigError("action_mask is True; masks are of the action_mode discrete alone")
@@ -520,63 +539,3 @@ def _velocities_of(numbers: NDArray[np.int64]) -> NDArray[np.float32]:
             raise UsageError(f"the expert wants to {names[number]}, which velocities cannot say")
         rows.append(moves[names[number]])
     return np.array(rows, np.float32).reshape(-1, 4)
-
-
-def _stacked(at: str, action: object, keys: Sequence[str]) -> dict[str, Any]:
-    """An action of one environment as those of several."""
-    return {key: [value] for key, value in _fields(at, action, keys).items()}
-
-
-def _fields(at: str, actions: object, keys: Sequence[str]) -> dict[str, Any]:
-    given = mapping(at, actions, f"a mapping with {', '.join(keys)}")
-    if set(given) != set(keys):
-        raise ConfigError(f"{at} has {sorted(map(str, given))}; expected {sorted(keys)}")
-    return given
-
-
-def _array(at: str, given: object, expected: str) -> NDArray[Any]:
-    refuse_masked(at, given)
-    try:
-        return np.asarray(given)
-    except (ValueError, np.ma.MaskError):
-        raise ConfigError(f"{at} are {quoted(given)}; expected {expected}") from None
-
-
-def _choices(at: str, given: object, count: int, choices: int) -> NDArray[np.int64]:
-    """Whole numbers below ``choices``, one for each of ``count`` environments."""
-    expected = f"whole numbers of shape ({count},)"
-    numbers = _array(at, given, expected)
-    if numbers.shape != (count,) or numbers.dtype.kind not in "iu":
-        raise ConfigError(
-            f"{at}: expected {expected}, found {numbers.dtype} of shape {numbers.shape}"
-        )
-    wrong = np.flatnonzero((numbers < 0) | (numbers >= choices)).tolist()
-    if wrong:
-        raise ConfigError(
-            f"{at} of environments {abbreviated_list(wrong)} are "
-            f"{abbreviated_list(numbers[wrong].tolist())}; allowed are 0 to {choices - 1}"
-        )
-    return numbers.astype(np.int64)
-
-
-def _whole(at: str, given: object, shape: tuple[int], last: int) -> NDArray[np.int64]:
-    numbers = np.atleast_1d(_array(at, given, "whole numbers"))
-    return _choices(at, numbers, shape[0], last + 1)
-
-
-def _numbers(
-    at: str, given: object, shape: tuple[int], width: int, span: tuple[float, float]
-) -> NDArray[np.float32]:
-    """Numbers within bounds, shape (environment, ``width``)."""
-    (low, high), wanted = span, (*shape, width)
-    expected = f"numbers of shape {wanted if shape != (1,) else (width,)} from {low:g} to {high:g}"
-    numbers = _array(at, given, expected)
-    if shape == (1,) and numbers.shape == (width,):
-        numbers = numbers[np.newaxis]
-    if numbers.shape != wanted or numbers.dtype.kind not in "iuf":
-        raise ConfigError(
-            f"{at}: expected {expected}, found {numbers.dtype} of shape {numbers.shape}"
-        )
-    if not ((numbers >= low) & (numbers <= high)).all():
-        raise ConfigError(f"{at}: expected {expected}, found {quoted(numbers.tolist())}")
-    return numbers.astype(np.float32)

@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 import abc
-from copy import deepcopy
+import inspect
 from typing import TYPE_CHECKING, Any, Self, cast
 
 import gymnasium
 
+from dwell.arguments import refuse_unknown
 from dwell.grounded_text import Text
+from dwell.language_api import LanguageApi
 from dwell.relation_api import Thing, Viewer
 
 if TYPE_CHECKING:
     from dwell.world import World
+
+
+#: What :meth:`dwell.World.describe` takes beside the level.
+_DESCRIBE = [*inspect.signature(LanguageApi.describe).parameters][2:]
 
 
 class CurrentStateApi(abc.ABC):
@@ -59,7 +65,11 @@ class CurrentStateApi(abc.ABC):
         Args:
             level: What is described.
             **options: As of :meth:`dwell.World.describe`.
+
+        Raises:
+            ConfigError: As there; or there is no such option.
         """
+        refuse_unknown("describe", [name for name in options if name not in _DESCRIBE], _DESCRIBE)
         return self.world.describe(level, **options)
 
     def fork(self) -> Self:
@@ -87,6 +97,5 @@ def forked(env: Any) -> Any:  # noqa: ANN401 - of the environment's own class
     other = type(env)(*env._ezpickle_args, **kwargs)
     other.restore(snapshot)
     if isinstance(env, gymnasium.Env):
-        # Of several environments the snapshots hold the streams from which episodes are drawn.
-        other.spec, other.np_random = env.spec, deepcopy(env.np_random)
+        other.spec = env.spec
     return other

@@ -1,4 +1,12 @@
-"""The keys of infos."""
+"""The keys of infos, and the infos of a step of several environments."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 #: Keys of a step's answer that become ``info``; those of :data:`GOAL_KEYS` are NaN without a goal.
 INFO_KEYS = (
@@ -26,3 +34,27 @@ EPISODE_KEYS = (
     "goal_rooms",
     "start_distance_to_goal",
 )
+
+
+def step_infos(
+    answer: Mapping[str, Any], keys: Sequence[str], stepped: NDArray[np.bool_]
+) -> dict[str, Any]:
+    """What a step's answer says of several environments, with gymnasium's masks.
+
+    Args:
+        answer: The engine's answer by name, an element for each environment.
+        keys: Those of it that become infos.
+        stepped: Whose episodes have made a step, shape (n,).
+
+    Returns:
+        Arrays by name, and under ``_name`` where each is known: not of environments that made no
+        step, nor what is NaN, whose key a single environment leaves out.
+    """
+    infos: dict[str, Any] = {}
+    for key in keys:
+        values = np.asarray(answer[key])
+        known = stepped & ~np.isnan(values) if values.dtype.kind == "f" else stepped.copy()
+        infos[key], infos[f"_{key}"] = values, known
+    infos["action_error"] = np.array(answer["action_error"], object)
+    infos["_action_error"] = stepped.copy()
+    return infos

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
@@ -14,9 +15,11 @@ from dwell.envs.action_modes import ActionForm, AnsweredActions, EngineActions
 from dwell.envs.env_pool import PreparedEnv, add_heads
 from dwell.envs.info_keys import GOAL_KEYS
 from dwell.envs.python_tasks import PythonEpisode, PythonTask
+from dwell.envs.silence import SWS, silence_measures, success_when_silent
 from dwell.envs.spaces import shareable, specs
 from dwell.heads import Head
 from dwell.house import House
+from dwell.world import World
 
 
 class NativeBatch:
@@ -40,7 +43,11 @@ class NativeBatch:
             raise ConfigError(
                 f"agents: {len(self.batch.agents())} act; in an environment of Python one does"
             )
+        #: What is measured beside distance and path, keys of a step's answer.
+        self.measures = [*self.batch.measures(), *silence_measures(config)]
         self.houses = [*houses]
+        #: The worlds that were handed out, by environment: they go with it into other houses.
+        self._worlds: list[weakref.WeakSet[World]] = [weakref.WeakSet() for _ in houses]
         self.count = len(houses)
         self.specs = specs(self.batch)
         self.buffers: list[NDArray[Any] | None] = [spec.buffer(self.count) for spec in self.specs]
@@ -65,8 +72,16 @@ class NativeBatch:
         """Puts ``spare`` in the place of an environment, which is in another house from then on."""
         self.batch.replace_env(env, spare.native)
         self.houses[env] = spare.house
+        for world in self._worlds[env]:
+            world.house = spare.house
         if self.plays:
             self.plays[env].move(spare.house)
+
+    def world(self, env: int) -> World:
+        """The world of an environment, whose house is always the one that it is in."""
+        made = World.of_env(self.houses[env], _native.World.of_env(self.batch, env))
+        self._worlds[env].add(made)
+        return made
 
     def reset(self, seeds: Sequence[int | None], begun: Collection[int] = ()) -> None:
         """Begins the episodes of seeds, one for each environment; ``None``: goes on.
@@ -110,6 +125,8 @@ class NativeBatch:
             The engine's answer, as changed by tasks in Python, and what these add to each info.
         """
         answer: dict[str, Any] = actions.step(self.batch)
+        if SWS in self.measures:
+            answer[SWS] = np.zeros(self.count, np.bool_)
         further = [
             play.judge(name, answer) if name else {}
             for play, name in zip(self.plays, actions.names() if self.plays else (), strict=False)
@@ -118,6 +135,8 @@ class NativeBatch:
         aimless = np.isnan(answer["distance_to_goal"])
         for key in GOAL_KEYS:
             answer[key][aimless] = np.nan
+        if SWS in self.measures:
+            answer[SWS] = success_when_silent(self.batch, answer["success"])
         return answer, further
 
     def action_masks(self) -> NDArray[np.bool_]:

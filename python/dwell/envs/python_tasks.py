@@ -160,8 +160,8 @@ class PythonEpisode:
                 part.agent = agent
 
     def move(self, house: House) -> None:
-        """Moves the environment into another house."""
-        self._world = World.of_env(house, _native.World.of_env(self._batch, self._env))
+        """Moves the environment into another house; parts may have kept the world."""
+        self._world.house = house
 
     def _parts(self) -> dict[str, Task | Reward | Sensor]:
         parts: dict[str, Task | Reward | Sensor] = {

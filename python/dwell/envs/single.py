@@ -20,7 +20,13 @@ from numpy.typing import NDArray
 from dwell import ConfigError, UsageError, _native
 from dwell.arguments import integer_in_range, kept, mapping, quoted, refuse_unknown
 from dwell.camera import Camera, camera_settings
-from dwell.envs.action_modes import action_form, first_of, masked_form
+from dwell.envs.action_modes import (
+    ActionForm,
+    AnsweredActions,
+    action_form,
+    first_of,
+    masked_form,
+)
 from dwell.envs.config import (
     CACHED_HOUSES,
     EpisodeFiles,
@@ -37,7 +43,7 @@ from dwell.envs.episode_shelf import EpisodeIndex, settings_as_stated, shelf_of
 from dwell.envs.info_keys import GOAL_KEYS, INFO_KEYS
 from dwell.envs.native_batch import NativeBatch
 from dwell.envs.python_tasks import PythonTask, RewardChoice, Sensors, TaskChoice, split
-from dwell.envs.snapshots import check_and_strip, with_checksum
+from dwell.envs.snapshots import EnvSnapshot
 from dwell.heads import Head
 from dwell.object_state_api import agent_states
 from dwell.world import World
@@ -178,13 +184,15 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
         #: Whether there is no episode to go on with: none has begun, or a call did not come to its
         #: end that began, restored or stepped one.
         self._stopped = True
+        #: Whether the episode has ended by what its task says.
+        self._ended = False
         #: The call that plays the episode at this moment.
         self._call: str | None = None
         self._alone = np.ones(1, np.bool_)
         self.metadata = {**self.metadata, "render_fps": steps_a_second(self._runner.batch)}
         self._actions = action_form(self._config, self._runner.batch.answer_fields())
         self._masks = masked_form(action_mask, self._actions)
-        self._measures = self._runner.batch.measures()
+        self._measures = self._runner.measures
         self.observation_space = self._runner.space
         self.action_space = self._actions.space
 
@@ -192,10 +200,13 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
         if self._closed:
             raise UsageError("this environment is closed; make a new one")
 
-    def _refuse_stopped(self, call: str) -> None:
-        self._refuse_closed()
+    def _refuse_call(self, call: str) -> None:
         if self._call is not None:
             raise UsageError(f"{call}: {another_call(self._call)}")
+
+    def _refuse_stopped(self, call: str) -> None:
+        self._refuse_closed()
+        self._refuse_call(call)
         if self._stopped:
             raise UsageError(f"{call}: no episode has begun; call reset first")
 
@@ -258,6 +269,7 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
             DwellError: The episode cannot begin; the one before is over.
         """
         self._refuse_closed()
+        self._refuse_call("reset")
         number = None if seed is None else integer_in_range("seed", seed)
         house, episode = self._asked(options)
         self._counters = _counters_around(self)
@@ -268,6 +280,7 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
             self._house = drawn[0] if house is None else house
             self._seed = drawn[1] if episode is None else episode
             self._runner.reset([self._seed])
+            self._ended = False
             self._shelf.check(self._house, self._seed, self._runner.batch)
             self._goal = self._runner.batch.episode_goal(0)
             observation = self._observation()
@@ -297,6 +310,8 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
         ``info`` has no ``distance_to_goal``, ``spl`` and ``soft_spl`` where the task has no goal.
         """
         self._refuse_stopped("step")
+        if self._ended:
+            raise UsageError("step: the episode has ended; call reset first")
         taken = self._actions.one(action)
         # A step that the task did not judge to its end is none.
         with self._playing("step"):
@@ -307,7 +322,7 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
         unknown = (*GOAL_KEYS, *self._measures)
         info = {k: value for k, value in info.items() if k not in unknown or not isnan(value)}
         info["action_error"] = answer["action_error"][0]
-        terminated = bool(answer["terminated"][0])
+        self._ended = terminated = bool(answer["terminated"][0])
         observation = self._observation()
         info["audio_clipped"] = self._runner.batch.clipped()[0]
         return (
@@ -355,24 +370,29 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
         return self._runner.batch.state_hash(0)
 
     def snapshot(self) -> bytes:
-        """Episode and world as bytes, behind a check sum.
+        """Episode, world and what the following episodes are drawn from as bytes, with a check sum.
 
         Raises:
             ConfigError: A part's state holds what would come back as another kind.
             UsageError: No episode has begun.
         """
         self._refuse_stopped("snapshot")
-        episode_id = str(self._info()["episode_id"])
-        parts = self._runner.saved_parts(0)
-        return with_checksum(
-            b"\0".join((episode_id.encode(), parts, self._runner.batch.snapshot(0)))
+        saved = EnvSnapshot(
+            episode_id=self._shelf.episode_id(self._house, self._seed),
+            done=self._ended,
+            stream=self.np_random,
+            parts=self._runner.saved_parts(0),
+            world=self._runner.batch.snapshot(0),
         )
+        return saved.to_bytes()
 
     def restore(self, snapshot: bytes) -> tuple[dict[str, Any], dict[str, Any]]:
         """Restores a snapshot; the next steps give the same bits as they did then.
 
-        The episode is truncated at the same step, too, whether ``max_episode_steps`` says at which
-        or a ``TimeLimit`` wrapper of gymnasium through which it was last reset.
+        The episodes that ``reset`` without a seed draws afterwards are those that followed then,
+        as in vector environments. The episode is truncated at the same step, too, whether
+        ``max_episode_steps`` says at which or a ``TimeLimit`` wrapper of gymnasium through which it
+        was last reset.
 
         Returns:
             Observation and info of that moment.
@@ -382,23 +402,19 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
                 it is the engine that refuses it: the episode is over then.
         """
         self._refuse_closed()
-        given: object = snapshot
-        if not isinstance(given, bytes):
-            found = quoted(given)
-            raise ConfigError(f"snapshot is {found}; expected the bytes of an environment's")
-        content = check_and_strip("snapshot refused", snapshot)
-        episode_id, _, rest = content.partition(b"\0")
-        parts, _, rest = rest.partition(b"\0")
+        self._refuse_call("restore")
+        saved = EnvSnapshot.of_bytes("snapshot", snapshot)
         try:
-            house, seed = self._shelf.episode(episode_id.decode(errors="replace"))
+            house, seed = self._shelf.episode(saved.episode_id)
         except ConfigError as error:
             raise ConfigError(f"snapshot refused: {error}") from None
         # Nothing changes before it was accepted.
         runner = self._runner_of(house)
-        runner.loaded(0, parts)
+        runner.loaded(0, saved.parts)
         with self._playing("restore"):
-            runner.restore(rest, parts, seed)
+            runner.restore(saved.world, saved.parts, seed)
             self._house, self._seed = house, seed
+            self._ended, self.np_random = saved.done, saved.stream
             self._goal = runner.batch.episode_goal(0)
             for counter in self._counters:
                 if (wrapper := counter()) is not None:
@@ -421,9 +437,18 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
         A change that is no action is in no recorded file, and ends with the episode. The next
         episode may be in another house, and then in another world: ask anew after ``reset``.
         """
-        self._refuse_closed()
-        runner = self._runner
-        return World.of_env(runner.houses[0], _native.World.of_env(runner.batch, 0))
+        return self._runner.world(0)
+
+    @property
+    def action_form(self) -> ActionForm:
+        """The form of actions, without the answer that some tasks expect."""
+        form = self._actions
+        return form.form if isinstance(form, AnsweredActions) else form
+
+    @property
+    def has_answers(self) -> bool:
+        """Whether actions hold an answer for the task."""
+        return isinstance(self._actions, AnsweredActions)
 
     def actions(self) -> list[str]:
         """The names of the actions, in the order of their numbers."""

@@ -1,4 +1,4 @@
-"""Snapshots of environments that step together: each with all that its episode needs to go on."""
+"""Snapshots of environments, alone or many at once: all that an episode needs to go on."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ import numpy as np
 from dwell import ConfigError
 from dwell.arguments import boolean, mapping, quoted, text, to_json
 
-#: What the bytes begin with, and the number of their form.
+#: What the bytes of one of several environments begin with, and the number of their form.
 _HEAD = b"dwvec2"
 
 
 @dataclasses.dataclass(frozen=True)
-class BatchSnapshot:
-    """One environment of several as it was at a moment."""
+class EnvSnapshot:
+    """An environment as it was at a moment."""
 
     episode_id: str
     #: Whether the episode has ended.
     done: bool
-    #: Whence the seeds of the following episodes come.
+    #: Whence the houses and seeds of the following episodes come.
     stream: np.random.Generator
     #: What its parts in Python remember.
     parts: bytes
@@ -31,19 +31,32 @@ class BatchSnapshot:
     world: bytes
 
     def to_bytes(self) -> bytes:
-        """All of it as bytes."""
+        """All of it as bytes, behind a check sum."""
         told = {
             "episode_id": self.episode_id,
             "done": self.done,
             "stream": self.stream.bit_generator.state,
         }
-        return b"\0".join(
-            (_HEAD, with_checksum(b"\0".join((to_json(told).encode(), self.parts, self.world))))
-        )
+        return with_checksum(b"\0".join((to_json(told).encode(), self.parts, self.world)))
+
+    def to_vector_bytes(self) -> bytes:
+        """The bytes of one of several environments, which no environment alone takes."""
+        return b"\0".join((_HEAD, self.to_bytes()))
 
     @classmethod
-    def of_bytes(cls, name: str, snapshot: object) -> BatchSnapshot:
-        """The snapshot that :meth:`to_bytes` wrote; ``name``: its name for errors.
+    def of_bytes(cls, name: str, snapshot: object) -> EnvSnapshot:
+        """The snapshot that :meth:`to_bytes` wrote; ``name``: what errors begin with.
+
+        Raises:
+            ConfigError: It is something else.
+        """
+        if not isinstance(snapshot, bytes):
+            raise ConfigError(f"{name} is {quoted(snapshot, 60)}; expected bytes of snapshot()")
+        return cls._of(f"{name} refused", snapshot)
+
+    @classmethod
+    def of_vector_bytes(cls, name: str, snapshot: object) -> EnvSnapshot:
+        """The snapshot that :meth:`to_vector_bytes` wrote; ``name``: its name for errors.
 
         Raises:
             ConfigError: It is something else.
@@ -56,7 +69,11 @@ class BatchSnapshot:
             raise ConfigError(f"{at}: it is empty")
         if head != _HEAD:
             raise ConfigError(f"{at}: it is none of a vector environment of this version")
-        about, _, rest = check_and_strip(at, rest).partition(b"\0")
+        return cls._of(at, rest)
+
+    @classmethod
+    def _of(cls, at: str, sealed: bytes) -> EnvSnapshot:
+        about, _, rest = check_and_strip(at, sealed).partition(b"\0")
         parts, _, world = rest.partition(b"\0")
         try:
             told = mapping(at, json.loads(about))
@@ -70,7 +87,7 @@ class BatchSnapshot:
         except (KeyError, TypeError, ValueError, OverflowError, RecursionError) as error:
             if isinstance(error, ConfigError):
                 raise
-            raise ConfigError(f"{at}: {quoted(error)}") from None
+            raise ConfigError(f"{at}: it is none of this version: {quoted(error)}") from None
 
 
 def with_checksum(content: bytes) -> bytes:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import contextlib
+from collections.abc import Iterator, Mapping, Sequence
 from copy import deepcopy
 from typing import Any, NoReturn, Protocol, cast
 
@@ -12,17 +13,14 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from dwell import ConfigError, UsageError, _native
+from dwell import ConfigError, UsageError
 from dwell.arguments import (
     abbreviated_list,
     boolean,
     integer_in_range,
     kept,
-    mapping,
     quoted,
-    refuse_masked,
     refuse_unknown,
-    sequence_items,
 )
 from dwell.camera import camera_settings
 from dwell.envs.action_modes import EngineActions, action_form, masked_form
@@ -40,7 +38,7 @@ from dwell.envs.current_state import forked
 from dwell.envs.env_pool import EnvPool
 from dwell.envs.episode_shelf import EpisodeIndex, settings_as_stated, shelf_of
 from dwell.envs.house_assignment import HouseAssignment
-from dwell.envs.info_keys import INFO_KEYS
+from dwell.envs.info_keys import INFO_KEYS, step_infos
 from dwell.envs.native_batch import NativeBatch
 from dwell.envs.python_tasks import RewardChoice, Sensors, TaskChoice, split
 from dwell.envs.single import (
@@ -50,7 +48,8 @@ from dwell.envs.single import (
     checked_render_mode,
     steps_a_second,
 )
-from dwell.envs.snapshots import BatchSnapshot
+from dwell.envs.snapshots import EnvSnapshot
+from dwell.envs.vector_reset import VectorReset
 from dwell.world import World
 from dwell.world_settings import Laws, with_head
 
@@ -239,7 +238,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
         self._actions = action_form(config, self._runner.batch.answer_fields())
         self._masks = masked_form(action_mask, self._actions)
         #: Keys of a step's answer that become infos.
-        self._info_keys = (*INFO_KEYS, *self._runner.batch.measures())
+        self._info_keys = (*INFO_KEYS, *self._runner.measures)
         self.single_observation_space = self._runner.space
         self.single_action_space = self._actions.space
         self.observation_space = batch_space(self.single_observation_space, num_envs)
@@ -319,61 +318,19 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
             :meth:`DwellEnv.reset` gives them, of every environment.
         """
         self._refuse_closed()
-        options = {} if options is None else mapping("options", options)
-        if unknown := sorted(set(options) - {"reset_mask", "episode_id"}):
-            raise ConfigError(f"options: no {unknown[0]!r}; allowed are reset_mask and episode_id")
-        which = self._reset_mask(options.get("reset_mask"))
-        if which.shape != (self.num_envs,) or which.dtype != np.bool_ or not which.any():
-            raise ConfigError(
-                f"reset_mask: expected bool of shape ({self.num_envs},) with a true element, "
-                f"found {which.dtype} of shape {which.shape}"
-            )
-        seeds: list[int | None] = [None] * self.num_envs
-        if isinstance(seed, int | np.integer):
-            seeds = [integer_in_range("seed", seed) + k for k in range(self.num_envs)]
-        elif seed is not None:
-            expected = "expected a whole number, or one for each environment"
-            given = sequence_items("seed", seed, expected)
-            seeds = [None if one is None else integer_in_range("seed", one) for one in given]
-            if len(seeds) != self.num_envs:
-                raise ConfigError(f"seed: expected {self.num_envs} seeds, found {len(seeds)}")
-        asked = self._asked(options.get("episode_id"), which)
+        self._refuse_call("reset")
+        given = VectorReset.of(seed, options, self.num_envs)
+        which, seeds = given.which, given.seeds
+        asked = {k: self._shelf.episode(one) for k, one in given.episode_ids.items()}
         for k in np.flatnonzero(which):
             if seeds[k] is not None or self._streams[k] is None:
                 self._streams[k] = np.random.default_rng(seeds[k])
-        self._start(which, asked)
-        self._stopped[which] = True
-        self._runner.observe(which)
-        self._stopped[which] = False
+        with self._calling("reset"):
+            self._start(which, asked)
+            self._stopped[which] = True
+            self._runner.observe(which)
+            self._stopped[which] = False
         return self._observation(), self._ids()
-
-    def _reset_mask(self, mask: object) -> NDArray[Any]:
-        """The environments to reset, as C has them; all of them by default."""
-        refuse_masked("reset_mask", mask)
-        if mask is None:
-            return np.ones(self.num_envs, np.bool_)
-        try:
-            return np.asarray(mask, order="C")
-        except ValueError:
-            expected = f"expected bool of shape ({self.num_envs},)"
-            raise ConfigError(f"reset_mask is {quoted(mask)}; {expected}") from None
-
-    def _asked(
-        self, episodes: object, which: NDArray[np.bool_]
-    ) -> dict[int, tuple[int, int]] | None:
-        """House and seed of the episodes that are requested by their ids, by environment."""
-        expected = f"expected one for each of {self.num_envs} environments, or None"
-        if episodes is None:
-            return None
-        if isinstance(episodes, str) or not isinstance(episodes, Sequence | np.ndarray):
-            raise ConfigError(f"episode_id is {quoted(episodes)}; {expected}")
-        if len(episodes) != self.num_envs:
-            raise ConfigError(f"episode_id: found {len(episodes)}; {expected}")
-        return {
-            k: self._shelf.episode(one)
-            for k, one in enumerate(episodes)
-            if one is not None and which[k]
-        }
 
     def _ids(self) -> dict[str, Any]:
         """Infos that stay the same in an episode, of every environment that has one."""
@@ -409,14 +366,14 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
     ]:
         """Makes one control step in every environment.
 
-        ``infos`` hold what a single environment's ``info`` does; ``distance_to_goal``, ``spl`` and
-        ``soft_spl`` are NaN where the task has no goal.
+        ``infos`` hold what a single environment's ``info`` does. What is not known, as
+        ``distance_to_goal``, ``spl`` and ``soft_spl`` without a goal, is NaN, and its mask (such as
+        ``infos["_spl"]``) false.
         """
         self._refuse_closed()
         if any(stream is None for stream in self._streams):
             raise UsageError("step: no episode has begun; call reset first")
-        if self._call is not None:
-            raise UsageError(f"step: {another_call(self._call)}")
+        self._refuse_call("step")
         if self._stopped.any():
             which = abbreviated_list(np.flatnonzero(self._stopped).tolist())
             raise UsageError(f"step: no episode of environments {which} has begun; reset them")
@@ -425,17 +382,23 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
         if begins.any() and self.autoreset_mode is not AutoresetMode.NEXT_STEP:
             which = abbreviated_list(np.flatnonzero(begins).tolist())
             raise UsageError(f"environments {which} have ended; reset them with reset_mask first")
+        with self._calling("step"):
+            return self._stepped(taken, begins)
+
+    def _stepped(
+        self, taken: EngineActions, begins: NDArray[np.bool_]
+    ) -> tuple[
+        dict[str, Any], NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]
+    ]:
+        """Makes a step; in the environments of ``begins`` an episode begins instead."""
         if begins.any():
             self._start(begins)
         for recorder in self._recorders:
             recorder.check()
         taken = taken.without(begins)
         # Steps that the tasks did not judge to their end are none.
-        self._stopped[~begins], self._call = True, "step"
-        try:
-            answer, further = self._runner.step(taken)
-        finally:
-            self._call = None
+        self._stopped[~begins] = True
+        answer, further = self._runner.step(taken)
         self._stopped[~begins] = False
         rewards = np.asarray(answer["reward"], np.float64)
         terminated = np.asarray(answer["terminated"], np.bool_)
@@ -443,13 +406,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
         if self._limit is not None:
             truncated = (self._runner.batch.steps() >= self._limit) & ~begins
         self._runner.observe(np.ones(self.num_envs, np.bool_))
-        stepped = ~begins
-        infos: dict[str, Any] = {}
-        for key in self._info_keys:
-            infos[key] = np.asarray(answer[key])
-            infos[f"_{key}"] = stepped
-        infos["action_error"] = np.array(answer["action_error"], object)
-        infos["_action_error"] = stepped
+        infos = step_infos(answer, self._info_keys, ~begins)
         infos["audio_clipped"] = np.array(self._runner.batch.clipped(), np.int64)
         infos["_audio_clipped"] = np.ones(self.num_envs, np.bool_)
         infos |= self._ids()
@@ -503,18 +460,19 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
             UsageError: No episode has begun in one of them.
         """
         self._refuse_closed()
+        self._refuse_call("snapshot")
         rows = []
         for k, (seed, stream) in enumerate(zip(self._seeds, self._streams, strict=True)):
             if seed is None or stream is None or self._stopped[k]:
                 raise UsageError(f"snapshot: no episode of environment {k} has begun; reset it")
-            saved = BatchSnapshot(
+            saved = EnvSnapshot(
                 episode_id=self._places.episode_id(k, seed),
                 done=bool(self._done[k]),
                 stream=stream,
                 parts=self._runner.saved_parts(k),
                 world=self._runner.batch.snapshot(k),
             )
-            rows.append(saved.to_bytes())
+            rows.append(saved.to_vector_bytes())
         return rows
 
     def restore(self, snapshots: Sequence[bytes | None]) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -534,43 +492,60 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
                 snapshots want a reset afterwards.
         """
         self._refuse_closed()
+        self._refuse_call("restore")
         given: object = snapshots
         if not isinstance(given, list | tuple) or len(given) != self.num_envs:
             raise ConfigError(
                 f"snapshots is {quoted(given, 60)}; expected a list of {self.num_envs}: bytes, or "
                 "None, for each environment"
             )
-        rows: dict[int, tuple[BatchSnapshot, int, int]] = {}
+        rows: dict[int, tuple[EnvSnapshot, int, int]] = {}
         for k, snapshot in enumerate(given):
             if snapshot is None:
                 continue
-            saved = BatchSnapshot.of_bytes(f"snapshots[{k}]", snapshot)
+            saved = EnvSnapshot.of_vector_bytes(f"snapshots[{k}]", snapshot)
             try:
                 rows[k] = saved, *self._shelf.episode(saved.episode_id)
             except ConfigError as error:
                 raise ConfigError(f"snapshots[{k}]: snapshot refused: {error}") from None
             self._runner.loaded(k, saved.parts)
         which = np.array([k in rows for k in range(self.num_envs)], np.bool_)
-        self._stopped[which] = True
-        self._places.move({k: (house, None) for k, (_, house, _) in rows.items()})
-        for k, (saved, _, seed) in rows.items():
-            self._runner.restore(saved.world, saved.parts, seed, env=k)
-            self._seeds[k], self._streams[k], self._done[k] = seed, saved.stream, saved.done
-        self._episode_infos = None
-        self._look_ahead(which)
-        self._runner.observe(which)
-        self._stopped[which] = False
+        with self._calling("restore"):
+            self._stopped[which] = True
+            self._places.move({k: (house, None) for k, (_, house, _) in rows.items()})
+            for k, (saved, _, seed) in rows.items():
+                self._runner.restore(saved.world, saved.parts, seed, env=k)
+                self._seeds[k], self._streams[k], self._done[k] = seed, saved.stream, saved.done
+            self._episode_infos = None
+            self._look_ahead(which)
+            self._runner.observe(which)
+            self._stopped[which] = False
         return self._observation(), self._ids()
 
     def world(self, env: int) -> World:
-        """The world of an environment until its next episode; see :attr:`DwellEnv.world`."""
+        """The world of an environment; see :attr:`DwellEnv.world`.
+
+        It goes with the environment into the houses of later episodes: ``house`` is that of now.
+        """
         self._refuse_closed()
-        k = integer_in_range("env", env, high=self.num_envs - 1)
-        return World.of_env(self._runner.houses[k], _native.World.of_env(self._runner.batch, k))
+        return self._runner.world(integer_in_range("env", env, high=self.num_envs - 1))
 
     def fork(self) -> DwellVectorEnv:
         """Other environments at the same moments of their episodes, which all have begun."""
         return cast("DwellVectorEnv", forked(self))
+
+    @contextlib.contextmanager
+    def _calling(self, call: str) -> Iterator[None]:
+        """Other calls are refused until ``call`` has come to its end."""
+        self._call = call
+        try:
+            yield
+        finally:
+            self._call = None
+
+    def _refuse_call(self, call: str) -> None:
+        if self._call is not None:
+            raise UsageError(f"{call}: {another_call(self._call)}")
 
     def _refuse_closed(self) -> None:
         if self.closed:
