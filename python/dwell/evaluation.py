@@ -158,11 +158,18 @@ class Evaluation:
             "world": _native.World.of_env(self.env._runner.batch, 0).config(),
         }
 
+    def options(self, one: Episode) -> dict[str, Any]:
+        """The options with which the environment is reset to play an episode."""
+        chosen: dict[str, Any] = {"episode_id": one.episode_id}
+        if one.stated is not None and not self.about["episode_files"]:
+            chosen["episode"] = one.stated
+        return chosen
+
     def play(self, one: Episode) -> dict[str, Any]:
         """Plays an episode; gives what the result says of it."""
         if not self._has_usual_steps:
             one = dataclasses.replace(one, expert_actions=None)
-        observation, info = self.env.reset(seed=0, options={"episode_id": one.episode_id})
+        observation, info = self.env.reset(seed=0, options=self.options(one))
         reset = getattr(self._policy, "reset", None)
         if reset is not None:
             reset(observation, info)
@@ -320,6 +327,7 @@ def _row(
         "reward": reward,
         "actions": packed(numbers),
         "state_hash": f"{state_hash:016x}",
+        **({} if one.stated is None else {"stated": one.stated}),
     }
 
 

@@ -13,6 +13,7 @@ from gymnasium import spaces
 from dwell import ConfigError
 from dwell.arguments import allowed_values, integer_in_range, mapping, quoted
 from dwell.plugin_parts import imported
+from dwell.stated_episodes import seed_of
 
 if TYPE_CHECKING:
     from dwell.envs import DwellEnv
@@ -49,7 +50,7 @@ class _Random:
     def reset(self, observation: Mapping[str, Any], info: Mapping[str, Any]) -> None:
         del observation
         # Of the episode, so that it goes the same way in any order.
-        self._stream = np.random.default_rng(int(info["episode_id"].rpartition("#")[2]))
+        self._stream = np.random.default_rng(seed_of(info["episode_id"]))
 
     def act(self, observation: Mapping[str, Any]) -> Any:  # noqa: ANN401 - of the action space
         del observation

@@ -11,9 +11,10 @@ from dwell.arguments import integer_in_range, mapping, quoted, text, text_list
 from dwell.episode_maker import expert_run
 from dwell.episodes import Episode, Header, task_of
 from dwell.evaluation import METRICS, EpisodeSet, Evaluation, is_same, summary, unpacked
+from dwell.stated_episodes import checked_episode
 
 #: Of an episode that is played again, what is given and not found.
-_GIVEN = ("episode_id", "scene_id", "seed")
+_GIVEN = ("episode_id", "scene_id", "seed", "stated")
 #: What an evaluation says of itself that follows from nothing else here.
 _TOLD = ("policy", "houses", "seed", "made_by", "sensors", "episode_files")
 
@@ -80,6 +81,7 @@ def _job(result: Mapping[str, Any], stated: _Stated) -> Evaluation:
                 start_yaw_deg=0.0,
                 expert_actions=None if count is None else integer_in_range("expert_actions", count),
                 expert_success=count is not None,
+                **(checked_episode("stated", fields.get("stated", {})) or {}),
             )
         )
     header = Header(
@@ -170,7 +172,7 @@ def _episode(
 
 def _asked(job: Evaluation, one: Episode) -> Episode:
     """An episode with what it asks, as it is found when it begins, and what its expert needs."""
-    _, info = job.env.reset(seed=0, options={"episode_id": one.episode_id})
+    _, info = job.env.reset(seed=0, options=job.options(one))
     expert: dict[str, Any] = {}
     if one.expert_actions is not None:
         most = int(task_of(job.about["task"]["name"])["max_steps"])

@@ -51,10 +51,14 @@ class EpisodeIndex:
             _refuse_other(self._files[0].path, self.header, file.path, file.header)
         numbers: dict[str, int] = {}
         houses, seeds, digests = array.array("i"), array.array("Q"), array.array("Q")
+        #: Where the lines of those begin that state their start or goal.
+        self._stated_at: dict[int, int] = {}
         #: Up to which episode each file's go.
         self._ends: list[int] = []
         for file in self._files:
-            for one in file:
+            for offset, one in file.placed():
+                if one.stated is not None:
+                    self._stated_at[len(seeds)] = offset
                 houses.append(numbers.setdefault(one.scene_id, len(numbers)))
                 seeds.append(one.seed)
                 digests.append(_digest(one.asked()))
@@ -88,6 +92,25 @@ class EpisodeIndex:
         """The id of an episode."""
         house, seed = self[number]
         return f"{self.names[house]}#{seed}"
+
+    def stated(self, number: int) -> dict[str, Any] | None:
+        """What an episode states of its start and goal; ``None``: all is drawn.
+
+        Raises:
+            MeasuredDataError: The file has changed since.
+            OSError: The system refuses to read it.
+        """
+        offset = self._stated_at.get(number)
+        if offset is None:
+            return None
+        file = self._files[int(np.searchsorted(self._ends, number, "right"))]
+        one = file.line_at(offset)
+        if one.episode_id != self.id_of(number):
+            raise MeasuredDataError(
+                f"{self._place(number)}: the episode {quoted(self.id_of(number))} stood there; the "
+                "file has changed since"
+            )
+        return one.stated
 
     def number(self, house: int, seed: int) -> int | None:
         """Which episode it is that is in a house and of a seed."""
@@ -190,6 +213,26 @@ class EpisodeShelf(HouseCache):
         number = self._number_of.get(house)
         return None if number is None else self._index.number(number, seed)
 
+    def stated(self, house: int, seed: int) -> dict[str, Any] | None:
+        """What an episode states of its start and goal.
+
+        Raises:
+            MeasuredDataError: The file has changed since.
+            OSError: The system refuses to read it.
+        """
+        number = self._number(house, seed)
+        return None if number is None else self._index.stated(number)
+
+    def refuse_stated(self) -> None:
+        """Refuses: episodes of a file state what they state there.
+
+        Raises:
+            ConfigError: Always.
+        """
+        raise ConfigError(
+            "options: episode; episodes of a file state their own start and goal, give episode_id"
+        )
+
     def check(self, house: int, seed: int, batch: _native.Batch, env: int = 0) -> None:
         """Refuses an episode that has begun and is not as the file states it.
 
@@ -207,6 +250,7 @@ class EpisodeShelf(HouseCache):
             start_position=(0.0, 0.0, 0.0),
             start_yaw_deg=0.0,
             instruction=batch.instruction(env),
+            **(self._index.stated(number) or {}),
             **found,
         )
         self._index.check(number, played.asked())

@@ -269,9 +269,10 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
         self._stopped[which] = True
         moved = self._places.move(episodes)
         seeds: list[int | None] = [None] * self.num_envs
-        for k, (_, seed) in episodes.items():
-            seeds[k] = seed
-        self._runner.reset(seeds, moved)
+        stated: list[dict[str, Any] | None] = [None] * self.num_envs
+        for k, (house, seed) in episodes.items():
+            seeds[k], stated[k] = seed, self._shelf.stated(house, seed)
+        self._runner.reset(seeds, moved, stated)
         for k, (house, seed) in episodes.items():
             self._shelf.check(house, seed, self._runner.batch, k)
             self._seeds[k] = seed
@@ -561,6 +562,12 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
         self._runner.observe(which)
         self._stopped[which] = False
         return self._observation(), self._ids()
+
+    def stated_episode(self, env: int) -> dict[str, Any] | None:
+        """What an environment's episode states of its start and goal; ``None``: all was drawn."""
+        k = integer_in_range("env", env, high=self.num_envs - 1)
+        seed = self._seeds[k]
+        return None if seed is None else self._shelf.stated(self._places.house(k), seed)
 
     def world(self, env: int) -> World:
         """The world of an environment until its next episode; see :attr:`DwellEnv.world`."""

@@ -7,6 +7,7 @@ use super::navigation::{GoalKind, NavigationGoal, NavigationTask, navigation_set
 use super::point_nav::check_success_distance;
 use super::{Task, TaskKind, TaskSetup, random_yaw_rad};
 use crate::episode::GoalPart;
+use crate::episode_spec::StatedGoal;
 use crate::error::WorldError;
 use crate::schema;
 use crate::world::World;
@@ -73,6 +74,7 @@ impl GoalKind for ImageNav {
         &self,
         _world: &mut World,
         _goal: &NavigationGoal,
+        _asked: Option<&StatedGoal>,
         _key: RandomKey,
     ) -> Result<String, WorldError> {
         Ok("Go to the place of the picture.".to_owned())

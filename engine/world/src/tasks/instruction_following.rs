@@ -7,6 +7,7 @@ use super::goal_cells::LargestIslandIndex;
 use super::navigation::{GoalKind, NavigationGoal, NavigationTask, navigation_settings};
 use super::{Task, TaskKind, TaskSetup};
 use crate::episode::EpisodeGoal;
+use crate::episode_spec::StatedGoal;
 use crate::error::WorldError;
 use crate::schema;
 use crate::world::World;
@@ -105,6 +106,7 @@ impl GoalKind for InstructionFollowing {
         &self,
         world: &mut World,
         goal: &NavigationGoal,
+        _asked: Option<&StatedGoal>,
         key: RandomKey,
     ) -> Result<String, WorldError> {
         let offered = goal.instruction.as_slice();

@@ -10,6 +10,7 @@ use super::navigation::{GoalKind, NavigationGoal, NavigationTask, navigation_set
 use super::point_nav::check_success_distance;
 use super::{Task, TaskKind, TaskSetup};
 use crate::episode::{EpisodeGoal, GoalPart, category_of_class};
+use crate::episode_spec::StatedGoal;
 use crate::error::WorldError;
 use crate::schema;
 use crate::sound::{SoundPlace, check_level};
@@ -164,6 +165,7 @@ impl GoalKind for SemanticAudioNav {
         &self,
         world: &mut World,
         goal: &NavigationGoal,
+        _asked: Option<&StatedGoal>,
         key: RandomKey,
     ) -> Result<String, WorldError> {
         let all = sounding_things(world);
