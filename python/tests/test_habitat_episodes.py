@@ -1,4 +1,4 @@
-"""Episodes of Habitat and SoundSpaces: read, converted, played; and episodes that state things.
+"""Episodes of Habitat and SoundSpaces: read, converted, played.
 
 The files are written here by hand, in the form that the data sets of habitat-lab and SoundSpaces
 have; their starts and goals are places of our houses.
@@ -9,7 +9,6 @@ from __future__ import annotations
 import gzip
 import json
 import math
-import pickle
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
@@ -18,96 +17,16 @@ from typing import Any
 import gymnasium
 import numpy as np
 import pytest
+from habitat_files import HOUSE, SCENE, Row, converted, point_nav, rotation, written
 
 import dwell
 from dwell import habitat_episodes
-from dwell.envs import DwellEnv, DwellVectorEnv, ReplayRecorder, VectorReplayRecorder
-from dwell.evaluation import differences, evaluate
+from dwell.envs import DwellEnv
 from dwell.habitat_conversion import HabitatConverter
 
 pytestmark = pytest.mark.usefixtures("open_once")
 
 Command = Callable[..., subprocess.CompletedProcess[str]]
-HOUSE = "builtin:studio"
-SCENE = "data/scene_datasets/made/studio.basis.glb"
-HOUSES = {"studio": HOUSE}
-#: The field of a start, and of a goal of a point.
-Row = dict[str, Any]
-
-
-def rotation(yaw_deg: float) -> list[float]:
-    """A turn about +Y, as Habitat writes it: ``[x, y, z, w]``."""
-    half = math.radians(yaw_deg) / 2.0
-    return [0.0, math.sin(half), 0.0, math.cos(half)]
-
-
-def written(path: Path, whole: object) -> Path:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with gzip.open(path, "wt", encoding="utf-8") as file:
-        json.dump(whole, file)
-    return path
-
-
-def navigation() -> dwell.navigation.Navigation:
-    """Where somebody of the usual size can stand in the house, whose doors are open."""
-    body = DwellEnv("PointNav", houses=HOUSE, sensors=["gps"]).world.native.config()["agents"][0]
-    walker = dwell.Walker(
-        radius_m=body["radius_m"],
-        height_m=body["height_m"],
-        step_m=body["step_height_m"],
-        doors="open",
-    )
-    return dwell.House.open_by(HOUSE, None).navigation(walker)
-
-
-@pytest.fixture(scope="module")
-def places() -> list[tuple[list[float], list[float], float]]:
-    """Starts and goals with the way between them, of the largest island of the house."""
-    grid = navigation()
-    rows = []
-    for seed in range(40):
-        start, goal = (list(map(float, row)) for row in grid.sample(seed, 2))
-        if grid.island(start) == 0 == grid.island(goal):
-            way_m = grid.distance(start, goal)
-            if way_m is not None and way_m > 1.5:
-                rows.append((start, goal, way_m))
-    assert len(rows) > 4
-    return rows
-
-
-def point_nav(number: int, place: tuple[list[float], list[float], float]) -> Row:
-    """An episode of PointNav-v1."""
-    start, goal, way_m = place
-    return {
-        "episode_id": str(number),
-        "scene_id": SCENE,
-        "start_position": [*start],
-        "start_rotation": rotation(40.0 * number - 130.0),
-        "info": {"geodesic_distance": way_m, "difficulty": "easy"},
-        "goals": [{"position": [*goal], "radius": None}],
-        "shortest_paths": None,
-        "start_room": None,
-    }
-
-
-@pytest.fixture
-def points(tmp_path: Path, places: list[Any]) -> Path:
-    """A data set of PointNav, with a file for its one scene."""
-    path = tmp_path / "pointnav" / "val" / "val.json.gz"
-    written(path, {"episodes": []})
-    rows = [point_nav(k, place) for k, place in enumerate(places[:4])]
-    written(path.parent / "content" / "studio.json.gz", {"episodes": rows})
-    return path
-
-
-def converted(
-    path: Path,
-    out: Path,
-    **options: Any,  # noqa: ANN401 - of the converter
-) -> HabitatConverter:
-    converter = HabitatConverter(path, HOUSES, **options)
-    dwell.episodes.write(out, converter.header, converter.episodes())
-    return converter
 
 
 def expert(env: DwellEnv) -> dict[str, Any]:
@@ -503,139 +422,3 @@ def test_houses_may_be_those_of_a_folder(points: Path, tmp_path: Path) -> None:
         HabitatConverter(points, folder)
     with pytest.raises(dwell.ConfigError, match="holds no house"):
         HabitatConverter(points, tmp_path / "pointnav" / "val" / "content")
-
-
-# ---- episodes that state things
-
-
-def test_a_stated_episode_is_the_drawn_one(tmp_path: Path) -> None:
-    sensors = ["rgb", "gps", "pointgoal_with_gps_compass"]
-    settings = {"open_doors": True}
-    env, other = (
-        DwellEnv("PointNav", houses=HOUSE, sensors=sensors, task_settings=settings)
-        for _ in range(2)
-    )
-    observation, info = env.reset(seed=4)
-    agent = env.agents()[0]
-    distance_m, angle = (float(x) for x in observation["pointgoal_with_gps_compass"])
-    yaw = agent["yaw_rad"] + angle
-    x, y, z = agent["position"]
-    near = [x - math.sin(yaw) * distance_m, y, z - math.cos(yaw) * distance_m]
-    # The goal as it is seen is exact to some micrometres; its cell's middle is exact.
-    points = navigation().points()
-    goal = points[np.linalg.norm(points - np.array(near, np.float32), axis=1).argmin()]
-    start = {"position": agent["position"], "yaw_rad": agent["yaw_rad"]}
-    spec = {"start": start, "goal": {"position": goal}}
-    asked = {"episode_id": info["episode_id"], "episode": spec}
-    same, told = other.reset(options=asked)
-    assert other.state_hash() == env.state_hash()
-    for name, value in observation.items():
-        assert np.array_equal(value, same[name])
-    assert told["start_distance_to_goal"] == info["start_distance_to_goal"]
-    # Its id says all of it.
-    third = DwellEnv("PointNav", houses=HOUSE, sensors=sensors, task_settings=settings)
-    third.reset(seed=9, options={"episode_id": told["episode_id"]})
-    assert third.state_hash() == env.state_hash()
-    third.restore(other.snapshot())
-    assert third.step(1)[4] == other.step(1)[4]
-    assert third.state_hash() == other.state_hash()
-    folder = tmp_path / "replays"
-    recorder = ReplayRecorder(other, folder)
-    recorder.reset(options=asked)
-    recorder.step(1)
-    recorder.close()
-    replay = dwell.Replay.read(folder / "episode_0000.replay")
-    assert replay.differences() == []
-    assert replay.stated is not None
-    assert replay.stated["goal"]["position"] == pytest.approx(goal)
-
-
-def test_options_that_state_wrongly_are_refused(points: Path, tmp_path: Path) -> None:
-    env = DwellEnv("PointNav", houses=HOUSE, sensors=["gps"])
-    for episode, told in (
-        ({"begin": {}}, "no field 'begin'"),
-        ({"start": {"position": [1, 2]}}, "episode.start.position: expected three numbers"),
-        ({"start": {}}, "missing field `position`"),
-        ({"goal": {"position": [math.nan, 0, 0]}}, "episode.goal.position[0] is nan"),
-        ({"goal": {"colour": 1}}, "no field 'colour'"),
-        ({"goal": 3}, "episode.goal is 3"),
-        ({"goal": {"position": [500, 0, 0]}}, "episode.goal.position is [500.0, 0.0, 0.0]"),
-        ([], "episode is []"),
-    ):
-        with pytest.raises(dwell.ConfigError) as refused:
-            env.reset(seed=1, options={"episode": episode})
-        assert told in str(refused.value), refused.value
-    with pytest.raises(dwell.ConfigError, match="one that is drawn from its seed"):
-        DwellEnv("Free", houses=HOUSE, sensors=["gps"]).reset(
-            options={"episode": {"start": {"position": [0, 0, 0]}}}
-        )
-    out = tmp_path / "val.jsonl"
-    converted(points, out)
-    of_file = DwellEnv("PointNav", episodes=out, sensors=["gps"])
-    with pytest.raises(dwell.ConfigError, match="state their own start and goal"):
-        of_file.reset(options={"episode": {}})
-
-
-def test_a_file_that_states_wrongly_is_refused(points: Path, tmp_path: Path) -> None:
-    out = tmp_path / "val.jsonl"
-    converted(points, out)
-    lines = [json.loads(line) for line in out.read_text("utf-8").splitlines()]
-    for name, value, told in (
-        ("start", 3, "line 3: start is 3"),
-        ("start", {"position": [1, 2]}, "line 3: start.position: expected three numbers"),
-        ("goal", {"place": 1}, "line 3: goal: no field 'place'"),
-        ("source_distance_to_goal", -1, "line 3: source_distance_to_goal is -1"),
-    ):
-        changed = [lines[0], lines[1], {**lines[2], name: value}, *lines[3:]]
-        out.write_text("".join(json.dumps(line) + "\n" for line in changed), "utf-8")
-        with pytest.raises(dwell.MeasuredDataError) as refused:
-            DwellEnv("PointNav", episodes=out, sensors=["gps"])
-        assert told in str(refused.value), refused.value
-    # What it states decides, not where it is said to lead.
-    changed = [*lines[:2], {**lines[2], "goal": lines[1]["goal"]}, *lines[3:]]
-    out.write_text("".join(json.dumps(line) + "\n" for line in changed), "utf-8")
-    env = DwellEnv("PointNav", episodes=out, sensors=["gps"])
-    with pytest.raises(dwell.MeasuredDataError, match="start_distance_to_goal: the file states"):
-        env.reset(options={"episode_id": lines[2]["episode_id"]})
-    # A file that changes while its episodes are played.
-    env.reset(options={"episode_id": lines[1]["episode_id"]})
-    out.write_text("".join(json.dumps(line) + "\n" for line in lines[::-1]), "utf-8")
-    with pytest.raises(dwell.MeasuredDataError):
-        env.reset(options={"episode_id": lines[3]["episode_id"]})
-
-
-def test_stated_episodes_are_played_side_by_side(points: Path, tmp_path: Path) -> None:
-    out = tmp_path / "val.jsonl"
-    converted(points, out)
-    many = DwellVectorEnv(2, "PointNav", episodes=out, sensors=["gps"], autoreset_mode="SameStep")
-    folder = tmp_path / "replays"
-    recorder = VectorReplayRecorder(many, folder)
-    _, infos = recorder.reset(seed=4)
-    alone = [DwellEnv("PointNav", episodes=out, sensors=["gps"]) for _ in range(2)]
-    singles = [env.reset(seed=4 + k)[1] for k, env in enumerate(alone)]
-    for _ in range(3):
-        assert [*infos["episode_id"]] == [info["episode_id"] for info in singles]
-        assert many.state_hashes() == [env.state_hash() for env in alone]
-        assert [many.stated_episode(k) for k in range(2)] == [env.stated_episode() for env in alone]
-        saved = many.snapshot()
-        _, _, _, _, infos = recorder.step(np.zeros(2, np.int64))
-        singles = [env.reset()[1] for env in alone]
-    many.restore(saved)
-    recorder.close()
-    for file in folder.iterdir():
-        assert dwell.Replay.read(file).differences() == []
-    again = pickle.loads(pickle.dumps(alone[0]))
-    again.reset(seed=4)
-
-
-def test_results_of_stated_episodes_hold(points: Path, tmp_path: Path) -> None:
-    out = tmp_path / "val.jsonl"
-    converted(points, out)
-    result = evaluate("expert", episodes=out)
-    assert result["metrics"]["success"]["mean"] == 1.0
-    assert [row["stated"]["goal"] for row in result["episodes"]] == [
-        one.goal for one in dwell.episodes.read(out)
-    ]
-    assert differences(result) == []
-    result["episodes"][0]["stated"]["goal"] = result["episodes"][1]["stated"]["goal"]
-    assert differences(result) != []

@@ -315,7 +315,7 @@ fn a_goal_without_a_way_is_told() {
 #[test]
 fn tasks_that_draw_everything_refuse_stated_episodes() {
     for kind in tasks::all() {
-        let mut env = env_of(kind.name);
+        let mut env = dwell_tests::env_of(kind.name, &["gps"]);
         let spec = json!({"goal": {"position": [0.0, 500.0, 0.0]}});
         let spec = EpisodeSpec::from_json(&spec).unwrap();
         let error = env.reset_stated(1, &[spec]).unwrap_err();
@@ -325,14 +325,6 @@ fn tasks_that_draw_everything_refuse_stated_episodes() {
             kind.name
         );
     }
-}
-
-fn env_of(task: &str) -> Env {
-    let config = EnvConfig {
-        task: task.to_owned(),
-        ..EnvConfig::default()
-    };
-    dwell_tests::env_with(config, &["gps"])
 }
 
 /// A sound that is stated to come later and to end is heard then, and at no other time; a snapshot goes on with it.

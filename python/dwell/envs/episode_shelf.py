@@ -24,7 +24,7 @@ _OF_STEPS = ("reward", "ends_at_goal", "step_done_reward")
 
 
 class EpisodeIndex:
-    """Episodes of files, in 20 bytes each and the names of their houses.
+    """Episodes of files, in 20 bytes each (28 where some state things), and their houses' names.
 
     Attributes:
         header: The header of the first file; the others have the same task and settings.
@@ -51,20 +51,22 @@ class EpisodeIndex:
             _refuse_other(self._files[0].path, self.header, file.path, file.header)
         numbers: dict[str, int] = {}
         houses, seeds, digests = array.array("i"), array.array("Q"), array.array("Q")
-        #: Where the lines of those begin that state their start or goal.
-        self._stated_at: dict[int, int] = {}
+        #: Where the lines of those begin that state their start or goal, 0 for others; empty where
+        #: none does.
+        self._stated_at = array.array("Q")
         #: Up to which episode each file's go.
         self._ends: list[int] = []
         for file in self._files:
             for offset, one in file.placed():
-                if one.stated is not None:
-                    self._stated_at[len(seeds)] = offset
+                self._stated_at.append(0 if one.stated is None else offset)
                 houses.append(numbers.setdefault(one.scene_id, len(numbers)))
                 seeds.append(one.seed)
                 digests.append(_digest(one.asked()))
             self._ends.append(len(seeds))
         if not seeds:
             raise ConfigError(f"episodes: {self._files[0].path} holds no episode")
+        if not any(self._stated_at):
+            self._stated_at = array.array("Q")
         self.names = [*numbers]
         self._houses = np.frombuffer(houses, np.int32)
         self._seeds = np.frombuffer(seeds, np.uint64)
@@ -100,8 +102,8 @@ class EpisodeIndex:
             MeasuredDataError: The file has changed since.
             OSError: The system refuses to read it.
         """
-        offset = self._stated_at.get(number)
-        if offset is None:
+        offset = self._stated_at[number] if self._stated_at else 0
+        if not offset:
             return None
         file = self._files[int(np.searchsorted(self._ends, number, "right"))]
         one = file.line_at(offset)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
-from typing import Any, NoReturn, Protocol, cast
+from typing import Any, NoReturn, cast
 
 import numpy as np
 from gymnasium.utils import EzPickle
@@ -25,7 +25,7 @@ from dwell.arguments import (
     sequence_items,
 )
 from dwell.camera import camera_settings
-from dwell.envs.action_modes import EngineActions, action_form, masked_form
+from dwell.envs.action_modes import action_form, masked_form
 from dwell.envs.config import (
     CACHED_HOUSES,
     EpisodeFiles,
@@ -51,26 +51,9 @@ from dwell.envs.single import (
     steps_a_second,
 )
 from dwell.envs.snapshots import BatchSnapshot
+from dwell.envs.step_recorder import Recorder
 from dwell.world import World
 from dwell.world_settings import Laws, with_head
-
-
-class Recorder(Protocol):
-    """A recorder of several environments."""
-
-    def began(self, envs: Sequence[int]) -> None:
-        """Episodes have begun in these environments."""
-
-    def check(self) -> None:
-        """A step is about to be made."""
-
-    def stepped(
-        self,
-        actions: EngineActions,
-        success: NDArray[np.bool_],
-        ended: NDArray[np.bool_],
-    ) -> None:
-        """A step was made: by actions with the number -1 for none. Those that ended still stand."""
 
 
 def _autoreset_mode(mode: object) -> AutoresetMode:
