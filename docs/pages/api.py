@@ -16,6 +16,8 @@ _BESIDE = {
     "dwell.calibration": ("write_example",),
     "dwell.echogram": ("Echogram",),
     "dwell.episode_maker": ("EpisodeMaker",),
+    "dwell.habitat_conversion": ("HabitatConverter", "Comparison"),
+    "dwell.habitat_episodes": ("read", "HabitatEpisode"),
     "dwell.episodes": ("read", "write", "Episode", "EpisodeFile", "Header"),
     "dwell.evaluation": ("evaluate", "differences", "read_result", "write_result"),
     "dwell.policies": ("Policy",),

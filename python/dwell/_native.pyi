@@ -54,6 +54,8 @@ __all__ = [
     "laws",
     "map",
     "max_text_length",
+    "object_class",
+    "object_classes",
     "predicates_json",
     "prepared_envs",
     "response_metrics",
@@ -302,7 +304,12 @@ class Batch:
         """Whose each sensor is."""
     def specs(self) -> list[dict[str, Any]]:
         """``[{name, shape, dtype, unit, low, high, about}, ...]``, one for each sensor: those of the first agent, of the second, and so on."""
-    def reset(self, seeds: Sequence[int | None]) -> None: ...
+    def reset(
+        self,
+        seeds: Sequence[int | None],
+        stated: Sequence[Mapping[str, Any] | None] | None = ...,
+    ) -> None:
+        """Begins the episodes of seeds, ``None``: goes on; ``stated``: ``{start, goal}`` of those that state them."""
     def replace_env(self, env: int, spare: PreparedEnv) -> None:
         """``spare`` takes the place of environment ``env``, once; worlds of :meth:`World.of_env` are its from then on."""
     def steps(self) -> NDArray[np.int64]:
@@ -410,8 +417,9 @@ def prepared_envs(
     config_json: str,
     seeds: Sequence[int | None],
     threads: int | None = ...,
+    stated: Sequence[Mapping[str, Any] | None] | None = ...,
 ) -> list[PreparedEnv]:
-    """An environment over each house, with the episode of its seed begun where it has one."""
+    """An environment over each house, with the episode of its seed begun where it has one; ``stated``: as of :meth:`Batch.reset`."""
 
 def actions() -> list[str]: ...
 def chosen_actions(config_json: str) -> list[str]:
@@ -429,6 +437,10 @@ def laws() -> list[dict[str, Any]]: ...
 def vocabulary() -> list[str]: ...
 def charset() -> str: ...
 def furniture_kinds() -> dict[str, str]: ...
+def object_class(word: str) -> str | None:
+    """The class that a word stands for: its name, an alias, or a word that is spoken for it alone."""
+
+def object_classes() -> list[str]: ...
 def json_extent(text: bytes) -> tuple[int, int]: ...
 def max_text_length() -> int: ...
 def doctor() -> dict[str, Any]: ...

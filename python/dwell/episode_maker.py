@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 import itertools
 from collections import deque
@@ -89,13 +90,7 @@ class EpisodeMaker:
         self._expert = expert
         self._on_skip = on_skip
         self._max_steps = int(about["max_steps"])
-        has_place = any(
-            row["name"] == _STRAIGHT and task in row["goal_tasks"]
-            for row in _native.sensors()
-            if row["goal_tasks"]
-        )
-        #: None of pictures and none that listens: what is asked is the same without.
-        self._sensors = ["gps", _STRAIGHT] if has_place else ["gps"]
+        self._sensors = sensors_of_goals(task)
         self.header = Header(
             task=task,
             task_version=int(about["version"]),
@@ -218,24 +213,47 @@ class EpisodeMaker:
 
     def _begun(self, env: NativeBatch, name: str, seed: int) -> Episode:
         env.reset([seed])
-        asked = env.batch.episode_goal(0)
-        agent = agent_states(env.batch.agent_states(0))[0]
-        x, y, z = agent["position"]
-        straight_m = None
-        if _STRAIGHT in self._sensors:
-            env.observe(np.ones(1, np.bool_))
-            straight_m = float(env.observation()[_STRAIGHT][0, 0])
-        return Episode(
-            episode_id=f"{name}#{seed}",
-            scene_id=name,
-            seed=seed,
-            instruction=env.batch.instruction(0),
-            straight_distance_to_goal=straight_m,
-            start_position=(float(x), float(y), float(z)),
-            start_yaw_deg=float(agent["yaw_deg"]),
-            **asked,
-            **(expert_run(env, self._max_steps) if self._expert and self._asks else {}),
-        )
+        one = begun_episode(env, name, seed)
+        if self._expert and self._asks:
+            one = dataclasses.replace(one, **expert_run(env, self._max_steps))
+        return one
+
+
+def sensors_of_goals(task: str) -> list[str]:
+    """Sensors by which :func:`begun_episode` says all that there is: none that sees or listens."""
+    has_place = any(
+        row["name"] == _STRAIGHT and task in row["goal_tasks"]
+        for row in _native.sensors()
+        if row["goal_tasks"]
+    )
+    return ["gps", _STRAIGHT] if has_place else ["gps"]
+
+
+def begun_episode(env: NativeBatch, name: str, seed: int) -> Episode:
+    """The episode that has just begun in an environment with :func:`sensors_of_goals`.
+
+    Args:
+        env: The environment.
+        name: The HOUSE string of its house.
+        seed: The episode's seed.
+    """
+    asked = env.batch.episode_goal(0)
+    agent = agent_states(env.batch.agent_states(0))[0]
+    x, y, z = agent["position"]
+    straight_m = None
+    if any(spec.name == _STRAIGHT for spec in env.specs):
+        env.observe(np.ones(1, np.bool_))
+        straight_m = float(env.observation()[_STRAIGHT][0, 0])
+    return Episode(
+        episode_id=f"{name}#{seed}",
+        scene_id=name,
+        seed=seed,
+        instruction=env.batch.instruction(0),
+        straight_distance_to_goal=straight_m,
+        start_position=(float(x), float(y), float(z)),
+        start_yaw_deg=float(agent["yaw_deg"]),
+        **asked,
+    )
 
 
 def drawn_seeds(seed: int, place: int) -> Iterator[list[int]]:

@@ -29,6 +29,7 @@ from dwell.arguments import (
     text_list,
 )
 from dwell.files import atomic_write, lines, open_file, parse_json
+from dwell.stated_episodes import checked_part
 
 #: What a file says of itself.
 _FORMAT, _VERSION = "dwell-episodes", 1
@@ -95,6 +96,12 @@ class Episode:
             not played.
         expert_path_length: How far it went, m.
         expert_success: Whether it was successful.
+        start: Where the episode states to start, in place of a drawn start: ``position``, and
+            ``yaw_deg`` or ``yaw_rad``.
+        goal: What it states to ask for, in place of a drawn goal: ``position``; ``class``,
+            ``objects``, ``positions``; ``sound`` and kin.
+        source_id: The episode of another file that it was converted from.
+        source_distance_to_goal: The way to the goal that that file states, m.
     """
 
     episode_id: str
@@ -112,6 +119,16 @@ class Episode:
     expert_actions: int | None = None
     expert_path_length: float | None = None
     expert_success: bool | None = None
+    start: Mapping[str, Any] | None = dataclasses.field(default=None, hash=False)
+    goal: Mapping[str, Any] | None = dataclasses.field(default=None, hash=False)
+    source_id: str | None = None
+    source_distance_to_goal: float | None = None
+
+    @property
+    def stated(self) -> dict[str, Any] | None:
+        """What it states of start and goal, as the engine takes it; ``None``: all is drawn."""
+        row = {"start": self.start, "goal": self.goal}
+        return {name: value for name, value in row.items() if value is not None} or None
 
     def as_dict(self) -> dict[str, Any]:
         """A line of a file, without the fields that are ``None``."""
@@ -128,6 +145,7 @@ class Episode:
             "goal_objects": list(self.goal_objects),
             "goal_rooms": list(self.goal_rooms),
             "start_distance_to_goal": None if distance_m is None else round(distance_m, 3),
+            **(self.stated or {}),
         }
 
     @classmethod
@@ -174,17 +192,42 @@ class EpisodeFile:
                 the message names file, line and field.
             OSError: The system refuses.
         """
-        expected, number = len(self.header.places), 1
+        for _, one in self.placed():
+            yield one
+
+    def line_at(self, offset: int) -> Episode:
+        """The episode whose line begins at a byte of the file.
+
+        Raises:
+            MeasuredDataError: There is none, since the file has changed.
+            OSError: The system refuses.
+        """
+        with open_file(self.path) as file, _Place(f"{self.path} at byte {offset}"):
+            file.seek(offset)
+            try:
+                line = next(lines(file, self.path, _MAX_LINE_BYTES), b"")
+            except ValueError as error:
+                raise ConfigError(str(error)) from None
+            return Episode.of_dict(_parsed(line))
+
+    def placed(self) -> Iterator[tuple[int, Episode]]:
+        """The episodes in order, each with the byte at which its line begins.
+
+        Raises:
+            MeasuredDataError: As of going through them.
+            OSError: The system refuses.
+        """
+        expected, number, offset = len(self.header.places), 1, 0
         with open_file(self.path) as file:
             for number, line in self._numbered(file):
                 with self._at(number):
-                    if number == 1:
-                        continue
                     if number - 1 > expected:
                         raise ConfigError(
                             f"one episode more than the {expected} that the header says"
                         )
-                    yield Episode.of_dict(_parsed(line))
+                    if number > 1:
+                        yield offset, Episode.of_dict(_parsed(line))
+                offset += len(line)
         if number - 1 < expected:
             raise MeasuredDataError(
                 f"{self.path} line {number}: the file ends after {number - 1} of {expected} "
@@ -325,6 +368,10 @@ _CHECKS: dict[str, Callable[[str, object], Any]] = {
     "expert_actions": integer_in_range,
     "expert_path_length": _distance,
     "expert_success": boolean,
+    "start": checked_part,
+    "goal": checked_part,
+    "source_id": text,
+    "source_distance_to_goal": _distance,
 }
 _OPTIONAL = {
     field.name for field in dataclasses.fields(Episode) if field.default is not dataclasses.MISSING

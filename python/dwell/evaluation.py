@@ -182,6 +182,13 @@ class Evaluation:
         where = f"at step {step}" if step else "in reset, at the start"
         return naming_policy(self._name, f"{where} of episode {one.episode_id}")
 
+    def options(self, one: Episode) -> dict[str, Any]:
+        """The options with which the environment is reset to play an episode."""
+        chosen: dict[str, Any] = {"episode_id": one.episode_id}
+        if one.stated is not None and not self.about["episode_files"]:
+            chosen["episode"] = one.stated
+        return chosen
+
     def play(self, one: Episode) -> dict[str, Any]:
         """Plays an episode; gives what the result says of it.
 
@@ -191,7 +198,7 @@ class Evaluation:
         """
         if not self._is_as_counted:
             one = dataclasses.replace(one, expert_actions=None)
-        observation, info = self.env.reset(seed=0, options={"episode_id": one.episode_id})
+        observation, info = self.env.reset(seed=0, options=self.options(one))
         reset = getattr(self._policy, "reset", None)
         if reset is not None:
             with self._naming(one, 0):
@@ -365,6 +372,7 @@ def _row(
         "reward": reward,
         "actions": packed(actions),
         "state_hash": f"{state_hash:016x}",
+        **({} if one.stated is None else {"stated": one.stated}),
     }
 
 

@@ -106,8 +106,17 @@ def read_json(path: _Name) -> Any:  # noqa: ANN401 - any JSON value
     return parse_json(read(path), os.fspath(path))
 
 
-def parse_json(text: bytes, at: str) -> Any:  # noqa: ANN401 - any JSON value
-    """The value of a JSON text in UTF-8.
+def parse_json(
+    text: bytes, at: str, most_values: int = _MAX_VALUES, *, keep_constants: bool = False
+) -> Any:  # noqa: ANN401 - any JSON value
+    """The value of a JSON text in UTF-8, of at most so many values and names.
+
+    Args:
+        text: The text.
+        at: What messages begin with.
+        most_values: How many values and names are read.
+        keep_constants: Whether ``NaN`` and ``Infinity``, which JSON does not have, are read, for
+            those who check each number and can say which field it is.
 
     Raises:
         ValueError: It is none, names a key twice in one object, is nested too deep, or holds more
@@ -116,15 +125,15 @@ def parse_json(text: bytes, at: str) -> Any:  # noqa: ANN401 - any JSON value
     depth, values = _native.json_extent(text)
     if depth > _MAX_DEPTH:
         raise ValueError(f"{at}: nested {depth} deep; at most {_MAX_DEPTH} is read")
-    if values > _MAX_VALUES:
-        raise ValueError(f"{at}: {values} values and names; at most {_MAX_VALUES} are read")
+    if values > most_values:
+        raise ValueError(f"{at}: {values} values and names; at most {most_values} are read")
     try:
         decoded = text.decode("utf-8-sig")
         value = json.loads(
             decoded,
             parse_int=_parse_integer,
             parse_float=_parse_float,
-            parse_constant=_refuse_constant,
+            parse_constant=float if keep_constants else _refuse_constant,
             object_pairs_hook=_unique_keys,
         )
         if "\\u" in decoded:

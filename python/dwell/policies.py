@@ -17,6 +17,7 @@ from dwell import ConfigError, DwellError
 from dwell.arguments import allowed_values, quoted
 from dwell.played_actions import said_action, spoken_actions
 from dwell.plugin_parts import imported
+from dwell.stated_episodes import seed_of
 
 if TYPE_CHECKING:
     from dwell.envs import DwellEnv
@@ -106,7 +107,7 @@ class _Random:
     def reset(self, observation: Mapping[str, Any], info: Mapping[str, Any]) -> None:
         del observation
         # Of the episode, so that it goes the same way in any order.
-        self._stream = np.random.default_rng(int(info["episode_id"].rpartition("#")[2]))
+        self._stream = np.random.default_rng(seed_of(info["episode_id"]))
 
     def act(self, observation: Mapping[str, Any]) -> Any:  # noqa: ANN401 - of the action space
         del observation

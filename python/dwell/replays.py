@@ -25,6 +25,7 @@ from dwell.arguments import (
 )
 from dwell.files import atomic_write, read_json
 from dwell.house import House
+from dwell.stated_episodes import checked_episode
 
 if TYPE_CHECKING:
     from dwell.envs.action_modes import EngineActions
@@ -36,6 +37,8 @@ if TYPE_CHECKING:
 _FORMAT = "dwell-replay"
 #: Of files whose actions are names alone, and of those that say more of an action.
 _VERSION, _VERSION_WITH_TARGETS = 2, 3
+#: Of files of episodes that state their start or goal.
+_VERSION_STATED = 4
 #: More than any episode is long; its file stays below what is read.
 MAX_STEPS = 1_000_000
 
@@ -80,6 +83,7 @@ class Replay:
         instruction: What was asked.
         success: Whether it was done at the end.
         made_by: The version of dwell that recorded it.
+        stated: What the episode stated of its start and goal; ``None``: all was drawn.
         path: The file it was read from, if it was.
         sums: The check sums of all fields of the file; files of version 1 have none.
     """
@@ -93,6 +97,7 @@ class Replay:
     instruction: str
     success: bool
     made_by: str
+    stated: Mapping[str, Any] | None = None
     path: str | None = dataclasses.field(default=None, compare=False)
     sums: Mapping[str, str] | None = dataclasses.field(default=None, compare=False, repr=False)
 
@@ -113,12 +118,13 @@ class Replay:
         if not isinstance(row, dict) or row.get("format") != _FORMAT:
             raise MeasuredDataError(f"{path}: format: no {_FORMAT} file")
         version = row.get("version")
-        if version not in (1, _VERSION, _VERSION_WITH_TARGETS):
+        if version not in (1, _VERSION, _VERSION_WITH_TARGETS, _VERSION_STATED):
             raise MeasuredDataError(
-                f"{path}: version is {quoted(version)}; this dwell reads 1 to "
-                f"{_VERSION_WITH_TARGETS}"
+                f"{path}: version is {quoted(version)}; this dwell reads 1 to {_VERSION_STATED}"
             )
         known = set(_FIELDS) - ({"sums"} if version == 1 else set())
+        if version == _VERSION_STATED:
+            known.add("stated")
         if wrong := sorted(known ^ set(row)):
             what = "unknown" if wrong[0] in row else "missing"
             raise MeasuredDataError(f"{path}: field {wrong[0]!r} is {what} in version {version}")
@@ -135,6 +141,7 @@ class Replay:
                 instruction=text("instruction", row["instruction"]),
                 success=boolean("success", row["success"]),
                 made_by=text("made_by", row["made_by"]),
+                stated=checked_episode("stated", row["stated"]) if "stated" in row else None,
                 path=path,
                 sums=None if version == 1 else mapping("sums", row["sums"]),
             )
@@ -155,6 +162,8 @@ class Replay:
         try:
             for name, check in _CHECKS.items():
                 check(name, getattr(self, name))
+            if self.stated is not None:
+                checked_episode("stated", self.stated)
             if self.sums is not None:
                 mapping("sums", self.sums)
         except ConfigError as error:
@@ -194,6 +203,8 @@ class Replay:
         row = {"format": _FORMAT, "version": _VERSION if plain else _VERSION_WITH_TARGETS}
         row |= {name: getattr(self, name) for name in _FIELDS if name not in (*row, "sums")}
         row["config"] = self._settings()
+        if self.stated is not None:
+            row |= {"version": _VERSION_STATED, "stated": dict(self.stated)}
         return row
 
     def _settings(self) -> dict[str, Any]:
@@ -246,7 +257,7 @@ class Replay:
         self.check()
         with self._named():
             runner = self._runner(task, reward, renderer, house)
-            runner.reset([self.seed])
+            runner.reset([self.seed], stated=[self.stated])
             world = World.of_env(runner.houses[0], _native.World.of_env(runner.batch, 0))
             moment = self._moment(0, runner, world)
         yield moment
@@ -390,11 +401,13 @@ def _without_pictures(config: dict[str, Any]) -> dict[str, Any]:
     return result if isinstance(result, dict) else config
 
 
+#: Fields of a replay that are not in every file.
+_UNLISTED = ("path", "sums", "stated")
 #: The fields of a file.
 _FIELDS = (
     "format",
     "version",
-    *(field.name for field in dataclasses.fields(Replay) if field.name not in ("path", "sums")),
+    *(field.name for field in dataclasses.fields(Replay) if field.name not in _UNLISTED),
     "sums",
 )
 

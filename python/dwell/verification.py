@@ -16,13 +16,14 @@ from dwell.played_actions import element_of, refuse_other_form, unpacked, writte
 from dwell.policies import BASELINES, name_of, policy_of
 from dwell.policy_source import source_hash
 from dwell.result_fields import checked_result
+from dwell.stated_episodes import checked_episode
 from dwell.verified_origin import origin_differences
 
 if TYPE_CHECKING:
     from dwell.envs import DwellEnv
 
 #: Of an episode that is played again, what is given and not found.
-_GIVEN = ("episode_id", "scene_id", "seed")
+_GIVEN = ("episode_id", "scene_id", "seed", "stated")
 #: What an evaluation says of itself that is checked in another way than by comparing.
 _TOLD = (
     "policy",
@@ -117,6 +118,7 @@ def _job(result: Mapping[str, Any], stated: _Stated) -> Evaluation:
             start_yaw_deg=0.0,
             expert_actions=row["expert_actions"],
             expert_success=row["expert_actions"] is not None,
+            **(checked_episode("stated", row.get("stated", {})) or {}),
         )
         for row in result["episodes"]
     ]
@@ -265,7 +267,7 @@ def _said(action: object, names: list[str]) -> str:
 
 def _asked(job: Evaluation, one: Episode) -> Episode:
     """An episode with what it asks, as it is found when it begins, and what its expert needs."""
-    _, info = job.env.reset(seed=0, options={"episode_id": one.episode_id})
+    _, info = job.env.reset(seed=0, options=job.options(one))
     expert: dict[str, Any] = {}
     if one.expert_actions is not None:
         most = int(task_of(job.about["task"]["name"])["max_steps"])

@@ -7,6 +7,7 @@ use crate::errors::PyFault;
 use crate::house::PyHouse;
 use crate::picture;
 use crate::prepared_env::PyPreparedEnv;
+use crate::stated_episodes::stated_episodes;
 use crate::values::JsonArgument;
 use dwell::sensors::{Dtype, ObservationBuffer};
 use dwell::{
@@ -262,8 +263,19 @@ impl PyBatch {
         self.with(py, |batch| PyValue::of(&batch.specs()))
     }
 
-    fn reset(&self, py: Python<'_>, seeds: Vec<Option<u64>>) -> PyResult<()> {
-        self.with(py, |batch| Ok(batch.reset(&seeds)?))
+    /// Begins the episodes of seeds, `None`: goes on. `stated`: what each states of its start and goal, where it states anything.
+    #[pyo3(signature = (seeds, stated=None))]
+    fn reset(
+        &self,
+        py: Python<'_>,
+        seeds: Vec<Option<u64>>,
+        stated: Option<Vec<Option<JsonArgument>>>,
+    ) -> PyResult<()> {
+        self.with(py, |batch| {
+            let agents = batch.acting_agents().len();
+            let specs = stated_episodes(stated, seeds.len(), agents)?;
+            Ok(batch.reset_stated(&seeds, &specs)?)
+        })
     }
 
     /// Replaces environment `env`, whose episode goes on where it has one.

@@ -99,6 +99,8 @@ pub(crate) fn settings() -> PyResult<PyValue> {
         "AgentControl": schema::fields_of::<dwell_physics::AgentControl>(),
         "Air": schema::fields_of::<dwell_acoustics::Air>(),
         "HouseSpec": schema::fields_of::<dwell_houses::generate::HouseSpec>(),
+        "StatedGoal": schema::fields_of::<dwell::StatedGoal>(),
+        "StatedStart": schema::fields_of::<dwell::StatedStart>(),
         "StepSizes": schema::fields_of::<dwell::StepSizes>(),
         "WorldConfig": schema::fields_of::<dwell::WorldConfig>(),
     }))
@@ -128,6 +130,29 @@ pub(crate) fn laws() -> PyResult<PyValue> {
 #[pyfunction]
 pub(crate) fn furniture_kinds() -> std::collections::BTreeMap<&'static str, &'static str> {
     dwell_houses::authoring::kinds()
+}
+
+/// The classes of things, by their names.
+#[pyfunction]
+pub(crate) fn object_classes() -> Vec<&'static str> {
+    let rows = dwell_semantics::category::categories().rows();
+    rows.iter().map(|row| row.name).collect()
+}
+
+/// The class that a word stands for: its name, an alias, or a word that is spoken for it alone.
+#[pyfunction]
+pub(crate) fn object_class(word: &str) -> Option<&'static str> {
+    let table = dwell_semantics::category::categories();
+    if let Some(row) = table.get(word) {
+        return Some(row.name);
+    }
+    let spoken = word.replace('_', " ");
+    let mut rows = table.rows().iter().filter(|row| {
+        [row.singular, row.plural].contains(&spoken.as_str())
+            || row.synonyms.contains(&spoken.as_str())
+    });
+    let first = rows.next()?;
+    rows.next().is_none().then_some(first.name)
 }
 
 /// The words of instructions; token k is word k - 1, 0 is padding.

@@ -33,6 +33,7 @@ mod picture;
 mod pictures_for_people;
 mod prepared_env;
 mod relations;
+mod stated_episodes;
 mod values;
 mod world;
 mod world_access;
@@ -62,6 +63,8 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(build_info::sensors, module)?)?;
     module.add_function(wrap_pyfunction!(build_info::laws, module)?)?;
     module.add_function(wrap_pyfunction!(build_info::furniture_kinds, module)?)?;
+    module.add_function(wrap_pyfunction!(build_info::object_class, module)?)?;
+    module.add_function(wrap_pyfunction!(build_info::object_classes, module)?)?;
     module.add_function(wrap_pyfunction!(build_info::vocabulary, module)?)?;
     module.add_function(wrap_pyfunction!(build_info::charset, module)?)?;
     module.add_function(wrap_pyfunction!(build_info::max_text_length, module)?)?;

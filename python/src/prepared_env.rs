@@ -3,6 +3,8 @@
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use crate::house::PyHouse;
+use crate::stated_episodes::stated_episodes;
+use crate::values::JsonArgument;
 use dwell::{Engines, Env, EnvConfig};
 use dwell_scene::parallel::Threads;
 use pyo3::prelude::*;
@@ -23,15 +25,16 @@ impl PyPreparedEnv {
     }
 }
 
-/// An environment over each house, with the episode of its seed begun where it has one.
+/// An environment over each house, with the episode of its seed begun where it has one; `stated`: what episodes state.
 #[pyfunction]
-#[pyo3(signature = (houses, config_json, seeds, threads=None))]
+#[pyo3(signature = (houses, config_json, seeds, threads=None, stated=None))]
 pub(crate) fn prepared_envs(
     py: Python<'_>,
     houses: Vec<Py<PyHouse>>,
     config_json: &str,
     seeds: Vec<Option<u64>>,
     threads: Option<usize>,
+    stated: Option<Vec<Option<JsonArgument>>>,
 ) -> PyResult<Vec<PyPreparedEnv>> {
     let shared: Vec<Arc<Engines>> = houses
         .iter()
@@ -40,10 +43,12 @@ pub(crate) fn prepared_envs(
     py.engine(|| -> Result<_, PyFault> {
         let config: EnvConfig = serde_json::from_str(config_json)?;
         let threads = Threads::try_resolve(threads)?;
+        let specs = stated_episodes(stated, shared.len(), config.agents.len())?;
         let envs = threads.map(shared.len(), |k| {
             let mut env = Env::new(shared[k].clone(), &config)?;
             if let Some(seed) = seeds.get(k).copied().flatten() {
-                env.reset_with_listeners(seed)?;
+                let own = specs.get(k).map_or(&[][..], Vec::as_slice);
+                env.reset_stated_with_listeners(seed, own)?;
                 env.warm_up(Threads::ONE)?;
             }
             Ok::<_, PyFault>(env)

@@ -29,6 +29,11 @@ impl JsonArgument {
         self
     }
 
+    /// Returns it as JSON.
+    pub(crate) fn into_value(self) -> Value {
+        self.0
+    }
+
     /// Reads what the engine takes.
     pub(crate) fn read<T: DeserializeOwned>(self) -> Result<T, PyFault> {
         Ok(serde_json::from_value(self.0)?)

@@ -7,8 +7,10 @@ import re
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
+from habitat_files import navigation, point_nav, written
 
 import dwell
 from dwell import cli
@@ -67,3 +69,28 @@ def command(
         return subprocess.CompletedProcess(words, status, *capfd.readouterr())
 
     return run
+
+
+@pytest.fixture(scope="session")
+def places() -> list[tuple[list[float], list[float], float]]:
+    """Starts and goals with the way between them, of the largest island of the house."""
+    grid = navigation()
+    rows = []
+    for seed in range(40):
+        start, goal = (list(map(float, row)) for row in grid.sample(seed, 2))
+        if grid.island(start) == 0 == grid.island(goal):
+            way_m = grid.distance(start, goal)
+            if way_m is not None and way_m > 1.5:
+                rows.append((start, goal, way_m))
+    assert len(rows) > 4
+    return rows
+
+
+@pytest.fixture
+def points(tmp_path: Path, places: list[Any]) -> Path:
+    """A data set of PointNav, with a file for its one scene."""
+    path = tmp_path / "pointnav" / "val" / "val.json.gz"
+    written(path, {"episodes": []})
+    rows = [point_nav(k, place) for k, place in enumerate(places[:4])]
+    written(path.parent / "content" / "studio.json.gz", {"episodes": rows})
+    return path

@@ -4,6 +4,7 @@ use crate::actions::{DiscreteAction, StepAction};
 use crate::batch_pictures::{self, PendingImages};
 use crate::env::Env;
 use crate::episode::{Answer, StepInfo};
+use crate::episode_spec::EpisodeSpec;
 use crate::error::WorldError;
 use crate::sensors::{Dtype, ObservationBuffer, SensorSpec};
 use dwell_acoustics::signals;
@@ -328,10 +329,25 @@ impl Batch {
     /// # Errors
     /// [`WorldError`] of the first environment that cannot start.
     pub fn reset(&mut self, seeds: &[Option<u64>]) -> Result<(), WorldError> {
+        self.reset_stated(seeds, &vec![Vec::new(); seeds.len()])
+    }
+
+    /// [`Self::reset`], where episodes state some of what is drawn else, as [`Env::reset_stated`] takes it. Shape (environment, agent),
+    /// or (environment, 0).
+    ///
+    /// # Errors
+    /// As [`Self::reset`].
+    pub fn reset_stated(
+        &mut self,
+        seeds: &[Option<u64>],
+        specs: &[Vec<EpisodeSpec>],
+    ) -> Result<(), WorldError> {
         self.check_count("seeds", seeds.len())?;
+        self.check_count("stated episodes", specs.len())?;
         let active: Vec<bool> = seeds.iter().map(Option::is_some).collect();
-        let reset =
-            |k: usize, env: &mut Env| env.reset_with_listeners(seeds[k].unwrap_or_default());
+        let reset = |k: usize, env: &mut Env| {
+            env.reset_stated_with_listeners(seeds[k].unwrap_or_default(), &specs[k])
+        };
         let (names, rate_hz) = self.unsynthesized_signals(&active);
         self.end_episodes_on_interrupt(&active, |batch| {
             if names.is_empty() {

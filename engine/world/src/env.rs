@@ -5,6 +5,7 @@ use crate::engines::Engines;
 use crate::env_agent::EnvAgent;
 use crate::env_config::EnvConfig;
 use crate::episode::Episode;
+use crate::episode_spec::EpisodeSpec;
 use crate::error::WorldError;
 use crate::sensor_requests::{RenderedImages, SensorRequests};
 use crate::world::World;
@@ -32,6 +33,8 @@ pub struct Env {
     /// Poses of all agents of the world at the beginning of the episodes. Shape (agent of the world,).
     pub(crate) start_poses: IdVec<AgentId, Pose>,
     pub(crate) seed: u64,
+    /// What the episodes state. Shape (agent,), or empty where they state nothing.
+    pub(crate) specs: Vec<EpisodeSpec>,
     pub(crate) episode_key: RandomKey,
     /// True while the world is as it was made.
     is_new: bool,
@@ -70,6 +73,7 @@ impl Env {
             results: RenderedImages::default(),
             start_poses: IdVec::default(),
             seed: 0,
+            specs: Vec::new(),
             episode_key: RandomKey::root(0),
             is_new: true,
             steps: 0,
@@ -141,6 +145,25 @@ impl Env {
     /// # Errors
     /// [`WorldError::TaskNotPlayable`] when the house does not hold what a task needs.
     pub fn reset(&mut self, seed: u64) -> Result<(), WorldError> {
+        self.reset_stated(seed, &[])
+    }
+
+    /// [`Self::reset`], where the episodes state some of what is drawn else: where they start, what they ask for.
+    ///
+    /// `specs`: what each agent's episode states, in the order of actions; none at all where nobody's states anything. Shape (agent,).
+    ///
+    /// # Errors
+    /// Those of [`Self::reset`]; [`WorldError::Config`] for a start or goal that the house does not have, and for tasks that draw
+    /// everything; [`WorldError::InvalidCall`] for a wrong number of `specs`: then nothing has changed.
+    pub fn reset_stated(&mut self, seed: u64, specs: &[EpisodeSpec]) -> Result<(), WorldError> {
+        if !specs.is_empty() && specs.len() != self.agents.len() {
+            return Err(WorldError::InvalidCall(format!(
+                "reset: {} agents act, and the episodes of {} are stated",
+                self.agents.len(),
+                specs.len()
+            )));
+        }
+        specs.iter().try_for_each(EpisodeSpec::check)?;
         let key = RandomKey::root(seed).child("episode");
         // A failure from here on leaves no episode behind that could go on.
         self.clear_episodes();
@@ -153,24 +176,29 @@ impl Env {
         for agent in &mut self.agents {
             agent.task.survey_house(&self.world)?;
         }
-        let mut order: Vec<&mut EnvAgent> = self.agents.iter_mut().collect();
-        order.sort_unstable_by_key(|agent| agent.id);
+        let mut order: Vec<(usize, &mut EnvAgent)> = self.agents.iter_mut().enumerate().collect();
+        order.sort_unstable_by_key(|(_, agent)| agent.id);
         let mut begun = Vec::with_capacity(order.len());
         let mut placed = Vec::with_capacity(order.len());
-        for agent in &mut order {
+        for (place, agent) in &mut order {
             let own = agent.agent_key(key).child("task");
-            begun.push(agent.task.reset(&mut self.world, &placed, own)?);
+            let (task, world) = (&mut agent.task, &mut self.world);
+            begun.push(match specs.get(*place).filter(|spec| !spec.is_empty()) {
+                Some(spec) => task.reset_stated(world, &placed, own, spec)?,
+                None => task.reset(world, &placed, own)?,
+            });
             placed.push(agent.id);
         }
-        for (agent, episode) in order.iter_mut().zip(&begun) {
+        for ((_, agent), episode) in order.iter_mut().zip(&begun) {
             for sensor in &mut agent.sensors {
                 sensor.begin_episode(&self.world, episode)?;
             }
         }
-        for (agent, episode) in order.into_iter().zip(begun) {
+        for ((_, agent), episode) in order.into_iter().zip(begun) {
             agent.episode = Some(episode);
         }
         (self.seed, self.episode_key) = (seed, key);
+        self.specs = specs.to_vec();
         self.record_start_poses();
         Ok(())
     }
@@ -195,7 +223,19 @@ impl Env {
     /// # Errors
     /// Those of [`Self::reset`], [`WorldError::Acoustics`] for a source that cannot be simulated.
     pub fn reset_with_listeners(&mut self, seed: u64) -> Result<(), WorldError> {
-        self.reset(seed)?;
+        self.reset_stated_with_listeners(seed, &[])
+    }
+
+    /// [`Self::reset_stated`], with the ears open that the sensors need.
+    ///
+    /// # Errors
+    /// Those of [`Self::reset_stated`], [`WorldError::Acoustics`] for a source that cannot be simulated.
+    pub fn reset_stated_with_listeners(
+        &mut self,
+        seed: u64,
+        specs: &[EpisodeSpec],
+    ) -> Result<(), WorldError> {
+        self.reset_stated(seed, specs)?;
         self.enable_listeners()
     }
 

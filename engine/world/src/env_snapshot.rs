@@ -4,15 +4,16 @@ use crate::actions::StepSizes;
 use crate::env::Env;
 use crate::env_agent::EnvAgent;
 use crate::episode::{Episode, EpisodeGoal};
+use crate::episode_spec::EpisodeSpec;
 use crate::error::WorldError;
 use crate::metrics::NavigationMetrics;
 use dwell_scene::{AgentId, IdVec, Pose};
 use serde::{Deserialize, Serialize};
 
 /// The first bytes of an [`Env::snapshot`]: its kind and version.
-const MAGIC: &[u8] = b"dwenv8";
+const MAGIC: &[u8] = b"dwenv9";
 
-/// Episodes at one moment. Their goals come from the seed again.
+/// Episodes at one moment. Their goals come again from the seed, and from what they state.
 #[derive(Serialize, Deserialize)]
 struct EnvSnapshot {
     seed: u64,
@@ -20,6 +21,8 @@ struct EnvSnapshot {
     /// Those who act, in order.
     agents: Vec<AgentSnapshot>,
     starts: IdVec<AgentId, Pose>,
+    /// What the episodes state. Shape (agent,), or empty.
+    specs: Vec<EpisodeSpec>,
     world: Vec<u8>,
 }
 
@@ -123,6 +126,7 @@ impl Env {
             steps: self.steps,
             agents,
             starts: self.start_poses.clone(),
+            specs: self.specs.clone(),
             world: self.world.snapshot(),
         };
         let body =
@@ -142,7 +146,7 @@ impl Env {
         let refuse = |why: String| WorldError::Snapshot(why);
         let body = bytes
             .strip_prefix(MAGIC)
-            .ok_or_else(|| refuse("it does not begin with \"dwenv8\"".to_owned()))?;
+            .ok_or_else(|| refuse("it does not begin with \"dwenv9\"".to_owned()))?;
         let moment: EnvSnapshot =
             postcard::from_bytes(body).map_err(|error| refuse(error.to_string()))?;
         if moment.agents.len() != self.agents.len() {
@@ -156,7 +160,7 @@ impl Env {
                 return Err(refuse(why));
             }
         }
-        self.reset(moment.seed)?;
+        self.reset_stated(moment.seed, &moment.specs)?;
         let restored = self.restore_world(&moment);
         let tokens = match restored {
             Ok(tokens) => tokens,

@@ -19,6 +19,7 @@ mod env_observation;
 mod env_snapshot;
 mod env_step;
 mod episode;
+mod episode_spec;
 mod error;
 mod expert;
 mod external_task;
@@ -64,6 +65,7 @@ pub use episode::{
     Answer, AnswerField, Episode, EpisodeGoal, GoalPart, MAX_ANSWER_FIELDS, StepInfo, StepResult,
     TaskMeasure,
 };
+pub use episode_spec::{EpisodeSpec, StatedGoal, StatedStart};
 pub use error::WorldError;
 pub use expert::{ShortestPathFollower, action_towards_object};
 pub use fixtures::{

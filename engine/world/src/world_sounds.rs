@@ -22,6 +22,18 @@ impl World {
         self.sound.play((&self.engines, root, &self.state), request)
     }
 
+    /// [`Self::play`], to begin after `offset_s` seconds and to be silenced `duration_s` later; without them at once, and never.
+    pub(crate) fn play_between(
+        &mut self,
+        request: PlayRequest,
+        offset_s: Option<f64>,
+        duration_s: Option<f64>,
+    ) -> Result<u64, WorldError> {
+        let handle = self.play(request)?;
+        self.sound.delay(handle, offset_s, duration_s);
+        Ok(handle)
+    }
+
     /// Silences a sound within 5 ms of the next step. One that was played is dropped; one of an object of the house begins
     /// again with [`World::start_sound`].
     ///

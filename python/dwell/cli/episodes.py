@@ -16,28 +16,49 @@ from dwell.cli.common import (
     count_from_1,
     path,
     print_json,
+    refuse_unused,
     settings_of,
     shard,
 )
+from dwell.cli.habitat import add_habitat, convert
 from dwell.cli.job_journal import Journal, contents_of, is_of_files
 from dwell.files import check_writable
 
 #: Houses that were skipped and are told of on standard error.
 _MOST_TOLD = 10
 _HEADER = "header"
+#: The options of episodes that are made, not converted.
+_MAKING = (
+    "task",
+    "houses",
+    "count",
+    "out",
+    "seed",
+    "set",
+    "settings",
+    "expert",
+    "shard",
+    "workers",
+    "json",
+)
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Adds the options."""
-    parser.add_argument("task", metavar="TASK", help="such as PointNav")
+    parser.add_argument(
+        "task", metavar="TASK", nargs="?", help="such as PointNav; with --from that of the file"
+    )
     parser.add_argument(
         "--houses",
         metavar="HOUSES",
         nargs="+",
         required=True,
-        help="split:val, seed:A..B, data/*.dwell, @list.txt, HOUSE; several",
+        help="split:val, seed:A..B, data/*.dwell, @list.txt, HOUSE; several. With --from: "
+        "SCENE=HOUSE, several, or a folder with a house for each scene, of its name",
     )
-    parser.add_argument("--count", type=count_from_1, required=True, help="how many episodes")
+    parser.add_argument(
+        "--count", type=count_from_1, help="how many episodes; with --from at most so many"
+    )
     parser.add_argument("--out", type=path, required=True, metavar="FILE.jsonl")
     parser.add_argument("--seed", type=count, default=0, help="what they are drawn from")
     add_task_settings(parser)
@@ -53,6 +74,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--workers", type=count_from_1, help="threads (default: as many as processors)"
     )
     parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
+    add_habitat(parser)
 
 
 def add_task_settings(parser: argparse.ArgumentParser) -> None:
@@ -83,6 +105,11 @@ def run(args: argparse.Namespace) -> int:
     """Makes the episodes; a run that was stopped goes on where it stopped."""
     from dwell.episode_maker import EpisodeMaker
 
+    if args.source is not None:
+        return convert(args)
+    refuse_unused(args, _MAKING, "a task of which episodes are made")
+    if args.task is None or args.count is None:
+        raise ValueError("expected TASK and --count, or --from with a file of Habitat")
     skipped: dict[str, str] = {}
 
     def skip(house: str, sentence: str) -> None:

@@ -184,6 +184,14 @@ class HouseCache:
         """
         return integer_in_range("options: house, an index,", house, high=len(self.names) - 1)
 
+    def stated(self, house: int, seed: int) -> dict[str, Any] | None:
+        """What an episode states of its start and goal; here all of them are drawn."""
+        del house, seed
+        return None
+
+    def refuse_stated(self) -> None:
+        """Refuses that somebody states an episode's start and goal; here everybody may."""
+
     def check(self, house: int, seed: int, batch: _native.Batch, env: int = 0) -> None:
         """Refuses an episode that has begun and is not the one that was promised; none is here."""
 

@@ -41,8 +41,11 @@ class EnvPool:
         for house in houses:
             add_heads(house, self.heads)
         seeds = [seed for _, seed in episodes]
+        stated = [
+            None if seed is None else self.shelf.stated(house, seed) for house, seed in episodes
+        ]
         made = _native.prepared_envs(
-            [house.native for house in houses], self.config, seeds, threads
+            [house.native for house in houses], self.config, seeds, threads, stated
         )
         return [PreparedEnv(house, native) for house, native in zip(houses, made, strict=True)]
 

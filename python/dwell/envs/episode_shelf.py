@@ -24,7 +24,7 @@ _OF_STEPS = ("reward", "ends_at_goal", "step_done_reward")
 
 
 class EpisodeIndex:
-    """Episodes of files, in 20 bytes each and the names of their houses.
+    """Episodes of files, in 20 bytes each (28 where some state things), and their houses' names.
 
     Attributes:
         header: The header of the first file; the others have the same task and settings.
@@ -51,16 +51,22 @@ class EpisodeIndex:
             _refuse_other(self._files[0].path, self.header, file.path, file.header)
         numbers: dict[str, int] = {}
         houses, seeds, digests = array.array("i"), array.array("Q"), array.array("Q")
+        #: Where the lines of those begin that state their start or goal, 0 for others; empty where
+        #: none does.
+        self._stated_at = array.array("Q")
         #: Up to which episode each file's go.
         self._ends: list[int] = []
         for file in self._files:
-            for one in file:
+            for offset, one in file.placed():
+                self._stated_at.append(0 if one.stated is None else offset)
                 houses.append(numbers.setdefault(one.scene_id, len(numbers)))
                 seeds.append(one.seed)
                 digests.append(_digest(one.asked()))
             self._ends.append(len(seeds))
         if not seeds:
             raise ConfigError(f"episodes: {self._files[0].path} holds no episode")
+        if not any(self._stated_at):
+            self._stated_at = array.array("Q")
         self.names = [*numbers]
         self._houses = np.frombuffer(houses, np.int32)
         self._seeds = np.frombuffer(seeds, np.uint64)
@@ -88,6 +94,25 @@ class EpisodeIndex:
         """The id of an episode."""
         house, seed = self[number]
         return f"{self.names[house]}#{seed}"
+
+    def stated(self, number: int) -> dict[str, Any] | None:
+        """What an episode states of its start and goal; ``None``: all is drawn.
+
+        Raises:
+            MeasuredDataError: The file has changed since.
+            OSError: The system refuses to read it.
+        """
+        offset = self._stated_at[number] if self._stated_at else 0
+        if not offset:
+            return None
+        file = self._files[int(np.searchsorted(self._ends, number, "right"))]
+        one = file.line_at(offset)
+        if one.episode_id != self.id_of(number):
+            raise MeasuredDataError(
+                f"{self._place(number)}: the episode {quoted(self.id_of(number))} stood there; the "
+                "file has changed since"
+            )
+        return one.stated
 
     def number(self, house: int, seed: int) -> int | None:
         """Which episode it is that is in a house and of a seed."""
@@ -190,6 +215,26 @@ class EpisodeShelf(HouseCache):
         number = self._number_of.get(house)
         return None if number is None else self._index.number(number, seed)
 
+    def stated(self, house: int, seed: int) -> dict[str, Any] | None:
+        """What an episode states of its start and goal.
+
+        Raises:
+            MeasuredDataError: The file has changed since.
+            OSError: The system refuses to read it.
+        """
+        number = self._number(house, seed)
+        return None if number is None else self._index.stated(number)
+
+    def refuse_stated(self) -> None:
+        """Refuses: episodes of a file state what they state there.
+
+        Raises:
+            ConfigError: Always.
+        """
+        raise ConfigError(
+            "options: episode; episodes of a file state their own start and goal, give episode_id"
+        )
+
     def check(self, house: int, seed: int, batch: _native.Batch, env: int = 0) -> None:
         """Refuses an episode that has begun and is not as the file states it.
 
@@ -207,6 +252,7 @@ class EpisodeShelf(HouseCache):
             start_position=(0.0, 0.0, 0.0),
             start_yaw_deg=0.0,
             instruction=batch.instruction(env),
+            **(self._index.stated(number) or {}),
             **found,
         )
         self._index.check(number, played.asked())

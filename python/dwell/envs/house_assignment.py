@@ -24,6 +24,10 @@ class HouseAssignment:
         #: first whose turn comes first where all episodes are equally long.
         self._next: dict[int, tuple[int, int, int]] = {}
 
+    def house(self, env: int) -> int:
+        """The number of an environment's house."""
+        return self._houses[env]
+
     def name(self, env: int) -> str:
         """The name of an environment's house."""
         return self._names[self._houses[env]]

@@ -83,14 +83,21 @@ class NativeBatch:
         self._worlds[env].add(made)
         return made
 
-    def reset(self, seeds: Sequence[int | None], begun: Collection[int] = ()) -> None:
+    def reset(
+        self,
+        seeds: Sequence[int | None],
+        begun: Collection[int] = (),
+        stated: Sequence[Mapping[str, Any] | None] | None = None,
+    ) -> None:
         """Begins the episodes of seeds, one for each environment; ``None``: goes on.
 
         Args:
             seeds: The seeds.
             begun: The environments in which the engine has begun them already.
+            stated: What each episode states of its start and goal, where it states anything.
         """
-        self.batch.reset([None if k in begun else seed for k, seed in enumerate(seeds)])
+        left = [None if k in begun else seed for k, seed in enumerate(seeds)]
+        self.batch.reset(left, stated)
         for play, seed in zip(self.plays, seeds, strict=False):
             if seed is not None:
                 play.begin(seed)

@@ -20,6 +20,7 @@ from dwell.envs.single import DwellEnv
 from dwell.envs.vector import DwellVectorEnv
 from dwell.files import make_folder
 from dwell.replays import MAX_STEPS, Replay
+from dwell.stated_episodes import seed_of
 
 #: Why an episode goes on no further.
 _FULL = f"{MAX_STEPS} steps are written, all that a file holds; reset begins another"
@@ -34,10 +35,12 @@ class _EpisodeInProgress:
         info: Mapping[str, Any],
         instruction: str,
         state_hash: int,
+        stated: Mapping[str, Any] | None,
     ) -> None:
         self._replay = Replay(
             house=str(info["scene_id"]),
-            seed=int(str(info["episode_id"]).rpartition("#")[2]),
+            seed=seed_of(str(info["episode_id"])),
+            stated=stated,
             config=env._config,
             parts=tuple(env._custom.part_names()),
             actions=(),
@@ -163,7 +166,8 @@ class ReplayRecorder(gymnasium.Wrapper[dict[str, Any], Any, dict[str, Any], Any]
         self._write()
         observation, info = self.env.reset(seed=seed, options=options)
         instruction, state_hash = self._env.instruction(), self._env.state_hash()
-        self._running = _EpisodeInProgress(self._env, info, instruction, state_hash)
+        stated = self._env.stated_episode()
+        self._running = _EpisodeInProgress(self._env, info, instruction, state_hash, stated)
         return observation, info
 
     def step(
@@ -255,7 +259,11 @@ class VectorReplayRecorder(VectorWrapper[dict[str, Any], Any, dict[str, Any], An
             info = {name: infos[name][k] for name in ("scene_id", "episode_id")}
             batch = self._envs._runner.batch
             self._running[k] = _EpisodeInProgress(
-                self._envs, info, batch.instruction(k), batch.state_hash(k)
+                self._envs,
+                info,
+                batch.instruction(k),
+                batch.state_hash(k),
+                self._envs.stated_episode(k),
             )
 
     def check(self) -> None:

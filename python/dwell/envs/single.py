@@ -46,6 +46,7 @@ from dwell.envs.python_tasks import PythonTask, RewardChoice, Sensors, TaskChoic
 from dwell.envs.snapshots import EnvSnapshot
 from dwell.heads import Head
 from dwell.object_state_api import agent_states
+from dwell.stated_episodes import checked_episode, id_and_stated, id_with_stated
 from dwell.world import World
 from dwell.world_settings import Laws, with_head
 
@@ -179,6 +180,8 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
         self._house = 0
         self._episode = 0
         self._seed = 0
+        #: What somebody stated of the episode's start and goal when it was reset.
+        self._stated: dict[str, Any] | None = None
         #: What the episode asks for, as infos have it.
         self._goal: dict[str, Any] = {}
         #: Whether there is no episode to go on with: none has begun, or a call did not come to its
@@ -235,7 +238,9 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
     def _info(self) -> dict[str, Any]:
         return {
             "scene_id": self._shelf.names[self._house],
-            "episode_id": self._shelf.episode_id(self._house, self._seed),
+            "episode_id": id_with_stated(
+                self._shelf.episode_id(self._house, self._seed), self._stated
+            ),
             **self._goal,
             **self._mask(),
         }
@@ -255,7 +260,8 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
             seed: Seeds this and all following episodes.
             options: ``house``: the number of the house to play in; else it is drawn.
                 ``episode_id``: that of an earlier ``info``, to play the same episode again, or of
-                an episode of ``episodes``.
+                an episode of ``episodes``. ``episode``: what the episode states in place of
+                drawing it, ``start`` and ``goal`` or one of them; the rest is drawn.
 
         Returns:
             Observation and info: ``scene_id``, ``episode_id``, and what is asked, where the task
@@ -271,7 +277,7 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
         self._refuse_closed()
         self._refuse_call("reset")
         number = None if seed is None else integer_in_range("seed", seed)
-        house, episode = self._asked(options)
+        house, episode, stated = self._asked(options)
         self._counters = _counters_around(self)
         with self._playing("reset"):
             super().reset(seed=number)
@@ -279,27 +285,39 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
             drawn = self._shelf.draw(self.np_random)
             self._house = drawn[0] if house is None else house
             self._seed = drawn[1] if episode is None else episode
-            self._runner.reset([self._seed])
+            self._stated = stated
+            self._runner.reset([self._seed], stated=[self.stated_episode()])
             self._ended = False
             self._shelf.check(self._house, self._seed, self._runner.batch)
             self._goal = self._runner.batch.episode_goal(0)
             observation = self._observation()
         return observation, self._info()
 
-    def _asked(self, options: dict[str, Any] | None) -> tuple[int | None, int | None]:
-        """House and seed of the episode that is requested, each where it is."""
+    def _asked(
+        self, options: dict[str, Any] | None
+    ) -> tuple[int | None, int | None, dict[str, Any] | None]:
+        """House, seed and what is stated of the episode that is requested, each where it is."""
         options = {} if options is None else mapping("options", options)
-        if unknown := sorted(set(options) - {"house", "episode_id"}):
-            raise ConfigError(f"options: no {unknown[0]!r}; allowed are house and episode_id")
-        if len(options) == 2:
+        if unknown := sorted(set(options) - {"house", "episode_id", "episode"}):
+            raise ConfigError(
+                f"options: no {unknown[0]!r}; allowed are house, episode_id and episode"
+            )
+        if "house" in options and "episode_id" in options:
             raise ConfigError(
                 "options: house and episode_id; an episode has its own house, give one"
             )
+        stated = None
+        if "episode" in options:
+            self._shelf.refuse_stated()
+            stated = checked_episode("episode", options["episode"])
         if "episode_id" in options:
-            return self._shelf.episode(options["episode_id"])
+            plain, of_id = id_and_stated(options["episode_id"])
+            if of_id is not None:
+                self._shelf.refuse_stated()
+            return *self._shelf.episode(plain), of_id if stated is None else stated
         if "house" in options:
-            return self._shelf.chosen(options["house"]), None
-        return None, None
+            return self._shelf.chosen(options["house"]), None, stated
+        return None, None, stated
 
     def step(
         self,
@@ -378,7 +396,9 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
         """
         self._refuse_stopped("snapshot")
         saved = EnvSnapshot(
-            episode_id=self._shelf.episode_id(self._house, self._seed),
+            episode_id=id_with_stated(
+                self._shelf.episode_id(self._house, self._seed), self._stated
+            ),
             done=self._ended,
             stream=self.np_random,
             parts=self._runner.saved_parts(0),
@@ -405,7 +425,8 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
         self._refuse_call("restore")
         saved = EnvSnapshot.of_bytes("snapshot", snapshot)
         try:
-            house, seed = self._shelf.episode(saved.episode_id)
+            plain, stated = id_and_stated(saved.episode_id)
+            house, seed = self._shelf.episode(plain)
         except ConfigError as error:
             raise ConfigError(f"snapshot refused: {error}") from None
         # Nothing changes before it was accepted.
@@ -413,7 +434,7 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
         runner.loaded(0, saved.parts)
         with self._playing("restore"):
             runner.restore(saved.world, saved.parts, seed)
-            self._house, self._seed = house, seed
+            self._house, self._seed, self._stated = house, seed, stated
             self._ended, self.np_random = saved.done, saved.stream
             self._goal = runner.batch.episode_goal(0)
             for counter in self._counters:
@@ -421,6 +442,11 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
                     wrapper._elapsed_steps = self._steps()  # type: ignore[assignment] # None first
             observation = self._observation()
         return observation, self._info()
+
+    def stated_episode(self) -> dict[str, Any] | None:
+        """What the episode states of its start and goal, where they were not drawn."""
+        own = self._stated
+        return self._shelf.stated(self._house, self._seed) if own is None else own
 
     def instruction(self) -> str:
         """The instruction of the episode."""

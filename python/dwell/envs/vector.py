@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Iterator, Mapping, Sequence
 from copy import deepcopy
-from typing import Any, NoReturn, Protocol, cast
+from typing import Any, NoReturn, cast
 
 import numpy as np
 from gymnasium.utils import EzPickle
@@ -23,7 +23,7 @@ from dwell.arguments import (
     refuse_unknown,
 )
 from dwell.camera import camera_settings
-from dwell.envs.action_modes import EngineActions, action_form, masked_form
+from dwell.envs.action_modes import action_form, masked_form
 from dwell.envs.config import (
     CACHED_HOUSES,
     EpisodeFiles,
@@ -50,26 +50,9 @@ from dwell.envs.single import (
 )
 from dwell.envs.snapshots import EnvSnapshot
 from dwell.envs.vector_reset import VectorReset
+from dwell.envs.step_recorder import Recorder
 from dwell.world import World
 from dwell.world_settings import Laws, with_head
-
-
-class Recorder(Protocol):
-    """A recorder of several environments."""
-
-    def began(self, envs: Sequence[int]) -> None:
-        """Episodes have begun in these environments."""
-
-    def check(self) -> None:
-        """A step is about to be made."""
-
-    def stepped(
-        self,
-        actions: EngineActions,
-        success: NDArray[np.bool_],
-        ended: NDArray[np.bool_],
-    ) -> None:
-        """A step was made: by actions with the number -1 for none. Those that ended still stand."""
 
 
 def _autoreset_mode(mode: object) -> AutoresetMode:
@@ -268,9 +251,10 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
         self._stopped[which] = True
         moved = self._places.move(episodes)
         seeds: list[int | None] = [None] * self.num_envs
-        for k, (_, seed) in episodes.items():
-            seeds[k] = seed
-        self._runner.reset(seeds, moved)
+        stated: list[dict[str, Any] | None] = [None] * self.num_envs
+        for k, (house, seed) in episodes.items():
+            seeds[k], stated[k] = seed, self._shelf.stated(house, seed)
+        self._runner.reset(seeds, moved, stated)
         for k, (house, seed) in episodes.items():
             self._shelf.check(house, seed, self._runner.batch, k)
             self._seeds[k] = seed
@@ -521,6 +505,12 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
             self._runner.observe(which)
             self._stopped[which] = False
         return self._observation(), self._ids()
+
+    def stated_episode(self, env: int) -> dict[str, Any] | None:
+        """What an environment's episode states of its start and goal; ``None``: all was drawn."""
+        k = integer_in_range("env", env, high=self.num_envs - 1)
+        seed = self._seeds[k]
+        return None if seed is None else self._shelf.stated(self._places.house(k), seed)
 
     def world(self, env: int) -> World:
         """The world of an environment; see :attr:`DwellEnv.world`.

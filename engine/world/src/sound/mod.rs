@@ -34,7 +34,7 @@ use events::ActiveContactSound;
 use gait::GaitPhase;
 use glam::Vec3;
 use playback::Playback;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// First handle and source id of sounds that are played; those of emitters are their numbers.
 const FIRST_PLAYED_ID: u64 = 1 << 48;
@@ -55,6 +55,8 @@ pub(crate) struct WorldSound {
     gaits: Vec<GaitPhase>,
     emitters: EmitterStates,
     playing: Vec<Playback>,
+    /// The samples, since the world's start, at which sounds that are played are silenced, by their handles.
+    ends: BTreeMap<u64, u64>,
     next_played: u64,
     ears: Vec<AgentListener>,
 }
@@ -81,6 +83,7 @@ impl WorldSound {
             gaits: Vec::new(),
             emitters: EmitterStates::default(),
             playing: Vec::new(),
+            ends: BTreeMap::new(),
             next_played: 0,
             ears: Vec::new(),
         }
@@ -94,6 +97,7 @@ impl WorldSound {
         self.gaits.clear();
         self.emitters = EmitterStates::default();
         self.playing.clear();
+        self.ends.clear();
         self.next_played = 0;
         self.ears.clear();
     }
@@ -116,7 +120,12 @@ impl WorldSound {
         state: &State,
     ) -> Result<(), WorldError> {
         self.emitters.update(engines.house(), state);
+        let begun = self.blocks * self.block as u64;
         for playing in &mut self.playing {
+            let end = self.ends.get(&playing.state.id);
+            if end.is_some_and(|end| *end <= begun) {
+                playing.state.stopped = true;
+            }
             let target = playing.target_pressure_pa();
             playing.state.fade.update(target);
         }
@@ -132,6 +141,9 @@ impl WorldSound {
         self.touches
             .retain(|touch| touch.start + touch.length > ended);
         self.playing.retain(|playing| !playing.is_finished(ended));
+        let playing = &self.playing;
+        self.ends
+            .retain(|id, _| playing.iter().any(|own| own.state.id == *id));
         Ok(())
     }
 
@@ -271,6 +283,20 @@ impl WorldSound {
         self.playing.push(playing);
         self.next_played += 1;
         Ok(id)
+    }
+
+    /// Lets a sound that has not begun yet begin so many seconds later, and end so long after its beginning, to the block.
+    pub(crate) fn delay(&mut self, handle: u64, offset_s: Option<f64>, duration_s: Option<f64>) {
+        let samples = |seconds: f64| (seconds * f64::from(self.rate_hz)).round() as u64;
+        let (wait, length) = (offset_s.map_or(0, samples), duration_s.map(samples));
+        let mut start = self.blocks * self.block as u64;
+        if let Some(playing) = self.playback_mut(handle) {
+            playing.state.start += wait;
+            start = playing.state.start;
+        }
+        if let Some(length) = length {
+            self.ends.insert(handle, start + length);
+        }
     }
 
     pub(crate) fn set_silent(

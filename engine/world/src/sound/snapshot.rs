@@ -55,7 +55,14 @@ impl WorldSound {
             next_played: self.next_played,
             ears: ears.collect(),
         };
-        postcard::to_stdvec(&memory).expect("plain data can always be written to memory")
+        let mut bytes =
+            postcard::to_stdvec(&memory).expect("plain data can always be written to memory");
+        // Behind the rest, so that worlds without such sounds have the bytes that they always had.
+        if !self.ends.is_empty() {
+            let ends = postcard::to_stdvec(&self.ends);
+            bytes.extend(ends.expect("plain data can always be written to memory"));
+        }
+        bytes
     }
 
     /// The sounds that [`WorldSound::to_bytes`] wrote, for a world of these settings.
@@ -65,8 +72,9 @@ impl WorldSound {
         key: RandomKey,
         bytes: &[u8],
     ) -> Result<Self, WorldError> {
-        let memory: SoundSnapshot =
-            postcard::from_bytes(bytes).map_err(|error| WorldError::Snapshot(error.to_string()))?;
+        let refuse = |error: postcard::Error| WorldError::Snapshot(error.to_string());
+        let (memory, rest): (SoundSnapshot, _) =
+            postcard::take_from_bytes(bytes).map_err(refuse)?;
         let mut sound = Self::new(config);
         if (memory.rate_hz, memory.block) != (sound.rate_hz, sound.block) {
             return Err(WorldError::Snapshot(format!(
@@ -108,6 +116,9 @@ impl WorldSound {
             sound.playing.push(playing);
         }
         sound.next_played = memory.next_played;
+        if !rest.is_empty() {
+            sound.ends = postcard::from_bytes(rest).map_err(refuse)?;
+        }
         for (listener, window, stream) in memory.ears {
             listener.check(sound.head)?;
             let channels = listener.channels();

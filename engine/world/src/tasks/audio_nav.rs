@@ -4,18 +4,22 @@
 //! `AudioGoal` of C. Chen et al., "SoundSpaces: Audio-Visual Navigation in 3D Environments", ECCV 2020: the source stands 1.5 m over
 //! the floor and sounds all the time; success within 1 m.
 
-use super::navigation::{GoalKind, NavigationGoal, NavigationTask, navigation_settings};
+use super::navigation::{
+    GoalKind, GoalSite, NavigationGoal, NavigationTask, StatedPoint, navigation_settings,
+};
 use super::point_nav::check_success_distance;
 use super::{Task, TaskKind, TaskSetup};
 use crate::actions::DiscreteAction;
+use crate::episode_spec::StatedGoal;
 use crate::error::WorldError;
 use crate::schema;
-use crate::sound::{PlayRequest, SoundName, SoundPlace, check_level};
+use crate::sound::{PlayRequest, SoundName, SoundPlace, check_level, default_level_db};
 use crate::world::World;
 use dwell_acoustics::signals;
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::random::RandomKey;
 use glam::Vec3;
+use std::sync::Arc;
 
 /// The words of the instruction.
 pub(super) const ASKED: &str = "Go to the sound.";
@@ -85,6 +89,15 @@ pub(super) fn check_sounds(sounds: &[String], level_db: Option<f32>) -> Result<(
     level_db.map_or(Ok(()), check_level)
 }
 
+/// The level of a sound for which nobody states one, dB SPL at 1 m.
+fn usual_level_db(sound: &SoundName) -> Result<f32, WorldError> {
+    default_level_db(sound)?.ok_or_else(|| WorldError::Config {
+        field: "episode.goal",
+        found: format!("one of {sound} without level_db"),
+        allowed: "one with level_db, dB SPL at 1 m: a recording has no usual level".to_owned(),
+    })
+}
+
 /// Plays a signal at a place, by default at its typical level, once or for ever.
 pub(super) fn play_signal(
     world: &mut World,
@@ -131,21 +144,65 @@ impl GoalKind for AudioNav {
         ))
     }
 
+    fn stated(
+        &self,
+        site: &GoalSite<'_>,
+        asked: &StatedGoal,
+    ) -> Result<Arc<NavigationGoal>, WorldError> {
+        let own = [
+            "position",
+            "sound",
+            "sound_file",
+            "level_db",
+            "height_m",
+            "offset_s",
+            "duration_s",
+        ];
+        asked.refuse_others(Self::NAME, &own)?;
+        if asked.sound.is_some() && asked.sound_file.is_some() {
+            return Err(WorldError::Config {
+                field: "episode.goal",
+                found: "one with sound and sound_file".to_owned(),
+                allowed: "one of the two".to_owned(),
+            });
+        }
+        let place = asked.place(Self::NAME)?;
+        let point = StatedPoint::on_grid(site.grid, "episode.goal.position", place)?;
+        let radius_m = self.settings.success_distance_m;
+        Ok(Arc::new(NavigationGoal::point("sound", point, radius_m)))
+    }
+
     fn begin(
         &self,
         world: &mut World,
         goal: &NavigationGoal,
+        asked: Option<&StatedGoal>,
         key: RandomKey,
     ) -> Result<String, WorldError> {
         let sounds = &self.settings.sounds;
-        let (Some(floor), Some(name)) = (
+        let (Some(floor), Some(drawn)) = (
             goal.told.position,
             key.child("sound").stream().choose(sounds),
         ) else {
             return Ok(ASKED.to_owned());
         };
-        let place = SoundPlace::Point(floor + Vec3::Y * SOURCE_HEIGHT_M);
-        play_signal(world, name, (place, self.settings.level_db, true))?;
+        let asked = asked.cloned().unwrap_or_default();
+        let height_m = asked.height_m.unwrap_or(SOURCE_HEIGHT_M);
+        let sound = match asked.sound_file {
+            Some(path) => SoundName::File(path),
+            None => SoundName::Signal(asked.sound.unwrap_or_else(|| drawn.clone())),
+        };
+        let level_db = asked.level_db.or(self.settings.level_db);
+        let request = PlayRequest {
+            level_db: match level_db {
+                Some(level_db) => level_db,
+                None => usual_level_db(&sound)?,
+            },
+            sound,
+            place: SoundPlace::Point(floor + Vec3::Y * height_m),
+            loops: true,
+        };
+        world.play_between(request, asked.offset_s, asked.duration_s)?;
         Ok(ASKED.to_owned())
     }
 }

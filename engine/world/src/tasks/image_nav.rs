@@ -8,6 +8,7 @@ use super::point_nav::check_success_distance;
 use super::{Task, TaskKind, TaskSetup, random_yaw_rad};
 use crate::actions::DiscreteAction;
 use crate::episode::GoalPart;
+use crate::episode_spec::StatedGoal;
 use crate::error::WorldError;
 use crate::schema;
 use crate::world::World;
@@ -75,6 +76,7 @@ impl GoalKind for ImageNav {
         &self,
         _world: &mut World,
         _goal: &NavigationGoal,
+        _asked: Option<&StatedGoal>,
         _key: RandomKey,
     ) -> Result<String, WorldError> {
         Ok("Go to the place of the picture.".to_owned())

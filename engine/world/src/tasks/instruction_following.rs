@@ -8,6 +8,7 @@ use super::navigation::{GoalKind, NavigationGoal, NavigationTask, navigation_set
 use super::{Task, TaskKind, TaskSetup};
 use crate::actions::DiscreteAction;
 use crate::episode::EpisodeGoal;
+use crate::episode_spec::StatedGoal;
 use crate::error::WorldError;
 use crate::schema;
 use crate::world::World;
@@ -107,6 +108,7 @@ impl GoalKind for InstructionFollowing {
         &self,
         world: &mut World,
         goal: &NavigationGoal,
+        _asked: Option<&StatedGoal>,
         key: RandomKey,
     ) -> Result<String, WorldError> {
         let offered = goal.instruction.as_slice();

@@ -14,11 +14,13 @@ mod room_nav;
 mod semantic_audio_nav;
 mod sound_localization;
 mod standing_room;
+mod stated_things;
 
 use crate::actions::{ActionSet, DiscreteAction, StepAction, StepSizes};
 use crate::episode::{
     Answer, AnswerField, Episode, GoalPart, MAX_ANSWER_FIELDS, StepResult, TaskMeasure,
 };
+use crate::episode_spec::EpisodeSpec;
 use crate::error::WorldError;
 use crate::schema::FieldSchema;
 use crate::world::World;
@@ -55,6 +57,24 @@ pub trait Task: Debug + Send + Sync {
         placed: &[AgentId],
         key: RandomKey,
     ) -> Result<Episode, WorldError>;
+
+    /// [`Self::reset`], where the episode states some of what is drawn else; what it does not state is drawn as always.
+    ///
+    /// # Errors
+    /// Those of [`Self::reset`]; [`WorldError::Config`] for what is not as stated in this house, and of tasks that draw everything.
+    fn reset_stated(
+        &mut self,
+        _world: &mut World,
+        _placed: &[AgentId],
+        _key: RandomKey,
+        _spec: &EpisodeSpec,
+    ) -> Result<Episode, WorldError> {
+        Err(WorldError::Config {
+            field: "episode",
+            found: "one that states its start or goal".to_owned(),
+            allowed: "in this task one that is drawn from its seed; PointNav, ObjectNav and AudioNav state both".to_owned(),
+        })
+    }
 
     /// What it keeps of the episode beside the world, as bytes for snapshots; nothing for most.
     fn snapshot(&self) -> Vec<u8> {

@@ -4,11 +4,13 @@
 //! The success rule of `RoboTHOR` (M. Deitke et al., CVPR 2020): `stop` within 1 m of a thing of the class that is in view.
 
 use super::goal_cells::LargestIslandIndex;
-use super::navigation::{GoalKind, NavigationGoal, NavigationTask, navigation_settings};
+use super::navigation::{GoalKind, GoalSite, NavigationGoal, NavigationTask, navigation_settings};
 use super::point_nav::check_success_distance;
+use super::stated_things::stated_things;
 use super::{Task, TaskKind, TaskSetup};
 use crate::actions::DiscreteAction;
 use crate::episode::{EpisodeGoal, GoalPart, category_of_class};
+use crate::episode_spec::StatedGoal;
 use crate::error::WorldError;
 use crate::schema;
 use crate::world::World;
@@ -19,6 +21,7 @@ use dwell_semantics::category::categories;
 use dwell_semantics::english;
 use dwell_semantics::instruct::{InstructionGoal, is_sought};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 pub(super) const KIND: TaskKind = TaskKind {
     name: ObjectNav::NAME,
@@ -109,10 +112,41 @@ impl GoalKind for ObjectNav {
         goals.collect()
     }
 
+    fn stated(
+        &self,
+        site: &GoalSite<'_>,
+        asked: &StatedGoal,
+    ) -> Result<Arc<NavigationGoal>, WorldError> {
+        asked.refuse_others(Self::NAME, &["class", "also", "objects", "positions"])?;
+        let (objects, class) = stated_things(site.world, asked)?;
+        let mut offers = site.offers.iter();
+        if let Some(offer) =
+            offers.find(|offer| offer.told.class == class && offer.told.objects == objects)
+        {
+            return Ok(offer.clone());
+        }
+        let told = EpisodeGoal {
+            kind: "object",
+            objects: objects.clone(),
+            class,
+            ..EpisodeGoal::default()
+        };
+        let ground = LargestIslandIndex::of(site.grid);
+        let radius_m = self.settings.success_distance_m as f32;
+        let goal = InstructionGoal::objects(objects, radius_m);
+        let found = NavigationGoal::fulfilled((site.world, site.agent), &ground, goal, told);
+        found.map(Arc::new).ok_or_else(|| WorldError::Config {
+            field: "episode.goal",
+            found: "one of things that nobody can stand near and see".to_owned(),
+            allowed: "a goal that can be reached from the house's main floor".to_owned(),
+        })
+    }
+
     fn begin(
         &self,
         _world: &mut World,
         goal: &NavigationGoal,
+        _asked: Option<&StatedGoal>,
         _key: RandomKey,
     ) -> Result<String, WorldError> {
         let noun = category_of_class(goal.told.class).map_or("thing", |row| row.singular);

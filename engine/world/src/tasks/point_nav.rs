@@ -4,15 +4,19 @@
 //! `PointNav` of P. Anderson et al., "On Evaluation of Embodied Navigation Agents", arXiv:1807.06757 (2018); the success distance of
 //! habitat-lab: 0.2 m, twice the radius of its agent.
 
-use super::navigation::{GoalKind, NavigationGoal, NavigationTask, navigation_settings};
+use super::navigation::{
+    GoalKind, GoalSite, NavigationGoal, NavigationTask, StatedPoint, navigation_settings,
+};
 use super::{Task, TaskKind, TaskSetup};
 use crate::actions::DiscreteAction;
 use crate::episode::GoalPart;
+use crate::episode_spec::StatedGoal;
 use crate::error::WorldError;
 use crate::schema;
 use crate::world::World;
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::random::RandomKey;
+use std::sync::Arc;
 
 pub(super) const KIND: TaskKind = TaskKind {
     name: PointNav::NAME,
@@ -86,10 +90,23 @@ impl GoalKind for PointNav {
         ))
     }
 
+    fn stated(
+        &self,
+        site: &GoalSite<'_>,
+        asked: &StatedGoal,
+    ) -> Result<Arc<NavigationGoal>, WorldError> {
+        asked.refuse_others(Self::NAME, &["position"])?;
+        let place = asked.place(Self::NAME)?;
+        let point = StatedPoint::on_grid(site.grid, "episode.goal.position", place)?;
+        let radius_m = self.settings.success_distance_m;
+        Ok(Arc::new(NavigationGoal::point("point", point, radius_m)))
+    }
+
     fn begin(
         &self,
         _world: &mut World,
         _goal: &NavigationGoal,
+        _asked: Option<&StatedGoal>,
         _key: RandomKey,
     ) -> Result<String, WorldError> {
         Ok("Go to the goal.".to_owned())

@@ -5,6 +5,7 @@ use super::navigation::{GoalKind, NavigationGoal, NavigationTask, navigation_set
 use super::{Task, TaskKind, TaskSetup};
 use crate::actions::DiscreteAction;
 use crate::episode::{EpisodeGoal, GoalPart};
+use crate::episode_spec::StatedGoal;
 use crate::error::WorldError;
 use crate::schema;
 use crate::world::World;
@@ -106,6 +107,7 @@ impl GoalKind for RoomNav {
         &self,
         _world: &mut World,
         goal: &NavigationGoal,
+        _asked: Option<&StatedGoal>,
         _key: RandomKey,
     ) -> Result<String, WorldError> {
         let row = &room_kinds().rows()[goal.told.room_kind as usize - 1];

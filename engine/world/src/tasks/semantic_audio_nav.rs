@@ -11,6 +11,7 @@ use super::point_nav::check_success_distance;
 use super::{Task, TaskKind, TaskSetup};
 use crate::actions::DiscreteAction;
 use crate::episode::{EpisodeGoal, GoalPart, category_of_class};
+use crate::episode_spec::StatedGoal;
 use crate::error::WorldError;
 use crate::schema;
 use crate::sound::{SoundPlace, check_level};
@@ -166,6 +167,7 @@ impl GoalKind for SemanticAudioNav {
         &self,
         world: &mut World,
         goal: &NavigationGoal,
+        _asked: Option<&StatedGoal>,
         key: RandomKey,
     ) -> Result<String, WorldError> {
         let all = sounding_things(world);

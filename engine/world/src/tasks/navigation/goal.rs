@@ -1,5 +1,6 @@
 //! Goals of navigation: where they are reached, and how that is judged.
 
+use super::stated::StatedPoint;
 use crate::episode::EpisodeGoal;
 use crate::tasks::goal_cells::LargestIslandIndex;
 use crate::world::World;
@@ -51,11 +52,21 @@ impl NavigationGoal {
         })
     }
 
-    /// The goal to come near a cell.
+    /// The goal to come near the middle of a cell.
     pub(in crate::tasks) fn place(
         kind: &'static str,
         grid: &NavGrid,
         cell: NavCell,
+        success_distance_m: f64,
+    ) -> Self {
+        let position = grid.position(cell);
+        Self::point(kind, StatedPoint { cell, position }, success_distance_m)
+    }
+
+    /// The goal to come near a point.
+    pub(in crate::tasks) fn point(
+        kind: &'static str,
+        StatedPoint { cell, position }: StatedPoint,
         success_distance_m: f64,
     ) -> Self {
         Self {
@@ -63,7 +74,7 @@ impl NavigationGoal {
             success: SuccessRule::Within(success_distance_m),
             told: EpisodeGoal {
                 kind,
-                position: Some(grid.position(cell)),
+                position: Some(position),
                 ..EpisodeGoal::default()
             },
             instruction: None,

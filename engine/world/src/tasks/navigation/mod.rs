@@ -6,10 +6,12 @@
 mod goal;
 mod leg;
 mod settings;
+mod stated;
 
 pub(super) use goal::{NavigationGoal, SuccessRule, cells_in_reach, cells_that_reach};
 pub(super) use leg::{BESIDE_M, ELSEWHERE_M, Leg};
 pub(super) use settings::{NavigationRewards, NavigationRules, navigation_settings};
+pub(super) use stated::StatedPoint;
 
 use super::door_leaves::DoorLeaves;
 use super::goal_cells::LargestIslandIndex;
@@ -17,6 +19,7 @@ use super::standing_room::FreeStartCells;
 use super::{PlayedAction, Task, TaskSetup};
 use crate::actions::DiscreteAction;
 use crate::episode::{Episode, StepResult};
+use crate::episode_spec::{EpisodeSpec, StatedGoal};
 use crate::error::WorldError;
 use crate::metrics::NavigationMetrics;
 use crate::world::World;
@@ -64,7 +67,26 @@ pub(super) trait GoalKind: Debug + Send + Sync {
         None
     }
 
-    /// Arranges the world for a goal that was chosen, and says what is asked.
+    /// The goal that an episode states.
+    ///
+    /// # Errors
+    /// [`WorldError::Config`] for one that the house does not have, and of kinds whose goals cannot be stated.
+    fn stated(
+        &self,
+        _site: &GoalSite<'_>,
+        _asked: &StatedGoal,
+    ) -> Result<Arc<NavigationGoal>, WorldError> {
+        Err(WorldError::Config {
+            field: "episode.goal",
+            found: "stated".to_owned(),
+            allowed: format!(
+                "in {} one that is drawn; PointNav, ObjectNav and AudioNav state theirs",
+                Self::NAME
+            ),
+        })
+    }
+
+    /// Arranges the world for a goal that was chosen, and says what is asked. `asked`: the goal as it is stated, where it is.
     ///
     /// # Errors
     /// [`WorldError`] where the world cannot be arranged.
@@ -72,8 +94,19 @@ pub(super) trait GoalKind: Debug + Send + Sync {
         &self,
         world: &mut World,
         goal: &NavigationGoal,
+        asked: Option<&StatedGoal>,
         key: RandomKey,
     ) -> Result<String, WorldError>;
+}
+
+/// Where a stated goal is looked for.
+pub(super) struct GoalSite<'a> {
+    pub(super) world: &'a World,
+    /// Who goes there.
+    pub(super) agent: AgentId,
+    pub(super) grid: &'a NavGrid,
+    /// The goals that the house offers at its start.
+    pub(super) offers: &'a [Arc<NavigationGoal>],
 }
 
 /// A task of navigation.
@@ -111,8 +144,8 @@ impl<K: GoalKind> NavigationTask<K> {
     }
 }
 
-/// A start of an episode: a cell and a heading, rad.
-type Start = (NavCell, f32);
+/// A start of an episode: a point and a heading, rad.
+type Start = (StatedPoint, f32);
 
 impl<K: GoalKind> NavigationTask<K> {
     /// A start for a goal, of the cells that are allowed, in which the agent has not reached it; the agent stands there then.
@@ -132,13 +165,65 @@ impl<K: GoalKind> NavigationTask<K> {
                 return Ok(None);
             };
             let yaw_rad = of(key.child("yaw")).stream().range(-PI, PI);
-            let agent = self.setup.agent;
-            world.place_agent(agent, leg.guide.grid().position(cell), yaw_rad)?;
+            let position = leg.guide.grid().position(cell);
+            world.place_agent(self.setup.agent, position, yaw_rad)?;
             if !leg.is_reached(world, leg.guide.distance_at(cell)) {
-                return Ok(Some((cell, yaw_rad)));
+                return Ok(Some((StatedPoint { cell, position }, yaw_rad)));
             }
         }
         Ok(None)
+    }
+
+    /// Places the agent at a stated start, if an episode may start there; `states_goal`: whether the goal is stated, too, and whatever
+    /// its distance.
+    fn place_stated(
+        &self,
+        world: &mut World,
+        leg: &Leg,
+        (start, yaw_rad): Start,
+        states_goal: bool,
+    ) -> Result<Option<Start>, WorldError> {
+        let may_start = if states_goal {
+            leg.guide.distance_at(start.cell).is_some()
+        } else {
+            self.is_start(leg, start.cell)
+        };
+        if !may_start {
+            return Ok(None);
+        }
+        world.place_agent(self.setup.agent, start.position, yaw_rad)?;
+        let is_reached = || leg.is_reached(world, leg.guide.distance_at(start.cell));
+        Ok((states_goal || !is_reached()).then_some((start, yaw_rad)))
+    }
+
+    /// Why no episode could begin. `seen`: how many goals were tried.
+    fn unplayable(&self, world: &World, seen: usize, spec: &EpisodeSpec) -> WorldError {
+        let [least, most] = self.rules.distance_m;
+        if let (Some(start), Some(_)) = (&spec.start, &spec.goal) {
+            return WorldError::Config {
+                field: "episode.goal",
+                found: format!(
+                    "one to which no way leads from the start, {:?}",
+                    start.position
+                ),
+                allowed: "a goal that can be walked to from there".to_owned(),
+            };
+        }
+        let why = match (seen, spec.start) {
+            (0, _) => K::LACKS.to_owned(),
+            (_, Some(start)) => format!(
+                "none of {seen} goals can be walked to from {least} to {most} m away, from {:?}, with the other settings",
+                start.position
+            ),
+            (_, None) => format!(
+                "none of {seen} goals can be walked to from {least} to {most} m away with the other settings"
+            ),
+        };
+        WorldError::TaskNotPlayable {
+            task: K::NAME,
+            house: world.house().name.clone(),
+            why,
+        }
     }
 }
 
@@ -165,6 +250,16 @@ impl<K: GoalKind> Task for NavigationTask<K> {
         placed: &[AgentId],
         key: RandomKey,
     ) -> Result<Episode, WorldError> {
+        self.reset_stated(world, placed, key, &EpisodeSpec::default())
+    }
+
+    fn reset_stated(
+        &mut self,
+        world: &mut World,
+        placed: &[AgentId],
+        key: RandomKey,
+        spec: &EpisodeSpec,
+    ) -> Result<Episode, WorldError> {
         let agent = self.setup.agent;
         let body = self.setup.body(world, K::NAME)?;
         let grid = world.engines().nav_grid(&body)?;
@@ -174,46 +269,55 @@ impl<K: GoalKind> Task for NavigationTask<K> {
         let free = |cell: NavCell| grid.island(cell) == Some(0) && !leaves.is_blocked(&grid, cell);
         let mut order: Vec<usize> = (0..self.offers.len()).collect();
         key.child("order").stream().shuffle(&mut order);
+        let stated_start = match &spec.start {
+            Some(start) => Some(stated::stated_start(&grid, start, &leaves, &room)?),
+            None => None,
+        };
+        let site = GoalSite {
+            world,
+            agent,
+            grid: &grid,
+            offers: &self.offers,
+        };
+        let stated = match &spec.goal {
+            Some(asked) => Some(self.kind.stated(&site, asked)?),
+            None => None,
+        };
+        let most = if stated.is_some() { 0 } else { DRAWS };
+        order.truncate(if stated.is_some() { 0 } else { order.len() });
         let surveyed = order.into_iter().map(|k| self.offers[k].clone());
-        let drawn = (0..DRAWS).map_while(|k| {
+        let drawn = (0..most).map_while(|k| {
             let goal = self.kind.draw(&grid, key.child("goal").child(k), &free)?;
             Some(Arc::new(goal))
         });
         let (mut seen, mut found) = (0_usize, None);
-        for goal in surveyed.chain(drawn) {
+        for goal in stated.into_iter().chain(surveyed).chain(drawn) {
             interrupt::unwind_if_cancelled();
             seen += 1;
             let leg = Leg::new(agent, grid.clone(), goal, self.setup.stride);
             let sample = |key: RandomKey| {
                 room.sample(&grid, key, |cell| free(cell) && self.is_start(&leg, cell))
             };
-            if let Some(start) = self.place(world, &leg, key, sample)? {
+            let start = match stated_start {
+                Some(start) => self.place_stated(world, &leg, start, spec.goal.is_some())?,
+                None => self.place(world, &leg, key, sample)?,
+            };
+            if let Some(start) = start {
                 found = Some((leg, start));
                 break;
             }
         }
         let Some((leg, (start, yaw_rad))) = found else {
-            let [least, most] = self.rules.distance_m;
-            let why = match seen {
-                0 => K::LACKS.to_owned(),
-                _ => format!(
-                    "none of {seen} goals can be walked to from {least} to {most} m away with the other settings"
-                ),
-            };
-            return Err(WorldError::TaskNotPlayable {
-                task: K::NAME,
-                house: world.house().name.clone(),
-                why,
-            });
+            return Err(self.unplayable(world, seen, spec));
         };
-        let instruction = self.kind.begin(world, &leg.goal, key)?;
-        let position = grid.position(start);
+        let instruction = self.kind.begin(world, &leg.goal, spec.goal.as_ref(), key)?;
+        let StatedPoint { cell, position } = start;
         let episode = Episode {
             agent,
             tokens: vocabulary::tokenize(&instruction)?,
             instruction,
             start: Pose::from_position_yaw(position, yaw_rad),
-            progress: NavigationMetrics::new(position, leg.guide.distance_at(start)),
+            progress: NavigationMetrics::new(position, leg.guide.distance_at(cell)),
             goal: leg.goal.told.clone(),
         };
         self.active = Some(leg);
