@@ -3,6 +3,7 @@
 use crate::actions::{self, ActionMode, DiscreteAction, StepSizes};
 use crate::config::WorldConfig;
 use crate::error::WorldError;
+use crate::tasks;
 use dwell_scene::{AgentId, Id};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -23,7 +24,8 @@ pub struct EnvConfig {
     pub stride: StepSizes,
     /// The form of actions.
     pub action_mode: ActionMode,
-    /// The discrete actions to choose from, by name, in the order of their numbers; `None`: those that are usual in the mode.
+    /// The discrete actions to choose from, by name, in the order of their numbers; `None`: those that are usual in the mode, and
+    /// with [`ActionMode::Discrete`] those of the tasks.
     pub actions: Option<Vec<String>>,
     /// Sensors by name with their settings; `None`: the task's own choice.
     pub sensors: Option<Vec<SensorConfig>>,
@@ -99,6 +101,7 @@ impl EnvConfig {
     /// has none to choose from.
     pub fn chosen_actions(&self) -> Result<Vec<DiscreteAction>, WorldError> {
         match (&self.actions, self.action_mode) {
+            (None, ActionMode::Discrete) => self.actions_of_tasks(),
             (None, mode) => Ok(mode.default_actions().to_vec()),
             (Some(names), ActionMode::Velocity) => Err(WorldError::Config {
                 field: "actions",
@@ -107,6 +110,19 @@ impl EnvConfig {
             }),
             (Some(names), _) => actions::actions_named(names),
         }
+    }
+
+    /// The discrete actions of the tasks of all agents, in the order of all.
+    fn actions_of_tasks(&self) -> Result<Vec<DiscreteAction>, WorldError> {
+        let of_agents = self.agents.iter().map(|own| own.task.as_deref());
+        let names = of_agents.map(|own| own.unwrap_or(&self.task));
+        let kinds = names.map(tasks::find).collect::<Result<Vec<_>, _>>()?;
+        let is_asked = |action: &DiscreteAction| {
+            let mut kinds = kinds.iter();
+            kinds.any(|kind| kind.actions.contains(action))
+        };
+        let all = DiscreteAction::ALL.into_iter();
+        Ok(all.filter(is_asked).collect())
     }
 
     /// The agents that act, in order.

@@ -26,6 +26,7 @@ mod objectgoal;
 mod picture_memory;
 mod pointgoal_with_gps_compass;
 mod proprioception;
+mod rearrangegoal;
 mod receiver;
 mod rgb;
 mod roomgoal;
@@ -357,6 +358,7 @@ pub fn all() -> &'static [SensorKind] {
         roomgoal::KIND,
         objectgoal::KIND,
         imagegoal::KIND,
+        rearrangegoal::KIND,
         instruction::KIND,
         instruction_tokens::KIND,
         gps::KIND,

@@ -7,6 +7,7 @@
 use super::navigation::{GoalKind, NavigationGoal, NavigationTask, navigation_settings};
 use super::point_nav::check_success_distance;
 use super::{Task, TaskKind, TaskSetup};
+use crate::actions::DiscreteAction;
 use crate::error::WorldError;
 use crate::schema;
 use crate::sound::{PlayRequest, SoundName, SoundPlace, check_level};
@@ -39,6 +40,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     has_goal: true,
     goal_parts: &[],
     max_steps: 1000,
+    actions: DiscreteAction::DEFAULT,
     sensors: &["rgb", "depth", "audio", "spectrogram"],
     measures: &[],
     settings: schema::fields_of::<AudioNavSettings>,

@@ -30,6 +30,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     has_goal: false,
     goal_parts: &[],
     max_steps: 1000,
+    actions: DiscreteAction::DEFAULT,
     sensors: &["rgb", "depth", "semantic", "audio"],
     measures: &[],
     settings: schema::fields_of::<FreeSettings>,

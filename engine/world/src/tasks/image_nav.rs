@@ -7,6 +7,7 @@ use super::navigation::{GoalKind, NavigationGoal, NavigationTask, navigation_set
 use super::point_nav::check_success_distance;
 use super::{Task, TaskKind, TaskSetup, random_yaw_rad};
 use crate::episode::GoalPart;
+use crate::actions::DiscreteAction;
 use crate::error::WorldError;
 use crate::schema;
 use crate::world::World;
@@ -20,6 +21,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     has_goal: true,
     goal_parts: &[GoalPart::Image],
     max_steps: 1000,
+    actions: DiscreteAction::DEFAULT,
     sensors: &["rgb", "depth", "imagegoal"],
     measures: &[],
     settings: schema::fields_of::<ImageNavSettings>,

@@ -7,6 +7,7 @@ use super::goal_cells::LargestIslandIndex;
 use super::navigation::{GoalKind, NavigationGoal, NavigationTask, navigation_settings};
 use super::{Task, TaskKind, TaskSetup};
 use crate::episode::EpisodeGoal;
+use crate::actions::DiscreteAction;
 use crate::error::WorldError;
 use crate::schema;
 use crate::world::World;
@@ -21,6 +22,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     has_goal: true,
     goal_parts: &[],
     max_steps: 1000,
+    actions: DiscreteAction::DEFAULT,
     sensors: &[
         "rgb",
         "depth",

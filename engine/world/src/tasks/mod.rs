@@ -10,12 +10,14 @@ mod instruction_steps;
 mod navigation;
 mod object_nav;
 mod point_nav;
+mod rearrange;
+mod relocation;
 mod room_nav;
 mod semantic_audio_nav;
 mod sound_localization;
 mod standing_room;
 
-use crate::actions::{DiscreteAction, StepAction, StepSizes};
+use crate::actions::{DiscreteAction, HandTarget, StepAction, StepSizes};
 use crate::episode::{
     Answer, AnswerField, Episode, GoalPart, MAX_ANSWER_FIELDS, StepResult, TaskMeasure,
 };
@@ -73,6 +75,11 @@ pub trait Task: Debug + Send + Sync {
 
     /// Judges the step that has just been made with `action`.
     fn judge(&mut self, world: &World, episode: &mut Episode, action: &StepAction) -> StepResult;
+
+    /// What the hand is used on in an action of its agent that states no target, where the task knows better than the view.
+    fn hand_target(&self, _world: &World, _action: DiscreteAction) -> Option<HandTarget> {
+        None
+    }
 
     /// The fields of the answer that it expects with `stop`, in order, at most [`MAX_ANSWER_FIELDS`]; none for most.
     fn answer_fields(&self) -> Vec<AnswerField> {
@@ -141,6 +148,8 @@ pub struct TaskKind {
     pub goal_parts: &'static [GoalPart],
     /// Control steps after which an episode is cut off.
     pub max_steps: u64,
+    /// The discrete actions of its environment by default, in the order of their numbers.
+    pub actions: &'static [DiscreteAction],
     /// The sensors of its environment by default.
     pub sensors: &'static [&'static str],
     /// What it measures beside distance and path, in order.
@@ -164,6 +173,7 @@ pub fn all() -> &'static [TaskKind] {
         semantic_audio_nav::KIND,
         instruction_steps::KIND,
         sound_localization::KIND,
+        rearrange::KIND,
     ]
 }
 

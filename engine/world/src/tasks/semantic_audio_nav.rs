@@ -10,6 +10,7 @@ use super::navigation::{GoalKind, NavigationGoal, NavigationTask, navigation_set
 use super::point_nav::check_success_distance;
 use super::{Task, TaskKind, TaskSetup};
 use crate::episode::{EpisodeGoal, GoalPart, category_of_class};
+use crate::actions::DiscreteAction;
 use crate::error::WorldError;
 use crate::schema;
 use crate::sound::{SoundPlace, check_level};
@@ -53,6 +54,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     has_goal: true,
     goal_parts: &[GoalPart::Class],
     max_steps: 1000,
+    actions: DiscreteAction::DEFAULT,
     sensors: &["rgb", "depth", "gps", "compass", "audio", "spectrogram"],
     measures: &[],
     settings: schema::fields_of::<SemanticAudioNavSettings>,

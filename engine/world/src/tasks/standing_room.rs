@@ -46,7 +46,7 @@ impl FreeStartCells {
     }
 
     /// Returns whether the agent can stand at `feet`, m.
-    fn holds(&self, feet: Vec3) -> bool {
+    pub(super) fn holds(&self, feet: Vec3) -> bool {
         let mut taken = self.taken.iter();
         taken.all(|(position, apart_m)| position.distance(feet) >= *apart_m)
     }

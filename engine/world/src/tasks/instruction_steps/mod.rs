@@ -40,6 +40,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     has_goal: true,
     goal_parts: &[],
     max_steps: 1000,
+    actions: DiscreteAction::DEFAULT,
     sensors: &[
         "rgb",
         "depth",
