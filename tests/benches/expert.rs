@@ -45,7 +45,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             steps += env.steps();
         }
         let count = to - from;
-        println!("{name}: {solved} of {count} episodes solved, {} steps each", steps / count.max(1));
+        println!(
+            "{name}: {solved} of {count} episodes solved, {} steps each",
+            steps / count.max(1)
+        );
     }
     Ok(())
 }
@@ -79,7 +82,13 @@ fn tell(env: &Env, seed: u64, steps: u64, actions: &[String]) {
     let text = env.episode(0).map_or("", |episode| &episode.instruction);
     let last = &actions[actions.len().saturating_sub(6)..];
     let measures = env.task_measures(0).unwrap_or_default();
-    println!("{:?}", measures.iter().map(|measure| measure.name).collect::<Vec<_>>());
+    println!(
+        "{:?}",
+        measures
+            .iter()
+            .map(|measure| measure.name)
+            .collect::<Vec<_>>()
+    );
     println!(
         "episode {seed}, {steps} steps: {text:?}, at {:.3} {:.2} rad, {last:?}",
         agent.position, agent.yaw_rad

@@ -38,7 +38,7 @@ pub struct ObjectPlacement {
 /// What an episode asks for, as sensors of goals and infos tell it. What does not belong to its kind is empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct EpisodeGoal {
-    /// `"point"`, `"room"`, `"object"`, `"image"`, `"sound"`, `"rearrangement"`, or the kind of an instruction (`"go_to_room"`, `"find_object"`); empty
+    /// `"point"`, `"room"`, `"object"`, `"image"`, `"sound"`, `"rearrangement"`, `"tidying"`, or the kind of an instruction (`"go_to_room"`, `"find_object"`); empty
     /// where the task asks for nothing, or a task outside of this crate asks.
     pub kind: &'static str,
     /// A place on the floor, m.

@@ -38,7 +38,8 @@ impl ActionContext<'_> {
             let sentence = format!("{world_from_part:?} is no pose; give finite numbers.");
             return Ok(fail(OutcomeCode::BadNumber, sentence, Some(grip.object)));
         }
-        let bounds = self.dynamics.model.bodies[grip.body as usize].bounds(&to_rapier(world_from_part));
+        let bounds =
+            self.dynamics.model.bodies[grip.body as usize].bounds(&to_rapier(world_from_part));
         let middle = bounds.center();
         let foot = Vec3::new(middle.x, bounds.min.y, middle.z);
         let stance = self.stable_pose(grip.body as usize, world_from_part.rotation);
@@ -53,7 +54,11 @@ impl ActionContext<'_> {
     /// Returns a body's pose with an orientation; `None` where it topples by itself.
     fn stable_pose(&self, body: usize, rotation: glam::Quat) -> Option<StablePose> {
         let plan = &self.dynamics.model.bodies[body];
-        let rigid = self.dynamics.engine.bodies.get(self.dynamics.bodies[body].handle)?;
+        let rigid = self
+            .dynamics
+            .engine
+            .bodies
+            .get(self.dynamics.bodies[body].handle)?;
         let center_of_mass = rigid.mass_properties().local_mprops.local_com;
         StablePose::resting(plan, rotation, center_of_mass)
     }

@@ -163,14 +163,16 @@ impl World {
                 return refuse("That place of the picture shows nothing. Choose another.");
             }
             HandTarget::Gaze | HandTarget::Pose(_) if finds => None,
-            HandTarget::Gaze | HandTarget::Pose(_) => match self.object_in_view_centre(step.agent) {
-                Some(object) => Some(object.into()),
-                None => {
-                    return refuse(
-                        "You look at nothing that you could take, open or switch. Turn towards it.",
-                    );
+            HandTarget::Gaze | HandTarget::Pose(_) => {
+                match self.object_in_view_centre(step.agent) {
+                    Some(object) => Some(object.into()),
+                    None => {
+                        return refuse(
+                            "You look at nothing that you could take, open or switch. Turn towards it.",
+                        );
+                    }
                 }
-            },
+            }
         };
         Ok(Some(Ok(kind.parse_hand_action(target, Map::new())?)))
     }

@@ -34,6 +34,7 @@ mod semantic;
 mod spectrogram;
 mod surfels;
 mod top_down_map;
+mod unshuffled_rgb;
 mod visible_objects;
 mod wheel_odometry;
 
@@ -359,6 +360,7 @@ pub fn all() -> &'static [SensorKind] {
         objectgoal::KIND,
         imagegoal::KIND,
         rearrangegoal::KIND,
+        unshuffled_rgb::KIND,
         instruction::KIND,
         instruction_tokens::KIND,
         gps::KIND,

@@ -1,8 +1,8 @@
 //! Where things belong that are to be put back.
 
 use super::{
-    AgentSensorSettings, Dtype, ObservationBuffer, ObservedAgent, Sensor, SensorContext, SensorKind, SensorSetup,
-    SensorSpec,
+    AgentSensorSettings, Dtype, ObservationBuffer, ObservedAgent, Sensor, SensorContext,
+    SensorKind, SensorSetup, SensorSpec,
 };
 use crate::episode::GoalPart;
 use crate::error::WorldError;

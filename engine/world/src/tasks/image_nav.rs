@@ -6,8 +6,8 @@
 use super::navigation::{GoalKind, NavigationGoal, NavigationTask, navigation_settings};
 use super::point_nav::check_success_distance;
 use super::{Task, TaskKind, TaskSetup, random_yaw_rad};
-use crate::episode::GoalPart;
 use crate::actions::DiscreteAction;
+use crate::episode::GoalPart;
 use crate::error::WorldError;
 use crate::schema;
 use crate::world::World;

@@ -6,8 +6,8 @@
 use super::goal_cells::LargestIslandIndex;
 use super::navigation::{GoalKind, NavigationGoal, NavigationTask, navigation_settings};
 use super::{Task, TaskKind, TaskSetup};
-use crate::episode::EpisodeGoal;
 use crate::actions::DiscreteAction;
+use crate::episode::EpisodeGoal;
 use crate::error::WorldError;
 use crate::schema;
 use crate::world::World;

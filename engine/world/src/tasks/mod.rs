@@ -16,6 +16,7 @@ mod room_nav;
 mod semantic_audio_nav;
 mod sound_localization;
 mod standing_room;
+mod tidy;
 
 use crate::actions::{DiscreteAction, HandTarget, StepAction, StepSizes};
 use crate::episode::{
@@ -174,6 +175,7 @@ pub fn all() -> &'static [TaskKind] {
         instruction_steps::KIND,
         sound_localization::KIND,
         rearrange::KIND,
+        tidy::KIND,
     ]
 }
 

@@ -8,16 +8,16 @@ const THINNEST_M: f32 = 0.001;
 
 /// A box that is turned.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::tasks) struct OrientedBox {
+pub(super) struct OrientedBox {
     /// From the middle and the axes of the box to the world.
-    pub(in crate::tasks) world_from_box: Pose,
+    pub(super) world_from_box: Pose,
     /// Half of its edges along its own axes, m.
-    pub(in crate::tasks) half: Vec3,
+    pub(super) half: Vec3,
 }
 
 impl OrientedBox {
     /// The box `bounds` of a frame that stands at `world_from_frame`.
-    pub(in crate::tasks) fn of(world_from_frame: Pose, bounds: &Aabb) -> Self {
+    pub(super) fn of(world_from_frame: Pose, bounds: &Aabb) -> Self {
         Self {
             world_from_box: world_from_frame * Pose::from_position(bounds.center()),
             half: (0.5 * bounds.size()).max(Vec3::splat(0.5 * THINNEST_M)),
@@ -25,13 +25,13 @@ impl OrientedBox {
     }
 
     /// Its corners, m.
-    pub(in crate::tasks) fn corners(&self) -> [Vec3; 8] {
+    pub(super) fn corners(&self) -> [Vec3; 8] {
         let local = Aabb::new(-self.half, self.half).corners();
         local.map(|corner| self.world_from_box.transform_point(corner))
     }
 
     /// The least distance between a corner of one and a corner of the other, m.
-    pub(in crate::tasks) fn corner_distance_m(&self, other: &Self) -> f64 {
+    pub(super) fn corner_distance_m(&self, other: &Self) -> f64 {
         let theirs = other.corners();
         let pairs = self.corners().into_iter();
         let pairs = pairs.flat_map(|own| theirs.map(|their| own.distance(their)));
@@ -44,7 +44,7 @@ impl OrientedBox {
     }
 
     /// The share of the volume of both together that is common to them, 0 to 1.
-    pub(in crate::tasks) fn iou(&self, other: &Self) -> f64 {
+    pub(super) fn iou(&self, other: &Self) -> f64 {
         let common = self.common_volume_m3(other);
         let all = self.volume_m3() + other.volume_m3() - common;
         (common / all).clamp(0.0, 1.0)
@@ -57,7 +57,8 @@ impl OrientedBox {
         let own = DMat3::from_quat(self.world_from_box.rotation.as_dquat());
         let at = self.world_from_box.position.as_dvec3();
         let half = self.half.as_dvec3();
-        let corner = |signs: [f64; 3]| turn * (at + own * (DVec3::from_array(signs) * half) - middle);
+        let corner =
+            |signs: [f64; 3]| turn * (at + own * (DVec3::from_array(signs) * half) - middle);
         let mut solid: Vec<Vec<DVec3>> = Vec::with_capacity(12);
         for axis in 0..3 {
             for side in [-1.0, 1.0] {
@@ -168,7 +169,10 @@ mod tests {
         };
         near(cube.iou(&cube), 1.0);
         // Half of each in the other: a third of both together.
-        near(cube.iou(&upright([0.5, 0.0, 0.0], [1.0; 3], 0.0)), 1.0 / 3.0);
+        near(
+            cube.iou(&upright([0.5, 0.0, 0.0], [1.0; 3], 0.0)),
+            1.0 / 3.0,
+        );
         // One in the middle of the other.
         near(cube.iou(&upright([0.1, 0.0, -0.2], [0.5; 3], 0.0)), 0.125);
         // An eighth of a turn: the regular octagon of inradius 1/2 has the area 2 (sqrt(2) - 1).
@@ -180,11 +184,17 @@ mod tests {
         near(cube.iou(&upright([0.0, 7.0, 0.0], [1.0; 3], 0.3)), 0.0);
         // A quarter of a turn about another axis changes nothing of a cube.
         let tipped = OrientedBox {
-            world_from_box: Pose::new(Vec3::ZERO, Quat::from_rotation_x(std::f32::consts::FRAC_PI_2)),
+            world_from_box: Pose::new(
+                Vec3::ZERO,
+                Quat::from_rotation_x(std::f32::consts::FRAC_PI_2),
+            ),
             ..cube
         };
         near(cube.iou(&tipped), 1.0);
-        near(upright([3.0, 0.0, 0.0], [1.0; 3], 0.0).corner_distance_m(&cube), 2.0);
+        near(
+            upright([3.0, 0.0, 0.0], [1.0; 3], 0.0).corner_distance_m(&cube),
+            2.0,
+        );
     }
 
     /// Against the share of points of both boxes that lie in both, drawn at random.
@@ -203,10 +213,7 @@ mod tests {
             let mut made = || {
                 let turn = any(1.0);
                 OrientedBox {
-                    world_from_box: Pose::new(
-                        any(0.3),
-                        Quat::from_scaled_axis(3.0 * turn),
-                    ),
+                    world_from_box: Pose::new(any(0.3), Quat::from_scaled_axis(3.0 * turn)),
                     half: any(0.4).abs() + Vec3::splat(0.1),
                 }
             };
@@ -222,7 +229,11 @@ mod tests {
             let both = share * a.volume_m3();
             let expected = both / (a.volume_m3() + b.volume_m3() - both);
             // Five standard deviations of a share of 20,000 points are below 0.018.
-            assert!((a.iou(&b) - expected).abs() < 0.02, "{} {expected}", a.iou(&b));
+            assert!(
+                (a.iou(&b) - expected).abs() < 0.02,
+                "{} {expected}",
+                a.iou(&b)
+            );
             assert!((a.iou(&b) - b.iou(&a)).abs() < 1e-6);
             common += u32::from(expected > 0.0);
         }

@@ -73,7 +73,9 @@ impl TrackedThing {
             }
             ThingGoal::Openness(goal) => {
                 let now = world.state().openness(world.house(), self.object);
-                f64::from(u8::from((now.unwrap_or(goal) - goal).abs() > OPEN_TOLERANCE))
+                f64::from(u8::from(
+                    (now.unwrap_or(goal) - goal).abs() > OPEN_TOLERANCE,
+                ))
             }
         }
     }
@@ -153,7 +155,10 @@ mod tests {
         // A sheet on its edge overlaps little with one that lies.
         let sheet = Aabb::new(Vec3::new(-0.1, 0.0, -0.1), Vec3::new(0.1, 0.01, 0.1));
         let lying = OrientedBox::of(Pose::IDENTITY, &sheet);
-        let edge = Pose::new(Vec3::ZERO, Quat::from_rotation_x(std::f32::consts::FRAC_PI_2));
+        let edge = Pose::new(
+            Vec3::ZERO,
+            Quat::from_rotation_x(std::f32::consts::FRAC_PI_2),
+        );
         let found = pose_energy(&lying, &OrientedBox::of(edge, &sheet));
         // Rotated about a middle axis of its lower side: what is common is 0.2 x 0.01 x 0.01 of two times 0.2 x 0.01 x 0.2.
         let iou = 0.01 / (0.4 - 0.01);

@@ -3,75 +3,42 @@
 //! # Source
 //! The task in one phase of L. Weihs, M. Deitke, A. Kembhavi, R. Mottaghi, "Visual Room Rearrangement", CVPR 2021 (`RoomR`).
 
+mod active_episode;
 mod box_overlap;
 mod energy;
-mod restoring;
 mod settings;
 mod shuffle;
-
-pub(super) use box_overlap::OrientedBox;
-pub(super) use settings::{check_classes, check_counts, check_moves, check_rewards, fault};
+mod wording;
 
 use super::door_leaves::{self, DoorLeaves};
 use super::goal_cells::LargestIslandIndex;
-use super::relocation::{HandMover, MovableThings};
+use super::relocation::{HandMover, MovableThings, MoveTarget, PlaceToRestore, Restorer};
 use super::standing_room::FreeStartCells;
 use super::{Task, TaskKind, TaskSetup, random_yaw_rad};
 use crate::actions::{DiscreteAction, HandTarget, StepAction};
-use crate::episode::{Episode, EpisodeGoal, GoalPart, ObjectPlacement, StepResult, TaskMeasure};
+use crate::episode::{Episode, GoalPart, StepResult};
 use crate::error::WorldError;
 use crate::metrics::NavigationMetrics;
 use crate::schema;
 use crate::world::World;
+use active_episode::{ActiveEpisode, MEASURES, told};
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::random::RandomKey;
 use dwell_scene::{Aabb, AgentBody, AgentId, JointId, ObjectId, Pose};
 use dwell_semantics::vocabulary;
-use energy::{ThingGoal, TrackedThing, tracked_things};
+use energy::{ThingGoal, tracked_things};
 use glam::Vec3;
-use restoring::{PlaceToRestore, Restoring};
 use settings::RearrangeSettings;
 use shuffle::{OpenableThing, openable_things};
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use wording::{Resting, resting};
 
 const NAME: &str = "Rearrange";
-const ASKED: &str = "Put all things back.";
 /// Things that are tried for one that is moved.
 const TRIES: usize = 8;
 /// Furthest angle from the middle of the view at which a place is in view: 45 degrees; its cosine.
 const IN_VIEW: f32 = std::f32::consts::FRAC_1_SQRT_2;
-
-const MEASURES: &[TaskMeasure] = &[
-    TaskMeasure {
-        name: "energy_start",
-        about: "Sum of the energies of all things at the start; each is 0 (as it was) to 1.",
-    },
-    TaskMeasure {
-        name: "energy_end",
-        about: "The same now.",
-    },
-    TaskMeasure {
-        name: "energy_prop",
-        about: "energy_end as a share of energy_start.",
-    },
-    TaskMeasure {
-        name: "prop_fixed",
-        about: "Share of the things that were misplaced at the start and are as they were now.",
-    },
-    TaskMeasure {
-        name: "prop_fixed_strict",
-        about: "prop_fixed where nothing else is misplaced now, else 0.",
-    },
-    TaskMeasure {
-        name: "prop_misplaced",
-        about: "Number of things that are misplaced now, as a share of those at the start.",
-    },
-    TaskMeasure {
-        name: "newly_misplaced",
-        about: "Number of things that are misplaced now and were not at the start.",
-    },
-];
 
 pub(super) const KIND: TaskKind = TaskKind {
     name: NAME,
@@ -81,7 +48,14 @@ pub(super) const KIND: TaskKind = TaskKind {
     goal_parts: &[GoalPart::Placements],
     max_steps: 3000,
     actions: DiscreteAction::ALL.split_at(13).0,
-    sensors: &["rgb", "depth", "instance", "gps", "compass", "rearrangegoal"],
+    sensors: &[
+        "rgb",
+        "depth",
+        "instance",
+        "gps",
+        "compass",
+        "rearrangegoal",
+    ],
     measures: MEASURES,
     settings: schema::fields_of::<RearrangeSettings>,
     build,
@@ -109,38 +83,15 @@ struct HouseOffer {
     openable: Vec<OpenableThing>,
 }
 
-/// The episode that is played.
-#[derive(Debug)]
-struct ActiveEpisode {
-    things: Vec<TrackedThing>,
-    /// Energies at the start, and now. Shape (thing,).
-    start: Vec<f64>,
-    now: Vec<f64>,
-    restoring: Restoring,
-}
-
-impl ActiveEpisode {
-    /// Looks at the energies now; returns by how much their sum fell.
-    fn update(&mut self, world: &World) -> f64 {
-        let before: f64 = self.now.iter().sum();
-        self.now = self.things.iter().map(|thing| thing.energy(world)).collect();
-        before - self.now.iter().sum::<f64>()
-    }
-
-    fn measures(&self) -> Vec<f64> {
-        let (start, now): (f64, f64) = (self.start.iter().sum(), self.now.iter().sum());
-        let pairs = || self.start.iter().zip(&self.now);
-        let count = |is: &dyn Fn(f64, f64) -> bool| {
-            pairs().filter(|(before, after)| is(**before, **after)).count() as f64
-        };
-        let misplaced = count(&|before, _| before > 0.0);
-        let fixed = count(&|before, after| before > 0.0 && after == 0.0);
-        let newly = count(&|before, after| before == 0.0 && after > 0.0);
-        let left = count(&|_, after| after > 0.0);
-        let share = fixed / misplaced;
-        let strict = if newly > 0.0 { 0.0 } else { share };
-        vec![start, now, now / start, share, strict, left / misplaced, newly]
-    }
+/// What was changed before an episode.
+#[derive(Debug, Default)]
+struct Shuffled {
+    /// Furniture that was opened or closed.
+    swung: Vec<ObjectId>,
+    /// Where things lay that were moved.
+    places: BTreeMap<ObjectId, PlaceToRestore>,
+    /// What they were in or on.
+    rested: BTreeMap<ObjectId, Resting>,
 }
 
 #[derive(Debug)]
@@ -166,26 +117,25 @@ impl Rearrange {
         }
     }
 
-    /// Moves things and swings furniture; returns what was changed, and from where things are put back.
+    /// Moves things and swings furniture.
     fn shuffle(
         &self,
         mover: &mut HandMover<'_>,
         offer: &HouseOffer,
         key: RandomKey,
-    ) -> Result<(Vec<ObjectId>, BTreeMap<ObjectId, PlaceToRestore>), WorldError> {
+    ) -> Result<Shuffled, WorldError> {
         let settings = &self.settings;
         let mut stream = key.child("count").stream();
         let (least, most) = (settings.min_things as usize, settings.max_things as usize);
         let count = least + stream.below(most - least + 1);
         let swung = stream.below((settings.max_openables as usize).min(count) + 1);
-        let mut changed = Vec::new();
-        let mut places = BTreeMap::new();
+        let mut shuffled = Shuffled::default();
         let mut openable: Vec<&OpenableThing> = offer.openable.iter().collect();
         let mut stream = key.child("openables").stream();
         stream.shuffle(&mut openable);
         for thing in openable.into_iter().take(TRIES) {
-            if changed.len() < swung && thing.swing(mover.world, &mut stream)? {
-                changed.push(thing.object);
+            if shuffled.swung.len() < swung && thing.swing(mover.world, &mut stream)? {
+                shuffled.swung.push(thing.object);
             }
         }
         let mut stream = key.child("things").stream();
@@ -195,9 +145,11 @@ impl Rearrange {
             settings.classes.is_empty() || settings.classes.contains(class)
         });
         stream.shuffle(&mut things);
-        let wanted = count - changed.len();
+        let wanted = count - shuffled.swung.len();
+        let supports = offer.movable.supports.iter().copied();
+        let targets: Vec<MoveTarget> = supports.map(MoveTarget::Object).collect();
         for thing in things.into_iter().take(TRIES * wanted) {
-            if changed.len() == count {
+            if shuffled.places.len() == wanted {
                 break;
             }
             let Some(cell) = mover.puts_back(thing, &mut stream)? else {
@@ -206,63 +158,24 @@ impl Rearrange {
             let (house, state) = (mover.world.house(), mover.world.state());
             let bounds = house.object_bounds(state, thing.object);
             let world_from_part = state.part_pose[house.objects[thing.object].first_part];
-            let own = state.supports_of(house, thing.object);
             let middle = bounds.center();
             let distances = settings.min_move_m..=settings.max_move_m;
-            let is_allowed = |_: &World, support: ObjectId, point: Vec3| {
-                // Well elsewhere on the same furniture is elsewhere, too.
-                distances.contains(&point.distance(middle)) && !own.is_empty() && support != thing.object
-            };
+            // Well elsewhere on the same furniture is elsewhere, too.
+            let is_allowed =
+                |_: &World, _: MoveTarget, point: Vec3| distances.contains(&point.distance(middle));
+            let rested = resting(mover.world, thing.object);
             mover.kept_free.push(bounds);
-            let supports = &offer.movable.supports;
-            let moved =
-                mover.move_to_support((thing.object, cell), supports, &mut stream, &is_allowed)?;
-            if moved {
+            if mover.move_to((thing.object, cell), &targets, &mut stream, &is_allowed)? {
                 let place = PlaceToRestore::new(mover, thing, (bounds, world_from_part));
-                places.insert(thing.object, place);
-                changed.push(thing.object);
+                shuffled.places.insert(thing.object, place);
+                shuffled
+                    .rested
+                    .extend(rested.map(|rested| (thing.object, rested)));
             } else {
                 mover.kept_free.pop();
             }
         }
-        Ok((changed, places))
-    }
-}
-
-/// What sensors and infos tell of the things that are to be put back.
-fn told(things: &[TrackedThing], energies: &[f64], world: &World) -> EpisodeGoal {
-    let misplaced = things.iter().zip(energies);
-    let misplaced = misplaced.filter(|(_, energy)| **energy > 0.0);
-    let placements = misplaced.map(|(thing, _)| match thing.goal {
-        ThingGoal::Pose {
-            world_from_part,
-            bounds,
-            ..
-        } => {
-            let goal = OrientedBox::of(world_from_part, &bounds);
-            ObjectPlacement {
-                object: thing.object,
-                world_from_box: goal.world_from_box,
-                size: 2.0 * goal.half,
-                openness: None,
-            }
-        }
-        ThingGoal::Openness(openness) => {
-            let bounds = world.house().object_bounds(world.state(), thing.object);
-            ObjectPlacement {
-                object: thing.object,
-                world_from_box: Pose::from_position(bounds.center()),
-                size: bounds.size(),
-                openness: Some(openness),
-            }
-        }
-    });
-    let placements: Vec<ObjectPlacement> = placements.collect();
-    EpisodeGoal {
-        kind: "rearrangement",
-        objects: placements.iter().map(|one| one.object).collect(),
-        placements,
-        ..EpisodeGoal::default()
+        Ok(shuffled)
     }
 }
 
@@ -324,11 +237,15 @@ impl Task for Rearrange {
         let Some(offer) = &self.offer else {
             return Err(Self::unplayable(world, "it was not looked at"));
         };
-        let (changed, places) = self.shuffle(&mut mover, offer, key.child("shuffle"))?;
+        let shuffled = self.shuffle(&mut mover, offer, key.child("shuffle"))?;
         // Things that hands have put back lie as they do then.
         for thing in &mut things {
-            if let (Some(place), ThingGoal::Pose { world_from_part, .. }) =
-                (places.get(&thing.object), &mut thing.goal)
+            if let (
+                Some(place),
+                ThingGoal::Pose {
+                    world_from_part, ..
+                },
+            ) = (shuffled.places.get(&thing.object), &mut thing.goal)
             {
                 *world_from_part = place.world_from_part;
             }
@@ -339,9 +256,9 @@ impl Task for Rearrange {
             let why = "it has too few things that can be taken and put elsewhere from where one can stand";
             return Err(Self::unplayable(world, why));
         }
-        let swung: Vec<Aabb> = changed
+        let swung: Vec<Aabb> = shuffled
+            .swung
             .iter()
-            .filter(|object| !places.contains_key(object))
             .map(|object| world.house().object_bounds(world.state(), *object))
             .collect();
         let is_start = |cell: NavCell| {
@@ -356,24 +273,28 @@ impl Task for Rearrange {
                 })
         };
         let Some(cell) = room.sample(&grid, key.child("start"), is_start) else {
-            return Err(Self::unplayable(world, "nobody of the agent's size can stand anywhere"));
+            return Err(Self::unplayable(
+                world,
+                "nobody of the agent's size can stand anywhere",
+            ));
         };
         let (position, yaw_rad) = (grid.position(cell), random_yaw_rad(key));
         world.place_agent(agent, position, yaw_rad)?;
         let goal = told(&things, &start, world);
+        let instruction = wording::instruction(world, &goal.placements, &shuffled.rested);
         let setup = (agent, &grid, self.setup.stride);
         let openable = offer.openable.iter();
         let openable = openable.map(|thing| (thing.object, thing.cells.clone()));
         self.active = Some(ActiveEpisode {
-            restoring: Restoring::new(setup, places, openable.collect()),
+            restorer: Restorer::new(setup, shuffled.places, openable.collect()),
             now: start.clone(),
             start,
             things,
         });
         Ok(Episode {
             agent,
-            instruction: ASKED.to_owned(),
-            tokens: vocabulary::tokenize(ASKED)?,
+            tokens: vocabulary::tokenize(&instruction)?,
+            instruction,
             start: Pose::from_position_yaw(position, yaw_rad),
             progress: NavigationMetrics::new(position, None),
             goal,
@@ -392,9 +313,7 @@ impl Task for Rearrange {
             .collect();
         let is_energy = |energy: &f64| (0.0..=1.0).contains(energy);
         match &mut self.active {
-            Some(active)
-                if 8 * active.now.len() == bytes.len() && told.iter().all(is_energy) =>
-            {
+            Some(active) if 8 * active.now.len() == bytes.len() && told.iter().all(is_energy) => {
                 active.now = told;
                 Ok(())
             }
@@ -458,16 +377,16 @@ impl Task for Rearrange {
 
     fn measures(&self) -> Vec<f64> {
         let none = || vec![f64::NAN; MEASURES.len()];
-        self.active.as_ref().map_or_else(none, ActiveEpisode::measures)
+        self.active
+            .as_ref()
+            .map_or_else(none, ActiveEpisode::measures)
     }
 
     fn expert(&mut self, world: &mut World, _: &Episode) -> DiscreteAction {
         let Some(active) = &mut self.active else {
             return DiscreteAction::Stop;
         };
-        let misplaced = active.things.iter();
-        let misplaced: Vec<&TrackedThing> =
-            misplaced.filter(|thing| thing.energy(world) > 0.0).collect();
-        active.restoring.next(world, &misplaced)
+        let misplaced = active.misplaced();
+        active.restorer.next(world, &misplaced)
     }
 }

@@ -120,7 +120,10 @@ impl OpenableThing {
 /// Returns whether any part has moved from one state to another.
 fn has_moved(before: &State, after: &State) -> bool {
     let parts = (0..before.part_pose.len()).map(dwell_scene::PartId::from_index);
-    parts
-        .into_iter()
-        .any(|part| before.part_pose[part].position.distance(after.part_pose[part].position) > STILL_M)
+    parts.into_iter().any(|part| {
+        before.part_pose[part]
+            .position
+            .distance(after.part_pose[part].position)
+            > STILL_M
+    })
 }

@@ -19,7 +19,7 @@ const ROUNDS: u32 = 2;
 
 /// Something to do at the end of a way.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::tasks) enum Errand {
+pub(super) enum Errand {
     /// Take a thing.
     Take(ObjectId),
     /// Put what is held down, looking at a point.
@@ -30,10 +30,22 @@ pub(in crate::tasks) enum Errand {
     Close(ObjectId),
 }
 
+impl Errand {
+    /// What it is about.
+    pub(super) fn object(self) -> ObjectId {
+        match self {
+            Self::Take(object)
+            | Self::Put(object, _)
+            | Self::Open(object)
+            | Self::Close(object) => object,
+        }
+    }
+}
+
 /// An errand that is under way.
 #[derive(Debug)]
-pub(in crate::tasks) struct Carrier {
-    pub(in crate::tasks) errand: Errand,
+pub(super) struct Carrier {
+    pub(super) errand: Errand,
     leg: Leg,
     /// Control steps for which its hand has been busy.
     busy: u32,
@@ -42,7 +54,7 @@ pub(in crate::tasks) struct Carrier {
 
 impl Carrier {
     /// Begins an errand that is done from one of some cells.
-    pub(in crate::tasks) fn new(
+    pub(super) fn new(
         errand: Errand,
         cells: Vec<NavCell>,
         (agent, grid, stride): (AgentId, &Arc<NavGrid>, StepSizes),
@@ -56,7 +68,7 @@ impl Carrier {
     }
 
     /// The next action; `None` where it gives up.
-    pub(in crate::tasks) fn next(&mut self, world: &World) -> Option<DiscreteAction> {
+    pub(super) fn next(&mut self, world: &World) -> Option<DiscreteAction> {
         match self.errand {
             Errand::Take(object) => {
                 if self.busy > 0 {

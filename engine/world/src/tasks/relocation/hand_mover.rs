@@ -9,21 +9,32 @@ use dwell_physics::BodyState;
 use dwell_physics::actions::{Drop, Pick, PlaceAt, PlaceInPose};
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::navigation::NavCell;
-use dwell_scene::random::RandomStream;
+use dwell_scene::random::{RandomKey, RandomStream};
 use dwell_scene::space::yaw_from_forward;
-use dwell_scene::{Aabb, AgentBody, AgentId, ObjectId, Pose, Velocity};
+use dwell_scene::{Aabb, AgentBody, AgentId, ObjectId, Pose, SurfaceOwner, Velocity};
 use glam::Vec3;
 
 /// Points of a piece of furniture that are tried.
 const POINTS: usize = 24;
 /// Places from which they are tried.
 const STANDS: usize = 6;
-/// Share of the reach that it uses, so that somebody beside reaches there, too.
-const REACH_SHARE: f32 = 0.85;
+/// Share of the reach that it uses.
+const REACH_SHARE: f32 = 0.95;
+/// Half of an edge of the floor around a cell on which points are tried, m.
+const FLOOR_M: f32 = 0.3;
 /// Least room between a thing and the places that are kept free, m.
 const APART_M: f32 = 0.02;
 /// Steepest surface that counts as level: least upward part of its normal.
 const LEVEL: f32 = 0.95;
+
+/// Where a thing is moved to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::tasks) enum MoveTarget {
+    /// A level surface of furniture.
+    Object(ObjectId),
+    /// The floor, anywhere.
+    Floor,
+}
 
 /// Moves things by an agent's hand.
 pub(in crate::tasks) struct HandMover<'a> {
@@ -87,9 +98,11 @@ impl HandMover<'_> {
         stream: &mut RandomStream,
     ) -> Result<Option<NavCell>, WorldError> {
         let (object, before) = (thing.object, self.pose(thing.object));
-        let cells: Vec<NavCell> = thing.cells.iter().copied().collect();
         for _ in 0..2 {
-            let Some(cell) = stream.choose(&cells).filter(|cell| (self.is_free)(**cell)) else {
+            let Some(cell) = stream
+                .choose(&thing.cells)
+                .filter(|cell| (self.is_free)(**cell))
+            else {
                 continue;
             };
             if !self.take(object, *cell)? {
@@ -106,40 +119,39 @@ impl HandMover<'_> {
         Ok(None)
     }
 
-    /// Moves a thing that [`Self::puts_back`] from `cell` to one of some supports. Returns whether it was moved; else it lies as before.
+    /// Moves a thing that [`Self::puts_back`] from `cell` to one of some targets. Returns whether it was moved; else it lies as before.
     ///
-    /// `is_allowed`: whether it may lie at a point.
-    pub(in crate::tasks) fn move_to_support(
+    /// `is_allowed`: whether it may lie at a point of a target.
+    pub(in crate::tasks) fn move_to(
         &mut self,
         (object, cell): (ObjectId, NavCell),
-        supports: &[ObjectId],
+        targets: &[MoveTarget],
         stream: &mut RandomStream,
-        is_allowed: &dyn Fn(&World, ObjectId, Vec3) -> bool,
+        is_allowed: &dyn Fn(&World, MoveTarget, Vec3) -> bool,
     ) -> Result<bool, WorldError> {
         let before = self.pose(object);
-        let size = self.bounds(object).size();
-        let radius_m = 0.5 * size.length();
+        let radius_m = 0.5 * self.bounds(object).size().length();
         for _ in 0..STANDS {
             dwell_scene::interrupt::unwind_if_cancelled();
-            let Some(support) = stream.choose(supports).copied() else {
+            let Some(target) = stream.choose(targets).copied() else {
                 return Ok(false);
             };
-            let bounds = self.bounds(support);
+            let Some(bounds) = self.bounds_of(target, stream) else {
+                continue;
+            };
             let eye_m = self.body.eye_height_m;
             let reach_m = REACH_SHARE * self.body.reach_m;
             let near = cells_near(self.ground, &bounds, (eye_m, reach_m));
-            let Some(stand) = stream.choose(&near).copied() else {
+            let stand = stream.choose(&near).copied();
+            let Some(stand) = stand.filter(|cell| (self.is_free)(*cell)) else {
                 continue;
             };
-            if !(self.is_free)(stand) {
-                continue;
-            }
             let eye = self.ground.grid.position(stand) + Vec3::Y * eye_m;
             let points: Vec<Vec3> = (0..POINTS)
-                .filter_map(|_| self.level_point(eye, &bounds, support, stream))
+                .filter_map(|_| self.level_point(eye, &bounds, target, stream))
                 .filter(|point| self.is_clear(*point, radius_m))
-                .filter(|point| is_allowed(self.world, support, *point))
-                .take(4)
+                .filter(|point| is_allowed(self.world, target, *point))
+                .take(POINTS / 6)
                 .collect();
             if points.is_empty() || !self.take(object, cell)? {
                 continue;
@@ -161,26 +173,49 @@ impl HandMover<'_> {
         Ok(false)
     }
 
-    /// A level point of an object that an eye sees and a hand reaches.
+    /// The box of furniture, or of a piece of floor that is drawn, m.
+    fn bounds_of(&self, target: MoveTarget, stream: &mut RandomStream) -> Option<Aabb> {
+        match target {
+            MoveTarget::Object(object) => Some(self.bounds(object)),
+            MoveTarget::Floor => {
+                let grid = self.ground.grid;
+                let key = RandomKey::root(stream.bits());
+                let cell = grid.sample(key, |cell| (self.is_free)(cell))?;
+                let at = grid.position(cell);
+                let reach = Vec3::new(FLOOR_M, 0.0, FLOOR_M);
+                Some(Aabb::new(at - reach, at + reach))
+            }
+        }
+    }
+
+    /// A level point of a target that an eye sees and a hand reaches.
     fn level_point(
         &self,
         eye: Vec3,
         bounds: &Aabb,
-        object: ObjectId,
+        target: MoveTarget,
         stream: &mut RandomStream,
     ) -> Option<Vec3> {
         let (low, high) = (bounds.min, bounds.max);
-        let to = Vec3::new(
-            stream.range(low.x, high.x),
-            stream.range(low.y, high.y),
-            stream.range(low.z, high.z),
-        );
+        let to = low
+            + (high - low)
+                * Vec3::new(
+                    stream.uniform_f32(),
+                    stream.uniform_f32(),
+                    stream.uniform_f32(),
+                );
         let ray = Ray::new(eye, to - eye);
         let hit = self.world.rays().closest(&ray, RayMask::EYE)?;
         let surface = self.world.rays().surface(&hit);
-        let own = surface.entity == self.world.house().entity_of_object(object);
+        let is_target = match (target, surface.owner) {
+            (MoveTarget::Object(object), SurfaceOwner::Part(part)) => {
+                self.world.house().parts[part].object == object
+            }
+            (MoveTarget::Floor, SurfaceOwner::Structure(_)) => true,
+            _ => false,
+        };
         let near = hit.distance_m <= REACH_SHARE * self.body.reach_m;
-        (own && near && surface.normal.y.abs() >= LEVEL).then(|| ray.point_at(hit.distance_m))
+        (is_target && near && surface.normal.y.abs() >= LEVEL).then(|| ray.point_at(hit.distance_m))
     }
 
     fn is_clear(&self, point: Vec3, radius_m: f32) -> bool {

@@ -4,7 +4,12 @@
 mod carrier;
 mod hand_mover;
 mod movable_things;
+mod restorer;
+mod setting_checks;
 
-pub(super) use carrier::{Carrier, Errand};
-pub(super) use hand_mover::HandMover;
-pub(super) use movable_things::{MovableThing, MovableThings, cells_goal};
+pub(super) use hand_mover::{HandMover, MoveTarget};
+pub(super) use movable_things::{MovableThing, MovableThings};
+pub(super) use restorer::{Misplaced, PlaceToRestore, Restorer};
+pub(super) use setting_checks::{
+    MOST_THINGS, check_classes, check_counts, check_moves, check_rewards, fault,
+};

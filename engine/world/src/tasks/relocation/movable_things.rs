@@ -79,7 +79,7 @@ impl MovableThings {
 }
 
 /// The goal to stand on one of some cells.
-pub(in crate::tasks) fn cells_goal(cells: Vec<NavCell>, reach_m: f32) -> Arc<NavigationGoal> {
+pub(super) fn cells_goal(cells: Vec<NavCell>, reach_m: f32) -> Arc<NavigationGoal> {
     Arc::new(NavigationGoal {
         cells,
         success: SuccessRule::Fulfilled(InstructionGoal::objects(Vec::new(), reach_m)),

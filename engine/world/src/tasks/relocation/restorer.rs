@@ -1,10 +1,10 @@
-//! The expert: it fetches one misplaced thing after the other and puts it where it was, furniture first.
+//! The expert: it brings one thing after the other to where it is to be, furniture first.
 
-use super::energy::{ThingGoal, TrackedThing};
+use super::carrier::{Carrier, Errand};
+use super::{HandMover, MovableThing};
 use crate::actions::{DiscreteAction, StepSizes};
 use crate::tasks::goal_cells::LargestIslandIndex;
 use crate::tasks::navigation::cells_in_reach;
-use crate::tasks::relocation::{Carrier, Errand, HandMover, MovableThing};
 use crate::world::World;
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::{Aabb, AgentId, ObjectId, Pose};
@@ -14,80 +14,104 @@ use std::sync::Arc;
 
 /// Share of the reach at which a place is reached from all over a cell.
 const REACH_SHARE: f32 = 0.9;
+/// How often it takes a thing.
+const TAKES: u32 = 4;
+/// From where it put a thing down in vain it does not try again, m.
+const ELSEWHERE_M: f32 = 0.25;
 
 /// The place of a thing before it was moved.
 #[derive(Clone, Debug)]
-pub(super) struct PlaceToRestore {
+pub(in crate::tasks) struct PlaceToRestore {
     /// Of the thing's first part.
-    pub(super) world_from_part: Pose,
-    /// The middle of the box around it there, m.
-    middle: Vec3,
+    pub(in crate::tasks) world_from_part: Pose,
+    /// The middle of the lower side of the box around it there, m.
+    foot: Vec3,
     /// From where a hand reaches it.
     cells: Vec<NavCell>,
 }
 
 impl PlaceToRestore {
     /// The place of a thing that had a box and a pose there.
-    pub(super) fn new(
+    pub(in crate::tasks) fn new(
         mover: &HandMover<'_>,
         thing: &MovableThing,
         (bounds, world_from_part): (Aabb, Pose),
     ) -> Self {
-        let middle = bounds.center();
-        let foot = middle.with_y(bounds.min.y);
+        let foot = bounds.center().with_y(bounds.min.y);
         let reach_m = REACH_SHARE * mover.body.reach_m;
         let reaches = |cell: &&NavCell| {
             let feet = mover.ground.grid.position(**cell);
             (feet + Vec3::Y * mover.body.eye_height_m).distance(foot) <= reach_m
         };
         let near: Vec<NavCell> = thing.cells.iter().filter(reaches).copied().collect();
+        let all = if near.is_empty() { &thing.cells } else { &near };
         Self {
             world_from_part,
-            middle,
-            cells: if near.is_empty() {
-                thing.cells.clone()
-            } else {
-                near
-            },
+            foot,
+            cells: all.clone(),
+        }
+    }
+}
+
+/// What is not as it is to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::tasks) enum Misplaced {
+    /// A thing that lies elsewhere.
+    Thing(ObjectId),
+    /// Furniture that is to be closed, or with `true` opened.
+    Furniture(ObjectId, bool),
+}
+
+impl Misplaced {
+    fn object(self) -> ObjectId {
+        match self {
+            Self::Thing(object) | Self::Furniture(object, _) => object,
         }
     }
 }
 
 /// The expert of an episode.
 #[derive(Debug)]
-pub(super) struct Restoring {
+pub(in crate::tasks) struct Restorer {
     agent: AgentId,
     grid: Arc<NavGrid>,
     stride: StepSizes,
     places: BTreeMap<ObjectId, PlaceToRestore>,
     /// Where a hand reaches furniture.
-    openable: BTreeMap<ObjectId, Vec<NavCell>>,
+    furniture: BTreeMap<ObjectId, Vec<NavCell>>,
     carrier: Option<Carrier>,
+    takes: BTreeMap<ObjectId, u32>,
     /// What it has given up.
     left: BTreeSet<ObjectId>,
 }
 
-impl Restoring {
-    pub(super) fn new(
+impl Restorer {
+    pub(in crate::tasks) fn new(
         (agent, grid, stride): (AgentId, &Arc<NavGrid>, StepSizes),
         places: BTreeMap<ObjectId, PlaceToRestore>,
-        openable: BTreeMap<ObjectId, Vec<NavCell>>,
+        furniture: BTreeMap<ObjectId, Vec<NavCell>>,
     ) -> Self {
         Self {
             agent,
             grid: grid.clone(),
             stride,
             places,
-            openable,
+            furniture,
             carrier: None,
+            takes: BTreeMap::new(),
             left: BTreeSet::new(),
         }
     }
 
     /// The next action while some things are misplaced.
-    pub(super) fn next(&mut self, world: &World, misplaced: &[&TrackedThing]) -> DiscreteAction {
-        let held = world.state().agents.get(self.agent).and_then(|agent| agent.holding);
-        let is_misplaced = |object: ObjectId| misplaced.iter().any(|thing| thing.object == object);
+    pub(in crate::tasks) fn next(
+        &mut self,
+        world: &World,
+        misplaced: &[Misplaced],
+    ) -> DiscreteAction {
+        let holder = world.state().agents.get(self.agent);
+        let held = holder.and_then(|agent| agent.holding);
+        let is_misplaced = |object: ObjectId| misplaced.iter().any(|one| one.object() == object);
         if let Some(carrier) = &self.carrier {
             let is_over = match carrier.errand {
                 Errand::Take(object) => held == Some(object) || !is_misplaced(object),
@@ -95,6 +119,19 @@ impl Restoring {
                 Errand::Open(object) | Errand::Close(object) => !is_misplaced(object),
             };
             if is_over {
+                if let (Errand::Put(object, _), Some(agent)) = (carrier.errand, holder)
+                    && let Some(place) = self.places.get_mut(&object)
+                {
+                    let grid = &self.grid;
+                    let is_elsewhere = |cell: &NavCell| {
+                        grid.position(*cell).distance(agent.position) > ELSEWHERE_M
+                    };
+                    let others = place.cells.iter().copied().filter(is_elsewhere);
+                    let others: Vec<NavCell> = others.collect();
+                    if !others.is_empty() {
+                        place.cells = others;
+                    }
+                }
                 self.carrier = None;
             }
         }
@@ -109,10 +146,7 @@ impl Restoring {
             if let Some(action) = carrier.next(world) {
                 return action;
             }
-            let (Errand::Take(object)
-            | Errand::Put(object, _)
-            | Errand::Open(object)
-            | Errand::Close(object)) = carrier.errand;
+            let object = carrier.errand.object();
             self.left.insert(object);
             self.carrier = None;
         }
@@ -127,38 +161,38 @@ impl Restoring {
         &mut self,
         world: &World,
         held: Option<ObjectId>,
-        misplaced: &[&TrackedThing],
+        misplaced: &[Misplaced],
     ) -> Option<Carrier> {
-        let setup = |errand, cells| {
-            let setup = (self.agent, &self.grid, self.stride);
-            Some(Carrier::new(errand, cells, setup))
-        };
+        let setup = (self.agent, &self.grid, self.stride);
         if let Some(object) = held {
             if self.left.contains(&object) {
                 return None;
             }
             let place = self.places.get(&object)?;
-            return setup(Errand::Put(object, place.middle), place.cells.clone());
+            let errand = Errand::Put(object, place.foot);
+            return Some(Carrier::new(errand, place.cells.clone(), setup));
         }
         let here = world.state().agents.get(self.agent)?.position;
         let here = self.grid.nearest(here, 0.6)?;
         let ways = self.grid.distance_field(&[here]);
         let ground = LargestIslandIndex::of(&self.grid);
         let mut best: Option<((bool, f64), Errand, Vec<NavCell>)> = None;
-        for thing in misplaced {
-            let object = thing.object;
-            if self.left.contains(&object) {
+        for one in misplaced {
+            if self.left.contains(&one.object()) {
                 continue;
             }
-            let (errand, cells) = match thing.goal {
-                ThingGoal::Pose { .. } if self.places.contains_key(&object) => {
+            let (errand, cells) = match *one {
+                Misplaced::Thing(object) => {
+                    let tries = self.takes.get(&object).copied().unwrap_or(0);
+                    if tries >= TAKES || !self.places.contains_key(&object) {
+                        continue;
+                    }
                     let cells = cells_in_reach(world, self.agent, &ground, object);
                     (Errand::Take(object), cells)
                 }
-                ThingGoal::Pose { .. } => continue,
-                ThingGoal::Openness(goal) => {
-                    let cells = self.openable.get(&object).cloned().unwrap_or_default();
-                    let errand = if goal > 0.5 {
+                Misplaced::Furniture(object, opens) => {
+                    let cells = self.furniture.get(&object).cloned().unwrap_or_default();
+                    let errand = if opens {
                         Errand::Open(object)
                     } else {
                         Errand::Close(object)
@@ -178,6 +212,9 @@ impl Restoring {
             }
         }
         let (_, errand, cells) = best?;
-        setup(errand, cells)
+        if let Errand::Take(object) = errand {
+            *self.takes.entry(object).or_default() += 1;
+        }
+        Some(Carrier::new(errand, cells, setup))
     }
 }
