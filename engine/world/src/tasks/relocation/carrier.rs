@@ -10,8 +10,9 @@ use dwell_scene::{AgentId, ObjectId};
 use glam::Vec3;
 use std::sync::Arc;
 
-/// Control steps for which it waits for what its hand has begun.
+/// Control steps for which it waits for furniture to close, and for a thing to be in its hand.
 const PATIENCE: u32 = 60;
+const GRASPING: u32 = 3;
 /// Control steps for which it keeps opening or closing.
 const SWINGING: u32 = 240;
 /// How often it tries all places of an errand again.
@@ -72,7 +73,7 @@ impl Carrier {
         match self.errand {
             Errand::Take(object) => {
                 if self.busy > 0 {
-                    return self.wait(world, PATIENCE);
+                    return self.wait(world, GRASPING);
                 }
                 if let Some(step) = self.leg.walk(world) {
                     return Some(step);
