@@ -69,7 +69,7 @@ def test_infos_say_what_is_asked_alone_and_in_a_batch(task: str) -> None:
         if task == "Free":
             assert set(info) == {"scene_id", "episode_id"}
             continue
-        if task != "SoundLocalization":
+        if task not in ("SoundLocalization", "Rearrange", "Tidy"):
             assert info["start_distance_to_goal"] >= 0.9
         assert isinstance(info["goal_kind"], str)
         restored = one.restore(one.snapshot())[1]

@@ -1,7 +1,7 @@
-//! Plays the expert of instruction following in houses and says where it fails.
+//! Plays the expert of a task in houses and says where it fails.
 //!
-//! `cargo bench --profile dev -p dwell-tests --bench expert -- [FROM..TO [HOUSE...]]`: by default the first 20 seeds in the
-//! built-in apartment.
+//! `cargo bench --profile dev -p dwell-tests --bench expert -- [TASK] [FROM..TO [HOUSE...]]`: by default instruction following, the
+//! first 20 seeds in the built-in apartment.
 
 #![expect(clippy::print_stdout, reason = "a program tells by printing")]
 
@@ -9,14 +9,19 @@ use dwell::{Engines, Env, EnvConfig};
 use dwell_scene::AgentId;
 use std::sync::Arc;
 
-/// Steps after which an episode counts as not solved.
-const MOST_STEPS: usize = 1000;
-
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut words: Vec<String> = std::env::args()
         .skip(1)
         .filter(|word| word != "--bench")
         .collect();
+    let mut config = EnvConfig {
+        sensors: Some(Vec::new()),
+        ..EnvConfig::default()
+    };
+    if words.first().is_some_and(|word| !word.contains("..")) {
+        config.task = words.remove(0);
+    }
+    let most_steps = dwell::tasks::find(&config.task)?.max_steps;
     let seeds = if words.is_empty() {
         "0..20".to_owned()
     } else {
@@ -27,27 +32,31 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     if words.is_empty() {
         words.push("builtin:apartment".to_owned());
     }
-    let config = EnvConfig {
-        sensors: Some(Vec::new()),
-        ..EnvConfig::default()
-    };
     for name in &words {
         let (house, _) = dwell_houses::open(name)?;
         let mut env = Env::new(Engines::new(Arc::new(house)), &config)?;
-        let mut solved = 0;
+        let (mut solved, mut steps) = (0, 0);
         for seed in from..to {
-            env.reset(seed)?;
-            solved += u64::from(play(&mut env, seed)?);
+            if let Err(error) = env.reset(seed) {
+                println!("episode {seed}: {error}");
+                continue;
+            }
+            solved += u64::from(play(&mut env, seed, most_steps)?);
+            steps += env.steps();
         }
-        println!("{name}: {solved} of {} episodes solved", to - from);
+        let count = to - from;
+        println!(
+            "{name}: {solved} of {count} episodes solved, {} steps each",
+            steps / count.max(1)
+        );
     }
     Ok(())
 }
 
 /// Returns whether the expert solves the episode that has begun; says how it ended where not.
-fn play(env: &mut Env, seed: u64) -> Result<bool, dwell::WorldError> {
+fn play(env: &mut Env, seed: u64, most_steps: u64) -> Result<bool, dwell::WorldError> {
     let mut last = Vec::new();
-    for step in 0..MOST_STEPS {
+    for step in 0..most_steps {
         let action = env.expert_action(0)?;
         let info = &env.step(&[Some(action)])?[0];
         let notice = if info.action_success {
@@ -64,14 +73,22 @@ fn play(env: &mut Env, seed: u64) -> Result<bool, dwell::WorldError> {
             return Ok(false);
         }
     }
-    tell(env, seed, MOST_STEPS, &last);
+    tell(env, seed, most_steps, &last);
     Ok(false)
 }
 
-fn tell(env: &Env, seed: u64, steps: usize, actions: &[String]) {
+fn tell(env: &Env, seed: u64, steps: u64, actions: &[String]) {
     let agent = env.world().state().agents[AgentId(0)];
     let text = env.episode(0).map_or("", |episode| &episode.instruction);
     let last = &actions[actions.len().saturating_sub(6)..];
+    let measures = env.task_measures(0).unwrap_or_default();
+    println!(
+        "{:?}",
+        measures
+            .iter()
+            .map(|measure| measure.name)
+            .collect::<Vec<_>>()
+    );
     println!(
         "episode {seed}, {steps} steps: {text:?}, at {:.3} {:.2} rad, {last:?}",
         agent.position, agent.yaw_rad

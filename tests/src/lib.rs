@@ -6,6 +6,7 @@ pub mod hostile;
 pub mod observations;
 pub mod pixel_counts;
 pub mod sensing;
+pub mod tidiness;
 pub mod validity;
 
 use dwell::{Engines, Env, EnvConfig, SensorConfig, WorldError};
@@ -113,8 +114,8 @@ pub fn try_env_in(
 /// A sensor by its name, small where it is one of pictures.
 fn small_sensor(name: &str) -> SensorConfig {
     let mut all = dwell::sensors::all().iter();
-    let shows_pictures =
-        name == "imagegoal" || all.any(|kind| kind.name == name && kind.is_image_sensor());
+    let shows_pictures = ["imagegoal", "unshuffled_rgb"].contains(&name)
+        || all.any(|kind| kind.name == name && kind.is_image_sensor());
     SensorConfig {
         kind: name.to_owned(),
         settings: if shows_pictures {

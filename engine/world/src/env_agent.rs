@@ -125,7 +125,10 @@ impl EnvAgent {
     /// Returns its action in a step as the world takes it.
     pub(crate) fn world_action(&self, world: &World, step: &StepAction) -> AgentAction {
         let target = match step.target {
-            ActionTarget::Gaze => HandTarget::Gaze,
+            ActionTarget::Gaze => {
+                let own = self.task.hand_target(world, step.action);
+                own.unwrap_or(HandTarget::Gaze)
+            }
             ActionTarget::Entity(id) => HandTarget::At(Target::Entity(id)),
             ActionTarget::Picture(place) => self.picture_target(world, place),
         };

@@ -24,7 +24,8 @@ pub struct EnvConfig {
     pub stride: StepSizes,
     /// The form of actions.
     pub action_mode: ActionMode,
-    /// The discrete actions to choose from, by name, in the order of their numbers; `None`: those that are usual in the mode.
+    /// The discrete actions to choose from, by name, in the order of their numbers; `None`: those that are usual in the mode, and
+    /// with [`ActionMode::Discrete`] those of the tasks.
     pub actions: Option<Vec<String>>,
     /// Sensors by name with their settings; `None`: the task's own choice.
     pub sensors: Option<Vec<SensorConfig>>,

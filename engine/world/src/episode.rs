@@ -18,12 +18,27 @@ pub enum GoalPart {
     Room,
     /// A place and heading from which a picture is taken.
     Image,
+    /// Where things belong, and how far open furniture is to be.
+    Placements,
+}
+
+/// Where a thing belongs, or how far open it is to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ObjectPlacement {
+    /// The thing.
+    pub object: ObjectId,
+    /// From the middle and the axes of the box around it there to the world.
+    pub world_from_box: Pose,
+    /// The edges of that box along its own axes, m.
+    pub size: Vec3,
+    /// How far open it is to be, 0 to 1; `None` for what is put there.
+    pub openness: Option<f32>,
 }
 
 /// What an episode asks for, as sensors of goals and infos tell it. What does not belong to its kind is empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct EpisodeGoal {
-    /// `"point"`, `"room"`, `"object"`, `"image"`, `"sound"`, or the kind of an instruction (`"go_to_room"`, `"find_object"`); empty
+    /// `"point"`, `"room"`, `"object"`, `"image"`, `"sound"`, `"rearrangement"`, `"tidying"`, or the kind of an instruction (`"go_to_room"`, `"find_object"`); empty
     /// where the task asks for nothing, or a task outside of this crate asks.
     pub kind: &'static str,
     /// A place on the floor, m.
@@ -38,6 +53,8 @@ pub struct EpisodeGoal {
     pub class: i32,
     /// The kind of the rooms, a row of `assets/rooms.csv` counted from 1; 0 for none.
     pub room_kind: i32,
+    /// Where things belong, by id; empty where nothing is put anywhere.
+    pub placements: Vec<ObjectPlacement>,
 }
 
 impl EpisodeGoal {

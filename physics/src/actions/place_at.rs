@@ -1,8 +1,10 @@
 //! The action of placing the held object at a point.
 
 use super::hand_action::{HandAction, HandContext};
+use super::stable_pose::StablePose;
 use super::{ActionContext, ActionResult, Actor};
 use crate::dynamics::SupportFilter;
+use crate::hands::HeldObject;
 use crate::outcome::{ActionOutcome, OutcomeCode, done, fail};
 use dwell_scene::State;
 use glam::Vec3;
@@ -39,12 +41,24 @@ impl ActionContext<'_> {
         point: Vec3,
     ) -> ActionResult {
         let grip = self.held_object_of(actor)?;
-        let held = self.dynamics.name_of(grip.object);
-        let refuse = |code, sentence: String| Ok(fail(code, sentence, Some(grip.object)));
         if !point.is_finite() {
             let sentence = format!("{point} is no place; give finite numbers.");
-            return refuse(OutcomeCode::BadNumber, sentence);
+            return Ok(fail(OutcomeCode::BadNumber, sentence, Some(grip.object)));
         }
+        let stances = self.stable_poses(grip.body as usize);
+        Ok(self.place_in_stances(state, actor, &grip, (&stances, point)))
+    }
+
+    /// Leaves the held object in the first of some stances in which it rests with the middle of its foot at a point.
+    pub(super) fn place_in_stances(
+        &mut self,
+        state: &mut State,
+        actor: Actor<'_>,
+        grip: &HeldObject,
+        (stances, point): (&[StablePose], Vec3),
+    ) -> ActionOutcome {
+        let held = self.dynamics.name_of(grip.object);
+        let refuse = |code, sentence: String| fail(code, sentence, Some(grip.object));
         let eye = actor.body.eye_position();
         let (distance, reach) = ((point - eye).length(), actor.body.body.reach_m);
         if distance > reach {
@@ -74,12 +88,12 @@ impl ActionContext<'_> {
         };
         let foot = point.with_y(height);
         let mut blocker = None;
-        for stance in self.stable_poses(body) {
-            match self.stable_pose_at(body, &stance, foot) {
+        for stance in stances {
+            match self.stable_pose_at(body, stance, foot) {
                 Ok(pose) => {
                     self.release_at(state, actor, &pose);
                     let sentence = format!("You put the {held} down there.");
-                    return Ok(done(OutcomeCode::Done, sentence, Some(grip.object)));
+                    return done(OutcomeCode::Done, sentence, Some(grip.object));
                 }
                 Err(found) => blocker = blocker.or(found),
             }

@@ -70,6 +70,16 @@ impl StablePose {
         })
     }
 
+    /// As [`Self::new`]; `None` where the object topples by itself.
+    pub(super) fn resting(
+        plan: &BodyPlan,
+        rotation: Quat,
+        center_of_mass_in_body: Vec3,
+    ) -> Option<Self> {
+        let stance = Self::new(plan, rotation, center_of_mass_in_body)?;
+        stance.stands(&[true; DIRECTIONS]).then_some(stance)
+    }
+
     pub(super) fn size(&self) -> Vec3 {
         self.max - self.min
     }
@@ -158,8 +168,7 @@ impl ActionContext<'_> {
                 {
                     continue;
                 }
-                let stance = StablePose::new(plan, rotation, com);
-                stances.extend(stance.filter(|stance| stance.stands(&[true; DIRECTIONS])));
+                stances.extend(StablePose::resting(plan, rotation, com));
             }
         }
         stances

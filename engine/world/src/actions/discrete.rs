@@ -4,8 +4,9 @@ use super::step_sizes::turn_rate_rad_s;
 use super::{DiscreteAction, StepSizes};
 use crate::error::WorldError;
 use crate::world::World;
+use dwell_physics::actions::PlaceInPose;
 use dwell_physics::{ActionOutcome, AgentControl, HandAction, OutcomeCode, Target};
-use dwell_scene::{AgentId, Id, Locomotion};
+use dwell_scene::{AgentId, Id, Locomotion, Pose};
 use serde_json::Map;
 
 /// A discrete action of one agent in a control step.
@@ -31,6 +32,8 @@ pub enum HandTarget {
     Gaze,
     /// What is stated.
     At(Target),
+    /// The pose in which the first part of what is held is left; for `place` alone.
+    Pose(Pose),
     /// A place of a picture that shows nothing.
     Nothing,
 }
@@ -152,18 +155,24 @@ impl World {
         let target = match step.target {
             _ if !kind.takes_target() => None,
             HandTarget::At(target) => Some(target),
+            HandTarget::Pose(world_from_part) if step.action == DiscreteAction::Place => {
+                let action: Box<dyn HandAction> = Box::new(PlaceInPose { world_from_part });
+                return Ok(Some(Ok(action)));
+            }
             HandTarget::Nothing => {
                 return refuse("That place of the picture shows nothing. Choose another.");
             }
-            HandTarget::Gaze if finds => None,
-            HandTarget::Gaze => match self.object_in_view_centre(step.agent) {
-                Some(object) => Some(object.into()),
-                None => {
-                    return refuse(
-                        "You look at nothing that you could take, open or switch. Turn towards it.",
-                    );
+            HandTarget::Gaze | HandTarget::Pose(_) if finds => None,
+            HandTarget::Gaze | HandTarget::Pose(_) => {
+                match self.object_in_view_centre(step.agent) {
+                    Some(object) => Some(object.into()),
+                    None => {
+                        return refuse(
+                            "You look at nothing that you could take, open or switch. Turn towards it.",
+                        );
+                    }
                 }
-            },
+            }
         };
         Ok(Some(Ok(kind.parse_hand_action(target, Map::new())?)))
     }

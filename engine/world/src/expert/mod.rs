@@ -235,7 +235,7 @@ fn turn_towards(yaw_rad: f32, direction: Vec3, stride: &StepSizes) -> Option<Dis
 }
 
 /// The turn or tilt that brings a point into the middle of an agent's view; `None` when it already is there.
-fn face_point(
+pub(crate) fn face_point(
     world: &World,
     agent: AgentId,
     target: Vec3,

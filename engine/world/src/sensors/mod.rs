@@ -26,6 +26,7 @@ mod objectgoal;
 mod picture_memory;
 mod pointgoal_with_gps_compass;
 mod proprioception;
+mod rearrangegoal;
 mod receiver;
 mod rgb;
 mod roomgoal;
@@ -33,6 +34,7 @@ mod semantic;
 mod spectrogram;
 mod surfels;
 mod top_down_map;
+mod unshuffled_rgb;
 mod visible_objects;
 mod wheel_odometry;
 
@@ -357,6 +359,8 @@ pub fn all() -> &'static [SensorKind] {
         roomgoal::KIND,
         objectgoal::KIND,
         imagegoal::KIND,
+        rearrangegoal::KIND,
+        unshuffled_rgb::KIND,
         instruction::KIND,
         instruction_tokens::KIND,
         gps::KIND,

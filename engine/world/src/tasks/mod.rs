@@ -10,13 +10,16 @@ mod instruction_following_v1;
 mod navigation;
 mod object_nav;
 mod point_nav;
+mod rearrange;
+mod relocation;
 mod room_nav;
 mod semantic_audio_nav;
 mod sound_localization;
 mod standing_room;
 mod stated_things;
+mod tidy;
 
-use crate::actions::{ActionSet, DiscreteAction, StepAction, StepSizes};
+use crate::actions::{ActionSet, DiscreteAction, HandTarget, StepAction, StepSizes};
 use crate::episode::{
     Answer, AnswerField, Episode, GoalPart, MAX_ANSWER_FIELDS, StepResult, TaskMeasure,
 };
@@ -99,6 +102,11 @@ pub trait Task: Debug + Send + Sync {
         episode: &mut Episode,
         played: &PlayedAction<'_>,
     ) -> StepResult;
+
+    /// What the hand is used on in an action of its agent that states no target, where the task knows better than the view.
+    fn hand_target(&self, _world: &World, _action: DiscreteAction) -> Option<HandTarget> {
+        None
+    }
 
     /// The fields of the answer that it expects with `stop`, in order, at most [`MAX_ANSWER_FIELDS`]; none for most.
     fn answer_fields(&self) -> Vec<AnswerField> {
@@ -183,7 +191,7 @@ pub struct TaskKind {
     pub goal_parts: &'static [GoalPart],
     /// Control steps after which an episode is cut off.
     pub max_steps: u64,
-    /// The discrete actions of its environment by default.
+    /// The discrete actions of its environment by default, in the order of their numbers.
     pub actions: &'static [DiscreteAction],
     /// The sensors of its environment by default.
     pub sensors: &'static [&'static str],
@@ -217,6 +225,8 @@ pub fn all() -> &'static [TaskKind] {
         audio_nav::KIND,
         semantic_audio_nav::KIND,
         sound_localization::KIND,
+        rearrange::KIND,
+        tidy::KIND,
     ]
 }
 

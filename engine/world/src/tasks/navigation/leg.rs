@@ -2,10 +2,13 @@
 
 use super::goal::{NavigationGoal, SuccessRule};
 use crate::actions::{DiscreteAction, StepSizes};
-use crate::expert::{LookStep, LookedAt, ShortestPathFollower, action_towards_object, look_at};
+use crate::expert::{
+    LookStep, LookedAt, ShortestPathFollower, action_towards_object, face_point, look_at,
+};
 use crate::world::World;
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::{AgentId, ObjectId};
+use glam::Vec3;
 use std::sync::Arc;
 
 /// Distance from a place where the expert looked in vain within which goals are not tried again, m.
@@ -112,6 +115,11 @@ impl Leg {
     pub(in crate::tasks) fn look_on(&self, world: &World, object: ObjectId) -> LookStep {
         let at = (object, LookedAt::LevelSurface);
         look_at(world, self.guide.agent(), at, &self.stride)
+    }
+
+    /// The turn or tilt that brings a point into the middle of the view; `None` once it is there.
+    pub(in crate::tasks) fn face(&self, world: &World, point: Vec3) -> Option<DiscreteAction> {
+        face_point(world, self.guide.agent(), point, &self.stride)
     }
 
     /// The expert's next step on the way, and then towards the nearest thing of the goal; `None` once it stands and looks right.

@@ -1,0 +1,163 @@
+//! An expert that fetches things, puts them where it is told, and opens and closes furniture.
+
+use super::movable_things::cells_goal;
+use crate::actions::{DiscreteAction, StepSizes};
+use crate::expert::LookStep;
+use crate::tasks::navigation::{BESIDE_M, ELSEWHERE_M, Leg};
+use crate::world::World;
+use dwell_scene::navigation::{NavCell, NavGrid};
+use dwell_scene::{AgentId, ObjectId};
+use glam::Vec3;
+use std::sync::Arc;
+
+/// Control steps for which it waits for furniture to close, and for a thing to be in its hand.
+const PATIENCE: u32 = 60;
+const GRASPING: u32 = 3;
+/// Control steps for which it keeps opening or closing.
+const SWINGING: u32 = 240;
+/// How often it tries all places of an errand again.
+const ROUNDS: u32 = 2;
+
+/// Something to do at the end of a way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Errand {
+    /// Take a thing.
+    Take(ObjectId),
+    /// Put what is held down, looking at a point.
+    Put(ObjectId, Vec3),
+    /// Open furniture.
+    Open(ObjectId),
+    /// Close furniture.
+    Close(ObjectId),
+}
+
+impl Errand {
+    /// What it is about.
+    pub(super) fn object(self) -> ObjectId {
+        match self {
+            Self::Take(object)
+            | Self::Put(object, _)
+            | Self::Open(object)
+            | Self::Close(object) => object,
+        }
+    }
+}
+
+/// An errand that is under way.
+#[derive(Debug)]
+pub(super) struct Carrier {
+    pub(super) errand: Errand,
+    leg: Leg,
+    /// Control steps for which its hand has been busy.
+    busy: u32,
+    rounds: u32,
+}
+
+impl Carrier {
+    /// Begins an errand that is done from one of some cells.
+    pub(super) fn new(
+        errand: Errand,
+        cells: Vec<NavCell>,
+        (agent, grid, stride): (AgentId, &Arc<NavGrid>, StepSizes),
+    ) -> Self {
+        Self {
+            errand,
+            leg: Leg::new(agent, grid.clone(), cells_goal(cells, 0.0), stride),
+            busy: 0,
+            rounds: 0,
+        }
+    }
+
+    /// The next action; `None` where it gives up.
+    pub(super) fn next(&mut self, world: &World) -> Option<DiscreteAction> {
+        match self.errand {
+            Errand::Take(object) => {
+                if self.busy > 0 {
+                    return self.wait(world, GRASPING);
+                }
+                if let Some(step) = self.leg.walk(world) {
+                    return Some(step);
+                }
+                match self.leg.look_at(world, object) {
+                    LookStep::Turn(step) => Some(step),
+                    LookStep::Missed => self.elsewhere(world, BESIDE_M),
+                    LookStep::Done => {
+                        self.busy = 1;
+                        Some(DiscreteAction::Pick)
+                    }
+                }
+            }
+            Errand::Put(_, point) => {
+                if self.busy > 0 {
+                    // It is done at once, or not at all.
+                    return self.elsewhere(world, BESIDE_M);
+                }
+                if let Some(step) = self.leg.walk(world).or_else(|| self.leg.face(world, point)) {
+                    return Some(step);
+                }
+                self.busy = 1;
+                Some(DiscreteAction::Place)
+            }
+            Errand::Open(object) => {
+                if self.busy > 0 {
+                    self.busy += 1;
+                    if self.busy < SWINGING {
+                        return Some(self.leg.open(world, object));
+                    }
+                    return self.elsewhere(world, ELSEWHERE_M);
+                }
+                self.look_and_use(world, object, DiscreteAction::Open)
+            }
+            Errand::Close(object) => {
+                if self.busy > 0 {
+                    return self.wait(world, PATIENCE);
+                }
+                self.look_and_use(world, object, DiscreteAction::Close)
+            }
+        }
+    }
+
+    fn look_and_use(
+        &mut self,
+        world: &World,
+        object: ObjectId,
+        action: DiscreteAction,
+    ) -> Option<DiscreteAction> {
+        if let Some(step) = self.leg.walk(world) {
+            return Some(step);
+        }
+        match self.leg.look_at(world, object) {
+            LookStep::Turn(step) => Some(step),
+            LookStep::Missed => self.elsewhere(world, BESIDE_M),
+            LookStep::Done => {
+                self.busy = 1;
+                Some(action)
+            }
+        }
+    }
+
+    fn wait(&mut self, world: &World, longest: u32) -> Option<DiscreteAction> {
+        self.busy += 1;
+        if self.busy < longest {
+            return Some(DiscreteAction::Wait);
+        }
+        self.elsewhere(world, ELSEWHERE_M)
+    }
+
+    /// Goes on from another place.
+    fn elsewhere(&mut self, world: &World, radius_m: f32) -> Option<DiscreteAction> {
+        self.busy = 0;
+        if self.leg.leave_out_goals_here(world, radius_m) {
+            return Some(DiscreteAction::Wait);
+        }
+        // It stands elsewhere in a cell when it comes again.
+        if self.rounds < ROUNDS {
+            self.rounds += 1;
+            self.leg.try_all_goals_again();
+            if self.leg.leave_out_goals_here(world, radius_m) {
+                return Some(DiscreteAction::Wait);
+            }
+        }
+        None
+    }
+}

@@ -1,0 +1,220 @@
+//! The expert: it brings one thing after the other to where it is to be, furniture first.
+
+use super::carrier::{Carrier, Errand};
+use super::{HandMover, MovableThing};
+use crate::actions::{DiscreteAction, StepSizes};
+use crate::tasks::goal_cells::LargestIslandIndex;
+use crate::tasks::navigation::cells_in_reach;
+use crate::world::World;
+use dwell_scene::navigation::{NavCell, NavGrid};
+use dwell_scene::{Aabb, AgentId, ObjectId, Pose};
+use glam::Vec3;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+/// Share of the reach at which a place is reached from all over a cell.
+const REACH_SHARE: f32 = 0.9;
+/// How often it takes a thing.
+const TAKES: u32 = 4;
+/// From where it put a thing down in vain it does not try again, m.
+const ELSEWHERE_M: f32 = 0.25;
+
+/// The place of a thing before it was moved.
+#[derive(Clone, Debug)]
+pub(in crate::tasks) struct PlaceToRestore {
+    /// Of the thing's first part.
+    pub(in crate::tasks) world_from_part: Pose,
+    /// The middle of the lower side of the box around it there, m.
+    foot: Vec3,
+    /// From where a hand reaches it.
+    cells: Vec<NavCell>,
+}
+
+impl PlaceToRestore {
+    /// The place of a thing that had a box and a pose there.
+    pub(in crate::tasks) fn new(
+        mover: &HandMover<'_>,
+        thing: &MovableThing,
+        (bounds, world_from_part): (Aabb, Pose),
+    ) -> Self {
+        let foot = bounds.center().with_y(bounds.min.y);
+        let reach_m = REACH_SHARE * mover.body.reach_m;
+        let reaches = |cell: &&NavCell| {
+            let feet = mover.ground.grid.position(**cell);
+            (feet + Vec3::Y * mover.body.eye_height_m).distance(foot) <= reach_m
+        };
+        let near: Vec<NavCell> = thing.cells.iter().filter(reaches).copied().collect();
+        let all = if near.is_empty() { &thing.cells } else { &near };
+        Self {
+            world_from_part,
+            foot,
+            cells: all.clone(),
+        }
+    }
+}
+
+/// What is not as it is to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::tasks) enum Misplaced {
+    /// A thing that lies elsewhere.
+    Thing(ObjectId),
+    /// Furniture that is to be closed, or with `true` opened.
+    Furniture(ObjectId, bool),
+}
+
+impl Misplaced {
+    fn object(self) -> ObjectId {
+        match self {
+            Self::Thing(object) | Self::Furniture(object, _) => object,
+        }
+    }
+}
+
+/// The expert of an episode.
+#[derive(Debug)]
+pub(in crate::tasks) struct Restorer {
+    agent: AgentId,
+    grid: Arc<NavGrid>,
+    stride: StepSizes,
+    places: BTreeMap<ObjectId, PlaceToRestore>,
+    /// Where a hand reaches furniture.
+    furniture: BTreeMap<ObjectId, Vec<NavCell>>,
+    carrier: Option<Carrier>,
+    takes: BTreeMap<ObjectId, u32>,
+    /// What it has given up.
+    left: BTreeSet<ObjectId>,
+}
+
+impl Restorer {
+    pub(in crate::tasks) fn new(
+        (agent, grid, stride): (AgentId, &Arc<NavGrid>, StepSizes),
+        places: BTreeMap<ObjectId, PlaceToRestore>,
+        furniture: BTreeMap<ObjectId, Vec<NavCell>>,
+    ) -> Self {
+        Self {
+            agent,
+            grid: grid.clone(),
+            stride,
+            places,
+            furniture,
+            carrier: None,
+            takes: BTreeMap::new(),
+            left: BTreeSet::new(),
+        }
+    }
+
+    /// The next action while some things are misplaced.
+    pub(in crate::tasks) fn next(
+        &mut self,
+        world: &World,
+        misplaced: &[Misplaced],
+    ) -> DiscreteAction {
+        let holder = world.state().agents.get(self.agent);
+        let held = holder.and_then(|agent| agent.holding);
+        let is_misplaced = |object: ObjectId| misplaced.iter().any(|one| one.object() == object);
+        if let Some(carrier) = &self.carrier {
+            let is_over = match carrier.errand {
+                Errand::Take(object) => held == Some(object) || !is_misplaced(object),
+                Errand::Put(object, _) => held != Some(object),
+                Errand::Open(object) | Errand::Close(object) => !is_misplaced(object),
+            };
+            if is_over {
+                if let (Errand::Put(object, _), Some(agent)) = (carrier.errand, holder)
+                    && let Some(place) = self.places.get_mut(&object)
+                {
+                    let grid = &self.grid;
+                    let is_elsewhere = |cell: &NavCell| {
+                        grid.position(*cell).distance(agent.position) > ELSEWHERE_M
+                    };
+                    let others = place.cells.iter().copied().filter(is_elsewhere);
+                    let others: Vec<NavCell> = others.collect();
+                    if !others.is_empty() {
+                        place.cells = others;
+                    }
+                }
+                self.carrier = None;
+            }
+        }
+        // Each round begins an errand or gives a thing up.
+        for _ in 0..=misplaced.len() + 1 {
+            if self.carrier.is_none() {
+                self.carrier = self.begin(world, held, misplaced);
+            }
+            let Some(carrier) = &mut self.carrier else {
+                break;
+            };
+            if let Some(action) = carrier.next(world) {
+                return action;
+            }
+            let object = carrier.errand.object();
+            self.left.insert(object);
+            self.carrier = None;
+        }
+        if held.is_some_and(|object| self.left.contains(&object)) {
+            return DiscreteAction::Drop;
+        }
+        DiscreteAction::Stop
+    }
+
+    /// The next errand; `None` where there is none.
+    fn begin(
+        &mut self,
+        world: &World,
+        held: Option<ObjectId>,
+        misplaced: &[Misplaced],
+    ) -> Option<Carrier> {
+        let setup = (self.agent, &self.grid, self.stride);
+        if let Some(object) = held {
+            if self.left.contains(&object) {
+                return None;
+            }
+            let place = self.places.get(&object)?;
+            let errand = Errand::Put(object, place.foot);
+            return Some(Carrier::new(errand, place.cells.clone(), setup));
+        }
+        let here = world.state().agents.get(self.agent)?.position;
+        let here = self.grid.nearest(here, 0.6)?;
+        let ways = self.grid.distance_field(&[here]);
+        let ground = LargestIslandIndex::of(&self.grid);
+        let mut best: Option<((bool, f64), Errand, Vec<NavCell>)> = None;
+        for one in misplaced {
+            if self.left.contains(&one.object()) {
+                continue;
+            }
+            let (errand, cells) = match *one {
+                Misplaced::Thing(object) => {
+                    let tries = self.takes.get(&object).copied().unwrap_or(0);
+                    if tries >= TAKES || !self.places.contains_key(&object) {
+                        continue;
+                    }
+                    let cells = cells_in_reach(world, self.agent, &ground, object);
+                    (Errand::Take(object), cells)
+                }
+                Misplaced::Furniture(object, opens) => {
+                    let cells = self.furniture.get(&object).cloned().unwrap_or_default();
+                    let errand = if opens {
+                        Errand::Open(object)
+                    } else {
+                        Errand::Close(object)
+                    };
+                    (errand, cells)
+                }
+            };
+            let way_m = cells.iter().filter_map(|cell| ways.at(*cell));
+            let way_m = way_m.fold(f64::INFINITY, f64::min);
+            if !way_m.is_finite() {
+                continue;
+            }
+            // What stands open may hide a place, or bar the way.
+            let rank = (matches!(errand, Errand::Take(_)), way_m);
+            if best.as_ref().is_none_or(|(other, ..)| rank < *other) {
+                best = Some((rank, errand, cells));
+            }
+        }
+        let (_, errand, cells) = best?;
+        if let Errand::Take(object) = errand {
+            *self.takes.entry(object).or_default() += 1;
+        }
+        Some(Carrier::new(errand, cells, setup))
+    }
+}
