@@ -18,13 +18,15 @@ pub enum GoalPart {
     Room,
     /// A place and heading from which a picture is taken.
     Image,
+    /// A question in words.
+    Question,
 }
 
 /// What an episode asks for, as sensors of goals and infos tell it. What does not belong to its kind is empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct EpisodeGoal {
-    /// `"point"`, `"room"`, `"object"`, `"image"`, `"sound"`, or the kind of an instruction (`"go_to_room"`, `"find_object"`); empty
-    /// where the task asks for nothing, or a task outside of this crate asks.
+    /// `"point"`, `"room"`, `"object"`, `"image"`, `"sound"`, the kind of an instruction (`"go_to_room"`, `"find_object"`) or of a question
+    /// (`"location"`, `"color"`); empty where the task asks for nothing, or a task outside of this crate asks.
     pub kind: &'static str,
     /// A place on the floor, m.
     pub position: Option<Vec3>,

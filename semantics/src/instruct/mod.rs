@@ -13,6 +13,8 @@ pub use condition::StepCondition;
 pub use find_object::is_sought;
 pub use needed_words::needed_words;
 pub use steps::{InstructionStep, StepKind, compose, steps};
+pub(crate) use steps::{is_opened, is_switched};
+pub(crate) use task::say;
 pub use task::{Instruction, InstructionGoal, InstructionKind, InstructionProgress};
 
 use crate::error::SemanticsError;
@@ -22,8 +24,8 @@ use dwell_scene::random::RandomKey;
 
 /// Largest length of a text, in characters.
 pub const MAX_TEXT_LEN: usize = 120;
-/// Every character that a text may have.
-pub const CHARSET: &str = " ',-.ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz";
+/// Every character that a text may have; new ones come last.
+pub const CHARSET: &str = " ',-.ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz?";
 
 /// Every instruction of a kind that the scene offers, with one fixed wording each, in order. Each means exactly one thing.
 pub fn candidates(scene: &SemanticScene<'_>, kind: InstructionKind) -> Vec<Instruction> {

@@ -20,6 +20,16 @@ use serde::{Deserialize, Serialize};
 const NOT_OPENED: [&str; 3] = ["tap", "television", "toilet"];
 const NOT_SWITCHED: [&str; 4] = ["candle", "fireplace", "sink", "toilet"];
 
+/// Returns whether one opens and closes things of a category.
+pub(crate) fn is_opened(category: &SemanticCategory) -> bool {
+    category.openable && !NOT_OPENED.contains(&category.name)
+}
+
+/// Returns whether one switches things of a category on and off.
+pub(crate) fn is_switched(category: &SemanticCategory) -> bool {
+    category.switchable && !NOT_SWITCHED.contains(&category.name)
+}
+
 /// What a step asks for.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
@@ -93,11 +103,8 @@ impl StepKind {
         };
         let thing = &scene.house().objects[object];
         let category = scene.facts(object).category;
-        let is_sort = |flag: fn(&SemanticCategory) -> bool, but: &[&str]| {
-            category.is_some_and(|row| flag(row) && !but.contains(&row.name))
-        };
-        let opens = || is_sort(|row| row.openable, &NOT_OPENED);
-        let switches = || is_sort(|row| row.switchable, &NOT_SWITCHED);
+        let opens = || category.is_some_and(is_opened);
+        let switches = || category.is_some_and(is_switched);
         match self {
             Self::GoToRoom => false,
             Self::FindObject => true,

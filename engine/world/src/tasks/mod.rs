@@ -2,6 +2,7 @@
 
 mod audio_nav;
 mod door_leaves;
+mod embodied_qa;
 mod free;
 mod goal_cells;
 mod image_nav;
@@ -164,6 +165,7 @@ pub fn all() -> &'static [TaskKind] {
         semantic_audio_nav::KIND,
         instruction_steps::KIND,
         sound_localization::KIND,
+        embodied_qa::KIND,
     ]
 }
 
