@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+pub mod ask;
 mod attributes;
 pub mod category;
 pub mod check;

@@ -20,6 +20,8 @@ pub enum GoalPart {
     Image,
     /// Where things belong, and how far open furniture is to be.
     Placements,
+    /// A question in words.
+    Question,
 }
 
 /// Where a thing belongs, or how far open it is to be.
@@ -38,8 +40,9 @@ pub struct ObjectPlacement {
 /// What an episode asks for, as sensors of goals and infos tell it. What does not belong to its kind is empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct EpisodeGoal {
-    /// `"point"`, `"room"`, `"object"`, `"image"`, `"sound"`, `"rearrangement"`, `"tidying"`, or the kind of an instruction (`"go_to_room"`, `"find_object"`); empty
-    /// where the task asks for nothing, or a task outside of this crate asks.
+    /// `"point"`, `"room"`, `"object"`, `"image"`, `"sound"`, `"rearrangement"`, `"tidying"`, the kind of an instruction (`"go_to_room"`,
+    /// `"find_object"`, `"sequence"`) or of a question (`"location"`, `"color"`); empty where the task asks for nothing, or a task
+    /// outside of this crate asks.
     pub kind: &'static str,
     /// A place on the floor, m.
     pub position: Option<Vec3>,

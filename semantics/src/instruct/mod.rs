@@ -16,7 +16,9 @@ pub use condition::{StepCondition, StepView};
 pub use find_object::is_sought;
 pub use needed_words::needed_words;
 pub use step_kind::{StepKind, states_of};
+pub(crate) use step_kind::{is_opened, is_switched};
 pub use steps::{InstructionStep, conditional};
+pub(crate) use task::say;
 pub use task::{Instruction, InstructionGoal, InstructionKind, InstructionProgress};
 pub use thing_group::{ThingGroup, ThingSet, groups, thing_sets};
 pub use word_split::WordSplit;
@@ -28,8 +30,8 @@ use dwell_scene::random::RandomKey;
 
 /// Largest length of a text, in characters.
 pub const MAX_TEXT_LEN: usize = 120;
-/// Every character that a text may have.
-pub const CHARSET: &str = " ',-.ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz";
+/// Every character that a text may have; new ones come last.
+pub const CHARSET: &str = " ',-.ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz?";
 
 /// Every instruction of a kind that the scene offers, with one fixed wording each, in order. Each means exactly one thing.
 pub fn candidates(scene: &SemanticScene<'_>, kind: InstructionKind) -> Vec<Instruction> {

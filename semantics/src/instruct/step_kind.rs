@@ -108,16 +108,19 @@ impl StepKind {
     /// Returns whether a thing is of the sort that it asks about, and not yet as it asks: one opens what is closed.
     pub fn applies(self, scene: &SemanticScene<'_>, object: ObjectId) -> bool {
         let thing = &scene.house().objects[object];
+        let category = scene.facts(object).category;
+        let opens = || category.is_some_and(is_opened);
+        let switches = || category.is_some_and(is_switched);
         match self {
             Self::GoToRoom => false,
             Self::FindObject | Self::Face | Self::PointAt => true,
             Self::PickUp | Self::Bring | Self::PutOn | Self::PutIn => {
                 thing.pickable && scene.holder(object).is_none()
             }
-            Self::Open => is_opened(scene, object) && is(scene, "closed", object),
-            Self::Close => is_opened(scene, object) && is(scene, "open", object),
-            Self::SwitchOn => is_switched(scene, object) && is(scene, "switched_off", object),
-            Self::SwitchOff => is_switched(scene, object) && is(scene, "switched_on", object),
+            Self::Open => opens() && is(scene, "closed", object),
+            Self::Close => opens() && is(scene, "open", object),
+            Self::SwitchOn => switches() && is(scene, "switched_off", object),
+            Self::SwitchOff => switches() && is(scene, "switched_on", object),
         }
     }
 
@@ -141,9 +144,10 @@ impl StepKind {
 
 /// The two states, by their predicates, of which people say that a thing is in one; `None` for things without.
 pub fn states_of(scene: &SemanticScene<'_>, object: ObjectId) -> Option<[&'static str; 2]> {
-    if is_opened(scene, object) {
+    let category = scene.facts(object).category?;
+    if is_opened(category) {
         Some(["open", "closed"])
-    } else if is_switched(scene, object) {
+    } else if is_switched(category) {
         Some(["switched_on", "switched_off"])
     } else {
         None
@@ -155,20 +159,12 @@ fn is(scene: &SemanticScene<'_>, predicate: &str, object: ObjectId) -> bool {
     found.is_ok_and(|found| found.holds(scene, &[Term::Object(object)], None) == Truth::True)
 }
 
-fn is_sort(
-    scene: &SemanticScene<'_>,
-    object: ObjectId,
-    flag: fn(&SemanticCategory) -> bool,
-    but: &[&str],
-) -> bool {
-    let category = scene.facts(object).category;
-    category.is_some_and(|row| flag(row) && !but.contains(&row.name))
+/// Returns whether one opens and closes things of a category.
+pub(crate) fn is_opened(category: &SemanticCategory) -> bool {
+    category.openable && !NOT_OPENED.contains(&category.name)
 }
 
-fn is_opened(scene: &SemanticScene<'_>, object: ObjectId) -> bool {
-    is_sort(scene, object, |row| row.openable, &NOT_OPENED)
-}
-
-fn is_switched(scene: &SemanticScene<'_>, object: ObjectId) -> bool {
-    is_sort(scene, object, |row| row.switchable, &NOT_SWITCHED)
+/// Returns whether one switches things of a category on and off.
+pub(crate) fn is_switched(category: &SemanticCategory) -> bool {
+    category.switchable && !NOT_SWITCHED.contains(&category.name)
 }

@@ -71,7 +71,7 @@ pub struct InstructionGoal {
 }
 
 /// The text of a form, where it keeps to the limits of instructions.
-pub(super) fn say(
+pub(crate) fn say(
     language: &Language,
     form: &Form,
     wording: Option<RandomKey>,

@@ -26,6 +26,8 @@ mod objectgoal;
 mod picture_memory;
 mod pointgoal_with_gps_compass;
 mod proprioception;
+mod question;
+mod question_tokens;
 mod rearrangegoal;
 mod receiver;
 mod rgb;
@@ -363,6 +365,8 @@ pub fn all() -> &'static [SensorKind] {
         unshuffled_rgb::KIND,
         instruction::KIND,
         instruction_tokens::KIND,
+        question::KIND,
+        question_tokens::KIND,
         gps::KIND,
         compass::KIND,
         wheel_odometry::KIND,

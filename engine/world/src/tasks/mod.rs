@@ -2,6 +2,7 @@
 
 mod audio_nav;
 mod door_leaves;
+mod embodied_qa;
 mod free;
 mod goal_cells;
 mod image_nav;
@@ -225,6 +226,7 @@ pub fn all() -> &'static [TaskKind] {
         audio_nav::KIND,
         semantic_audio_nav::KIND,
         sound_localization::KIND,
+        embodied_qa::KIND,
         rearrange::KIND,
         tidy::KIND,
     ]

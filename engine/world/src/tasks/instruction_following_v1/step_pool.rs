@@ -156,7 +156,9 @@ impl StepPool {
         let eye_y = floor_y + finder.body.eye_height_m;
         let (mut on, mut within) = (Vec::new(), Vec::new());
         for place in house.receptacles_of(object) {
-            let space = place.space_in_part.transformed(&state.part_pose[place.part].to_affine());
+            let space = place
+                .space_in_part
+                .transformed(&state.part_pose[place.part].to_affine());
             match place.holding {
                 ReceptacleKind::On if space.min.y < eye_y - BELOW_EYES_M => on.push(space.size()),
                 ReceptacleKind::In if space.min.y < eye_y => within.push(space.size()),

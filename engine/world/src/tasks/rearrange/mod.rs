@@ -14,8 +14,8 @@ use super::door_leaves::{self, DoorLeaves};
 use super::goal_cells::LargestIslandIndex;
 use super::relocation::{HandMover, MovableThings, MoveTarget, PlaceToRestore, Restorer};
 use super::standing_room::FreeStartCells;
-use super::{Task, TaskKind, TaskSetup, random_yaw_rad};
-use crate::actions::{DiscreteAction, HandTarget, StepAction};
+use super::{PlayedAction, Task, TaskKind, TaskSetup, random_yaw_rad};
+use crate::actions::{DiscreteAction, HandTarget};
 use crate::episode::{Episode, GoalPart, StepResult};
 use crate::error::WorldError;
 use crate::metrics::NavigationMetrics;
@@ -214,7 +214,11 @@ impl Task for Rearrange {
         let agent = self.setup.agent;
         let body = self.setup.body(world, NAME)?;
         let grid: Arc<NavGrid> = world.engines().nav_grid(&body)?;
-        if self.settings.open_doors.unwrap_or(!self.setup.opens) {
+        if self
+            .settings
+            .open_doors
+            .unwrap_or(!self.setup.actions.contains(DiscreteAction::Open))
+        {
             door_leaves::open_all(world, &grid)?;
         }
         let leaves = DoorLeaves::of(world, &grid);
@@ -349,7 +353,12 @@ impl Task for Rearrange {
         (in_view && near).then_some(HandTarget::Pose(world_from_part))
     }
 
-    fn judge(&mut self, world: &World, episode: &mut Episode, action: &StepAction) -> StepResult {
+    fn judge(
+        &mut self,
+        world: &World,
+        episode: &mut Episode,
+        played: &PlayedAction<'_>,
+    ) -> StepResult {
         let agent = world.state().agents.get(self.setup.agent);
         let (Some(active), Some(agent)) = (&mut self.active, agent) else {
             return StepResult::default();
@@ -361,7 +370,7 @@ impl Task for Rearrange {
         if agent.collided {
             reward += pay.collision;
         }
-        let stops = action.action == DiscreteAction::Stop;
+        let stops = played.is_stop();
         let success = stops && active.now.iter().all(|energy| *energy == 0.0);
         if success {
             reward += pay.success;

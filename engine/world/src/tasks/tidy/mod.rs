@@ -9,8 +9,8 @@ use super::relocation::{
     HandMover, Misplaced, MovableThings, MoveTarget, PlaceToRestore, Restorer,
 };
 use super::standing_room::FreeStartCells;
-use super::{Task, TaskKind, TaskSetup, random_yaw_rad};
-use crate::actions::{DiscreteAction, StepAction};
+use super::{PlayedAction, Task, TaskKind, TaskSetup, random_yaw_rad};
+use crate::actions::DiscreteAction;
 use crate::episode::{Episode, EpisodeGoal, StepResult, TaskMeasure};
 use crate::error::WorldError;
 use crate::metrics::NavigationMetrics;
@@ -262,7 +262,11 @@ impl Task for Tidy {
         let agent = self.setup.agent;
         let body = self.setup.body(world, NAME)?;
         let grid: Arc<NavGrid> = world.engines().nav_grid(&body)?;
-        if self.settings.open_doors.unwrap_or(!self.setup.opens) {
+        if self
+            .settings
+            .open_doors
+            .unwrap_or(!self.setup.actions.contains(DiscreteAction::Open))
+        {
             door_leaves::open_all(world, &grid)?;
         }
         let leaves = DoorLeaves::of(world, &grid);
@@ -362,7 +366,12 @@ impl Task for Tidy {
         }
     }
 
-    fn judge(&mut self, world: &World, episode: &mut Episode, action: &StepAction) -> StepResult {
+    fn judge(
+        &mut self,
+        world: &World,
+        episode: &mut Episode,
+        played: &PlayedAction<'_>,
+    ) -> StepResult {
         let agent = world.state().agents.get(self.setup.agent);
         let (Some(active), Some(agent)) = (&mut self.active, agent) else {
             return StepResult::default();
@@ -377,7 +386,7 @@ impl Task for Tidy {
         if agent.collided {
             reward += pay.collision;
         }
-        let stops = action.action == DiscreteAction::Stop;
+        let stops = played.is_stop();
         let success = stops && now == 0.0;
         if success {
             reward += pay.success;
