@@ -73,11 +73,11 @@ def naming_policy(name: str, where: str) -> Iterator[None]:
 def _own_trace(error: BaseException) -> types.TracebackType | None:
     """The traceback from the first frame on that is not dwell's; all of it where every one is."""
     package = os.path.join(os.path.dirname(os.path.abspath(__file__)), "")
-    outside = ("contextlib.py", "importlib")
+    between = (str(contextlib.__file__), str(importlib.__file__))
     trace = error.__traceback__
     while trace is not None:
         file = trace.tb_frame.f_code.co_filename
-        if not file.startswith(package) and not any(part in file for part in outside):
+        if not file.startswith((package, "<frozen importlib")) and file not in between:
             return trace
         trace = trace.tb_next
     return error.__traceback__

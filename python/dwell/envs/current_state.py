@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import abc
 import inspect
-from typing import TYPE_CHECKING, Any, Self, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import gymnasium
 
@@ -14,6 +14,8 @@ from dwell.language_api import LanguageApi
 from dwell.relation_api import Thing, Viewer
 
 if TYPE_CHECKING:
+    from typing_extensions import Self
+
     from dwell.world import World
 
 
