@@ -94,9 +94,18 @@ fn main() -> Result<(), Box<dyn Error>> {
         let (counts, houses) = by_text.entry(&drawn.text).or_default();
         *counts.entry(drawn.answer).or_default() += 1;
         houses.insert(drawn.house);
-        *by_kind.entry(drawn.kind).or_default().entry(drawn.answer).or_default() += 1;
+        *by_kind
+            .entry(drawn.kind)
+            .or_default()
+            .entry(drawn.answer)
+            .or_default() += 1;
     }
-    println!("{} questions, {} texts in train; {} in val", train.len(), by_text.len(), val.len());
+    println!(
+        "{} questions, {} texts in train; {} in val",
+        train.len(),
+        by_text.len(),
+        val.len()
+    );
     println!("| kind | questions | answers | most frequent answer | same for its text |");
     println!("| --- | --- | --- | --- | --- |");
     let mut all = [0.0; 2];

@@ -83,7 +83,9 @@ fn thing(env: &Env, phrase: &Phrase) -> ObjectId {
 }
 
 fn bounds(env: &Env, object: ObjectId) -> Aabb {
-    env.world().house().object_bounds(env.world().state(), object)
+    env.world()
+        .house()
+        .object_bounds(env.world().state(), object)
 }
 
 /// The room around a point: the number of edges of its outline's triangles that a line to the side crosses is odd.
@@ -197,8 +199,7 @@ fn answer_of_house(env: &Env) -> Option<String> {
             yes_no(!things_in(env, room, &noun).is_empty())
         }
         Question::Whether(Clause::Holds { arguments, .. }) => {
-            let [first, near, far] =
-                [0, 1, 2].map(|k| bounds(env, thing(env, &arguments[k])));
+            let [first, near, far] = [0, 1, 2].map(|k| bounds(env, thing(env, &arguments[k])));
             let (near_m, far_m) = (gap_m(&first, &near), gap_m(&first, &far));
             // Boxes of things that are turned are larger than these.
             let is_clear = near_m.max(far_m) > 1.3 * near_m.min(far_m) + 0.2;
@@ -214,7 +215,11 @@ fn answer_of_house(env: &Env) -> Option<String> {
                 let own = &house.joints[joint];
                 (state.joint_position[joint] - own.closed) / (own.open - own.closed)
             });
-            yes_no(joints.filter(|share| share.is_finite()).any(|share| share > 0.5))
+            yes_no(
+                joints
+                    .filter(|share| share.is_finite())
+                    .any(|share| share > 0.5),
+            )
         }
         Question::Which { .. } | Question::Attribute { .. } => None,
         other => panic!("{other:?}"),
@@ -241,7 +246,16 @@ fn answers_are_those_of_the_house() {
     let kinds: Vec<&str> = judged.keys().copied().collect();
     assert_eq!(
         kinds,
-        ["color", "color_room", "comparison", "count", "existence", "location", "place", "state"]
+        [
+            "color",
+            "color_room",
+            "comparison",
+            "count",
+            "existence",
+            "location",
+            "place",
+            "state"
+        ]
     );
     for (kind, [judged, all]) in judged {
         let is_judged = !["color", "color_room", "place"].contains(&kind);
@@ -282,7 +296,11 @@ fn what_is_somewhere_is_there() {
                 let [own, other] = [thing, landmark].map(|object| bounds(&env, object));
                 let gap_m = gap_m(&own, &other);
                 let rooms = [own, other].map(|bounds| room_around(&house, bounds.center()));
-                assert!(gap_m < 1.0 && rooms[0] == rooms[1], "{} {gap_m}", text(&env));
+                assert!(
+                    gap_m < 1.0 && rooms[0] == rooms[1],
+                    "{} {gap_m}",
+                    text(&env)
+                );
                 beside += 1;
             }
         }
@@ -304,7 +322,16 @@ fn words_of(rgb: [f32; 3]) -> Vec<&'static str> {
     let span = most - least;
     let mut words = Vec::new();
     if span < 0.22 {
-        words.extend([("black", 0.0..0.35), ("gray", 0.2..0.9), ("white", 0.7..1.1)].iter().filter(|(_, range)| range.contains(&most)).map(|(word, _)| *word));
+        words.extend(
+            [
+                ("black", 0.0..0.35),
+                ("gray", 0.2..0.9),
+                ("white", 0.7..1.1),
+            ]
+            .iter()
+            .filter(|(_, range)| range.contains(&most))
+            .map(|(word, _)| *word),
+        );
     }
     if span > 0.04 {
         let hue = if most == r {
@@ -395,13 +422,19 @@ fn every_question_means_one_thing_and_has_one_answer() {
             let (text, given) = (text(&env), answer(&mut env));
             assert!(text.ends_with('?') && text.len() <= 120, "{text}");
             let charset = dwell_semantics::instruct::CHARSET;
-            assert!(text.chars().all(|letter| charset.contains(letter)), "{text}");
+            assert!(
+                text.chars().all(|letter| charset.contains(letter)),
+                "{text}"
+            );
             let tokens = dwell_semantics::vocabulary::tokenize(&text).unwrap();
             assert_eq!(env.episode(0).unwrap().tokens, tokens);
             let scene = env.world().engines().semantics().scene(env.world().state());
             let checker = Checker::new(&scene, Listener::default());
             let told = checker.check_text(&text).unwrap();
-            assert!(told.answer.is_some_and(|answer| answer.is_decided()), "{text}");
+            assert!(
+                told.answer.is_some_and(|answer| answer.is_decided()),
+                "{text}"
+            );
             assert!(checker.ambiguities(&told.form).is_empty(), "{text}");
             assert!(answer_number(given).is_some());
             texts.insert(text);
@@ -496,7 +529,10 @@ fn the_way_is_measured_and_goes_on_after_a_snapshot() {
             };
             assert!((decrease_m - (start_m - now_m)).abs() < 1e-9);
             assert!((told_least_m - least_m).abs() < 1e-9);
-            assert_eq!([is_there, was_there], [inside, entered].map(|is| f64::from(u8::from(is))));
+            assert_eq!(
+                [is_there, was_there],
+                [inside, entered].map(|is| f64::from(u8::from(is)))
+            );
             assert_eq!(correct.is_nan(), !info.result.terminated);
             last = info.measures.clone();
             if info.result.terminated {
@@ -554,11 +590,17 @@ fn settings_are_kept_or_refused() {
         env.reset(0).map_err(|error| error.to_string())
     };
     for (settings, part) in [
-        (json!({"kinds": []}), "kinds is none; allowed is at least one of location"),
+        (
+            json!({"kinds": []}),
+            "kinds is none; allowed is at least one of location",
+        ),
         (json!({"kinds": ["why"]}), "why"),
         (json!({"start_actions": 0}), "start_actions is 0"),
         (json!({"min_distance_m": 40.0}), "min_distance_m is 40"),
-        (json!({"reward": {"wrong_answer": 1e9}}), "reward.wrong_answer"),
+        (
+            json!({"reward": {"wrong_answer": 1e9}}),
+            "reward.wrong_answer",
+        ),
         (json!({"reward": {"step": 1e9}}), "reward.step"),
         (
             json!({"min_distance_m": 900.0, "max_distance_m": 1000.0}),

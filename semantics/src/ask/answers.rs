@@ -105,7 +105,9 @@ mod tests {
             assert_eq!(answer_number(word), Some(number));
         }
         // The first ones never change their numbers.
-        let first = ["yes", "no", "0", "1", "2", "3", "4", "5", "6", "7", "8", "9", "10", "black"];
+        let first = [
+            "yes", "no", "0", "1", "2", "3", "4", "5", "6", "7", "8", "9", "10", "black",
+        ];
         assert_eq!(answers()[..first.len()], first);
         for word in ["kitchen", "living room", "chair", "coffee table", "beige"] {
             assert!(answer_number(word).is_some(), "{word}");

@@ -23,7 +23,12 @@ pub(super) fn candidates(asker: &Asker<'_>) -> Vec<AskedQuestion> {
             asker.scene.facts(object).category.is_some_and(test)
         };
         let shines = is(is_switched) && is_seen_to_be_on(asker, object);
-        let opens = is(is_opened) && asker.scene.state.openness(asker.scene.house(), object).is_some();
+        let opens = is(is_opened)
+            && asker
+                .scene
+                .state
+                .openness(asker.scene.house(), object)
+                .is_some();
         let states: [(bool, &str, fn(ObjectId, bool) -> StateToSet); 2] = [
             (shines, "switched_on", StateToSet::Switch),
             (opens, "open", StateToSet::Open),

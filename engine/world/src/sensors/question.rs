@@ -8,8 +8,7 @@ use crate::episode::GoalPart;
 use crate::error::WorldError;
 use crate::schema;
 
-const ABOUT: &str =
-    "The question as text; its characters are dwell_semantics::instruct::CHARSET.";
+const ABOUT: &str = "The question as text; its characters are dwell_semantics::instruct::CHARSET.";
 
 pub(super) const KIND: SensorKind = SensorKind {
     name: "question",

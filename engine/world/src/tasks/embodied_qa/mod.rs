@@ -133,7 +133,8 @@ impl EmbodiedQa {
         let stands_free = |cell: NavCell| {
             let feet = grid.position(cell);
             let mut opened = opened.iter();
-            opened.all(|part| feet.clamp(part.min, part.max).with_y(feet.y).distance(feet) > apart_m)
+            opened
+                .all(|part| feet.clamp(part.min, part.max).with_y(feet.y).distance(feet) > apart_m)
         };
         let allowed = |cell: NavCell| {
             grid.island(cell) == Some(0)
@@ -231,7 +232,10 @@ impl Task for EmbodiedQa {
             let wording = key.child("wording").child(world.house().name.as_str());
             let engines = world.engines().clone();
             let text = offer.asked.worded(engines.semantics().language(), wording);
-            let start_m = self.active.as_ref().and_then(|active| active.progress.start_m);
+            let start_m = self
+                .active
+                .as_ref()
+                .and_then(|active| active.progress.start_m);
             return Ok(Episode {
                 agent: self.setup.agent,
                 tokens: vocabulary::tokenize(&text)?,

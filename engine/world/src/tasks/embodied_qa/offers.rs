@@ -49,7 +49,10 @@ pub(super) fn survey(
     let mut offers = Vec::new();
     for kind in kinds {
         for asked in ask::candidates(&scene, kind) {
-            let is_seen = asked.seen.iter().all(|thing| !places.of_thing(*thing).is_empty());
+            let is_seen = asked
+                .seen
+                .iter()
+                .all(|thing| !places.of_thing(*thing).is_empty());
             let cells = match asked.target {
                 Some(target) => places.of_thing(target),
                 None => places.in_room(asked.room),

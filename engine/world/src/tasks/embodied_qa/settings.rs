@@ -110,11 +110,7 @@ impl EmbodiedQaSettings {
                 [(count - 0.5) * step_m, (count + 0.5) * step_m]
             }
             Some(count) => {
-                return fault(
-                    "start_actions",
-                    count.to_string(),
-                    "1 to 10,000".to_owned(),
-                );
+                return fault("start_actions", count.to_string(), "1 to 10,000".to_owned());
             }
         };
         let rules = NavigationRules {
