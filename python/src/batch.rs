@@ -454,18 +454,19 @@ impl PyBatch {
         env: usize,
         agent: usize,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let (goal, start_distance_m) = self.with(py, |batch| {
-            let episode = batch.env(env)?.episode(agent)?;
-            Ok((episode.goal.clone(), episode.progress.start_distance_m))
+        let (goal, objects, start_distance_m) = self.with(py, |batch| {
+            let env = batch.env(env)?;
+            let episode = env.episode(agent)?;
+            let house = env.world().house();
+            let ids = episode.goal.objects.iter();
+            let ids = ids.map(|object| house.entity_of_object(*object).0);
+            let objects: Vec<i32> = ids.collect();
+            Ok((episode.goal.clone(), objects, episode.progress.start_distance_m))
         })?;
         let out = PyDict::new(py);
         if !goal.kind.is_empty() {
             out.set_item("goal_kind", goal.kind)?;
-            let objects = goal.objects.iter().map(|object| object.0);
-            out.set_item(
-                "goal_objects",
-                PyTuple::new(py, objects.collect::<Vec<_>>())?,
-            )?;
+            out.set_item("goal_objects", PyTuple::new(py, objects)?)?;
             let rooms = goal.rooms.iter().map(|room| room.0);
             out.set_item("goal_rooms", PyTuple::new(py, rooms.collect::<Vec<_>>())?)?;
         }

@@ -12,6 +12,7 @@ from gymnasium.utils.env_checker import check_env
 from gymnasium.vector.utils import concatenate, create_empty_array
 
 import dwell
+from dwell import _native
 from dwell.envs import DwellEnv, DwellVectorEnv, ReplayRecorder
 from dwell.evaluation import differences, evaluate
 from dwell.played_actions import said_action
@@ -141,3 +142,35 @@ def test_a_vector_knows_the_keys_that_single_environments_have(task: str) -> Non
             assert known(infos, k) == {*info}
             for key, value in info.items():
                 assert infos[key][k] == value, key
+
+
+def test_questions_are_answered_by_words_of_a_closed_list() -> None:
+    env = DwellEnv("EmbodiedQA", houses="builtin:studio", sensors=["question", "question_tokens"])
+    words = env.answer_choices()["answer"]
+    assert len(set(words)) == len(words)
+    assert env.action_space["answer"]["answer"].n == len(words)  # type: ignore[index] # a Dict
+    assert words == DwellEnv("EmbodiedQA", houses="seed:3").answer_choices()["answer"]
+    for seed in range(4):
+        observation, info = env.reset(seed=seed)
+        assert env.observation_space.contains(observation)
+        assert observation["question"] == env.instruction()
+        assert observation["question"].endswith("?")
+        tokens = observation["question_tokens"].tolist()
+        vocabulary = _native.vocabulary()
+        spoken = [vocabulary[token - 1] for token in tokens if token]
+        assert "".join(spoken) == observation["question"].lower().replace(" ", "")
+        kinds = {"yes": {"existence", "comparison", "state"}, "1": {"count"}}
+        action = env.expert_action()
+        word = words[action["answer"]["answer"]]
+        assert info["goal_kind"] in kinds.get(word, {info["goal_kind"]})
+        stop = {**action, "action": 0}
+        assert env.step({**stop, "action": 6})[4].keys() >= {"min_distance_to_goal"}
+        _, _, terminated, _, info = env.step(stop)
+        assert terminated
+        assert info["success"]
+        assert info["answer_correct"] == 1.0
+
+
+def test_check_env_has_nothing_to_say_about_questions() -> None:
+    env = gymnasium.make("dwell/EmbodiedQA-v0", houses="builtin:studio", disable_env_checker=True)
+    check_env(env.unwrapped)

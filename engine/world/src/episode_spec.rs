@@ -53,7 +53,7 @@ pub struct StatedGoal {
     pub class: Option<String>,
     /// Further classes whose things count as of `class`, such as double beds as beds (`ObjectNav`).
     pub also: Vec<String>,
-    /// Their ids; default all of the class (`ObjectNav`).
+    /// Their ids, as sensors and the scene graph give them; default all of the class (`ObjectNav`).
     pub objects: Vec<u32>,
     /// Points on or near which things of the class are, m: these alone count (`ObjectNav`).
     pub positions: Vec<[f32; 3]>,

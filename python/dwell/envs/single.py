@@ -481,6 +481,13 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
         self._refuse_closed()
         return [*self._actions.names]
 
+    def answer_choices(self) -> dict[str, list[str]]:
+        """The words of each choice of the task's answer, in the order of their numbers."""
+        self._refuse_closed()
+        fields = self._runner.batch.answer_fields()
+        choices = {field["name"]: field["choices"] for field in fields}
+        return {name: [*words] for name, words in choices.items() if words is not None}
+
 
 def _run(
     shelf: HouseCache,

@@ -120,12 +120,13 @@ fn things_by_id(
     let house = world.house();
     let (mut things, mut class) = (BTreeSet::new(), stated);
     for id in &asked.objects {
-        let object = ObjectId(*id);
-        if object.index() >= house.objects.len() {
-            let count = house.objects.len();
-            let allowed = format!("ids of the house's {count} things, counted from 0");
+        let entity = i32::try_from(*id).ok().map(EntityId);
+        let Some(Entity::Object(object)) = entity.and_then(|id| house.entity(id)) else {
+            let ends = [house.objects.ids().next(), house.objects.ids().last()];
+            let [first, last] = ends.map(|own| own.map_or(0, |own| house.entity_of_object(own).0));
+            let allowed = format!("ids of the house's things, {first} to {last}");
             return Err(fault(FIELD, id.to_string(), allowed));
-        }
+        };
         let own = class_of(object);
         if *class.get_or_insert(own) != own {
             let name = |class: i32| category_of_class(class).map_or("no class", |row| row.name);

@@ -43,18 +43,23 @@ pub(super) fn arrange(
             }))
         }
         Some(StateToSet::Open(object, is_open)) => {
-            let (before, after) = joint_positions(world, object, is_open);
-            if is_open && holds_things(world, object) {
+            // What cannot stand open is not asked about when it is closed either: else closed things would be asked about more often.
+            if holds_things(world, object) {
                 return Ok(None);
             }
-            world.set_joints(&after)?;
+            let (before, opened) = joint_positions(world, object, true);
+            world.set_joints(&opened)?;
             let undo = Undo {
                 joints: before,
                 ..Undo::default()
             };
-            if is_open && !has_room(world, object) {
+            if !has_room(world, object) {
                 undo.apply(world)?;
                 return Ok(None);
+            }
+            if !is_open {
+                let (_, closed) = joint_positions(world, object, false);
+                world.set_joints(&closed)?;
             }
             Ok(Some(undo))
         }
