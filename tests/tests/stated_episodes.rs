@@ -210,11 +210,11 @@ fn things_are_stated_by_ids_and_places() {
     assert!(found >= 2 && found % 2 == 0, "{found} of {}", all.len());
 }
 
-fn told(env: &mut Env, spec: Value) -> String {
-    let spec = EpisodeSpec::from_json(&spec).unwrap();
-    let error = env.reset_stated(1, &[spec]).unwrap_err();
+fn told(env: &mut Env, spec: &Value) -> String {
+    let spec = EpisodeSpec::from_json(spec).expect("its fields are right");
+    let error = env.reset_stated(1, &[spec]);
     assert!(env.episode(0).is_err());
-    error.to_string()
+    error.expect_err("the house lacks it").to_string()
 }
 
 #[test]
@@ -223,21 +223,24 @@ fn what_the_house_does_not_have_is_told() {
     point.reset(1).unwrap();
     let here = point.world().state().agents[AgentId(0)].position;
     let up = (here + Vec3::Y * 0.8).to_array();
-    let error = told(&mut point, json!({"start": {"position": up}}));
+    let error = told(&mut point, &json!({"start": {"position": up}}));
     assert!(error.starts_with("episode.start.position is ["), "{error}");
     let nearest = format!("the nearest is {:?}, 0.80 m away", here.to_array());
     assert!(error.ends_with(&nearest), "{error}");
-    let error = told(&mut point, json!({"goal": {"position": [500.0, 0.0, 0.0]}}));
+    let error = told(
+        &mut point,
+        &json!({"goal": {"position": [500.0, 0.0, 0.0]}}),
+    );
     assert!(
         error.starts_with("episode.goal.position is [500.0, 0.0, 0.0]"),
         "{error}"
     );
-    let error = told(&mut point, json!({"goal": {"class": "bed"}}));
+    let error = told(&mut point, &json!({"goal": {"class": "bed"}}));
     assert!(
         error.ends_with("allowed is of PointNav one with position"),
         "{error}"
     );
-    let error = told(&mut point, json!({"goal": {}}));
+    let error = told(&mut point, &json!({"goal": {}}));
     assert!(error.contains("without a position"), "{error}");
 
     let mut object = env("ObjectNav", &["gps"]);
@@ -269,7 +272,7 @@ fn what_the_house_does_not_have_is_told() {
             "one with class, also, objects, positions",
         ),
     ] {
-        let error = told(&mut object, json!({ "goal": goal }));
+        let error = told(&mut object, &json!({ "goal": goal }));
         assert!(error.contains(expected), "{error}");
     }
 
@@ -295,7 +298,7 @@ fn what_the_house_does_not_have_is_told() {
         goal.as_object_mut()
             .unwrap()
             .extend(more.as_object().unwrap().clone());
-        let error = told(&mut sound, json!({ "goal": goal }));
+        let error = told(&mut sound, &json!({ "goal": goal }));
         assert!(error.contains(expected), "{error}");
     }
 }
