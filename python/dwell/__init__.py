@@ -96,6 +96,8 @@ _MODULES = {
     "episodes",
     "evaluation",
     "grounded_text",
+    "habitat_conversion",
+    "habitat_episodes",
     "heads",
     "house",
     "listening",
