@@ -461,7 +461,11 @@ impl PyBatch {
             let ids = episode.goal.objects.iter();
             let ids = ids.map(|object| house.entity_of_object(*object).0);
             let objects: Vec<i32> = ids.collect();
-            Ok((episode.goal.clone(), objects, episode.progress.start_distance_m))
+            Ok((
+                episode.goal.clone(),
+                objects,
+                episode.progress.start_distance_m,
+            ))
         })?;
         let out = PyDict::new(py);
         if !goal.kind.is_empty() {

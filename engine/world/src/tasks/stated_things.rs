@@ -5,7 +5,7 @@ use crate::episode_spec::StatedGoal;
 use crate::error::WorldError;
 use crate::world::World;
 use dwell_render::{ClassSet, EntityClasses};
-use dwell_scene::{Id, ObjectId};
+use dwell_scene::{Entity, EntityId, ObjectId};
 use dwell_semantics::category::categories;
 use glam::Vec3;
 use std::collections::BTreeSet;
