@@ -1,8 +1,10 @@
 //! Questions about houses: their words are read anew, and their answers worked out from outlines, boxes, joints and pixels.
 
 use dwell::sensors::{ImageObservationOptions, ObservationData};
-use dwell::{DiscreteAction, Engines, Env, EnvConfig, ImageRequest, StepAction, StepInfo};
-use dwell_render::{Camera, CameraMount, Preset};
+use dwell::{
+    CameraMount, DiscreteAction, Engines, Env, EnvConfig, ImageRequest, StepAction, StepInfo,
+};
+use dwell_render::{Camera, Preset};
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::parallel::Threads;
 use dwell_scene::{Aabb, AgentId, Entity, House, ObjectId, Pose, RoomId};

@@ -273,7 +273,7 @@ fn eye_camera_fov_deg(agents: &[EnvAgent], whose: AgentId) -> Option<f32> {
 mod tests {
     use super::*;
     use crate::Batch;
-    use crate::actions::{DiscreteAction, StepAction};
+    use crate::actions::DiscreteAction;
     use crate::config::WorldConfig;
     use crate::env_config::SensorConfig;
     use crate::episode::StepResult;
