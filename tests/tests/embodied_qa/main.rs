@@ -1,19 +1,24 @@
 //! Questions about houses: their words are read anew, and their answers worked out from outlines, boxes, joints and pixels.
 
+mod answers_of_house;
+mod color_words;
+
+use answers_of_house::{
+    answer, answer_of_house, bounds, gap_m, kind, question, rests_on, room_around, text, thing,
+};
+use color_words::words_of;
 use dwell::sensors::{ImageObservationOptions, ObservationData};
 use dwell::{
     CameraMount, DiscreteAction, Engines, Env, EnvConfig, ImageRequest, StepAction, StepInfo,
 };
 use dwell_render::{Camera, Preset};
-use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::parallel::Threads;
-use dwell_scene::{Aabb, AgentId, Entity, House, ObjectId, Pose, RoomId};
-use dwell_semantics::Term;
-use dwell_semantics::ask::{answer_number, answers};
+use dwell_scene::{AgentId, Pose};
+use dwell_semantics::ask::answer_number;
 use dwell_semantics::category::categories;
 use dwell_semantics::check::{Checker, Listener};
-use dwell_semantics::form::{AttributeKind, Clause, Description, Form, Noun, Phrase, Question};
-use glam::{Vec2, Vec3};
+use dwell_semantics::form::{Clause, Question};
+use glam::Vec3;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, OnceLock};
@@ -45,187 +50,6 @@ fn generated() -> Arc<Engines> {
 fn in_both(settings: &Value) -> [Env; 2] {
     [dwell_tests::apartment(), generated()]
         .map(|engines| dwell_tests::env_in(engines, config(settings.clone()), &["question"]))
-}
-
-fn text(env: &Env) -> String {
-    env.episode(0).expect("an episode").instruction.clone()
-}
-
-fn kind(env: &Env) -> &'static str {
-    env.episode(0).expect("an episode").goal.kind
-}
-
-/// What the expert would answer.
-fn answer(env: &mut Env) -> &'static str {
-    let number = env.expert_step(0).expect("an episode").answer[0];
-    &answers()[number as usize]
-}
-
-fn question(env: &Env) -> Question {
-    let text = text(env);
-    let read = env.world().engines().semantics().language().read(&text);
-    match read.expect("the words can be read").forms.swap_remove(0) {
-        Form::Question(question) => question,
-        other => panic!("{text:?} is {other:?}"),
-    }
-}
-
-/// The one thing or room that a phrase means in the house as it stands.
-fn meant(env: &Env, phrase: &Phrase) -> Term {
-    let scene = env.world().engines().semantics().scene(env.world().state());
-    let Phrase::Described(description) = phrase else {
-        panic!("{phrase:?} is no description");
-    };
-    let term = Checker::new(&scene, Listener::default()).denotes(description);
-    term.unwrap_or_else(|| panic!("{}: {phrase:?}", text(env)))
-}
-
-fn thing(env: &Env, phrase: &Phrase) -> ObjectId {
-    meant(env, phrase).object().expect("a thing")
-}
-
-fn bounds(env: &Env, object: ObjectId) -> Aabb {
-    env.world()
-        .house()
-        .object_bounds(env.world().state(), object)
-}
-
-/// The room around a point: the number of edges of its outline's triangles that a line to the side crosses is odd.
-fn room_around(house: &House, point: Vec3) -> Option<RoomId> {
-    let at = Vec2::new(point.x, point.z);
-    let crosses = |a: Vec2, b: Vec2| {
-        (a.y > at.y) != (b.y > at.y) && at.x < a.x + (b.x - a.x) * (at.y - a.y) / (b.y - a.y)
-    };
-    let inside = |room: &dwell_scene::Room| {
-        let triangles = room.footprint.iter();
-        let edges = triangles.flat_map(|[a, b, c]| [(*a, *b), (*b, *c), (*c, *a)]);
-        let level = (room.floor_y - 0.3..room.ceiling_y + 0.3).contains(&point.y);
-        level && edges.filter(|(a, b)| crosses(*a, *b)).count() % 2 == 1
-    };
-    let mut holding = house.rooms.iter_ids().filter(|(_, room)| inside(room));
-    holding.next().map(|(id, _)| id)
-}
-
-/// The things of the house's file in a room whose category has this noun.
-fn things_in(env: &Env, room: RoomId, noun: &str) -> BTreeSet<ObjectId> {
-    let house = env.world().house();
-    let is_called = |own: &str| own == noun || own.ends_with(&format!(" {noun}"));
-    let rows = categories().rows().iter();
-    let named: BTreeSet<&str> = rows
-        .filter(|row| is_called(row.singular) || row.synonyms.iter().any(|own| is_called(own)))
-        .map(|row| row.name)
-        .collect();
-    let fits = |object: &ObjectId| {
-        let category = &house.objects[*object].category;
-        let category = categories().of(category).map(|row| row.name);
-        category.is_some_and(|name| named.contains(name))
-            && room_around(house, bounds(env, *object).center()) == Some(room)
-    };
-    house.objects.ids().filter(fits).collect()
-}
-
-/// The noun and the room of "chairs in the kitchen"; `None` for nouns that no category has.
-fn noun_and_room(env: &Env, what: &Description) -> Option<(String, RoomId)> {
-    let Noun::Object(noun) = &what.noun else {
-        panic!("{what:?}");
-    };
-    let [place] = &what.modifiers[..] else {
-        panic!("{what:?}");
-    };
-    let Term::Room(room) = meant(env, &place.arguments[0]) else {
-        panic!("{what:?}");
-    };
-    let known = categories().rows().iter().any(|row| row.singular == noun);
-    known.then(|| (noun.clone(), room))
-}
-
-/// The gap between two boxes, m.
-fn gap_m(a: &Aabb, b: &Aabb) -> f32 {
-    (a.min - b.max).max(b.min - a.max).max(Vec3::ZERO).length()
-}
-
-/// Returns whether a thing has room below it for nothing but another: a line straight down from its foot meets that.
-fn rests_on(env: &Env, thing: ObjectId, carrier: ObjectId) -> bool {
-    let own = bounds(env, thing);
-    let house = env.world().house();
-    (0..81).any(|k| {
-        let share = Vec3::new((k % 9) as f32 + 0.5, 0.0, (k / 9) as f32 + 0.5) / 9.0;
-        let foot = own.min + own.size() * share.with_y(0.0) + Vec3::Y * 0.05;
-        let ray = Ray::new(foot, Vec3::NEG_Y).with_range(0.0, 0.1);
-        let mut ray = ray;
-        // Through its own sole.
-        for _ in 0..8 {
-            let Some(hit) = env.world().rays().closest(&ray, RayMask::EYE) else {
-                return false;
-            };
-            match house.entity(env.world().rays().surface(&hit).entity) {
-                Some(Entity::Object(object)) if object == carrier => return true,
-                Some(Entity::Object(object)) if object == thing => {
-                    ray = ray.with_range(hit.distance_m + 1e-4, ray.far_m);
-                }
-                _ => return false,
-            }
-        }
-        false
-    })
-}
-
-/// What the house says: `None` where this oracle has no opinion.
-fn answer_of_house(env: &Env) -> Option<String> {
-    let house = env.world().house();
-    let yes_no = |is: bool| Some(if is { "yes" } else { "no" }.to_owned());
-    match question(env) {
-        Question::Attribute {
-            kind: AttributeKind::Room,
-            of,
-        } => {
-            let middle = bounds(env, thing(env, &of)).center();
-            let room = room_around(house, middle).expect("it is in a room");
-            let label = house.rooms[room].kinds.first().cloned().unwrap_or_default();
-            // As people call what files call otherwise.
-            Some(match label.to_lowercase().as_str() {
-                "toilet" => "restroom".to_owned(),
-                "child_room" => "children's room".to_owned(),
-                "entryway" => "entrance hall".to_owned(),
-                "wardrobe" => "dressing room".to_owned(),
-                "storage" => "storage room".to_owned(),
-                other => other.replace('_', " "),
-            })
-        }
-        Question::HowMany(what) => {
-            let (noun, room) = noun_and_room(env, &what)?;
-            Some(things_in(env, room, &noun).len().to_string())
-        }
-        Question::Whether(Clause::Exists(Phrase::Described(what))) => {
-            let (noun, room) = noun_and_room(env, &what)?;
-            yes_no(!things_in(env, room, &noun).is_empty())
-        }
-        Question::Whether(Clause::Holds { arguments, .. }) => {
-            let [first, near, far] = [0, 1, 2].map(|k| bounds(env, thing(env, &arguments[k])));
-            let (near_m, far_m) = (gap_m(&first, &near), gap_m(&first, &far));
-            // Boxes of things that are turned are larger than these.
-            let is_clear = near_m.max(far_m) > 1.3 * near_m.min(far_m) + 0.2;
-            is_clear.then(|| yes_no(near_m < far_m)).flatten()
-        }
-        Question::Whether(Clause::Is { subject, quality }) => {
-            let object = thing(env, &subject);
-            let state = env.world().state();
-            if format!("{quality:?}").contains("switched_on") {
-                return yes_no(state.switched_on[object]);
-            }
-            let joints = house.joints_of(object).map(|joint| {
-                let own = &house.joints[joint];
-                (state.joint_position[joint] - own.closed) / (own.open - own.closed)
-            });
-            yes_no(
-                joints
-                    .filter(|share| share.is_finite())
-                    .any(|share| share > 0.5),
-            )
-        }
-        Question::Which { .. } | Question::Attribute { .. } => None,
-        other => panic!("{other:?}"),
-    }
 }
 
 /// Rooms by their outlines, numbers by the house's list, nearness by boxes, states by joints and switches; and every kind is asked for.
@@ -308,59 +132,6 @@ fn what_is_somewhere_is_there() {
         }
     }
     assert!(on >= 5 && beside >= 5, "{on} {beside}");
-}
-
-/// Plain words that a pixel may have, from its hue, saturation and value.
-fn words_of(rgb: [f32; 3]) -> Vec<&'static str> {
-    let [r, g, b] = rgb.map(|c| {
-        let c = c.clamp(0.0, 1.0);
-        if c <= 0.003_130_8 {
-            12.92 * c
-        } else {
-            1.055 * c.powf(1.0 / 2.4) - 0.055
-        }
-    });
-    let (most, least) = (r.max(g).max(b), r.min(g).min(b));
-    let span = most - least;
-    let mut words = Vec::new();
-    if span < 0.22 {
-        words.extend(
-            [
-                ("black", 0.0..0.35),
-                ("gray", 0.2..0.9),
-                ("white", 0.7..1.1),
-            ]
-            .iter()
-            .filter(|(_, range)| range.contains(&most))
-            .map(|(word, _)| *word),
-        );
-    }
-    if span > 0.04 {
-        let hue = if most == r {
-            ((g - b) / span).rem_euclid(6.0)
-        } else if most == g {
-            (b - r) / span + 2.0
-        } else {
-            (r - g) / span + 4.0
-        };
-        let degrees = 60.0 * hue;
-        let ranges: [(&str, [f32; 2]); 9] = [
-            ("red", [335.0, 385.0]),
-            ("pink", [290.0, 385.0]),
-            ("orange", [8.0, 45.0]),
-            ("brown", [0.0, 60.0]),
-            ("beige", [15.0, 65.0]),
-            ("yellow", [35.0, 75.0]),
-            ("green", [60.0, 185.0]),
-            ("blue", [165.0, 265.0]),
-            ("purple", [240.0, 335.0]),
-        ];
-        let fits = ranges.iter().filter(|(_, [low, high])| {
-            (*low..*high).contains(&degrees) || (*low..*high).contains(&(degrees + 360.0))
-        });
-        words.extend(fits.map(|(word, _)| *word));
-    }
-    words
 }
 
 /// The colour that is asked for is that of most of the thing's pixels, as the expert sees it where it answers.
