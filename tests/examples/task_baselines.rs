@@ -23,7 +23,10 @@ struct Tally {
 impl Tally {
     fn says(&self, who: &str) {
         let mean = self.steps as f64 / f64::from(self.all.max(1));
-        println!("{who}: {} of {}, {mean:.0} steps each", self.solved, self.all);
+        println!(
+            "{who}: {} of {}, {mean:.0} steps each",
+            self.solved, self.all
+        );
     }
 }
 
@@ -31,7 +34,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let task = words.first().ok_or("a task is needed")?;
     let houses = words.get(1).map_or("0..50", String::as_str);
-    let (from, to) = houses.split_once("..").ok_or("houses are written FROM..TO")?;
+    let (from, to) = houses
+        .split_once("..")
+        .ok_or("houses are written FROM..TO")?;
     let (from, to): (u64, u64) = (from.parse()?, to.parse()?);
     let episodes: u64 = words.get(2).map_or(Ok(20), |count| count.parse())?;
     let config = EnvConfig {
