@@ -55,7 +55,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 /// Returns whether the expert solves the episode that has begun; says how it ended where not.
 fn play(env: &mut Env, seed: u64, most_steps: u64) -> Result<bool, dwell::WorldError> {
-    let mut last = Vec::new();
+    let (mut last, mut measures) = (Vec::new(), Vec::new());
     for step in 0..most_steps {
         let action = env.expert_action(0)?;
         let info = &env.step(&[Some(action)])?[0];
@@ -65,30 +65,28 @@ fn play(env: &mut Env, seed: u64, most_steps: u64) -> Result<bool, dwell::WorldE
             &info.action_error
         };
         last.push(format!("{action:?} {notice}"));
+        measures.clone_from(&info.measures);
         if info.result.terminated {
             if info.result.success {
                 return Ok(true);
             }
-            tell(env, seed, step, &last);
+            tell(env, seed, step, (&last, &measures));
             return Ok(false);
         }
     }
-    tell(env, seed, most_steps, &last);
+    tell(env, seed, most_steps, (&last, &measures));
     Ok(false)
 }
 
-fn tell(env: &Env, seed: u64, steps: u64, actions: &[String]) {
+fn tell(env: &Env, seed: u64, steps: u64, (actions, measures): (&[String], &[f64])) {
     let agent = env.world().state().agents[AgentId(0)];
     let text = env.episode(0).map_or("", |episode| &episode.instruction);
     let last = &actions[actions.len().saturating_sub(6)..];
-    let measures = env.task_measures(0).unwrap_or_default();
-    println!(
-        "{:?}",
-        measures
-            .iter()
-            .map(|measure| measure.name)
-            .collect::<Vec<_>>()
-    );
+    let names = env.task_measures(0).unwrap_or_default().iter();
+    for (measure, value) in names.zip(measures) {
+        let name = measure.name;
+        println!("{name}: {value}");
+    }
     println!(
         "episode {seed}, {steps} steps: {text:?}, at {:.3} {:.2} rad, {last:?}",
         agent.position, agent.yaw_rad

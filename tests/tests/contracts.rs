@@ -73,24 +73,25 @@ fn episodes_do_not_remember_earlier_ones() {
     assert!(play(&[1, 2]) == play(&[2]));
 }
 
-/// The expert of every task that asks for something succeeds in all of twenty fixed seeds.
+/// The expert of every task that asks for something succeeds in all of twenty fixed seeds, or fewer where episodes are longer.
 #[test]
 fn every_task_can_be_solved_by_its_expert() {
     for kind in tasks::all().iter().filter(|kind| kind.has_goal) {
         let mut env = dwell_tests::env_of(kind.name, &["instruction"]);
         let mut solved = 0;
-        for seed in 0..20 {
+        let seeds = 20_000 / kind.max_steps;
+        for seed in 0..seeds {
             env.reset(seed).unwrap();
             for _ in 0..kind.max_steps {
                 let action = env.expert_step(0).unwrap();
                 let info = &env.step(&[Some(action)]).unwrap()[0];
                 if info.result.terminated {
-                    solved += usize::from(info.result.success);
+                    solved += u64::from(info.result.success);
                     break;
                 }
             }
         }
-        assert_eq!(solved, 20, "{}: the expert solved {solved}", kind.name);
+        assert_eq!(solved, seeds, "{}: the expert solved {solved}", kind.name);
     }
 }
 

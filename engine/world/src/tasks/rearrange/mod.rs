@@ -166,7 +166,7 @@ impl Rearrange {
             let rested = resting(mover.world, thing.object);
             mover.kept_free.push(bounds);
             if mover.move_to((thing.object, cell), &targets, &mut stream, &is_allowed)? {
-                let place = PlaceToRestore::new(mover, thing, (bounds, world_from_part));
+                let place = PlaceToRestore::new(thing, (bounds, world_from_part));
                 shuffled.places.insert(thing.object, place);
                 shuffled
                     .rested
@@ -286,11 +286,31 @@ impl Task for Rearrange {
         world.place_agent(agent, position, yaw_rad)?;
         let goal = told(&things, &start, world);
         let instruction = wording::instruction(world, &goal.placements, &shuffled.rested);
+        // What is knocked over on the way is put back, too.
+        let goals: BTreeMap<ObjectId, Pose> = things
+            .iter()
+            .filter_map(|thing| match thing.goal {
+                ThingGoal::Pose {
+                    world_from_part, ..
+                } => Some((thing.object, world_from_part)),
+                ThingGoal::Openness(_) => None,
+            })
+            .collect();
+        let mut places = shuffled.places;
+        for thing in &offer.movable.things {
+            if let (Some(world_from_part), false) =
+                (goals.get(&thing.object), places.contains_key(&thing.object))
+            {
+                let bounds = world.house().object_bounds(world.state(), thing.object);
+                let at = (bounds, *world_from_part);
+                places.insert(thing.object, PlaceToRestore::new(thing, at));
+            }
+        }
         let setup = (agent, &grid, self.setup.stride);
         let openable = offer.openable.iter();
         let openable = openable.map(|thing| (thing.object, thing.cells.clone()));
         self.active = Some(ActiveEpisode {
-            restorer: Restorer::new(setup, shuffled.places, openable.collect()),
+            restorer: Restorer::new(setup, places, openable.collect()),
             now: start.clone(),
             start,
             things,

@@ -7,24 +7,27 @@ use crate::world::World;
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::{Aabb, AgentBody, AgentId, Id, Mobility, ObjectId, ReceptacleKind};
 use dwell_semantics::instruct::InstructionGoal;
+use glam::Vec3;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// Cells from which a thing must be reached: from fewer, a view that turns by steps may miss it everywhere.
 pub(super) const LEAST_CELLS: usize = 6;
+/// Share of the reach at which a spot is reached from all over a cell.
+const REACH_SHARE: f32 = 0.9;
 
 /// A thing that can be moved.
 #[derive(Clone, Debug)]
 pub(in crate::tasks) struct MovableThing {
     pub(in crate::tasks) object: ObjectId,
-    /// Where a hand reaches it as it stands at the house's start.
+    /// Where a hand reaches it as it stands at the house's start, and the floor of its place, too.
     pub(in crate::tasks) cells: Vec<NavCell>,
 }
 
 /// What a house offers at its start.
 #[derive(Debug, Default)]
 pub(in crate::tasks) struct MovableThings {
-    /// Light, small, in reach, and with nothing on it or in it.
+    /// Light, small, in reach with the spot on which they stand, and with nothing on them or in them.
     pub(in crate::tasks) things: Vec<MovableThing>,
     /// Furniture that carries things.
     pub(in crate::tasks) supports: Vec<ObjectId>,
@@ -68,7 +71,13 @@ impl MovableThings {
         let light = light.into_iter().filter(|object| !loaded.contains(object));
         let things = light.filter_map(|object| {
             dwell_scene::interrupt::unwind_if_cancelled();
-            let cells = cells_in_reach(world, agent, &ground, object);
+            let bounds = &boxes[object.index()];
+            let foot = bounds.center().with_y(bounds.min.y);
+            let mut cells = cells_in_reach(world, agent, &ground, object);
+            cells.retain(|cell| {
+                let eye = grid.position(*cell) + Vec3::Y * body.eye_height_m;
+                eye.distance(foot) <= REACH_SHARE * body.reach_m
+            });
             (cells.len() >= LEAST_CELLS).then_some(MovableThing { object, cells })
         });
         Self {
@@ -96,7 +105,7 @@ pub(super) fn cells_near(
 ) -> Vec<NavCell> {
     let mut cells = ground.cells_around(&bounds.grown(reach_m));
     cells.retain(|cell| {
-        let eye = ground.grid.position(*cell) + glam::Vec3::Y * eye_m;
+        let eye = ground.grid.position(*cell) + Vec3::Y * eye_m;
         eye.clamp(bounds.min, bounds.max).distance(eye) <= reach_m
     });
     cells.sort_unstable();

@@ -1,8 +1,9 @@
 //! The expert: it brings one thing after the other to where it is to be, furniture first.
 
+use super::MovableThing;
 use super::carrier::{Carrier, Errand};
-use super::{HandMover, MovableThing};
 use crate::actions::{DiscreteAction, StepSizes};
+use crate::expert::ShortestPathFollower;
 use crate::tasks::goal_cells::LargestIslandIndex;
 use crate::tasks::navigation::cells_in_reach;
 use crate::world::World;
@@ -12,10 +13,15 @@ use glam::Vec3;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// Share of the reach at which a place is reached from all over a cell.
-const REACH_SHARE: f32 = 0.9;
 /// How often it takes a thing.
-const TAKES: u32 = 4;
+const TAKES: u32 = 6;
+/// Control steps for which it opens a door with a thing in its hand; then it puts the thing down first.
+const OPENING: u32 = 100;
+/// Control steps for which it then opens the door, and turns that it makes away from the door before it lets go.
+const OPENING_EMPTY: u32 = 240;
+const TURNS_DEG: f32 = 120.0;
+/// A door is open enough to pass from this share on.
+const OPEN_ENOUGH: f32 = 0.8;
 /// From where it put a thing down in vain it does not try again, m.
 const ELSEWHERE_M: f32 = 0.25;
 
@@ -33,22 +39,13 @@ pub(in crate::tasks) struct PlaceToRestore {
 impl PlaceToRestore {
     /// The place of a thing that had a box and a pose there.
     pub(in crate::tasks) fn new(
-        mover: &HandMover<'_>,
         thing: &MovableThing,
         (bounds, world_from_part): (Aabb, Pose),
     ) -> Self {
-        let foot = bounds.center().with_y(bounds.min.y);
-        let reach_m = REACH_SHARE * mover.body.reach_m;
-        let reaches = |cell: &&NavCell| {
-            let feet = mover.ground.grid.position(**cell);
-            (feet + Vec3::Y * mover.body.eye_height_m).distance(foot) <= reach_m
-        };
-        let near: Vec<NavCell> = thing.cells.iter().filter(reaches).copied().collect();
-        let all = if near.is_empty() { &thing.cells } else { &near };
         Self {
             world_from_part,
-            foot,
-            cells: all.clone(),
+            foot: bounds.center().with_y(bounds.min.y),
+            cells: thing.cells.clone(),
         }
     }
 }
@@ -70,6 +67,17 @@ impl Misplaced {
     }
 }
 
+/// A door that a thing in the hand keeps from opening.
+#[derive(Debug)]
+struct BlockedDoor {
+    door: ObjectId,
+    /// Turns that are left until it lets go of the thing.
+    turns: u32,
+    /// Control steps for which it has been opening.
+    opening: u32,
+    follower: ShortestPathFollower,
+}
+
 /// The expert of an episode.
 #[derive(Debug)]
 pub(in crate::tasks) struct Restorer {
@@ -80,6 +88,10 @@ pub(in crate::tasks) struct Restorer {
     /// Where a hand reaches furniture.
     furniture: BTreeMap<ObjectId, Vec<NavCell>>,
     carrier: Option<Carrier>,
+    /// Control steps for which it has been opening a door with a full hand.
+    opening: u32,
+    /// A door that it opens with an empty hand.
+    door: Option<BlockedDoor>,
     takes: BTreeMap<ObjectId, u32>,
     /// What it has given up.
     left: BTreeSet<ObjectId>,
@@ -98,6 +110,8 @@ impl Restorer {
             places,
             furniture,
             carrier: None,
+            opening: 0,
+            door: None,
             takes: BTreeMap::new(),
             left: BTreeSet::new(),
         }
@@ -111,6 +125,9 @@ impl Restorer {
     ) -> DiscreteAction {
         let holder = world.state().agents.get(self.agent);
         let held = holder.and_then(|agent| agent.holding);
+        if let Some(action) = self.open_blocked_door(world, held) {
+            return action;
+        }
         let is_misplaced = |object: ObjectId| misplaced.iter().any(|one| one.object() == object);
         if let Some(carrier) = &self.carrier {
             let is_over = match carrier.errand {
@@ -144,6 +161,7 @@ impl Restorer {
                 break;
             };
             if let Some(action) = carrier.next(world) {
+                self.count_opening(world, held, action);
                 return action;
             }
             let object = carrier.errand.object();
@@ -154,6 +172,60 @@ impl Restorer {
             return DiscreteAction::Drop;
         }
         DiscreteAction::Stop
+    }
+
+    /// Notes an action: a door that does not open while the hand is full is opened with an empty one.
+    fn count_opening(&mut self, world: &World, held: Option<ObjectId>, action: DiscreteAction) {
+        if action == DiscreteAction::Open && held.is_some() {
+            self.opening += 1;
+        }
+        if action == DiscreteAction::MoveForward {
+            self.opening = self.opening.saturating_sub(1);
+        }
+        let door = world.object_in_view_centre(self.agent);
+        if self.opening > OPENING
+            && let Some(door) = door
+            && let Some(here) = world.state().agents.get(self.agent)
+            && let Some(here) = self.grid.nearest(here.position, 0.6)
+        {
+            self.opening = 0;
+            let turn = self.stride.turn_deg.max(1.0);
+            self.door = Some(BlockedDoor {
+                door,
+                turns: (TURNS_DEG / turn).ceil() as u32,
+                opening: 0,
+                follower: ShortestPathFollower::new(
+                    self.agent,
+                    self.grid.clone(),
+                    &[here],
+                    self.stride,
+                ),
+            });
+        }
+    }
+
+    /// The next action at a door that a thing in the hand keeps from opening; `None` where there is none.
+    fn open_blocked_door(
+        &mut self,
+        world: &World,
+        held: Option<ObjectId>,
+    ) -> Option<DiscreteAction> {
+        let blocked = self.door.as_mut()?;
+        if held.is_some() {
+            if let Some(left) = blocked.turns.checked_sub(1) {
+                blocked.turns = left;
+                return Some(DiscreteAction::TurnLeft);
+            }
+            self.carrier = None;
+            return Some(DiscreteAction::Drop);
+        }
+        let openness = world.state().openness(world.house(), blocked.door);
+        blocked.opening += 1;
+        if openness.is_none_or(|open| open >= OPEN_ENOUGH) || blocked.opening > OPENING_EMPTY {
+            self.door = None;
+            return None;
+        }
+        Some(blocked.follower.open_thing(world, blocked.door))
     }
 
     /// The next errand; `None` where there is none.

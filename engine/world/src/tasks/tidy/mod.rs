@@ -213,7 +213,7 @@ impl Tidy {
                     thing.object,
                 )
             {
-                let place = PlaceToRestore::new(mover, thing, (bounds, world_from_part));
+                let place = PlaceToRestore::new(thing, (bounds, world_from_part));
                 places.insert(thing.object, place);
             }
         }
@@ -326,6 +326,16 @@ impl Task for Tidy {
             ..EpisodeGoal::default()
         };
         let things = things.collect();
+        // What is knocked over on the way is put back, too.
+        let mut places = places;
+        for thing in &offer.movable.things {
+            if !places.contains_key(&thing.object) {
+                let bounds = house.object_bounds(world.state(), thing.object);
+                let part = house.objects[thing.object].first_part;
+                let at = (bounds, world.state().part_pose[part]);
+                places.insert(thing.object, PlaceToRestore::new(thing, at));
+            }
+        }
         let setup = (agent, &grid, self.setup.stride);
         self.active = Some(ActiveEpisode {
             things,
