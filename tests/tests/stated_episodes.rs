@@ -196,7 +196,7 @@ fn things_are_stated_by_ids_and_places() {
     );
     for thing in &all {
         let middle = house.object_bounds(env.world().state(), *thing).center();
-        let by_id = json!({"goal": {"objects": [thing.0]}});
+        let by_id = json!({"goal": {"objects": [house.entity_of_object(*thing).0]}});
         let by_place = json!({"goal": {"class": class, "positions": [middle.to_array()]}});
         for spec in [by_id, by_place] {
             let spec = EpisodeSpec::from_json(&spec).unwrap();
@@ -244,7 +244,9 @@ fn what_the_house_does_not_have_is_told() {
     assert!(error.contains("without a position"), "{error}");
 
     let mut object = env("ObjectNav", &["gps"]);
-    let count = object.world().house().objects.len();
+    let house = object.world().house();
+    let last = house.objects.ids().last().expect("the house has things");
+    let beyond = house.entity_of_object(last).0 + 1;
     for (goal, expected) in [
         (
             json!({"class": "chairs and tables"}),
@@ -254,7 +256,10 @@ fn what_the_house_does_not_have_is_told() {
             json!({"class": "treadmill"}),
             "allowed is a class that the house has: ",
         ),
-        (json!({"objects": [count]}), "allowed is ids of the house's"),
+        (
+            json!({"objects": [beyond]}),
+            "allowed is ids of the house's",
+        ),
         (
             json!({"class": "sofa", "positions": [[0, 50, 0]]}),
             "within 0.5 m of a thing of the class \"sofa\"",

@@ -277,7 +277,7 @@ mod tests {
     use crate::config::WorldConfig;
     use crate::env_config::SensorConfig;
     use crate::episode::StepResult;
-    use crate::tasks::Task;
+    use crate::tasks::{PlayedAction, Task};
     use dwell_scene::parallel::Threads;
 
     fn env() -> Env {

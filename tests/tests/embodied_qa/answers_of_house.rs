@@ -149,7 +149,7 @@ pub(super) fn answer_of_house(env: &Env) -> Option<String> {
             // As people call what files call otherwise.
             Some(match label.to_lowercase().as_str() {
                 "toilet" => "restroom".to_owned(),
-                "child_room" => "children's room".to_owned(),
+                "child_room" | "child room" => "children's room".to_owned(),
                 "entryway" => "entrance hall".to_owned(),
                 "wardrobe" => "dressing room".to_owned(),
                 "storage" => "storage room".to_owned(),
