@@ -14,6 +14,8 @@ const BEYOND: i32 = 1;
 const MOST: i32 = 20;
 /// Vertical part of the normal of a level surface.
 const LEVEL: f32 = 0.9;
+/// Angle from the middle of the view within which a place to put something down is free, where there is such a place, rad.
+const BESIDE_RAD: f32 = 0.1;
 /// Steepest view, rad; as far as necks of `dwell_physics` go.
 const STEEPEST_RAD: f32 = 1.5;
 
@@ -68,9 +70,7 @@ pub(crate) fn look_at(
         let high = steps.into_iter().fold(f32::NEG_INFINITY, f32::max).ceil() as i32;
         (low - BEYOND).max(-MOST)..=(high + BEYOND).min(MOST)
     };
-    let meets = |(across, up): (i32, i32)| {
-        let yaw_rad = agent.yaw_rad + across as f32 * turn;
-        let pitch_rad = agent.pitch_rad + up as f32 * look;
+    let hits = |yaw_rad: f32, pitch_rad: f32| {
         if pitch_rad.abs() > STEEPEST_RAD {
             return false;
         }
@@ -88,11 +88,26 @@ pub(crate) fn look_at(
             surface.entity == entity && fits
         })
     };
+    let meets = |(across, up): (i32, i32), beside_rad: f32| {
+        let yaw_rad = agent.yaw_rad + across as f32 * turn;
+        let pitch_rad = agent.pitch_rad + up as f32 * look;
+        let around = [(0.0, 0.0), (-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0)];
+        let mut around = around
+            .into_iter()
+            .map(|(x, y)| (x * beside_rad, y * beside_rad));
+        around.all(|(x, y)| hits(yaw_rad + x, pitch_rad + y))
+    };
     let tilts = span(tilts);
     let steps = span(turns).flat_map(|across| tilts.clone().map(move |up| (across, up)));
     let mut steps: Vec<(i32, i32)> = steps.collect();
     steps.sort_by_key(|(across, up)| (across.abs() + up.abs(), *across, *up));
-    match steps.into_iter().find(|steps| meets(*steps)) {
+    let find = |beside_rad: f32| steps.iter().copied().find(|own| meets(*own, beside_rad));
+    // Where something is put down, a place with room around it comes first.
+    let found = match part {
+        LookedAt::Anywhere => find(0.0),
+        LookedAt::LevelSurface => find(BESIDE_RAD).or_else(|| find(0.0)),
+    };
+    match found {
         None => LookStep::Missed,
         Some((0, 0)) => LookStep::Done,
         Some((across, _)) if across > 0 => LookStep::Turn(DiscreteAction::TurnLeft),

@@ -32,6 +32,22 @@ fn goal(cells: Vec<NavCell>, asked: InstructionGoal) -> Arc<NavigationGoal> {
     })
 }
 
+/// Where a hand reaches a thing as it lies now, for an agent that looks at it.
+pub(super) fn reach_goal(
+    world: &World,
+    agent: AgentId,
+    ground: &LargestIslandIndex<'_>,
+    object: ObjectId,
+) -> Arc<NavigationGoal> {
+    let reach_m = world
+        .state()
+        .agents
+        .get(agent)
+        .map_or(0.0, |own| own.body.reach_m);
+    let cells = cells_in_reach(world, agent, ground, object);
+    goal(cells, InstructionGoal::objects(vec![object], reach_m))
+}
+
 /// A finder of places in a house at its start.
 pub(super) struct PlaceFinder<'a> {
     pub(super) world: &'a World,
@@ -46,11 +62,7 @@ impl PlaceFinder<'_> {
     pub(super) fn is_in_reach(&mut self, object: ObjectId) -> bool {
         let (world, agent, ground) = (self.world, self.agent, &self.ground);
         let known = self.places.in_reach.entry(object);
-        let reached = known.or_insert_with(|| {
-            let cells = cells_in_reach(world, agent, ground, object);
-            let asked = InstructionGoal::objects(vec![object], self.body.reach_m);
-            goal(cells, asked)
-        });
+        let reached = known.or_insert_with(|| reach_goal(world, agent, ground, object));
         reached.cells.len() >= LEAST_CELLS
     }
 
