@@ -262,7 +262,7 @@ impl Task for Tidy {
         let agent = self.setup.agent;
         let body = self.setup.body(world, NAME)?;
         let grid: Arc<NavGrid> = world.engines().nav_grid(&body)?;
-        if self.settings.open_doors.unwrap_or(!self.setup.opens) {
+        if self.settings.open_doors {
             door_leaves::open_all(world, &grid)?;
         }
         let leaves = DoorLeaves::of(world, &grid);
