@@ -231,7 +231,7 @@ fn what_is_carried_away_is_newly_misplaced() {
     let moved = dwell_physics::BodyState {
         part,
         pose: Pose::new(pose.position + 3.0 * Vec3::Y, pose.rotation),
-        velocity: Default::default(),
+        velocity: dwell_scene::Velocity::default(),
     };
     let info = step(&mut env, DiscreteAction::Wait);
     assert_eq!(measure(&env, &info, "prop_fixed_strict"), 1.0);

@@ -196,8 +196,8 @@ mod tests {
     use super::*;
     use serde_json::json;
 
-    fn told(value: serde_json::Value) -> String {
-        EpisodeSpec::from_json(&value).unwrap_err().to_string()
+    fn told(value: &serde_json::Value) -> String {
+        EpisodeSpec::from_json(value).unwrap_err().to_string()
     }
 
     #[test]
@@ -233,7 +233,7 @@ mod tests {
                 "episode.goal.height_m is -1",
             ),
         ] {
-            let found = told(value);
+            let found = told(&value);
             assert!(found.contains(expected), "{found}");
         }
         assert!(EpisodeSpec::from_json(&json!({})).unwrap().is_empty());

@@ -89,7 +89,7 @@ impl<'a> Asker<'a> {
     /// The things that a description fits.
     pub(super) fn fitting(&self, description: &Description) -> Vec<ObjectId> {
         let fits = self.checker.fitting(description).into_iter();
-        fits.filter_map(|term| term.object()).collect()
+        fits.filter_map(Term::object).collect()
     }
 
     /// The question, where there are words for it that do not give its answer away, and one answer.

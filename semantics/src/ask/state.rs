@@ -29,7 +29,8 @@ pub(super) fn candidates(asker: &Asker<'_>) -> Vec<AskedQuestion> {
                 .state
                 .openness(asker.scene.house(), object)
                 .is_some();
-        let states: [(bool, &str, fn(ObjectId, bool) -> StateToSet); 2] = [
+        type SetState = fn(ObjectId, bool) -> StateToSet;
+        let states: [(bool, &str, SetState); 2] = [
             (shines, "switched_on", StateToSet::Switch),
             (opens, "open", StateToSet::Open),
         ];

@@ -68,20 +68,19 @@ impl InstructionStep {
         to: Option<(RoomId, Description)>,
     ) -> Option<Self> {
         let words = group.words.clone();
-        let (request, conditions): (RequestStep, Option<Vec<StepCondition>>) = match to {
-            Some((room, destination)) => {
-                let left = |object: &ObjectId| kind.at_destination(*object, Term::Room(room));
-                let request = request_to(kind, words, destination)?;
-                (request, group.objects.iter().map(left).collect())
-            }
-            None => {
-                let (verb, _) = kind.of_thing(*group.objects.first()?)?;
-                let request = RequestStep::Do {
-                    verb: verb.to_owned(),
-                    object: words.into(),
-                };
-                let done = |object: &ObjectId| Some(kind.of_thing(*object)?.1);
-                (request, group.objects.iter().map(done).collect())
+        let room = to.as_ref().map(|(room, _)| Term::Room(*room));
+        let done = |object: &ObjectId| match room {
+            Some(room) => kind.at_destination(*object, room),
+            None => Some(kind.of_thing(*object)?.1),
+        };
+        let conditions: Option<Vec<StepCondition>> = group.objects.iter().map(done).collect();
+        let request = if let Some((_, destination)) = to {
+            request_to(kind, words, destination)?
+        } else {
+            let (verb, _) = kind.of_thing(*group.objects.first()?)?;
+            RequestStep::Do {
+                verb: verb.to_owned(),
+                object: words.into(),
             }
         };
         Some(Self {

@@ -3,7 +3,7 @@
 //!
 //! # Source
 //! Held-out combinations of colour and noun, and of relation and noun, as tests of systematic generalization: L. Ruis et al., "A
-//! Benchmark for Systematic Generalization in Grounded Language Understanding", NeurIPS 2020 (gSCAN, splits B to E); B. Lake and
+//! Benchmark for Systematic Generalization in Grounded Language Understanding", `NeurIPS` 2020 (gSCAN, splits B to E); B. Lake and
 //! M. Baroni, "Generalization without Systematicity", ICML 2018 (SCAN).
 
 use super::task::{keeps_to_limits, say};
@@ -129,7 +129,7 @@ mod tests {
 
     fn texts(split: WordSplit, request: &RequestStep) -> BTreeSet<String> {
         let language = Language::english();
-        let keys = (0..40).map(|k| RandomKey::root(k));
+        let keys = (0..40).map(RandomKey::root);
         keys.filter_map(|key| split.compose(language, vec![request.clone()], key))
             .map(|said| said.text)
             .collect()

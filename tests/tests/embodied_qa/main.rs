@@ -241,8 +241,9 @@ fn stop(answer: f32) -> StepAction {
 }
 
 fn stopped(env: &mut Env, seed: u64, answer: f32) -> StepInfo {
-    env.reset(seed).unwrap();
-    env.step(&[Some(stop(answer))]).unwrap().remove(0)
+    env.reset(seed).expect("the task can be played");
+    let infos = env.step(&[Some(stop(answer))]);
+    infos.expect("the episode goes on").remove(0)
 }
 
 /// The right answer is a success wherever it is given; each other one costs what the settings say, and so does none.

@@ -47,7 +47,7 @@ pub(super) fn arrange(
             if holds_things(world, object) {
                 return Ok(None);
             }
-            let (before, opened) = joint_positions(world, object, true);
+            let [before, opened] = joint_positions(world, object, true);
             world.set_joints(&opened)?;
             let undo = Undo {
                 joints: before,
@@ -58,7 +58,7 @@ pub(super) fn arrange(
                 return Ok(None);
             }
             if !is_open {
-                let (_, closed) = joint_positions(world, object, false);
+                let [_, closed] = joint_positions(world, object, false);
                 world.set_joints(&closed)?;
             }
             Ok(Some(undo))
@@ -66,12 +66,11 @@ pub(super) fn arrange(
     }
 }
 
+/// A joint with its position and velocity.
+type JointPosition = (JointId, f32, f32);
+
 /// Positions of the joints of a thing that open, as they are and as they are to be: all closed, but the first one where it is to be open.
-fn joint_positions(
-    world: &World,
-    object: ObjectId,
-    is_open: bool,
-) -> (Vec<(JointId, f32, f32)>, Vec<(JointId, f32, f32)>) {
+fn joint_positions(world: &World, object: ObjectId, is_open: bool) -> [Vec<JointPosition>; 2] {
     let (house, state) = (world.house(), world.state());
     let joints = house.joints_of(object);
     let joints: Vec<JointId> = joints
@@ -90,7 +89,7 @@ fn joint_positions(
         let reachable = state.joint_parameters(house, *joint).clamp(wanted);
         (*joint, reachable, 0.0)
     });
-    (before.collect(), after.collect())
+    [before.collect(), after.collect()]
 }
 
 /// Returns whether anything lies in or on a thing: it would not come along with what opens.

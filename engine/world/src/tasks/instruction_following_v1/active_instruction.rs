@@ -1,9 +1,11 @@
 //! The instruction of an episode: what is done of it, and what the expert does next.
 
 use super::planned_step::{EndOfLeg, PlannedStep};
+use super::step_places::reach_goal;
 use crate::actions::{DiscreteAction, StepSizes};
 use crate::error::WorldError;
 use crate::expert::LookStep;
+use crate::tasks::goal_cells::LargestIslandIndex;
 use crate::tasks::navigation::{BESIDE_M, ELSEWHERE_M, Leg, NavigationGoal};
 use crate::world::World;
 use dwell_scene::navigation::{NavCell, NavGrid};
@@ -151,9 +153,16 @@ impl ActiveInstruction {
         }
         let at = self.leg_place(&view);
         if at != self.at {
-            let goal = self.steps[at.step].targets[at.target].legs[at.leg]
-                .goal
-                .clone();
+            let planned = &self.steps[at.step].targets[at.target].legs[at.leg];
+            let is_again = at.step == self.at.step && at.leg < self.at.leg;
+            let goal = match planned.end {
+                // What was put down elsewhere is fetched from there.
+                EndOfLeg::Hand(DiscreteAction::Pick, object) if is_again => {
+                    let ground = LargestIslandIndex::of(self.leg.guide.grid());
+                    reach_goal(world, agent, &ground, object)
+                }
+                _ => planned.goal.clone(),
+            };
             self.leg = self.leg.to(goal);
             (self.at, self.busy, self.rounds) = (at, 0, 0);
         }

@@ -139,7 +139,7 @@ impl InstructionDraw<'_> {
         let chosen = match predicate.holds(self.scene, &[Term::Object(object)], None) {
             Truth::True => &then,
             Truth::False => &otherwise,
-            _ => return None,
+            Truth::Undecided(_) => return None,
         };
         let requests = [&then, &otherwise].map(|own| own.step.request.clone());
         let [first, second] = requests;

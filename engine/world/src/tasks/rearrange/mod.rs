@@ -46,7 +46,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     about: "Put everything back as it was: one to five things lie elsewhere, or stand open or closed; then stop.",
     has_goal: true,
     goal_parts: &[GoalPart::Placements],
-    max_steps: 3000,
+    max_steps: 5000,
     actions: DiscreteAction::ALL.split_at(13).0,
     sensors: &[
         "rgb",
@@ -214,11 +214,7 @@ impl Task for Rearrange {
         let agent = self.setup.agent;
         let body = self.setup.body(world, NAME)?;
         let grid: Arc<NavGrid> = world.engines().nav_grid(&body)?;
-        if self
-            .settings
-            .open_doors
-            .unwrap_or(!self.setup.actions.contains(DiscreteAction::Open))
-        {
+        if self.settings.open_doors {
             door_leaves::open_all(world, &grid)?;
         }
         let leaves = DoorLeaves::of(world, &grid);

@@ -26,8 +26,8 @@ pub(super) struct RearrangeSettings {
     /// Whether `place` puts what is held exactly where it belongs, where that place is in reach and at most 45 degrees from the middle
     /// of the view; default true.
     pub(super) snap: bool,
-    /// Whether all doors between rooms stand open at the start; default where the agent has no action `open`.
-    pub(super) open_doors: Option<bool>,
+    /// Whether all doors between rooms stand open at the start; default true.
+    pub(super) open_doors: bool,
     /// What a step is paid: `energy` (for each unit by which the energy fell; default 1), `success` (default 2.5), `step` (default
     /// -0.01), `wrong_stop` and `collision` (default 0).
     pub(super) reward: RearrangeRewards,
@@ -71,7 +71,7 @@ impl Default for RearrangeSettings {
             min_move_m: 0.5,
             max_move_m: 10.0,
             snap: true,
-            open_doors: None,
+            open_doors: true,
             reward: RearrangeRewards::default(),
         }
     }

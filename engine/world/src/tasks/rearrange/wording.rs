@@ -35,19 +35,18 @@ pub(super) fn instruction(
     let engines = world.engines();
     let scene = engines.semantics().scene(world.state());
     let phrase = |object: ObjectId| Some(Phrase::from(refer(&scene, object)?));
-    let step = |one: &ObjectPlacement| match one.openness {
-        Some(openness) => Some(RequestStep::Do {
-            verb: if openness > 0.5 { "open" } else { "close" }.to_owned(),
-            object: phrase(one.object)?,
-        }),
-        None => {
-            let (predicate, to) = rested.get(&one.object)?;
-            Some(RequestStep::Put {
-                object: phrase(one.object)?,
-                predicate: (*predicate).to_owned(),
-                to: phrase(*to)?,
-            })
+    let step = |one: &ObjectPlacement| {
+        let object = phrase(one.object)?;
+        if let Some(openness) = one.openness {
+            let verb = if openness > 0.5 { "open" } else { "close" }.to_owned();
+            return Some(RequestStep::Do { verb, object });
         }
+        let (predicate, to) = rested.get(&one.object)?;
+        Some(RequestStep::Put {
+            object,
+            predicate: (*predicate).to_owned(),
+            to: phrase(*to)?,
+        })
     };
     let said = || {
         let steps = placements.iter().map(step).collect::<Option<Vec<_>>>()?;

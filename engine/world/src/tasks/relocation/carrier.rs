@@ -13,6 +13,8 @@ use std::sync::Arc;
 /// Control steps for which it waits for furniture to close, and for a thing to be in its hand.
 const PATIENCE: u32 = 60;
 const GRASPING: u32 = 3;
+/// Control steps for which it turns to a point.
+const FACING: u32 = 40;
 /// Control steps for which it keeps opening or closing.
 const SWINGING: u32 = 240;
 /// How often it tries all places of an errand again.
@@ -50,6 +52,8 @@ pub(super) struct Carrier {
     leg: Leg,
     /// Control steps for which its hand has been busy.
     busy: u32,
+    /// Control steps for which it has been turning to where it puts something.
+    facing: u32,
     rounds: u32,
 }
 
@@ -64,6 +68,7 @@ impl Carrier {
             errand,
             leg: Leg::new(agent, grid.clone(), cells_goal(cells, 0.0), stride),
             busy: 0,
+            facing: 0,
             rounds: 0,
         }
     }
@@ -73,7 +78,8 @@ impl Carrier {
         match self.errand {
             Errand::Take(object) => {
                 if self.busy > 0 {
-                    return self.wait(world, GRASPING);
+                    self.busy += 1;
+                    return (self.busy < GRASPING).then_some(DiscreteAction::Wait);
                 }
                 if let Some(step) = self.leg.walk(world) {
                     return Some(step);
@@ -92,7 +98,13 @@ impl Carrier {
                     // It is done at once, or not at all.
                     return self.elsewhere(world, BESIDE_M);
                 }
-                if let Some(step) = self.leg.walk(world).or_else(|| self.leg.face(world, point)) {
+                if let Some(step) = self.leg.walk(world) {
+                    self.facing = 0;
+                    return Some(step);
+                }
+                // A point that is almost straight below is never quite ahead.
+                self.facing += 1;
+                if let Some(step) = self.leg.face(world, point).filter(|_| self.facing < FACING) {
                     return Some(step);
                 }
                 self.busy = 1;

@@ -15,6 +15,10 @@ use std::sync::Arc;
 pub(super) const LEAST_CELLS: usize = 6;
 /// Share of the reach at which a spot is reached from all over a cell.
 const REACH_SHARE: f32 = 0.9;
+/// Longest edge of what is carried through doors without getting stuck, m.
+const LARGEST_M: f32 = 0.5;
+/// Least room between a thing and who puts it down, m.
+const BESIDE_M: f32 = 0.1;
 
 /// A thing that can be moved.
 #[derive(Clone, Debug)]
@@ -58,7 +62,7 @@ impl MovableThings {
             let mass_kg = world.physics.body_mass_kg(house.objects[object].first_part);
             if alone
                 && !own.is_empty()
-                && size_m <= body.max_carry_size_m
+                && size_m <= body.max_carry_size_m.min(LARGEST_M)
                 && mass_kg.is_some_and(|mass_kg| mass_kg <= body.lift_kg)
             {
                 light.push(object);
@@ -75,8 +79,12 @@ impl MovableThings {
             let foot = bounds.center().with_y(bounds.min.y);
             let mut cells = cells_in_reach(world, agent, &ground, object);
             cells.retain(|cell| {
-                let eye = grid.position(*cell) + Vec3::Y * body.eye_height_m;
+                let feet = grid.position(*cell);
+                let eye = feet + Vec3::Y * body.eye_height_m;
+                // Who stands in the place of a thing cannot put it there.
+                let beside = feet.clamp(bounds.min, bounds.max).with_y(feet.y);
                 eye.distance(foot) <= REACH_SHARE * body.reach_m
+                    && beside.distance(feet) >= body.radius_m + BESIDE_M
             });
             (cells.len() >= LEAST_CELLS).then_some(MovableThing { object, cells })
         });

@@ -153,7 +153,7 @@ impl Restorer {
             }
         }
         // Each round begins an errand or gives a thing up.
-        for _ in 0..=misplaced.len() + 1 {
+        for _ in 0..=TAKES as usize * (misplaced.len() + 1) {
             if self.carrier.is_none() {
                 self.carrier = self.begin(world, held, misplaced);
             }
@@ -164,8 +164,10 @@ impl Restorer {
                 self.count_opening(world, held, action);
                 return action;
             }
-            let object = carrier.errand.object();
-            self.left.insert(object);
+            // What was kicked away meanwhile is reached from elsewhere; it counts how often it takes a thing.
+            if !matches!(carrier.errand, Errand::Take(_)) {
+                self.left.insert(carrier.errand.object());
+            }
             self.carrier = None;
         }
         if held.is_some_and(|object| self.left.contains(&object)) {

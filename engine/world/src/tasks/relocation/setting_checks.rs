@@ -2,6 +2,7 @@
 
 use crate::error::WorldError;
 use dwell_semantics::category::categories;
+use std::fmt::Display;
 
 /// The most things of an episode.
 pub(in crate::tasks) const MOST_THINGS: u32 = 20;
@@ -9,7 +10,7 @@ pub(in crate::tasks) const MOST_THINGS: u32 = 20;
 /// Refuses a setting.
 pub(in crate::tasks) fn fault(
     field: &'static str,
-    found: impl ToString,
+    found: impl Display,
     allowed: impl Into<String>,
 ) -> WorldError {
     WorldError::Config {

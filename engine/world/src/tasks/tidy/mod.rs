@@ -262,11 +262,7 @@ impl Task for Tidy {
         let agent = self.setup.agent;
         let body = self.setup.body(world, NAME)?;
         let grid: Arc<NavGrid> = world.engines().nav_grid(&body)?;
-        if self
-            .settings
-            .open_doors
-            .unwrap_or(!self.setup.actions.contains(DiscreteAction::Open))
-        {
+        if self.settings.open_doors {
             door_leaves::open_all(world, &grid)?;
         }
         let leaves = DoorLeaves::of(world, &grid);
@@ -329,12 +325,12 @@ impl Task for Tidy {
         // What is knocked over on the way is put back, too.
         let mut places = places;
         for thing in &offer.movable.things {
-            if !places.contains_key(&thing.object) {
+            places.entry(thing.object).or_insert_with(|| {
                 let bounds = house.object_bounds(world.state(), thing.object);
                 let part = house.objects[thing.object].first_part;
                 let at = (bounds, world.state().part_pose[part]);
-                places.insert(thing.object, PlaceToRestore::new(thing, at));
-            }
+                PlaceToRestore::new(thing, at)
+            });
         }
         let setup = (agent, &grid, self.setup.stride);
         self.active = Some(ActiveEpisode {

@@ -21,8 +21,8 @@ pub(super) struct TidySettings {
     pub(super) max_move_m: f32,
     /// The share of things that are put on the floor, 0 to 1; default 0.3. The others lie on furniture where they do not belong.
     pub(super) floor_share: f64,
-    /// Whether all doors between rooms stand open at the start; default where the agent has no action `open`.
-    pub(super) open_doors: Option<bool>,
+    /// Whether all doors between rooms stand open at the start; default true.
+    pub(super) open_doors: bool,
     /// What a step is paid: `tidied` (for each thing by which the number of untidy ones fell; default 1), `success` (default 2.5),
     /// `step` (default -0.01), `wrong_stop` and `collision` (default 0).
     pub(super) reward: TidyRewards,
@@ -65,7 +65,7 @@ impl Default for TidySettings {
             min_move_m: 0.5,
             max_move_m: 10.0,
             floor_share: 0.3,
-            open_doors: None,
+            open_doors: true,
             reward: TidyRewards::default(),
         }
     }
