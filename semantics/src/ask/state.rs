@@ -16,6 +16,9 @@ pub enum StateToSet {
     Open(ObjectId, bool),
 }
 
+/// How a state is set to be so, or not.
+type SetState = fn(ObjectId, bool) -> StateToSet;
+
 pub(super) fn candidates(asker: &Asker<'_>) -> Vec<AskedQuestion> {
     let mut found = Vec::new();
     for (object, room) in asker.things.iter().copied() {
@@ -29,7 +32,6 @@ pub(super) fn candidates(asker: &Asker<'_>) -> Vec<AskedQuestion> {
                 .state
                 .openness(asker.scene.house(), object)
                 .is_some();
-        type SetState = fn(ObjectId, bool) -> StateToSet;
         let states: [(bool, &str, SetState); 2] = [
             (shines, "switched_on", StateToSet::Switch),
             (opens, "open", StateToSet::Open),
