@@ -275,8 +275,7 @@ def test_the_page_for_who_begins_says_what_the_engine_does() -> None:
     assert "the episode ends" in actions[0][2]
     tasks = _native.tasks()
     assert [(row[0], row[1], named(row[2])) for row in rows_of(text, "## Environments")] == [
-        (task["id"], task["about"], task["sensors"])
-        for task in tasks
+        (task["id"], task["about"], task["sensors"]) for task in tasks
     ]
     assert {task["max_steps"] for task in tasks} == {1000}
     info = text.split("## Info")[1].split("## Sensors")[0]

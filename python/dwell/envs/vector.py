@@ -23,7 +23,7 @@ from dwell.arguments import (
     refuse_unknown,
 )
 from dwell.camera import camera_settings
-from dwell.envs.action_modes import action_form, masked_form
+from dwell.envs.action_modes import EngineActions, action_form, masked_form
 from dwell.envs.config import (
     CACHED_HOUSES,
     EpisodeFiles,
@@ -49,8 +49,8 @@ from dwell.envs.single import (
     steps_a_second,
 )
 from dwell.envs.snapshots import EnvSnapshot
-from dwell.envs.vector_reset import VectorReset
 from dwell.envs.step_recorder import Recorder
+from dwell.envs.vector_reset import VectorReset
 from dwell.world import World
 from dwell.world_settings import Laws, with_head
 
