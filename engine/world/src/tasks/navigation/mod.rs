@@ -7,7 +7,9 @@ mod goal;
 mod leg;
 mod settings;
 
-pub(super) use goal::{NavigationGoal, SuccessRule, cells_in_reach, cells_that_reach};
+pub(super) use goal::{
+    NavigationGoal, SuccessRule, cells_in_reach, cells_in_share_of_reach, cells_that_reach,
+};
 pub(super) use leg::{BESIDE_M, ELSEWHERE_M, Leg};
 pub(super) use settings::{NavigationRewards, NavigationRules, navigation_settings};
 
