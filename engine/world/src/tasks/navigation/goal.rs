@@ -127,11 +127,22 @@ pub(in crate::tasks) fn cells_in_reach(
     ground: &LargestIslandIndex<'_>,
     object: ObjectId,
 ) -> Vec<NavCell> {
+    // A little less than the whole reach, as from the border of a cell.
+    cells_in_share_of_reach(world, agent, ground, (object, 0.85))
+}
+
+/// As [`cells_in_reach`], with a share of the reach.
+pub(in crate::tasks) fn cells_in_share_of_reach(
+    world: &World,
+    agent: AgentId,
+    ground: &LargestIslandIndex<'_>,
+    (object, share): (ObjectId, f32),
+) -> Vec<NavCell> {
     let Some(body) = world.state().agents.get(agent).map(|agent| agent.body) else {
         return Vec::new();
     };
-    // Reach is measured from the eye to the nearest point; a little less, as from the border of a cell.
-    let reach_m = body.reach_m * 0.85;
+    // Reach is measured from the eye to the nearest point.
+    let reach_m = body.reach_m * share;
     let bounds = world.house().object_bounds(world.state(), object);
     let near = |feet: Vec3| {
         let eye = feet + Vec3::Y * body.eye_height_m;

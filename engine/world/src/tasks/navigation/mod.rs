@@ -8,7 +8,9 @@ mod leg;
 mod settings;
 mod stated;
 
-pub(super) use goal::{NavigationGoal, SuccessRule, cells_in_reach, cells_that_reach};
+pub(super) use goal::{
+    NavigationGoal, SuccessRule, cells_in_reach, cells_in_share_of_reach, cells_that_reach,
+};
 pub(super) use leg::{BESIDE_M, ELSEWHERE_M, Leg};
 pub(super) use settings::{NavigationRewards, NavigationRules, navigation_settings};
 pub(super) use stated::StatedPoint;

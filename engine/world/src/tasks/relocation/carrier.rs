@@ -5,6 +5,7 @@ use crate::actions::{DiscreteAction, StepSizes};
 use crate::expert::LookStep;
 use crate::tasks::navigation::{BESIDE_M, ELSEWHERE_M, Leg};
 use crate::world::World;
+use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::{AgentId, ObjectId};
 use glam::Vec3;
@@ -17,6 +18,10 @@ const GRASPING: u32 = 3;
 const FACING: u32 = 40;
 /// Control steps for which it keeps opening or closing.
 const SWINGING: u32 = 240;
+/// Least upward part of a level surface's normal, largest difference of its height from that of a point, and distance from there, m.
+const LEVEL: f32 = 0.95;
+const SAME_HEIGHT_M: f32 = 0.05;
+const AROUND_M: f32 = 0.4;
 /// How often it tries all places of an errand again.
 const ROUNDS: u32 = 2;
 
@@ -50,6 +55,8 @@ impl Errand {
 pub(super) struct Carrier {
     pub(super) errand: Errand,
     leg: Leg,
+    /// True if it puts things down only where the middle of the view is on a surface at the height of the point.
+    by_view: bool,
     /// Control steps for which its hand has been busy.
     busy: u32,
     /// Control steps for which it has been turning to where it puts something.
@@ -67,6 +74,7 @@ impl Carrier {
         Self {
             errand,
             leg: Leg::new(agent, grid.clone(), cells_goal(cells, 0.0), stride),
+            by_view: false,
             busy: 0,
             facing: 0,
             rounds: 0,
@@ -107,6 +115,9 @@ impl Carrier {
                 if let Some(step) = self.leg.face(world, point).filter(|_| self.facing < FACING) {
                     return Some(step);
                 }
+                if self.by_view && !self.sees_surface_at(world, point) {
+                    return self.elsewhere(world, BESIDE_M);
+                }
                 self.busy = 1;
                 Some(DiscreteAction::Place)
             }
@@ -127,6 +138,37 @@ impl Carrier {
                 self.look_and_use(world, object, DiscreteAction::Close)
             }
         }
+    }
+
+    /// An errand of an agent whose `place` goes by its view alone.
+    pub(super) fn by_view(self) -> Self {
+        Self {
+            by_view: true,
+            ..self
+        }
+    }
+
+    /// Returns whether the middle of the view is on a level surface near a point, at its height.
+    fn sees_surface_at(&self, world: &World, point: Vec3) -> bool {
+        let Some(agent) = world.state().agents.get(self.leg.guide.agent()) else {
+            return false;
+        };
+        let eye = agent.world_from_eye();
+        let ray = Ray::new(eye.position, eye.transform_vector(Vec3::NEG_Z));
+        let held = agent
+            .holding
+            .map(|held| world.house().entity_of_object(held));
+        let rays = world.rays();
+        let hit = match held {
+            Some(held) => rays.closest_excluding(&ray, RayMask::EYE, held),
+            None => rays.closest(&ray, RayMask::EYE),
+        };
+        hit.is_some_and(|hit| {
+            let at = ray.point_at(hit.distance_m);
+            rays.surface(&hit).normal.y.abs() >= LEVEL
+                && (at.y - point.y).abs() <= SAME_HEIGHT_M
+                && at.distance(point) <= AROUND_M
+        })
     }
 
     fn look_and_use(

@@ -5,12 +5,12 @@ use crate::error::WorldError;
 use crate::tasks::goal_cells::LargestIslandIndex;
 use crate::tasks::navigation::cells_in_reach;
 use crate::world::World;
-use dwell_physics::BodyState;
-use dwell_physics::actions::{Drop, Pick, PlaceAt, PlaceInPose};
+use dwell_physics::actions::{Drop, Pick, Place, PlaceAt, PlaceInPose};
+use dwell_physics::{AgentPlacement, BodyState};
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::navigation::NavCell;
 use dwell_scene::random::{RandomKey, RandomStream};
-use dwell_scene::space::yaw_from_forward;
+use dwell_scene::space::{pitch_from_forward, yaw_from_forward};
 use dwell_scene::{Aabb, AgentBody, AgentId, ObjectId, Pose, SurfaceOwner, Velocity};
 use glam::Vec3;
 
@@ -22,6 +22,8 @@ const STANDS: usize = 6;
 const REACH_SHARE: f32 = 0.95;
 /// Half of an edge of the floor around a cell on which points are tried, m.
 const FLOOR_M: f32 = 0.3;
+/// Distance around a thing on the floor at which one can walk, m.
+const AROUND_M: f32 = 0.6;
 /// Least room between a thing and the places that are kept free, m.
 const APART_M: f32 = 0.02;
 /// Steepest surface that counts as level: least upward part of its normal.
@@ -119,6 +121,40 @@ impl HandMover<'_> {
         Ok(None)
     }
 
+    /// Takes a thing and puts it down again on the level surface at which it looks, from one of its cells; returns that cell where the
+    /// thing then lies as `is_right` says. Where it does not it lies as before.
+    pub(in crate::tasks) fn puts_down(
+        &mut self,
+        thing: &MovableThing,
+        stream: &mut RandomStream,
+        is_right: &dyn Fn(&World) -> bool,
+    ) -> Result<Option<NavCell>, WorldError> {
+        let (object, before) = (thing.object, self.pose(thing.object));
+        let bounds = self.bounds(object);
+        let foot = bounds.center().with_y(bounds.min.y);
+        for _ in 0..2 {
+            let cell = stream.choose(&thing.cells).copied();
+            let Some(cell) = cell.filter(|cell| (self.is_free)(*cell)) else {
+                continue;
+            };
+            if !self.take(object, cell)? {
+                continue;
+            }
+            let feet = self.ground.grid.position(cell);
+            let down = foot - (feet + Vec3::Y * self.body.eye_height_m);
+            self.world.set_agents(&[AgentPlacement {
+                pitch_rad: pitch_from_forward(down),
+                ..AgentPlacement::at_rest(self.agent, feet, yaw_from_forward(down))
+            }])?;
+            let put = self.world.act(self.agent, &Place::default());
+            if put.success && is_right(self.world) {
+                return Ok(Some(cell));
+            }
+            self.give_up(object, before)?;
+        }
+        Ok(None)
+    }
+
     /// Moves a thing that [`Self::puts_back`] from `cell` to one of some targets. Returns whether it was moved; else it lies as before.
     ///
     /// `is_allowed`: whether it may lie at a point of a target.
@@ -180,12 +216,24 @@ impl HandMover<'_> {
             MoveTarget::Floor => {
                 let grid = self.ground.grid;
                 let key = RandomKey::root(stream.bits());
-                let cell = grid.sample(key, |cell| (self.is_free)(cell))?;
+                let cell = grid.sample(key, |cell| (self.is_free)(cell) && self.is_open(cell))?;
                 let at = grid.position(cell);
                 let reach = Vec3::new(FLOOR_M, 0.0, FLOOR_M);
                 Some(Aabb::new(at - reach, at + reach))
             }
         }
+    }
+
+    /// Returns whether one can walk around a cell, so that what lies there bars no way.
+    fn is_open(&self, cell: NavCell) -> bool {
+        let grid = self.ground.grid;
+        let at = grid.position(cell);
+        let sides = [-1, 0, 1].map(|x| [-1, 0, 1].map(|z| Vec3::new(x as f32, 0.0, z as f32)));
+        let mut around = sides.as_flattened().iter();
+        around.all(|side| {
+            let there = grid.nearest(at + AROUND_M * *side, grid.config().cell_m);
+            there.is_some_and(|there| grid.island(there) == Some(0))
+        })
     }
 
     /// A level point of a target that an eye sees and a hand reaches.

@@ -5,7 +5,7 @@ use super::carrier::{Carrier, Errand};
 use crate::actions::{DiscreteAction, StepSizes};
 use crate::expert::ShortestPathFollower;
 use crate::tasks::goal_cells::LargestIslandIndex;
-use crate::tasks::navigation::cells_in_reach;
+use crate::tasks::navigation::{cells_in_reach, cells_in_share_of_reach};
 use crate::world::World;
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::{Aabb, AgentId, ObjectId, Pose};
@@ -15,6 +15,10 @@ use std::sync::Arc;
 
 /// How often it takes a thing.
 const TAKES: u32 = 6;
+/// Share of the reach at which it takes what is reached from nowhere nearer, as flat things on the floor.
+const FAR_SHARE: f32 = 0.97;
+/// Control steps for which it carries a thing; then it is stuck, and takes it anew.
+const CARRYING: u32 = 500;
 /// Control steps for which it opens a door with a thing in its hand; then it puts the thing down first.
 const OPENING: u32 = 100;
 /// Control steps for which it then opens the door, and turns that it makes away from the door before it lets go.
@@ -87,7 +91,11 @@ pub(in crate::tasks) struct Restorer {
     places: BTreeMap<ObjectId, PlaceToRestore>,
     /// Where a hand reaches furniture.
     furniture: BTreeMap<ObjectId, Vec<NavCell>>,
+    /// True if what is held is put where the view has a level surface, and not where it belongs.
+    by_view: bool,
     carrier: Option<Carrier>,
+    /// Control steps for which it has been carrying.
+    carrying: u32,
     /// Control steps for which it has been opening a door with a full hand.
     opening: u32,
     /// A door that it opens with an empty hand.
@@ -109,11 +117,21 @@ impl Restorer {
             stride,
             places,
             furniture,
+            by_view: false,
             carrier: None,
+            carrying: 0,
             opening: 0,
             door: None,
             takes: BTreeMap::new(),
             left: BTreeSet::new(),
+        }
+    }
+
+    /// The expert of an agent whose `place` goes by its view alone.
+    pub(in crate::tasks) fn by_view(self) -> Self {
+        Self {
+            by_view: true,
+            ..self
         }
     }
 
@@ -127,6 +145,11 @@ impl Restorer {
         let held = holder.and_then(|agent| agent.holding);
         if let Some(action) = self.open_blocked_door(world, held) {
             return action;
+        }
+        self.carrying = if held.is_some() { self.carrying + 1 } else { 0 };
+        if self.carrying > CARRYING {
+            self.carrier = None;
+            return DiscreteAction::Drop;
         }
         let is_misplaced = |object: ObjectId| misplaced.iter().any(|one| one.object() == object);
         if let Some(carrier) = &self.carrier {
@@ -244,7 +267,12 @@ impl Restorer {
             }
             let place = self.places.get(&object)?;
             let errand = Errand::Put(object, place.foot);
-            return Some(Carrier::new(errand, place.cells.clone(), setup));
+            let carrier = Carrier::new(errand, place.cells.clone(), setup);
+            return Some(if self.by_view {
+                carrier.by_view()
+            } else {
+                carrier
+            });
         }
         let here = world.state().agents.get(self.agent)?.position;
         let here = self.grid.nearest(here, 0.6)?;
@@ -261,7 +289,11 @@ impl Restorer {
                     if tries >= TAKES || !self.places.contains_key(&object) {
                         continue;
                     }
-                    let cells = cells_in_reach(world, self.agent, &ground, object);
+                    let mut cells = cells_in_reach(world, self.agent, &ground, object);
+                    if cells.is_empty() {
+                        let far = (object, FAR_SHARE);
+                        cells = cells_in_share_of_reach(world, self.agent, &ground, far);
+                    }
                     (Errand::Take(object), cells)
                 }
                 Misplaced::Furniture(object, opens) => {

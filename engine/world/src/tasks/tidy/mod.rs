@@ -177,7 +177,11 @@ impl Tidy {
             if places.len() == count {
                 break;
             }
-            let Some(cell) = mover.puts_back(thing, &mut stream)? else {
+            let is_right = |world: &World| {
+                let scene = engines.semantics().scene(world.state());
+                is_tidy(&scene, thing.object)
+            };
+            let Some(cell) = mover.puts_down(thing, &mut stream, &is_right)? else {
                 continue;
             };
             let (house, state) = (mover.world.house().clone(), mover.world.state());
@@ -335,7 +339,7 @@ impl Task for Tidy {
         let setup = (agent, &grid, self.setup.stride);
         self.active = Some(ActiveEpisode {
             things,
-            restorer: Restorer::new(setup, places, BTreeMap::new()),
+            restorer: Restorer::new(setup, places, BTreeMap::new()).by_view(),
         });
         Ok(Episode {
             agent,
