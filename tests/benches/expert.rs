@@ -81,6 +81,33 @@ fn play(env: &mut Env, seed: u64, most_steps: u64) -> Result<bool, dwell::WorldE
 fn tell(env: &Env, seed: u64, steps: u64, (actions, measures): (&[String], &[f64])) {
     let agent = env.world().state().agents[AgentId(0)];
     let text = env.episode(0).map_or("", |episode| &episode.instruction);
+    if let Ok(episode) = env.episode(0) {
+        for id in &episode.goal.objects {
+            let (house, state) = (env.world().house(), env.world().state());
+            let at = house.object_bounds(state, *id);
+            let goal = episode.goal.placements.iter().find(|one| one.object == *id);
+            println!(
+                "  {} goal {:?} now {:.2} size {:.2} open {:?} held {:?}",
+                house.objects[*id].name,
+                goal.map(|one| (one.world_from_box.position, one.openness)),
+                at.center(),
+                at.size(),
+                state.openness(house, *id),
+                state.held_by[*id]
+            );
+        }
+    }
+    let mut k = 0;
+    for (step, action) in actions.iter().enumerate() {
+        let plain = ["Move", "Turn", "Look", "Wait"]
+            .iter()
+            .any(|w| action.starts_with(w))
+            && !action.contains("way");
+        if !plain && k < 60 && (step == 0 || actions[step - 1] != *action) {
+            k += 1;
+            println!("    {step} {action}");
+        }
+    }
     let last = &actions[actions.len().saturating_sub(6)..];
     let names = env.task_measures(0).unwrap_or_default().iter();
     for (measure, value) in names.zip(measures) {
