@@ -20,7 +20,7 @@ def _section(task: dict[str, Any]) -> str:
     name = str(task["name"])
     file = _file(name)
     sensors = [str(sensor) for sensor in json.loads(json.dumps(task["sensors"]))]
-    return f"""## dwell/{task["name"]}-v{task["version"]}
+    return f"""## {task["id"]}
 
 {rust.module(file)}
 
@@ -39,7 +39,7 @@ Without `sensors`; [all that can be asked for](observations.md).
 
 def _file(name: str) -> str:
     """The source of a task: a file, or a folder's first file."""
-    stem = f"{_TASKS}/{rust.snake(name)}"
+    stem = f"{_TASKS}/{rust.snake(name).replace('-', '_')}"
     return f"{stem}.rs" if (ROOT / f"{stem}.rs").is_file() else f"{stem}/mod.rs"
 
 

@@ -66,15 +66,12 @@ def stale() -> list[str]:
 
 
 def _environments() -> str:
-    rows = [
-        (code(f"dwell/{task['name']}-v{task['version']}"), task["about"], _names(task["sensors"]))
-        for task in _native.tasks()
-    ]
+    rows = [(code(task["id"]), task["about"], _names(task["sensors"])) for task in _native.tasks()]
     return table(("id", "what is asked", "sensors without `sensors=`"), rows)
 
 
 def _task(task: Mapping[str, Any]) -> str:
-    env_id = f"dwell/{task['name']}-v{task['version']}"
+    env_id = task["id"]
     return f"""`{env_id}`. Sensors without `sensors=`: {_names(task["sensors"])}. `task_settings`:
 
 {fields_table(task["settings"])}"""
