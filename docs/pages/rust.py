@@ -8,8 +8,8 @@ from pages.sources import text
 
 
 def snake(name: str) -> str:
-    """``MoveForward`` as ``move_forward``."""
-    return re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower()
+    """``MoveForward`` as ``move_forward``, ``EmbodiedQA`` as ``embodied_qa``."""
+    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()
 
 
 def module(path: str) -> str:
