@@ -91,7 +91,7 @@ fn energies_are_those_of_an_independent_count() {
     let settings =
         json!({"min_things": 2, "max_openables": 0, "reward": {"step": 0.0, "success": 0.0}});
     let mut env = env(settings, &[]);
-    for seed in 0..3 {
+    for seed in 0..2 {
         env.reset(seed).unwrap();
         let mut goals = boxes(&env);
         let told = env.episode(0).unwrap().goal.placements.clone();
@@ -135,7 +135,7 @@ fn changed_things_lie_still_elsewhere() {
     let mut env = env(settings, &[]);
     let mut free = dwell_tests::env_of("Free", &[]);
     let mut openables = 0;
-    for seed in 0..8 {
+    for seed in 0..5 {
         free.reset(seed).unwrap();
         let start = boxes(&free);
         env.reset(seed).unwrap();
@@ -191,7 +191,7 @@ fn changed_things_lie_still_elsewhere() {
 fn stopping_at_the_start_is_no_success() {
     let settings = json!({"reward": {"wrong_stop": -0.5, "step": -0.25}});
     let mut env = env(settings, &[]);
-    for seed in 0..20 {
+    for seed in 0..10 {
         env.reset(seed).unwrap();
         let info = step(&mut env, DiscreteAction::Stop);
         assert!(info.result.terminated && !info.result.success, "{seed}");
@@ -252,7 +252,7 @@ fn goals_are_told_from_where_the_agent_stands() {
         Batch::new(vec![env], Threads::ONE).unwrap()
     };
     let (mut batch, mut other) = (made(), made());
-    for seed in 0..6 {
+    for seed in 0..3 {
         batch.reset(&[Some(seed)]).unwrap();
         for _ in 0..30 {
             let action = batch.expert_actions().unwrap()[0];
@@ -306,7 +306,7 @@ fn the_picture_of_the_goal_is_that_of_the_house_put_right() {
         let seen = observe(batch);
         seen[0].iter().zip(&seen[1]).filter(|(a, b)| a != b).count()
     };
-    for seed in 0..3 {
+    for seed in 0..2 {
         batch.reset(&[Some(seed)]).unwrap();
         for _ in 0..3000 {
             let action = batch.expert_actions().unwrap()[0];
@@ -322,7 +322,7 @@ fn the_picture_of_the_goal_is_that_of_the_house_put_right() {
         // Things lie as hands put them, by less than a centimetre.
         assert!(count < 3 * 32 * 24 / 20, "{seed}: {count}");
     }
-    assert!(others >= 3, "{others}");
+    assert!(others >= 2, "{others}");
 }
 
 #[test]

