@@ -14,6 +14,8 @@ use std::sync::Arc;
 /// Control steps for which it waits for furniture to close, and for a thing to be in its hand.
 const PATIENCE: u32 = 60;
 const GRASPING: u32 = 3;
+/// Places from which it tries to put a thing down before it gives up: something may lie there.
+const REFUSALS: u32 = 5;
 /// Control steps for which it turns to a point.
 const FACING: u32 = 40;
 /// Control steps for which it keeps opening or closing.
@@ -38,18 +40,6 @@ pub(super) enum Errand {
     Close(ObjectId),
 }
 
-impl Errand {
-    /// What it is about.
-    pub(super) fn object(self) -> ObjectId {
-        match self {
-            Self::Take(object)
-            | Self::Put(object, _)
-            | Self::Open(object)
-            | Self::Close(object) => object,
-        }
-    }
-}
-
 /// An errand that is under way.
 #[derive(Debug)]
 pub(super) struct Carrier {
@@ -59,6 +49,8 @@ pub(super) struct Carrier {
     by_view: bool,
     /// Control steps for which its hand has been busy.
     busy: u32,
+    /// How often a thing was not put down where it should be.
+    refused: u32,
     /// Control steps for which it has been turning to where it puts something.
     facing: u32,
     rounds: u32,
@@ -76,6 +68,7 @@ impl Carrier {
             leg: Leg::new(agent, grid.clone(), cells_goal(cells, 0.0), stride),
             by_view: false,
             busy: 0,
+            refused: 0,
             facing: 0,
             rounds: 0,
         }
@@ -104,6 +97,10 @@ impl Carrier {
             Errand::Put(_, point) => {
                 if self.busy > 0 {
                     // It is done at once, or not at all.
+                    self.refused += 1;
+                    if self.refused >= REFUSALS {
+                        return None;
+                    }
                     return self.elsewhere(world, BESIDE_M);
                 }
                 if let Some(step) = self.leg.walk(world) {

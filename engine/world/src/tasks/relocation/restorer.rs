@@ -101,6 +101,8 @@ pub(in crate::tasks) struct Restorer {
     /// A door that it opens with an empty hand.
     door: Option<BlockedDoor>,
     takes: BTreeMap<ObjectId, u32>,
+    /// What it brings back after all else.
+    postponed: BTreeSet<ObjectId>,
     /// What it has given up.
     left: BTreeSet<ObjectId>,
 }
@@ -123,6 +125,7 @@ impl Restorer {
             opening: 0,
             door: None,
             takes: BTreeMap::new(),
+            postponed: BTreeSet::new(),
             left: BTreeSet::new(),
         }
     }
@@ -187,9 +190,18 @@ impl Restorer {
                 self.count_opening(world, held, action);
                 return action;
             }
-            // What was kicked away meanwhile is reached from elsewhere; it counts how often it takes a thing.
-            if !matches!(carrier.errand, Errand::Take(_)) {
-                self.left.insert(carrier.errand.object());
+            match carrier.errand {
+                // What was kicked away meanwhile is reached from elsewhere; it counts how often it takes a thing.
+                Errand::Take(_) => {}
+                // Something may lie there that it puts in its own place first.
+                Errand::Put(object, _) => {
+                    self.postponed.insert(object);
+                    self.carrier = None;
+                    return DiscreteAction::Drop;
+                }
+                Errand::Open(object) | Errand::Close(object) => {
+                    self.left.insert(object);
+                }
             }
             self.carrier = None;
         }
@@ -278,7 +290,7 @@ impl Restorer {
         let here = self.grid.nearest(here, 0.6)?;
         let ways = self.grid.distance_field(&[here]);
         let ground = LargestIslandIndex::of(&self.grid);
-        let mut best: Option<((bool, f64), Errand, Vec<NavCell>)> = None;
+        let mut best: Option<((bool, bool, f64), Errand, Vec<NavCell>)> = None;
         for one in misplaced {
             if self.left.contains(&one.object()) {
                 continue;
@@ -312,7 +324,8 @@ impl Restorer {
                 continue;
             }
             // What stands open may hide a place, or bar the way.
-            let rank = (matches!(errand, Errand::Take(_)), way_m);
+            let is_late = self.postponed.contains(&one.object());
+            let rank = (is_late, matches!(errand, Errand::Take(_)), way_m);
             if best.as_ref().is_none_or(|(other, ..)| rank < *other) {
                 best = Some((rank, errand, cells));
             }
