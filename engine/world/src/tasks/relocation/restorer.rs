@@ -29,6 +29,9 @@ const OPEN_ENOUGH: f32 = 0.8;
 /// From where it put a thing down in vain it does not try again, m.
 const ELSEWHERE_M: f32 = 0.25;
 
+/// The order of errands, the least first: whether it was put off, whether it takes something, and the way there, m.
+type ErrandRank = (bool, bool, f64);
+
 /// The place of a thing before it was moved.
 #[derive(Clone, Debug)]
 pub(in crate::tasks) struct PlaceToRestore {
@@ -290,7 +293,7 @@ impl Restorer {
         let here = self.grid.nearest(here, 0.6)?;
         let ways = self.grid.distance_field(&[here]);
         let ground = LargestIslandIndex::of(&self.grid);
-        let mut best: Option<((bool, bool, f64), Errand, Vec<NavCell>)> = None;
+        let mut best: Option<(ErrandRank, Errand, Vec<NavCell>)> = None;
         for one in misplaced {
             if self.left.contains(&one.object()) {
                 continue;
