@@ -440,7 +440,10 @@ fn meant_hands(env: &mut Env, seed: u64) -> bool {
 #[test]
 fn a_restored_instruction_knows_what_is_done() {
     let (house, _) = dwell_houses::open("builtin:apartment").unwrap();
-    let settings = json!({"forms": ["sequence"]});
+    let settings = json!({
+        "forms": ["sequence"],
+        "kinds": ["go_to_room", "find_object", "pick_up", "open", "close", "switch_on", "switch_off", "bring"],
+    });
     let mut env = env_in(house.clone(), settings.clone());
     let mut other = env_in(house, settings);
     let mut checked = 0;

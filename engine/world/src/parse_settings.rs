@@ -27,6 +27,19 @@ pub(crate) fn parse_settings<T: DeserializeOwned>(
     })
 }
 
+/// Reads the settings of a task; `null` gives the defaults.
+///
+/// # Errors
+/// Those of [`parse_settings`].
+pub(crate) fn parse_task_settings<T: DeserializeOwned + Default>(
+    value: &Value,
+) -> Result<T, WorldError> {
+    if value.is_null() {
+        return Ok(T::default());
+    }
+    parse_settings("task_settings", value)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -135,7 +135,8 @@ mod tests {
             .collect()
     }
 
-    /// Each pair is asked in training or held out, never both, and both occur.
+    /// Each pair is asked in training or held out, never both, and some 20 % are held out: of 48 pairs 4 to 16, outside of which a fair
+    /// draw falls once in 200 times on either side.
     #[test]
     fn pairs_are_in_one_split_alone() {
         let mut held_out = 0;
@@ -149,7 +150,7 @@ mod tests {
                 assert!(!WordSplit::Relations.admits(&asked) && WordSplit::All.admits(&asked));
             }
         }
-        assert!((1..48).contains(&held_out), "{held_out}");
+        assert!((4..=16).contains(&held_out), "{held_out}");
     }
 
     #[test]
@@ -179,6 +180,11 @@ mod tests {
             assert!(
                 train.is_disjoint(&held_out),
                 "{verb}: {train:?} {held_out:?}"
+            );
+            let all = texts(WordSplit::All, &asked);
+            assert!(
+                all.iter().any(|text| held_out.contains(text)),
+                "{verb}: {all:?}"
             );
         }
     }

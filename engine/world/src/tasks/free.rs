@@ -60,11 +60,7 @@ enum StartChoice {
 const NEAR_M: f32 = 0.3;
 
 fn build(value: &serde_json::Value, setup: TaskSetup) -> Result<Box<dyn Task>, WorldError> {
-    let settings = if value.is_null() {
-        FreeSettings::default()
-    } else {
-        crate::parse_settings::parse_settings("task_settings", value)?
-    };
+    let settings: FreeSettings = crate::parse_settings::parse_task_settings(value)?;
     Ok(Box::new(FreeTask { settings, setup }))
 }
 

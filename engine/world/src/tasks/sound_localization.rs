@@ -201,11 +201,7 @@ impl SoundLocalizationSettings {
 }
 
 fn build(value: &serde_json::Value, setup: TaskSetup) -> Result<Box<dyn Task>, WorldError> {
-    let settings: SoundLocalizationSettings = if value.is_null() {
-        SoundLocalizationSettings::default()
-    } else {
-        crate::parse_settings::parse_settings("task_settings", value)?
-    };
+    let settings: SoundLocalizationSettings = crate::parse_settings::parse_task_settings(value)?;
     settings.check()?;
     Ok(Box::new(SoundLocalization {
         settings,

@@ -81,11 +81,7 @@ impl EmbodiedQaSettings {
         value: &serde_json::Value,
         setup: TaskSetup,
     ) -> Result<(Self, NavigationRules), WorldError> {
-        let settings: Self = if value.is_null() {
-            Self::default()
-        } else {
-            crate::parse_settings::parse_settings("task_settings", value)?
-        };
+        let settings: Self = crate::parse_settings::parse_task_settings(value)?;
         let fault = |field: &'static str, found: String, allowed: String| {
             Err(WorldError::Config {
                 field,

@@ -202,11 +202,7 @@ macro_rules! navigation_settings {
             fn parse(
                 value: &serde_json::Value,
             ) -> Result<(Self, $crate::tasks::navigation::NavigationRules), $crate::error::WorldError> {
-                let settings: Self = if value.is_null() {
-                    Self::default()
-                } else {
-                    $crate::parse_settings::parse_settings("task_settings", value)?
-                };
+                let settings: Self = $crate::parse_settings::parse_task_settings(value)?;
                 let rules = $crate::tasks::navigation::NavigationRules {
                     distance_m: [settings.min_distance_m, settings.max_distance_m],
                     min_path_ratio: settings.min_path_ratio,

@@ -62,11 +62,7 @@ pub(super) const KIND: TaskKind = TaskKind {
 };
 
 fn build(value: &serde_json::Value, setup: TaskSetup) -> Result<Box<dyn Task>, WorldError> {
-    let settings: RearrangeSettings = if value.is_null() {
-        RearrangeSettings::default()
-    } else {
-        crate::parse_settings::parse_settings("task_settings", value)?
-    };
+    let settings: RearrangeSettings = crate::parse_settings::parse_task_settings(value)?;
     settings.check()?;
     Ok(Box::new(Rearrange {
         settings,

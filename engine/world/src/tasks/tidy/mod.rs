@@ -63,11 +63,7 @@ pub(super) const KIND: TaskKind = TaskKind {
 };
 
 fn build(value: &serde_json::Value, setup: TaskSetup) -> Result<Box<dyn Task>, WorldError> {
-    let settings: TidySettings = if value.is_null() {
-        TidySettings::default()
-    } else {
-        crate::parse_settings::parse_settings("task_settings", value)?
-    };
+    let settings: TidySettings = crate::parse_settings::parse_task_settings(value)?;
     settings.check()?;
     Ok(Box::new(Tidy {
         settings,
