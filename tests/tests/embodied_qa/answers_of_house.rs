@@ -54,17 +54,18 @@ pub(super) fn bounds(env: &Env, object: ObjectId) -> Aabb {
         .object_bounds(env.world().state(), object)
 }
 
-/// The room around a point: the number of edges of its outline's triangles that a line to the side crosses is odd.
+/// The room around a point: it lies in one of its outline's triangles, or on the edge between two, as the middle of a rectangle does.
 pub(super) fn room_around(house: &House, point: Vec3) -> Option<RoomId> {
     let at = Vec2::new(point.x, point.z);
-    let crosses = |a: Vec2, b: Vec2| {
-        (a.y > at.y) != (b.y > at.y) && at.x < a.x + (b.x - a.x) * (at.y - a.y) / (b.y - a.y)
-    };
+    let side = |a: Vec2, b: Vec2| (b - a).perp_dot(at - a);
     let inside = |room: &dwell_scene::Room| {
-        let triangles = room.footprint.iter();
-        let edges = triangles.flat_map(|[a, b, c]| [(*a, *b), (*b, *c), (*c, *a)]);
+        let mut triangles = room.footprint.iter();
         let level = (room.floor_y - 0.3..room.ceiling_y + 0.3).contains(&point.y);
-        level && edges.filter(|(a, b)| crosses(*a, *b)).count() % 2 == 1
+        level
+            && triangles.any(|[a, b, c]| {
+                let sides = [side(*a, *b), side(*b, *c), side(*c, *a)];
+                sides.iter().all(|side| *side >= -1e-5) || sides.iter().all(|side| *side <= 1e-5)
+            })
     };
     let mut holding = house.rooms.iter_ids().filter(|(_, room)| inside(room));
     holding.next().map(|(id, _)| id)
