@@ -77,8 +77,14 @@ def _of_files(result: Mapping[str, Any], files: EpisodeSet) -> Iterator[str]:
 
 
 def _come_from(result: Mapping[str, Any], houses: HouseList) -> bool:
-    """Returns whether ``dwell episodes`` draws the episodes of a result from its seed."""
+    """Returns whether ``dwell episodes`` draws the episodes of a result from its seed.
+
+    Those that state their start and goal were made otherwise: that they are those of a file, only
+    the file tells.
+    """
     rows = result["episodes"]
+    if result["episode_files"] and any(row.get("stated") is not None for row in rows):
+        return True
     if all(_is_at(row, k, len(rows), result["seed"], houses) for k, row in enumerate(rows)):
         return True
     if not result["episode_files"]:
