@@ -22,19 +22,6 @@ FIVE = ["stop", "move_forward", "turn_left", "turn_right", "pick"]
 
 
 @pytest.mark.parametrize("mode", MODES)
-def test_check_env_has_nothing_to_say_in_any_mode(mode: str) -> None:
-    # Warnings are errors in this suite.
-    env = gymnasium.make(
-        "dwell/Free-v0",
-        houses="builtin:studio",
-        sensors=["gps"],
-        action_mode=mode,
-        disable_env_checker=True,
-    )
-    check_env(env.unwrapped)
-
-
-@pytest.mark.parametrize("mode", MODES)
 def test_several_environments_play_what_single_ones_play(mode: str) -> None:
     settings: dict[str, Any] = {"sensors": ["gps", "compass"], "action_mode": mode}
     many = DwellVectorEnv(2, "Free", houses="builtin:studio", **settings)

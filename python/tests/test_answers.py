@@ -5,10 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-import gymnasium
 import numpy as np
 import pytest
-from gymnasium.utils.env_checker import check_env
 from gymnasium.vector.utils import concatenate, create_empty_array
 
 import dwell
@@ -22,18 +20,6 @@ pytestmark = pytest.mark.usefixtures("open_once")
 TASK = "SoundLocalization"
 FIELDS = ["azimuth", "class", "distance", "elevation"]
 ERRORS = ["azimuth_error_deg", "elevation_error_deg", "angular_error_deg", "distance_error"]
-
-
-@pytest.mark.parametrize("mode", ["discrete", "velocity", "pointer", "dict"])
-def test_check_env_has_nothing_to_say(mode: str) -> None:
-    env = gymnasium.make(
-        f"dwell/{TASK}-v0",
-        houses="builtin:studio",
-        sensors=["gps"],
-        action_mode=mode,
-        disable_env_checker=True,
-    )
-    check_env(env.unwrapped)
 
 
 def made(**settings: Any) -> DwellEnv:  # noqa: ANN401 - as of an environment
@@ -169,8 +155,3 @@ def test_questions_are_answered_by_words_of_a_closed_list() -> None:
         assert terminated
         assert info["success"]
         assert info["answer_correct"] == 1.0
-
-
-def test_check_env_has_nothing_to_say_about_questions() -> None:
-    env = gymnasium.make("dwell/EmbodiedQA-v0", houses="builtin:studio", disable_env_checker=True)
-    check_env(env.unwrapped)

@@ -107,10 +107,6 @@ def test_check_env_has_nothing_to_say_of_python_parts() -> None:
         dwell.register_task("no good id/ /", GoThere)
 
 
-def test_check_env_has_nothing_to_say_of_free() -> None:
-    check_env(gymnasium.make("dwell/Free-v0", disable_env_checker=True).unwrapped)
-
-
 def play(env: DwellEnv, actions: list[int]) -> list[Any]:
     seen = []
     for action in actions:
