@@ -435,3 +435,26 @@ fn worlds_of_one_config_begin_alike_and_go_back_to_it() {
     let other = World::new(dwell_tests::apartment(), &config).unwrap();
     assert!(other.state().agents.is_empty());
 }
+
+/// What nobody touches any more falls asleep, lids of bins that lie on their stops included: what is awake costs time.
+#[test]
+fn a_house_that_was_walked_through_falls_asleep() {
+    for seed in [3, 4] {
+        let (house, _) = dwell_houses::open(&format!("seed:{seed}")).unwrap();
+        let config = dwell::EnvConfig {
+            task: "Free".to_owned(),
+            ..dwell::EnvConfig::default()
+        };
+        let mut env = dwell_tests::env_in(dwell::Engines::new(house.into()), config, &[]);
+        env.reset(1).unwrap();
+        let mut stream = RandomKey::root(seed).stream();
+        for _ in 0..60 {
+            env.step(&[Some(DiscreteAction::ALL[1 + stream.below(3)])])
+                .unwrap();
+        }
+        for _ in 0..100 {
+            env.step(&[Some(DiscreteAction::Wait)]).unwrap();
+        }
+        assert_eq!(env.world().awake_bodies(), 0, "seed:{seed}");
+    }
+}

@@ -254,6 +254,11 @@ impl World {
         dwell_render::Optics::of(&self.state.laws, agent).needs_normals()
     }
 
+    /// Returns the number of bodies that are awake: those for which a step takes time.
+    pub fn awake_bodies(&self) -> usize {
+        self.physics.awake_count()
+    }
+
     pub(crate) fn physics(&self) -> &PhysicsWorld {
         &self.physics
     }

@@ -183,7 +183,7 @@ pub(crate) fn correct_tree_positions(
         place_as_predicted(engine, joints, &course, joint_coordinates);
         return true;
     }
-    if standing.is_at_rest(engine, tree, joints) {
+    if standing.is_at_rest(engine, tree, joints, &before) {
         return false;
     }
     let ends = course.iter().zip(&came_true);

@@ -6,9 +6,11 @@ use super::tree::KinematicTree;
 use super::{PhysicsJoint, child_at};
 use crate::engine::RapierWorld;
 
-/// Speed below which a body counts as still, m/s and rad/s: a tenth of a millimetre in the half second after which rapier
-/// lets it sleep.
+/// Speed below which a body or a joint counts as still, m/s and rad/s: a tenth of a millimetre in the half second after
+/// which rapier lets it sleep.
 const REST_SPEED: f32 = 2e-4;
+/// Largest distance of a joint from a stop on which it lies, rad or m.
+const STOP_TOLERANCE: f64 = 1e-4;
 /// Largest distance of a body in place from where its joint puts it, m and rad.
 const PLACE_TOLERANCE: f32 = 2e-5;
 
@@ -64,13 +66,28 @@ impl TreeStep {
     }
 
     /// Returns whether nothing of a tree moves and its bodies are at their joints' positions. It is then left to rapier,
-    /// which lets it sleep: setting a pose, however near, keeps a body awake.
+    /// which lets it sleep: setting a pose, however near, keeps a body awake. `before`: the joints before the step.
+    ///
+    /// What joints did in the step counts, not their velocities, and at a stop not even that: a lid that lies on its stop is
+    /// pressed into it by what forces and contacts do not cancel in a step, and is put back by the next one.
     pub(super) fn is_at_rest(
         &self,
         engine: &RapierWorld,
         tree: &KinematicTree,
         joints: &[PhysicsJoint],
+        before: &[JointReading],
     ) -> bool {
+        let most = f64::from(REST_SPEED * engine.step_s());
+        let moves = |((joint, before), now): ((&&PhysicsJoint, &JointReading), &JointReading)| {
+            let lies_on = |stop: f64| {
+                let off = (now.position - stop)
+                    .abs()
+                    .max((before.position - stop).abs());
+                off < STOP_TOLERANCE
+            };
+            (now.position - before.position).abs() > most && !joint.stops().into_iter().any(lies_on)
+        };
+        let free = self.joints(tree, joints);
         let still = |handle| {
             let body = engine.bodies.get(handle);
             body.is_none_or(|body| {
@@ -87,14 +104,10 @@ impl TreeStep {
             );
             let off = (place.translation - says.translation).length();
             let turn = (place.rotation.inverse() * says.rotation).xyz().length();
-            still(joint.child_handle) && off < PLACE_TOLERANCE && turn < PLACE_TOLERANCE
+            off < PLACE_TOLERANCE && turn < PLACE_TOLERANCE
         };
-        still(tree.root())
-            && self
-                .joints(tree, joints)
-                .iter()
-                .zip(&self.readings)
-                .all(stands)
+        let mut pairs = free.iter().zip(before).zip(&self.readings);
+        still(tree.root()) && !pairs.any(moves) && free.iter().zip(&self.readings).all(stands)
     }
 
     /// rad or m. Shape (freedom,).

@@ -1,7 +1,7 @@
 //! Penetration resolution: by a push, a lift, moving neighbours, or another place near by.
 
 use super::overlap::Penetration;
-use super::placed_bodies::{PlacedBodies, PlacedBody};
+use super::placed_bodies::{PlacedBody, PlacedBodyIndex};
 use super::{CLEARANCE_M, ResolvedBody, StartResolver};
 use crate::body::BodyStatus;
 use crate::contact::entry_index;
@@ -33,7 +33,7 @@ impl StartResolver<'_> {
         &self,
         plan: &BodyPlan,
         start: RapierPose,
-        placed: &PlacedBodies,
+        placed: &PlacedBodyIndex,
     ) -> Option<RapierPose> {
         let lifted = || {
             let place = self.lift(plan, start, placed)?;
@@ -48,7 +48,7 @@ impl StartResolver<'_> {
         &self,
         plan: &BodyPlan,
         start: RapierPose,
-        placed: &PlacedBodies,
+        placed: &PlacedBodyIndex,
     ) -> Option<RapierPose> {
         if self.has_floor(plan, &start) {
             return None;
@@ -65,7 +65,7 @@ impl StartResolver<'_> {
         &self,
         plan: &BodyPlan,
         start: RapierPose,
-        placed: &PlacedBodies,
+        placed: &PlacedBodyIndex,
     ) -> Option<RapierPose> {
         let bound = self.settings.config.max_start_shift_m;
         (1..=LIFTS).find_map(|k| {
@@ -80,7 +80,7 @@ impl StartResolver<'_> {
         &self,
         plan: &BodyPlan,
         start: RapierPose,
-        placed: &PlacedBodies,
+        placed: &PlacedBodyIndex,
         limits: (f32, usize),
     ) -> Option<RapierPose> {
         let push = |way| {
@@ -100,7 +100,7 @@ impl StartResolver<'_> {
         &self,
         plan: &BodyPlan,
         start: RapierPose,
-        placed: &PlacedBodies,
+        placed: &PlacedBodyIndex,
         (way, (bound, most)): (Vec3, (f32, usize)),
     ) -> Option<RapierPose> {
         let mut place = start;
@@ -126,7 +126,7 @@ impl StartResolver<'_> {
         None
     }
 
-    fn is_clear(&self, plan: &BodyPlan, place: &RapierPose, placed: &PlacedBodies) -> bool {
+    fn is_clear(&self, plan: &BodyPlan, place: &RapierPose, placed: &PlacedBodyIndex) -> bool {
         let overlap = self.overlap(plan, place, placed);
         overlap.is_none_or(|overlap| !self.exceeds_tolerance(&overlap))
             && from_rapier(place).is_valid()
@@ -148,7 +148,7 @@ impl StartResolver<'_> {
         &self,
         index: usize,
         resolved: &mut [ResolvedBody],
-        placed: &mut PlacedBodies,
+        placed: &mut PlacedBodyIndex,
     ) -> Option<Vec<(usize, Penetration)>> {
         let plan = &self.model.bodies[index];
         let start = resolved[index].pose;
@@ -195,7 +195,7 @@ impl StartResolver<'_> {
         index: usize,
         start: RapierPose,
         others: &[(PlacedBody, Penetration)],
-        standing: &mut PlacedBodies,
+        standing: &mut PlacedBodyIndex,
     ) -> Option<(RapierPose, Vec<RapierPose>)> {
         let plan = &self.model.bodies[index];
         let place = self.push_up_or_down(plan, start, standing, self.push_limits())?;
@@ -217,7 +217,7 @@ impl StartResolver<'_> {
         &self,
         plan: &BodyPlan,
         start: RapierPose,
-        placed: &PlacedBodies,
+        placed: &PlacedBodyIndex,
     ) -> Option<RapierPose> {
         let bound = self.settings.config.max_start_shift_m;
         (0..DISTANCES * DIRECTIONS).find_map(|k| {

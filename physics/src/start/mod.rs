@@ -13,7 +13,7 @@ use crate::model::{BodyPlan, PhysicsModel};
 use crate::report::{FrozenObject, MovedObject, StartReport};
 use dwell_scene::ObjectId;
 use overlap::Penetration;
-use placed_bodies::PlacedBodies;
+use placed_bodies::PlacedBodyIndex;
 use rapier3d::math::Pose as RapierPose;
 use std::collections::BTreeMap;
 
@@ -58,7 +58,7 @@ impl StartResolver<'_> {
             .collect();
         let bounds = |body: usize| self.model.bodies[body].bounds(&resolved[body].pose);
         let mut order: Vec<(f32, usize)> = Vec::new();
-        let mut placed = PlacedBodies::default();
+        let mut placed = PlacedBodyIndex::default();
         for (index, plan) in self.model.bodies.iter().enumerate() {
             if plan.joint.is_some() {
                 placed.insert(self.model, index, resolved[index].pose);
@@ -107,7 +107,7 @@ impl StartResolver<'_> {
     }
 
     /// Returns whether a body overlaps too many others to be freed.
-    fn is_crowded(&self, plan: &BodyPlan, place: &RapierPose, placed: &PlacedBodies) -> bool {
+    fn is_crowded(&self, plan: &BodyPlan, place: &RapierPose, placed: &PlacedBodyIndex) -> bool {
         let near = placed.intersecting(&plan.bounds(place));
         let found = near
             .iter()

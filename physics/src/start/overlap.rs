@@ -1,7 +1,7 @@
 //! Penetration depths.
 
 use super::StartResolver;
-use super::placed_bodies::{PlacedBodies, PlacedBody};
+use super::placed_bodies::{PlacedBody, PlacedBodyIndex};
 use crate::contact::{ContactEntity, entry_index};
 use crate::model::{BodyPlan, CollisionPiece, PieceOwner, shapes};
 use dwell_scene::interrupt;
@@ -25,7 +25,7 @@ impl StartResolver<'_> {
         &self,
         plan: &BodyPlan,
         place: &RapierPose,
-        placed: &PlacedBodies,
+        placed: &PlacedBodyIndex,
     ) -> Option<Penetration> {
         interrupt::unwind_if_cancelled();
         let mut found = Vec::new();

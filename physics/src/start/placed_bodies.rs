@@ -18,13 +18,13 @@ pub(super) struct PlacedBody {
 
 /// All placed bodies.
 #[derive(Default)]
-pub(super) struct PlacedBodies {
+pub(super) struct PlacedBodyIndex {
     tree: Bvh,
     by_body: BTreeMap<u32, PlacedBody>,
     next_rank: u32,
 }
 
-impl PlacedBodies {
+impl PlacedBodyIndex {
     /// Places a body; one that is placed already moves there and keeps its rank.
     pub(super) fn insert(&mut self, model: &PhysicsModel, body: usize, place: RapierPose) {
         let number = body as u32;
@@ -83,7 +83,7 @@ mod tests {
     #[test]
     fn those_near_a_box_are_those_of_a_list() {
         let mut stream = RandomKey::root(4).stream();
-        let mut standing = PlacedBodies::default();
+        let mut standing = PlacedBodyIndex::default();
         let mut list: Vec<PlacedBody> = Vec::new();
         let mut draw = |grow: f32| {
             let at = Vec3::from_array(std::array::from_fn(|_| stream.range(0.0, 4.0)));

@@ -144,7 +144,7 @@ impl ContactLoad {
     }
 
     /// Returns the distance of the nearer moving centre of mass from the contact plane, m.
-    pub(super) fn radius_m(&self, stage: &LawContext<'_>) -> f32 {
+    pub(super) fn rolling_radius_m(&self, stage: &LawContext<'_>) -> f32 {
         self.signed_bodies(stage)
             .filter(|(_, rigid)| rigid.is_dynamic())
             .map(|(_, rigid)| (rigid.center_of_mass() - self.point).dot(self.normal).abs())

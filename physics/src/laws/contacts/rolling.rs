@@ -68,7 +68,7 @@ impl BodyLaw for RollingResistance {
             }
             let axis = rolling / speed;
             // c_rr N r h, and no more than the I omega that stops it.
-            let most = self.c_rr * load.normal_force_n * load.radius_m(stage) * stage.dt_s;
+            let most = self.c_rr * load.normal_force_n * load.rolling_radius_m(stage) * stage.dt_s;
             let stops = load.inertia(stage, axis, true) * speed;
             load.apply_angular_impulse(stage, -axis * most.min(stops));
         }
