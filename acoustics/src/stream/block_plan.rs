@@ -93,7 +93,9 @@ impl Stream {
             .filter_map(|one| self.update_request(&around, one, state, &parts));
         let mut wants: Vec<UpdateRequest<'_>> = wants.collect();
         self.update_responses(&around, &mut wants, report)?;
-        let planned = wants.into_iter().map(|want| {
+        // Early paths are those of each source alone.
+        let followed = self.threads.map(wants.len(), |k| {
+            let want = &wants[k];
             let heard = want.current_response();
             let last = want
                 .source_state
@@ -108,7 +110,7 @@ impl Stream {
             // A source that waits is rendered with its direct path and known reflections as they are now.
             let moved =
                 moved || elsewhere || (want.is_waiting && want.change == SituationChange::Moved);
-            let followed = known.filter(|_| glides && moved).map(|(_, response)| {
+            known.filter(|_| glides && moved).map(|(_, response)| {
                 let chosen = early::select_tracked_paths(
                     &response.echogram.paths,
                     self.config.tracked_reflections,
@@ -116,16 +118,17 @@ impl Stream {
                 let (source, receiver) = (want.positions.0, receiver.position());
                 self.scene
                     .updated_early_paths(rays, source, receiver, &chosen)
-            });
-            PlannedSource {
-                id: want.id,
-                is_playing: want.is_playing,
-                positions: want.positions,
-                tracked_paths: followed,
-                waiting_since_block: want.is_waiting.then_some(want.due_block),
-                partial_trace: want.partial_trace,
-                new_response: want.new_response,
-            }
+            })
+        });
+        let planned = wants.into_iter().zip(followed);
+        let planned = planned.map(|(want, followed)| PlannedSource {
+            id: want.id,
+            is_playing: want.is_playing,
+            positions: want.positions,
+            tracked_paths: followed,
+            waiting_since_block: want.is_waiting.then_some(want.due_block),
+            partial_trace: want.partial_trace,
+            new_response: want.new_response,
         });
         Ok(planned.collect())
     }
