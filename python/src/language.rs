@@ -10,7 +10,7 @@ use crate::world_access::WorldAccess;
 use dwell_scene::AgentId;
 use dwell_scene::Id;
 use dwell_scene::random::RandomKey;
-use dwell_semantics::check::{Answer, CheckResult, Checker, Listener};
+use dwell_semantics::check::{CheckResult, Checker, Listener, QuestionAnswer};
 use dwell_semantics::describe::describe_reference;
 use dwell_semantics::form::Form;
 use dwell_semantics::language::Language;
@@ -67,14 +67,14 @@ impl WorldAccess<'_> {
         })
     }
 
-    fn answer(&self, answer: &Answer) -> Value {
+    fn answer(&self, answer: &QuestionAnswer) -> Value {
         match answer {
-            Answer::Truth(verdict) => self.verdict(verdict),
-            Answer::Things(terms) => json!({"things": self.terms_json(terms)}),
-            Answer::Number(number) => json!({"number": number}),
-            Answer::Alternatives(numbers) => json!({"alternatives": numbers}),
-            Answer::Words(words) => json!({"words": words}),
-            Answer::None(reason) => json!({"reason": reason.sentence()}),
+            QuestionAnswer::Truth(verdict) => self.verdict(verdict),
+            QuestionAnswer::Things(terms) => json!({"things": self.terms_json(terms)}),
+            QuestionAnswer::Number(number) => json!({"number": number}),
+            QuestionAnswer::Alternatives(numbers) => json!({"alternatives": numbers}),
+            QuestionAnswer::Words(words) => json!({"words": words}),
+            QuestionAnswer::None(reason) => json!({"reason": reason.sentence()}),
         }
     }
 }

@@ -5,7 +5,7 @@ use dwell_houses::open;
 use dwell_scene::material::library;
 use dwell_scene::units::linear_from_srgb;
 use dwell_scene::{House, MaterialId, ObjectId, State};
-use dwell_semantics::check::{Answer, CheckResult, Checker, Listener};
+use dwell_semantics::check::{CheckResult, Checker, Listener, QuestionAnswer};
 use dwell_semantics::color::ColorVocabulary;
 use dwell_semantics::form::{Clause, Form, Phrase, Question};
 use dwell_semantics::language::Language;
@@ -411,9 +411,9 @@ fn questions_get_what_was_counted() {
     let chairs = &nouns["chair"];
     assert_eq!(
         checker.answer(&question("How many chairs are there?")),
-        Answer::Number(chairs.len())
+        QuestionAnswer::Number(chairs.len())
     );
-    let Answer::Things(found) = checker.answer(&question("Which chair is wooden?")) else {
+    let QuestionAnswer::Things(found) = checker.answer(&question("Which chair is wooden?")) else {
         panic!("ids");
     };
     let wooden = |id: &&ObjectId| {
@@ -429,13 +429,13 @@ fn questions_get_what_was_counted() {
         .map(|id| Term::Object(*id))
         .collect();
     assert_eq!(found, expected);
-    let Answer::Truth(verdict) = checker.answer(&question("Is there a bed?")) else {
+    let QuestionAnswer::Truth(verdict) = checker.answer(&question("Is there a bed?")) else {
         panic!("a truth value");
     };
     assert!(verdict.truth.is_true());
     assert_eq!(
         checker.answer(&question("What color is the chair?")),
-        Answer::None(UndecidedReason::SeveralFit)
+        QuestionAnswer::None(UndecidedReason::SeveralFit)
     );
 }
 
@@ -455,7 +455,7 @@ fn sentences_are_checked_and_their_phrases_grounded() {
     let checked = checker
         .check_text("There is a sofa in the living room.")
         .unwrap();
-    let Some(Answer::Truth(verdict)) = checked.answer else {
+    let Some(QuestionAnswer::Truth(verdict)) = checked.answer else {
         panic!("a truth value");
     };
     assert!(verdict.truth.is_true(), "{verdict:?}");

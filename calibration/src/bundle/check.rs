@@ -1,6 +1,6 @@
 //! Checks of a bundle's manifest: required fields, and ranges that make sense.
 
-use super::file::{BodyManifest, BundleKind, Manifest, SurfaceManifest, VERSION};
+use super::file::{BodyManifest, BundleKind, MeasurementDescription, SurfaceManifest, VERSION};
 use super::{Bundle, limits, odometry, poses, unit_checks};
 use crate::error::CalibrationError;
 use dwell_scene::material::library;
@@ -24,7 +24,7 @@ pub(super) struct NameIndex {
 }
 
 impl NameIndex {
-    pub(super) fn new(manifest: &Manifest) -> Self {
+    pub(super) fn new(manifest: &MeasurementDescription) -> Self {
         let scene = &manifest.scene;
         let bodies = scene.bodies.iter().map(|body| body.name.clone());
         let joints = scene.joints.iter().map(|joint| joint.name.clone());
@@ -121,7 +121,7 @@ pub(super) fn check_point_in_room(
     at: &str,
     field: &str,
     point: [f64; 3],
-    manifest: &Manifest,
+    manifest: &MeasurementDescription,
 ) -> CheckResult {
     for (k, axis) in ["x", "y", "z"].iter().enumerate() {
         let field = format!("{field}_{axis}");
@@ -134,7 +134,7 @@ pub(super) fn check_point_in_room(
 }
 
 /// Checks the manifest's own ranges.
-pub(super) fn check_manifest(at: &str, manifest: &Manifest) -> CheckResult {
+pub(super) fn check_manifest(at: &str, manifest: &MeasurementDescription) -> CheckResult {
     if !(1..=VERSION).contains(&manifest.version) {
         let allowed = format!("1 to {VERSION}, the versions this build reads");
         return Err(CalibrationError::field(
@@ -316,7 +316,7 @@ fn shape(at: &str, of: &dyn Fn(&str) -> String, body: &BodyManifest) -> CheckRes
     Ok(())
 }
 
-fn pose_form(at: &str, manifest: &Manifest) -> CheckResult {
+fn pose_form(at: &str, manifest: &MeasurementDescription) -> CheckResult {
     if manifest.version < 2 {
         let allowed = "2 for pose trajectories";
         return Err(CalibrationError::field(
@@ -403,7 +403,7 @@ fn surface_of(at: &str, side: &str, surface: &SurfaceManifest) -> CheckResult {
     Ok(())
 }
 
-fn channels(at: &str, manifest: &Manifest) -> CheckResult {
+fn channels(at: &str, manifest: &MeasurementDescription) -> CheckResult {
     let (allowed, unit): (&[&str], &str) = match manifest.kind {
         BundleKind::Trajectory => (&["x", "y", "z"], "m"),
         BundleKind::Servo => (&["position"], "rad"),

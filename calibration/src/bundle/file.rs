@@ -12,7 +12,7 @@ pub const VERSION: u32 = 3;
 /// `manifest.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Manifest {
+pub struct MeasurementDescription {
     /// The version of the form, [`VERSION`].
     pub version: u32,
     /// The measurement, in a line.

@@ -2,7 +2,7 @@
 //!
 //! | file | columns or content |
 //! | --- | --- |
-//! | `manifest.json` | [`file::Manifest`] |
+//! | `manifest.json` | [`file::MeasurementDescription`] |
 //! | `episodes.csv` | `episode, split_group, conditions` |
 //! | `trajectory.csv` | `episode, t_s, entity, channel, value` (kinds trajectory and servo) |
 //! | `command.csv` | `episode, t_s, actuator, kind, value` (kind servo) |
@@ -25,7 +25,7 @@ mod row;
 mod unit_checks;
 mod wav;
 
-use file::{BundleKind, CommandRow, DriveRow, Manifest};
+use file::{BundleKind, CommandRow, DriveRow, MeasurementDescription};
 use glam::{DQuat, DVec3};
 pub(crate) use read::refused;
 
@@ -34,7 +34,7 @@ pub(crate) use read::refused;
 pub(crate) struct Bundle {
     /// The folder, as it is printed.
     pub(crate) name: String,
-    pub(crate) manifest: Manifest,
+    pub(crate) manifest: MeasurementDescription,
     /// In the order of the file.
     pub(crate) episodes: Vec<MeasuredEpisode>,
 }

@@ -1,7 +1,7 @@
 //! Drives of a robot: the content of `drive.csv`, and its plausibility.
 
 use super::check;
-use super::file::{DriveRow, Manifest, WheeledBaseManifest};
+use super::file::{DriveRow, MeasurementDescription, WheeledBaseManifest};
 use super::read::{episode_index, for_each_row};
 use super::{MeasuredEpisode, unit_checks};
 use crate::error::CalibrationError;
@@ -51,7 +51,7 @@ pub(super) fn read(
 /// Checks that the drives are what the manifest says: long enough, evenly spaced, and with wheels that go as far as the robot.
 pub(super) fn check_drives(
     name: &str,
-    manifest: &Manifest,
+    manifest: &MeasurementDescription,
     episodes: &[MeasuredEpisode],
 ) -> OdometryCheck {
     let Some(base) = &manifest.scene.base else {

@@ -1,7 +1,7 @@
 //! Pose trajectories: the content of `poses.csv` and `starts.csv`, and its plausibility.
 
 use super::check::{self, NameIndex};
-use super::file::{AngularFrame, Manifest, PoseRow, StartVelocityRow};
+use super::file::{AngularFrame, MeasurementDescription, PoseRow, StartVelocityRow};
 use super::read::{episode_index, for_each_row};
 use super::{MeasuredEpisode, PoseRates, PoseSample, unit_checks};
 use crate::error::CalibrationError;
@@ -25,7 +25,7 @@ pub(super) fn read(
     folder: &Path,
     names: &NameIndex,
     by_name: &BTreeMap<String, usize>,
-    manifest: &Manifest,
+    manifest: &MeasurementDescription,
     episodes: &mut [MeasuredEpisode],
 ) -> PoseCheck {
     // `check::manifest` has required the form.
@@ -159,7 +159,7 @@ fn in_world(frame: AngularFrame, world_from_body: DQuat, angular: DVec3) -> DVec
 /// agree with the poses in unit, sign, frame and clock.
 pub(super) fn check_poses(
     name: &str,
-    manifest: &Manifest,
+    manifest: &MeasurementDescription,
     episodes: &[MeasuredEpisode],
 ) -> PoseCheck {
     let Some(form) = &manifest.poses else {
@@ -334,7 +334,7 @@ mod tests {
         for sample in episodes.iter_mut().flat_map(|episode| &mut episode.poses) {
             change(sample);
         }
-        let manifest = Manifest {
+        let manifest = MeasurementDescription {
             version: VERSION,
             title: String::new(),
             licence: String::new(),

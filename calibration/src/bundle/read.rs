@@ -2,7 +2,7 @@
 
 use super::check::{self, NameIndex};
 use super::file::{
-    BundleKind, CommandRow, EpisodeRow, ImpulseResponseRow, Manifest, TrajectoryRow,
+    BundleKind, CommandRow, EpisodeRow, ImpulseResponseRow, MeasurementDescription, TrajectoryRow,
 };
 use super::limits;
 use super::{Bundle, MeasuredEpisode, MeasuredResponse, MeasuredSample, odometry, poses, row, wav};
@@ -112,7 +112,7 @@ pub(crate) fn refused(path: &Path) -> impl FnOnce(ReadError) -> CalibrationError
     }
 }
 
-fn manifest(folder: &Path) -> Result<Manifest, CalibrationError> {
+fn manifest(folder: &Path) -> Result<MeasurementDescription, CalibrationError> {
     let (file, at) = open(folder, "manifest.json", limits::MAX_MANIFEST_BYTES)?;
     let mut text = String::new();
     file.take(limits::MAX_MANIFEST_BYTES)
@@ -276,7 +276,7 @@ fn commands(
 
 fn responses(
     folder: &Path,
-    manifest: &Manifest,
+    manifest: &MeasurementDescription,
     by_name: &BTreeMap<String, usize>,
     episodes: &mut [MeasuredEpisode],
 ) -> Result<(), CalibrationError> {

@@ -1,7 +1,7 @@
 //! Checks for the commonest mistakes in measured data, found by what cannot be otherwise, and reported with the remedy.
 
 use super::MeasuredEpisode;
-use super::file::{BundleKind, Manifest};
+use super::file::{BundleKind, MeasurementDescription};
 use crate::error::CalibrationError;
 use std::collections::BTreeMap;
 
@@ -169,7 +169,7 @@ impl CoordinateTrack {
 }
 
 /// The tracks of an episode along x, y and z; empty where there is none.
-fn tracks(manifest: &Manifest, episode: &MeasuredEpisode) -> [CoordinateTrack; 3] {
+fn tracks(manifest: &MeasurementDescription, episode: &MeasuredEpisode) -> [CoordinateTrack; 3] {
     ["x", "y", "z"].map(|axis| {
         let samples = episode.samples.iter();
         let of_axis = samples.filter(|s| manifest.channels[s.channel].name == axis);
@@ -195,7 +195,7 @@ fn tracks(manifest: &Manifest, episode: &MeasuredEpisode) -> [CoordinateTrack; 3
 /// Checks that bodies fall along y by what the manifest says, in metres and seconds, and that flights are flights alone.
 pub(super) fn check_flights(
     name: &str,
-    manifest: &Manifest,
+    manifest: &MeasurementDescription,
     episodes: &[MeasuredEpisode],
 ) -> UnitCheck {
     let file = match manifest.kind {
@@ -227,7 +227,11 @@ pub(super) fn check_flights(
 type AxisGuess = (usize, f64, Option<UnitScale>);
 
 /// Refuses motions of which hardly any falls along y, while most fall along another axis or in another unit.
-fn check_fall_direction(at: &str, manifest: &Manifest, all: &[[CoordinateTrack; 3]]) -> UnitCheck {
+fn check_fall_direction(
+    at: &str,
+    manifest: &MeasurementDescription,
+    all: &[[CoordinateTrack; 3]],
+) -> UnitCheck {
     let g = manifest.scene.environment.g_m_s2.unwrap_or(9.806_65);
     // Reaches of an acceleration, samples: near ones catch short flights, far ones see through noise.
     let shares = [4, 8, 16].map(|part| {

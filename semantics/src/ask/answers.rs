@@ -1,7 +1,7 @@
 //! The closed list of answers, and the answers of the checker as words of it.
 
 use crate::category::categories;
-use crate::check::Answer;
+use crate::check::QuestionAnswer;
 use crate::color::ColorVocabulary;
 use crate::form::Noun;
 use crate::instruct::is_sought;
@@ -48,25 +48,25 @@ pub fn answer_number(word: &str) -> Option<usize> {
 }
 
 /// An answer of the checker as one of [`answers`]; `None` where it is undecided, has several words, or other ones.
-pub(super) fn spoken(scene: &SemanticScene<'_>, answer: &Answer) -> Option<&'static str> {
+pub(super) fn spoken(scene: &SemanticScene<'_>, answer: &QuestionAnswer) -> Option<&'static str> {
     match answer {
-        Answer::Truth(verdict) => match verdict.truth {
+        QuestionAnswer::Truth(verdict) => match verdict.truth {
             Truth::True => listed("yes"),
             Truth::False => listed("no"),
             Truth::Undecided(_) => None,
         },
-        Answer::Number(number) => listed(&number.to_string()),
-        Answer::Words(words) => match &words[..] {
+        QuestionAnswer::Number(number) => listed(&number.to_string()),
+        QuestionAnswer::Words(words) => match &words[..] {
             [word] => listed(word),
             _ => None,
         },
-        Answer::Things(things) => {
+        QuestionAnswer::Things(things) => {
             let (first, others) = things.split_first()?;
             let word = noun(scene, *first)?;
             let alike = others.iter().all(|other| noun(scene, *other) == Some(word));
             alike.then_some(word)
         }
-        Answer::Alternatives(_) | Answer::None(_) => None,
+        QuestionAnswer::Alternatives(_) | QuestionAnswer::None(_) => None,
     }
 }
 

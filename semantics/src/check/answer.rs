@@ -8,7 +8,7 @@ use crate::truth::{Truth, UndecidedReason};
 
 /// The answer to a question.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Answer {
+pub enum QuestionAnswer {
     /// The verdict on a question for a truth value.
     Truth(CheckResult),
     /// The things of which the clause is true, ascending; may be empty.
@@ -25,9 +25,9 @@ pub enum Answer {
 
 impl Checker<'_> {
     /// The answer to a question.
-    pub fn answer(&self, question: &Question) -> Answer {
+    pub fn answer(&self, question: &Question) -> QuestionAnswer {
         match question {
-            Question::Whether(clause) => Answer::Truth(self.check(clause)),
+            Question::Whether(clause) => QuestionAnswer::Truth(self.check(clause)),
             Question::Alternatives(clauses) => {
                 let verdicts: Vec<Truth> =
                     clauses.iter().map(|one| self.judge(one).truth).collect();
@@ -41,16 +41,16 @@ impl Checker<'_> {
                     Truth::True | Truth::False => None,
                 });
                 match undecided {
-                    Some(reason) if fits.is_empty() => Answer::None(reason),
-                    _ => Answer::Alternatives(fits),
+                    Some(reason) if fits.is_empty() => QuestionAnswer::None(reason),
+                    _ => QuestionAnswer::Alternatives(fits),
                 }
             }
             Question::HowMany(what) => {
                 let extension = self.extension(what);
                 let undecided = extension.undecided.first().map(|(_, reason)| *reason);
                 match extension.fault.or(undecided) {
-                    Some(reason) => Answer::None(reason),
-                    None => Answer::Number(extension.fits.len()),
+                    Some(reason) => QuestionAnswer::None(reason),
+                    None => QuestionAnswer::Number(extension.fits.len()),
                 }
             }
             Question::Which { kind, clause } => {
@@ -64,18 +64,18 @@ impl Checker<'_> {
                 };
                 let things = candidates.into_iter().filter(fits).collect();
                 self.hole.set(None);
-                Answer::Things(things)
+                QuestionAnswer::Things(things)
             }
             Question::Attribute { kind, of } => match self.unique_referent(of) {
                 Ok(term) => self.attribute(*kind, term),
-                Err(reason) => Answer::None(reason),
+                Err(reason) => QuestionAnswer::None(reason),
             },
         }
     }
 
-    fn attribute(&self, kind: AttributeKind, term: Term) -> Answer {
+    fn attribute(&self, kind: AttributeKind, term: Term) -> QuestionAnswer {
         let Some(object) = term.object() else {
-            return Answer::None(UndecidedReason::WrongKind);
+            return QuestionAnswer::None(UndecidedReason::WrongKind);
         };
         let facts = self.scene.facts(object);
         match kind {
@@ -83,17 +83,17 @@ impl Checker<'_> {
                 let words = facts.spoken_colors().iter();
                 let words: Vec<String> = words.map(|(word, _)| (*word).to_owned()).collect();
                 if words.is_empty() {
-                    return Answer::None(UndecidedReason::NoColor);
+                    return QuestionAnswer::None(UndecidedReason::NoColor);
                 }
-                Answer::Words(words)
+                QuestionAnswer::Words(words)
             }
             AttributeKind::Material => facts.substances.first().map_or(
-                Answer::None(UndecidedReason::NoMaterial),
-                |(substance, _)| Answer::Words(vec![substance.adjective.clone()]),
+                QuestionAnswer::None(UndecidedReason::NoMaterial),
+                |(substance, _)| QuestionAnswer::Words(vec![substance.adjective.clone()]),
             ),
             AttributeKind::Room => {
                 let room = self.scene.room_of(object).map(Term::Room);
-                Answer::Things(room.into_iter().collect())
+                QuestionAnswer::Things(room.into_iter().collect())
             }
             AttributeKind::Place => {
                 let places = ["in", "on", "hangs_on", "next_to"].iter().find_map(|name| {
@@ -101,13 +101,13 @@ impl Checker<'_> {
                     let related = predicate.related(self.scene, term);
                     (!related.is_empty()).then_some(related)
                 });
-                Answer::Things(places.unwrap_or_default())
+                QuestionAnswer::Things(places.unwrap_or_default())
             }
         }
     }
 }
 
-impl Answer {
+impl QuestionAnswer {
     /// Returns whether there is an answer that is not undecided.
     pub fn is_decided(&self) -> bool {
         match self {

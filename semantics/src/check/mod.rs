@@ -18,7 +18,7 @@ mod text;
 mod witness;
 
 pub use ambiguity::Ambiguity;
-pub use answer::Answer;
+pub use answer::QuestionAnswer;
 pub(crate) use distance::spoken_distance_m;
 pub(crate) use room::spoken_area_m2;
 pub use text::{CheckedText, GroundedPhrase};

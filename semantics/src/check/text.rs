@@ -1,6 +1,6 @@
 //! Checking and grounding of sentences in a scene.
 
-use super::{Answer, Checker};
+use super::{Checker, QuestionAnswer};
 use crate::form::{Form, Modifier, Phrase};
 use crate::language::{PhraseSpan, ReadError, Sentence};
 use crate::predicates;
@@ -20,7 +20,7 @@ pub struct CheckedText {
     /// The other readings.
     pub others: Vec<Form>,
     /// The verdict on a claim or the answer to a question; `None` for a request.
-    pub answer: Option<Answer>,
+    pub answer: Option<QuestionAnswer>,
 }
 
 /// A noun phrase of a text, grounded: the things that it denotes.
@@ -58,11 +58,11 @@ impl Checker<'_> {
 
     /// The verdict on a claim, the answer to a question, or the things of a noun phrase. Of several forms the answer to the last one
     /// that has one; `None` for requests.
-    fn answer_form(&self, form: &Form) -> Option<Answer> {
+    fn answer_form(&self, form: &Form) -> Option<QuestionAnswer> {
         match form {
-            Form::Claim(clause) => Some(Answer::Truth(self.check(clause))),
+            Form::Claim(clause) => Some(QuestionAnswer::Truth(self.check(clause))),
             Form::Question(question) => Some(self.answer(question)),
-            Form::NounPhrase(phrase) => Some(Answer::Things(self.denoted(phrase))),
+            Form::NounPhrase(phrase) => Some(QuestionAnswer::Things(self.denoted(phrase))),
             Form::Request(_) => None,
             Form::Several(forms) => forms.iter().rev().find_map(|form| self.answer_form(form)),
         }

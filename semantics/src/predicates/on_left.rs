@@ -6,9 +6,9 @@ use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::Truth;
 
 /// See [`Predicate::definition`].
-pub(super) struct OnLeft;
+pub(super) struct OnViewersLeft;
 
-impl Predicate for OnLeft {
+impl Predicate for OnViewersLeft {
     fn name(&self) -> &'static str {
         "on_left"
     }

@@ -6,9 +6,9 @@ use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::Truth;
 
 /// See [`Predicate::definition`].
-pub(super) struct OnRight;
+pub(super) struct OnViewersRight;
 
-impl Predicate for OnRight {
+impl Predicate for OnViewersRight {
     fn name(&self) -> &'static str {
         "on_right"
     }

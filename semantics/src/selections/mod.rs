@@ -112,7 +112,7 @@ pub fn all() -> &'static [&'static dyn Selection] {
     &[
         &from_left::FromLeft,
         &from_right::FromRight,
-        &nearest::Nearest,
+        &nearest::NearestToViewer,
         &closest_to::ClosestTo,
         &farthest_from::FarthestFrom,
         &largest::Largest,

@@ -5,9 +5,9 @@ use crate::predicates;
 use crate::scene::{SemanticScene, Term, Viewer};
 
 /// See [`Selection::definition`].
-pub(super) struct Nearest;
+pub(super) struct NearestToViewer;
 
-impl Selection for Nearest {
+impl Selection for NearestToViewer {
     fn name(&self) -> &'static str {
         "nearest"
     }
