@@ -3,8 +3,9 @@
     python benches/environments/steps.py              # every case: some three minutes
     python benches/environments/steps.py --case "free rgbd" --seconds 20
 
-A row for each case: steps a second (the median over repeats; the slowest and fastest), and, from a
-further repeat, ms of a step in each of the engine's calls, and the share of it that is Python's.
+A row for each case: steps a second (the median over repeats; the slowest and fastest); ms of
+processor that a step takes on all threads together, which other work on the machine changes less;
+and, from a further repeat, ms of a step in each of the engine's calls, and Python's own share.
 Agents walk at random (half of the actions move ahead, a quarter each turn left and right) from one
 seed; episodes end after 500 steps, and the reset is within the time. Cases of one house differ in
 sensors alone: what a sensor costs is the difference of their rows.
@@ -139,10 +140,12 @@ def measured(case: Case, seconds: float, repeats: int) -> dict[str, Any]:
             steps += 1
         return time.perf_counter() - start, steps
 
-    rates = []
+    rates, processor_s, environment_steps = [], time.process_time(), 0
     for _ in range(repeats):
         took, steps = repeat()
         rates.append(steps * (case.count or 1) / took)
+        environment_steps += steps * (case.count or 1)
+    processor_s = time.process_time() - processor_s
     runner = env._runner
     timed = runner.batch = TimedBatch(runner.batch)  # type: ignore[assignment] # it answers the same calls
     took, steps = repeat()
@@ -150,6 +153,7 @@ def measured(case: Case, seconds: float, repeats: int) -> dict[str, Any]:
     env.close()
     return {
         "steps_per_s": statistics.median(rates),
+        "processor_ms": 1e3 * processor_s / environment_steps,
         "from_to": [min(rates), max(rates)],
         "python_share": 1.0 - sum(timed.spent.values()) / took,
         "ms": {name: 1e3 * spent / steps for name, spent in timed.spent.items()},
@@ -193,6 +197,7 @@ def main() -> None:
         low, high = row["from_to"]
         print(
             f"{name:32} {row['steps_per_s']:7.0f}/s ({low:.0f} to {high:.0f})  "
+            f"processor {row['processor_ms']:6.2f} ms  "
             f"Python {100 * row['python_share']:4.1f} %  ms: {calls}",
             flush=True,
         )

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 import inspect
 import operator
 import os
 import re
 import weakref
 from collections import OrderedDict
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextvars import ContextVar
 from copy import deepcopy
 from typing import Any, TypedDict
 
@@ -114,6 +116,20 @@ def kept_houses(houses: Houses | None) -> Houses | None:
     return found
 
 
+#: Houses that are open, by name, with which caches begin.
+_OPEN: ContextVar[Mapping[str, House]] = ContextVar("open houses")
+
+
+@contextlib.contextmanager
+def sharing_open_houses(cache: HouseCache) -> Iterator[None]:
+    """Caches that are made meanwhile have the houses that are open in ``cache``."""
+    token = _OPEN.set({**cache.alive})
+    try:
+        yield
+    finally:
+        _OPEN.reset(token)
+
+
 class HouseCache:
     """Houses by number.
 
@@ -133,7 +149,7 @@ class HouseCache:
         #: The latest last.
         self._kept: OrderedDict[str, House] = OrderedDict()
         #: All that are open, whoever keeps them.
-        self._alive: weakref.WeakValueDictionary[str, House] = weakref.WeakValueDictionary()
+        self.alive = weakref.WeakValueDictionary(_OPEN.get({}))
         #: HOUSE strings; for a house that was handed over, its name, numbered where that is taken.
         self.names = deepcopy(houses) if isinstance(houses, HouseList) else HouseList()
         for k, row in enumerate(given):
@@ -162,9 +178,9 @@ class HouseCache:
     def open(self, index: int, *, threads: int | None = None) -> House:
         """House ``index`` modulo their number, opened by so many threads."""
         name = self.names[index % len(self.names)]
-        house = self._given.get(name) or self._alive.get(name)
+        house = self._given.get(name) or self.alive.get(name)
         if house is None:
-            house = self._alive[name] = House.open_by(name, threads)
+            house = self.alive[name] = House.open_by(name, threads)
         # Without a lock, which a fork beside another thread would leave held.
         self._kept.pop(name, None)
         self._kept[name] = house

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 import gymnasium
 
 from dwell.arguments import refuse_unknown
+from dwell.envs.config import sharing_open_houses
 from dwell.grounded_text import Text
 from dwell.language_api import LanguageApi
 from dwell.relation_api import Thing, Viewer
@@ -93,11 +94,12 @@ class CurrentStateApi(abc.ABC):
 
 
 def forked(env: Any) -> Any:  # noqa: ANN401 - of the environment's own class
-    """A new environment of the same arguments, at the moment of ``env``."""
+    """A new environment of the same arguments, at the moment of ``env``, in its open houses."""
     snapshot = env.snapshot()
     kwargs = cast("dict[str, Any]", env._ezpickle_kwargs)
-    other = type(env)(*env._ezpickle_args, **kwargs)
-    other.restore(snapshot)
+    with sharing_open_houses(env._shelf):
+        other = type(env)(*env._ezpickle_args, **kwargs)
+        other.restore(snapshot)
     if isinstance(env, gymnasium.Env):
         other.spec = env.spec
     return other
