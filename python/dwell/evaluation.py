@@ -244,8 +244,9 @@ def evaluate(
 
     Args:
         policy: ``"random"``, ``"expert"``, ``"stop"``, ``"forward"`` (walks ahead and never
-            stops); an object with ``act(observation)`` and, where it likes, ``reset(observation,
-            info)``; a class or function that makes one; or its ``"module:Name"``.
+            stops), ``"ears"`` (goes to what the sensor ``audio`` hears); an object with
+            ``act(observation)`` and, where it likes, ``reset(observation, info)``; a class or
+            function that makes one; or its ``"module:Name"``.
         episodes: A file of ``dwell episodes``, or several; or else:
         task: The task's name, of which episodes are made,
         houses: in these HOUSES strings,

@@ -15,6 +15,7 @@ import numpy as np
 
 from dwell import ConfigError, DwellError
 from dwell.arguments import allowed_values, quoted
+from dwell.ears_policy import Ears
 from dwell.played_actions import said_action, spoken_actions
 from dwell.plugin_parts import imported
 from dwell.stated_episodes import seed_of
@@ -132,6 +133,7 @@ BASELINES: dict[str, Callable[[DwellEnv], Policy]] = {
     "expert": _Expert,
     "stop": lambda env: _Constant(env, "stop"),
     "forward": lambda env: _Constant(env, "move_forward"),
+    "ears": Ears,
 }
 
 

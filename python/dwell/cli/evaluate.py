@@ -31,7 +31,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "policy",
         metavar="POLICY",
         nargs="?",
-        help="random, expert, stop, forward, or module:Name of a class with act(observation)",
+        help="random, expert, stop, forward, ears (of --sensors audio), or module:Name of a class "
+        "with act(observation)",
     )
     parser.add_argument(
         "--episodes", type=path, nargs="+", metavar="FILE", help="of `dwell episodes`; or else:"
