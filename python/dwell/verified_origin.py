@@ -83,15 +83,14 @@ def _come_from(result: Mapping[str, Any], houses: HouseList) -> bool:
     the file tells.
     """
     rows = result["episodes"]
-    if result["episode_files"] and any(row.get("stated") is not None for row in rows):
-        return True
     if all(_is_at(row, k, len(rows), result["seed"], houses) for k, row in enumerate(rows)):
         return True
     if not result["episode_files"]:
         return False
     # Some of those of a file: in order, at any places.
     left = iter(range(_MOST_PLACES))
-    return all(_is_drawn(row["seed"], result["seed"], left) for row in rows)
+    drawn = (row for row in rows if row.get("stated") is None)
+    return all(_is_drawn(row["seed"], result["seed"], left) for row in drawn)
 
 
 def _is_at(

@@ -147,5 +147,9 @@ def test_results_of_stated_episodes_hold(points: Path, tmp_path: Path) -> None:
         one.goal for one in dwell.episodes.read(out)
     ]
     assert differences(result) == []
+    # An episode beside them that states nothing must come from the seed.
+    drawn = [{k: v for k, v in row.items() if k != "stated"} for row in result["episodes"][:1]]
+    mixed = {**result, "episodes": [*drawn, *result["episodes"][1:]]}
+    assert any(line.startswith("seed: ") for line in differences(mixed))
     result["episodes"][0]["stated"]["goal"] = result["episodes"][1]["stated"]["goal"]
     assert differences(result) != []
