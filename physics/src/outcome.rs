@@ -52,6 +52,8 @@ pub enum OutcomeCode {
     HandEmpty,
     /// Another agent holds it.
     HeldByOther,
+    /// Another agent, as near to it, reaches for it in the same step.
+    Contested,
     /// There is no space to put it.
     NoSpace,
     /// Nothing supports it there.
@@ -84,7 +86,7 @@ pub enum OutcomeCode {
 
 impl OutcomeCode {
     /// All codes, in order.
-    pub const ALL: [Self; 34] = [
+    pub const ALL: [Self; 35] = [
         Self::Done,
         Self::Started,
         Self::NoTarget,
@@ -105,6 +107,7 @@ impl OutcomeCode {
         Self::HandFull,
         Self::HandEmpty,
         Self::HeldByOther,
+        Self::Contested,
         Self::NoSpace,
         Self::NoSupport,
         Self::NotContainer,

@@ -323,10 +323,10 @@ class Batch:
         answers: NDArray[np.float32] | None = ...,
     ) -> dict[str, NDArray[Any] | list[str]]:
         """``actions``: for each environment and agent; -1 for all agents: that environment is not stepped. Of an agent whose episode has ended none is looked at. Keys: reward, terminated, success, action_success, collision, distance_to_goal (NaN without a goal), spl, soft_spl, path_length, collisions (arrays of that shape) and action_error (list). ``velocities``: forward, right, turn, look, -1 to 1, flat; ``places``: of pictures, 0 to 1, flat; ``objects``: ids, 0 for what is looked at."""
-    def answer_fields(self) -> list[dict[str, Any]]:
-        """``[{name, about, unit, range, choices}, ...]``: what the task expects with ``stop``."""
-    def measures(self) -> list[str]:
-        """Names of what the task measures beside distance and path; keys of what ``step`` gives."""
+    def answer_fields(self, agent: int = 0) -> list[dict[str, Any]]:
+        """``[{name, about, unit, range, choices}, ...]``: what an agent's task expects with ``stop``."""
+    def measures(self, agent: int = 0) -> list[str]:
+        """Names of what an agent's task measures beside distance and path; keys of what ``step`` gives."""
     def expert_answers(self) -> NDArray[np.float32]:
         """For each environment and agent all the fields that an answer can have, flat."""
     def action_masks(self) -> NDArray[np.bool_]:
@@ -422,8 +422,8 @@ def prepared_envs(
     """An environment over each house, with the episode of its seed begun where it has one; ``stated``: as of :meth:`Batch.reset`."""
 
 def actions() -> list[str]: ...
-def chosen_actions(config_json: str) -> list[str]:
-    """The discrete actions to choose from under settings of an environment, in the order of their numbers."""
+def chosen_actions(config_json: str, agent: int = 0) -> list[str]:
+    """The discrete actions that an agent chooses from under settings of an environment, in the order of their numbers."""
 
 def action_table() -> dict[str, list[dict[str, Any]]]:
     """``{kinds: [{name, about, is_of_hand, target, fields}], target: [{name, about, required, schema}], codes}``."""

@@ -1,5 +1,6 @@
 //! Environments stepped together.
 
+use crate::action_rows::{ActionRows, copy_of};
 use crate::answers::PyValue;
 use crate::arrays;
 use crate::engine_call::EngineCall;
@@ -10,11 +11,7 @@ use crate::prepared_env::PyPreparedEnv;
 use crate::stated_episodes::stated_episodes;
 use crate::values::JsonArgument;
 use dwell::sensors::{Dtype, ObservationBuffer};
-use dwell::{
-    ActionTarget, Batch, DiscreteAction, Engines, Env, EnvConfig, MAX_ANSWER_FIELDS, StepAction,
-    StepInfo, StepResult,
-};
-use dwell_scene::EntityId;
+use dwell::{Batch, Engines, Env, EnvConfig, StepInfo, StepResult, TaskMeasure};
 use dwell_scene::interrupt;
 use dwell_scene::parallel::Threads;
 use numpy::{
@@ -23,6 +20,7 @@ use numpy::{
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
+use std::collections::BTreeSet;
 
 /// Environments stepped together; observations are written into arrays of the caller. In each the same agents act, which are
 /// told by their place among those who act.
@@ -78,99 +76,6 @@ fn borrow_buffers<'py, T: numpy::Element>(
         ))),
         _ => buffer_error(sensor, dtype, "one that is read-only"),
     })
-}
-
-fn action(number: i64) -> Result<Option<DiscreteAction>, PyFault> {
-    if number == -1 {
-        return Ok(None);
-    }
-    let known = usize::try_from(number)
-        .ok()
-        .and_then(|k| DiscreteAction::ALL.get(k).copied());
-    let last = DiscreteAction::ALL.len() - 1;
-    known.map(Some).ok_or_else(|| {
-        PyFault::Config(format!(
-            "action {number}; allowed are 0 to {last}, or -1 for none"
-        ))
-    })
-}
-
-/// Actions as arrays: one row for each environment and agent.
-struct ActionRows {
-    numbers: Vec<i64>,
-    velocities: Option<Vec<f32>>,
-    places: Option<Vec<f32>>,
-    objects: Option<Vec<i64>>,
-    answers: Option<Vec<f32>>,
-}
-
-fn row_copy<T: numpy::Element + Copy>(
-    name: &str,
-    given: Option<&PyReadonlyArray1<'_, T>>,
-) -> PyResult<Option<Vec<T>>> {
-    let copy = |array| Ok(arrays::as_contiguous_slice(name, array)?.to_vec());
-    given.map(copy).transpose()
-}
-
-impl ActionRows {
-    fn read(&self) -> Result<Vec<Option<StepAction>>, PyFault> {
-        let count = self.numbers.len();
-        for (name, found, wanted) in [
-            (
-                "velocities",
-                self.velocities.as_ref().map(Vec::len),
-                4 * count,
-            ),
-            ("places", self.places.as_ref().map(Vec::len), 2 * count),
-            ("objects", self.objects.as_ref().map(Vec::len), count),
-            (
-                "answers",
-                self.answers.as_ref().map(Vec::len),
-                MAX_ANSWER_FIELDS * count,
-            ),
-        ] {
-            if let Some(found) = found.filter(|found| *found != wanted) {
-                let told = format!("{name}: expected {wanted} numbers, found {found}");
-                return Err(PyFault::Config(told));
-            }
-        }
-        (0..count).map(|row| self.row(row)).collect()
-    }
-
-    fn row(&self, row: usize) -> Result<Option<StepAction>, PyFault> {
-        let Some(action) = action(self.numbers[row])? else {
-            return Ok(None);
-        };
-        let velocities = self
-            .velocities
-            .as_ref()
-            .map(|all| &all[4 * row..4 * row + 4]);
-        let places = self.places.as_ref().map(|all| &all[2 * row..2 * row + 2]);
-        let mut step = StepAction::from(action);
-        if let Some([forward, right, turn, look]) = velocities {
-            step.velocity = Some([*forward, *right, *turn, *look]);
-        }
-        if let Some([across, down]) = places {
-            step.target = ActionTarget::Picture([*across, *down]);
-        }
-        if let Some((own, _)) = self
-            .answers
-            .as_ref()
-            .and_then(|all| all[MAX_ANSWER_FIELDS * row..].split_first_chunk())
-        {
-            step.answer = *own;
-        }
-        match self.objects.as_ref().map(|all| all[row]) {
-            None | Some(0) => {}
-            Some(id) => {
-                let id = i32::try_from(id).map_err(|_| {
-                    PyFault::Config(format!("object is {id}; allowed are ids that sensors give"))
-                })?;
-                step.target = ActionTarget::Entity(EntityId(id));
-            }
-        }
-        Ok(Some(step))
-    }
 }
 
 impl PyBatch {
@@ -292,15 +197,19 @@ impl PyBatch {
         })
     }
 
-    /// Returns the fields of the answer that the first agent's task expects with `stop`: `[{name, about, unit, range, choices}]`.
-    fn answer_fields(&self, py: Python<'_>) -> PyResult<PyValue> {
-        self.with(py, |batch| PyValue::of(&batch.env(0)?.answer_fields(0)?))
+    /// Returns the fields of the answer that an agent's task expects with `stop`: `[{name, about, unit, range, choices}]`.
+    #[pyo3(signature = (agent=0))]
+    fn answer_fields(&self, py: Python<'_>, agent: usize) -> PyResult<PyValue> {
+        self.with(py, |batch| {
+            PyValue::of(&batch.env(0)?.answer_fields(agent)?)
+        })
     }
 
-    /// Returns the names of what the first agent's task measures beside distance and path.
-    fn measures(&self, py: Python<'_>) -> PyResult<Vec<&'static str>> {
+    /// Returns the names of what an agent's task measures beside distance and path.
+    #[pyo3(signature = (agent=0))]
+    fn measures(&self, py: Python<'_>, agent: usize) -> PyResult<Vec<&'static str>> {
         self.with(py, |batch| {
-            let measures = batch.env(0)?.task_measures(0)?;
+            let measures = batch.env(0)?.task_measures(agent)?;
             Ok(measures.iter().map(|measure| measure.name).collect())
         })
     }
@@ -328,7 +237,7 @@ impl PyBatch {
 
     /// Steps by actions of shape (environment x agent,), -1 for none; all that is answered has that shape. `velocities`: as
     /// [`StepAction::velocity`], shape (environment x agent x 4,); `places`: places in pictures, shape (environment x agent x 2,);
-    /// `objects`: ids of things, 0 for what is looked at.
+    /// `objects`: ids of things, 0 for what is looked at. Rows of `velocities` and `places` that are NaN state none.
     /// `answers`: shape (environment x agent x field,) of all the fields that an answer can have.
     #[pyo3(signature = (actions, velocities=None, places=None, objects=None, answers=None))]
     fn step<'py>(
@@ -342,14 +251,17 @@ impl PyBatch {
     ) -> PyResult<Bound<'py, PyDict>> {
         let rows = ActionRows {
             numbers: arrays::as_contiguous_slice("actions", &actions)?.to_vec(),
-            velocities: row_copy("velocities", velocities.as_ref())?,
-            places: row_copy("places", places.as_ref())?,
-            objects: row_copy("objects", objects.as_ref())?,
-            answers: row_copy("answers", answers.as_ref())?,
+            velocities: copy_of("velocities", velocities.as_ref())?,
+            places: copy_of("places", places.as_ref())?,
+            objects: copy_of("objects", objects.as_ref())?,
+            answers: copy_of("answers", answers.as_ref())?,
         };
         let (infos, measures) = self.with(py, |batch| {
             let infos = batch.step(&rows.read()?)?;
-            Ok((infos, batch.env(0)?.task_measures(0)?))
+            let first = batch.env(0)?;
+            let agents = 0..batch.acting_agents().len();
+            let measures = agents.map(|agent| first.task_measures(agent));
+            Ok((infos, measures.collect::<Result<Vec<_>, _>>()?))
         })?;
         let out = PyDict::new(py);
         let of = |read: fn(&StepInfo) -> f64| -> Bound<'py, PyArray1<f64>> {
@@ -379,13 +291,16 @@ impl PyBatch {
         out.set_item("soft_spl", of(|info| info.progress.soft_spl()))?;
         out.set_item("path_length", of(|info| info.progress.path_m))?;
         out.set_item("collisions", of(|info| info.progress.collisions as f64))?;
-        for (k, measure) in measures.iter().enumerate() {
-            let row = |info: &Option<StepInfo>| {
-                let own = info.as_ref().and_then(|info| info.measures.get(k));
-                own.copied().unwrap_or(f64::NAN)
+        // An agent's task has measures of its own; what others measure is NaN for it.
+        let names: BTreeSet<&str> = measures.iter().copied().flatten().map(|m| m.name).collect();
+        for name in names {
+            let rows = infos.iter().zip(measures.iter().cycle());
+            let row = |(info, own): (&Option<StepInfo>, &&[TaskMeasure])| {
+                let place = own.iter().position(|measure| measure.name == name)?;
+                info.as_ref()?.measures.get(place).copied()
             };
-            let values: Vec<f64> = infos.iter().map(row).collect();
-            out.set_item(measure.name, values.into_pyarray(py))?;
+            let values: Vec<f64> = rows.map(|own| row(own).unwrap_or(f64::NAN)).collect();
+            out.set_item(name, values.into_pyarray(py))?;
         }
         let errors: Vec<String> = infos
             .into_iter()

@@ -20,12 +20,18 @@ pub(crate) fn actions() -> Vec<&'static str> {
     DiscreteAction::ALL.map(DiscreteAction::name).to_vec()
 }
 
-/// The discrete actions to choose from under settings of an environment, in the order of their numbers.
+/// The discrete actions that an agent chooses from under settings of an environment, in the order of their numbers; `agent`: its place
+/// among those who act.
 #[pyfunction]
-pub(crate) fn chosen_actions(py: Python<'_>, config_json: &str) -> PyResult<Vec<&'static str>> {
+#[pyo3(signature = (config_json, agent=0))]
+pub(crate) fn chosen_actions(
+    py: Python<'_>,
+    config_json: &str,
+    agent: usize,
+) -> PyResult<Vec<&'static str>> {
     py.engine(|| -> Result<_, PyFault> {
         let config: dwell::EnvConfig = serde_json::from_str(config_json)?;
-        let actions = config.chosen_actions()?.into_iter();
+        let actions = config.chosen_actions(agent)?.into_iter();
         Ok(actions.map(DiscreteAction::name).collect())
     })
 }

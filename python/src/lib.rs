@@ -6,6 +6,7 @@
 )]
 
 mod acoustics;
+mod action_rows;
 mod answers;
 mod arrays;
 mod authoring;

@@ -44,7 +44,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         sensors: Some(Vec::new()),
         ..EnvConfig::default()
     };
-    let choices = config.chosen_actions()?;
+    let choices = config.chosen_actions(0)?;
     let most_steps = dwell::tasks::find(task)?.max_steps;
     let (mut expert, mut random, mut refused) = (Tally::default(), Tally::default(), 0);
     for house in from..to {

@@ -253,7 +253,7 @@ fn actions_to_choose_from_are_checked() {
             actions: names.map(|names| names.iter().map(|name| (*name).to_owned()).collect()),
             ..EnvConfig::default()
         };
-        config.chosen_actions().map_err(|error| error.to_string())
+        config.chosen_actions(0).map_err(|error| error.to_string())
     };
     assert_eq!(chosen(ActionMode::Discrete, None).unwrap().len(), 12);
     assert_eq!(chosen(ActionMode::Pointer, None).unwrap().len(), 18);

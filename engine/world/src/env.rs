@@ -6,7 +6,7 @@ use crate::env_agent::EnvAgent;
 use crate::env_config::EnvConfig;
 use crate::episode::Episode;
 use crate::episode_spec::EpisodeSpec;
-use crate::error::WorldError;
+use crate::error::{WorldError, no_agent};
 use crate::sensor_requests::{RenderedImages, SensorRequests};
 use crate::world::World;
 use dwell_scene::random::RandomKey;
@@ -253,12 +253,6 @@ impl Env {
 
 pub(crate) fn no_episode(call: &str) -> WorldError {
     WorldError::InvalidCall(format!("{call}: no episode has begun; call reset first"))
-}
-
-pub(crate) fn no_agent(agent: usize, count: usize) -> WorldError {
-    WorldError::InvalidCall(format!(
-        "no agent {agent} acts; there are {count}, counted from 0"
-    ))
 }
 
 /// The field of view of an agent's eyes, degrees: that of the first camera with one, of its own sensors or else of the others'.

@@ -2,7 +2,7 @@
 
 use crate::actions::{self, ActionMode, ActionSet, DiscreteAction, StepSizes};
 use crate::config::WorldConfig;
-use crate::error::WorldError;
+use crate::error::{WorldError, no_agent};
 use crate::tasks;
 use dwell_scene::{AgentId, Id};
 use serde::{Deserialize, Serialize};
@@ -49,6 +49,12 @@ pub struct AgentConfig {
     /// Lengths and angles of its movement actions.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stride: Option<StepSizes>,
+    /// The form of its actions.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub action_mode: Option<ActionMode>,
+    /// The discrete actions that it chooses from, by name; where it has a form of its own and states none: those that are usual in it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub actions: Option<Vec<String>>,
     /// Its sensors by name with their settings.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sensors: Option<Vec<SensorConfig>>,
@@ -94,14 +100,26 @@ pub(crate) struct ResolvedAgentConfig<'a> {
 }
 
 impl EnvConfig {
-    /// The discrete actions to choose from, in the order of their numbers.
+    /// The discrete actions that an agent chooses from, in the order of their numbers; `agent`: its place among those who act.
     ///
     /// # Errors
-    /// [`WorldError::Unknown`] for a name that no action has; [`WorldError::Config`] for none, one twice, and names in a mode that
-    /// has none to choose from.
-    pub fn chosen_actions(&self) -> Result<Vec<DiscreteAction>, WorldError> {
-        match (&self.actions, self.action_mode) {
-            (None, mode) => Ok(mode.default_actions(self.task_actions())),
+    /// [`WorldError::InvalidCall`] for an agent that does not act; [`WorldError::Unknown`] for a name that no action has;
+    /// [`WorldError::Config`] for none, one twice, and names in a mode that has none to choose from.
+    pub fn chosen_actions(&self, agent: usize) -> Result<Vec<DiscreteAction>, WorldError> {
+        let own = self.agents.get(agent);
+        self.actions_of(own.ok_or_else(|| no_agent(agent, self.agents.len()))?)
+    }
+
+    fn actions_of(&self, own: &AgentConfig) -> Result<Vec<DiscreteAction>, WorldError> {
+        let mode = own.action_mode.unwrap_or(self.action_mode);
+        let general = self.actions.as_ref().filter(|_| own.action_mode.is_none());
+        match (own.actions.as_ref().or(general), mode) {
+            (None, mode) => {
+                let task = own.task.as_ref().unwrap_or(&self.task);
+                let usual = tasks::find(task).map_or(DiscreteAction::DEFAULT, |kind| kind.actions);
+                let has = |action: &DiscreteAction| usual.contains(action);
+                Ok(mode.default_actions(DiscreteAction::ALL.into_iter().filter(has).collect()))
+            }
             (Some(names), ActionMode::Velocity) => Err(WorldError::Config {
                 field: "actions",
                 found: names.join(", "),
@@ -109,18 +127,6 @@ impl EnvConfig {
             }),
             (Some(names), _) => actions::actions_named(names),
         }
-    }
-
-    /// The actions that its tasks have by default, in the order of their numbers; the usual ones of a task that does not exist.
-    fn task_actions(&self) -> Vec<DiscreteAction> {
-        let own = self.agents.iter().map(|agent| agent.task.as_deref());
-        let named = own.map(|name| name.unwrap_or(&self.task));
-        let kinds: Vec<_> = named.filter_map(|name| tasks::find(name).ok()).collect();
-        let of_tasks = |action: &DiscreteAction| {
-            kinds.iter().any(|kind| kind.actions.contains(action))
-                || (kinds.is_empty() && DiscreteAction::DEFAULT.contains(action))
-        };
-        DiscreteAction::ALL.into_iter().filter(of_tasks).collect()
     }
 
     /// The agents that act, in order.
@@ -152,16 +158,14 @@ impl EnvConfig {
                 return Err(fault("agents", found, "each agent once".to_owned()));
             }
         }
-        let actions = ActionSet::of(&self.chosen_actions()?);
         let roles = self.agents.iter();
-        let roles = roles.map(|own| self.resolve_agent(own, actions));
+        let roles = roles.map(|own| self.resolve_agent(own));
         roles.collect()
     }
 
     fn resolve_agent<'a>(
         &'a self,
         own: &'a AgentConfig,
-        actions: ActionSet,
     ) -> Result<ResolvedAgentConfig<'a>, WorldError> {
         let general = match own.task {
             Some(_) => &Value::Null,
@@ -174,7 +178,7 @@ impl EnvConfig {
             task: own.task.as_deref().unwrap_or(&self.task),
             task_settings: own.task_settings.as_ref().unwrap_or(general),
             stride,
-            actions,
+            actions: ActionSet::of(&self.actions_of(own)?),
             sensors: own.sensors.as_deref().or(self.sensors.as_deref()),
         })
     }

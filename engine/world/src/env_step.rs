@@ -1,9 +1,9 @@
 //! The step of an environment: one control step of all its agents together.
 
 use crate::actions::{AgentAction, DiscreteAction, StepAction};
-use crate::env::{Env, no_agent, no_episode};
+use crate::env::{Env, no_episode};
 use crate::episode::{Answer, AnswerField, StepInfo, TaskMeasure};
-use crate::error::WorldError;
+use crate::error::{WorldError, no_agent};
 
 impl Env {
     /// Returns whether a step can be made by these actions.
@@ -49,7 +49,7 @@ impl Env {
     /// `actions`: shape (agent,). Of an agent whose episode has ended none is looked at; it stands still, is paid nothing and
     /// reports how it ended.
     ///
-    /// Hands act before the step, in the order of the agents' numbers.
+    /// Hands act before the step, the nearest to its thing first; nothing depends on the agents' numbers.
     ///
     /// # Errors
     /// Those of [`Self::check_can_step`]; nothing has changed then.

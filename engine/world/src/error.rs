@@ -72,3 +72,10 @@ pub enum WorldError {
     #[error("snapshot refused: {0}")]
     Snapshot(String),
 }
+
+/// The error for an agent that does not act; `agent`: its place among the `count` of those who do.
+pub(crate) fn no_agent(agent: usize, count: usize) -> WorldError {
+    WorldError::InvalidCall(format!(
+        "no agent {agent} acts; there are {count}, counted from 0"
+    ))
+}

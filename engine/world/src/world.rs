@@ -9,7 +9,7 @@ use crate::motion_history::{LastStepMotion, PreviousState};
 use crate::sound::{StepContext, WorldSound};
 use dwell_physics::{
     ActionOutcome, AgentControl, AgentPlacement, BodyState, ContactEvent, HandAction, JointState,
-    PhysicsWorld, StartReport,
+    PhysicsWorld, StartReport, Target,
 };
 use dwell_render::BackEnd;
 use dwell_scene::bvh::{Ray, RayMask};
@@ -141,6 +141,17 @@ impl World {
     ) -> Result<(), Box<ActionOutcome>> {
         self.physics
             .check_action(&mut self.state, &self.rays, agent, action)
+    }
+
+    /// Returns the object that an agent would act on through a target, and how far its surface is from the agent's eye, m; `None`
+    /// for what is no object.
+    pub(crate) fn distance_to_target(
+        &mut self,
+        agent: AgentId,
+        target: &Target,
+    ) -> Option<(ObjectId, f32)> {
+        let (state, rays) = (&mut self.state, &self.rays);
+        self.physics.distance_to_target(state, rays, agent, target)
     }
 
     /// Places an agent, at rest.

@@ -1,12 +1,13 @@
 //! Reach and line-of-sight checks of a hand action.
 
-use super::{ActionContext, Actor};
+use super::request::Target;
+use super::{ActionContext, Actor, HandContext};
 use crate::body;
 use crate::contact::{ColliderMetadata, ContactEntity, entry_index};
 use crate::model::PhysicsModel;
 use crate::outcome::{ActionOutcome, OutcomeCode, fail};
 use dwell_scene::bvh::{Ray, RayMask};
-use dwell_scene::{Aabb, AgentId, AgentState, ObjectId, State};
+use dwell_scene::{Aabb, AgentId, AgentState, Entity, ObjectId, State};
 use glam::Vec3;
 use rapier3d::geometry::{Ball, Collider, ColliderHandle};
 use rapier3d::math::Pose as RapierPose;
@@ -17,6 +18,20 @@ use rapier3d::pipeline::QueryFilter;
 const AT_THE_FEET_M: f32 = 0.5;
 /// Height above and below the feet within which the agent's support is looked for, m.
 const SOLE_M: f32 = 0.06;
+
+impl HandContext<'_> {
+    /// Returns the object of a target, and its distance from the eye, m; `None` for what is no object.
+    pub(crate) fn distance_to_target(&self, target: &Target) -> Option<(ObjectId, f32)> {
+        let (context, state) = (&self.context, &*self.state);
+        let found = context.resolve_target(state, self.actor, target).ok()?;
+        let Entity::Object(object) = found.entity else {
+            return None;
+        };
+        let eye = self.actor.body.eye_position();
+        let (distance_m, _) = context.distance_and_nearest_point(state, object, eye);
+        Some((object, distance_m))
+    }
+}
 
 impl ActionContext<'_> {
     /// The refusal for an object that is out of reach, behind, or hidden.

@@ -3,6 +3,7 @@
 
 mod character_controller;
 mod control;
+mod meeting;
 mod movement;
 mod resize;
 mod shape_queries;

@@ -1,6 +1,7 @@
 //! All agents' movements in one physics step.
 
-use super::wheeled_step;
+use super::meeting::{AgentPath, free_shares};
+use super::wheeled_step::{self, BaseMotion};
 use super::{
     AgentControl, AgentCylinder, AgentQueries, Agents, CharacterController, CharacterPush,
 };
@@ -9,6 +10,7 @@ use crate::dynamics::Dynamics;
 use crate::outcome::{DelayedOutcome, OutcomeCode, fail};
 use dwell_scene::{AgentBody, AgentId, AgentState, Id, LeggedLocomotion, Locomotion, State};
 use glam::Vec3;
+use rapier3d::dynamics::RigidBodyHandle;
 
 /// The commanded and the actual motion of an agent in a control step.
 #[derive(Clone, Copy, Debug)]
@@ -35,8 +37,22 @@ impl MovementRecord {
     }
 }
 
+/// What an agent does in a physics step, before it is known whether others get in its way.
+struct PlannedMove {
+    /// The agent as the step leaves it.
+    agent: AgentState,
+    /// Its own displacement if nothing stops it, m.
+    motion: Vec3,
+    driven: Option<BaseMotion>,
+    pushes: Vec<CharacterPush>,
+    /// True where it only looks or turns.
+    stands: bool,
+}
+
 impl Agents {
-    /// Moves all agents for one physics step; `first`: the first of its control step.
+    /// Moves all agents for one physics step, at the same time; `first`: the first of its control step.
+    ///
+    /// Each finds its way with the others where they stood before the step; who would meet stops where they meet.
     pub(crate) fn advance(
         &mut self,
         dynamics: &mut Dynamics,
@@ -46,72 +62,117 @@ impl Agents {
         first: bool,
         notices: &mut Vec<DelayedOutcome>,
     ) {
-        let dt_s = dynamics.settings.dt_s;
+        let mut planned = Vec::with_capacity(ways.len());
         for (index, way) in ways.iter_mut().enumerate() {
             let id = AgentId::from_index(index);
             let control = controls.get(index).copied().unwrap_or_default();
-            let mut agent = state.agents[id];
-            control.pitch_view(&mut agent, dt_s);
-            let laws = |rolling: &mut WheelMotion| {
-                for law in &dynamics.laws.bases {
-                    law.modify_wheel_motion(id, rolling);
-                }
-            };
-            let driven = wheeled_step::drive(&mut agent, &way.locomotion, &control, laws, dt_s);
-            let motion = match (&driven, way.locomotion) {
-                (Some(motion), _) => {
-                    motion.turn(&mut agent);
-                    way.turned_rad += motion.turn_rad;
-                    motion.displacement
-                }
-                (None, Locomotion::Walking(gait)) => {
-                    way.turned_rad += control.apply_yaw(&mut agent, dt_s);
-                    if first {
-                        let crouch = control.crouch;
-                        let told = self.set_stance(dynamics, state, id, &mut agent, &gait, crouch);
-                        notices.extend(told);
-                    }
-                    stride(&agent, &gait, &control, dt_s)
-                }
-                (None, _) => Vec3::ZERO,
-            };
-            let passive_velocities = self.passive_velocities[index];
-            let idle = motion == Vec3::ZERO
-                && agent.grounded
-                && passive_velocities == super::PassiveVelocity::default();
-            if idle && !first {
-                state.agents[id] = agent;
-                continue;
+            planned.push(self.plan_move(dynamics, state, (id, control), way, first, notices));
+        }
+        stop_at_meetings(state, &mut planned);
+        let mut pushes = Vec::new();
+        for (index, (plan, way)) in planned.into_iter().zip(ways).enumerate() {
+            let id = AgentId::from_index(index);
+            pushes.extend(self.finish_move(dynamics, state, id, plan, way));
+        }
+        apply_pushes(dynamics, pushes);
+    }
+
+    /// Finds the way of one agent past everything that stands.
+    fn plan_move(
+        &mut self,
+        dynamics: &mut Dynamics,
+        state: &State,
+        (id, control): (AgentId, AgentControl),
+        way: &mut MovementRecord,
+        first: bool,
+        notices: &mut Vec<DelayedOutcome>,
+    ) -> PlannedMove {
+        let dt_s = dynamics.settings.dt_s;
+        let mut agent = state.agents[id];
+        control.pitch_view(&mut agent, dt_s);
+        let laws = |rolling: &mut WheelMotion| {
+            for law in &dynamics.laws.bases {
+                law.modify_wheel_motion(id, rolling);
             }
-            let (before, flew) = (agent.position, !agent.grounded);
-            let pushes = self.walk(dynamics, state, id, &mut agent, motion);
-            let length = motion.length();
-            if length > 0.0 {
-                let made = (agent.position - before).dot(motion / length);
-                way.wanted_m += length;
-                way.made_m += made.clamp(0.0, length);
+        };
+        let driven = wheeled_step::drive(&mut agent, &way.locomotion, &control, laws, dt_s);
+        let motion = match (&driven, way.locomotion) {
+            (Some(motion), _) => {
+                motion.turn(&mut agent);
+                way.turned_rad += motion.turn_rad;
+                motion.displacement
             }
-            if let Some(motion) = &driven {
-                motion.store_rounding_remainder(&mut agent, before);
-                let passive_velocities = &mut self.passive_velocities[index];
-                if !agent.grounded {
-                    // In the air it has a single velocity.
-                    passive_velocities.slide_m_s = Vec3::ZERO;
-                } else if flew {
-                    // On landing its wheels slip, and friction brakes it until they roll.
-                    passive_velocities.slide_m_s = motion.slips_m_s;
+            (None, Locomotion::Walking(gait)) => {
+                way.turned_rad += control.apply_yaw(&mut agent, dt_s);
+                if first {
+                    let crouch = control.crouch;
+                    let told = self.set_stance(dynamics, state, id, &mut agent, &gait, crouch);
+                    notices.extend(told);
                 }
+                stride(&agent, &gait, &control, dt_s)
             }
+            (None, _) => Vec3::ZERO,
+        };
+        let idle = motion == Vec3::ZERO
+            && agent.grounded
+            && self.passive_velocities[id.index()] == super::PassiveVelocity::default();
+        let stands = idle && !first;
+        let pushes = if stands {
+            Vec::new()
+        } else {
+            self.walk(dynamics, state, id, &mut agent, motion)
+        };
+        PlannedMove {
+            agent,
+            motion,
+            driven,
+            pushes,
+            stands,
+        }
+    }
+
+    /// Makes a planned move; returns its pushes, each with the greatest force, N.
+    fn finish_move(
+        &mut self,
+        dynamics: &mut Dynamics,
+        state: &mut State,
+        id: AgentId,
+        plan: PlannedMove,
+        way: &mut MovementRecord,
+    ) -> Vec<(CharacterPush, f32)> {
+        let (before, mut agent) = (state.agents[id], plan.agent);
+        if plan.stands {
             state.agents[id] = agent;
-            if agent.position != before
-                && let Some(rigid) = dynamics.engine.bodies.get_mut(self.list[index].handle)
-            {
-                rigid.set_next_kinematic_translation(agent.position);
-            }
-            for push in pushes {
-                apply_push(dynamics, &push, agent.body.push_force_n);
+            return Vec::new();
+        }
+        let length = plan.motion.length();
+        if length > 0.0 {
+            let made = (agent.position - before.position).dot(plan.motion / length);
+            way.wanted_m += length;
+            way.made_m += made.clamp(0.0, length);
+        }
+        if let Some(motion) = &plan.driven {
+            motion.store_rounding_remainder(&mut agent, before.position);
+            let passive_velocities = &mut self.passive_velocities[id.index()];
+            if !agent.grounded {
+                // In the air it has a single velocity.
+                passive_velocities.slide_m_s = Vec3::ZERO;
+            } else if !before.grounded {
+                // On landing its wheels slip, and friction brakes it until they roll.
+                passive_velocities.slide_m_s = motion.slips_m_s;
             }
         }
+        state.agents[id] = agent;
+        if agent.position != before.position
+            && let Some(rigid) = dynamics.engine.bodies.get_mut(self.list[id.index()].handle)
+        {
+            rigid.set_next_kinematic_translation(agent.position);
+        }
+        let force_n = agent.body.push_force_n;
+        plan.pushes
+            .into_iter()
+            .map(|push| (push, force_n))
+            .collect()
     }
 
     fn walk(
@@ -226,16 +287,58 @@ pub(super) fn agent_queries<'a>(
     }
 }
 
-/// Pushes a light body, with at most the agent's force.
-fn apply_push(dynamics: &mut Dynamics, push: &CharacterPush, force_n: f32) {
+/// Stops agents who would meet where they meet.
+fn stop_at_meetings(state: &State, planned: &mut [PlannedMove]) {
+    if planned.len() < 2 {
+        return;
+    }
+    let path = |(plan, before): (&PlannedMove, &AgentState)| AgentPath {
+        from: before.position,
+        to: plan.agent.position,
+        radius_m: plan.agent.body.radius_m,
+        height_m: plan.agent.height_m(),
+    };
+    let paths: Vec<AgentPath> = planned.iter().zip(&state.agents).map(path).collect();
+    for ((plan, path), share) in planned.iter_mut().zip(&paths).zip(free_shares(&paths)) {
+        if share < 1.0 {
+            plan.agent.position = path.from.lerp(path.to, share);
+        }
+    }
+}
+
+/// Pushes light bodies. Those who push one body share the work, whatever their numbers.
+fn apply_pushes(dynamics: &mut Dynamics, mut pushes: Vec<(CharacterPush, f32)>) {
+    // By body, then by place.
+    let key = |push: &CharacterPush| (push.body, push.point.to_array().map(f32::to_bits));
+    pushes.sort_by_key(|(push, _)| key(push));
+    for group in pushes.chunk_by(|(a, _), (b, _)| a.body == b.body) {
+        let share = 1.0 / group.len() as f32;
+        let impulses: Vec<_> = group
+            .iter()
+            .filter_map(|(push, force_n)| push_impulse(dynamics, push, *force_n, share))
+            .collect();
+        for (handle, impulse, point) in impulses {
+            dynamics.engine.wake(handle);
+            if let Some(rigid) = dynamics.engine.bodies.get_mut(handle) {
+                rigid.apply_impulse_at_point(impulse, point, false);
+            }
+        }
+    }
+}
+
+/// Returns the body that a push is on, the impulse, N s, and the point where it acts: `share` of what gives the body the agent's speed,
+/// with at most the agent's force.
+fn push_impulse(
+    dynamics: &Dynamics,
+    push: &CharacterPush,
+    force_n: f32,
+    share: f32,
+) -> Option<(RigidBodyHandle, Vec3, Vec3)> {
     let body = push.body as usize;
     let handle = dynamics.bodies[body].handle;
-    let dt_s = dynamics.settings.dt_s;
-    let most = force_n * dt_s;
+    let most = force_n * dynamics.settings.dt_s;
     let jointed = dynamics.model.bodies[body].joint.is_some();
-    let Some(rigid) = dynamics.engine.bodies.get(handle) else {
-        return;
-    };
+    let rigid = dynamics.engine.bodies.get(handle)?;
     // A free body is pushed at the height of its centre of mass, so that it slides instead of tipping.
     let mut point = push.point;
     if !jointed {
@@ -248,14 +351,8 @@ fn apply_push(dynamics: &mut Dynamics, push: &CharacterPush, force_n: f32) {
     } else {
         rigid.mass()
     };
-    let impulse = (speed * mass).min(most);
-    if impulse <= 0.0 {
-        return;
-    }
-    dynamics.engine.wake(handle);
-    if let Some(rigid) = dynamics.engine.bodies.get_mut(handle) {
-        rigid.apply_impulse_at_point(push.direction * impulse, point, false);
-    }
+    let impulse = (speed * mass * share).min(most);
+    (impulse > 0.0).then_some((handle, push.direction * impulse, point))
 }
 
 /// Returns the displacement of a walking agent in one physics step if nothing stops it: as commanded, up to its highest speed.

@@ -13,7 +13,7 @@ mod step;
 pub use agent_placement::AgentPlacement;
 pub use set_state::{BodyState, JointState};
 
-use crate::actions::{ActionContext, HandAction, HandContext, OngoingPush};
+use crate::actions::{ActionContext, HandAction, HandContext, OngoingPush, Target};
 use crate::agents::{AgentTouch, Agents};
 use crate::articulation::WorldJoints;
 use crate::body::{BodyHandle, BodyStatus};
@@ -33,7 +33,7 @@ use crate::report::StartReport;
 use begin::align_joints;
 use dwell_scene::material::PairContact;
 use dwell_scene::rays::RayScene;
-use dwell_scene::{Address, AgentId, AgentState, House, Id, State};
+use dwell_scene::{Address, AgentId, AgentState, House, Id, ObjectId, State};
 use rapier3d::dynamics::RigidBody;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -185,6 +185,22 @@ impl PhysicsWorld {
         action: &dyn HandAction,
     ) -> Result<(), Box<ActionOutcome>> {
         action.check(&self.hand_of(state, rays, agent)?)
+    }
+
+    /// Returns the object that an agent would act on through a target, and how far its surface is from the agent's eye, m; `None`
+    /// for what is no object. Nothing changes.
+    ///
+    /// `rays` must show `state` as it is.
+    pub fn distance_to_target(
+        &mut self,
+        state: &mut State,
+        rays: &RayScene,
+        agent: AgentId,
+        target: &Target,
+    ) -> Option<(ObjectId, f32)> {
+        self.hand_of(state, rays, agent)
+            .ok()?
+            .distance_to_target(target)
     }
 
     /// Returns the hand of an agent.

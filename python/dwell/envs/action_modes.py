@@ -79,6 +79,31 @@ class EngineActions:
         """The same, with none in the environments of ``idle``."""
         return dataclasses.replace(self, numbers=np.where(idle, -1, self.numbers))
 
+    @classmethod
+    def interleaved(cls, agents: Sequence[EngineActions]) -> EngineActions:
+        """The rows of several agents as the engine takes them: those of an environment together.
+
+        Args:
+            agents: The actions of each agent, one for each environment.
+        """
+
+        def joined(name: str, empty: NDArray[Any]) -> Any:  # noqa: ANN401 - an array, or none
+            given = [getattr(own, name) for own in agents]
+            if all(rows is None for rows in given):
+                return None
+            shape = (len(agents[0].numbers), *empty.shape)
+            rows = [np.broadcast_to(empty, shape) if one is None else one for one in given]
+            return np.stack(rows, 1).reshape(-1, *empty.shape)
+
+        # What is NaN is not stated.
+        return cls(
+            np.stack([own.numbers for own in agents], 1).ravel(),
+            joined("velocities", np.full(4, np.nan, np.float32)),
+            joined("places", np.full(2, np.nan, np.float32)),
+            joined("objects", np.zeros((), np.int64)),
+            joined("answers", np.full(ANSWER_FIELDS, np.nan, np.float32)),
+        )
+
     def names(self) -> list[str]:
         """The names of the discrete actions; none is ''."""
         known = [*_native.actions(), ""]
@@ -460,19 +485,23 @@ ACTION_MODES: dict[str, Callable[[Sequence[str]], ActionForm]] = {
 
 
 def action_form(
-    config: str, answer_fields: Sequence[Mapping[str, Any]] = ()
+    config: str, answer_fields: Sequence[Mapping[str, Any]] = (), agent: int = 0
 ) -> ActionForm | AnsweredActions:
-    """The form of actions under the native ``EnvConfig`` as JSON.
+    """The form of an agent's actions under the native ``EnvConfig`` as JSON.
 
     Args:
         config: The settings.
-        answer_fields: Those of a batch: what the task expects with ``stop``.
+        answer_fields: Those of a batch: what the agent's task expects with ``stop``.
+        agent: Its place among those who act.
 
     Raises:
         ConfigError: An action is unknown, or there is none to choose from.
     """
     settings = mapping("config", from_json("config", config))
-    form = ACTION_MODES[settings.get("action_mode", "discrete")](_native.chosen_actions(config))
+    rows = settings.get("agents", [])
+    general = settings.get("action_mode", "discrete")
+    mode = rows[agent].get("action_mode", general) if rows else general
+    form = ACTION_MODES[mode](_native.chosen_actions(config, agent))
     return AnsweredActions(form, answer_fields) if answer_fields else form
 
 

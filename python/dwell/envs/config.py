@@ -75,8 +75,8 @@ def arguments_of(env: type) -> list[str]:
 CACHED_HOUSES = 16
 
 
-def step_limit(value: object) -> int | None:
-    """``max_episode_steps`` of an environment: ``None`` and -1 are none.
+def step_limit(value: object, name: str = "max_episode_steps") -> int | None:
+    """The step limit of an environment, an argument of a ``name``: ``None`` and -1 are none.
 
     Raises:
         ConfigError: It is no whole number from 1.
@@ -91,7 +91,7 @@ def step_limit(value: object) -> int | None:
         return None
     if isinstance(value, bool) or number < 1:
         raise ConfigError(
-            f"max_episode_steps is {quoted(value)}; allowed are whole numbers from 1, None or -1 "
+            f"{name} is {quoted(value)}; allowed are whole numbers from 1, None or -1 "
             "for episodes without a limit"
         )
     return min(number, 2**63 - 1)
@@ -240,8 +240,12 @@ def env_json(
     actions: Sequence[str] | None = None,
     world: Mapping[str, Any] | None = None,
     agent: int = 0,
+    agents: Sequence[Mapping[str, Any]] | None = None,
 ) -> str:
-    """The native ``EnvConfig`` as JSON."""
+    """The native ``EnvConfig`` as JSON.
+
+    ``agents``: a row for each of several agents that act, in the engine's own form.
+    """
     config: dict[str, Any] = {
         "task": text("task", native.task),
         "world": world_settings(laws, parameters, world),
@@ -256,13 +260,17 @@ def env_json(
     if actions is not None:
         config["actions"] = text_list("actions", actions)
     if native.sensors is not None:
-        config["sensors"] = _sensors(native.sensors)
-    if agent:
+        config["sensors"] = sensor_rows(native.sensors)
+    if agents is not None:
+        config["agents"] = [*agents]
+    elif agent:
         config["agents"] = [{"agent": agent}]
     return to_json(config)
 
 
-def _sensors(sensors: Sequence[str] | Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
+def sensor_rows(
+    sensors: Sequence[str] | Mapping[str, Mapping[str, Any]],
+) -> list[dict[str, Any]]:
     """Kinds with their settings. A sensor whose settings hold ``kind`` keeps its name beside it."""
     by_name = isinstance(sensors, Mapping)
     named: dict[str, Any] = {} if by_name else {name: {} for name in text_list("sensors", sensors)}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from math import isnan
 from typing import Any
 
 import numpy as np
@@ -34,6 +35,23 @@ EPISODE_KEYS = (
     "goal_rooms",
     "start_distance_to_goal",
 )
+
+
+def step_info(answer: Mapping[str, Any], measures: Sequence[str], row: int = 0) -> dict[str, Any]:
+    """What a step's answer says of one agent; what is not known is left out.
+
+    Args:
+        answer: The engine's answer by name, an element for each environment and agent.
+        measures: What the agent's task measures beside distance and path.
+        row: Which element.
+    """
+    info: dict[str, Any] = {
+        key: np.asarray(answer[key])[row].item() for key in (*INFO_KEYS, *measures)
+    }
+    unknown = (*GOAL_KEYS, *measures)
+    info = {key: value for key, value in info.items() if key not in unknown or not isnan(value)}
+    info["action_error"] = answer["action_error"][row]
+    return info
 
 
 def step_infos(

@@ -16,7 +16,7 @@ from dwell.envs.env_pool import PreparedEnv, add_heads
 from dwell.envs.info_keys import GOAL_KEYS
 from dwell.envs.python_tasks import PythonEpisode, PythonTask
 from dwell.envs.silence import SWS, silence_measures, success_when_silent
-from dwell.envs.spaces import shareable, specs
+from dwell.envs.spaces import SensorSpace, shareable, specs
 from dwell.heads import Head
 from dwell.house import House
 from dwell.world import World
@@ -39,12 +39,12 @@ class NativeBatch:
         for house in houses:
             add_heads(house, heads)
         self.batch = _native.Batch([house.native for house in houses], config, threads, overlap)
-        if len(self.batch.agents()) != 1:
-            raise ConfigError(
-                f"agents: {len(self.batch.agents())} act; in an environment of Python one does"
-            )
+        #: How many agents act in each environment; the rows of actions and answers are those of the
+        #: first environment's agents, then those of the second's.
+        self.agents = len(self.batch.agents())
         #: What is measured beside distance and path, keys of a step's answer.
-        self.measures = [*self.batch.measures(), *silence_measures(config)]
+        of_silence = silence_measures(config) if self.agents == 1 else []
+        self.measures = [*self.batch.measures(), *of_silence]
         self.houses = [*houses]
         #: The worlds that were handed out, by environment: they go with it into other houses.
         self._worlds: list[weakref.WeakSet[World]] = [weakref.WeakSet() for _ in houses]
@@ -56,7 +56,14 @@ class NativeBatch:
             if custom is not None and custom != PythonTask()
             else []
         )
-        native = {spec.name: spec.space() for spec in self.specs}
+        #: Whose each sensor is, by the agent's place.
+        self._owners = self.batch.sensor_agents()
+        #: The spaces of what each agent's sensors observe, by name.
+        self.agent_spaces = [
+            {spec.name: spec.space() for spec in self._specs_of(agent)}
+            for agent in range(self.agents)
+        ]
+        native = self.agent_spaces[0]
         own = self.plays[0].spaces(native) if self.plays else {}
         own = {name: shareable(space) for name, space in own.items()}
         #: The space of one environment's observation.
@@ -67,6 +74,11 @@ class NativeBatch:
             else np.zeros((self.count, *(space.shape or ())), space.dtype)
             for name, space in own.items()
         }
+
+    def _specs_of(self, agent: int) -> list[SensorSpace]:
+        return [
+            spec for spec, owner in zip(self.specs, self._owners, strict=True) if owner == agent
+        ]
 
     def move(self, env: int, spare: PreparedEnv) -> None:
         """Puts ``spare`` in the place of an environment, which is in another house from then on."""
@@ -147,8 +159,8 @@ class NativeBatch:
         return answer, further
 
     def action_masks(self) -> NDArray[np.bool_]:
-        """Which actions of the engine nothing known beforehand rules out, (environment, action)."""
-        return self.batch.action_masks().reshape(self.count, -1)
+        """Which actions of the engine nothing known beforehand rules out, (row, action)."""
+        return self.batch.action_masks().reshape(self.count * self.agents, -1)
 
     def expert_actions(self) -> NDArray[np.int64]:
         """The actions of the tasks' experts now, by the numbers that the engine has for them."""
@@ -172,12 +184,18 @@ class NativeBatch:
             for name, value in self.plays[k].observe().items():
                 self._own[name][k] = value
 
-    def observation(self) -> dict[str, Any]:
-        """The buffers by name: arrays (count, *shape), overwritten later; tuples of strings."""
-        native = {
+    def agent_observation(self, agent: int) -> dict[str, Any]:
+        """An agent's buffers by name: arrays (count, *shape), reused later; texts in tuples."""
+        rows = zip(self.specs, self._owners, self.buffers, strict=True)
+        return {
             spec.name: tuple(self.batch.texts(k)) if buffer is None else buffer
-            for k, (spec, buffer) in enumerate(zip(self.specs, self.buffers, strict=True))
+            for k, (spec, owner, buffer) in enumerate(rows)
+            if owner == agent
         }
+
+    def observation(self) -> dict[str, Any]:
+        """The first agent's :meth:`agent_observation`, with the sensors in Python."""
+        native = self.agent_observation(0)
         own = {
             name: tuple(values) if isinstance(values, list) else values
             for name, values in self._own.items()

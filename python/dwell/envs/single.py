@@ -7,7 +7,6 @@ import functools
 import sys
 import weakref
 from collections.abc import Iterator, Mapping, Sequence
-from math import isnan
 from types import FrameType
 from typing import Any, NoReturn
 
@@ -40,7 +39,7 @@ from dwell.envs.config import (
 )
 from dwell.envs.current_state import CurrentStateApi
 from dwell.envs.episode_shelf import EpisodeIndex, settings_as_stated, shelf_of
-from dwell.envs.info_keys import GOAL_KEYS, INFO_KEYS
+from dwell.envs.info_keys import step_info
 from dwell.envs.native_batch import NativeBatch
 from dwell.envs.python_tasks import PythonTask, RewardChoice, Sensors, TaskChoice, split
 from dwell.envs.snapshots import EnvSnapshot
@@ -230,10 +229,7 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
 
     def _observation(self) -> dict[str, Any]:
         self._runner.observe(self._alone)
-        return {
-            name: value[0] if isinstance(value, tuple) or value.ndim == 1 else value[0].copy()
-            for name, value in self._runner.observation().items()
-        }
+        return first_row(self._runner.observation())
 
     def _info(self) -> dict[str, Any]:
         return {
@@ -334,12 +330,7 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
         # A step that the task did not judge to its end is none.
         with self._playing("step"):
             answer, further = self._runner.step(taken)
-        info: dict[str, Any] = {
-            key: np.asarray(answer[key])[0].item() for key in (*INFO_KEYS, *self._measures)
-        }
-        unknown = (*GOAL_KEYS, *self._measures)
-        info = {k: value for k, value in info.items() if k not in unknown or not isnan(value)}
-        info["action_error"] = answer["action_error"][0]
+        info = step_info(answer, self._measures)
         self._ended = terminated = bool(answer["terminated"][0])
         observation = self._observation()
         info["audio_clipped"] = self._runner.batch.clipped()[0]
@@ -500,6 +491,14 @@ def _run(
 ) -> NativeBatch:
     """The runner in a house of a shelf."""
     return NativeBatch([shelf[house]], config, threads, custom=custom, heads=heads)
+
+
+def first_row(observation: Mapping[str, Any]) -> dict[str, Any]:
+    """The only environment's observation out of a batch's buffers, as copies."""
+    return {
+        name: value[0] if isinstance(value, tuple) or value.ndim == 1 else value[0].copy()
+        for name, value in observation.items()
+    }
 
 
 def another_call(call: str) -> str:

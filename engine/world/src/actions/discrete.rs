@@ -1,5 +1,6 @@
 //! A control step of discrete actions.
 
+use super::hand_order::HandOrder;
 use super::step_sizes::turn_rate_rad_s;
 use super::{DiscreteAction, StepSizes};
 use crate::error::WorldError;
@@ -88,7 +89,7 @@ impl World {
     }
 
     /// Makes one control step of several agents' discrete actions, at most one for each; all others stand still. Hands act
-    /// before the step, one after the other in the order of the agents' numbers. Returns what became of each.
+    /// before the step, the nearest to its thing first, whatever the agents' numbers. Returns what became of each.
     ///
     /// # Errors
     /// [`WorldError::InvalidCall`] for an agent that does not exist; nothing has changed then.
@@ -109,11 +110,13 @@ impl World {
             };
             *control = own;
         }
-        let mut order: Vec<usize> = (0..steps.len()).collect();
-        order.sort_unstable_by_key(|place| steps[*place].agent);
         let mut hands = vec![None; steps.len()];
+        let HandOrder { order, contested } = self.hand_order(steps);
         for place in order {
-            hands[place] = self.use_hand(&steps[place])?;
+            hands[place] = match contested[place] {
+                Some(object) => Some(self.contested_outcome(object)),
+                None => self.use_hand(&steps[place])?,
+            };
         }
         self.step(&controls)?;
         let outcomes = steps.iter().zip(hands);

@@ -4,6 +4,7 @@
 
 mod action_set;
 mod discrete;
+mod hand_order;
 mod kind;
 mod look_down;
 mod look_up;

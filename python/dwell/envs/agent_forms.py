@@ -1,0 +1,141 @@
+"""Several agents' actions on their way to the engine, and what it answers on its way back."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from gymnasium import spaces
+from numpy.typing import NDArray
+
+from dwell import ConfigError, UsageError
+from dwell.arguments import abbreviated_list, mapping, number_in_range, quoted
+from dwell.envs.action_modes import AnsweredActions, EngineActions, action_form, masked_form
+from dwell.envs.agent_settings import AgentRoster
+from dwell.envs.native_batch import NativeBatch
+
+
+class AgentForms:
+    """The spaces and forms of actions of all agents that act in each environment of a batch."""
+
+    def __init__(
+        self,
+        config: str,
+        runner: NativeBatch,
+        roster: AgentRoster,
+        *,
+        action_mask: object,
+        shared_reward: object,
+    ) -> None:
+        """Reads the agents' forms.
+
+        Args:
+            config: The native ``EnvConfig`` as JSON.
+            runner: A batch of it.
+            roster: Who acts.
+            action_mask: Whether infos have masks of the actions that are not ruled out.
+            shared_reward: Which share of a reward is the mean of the agent's team, 0 to 1.
+
+        Raises:
+            ConfigError: An agent's form has no masks; the share is out of range.
+        """
+        batch = runner.batch
+        self.names = roster.names
+        count = len(self.names)
+        self._forms = [action_form(config, batch.answer_fields(k), k) for k in range(count)]
+        self._masks = [masked_form(action_mask, form) for form in self._forms]
+        self.measures = [batch.measures(k) for k in range(count)]
+        self._share = number_in_range("shared_reward", shared_reward, 0.0, 1.0)
+        self._teams = roster.teams
+        self.action_spaces: dict[str, spaces.Space[Any]] = {
+            name: form.space for name, form in zip(self.names, self._forms, strict=True)
+        }
+        self.observation_spaces = {
+            name: spaces.Dict(own)
+            for name, own in zip(self.names, runner.agent_spaces, strict=True)
+        }
+
+    def action_names(self, agent: int) -> list[str]:
+        """The names of an agent's actions, in the order of their numbers."""
+        return [*self._forms[agent].names]
+
+    def one(self, actions: object, live: list[str]) -> EngineActions:
+        """The actions of one environment, by the agents' names, as the engine takes them.
+
+        Raises:
+            ConfigError: They are not one for each agent of ``live``, or one is none.
+            UsageError: One is of an agent whose episode has ended.
+        """
+        given = mapping("actions", actions, "actions by the agents' names")
+        for name in given:
+            if name not in self.names:
+                raise ConfigError(
+                    f"actions: no agent {quoted(name)}; allowed are {abbreviated_list(self.names)}"
+                )
+            if name not in live:
+                raise UsageError(f"actions: the episode of {name} has ended; leave its action out")
+        if missing := [name for name in live if name not in given]:
+            raise ConfigError(
+                f"actions: none of {abbreviated_list(missing)}; expected one for each of "
+                f"{abbreviated_list(live)}"
+            )
+        nobody = EngineActions(np.full(1, -1, np.int64))
+        rows = zip(self.names, self._forms, strict=True)
+        taken = [form.one(given[name]) if name in given else nobody for name, form in rows]
+        return EngineActions.interleaved(taken)
+
+    def many(self, actions: object, acts: NDArray[np.bool_]) -> EngineActions:
+        """The actions of several environments, by the agents' names, as the engine takes them.
+
+        Args:
+            actions: Elements of the batched action spaces, of all agents.
+            acts: Whose actions are taken, shape (environment, agent).
+
+        Raises:
+            ConfigError: They are not those of all agents, or one is none.
+        """
+        given = mapping("actions", actions, "batched actions by the agents' names")
+        if set(given) != set(self.names):
+            raise ConfigError(
+                f"actions: found {abbreviated_list(sorted(map(str, given)))}; expected those of "
+                f"{abbreviated_list(self.names)}"
+            )
+        count = len(acts)
+        rows = zip(self.names, self._forms, strict=True)
+        taken = [
+            form.many(given[name], count).without(~acts[:, k])
+            for k, (name, form) in enumerate(rows)
+        ]
+        return EngineActions.interleaved(taken)
+
+    def rewards(self, answer: Mapping[str, Any]) -> NDArray[np.float64]:
+        """What each agent is paid, shape (environment, agent)."""
+        own = np.asarray(answer["reward"], np.float64).reshape(-1, len(self.names))
+        if not self._share:
+            return own
+        team = np.stack([own[:, places].mean(axis=1) for places in self._teams], axis=1)
+        return (1.0 - self._share) * own + self._share * team
+
+    def masks(self, runner: NativeBatch) -> list[NDArray[np.int8] | None]:
+        """Of each agent the actions that are not ruled out, (environment, action), if asked for."""
+        if all(mask is None for mask in self._masks):
+            return [None] * len(self.names)
+        all_rows, count = runner.action_masks(), len(self.names)
+        return [
+            None if own is None else own.masks(all_rows[k::count])
+            for k, own in enumerate(self._masks)
+        ]
+
+    def expert(self, runner: NativeBatch) -> dict[str, Any]:
+        """What the agents' experts would do now, elements of the batched action spaces."""
+        numbers, count = runner.expert_actions(), len(self.names)
+        answers = runner.batch.expert_answers().reshape(len(numbers), -1)
+        found: dict[str, Any] = {}
+        for k, (name, form) in enumerate(zip(self.names, self._forms, strict=True)):
+            own = numbers[k::count]
+            if isinstance(form, AnsweredActions):
+                found[name] = form.expert(own, answers[k::count])
+            else:
+                found[name] = form.expert(own)
+        return found

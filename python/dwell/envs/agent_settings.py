@@ -1,0 +1,173 @@
+"""The agents of an environment in which several act: their names, tasks, sensors, bodies, teams."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping, Sequence
+from typing import Any, TypedDict
+
+from dwell import ConfigError, _native
+from dwell.arguments import (
+    abbreviated_list,
+    checked_fields,
+    integer_in_range,
+    mapping,
+    quoted,
+    refuse_unknown,
+    text,
+    text_list,
+)
+from dwell.configs import bodies
+from dwell.envs.action_modes import checked_mode
+from dwell.envs.config import env_json, sensor_rows, step_limit
+from dwell.envs.python_tasks import NativeSettings
+from dwell.heads import Head
+from dwell.schemas import setting_checks
+from dwell.world_settings import with_head
+
+#: What ``max_cycles`` is by default: the longest limit of the agents' tasks.
+OF_TASKS = "task"
+#: The most agents that act in one environment.
+MAX_AGENTS = 64
+_EXPECTED = f"expected a number of agents, 1 to {MAX_AGENTS}, or settings by the agents' names"
+
+
+class AgentSettings(TypedDict, total=False):
+    """What an agent has of its own; the rest is as the environment says."""
+
+    task: str
+    task_settings: Mapping[str, Any]
+    sensors: Sequence[str] | Mapping[str, Mapping[str, Any]]
+    stride: Mapping[str, float]
+    action_mode: str
+    actions: Sequence[str]
+    body: Mapping[str, Any]
+    team: str
+
+
+#: A number of agents, or settings by name.
+Agents = int | Mapping[str, AgentSettings]
+
+
+@dataclasses.dataclass(frozen=True)
+class AgentRoster:
+    """Who acts, in order.
+
+    Attributes:
+        names: The agents' names.
+        rows: The engine's settings of each.
+        bodies: The engine's settings of each one's body.
+        teams: Of each the places of those of its team, itself among them.
+    """
+
+    names: list[str]
+    rows: list[dict[str, Any]]
+    bodies: list[dict[str, Any]]
+    teams: list[list[int]]
+
+    @classmethod
+    def of(cls, agents: object) -> AgentRoster:
+        """The agents of an argument.
+
+        Raises:
+            ConfigError: It is none; there are no agents, or too many; a setting is wrong.
+        """
+        if isinstance(agents, Mapping):
+            given = mapping("agents", agents, "settings by the agents' names")
+        else:
+            try:
+                count = integer_in_range("agents", agents, low=1, high=MAX_AGENTS)
+            except ConfigError:
+                raise ConfigError(f"agents is {quoted(agents)}; {_EXPECTED}") from None
+            given = {f"agent_{k}": {} for k in range(count)}
+        if not 1 <= len(given) <= MAX_AGENTS:
+            raise ConfigError(f"agents has {len(given)} of them; {_EXPECTED}")
+        names = [text("agents: a name", name) for name in given]
+        own = [mapping(f"agents.{name}", given[name]) for name in names]
+        for name, settings in zip(names, own, strict=True):
+            known = [*AgentSettings.__annotations__]
+            refuse_unknown(f"agents.{name}", [key for key in settings if key not in known], known)
+        teams = [
+            text(f"agents.{n}.team", s.get("team", "")) for n, s in zip(names, own, strict=True)
+        ]
+        return cls(
+            names,
+            [_row(f"agents.{n}", k, s) for k, (n, s) in enumerate(zip(names, own, strict=True))],
+            bodies([settings.get("body", {}) for settings in own]),
+            [[k for k, other in enumerate(teams) if other == team] for team in teams],
+        )
+
+    def place(self, name: object) -> int:
+        """The place of an agent among those who act.
+
+        Raises:
+            ConfigError: Nobody has the name.
+        """
+        if name in self.names:
+            return self.names.index(str(name))
+        raise ConfigError(f"agent is {quoted(name)}; allowed are {abbreviated_list(self.names)}")
+
+
+def _row(at: str, number: int, settings: Mapping[str, Any]) -> dict[str, Any]:
+    """The engine's ``AgentConfig`` of an agent."""
+    row: dict[str, Any] = {"agent": number}
+    if "task" in settings:
+        row["task"] = text(f"{at}.task", settings["task"])
+    if "task_settings" in settings:
+        row["task_settings"] = mapping(f"{at}.task_settings", settings["task_settings"])
+    if "stride" in settings:
+        stride, known = settings["stride"], setting_checks("StepSizes")
+        row["stride"] = checked_fields(f"{at}.stride", stride, known)
+    if "action_mode" in settings:
+        row["action_mode"] = checked_mode(settings["action_mode"])
+    if "actions" in settings:
+        row["actions"] = text_list(f"{at}.actions", settings["actions"])
+    if "sensors" in settings:
+        row["sensors"] = sensor_rows(settings["sensors"])
+    return row
+
+
+@dataclasses.dataclass(frozen=True)
+class MultiAgentSetup:
+    """The engine's settings of environments in which several agents act.
+
+    Attributes:
+        roster: Who acts.
+        config: The native ``EnvConfig`` as JSON.
+        limit: Steps after which episodes are truncated.
+        heads: What the agents' ears are on.
+    """
+
+    roster: AgentRoster
+    config: str
+    limit: int | None
+    heads: Sequence[Head]
+
+    @classmethod
+    def of(cls, task: str, given: Mapping[str, Any]) -> MultiAgentSetup:
+        """Out of the arguments of an environment.
+
+        Raises:
+            ConfigError: One is wrong; the message names it.
+        """
+        roster = AgentRoster.of(given["agents"])
+        world, heads = with_head(given["world"])
+        if world is not None and "agents" in world:
+            raise ConfigError("world: agents; the bodies stand in agents, as {'a': {'body': {}}}")
+        config = env_json(
+            NativeSettings(task, given["task_settings"], given["sensors"]),
+            laws=given["laws"],
+            parameters=given["parameters"],
+            stride=given["stride"],
+            action_mode=given["action_mode"],
+            actions=given["actions"],
+            world={**(world or {}), "agents": roster.bodies},
+            agents=roster.rows,
+        )
+        cycles = given["max_cycles"]
+        if cycles == OF_TASKS:
+            limits = {row["name"]: int(row["max_steps"]) for row in _native.tasks()}
+            own = [row.get("task", task) for row in roster.rows]
+            # What no task is called is refused by the engine, which lists those there are.
+            cycles = max((limits[name] for name in own if name in limits), default=None)
+        return cls(roster, config, step_limit(cycles, "max_cycles"), heads)

@@ -1,0 +1,332 @@
+"""Several environments with several agents each, stepped together by the engine."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator, Mapping, Sequence
+from copy import deepcopy
+from typing import Any, NoReturn
+
+import numpy as np
+from gymnasium import spaces
+from gymnasium.utils import EzPickle
+from gymnasium.vector.utils import batch_space
+from numpy.typing import NDArray
+
+from dwell import UsageError
+from dwell.arguments import boolean, integer_in_range, kept, refuse_unknown
+from dwell.envs.agent_forms import AgentForms
+from dwell.envs.agent_settings import OF_TASKS, Agents, MultiAgentSetup
+from dwell.envs.agent_state import agent_state_rows, state_space
+from dwell.envs.config import CACHED_HOUSES, Houses, arguments_of, kept_houses
+from dwell.envs.env_pool import EnvPool
+from dwell.envs.episode_shelf import shelf_of
+from dwell.envs.house_assignment import HouseAssignment
+from dwell.envs.info_keys import INFO_KEYS, step_infos
+from dwell.envs.native_batch import NativeBatch
+from dwell.envs.python_tasks import NativeSensors
+from dwell.envs.single import another_call
+from dwell.envs.vector_reset import VectorReset
+from dwell.world_settings import Laws
+
+#: Arrays by name, by the agents' names.
+ByAgent = dict[str, dict[str, Any]]
+
+
+class DwellParallelVectorEnv(EzPickle):
+    """Houses in which several agents act, as :class:`dwell.pettingzoo.DwellParallelEnv`.
+
+    Everything comes by the agents' names, with the environments as the first axis; the episodes are
+    those of a single environment with the same seed, bit for bit. The episodes of an environment
+    are over when those of all its agents are, or when they are truncated; the step after that
+    begins the next ones, and plays no action there (``NextStep``, as of Gymnasium). Of an agent
+    whose episode has ended before the others' no action is looked at, and its reward is 0.
+    """
+
+    def __init__(
+        self,
+        num_envs: int,
+        task: str = "Free",
+        *,
+        agents: Agents = 2,
+        houses: Houses | None = None,
+        sensors: NativeSensors = None,
+        laws: Laws = None,
+        parameters: Mapping[str, float] | None = None,
+        task_settings: Mapping[str, Any] | None = None,
+        stride: Mapping[str, float] | None = None,
+        action_mode: str = "discrete",
+        actions: Sequence[str] | None = None,
+        action_mask: bool = False,
+        world: Mapping[str, Any] | None = None,
+        shared_reward: float = 0.0,
+        threads: int | None = None,
+        max_cycles: int | str | None = OF_TASKS,
+        overlap: bool = False,
+        copy: bool = False,
+        load_ahead: int = CACHED_HOUSES,
+        **unknown: NoReturn,
+    ) -> None:
+        """Makes the environments.
+
+        Args:
+            num_envs: How many.
+            task: The task of agents that state no other, by its name.
+            agents: Who acts in each, as of :class:`dwell.pettingzoo.DwellParallelEnv`.
+            houses: A HOUSES string or a :class:`dwell.House`, or several.
+            sensors: Names of sensors, or settings by name.
+            laws: Laws to install, or what calibration found.
+            parameters: Values by address.
+            task_settings: The settings of the task.
+            stride: How far movement actions go.
+            action_mode: The form of actions.
+            actions: Names of the actions to choose from.
+            action_mask: Whether infos have masks of actions.
+            world: Further fields of the native WorldConfig.
+            shared_reward: Which share of a reward is the mean of the agent's team's.
+            threads: How many threads to use; results do not depend on it.
+            max_cycles: Steps after which all episodes of an environment are truncated.
+            overlap: As of :class:`dwell.envs.DwellVectorEnv`.
+            copy: Whether observations are copies.
+            load_ahead: As of :class:`dwell.envs.DwellVectorEnv`.
+            **unknown: There are no others; such are refused with the nearest names.
+
+        Raises:
+            ConfigError: A setting is wrong; the message names it.
+        """
+        refuse_unknown("DwellParallelVectorEnv", unknown, arguments_of(DwellParallelVectorEnv))
+        given: dict[str, Any] = {
+            "agents": kept(agents),
+            "houses": kept_houses(houses),
+            "sensors": kept(sensors),
+            "laws": kept(laws),
+            "parameters": kept(parameters),
+            "task_settings": kept(task_settings),
+            "stride": kept(stride),
+            "action_mode": action_mode,
+            "actions": kept(actions),
+            "action_mask": action_mask,
+            "world": kept(world),
+            "shared_reward": shared_reward,
+            "threads": threads,
+            "max_cycles": max_cycles,
+            "overlap": overlap,
+            "copy": copy,
+            "load_ahead": load_ahead,
+        }
+        EzPickle.__init__(self, num_envs, task, **given)
+        self.num_envs = count = integer_in_range("num_envs", num_envs, low=1, high=65_536)
+        self._copy, overlap = boolean("copy", copy), boolean("overlap", overlap)
+        setup = MultiAgentSetup.of(task, given)
+        self._limit, names = setup.limit, setup.roster.names
+        self._shelf = shelf = shelf_of(given["houses"], None)
+        threads = None if threads is None else integer_in_range("threads", threads, low=1)
+        self._runner = runner = NativeBatch(
+            [shelf[0]] * count, setup.config, threads, overlap=overlap, heads=setup.heads
+        )
+        pool = EnvPool(shelf, setup.config, setup.heads, threads)
+        self._places = HouseAssignment(runner, pool, integer_in_range("load_ahead", load_ahead))
+        self._forms = AgentForms(
+            setup.config, runner, setup.roster, action_mask=action_mask, shared_reward=shared_reward
+        )
+        self.possible_agents = [*names]
+        self.observation_spaces = self._forms.observation_spaces
+        self.action_spaces = self._forms.action_spaces
+        self.batched_observation_spaces: dict[str, spaces.Space[Any]] = {
+            name: batch_space(self.observation_spaces[name], count) for name in names
+        }
+        self.batched_action_spaces: dict[str, spaces.Space[Any]] = {
+            name: batch_space(self.action_spaces[name], count) for name in names
+        }
+        #: The space of one row of :meth:`state`.
+        self.state_space: spaces.Box = state_space(len(names))
+        self._streams: list[np.random.Generator | None] = [None] * count
+        self._seeds = [0] * count
+        #: Whose episodes go on, shape (environment, agent).
+        self._active = np.zeros((count, len(names)), np.bool_)
+        #: Where the next step begins episodes.
+        self._over: NDArray[np.bool_] = np.ones(count, np.bool_)
+        self._distances = np.full((count, len(names)), np.nan)
+        self._stopped = np.ones(count, np.bool_)
+        self._call: str | None = None
+        self._closed = False
+
+    @contextlib.contextmanager
+    def _calling(self, call: str) -> Iterator[None]:
+        """Other calls are refused until ``call`` has come to its end."""
+        if self._closed:
+            raise UsageError("these environments are closed; make new ones")
+        if self._call is not None:
+            raise UsageError(f"{call}: {another_call(self._call)}")
+        self._call = call
+        try:
+            yield
+        finally:
+            self._call = None
+
+    def _start(
+        self, which: NDArray[np.bool_], asked: Mapping[int, tuple[int, int]] | None = None
+    ) -> None:
+        """Begins episodes: those of ``asked`` (house and seed), else drawn ones."""
+        episodes: dict[int, tuple[int, int]] = {}
+        following: dict[int, tuple[int, int]] = {}
+        for k in np.flatnonzero(which).tolist():
+            stream = self._streams[k]
+            assert stream is not None
+            drawn = self._shelf.draw(stream)
+            episodes[k] = (asked or {}).get(k, drawn)
+            # Of a copy: drawn again when the episodes begin.
+            following[k] = self._shelf.draw(deepcopy(stream))
+        self._stopped[which] = True
+        moved = self._places.move(episodes)
+        seeds: list[int | None] = [None] * self.num_envs
+        for k, (_, seed) in episodes.items():
+            seeds[k] = self._seeds[k] = seed
+        self._runner.reset(seeds, moved)
+        self._active[which], self._over[which], self._stopped[which] = True, False, False
+        self._distances[which] = np.nan
+        self._places.look_ahead(following)
+
+    def reset(
+        self,
+        *,
+        seed: int | Sequence[int | None] | None = None,
+        options: dict[str, Any] | None = None,
+    ) -> tuple[ByAgent, ByAgent]:
+        """Starts episodes in all environments, or in some.
+
+        Args:
+            seed: One seed (then environment k has ``seed + k``), or one for each environment.
+            options: ``reset_mask`` and ``episode_id``, as of
+                :meth:`dwell.envs.DwellVectorEnv.reset`.
+
+        Returns:
+            Observations and infos by the agents' names: what a single environment's are, as arrays.
+        """
+        with self._calling("reset"):
+            given = VectorReset.of(seed, options, self.num_envs)
+            asked = {k: self._shelf.episode(one) for k, one in given.episode_ids.items()}
+            for k in np.flatnonzero(given.which):
+                if given.seeds[k] is not None or self._streams[k] is None:
+                    self._streams[k] = np.random.default_rng(given.seeds[k])
+            self._start(given.which, asked)
+            self._runner.observe(given.which)
+            return self._observations(), self._infos()
+
+    def step(
+        self, actions: Mapping[str, Any]
+    ) -> tuple[
+        ByAgent,
+        dict[str, NDArray[np.float64]],
+        dict[str, NDArray[np.bool_]],
+        dict[str, NDArray[np.bool_]],
+        ByAgent,
+    ]:
+        """Makes one control step in every environment.
+
+        Args:
+            actions: By the agents' names elements of ``batched_action_spaces``.
+
+        Returns:
+            Observations, rewards, terminations, truncations and infos by the agents' names.
+            ``infos[name]["active"]``: whether the agent acted in the step, shape (num_envs,).
+
+        Raises:
+            UsageError: An environment's episodes have not begun.
+            ConfigError: The actions are none.
+        """
+        with self._calling("step"):
+            if self._stopped.any():
+                which = np.flatnonzero(self._stopped).tolist()
+                raise UsageError(f"step: no episode of environments {which} has begun; reset them")
+            begins = self._over.copy()
+            acts = self._active & ~begins[:, np.newaxis]
+            taken = self._forms.many(actions, acts)
+            if begins.any():
+                self._start(begins)
+            self._stopped[~begins] = True
+            answer, _ = self._runner.step(taken)
+            self._stopped[~begins] = False
+            shape = acts.shape
+            rewards = np.where(acts, self._forms.rewards(answer), 0.0)
+            terminated = np.asarray(answer["terminated"]).reshape(shape) & acts
+            cut = np.zeros(self.num_envs, np.bool_)
+            if self._limit is not None:
+                cut = (self._runner.batch.steps() >= self._limit) & ~begins
+            truncated = acts & cut[:, np.newaxis]
+            distances = np.asarray(answer["distance_to_goal"]).reshape(shape)
+            self._distances[acts] = distances[acts]
+            self._active &= ~(terminated | truncated)
+            self._over = np.logical_not(self._active.any(axis=1))
+            self._runner.observe(np.ones(self.num_envs, np.bool_))
+            infos = self._infos()
+            count = len(self.possible_agents)
+            for k, name in enumerate(self.possible_agents):
+                own = {key: value[k::count] for key, value in answer.items()}
+                keys = (*INFO_KEYS, *self._forms.measures[k])
+                infos[name] |= step_infos(own, keys, acts[:, k])
+                infos[name]["active"] = acts[:, k]
+            by_agent = range(count), self.possible_agents
+            return (
+                self._observations(),
+                {name: rewards[:, k] for k, name in zip(*by_agent, strict=True)},
+                {name: terminated[:, k] for k, name in zip(*by_agent, strict=True)},
+                {name: truncated[:, k] for k, name in zip(*by_agent, strict=True)},
+                infos,
+            )
+
+    def _observations(self) -> ByAgent:
+        found = {}
+        for k, name in enumerate(self.possible_agents):
+            now = self._runner.agent_observation(k)
+            found[name] = (
+                {key: v if isinstance(v, tuple) else v.copy() for key, v in now.items()}
+                if self._copy
+                else now
+            )
+        return found
+
+    def _infos(self) -> ByAgent:
+        scenes, episodes = (np.full(self.num_envs, None, object) for _ in range(2))
+        for k, stopped in enumerate(self._stopped.tolist()):
+            if not stopped:
+                scenes[k] = self._places.name(k)
+                episodes[k] = self._places.episode_id(k, self._seeds[k])
+        masks = self._forms.masks(self._runner)
+        infos: ByAgent = {}
+        for name, mask in zip(self.possible_agents, masks, strict=True):
+            infos[name] = {"scene_id": scenes, "episode_id": episodes}
+            if mask is not None:
+                infos[name]["action_mask"] = mask
+        return infos
+
+    def goals(self, env: int) -> dict[str, dict[str, Any]]:
+        """What the episodes of an environment's agents ask for, as a single environment's infos."""
+        k = integer_in_range("env", env, high=self.num_envs - 1)
+        batch = self._runner.batch
+        return {name: batch.episode_goal(k, a) for a, name in enumerate(self.possible_agents)}
+
+    def state(self) -> NDArray[np.float32]:
+        """The states of all agents, (num_envs, agent x 13); see :meth:`DwellParallelEnv.state`."""
+        batch = self._runner.batch
+        rows = [
+            agent_state_rows(batch.agent_states(k), self._distances[k], self._active[k]).ravel()
+            for k in range(self.num_envs)
+        ]
+        return np.stack(rows)
+
+    def expert_actions(self) -> dict[str, Any]:
+        """What the agents' experts would do now, elements of ``batched_action_spaces``."""
+        with self._calling("expert_actions"):
+            return self._forms.expert(self._runner)
+
+    def state_hashes(self) -> list[int]:
+        """The state hash of every environment."""
+        return [self._runner.batch.state_hash(k) for k in range(self.num_envs)]
+
+    def close(self) -> None:
+        """Closes the worlds; after it everything but ``close`` is refused."""
+        if not self._closed:
+            self._closed = True
+            self._places.close()
+            del self._places, self._runner

@@ -1,0 +1,70 @@
+"""Several agents in one house, as PettingZoo has it: ``parallel_env``, ``env`` and ``vector_env``.
+
+Needs the package ``pettingzoo`` (``pip install "dwell[pettingzoo]"``).
+
+Examples:
+    >>> from dwell.pettingzoo import parallel_env
+    >>> env = parallel_env("PointNav", agents=2, houses="builtin:studio", sensors=["gps"])
+    >>> observations, infos = env.reset(seed=1)
+    >>> while env.agents:
+    ...     observations, rewards, ended, cut, infos = env.step(env.expert_actions())
+    >>> [infos[name]["success"] for name in infos]
+    [True]
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from dwell import ConfigError
+
+try:
+    from pettingzoo.utils import OrderEnforcingWrapper, parallel_to_aec
+except ImportError as error:
+    raise ConfigError(
+        "dwell.pettingzoo needs the package pettingzoo; install it with "
+        'pip install "dwell[pettingzoo]"'
+    ) from error
+
+from dwell.envs.parallel import DwellParallelEnv
+from dwell.envs.parallel_vector import DwellParallelVectorEnv
+
+if TYPE_CHECKING:
+    from pettingzoo import AECEnv
+
+__all__ = ["DwellParallelEnv", "DwellParallelVectorEnv", "env", "parallel_env", "vector_env"]
+
+
+def parallel_env(task: str = "Free", **settings: Any) -> DwellParallelEnv:  # noqa: ANN401 - of the class
+    """An environment in which all agents act at once.
+
+    Args:
+        task: The task of agents that state no other, by its name.
+        **settings: As of :class:`DwellParallelEnv`.
+    """
+    return DwellParallelEnv(task, **settings)
+
+
+def env(task: str = "Free", **settings: Any) -> AECEnv[str, Any, Any]:  # noqa: ANN401 - of the class
+    """The same with agents that take turns (PettingZoo's AEC API): a step is made after the last.
+
+    Args:
+        task: As of :func:`parallel_env`.
+        **settings: As of :class:`DwellParallelEnv`.
+    """
+    return OrderEnforcingWrapper(parallel_to_aec(parallel_env(task, **settings)))
+
+
+def vector_env(
+    num_envs: int,
+    task: str = "Free",
+    **settings: Any,  # noqa: ANN401 - of the class
+) -> DwellParallelVectorEnv:
+    """Several environments, stepped together by the engine.
+
+    Args:
+        num_envs: How many.
+        task: The task of agents that state no other, by its name.
+        **settings: As of :class:`DwellParallelVectorEnv`.
+    """
+    return DwellParallelVectorEnv(num_envs, task, **settings)
