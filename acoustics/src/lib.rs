@@ -3,7 +3,8 @@
 //! An [`AcousticScene`] is the acoustic model of a house. Between a [`SoundSourcePose`] and a [`Receiver`] it finds an
 //! [`Echogram`] (exact early paths and a traced energy tail, per octave band), and from that an [`ImpulseResponse`]. A
 //! [`Stream`] convolves sources with them, block by block, in step with a world. [`signals`], [`recordings`] and
-//! [`contact`] are the sounds of things, and [`metrics`] the acoustic parameters of rooms.
+//! [`contact`] are the sounds of things, [`utterance`] those of speakers, [`metrics`] the acoustic parameters of rooms, and
+//! [`intelligibility`] what is understood in them.
 //!
 //! Units: pressure in Pa, energy e = 1/d² for a free path of d metres (amplitude 1/d re 1 m), sample 0 of a response is the
 //! moment of the impulse. Channels: left, right.
@@ -36,6 +37,7 @@ mod fft;
 pub mod hdf5;
 pub mod head;
 mod image_sources;
+pub mod intelligibility;
 pub mod laws;
 mod material_report;
 pub mod metrics;
@@ -58,6 +60,7 @@ mod surface;
 mod synthesis;
 mod tail;
 mod transmission;
+pub mod utterance;
 
 pub use air::Air;
 pub use config::AcousticConfig;

@@ -172,7 +172,7 @@ impl LoopBuilder {
 }
 
 /// 0 to 1 within `edge_s` with a raised cosine.
-pub(super) fn raised_cosine_rise(t: f64, edge_s: f64) -> f64 {
+pub(crate) fn raised_cosine_rise(t: f64, edge_s: f64) -> f64 {
     if t >= edge_s {
         1.0
     } else {
@@ -181,12 +181,12 @@ pub(super) fn raised_cosine_rise(t: f64, edge_s: f64) -> f64 {
 }
 
 /// Rises at the start and falls at the end.
-pub(super) fn raised_cosine_envelope(t: f64, duration_s: f64, edge_s: f64) -> f64 {
+pub(crate) fn raised_cosine_envelope(t: f64, duration_s: f64, edge_s: f64) -> f64 {
     raised_cosine_rise(t, edge_s) * raised_cosine_rise(duration_s - t, edge_s)
 }
 
 /// A resonance of amplitude 1 at `center_hz`, `width_hz` wide.
-pub(super) fn resonance_gain(frequency_hz: f64, center_hz: f64, width_hz: f64) -> f64 {
+pub(crate) fn resonance_gain(frequency_hz: f64, center_hz: f64, width_hz: f64) -> f64 {
     let x = (frequency_hz - center_hz) / (0.5 * width_hz);
     1.0 / (1.0 + x * x).sqrt()
 }

@@ -5,6 +5,7 @@
 //! blocks of any size give the same signal.
 
 mod appliances;
+mod formants;
 mod household;
 mod loop_builder;
 mod music;
@@ -12,6 +13,8 @@ mod speech;
 mod table;
 mod test_signals;
 
+pub(crate) use formants::{VOWELS_HZ, formant_gain};
+pub(crate) use loop_builder::{raised_cosine_envelope, raised_cosine_rise, resonance_gain};
 pub use test_signals::{Sweep, maximum_length_sequence};
 
 use crate::error::AcousticsError;

@@ -1,5 +1,6 @@
 //! Voices without words: the spectrum, rhythm and pitch of speech.
 
+use super::formants::{VOWELS_HZ, formant_gain};
 use super::loop_builder::{LoopBuilder, raised_cosine_envelope, resonance_gain};
 use super::music;
 use std::f64::consts::TAU;
@@ -11,15 +12,6 @@ struct SpeechVoice {
     /// Formants in relation to those of a man.
     size: f64,
 }
-
-/// First three formants of five vowels of men, Hz (G. E. Peterson, H. L. Barney, JASA 24, 175, 1952, table II).
-const VOWELS_HZ: [[f64; 3]; 5] = [
-    [270.0, 2290.0, 3010.0],
-    [530.0, 1840.0, 2480.0],
-    [730.0, 1090.0, 2440.0],
-    [570.0, 840.0, 2410.0],
-    [300.0, 870.0, 2240.0],
-];
 
 /// Adds a voice that speaks from `start_s` to `end_s` in syllables of about a quarter of a second, with pauses.
 fn talk(canvas: &mut LoopBuilder, voice: &SpeechVoice, name: &str, (start_s, end_s): (f64, f64)) {
@@ -70,13 +62,7 @@ fn vowel_sound(
     let partials: Vec<(f64, f64)> = (1..=harmonics)
         .map(|n| {
             let frequency_hz = n as f64 * pitch_hz;
-            let resonance: f64 = vowel
-                .iter()
-                .zip([1.0, 0.5, 0.25])
-                .map(|(formant, weight)| {
-                    weight * resonance_gain(frequency_hz, formant * voice.size, 110.0)
-                })
-                .sum();
+            let resonance = formant_gain(frequency_hz, vowel, voice.size);
             // The larynx's pulses fall 12 dB an octave, radiation gives 6 back.
             (
                 TAU * frequency_hz,
