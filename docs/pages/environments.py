@@ -24,7 +24,7 @@ def _section(task: dict[str, Any]) -> str:
 
 {rust.module(file)}
 
-- An episode is cut off after {task["max_steps"]:,} steps (by `gymnasium.make`).
+- {_limit(task)}
 - Actions: [those of all environments](actions.md#discrete).
 
 ### Observations of {name}
@@ -35,6 +35,16 @@ Without `sensors`; [all that can be asked for](observations.md).
 ### Settings of {name}
 
 {_settings(task["settings"])}"""
+
+
+def _limit(task: dict[str, Any]) -> str:
+    """When an episode is cut off, and by whom."""
+    steps = f"An episode is cut off after {task['max_steps']:,} steps"
+    if task["min_agents"] == 1:
+        return f"{steps} (by `gymnasium.make`)."
+    return (
+        f"{steps} (`max_cycles`). At least {task['min_agents']} agents act, by `dwell.pettingzoo`."
+    )
 
 
 def _file(name: str) -> str:

@@ -23,9 +23,16 @@ def sensor_names() -> list[str]:
 
 def specifications(sensors: NativeSensors, task: str = "InstructionFollowing") -> list[SensorSpace]:
     """What sensors give; those that are only named with default settings."""
-    config = env_json(NativeSettings(task, sensors=sensors))
+    count = next((int(row["min_agents"]) for row in _native.tasks() if row["name"] == task), 1)
+    several = {
+        "world": {"agents": [{}] * count},
+        "agents": [{"agent": number} for number in range(count)],
+    }
+    config = env_json(NativeSettings(task, sensors=sensors), **(several if count > 1 else {}))
     room = dwell.House.shoebox(_ROOM_M, substance="plaster")
-    return specs(_native.Batch([room.native], config))
+    batch = _native.Batch([room.native], config)
+    rows = zip(specs(batch), batch.sensor_agents(), strict=True)
+    return [spec for spec, agent in rows if agent == 0]
 
 
 def all_specifications() -> list[SensorSpace]:

@@ -68,15 +68,19 @@ __all__ = [
     "tasks",
     "texture",
     "vocabulary",
+    "vocal_efforts",
     "world_attributes",
     "world_check_text",
     "world_color_names",
     "world_graph_json",
+    "world_heard",
     "world_holds",
     "world_refer",
     "world_relation_array",
     "world_relations",
+    "world_say",
     "world_select",
+    "world_speaks",
 ]
 
 __version__: str
@@ -321,14 +325,18 @@ class Batch:
         places: NDArray[np.float32] | None = ...,
         objects: NDArray[np.int64] | None = ...,
         answers: NDArray[np.float32] | None = ...,
+        tokens: NDArray[np.int64] | None = ...,
+        efforts: NDArray[np.int64] | None = ...,
     ) -> dict[str, NDArray[Any] | list[str]]:
-        """``actions``: for each environment and agent; -1 for all agents: that environment is not stepped. Of an agent whose episode has ended none is looked at. Keys: reward, terminated, success, action_success, collision, distance_to_goal (NaN without a goal), spl, soft_spl, path_length, collisions (arrays of that shape) and action_error (list). ``velocities``: forward, right, turn, look, -1 to 1, flat; ``places``: of pictures, 0 to 1, flat; ``objects``: ids, 0 for what is looked at."""
+        """``actions``: for each environment and agent; -1 for all agents: that environment is not stepped. Of an agent whose episode has ended none is looked at. Keys: reward, terminated, success, action_success, collision, distance_to_goal (NaN without a goal), spl, soft_spl, path_length, collisions (arrays of that shape) and action_error (list). ``velocities``: forward, right, turn, look, -1 to 1, flat; ``places``: of pictures, 0 to 1, flat; ``objects``: ids, 0 for what is looked at; ``tokens``: what agents begin to say, numbers of words up to the first 0, (row x 8,), with ``efforts``, numbers of :func:`vocal_efforts`."""
     def answer_fields(self, agent: int = 0) -> list[dict[str, Any]]:
         """``[{name, about, unit, range, choices}, ...]``: what an agent's task expects with ``stop``."""
     def measures(self, agent: int = 0) -> list[str]:
         """Names of what an agent's task measures beside distance and path; keys of what ``step`` gives."""
     def expert_answers(self) -> NDArray[np.float32]:
         """For each environment and agent all the fields that an answer can have, flat."""
+    def expert_utterances(self) -> NDArray[np.int64]:
+        """For each environment and agent 8 numbers of words, 0 for none, flat."""
     def action_masks(self) -> NDArray[np.bool_]:
         """For each environment and agent, which discrete actions nothing known beforehand rules out, flat."""
     def observe(self, which: NDArray[np.bool_], outs: Sequence[NDArray[Any] | None]) -> None:
@@ -473,6 +481,16 @@ def calibration_example(folder: str, seed: int = ...) -> str:
 def check_measured(measured: str) -> int:
     """Reads and checks a measured bundle; answers how many episodes it has."""
 
+def vocal_efforts() -> list[str]:
+    """Names of vocal efforts, the quietest first."""
+
+def world_heard(world: World, agent: int) -> list[dict[str, Any]]:
+    """``[{speaker, token, direction, level_db, sti}]``: what was understood in the last step."""
+
+def world_say(world: World, agent: int, words: str | _Data, effort: str) -> bool:
+    """Numbers of words, or a text of them; whether the agent says it."""
+
+def world_speaks(world: World, agent: int) -> bool: ...
 def world_holds(
     world: World, name: str, things: Sequence[str | int], viewer: object
 ) -> tuple[bool | None, str | None]:

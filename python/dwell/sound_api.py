@@ -9,7 +9,16 @@ from typing import Any
 import numpy as np
 
 from dwell import ConfigError, UsageError, _native
-from dwell.arguments import boolean, choice, finite_number, integer_in_range, path, point, text
+from dwell.arguments import (
+    boolean,
+    choice,
+    finite_number,
+    integer_in_range,
+    path,
+    point,
+    sequence_items,
+    text,
+)
 from dwell.language_api import LanguageApi
 
 #: What the names of sound files end with.
@@ -154,6 +163,60 @@ class SoundApi(LanguageApi):
         self._native.set_sound_level(
             integer_in_range("handle", handle), finite_number("level_db", level_db)
         )
+
+    def say(self, agent: int, words: str | Sequence[int], *, effort: str = "normal") -> bool:
+        """Lets an agent say something from the next step on, with its voice, at its mouth.
+
+        Its sound is speech-like and wordless: a token sounds the same whenever an agent says it.
+        Who listens (an agent with open ears, as by the sensor ``heard_tokens``) understands each
+        token with the probability that its level, all other sounds and the room give it.
+
+        Args:
+            agent: The number of the agent.
+            words: A text of at most 8 words of the vocabulary, or their numbers, counted from 1.
+            effort: ``whisper``, ``normal``, ``raised``, ``loud`` or ``shout``.
+
+        Returns:
+            Whether it does: not while it speaks already, nor in a world that is ``muted``.
+
+        Raises:
+            ConfigError: There is no such agent, word or effort, or there are too many words.
+
+        Examples:
+            >>> import dwell
+            >>> world = dwell.World("builtin:apartment")
+            >>> world.say(0, "the blue mug", effort="loud")
+            True
+            >>> world.speaks(0)
+            True
+        """
+        said: str | list[int]
+        if isinstance(words, str):
+            said = text("words", words)
+        else:
+            rows = sequence_items("words", words, "expected text, or numbers of words")
+            said = [integer_in_range(f"words[{k}]", row) for k, row in enumerate(rows)]
+        effort = choice("effort", effort, _native.vocal_efforts())
+        return _native.world_say(self._native, integer_in_range("agent", agent), said, effort)
+
+    def speaks(self, agent: int) -> bool:
+        """Returns whether an agent's voice sounds in the next step."""
+        return _native.world_speaks(self._native, integer_in_range("agent", agent))
+
+    def heard(self, agent: int) -> list[dict[str, Any]]:
+        """What an agent understood in the last step of what others say, the loudest first.
+
+        Each has ``speaker`` (the agent's number), ``token`` (as it was understood; ``None``: not),
+        ``word``, ``direction`` (of its first sound, in the head's frame: X right, Y up, -Z ahead; 0
+        where only echoes arrive), ``level_db`` (dB SPL at the head) and ``sti``, the speech
+        transmission index. Of an agent without open ears it is empty.
+        """
+        known = _native.vocabulary()
+        rows = _native.world_heard(self._native, integer_in_range("agent", agent))
+        return [
+            {**row, "word": None if row["token"] is None else known[row["token"] - 1]}
+            for row in rows
+        ]
 
     def sounds(self) -> list[dict[str, Any]]:
         """Every source: the sounds of objects, then those played on request.

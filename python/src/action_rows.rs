@@ -2,7 +2,10 @@
 
 use crate::arrays;
 use crate::errors::PyFault;
-use dwell::{ActionTarget, DiscreteAction, MAX_ANSWER_FIELDS, StepAction};
+use dwell::{
+    ActionTarget, DiscreteAction, MAX_ANSWER_FIELDS, MAX_TOKENS, StepAction, StepUtterance,
+    VocalEffort,
+};
 use dwell_scene::EntityId;
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
@@ -22,6 +25,28 @@ fn action(number: i64) -> Result<Option<DiscreteAction>, PyFault> {
     })
 }
 
+fn effort(number: i64) -> Result<VocalEffort, PyFault> {
+    let found = usize::try_from(number).ok();
+    let found = found.and_then(|k| VocalEffort::ALL.get(k).copied());
+    found.ok_or_else(|| {
+        let last = VocalEffort::ALL.len() - 1;
+        PyFault::Config(format!("effort {number}; allowed are 0 to {last}"))
+    })
+}
+
+/// What words say, up to the first 0; `None` for none.
+fn utterance(words: &[i64], effort: VocalEffort) -> Result<Option<StepUtterance>, PyFault> {
+    let mut tokens = [0; MAX_TOKENS];
+    for (token, word) in tokens.iter_mut().zip(words) {
+        *token = u32::try_from(*word).map_err(|_| {
+            PyFault::Config(format!(
+                "tokens: {word}; allowed are numbers of words, or 0 for none"
+            ))
+        })?;
+    }
+    Ok((tokens[0] != 0).then_some(StepUtterance { tokens, effort }))
+}
+
 /// Actions as arrays: one row for each environment and agent.
 pub(crate) struct ActionRows {
     pub(crate) numbers: Vec<i64>,
@@ -29,6 +54,8 @@ pub(crate) struct ActionRows {
     pub(crate) places: Option<Vec<f32>>,
     pub(crate) objects: Option<Vec<i64>>,
     pub(crate) answers: Option<Vec<f32>>,
+    pub(crate) tokens: Option<Vec<i64>>,
+    pub(crate) efforts: Option<Vec<i64>>,
 }
 
 /// Returns a copy of an array of the caller.
@@ -57,6 +84,12 @@ impl ActionRows {
                 self.answers.as_ref().map(Vec::len),
                 MAX_ANSWER_FIELDS * count,
             ),
+            (
+                "tokens",
+                self.tokens.as_ref().map(Vec::len),
+                MAX_TOKENS * count,
+            ),
+            ("efforts", self.efforts.as_ref().map(Vec::len), count),
         ] {
             if let Some(found) = found.filter(|found| *found != wanted) {
                 let told = format!("{name}: expected {wanted} numbers, found {found}");
@@ -90,6 +123,14 @@ impl ActionRows {
             .and_then(|all| all[MAX_ANSWER_FIELDS * row..].split_first_chunk())
         {
             step.answer = *own;
+        }
+        if let Some(tokens) = &self.tokens {
+            let own = &tokens[MAX_TOKENS * row..MAX_TOKENS * (row + 1)];
+            let effort = self
+                .efforts
+                .as_ref()
+                .map_or(Ok(VocalEffort::Normal), |all| effort(all[row]))?;
+            step.utterance = utterance(own, effort)?;
         }
         match self.objects.as_ref().map(|all| all[row]) {
             None | Some(0) => {}

@@ -220,6 +220,13 @@ impl PyBatch {
         Ok(answers.into_flattened().into_pyarray(py))
     }
 
+    /// Returns what the experts would say now, numbers of words up to the first 0, shape (environment x agent x 8,).
+    fn expert_utterances<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<i64>>> {
+        let said = self.with(py, |batch| Ok(batch.expert_utterances()?))?;
+        let numbers = said.into_flattened().into_iter().map(i64::from);
+        Ok(numbers.collect::<Vec<_>>().into_pyarray(py))
+    }
+
     /// Returns which discrete actions nothing known beforehand rules out, shape (environment x agent, action) flat.
     fn action_masks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<bool>>> {
         let masks = self.with(py, |batch| Ok(batch.action_masks()?))?;
@@ -239,7 +246,13 @@ impl PyBatch {
     /// [`StepAction::velocity`], shape (environment x agent x 4,); `places`: places in pictures, shape (environment x agent x 2,);
     /// `objects`: ids of things, 0 for what is looked at. Rows of `velocities` and `places` that are NaN state none.
     /// `answers`: shape (environment x agent x field,) of all the fields that an answer can have.
-    #[pyo3(signature = (actions, velocities=None, places=None, objects=None, answers=None))]
+    /// `tokens`: what agents begin to say, numbers of words up to the first 0, shape (environment x agent x 8,), and `efforts`, with which
+    /// of the vocal efforts, normal without them.
+    #[pyo3(signature = (actions, velocities=None, places=None, objects=None, answers=None, tokens=None, efforts=None))]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "one array for each part of an action"
+    )]
     fn step<'py>(
         &self,
         py: Python<'py>,
@@ -248,6 +261,8 @@ impl PyBatch {
         places: Option<PyReadonlyArray1<'py, f32>>,
         objects: Option<PyReadonlyArray1<'py, i64>>,
         answers: Option<PyReadonlyArray1<'py, f32>>,
+        tokens: Option<PyReadonlyArray1<'py, i64>>,
+        efforts: Option<PyReadonlyArray1<'py, i64>>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let rows = ActionRows {
             numbers: arrays::as_contiguous_slice("actions", &actions)?.to_vec(),
@@ -255,6 +270,8 @@ impl PyBatch {
             places: copy_of("places", places.as_ref())?,
             objects: copy_of("objects", objects.as_ref())?,
             answers: copy_of("answers", answers.as_ref())?,
+            tokens: copy_of("tokens", tokens.as_ref())?,
+            efforts: copy_of("efforts", efforts.as_ref())?,
         };
         let (infos, measures) = self.with(py, |batch| {
             let infos = batch.step(&rows.read()?)?;
@@ -283,6 +300,7 @@ impl PyBatch {
         out.set_item("success", is(|info| info.result.success))?;
         out.set_item("action_success", is(|info| info.action_success))?;
         out.set_item("collision", is(|info| info.collision))?;
+        out.set_item("speaks", is(|info| info.speaks))?;
         out.set_item(
             "distance_to_goal",
             of(|info| info.progress.distance_m.unwrap_or(f64::NAN)),

@@ -66,6 +66,7 @@ pub(crate) fn tasks() -> PyResult<PyValue> {
             "version": kind.version,
             "about": kind.about,
             "asks": kind.has_goal,
+            "min_agents": kind.min_agents,
             "max_steps": kind.max_steps,
             "measures": kind.measures,
             "sensors": kind.sensors,

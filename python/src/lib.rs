@@ -34,6 +34,7 @@ mod picture;
 mod pictures_for_people;
 mod prepared_env;
 mod relations;
+mod speech;
 mod stated_episodes;
 mod values;
 mod world;
@@ -85,6 +86,10 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(language::world_refer, module)?)?;
     module.add_function(wrap_pyfunction!(language::world_check_text, module)?)?;
     module.add_function(wrap_pyfunction!(relations::predicates_json, module)?)?;
+    module.add_function(wrap_pyfunction!(speech::vocal_efforts, module)?)?;
+    module.add_function(wrap_pyfunction!(speech::world_heard, module)?)?;
+    module.add_function(wrap_pyfunction!(speech::world_say, module)?)?;
+    module.add_function(wrap_pyfunction!(speech::world_speaks, module)?)?;
     module.add_function(wrap_pyfunction!(relations::world_holds, module)?)?;
     module.add_function(wrap_pyfunction!(relations::world_select, module)?)?;
     module.add_function(wrap_pyfunction!(relations::world_relations, module)?)?;

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 fn with_goal() -> impl Iterator<Item = &'static TaskKind> {
     let walks = |kind: &&TaskKind| {
         let mut settings = (kind.settings)().into_iter();
-        settings.any(|field| field.name == "min_path_ratio")
+        settings.any(|field| field.name == "min_path_ratio") && kind.min_agents == 1
     };
     tasks::all().iter().filter(walks)
 }

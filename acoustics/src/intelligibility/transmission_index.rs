@@ -47,7 +47,7 @@ pub struct SpeechTransmission {
 /// [`AcousticsError::Range`]: levels of at most 200 dB, and no NaN.
 ///
 /// # Source
-/// IEC 60268-16:2011, annex A. The constants were taken from an implementation that was written from the standard's text and agree with seven others;
+/// IEC 60268-16:2011, annex A. The constants were taken from an implementation that was written from the standard's text; the weights agree with several others;
 /// the standard itself was not at hand. The edition of 2020 keeps those for male speech and has none for female speech.
 pub fn speech_transmission_index(
     speech_db: &[f64; SPEECH_BAND_COUNT],

@@ -44,8 +44,8 @@ impl VocalEffort {
     /// Spectrum levels at 1 m ahead of the mouth at 250 Hz to 8 kHz, dB re (20 µPa)²/Hz: means over time, pauses included.
     ///
     /// # Source
-    /// Voiced: ANSI S3.5-1997, table 4 (octave bands), as two open implementations of the standard have it; the levels below
-    /// agree with the standard's overall levels and with its third-octave table within 0.5 dB.
+    /// Voiced: ANSI S3.5-1997, table 4 (octave bands), as an open implementation of the standard has it (MoSQITo); the levels below
+    /// agree with the standard's overall levels within 0.5 dB, and with its third-octave table within 1 dB.
     ///
     /// Whisper: an estimate, probably within 5 dB. No table of octave bands of whispers was found. Published is that vowels lose
     /// some 20 dB and most below 1.5 kHz (T. Ito, K. Takeda, F. Itakura, Speech Commun. 45, 139, 2005), and unvoiced consonants only

@@ -8,6 +8,7 @@ use crate::episode_spec::EpisodeSpec;
 use crate::error::WorldError;
 use crate::sensors::{Dtype, ObservationBuffer, SensorSpec};
 use dwell_acoustics::signals;
+use dwell_acoustics::utterance::MAX_TOKENS;
 use dwell_scene::AgentId;
 use dwell_scene::interrupt;
 use dwell_scene::parallel::Threads;
@@ -163,6 +164,15 @@ impl Batch {
     pub fn expert_answers(&self) -> Result<Vec<Answer>, WorldError> {
         let answers = self.envs.iter().map(Env::expert_answers);
         Ok(answers.collect::<Result<Vec<_>, _>>()?.concat())
+    }
+
+    /// Returns what each agent's scripted expert would say now, numbers of words up to the first 0. Shape (environment, agent).
+    ///
+    /// # Errors
+    /// [`WorldError::InvalidCall`] before the first reset.
+    pub fn expert_utterances(&self) -> Result<Vec<[u32; MAX_TOKENS]>, WorldError> {
+        let said = self.envs.iter().map(Env::expert_utterances);
+        Ok(said.collect::<Result<Vec<_>, _>>()?.concat())
     }
 
     /// Returns the actions that are not ruled out, as [`Env::action_masks`]; all where no episode has begun. Shape (environment, agent).

@@ -29,6 +29,9 @@ pub struct WorldConfig {
     /// The folder below which sound files are, as a path; without one no file is played.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sound_root: Option<String>,
+    /// Whether agents' voices are silent, default false: what they say is neither heard nor understood.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub muted: bool,
     /// Who renders pictures: `"cpu"` (default), `"gpu"`, or `"gpu:NAME"` with a part of an adapter's name.
     #[serde(skip_serializing_if = "is_default")]
     #[schemars(with = "String")]
@@ -60,6 +63,7 @@ impl Default for WorldConfig {
             sound_preset: "rl".to_owned(),
             sound_head: None,
             sound_root: None,
+            muted: false,
             renderer: BackEnd::Cpu,
             agents: vec![AgentBody::default()],
             laws: Vec::new(),

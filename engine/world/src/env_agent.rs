@@ -24,6 +24,8 @@ pub(crate) struct EnvAgent {
     pub(crate) step_sizes: StepSizes,
     pub(crate) sensors: Vec<Box<dyn Sensor>>,
     pub(crate) episode: Option<Episode>,
+    /// Whether it acts as its task's expert says.
+    pub(crate) scripted: bool,
     /// True once its episode has ended.
     pub(crate) done: bool,
     /// True if the task was fulfilled in the latest step.
@@ -102,6 +104,7 @@ impl EnvAgent {
             step_sizes: role.stride,
             sensors,
             episode: None,
+            scripted: role.scripted,
             done: false,
             success: false,
         })
@@ -187,8 +190,14 @@ impl EnvAgent {
             },
             progress,
             collision,
+            speaks: world.speaks(self.id),
             measures: self.task.measures(),
         })
+    }
+
+    /// Returns whether it waits for actions of a caller: it is not scripted, and its episode goes on.
+    pub(crate) fn takes_actions(&self) -> bool {
+        !self.scripted && !self.done
     }
 
     /// Takes over how a step is judged.
@@ -197,7 +206,7 @@ impl EnvAgent {
     }
 
     /// Returns the report of a step for an agent whose episode had ended before.
-    pub(crate) fn step_info_after_end(&self) -> Option<StepInfo> {
+    pub(crate) fn step_info_after_end(&self, world: &World) -> Option<StepInfo> {
         Some(StepInfo {
             agent: self.id,
             result: StepResult {
@@ -209,6 +218,7 @@ impl EnvAgent {
             action_error: "Its episode has ended.".to_owned(),
             progress: self.episode.as_ref()?.progress,
             collision: false,
+            speaks: world.speaks(self.id),
             measures: self.task.measures(),
         })
     }

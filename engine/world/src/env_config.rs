@@ -58,6 +58,9 @@ pub struct AgentConfig {
     /// Its sensors by name with their settings.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sensors: Option<Vec<SensorConfig>>,
+    /// Whether it acts as its task's expert says, whatever action it is given.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub scripted: bool,
 }
 
 /// A sensor that is asked for.
@@ -97,6 +100,8 @@ pub(crate) struct ResolvedAgentConfig<'a> {
     pub(crate) actions: ActionSet,
     /// `None`: the task's own choice.
     pub(crate) sensors: Option<&'a [SensorConfig]>,
+    /// Whether it acts as its task's expert says.
+    pub(crate) scripted: bool,
 }
 
 impl EnvConfig {
@@ -159,8 +164,16 @@ impl EnvConfig {
             }
         }
         let roles = self.agents.iter();
-        let roles = roles.map(|own| self.resolve_agent(own));
-        roles.collect()
+        let roles: Vec<_> = roles
+            .map(|own| self.resolve_agent(own))
+            .collect::<Result<_, _>>()?;
+        let kinds = roles.iter().filter_map(|role| tasks::find(role.task).ok());
+        for kind in kinds.filter(|kind| kind.min_agents > roles.len()) {
+            let found = format!("{} with {} agent", kind.name, roles.len());
+            let allowed = format!("at least {} agents in {}", kind.min_agents, kind.name);
+            return Err(fault("agents", found, allowed));
+        }
+        Ok(roles)
     }
 
     fn resolve_agent<'a>(
@@ -180,6 +193,7 @@ impl EnvConfig {
             stride,
             actions: ActionSet::of(&self.actions_of(own)?),
             sensors: own.sensors.as_deref().or(self.sensors.as_deref()),
+            scripted: own.scripted,
         })
     }
 }

@@ -1,9 +1,11 @@
 //! The step of an environment: one control step of all its agents together.
 
-use crate::actions::{AgentAction, DiscreteAction, StepAction};
+use crate::actions::{AgentAction, DiscreteAction, StepAction, StepUtterance};
 use crate::env::{Env, no_episode};
-use crate::episode::{Answer, AnswerField, StepInfo, TaskMeasure};
+use crate::episode::{Answer, AnswerField, StepInfo, StepResult, TaskMeasure};
 use crate::error::{WorldError, no_agent};
+use dwell_acoustics::utterance::{MAX_TOKENS, VocalEffort};
+use dwell_scene::AgentId;
 
 impl Env {
     /// Returns whether a step can be made by these actions.
@@ -19,7 +21,8 @@ impl Env {
         if !self.has_episode() {
             return Err(no_episode("step"));
         }
-        if self.agents.iter().all(|agent| agent.done) {
+        let callers = self.agents.iter().filter(|agent| !agent.scripted);
+        if callers.clone().count() > 0 && callers.clone().all(|agent| agent.done) {
             let what = "step: the episode has ended; call reset first";
             return Err(WorldError::InvalidCall(what.to_owned()));
         }
@@ -35,7 +38,7 @@ impl Env {
             action.check()?;
         }
         let mut idle = self.agents.iter().zip(actions);
-        match idle.find(|(agent, action)| !agent.done && action.is_none()) {
+        match idle.find(|(agent, action)| agent.takes_actions() && action.is_none()) {
             None => Ok(()),
             Some((agent, _)) => Err(WorldError::InvalidCall(format!(
                 "step: no action for agent {}, whose episode goes on",
@@ -47,7 +50,7 @@ impl Env {
     /// Makes one control step of all agents together, without looking: a [`Batch`](crate::Batch) observes afterwards.
     ///
     /// `actions`: shape (agent,). Of an agent whose episode has ended none is looked at; it stands still, is paid nothing and
-    /// reports how it ended.
+    /// reports how it ended. Scripted agents act as their experts say.
     ///
     /// Hands act before the step, the nearest to its thing first; nothing depends on the agents' numbers.
     ///
@@ -58,36 +61,68 @@ impl Env {
         actions: &[Option<A>],
     ) -> Result<Vec<StepInfo>, WorldError> {
         self.check_can_step(actions)?;
-        let acting = self.agents.iter().zip(actions);
-        let acting = acting.filter(|(agent, _)| !agent.done);
-        let steps: Vec<AgentAction> = acting
-            .filter_map(|(agent, action)| {
-                let action: StepAction = (*action)?.into();
-                Some(agent.world_action(&self.world, &action))
-            })
-            .collect();
+        let taken = self.taken_actions(actions)?;
+        let mut steps: Vec<AgentAction> = Vec::with_capacity(taken.len());
+        for (agent, action) in self.agents.iter().zip(&taken) {
+            let Some(action) = action else { continue };
+            steps.push(agent.world_action(&self.world, action));
+            if let Some(utterance) = action.utterance.and_then(|said| said.utterance()) {
+                self.world.say(agent.id, utterance)?;
+            }
+        }
         let outcomes = self.world.step_discrete_actions(&steps)?;
         self.steps += 1;
         let mut outcomes = outcomes.into_iter();
         let mut infos = Vec::with_capacity(self.agents.len());
-        for (agent, action) in self.agents.iter_mut().zip(actions) {
-            let info = if agent.done {
-                agent.step_info_after_end()
-            } else {
-                let step: Option<StepAction> = action.map(Into::into);
-                outcomes
+        for (agent, action) in self.agents.iter_mut().zip(&taken) {
+            let info = match action {
+                None => agent.step_info_after_end(&self.world),
+                Some(action) => outcomes
                     .next()
-                    .zip(step)
-                    .and_then(|(outcome, step)| agent.judge(&self.world, &step, outcome))
+                    .and_then(|outcome| agent.judge(&self.world, action, outcome)),
             };
             infos.push(info.ok_or_else(|| no_episode("step"))?);
         }
+        self.conclude(&taken, &mut infos);
         for agent in &mut self.agents {
             for sensor in &mut agent.sensors {
                 sensor.advance(&self.world)?;
             }
         }
         Ok(infos)
+    }
+
+    /// Returns what each agent does; nothing of one whose episode has ended. Shape (agent,).
+    fn taken_actions<A: Into<StepAction> + Copy>(
+        &mut self,
+        actions: &[Option<A>],
+    ) -> Result<Vec<Option<StepAction>>, WorldError> {
+        let taken = actions.iter().enumerate().map(|(place, action)| {
+            let agent = &self.agents[place];
+            match (agent.done, agent.scripted) {
+                (true, _) => Ok(None),
+                (false, true) => self.expert_step(place).map(Some),
+                (false, false) => Ok((*action).map(Into::into)),
+            }
+        });
+        taken.collect()
+    }
+
+    /// Lets the tasks of those who acted look at how the others were judged.
+    fn conclude(&mut self, taken: &[Option<StepAction>], infos: &mut [StepInfo]) {
+        let verdicts: Vec<(AgentId, StepResult)> = self
+            .agents
+            .iter()
+            .zip(infos.iter())
+            .map(|(agent, info)| (agent.id, info.result))
+            .collect();
+        let acted = self.agents.iter_mut().zip(infos).zip(taken);
+        for ((agent, info), _) in acted.filter(|(_, action)| action.is_some()) {
+            if let Some(result) = agent.task.conclude(&verdicts) {
+                info.result = result;
+                agent.apply_step_result(result);
+            }
+        }
     }
 
     /// Returns, for each discrete action of each agent, whether nothing known beforehand rules it out; what is not ruled out may
@@ -135,15 +170,34 @@ impl Env {
             .collect())
     }
 
+    /// Returns what each agent's scripted expert would say now, numbers of words up to the first 0. Shape (agent,).
+    ///
+    /// # Errors
+    /// [`WorldError::InvalidCall`] before the first reset.
+    pub fn expert_utterances(&self) -> Result<Vec<[u32; MAX_TOKENS]>, WorldError> {
+        if !self.has_episode() {
+            return Err(no_episode("expert"));
+        }
+        let agents = self.agents.iter();
+        let said = agents.map(|agent| agent.task.expert_utterance(&self.world));
+        Ok(said.collect())
+    }
+
     /// Returns what the scripted expert of one agent would do now, its answer included.
     ///
     /// # Errors
     /// As [`Self::expert_action`].
     pub fn expert_step(&mut self, agent: usize) -> Result<StepAction, WorldError> {
         let action = self.expert_action(agent)?;
-        let answer = self.agents[agent].task.expert_answer(&self.world);
+        let task = &self.agents[agent].task;
+        let answer = task.expert_answer(&self.world);
+        let utterance = StepUtterance {
+            tokens: task.expert_utterance(&self.world),
+            effort: VocalEffort::Normal,
+        };
         Ok(StepAction {
             answer,
+            utterance: (utterance.tokens[0] != 0).then_some(utterance),
             ..action.into()
         })
     }

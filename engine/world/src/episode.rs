@@ -152,6 +152,8 @@ pub struct StepInfo {
     pub progress: NavigationMetrics,
     /// True if this step was cut short by something in the way.
     pub collision: bool,
+    /// True if the agent goes on speaking after the step.
+    pub speaks: bool,
     /// What the task measures, in the order of its kind's `measures`; NaN for what is not known yet.
     pub measures: Vec<f64>,
 }

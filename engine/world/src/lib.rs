@@ -52,12 +52,13 @@ mod world_sounds;
 
 pub use actions::{
     ActionMode, ActionTarget, AgentAction, DiscreteAction, HandActionRequest, HandTarget,
-    ObjectRef, PixelCamera, StepAction, StepSizes,
+    ObjectRef, PixelCamera, StepAction, StepSizes, StepUtterance,
 };
 pub use batch::Batch;
 pub use camera_capture::{CameraMount, ImageRequest};
 pub use config::WorldConfig;
 pub use current_objects::{ObjectState, effective_agents, object_state, object_states};
+pub use dwell_acoustics::utterance::{MAX_TOKENS, VocalEffort};
 pub use engines::Engines;
 pub use env::Env;
 pub use env_config::{AgentConfig, EnvConfig, SensorConfig};
@@ -78,7 +79,9 @@ pub use motion_history::LastStepMotion;
 pub use plain_json_error::plain_json_error;
 pub use room_surfaces::{RoomMaterialMesh, room_surfaces};
 pub use sensor_requests::{RenderedImages, RenderedView, SensorRequests, ViewRequest};
-pub use sound::{PlayRequest, SoundName, SoundPlace, SoundState, default_level_db};
+pub use sound::{
+    HeardToken, PlayRequest, SoundName, SoundPlace, SoundState, Utterance, default_level_db,
+};
 pub use world::World;
 
 /// Returns the pose of a camera relative to the eyes that carry it: position in m, then yaw, pitch and roll in degrees.

@@ -120,7 +120,9 @@ impl World {
             length_s: self.config.step_s(),
             key: self.key.child("sound"),
         });
-        self.sound.advance(&self.engines, &self.rays, &self.state)
+        let key = self.key.child("sound");
+        self.sound
+            .advance(&self.engines, &self.rays, &self.state, key)
     }
 
     /// Performs an action of an agent's hand.
@@ -248,6 +250,11 @@ impl World {
     /// The state.
     pub fn state(&self) -> &State {
         &self.state
+    }
+
+    /// The random key of the episode, the same for all agents.
+    pub(crate) fn episode_key(&self) -> RandomKey {
+        self.key
     }
 
     /// Surfaces as they stand now.

@@ -2,9 +2,9 @@
 
 use crate::error::WorldError;
 use crate::listener::Listener;
-use crate::sound::{PlayRequest, SoundState, check_level};
+use crate::sound::{HeardToken, PlayRequest, SoundState, Utterance, check_level};
 use crate::world::World;
-use dwell_scene::AgentId;
+use dwell_scene::{AgentId, Id};
 
 impl World {
     /// Plays a sound from the next step on, until it is over or stopped, or the world is reset. Returns its handle, which no
@@ -66,6 +66,47 @@ impl World {
     pub fn sounds(&self) -> Vec<SoundState> {
         self.sound
             .list_emitters_and_playbacks(self.engines.house(), &self.state)
+    }
+
+    /// Lets an agent say something from the next step on: it sounds at its mouth, with its voice, and who listens hears it. Returns
+    /// whether it does: not while it speaks already, and not in a world that is [`muted`](crate::WorldConfig::muted).
+    ///
+    /// An agent's voice is drawn from the episode, the same for all that it says.
+    ///
+    /// # Errors
+    /// [`WorldError::InvalidCall`] for an agent that does not exist, [`WorldError::Config`] for a number that no word has,
+    /// [`WorldError::Acoustics`] for no tokens or too many. Nothing has changed then.
+    pub fn say(&mut self, agent: AgentId, utterance: Utterance) -> Result<bool, WorldError> {
+        let count = self.state.agents.len();
+        if agent.index() >= count {
+            let what = format!("no agent {}; there are {count}", agent.0);
+            return Err(WorldError::InvalidCall(what));
+        }
+        let words = dwell_semantics::vocabulary::count();
+        let is_no_word = |token: &&u32| !(1..words).contains(&(**token as usize));
+        if let Some(token) = utterance.tokens.iter().find(is_no_word) {
+            return Err(WorldError::Config {
+                field: "tokens",
+                found: token.to_string(),
+                allowed: format!("numbers of words, 1 to {}", words - 1),
+            });
+        }
+        dwell_acoustics::utterance::duration_s(&utterance.tokens)?;
+        if self.config.muted {
+            return Ok(false);
+        }
+        let key = self.key.child("sound");
+        self.sound.say(agent, utterance, key)
+    }
+
+    /// Returns whether an agent's voice sounds in the next step.
+    pub fn speaks(&self, agent: AgentId) -> bool {
+        self.sound.speaks(agent)
+    }
+
+    /// What an agent has understood in the last step of what others say, the loudest first; nothing for one that does not listen.
+    pub fn heard_tokens(&self, agent: AgentId) -> Vec<&HeardToken> {
+        self.sound.heard_tokens(agent)
     }
 
     /// The newest samples at an agent's ear (0 left, 1 right), Pa; zeros before it listened that long.

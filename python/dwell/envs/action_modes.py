@@ -44,6 +44,10 @@ _LEAST_TURN = 0.06
 _IDS = 1 << 20
 #: Numbers that an answer can have, whatever the task.
 ANSWER_FIELDS = 4
+#: The most words of an utterance.
+MAX_TOKENS = 8
+#: The number of the vocal effort of conversation.
+NORMAL_EFFORT = 1
 
 
 @dataclasses.dataclass(frozen=True)
@@ -56,6 +60,8 @@ class EngineActions:
         places: Of pictures, shares of width and height, shape (n, 2) float32.
         objects: Ids of things, 0 for what is looked at, shape (n,) int64.
         answers: Numbers that the task expects with ``stop``, shape (n, 4) float32.
+        tokens: What is said from now on, numbers of words up to the first 0, shape (n, 8) int64.
+        efforts: With which of the vocal efforts, shape (n,) int64.
     """
 
     numbers: NDArray[np.int64]
@@ -63,6 +69,8 @@ class EngineActions:
     places: NDArray[np.float32] | None = None
     objects: NDArray[np.int64] | None = None
     answers: NDArray[np.float32] | None = None
+    tokens: NDArray[np.int64] | None = None
+    efforts: NDArray[np.int64] | None = None
 
     def step(self, batch: _native.Batch) -> dict[str, Any]:
         """One control step of all environments of a batch; what its ``step`` answers."""
@@ -73,6 +81,8 @@ class EngineActions:
             None if places is None else np.ascontiguousarray(places).ravel(),
             None if objects is None else np.ascontiguousarray(objects),
             None if self.answers is None else np.ascontiguousarray(self.answers).ravel(),
+            None if self.tokens is None else np.ascontiguousarray(self.tokens).ravel(),
+            None if self.efforts is None else np.ascontiguousarray(self.efforts),
         )
 
     def without(self, idle: NDArray[np.bool_]) -> EngineActions:
@@ -102,6 +112,8 @@ class EngineActions:
             joined("places", np.full(2, np.nan, np.float32)),
             joined("objects", np.zeros((), np.int64)),
             joined("answers", np.full(ANSWER_FIELDS, np.nan, np.float32)),
+            joined("tokens", np.zeros(MAX_TOKENS, np.int64)),
+            joined("efforts", np.full((), NORMAL_EFFORT, np.int64)),
         )
 
     def names(self) -> list[str]:

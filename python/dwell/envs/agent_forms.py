@@ -14,6 +14,7 @@ from dwell.arguments import abbreviated_list, mapping, number_in_range, quoted
 from dwell.envs.action_modes import AnsweredActions, EngineActions, action_form, masked_form
 from dwell.envs.agent_settings import AgentRoster
 from dwell.envs.native_batch import NativeBatch
+from dwell.envs.voice import VoicedActions
 
 
 class AgentForms:
@@ -41,19 +42,25 @@ class AgentForms:
             ConfigError: An agent's form has no masks; the share is out of range.
         """
         batch = runner.batch
+        #: All names, those of scripted agents among them.
         self.names = roster.names
+        #: The places of those who take actions.
+        self.players = roster.players
         count = len(self.names)
-        self._forms = [action_form(config, batch.answer_fields(k), k) for k in range(count)]
-        self._masks = [masked_form(action_mask, form) for form in self._forms]
+        silent = [action_form(config, batch.answer_fields(k), k) for k in range(count)]
+        self._masks = [masked_form(action_mask, form) for form in silent]
+        self._forms = [
+            form if voice is None else VoicedActions(form, voice)
+            for form, voice in zip(silent, roster.voices, strict=True)
+        ]
         self.measures = [batch.measures(k) for k in range(count)]
         self._share = number_in_range("shared_reward", shared_reward, 0.0, 1.0)
         self._teams = roster.teams
         self.action_spaces: dict[str, spaces.Space[Any]] = {
-            name: form.space for name, form in zip(self.names, self._forms, strict=True)
+            self.names[k]: self._forms[k].space for k in self.players
         }
         self.observation_spaces = {
-            name: spaces.Dict(own)
-            for name, own in zip(self.names, runner.agent_spaces, strict=True)
+            self.names[k]: spaces.Dict(runner.agent_spaces[k]) for k in self.players
         }
 
     def action_names(self, agent: int) -> list[str]:
@@ -69,10 +76,9 @@ class AgentForms:
         """
         given = mapping("actions", actions, "actions by the agents' names")
         for name in given:
-            if name not in self.names:
-                raise ConfigError(
-                    f"actions: no agent {quoted(name)}; allowed are {abbreviated_list(self.names)}"
-                )
+            if name not in self.action_spaces:
+                known = abbreviated_list([*self.action_spaces])
+                raise ConfigError(f"actions: no agent {quoted(name)}; allowed are {known}")
             if name not in live:
                 raise UsageError(f"actions: the episode of {name} has ended; leave its action out")
         if missing := [name for name in live if name not in given]:
@@ -90,7 +96,7 @@ class AgentForms:
 
         Args:
             actions: Elements of the batched action spaces, of all agents.
-            acts: Whose actions are taken, shape (environment, agent).
+            acts: Whose actions are taken, shape (environment, agent), scripted ones among them.
 
         Raises:
             ConfigError: They are not those of all agents, or one is none.
@@ -131,11 +137,20 @@ class AgentForms:
         """What the agents' experts would do now, elements of the batched action spaces."""
         numbers, count = runner.expert_actions(), len(self.names)
         answers = runner.batch.expert_answers().reshape(len(numbers), -1)
+        words = runner.batch.expert_utterances().reshape(len(numbers), -1)
         found: dict[str, Any] = {}
         for k, (name, form) in enumerate(zip(self.names, self._forms, strict=True)):
-            own = numbers[k::count]
-            if isinstance(form, AnsweredActions):
-                found[name] = form.expert(own, answers[k::count])
+            silent = form.form if isinstance(form, VoicedActions) else form
+            if isinstance(silent, AnsweredActions):
+                own = silent.expert(numbers[k::count], answers[k::count])
             else:
-                found[name] = form.expert(own)
+                own = silent.expert(numbers[k::count])
+            if isinstance(form, VoicedActions):
+                own = form.of_expert(own, words[k::count])
+            found[name] = own
         return found
+
+    def words(self, agent: int) -> list[str]:
+        """The words that an agent can say, by their numbers; the first is none."""
+        form = self._forms[agent]
+        return [*form.words] if isinstance(form, VoicedActions) else []

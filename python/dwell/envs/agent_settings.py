@@ -9,6 +9,7 @@ from typing import Any, TypedDict
 from dwell import ConfigError, _native
 from dwell.arguments import (
     abbreviated_list,
+    boolean,
     checked_fields,
     integer_in_range,
     mapping,
@@ -21,6 +22,7 @@ from dwell.configs import bodies
 from dwell.envs.action_modes import checked_mode
 from dwell.envs.config import env_json, sensor_rows, step_limit
 from dwell.envs.python_tasks import NativeSettings
+from dwell.envs.voice import Voice
 from dwell.heads import Head
 from dwell.schemas import setting_checks
 from dwell.world_settings import with_head
@@ -43,6 +45,10 @@ class AgentSettings(TypedDict, total=False):
     actions: Sequence[str]
     body: Mapping[str, Any]
     team: str
+    #: Whether it speaks: a switch, or ``words``, ``max_tokens`` and ``efforts``.
+    voice: bool | Mapping[str, Any]
+    #: Whether it acts as its task's expert says; it is in nobody's list of agents then.
+    scripted: bool
 
 
 #: A number of agents, or settings by name.
@@ -58,16 +64,20 @@ class AgentRoster:
         rows: The engine's settings of each.
         bodies: The engine's settings of each one's body.
         teams: Of each the places of those of its team, itself among them.
+        voices: What each can say, where it can.
+        players: The places of those who take actions; the others are scripted.
     """
 
     names: list[str]
     rows: list[dict[str, Any]]
     bodies: list[dict[str, Any]]
     teams: list[list[int]]
+    voices: list[Voice | None]
+    players: list[int]
 
     @classmethod
-    def of(cls, agents: object) -> AgentRoster:
-        """The agents of an argument.
+    def of(cls, agents: object, voice: object = False) -> AgentRoster:
+        """The agents of an argument; ``voice``: that of agents that state none.
 
         Raises:
             ConfigError: It is none; there are no agents, or too many; a setting is wrong.
@@ -87,6 +97,13 @@ class AgentRoster:
         for name, settings in zip(names, own, strict=True):
             known = [*AgentSettings.__annotations__]
             refuse_unknown(f"agents.{name}", [key for key in settings if key not in known], known)
+        scripted = [
+            boolean(f"agents.{n}.scripted", s.get("scripted", False))
+            for n, s in zip(names, own, strict=True)
+        ]
+        players = [k for k, is_scripted in enumerate(scripted) if not is_scripted]
+        if not players:
+            raise ConfigError("agents: all are scripted; expected at least one that takes actions")
         teams = [
             text(f"agents.{n}.team", s.get("team", "")) for n, s in zip(names, own, strict=True)
         ]
@@ -95,6 +112,13 @@ class AgentRoster:
             [_row(f"agents.{n}", k, s) for k, (n, s) in enumerate(zip(names, own, strict=True))],
             bodies([settings.get("body", {}) for settings in own]),
             [[k for k, other in enumerate(teams) if other == team] for team in teams],
+            [
+                Voice.of(f"agents.{n}.voice", s["voice"])
+                if "voice" in s
+                else Voice.of("voice", voice)
+                for n, s in zip(names, own, strict=True)
+            ],
+            players,
         )
 
     def place(self, name: object) -> int:
@@ -124,6 +148,9 @@ def _row(at: str, number: int, settings: Mapping[str, Any]) -> dict[str, Any]:
         row["actions"] = text_list(f"{at}.actions", settings["actions"])
     if "sensors" in settings:
         row["sensors"] = sensor_rows(settings["sensors"])
+    if settings.get("scripted", False):
+        # Nobody looks at what it observes.
+        row.update(scripted=True, sensors=row.get("sensors", []))
     return row
 
 
@@ -150,7 +177,7 @@ class MultiAgentSetup:
         Raises:
             ConfigError: One is wrong; the message names it.
         """
-        roster = AgentRoster.of(given["agents"])
+        roster = AgentRoster.of(given["agents"], given["voice"])
         world, heads = with_head(given["world"])
         if world is not None and "agents" in world:
             raise ConfigError("world: agents; the bodies stand in agents, as {'a': {'body': {}}}")
@@ -161,7 +188,7 @@ class MultiAgentSetup:
             stride=given["stride"],
             action_mode=given["action_mode"],
             actions=given["actions"],
-            world={**(world or {}), "agents": roster.bodies},
+            world={**(world or {}), "agents": roster.bodies, **_muted(given["muted"])},
             agents=roster.rows,
         )
         cycles = given["max_cycles"]
@@ -171,3 +198,8 @@ class MultiAgentSetup:
             # What no task is called is refused by the engine, which lists those there are.
             cycles = max((limits[name] for name in own if name in limits), default=None)
         return cls(roster, config, step_limit(cycles, "max_cycles"), heads)
+
+
+def _muted(muted: object) -> dict[str, bool]:
+    """The field of a world whose voices are silent; no field where they are not."""
+    return {"muted": True} if boolean("muted", muted) else {}

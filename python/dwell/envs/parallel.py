@@ -19,7 +19,7 @@ from dwell.arguments import integer_in_range, kept, quoted, refuse_unknown
 from dwell.camera import camera_settings
 from dwell.envs.agent_forms import AgentForms
 from dwell.envs.agent_settings import OF_TASKS, Agents, MultiAgentSetup
-from dwell.envs.agent_state import STATE_FIELDS, agent_state_rows, state_space
+from dwell.envs.agent_state import agent_state_rows, state_space
 from dwell.envs.config import (
     CACHED_HOUSES,
     HouseCache,
@@ -77,6 +77,8 @@ class DwellParallelEnv(CurrentStateApi, ParallelEnv, EzPickle):  # type: ignore[
         actions: Sequence[str] | None = None,
         action_mask: bool = False,
         world: Mapping[str, Any] | None = None,
+        voice: bool | Mapping[str, Any] = False,
+        muted: bool = False,
         shared_reward: float = 0.0,
         threads: int | None = None,
         max_cycles: int | str | None = OF_TASKS,
@@ -89,8 +91,9 @@ class DwellParallelEnv(CurrentStateApi, ParallelEnv, EzPickle):  # type: ignore[
             task: The task of agents that state no other, by its name.
             agents: How many agents act (``agent_0``, ``agent_1`` and so on), or settings by the
                 agents' names: ``task``, ``task_settings``, ``sensors``, ``stride``,
-                ``action_mode``, ``actions``, ``body`` (fields of the native AgentBody) and
-                ``team``; what an agent does not state is as for all. At most 64.
+                ``action_mode``, ``actions``, ``body`` (fields of the native AgentBody), ``voice``,
+                ``team``, and ``scripted`` (it acts as its task's expert says, and is in no list);
+                what an agent does not state is as for all. At most 64.
             houses: A HOUSES string or a :class:`dwell.House`, or several; default
                 ``"builtin:apartment"``.
             sensors: Names of sensors, or settings by name; default each task's own choice.
@@ -102,6 +105,11 @@ class DwellParallelEnv(CurrentStateApi, ParallelEnv, EzPickle):  # type: ignore[
             actions: Names of the actions to choose from.
             action_mask: Whether each info has an ``action_mask``.
             world: Further fields of the native WorldConfig; the agents' bodies stand in ``agents``.
+            voice: What agents that state no ``voice`` can say: nothing (``False``), all words of
+                the vocabulary (``True``), or ``words``, ``max_tokens`` (1 to 8) and ``efforts`` (of
+                ``whisper``, ``normal``, ``raised``, ``loud``, ``shout``). Actions have a ``say``
+                then; who has the sensors ``heard_tokens`` and ``heard_directions``, or ears, hears.
+            muted: Whether all voices are silent: what is said goes nowhere.
             shared_reward: Which share of an agent's reward is the mean of its team's, 0 (all
                 private) to 1; who states no ``team`` is in one with all others who state none.
             threads: How many threads to use; results do not depend on it.
@@ -126,6 +134,8 @@ class DwellParallelEnv(CurrentStateApi, ParallelEnv, EzPickle):  # type: ignore[
             "actions": kept(actions),
             "action_mask": action_mask,
             "world": kept(world),
+            "voice": kept(voice),
+            "muted": muted,
             "shared_reward": shared_reward,
             "threads": threads,
             "max_cycles": max_cycles,
@@ -162,12 +172,12 @@ class DwellParallelEnv(CurrentStateApi, ParallelEnv, EzPickle):  # type: ignore[
             "render_fps": steps_a_second(self._runner.batch),
         }
         self._agent = 0
-        self.possible_agents = [*self._roster.names]
+        self.possible_agents = [self._roster.names[k] for k in self._roster.players]
         self.agents: list[str] = []
         self.observation_spaces = self._forms.observation_spaces
         self.action_spaces = self._forms.action_spaces
         #: The space of :meth:`state`.
-        self.state_space: spaces.Box = state_space(len(self.possible_agents))
+        self.state_space: spaces.Box = state_space(len(self._roster.names))
 
     def observation_space(self, agent: str) -> spaces.Dict:
         """The space of an agent's observations; always the same object."""
@@ -249,7 +259,7 @@ class DwellParallelEnv(CurrentStateApi, ParallelEnv, EzPickle):  # type: ignore[
 
     def _read_goals(self) -> None:
         batch = self._runner.batch
-        self._goals = [batch.episode_goal(0, k) for k in range(len(self.possible_agents))]
+        self._goals = [batch.episode_goal(0, k) for k in range(len(self._roster.names))]
 
     def _observations(self, names: Sequence[str]) -> dict[str, dict[str, Any]]:
         self._runner.observe(self._alone)
@@ -312,6 +322,7 @@ class DwellParallelEnv(CurrentStateApi, ParallelEnv, EzPickle):  # type: ignore[
                 k = self._roster.place(name)
                 infos[name] |= step_info(answer, self._forms.measures[k], k)
                 infos[name]["audio_clipped"] = clipped[k]
+                infos[name]["speaks"] = bool(answer["speaks"][k])
             self.agents = [] if cut else [name for name in live if not ended[name]]
         return (
             observations,
@@ -325,15 +336,13 @@ class DwellParallelEnv(CurrentStateApi, ParallelEnv, EzPickle):  # type: ignore[
         """The state of all agents, for a critic that sees everything.
 
         Returns:
-            Shape (agent x 13,), by agent in the order of ``possible_agents``; see
+            Shape (agent x 13,), by agent as they were given, scripted ones among them; see
             :data:`dwell.envs.agent_state.STATE_FIELDS`.
         """
         self._refuse_stopped("state")
-        active = np.array([name in self.agents for name in self.possible_agents], np.bool_)
+        active = np.array([name in self.agents for name in self._roster.names], np.bool_)
         states = self._runner.batch.agent_states(0)
-        rows = agent_state_rows(states, self._distances, active)
-        assert rows.shape == (len(self.possible_agents), len(STATE_FIELDS))
-        return rows.ravel()
+        return agent_state_rows(states, self._distances, active).ravel()
 
     def render(self) -> NDArray[np.uint8] | None:
         """The agents' views side by side, (240, 320 x agents, 3) uint8; ``None`` without a mode."""
@@ -341,8 +350,8 @@ class DwellParallelEnv(CurrentStateApi, ParallelEnv, EzPickle):  # type: ignore[
         if self.render_mode is None:
             return None
         camera = camera_settings("camera", RENDER_CAMERA)
-        batch = self._runner.batch
-        views = [batch.render(0, {"camera": camera, "agent": number}) for number in batch.agents()]
+        batch, players = self._runner.batch, self._roster.players
+        views = [batch.render(0, {"camera": camera, "agent": number}) for number in players]
         return np.concatenate(views, axis=1)
 
     def close(self) -> None:
@@ -364,10 +373,14 @@ class DwellParallelEnv(CurrentStateApi, ParallelEnv, EzPickle):  # type: ignore[
         """The names of an agent's actions, in the order of their numbers."""
         return self._forms.action_names(self._roster.place(agent))
 
+    def words(self, agent: str) -> list[str]:
+        """The words that an agent can say, by the numbers of ``say``; the first is none."""
+        return self._forms.words(self._roster.place(agent))
+
     def agent_states(self) -> dict[str, dict[str, Any]]:
         """The agents' states by name, as :meth:`dwell.World.agents` tells them."""
         states = agent_states(self._runner.batch.agent_states(0))
-        return dict(zip(self.possible_agents, states, strict=True))
+        return dict(zip(self._roster.names, states, strict=True))
 
     @property
     def world(self) -> World:
@@ -434,7 +447,9 @@ class DwellParallelEnv(CurrentStateApi, ParallelEnv, EzPickle):  # type: ignore[
                 f"snapshot refused: it is of no environment of several agents: {quoted(error)}"
             ) from None
         names = self.possible_agents
-        if len(distances) != len(names) or live != [name for name in names if name in live]:
+        if len(distances) != len(self._roster.names) or live != [
+            name for name in names if name in live
+        ]:
             raise ConfigError(
                 f"snapshot refused: it is of agents {quoted(live)}; here are {quoted(names)}"
             )

@@ -59,6 +59,8 @@ class DwellParallelVectorEnv(EzPickle):
         actions: Sequence[str] | None = None,
         action_mask: bool = False,
         world: Mapping[str, Any] | None = None,
+        voice: bool | Mapping[str, Any] = False,
+        muted: bool = False,
         shared_reward: float = 0.0,
         threads: int | None = None,
         max_cycles: int | str | None = OF_TASKS,
@@ -83,6 +85,8 @@ class DwellParallelVectorEnv(EzPickle):
             actions: Names of the actions to choose from.
             action_mask: Whether infos have masks of actions.
             world: Further fields of the native WorldConfig.
+            voice: What agents can say, as of :class:`dwell.pettingzoo.DwellParallelEnv`.
+            muted: Whether their voices are silent.
             shared_reward: Which share of a reward is the mean of the agent's team's.
             threads: How many threads to use; results do not depend on it.
             max_cycles: Steps after which all episodes of an environment are truncated.
@@ -107,6 +111,8 @@ class DwellParallelVectorEnv(EzPickle):
             "actions": kept(actions),
             "action_mask": action_mask,
             "world": kept(world),
+            "voice": kept(voice),
+            "muted": muted,
             "shared_reward": shared_reward,
             "threads": threads,
             "max_cycles": max_cycles,
@@ -118,7 +124,9 @@ class DwellParallelVectorEnv(EzPickle):
         self.num_envs = count = integer_in_range("num_envs", num_envs, low=1, high=65_536)
         self._copy, overlap = boolean("copy", copy), boolean("overlap", overlap)
         setup = MultiAgentSetup.of(task, given)
-        self._limit, names = setup.limit, setup.roster.names
+        self._limit, roster = setup.limit, setup.roster
+        names = [roster.names[k] for k in roster.players]
+        self._players, everybody = roster.players, len(roster.names)
         self._shelf = shelf = shelf_of(given["houses"], None)
         threads = None if threads is None else integer_in_range("threads", threads, low=1)
         self._runner = runner = NativeBatch(
@@ -127,7 +135,7 @@ class DwellParallelVectorEnv(EzPickle):
         pool = EnvPool(shelf, setup.config, setup.heads, threads)
         self._places = HouseAssignment(runner, pool, integer_in_range("load_ahead", load_ahead))
         self._forms = AgentForms(
-            setup.config, runner, setup.roster, action_mask=action_mask, shared_reward=shared_reward
+            setup.config, runner, roster, action_mask=action_mask, shared_reward=shared_reward
         )
         self.possible_agents = [*names]
         self.observation_spaces = self._forms.observation_spaces
@@ -139,14 +147,14 @@ class DwellParallelVectorEnv(EzPickle):
             name: batch_space(self.action_spaces[name], count) for name in names
         }
         #: The space of one row of :meth:`state`.
-        self.state_space: spaces.Box = state_space(len(names))
+        self.state_space: spaces.Box = state_space(everybody)
         self._streams: list[np.random.Generator | None] = [None] * count
         self._seeds = [0] * count
         #: Whose episodes go on, shape (environment, agent).
-        self._active = np.zeros((count, len(names)), np.bool_)
+        self._active = np.zeros((count, everybody), np.bool_)
         #: Where the next step begins episodes.
         self._over: NDArray[np.bool_] = np.ones(count, np.bool_)
-        self._distances = np.full((count, len(names)), np.nan)
+        self._distances = np.full((count, everybody), np.nan)
         self._stopped = np.ones(count, np.bool_)
         self._call: str | None = None
         self._closed = False
@@ -257,27 +265,30 @@ class DwellParallelVectorEnv(EzPickle):
             distances = np.asarray(answer["distance_to_goal"]).reshape(shape)
             self._distances[acts] = distances[acts]
             self._active &= ~(terminated | truncated)
-            self._over = np.logical_not(self._active.any(axis=1))
+            self._over = np.logical_not(self._active[:, self._players].any(axis=1))
             self._runner.observe(np.ones(self.num_envs, np.bool_))
             infos = self._infos()
-            count = len(self.possible_agents)
-            for k, name in enumerate(self.possible_agents):
+            count, by_agent = (
+                acts.shape[1],
+                [*zip(self._players, self.possible_agents, strict=True)],
+            )
+            for k, name in by_agent:
                 own = {key: value[k::count] for key, value in answer.items()}
                 keys = (*INFO_KEYS, *self._forms.measures[k])
                 infos[name] |= step_infos(own, keys, acts[:, k])
                 infos[name]["active"] = acts[:, k]
-            by_agent = range(count), self.possible_agents
+                infos[name]["speaks"] = np.asarray(own["speaks"])
             return (
                 self._observations(),
-                {name: rewards[:, k] for k, name in zip(*by_agent, strict=True)},
-                {name: terminated[:, k] for k, name in zip(*by_agent, strict=True)},
-                {name: truncated[:, k] for k, name in zip(*by_agent, strict=True)},
+                {name: rewards[:, k] for k, name in by_agent},
+                {name: terminated[:, k] for k, name in by_agent},
+                {name: truncated[:, k] for k, name in by_agent},
                 infos,
             )
 
     def _observations(self) -> ByAgent:
         found = {}
-        for k, name in enumerate(self.possible_agents):
+        for k, name in zip(self._players, self.possible_agents, strict=True):
             now = self._runner.agent_observation(k)
             found[name] = (
                 {key: v if isinstance(v, tuple) else v.copy() for key, v in now.items()}
@@ -294,7 +305,8 @@ class DwellParallelVectorEnv(EzPickle):
                 episodes[k] = self._places.episode_id(k, self._seeds[k])
         masks = self._forms.masks(self._runner)
         infos: ByAgent = {}
-        for name, mask in zip(self.possible_agents, masks, strict=True):
+        for k, name in zip(self._players, self.possible_agents, strict=True):
+            mask = masks[k]
             infos[name] = {"scene_id": scenes, "episode_id": episodes}
             if mask is not None:
                 infos[name]["action_mask"] = mask
@@ -304,7 +316,8 @@ class DwellParallelVectorEnv(EzPickle):
         """What the episodes of an environment's agents ask for, as a single environment's infos."""
         k = integer_in_range("env", env, high=self.num_envs - 1)
         batch = self._runner.batch
-        return {name: batch.episode_goal(k, a) for a, name in enumerate(self.possible_agents)}
+        rows = zip(self._players, self.possible_agents, strict=True)
+        return {name: batch.episode_goal(k, agent) for agent, name in rows}
 
     def state(self) -> NDArray[np.float32]:
         """The states of all agents, (num_envs, agent x 13); see :meth:`DwellParallelEnv.state`."""
@@ -318,7 +331,8 @@ class DwellParallelVectorEnv(EzPickle):
     def expert_actions(self) -> dict[str, Any]:
         """What the agents' experts would do now, elements of ``batched_action_spaces``."""
         with self._calling("expert_actions"):
-            return self._forms.expert(self._runner)
+            found = self._forms.expert(self._runner)
+            return {name: found[name] for name in self.possible_agents}
 
     def state_hashes(self) -> list[int]:
         """The state hash of every environment."""

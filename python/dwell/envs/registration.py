@@ -18,15 +18,15 @@ if TYPE_CHECKING:
 
 
 def env_ids() -> list[str]:
-    """The ids of all environments."""
-    return [task["id"] for task in _native.tasks()]
+    """The ids of all environments of one agent."""
+    return [task["id"] for task in _native.tasks() if task["min_agents"] == 1]
 
 
 def register_envs() -> None:
-    """Registers every task; again does nothing."""
+    """Registers every task that one agent can play; again does nothing."""
     for task in _native.tasks():
         name = task["id"]
-        if name in gymnasium.registry:
+        if name in gymnasium.registry or task["min_agents"] > 1:
             continue
         gymnasium.register(
             name,

@@ -24,7 +24,7 @@ pub use discrete::{AgentAction, HandTarget};
 pub use kind::ActionKind;
 pub use request::HandActionRequest;
 pub(crate) use step_action::actions_named;
-pub use step_action::{ActionMode, ActionTarget, StepAction};
+pub use step_action::{ActionMode, ActionTarget, StepAction, StepUtterance};
 pub use step_sizes::StepSizes;
 pub use target::{ObjectRef, PixelCamera, TargetRequest};
 

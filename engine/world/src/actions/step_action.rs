@@ -3,7 +3,9 @@
 use super::{AgentAction, DiscreteAction, StepSizes};
 use crate::episode::{Answer, MAX_ANSWER_FIELDS};
 use crate::error::WorldError;
+use crate::sound::Utterance;
 use crate::world::World;
+use dwell_acoustics::utterance::{MAX_TOKENS, VocalEffort};
 use dwell_scene::{AgentId, EntityId};
 use serde::{Deserialize, Serialize};
 
@@ -48,6 +50,27 @@ pub enum ActionTarget {
     Entity(EntityId),
 }
 
+/// What an agent begins to say in a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StepUtterance {
+    /// Numbers of words of the vocabulary, up to the first 0.
+    pub tokens: [u32; MAX_TOKENS],
+    /// How loudly.
+    pub effort: VocalEffort,
+}
+
+impl StepUtterance {
+    /// Returns the utterance; `None` without words.
+    pub(crate) fn utterance(&self) -> Option<Utterance> {
+        let words = self.tokens.iter().copied();
+        let tokens: Vec<u32> = words.take_while(|token| *token != 0).collect();
+        (!tokens.is_empty()).then_some(Utterance {
+            tokens,
+            effort: self.effort,
+        })
+    }
+}
+
 /// An agent's part of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepAction {
@@ -60,6 +83,8 @@ pub struct StepAction {
     pub target: ActionTarget,
     /// With `stop`, the answer that its task expects; NaN for none.
     pub answer: Answer,
+    /// What it begins to say; `None`: nothing. While an agent speaks, nothing that it says else is taken.
+    pub utterance: Option<StepUtterance>,
 }
 
 impl From<DiscreteAction> for StepAction {
@@ -69,6 +94,7 @@ impl From<DiscreteAction> for StepAction {
             velocity: None,
             target: ActionTarget::Gaze,
             answer: [f32::NAN; MAX_ANSWER_FIELDS],
+            utterance: None,
         }
     }
 }
@@ -90,6 +116,12 @@ impl StepAction {
             |numbers: &[f32], low: f32| numbers.iter().any(|number| !(low..=1.0).contains(number));
         if let Some(velocity) = self.velocity.filter(|velocity| outside(velocity, -1.0)) {
             return fault("velocity", format!("{velocity:?}"), "numbers from -1 to 1");
+        }
+        let words = dwell_semantics::vocabulary::count();
+        let said = self.utterance.iter().flat_map(|said| &said.tokens);
+        if let Some(token) = said.into_iter().find(|token| **token as usize >= words) {
+            let allowed = format!("numbers of words, 1 to {}, or 0 for none", words - 1);
+            return fault("tokens", token.to_string(), &allowed);
         }
         match self.target {
             ActionTarget::Picture(place) if outside(&place, 0.0) => {

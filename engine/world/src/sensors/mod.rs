@@ -14,6 +14,8 @@ mod depth;
 mod flow;
 mod gps;
 mod gyro;
+mod heard_directions;
+mod heard_tokens;
 mod image;
 mod imagegoal;
 mod instance;
@@ -357,6 +359,8 @@ pub fn all() -> &'static [SensorKind] {
         boxes_3d::KIND,
         audio::KIND,
         spectrogram::KIND,
+        heard_tokens::KIND,
+        heard_directions::KIND,
         pointgoal_with_gps_compass::KIND,
         roomgoal::KIND,
         objectgoal::KIND,

@@ -2,6 +2,7 @@
 //!
 //! - `emitters`: the sounds of the house's own objects; `playback`: sounds played on request; `sound_state`: both for people.
 //! - `events`: the one file that turns contacts, swinging joints and footsteps into sounds; `gait`: when feet come down.
+//! - `speech`: what agents say; `hearing`: what is understood of it.
 //! - `ears`: a stream for each receiver of an agent that listens; `fade`: levels without clicks; `snapshot`: all of it as bytes.
 
 mod ears;
@@ -9,14 +10,18 @@ mod emitters;
 mod events;
 mod fade;
 mod gait;
+mod hearing;
 mod playback;
 mod snapshot;
 mod sound_state;
+mod speech;
 
 pub(crate) use events::StepContext;
+pub use hearing::HeardToken;
 pub(crate) use playback::check_level;
 pub use playback::{PlayRequest, SoundName, SoundPlace, default_level_db};
 pub use sound_state::SoundState;
+pub use speech::Utterance;
 
 use crate::air_position::nearest_open_air_point;
 use crate::config::WorldConfig;
@@ -27,13 +32,15 @@ use dwell_acoustics::{AcousticConfig, HeadId, Stream, StreamConfig};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
-use dwell_scene::{House, State};
+use dwell_scene::{AgentId, House, State};
 use ears::AgentListener;
 use emitters::EmitterStates;
 use events::ActiveContactSound;
 use gait::GaitPhase;
 use glam::Vec3;
+use hearing::Hearing;
 use playback::Playback;
+use speech::ActiveUtterance;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// First handle and source id of sounds that are played; those of emitters are their numbers.
@@ -58,6 +65,8 @@ pub(crate) struct WorldSound {
     /// The samples, since the world's start, at which sounds that are played are silenced, by their handles.
     ends: BTreeMap<u64, u64>,
     next_played: u64,
+    spoken: Vec<ActiveUtterance>,
+    hearing: Hearing,
     ears: Vec<AgentListener>,
 }
 
@@ -85,6 +94,8 @@ impl WorldSound {
             playing: Vec::new(),
             ends: BTreeMap::new(),
             next_played: 0,
+            spoken: Vec::new(),
+            hearing: Hearing::default(),
             ears: Vec::new(),
         }
     }
@@ -99,6 +110,8 @@ impl WorldSound {
         self.playing.clear();
         self.ends.clear();
         self.next_played = 0;
+        self.spoken.clear();
+        self.hearing = Hearing::default();
         self.ears.clear();
     }
 
@@ -112,12 +125,13 @@ impl WorldSound {
         (names.into_iter().cloned().collect(), self.rate_hz)
     }
 
-    /// Ends a block: every ear hears its sources.
+    /// Ends a block: every ear hears its sources. `key`: of the world's sounds.
     pub(crate) fn advance(
         &mut self,
         engines: &Engines,
         rays: &RayScene,
         state: &State,
+        key: RandomKey,
     ) -> Result<(), WorldError> {
         self.emitters.update(engines.house(), state);
         let begun = self.blocks * self.block as u64;
@@ -134,6 +148,7 @@ impl WorldSound {
             for ears in &mut self.ears {
                 ears.render_block(engines.house(), rays, state, &sources)?;
             }
+            self.hear(state, &sources, key);
         }
         self.blocks += 1;
         // The sources of the block that has just ended are kept for ears that begin to listen after it.
@@ -141,6 +156,7 @@ impl WorldSound {
         self.touches
             .retain(|touch| touch.start + touch.length > ended);
         self.playing.retain(|playing| !playing.is_finished(ended));
+        self.spoken.retain(|own| own.end() > ended);
         let playing = &self.playing;
         self.ends
             .retain(|id, _| playing.iter().any(|own| own.state.id == *id));
@@ -250,6 +266,7 @@ impl WorldSound {
                 signal,
             });
         }
+        sources.extend(self.voices(state, rays, start));
         for touch in &self.touches {
             let mut signal = vec![0.0; self.block];
             touch.read(self.rate_hz, start, &mut signal);
@@ -270,6 +287,11 @@ impl WorldSound {
         if let Some(ears) = heard {
             ears.copy_newest(channel, out);
         }
+    }
+
+    /// What an agent heard of others in the last block, the loudest first.
+    pub(crate) fn heard_tokens(&self, agent: AgentId) -> Vec<&HeardToken> {
+        self.hearing.heard_by(agent)
     }
 
     pub(crate) fn play(

@@ -1,11 +1,13 @@
 //! Sounds played on request.
 
 use super::fade::GainRamp;
+use crate::air_position::nearest_open_air_point;
 use crate::engines::Engines;
 use crate::error::WorldError;
 use dwell_acoustics::signals::{self, Signal};
+use dwell_scene::rays::RayScene;
 use dwell_scene::units::pa_from_db_spl;
-use dwell_scene::{AgentId, House, ObjectId, State};
+use dwell_scene::{AgentId, AgentState, House, ObjectId, State};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -76,6 +78,12 @@ pub(super) struct PlaybackState {
 pub(super) struct Playback {
     pub(super) state: PlaybackState,
     signal: Signal,
+}
+
+/// Returns the point from which an agent's voice is heard, m.
+pub(super) fn mouth_of(agent: &AgentState, rays: &RayScene) -> Vec3 {
+    let mouth = agent.world_from_head().transform_point(MOUTH_IN_HEAD);
+    nearest_open_air_point(rays, mouth)
 }
 
 /// Refuses levels out of range.
@@ -223,10 +231,9 @@ impl Playback {
                 let middle = bounds.transformed(&shape.part_from_mesh).center();
                 state.part_pose[part].transform_point(middle)
             }
-            SoundPlace::Agent(agent) => {
-                let head = state.agents[agent].world_from_head();
-                head.transform_point(MOUTH_IN_HEAD)
-            }
+            SoundPlace::Agent(agent) => state.agents[agent]
+                .world_from_head()
+                .transform_point(MOUTH_IN_HEAD),
         }
     }
 }

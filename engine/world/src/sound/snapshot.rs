@@ -4,7 +4,9 @@ use super::ears::AgentListener;
 use super::emitters::EmitterStates;
 use super::events::ActiveContactSound;
 use super::gait::GaitPhase;
+use super::hearing::Hearing;
 use super::playback::{Playback, PlaybackState};
+use super::speech::SpokenUtterance;
 use super::{FIRST_PLAYED_ID, WorldSound};
 use crate::config::WorldConfig;
 use crate::engines::Engines;
@@ -30,6 +32,13 @@ struct SoundSnapshot {
     playing: Vec<PlaybackState>,
     next_played: u64,
     ears: Vec<(Listener, Vec<f32>, Vec<u8>)>,
+}
+
+/// Voices, where agents have spoken.
+#[derive(Serialize, Deserialize)]
+struct SpeechSnapshot {
+    spoken: Vec<SpokenUtterance>,
+    hearing: Hearing,
 }
 
 impl WorldSound {
@@ -58,9 +67,18 @@ impl WorldSound {
         let mut bytes =
             postcard::to_stdvec(&memory).expect("plain data can always be written to memory");
         // Behind the rest, so that worlds without such sounds have the bytes that they always had.
-        if !self.ends.is_empty() {
+        let spoke = !self.spoken.is_empty() || !self.hearing.is_idle();
+        if spoke || !self.ends.is_empty() {
             let ends = postcard::to_stdvec(&self.ends);
             bytes.extend(ends.expect("plain data can always be written to memory"));
+        }
+        if spoke {
+            let speech = SpeechSnapshot {
+                spoken: self.spoken.iter().map(|own| own.spoken.clone()).collect(),
+                hearing: self.hearing.clone(),
+            };
+            let speech = postcard::to_stdvec(&speech);
+            bytes.extend(speech.expect("plain data can always be written to memory"));
         }
         bytes
     }
@@ -116,8 +134,14 @@ impl WorldSound {
             sound.playing.push(playing);
         }
         sound.next_played = memory.next_played;
+        let mut rest = rest;
         if !rest.is_empty() {
-            sound.ends = postcard::from_bytes(rest).map_err(refuse)?;
+            (sound.ends, rest) = postcard::take_from_bytes(rest).map_err(refuse)?;
+        }
+        if !rest.is_empty() {
+            let speech: SpeechSnapshot = postcard::from_bytes(rest).map_err(refuse)?;
+            sound.restore_spoken(speech.spoken, state, key)?;
+            sound.hearing = speech.hearing;
         }
         for (listener, window, stream) in memory.ears {
             listener.check(sound.head)?;

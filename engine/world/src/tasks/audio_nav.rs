@@ -42,6 +42,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     version: 0,
     about: "Go to where a sound comes from, then stop within 1 m of there.",
     has_goal: true,
+    min_agents: 1,
     goal_parts: &[],
     max_steps: 1000,
     actions: DiscreteAction::DEFAULT,

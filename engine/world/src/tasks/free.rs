@@ -27,6 +27,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     version: 0,
     about: "Nothing is asked; explore, or build a task of your own upon it.",
     has_goal: false,
+    min_agents: 1,
     goal_parts: &[],
     max_steps: 1000,
     actions: DiscreteAction::DEFAULT,

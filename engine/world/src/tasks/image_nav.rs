@@ -20,6 +20,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     version: 0,
     about: "Go to where a picture was taken, then stop within 1 m of there.",
     has_goal: true,
+    min_agents: 1,
     goal_parts: &[GoalPart::Image],
     max_steps: 1000,
     actions: DiscreteAction::DEFAULT,

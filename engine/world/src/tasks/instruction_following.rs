@@ -21,6 +21,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     version: 0,
     about: "Follow an instruction: go to a room or find a thing, then stop.",
     has_goal: true,
+    min_agents: 1,
     goal_parts: &[],
     max_steps: 1000,
     actions: DiscreteAction::DEFAULT,

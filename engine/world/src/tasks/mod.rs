@@ -1,6 +1,7 @@
 //! Tasks: goals of episodes and verdicts on steps. One file each, and one line in [`all`].
 
 mod audio_nav;
+mod cooperate;
 mod door_leaves;
 mod embodied_qa;
 mod free;
@@ -10,6 +11,7 @@ mod instruction_following;
 mod instruction_following_v1;
 mod navigation;
 mod object_nav;
+mod pied_piper;
 mod point_nav;
 mod rearrange;
 mod relocation;
@@ -28,6 +30,7 @@ use crate::episode_spec::EpisodeSpec;
 use crate::error::WorldError;
 use crate::schema::FieldSchema;
 use crate::world::World;
+use dwell_acoustics::utterance::MAX_TOKENS;
 use dwell_physics::ActionOutcome;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentBody, AgentId};
@@ -104,6 +107,12 @@ pub trait Task: Debug + Send + Sync {
         played: &PlayedAction<'_>,
     ) -> StepResult;
 
+    /// Judges a step again when those of all agents have been judged, `verdicts` by agent: of tasks that several agents have together.
+    /// `None`, as of most: as before.
+    fn conclude(&mut self, _verdicts: &[(AgentId, StepResult)]) -> Option<StepResult> {
+        None
+    }
+
     /// What the hand is used on in an action of its agent that states no target, where the task knows better than the view.
     fn hand_target(&self, _world: &World, _action: DiscreteAction) -> Option<HandTarget> {
         None
@@ -117,6 +126,11 @@ pub trait Task: Debug + Send + Sync {
     /// The answer of the scripted expert now.
     fn expert_answer(&self, _world: &World) -> Answer {
         [0.0; MAX_ANSWER_FIELDS]
+    }
+
+    /// What the scripted expert says now, numbers of words up to the first 0; nothing for most.
+    fn expert_utterance(&self, _world: &World) -> [u32; MAX_TOKENS] {
+        [0; MAX_TOKENS]
     }
 
     /// What [`TaskKind::measures`] names, after the latest step; NaN for what is not known yet.
@@ -188,6 +202,8 @@ pub struct TaskKind {
     pub about: &'static str,
     /// True if the task has a goal, so that an episode can succeed.
     pub has_goal: bool,
+    /// How many agents must act at least in its environment.
+    pub min_agents: usize,
     /// What its goals have in every episode.
     pub goal_parts: &'static [GoalPart],
     /// Control steps after which an episode is cut off.
@@ -229,6 +245,8 @@ pub fn all() -> &'static [TaskKind] {
         embodied_qa::KIND,
         rearrange::KIND,
         tidy::KIND,
+        cooperate::KIND,
+        pied_piper::KIND,
     ]
 }
 

@@ -28,6 +28,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     version: 0,
     about: "Find a thing of a class, such as a chair, and stop within 1 m of it with the thing in view.",
     has_goal: true,
+    min_agents: 1,
     goal_parts: &[GoalPart::Class],
     max_steps: 1000,
     actions: DiscreteAction::DEFAULT,
@@ -85,31 +86,8 @@ impl GoalKind for ObjectNav {
         agent: AgentId,
         ground: &LargestIslandIndex<'_>,
     ) -> Vec<NavigationGoal> {
-        let house = world.house();
-        let classes = EntityClasses::new(house, ClassSet::Coarse);
-        let asked = &self.settings.classes;
-        let mut by_class: BTreeMap<i32, Vec<ObjectId>> = BTreeMap::new();
-        for object in house.objects.ids() {
-            let class = classes.of(house.entity_of_object(object).0);
-            let sought = category_of_class(class).is_some_and(|row| {
-                is_sought(row) && (asked.is_empty() || asked.iter().any(|name| name == row.name))
-            });
-            if sought {
-                by_class.entry(class).or_default().push(object);
-            }
-        }
-        let goals = by_class.into_iter().filter_map(|(class, objects)| {
-            let radius_m = self.settings.success_distance_m as f32;
-            let goal = InstructionGoal::objects(objects.clone(), radius_m);
-            let told = EpisodeGoal {
-                kind: "object",
-                objects,
-                class,
-                ..EpisodeGoal::default()
-            };
-            NavigationGoal::fulfilled((world, agent), ground, goal, told)
-        });
-        goals.collect()
+        let radius_m = self.settings.success_distance_m as f32;
+        class_goals((world, agent), ground, &self.settings.classes, radius_m)
     }
 
     fn stated(
@@ -152,4 +130,37 @@ impl GoalKind for ObjectNav {
         let noun = category_of_class(goal.told.class).map_or("thing", |row| row.singular);
         Ok(format!("Find {}.", english::with_article(noun)))
     }
+}
+
+/// The goals to find a thing of a class, for each class of which one stands near and in view of walkable places; of `asked`, or of all
+/// that can be looked for without names.
+pub(super) fn class_goals(
+    (world, agent): (&World, AgentId),
+    ground: &LargestIslandIndex<'_>,
+    asked: &[String],
+    radius_m: f32,
+) -> Vec<NavigationGoal> {
+    let house = world.house();
+    let classes = EntityClasses::new(house, ClassSet::Coarse);
+    let mut by_class: BTreeMap<i32, Vec<ObjectId>> = BTreeMap::new();
+    for object in house.objects.ids() {
+        let class = classes.of(house.entity_of_object(object).0);
+        let sought = category_of_class(class).is_some_and(|row| {
+            is_sought(row) && (asked.is_empty() || asked.iter().any(|name| name == row.name))
+        });
+        if sought {
+            by_class.entry(class).or_default().push(object);
+        }
+    }
+    let goals = by_class.into_iter().filter_map(|(class, objects)| {
+        let goal = InstructionGoal::objects(objects.clone(), radius_m);
+        let told = EpisodeGoal {
+            kind: "object",
+            objects,
+            class,
+            ..EpisodeGoal::default()
+        };
+        NavigationGoal::fulfilled((world, agent), ground, goal, told)
+    });
+    goals.collect()
 }

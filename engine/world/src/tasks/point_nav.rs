@@ -23,6 +23,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     version: 0,
     about: "Go to a point that is given by distance and direction, then stop within 0.2 m of it.",
     has_goal: true,
+    min_agents: 1,
     goal_parts: &[GoalPart::Position],
     max_steps: 1000,
     actions: DiscreteAction::DEFAULT,

@@ -21,6 +21,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     version: 0,
     about: "Go to a room of a kind, such as a kitchen, then stop in it.",
     has_goal: true,
+    min_agents: 1,
     goal_parts: &[GoalPart::Room],
     max_steps: 1000,
     actions: DiscreteAction::DEFAULT,

@@ -53,6 +53,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     version: 0,
     about: "Go to the thing that was heard, also when it has fallen silent, and stop within 1 m of it with the thing in view.",
     has_goal: true,
+    min_agents: 1,
     goal_parts: &[GoalPart::Class],
     max_steps: 1000,
     actions: DiscreteAction::DEFAULT,

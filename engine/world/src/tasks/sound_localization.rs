@@ -67,6 +67,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     version: 0,
     about: "Say where a sound comes from (azimuth, elevation, distance) and what it is.",
     has_goal: true,
+    min_agents: 1,
     goal_parts: &[],
     max_steps: 1000,
     actions: DiscreteAction::DEFAULT,

@@ -64,6 +64,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     version: 0,
     about: "Answer a question about the house: walk, look, and say the answer with stop.",
     has_goal: true,
+    min_agents: 1,
     goal_parts: &[GoalPart::Question],
     max_steps: 1000,
     actions: DiscreteAction::DEFAULT,

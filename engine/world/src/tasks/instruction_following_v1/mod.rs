@@ -42,6 +42,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     version: 1,
     about: "Follow an instruction with feet and hands: one step or several, with conditions, numbers and what is not to be done; then stop.",
     has_goal: true,
+    min_agents: 1,
     goal_parts: &[],
     max_steps: 1000,
     actions: &[

@@ -45,6 +45,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     version: 0,
     about: "Put everything back as it was: one to five things lie elsewhere, or stand open or closed; then stop.",
     has_goal: true,
+    min_agents: 1,
     goal_parts: &[GoalPart::Placements],
     max_steps: 5000,
     actions: DiscreteAction::ALL.split_at(13).0,

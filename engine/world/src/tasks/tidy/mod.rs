@@ -53,6 +53,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     version: 0,
     about: "Put things away that lie where they do not belong, by written rules, then stop.",
     has_goal: true,
+    min_agents: 1,
     goal_parts: &[],
     max_steps: 3000,
     actions: DiscreteAction::ALL.split_at(14).0,

@@ -1,0 +1,403 @@
+//! Follow the one who makes the described sound, among others who make others.
+//!
+//! # Source
+//! The example of S. Brodeur et al., "HoME: a Household Multimodal Environment", 2017: agents that are told apart by what they sound like.
+//! That following is to stay within 2 m is as in the social navigation of X. Puig et al., "Habitat 3.0", 2023.
+
+use super::audio_nav::{check_sounds, play_signal};
+use super::standing_room::sample_start;
+use super::{PlayedAction, Task, TaskKind, TaskSetup, random_yaw_rad};
+use crate::actions::DiscreteAction;
+use crate::episode::{Episode, EpisodeGoal, StepResult, TaskMeasure};
+use crate::error::WorldError;
+use crate::expert::ShortestPathFollower;
+use crate::metrics::NavigationMetrics;
+use crate::schema;
+use crate::sound::SoundPlace;
+use crate::world::World;
+use dwell_scene::navigation::NavCell;
+use dwell_scene::random::RandomKey;
+use dwell_scene::{AgentId, Pose};
+use dwell_semantics::vocabulary;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+const NAME: &str = "PiedPiper";
+/// The instruction of those who lead.
+const PIPER_INSTRUCTION: &str = "Go.";
+/// Sounds that have a name of one word in the vocabulary.
+const SOUNDS: [&str; 5] = ["radio", "phone", "kettle", "television", "alarm"];
+/// Nearest next place of a leader's tour, m.
+const NEXT_PLACE_M: f32 = 3.0;
+/// A leader walks in one of so many steps, so that others keep up.
+const WALKS_EVERY: u64 = 2;
+/// Distance at which the scripted follower waits, m.
+const KEEP_M: f32 = 1.2;
+
+pub(super) const KIND: TaskKind = TaskKind {
+    name: NAME,
+    version: 0,
+    about: "Follow the one of several moving agents who makes the sound that is named.",
+    has_goal: true,
+    min_agents: 2,
+    goal_parts: &[],
+    max_steps: 1000,
+    actions: DiscreteAction::DEFAULT,
+    sensors: &["rgb", "depth", "audio", "instruction", "instruction_tokens"],
+    measures: &[
+        TaskMeasure {
+            name: "following",
+            about: "Share of the steps of the episode's second half, so far, in which the follower was near the right one.",
+        },
+        TaskMeasure {
+            name: "found_step",
+            about: "The step in which it was near the right one for the first time.",
+        },
+    ],
+    settings: schema::fields_of::<PiedPiperSettings>,
+    build,
+};
+
+/// The task's settings.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+struct PiedPiperSettings {
+    /// The numbers of the agents who lead, each with a sound of its own; default all but agent 0. All others follow.
+    pipers: Option<Vec<u32>>,
+    /// Signals to draw from, as `dwell.sounds.signals` names them, at least one for each who leads; default five.
+    sounds: Vec<String>,
+    /// Level at 1 m, dB SPL; default the typical level of each signal.
+    level_db: Option<f32>,
+    /// Nearer than this is near, straight m; default 2.
+    follow_distance_m: f32,
+    /// The least share of the second half of the steps near the right one that is success, above 0 to 1; default 0.5.
+    success_share: f64,
+    /// Steps of an episode, 2 to 100,000; default 600.
+    steps: u64,
+}
+
+impl Default for PiedPiperSettings {
+    fn default() -> Self {
+        Self {
+            pipers: None,
+            sounds: SOUNDS.map(str::to_owned).to_vec(),
+            level_db: None,
+            follow_distance_m: 2.0,
+            success_share: 0.5,
+            steps: 600,
+        }
+    }
+}
+
+impl PiedPiperSettings {
+    fn check(&self) -> Result<(), WorldError> {
+        let fault = |field: &'static str, found: String, allowed: &str| {
+            Err(WorldError::Config {
+                field,
+                found,
+                allowed: allowed.to_owned(),
+            })
+        };
+        check_sounds(&self.sounds, self.level_db)?;
+        if let Some(name) = self.sounds.iter().find(|name| instruction(name).is_err()) {
+            return fault(
+                "sounds",
+                format!("{name:?}"),
+                "signals whose names are words of the vocabulary",
+            );
+        }
+        let distance_m = self.follow_distance_m;
+        if !(distance_m > 0.0 && distance_m <= 100.0) {
+            return fault(
+                "follow_distance_m",
+                distance_m.to_string(),
+                "above 0 to 100",
+            );
+        }
+        if !(self.success_share > 0.0 && self.success_share <= 1.0) {
+            return fault(
+                "success_share",
+                self.success_share.to_string(),
+                "above 0 to 1",
+            );
+        }
+        if !(2..=100_000).contains(&self.steps) {
+            return fault("steps", self.steps.to_string(), "2 to 100,000");
+        }
+        Ok(())
+    }
+
+    /// The agents who lead, rising.
+    fn leaders(&self, world: &World) -> Result<Vec<AgentId>, WorldError> {
+        let count = world.state().agents.len();
+        let mut leaders: Vec<u32> = match &self.pipers {
+            Some(named) => named.clone(),
+            None => (1..count as u32).collect(),
+        };
+        leaders.sort_unstable();
+        leaders.dedup();
+        let known = leaders.iter().all(|leader| (*leader as usize) < count);
+        let most = self.sounds.len().min(count.saturating_sub(1));
+        if known && (1..=most).contains(&leaders.len()) {
+            return Ok(leaders.into_iter().map(AgentId).collect());
+        }
+        Err(WorldError::Config {
+            field: "pipers",
+            found: format!("{leaders:?} of {count} agents, with {} sounds", self.sounds.len()),
+            allowed: "numbers of agents, at least one, not all of them, and no more than there are sounds".to_owned(),
+        })
+    }
+}
+
+/// What is asked of a follower.
+fn instruction(sound: &str) -> Result<(String, Vec<i32>), WorldError> {
+    let text = format!("Go near the {}.", sound.replace('_', " "));
+    let tokens = vocabulary::tokenize(&text)?;
+    Ok((text, tokens))
+}
+
+fn build(value: &serde_json::Value, setup: TaskSetup) -> Result<Box<dyn Task>, WorldError> {
+    let settings: PiedPiperSettings = crate::parse_settings::parse_task_settings(value)?;
+    settings.check()?;
+    Ok(Box::new(PiedPiperTask {
+        settings,
+        setup,
+        active: None,
+    }))
+}
+
+#[derive(Debug)]
+struct PiedPiperTask {
+    settings: PiedPiperSettings,
+    setup: TaskSetup,
+    active: Option<ActiveEpisode>,
+}
+
+#[derive(Debug)]
+struct ActiveEpisode {
+    /// Whom to follow; of a leader itself.
+    target: AgentId,
+    leads: bool,
+    key: RandomKey,
+    /// Where the expert walks, and the step in which it chose that.
+    way: Option<ShortestPathFollower>,
+    memory: Progress,
+}
+
+/// How an episode has gone so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Progress {
+    steps: u64,
+    /// Steps of the second half near the right one.
+    near: u64,
+    found: Option<u64>,
+    /// Places of a leader's tour so far.
+    places: u64,
+    /// Distance to the right one after the last step, m.
+    distance_m: f32,
+}
+
+impl PiedPiperTask {
+    fn distance_m(&self, world: &World, target: AgentId) -> f32 {
+        let agents = &world.state().agents;
+        match (agents.get(self.setup.agent), agents.get(target)) {
+            (Some(own), Some(other)) => own.position.distance(other.position),
+            _ => f32::INFINITY,
+        }
+    }
+
+    /// Steps of the second half so far.
+    fn second_half(&self, steps: u64) -> u64 {
+        steps.saturating_sub(self.settings.steps / 2)
+    }
+
+    fn following(&self, memory: &Progress) -> f64 {
+        match self.second_half(memory.steps) {
+            0 => f64::NAN,
+            half => memory.near as f64 / half as f64,
+        }
+    }
+}
+
+impl Task for PiedPiperTask {
+    fn settings(&self) -> serde_json::Value {
+        serde_json::json!(self.settings)
+    }
+
+    fn reset(
+        &mut self,
+        world: &mut World,
+        placed: &[AgentId],
+        key: RandomKey,
+    ) -> Result<Episode, WorldError> {
+        let agent = self.setup.agent;
+        let body = self.setup.body(world, NAME)?;
+        let leaders = self.settings.leaders(world)?;
+        let grid = world.engines().nav_grid(&body)?;
+        super::door_leaves::open_all(world, &grid)?;
+        let start = sample_start(world, placed, (&grid, &body), key.child("start"));
+        let Some(cell) = start else {
+            return Err(WorldError::TaskNotPlayable {
+                task: NAME,
+                house: world.house().name.clone(),
+                why: "nobody of the agent's size can stand anywhere".to_owned(),
+            });
+        };
+        let (position, yaw_rad) = (grid.position(cell), random_yaw_rad(key));
+        world.place_agent(agent, position, yaw_rad)?;
+        // Of the episode, not of the agent: all know the same sounds.
+        let shared = world.episode_key().child("pied_piper");
+        let mut sounds = self.settings.sounds.clone();
+        shared.child("sounds").stream().shuffle(&mut sounds);
+        let own_place = leaders.iter().position(|leader| *leader == agent);
+        let (target, text, tokens) = if let Some(place) = own_place {
+            let place_of_sound = (SoundPlace::Agent(agent), self.settings.level_db, true);
+            play_signal(world, &sounds[place], place_of_sound)?;
+            let tokens = vocabulary::tokenize(PIPER_INSTRUCTION)?;
+            (agent, PIPER_INSTRUCTION.to_owned(), tokens)
+        } else {
+            let chosen = shared.child("target").stream().below(leaders.len());
+            let (text, tokens) = instruction(&sounds[chosen])?;
+            (leaders[chosen], text, tokens)
+        };
+        let leads = own_place.is_some();
+        self.active = Some(ActiveEpisode {
+            target,
+            leads,
+            key,
+            way: None,
+            memory: Progress {
+                distance_m: self.distance_m(world, target),
+                ..Progress::default()
+            },
+        });
+        Ok(Episode {
+            agent,
+            instruction: text,
+            tokens,
+            start: Pose::from_position_yaw(position, yaw_rad),
+            progress: NavigationMetrics::new(position, None),
+            goal: EpisodeGoal {
+                kind: if leads { "lead" } else { "follow" },
+                ..EpisodeGoal::default()
+            },
+        })
+    }
+
+    fn snapshot(&self) -> Vec<u8> {
+        let memory = self.active.as_ref().map(|active| &active.memory);
+        memory.map_or(Vec::new(), |memory| {
+            postcard::to_stdvec(memory).expect("plain data can always be written to memory")
+        })
+    }
+
+    fn restore(&mut self, _world: &World, bytes: &[u8]) -> Result<(), WorldError> {
+        let refuse = || WorldError::Snapshot("how far it was followed is none".to_owned());
+        let memory: Progress = postcard::from_bytes(bytes).map_err(|_| refuse())?;
+        let active = self.active.as_mut().ok_or_else(refuse)?;
+        (active.memory, active.way) = (memory, None);
+        Ok(())
+    }
+
+    fn judge(
+        &mut self,
+        world: &World,
+        episode: &mut Episode,
+        played: &PlayedAction<'_>,
+    ) -> StepResult {
+        let Some(agent) = world.state().agents.get(self.setup.agent) else {
+            return StepResult::default();
+        };
+        episode
+            .progress
+            .advance(agent.position, None, agent.collided);
+        let Some((target, leads)) = self.active.as_ref().map(|own| (own.target, own.leads)) else {
+            return StepResult::default();
+        };
+        let distance_m = self.distance_m(world, target);
+        let is_near = distance_m < self.settings.follow_distance_m;
+        let half = self.settings.steps / 2;
+        let Some(active) = &mut self.active else {
+            return StepResult::default();
+        };
+        let memory = &mut active.memory;
+        memory.steps += 1;
+        let gain_m = f64::from(memory.distance_m - distance_m);
+        memory.distance_m = distance_m;
+        if is_near {
+            memory.found.get_or_insert(memory.steps);
+            memory.near += u64::from(memory.steps > half);
+        }
+        let memory = *memory;
+        let over = memory.steps >= self.settings.steps || played.is_stop();
+        if leads {
+            return StepResult {
+                terminated: over,
+                ..StepResult::default()
+            };
+        }
+        let success = memory.steps >= self.settings.steps
+            && self.following(&memory) >= self.settings.success_share;
+        let bonus = if success { 2.5 } else { 0.0 };
+        StepResult {
+            reward: gain_m - 0.01 + if is_near { 0.02 } else { 0.0 } + bonus,
+            terminated: over,
+            success,
+        }
+    }
+
+    fn measures(&self) -> Vec<f64> {
+        let Some(active) = self.active.as_ref().filter(|active| !active.leads) else {
+            return vec![f64::NAN; KIND.measures.len()];
+        };
+        let memory = &active.memory;
+        let found = memory.found.map_or(f64::NAN, |step| step as f64);
+        vec![self.following(memory), found]
+    }
+
+    /// A leader walks from place to place; a follower, who knows where the right one is, to it.
+    fn expert(&mut self, world: &mut World, _episode: &Episode) -> DiscreteAction {
+        let own = self.setup.agent;
+        let Some(active) = &mut self.active else {
+            return DiscreteAction::Stop;
+        };
+        let Some(body) = world.state().agents.get(own).map(|agent| agent.body) else {
+            return DiscreteAction::Stop;
+        };
+        let Ok(grid) = world.engines().nav_grid(&body) else {
+            return DiscreteAction::Wait;
+        };
+        let here = world.state().agents[own].position;
+        if active.leads {
+            if active.memory.steps % WALKS_EVERY != 0 {
+                return DiscreteAction::Wait;
+            }
+            let next = active.way.as_mut().and_then(|way| way.next_action(world));
+            if let Some(step) = next {
+                return step;
+            }
+            let place = active.key.child("tour").child(active.memory.places);
+            active.memory.places += 1;
+            let goal = grid.sample(place, |cell| {
+                grid.island(cell) == Some(0) && grid.position(cell).distance(here) >= NEXT_PLACE_M
+            });
+            active.way = goal.map(|cell| {
+                ShortestPathFollower::new(own, grid.clone(), &[cell], self.setup.stride)
+            });
+            return DiscreteAction::Wait;
+        }
+        let Some(there) = world.state().agents.get(active.target) else {
+            return DiscreteAction::Wait;
+        };
+        if here.distance(there.position) < KEEP_M {
+            return DiscreteAction::Wait;
+        }
+        // The right one moves on, and so does its place.
+        let cell: Option<NavCell> = grid.nearest(there.position, 1.0);
+        let Some(cell) = cell else {
+            return DiscreteAction::Wait;
+        };
+        let mut way = ShortestPathFollower::new(own, grid, &[cell], self.setup.stride);
+        way.next_action(world).unwrap_or(DiscreteAction::Wait)
+    }
+}

@@ -1,0 +1,355 @@
+"""Several agents in one house: PettingZoo's tests, and what it cannot know."""
+
+from __future__ import annotations
+
+import pickle
+import re
+import types
+import warnings
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from pettingzoo.test import (
+    api_test,
+    max_cycles_test,
+    parallel_api_test,
+    parallel_seed_test,
+    seed_test,
+    state_test,
+)
+
+import dwell
+from dwell import _native
+from dwell import pettingzoo as zoo
+from dwell.envs import DwellEnv
+from dwell.envs.action_modes import ACTION_MODES
+
+pytestmark = pytest.mark.usefixtures("open_once")
+
+Observations = dict[str, dict[str, Any]]
+
+STUDIO: dict[str, Any] = {"houses": "builtin:studio", "sensors": ["gps", "compass"]}
+HOME: dict[str, Any] = {"houses": "builtin:apartment", "sensors": ["gps"]}
+TASKS = [task["name"] for task in _native.tasks()]
+#: Those whose full contract runs in every test run; the others are slow.
+QUICK = ("PointNav", "Cooperate", "PiedPiper")
+
+
+def bits(observations: Observations) -> dict[str, dict[str, bytes]]:
+    return {
+        name: {key: np.asarray(value).tobytes() for key, value in own.items()}
+        for name, own in observations.items()
+    }
+
+
+def sample(env: zoo.DwellParallelEnv) -> dict[str, Any]:
+    return {name: env.action_space(name).sample() for name in env.agents}
+
+
+def seed_spaces(env: zoo.DwellParallelEnv, seed: int = 7) -> None:
+    for number, name in enumerate(env.possible_agents):
+        env.action_space(name).seed(seed + number)
+
+
+@pytest.mark.parametrize(
+    "task", [pytest.param(t, marks=() if t in QUICK else pytest.mark.slow) for t in TASKS]
+)
+def test_pettingzoos_tests_have_nothing_to_say(task: str) -> None:
+    def make(**more: Any) -> zoo.DwellParallelEnv:  # noqa: ANN401 - of the class
+        return zoo.parallel_env(task, agents=3, **HOME, **more)
+
+    # Warnings are errors in this suite.
+    parallel_api_test(make(), num_cycles=12)
+    parallel_seed_test(make, num_cycles=6)
+    with warnings.catch_warnings():
+        # It recommends arrays where observations, and actions with answers, are dictionaries.
+        warnings.filterwarnings("ignore", "Observation is not a NumPy array")
+        warnings.filterwarnings("ignore", ".* space for each agent probably should be")
+        api_test(zoo.env(task, agents=3, **HOME), num_cycles=12)
+    seed_test(lambda: zoo.env(task, agents=3, **HOME), num_cycles=6)
+    state_test(zoo.env(task, agents=3, **HOME), make(), num_cycles=4)
+    moving = {"actions": ["move_forward", "turn_left", "turn_right", "wait"]}
+    module = types.SimpleNamespace(
+        parallel_env=lambda max_cycles: make(max_cycles=max_cycles, **moving),
+        env=lambda max_cycles: zoo.env(task, agents=3, max_cycles=max_cycles, **moving, **HOME),
+    )
+    max_cycles_test(module)
+
+
+def test_one_agent_gets_the_bits_of_the_environment_of_one() -> None:
+    alone = DwellEnv("PointNav", **STUDIO)
+    among = zoo.parallel_env("PointNav", agents=1, **STUDIO)
+    observation, info = alone.reset(seed=4)
+    observations, infos = among.reset(seed=4)
+    assert bits(observations) == bits({"agent_0": observation})
+    assert infos["agent_0"] == info
+    seed_spaces(among)
+    while among.agents:
+        actions = sample(among)
+        observation, reward, terminated, truncated, info = alone.step(actions["agent_0"])
+        observations, rewards, ended, cut, infos = among.step(actions)
+        assert bits(observations) == bits({"agent_0": observation})
+        found = (rewards["agent_0"], ended["agent_0"], cut["agent_0"])
+        assert found == (reward, terminated, truncated)
+        assert infos["agent_0"].pop("speaks") is False
+        assert infos["agent_0"] == info
+        assert among.state_hash() == alone.state_hash()
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_a_vector_has_the_episodes_of_single_environments(threads: int) -> None:
+    settings: dict[str, Any] = {
+        "agents": {"a": {}, "b": {"action_mode": "velocity"}},
+        "houses": ["builtin:studio", "builtin:apartment"],
+        "sensors": ["gps", "compass"],
+        "max_cycles": 5,
+    }
+    many = zoo.vector_env(2, "PointNav", threads=threads, copy=True, **settings)
+    singles = [zoo.parallel_env("PointNav", **settings) for _ in range(2)]
+    seen, infos = many.reset(seed=8)
+    for k, single in enumerate(singles):
+        observations, _ = single.reset(seed=8 + k)
+        assert bits(observations) == {
+            name: {key: value[k].tobytes() for key, value in own.items()}
+            for name, own in seen.items()
+        }
+    for space in many.batched_action_spaces.values():
+        space.seed(3)
+    began = 0
+    for _ in range(14):
+        actions = {name: space.sample() for name, space in many.batched_action_spaces.items()}
+        seen, rewards, _, truncated, infos = many.step(actions)
+        for k, single in enumerate(singles):
+            if not single.agents:
+                observations, _ = single.reset()
+                began += 1
+                assert not any(infos[name]["active"][k] for name in infos)
+            else:
+                own = {name: actions[name][k] for name in single.agents}
+                observations, single_rewards, _, cut, _ = single.step(own)
+                for name, reward in single_rewards.items():
+                    assert rewards[name][k] == reward
+                    assert truncated[name][k] == cut[name]
+            for name, observation in observations.items():
+                for key, value in observation.items():
+                    assert seen[name][key][k].tobytes() == value.tobytes()
+            assert many.state_hashes()[k] == single.state_hash()
+    assert began >= 4
+    assert many.state().shape == (2, 26)
+    assert set(many.goals(1)) == {"a", "b"}
+    many.close()
+    many.close()
+    with pytest.raises(dwell.UsageError):
+        many.reset(seed=1)
+
+
+def test_others_change_what_one_sees_by_the_world_alone() -> None:
+    def play(other: dict[str, Any], ends: bool) -> list[dict[str, bytes]]:
+        env = zoo.parallel_env(
+            "Free",
+            agents={"own": {}, "other": other},
+            houses="builtin:apartment",
+            sensors={"rgb": {"width": 16, "height": 12}, "gps": {}},
+            laws={"shot_read_noise": {"gain": 0.005, "read": 0.01}},
+            task_settings={"start": "anywhere"},
+        )
+        observations, _ = env.reset(seed=2)
+        seen = [bits(observations)["own"]]
+        for step in range(6):
+            # stop, or wait
+            actions = {"own": 1 + step % 3, "other": 0 if ends and step == 1 else 6}
+            observations, *_ = env.step({name: actions[name] for name in env.agents})
+            seen.append(bits(observations)["own"])
+        assert ("other" in env.agents) is not ends
+        return seen
+
+    first = play({}, ends=False)
+    assert play({}, ends=True) == first
+    assert play({"sensors": ["audio", "rgb"]}, ends=False) == first
+    assert len(first) == 7
+
+
+@pytest.mark.parametrize("mode", ACTION_MODES)
+def test_snapshots_forks_and_pickles_go_on_with_the_same_bits(mode: str) -> None:
+    env = zoo.parallel_env(
+        "RoomNav", agents={"a": {"action_mode": mode}, "b": {}}, voice=True, **STUDIO
+    )
+    again = pickle.loads(pickle.dumps(env))
+    assert bits(env.reset(seed=5)[0]) == bits(again.reset(seed=5)[0])
+    seed_spaces(env)
+    env.step(sample(env))
+    saved = env.snapshot()
+    fork = env.fork()
+    assert fork.agents == env.agents
+    for _ in range(4):
+        if not env.agents:
+            break
+        actions = sample(env)
+        seen = bits(env.step(actions)[0])
+        assert bits(fork.step(actions)[0]) == seen
+        assert fork.state_hash() == env.state_hash()
+    again.restore(saved)
+    assert again.snapshot() == saved
+    single = DwellEnv("RoomNav", **STUDIO)
+    single.reset(seed=1)
+    with pytest.raises(dwell.ConfigError, match="snapshot refused"):
+        env.restore(single.snapshot())
+
+
+def test_rewards_are_shared_within_a_team() -> None:
+    agents: dict[str, Any] = {
+        "a": {"team": "red"},
+        "b": {"team": "red"},
+        "c": {"team": "blue"},
+    }
+
+    def rewards(share: float) -> dict[str, float]:
+        env = zoo.parallel_env("PointNav", agents=agents, shared_reward=share, **HOME)
+        env.reset(seed=3)
+        found: dict[str, float] = env.step(dict.fromkeys(agents, 1))[1]
+        return found
+
+    own, half, all_shared = rewards(0.0), rewards(0.5), rewards(1.0)
+    red = 0.5 * (own["a"] + own["b"])
+    assert own["a"] != own["b"]
+    assert all_shared == pytest.approx({"a": red, "b": red, "c": own["c"]})
+    assert half["a"] == pytest.approx(0.5 * own["a"] + 0.5 * red)
+
+
+def test_scripted_agents_act_and_are_in_nobodys_list() -> None:
+    agents: dict[str, Any] = {"own": {}, "other": {"scripted": True}}
+    env = zoo.parallel_env("PointNav", agents=agents, **HOME)
+    observations, _ = env.reset(seed=3)
+    assert env.possible_agents == ["own"] == list(observations)
+    assert env.state_space.shape == (26,)
+    before = env.agent_states()["other"]["position"]
+    for _ in range(20):
+        env.step({"own": 6})
+    moved = np.subtract(env.agent_states()["other"]["position"], before)
+    assert np.linalg.norm(moved) > 0.5
+    with pytest.raises(dwell.ConfigError, match="scripted"):
+        zoo.parallel_env(agents={"a": {"scripted": True}}, **HOME)
+
+
+def test_the_pair_that_cooperates_finds_the_thing_and_is_lost_when_muted() -> None:
+    def successes(*, muted: bool) -> int:
+        env = zoo.parallel_env(
+            "Cooperate",
+            agents={"guide": {"voice": True}, "follower": {}},
+            muted=muted,
+            houses="builtin:apartment",
+            sensors=["heard_tokens"],
+        )
+        found = 0
+        for seed in range(8):
+            env.reset(seed=seed)
+            while env.agents:
+                infos = env.step(env.expert_actions())[4]
+            assert infos["guide"]["success"] == infos["follower"]["success"]
+            found += infos["follower"]["success"]
+        return found
+
+    # Of four choices a guesser finds 6 of 8 with a chance of 0.4 %.
+    assert successes(muted=False) >= 6
+    assert successes(muted=True) < 6
+
+
+def test_words_are_heard_by_those_who_listen() -> None:
+    env = zoo.parallel_env(
+        "Free",
+        agents={"anna": {"voice": {"words": ["sofa", "bed"], "max_tokens": 2}}, "ben": {}},
+        houses="builtin:studio",
+        sensors=["heard_tokens", "heard_directions"],
+        actions=["wait"],
+        max_cycles=60,
+    )
+    assert env.words("anna") == ["", "sofa", "bed"]
+    env.reset(seed=5)
+    said = {"action": 0, "say": {"tokens": np.array([1, 2])}}
+    silent = {"action": 0, "say": {"tokens": np.array([0, 0])}}
+    heard, spoke = [], []
+    action = said
+    while env.agents:
+        observations, _, _, _, infos = env.step({"anna": action, "ben": 0})
+        action = silent
+        heard += [token for token in observations["ben"]["heard_tokens"].tolist() if token]
+        spoke.append(infos["anna"]["speaks"])
+        assert not observations["anna"]["heard_tokens"].any()
+        for name, observation in observations.items():
+            assert observation in env.observation_space(name)
+    assert len(heard) == 2
+    # A token takes 0.43 to 0.5 s.
+    assert 16 <= sum(spoke) <= 20
+
+
+def test_agents_with_voices_speak_as_the_world_says() -> None:
+    env = zoo.parallel_env("Free", agents=2, houses="builtin:studio", sensors=["heard_tokens"])
+    env.reset(seed=5)
+    world = env.world
+    assert world.say(0, "the red sofa", effort="loud")
+    assert world.speaks(0)
+    assert not world.say(0, [5])
+    found = []
+    for _ in range(60):
+        env.step(dict.fromkeys(env.agents, 6))
+        found += world.heard(1)
+    assert len(found) == 3
+    assert {row["speaker"] for row in found} == {0}
+    assert all(0.0 <= row["sti"] <= 1.0 and row["level_db"] > 30.0 for row in found)
+
+
+BAD: list[tuple[dict[str, Any], str]] = [
+    ({"agents": 0}, "agents is 0; expected a number of agents, 1 to 64"),
+    ({"agents": 65}, "agents is 65; expected"),
+    ({"agents": {}}, "agents has 0 of them"),
+    ({"agents": True}, "agents is True"),
+    ({"agents": {"a": {"sensor": []}}}, "did you mean"),
+    ({"agents": {"a": {"team": 3}}}, "agents.a.team is 3"),
+    ({"agents": {"a": {"body": {"wings": 2}}}}, "wings"),
+    ({"agents": {"a": {"task": "Fly"}}}, "Fly"),
+    ({"agents": {"a": {"action_mode": "jump"}}}, "action_mode"),
+    ({"agents": {"a": {"voice": {"words": ["xyzzy"]}}}}, "agents.a.voice.words: ['xyzzy']"),
+    ({"agents": {"a": {"voice": {"max_tokens": 9}}}}, "max_tokens"),
+    ({"voice": 3}, "voice"),
+    ({"shared_reward": 1.5}, "shared_reward"),
+    ({"max_cycles": 0}, "max_cycles is 0"),
+    ({"world": {"agents": [{}]}}, "the bodies stand in agents"),
+    ({"sensor": ["gps"]}, "did you mean sensors"),
+    ({"task": "Cooperate", "agents": 1}, "at least 2 agents in Cooperate"),
+]
+
+
+@pytest.mark.parametrize(("settings", "told"), BAD, ids=[str(row[0]) for row in BAD])
+def test_what_cannot_be_made_is_refused(settings: dict[str, Any], told: str) -> None:
+    arguments = {"houses": "builtin:studio", **settings}
+    makes: list[Callable[..., Any]] = [zoo.parallel_env, lambda **more: zoo.vector_env(2, **more)]
+    for make in makes:
+        with pytest.raises(dwell.ConfigError, match=re.escape(told)):
+            make(**arguments)
+
+
+def test_calls_that_go_wrong_say_what_to_do() -> None:
+    env = zoo.parallel_env("PointNav", agents=2, **STUDIO)
+    for call in (lambda: env.step({}), env.state, env.snapshot, env.expert_actions):
+        with pytest.raises(dwell.UsageError, match="reset first"):
+            call()
+    env.reset(seed=1)
+    with pytest.raises(dwell.ConfigError, match="none of \\['agent_1'\\]"):
+        env.step({"agent_0": 6})
+    with pytest.raises(dwell.ConfigError, match="no agent 'agent_9'"):
+        env.step({"agent_0": 6, "agent_1": 6, "agent_9": 6})
+    with pytest.raises(dwell.ConfigError, match="0 to 11"):
+        env.step({"agent_0": 12, "agent_1": 6})
+    env.step({"agent_0": 0, "agent_1": 6})
+    assert env.agents == ["agent_1"]
+    with pytest.raises(dwell.UsageError, match="agent_0 has ended"):
+        env.step({"agent_0": 6, "agent_1": 6})
+    env.step({"agent_1": 0})
+    assert env.agents == []
+    assert env.step({}) == ({}, {}, {}, {}, {})
+    env.close()
+    env.close()
+    with pytest.raises(dwell.UsageError, match="closed"):
+        env.reset(seed=1)
