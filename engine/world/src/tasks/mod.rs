@@ -11,12 +11,14 @@ mod instruction_following;
 mod instruction_following_v1;
 mod navigation;
 mod object_nav;
+mod others;
 mod pied_piper;
 mod point_nav;
 mod rearrange;
 mod relocation;
 mod room_nav;
 mod semantic_audio_nav;
+mod social_nav;
 mod sound_localization;
 mod standing_room;
 mod stated_things;
@@ -247,6 +249,7 @@ pub fn all() -> &'static [TaskKind] {
         tidy::KIND,
         cooperate::KIND,
         pied_piper::KIND,
+        social_nav::KIND,
     ]
 }
 

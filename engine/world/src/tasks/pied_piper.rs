@@ -5,17 +5,16 @@
 //! That following is to stay within 2 m is as in the social navigation of X. Puig et al., "Habitat 3.0", 2023.
 
 use super::audio_nav::{check_sounds, play_signal};
+use super::others::{Tour, TourMemory, follower, position};
 use super::standing_room::sample_start;
 use super::{PlayedAction, Task, TaskKind, TaskSetup, random_yaw_rad};
 use crate::actions::DiscreteAction;
 use crate::episode::{Episode, EpisodeGoal, StepResult, TaskMeasure};
 use crate::error::WorldError;
-use crate::expert::ShortestPathFollower;
 use crate::metrics::NavigationMetrics;
 use crate::schema;
 use crate::sound::SoundPlace;
 use crate::world::World;
-use dwell_scene::navigation::NavCell;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, Pose};
 use dwell_semantics::vocabulary;
@@ -27,8 +26,6 @@ const NAME: &str = "PiedPiper";
 const PIPER_INSTRUCTION: &str = "Go.";
 /// Sounds that have a name of one word in the vocabulary.
 const SOUNDS: [&str; 5] = ["radio", "phone", "kettle", "television", "alarm"];
-/// Nearest next place of a leader's tour, m.
-const NEXT_PLACE_M: f32 = 3.0;
 /// A leader walks in one of so many steps, so that others keep up.
 const WALKS_EVERY: u64 = 2;
 /// Distance at which the scripted follower waits, m.
@@ -179,8 +176,7 @@ struct ActiveEpisode {
     target: AgentId,
     leads: bool,
     key: RandomKey,
-    /// Where the expert walks, and the step in which it chose that.
-    way: Option<ShortestPathFollower>,
+    tour: Tour,
     memory: Progress,
 }
 
@@ -191,19 +187,13 @@ struct Progress {
     /// Steps of the second half near the right one.
     near: u64,
     found: Option<u64>,
-    /// Places of a leader's tour so far.
-    places: u64,
     /// Distance to the right one after the last step, m.
     distance_m: f32,
 }
 
 impl PiedPiperTask {
     fn distance_m(&self, world: &World, target: AgentId) -> f32 {
-        let agents = &world.state().agents;
-        match (agents.get(self.setup.agent), agents.get(target)) {
-            (Some(own), Some(other)) => own.position.distance(other.position),
-            _ => f32::INFINITY,
-        }
+        position(world, self.setup.agent).distance(position(world, target))
     }
 
     /// Steps of the second half so far.
@@ -265,7 +255,7 @@ impl Task for PiedPiperTask {
             target,
             leads,
             key,
-            way: None,
+            tour: Tour::default(),
             memory: Progress {
                 distance_m: self.distance_m(world, target),
                 ..Progress::default()
@@ -285,17 +275,21 @@ impl Task for PiedPiperTask {
     }
 
     fn snapshot(&self) -> Vec<u8> {
-        let memory = self.active.as_ref().map(|active| &active.memory);
-        memory.map_or(Vec::new(), |memory| {
-            postcard::to_stdvec(memory).expect("plain data can always be written to memory")
+        let active = self.active.as_ref();
+        active.map_or(Vec::new(), |active| {
+            postcard::to_stdvec(&(active.memory, active.tour.memory()))
+                .expect("plain data can always be written to memory")
         })
     }
 
-    fn restore(&mut self, _world: &World, bytes: &[u8]) -> Result<(), WorldError> {
+    fn restore(&mut self, world: &World, bytes: &[u8]) -> Result<(), WorldError> {
         let refuse = || WorldError::Snapshot("how far it was followed is none".to_owned());
-        let memory: Progress = postcard::from_bytes(bytes).map_err(|_| refuse())?;
+        let (memory, tour): (Progress, TourMemory) =
+            postcard::from_bytes(bytes).map_err(|_| refuse())?;
+        let grid = world.engines().nav_grid(&self.setup.body(world, NAME)?)?;
         let active = self.active.as_mut().ok_or_else(refuse)?;
-        (active.memory, active.way) = (memory, None);
+        active.memory = memory;
+        active.tour = Tour::restored(tour, &self.setup, &grid);
         Ok(())
     }
 
@@ -367,37 +361,20 @@ impl Task for PiedPiperTask {
         let Ok(grid) = world.engines().nav_grid(&body) else {
             return DiscreteAction::Wait;
         };
-        let here = world.state().agents[own].position;
         if active.leads {
             if active.memory.steps % WALKS_EVERY != 0 {
                 return DiscreteAction::Wait;
             }
-            let next = active.way.as_mut().and_then(|way| way.next_action(world));
-            if let Some(step) = next {
-                return step;
-            }
-            let place = active.key.child("tour").child(active.memory.places);
-            active.memory.places += 1;
-            let goal = grid.sample(place, |cell| {
-                grid.island(cell) == Some(0) && grid.position(cell).distance(here) >= NEXT_PLACE_M
-            });
-            active.way = goal.map(|cell| {
-                ShortestPathFollower::new(own, grid.clone(), &[cell], self.setup.stride)
-            });
-            return DiscreteAction::Wait;
+            let site = (&self.setup, &grid);
+            return active.tour.next_action(world, site, active.key);
         }
-        let Some(there) = world.state().agents.get(active.target) else {
-            return DiscreteAction::Wait;
-        };
-        if here.distance(there.position) < KEEP_M {
+        let (here, there) = (position(world, own), position(world, active.target));
+        if here.distance(there) < KEEP_M {
             return DiscreteAction::Wait;
         }
         // The right one moves on, and so does its place.
-        let cell: Option<NavCell> = grid.nearest(there.position, 1.0);
-        let Some(cell) = cell else {
-            return DiscreteAction::Wait;
-        };
-        let mut way = ShortestPathFollower::new(own, grid, &[cell], self.setup.stride);
-        way.next_action(world).unwrap_or(DiscreteAction::Wait)
+        let cell = grid.nearest(there, 1.0);
+        let step = cell.and_then(|cell| follower(&self.setup, &grid, cell).next_action(world));
+        step.unwrap_or(DiscreteAction::Wait)
     }
 }

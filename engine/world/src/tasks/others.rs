@@ -1,0 +1,117 @@
+//! What tasks of several agents share: walks from place to place, and who sees whom.
+
+use super::TaskSetup;
+use crate::actions::DiscreteAction;
+use crate::expert::ShortestPathFollower;
+use crate::world::World;
+use dwell_scene::AgentId;
+use dwell_scene::bvh::{Ray, RayMask};
+use dwell_scene::navigation::{NavCell, NavGrid};
+use dwell_scene::random::RandomKey;
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// Nearest next place of a tour, m.
+const NEXT_PLACE_M: f32 = 3.0;
+
+/// A walk from place to place, each drawn from a key.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Tour {
+    way: Option<ShortestPathFollower>,
+    memory: TourMemory,
+}
+
+/// Where a tour has come to. A guide to its place is made anew from it, and only forgets a manoeuvre that it was about.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct TourMemory {
+    /// Number of places so far.
+    places: u64,
+    /// The present one, m.
+    goal: Option<[f32; 3]>,
+}
+
+impl Tour {
+    /// Returns the next step; `wait` where the next place has just been chosen.
+    pub(super) fn next_action(
+        &mut self,
+        world: &World,
+        (setup, grid): (&TaskSetup, &Arc<NavGrid>),
+        key: RandomKey,
+    ) -> DiscreteAction {
+        let step = self.way.as_mut().and_then(|way| way.next_action(world));
+        if let Some(step) = step {
+            return step;
+        }
+        let here = position(world, setup.agent);
+        let place = key.child("tour").child(self.memory.places);
+        let goal = grid.sample(place, |cell| {
+            grid.island(cell) == Some(0) && grid.position(cell).distance(here) >= NEXT_PLACE_M
+        });
+        self.memory = TourMemory {
+            places: self.memory.places + 1,
+            goal: goal.map(|cell| grid.position(cell).to_array()),
+        };
+        self.way = goal.map(|cell| follower(setup, grid, cell));
+        DiscreteAction::Wait
+    }
+
+    /// What is kept of it in snapshots.
+    pub(super) fn memory(&self) -> TourMemory {
+        self.memory
+    }
+
+    /// The tour that has come to where `memory` says.
+    pub(super) fn restored(memory: TourMemory, setup: &TaskSetup, grid: &Arc<NavGrid>) -> Self {
+        let cell = memory.goal.and_then(|goal| grid.nearest(goal.into(), 0.5));
+        Self {
+            way: cell.map(|cell| follower(setup, grid, cell)),
+            memory,
+        }
+    }
+}
+
+/// Returns where an agent stands, m.
+pub(super) fn position(world: &World, agent: AgentId) -> Vec3 {
+    let state = world.state().agents.get(agent);
+    state.map_or(Vec3::ZERO, |agent| agent.position)
+}
+
+/// Returns a guide to a cell.
+pub(super) fn follower(
+    setup: &TaskSetup,
+    grid: &Arc<NavGrid>,
+    cell: NavCell,
+) -> ShortestPathFollower {
+    ShortestPathFollower::new(setup.agent, grid.clone(), &[cell], setup.stride)
+}
+
+/// Returns whether an agent sees the head or the middle of another one: within `half_view_rad` of where it looks, `most_m` away, and with
+/// nothing of the house in between.
+pub(super) fn sees(
+    world: &World,
+    (viewer, other): (AgentId, AgentId),
+    half_view_rad: f32,
+    most_m: f32,
+) -> bool {
+    let agents = &world.state().agents;
+    let (Some(viewer), Some(other)) = (agents.get(viewer), agents.get(other)) else {
+        return false;
+    };
+    let eye = viewer.world_from_eye();
+    let ahead = eye.transform_vector(Vec3::NEG_Z);
+    let middle = other.position + Vec3::Y * (0.5 * other.height_m());
+    [other.eye_position(), middle].into_iter().any(|point| {
+        let way = point - eye.position;
+        let distance_m = way.length();
+        if distance_m > most_m || distance_m < 1e-3 {
+            return false;
+        }
+        let cosine = way.dot(ahead) / distance_m;
+        if cosine < dwell_scene::math::cos(half_view_rad) {
+            return false;
+        }
+        let ray = Ray::new(eye.position, way).with_range(0.0, distance_m - other.body.radius_m);
+        world.rays().closest(&ray, RayMask::EYE).is_none()
+    })
+}
