@@ -18,6 +18,7 @@ pub use find_object::is_sought;
 pub use needed_words::needed_words;
 pub use route::{
     PathWarp, RouteInstruction, RouteMilestone, RouteStep, RouteWalk, ToldWay, WalkProgress,
+    room_changes,
 };
 pub use step_kind::{StepKind, states_of};
 pub(crate) use step_kind::{is_opened, is_switched};

@@ -9,6 +9,6 @@ mod walk;
 mod warp;
 
 pub use milestone::RouteMilestone;
-pub use tell::{RouteInstruction, RouteStep, ToldWay};
+pub use tell::{RouteInstruction, RouteStep, ToldWay, room_changes};
 pub use walk::{RouteWalk, WalkProgress};
 pub use warp::PathWarp;

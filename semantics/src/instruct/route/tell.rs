@@ -320,6 +320,17 @@ impl RouteTeller<'_, '_> {
     }
 }
 
+/// The places where a way with some corners changes rooms, the first of each new room, m.
+pub fn room_changes(scene: &SemanticScene<'_>, corners: &[Vec3]) -> Vec<Vec3> {
+    let finder = RouteFinder {
+        scene,
+        route: SampledRoute::of(corners),
+        goal: None,
+    };
+    let entries = finder.entries().into_iter();
+    entries.map(|(at, _)| finder.route.points[at]).collect()
+}
+
 fn act(verb: &str, object: Description) -> RequestStep {
     RequestStep::Do {
         verb: verb.to_owned(),
