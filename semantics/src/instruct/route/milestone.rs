@@ -25,13 +25,14 @@ pub enum RouteMilestone {
     },
     /// Into a room from any other.
     Entered(RoomId),
-    /// Across the circle of 1.2 m around a place, out of it to another side than straight on.
+    /// Across the circle of 1.2 m around a place: from where one was nearest to it out of the circle in another direction than one came
+    /// there from where one entered it; out of that around the start in another direction than one looked.
     Turned {
         /// The side.
         direction: TurnDirection,
         /// The place, m.
         place: Vec3,
-        /// Where one looks before the turn, seen from above (x, z), where the walk begins with it.
+        /// Where one looks at the start, seen from above (x, z), where the place is the start.
         before: Option<Vec2>,
     },
     /// By a thing: into the strip of 1.5 m around its outline and out of it at least 1 m further on, with the thing in sight meanwhile.

@@ -3,7 +3,9 @@
 use super::milestone::{RouteLimits, RouteMilestone};
 use super::walk::RouteWalk;
 use crate::check::{Checker, Listener};
-use crate::form::{Description, Form, Modifier, Noun, Phrase, Quantifier, RequestStep};
+use crate::form::{
+    Description, Form, Modifier, Noun, Phrase, Quantifier, RequestStep, TurnDirection,
+};
 use crate::instruct::{StepCondition, say};
 use crate::refer::{refer, refer_to_room};
 use crate::route::{RouteEvent, RouteFinder, SampledRoute, flat};
@@ -174,6 +176,8 @@ impl RouteTeller<'_, '_> {
         let mut found = Vec::new();
         for (at, event) in events {
             let candidate = match event {
+                // One turns around at the start alone: no way goes on backwards.
+                RouteEvent::Turn(TurnDirection::Around) if at > 0 => continue,
                 RouteEvent::Turn(direction) => Candidate {
                     request: RequestStep::Turn(direction),
                     milestone: RouteMilestone::Turned {

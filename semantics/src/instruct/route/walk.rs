@@ -15,8 +15,8 @@ const STEP_M: f32 = 0.1;
 const MOST_BETWEEN: f32 = 100.0;
 /// Distance beyond the border of a zone at which one has left it, m.
 const BEYOND_M: f32 = 0.1;
-/// Distance from the middle of a turn from which one has a direction to it, m.
-const LEAST_BEFORE_M: f32 = 0.4;
+/// Least distances over which the directions before and after a turn are taken, m.
+const LEAST_LEG_M: f32 = 0.4;
 /// Largest difference of height from the place of a turn, and from a door's middle, m.
 const SAME_STOREY_M: f32 = 1.8;
 
@@ -27,6 +27,8 @@ struct ZoneStay {
     begin: u32,
     /// Where, seen from above, m.
     entry: Vec2,
+    /// The place of the stay that is nearest to the middle of the zone, seen from above, and its distance from the zone's border, m.
+    nearest: (Vec2, f32),
     /// True once the thing was in sight.
     seen: bool,
 }
@@ -160,11 +162,15 @@ impl RouteWalk {
                 let stay = ZoneStay {
                     begin: time,
                     entry: here,
+                    nearest: (here, outside_m),
                     seen: self.is_seen(number, (scene, rays), eye),
                 };
                 self.progress.stays[number] = Some(stay);
             }
             Some(stay) if outside_m <= BEYOND_M => {
+                if outside_m < stay.nearest.1 {
+                    stay.nearest = (here, outside_m);
+                }
                 if !stay.seen {
                     let seen = self.is_seen(number, (scene, rays), eye);
                     if let Some(stay) = &mut self.progress.stays[number] {
@@ -202,13 +208,16 @@ impl RouteWalk {
             RouteMilestone::Turned {
                 direction,
                 place,
-                before,
-            } => {
-                let middle = flat(*place);
-                let begins = before.filter(|_| stay.begin == 0);
-                let before = begins.unwrap_or(middle - stay.entry);
-                (begins.is_some() || before.length() >= LEAST_BEFORE_M)
-                    && self.limits.is_turn(*direction, before, exit - middle)
+                before: Some(before),
+            } => self
+                .limits
+                .is_turn(*direction, *before, exit - flat(*place)),
+            // From where it was nearest: a straight line beside the place is no turn.
+            RouteMilestone::Turned { direction, .. } => {
+                let (nearest, _) = stay.nearest;
+                let (before, after) = (nearest - stay.entry, exit - nearest);
+                before.length().min(after.length()) >= LEAST_LEG_M
+                    && self.limits.is_turn(*direction, before, after)
             }
             RouteMilestone::Passed(_) => {
                 stay.seen && stay.entry.distance(exit) >= self.limits.past_apart_m

@@ -14,6 +14,8 @@ use std::sync::Arc;
 const FURTHER: usize = 2;
 /// Distance of the cell nearest to a place of the way, m.
 const NEAR_M: f32 = 0.5;
+/// How often the expert goes back for a step that it missed.
+const RETURNS: u32 = 2;
 /// Smallest distance between the places of the way that a path is compared with, m.
 const LEAST_SPACING_M: f32 = 0.1;
 
@@ -39,6 +41,11 @@ pub(super) struct ActiveRoute {
     /// The expert's way, and the step that it goes to: those before it are done, or it has been at their places.
     expert_leg: Leg,
     expert_step: usize,
+    /// The start of the way, to which it goes back for a first step that was missed.
+    start: Arc<NavigationGoal>,
+    /// True while it goes back to where a missed step begins, and how often it has.
+    goes_back: bool,
+    returns: u32,
 }
 
 impl ActiveRoute {
@@ -51,6 +58,7 @@ impl ActiveRoute {
             route, end, goal, ..
         } = drawn;
         let places = step_places(route, goal, grid)?;
+        let start = NavigationGoal::place("", grid, drawn.start, 0.0);
         let leg = Leg::new(agent, grid.clone(), places[0].goal.clone(), stride);
         Some(Self {
             agent,
@@ -62,6 +70,9 @@ impl ActiveRoute {
             expert_step: 0,
             leg,
             leg_step: 0,
+            start: Arc::new(start),
+            goes_back: false,
+            returns: 0,
         })
     }
 
@@ -126,13 +137,22 @@ impl ActiveRoute {
         self.warp.ndtw()
     }
 
-    /// The action of the expert: to the place of each step in order, then to the end.
+    /// The action of the expert: to the place of each step in order, then to the end; back to where a step begins that it missed.
     pub(super) fn expert(&mut self, world: &World) -> DiscreteAction {
         let last = self.places.len() - 1;
         if self.is_fulfilled(world) {
             return DiscreteAction::Stop;
         }
-        self.lead_expert(self.walk.done().min(last));
+        let next = self.walk.done().min(last);
+        if self.goes_back {
+            if let Some(action) = self.expert_leg.walk(world) {
+                return action;
+            }
+            self.goes_back = false;
+            self.expert_leg = self.expert_leg.to(self.places[next].goal.clone());
+            self.expert_step = next;
+        }
+        self.lead_expert(next);
         while self.expert_step < last {
             if let Some(action) = self.expert_leg.walk(world) {
                 return action;
@@ -141,6 +161,13 @@ impl ActiveRoute {
         }
         if let Some(action) = self.expert_leg.approach(world) {
             return action;
+        }
+        if next < last && self.returns < RETURNS {
+            let before = next.checked_sub(1).map(|step| &self.places[step].goal);
+            let back = before.unwrap_or(&self.start).clone();
+            self.expert_leg = self.expert_leg.to(back);
+            (self.goes_back, self.returns) = (true, self.returns + 1);
+            return DiscreteAction::Wait;
         }
         if self.expert_leg.leave_out_goals_here(world, ELSEWHERE_M) {
             return DiscreteAction::Wait;
@@ -175,7 +202,7 @@ impl ActiveRoute {
         }
         self.lead_on();
         self.expert_leg = self.leg.clone();
-        self.expert_step = self.leg_step;
+        (self.expert_step, self.goes_back, self.returns) = (self.leg_step, false, 0);
         Ok(())
     }
 }
