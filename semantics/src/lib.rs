@@ -31,6 +31,7 @@ mod room_contents;
 pub mod room_kind;
 mod room_outline;
 mod rooms;
+mod route;
 mod scene;
 pub mod selections;
 mod semantics;

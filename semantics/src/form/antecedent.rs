@@ -245,7 +245,10 @@ impl Resolver {
         let verb = match &*step {
             RequestStep::Do { verb, .. } | RequestStep::DoNot { verb, .. } => Some(verb.clone()),
             RequestStep::Put { .. } | RequestStep::Bring { .. } => Some("pick_up".to_owned()),
-            RequestStep::GoTo(_) | RequestStep::Turn(_) | RequestStep::If { .. } => None,
+            RequestStep::GoTo(_)
+            | RequestStep::Leave(_)
+            | RequestStep::Turn(_)
+            | RequestStep::If { .. } => None,
         };
         let RequestStep::If {
             condition,

@@ -48,7 +48,7 @@ pub(super) fn is_any_room(own: &Description) -> bool {
 /// The thing that a step is about.
 pub(super) fn topic_of(step: &RequestStep) -> Option<&Phrase> {
     match step {
-        RequestStep::GoTo(_) | RequestStep::Turn(_) => None,
+        RequestStep::GoTo(_) | RequestStep::Leave(_) | RequestStep::Turn(_) => None,
         RequestStep::Do { object, .. }
         | RequestStep::DoNot { object, .. }
         | RequestStep::Put { object, .. }

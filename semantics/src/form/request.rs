@@ -22,6 +22,8 @@ pub enum TurnDirection {
 pub enum RequestStep {
     /// Go to a room.
     GoTo(Phrase),
+    /// Go out of a room.
+    Leave(Phrase),
     /// Turn on the spot.
     Turn(TurnDirection),
     /// Act on a thing, by a verb of the lexicon such as `"pick_up"`.

@@ -166,6 +166,7 @@ pub(super) fn visit_step(step: &mut RequestStep, visit: Visit<'_>) {
     match step {
         RequestStep::Turn(_) => {}
         RequestStep::GoTo(phrase)
+        | RequestStep::Leave(phrase)
         | RequestStep::Do { object: phrase, .. }
         | RequestStep::DoNot { object: phrase, .. } => visit_phrase(phrase, Role::Topic, visit),
         RequestStep::Put { object, to, .. } | RequestStep::Bring { object, to } => {

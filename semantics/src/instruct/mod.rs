@@ -6,6 +6,7 @@ mod condition;
 mod find_object;
 mod go_to_room;
 mod needed_words;
+mod route;
 mod step_kind;
 mod steps;
 mod task;
@@ -15,6 +16,10 @@ mod word_split;
 pub use condition::{StepCondition, StepView};
 pub use find_object::is_sought;
 pub use needed_words::needed_words;
+pub use route::{
+    PathWarp, RouteInstruction, RouteMilestone, RouteStep, RouteWalk, ToldWay, WalkProgress,
+    room_changes,
+};
 pub use step_kind::{StepKind, states_of};
 pub(crate) use step_kind::{is_opened, is_switched};
 pub use steps::{InstructionStep, conditional};

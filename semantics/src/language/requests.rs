@@ -39,7 +39,7 @@ pub(super) fn plan(tree: &Tree) -> Option<Vec<RequestStep>> {
                 plan(otherwise)?,
             )]
         }
-        ("then" | "steps", [first, rest]) => {
+        ("then" | "steps" | "last_steps", [first, rest]) => {
             let mut rest = plan(rest)?;
             if !merge_fetch_step(first, &mut rest)? {
                 rest.insert(0, step(first)?);
@@ -174,6 +174,7 @@ fn plan_or_step(tree: &Tree) -> Option<Vec<RequestStep>> {
 fn step(tree: &Tree) -> Option<RequestStep> {
     Some(match parts(tree)? {
         ("go_to", [to]) => RequestStep::GoTo(room(to)?),
+        ("leave_room", [from]) => RequestStep::Leave(room(from)?),
         ("turn_left", []) => RequestStep::Turn(TurnDirection::Left),
         ("turn_right", []) => RequestStep::Turn(TurnDirection::Right),
         ("turn_around", []) => RequestStep::Turn(TurnDirection::Around),
@@ -319,6 +320,20 @@ fn step(tree: &Tree) -> Option<RequestStep> {
     })
 }
 
+/// Returns whether steps are a route: they walk and turn alone, and leave a room or stop at a thing.
+fn is_route(steps: &[RequestStep]) -> bool {
+    let stops = |step: &RequestStep| {
+        matches!(step, RequestStep::Leave(_))
+            || matches!(step, RequestStep::Do { verb, .. } if verb == "stop_at")
+    };
+    let walks = |step: &RequestStep| match step {
+        RequestStep::GoTo(_) | RequestStep::Leave(_) | RequestStep::Turn(_) => true,
+        RequestStep::Do { verb, .. } => ["go_through", "go_past", "stop_at"].contains(&&**verb),
+        _ => false,
+    };
+    steps.iter().any(stops) && steps.iter().all(walks)
+}
+
 impl TreeBuilder<'_> {
     pub(super) fn plan(&self, steps: &[RequestStep]) -> Option<Tree> {
         Some(match steps {
@@ -345,14 +360,28 @@ impl TreeBuilder<'_> {
                 }
             }
             [only] => Tree::apply("one_step", [self.step(only)?]),
+            steps if is_route(steps) => self.route(steps)?,
             [first, rest @ ..] => Tree::apply("then", [self.step(first)?, self.plan(rest)?]),
         })
+    }
+
+    /// The steps of a route, one after the other with commas, and the last after "and".
+    fn route(&self, steps: &[RequestStep]) -> Option<Tree> {
+        let (last, before) = steps.split_last()?;
+        let mut plan = Tree::apply("one_step", [self.step(last)?]);
+        let mut function = "last_steps";
+        for step in before.iter().rev() {
+            plan = Tree::apply(function, [self.step(step)?, plan]);
+            function = "steps";
+        }
+        Some(plan)
     }
 
     fn step(&self, step: &RequestStep) -> Option<Tree> {
         let free = |phrase: &Phrase| self.phrase(phrase, Position::Free);
         Some(match step {
             RequestStep::GoTo(room) => Tree::apply("go_to", [self.room(room)?]),
+            RequestStep::Leave(room) => Tree::apply("leave_room", [self.room(room)?]),
             RequestStep::Turn(direction) => {
                 let function = match direction {
                     TurnDirection::Left => "turn_left",

@@ -3,9 +3,19 @@
 use super::*;
 
 fn step() -> BoxedStrategy<RequestStep> {
-    let verb = || word(&["find", "pick_up", "open", "switch_off", "bring_me"]);
+    let verb = || {
+        word(&[
+            "find",
+            "pick_up",
+            "open",
+            "switch_off",
+            "bring_me",
+            "stop_at",
+        ])
+    };
     prop_oneof![
         room().prop_map(RequestStep::GoTo),
+        room().prop_map(RequestStep::Leave),
         prop_oneof![
             Just(TurnDirection::Left),
             Just(TurnDirection::Right),

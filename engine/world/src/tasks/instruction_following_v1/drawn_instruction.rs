@@ -30,10 +30,22 @@ pub(super) enum InstructionForm {
     Negation,
     /// A step with several things of a kind: a number of them, or all.
     Quantity,
+    /// A way through the house, by rooms, doors, turns and landmarks.
+    Route,
 }
 
 impl InstructionForm {
-    pub(super) const ALL: [Self; 5] = [
+    /// All forms.
+    pub(super) const ALL: [Self; 6] = [
+        Self::Single,
+        Self::Sequence,
+        Self::Condition,
+        Self::Negation,
+        Self::Quantity,
+        Self::Route,
+    ];
+    /// The forms of episodes of which none is asked for: those that there were before routes, so that these episodes stay what they are.
+    pub(super) const BY_DEFAULT: [Self; 5] = [
         Self::Single,
         Self::Sequence,
         Self::Condition,
@@ -49,6 +61,7 @@ impl InstructionForm {
             Self::Condition => "condition",
             Self::Negation => "negation",
             Self::Quantity => "quantity",
+            Self::Route => "route",
         }
     }
 }
@@ -73,7 +86,8 @@ pub(super) struct InstructionDraw<'a> {
 }
 
 impl InstructionDraw<'_> {
-    /// An instruction of a form; `None` where what was drawn cannot be done, or the house has none of the form.
+    /// An instruction of a form; `None` where what was drawn cannot be done, or the house has none of the form, and for routes, which are
+    /// drawn with their starts.
     pub(super) fn draw(
         &self,
         form: InstructionForm,
@@ -85,6 +99,7 @@ impl InstructionDraw<'_> {
             InstructionForm::Condition => self.condition(stream),
             InstructionForm::Negation => self.negation(stream),
             InstructionForm::Quantity => self.quantity(stream),
+            InstructionForm::Route => None,
         }
     }
 

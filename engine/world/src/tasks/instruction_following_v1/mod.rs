@@ -3,9 +3,14 @@
 //! Each step has conditions. A step is done as soon as enough of them hold after the steps before it are done. At the end the conditions
 //! of things must still hold (a fridge that was to be opened is open), but for those that a later step undoes; where the agent is and
 //! looks counts for the last step alone. What was not to be done must never have been so.
+//!
+//! A route is followed by one whose own path passes its milestones in order, and who stops at its end.
 
+mod active_form;
 mod active_instruction;
+mod active_route;
 mod drawn_instruction;
+mod drawn_route;
 mod planned_step;
 mod settings;
 mod step_places;
@@ -21,13 +26,16 @@ use crate::error::WorldError;
 use crate::metrics::NavigationMetrics;
 use crate::schema;
 use crate::world::World;
+use active_form::ActiveForm;
 use active_instruction::ActiveInstruction;
+use active_route::ActiveRoute;
 use drawn_instruction::{DrawnInstruction, InstructionDraw, InstructionForm};
+use drawn_route::{DrawnRoute, RouteDraw};
 use dwell_scene::interrupt;
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::random::RandomKey;
-use dwell_scene::{AgentId, Entity, ObjectId, Pose};
-use dwell_semantics::instruct::{StepCondition, StepKind};
+use dwell_scene::{AgentBody, AgentId, Entity, ObjectId, Pose};
+use dwell_semantics::instruct::{RouteMilestone, StepCondition, StepKind};
 use dwell_semantics::vocabulary;
 use settings::InstructionFollowingV1Settings;
 use std::sync::Arc;
@@ -70,10 +78,20 @@ pub(super) const KIND: TaskKind = TaskKind {
         "instruction",
         "instruction_tokens",
     ],
-    measures: &[TaskMeasure {
-        name: "goal_condition_success",
-        about: "Share of the instruction's conditions that hold, 0 to 1.",
-    }],
+    measures: &[
+        TaskMeasure {
+            name: "goal_condition_success",
+            about: "Share of the instruction's conditions that hold, or of a route's milestones that were passed, 0 to 1.",
+        },
+        TaskMeasure {
+            name: "ndtw",
+            about: "Of a route: how closely the path keeps to it (nDTW), 0 to 1.",
+        },
+        TaskMeasure {
+            name: "sdtw",
+            about: "Of a route: nDTW in success, else 0 (SDTW).",
+        },
+    ],
     settings: schema::fields_of::<InstructionFollowingV1Settings>,
     build,
 };
@@ -84,7 +102,11 @@ fn build(value: &serde_json::Value, setup: TaskSetup) -> Result<Box<dyn Task>, W
     let kinds: Vec<StepKind> = asked
         .filter(|kind| is_carried_out(*kind, setup.actions))
         .collect();
-    if kinds.is_empty() {
+    let has_steps = settings
+        .forms
+        .iter()
+        .any(|form| *form != InstructionForm::Route);
+    if kinds.is_empty() && has_steps {
         let names: Vec<&str> = settings.kinds.iter().map(|kind| kind.name()).collect();
         return Err(WorldError::Config {
             field: "kinds",
@@ -99,7 +121,7 @@ fn build(value: &serde_json::Value, setup: TaskSetup) -> Result<Box<dyn Task>, W
         setup,
         pool: None,
         active: None,
-        condition_success: f64::NAN,
+        measured: [f64::NAN; 3],
     }))
 }
 
@@ -112,8 +134,9 @@ struct InstructionFollowingV1 {
     setup: TaskSetup,
     /// What the house offers at its start; found once.
     pool: Option<StepPool>,
-    active: Option<ActiveInstruction>,
-    condition_success: f64,
+    active: Option<ActiveForm>,
+    /// The values of the kind's measures, in their order.
+    measured: [f64; 3],
 }
 
 impl InstructionFollowingV1 {
@@ -127,7 +150,15 @@ impl InstructionFollowingV1 {
             .map(|own| own.name())
             .collect();
         let forms: Vec<&str> = self.settings.forms.iter().map(|own| own.name()).collect();
-        let why = if offered.is_empty() {
+        let why = if self
+            .settings
+            .forms
+            .iter()
+            .all(|own| *own == InstructionForm::Route)
+        {
+            "no route of three steps or more was found that can be told without doubt in one instruction and begins at the asked distance"
+                .to_owned()
+        } else if offered.is_empty() {
             "it has nothing to do of the kinds that are asked for, or nothing that one can go to and reach".to_owned()
         } else {
             format!(
@@ -157,7 +188,7 @@ impl Task for InstructionFollowingV1 {
         let grid = world.engines().nav_grid(&body)?;
         let with_groups = self.settings.forms.contains(&InstructionForm::Quantity);
         let agent = (self.setup.agent, body);
-        let pool = StepPool::survey(world, agent, &grid, &self.kinds, with_groups);
+        let pool = StepPool::survey(world, agent, &grid, &self.surveyed_kinds(), with_groups);
         self.pool = Some(pool);
         Ok(())
     }
@@ -179,6 +210,13 @@ impl Task for InstructionFollowingV1 {
         for k in 0..DRAWS {
             interrupt::unwind_if_cancelled();
             let key = key.child("instruction").child(k);
+            if self.form(key.child("steps")) == Some(InstructionForm::Route) {
+                let site = (&grid, &leaves, &room);
+                if let Some(episode) = self.begin_route(world, site, &body, key)? {
+                    return Ok(episode);
+                }
+                continue;
+            }
             let Some((form, drawn)) = self.draw(world, &grid, key.child("steps")) else {
                 continue;
             };
@@ -218,8 +256,7 @@ impl Task for InstructionFollowingV1 {
                 progress: NavigationMetrics::new(position, distance_m),
                 goal,
             };
-            self.condition_success = active.condition_success(world, agent);
-            self.active = Some(active);
+            self.play(world, ActiveForm::Steps(Box::new(active)));
             return Ok(episode);
         }
         Err(self.lack(world))
@@ -227,7 +264,7 @@ impl Task for InstructionFollowingV1 {
 
     fn snapshot(&self) -> Vec<u8> {
         let active = self.active.as_ref();
-        active.map_or_else(Vec::new, ActiveInstruction::snapshot)
+        active.map_or_else(Vec::new, ActiveForm::snapshot)
     }
 
     fn restore(&mut self, world: &World, bytes: &[u8]) -> Result<(), WorldError> {
@@ -235,7 +272,7 @@ impl Task for InstructionFollowingV1 {
             return Err(WorldError::Snapshot("no instruction has begun".to_owned()));
         };
         active.restore(world, self.setup.agent, bytes)?;
-        self.condition_success = active.condition_success(world, self.setup.agent);
+        self.measure(world, false);
         Ok(())
     }
 
@@ -258,12 +295,12 @@ impl Task for InstructionFollowingV1 {
         let stops = played.is_stop();
         let mut result = (self.rules).step_result((gain_m, agent.collided), stops, is_reached);
         result.reward += self.settings.step_done_reward * newly_done as f64;
-        self.condition_success = active.condition_success(world, id);
+        self.measure(world, result.success);
         result
     }
 
     fn measures(&self) -> Vec<f64> {
-        vec![self.condition_success]
+        self.measured.to_vec()
     }
 
     fn expert(&mut self, world: &mut World, _episode: &Episode) -> DiscreteAction {
@@ -273,6 +310,92 @@ impl Task for InstructionFollowingV1 {
 }
 
 impl InstructionFollowingV1 {
+    /// The kinds of steps of which places and words are looked up: a route ends at a thing that is found.
+    fn surveyed_kinds(&self) -> Vec<StepKind> {
+        let forms = &self.settings.forms;
+        let is_route = |form: &InstructionForm| *form == InstructionForm::Route;
+        let mut kinds = if forms.iter().all(is_route) {
+            Vec::new()
+        } else {
+            self.kinds.clone()
+        };
+        if forms.iter().any(is_route) && !kinds.contains(&StepKind::FindObject) {
+            kinds.push(StepKind::FindObject);
+        }
+        kinds
+    }
+
+    /// The form that is drawn from `key`.
+    fn form(&self, key: RandomKey) -> Option<InstructionForm> {
+        key.stream().choose(&self.settings.forms).copied()
+    }
+
+    /// Begins to play an instruction.
+    fn play(&mut self, world: &World, active: ActiveForm) {
+        self.active = Some(active);
+        self.measure(world, false);
+    }
+
+    fn measure(&mut self, world: &World, success: bool) {
+        if let Some(active) = &self.active {
+            let ndtw = active.ndtw();
+            let sdtw = if success { ndtw } else { 0.0 * ndtw };
+            let conditions = active.condition_success(world, self.setup.agent);
+            self.measured = [conditions, ndtw, sdtw];
+        }
+    }
+
+    /// Begins an episode with a route, drawn from `key`; `None` where that which was drawn cannot be told.
+    fn begin_route(
+        &mut self,
+        world: &mut World,
+        (grid, leaves, room): (&Arc<NavGrid>, &DoorLeaves, &FreeStartCells),
+        body: &AgentBody,
+        key: RandomKey,
+    ) -> Result<Option<Episode>, WorldError> {
+        let agent = self.setup.agent;
+        let Some(pool) = &self.pool else {
+            return Ok(None);
+        };
+        let scene = world.engines().semantics().scene(world.state());
+        let draw = RouteDraw {
+            pool,
+            world,
+            scene: &scene,
+            grid,
+            rules: &self.rules,
+            leaves,
+            room,
+            eye_m: body.eye_height_m,
+        };
+        let Some(drawn) = draw.draw(key.child("route")) else {
+            return Ok(None);
+        };
+        let language = scene.semantics.language();
+        let wording = key.child("wording").child(world.house().name.as_str());
+        let words = self.settings.words;
+        let sentence = words.compose(language, drawn.route.requests(), wording);
+        let active = ActiveRoute::new(&drawn, (agent, grid, self.setup.stride));
+        let (Some(sentence), Some(mut active)) = (sentence, active) else {
+            return Ok(None);
+        };
+        let position = grid.position(drawn.start);
+        world.place_agent(agent, position, drawn.yaw_rad)?;
+        if active.advance(world) > 0 {
+            return Ok(None);
+        }
+        let episode = Episode {
+            agent,
+            tokens: vocabulary::tokenize(&sentence.text)?,
+            instruction: sentence.text,
+            start: Pose::from_position_yaw(position, drawn.yaw_rad),
+            progress: NavigationMetrics::new(position, active.distance_m(world)),
+            goal: told_of_route(&drawn),
+        };
+        self.play(world, ActiveForm::Route(Box::new(active)));
+        Ok(Some(episode))
+    }
+
     /// An instruction, drawn from `key`; `None` where that which was drawn cannot be done.
     fn draw(
         &self,
@@ -303,6 +426,27 @@ fn pointed_object(world: &World, played: &PlayedAction<'_>) -> Option<ObjectId> 
         Entity::Object(object) => Some(object),
         _ => None,
     }
+}
+
+/// What sensors and infos tell of a route: its doors and landmarks, and the rooms that it names, in order.
+fn told_of_route(drawn: &DrawnRoute) -> EpisodeGoal {
+    let mut goal = EpisodeGoal {
+        kind: InstructionForm::Route.name(),
+        ..EpisodeGoal::default()
+    };
+    for step in &drawn.route.steps {
+        match step.milestone {
+            RouteMilestone::Left(room) | RouteMilestone::Entered(room) => goal.rooms.push(room),
+            RouteMilestone::Through { door, .. } => goal.objects.push(door),
+            RouteMilestone::Passed(thing) => goal.objects.push(thing),
+            RouteMilestone::Turned { .. } => {}
+            RouteMilestone::Reached(end) => {
+                goal.objects.extend(end.object());
+                goal.rooms.extend(end.room());
+            }
+        }
+    }
+    goal
 }
 
 /// What sensors and infos tell of an instruction.

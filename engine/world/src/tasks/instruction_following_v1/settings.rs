@@ -8,8 +8,8 @@ use dwell_semantics::instruct::{StepKind, WordSplit};
 navigation_settings! {
     /// The task's settings.
     pub(super) InstructionFollowingV1Settings {
-        /// Forms of instructions to draw from; default all.
-        forms: Vec<InstructionForm> = InstructionForm::ALL.to_vec(),
+        /// Forms of instructions to draw from; default all but `route`.
+        forms: Vec<InstructionForm> = InstructionForm::BY_DEFAULT.to_vec(),
         /// Kinds of steps to draw from; default all that the agent's actions can carry out.
         kinds: Vec<StepKind> = StepKind::ALL.to_vec(),
         /// The greatest number of steps of a sequence, 2 or 3; default 2.
