@@ -3,15 +3,17 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use dwell::{
-    Engines, HeardToken, PlayRequest, SoundName, SoundPlace, Utterance, VocalEffort, World,
-    WorldConfig,
+    Engines, HeardToken, Listener, MountedReceiver, PlayRequest, SoundName, SoundPlace, Utterance,
+    VocalEffort, World, WorldConfig,
 };
-use dwell_acoustics::{AcousticConfig, AcousticScene, Receiver, SoundSourcePose};
+use dwell_acoustics::{
+    AcousticConfig, AcousticScene, Microphone, Receiver, ReceiverKind, SoundSourcePose,
+};
 use dwell_houses::authoring::{FileAccess, HousePlan, build};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
-use dwell_scene::{AgentBody, AgentId, House, ShoeboxMaterials};
+use dwell_scene::{AgentBody, AgentId, House, Pose, ShoeboxMaterials};
 use glam::Vec3;
 use serde_json::json;
 use std::sync::Arc;
@@ -316,4 +318,65 @@ fn what_cannot_be_said_is_refused() {
     assert!(refusal(0, &[1; 9]).contains("1 to 8"));
     assert!(refusal(0, &[0]).contains("tokens is 0; allowed is numbers of words, 1 to"));
     assert!(refusal(0, &[1_000_000]).contains("1000000"));
+}
+
+/// A voice reaches two microphones of an agent one after the other, by the way to each of them, within 0.1 ms; and from the left the left
+/// one first.
+#[test]
+fn a_voice_arrives_at_each_microphone_in_its_time() {
+    let apart_m = 0.3;
+    let sides = [-0.5, 0.5].map(|side| Microphone::omni(Vec3::X * (side * apart_m)));
+    let array = Listener {
+        agent: LISTENER,
+        receiver: Some(MountedReceiver {
+            kind: ReceiverKind::Array(sides.to_vec()),
+            head_from_receiver: Pose::IDENTITY,
+        }),
+    };
+    // The speaker stands 3 m away; the listener looks past it by so many degrees to the right.
+    for turned_deg in [-90.0_f32, -40.0, 0.0, 25.0, 90.0] {
+        let config = WorldConfig {
+            sound_rate_hz: 48_000,
+            ..WorldConfig::default()
+        };
+        let places = [FACING[0], (FACING[1].0, -turned_deg.to_radians())];
+        let mut world = world(&room(), places, config);
+        let window = 48_000 / 2;
+        world.enable_receivers(&[(array.clone(), window)]).unwrap();
+        world.say(SPEAKER, said(&[42], VocalEffort::Loud)).unwrap();
+        for _ in 0..9 {
+            world.step(&[]).unwrap();
+        }
+        let [left, right] = [0, 1].map(|channel| {
+            let mut samples = vec![0.0; window];
+            world.newest_samples_of(&array, channel, &mut samples);
+            samples
+        });
+        // The lag at which the two agree best; later sound comes from all sides, the strongest straight.
+        let most = (apart_m / 343.0 * 48_000.0 * 1.2) as i32;
+        let agreement = |lag: i32| -> f64 {
+            let pairs = (most..window as i32 - most).map(|n| {
+                let at = |samples: &[f32], n: i32| f64::from(samples[n as usize]);
+                at(&left, n) * at(&right, n + lag)
+            });
+            pairs.sum()
+        };
+        let best = (-most..=most)
+            .max_by(|a, b| agreement(*a).total_cmp(&agreement(*b)))
+            .unwrap();
+        let found_s = f64::from(best) / 48_000.0;
+        let agents = &world.state().agents;
+        let mouth = Vec3::new(0.0, -0.08, -0.1);
+        let mouth = agents[SPEAKER].world_from_head().transform_point(mouth);
+        let head = agents[LISTENER].world_from_head();
+        let ways = [-0.5, 0.5].map(|side| {
+            head.transform_point(Vec3::X * (side * apart_m))
+                .distance(mouth)
+        });
+        let expected_s = f64::from(ways[1] - ways[0]) / 343.2;
+        assert!(
+            (found_s - expected_s).abs() < 1e-4,
+            "{turned_deg}: {found_s} {expected_s}"
+        );
+    }
 }

@@ -1,0 +1,158 @@
+//! Tasks that several agents have together.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use dwell::{
+    AgentConfig, DiscreteAction, Env, EnvConfig, SensorConfig, StepAction, StepInfo, WorldConfig,
+};
+use dwell_scene::AgentBody;
+use serde_json::{Value, json};
+
+/// An environment of the apartment in which so many agents act; `scripted`: which of them act as their experts say.
+fn env(task: &str, settings: Value, agents: usize, scripted: &[usize], muted: bool) -> Env {
+    let role = |number: usize| AgentConfig {
+        agent: number as u32,
+        scripted: scripted.contains(&number),
+        ..AgentConfig::default()
+    };
+    let config = EnvConfig {
+        task: task.to_owned(),
+        task_settings: settings,
+        world: WorldConfig {
+            agents: vec![AgentBody::default(); agents],
+            muted,
+            ..WorldConfig::default()
+        },
+        sensors: Some(vec![SensorConfig {
+            kind: "heard_tokens".to_owned(),
+            settings: Value::Null,
+        }]),
+        agents: (0..agents).map(role).collect(),
+        ..EnvConfig::default()
+    };
+    Env::new(dwell_tests::apartment(), &config).unwrap()
+}
+
+/// Plays an episode with the experts' actions; the last step's infos.
+fn play(env: &mut Env, seed: u64) -> Vec<StepInfo> {
+    env.reset_with_listeners(seed).unwrap();
+    let count = env.agents().len();
+    for _ in 0..2000 {
+        let actions: Vec<Option<StepAction>> = (0..count)
+            .map(|k| Some(env.expert_step(k).unwrap()))
+            .collect();
+        let infos = env.step(&actions).unwrap();
+        if infos.iter().all(|info| info.result.terminated) {
+            return infos;
+        }
+    }
+    panic!("the episode of seed {seed} does not end");
+}
+
+/// The guide's word is enough: nearly all pairs succeed, in all of which both do; muted the follower is at chance (1 of 4): of 16 more
+/// than 10 have a probability of 0.1 %.
+#[test]
+fn who_is_told_by_voice_finds_the_thing_and_who_is_not_guesses() {
+    let mut speaking = env("Cooperate", Value::Null, 2, &[], false);
+    let mut muted = env("Cooperate", Value::Null, 2, &[], true);
+    let mut solved = [0, 0];
+    for seed in 0..16 {
+        for (count, env) in solved.iter_mut().zip([&mut speaking, &mut muted]) {
+            let infos = play(env, seed);
+            assert_eq!(infos[0].result.success, infos[1].result.success);
+            *count += u32::from(infos[1].result.success);
+        }
+    }
+    assert!(solved[0] >= 15, "{solved:?}");
+    assert!(solved[1] <= 10, "{solved:?}");
+}
+
+/// All agents are asked about one thing, and followers' sensors know nothing of it.
+#[test]
+fn a_goal_is_shared_and_told_to_the_guide_alone() {
+    let mut env = env("Cooperate", json!({"choices": 6}), 3, &[], false);
+    for seed in 0..10 {
+        env.reset(seed).unwrap();
+        let [guide, first, second] = [0, 1, 2].map(|k| env.episode(k).unwrap());
+        assert!(guide.goal.class > 0 && !guide.goal.objects.is_empty());
+        assert!(
+            guide.instruction.starts_with("Find a"),
+            "{}",
+            guide.instruction
+        );
+        for follower in [first, second] {
+            assert_eq!(follower.instruction, "Find the thing.");
+            assert!(follower.goal.objects.is_empty() && follower.goal.class == 0);
+            assert!(follower.progress.start_distance_m.is_some());
+        }
+    }
+}
+
+/// The expert keeps near the right leader and looks at the person; who stands still does neither.
+#[test]
+fn who_follows_succeeds_and_who_stands_does_not() {
+    for (task, agents, scripted) in [("PiedPiper", 3, &[1, 2][..]), ("SocialNav", 2, &[1][..])] {
+        let settings = json!({"steps": 400});
+        let mut env = env(task, settings, agents, scripted, false);
+        let (mut followed, mut stood) = (0, 0);
+        for seed in 0..6 {
+            env.reset(seed).unwrap();
+            for still in [false, true] {
+                env.reset(seed).unwrap();
+                let mut actions = vec![Some(StepAction::from(DiscreteAction::Wait)); agents];
+                let info = loop {
+                    if !still {
+                        actions[0] = Some(env.expert_step(0).unwrap());
+                    }
+                    let info = env.step(&actions).unwrap().swap_remove(0);
+                    if info.result.terminated {
+                        break info;
+                    }
+                };
+                if still {
+                    stood += u32::from(info.result.success);
+                } else {
+                    followed += u32::from(info.result.success);
+                    assert!(info.measures.iter().all(|own| own.is_finite()), "{info:?}");
+                }
+            }
+        }
+        assert!(followed >= 5, "{task}: {followed}");
+        assert!(stood <= 2, "{task}: {stood}");
+    }
+}
+
+/// Scripted agents go on from a snapshot, and to stop at once is never success.
+#[test]
+fn scripted_agents_go_on_from_snapshots_and_stop_is_no_success() {
+    for (task, agents, scripted) in [
+        ("PiedPiper", 3, &[1, 2][..]),
+        ("SocialNav", 2, &[1][..]),
+        ("Cooperate", 2, &[0][..]),
+    ] {
+        let mut first = env(task, Value::Null, agents, scripted, false);
+        let mut second = env(task, Value::Null, agents, scripted, false);
+        first.reset_with_listeners(5).unwrap();
+        let wait = vec![Some(DiscreteAction::Wait); agents];
+        for _ in 0..30 {
+            first.step(&wait).unwrap();
+        }
+        second.restore(&first.snapshot().unwrap()).unwrap();
+        for _ in 0..30 {
+            assert_eq!(first.step(&wait).unwrap(), second.step(&wait).unwrap());
+            assert_eq!(first.world().hash(), second.world().hash(), "{task}");
+        }
+        for seed in 0..5 {
+            first.reset(seed).unwrap();
+            let stop = vec![Some(DiscreteAction::Stop); agents];
+            let infos = first.step(&stop).unwrap();
+            let own = infos
+                .iter()
+                .enumerate()
+                .filter(|(k, _)| !scripted.contains(k));
+            for (_, info) in own {
+                assert!(info.result.terminated && !info.result.success, "{task}");
+            }
+        }
+    }
+}
