@@ -47,6 +47,9 @@ class WorldSettings(TypedDict, total=False):
     sound_head: Head | str | os.PathLike[str] | None
     #: The folder below which sound files are, as a path; without one no file is played.
     sound_root: str | os.PathLike[str] | None
+    #: Whether agents' voices are silent, default false: what they say is neither heard nor
+    #: understood.
+    muted: bool
     #: Who renders pictures: `"cpu"` (default), `"gpu"`, or `"gpu:NAME"` with a part of an
     #: adapter's name.
     renderer: str

@@ -6,6 +6,7 @@
 use super::goal_cells::LargestIslandIndex;
 use super::navigation::{Leg, NavigationGoal, NavigationRules, navigation_settings};
 use super::object_nav::class_goals;
+use super::others::{Tour, TourMemory, position};
 use super::point_nav::check_success_distance;
 use super::standing_room::FreeStartCells;
 use super::{PlayedAction, Task, TaskKind, TaskSetup, door_leaves::DoorLeaves, random_yaw_rad};
@@ -32,6 +33,8 @@ const FOLLOWER_INSTRUCTION: &str = "Find the thing.";
 const MOST_CHOICES: u32 = 16;
 /// Distance of the others' starts from the first, straight m.
 const TOGETHER_M: f32 = 4.0;
+/// Distance of others below which the scripted guide makes way, m.
+const MAKE_WAY_M: f32 = 1.0;
 /// Times that the scripted follower hears a word before it goes.
 const HEARINGS: u32 = 2;
 /// Steps that it waits for words before it guesses: 15 s at the usual rate.
@@ -131,6 +134,8 @@ struct ActiveEpisode {
     leg: Leg,
     /// The way that the expert has chosen.
     chosen: Option<Leg>,
+    /// Where the scripted guide goes to make way.
+    tour: Tour,
     key: RandomKey,
     memory: FollowerMemory,
 }
@@ -217,6 +222,14 @@ impl CooperateTask {
     }
 }
 
+/// Returns whether another agent is close.
+fn is_in_the_way(world: &World, agent: AgentId) -> bool {
+    let here = position(world, agent);
+    let agents = world.state().agents.iter_ids();
+    let mut others = agents.filter(|(id, _)| *id != agent);
+    others.any(|(_, other)| other.position.distance(here) < MAKE_WAY_M)
+}
+
 fn room_of(house: &dwell_scene::House, at: Vec3) -> Option<dwell_scene::RoomId> {
     house.room_at(at + Vec3::Y * 0.1)
 }
@@ -278,8 +291,8 @@ impl Task for CooperateTask {
             let why = "no start lies as far from the goal as the settings ask for";
             return Err(self.unplayable(world, why));
         };
-        let (position, yaw_rad) = (grid.position(cell), random_yaw_rad(key));
-        world.place_agent(agent, position, yaw_rad)?;
+        let (feet, yaw_rad) = (grid.position(cell), random_yaw_rad(key));
+        world.place_agent(agent, feet, yaw_rad)?;
         let told = leg.goal.told.clone();
         let instruction = match self.role {
             Role::Guide => {
@@ -293,9 +306,9 @@ impl Task for CooperateTask {
             agent,
             tokens: vocabulary::tokenize(&instruction)?,
             instruction,
-            start: Pose::from_position_yaw(position, yaw_rad),
+            start: Pose::from_position_yaw(feet, yaw_rad),
             progress: NavigationMetrics::new(
-                position,
+                feet,
                 distance_m.filter(|_| self.role == Role::Follower),
             ),
             // Sensors of goals tell it to the guide alone.
@@ -315,6 +328,7 @@ impl Task for CooperateTask {
             choices,
             leg,
             chosen: None,
+            tour: Tour::default(),
             key,
             memory,
         });
@@ -322,21 +336,24 @@ impl Task for CooperateTask {
     }
 
     fn snapshot(&self) -> Vec<u8> {
-        let memory = self.active.as_ref().map(|active| &active.memory);
-        memory.map_or(Vec::new(), |memory| {
-            postcard::to_stdvec(memory).expect("plain data can always be written to memory")
+        let active = self.active.as_ref();
+        active.map_or(Vec::new(), |active| {
+            postcard::to_stdvec(&(&active.memory, active.tour.memory()))
+                .expect("plain data can always be written to memory")
         })
     }
 
     fn restore(&mut self, _world: &World, bytes: &[u8]) -> Result<(), WorldError> {
         let refuse = || WorldError::Snapshot("what its follower has heard is none".to_owned());
-        let memory: FollowerMemory = postcard::from_bytes(bytes).map_err(|_| refuse())?;
+        let (memory, tour): (FollowerMemory, TourMemory) =
+            postcard::from_bytes(bytes).map_err(|_| refuse())?;
         let active = self.active.as_mut().ok_or_else(refuse)?;
         let count = active.choices.len();
         if memory.heard.len() != count || memory.chosen.is_some_and(|k| k as usize >= count) {
             return Err(refuse());
         }
         active.memory = memory;
+        active.tour = Tour::restored(tour, &self.setup, active.leg.guide.grid());
         active.chosen = None;
         Ok(())
     }
@@ -395,7 +412,13 @@ impl Task for CooperateTask {
             return DiscreteAction::Stop;
         };
         if self.role == Role::Guide {
-            return DiscreteAction::Wait;
+            if !is_in_the_way(world, self.setup.agent) {
+                return DiscreteAction::Wait;
+            }
+            let grid = active.leg.guide.grid().clone();
+            return active
+                .tour
+                .next_action(world, (&self.setup, &grid), active.key);
         }
         if active.memory.chosen.is_none() {
             active.memory.chosen = active.decide();

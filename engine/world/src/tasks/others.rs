@@ -52,7 +52,7 @@ impl Tour {
             places: self.memory.places + 1,
             goal: goal.map(|cell| grid.position(cell).to_array()),
         };
-        self.way = goal.map(|cell| follower(setup, grid, cell));
+        self.way = goal.map(|cell| way_to(setup, grid, &[cell]));
         DiscreteAction::Wait
     }
 
@@ -65,7 +65,7 @@ impl Tour {
     pub(super) fn restored(memory: TourMemory, setup: &TaskSetup, grid: &Arc<NavGrid>) -> Self {
         let cell = memory.goal.and_then(|goal| grid.nearest(goal.into(), 0.5));
         Self {
-            way: cell.map(|cell| follower(setup, grid, cell)),
+            way: cell.map(|cell| way_to(setup, grid, &[cell])),
             memory,
         }
     }
@@ -77,13 +77,13 @@ pub(super) fn position(world: &World, agent: AgentId) -> Vec3 {
     state.map_or(Vec3::ZERO, |agent| agent.position)
 }
 
-/// Returns a guide to a cell.
-pub(super) fn follower(
+/// Returns a guide to the nearest of some cells.
+pub(super) fn way_to(
     setup: &TaskSetup,
     grid: &Arc<NavGrid>,
-    cell: NavCell,
+    cells: &[NavCell],
 ) -> ShortestPathFollower {
-    ShortestPathFollower::new(setup.agent, grid.clone(), &[cell], setup.stride)
+    ShortestPathFollower::new(setup.agent, grid.clone(), cells, setup.stride)
 }
 
 /// Returns whether an agent sees the head or the middle of another one: within `half_view_rad` of where it looks, `most_m` away, and with

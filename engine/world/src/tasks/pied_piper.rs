@@ -5,7 +5,7 @@
 //! That following is to stay within 2 m is as in the social navigation of X. Puig et al., "Habitat 3.0", 2023.
 
 use super::audio_nav::{check_sounds, play_signal};
-use super::others::{Tour, TourMemory, follower, position};
+use super::others::{Tour, TourMemory, position, way_to};
 use super::standing_room::sample_start;
 use super::{PlayedAction, Task, TaskKind, TaskSetup, random_yaw_rad};
 use crate::actions::DiscreteAction;
@@ -374,7 +374,7 @@ impl Task for PiedPiperTask {
         }
         // The right one moves on, and so does its place.
         let cell = grid.nearest(there, 1.0);
-        let step = cell.and_then(|cell| follower(&self.setup, &grid, cell).next_action(world));
+        let step = cell.and_then(|cell| way_to(&self.setup, &grid, &[cell]).next_action(world));
         step.unwrap_or(DiscreteAction::Wait)
     }
 }

@@ -4,7 +4,7 @@
 //! Social navigation of X. Puig et al., "Habitat 3.0: A Co-Habitat for Humans, Avatars and Robots", 2023: find the person, then keep 1 to 2 m away and
 //! look at it. The names of the measures follow those of habitat-lab's `SocialNavStats`.
 
-use super::others::{Tour, TourMemory, follower, position, sees};
+use super::others::{Tour, TourMemory, position, sees, way_to};
 use super::standing_room::sample_start;
 use super::{PlayedAction, Task, TaskKind, TaskSetup, random_yaw_rad};
 use crate::actions::DiscreteAction;
@@ -14,6 +14,7 @@ use crate::metrics::NavigationMetrics;
 use crate::schema;
 use crate::world::World;
 use dwell_scene::math;
+use dwell_scene::navigation::NavCell;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, Pose};
 use dwell_semantics::vocabulary;
@@ -34,8 +35,10 @@ const HALF_VIEW_RAD: f32 = FRAC_PI_4;
 const TOUCH_M: f32 = 0.03;
 /// A person walks in one of so many steps, so that a robot keeps up.
 const WALKS_EVERY: u64 = 2;
-/// The scripted follower comes nearer above this distance, m.
-const KEEP_M: f32 = 1.7;
+/// The scripted follower makes way below the first distance, and comes nearer above the second, m.
+const KEEP_M: [f32; 2] = [1.1, 1.7];
+/// Distances of the places to which it makes way, m.
+const ASIDE_M: [f32; 2] = [1.3, 1.9];
 /// Turn that the scripted follower leaves, rad.
 const AIM_RAD: f32 = 0.2;
 
@@ -332,7 +335,7 @@ impl Task for SocialNavTask {
         }
     }
 
-    /// The person walks from place to place; the others, who know where it is, come near and keep looking at it.
+    /// The person walks from place to place; the others, who know where it is, come near, make way and look at it.
     fn expert(&mut self, world: &mut World, _episode: &Episode) -> DiscreteAction {
         let Some(body) = world
             .state()
@@ -362,11 +365,21 @@ impl Task for SocialNavTask {
             std::f32::consts::PI,
             10.0,
         );
-        if seen && distance_m < KEEP_M {
+        let there = position(world, self.person());
+        if distance_m < KEEP_M[0] {
+            let is_aside = |cell: &NavCell| {
+                let apart_m = grid.position(*cell).distance(there);
+                (ASIDE_M[0]..ASIDE_M[1]).contains(&apart_m)
+            };
+            let aside: Vec<NavCell> = grid.walkable().filter(is_aside).collect();
+            let step = way_to(&self.setup, &grid, &aside).next_action(world);
+            return step.unwrap_or(DiscreteAction::Wait);
+        }
+        if seen && distance_m < KEEP_M[1] {
             return self.face_person(world).unwrap_or(DiscreteAction::Wait);
         }
-        let cell = grid.nearest(position(world, self.person()), 1.0);
-        let step = cell.and_then(|cell| follower(&self.setup, &grid, cell).next_action(world));
+        let cell = grid.nearest(there, 1.0);
+        let step = cell.and_then(|cell| way_to(&self.setup, &grid, &[cell]).next_action(world));
         step.unwrap_or(DiscreteAction::Wait)
     }
 }
