@@ -159,7 +159,7 @@ fn check(
                 match direction {
                     TurnDirection::Right => assert!((45.0..=135.0).contains(&degrees), "{degrees}"),
                     TurnDirection::Left => {
-                        assert!((-135.0..=-45.0).contains(&degrees), "{degrees}")
+                        assert!((-135.0..=-45.0).contains(&degrees), "{degrees}");
                     }
                     TurnDirection::Around => assert!(degrees.abs() >= 135.0, "{degrees}"),
                 }
@@ -284,8 +284,8 @@ fn routes_are_true_of_their_ways_and_of_no_others() {
                     (_, Some(thing)) => vec![scene.extent(thing).bounds.center()],
                     _ => unreachable!(),
                 };
-                let starts = on_floor(from).into_iter();
-                let start = starts.filter_map(|place| grid.nearest(place, 0.5)).next();
+                let mut starts = on_floor(from).into_iter();
+                let start = starts.find_map(|place| grid.nearest(place, 0.5));
                 let near = |goal: Vec3| grid.nearest(goal.with_y(goal.y.min(0.3)), 1.2);
                 let goal = goals.into_iter().find_map(near);
                 let path = start

@@ -281,7 +281,7 @@ fn routes_are_followed_by_the_expert_alone() {
     let (houses, episodes) = if dwell_tests::runs_all() {
         (40, 8)
     } else {
-        (3, 3)
+        (2, 3)
     };
     let (mut played, mut solved, mut unplayable, mut mirrored_all, mut mirrored_ok) =
         (0, 0, 0, 0, 0);
@@ -310,6 +310,10 @@ fn routes_are_followed_by_the_expert_alone() {
             solved += 1;
             spl += plan.spl;
             ndtw += plan.measures[1];
+            // The rest is looked at in fewer episodes.
+            if seed >= 2 {
+                continue;
+            }
             env.reset(seed).unwrap();
             let steps = meant(&env);
             assert!(steps.len() >= 3, "{text:?}");
@@ -400,7 +404,7 @@ fn routes_are_a_form_like_others() {
     let kinds = |settings: Value| -> BTreeSet<&'static str> {
         let (house, _) = dwell_houses::open("builtin:apartment").unwrap();
         let mut env = env_in(house, settings);
-        let seeds = 0..16;
+        let seeds = 0..6;
         seeds
             .map(|seed| {
                 env.reset(seed).unwrap();

@@ -19,6 +19,13 @@ use glam::Vec3;
 /// The fewest steps of a route, its end included.
 const LEAST_STEPS: usize = 3;
 
+/// Distance from the start within which no turn but that at the start is told, m: one has no direction before it.
+const BY_START_M: f32 = 1.6;
+
+/// Distance from the way at which one still follows it, m, and the places of the way (of 0.1 m) between two of which one cuts corners.
+const BESIDE_M: f32 = 0.2;
+const CUT: usize = 8;
+
 /// A way that a route is told of.
 #[derive(Clone, Copy, Debug)]
 pub struct ToldWay<'a> {
@@ -178,6 +185,8 @@ impl RouteTeller<'_, '_> {
             let candidate = match event {
                 // One turns around at the start alone: no way goes on backwards.
                 RouteEvent::Turn(TurnDirection::Around) if at > 0 => continue,
+                // What lies so near to the start is no turn on the way yet.
+                RouteEvent::Turn(_) if at > 0 && self.is_by_start(at) => continue,
                 RouteEvent::Turn(direction) => Candidate {
                     request: RequestStep::Turn(direction),
                     milestone: RouteMilestone::Turned {
@@ -203,6 +212,11 @@ impl RouteTeller<'_, '_> {
         }
         found.push(self.end()?);
         Some(found)
+    }
+
+    fn is_by_start(&self, at: usize) -> bool {
+        let points = &self.finder.route.points;
+        flat(points[at]).distance(flat(points[0])) < BY_START_M
     }
 
     /// The ways to say that one goes from a room to another.
@@ -272,9 +286,18 @@ impl RouteTeller<'_, '_> {
 
     /// Where on the way each of those steps is done that are done in order.
     fn places_of_done(&self, steps: &[Candidate], limits: RouteLimits) -> Vec<usize> {
+        self.places_along(&self.finder.route.points, steps, limits)
+    }
+
+    /// As [`Self::places_of_done`] on a way of other places.
+    fn places_along(
+        &self,
+        points: &[Vec3],
+        steps: &[Candidate],
+        limits: RouteLimits,
+    ) -> Vec<usize> {
         let milestones = steps.iter().map(|own| own.milestone.clone());
         let mut walk = RouteWalk::with_limits(milestones.collect(), limits);
-        let points = &self.finder.route.points;
         let mut places = Vec::new();
         for (at, point) in points.iter().enumerate() {
             let is_last = at + 1 == points.len();
@@ -285,10 +308,23 @@ impl RouteTeller<'_, '_> {
         places
     }
 
-    /// Returns whether the way passes a milestone clearly.
+    /// Returns whether the way passes a milestone clearly, and so do ways beside it and one that cuts its corners.
     fn is_clear(&self, step: &Candidate) -> bool {
-        self.places(std::slice::from_ref(step), RouteLimits::TOLD)
-            .is_some()
+        let step = std::slice::from_ref(step);
+        let points = &self.finder.route.points;
+        let follows = |points: &[Vec3]| {
+            let done = self.places_along(points, step, RouteLimits::FOLLOWED);
+            done.len() == step.len()
+        };
+        let beside = [Vec3::X, Vec3::NEG_X, Vec3::Z, Vec3::NEG_Z];
+        let ends = points.last().copied();
+        let cut: Vec<Vec3> = points.iter().copied().step_by(CUT).chain(ends).collect();
+        self.places(step, RouteLimits::TOLD).is_some()
+            && follows(&cut)
+            && beside.iter().all(|side| {
+                let moved = points.iter().map(|own| *own + *side * BESIDE_M);
+                follows(&moved.collect::<Vec<Vec3>>())
+            })
     }
 
     /// Leaves steps out that the way does not pass clearly after those before them; `None` where it does not so pass those that are left.
