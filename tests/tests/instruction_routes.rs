@@ -243,7 +243,7 @@ fn play(
             assert!(
                 !success || follows,
                 "{seed}: {:?} was not followed",
-                env.episode(0).unwrap().instruction
+                env.episode(0).expect("an episode has begun").instruction
             );
             return Played {
                 actions,
