@@ -44,7 +44,7 @@ impl VocalEffort {
     /// Spectrum levels at 1 m ahead of the mouth at 250 Hz to 8 kHz, dB re (20 µPa)²/Hz: means over time, pauses included.
     ///
     /// # Source
-    /// Voiced: ANSI S3.5-1997, table 4 (octave bands), as an open implementation of the standard has it (MoSQITo); the levels below
+    /// Voiced: ANSI S3.5-1997, table 4 (octave bands), as an open implementation of the standard has it (`MoSQITo`); the levels below
     /// agree with the standard's overall levels within 0.5 dB, and with its third-octave table within 1 dB.
     ///
     /// Whisper: an estimate, probably within 5 dB. No table of octave bands of whispers was found. Published is that vowels lose

@@ -167,8 +167,8 @@ impl EnvConfig {
         let roles: Vec<_> = roles
             .map(|own| self.resolve_agent(own))
             .collect::<Result<_, _>>()?;
-        let kinds = roles.iter().filter_map(|role| tasks::find(role.task).ok());
-        for kind in kinds.filter(|kind| kind.min_agents > roles.len()) {
+        let mut kinds = roles.iter().filter_map(|role| tasks::find(role.task).ok());
+        if let Some(kind) = kinds.find(|kind| kind.min_agents > roles.len()) {
             let found = format!("{} with {} agent", kind.name, roles.len());
             let allowed = format!("at least {} agents in {}", kind.min_agents, kind.name);
             return Err(fault("agents", found, allowed));

@@ -182,14 +182,6 @@ impl ActiveEpisode {
 }
 
 impl CooperateTask {
-    fn unplayable(&self, world: &World, why: &str) -> WorldError {
-        WorldError::TaskNotPlayable {
-            task: NAME,
-            house: world.house().name.clone(),
-            why: why.to_owned(),
-        }
-    }
-
     /// A start: near the first of `placed`, in its room, where somebody has one.
     fn start(
         &self,
@@ -219,6 +211,14 @@ impl CooperateTask {
         };
         let near = room.sample(grid, key, |cell| is_near(cell) && is_start(cell));
         near.or_else(|| room.sample(grid, key.child("apart"), is_start))
+    }
+}
+
+fn unplayable(world: &World, why: &str) -> WorldError {
+    WorldError::TaskNotPlayable {
+        task: NAME,
+        house: world.house().name.clone(),
+        why: why.to_owned(),
     }
 }
 
@@ -276,7 +276,7 @@ impl Task for CooperateTask {
         choices.truncate(self.settings.choices as usize);
         let Some(goal) = choices.first().map(|offer| offer.goal.clone()) else {
             let why = "it has no thing of a class with a name of one word that one can stand near and see";
-            return Err(self.unplayable(world, why));
+            return Err(unplayable(world, why));
         };
         if choices.len() < self.settings.choices as usize {
             let why = format!(
@@ -284,12 +284,12 @@ impl Task for CooperateTask {
                 choices.len(),
                 self.settings.choices
             );
-            return Err(self.unplayable(world, &why));
+            return Err(unplayable(world, &why));
         }
         let leg = Leg::new(agent, grid.clone(), goal, self.setup.stride);
         let Some(cell) = self.start(world, &leg, placed, key.child("start")) else {
             let why = "no start lies as far from the goal as the settings ask for";
-            return Err(self.unplayable(world, why));
+            return Err(unplayable(world, why));
         };
         let (feet, yaw_rad) = (grid.position(cell), random_yaw_rad(key));
         world.place_agent(agent, feet, yaw_rad)?;
@@ -400,7 +400,7 @@ impl Task for CooperateTask {
         let ended = others.clone().count() > 0 && others.clone().all(|(_, own)| own.terminated);
         let success = others.any(|(_, own)| own.success);
         let pay = &self.rules.rewards;
-        ended.then(|| StepResult {
+        ended.then_some(StepResult {
             reward: pay.step + if success { pay.success } else { 0.0 },
             terminated: true,
             success,

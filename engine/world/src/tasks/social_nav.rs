@@ -36,9 +36,9 @@ const TOUCH_M: f32 = 0.03;
 /// A person walks in one of so many steps, so that a robot keeps up.
 const WALKS_EVERY: u64 = 2;
 /// The scripted follower makes way below the first distance, and comes nearer above the second, m.
-const KEEP_M: [f32; 2] = [1.1, 1.7];
+const KEEP_M: [f32; 2] = [1.3, 1.8];
 /// Distances of the places to which it makes way, m.
-const ASIDE_M: [f32; 2] = [1.3, 1.9];
+const ASIDE_M: [f32; 2] = [1.5, 1.95];
 /// Turn that the scripted follower leaves, rad.
 const AIM_RAD: f32 = 0.2;
 
