@@ -8,7 +8,18 @@ from typing import Any
 from dwell import ConfigError, _native
 from dwell.arguments import integer_in_range, plain_settings, quoted, text
 
-__all__ = ["read", "say"]
+__all__ = ["read", "say", "vocabulary"]
+
+
+def vocabulary() -> list[str]:
+    """The words of instructions and utterances; word k, counted from 1, is token k.
+
+    Examples:
+        >>> from dwell.language import vocabulary
+        >>> "sofa" in vocabulary()
+        True
+    """
+    return [*_native.vocabulary()]
 
 
 def read(sentence: str) -> list[dict[str, Any]]:

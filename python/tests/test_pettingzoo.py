@@ -231,6 +231,36 @@ def test_scripted_agents_act_and_are_in_nobodys_list() -> None:
     assert np.linalg.norm(moved) > 0.5
     with pytest.raises(dwell.ConfigError, match="scripted"):
         zoo.parallel_env(agents={"a": {"scripted": True}}, **HOME)
+    many = zoo.vector_env(2, "PointNav", agents=agents, **HOME)
+    many.reset(seed=3)
+    assert list(many.batched_action_spaces) == ["own"]
+    _, rewards, *_ = many.step(many.expert_actions())
+    assert list(rewards) == ["own"]
+
+
+def test_a_snapshot_is_of_agents_by_their_names() -> None:
+    env = zoo.parallel_env(agents={"a": {}, "b": {}}, **STUDIO)
+    env.reset(seed=1)
+    env.step({"a": 1, "b": 0})
+    for names in ("ba", "a"):
+        other = zoo.parallel_env(agents={name: {} for name in names}, **STUDIO)
+        with pytest.raises(dwell.ConfigError, match=r"of agents \['a', 'b'\]"):
+            other.restore(env.snapshot())
+
+
+def test_a_vector_says_when_it_has_no_episodes() -> None:
+    many = zoo.vector_env(2, **STUDIO)
+    calls = (many.state, many.state_hashes, lambda: many.goals(0))
+    for call in calls:
+        with pytest.raises(dwell.UsageError, match="no episode of environments"):
+            call()
+    many.reset(seed=1)
+    for call in calls:
+        call()
+    many.close()
+    for call in calls:
+        with pytest.raises(dwell.UsageError, match="closed"):
+            call()
 
 
 def test_the_pair_that_cooperates_ends_together() -> None:
@@ -309,6 +339,8 @@ BAD: list[tuple[dict[str, Any], str]] = [
     ({"shared_reward": 1.5}, "shared_reward"),
     ({"max_cycles": 0}, "max_cycles is 0"),
     ({"world": {"agents": [{}]}}, "the bodies stand in agents"),
+    ({"world": 3}, "world is 3"),
+    ({"agents": {"a": {"voice": "yes"}}}, "a mapping with words"),
     ({"sensor": ["gps"]}, "did you mean sensors"),
     ({"task": "Cooperate", "agents": 1}, "at least 2 agents in Cooperate"),
 ]
@@ -333,7 +365,7 @@ def test_calls_that_go_wrong_say_what_to_do() -> None:
         env.step({"agent_0": 6})
     with pytest.raises(dwell.ConfigError, match="no agent 'agent_9'"):
         env.step({"agent_0": 6, "agent_1": 6, "agent_9": 6})
-    with pytest.raises(dwell.ConfigError, match="0 to 11"):
+    with pytest.raises(dwell.ConfigError, match=r"agent agent_0: .*0 to 11"):
         env.step({"agent_0": 12, "agent_1": 6})
     env.step({"agent_0": 0, "agent_1": 6})
     assert env.agents == ["agent_1"]

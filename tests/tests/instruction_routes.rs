@@ -366,7 +366,9 @@ fn routes_are_followed_by_the_expert_alone() {
         mirrored_ok * 20 <= mirrored_all,
         "{mirrored_ok} of {mirrored_all}"
     );
-    assert!(sorts.len() >= 5, "{sorts:?}");
+    // Six routes need not have every sort of step.
+    let least = if dwell_tests::runs_all() { 5 } else { 4 };
+    assert!(sorts.len() >= least, "{sorts:?}");
 }
 
 /// A route that is restored in the middle goes on as it was.

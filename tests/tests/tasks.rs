@@ -395,7 +395,7 @@ fn unknown_names_and_misplaced_sensors_are_refused() {
     assert!(told("PointNav", json!({"reward": {"sucess": 1.0}}), &[]).contains("sucess"));
     assert_eq!(
         told("Free", Value::Null, &["objectgoal"]),
-        "sensors is \"objectgoal\"; allowed is that with the task ObjectNav or SemanticAudioNav alone, not with Free"
+        "sensors is \"objectgoal\"; allowed is that with the task ObjectNav or SemanticAudioNav or Cooperate alone, not with Free"
     );
     let lacking = |settings: Value, task: &str| {
         let mut env = env_with(task, settings, &[]);

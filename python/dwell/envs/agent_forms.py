@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import contextlib
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,15 @@ from dwell.envs.action_modes import AnsweredActions, EngineActions, action_form,
 from dwell.envs.agent_settings import AgentRoster
 from dwell.envs.native_batch import NativeBatch
 from dwell.envs.voice import VoicedActions
+
+
+@contextlib.contextmanager
+def _of_agent(name: str) -> Iterator[None]:
+    """What is refused meanwhile says whose it is."""
+    try:
+        yield
+    except ConfigError as error:
+        raise ConfigError(f"agent {name}: {error}") from None
 
 
 class AgentForms:
@@ -86,9 +96,11 @@ class AgentForms:
                 f"actions: none of {abbreviated_list(missing)}; expected one for each of "
                 f"{abbreviated_list(live)}"
             )
-        nobody = EngineActions(np.full(1, -1, np.int64))
-        rows = zip(self.names, self._forms, strict=True)
-        taken = [form.one(given[name]) if name in given else nobody for name, form in rows]
+        taken = [EngineActions(np.full(1, -1, np.int64))] * len(self.names)
+        for k in self.players:
+            if self.names[k] in given:
+                with _of_agent(self.names[k]):
+                    taken[k] = self._forms[k].one(given[self.names[k]])
         return EngineActions.interleaved(taken)
 
     def many(self, actions: object, acts: NDArray[np.bool_]) -> EngineActions:
@@ -102,17 +114,17 @@ class AgentForms:
             ConfigError: They are not those of all agents, or one is none.
         """
         given = mapping("actions", actions, "batched actions by the agents' names")
-        if set(given) != set(self.names):
+        if set(given) != set(self.action_spaces):
             raise ConfigError(
                 f"actions: found {abbreviated_list(sorted(map(str, given)))}; expected those of "
-                f"{abbreviated_list(self.names)}"
+                f"{abbreviated_list([*self.action_spaces])}"
             )
         count = len(acts)
-        rows = zip(self.names, self._forms, strict=True)
-        taken = [
-            form.many(given[name], count).without(~acts[:, k])
-            for k, (name, form) in enumerate(rows)
-        ]
+        taken = [EngineActions(np.full(count, -1, np.int64))] * len(self.names)
+        for k in self.players:
+            with _of_agent(self.names[k]):
+                own = self._forms[k].many(given[self.names[k]], count)
+            taken[k] = own.without(~acts[:, k])
         return EngineActions.interleaved(taken)
 
     def rewards(self, answer: Mapping[str, Any]) -> NDArray[np.float64]:

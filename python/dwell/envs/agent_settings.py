@@ -179,6 +179,7 @@ class MultiAgentSetup:
         """
         roster = AgentRoster.of(given["agents"], given["voice"])
         world, heads = with_head(given["world"])
+        world = None if world is None else mapping("world", world, "fields of the WorldConfig")
         if world is not None and "agents" in world:
             raise ConfigError("world: agents; the bodies stand in agents, as {'a': {'body': {}}}")
         config = env_json(

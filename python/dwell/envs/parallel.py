@@ -389,6 +389,7 @@ class DwellParallelEnv(CurrentStateApi, ParallelEnv, EzPickle):  # type: ignore[
 
     def state_hash(self) -> int:
         """A number that changes with any bit of state, physics, sound queues or random streams."""
+        self._refuse_call("state_hash")
         return self._runner.batch.state_hash(0)
 
     def snapshot(self) -> bytes:
@@ -399,7 +400,11 @@ class DwellParallelEnv(CurrentStateApi, ParallelEnv, EzPickle):  # type: ignore[
         """
         self._refuse_stopped("snapshot")
         assert self._np_random is not None
-        told = {"agents": self.agents, "distances": [_or_none(d) for d in self._distances]}
+        told = {
+            "of": self._roster.names,
+            "agents": self.agents,
+            "distances": [_or_none(d) for d in self._distances],
+        }
         saved = EnvSnapshot(
             episode_id=self._shelf.episode_id(self._house, self._seed),
             done=not self.agents,
@@ -440,18 +445,17 @@ class DwellParallelEnv(CurrentStateApi, ParallelEnv, EzPickle):  # type: ignore[
         """The agents that act on, and all distances, out of a snapshot."""
         try:
             told = json.loads(parts)
+            everybody = [str(name) for name in told["of"]]
             live = [str(name) for name in told["agents"]]
             distances = [float("nan") if d is None else float(d) for d in told["distances"]]
         except (ValueError, KeyError, TypeError, RecursionError) as error:
             raise ConfigError(
                 f"snapshot refused: it is of no environment of several agents: {quoted(error)}"
             ) from None
-        names = self.possible_agents
-        if len(distances) != len(self._roster.names) or live != [
-            name for name in names if name in live
-        ]:
+        names = self._roster.names
+        if everybody != names or len(distances) != len(names) or not set(live) <= set(names):
             raise ConfigError(
-                f"snapshot refused: it is of agents {quoted(live)}; here are {quoted(names)}"
+                f"snapshot refused: it is of agents {quoted(everybody)}; here are {quoted(names)}"
             )
         return live, distances
 

@@ -13,7 +13,7 @@ from gymnasium.utils import EzPickle
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from dwell import UsageError
+from dwell import UsageError, _native
 from dwell.arguments import boolean, integer_in_range, kept, refuse_unknown
 from dwell.envs.agent_forms import AgentForms
 from dwell.envs.agent_settings import OF_TASKS, Agents, MultiAgentSetup
@@ -172,6 +172,20 @@ class DwellParallelVectorEnv(EzPickle):
         finally:
             self._call = None
 
+    def _begun(self, call: str) -> _native.Batch:
+        """The engine's environments, in all of which episodes have begun.
+
+        Raises:
+            UsageError: They have not, or the environments are closed.
+        """
+        with self._calling(call):
+            if self._stopped.any():
+                which = np.flatnonzero(self._stopped).tolist()
+                raise UsageError(
+                    f"{call}: no episode of environments {which} has begun; reset them"
+                )
+            return self._runner.batch
+
     def _start(
         self, which: NDArray[np.bool_], asked: Mapping[int, tuple[int, int]] | None = None
     ) -> None:
@@ -315,13 +329,13 @@ class DwellParallelVectorEnv(EzPickle):
     def goals(self, env: int) -> dict[str, dict[str, Any]]:
         """What the episodes of an environment's agents ask for, as a single environment's infos."""
         k = integer_in_range("env", env, high=self.num_envs - 1)
-        batch = self._runner.batch
+        batch = self._begun("goals")
         rows = zip(self._players, self.possible_agents, strict=True)
         return {name: batch.episode_goal(k, agent) for agent, name in rows}
 
     def state(self) -> NDArray[np.float32]:
         """The states of all agents, (num_envs, agent x 13); see :meth:`DwellParallelEnv.state`."""
-        batch = self._runner.batch
+        batch = self._begun("state")
         rows = [
             agent_state_rows(batch.agent_states(k), self._distances[k], self._active[k]).ravel()
             for k in range(self.num_envs)
@@ -336,7 +350,8 @@ class DwellParallelVectorEnv(EzPickle):
 
     def state_hashes(self) -> list[int]:
         """The state hash of every environment."""
-        return [self._runner.batch.state_hash(k) for k in range(self.num_envs)]
+        batch = self._begun("state_hashes")
+        return [batch.state_hash(k) for k in range(self.num_envs)]
 
     def close(self) -> None:
         """Closes the worlds; after it everything but ``close`` is refused."""

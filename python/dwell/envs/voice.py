@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from dwell import ConfigError, _native
 from dwell.arguments import (
     abbreviated_list,
-    boolean,
     integer_in_range,
     mapping,
     quoted,
@@ -58,8 +57,13 @@ class Voice:
         Raises:
             ConfigError: It is none; the message begins with ``at``.
         """
+        if isinstance(voice, bool | np.bool_):
+            return cls() if voice else None
         if not isinstance(voice, Mapping):
-            return cls() if boolean(at, voice) else None
+            raise ConfigError(
+                f"{at} is {quoted(voice)}; allowed are True, False, and a mapping with words, "
+                "max_tokens or efforts"
+            )
         fields = mapping(at, voice)
         known = [field.name for field in dataclasses.fields(cls)]
         refuse_unknown(at, [name for name in fields if name not in known], known)
@@ -134,8 +138,13 @@ class VoicedActions:
         words = plain_array("say: tokens", said["tokens"], expected)
         if words.shape != (count, self._count):
             raise ConfigError(f"say: tokens: expected {expected}, found shape {words.shape}")
-        most = len(self.words)
-        flat = choices_below("say: tokens", words.ravel(), count * self._count, most)
+        last = len(self.words) - 1
+        if words.dtype.kind not in "iu" or ((words < 0) | (words > last)).any():
+            raise ConfigError(
+                f"say: tokens are {quoted(words.tolist())}; allowed are whole numbers from 0, for "
+                f"none, to {last}"
+            )
+        flat = words.astype(np.int64).ravel()
         tokens = np.zeros((count, MAX_TOKENS), np.int64)
         tokens[:, : self._count] = self._tokens[flat].reshape(count, self._count)
         chosen = np.zeros(count, np.int64)

@@ -96,6 +96,10 @@ impl PiedPiperSettings {
             })
         };
         check_sounds(&self.sounds, self.level_db)?;
+        let mut names = self.sounds.iter().enumerate();
+        if let Some((_, name)) = names.find(|(place, name)| self.sounds[..*place].contains(name)) {
+            return fault("sounds", format!("{name:?} twice"), "each signal once");
+        }
         if let Some(name) = self.sounds.iter().find(|name| instruction(name).is_err()) {
             return fault(
                 "sounds",
