@@ -35,10 +35,12 @@ const HALF_VIEW_RAD: f32 = FRAC_PI_4;
 const TOUCH_M: f32 = 0.03;
 /// A person walks in one of so many steps, so that a robot keeps up.
 const WALKS_EVERY: u64 = 2;
-/// The scripted follower makes way below the first distance, and comes nearer above the second, m.
-const KEEP_M: [f32; 2] = [1.3, 1.8];
+/// The scripted follower comes nearer above this distance, m.
+const KEEP_M: f32 = 1.5;
+/// Distances below which it begins to make way, and above which it has made way, m.
+const MAKE_WAY_M: [f32; 2] = [1.0, 1.35];
 /// Distances of the places to which it makes way, m.
-const ASIDE_M: [f32; 2] = [1.5, 1.95];
+const ASIDE_M: [f32; 2] = [1.5, 1.9];
 /// Turn that the scripted follower leaves, rad.
 const AIM_RAD: f32 = 0.2;
 
@@ -137,6 +139,8 @@ struct Progress {
     /// Steps since it was found in which it was followed.
     followed: u64,
     bumps: u64,
+    /// Whether the scripted follower is making way.
+    makes_way: bool,
     /// Distance to the person after the last step, m.
     distance_m: f32,
 }
@@ -366,7 +370,12 @@ impl Task for SocialNavTask {
             10.0,
         );
         let there = position(world, self.person());
-        if distance_m < KEEP_M[0] {
+        let Some(active) = &mut self.active else {
+            return DiscreteAction::Stop;
+        };
+        let until = MAKE_WAY_M[usize::from(active.memory.makes_way)];
+        active.memory.makes_way = distance_m < until;
+        if active.memory.makes_way {
             let is_aside = |cell: &NavCell| {
                 let apart_m = grid.position(*cell).distance(there);
                 (ASIDE_M[0]..ASIDE_M[1]).contains(&apart_m)
@@ -375,7 +384,7 @@ impl Task for SocialNavTask {
             let step = way_to(&self.setup, &grid, &aside).next_action(world);
             return step.unwrap_or(DiscreteAction::Wait);
         }
-        if seen && distance_m < KEEP_M[1] {
+        if seen && distance_m < KEEP_M {
             return self.face_person(world).unwrap_or(DiscreteAction::Wait);
         }
         let cell = grid.nearest(there, 1.0);
