@@ -48,7 +48,9 @@ def test_spectrograms_are_those_of_the_same_window_of_sound(
     env.close()
 
 
-@pytest.mark.parametrize("task", [task["name"] for task in _native.tasks()])
+@pytest.mark.parametrize(
+    "task", [task["name"] for task in _native.tasks() if task["min_agents"] == 1]
+)
 def test_infos_say_what_is_asked_alone_and_in_a_batch(task: str) -> None:
     houses = ["builtin:apartment", "builtin:studio"]
     one = DwellEnv(task, houses=houses, sensors=["gps"])
