@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import contextlib
 import functools
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NoReturn
 
 import numpy as np
@@ -14,7 +13,7 @@ from gymnasium.utils import EzPickle, seeding
 from numpy.typing import NDArray
 from pettingzoo import ParallelEnv
 
-from dwell import ConfigError, UsageError
+from dwell import ConfigError
 from dwell.arguments import integer_in_range, kept, quoted, refuse_unknown
 from dwell.camera import camera_settings
 from dwell.envs.agent_forms import AgentForms
@@ -28,13 +27,13 @@ from dwell.envs.config import (
     kept_houses,
 )
 from dwell.envs.current_state import CurrentStateApi
+from dwell.envs.episode_calls import EpisodeCalls
 from dwell.envs.episode_shelf import shelf_of
 from dwell.envs.info_keys import step_info
 from dwell.envs.native_batch import NativeBatch
 from dwell.envs.python_tasks import NativeSensors
 from dwell.envs.single import (
     RENDER_CAMERA,
-    another_call,
     checked_render_mode,
     first_row,
     steps_a_second,
@@ -46,7 +45,7 @@ from dwell.world import World
 from dwell.world_settings import Laws
 
 
-class DwellParallelEnv(CurrentStateApi, ParallelEnv, EzPickle):  # type: ignore[misc] # untyped
+class DwellParallelEnv(EpisodeCalls, CurrentStateApi, ParallelEnv, EzPickle):  # type: ignore[misc] # untyped
     """A house in which several agents act at once, each with a task, sensors and a body of its own.
 
     All act at one clock. An agent's episode ends by itself: then it is no longer in ``agents``, its
@@ -192,30 +191,8 @@ class DwellParallelEnv(CurrentStateApi, ParallelEnv, EzPickle):  # type: ignore[
 
     @property
     def _runner(self) -> NativeBatch:
-        if self._closed:
-            raise UsageError("this environment is closed; make a new one")
+        self._refuse_closed()
         return self._runner_of(self._house)
-
-    def _refuse_call(self, call: str) -> None:
-        if self._closed:
-            raise UsageError("this environment is closed; make a new one")
-        if self._call is not None:
-            raise UsageError(f"{call}: {another_call(self._call)}")
-
-    def _refuse_stopped(self, call: str) -> None:
-        self._refuse_call(call)
-        if self._stopped:
-            raise UsageError(f"{call}: no episode has begun; call reset first")
-
-    @contextlib.contextmanager
-    def _playing(self, call: str) -> Iterator[None]:
-        """There is no episode to go on with until ``call`` has come to its end."""
-        self._stopped, self._call = True, call
-        try:
-            yield
-            self._stopped = False
-        finally:
-            self._call = None
 
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
@@ -231,6 +208,7 @@ class DwellParallelEnv(CurrentStateApi, ParallelEnv, EzPickle):  # type: ignore[
         Returns:
             Observations and infos by the agents' names; see :meth:`dwell.envs.DwellEnv.reset`.
         """
+        self._refuse_closed()
         self._refuse_call("reset")
         number = None if seed is None else integer_in_range("seed", seed)
         house, episode = self._asked({} if options is None else options)
@@ -346,6 +324,7 @@ class DwellParallelEnv(CurrentStateApi, ParallelEnv, EzPickle):  # type: ignore[
 
     def render(self) -> NDArray[np.uint8] | None:
         """The agents' views side by side, (240, 320 x agents, 3) uint8; ``None`` without a mode."""
+        self._refuse_closed()
         self._refuse_call("render")
         if self.render_mode is None:
             return None
@@ -389,6 +368,7 @@ class DwellParallelEnv(CurrentStateApi, ParallelEnv, EzPickle):  # type: ignore[
 
     def state_hash(self) -> int:
         """A number that changes with any bit of state, physics, sound queues or random streams."""
+        self._refuse_closed()
         self._refuse_call("state_hash")
         return self._runner.batch.state_hash(0)
 
@@ -425,6 +405,7 @@ class DwellParallelEnv(CurrentStateApi, ParallelEnv, EzPickle):  # type: ignore[
         Raises:
             ConfigError: It is of something else, or was damaged.
         """
+        self._refuse_closed()
         self._refuse_call("restore")
         saved = EnvSnapshot.of_bytes("snapshot", snapshot)
         try:

@@ -20,12 +20,12 @@ from dwell.envs.agent_settings import OF_TASKS, Agents, MultiAgentSetup
 from dwell.envs.agent_state import agent_state_rows, state_space
 from dwell.envs.config import CACHED_HOUSES, Houses, arguments_of, kept_houses
 from dwell.envs.env_pool import EnvPool
+from dwell.envs.episode_calls import another_call
 from dwell.envs.episode_shelf import shelf_of
 from dwell.envs.house_assignment import HouseAssignment
 from dwell.envs.info_keys import INFO_KEYS, step_infos
 from dwell.envs.native_batch import NativeBatch
 from dwell.envs.python_tasks import NativeSensors
-from dwell.envs.single import another_call
 from dwell.envs.vector_reset import VectorReset
 from dwell.world_settings import Laws
 

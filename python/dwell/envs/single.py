@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import contextlib
 import functools
 import sys
 import weakref
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from types import FrameType
 from typing import Any, NoReturn
 
@@ -38,6 +37,7 @@ from dwell.envs.config import (
     step_limit,
 )
 from dwell.envs.current_state import CurrentStateApi
+from dwell.envs.episode_calls import EpisodeCalls
 from dwell.envs.episode_shelf import EpisodeIndex, settings_as_stated, shelf_of
 from dwell.envs.info_keys import step_info
 from dwell.envs.native_batch import NativeBatch
@@ -53,7 +53,7 @@ from dwell.world_settings import Laws, with_head
 RENDER_CAMERA = Camera(width=320, height=240)
 
 
-class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
+class DwellEnv(EpisodeCalls, CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
     """A task in a house, with one agent.
 
     An episode's house is drawn from ``houses``, and everything else in it from the seed. The step
@@ -197,30 +197,6 @@ class DwellEnv(CurrentStateApi, gymnasium.Env[dict[str, Any], Any], EzPickle):
         self._measures = self._runner.measures
         self.observation_space = self._runner.space
         self.action_space = self._actions.space
-
-    def _refuse_closed(self) -> None:
-        if self._closed:
-            raise UsageError("this environment is closed; make a new one")
-
-    def _refuse_call(self, call: str) -> None:
-        if self._call is not None:
-            raise UsageError(f"{call}: {another_call(self._call)}")
-
-    def _refuse_stopped(self, call: str) -> None:
-        self._refuse_closed()
-        self._refuse_call(call)
-        if self._stopped:
-            raise UsageError(f"{call}: no episode has begun; call reset first")
-
-    @contextlib.contextmanager
-    def _playing(self, call: str) -> Iterator[None]:
-        """There is no episode to go on with until ``call`` has come to its end."""
-        self._stopped, self._call = True, call
-        try:
-            yield
-            self._stopped = False
-        finally:
-            self._call = None
 
     @property
     def _runner(self) -> NativeBatch:
@@ -499,14 +475,6 @@ def first_row(observation: Mapping[str, Any]) -> dict[str, Any]:
         name: value[0] if isinstance(value, tuple) or value.ndim == 1 else value[0].copy()
         for name, value in observation.items()
     }
-
-
-def another_call(call: str) -> str:
-    """Why a call is refused while another one plays the episode."""
-    return (
-        f"another call ({call}) of this environment is running, in another thread or further up in "
-        "this one; an environment does one call at a time"
-    )
 
 
 def steps_a_second(batch: _native.Batch) -> float:

@@ -36,6 +36,7 @@ from dwell.envs.config import (
 )
 from dwell.envs.current_state import forked
 from dwell.envs.env_pool import EnvPool
+from dwell.envs.episode_calls import another_call
 from dwell.envs.episode_shelf import EpisodeIndex, settings_as_stated, shelf_of
 from dwell.envs.house_assignment import HouseAssignment
 from dwell.envs.info_keys import INFO_KEYS, step_infos
@@ -44,7 +45,6 @@ from dwell.envs.python_tasks import RewardChoice, Sensors, TaskChoice, split
 from dwell.envs.single import (
     RENDER_CAMERA,
     DwellEnv,
-    another_call,
     checked_render_mode,
     steps_a_second,
 )

@@ -24,7 +24,7 @@ const UNNOTICED_DB: f64 = 0.0;
 /// A word of somebody else that has arrived.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HeardToken {
-    /// Who said it; nobody is told but tasks.
+    /// Who said it, which no sensor tells.
     pub speaker: AgentId,
     /// The number of the word, as it was understood; `None`: that something was said was heard, but not what.
     pub token: Option<u32>,

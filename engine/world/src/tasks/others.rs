@@ -1,7 +1,9 @@
 //! What tasks of several agents share: walks from place to place, and who sees whom.
 
-use super::TaskSetup;
+use super::standing_room::sample_start;
+use super::{TaskSetup, door_leaves, random_yaw_rad};
 use crate::actions::DiscreteAction;
+use crate::error::WorldError;
 use crate::expert::ShortestPathFollower;
 use crate::world::World;
 use dwell_scene::AgentId;
@@ -9,6 +11,7 @@ use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::random::RandomKey;
 use glam::Vec3;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -69,6 +72,52 @@ impl Tour {
             memory,
         }
     }
+}
+
+/// Returns what a task keeps of an episode and of a tour, as bytes for snapshots.
+pub(super) fn episode_bytes<M: Serialize>(memory: &M, tour: &Tour) -> Vec<u8> {
+    postcard::to_stdvec(&(memory, tour.memory)).expect("plain data can always be written to memory")
+}
+
+/// Returns what [`episode_bytes`] kept, of the agent of a task.
+///
+/// # Errors
+/// [`WorldError::Snapshot`] for bytes that are none.
+pub(super) fn restored_episode<M: DeserializeOwned>(
+    world: &World,
+    (setup, task): (&TaskSetup, &str),
+    bytes: &[u8],
+) -> Result<(M, Tour), WorldError> {
+    let (memory, tour) = postcard::from_bytes(bytes)
+        .map_err(|_| WorldError::Snapshot(format!("what {task} keeps of its episode is none")))?;
+    let grid = world.engines().nav_grid(&setup.body(world, task)?)?;
+    Ok((memory, Tour::restored(tour, setup, &grid)))
+}
+
+/// Opens all doors, and places an agent anywhere on the largest piece of floor, looking anywhere. Returns where, m, and its heading, rad.
+///
+/// # Errors
+/// [`WorldError::TaskNotPlayable`] where there is no room for it.
+pub(super) fn place_anywhere(
+    world: &mut World,
+    placed: &[AgentId],
+    (setup, task): (&TaskSetup, &'static str),
+    key: RandomKey,
+) -> Result<(Vec3, f32), WorldError> {
+    let body = setup.body(world, task)?;
+    let grid = world.engines().nav_grid(&body)?;
+    door_leaves::open_all(world, &grid)?;
+    let start = sample_start(world, placed, (&grid, &body), key.child("start"));
+    let Some(cell) = start else {
+        return Err(WorldError::TaskNotPlayable {
+            task,
+            house: world.house().name.clone(),
+            why: "nobody of the agent's size can stand anywhere".to_owned(),
+        });
+    };
+    let (feet, yaw_rad) = (grid.position(cell), random_yaw_rad(key));
+    world.place_agent(setup.agent, feet, yaw_rad)?;
+    Ok((feet, yaw_rad))
 }
 
 /// Returns where an agent stands, m.

@@ -5,9 +5,8 @@
 //! That following is to stay within 2 m is as in the social navigation of X. Puig et al., "Habitat 3.0", 2023.
 
 use super::audio_nav::{check_sounds, play_signal};
-use super::others::{Tour, TourMemory, position, way_to};
-use super::standing_room::sample_start;
-use super::{PlayedAction, Task, TaskKind, TaskSetup, random_yaw_rad};
+use super::others::{Tour, episode_bytes, place_anywhere, position, restored_episode, way_to};
+use super::{PlayedAction, Task, TaskKind, TaskSetup};
 use crate::actions::DiscreteAction;
 use crate::episode::{Episode, EpisodeGoal, StepResult, TaskMeasure};
 use crate::error::WorldError;
@@ -225,20 +224,8 @@ impl Task for PiedPiperTask {
         key: RandomKey,
     ) -> Result<Episode, WorldError> {
         let agent = self.setup.agent;
-        let body = self.setup.body(world, NAME)?;
         let leaders = self.settings.leaders(world)?;
-        let grid = world.engines().nav_grid(&body)?;
-        super::door_leaves::open_all(world, &grid)?;
-        let start = sample_start(world, placed, (&grid, &body), key.child("start"));
-        let Some(cell) = start else {
-            return Err(WorldError::TaskNotPlayable {
-                task: NAME,
-                house: world.house().name.clone(),
-                why: "nobody of the agent's size can stand anywhere".to_owned(),
-            });
-        };
-        let (position, yaw_rad) = (grid.position(cell), random_yaw_rad(key));
-        world.place_agent(agent, position, yaw_rad)?;
+        let (position, yaw_rad) = place_anywhere(world, placed, (&self.setup, NAME), key)?;
         // Of the episode, not of the agent: all know the same sounds.
         let shared = world.episode_key().child("pied_piper");
         let mut sounds = self.settings.sounds.clone();
@@ -281,19 +268,15 @@ impl Task for PiedPiperTask {
     fn snapshot(&self) -> Vec<u8> {
         let active = self.active.as_ref();
         active.map_or(Vec::new(), |active| {
-            postcard::to_stdvec(&(active.memory, active.tour.memory()))
-                .expect("plain data can always be written to memory")
+            episode_bytes(&active.memory, &active.tour)
         })
     }
 
     fn restore(&mut self, world: &World, bytes: &[u8]) -> Result<(), WorldError> {
-        let refuse = || WorldError::Snapshot("how far it was followed is none".to_owned());
-        let (memory, tour): (Progress, TourMemory) =
-            postcard::from_bytes(bytes).map_err(|_| refuse())?;
-        let grid = world.engines().nav_grid(&self.setup.body(world, NAME)?)?;
-        let active = self.active.as_mut().ok_or_else(refuse)?;
-        active.memory = memory;
-        active.tour = Tour::restored(tour, &self.setup, &grid);
+        let (memory, tour) = restored_episode(world, (&self.setup, NAME), bytes)?;
+        if let Some(active) = &mut self.active {
+            (active.memory, active.tour) = (memory, tour);
+        }
         Ok(())
     }
 

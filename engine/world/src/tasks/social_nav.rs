@@ -4,9 +4,10 @@
 //! Social navigation of X. Puig et al., "Habitat 3.0: A Co-Habitat for Humans, Avatars and Robots", 2023: find the person, then keep 1 to 2 m away and
 //! look at it. The names of the measures follow those of habitat-lab's `SocialNavStats`.
 
-use super::others::{Tour, TourMemory, position, sees, way_to};
-use super::standing_room::sample_start;
-use super::{PlayedAction, Task, TaskKind, TaskSetup, random_yaw_rad};
+use super::others::{
+    Tour, episode_bytes, place_anywhere, position, restored_episode, sees, way_to,
+};
+use super::{PlayedAction, Task, TaskKind, TaskSetup};
 use crate::actions::DiscreteAction;
 use crate::episode::{Episode, EpisodeGoal, StepResult, TaskMeasure};
 use crate::error::WorldError;
@@ -213,19 +214,7 @@ impl Task for SocialNavTask {
                 allowed: format!("below the number of agents, {count}"),
             });
         }
-        let body = self.setup.body(world, NAME)?;
-        let grid = world.engines().nav_grid(&body)?;
-        super::door_leaves::open_all(world, &grid)?;
-        let start = sample_start(world, placed, (&grid, &body), key.child("start"));
-        let Some(cell) = start else {
-            return Err(WorldError::TaskNotPlayable {
-                task: NAME,
-                house: world.house().name.clone(),
-                why: "nobody of the agent's size can stand anywhere".to_owned(),
-            });
-        };
-        let (position, yaw_rad) = (grid.position(cell), random_yaw_rad(key));
-        world.place_agent(agent, position, yaw_rad)?;
+        let (position, yaw_rad) = place_anywhere(world, placed, (&self.setup, NAME), key)?;
         let text = if self.is_person() {
             PERSON_INSTRUCTION
         } else {
@@ -256,19 +245,15 @@ impl Task for SocialNavTask {
     fn snapshot(&self) -> Vec<u8> {
         let active = self.active.as_ref();
         active.map_or(Vec::new(), |active| {
-            postcard::to_stdvec(&(active.memory, active.tour.memory()))
-                .expect("plain data can always be written to memory")
+            episode_bytes(&active.memory, &active.tour)
         })
     }
 
     fn restore(&mut self, world: &World, bytes: &[u8]) -> Result<(), WorldError> {
-        let refuse = || WorldError::Snapshot("how far it was followed is none".to_owned());
-        let (memory, tour): (Progress, TourMemory) =
-            postcard::from_bytes(bytes).map_err(|_| refuse())?;
-        let grid = world.engines().nav_grid(&self.setup.body(world, NAME)?)?;
-        let active = self.active.as_mut().ok_or_else(refuse)?;
-        active.memory = memory;
-        active.tour = Tour::restored(tour, &self.setup, &grid);
+        let (memory, tour) = restored_episode(world, (&self.setup, NAME), bytes)?;
+        if let Some(active) = &mut self.active {
+            (active.memory, active.tour) = (memory, tour);
+        }
         Ok(())
     }
 
