@@ -558,3 +558,45 @@ fn a_source_that_is_left_out_rings_out_and_is_not_fed() {
     };
     assert_eq!(hear(true), hear(false));
 }
+
+/// What rattles in one place needs the rays of one source, and five fifths of a sound are the sound.
+#[test]
+fn sources_that_begin_side_by_side_share_a_response() {
+    let hall = room();
+    let state = State::new(&hall.house);
+    let receiver = head(Vec3::new(4.6, 1.2, 3.3), 0.7);
+    let whole = radio(6 * BLOCK);
+    let fifth: Vec<f32> = whole.iter().map(|x| x / 5.0).collect();
+    let hear = |count: u64, signal: &[f32]| {
+        let (mut heard, mut traced) = (Vec::new(), Vec::new());
+        // Of settings for learning, but for all five of them.
+        let config = StreamConfig {
+            max_sources: 5,
+            ..StreamConfig::rl()
+        };
+        let mut stream = stream(&hall, config);
+        for block in signal.chunks_exact(BLOCK) {
+            let source = |id| ActiveSource {
+                id,
+                position: SOURCE,
+                signal: block,
+            };
+            let sources: Vec<_> = (5..5 + count).map(source).collect();
+            let mut out = vec![0.0; 2 * BLOCK];
+            let report = stream
+                .render_block(&hall.rays, &state, &sources, &receiver, &mut out)
+                .unwrap();
+            traced.push(report.traced_responses);
+            heard.extend_from_slice(&out);
+        }
+        (heard, traced)
+    };
+    let (one, rays_of_one) = hear(1, &whole);
+    let (five, rays_of_five) = hear(5, &fifth);
+    assert_eq!(rays_of_one, [1, 0, 0, 0, 0, 0]);
+    assert_eq!(rays_of_five, rays_of_one);
+    let peak = one.iter().fold(0.0_f32, |peak, x| peak.max(x.abs()));
+    for (a, b) in one.iter().zip(&five) {
+        assert!((a - b).abs() < 1e-5 * peak, "{a} {b} of {peak}");
+    }
+}

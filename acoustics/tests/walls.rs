@@ -13,8 +13,8 @@ use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{
-    Bands, Category, House, LevelId, Material, Mesh, MeshId, Mobility, Object, ObjectId, Part,
-    PartId, Pose, State,
+    Bands, Category, House, Joint, JointKind, LevelId, Material, Mesh, MeshId, Mobility, Object,
+    ObjectId, Part, PartId, Pose, State,
 };
 use glam::{Affine3A, Vec3};
 use std::sync::Arc;
@@ -305,6 +305,118 @@ fn a_door_with_many_sounds_takes_little_in_each_block() {
     );
     // The door lets through what was silent before.
     assert!(found.iter().all(|(_, tail, _)| tail.total()[4] > 0.0));
+}
+
+/// A part of some height, m, in place of the door of [`two_rooms`], that hangs on a hinge or stands loose.
+fn with_part_of(height_m: f32, hangs: bool) -> House {
+    let wall = material(0.1, 0.3);
+    let mut data = two_rooms(&wall, &wall).data().clone();
+    data.parts[PartId(0)].part_from_mesh =
+        Affine3A::from_scale(Vec3::new(1.0, height_m / 2.01, 1.0));
+    if hangs {
+        data.joints.push(Joint {
+            name: "hinge".into(),
+            object: ObjectId(0),
+            parent: None,
+            child: PartId(0),
+            kind: JointKind::Hinge,
+            axis: Vec3::Y,
+            parent_from_joint: data.parts[PartId(0)].world_from_part,
+            child_from_joint: Pose::IDENTITY,
+            limits: None,
+            closed: 0.0,
+            open: 1.0,
+            initial: 0.0,
+            friction: 0.0,
+            damping: 0.0,
+            armature: 0.0,
+            servo: None,
+            mimic: None,
+            toggles_switch: false,
+        });
+    }
+    House::new(data).unwrap()
+}
+
+/// Doors and table tops are heard when they move; a chair that somebody pushes needs no rays.
+#[test]
+fn loose_things_without_large_panels_need_no_rays_when_they_move() {
+    for (height_m, hangs, is_heard) in [
+        (2.0, false, true),
+        (0.6, false, true),
+        (0.4, false, false),
+        (0.4, true, true),
+    ] {
+        let mut hall = Hall::new(with_part_of(height_m, hangs), few(300));
+        let mut state = State::new(&hall.house);
+        let config = StreamConfig::rl();
+        let mut stream =
+            Stream::new(hall.scene.clone(), config, RandomKey::root(8), Threads::ONE).unwrap();
+        let signal = vec![0.1; 800];
+        let traced: Vec<usize> = (0..3)
+            .map(|k| {
+                state.part_pose[PartId(0)].position.x += 0.3 * k as f32;
+                hall.rays.update(&state);
+                hall.scene.update(&state);
+                let source = ActiveSource {
+                    id: 1,
+                    position: SOURCE,
+                    signal: &signal,
+                };
+                let (receiver, mut out) = (Receiver::omni(EAR), vec![0.0; 800]);
+                let report =
+                    stream.render_block(&hall.rays, &state, &[source], &receiver, &mut out);
+                report.unwrap().traced_responses
+            })
+            .collect();
+        let again = usize::from(is_heard);
+        assert_eq!(traced, [1, again, again], "{height_m} m, hangs: {hangs}");
+    }
+}
+
+/// What was sent out before a door moved is not traced anew, what still sounds is.
+#[test]
+fn a_door_that_moves_changes_what_sounds_and_not_what_rings_out() {
+    let wall = material(0.1, 0.3);
+    let mut hall = Hall::new(two_rooms(&wall, &wall), few(300));
+    let receiver = Receiver::omni(EAR);
+    let signal = vec![0.1; 800];
+    let mut traced = |goes_on: bool| {
+        let mut state = State::new(&hall.house);
+        let mut stream = Stream::new(
+            hall.scene.clone(),
+            StreamConfig::rl(),
+            RandomKey::root(8),
+            Threads::ONE,
+        )
+        .unwrap();
+        let mut rays = Vec::new();
+        for k in 0..6 {
+            let hinge = Vec3::new(4.0, 0.0, 1.5);
+            state.part_pose[PartId(0)] = Pose::from_position_yaw(hinge, -0.2 * k as f32);
+            hall.rays.update(&state);
+            hall.scene.update(&state);
+            let source = ActiveSource {
+                id: 1,
+                position: SOURCE,
+                signal: &signal,
+            };
+            let sources = if k == 0 || goes_on {
+                vec![source]
+            } else {
+                Vec::new()
+            };
+            let mut out = vec![0.0; 800];
+            let report = stream
+                .render_block(&hall.rays, &state, &sources, &receiver, &mut out)
+                .unwrap();
+            assert_eq!(report.audible_sources, 1, "{k}");
+            rays.push(report.traced_responses);
+        }
+        rays
+    };
+    assert_eq!(traced(false), [1, 0, 0, 0, 0, 0]);
+    assert_eq!(traced(true), [1; 6]);
 }
 
 /// Mirrors move with the parts that carry them.

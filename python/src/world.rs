@@ -17,6 +17,7 @@ use dwell::{PlayRequest, SoundPlace, WorldError};
 use dwell_houses::HousesError;
 use dwell_physics::{AgentControl, AgentPlacement, BodyState};
 use dwell_scene::interrupt;
+use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{Address, IdVec, JointCommand, Pose, Velocity};
 use glam::{Quat, Vec3};
@@ -129,6 +130,7 @@ impl PyWorld {
         let world = py.engine(|| -> Result<World, PyFault> {
             let config: WorldConfig = serde_json::from_str(config_json)?;
             let mut world = World::new(engines, &config)?;
+            world.set_threads(Threads::default());
             world.reset(RandomKey::root(seed))?;
             Ok(world)
         })?;

@@ -22,6 +22,11 @@ const TRIANGLES_PER_CHECK: usize = 512;
 /// Least area of the walls of rooms, m².
 pub(crate) const MIN_WALL_AREA_M2: f32 = 4.0;
 
+/// Size from corner to corner from which parts that hang on joints affect sound, m.
+const MIN_JOINTED_SIZE_M: f32 = 0.7;
+/// Area of a plane from which loose parts affect sound, m²: table tops and mattresses do, chairs and plants do not.
+const MIN_PANEL_AREA_M2: f64 = 0.5;
+
 /// The piece of a plane that a triangle belongs to.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ReflectorPanel {
@@ -47,8 +52,9 @@ struct MovingPlanes {
     first: usize,
     /// In part space.
     planes: Vec<Plane>,
-    /// The box around the part, in part space, m.
-    bounds: Aabb,
+    /// True for a part that changes how a room sounds when it moves: one that hangs on a joint, as doors and lids do, and
+    /// measures at least [`MIN_JOINTED_SIZE_M`] from corner to corner, or one with a plane of at least [`MIN_PANEL_AREA_M2`].
+    is_large: bool,
 }
 
 /// The plane of every triangle of a house.
@@ -135,12 +141,15 @@ impl PlaneTable {
             let first = at_start.len();
             let pose = house.parts[part].world_from_part;
             at_start.extend(planes.iter().map(|plane| moved(plane, &pose)));
-            let bounds = Aabb::from_points(corners.into_iter().flatten());
+            let size_m = Aabb::from_points(corners.into_iter().flatten()).size();
+            let hangs = house.joints.iter().any(|joint| joint.child == part);
+            let is_panel = |plane: &Plane| plane.area_m2 >= MIN_PANEL_AREA_M2;
             moving.push(MovingPlanes {
                 part,
                 first,
+                is_large: hangs && size_m.length() >= MIN_JOINTED_SIZE_M
+                    || planes.iter().any(is_panel),
                 planes,
-                bounds,
             });
         }
         Self {
@@ -225,12 +234,10 @@ impl PlaneTable {
         any
     }
 
-    /// Returns the moving parts whose box measures at least `size_m` from corner to corner: those that affect sound.
-    pub(crate) fn parts_larger_than(&self, size_m: f32) -> impl Iterator<Item = PartId> + '_ {
-        self.moving
-            .iter()
-            .filter(move |moving| moving.bounds.size().length() >= size_m)
-            .map(|moving| moving.part)
+    /// Returns the moving parts that change how a room sounds: doors, lids, table tops.
+    pub(crate) fn large_parts(&self) -> impl Iterator<Item = PartId> + '_ {
+        let large = self.moving.iter().filter(|moving| moving.is_large);
+        large.map(|moving| moving.part)
     }
 }
 

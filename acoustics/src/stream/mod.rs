@@ -32,9 +32,7 @@ use source_state::{ListeningSituation, SourceState};
 use update_queue::PartialTraceOutcome;
 use xxhash_rust::xxh3::xxh3_64;
 
-/// Size from corner to corner below which parts do not affect sound, m.
-const LARGE_PART_M: f32 = 0.7;
-const VERSION: u32 = 9;
+const VERSION: u32 = 10;
 
 /// A source that sounds during a block.
 #[derive(Clone, Copy, Debug)]
@@ -120,11 +118,7 @@ impl Stream {
         let settings = scene.config();
         let longest_s = settings.max_duration_s + 0.02;
         let longest = (longest_s * f64::from(settings.rate_hz)).ceil() as usize;
-        let large_parts = scene
-            .data()
-            .plane_table()
-            .parts_larger_than(LARGE_PART_M)
-            .collect();
+        let large_parts = scene.data().plane_table().large_parts().collect();
         Ok(Self {
             partitions: longest.div_ceil(config.block_samples).max(1),
             fft: RealFft::new(2 * config.block_samples),

@@ -104,7 +104,8 @@ impl ListeningSituation {
             || self.parts.len() != now.parts.len()
     }
 
-    /// As [`Self::change`], for a source that has ended: it rings out at its last position.
+    /// As [`Self::change`], for a source that has ended: it rings out where it was heard last, and what it sent out before a
+    /// door or the listener moved is not traced anew.
     pub(super) fn change_after_end(
         &self,
         now: &Self,
@@ -113,6 +114,9 @@ impl ListeningSituation {
         let mut there = now.clone();
         there.source = self.source;
         there.receiver.pose.position = self.receiver.pose.position;
+        if there.parts.len() == self.parts.len() {
+            there.parts.clone_from(&self.parts);
+        }
         self.change(&there, threshold)
     }
 

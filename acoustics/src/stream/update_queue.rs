@@ -152,16 +152,20 @@ impl Stream {
                 )
             });
         }
-        for want in order {
-            self.update_one(around, want, &mut budget, report)?;
+        for k in 0..order.len() {
+            let (earlier, rest) = order.split_at_mut(k);
+            let want = &mut *rest[0];
+            self.update_one(around, earlier, want, &mut budget, report)?;
             report.waiting_sources += usize::from(want.is_waiting);
         }
         Ok(())
     }
 
+    /// `earlier`: the sources whose turn came before in this block.
     fn update_one(
         &self,
         around: &BlockContext<'_>,
+        earlier: &[&mut UpdateRequest<'_>],
         want: &mut UpdateRequest<'_>,
         budget: &mut RayBudget,
         report: &mut BlockReport,
@@ -197,16 +201,18 @@ impl Stream {
             }
             _ => {}
         }
-        // An impact on the table uses the response of the one before it: other sources' impulse responses serve as well.
+        // An impact on the table uses the response of the one before it, and the five of a plate that rattles use one: other
+        // sources' impulse responses serve as well.
         let usable = |then: &ListeningSituation| {
             (passing || !then.has_approximate_tail)
                 && then.change(&want.now, threshold) == SituationChange::None
         };
-        let mut others = self
-            .voices
+        let voices = self.voices.iter();
+        let before = voices.filter_map(|voice| voice.current_response.as_ref());
+        let now = earlier
             .iter()
-            .filter_map(|voice| voice.current_response.as_ref());
-        if let Some(known) = others.find(|(then, _)| usable(then)) {
+            .filter_map(|other| other.new_response.as_ref());
+        if let Some(known) = now.chain(before).find(|(then, _)| usable(then)) {
             want.partial_trace = PartialTraceOutcome::None;
             want.new_response = Some(known.clone());
             return Ok(());

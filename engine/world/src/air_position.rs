@@ -51,11 +51,19 @@ fn openness_at(rays: &RayScene, place: Vec3) -> usize {
         let (s, c) = sin_cos(TAU * TURNS_A_LOOK * k as f32);
         let r = (1.0 - y * y).sqrt();
         let direction = Vec3::new(r * c, y, r * s);
-        match rays.closest(&Ray::new(place, direction), RayMask::EAR) {
-            Some(hit) if hit.distance_m > OPEN_M => OPEN,
+        let ray = Ray::new(place, direction);
+        let near = Ray {
+            far_m: OPEN_M,
+            ..ray
+        };
+        if rays.occluded(&near, RayMask::EAR) {
+            return 0;
+        }
+        match rays.occluded(&ray, RayMask::EAR) {
+            true => OPEN,
             // What is below all floors is the ground.
-            None if y > 0.0 => SKY,
-            _ => 0,
+            false if y > 0.0 => SKY,
+            false => 0,
         }
     };
     (0..PROBE_RAYS).map(look).sum()

@@ -54,7 +54,7 @@ impl Batch {
     ///
     /// # Errors
     /// [`WorldError::InvalidCall`] for none, or for environments whose agents or sensors differ.
-    pub fn new(envs: Vec<Env>, threads: Threads) -> Result<Self, WorldError> {
+    pub fn new(mut envs: Vec<Env>, threads: Threads) -> Result<Self, WorldError> {
         let Some(first) = envs.first() else {
             return Err(WorldError::InvalidCall(
                 "a batch needs at least one environment".to_owned(),
@@ -66,6 +66,9 @@ impl Batch {
                     "environment {k} has other {what} than environment 0"
                 )));
             }
+        }
+        for env in &mut envs {
+            env.world.set_threads(threads);
         }
         Ok(Self {
             is_started: vec![false; envs.len()],
@@ -121,7 +124,7 @@ impl Batch {
     /// # Errors
     /// [`WorldError::InvalidCall`] for an environment that does not exist or whose agents or sensors differ, [`WorldError::Render`] for
     /// a picture of it that was under way; nothing has changed then.
-    pub fn replace_env(&mut self, index: usize, env: Env) -> Result<Env, WorldError> {
+    pub fn replace_env(&mut self, index: usize, mut env: Env) -> Result<Env, WorldError> {
         if let Some(what) = batch_mismatch(self.env(index)?, &env) {
             let told = format!("put: the {what} differ from those of environment {index}");
             return Err(WorldError::InvalidCall(told));
@@ -132,6 +135,7 @@ impl Batch {
             self.finish_pictures()?;
         }
         self.is_started[index] = false;
+        env.world.set_threads(self.threads);
         Ok(std::mem::replace(&mut self.envs[index], env))
     }
 

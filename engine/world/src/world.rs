@@ -13,6 +13,7 @@ use dwell_physics::{
 };
 use dwell_render::BackEnd;
 use dwell_scene::bvh::{Ray, RayMask};
+use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{
@@ -73,6 +74,11 @@ impl World {
             before: PreviousState::default(),
             initial: start,
         })
+    }
+
+    /// Sets on how many threads its receivers hear; one at first. What they hear does not depend on it.
+    pub fn set_threads(&mut self, threads: Threads) {
+        self.sound.set_threads(threads);
     }
 
     /// Goes back to the start; random streams begin anew under `key`.

@@ -12,7 +12,7 @@ use dwell_scene::{AgentBody, Id, State};
 use xxhash_rust::xxh3::xxh3_64;
 
 /// Header of a world's snapshot: its kind and version.
-const MAGIC: &[u8] = b"dwworld8";
+const MAGIC: &[u8] = b"dwworld9";
 
 /// The fields that are checked before the rest is unpacked.
 #[derive(serde::Serialize, serde::Deserialize)]
@@ -61,7 +61,7 @@ impl World {
     /// [`WorldError`] with the reason; the world is then as it was before.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
         let (parts, mut state) = self.unpack_snapshot(bytes)?;
-        let sound = WorldSound::from_bytes(
+        let mut sound = WorldSound::from_bytes(
             &self.config,
             (&self.engines, &state),
             parts.key.child("sound"),
@@ -79,6 +79,7 @@ impl World {
         }
         self.physics.restore(&mut state, &parts.physics)?;
         self.state = state;
+        sound.set_threads(self.sound.threads());
         self.sound = sound;
         self.key = parts.key;
         self.motion_history = parts.motion_history;
@@ -99,7 +100,7 @@ impl World {
         let refuse = |why: String| WorldError::Snapshot(why);
         let told = bytes
             .strip_prefix(MAGIC)
-            .ok_or_else(|| refuse("it does not begin with \"dwworld8\"".to_owned()))?;
+            .ok_or_else(|| refuse("it does not begin with \"dwworld9\"".to_owned()))?;
         let (sum, told) = told
             .split_first_chunk::<8>()
             .ok_or_else(|| refuse("it is too short".to_owned()))?;

@@ -51,8 +51,8 @@ const LATCH_M_S: f32 = 0.5;
 pub(super) struct ActiveContactSound {
     pub(super) id: u64,
     pub(super) sound: ContactSound,
-    /// The place in the air beside the contact, m.
-    pub(super) air_position: Vec3,
+    /// The place in the air beside the contact, m; found when somebody listens.
+    pub(super) air_position: Option<Vec3>,
     /// The sample, since the world's start, at which it begins.
     pub(super) start: u64,
     /// Samples.
@@ -113,9 +113,19 @@ impl WorldSound {
             start: self.blocks * self.block as u64 + late,
             length,
             rendered: OnceLock::new(),
-            air_position: nearest_open_air_point(step.rays, sound.position()),
+            air_position: None,
             sound,
         });
+    }
+
+    /// Finds the places in the air of the contact sounds that have none yet.
+    pub(super) fn locate_contact_sounds(&mut self, rays: &RayScene) {
+        for touch in &mut self.touches {
+            let contact = touch.sound.position();
+            touch
+                .air_position
+                .get_or_insert_with(|| nearest_open_air_point(rays, contact));
+        }
     }
 
     fn add_impact(&mut self, step: &StepContext<'_>, late_s: f64, sound: ImpactSound) {

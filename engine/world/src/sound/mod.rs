@@ -51,6 +51,8 @@ const FIRST_PLAYED_ID: u64 = 1 << 48;
 pub(crate) struct WorldSound {
     rate_hz: u32,
     block: usize,
+    /// On which receivers hear, one beside the other.
+    threads: Threads,
     preset: String,
     /// The head of all ears; `None`: the built-in sphere.
     head: Option<HeadId>,
@@ -84,6 +86,7 @@ impl WorldSound {
         Self {
             rate_hz: config.sound_rate_hz,
             block: config.samples_per_step(),
+            threads: Threads::ONE,
             preset: config.sound_preset.clone(),
             head: config.sound_head,
             blocks: 1,
@@ -98,6 +101,16 @@ impl WorldSound {
             hearing: Hearing::default(),
             ears: Vec::new(),
         }
+    }
+
+    /// On how many threads receivers hear.
+    pub(crate) fn threads(&self) -> Threads {
+        self.threads
+    }
+
+    /// Sets on how many threads receivers hear. What they hear does not depend on it.
+    pub(crate) fn set_threads(&mut self, threads: Threads) {
+        self.threads = threads;
     }
 
     /// Resets to silence without listeners.
@@ -144,10 +157,13 @@ impl WorldSound {
             playing.state.fade.update(target);
         }
         if !self.ears.is_empty() {
+            self.locate_contact_sounds(rays);
             let sources = self.sources(engines, rays, state, self.blocks)?;
-            for ears in &mut self.ears {
-                ears.render_block(engines.house(), rays, state, &sources)?;
-            }
+            let mut rendered: Vec<_> = self.ears.iter_mut().map(|ears| (ears, Ok(()))).collect();
+            self.threads.for_each(&mut rendered, |_, (ears, outcome)| {
+                *outcome = ears.render_block(engines.house(), rays, state, &sources);
+            });
+            rendered.into_iter().try_for_each(|(_, outcome)| outcome)?;
             self.hear(state, &sources, key);
         }
         self.blocks += 1;
@@ -173,6 +189,9 @@ impl WorldSound {
         listeners: &[(Listener, usize)],
         key: RandomKey,
     ) -> Result<(), WorldError> {
+        if !listeners.is_empty() {
+            self.locate_contact_sounds(rays);
+        }
         for (listener, samples) in listeners {
             let length = samples.next_multiple_of(self.block).max(self.block);
             let mut known = self.ears.iter_mut();
@@ -272,7 +291,7 @@ impl WorldSound {
             touch.read(self.rate_hz, start, &mut signal);
             sources.push(BlockSource {
                 id: touch.id,
-                position: touch.air_position,
+                position: touch.air_position.unwrap_or(touch.sound.position()),
                 signal,
             });
         }
