@@ -190,7 +190,10 @@ impl EnvAgent {
             },
             progress,
             collision,
-            reply: self.task.reply().map_or_else(String::new, |reply| reply.text.clone()),
+            reply: self
+                .task
+                .reply()
+                .map_or_else(String::new, |reply| reply.text.clone()),
             speaks: world.speaks(self.id),
             measures: self.task.measures(),
         })

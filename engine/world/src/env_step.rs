@@ -2,7 +2,9 @@
 
 use crate::actions::{AgentAction, DiscreteAction, StepAction, StepUtterance};
 use crate::env::{Env, no_episode};
-use crate::episode::{Answer, AnswerField, GoalPart, QuestionTokens, StepInfo, StepResult, TaskMeasure};
+use crate::episode::{
+    Answer, AnswerField, GoalPart, QuestionTokens, StepInfo, StepResult, TaskMeasure,
+};
 use crate::error::{WorldError, no_agent};
 use dwell_acoustics::utterance::{MAX_TOKENS, VocalEffort};
 use dwell_scene::AgentId;

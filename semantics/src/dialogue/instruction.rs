@@ -24,18 +24,13 @@ pub struct AmbiguousInstruction {
 /// undecided of none, in order.
 ///
 /// All its things are such as are looked for, and lie in rooms. The ambiguity is that of the text as it is read.
-pub fn ambiguous_instructions(
-    scene: &SemanticScene<'_>,
-    most: usize,
-) -> Vec<AmbiguousInstruction> {
+pub fn ambiguous_instructions(scene: &SemanticScene<'_>, most: usize) -> Vec<AmbiguousInstruction> {
     let checker = Checker::new(scene, Listener::default());
     let mut descriptions: BTreeSet<Description> = BTreeSet::new();
     for object in scene.house().objects.ids() {
         let facts = scene.facts(object);
-        let (Some(room), true) = (
-            scene.room_of(object),
-            facts.category.is_some_and(is_sought),
-        ) else {
+        let (Some(room), true) = (scene.room_of(object), facts.category.is_some_and(is_sought))
+        else {
             continue;
         };
         let plain = Description::new(Quantifier::The, Noun::Object(facts.noun.clone()));

@@ -71,7 +71,10 @@ impl Reply {
 
     /// The kinds of some things, each once.
     fn naming(scene: &SemanticScene<'_>, things: &[Term]) -> Self {
-        let names: BTreeSet<String> = things.iter().filter_map(|term| name(scene, *term)).collect();
+        let names: BTreeSet<String> = things
+            .iter()
+            .filter_map(|term| name(scene, *term))
+            .collect();
         let mut names: Vec<String> = names.into_iter().collect();
         names.truncate(MOST_NAMED);
         match (&names[..], things) {

@@ -47,7 +47,11 @@ impl Sensor for ReplySensor {
             out.clear();
             // Names that a house's own file gives may have any letters.
             let letters = seen.reply.into_iter().flat_map(|reply| reply.text.chars());
-            out.extend(letters.filter(|own| CHARSET.contains(*own)).take(MAX_TEXT_LEN));
+            out.extend(
+                letters
+                    .filter(|own| CHARSET.contains(*own))
+                    .take(MAX_TEXT_LEN),
+            );
         }
     }
 }

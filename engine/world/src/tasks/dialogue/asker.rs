@@ -39,7 +39,9 @@ pub(super) struct Stakes {
 /// The words of a question as it is asked; `None` for too many, and words outside the vocabulary.
 fn question_tokens(text: &str) -> Option<QuestionTokens> {
     let words = vocabulary::tokenize(text).ok()?;
-    let mut words = words.into_iter().take_while(|token| *token != vocabulary::PAD);
+    let mut words = words
+        .into_iter()
+        .take_while(|token| *token != vocabulary::PAD);
     let mut tokens = [0; MAX_QUESTION_TOKENS];
     for (token, word) in tokens.iter_mut().zip(words.by_ref()) {
         *token = word.cast_unsigned();
@@ -100,7 +102,10 @@ impl Asker {
         for question in &self.questions {
             let mut parts: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
             for thing in left {
-                parts.entry(question.outcomes[*thing]).or_default().push(*thing);
+                parts
+                    .entry(question.outcomes[*thing])
+                    .or_default()
+                    .push(*thing);
             }
             let parts: Vec<Vec<usize>> = parts.into_values().collect();
             let bits = information_bits(&parts, left.len());
@@ -120,9 +125,9 @@ impl Asker {
         budget: u32,
         stakes: Stakes,
     ) -> f64 {
-        let parts = parts.iter().map(|part| {
-            part.len() as f64 / count as f64 * self.value(part, budget - 1, stakes)
-        });
+        let parts = parts
+            .iter()
+            .map(|part| part.len() as f64 / count as f64 * self.value(part, budget - 1, stakes));
         parts.sum::<f64>() - stakes.question_cost
     }
 
@@ -148,7 +153,9 @@ fn guess_value(things: usize, stakes: Stakes) -> f64 {
 fn information_bits(parts: &[Vec<usize>], count: usize) -> f64 {
     let shares = parts.iter().map(|part| part.len() as f64 / count as f64);
     let ln = |share: f64| f64::from(dwell_scene::math::ln(share as f32));
-    shares.map(|share| -share * ln(share) / std::f64::consts::LN_2).sum()
+    shares
+        .map(|share| -share * ln(share) / std::f64::consts::LN_2)
+        .sum()
 }
 
 #[cfg(test)]

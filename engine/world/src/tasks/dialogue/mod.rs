@@ -159,7 +159,9 @@ impl ActiveDialogue {
             world.engines().semantics().scene(world.state()),
             world.house(),
         );
-        let hit = world.rays().closest(&Ray::new(eye.position, ahead), RayMask::EYE);
+        let hit = world
+            .rays()
+            .closest(&Ray::new(eye.position, ahead), RayMask::EYE);
         let looked_at = hit.map(|hit| world.rays().surface(&hit).entity);
         let places = self.offer.asked.things.iter().enumerate();
         let reached = places.filter(|(_, thing)| {
@@ -416,7 +418,11 @@ impl Task for Dialogue {
         let Some(target) = guess.copied() else {
             return DiscreteAction::Stop;
         };
-        if active.chosen.as_ref().is_none_or(|(place, _)| *place != target) {
+        if active
+            .chosen
+            .as_ref()
+            .is_none_or(|(place, _)| *place != target)
+        {
             let leg = active.leg.to(active.offer.goals[target].clone());
             active.chosen = Some((target, leg));
         }
@@ -452,5 +458,74 @@ impl Task for Dialogue {
         let active = self.active.as_ref();
         let asked = active.and_then(|active| active.next_question(&self.settings, &self.rules));
         asked.unwrap_or([0; MAX_QUESTION_TOKENS])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::actions::{ActionSet, AgentAction, StepAction, StepSizes};
+    use crate::config::WorldConfig;
+    use crate::engines::Engines;
+    use dwell_scene::AgentBody;
+
+    const ME: AgentId = AgentId(0);
+
+    /// Plays the scripted asker, whose oracle means the thing with this number whatever was drawn; at which thing it stopped.
+    fn stops_at(world: &mut World, task: &mut Dialogue, key: RandomKey, means: usize) -> usize {
+        let mut episode = task.reset(world, &[], key).unwrap();
+        task.active.as_mut().unwrap().meant = means;
+        for _ in 0..600 {
+            let action = StepAction {
+                question: task.expert_question(),
+                ..task.expert(world, &episode).into()
+            };
+            let step = AgentAction::new(ME, action.action, StepSizes::default());
+            let outcome = world.step_discrete_actions(&[step]).unwrap().swap_remove(0);
+            let played = PlayedAction {
+                action: &action,
+                outcome: &outcome,
+            };
+            if task.judge(world, &mut episode, &played).terminated {
+                let radius_m = task.settings.success_distance_m as f32;
+                let active = task.active.as_ref().unwrap();
+                return active.stands_at(world, ME, radius_m).unwrap();
+            }
+        }
+        panic!("{}: it goes on", episode.instruction);
+    }
+
+    /// It goes to what the replies are about, not to what was drawn.
+    #[test]
+    fn the_asker_goes_where_the_replies_lead() {
+        let house = dwell_houses::builtin::build("apartment").unwrap();
+        let config = WorldConfig {
+            agents: vec![AgentBody::default()],
+            ..WorldConfig::default()
+        };
+        let mut world = World::new(Engines::new(Arc::new(house)), &config).unwrap();
+        let setup = TaskSetup {
+            agent: ME,
+            stride: StepSizes::default(),
+            actions: ActionSet::of(DiscreteAction::DEFAULT),
+        };
+        let settings = serde_json::json!({"max_candidates": 4});
+        let mut task = Dialogue::new(&settings, setup).unwrap();
+        world.reset(RandomKey::root(0)).unwrap();
+        task.survey_house(&world).unwrap();
+        for seed in 0..3 {
+            let key = RandomKey::root(seed);
+            world.reset(key).unwrap();
+            task.reset(&mut world, &[], key).unwrap();
+            let count = task.active.as_ref().unwrap().offer.asked.things.len();
+            for means in 0..count {
+                world.reset(key).unwrap();
+                assert_eq!(
+                    stops_at(&mut world, &mut task, key, means),
+                    means,
+                    "seed {seed}"
+                );
+            }
+        }
     }
 }

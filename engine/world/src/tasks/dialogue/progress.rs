@@ -40,7 +40,9 @@ impl DialogueProgress {
     /// The places of the things that are left, ascending.
     pub(super) fn left(&self) -> Vec<usize> {
         let places = self.left.iter().enumerate();
-        places.filter_map(|(place, left)| left.then_some(place)).collect()
+        places
+            .filter_map(|(place, left)| left.then_some(place))
+            .collect()
     }
 
     pub(super) fn asked(&self) -> u32 {
@@ -104,7 +106,10 @@ impl DialogueProgress {
         if left.len() != things || *asked > max_questions || not_understood > asked {
             return Err(told("it is of another episode"));
         }
-        if reply.as_ref().is_some_and(|(text, _)| text.len() > MOST_BYTES) {
+        if reply
+            .as_ref()
+            .is_some_and(|(text, _)| text.len() > MOST_BYTES)
+        {
             return Err(told("its reply is too long"));
         }
         let reply = reply.map(|(text, understood)| Reply { text, understood });
