@@ -25,7 +25,8 @@ _MOST_ACTIONS = 10_000_000
 
 def spoken_actions(env: DwellEnv) -> list[str]:
     """The names of the discrete actions that an environment's form of actions can say."""
-    from dwell.envs.action_modes import OF_BODY, AskingActions, VelocityActions
+    from dwell.envs.action_modes import OF_BODY, VelocityActions
+    from dwell.envs.asking import AskingActions
 
     form = env.action_form
     form = form.form if isinstance(form, AskingActions) else form

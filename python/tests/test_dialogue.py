@@ -91,13 +91,12 @@ def test_a_vector_environment_asks_for_each() -> None:
 
 
 def test_what_was_asked_is_in_recorded_files(tmp_path: Path) -> None:
-    recorded = ReplayRecorder(
-        DwellEnv("Dialogue", houses="builtin:apartment", sensors=["reply"]), tmp_path
-    )
+    env = DwellEnv("Dialogue", houses="builtin:apartment", sensors=["reply"])
+    recorded = ReplayRecorder(env, tmp_path)
     recorded.reset(seed=2)
     done, asks = False, 0
     while not done:
-        action = recorded.unwrapped.expert_action()
+        action = env.expert_action()
         asks += bool(action["ask"].any())
         _, _, done, _, info = recorded.step(action)
     recorded.close()

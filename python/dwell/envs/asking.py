@@ -46,7 +46,8 @@ class AskingActions:
 
     def __init__(self, form: ActionForm) -> None:
         """Adds questions to ``form``."""
-        self.form, self.names = form, form.names
+        self.form = form
+        self.names: list[str] = [*form.names]
         choices = len(_native.vocabulary()) + 1
         asked: spaces.Space[Any] = spaces.MultiDiscrete(np.full(MAX_QUESTION_TOKENS, choices))
         self._last = choices - 1
