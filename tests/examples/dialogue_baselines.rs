@@ -127,7 +127,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 ..EnvConfig::default()
             };
             let mut env = Env::new(engines.clone(), &config)?;
-            for seed in 0..episodes {
+            for seed in house * 1000..house * 1000 + episodes {
                 if let Err(error) = env.reset(seed) {
                     println!("{name}, episode {seed}: {error}");
                     refused += 1;
