@@ -327,8 +327,9 @@ class Batch:
         answers: NDArray[np.float32] | None = ...,
         tokens: NDArray[np.int64] | None = ...,
         efforts: NDArray[np.int64] | None = ...,
+        questions: NDArray[np.int64] | None = ...,
     ) -> dict[str, NDArray[Any] | list[str]]:
-        """``actions``: for each environment and agent; -1 for all agents: that environment is not stepped. Of an agent whose episode has ended none is looked at. Keys: reward, terminated, success, action_success, collision, distance_to_goal (NaN without a goal), spl, soft_spl, path_length, collisions (arrays of that shape) and action_error (list). ``velocities``: forward, right, turn, look, -1 to 1, flat; ``places``: of pictures, 0 to 1, flat; ``objects``: ids, 0 for what is looked at; ``tokens``: what agents begin to say, numbers of words up to the first 0, (row x 8,), with ``efforts``, numbers of :func:`vocal_efforts`."""
+        """``actions``: for each environment and agent; -1 for all agents: that environment is not stepped. Of an agent whose episode has ended none is looked at. Keys: reward, terminated, success, action_success, collision, distance_to_goal (NaN without a goal), spl, soft_spl, path_length, collisions (arrays of that shape) and action_error (list). ``velocities``: forward, right, turn, look, -1 to 1, flat; ``places``: of pictures, 0 to 1, flat; ``objects``: ids, 0 for what is looked at; ``tokens``: what agents begin to say, numbers of words up to the first 0, (row x 8,), with ``efforts``, numbers of :func:`vocal_efforts`; ``questions``: what they ask oracles, (row x 16,). Of tasks with an oracle ``reply`` (list), empty where nothing was asked."""
     def answer_fields(self, agent: int = 0) -> list[dict[str, Any]]:
         """``[{name, about, unit, range, choices}, ...]``: what an agent's task expects with ``stop``."""
     def measures(self, agent: int = 0) -> list[str]:
@@ -337,6 +338,10 @@ class Batch:
         """For each environment and agent all the fields that an answer can have, flat."""
     def expert_utterances(self) -> NDArray[np.int64]:
         """For each environment and agent 8 numbers of words, 0 for none, flat."""
+    def expert_questions(self) -> NDArray[np.int64]:
+        """For each environment and agent 16 numbers of words, 0 for none, flat."""
+    def takes_questions(self, agent: int = 0) -> bool:
+        """Whether an agent's task has an oracle that takes questions."""
     def action_masks(self) -> NDArray[np.bool_]:
         """For each environment and agent, which discrete actions nothing known beforehand rules out, flat."""
     def observe(self, which: NDArray[np.bool_], outs: Sequence[NDArray[Any] | None]) -> None:

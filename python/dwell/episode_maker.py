@@ -276,8 +276,8 @@ def expert_run(env: NativeBatch, most_steps: int) -> dict[str, Any]:
         ``expert_success``.
     """
     for count in itertools.count(1):
-        answers = env.batch.expert_answers()
-        answer = env.batch.step(env.expert_actions(), answers=answers)
+        answers, questions = env.batch.expert_answers(), env.batch.expert_questions()
+        answer = env.batch.step(env.expert_actions(), answers=answers, questions=questions)
         if answer["terminated"][0] or count == most_steps:
             break
     return {

@@ -5,10 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from dwell import ConfigError, _native
 from dwell.arguments import integer_in_range, plain_settings, quoted, text
 
-__all__ = ["read", "say", "vocabulary"]
+__all__ = ["question_tokens", "read", "say", "vocabulary"]
+
+#: The most words and marks of a question to an oracle.
+_MOST_ASKED = 16
 
 
 def vocabulary() -> list[str]:
@@ -20,6 +26,34 @@ def vocabulary() -> list[str]:
         True
     """
     return [*_native.vocabulary()]
+
+
+def question_tokens(question: str) -> NDArray[np.int64]:
+    """A question as actions hold it under ``ask``, shape (16,), padded with 0.
+
+    Raises:
+        ConfigError: It has more than 16 words and marks, or words outside the vocabulary.
+
+    Examples:
+        >>> from dwell.language import question_tokens, vocabulary
+        >>> tokens = question_tokens("Is it red?")
+        >>> [vocabulary()[token - 1] for token in tokens if token]
+        ['is', 'it', 'red', '?']
+    """
+    spaced = text("question", question).lower()
+    for mark in ".,?!":
+        spaced = spaced.replace(mark, f" {mark} ")
+    words = spaced.split()
+    if len(words) > _MOST_ASKED:
+        raise ConfigError(f"question has {len(words)} words and marks; allowed are {_MOST_ASKED}")
+    numbers = {word: number for number, word in enumerate(vocabulary(), 1)}
+    if unknown := [word for word in words if word not in numbers]:
+        raise ConfigError(
+            f"question: {quoted(unknown[0])} is no word of dwell.language.vocabulary()"
+        )
+    tokens = np.zeros(_MOST_ASKED, np.int64)
+    tokens[: len(words)] = [numbers[word] for word in words]
+    return tokens
 
 
 def read(sentence: str) -> list[dict[str, Any]]:

@@ -26,8 +26,11 @@ _MOST_ACTIONS = 10_000_000
 def spoken_actions(env: DwellEnv) -> list[str]:
     """The names of the discrete actions that an environment's form of actions can say."""
     from dwell.envs.action_modes import OF_BODY, VelocityActions
+    from dwell.envs.asking import AskingActions
 
-    return [*OF_BODY] if isinstance(env.action_form, VelocityActions) else env.actions()
+    form = env.action_form
+    form = form.form if isinstance(form, AskingActions) else form
+    return [*OF_BODY] if isinstance(form, VelocityActions) else env.actions()
 
 
 def said_action(name: str, env: DwellEnv, stream: np.random.Generator | None = None) -> Any:  # noqa: ANN401 - of the action space
@@ -101,7 +104,8 @@ def _written(space: spaces.Space[Any], value: Any) -> Any:  # noqa: ANN401 - an 
         return {name: _written(part, value[name]) for name, part in space.items()}
     if isinstance(space, spaces.Discrete):
         return int(np.asarray(value).reshape(())[()])
-    return np.asarray(value, np.float32).reshape(space.shape or ()).tolist()
+    kind = np.int64 if isinstance(space, spaces.MultiDiscrete) else np.float32
+    return np.asarray(value, kind).reshape(space.shape or ()).tolist()
 
 
 def _element(space: spaces.Space[Any], written: Any) -> Any:  # noqa: ANN401 - an element
@@ -109,7 +113,7 @@ def _element(space: spaces.Space[Any], written: Any) -> Any:  # noqa: ANN401 - a
         return {name: _element(part, written[name]) for name, part in space.items()}
     if isinstance(space, spaces.Discrete):
         return written
-    return np.array(written, np.float32)
+    return np.array(written, np.int64 if isinstance(space, spaces.MultiDiscrete) else np.float32)
 
 
 def _number(at: str, value: object) -> float | int:

@@ -3,8 +3,8 @@
 use crate::arrays;
 use crate::errors::PyFault;
 use dwell::{
-    ActionTarget, DiscreteAction, MAX_ANSWER_FIELDS, MAX_TOKENS, StepAction, StepUtterance,
-    VocalEffort,
+    ActionTarget, DiscreteAction, MAX_ANSWER_FIELDS, MAX_QUESTION_TOKENS, MAX_TOKENS, StepAction,
+    StepUtterance, VocalEffort,
 };
 use dwell_scene::EntityId;
 use numpy::PyReadonlyArray1;
@@ -34,16 +34,22 @@ fn effort(number: i64) -> Result<VocalEffort, PyFault> {
     })
 }
 
-/// What words say, up to the first 0; `None` for none.
-fn utterance(words: &[i64], effort: VocalEffort) -> Result<Option<StepUtterance>, PyFault> {
-    let mut tokens = [0; MAX_TOKENS];
+/// Numbers of words as the engine takes them.
+fn tokens<const N: usize>(name: &str, words: &[i64]) -> Result<[u32; N], PyFault> {
+    let mut tokens = [0; N];
     for (token, word) in tokens.iter_mut().zip(words) {
         *token = u32::try_from(*word).map_err(|_| {
             PyFault::Config(format!(
-                "tokens: {word}; allowed are numbers of words, or 0 for none"
+                "{name}: {word}; allowed are numbers of words, or 0 for none"
             ))
         })?;
     }
+    Ok(tokens)
+}
+
+/// What words say, up to the first 0; `None` for none.
+fn utterance(words: &[i64], effort: VocalEffort) -> Result<Option<StepUtterance>, PyFault> {
+    let tokens: [u32; MAX_TOKENS] = tokens("tokens", words)?;
     Ok((tokens[0] != 0).then_some(StepUtterance { tokens, effort }))
 }
 
@@ -56,6 +62,7 @@ pub(crate) struct ActionRows {
     pub(crate) answers: Option<Vec<f32>>,
     pub(crate) tokens: Option<Vec<i64>>,
     pub(crate) efforts: Option<Vec<i64>>,
+    pub(crate) questions: Option<Vec<i64>>,
 }
 
 /// Returns a copy of an array of the caller.
@@ -90,6 +97,11 @@ impl ActionRows {
                 MAX_TOKENS * count,
             ),
             ("efforts", self.efforts.as_ref().map(Vec::len), count),
+            (
+                "questions",
+                self.questions.as_ref().map(Vec::len),
+                MAX_QUESTION_TOKENS * count,
+            ),
         ] {
             if let Some(found) = found.filter(|found| *found != wanted) {
                 let told = format!("{name}: expected {wanted} numbers, found {found}");
@@ -131,6 +143,10 @@ impl ActionRows {
                 .as_ref()
                 .map_or(Ok(VocalEffort::Normal), |all| effort(all[row]))?;
             step.utterance = utterance(own, effort)?;
+        }
+        if let Some(questions) = &self.questions {
+            let own = &questions[MAX_QUESTION_TOKENS * row..MAX_QUESTION_TOKENS * (row + 1)];
+            step.question = tokens("questions", own)?;
         }
         match self.objects.as_ref().map(|all| all[row]) {
             None | Some(0) => {}

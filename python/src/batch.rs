@@ -227,6 +227,19 @@ impl PyBatch {
         Ok(numbers.collect::<Vec<_>>().into_pyarray(py))
     }
 
+    /// Returns what the experts would ask oracles now, numbers of words up to the first 0, shape (environment x agent x 16,).
+    fn expert_questions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<i64>>> {
+        let asked = self.with(py, |batch| Ok(batch.expert_questions()?))?;
+        let numbers = asked.into_flattened().into_iter().map(i64::from);
+        Ok(numbers.collect::<Vec<_>>().into_pyarray(py))
+    }
+
+    /// Returns whether an agent's task has an oracle that takes questions.
+    #[pyo3(signature = (agent=0))]
+    fn takes_questions(&self, py: Python<'_>, agent: usize) -> PyResult<bool> {
+        self.with(py, |batch| Ok(batch.env(0)?.takes_questions(agent)?))
+    }
+
     /// Returns which discrete actions nothing known beforehand rules out, shape (environment x agent, action) flat.
     fn action_masks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<bool>>> {
         let masks = self.with(py, |batch| Ok(batch.action_masks()?))?;
@@ -247,8 +260,8 @@ impl PyBatch {
     /// `objects`: ids of things, 0 for what is looked at. Rows of `velocities` and `places` that are NaN state none.
     /// `answers`: shape (environment x agent x field,) of all the fields that an answer can have.
     /// `tokens`: what agents begin to say, numbers of words up to the first 0, shape (environment x agent x 8,), and `efforts`, with which
-    /// of the vocal efforts, normal without them.
-    #[pyo3(signature = (actions, velocities=None, places=None, objects=None, answers=None, tokens=None, efforts=None))]
+    /// of the vocal efforts, normal without them. `questions`: what they ask the oracles of their tasks, shape (environment x agent x 16,).
+    #[pyo3(signature = (actions, velocities=None, places=None, objects=None, answers=None, tokens=None, efforts=None, questions=None))]
     #[expect(
         clippy::too_many_arguments,
         reason = "one array for each part of an action"
@@ -263,6 +276,7 @@ impl PyBatch {
         answers: Option<PyReadonlyArray1<'py, f32>>,
         tokens: Option<PyReadonlyArray1<'py, i64>>,
         efforts: Option<PyReadonlyArray1<'py, i64>>,
+        questions: Option<PyReadonlyArray1<'py, i64>>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let rows = ActionRows {
             numbers: arrays::as_contiguous_slice("actions", &actions)?.to_vec(),
@@ -272,13 +286,16 @@ impl PyBatch {
             answers: copy_of("answers", answers.as_ref())?,
             tokens: copy_of("tokens", tokens.as_ref())?,
             efforts: copy_of("efforts", efforts.as_ref())?,
+            questions: copy_of("questions", questions.as_ref())?,
         };
-        let (infos, measures) = self.with(py, |batch| {
+        let (infos, measures, has_oracle) = self.with(py, |batch| {
             let infos = batch.step(&rows.read()?)?;
             let first = batch.env(0)?;
             let agents = 0..batch.acting_agents().len();
-            let measures = agents.map(|agent| first.task_measures(agent));
-            Ok((infos, measures.collect::<Result<Vec<_>, _>>()?))
+            let measures = agents.clone().map(|agent| first.task_measures(agent));
+            let has_oracle = agents.map(|agent| first.takes_questions(agent));
+            let has_oracle = has_oracle.collect::<Result<Vec<_>, _>>()?.contains(&true);
+            Ok((infos, measures.collect::<Result<Vec<_>, _>>()?, has_oracle))
         })?;
         let out = PyDict::new(py);
         let of = |read: fn(&StepInfo) -> f64| -> Bound<'py, PyArray1<f64>> {
@@ -319,6 +336,12 @@ impl PyBatch {
             };
             let values: Vec<f64> = rows.map(|own| row(own).unwrap_or(f64::NAN)).collect();
             out.set_item(name, values.into_pyarray(py))?;
+        }
+        if has_oracle {
+            let replies = infos
+                .iter()
+                .map(|info| info.as_ref().map_or("", |own| &own.reply));
+            out.set_item("reply", replies.collect::<Vec<_>>())?;
         }
         let errors: Vec<String> = infos
             .into_iter()

@@ -8,6 +8,7 @@ mod clear_glass;
 pub mod color;
 mod csv_table;
 pub mod describe;
+pub mod dialogue;
 mod doorways;
 pub mod english;
 mod error;

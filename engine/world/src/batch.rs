@@ -3,7 +3,7 @@
 use crate::actions::{DiscreteAction, StepAction};
 use crate::batch_pictures::{self, PendingImages};
 use crate::env::Env;
-use crate::episode::{Answer, StepInfo};
+use crate::episode::{Answer, QuestionTokens, StepInfo};
 use crate::episode_spec::EpisodeSpec;
 use crate::error::WorldError;
 use crate::sensors::{Dtype, ObservationBuffer, SensorSpec};
@@ -177,6 +177,15 @@ impl Batch {
     pub fn expert_utterances(&self) -> Result<Vec<[u32; MAX_TOKENS]>, WorldError> {
         let said = self.envs.iter().map(Env::expert_utterances);
         Ok(said.collect::<Result<Vec<_>, _>>()?.concat())
+    }
+
+    /// Returns what each agent's scripted expert would ask the oracle of its task now. Shape (environment, agent).
+    ///
+    /// # Errors
+    /// [`WorldError::InvalidCall`] before the first reset.
+    pub fn expert_questions(&self) -> Result<Vec<QuestionTokens>, WorldError> {
+        let asked = self.envs.iter().map(Env::expert_questions);
+        Ok(asked.collect::<Result<Vec<_>, _>>()?.concat())
     }
 
     /// Returns the actions that are not ruled out, as [`Env::action_masks`]; all where no episode has begun. Shape (environment, agent).

@@ -190,6 +190,10 @@ impl EnvAgent {
             },
             progress,
             collision,
+            reply: self
+                .task
+                .reply()
+                .map_or_else(String::new, |reply| reply.text.clone()),
             speaks: world.speaks(self.id),
             measures: self.task.measures(),
         })
@@ -218,6 +222,7 @@ impl EnvAgent {
             action_error: "Its episode has ended.".to_owned(),
             progress: self.episode.as_ref()?.progress,
             collision: false,
+            reply: String::new(),
             speaks: world.speaks(self.id),
             measures: self.task.measures(),
         })

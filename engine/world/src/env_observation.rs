@@ -127,6 +127,7 @@ impl Env {
                 world: &self.world,
                 episode,
                 start_poses: &self.start_poses,
+                reply: agent.task.reply(),
                 results: &self.results,
                 key,
             },

@@ -2,7 +2,9 @@
 
 use crate::actions::{AgentAction, DiscreteAction, StepAction, StepUtterance};
 use crate::env::{Env, no_episode};
-use crate::episode::{Answer, AnswerField, StepInfo, StepResult, TaskMeasure};
+use crate::episode::{
+    Answer, AnswerField, GoalPart, QuestionTokens, StepInfo, StepResult, TaskMeasure,
+};
 use crate::error::{WorldError, no_agent};
 use dwell_acoustics::utterance::{MAX_TOKENS, VocalEffort};
 use dwell_scene::AgentId;
@@ -183,6 +185,27 @@ impl Env {
         Ok(said.collect())
     }
 
+    /// Returns what each agent's scripted expert would ask the oracle of its task now. Shape (agent,).
+    ///
+    /// # Errors
+    /// [`WorldError::InvalidCall`] before the first reset.
+    pub fn expert_questions(&self) -> Result<Vec<QuestionTokens>, WorldError> {
+        if !self.has_episode() {
+            return Err(no_episode("expert"));
+        }
+        let agents = self.agents.iter();
+        Ok(agents.map(|agent| agent.task.expert_question()).collect())
+    }
+
+    /// Returns whether an agent's task has an oracle that takes questions.
+    ///
+    /// # Errors
+    /// [`WorldError::InvalidCall`] for an agent that does not act.
+    pub fn takes_questions(&self, agent: usize) -> Result<bool, WorldError> {
+        let parts = self.agent(agent)?.kind.goal_parts;
+        Ok(parts.contains(&GoalPart::Replies))
+    }
+
     /// Returns what the scripted expert of one agent would do now, its answer included.
     ///
     /// # Errors
@@ -198,6 +221,7 @@ impl Env {
         Ok(StepAction {
             answer,
             utterance: (utterance.tokens[0] != 0).then_some(utterance),
+            question: task.expert_question(),
             ..action.into()
         })
     }

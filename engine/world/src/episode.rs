@@ -22,6 +22,8 @@ pub enum GoalPart {
     Placements,
     /// A question in words.
     Question,
+    /// An oracle's replies to questions that the agent asks.
+    Replies,
 }
 
 /// Where a thing belongs, or how far open it is to be.
@@ -41,8 +43,8 @@ pub struct ObjectPlacement {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct EpisodeGoal {
     /// `"point"`, `"room"`, `"object"`, `"image"`, `"sound"`, `"rearrangement"`, `"tidying"`, the kind of an instruction (`"go_to_room"`,
-    /// `"find_object"`, `"sequence"`) or of a question (`"location"`, `"color"`); empty where the task asks for nothing, or a task
-    /// outside of this crate asks.
+    /// `"find_object"`, `"sequence"`) or of a question (`"location"`, `"color"`), by how many things an ambiguous instruction fits
+    /// (`"one_of_3"`); empty where the task asks for nothing, or a task outside of this crate asks.
     pub kind: &'static str,
     /// A place on the floor, m.
     pub position: Option<Vec3>,
@@ -113,6 +115,12 @@ pub const MAX_ANSWER_FIELDS: usize = 4;
 /// An answer that an agent gives with `stop`; what its task does not ask for is not looked at.
 pub type Answer = [f32; MAX_ANSWER_FIELDS];
 
+/// The most words of a question that an agent asks in a step.
+pub const MAX_QUESTION_TOKENS: usize = 16;
+
+/// What an agent asks the oracle of its task in a step: numbers of words of the vocabulary up to the first 0; none where the first is 0.
+pub type QuestionTokens = [u32; MAX_QUESTION_TOKENS];
+
 /// A field of the answer that a task expects.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AnswerField {
@@ -152,6 +160,8 @@ pub struct StepInfo {
     pub progress: NavigationMetrics,
     /// True if this step was cut short by something in the way.
     pub collision: bool,
+    /// What the oracle of its task replied to what it asked in the step; empty where it asked nothing.
+    pub reply: String,
     /// True if the agent goes on speaking after the step.
     pub speaks: bool,
     /// What the task measures, in the order of its kind's `measures`; NaN for what is not known yet.

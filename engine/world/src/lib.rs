@@ -63,8 +63,8 @@ pub use engines::Engines;
 pub use env::Env;
 pub use env_config::{AgentConfig, EnvConfig, SensorConfig};
 pub use episode::{
-    Answer, AnswerField, Episode, EpisodeGoal, GoalPart, MAX_ANSWER_FIELDS, StepInfo, StepResult,
-    TaskMeasure,
+    Answer, AnswerField, Episode, EpisodeGoal, GoalPart, MAX_ANSWER_FIELDS, MAX_QUESTION_TOKENS,
+    QuestionTokens, StepInfo, StepResult, TaskMeasure,
 };
 pub use episode_spec::{EpisodeSpec, StatedGoal, StatedStart};
 pub use error::WorldError;

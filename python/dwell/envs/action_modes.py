@@ -31,6 +31,7 @@ from dwell.envs.action_arrays import (
     stacked_fields,
     whole_numbers,
 )
+from dwell.envs.asking import MAX_QUESTION_TOKENS, AskingActions, question_row
 
 #: Of the first axis of velocities: forward, right, turn to the left, look up.
 _VELOCITY_NAMES = ("forward", "right", "turn", "look")
@@ -62,6 +63,7 @@ class EngineActions:
         answers: Numbers that the task expects with ``stop``, shape (n, 4) float32.
         tokens: What is said from now on, numbers of words up to the first 0, shape (n, 8) int64.
         efforts: With which of the vocal efforts, shape (n,) int64.
+        questions: What is asked of oracles, as ``tokens``, shape (n, 16) int64.
     """
 
     numbers: NDArray[np.int64]
@@ -71,6 +73,7 @@ class EngineActions:
     answers: NDArray[np.float32] | None = None
     tokens: NDArray[np.int64] | None = None
     efforts: NDArray[np.int64] | None = None
+    questions: NDArray[np.int64] | None = None
 
     def step(self, batch: _native.Batch) -> dict[str, Any]:
         """One control step of all environments of a batch; what its ``step`` answers."""
@@ -83,6 +86,7 @@ class EngineActions:
             None if self.answers is None else np.ascontiguousarray(self.answers).ravel(),
             None if self.tokens is None else np.ascontiguousarray(self.tokens).ravel(),
             None if self.efforts is None else np.ascontiguousarray(self.efforts),
+            None if self.questions is None else np.ascontiguousarray(self.questions).ravel(),
         )
 
     def without(self, idle: NDArray[np.bool_]) -> EngineActions:
@@ -114,6 +118,7 @@ class EngineActions:
             joined("answers", np.full(ANSWER_FIELDS, np.nan, np.float32)),
             joined("tokens", np.zeros(MAX_TOKENS, np.int64)),
             joined("efforts", np.full((), NORMAL_EFFORT, np.int64)),
+            joined("questions", np.zeros(MAX_QUESTION_TOKENS, np.int64)),
         )
 
     def names(self) -> list[str]:
@@ -132,6 +137,8 @@ class EngineActions:
             row["object"] = int(self.objects[env])
         if self.answers is not None:
             row["answer"] = self.answers[env].tolist()
+        if self.questions is not None and self.questions[env].any():
+            row["question"] = self.questions[env].tolist()
         return row if len(row) > 1 else str(row["action"])
 
     @classmethod
@@ -143,7 +150,7 @@ class EngineActions:
         """
         fields = {"action": row} if isinstance(row, str) else mapping(at, row)
         names = _native.actions()
-        allowed = ("action", "velocity", "pixel", "object", "answer")
+        allowed = ("action", "velocity", "pixel", "object", "answer", "question")
         if unknown := sorted(set(fields) - {*allowed}):
             raise ConfigError(f"{at} has {unknown[0]!r}; allowed are {', '.join(allowed)}")
         if fields.get("action") not in names:
@@ -151,7 +158,7 @@ class EngineActions:
             raise ConfigError(f"{at} is {found}; allowed are {', '.join(names)}")
         numbers = np.array([names.index(fields["action"])], np.int64)
         one = (1,)
-        velocity, pixel, thing, answer = (fields.get(key) for key in allowed[1:])
+        velocity, pixel, thing, answer, question = (fields.get(key) for key in allowed[1:])
         return cls(
             numbers,
             None
@@ -162,6 +169,7 @@ class EngineActions:
             None
             if answer is None
             else numbers_within(f"{at}: answer", answer, one, ANSWER_FIELDS, (-1e6, 1e6)),
+            questions=None if question is None else question_row(f"{at}: question", question),
         )
 
 
@@ -484,7 +492,9 @@ def _shares(field: Mapping[str, Any]) -> tuple[float, float]:
     return (-1.0 if field["range"][0] < 0 else 0.0), 1.0
 
 
-ActionForm = DiscreteActions | PointerActions | ObjectActions | VelocityActions | DictActions
+ActionForm = (
+    DiscreteActions | PointerActions | ObjectActions | VelocityActions | DictActions | AskingActions
+)
 
 #: By ``action_mode``.
 ACTION_MODES: dict[str, Callable[[Sequence[str]], ActionForm]] = {
@@ -497,7 +507,11 @@ ACTION_MODES: dict[str, Callable[[Sequence[str]], ActionForm]] = {
 
 
 def action_form(
-    config: str, answer_fields: Sequence[Mapping[str, Any]] = (), agent: int = 0
+    config: str,
+    answer_fields: Sequence[Mapping[str, Any]] = (),
+    agent: int = 0,
+    *,
+    asks: bool = False,
 ) -> ActionForm | AnsweredActions:
     """The form of an agent's actions under the native ``EnvConfig`` as JSON.
 
@@ -505,6 +519,7 @@ def action_form(
         config: The settings.
         answer_fields: Those of a batch: what the agent's task expects with ``stop``.
         agent: Its place among those who act.
+        asks: Whether its task has an oracle that takes questions.
 
     Raises:
         ConfigError: An action is unknown, or there is none to choose from.
@@ -514,6 +529,7 @@ def action_form(
     general = settings.get("action_mode", "discrete")
     mode = rows[agent].get("action_mode", general) if rows else general
     form = ACTION_MODES[mode](_native.chosen_actions(config, agent))
+    form = AskingActions(form) if asks else form
     return AnsweredActions(form, answer_fields) if answer_fields else form
 
 
@@ -526,6 +542,7 @@ def masked_form(action_mask: object, form: ActionForm | AnsweredActions) -> Disc
     if not boolean("action_mask", action_mask):
         return None
     own = form.form if isinstance(form, AnsweredActions) else form
+    own = own.form if isinstance(own, AskingActions) else own
     if isinstance(own, DiscreteActions):
         return own
     raise ConfigError("action_mask is True; masks are of the action_mode discrete alone")

@@ -14,6 +14,7 @@ from dwell import ConfigError, UsageError
 from dwell.arguments import abbreviated_list, mapping, number_in_range, quoted
 from dwell.envs.action_modes import AnsweredActions, EngineActions, action_form, masked_form
 from dwell.envs.agent_settings import AgentRoster
+from dwell.envs.asking import AskingActions
 from dwell.envs.native_batch import NativeBatch
 from dwell.envs.voice import VoicedActions
 
@@ -57,7 +58,10 @@ class AgentForms:
         #: The places of those who take actions.
         self.players = roster.players
         count = len(self.names)
-        silent = [action_form(config, batch.answer_fields(k), k) for k in range(count)]
+        silent = [
+            action_form(config, batch.answer_fields(k), k, asks=batch.takes_questions(k))
+            for k in range(count)
+        ]
         self._masks = [masked_form(action_mask, form) for form in silent]
         self._forms = [
             form if voice is None else VoicedActions(form, voice)
@@ -150,11 +154,14 @@ class AgentForms:
         numbers, count = runner.expert_actions(), len(self.names)
         answers = runner.batch.expert_answers().reshape(len(numbers), -1)
         words = runner.batch.expert_utterances().reshape(len(numbers), -1)
+        questions = runner.batch.expert_questions().reshape(len(numbers), -1)
         found: dict[str, Any] = {}
         for k, (name, form) in enumerate(zip(self.names, self._forms, strict=True)):
             silent = form.form if isinstance(form, VoicedActions) else form
             if isinstance(silent, AnsweredActions):
                 own = silent.expert(numbers[k::count], answers[k::count])
+            elif isinstance(silent, AskingActions):
+                own = silent.expert(numbers[k::count], questions[k::count])
             else:
                 own = silent.expert(numbers[k::count])
             if isinstance(form, VoicedActions):

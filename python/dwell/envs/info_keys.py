@@ -51,6 +51,9 @@ def step_info(answer: Mapping[str, Any], measures: Sequence[str], row: int = 0) 
     unknown = (*GOAL_KEYS, *measures)
     info = {key: value for key, value in info.items() if key not in unknown or not isnan(value)}
     info["action_error"] = answer["action_error"][row]
+    # Of tasks with an oracle, where it was asked something.
+    if "reply" in answer and answer["reply"][row]:
+        info["reply"] = answer["reply"][row]
     return info
 
 
@@ -75,4 +78,7 @@ def step_infos(
         infos[key], infos[f"_{key}"] = values, known
     infos["action_error"] = np.array(answer["action_error"], object)
     infos["_action_error"] = stepped.copy()
+    if "reply" in answer:
+        replies = np.array(answer["reply"], object)
+        infos["reply"], infos["_reply"] = replies, stepped & (replies != "")
     return infos

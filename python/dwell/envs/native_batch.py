@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from dwell import ConfigError, _native
 from dwell.envs.action_modes import ActionForm, AnsweredActions, EngineActions
+from dwell.envs.asking import AskingActions
 from dwell.envs.env_pool import PreparedEnv, add_heads
 from dwell.envs.info_keys import GOAL_KEYS
 from dwell.envs.python_tasks import PythonEpisode, PythonTask
@@ -175,6 +176,8 @@ class NativeBatch:
         if isinstance(actions, AnsweredActions):
             answers = self.batch.expert_answers().reshape(self.count, -1)
             return actions.expert(numbers, answers)
+        if isinstance(actions, AskingActions):
+            return actions.expert(numbers, self.batch.expert_questions().reshape(self.count, -1))
         return actions.expert(numbers)
 
     def observe(self, which: NDArray[np.bool_]) -> None:

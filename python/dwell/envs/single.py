@@ -192,7 +192,10 @@ class DwellEnv(EpisodeCalls, CurrentStateApi, gymnasium.Env[dict[str, Any], Any]
         self._call: str | None = None
         self._alone = np.ones(1, np.bool_)
         self.metadata = {**self.metadata, "render_fps": steps_a_second(self._runner.batch)}
-        self._actions = action_form(self._config, self._runner.batch.answer_fields())
+        batch = self._runner.batch
+        self._actions = action_form(
+            self._config, batch.answer_fields(), asks=batch.takes_questions()
+        )
         self._masks = masked_form(action_mask, self._actions)
         self._measures = self._runner.measures
         self.observation_space = self._runner.space

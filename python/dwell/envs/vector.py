@@ -218,7 +218,8 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
         self._stopped = np.zeros(num_envs, np.bool_)
         #: The call that plays episodes at this moment.
         self._call: str | None = None
-        self._actions = action_form(config, self._runner.batch.answer_fields())
+        batch = self._runner.batch
+        self._actions = action_form(config, batch.answer_fields(), asks=batch.takes_questions())
         self._masks = masked_form(action_mask, self._actions)
         #: Keys of a step's answer that become infos.
         self._info_keys = (*INFO_KEYS, *self._runner.measures)

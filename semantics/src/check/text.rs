@@ -58,7 +58,7 @@ impl Checker<'_> {
 
     /// The verdict on a claim, the answer to a question, or the things of a noun phrase. Of several forms the answer to the last one
     /// that has one; `None` for requests.
-    fn answer_form(&self, form: &Form) -> Option<QuestionAnswer> {
+    pub(crate) fn answer_form(&self, form: &Form) -> Option<QuestionAnswer> {
         match form {
             Form::Claim(clause) => Some(QuestionAnswer::Truth(self.check(clause))),
             Form::Question(question) => Some(self.answer(question)),

@@ -107,10 +107,16 @@ impl Form {
     /// Returns the same form with "it" in place of `antecedent`, where that stands as subject or landmark.
     #[must_use]
     pub fn with_pronoun(&self, antecedent: &Phrase) -> Self {
+        self.with_phrase(antecedent, &Phrase::Pronoun)
+    }
+
+    /// Returns the same form with the phrase `new` in place of `old`, where that stands as subject or landmark.
+    #[must_use]
+    pub fn with_phrase(&self, old: &Phrase, new: &Phrase) -> Self {
         let mut form = self.clone();
         visit_form(&mut form, &mut |phrase, _| {
-            if phrase == antecedent {
-                *phrase = Phrase::Pronoun;
+            if phrase == old {
+                phrase.clone_from(new);
             }
         });
         form

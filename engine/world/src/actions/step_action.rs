@@ -1,7 +1,7 @@
 //! What an agent does in one step of an environment: an action, velocities of its own, and what its hand is used on.
 
 use super::{AgentAction, DiscreteAction, StepSizes};
-use crate::episode::{Answer, MAX_ANSWER_FIELDS};
+use crate::episode::{Answer, MAX_ANSWER_FIELDS, MAX_QUESTION_TOKENS, QuestionTokens};
 use crate::error::WorldError;
 use crate::sound::Utterance;
 use crate::world::World;
@@ -85,6 +85,8 @@ pub struct StepAction {
     pub answer: Answer,
     /// What it begins to say; `None`: nothing. While an agent speaks, nothing that it says else is taken.
     pub utterance: Option<StepUtterance>,
+    /// What it asks the oracle of its task, where that has one; no sound.
+    pub question: QuestionTokens,
 }
 
 impl From<DiscreteAction> for StepAction {
@@ -95,6 +97,7 @@ impl From<DiscreteAction> for StepAction {
             target: ActionTarget::Gaze,
             answer: [f32::NAN; MAX_ANSWER_FIELDS],
             utterance: None,
+            question: [0; MAX_QUESTION_TOKENS],
         }
     }
 }
@@ -119,7 +122,8 @@ impl StepAction {
         }
         let words = dwell_semantics::vocabulary::count();
         let said = self.utterance.iter().flat_map(|said| &said.tokens);
-        if let Some(token) = said.into_iter().find(|token| **token as usize >= words) {
+        let mut written = said.chain(&self.question);
+        if let Some(token) = written.find(|token| **token as usize >= words) {
             let allowed = format!("numbers of words, 1 to {}, or 0 for none", words - 1);
             return fault("tokens", token.to_string(), &allowed);
         }

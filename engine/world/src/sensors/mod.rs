@@ -32,6 +32,8 @@ mod question;
 mod question_tokens;
 mod rearrangegoal;
 mod receiver;
+mod reply;
+mod reply_tokens;
 mod rgb;
 mod roomgoal;
 mod semantic;
@@ -56,6 +58,7 @@ use crate::world::World;
 use dwell_render::ClassSet;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, AgentState, Id, IdVec, Pose};
+use dwell_semantics::dialogue::Reply;
 use serde::Serialize;
 use std::fmt::Debug;
 
@@ -126,6 +129,8 @@ pub struct SensorContext<'a> {
     pub episode: &'a Episode,
     /// Poses of all agents of the world at the beginning of the episode. Shape (agent,).
     pub start_poses: &'a IdVec<AgentId, Pose>,
+    /// What the oracle of the agent's task replied to what it asked in the latest step.
+    pub reply: Option<&'a Reply>,
     /// The results of the engines.
     pub results: &'a RenderedImages,
     /// The sensor's random stream in this step.
@@ -371,6 +376,8 @@ pub fn all() -> &'static [SensorKind] {
         instruction_tokens::KIND,
         question::KIND,
         question_tokens::KIND,
+        reply::KIND,
+        reply_tokens::KIND,
         gps::KIND,
         compass::KIND,
         wheel_odometry::KIND,

@@ -2,6 +2,7 @@
 
 mod audio_nav;
 mod cooperate;
+mod dialogue;
 mod door_leaves;
 mod embodied_qa;
 mod free;
@@ -26,7 +27,8 @@ mod tidy;
 
 use crate::actions::{ActionSet, DiscreteAction, HandTarget, StepAction, StepSizes};
 use crate::episode::{
-    Answer, AnswerField, Episode, GoalPart, MAX_ANSWER_FIELDS, StepResult, TaskMeasure,
+    Answer, AnswerField, Episode, GoalPart, MAX_ANSWER_FIELDS, MAX_QUESTION_TOKENS, QuestionTokens,
+    StepResult, TaskMeasure,
 };
 use crate::episode_spec::EpisodeSpec;
 use crate::error::WorldError;
@@ -36,6 +38,7 @@ use dwell_acoustics::utterance::MAX_TOKENS;
 use dwell_physics::ActionOutcome;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentBody, AgentId};
+use dwell_semantics::dialogue::Reply;
 use std::fmt::Debug;
 
 /// A task of one agent. One value plays one episode after another in one world.
@@ -133,6 +136,16 @@ pub trait Task: Debug + Send + Sync {
     /// What the scripted expert says now, numbers of words up to the first 0; nothing for most.
     fn expert_utterance(&self, _world: &World) -> [u32; MAX_TOKENS] {
         [0; MAX_TOKENS]
+    }
+
+    /// What the scripted expert asks its oracle now; nothing for most.
+    fn expert_question(&self) -> QuestionTokens {
+        [0; MAX_QUESTION_TOKENS]
+    }
+
+    /// What its oracle replied to what was asked in the latest step; of tasks whose goals have [`GoalPart::Replies`].
+    fn reply(&self) -> Option<&Reply> {
+        None
     }
 
     /// What [`TaskKind::measures`] names, after the latest step; NaN for what is not known yet.
@@ -247,6 +260,7 @@ pub fn all() -> &'static [TaskKind] {
         embodied_qa::KIND,
         rearrange::KIND,
         tidy::KIND,
+        dialogue::KIND,
         cooperate::KIND,
         pied_piper::KIND,
         social_nav::KIND,
