@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import re
 from collections.abc import Callable
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -24,6 +25,10 @@ HOUSE = "builtin:lobby"
 def person(house: str = HOUSE, **body: object) -> World:
     """A world with a person in the middle of a room and a capsule that watches."""
     return World(house, agents=[{"kind": "person", **body}, {}])  # type: ignore[typeddict-item]
+
+
+def wide(values: ArrayLike) -> NDArray[np.float64]:
+    return np.asarray(values, np.float64)
 
 
 def at(feet: NDArray[np.float64], *way: float) -> tuple[float, float, float]:
@@ -74,7 +79,7 @@ def figure_box(world: World) -> NDArray[np.float64]:
         position=at(feet, 0.0, 0.9, 2.5), camera=Camera(256, 256, 70.0), channels=("boxes_3d",)
     )["boxes_3d"]
     (row,) = [row for row in rows if row[0] == person_id(world)]
-    return np.float64(row[4:7])
+    return wide(row[4:7])
 
 
 def person_id(world: World) -> int:
@@ -102,7 +107,7 @@ def test_the_mask_of_a_person_is_where_its_joints_are() -> None:
         back = np.array((np.sin(yaw), 0.0, np.cos(yaw)))
         eye = np.array(at(feet, 0.0, 0.9, 0.0)) + 2.0 * back
         view = world.render(
-            position=eye,
+            position=tuple(eye),
             yaw_deg=yaw_deg,
             camera=Camera(width, height, 70.0),
             channels=("instance", "depth"),
@@ -111,7 +116,7 @@ def test_the_mask_of_a_person_is_where_its_joints_are() -> None:
         assert mask.sum() > 2000
         pixels = []
         for name, joint in joints.items():
-            way = np.float64(joint) - eye
+            way = wide(joint) - eye
             depth = -way @ back
             column = 0.5 * width + focal * (way @ right) / depth
             row = 0.5 * height - focal * way[1] / depth
@@ -163,14 +168,14 @@ def test_palms_reach_what_is_in_reach_and_else_the_line_to_it() -> None:
     height, draw = 1.7, np.random.default_rng(7)
     reach = (UPPER_ARM + FOREARM + 0.5 * HAND) * height
     for side in ("left", "right"):
-        shoulder = np.float64(world.person_joints(0)[f"{side}_shoulder"])
+        shoulder = wide(world.person_joints(0)[f"{side}_shoulder"])
         for distance in (0.1, 0.3, 0.5, 0.64, 0.8, 3.0):
             way = draw.normal(size=3)
             target = shoulder + distance * way / np.linalg.norm(way)
             world.set_gesture(0, **{f"{side}_hand": target})  # type: ignore[arg-type]
             joints = world.person_joints(0)
             check_lengths(joints, height)
-            palm = np.float64(joints[f"{side}_palm"])
+            palm = wide(joints[f"{side}_palm"])
             if distance < reach:
                 assert palm == pytest.approx(target, abs=1e-4)
             else:
@@ -187,14 +192,14 @@ def test_the_line_from_eye_to_finger_tip_meets_the_target() -> None:
     feet = np.array(world.agents()[0]["position"])
     for k in range(60):
         target = feet + draw.uniform((-4.0, 0.0, -4.0), (4.0, 2.5, 4.0))
-        side = ("left", "right")[k % 2]
+        side: Literal["left", "right"] = "left" if k % 2 else "right"
         if length(at(feet, 0.0, 1.4, 0.0), target) < 1.0:
             continue
         world.set_gesture(0, pointing=side, point_at=target, look_at=target)
         joints = world.person_joints(0)
         check_lengths(joints, 1.7)
-        tip, goal = np.float64(joints[f"{side}_finger_tip"]), target
-        ways = [point - np.float64(joints["eyes"]) for point in (tip, goal)]
+        tip, goal = wide(joints[f"{side}_finger_tip"]), target
+        ways = [point - wide(joints["eyes"]) for point in (tip, goal)]
         unit = [way / np.linalg.norm(way) for way in ways]
         assert np.degrees(np.arccos(min(unit[0] @ unit[1], 1.0))) < 0.5
         # The arm is all but straight.
@@ -208,7 +213,7 @@ def test_the_line_from_eye_to_finger_tip_meets_the_target() -> None:
 
 def test_a_head_turns_to_what_is_looked_at_as_far_as_a_neck_does() -> None:
     world = person()
-    world.place_agent(0, world.agents()[0]["position"], yaw_deg=0.0)
+    world.place_agent(world.agents()[0]["position"], yaw_deg=0.0)
     ahead = {"eyes": world.person_joints(0)["eyes"], "head": world.person_joints(0)["head"]}
     assert (ahead["eyes"] - ahead["head"])[2] < 0.0
     feet = np.array(world.agents()[0]["position"])
@@ -228,8 +233,8 @@ def walk(world: World, steps: int, speed: float) -> list[dict[str, NDArray[np.fl
     rows = []
     for _ in range(steps):
         world.step([[speed, 0.0, 0.0, 0.0]])
-        joints = {name: np.float64(joint) for name, joint in world.person_joints(0).items()}
-        rows.append(joints | {"feet": np.array(world.agents()[0]["position"])})
+        joints = {name: wide(joint) for name, joint in world.person_joints(0).items()}
+        rows.append(joints | {"feet": wide(world.agents()[0]["position"])})
     return rows
 
 
@@ -240,12 +245,12 @@ def test_feet_alternate_stand_still_and_swing() -> None:
     start, first = world.agents()[0]["position"], world.snapshot()
     for yaw_deg in range(0, 360, 30):
         world.restore(first)
-        world.place_agent(0, start, yaw_deg=float(yaw_deg))
+        world.place_agent(start, yaw_deg=float(yaw_deg))
         ends = walk(world, 60, 1.0)[-1]["feet"]
         best = max(best, (float(np.linalg.norm(ends - start)), float(yaw_deg)))
     assert best[0] > 1.5
     world.restore(first)
-    world.place_agent(0, start, yaw_deg=best[1])
+    world.place_agent(start, yaw_deg=best[1])
     steps = int((best[0] - 0.2) / 1.0 * 20)
     rows = walk(world, steps, 1.0)
     yaw = np.radians(best[1])
@@ -256,7 +261,8 @@ def test_feet_alternate_stand_still_and_swing() -> None:
     # 1 m/s: steps of 0.62 m (the walk ratio 0.39 m s).
     expected = best[0] / 0.62
     assert changes == pytest.approx(expected, abs=1.5), (changes, expected)
-    slips, swings = [], []
+    slips: list[float] = []
+    swings: list[float] = []
     for side in ("left", "right"):
         for a, b in itertools.pairwise(rows[6:]):
             heights = [row[f"{side}_toe"][1] - row["feet"][1] for row in (a, b)]
@@ -284,17 +290,19 @@ def test_feet_alternate_stand_still_and_swing() -> None:
 def test_flow_shows_arms_that_move_while_the_body_stands() -> None:
     world = person()
     feet = np.array(world.agents()[0]["position"])
-    eye = at(feet, 0.0, 1.0, -2.5)
+    eye = np.array(at(feet, 0.0, 1.0, -2.5))
     camera = Camera(160, 160, 70.0)
-    world.place_agent(0, feet, yaw_deg=0.0)
+    world.place_agent(at(feet, 0.0, 0.0, 0.0), yaw_deg=0.0)
     world.step()
     world.set_gesture(0, right_hand=at(feet, 0.4, 1.3, -0.3))
     world.step()
-    before = np.float64(world.person_joints(0)["right_palm"])
+    before = wide(world.person_joints(0)["right_palm"])
     world.set_gesture(0, right_hand=at(feet, 0.4, 1.4, -0.3))
     world.step()
-    shot = world.render(position=eye, yaw_deg=180.0, camera=camera, channels=("flow", "instance"))
-    palm = np.float64(world.person_joints(0)["right_palm"])
+    shot = world.render(
+        position=tuple(eye), yaw_deg=180.0, camera=camera, channels=("flow", "instance")
+    )
+    palm = wide(world.person_joints(0)["right_palm"])
     focal = 80.0 / np.tan(np.radians(35.0))
     # The camera looks along +Z; its right is -X.
     pixel = [
@@ -351,7 +359,7 @@ def test_what_a_hand_holds_is_in_the_hand() -> None:
         pytest.skip("nothing is in reach at the start")
     world.step()
     joints, held = world.person_joints(0), world.body(row["name"])
-    assert length(joints["right_palm"], np.float32(held["position"])) < 0.4
+    assert length(joints["right_palm"], held["position"]) < 0.4
 
 
 def test_colours_are_drawn_or_stated() -> None:
