@@ -1,8 +1,10 @@
 //! Serialization and hash of a state.
 
-use super::State;
+use super::{PersonState, State};
 use crate::error::SceneError;
 use crate::house::House;
+use crate::ids::{AgentId, Id};
+use std::collections::BTreeMap;
 use xxhash_rust::xxh3::xxh3_64;
 
 const MAGIC: &[u8; 4] = b"dwst";
@@ -11,8 +13,13 @@ const HEADER: usize = 4 + 4 + 8 + 8;
 
 impl State {
     fn snapshot_body(&self) -> Vec<u8> {
-        postcard::to_stdvec(self)
-            .expect("a state is plain data that postcard can always write to memory")
+        let mut body = postcard::to_stdvec(self)
+            .expect("a state is plain data that postcard can always write to memory");
+        if !self.persons.is_empty() {
+            let persons = postcard::to_stdvec(&self.persons);
+            body.extend(persons.expect("persons are plain data that can always be written"));
+        }
+        body
     }
 
     /// Returns a hash that changes with any bit of the state, derived fields and stored order included.
@@ -59,8 +66,12 @@ impl State {
         if word(16) != xxh3_64(body) {
             return refuse("its check sum does not fit: it is damaged".to_owned());
         }
-        let state: Self =
-            postcard::from_bytes(body).map_err(|error| SceneError::Snapshot(error.to_string()))?;
+        let damaged = |error: postcard::Error| SceneError::Snapshot(error.to_string());
+        let (mut state, rest): (Self, &[u8]) = postcard::take_from_bytes(body).map_err(damaged)?;
+        if !rest.is_empty() {
+            let persons = postcard::from_bytes(rest).map_err(damaged)?;
+            state.take_persons(persons)?;
+        }
         for address in state.overrides.keys() {
             if state.canonical(house, address)? != *address {
                 return refuse(format!(
@@ -100,11 +111,32 @@ impl State {
         }
         Ok(state)
     }
+
+    /// Takes the persons of a snapshot.
+    fn take_persons(&mut self, persons: BTreeMap<AgentId, PersonState>) -> Result<(), SceneError> {
+        for (agent, person) in &persons {
+            let count = self.agents.len();
+            let refuse = |why: &str| {
+                let why = format!("its person {} {why}; there are {count} agents", agent.0);
+                Err(SceneError::Snapshot(why))
+            };
+            if agent.index() >= count {
+                return refuse("is no agent");
+            }
+            if !person.is_finite() {
+                return refuse("has numbers that are not finite");
+            }
+            self.agents[*agent].body.person = Some(person.body);
+        }
+        self.persons = persons;
+        Ok(())
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::{AgentBody, AgentState, House, ShoeboxMaterials, State};
+    use crate::random::RandomKey;
+    use crate::{AgentBody, AgentState, House, PersonState, ShoeboxMaterials, State};
     use glam::Vec3;
 
     #[test]
@@ -126,6 +158,32 @@ mod tests {
             assert!(State::from_bytes(&house, &damaged).is_err(), "byte {k}");
         }
         assert!(State::from_bytes(&house, &bytes[..bytes.len() - 1]).is_err());
+    }
+
+    #[test]
+    fn persons_come_back_with_their_bodies_and_cost_nothing_where_there_are_none() {
+        let house = House::shoebox([6.0, 3.0, 5.0], &ShoeboxMaterials::default()).unwrap();
+        let mut state = State::new(&house);
+        let body = AgentBody::person(1.8);
+        let mut agent = AgentState::new(body, Vec3::ZERO, 0.4);
+        let id = state.agents.push(agent);
+        let bare = state.to_bytes(&house).len();
+        let mut person = PersonState::new(body.person.unwrap(), RandomKey::root(2));
+        person.gait.phase = 0.3;
+        state.persons.insert(id, person);
+        let bytes = state.to_bytes(&house);
+        assert_eq!(State::from_bytes(&house, &bytes).unwrap(), state);
+        let mut moved = state.clone();
+        moved.persons.get_mut(&id).unwrap().gait.phase = 0.4;
+        assert_ne!(moved.hash(), state.hash());
+        // A capsule of the same numbers has the bytes that it always had.
+        agent.body.person = None;
+        let mut capsule = State::new(&house);
+        capsule.agents.push(agent);
+        assert_eq!(capsule.to_bytes(&house).len(), bare);
+        person.gait.phase = f32::NAN;
+        state.persons.insert(id, person);
+        assert!(State::from_bytes(&house, &state.to_bytes(&house)).is_err());
     }
 
     #[test]
