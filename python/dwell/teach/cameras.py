@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,9 +13,12 @@ import dwell
 from dwell.teach.layout import Layout
 from dwell.teach.settings import TeachSettings
 
+if TYPE_CHECKING:
+    from dwell.engine_types import BodySettings
+
 #: The robot: its eyes are where the Kinect ahead is mounted, m above the floor.
 ROBOT_EYE_M = 1.35
-ROBOT_BODY = {"height_m": 1.45, "eye_height_m": ROBOT_EYE_M}
+ROBOT_BODY: BodySettings = {"height_m": 1.45, "eye_height_m": ROBOT_EYE_M}
 #: The field of view of a Kinect's depth camera, to the sides, degrees (57 by 43).
 _KINECT_FOV_DEG = 57.0
 #: The end of depth, m.
@@ -118,4 +121,5 @@ def _turned(yaw_deg: float, pitch_deg: float) -> NDArray[np.float64]:
     pitch = np.array(
         [[1.0, 0.0, 0.0], [0.0, math.cos(b), -math.sin(b)], [0.0, math.sin(b), math.cos(b)]]
     )
-    return yaw @ pitch
+    turned: NDArray[np.float64] = yaw @ pitch
+    return turned

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -85,8 +86,9 @@ def key_frame(session: Session, name: str, frame: int, time_s: float) -> KeyFram
 def _view(session: Session, mount: Mount, hand: list[Point]) -> MaskedView:
     world = session.world
     camera = mount.camera(session.settings)
-    channels = ("instance", "surfels", "visible_objects")
-    seen = world.render(agent=ROBOT, camera=camera, channels=channels)
+    seen = world.render(
+        agent=ROBOT, camera=camera, channels=("instance", "surfels", "visible_objects")
+    )
     ids = seen["instance"][..., 0]
     objects = {row["name"]: row["id"] for row in world.objects()}
     target = objects[session.target]
@@ -99,7 +101,7 @@ def _view(session: Session, mount: Mount, hand: list[Point]) -> MaskedView:
     pose = mount.to_world(session.layout)
     places = seen["surfels"][..., :3][person].astype(np.float64) @ pose[:3, :3].T + pose[:3, 3]
     near = np.zeros(len(places), bool)
-    for a, b in zip(hand, hand[1:], strict=False):
+    for a, b in itertools.pairwise(hand):
         near |= _distance_m(places, a, b) <= _HAND_RADIUS_M
     mask[tuple(axis[near] for axis in np.nonzero(person))] = MASK_VALUES["hand"]
     mask[ids == target] = MASK_VALUES["target"]

@@ -40,7 +40,8 @@ class Layout:
         right = np.array([math.cos(turn), 0.0, -math.sin(turn)])
         ahead = np.array([-math.sin(turn), 0.0, -math.cos(turn)])
         up = np.array([0.0, up_m, 0.0])
-        return np.asarray(self.origin) + right_m * right + ahead_m * ahead + up
+        found: Point = np.asarray(self.origin) + right_m * right + ahead_m * ahead + up
+        return found
 
     def on_table(self, right_m: float, from_edge_m: float, above_m: float = 0.0) -> Point:
         """A point above the table: to the robot's right, and from the person's edge, m."""

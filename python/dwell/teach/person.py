@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,11 +11,14 @@ import dwell
 from dwell.teach.motion import Point
 from dwell.teach.users import Hand, UserParameters
 
+if TYPE_CHECKING:
+    from dwell.engine_types import BodySettings
+
 #: The person's number among the agents of a world; the robot's is the next.
 PERSON, ROBOT = 0, 1
 
 
-def person_body(user: UserParameters) -> dict[str, Any]:
+def person_body(user: UserParameters) -> BodySettings:
     """The body of a user, as ``agents`` of a world takes it."""
     return {"kind": "person", "height_m": user.height_m, "hand": user.hand}
 
@@ -37,6 +40,16 @@ class Pose:
     right: Point | None = None
     pointing: Hand | None = None
     point_at: Point | None = None
+
+    def with_palm(self, hand: Hand, place: Point | None) -> Pose:
+        """The same with a palm elsewhere."""
+        if hand == "left":
+            return dataclasses.replace(self, left=place)
+        return dataclasses.replace(self, right=place)
+
+    def pointing_to(self, hand: Hand, aim: Point) -> Pose:
+        """The same with a hand that points; where its palm is, the figure says."""
+        return dataclasses.replace(self.with_palm(hand, None), pointing=hand, point_at=aim)
 
 
 class Person:

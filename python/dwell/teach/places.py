@@ -53,7 +53,8 @@ def _within_reach_of(level: NDArray[np.float64], room: dict[str, object]) -> NDA
     side = math.sqrt(float(room["area_m2"]))  # type: ignore[arg-type] # a number
     distance = np.hypot(level[:, 0] - stand[0], level[:, 2] - stand[2])
     near = level[distance <= side]
-    return near[np.argsort(distance[distance <= side], kind="stable")]
+    found: NDArray[np.float64] = near[np.argsort(distance[distance <= side], kind="stable")]
+    return found
 
 
 def _free_rectangle(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,11 +14,17 @@ from dwell.teach.motion import HandPath, Point, Stroke
 from dwell.teach.person import PERSON, ROBOT, Pose
 from dwell.teach.plan import SHORTEST_S
 from dwell.teach.pointing import first_hit
-from dwell.teach.session import LONGEST_S, Session, pointing_pose
+from dwell.teach.session import LONGEST_S, Session
 from dwell.teach.settings import PHYSICS_RATE_HZ
+
+if TYPE_CHECKING:
+    from dwell.engine_types import Channel
 
 #: How high a hand rises over the straight line as it reaches over the table, m.
 _ARC_M = 0.10
+#: How long the head turns, and stays with the target when the clip shows what it is about, s.
+_GAZE_TURN_S = 0.4
+_GAZE_STAYS_S = 0.5
 #: Depth is kept in mm, in 16 bits; 0 is no reading.
 _MM_A_METRE = 1000.0
 _MOST_MM = 65_535.0
@@ -81,7 +87,7 @@ class _Player:
         self._session = session
         self._world, self._person = session.world, session.person
         self._rest = Pose(session.robot_eyes, *session.ready)
-        self._path = self._hand_path()
+        self._path, self._gaze = self._hand_path(), self._gaze_path()
         self._taken: Point | None = None
         self._turn = self._world.body(session.target)["rotation"]
         names = [mount.name for mount in MOUNTS]
@@ -153,26 +159,37 @@ class _Player:
             ]
         elif session.plan.type == "point":
             # Where the palm is in the end, the figure says.
-            self._person.take(pointing_pose(self._rest, self._person.hand, session.aim))
+            looking = dataclasses.replace(self._rest, look_at=session.meant)
+            self._person.take(looking.pointing_to(self._person.hand, session.aim))
             palm = self._person.palm(self._person.joints())
             strokes = [Stroke(*reach, palm)]
         else:
             strokes = []
         return HandPath(start, strokes)
 
+    def _gaze_path(self) -> HandPath:
+        """What the head turns to: the robot, the target while the hand is under way, the robot."""
+        session, times = self._session, self._session.plan.timeline
+        back_s = times.apex_s + _GAZE_STAYS_S
+        return HandPath(
+            session.robot_eyes,
+            [
+                Stroke(times.reach_start_s, times.reach_start_s + _GAZE_TURN_S, session.meant),
+                Stroke(back_s, back_s + _GAZE_TURN_S, session.robot_eyes),
+            ],
+        )
+
     def _act(self, time_s: float) -> None:
         """Gives person and target the pose of a moment."""
         session, times = self._session, self._session.plan.timeline
-        looks_away = times.reach_start_s <= time_s < times.apex_s
-        look_at = session.meant if looks_away else session.robot_eyes
-        hand = self._person.hand
-        pose = dataclasses.replace(self._rest, look_at=look_at, **{hand: self._path.at(time_s)})
-        if session.plan.type == "point" and time_s >= times.reach_end_s:
-            pose = dataclasses.replace(
-                pointing_pose(self._rest, hand, session.aim), look_at=look_at
-            )
-        elif session.plan.type == "point" and time_s > times.reach_start_s:
-            pose = dataclasses.replace(pose, pointing=hand, point_at=session.aim)
+        hand, points = self._person.hand, session.plan.type == "point"
+        pose = dataclasses.replace(self._rest, look_at=self._gaze.at(time_s))
+        if points and time_s >= times.reach_end_s:
+            pose = pose.pointing_to(hand, session.aim)
+        else:
+            pose = pose.with_palm(hand, self._path.at(time_s))
+            if points and time_s > times.reach_start_s:
+                pose = dataclasses.replace(pose, pointing=hand, point_at=session.aim)
         self._person.take(pose)
         if session.plan.type == "show" and time_s >= times.lift_start_s:
             self._carry(time_s)
@@ -223,7 +240,7 @@ class _Player:
         clip = self._clip
         clip.times_s.append(round(time_s, 6))
         for mount in MOUNTS:
-            channels = ("rgb", "depth") if mount.has_depth else ("rgb",)
+            channels: list[Channel] = ["rgb", "depth"] if mount.has_depth else ["rgb"]
             camera = mount.camera(self._session.settings)
             seen = self._world.render(agent=ROBOT, camera=camera, channels=channels)
             clip.rgb[mount.name].append(seen["rgb"])

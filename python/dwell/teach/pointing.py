@@ -84,7 +84,8 @@ def turned_aim(eyes: Point, aim: Point, right_deg: float, up_deg: float) -> Poin
     yaw, pitch = yaw_pitch_deg(toward)
     axes = _camera_axes(yaw, pitch)
     ahead = np.array([math.tan(math.radians(right_deg)), math.tan(math.radians(up_deg)), -1.0])
-    return eyes + np.linalg.norm(toward) * (axes @ (ahead / np.linalg.norm(ahead)))
+    found: Point = eyes + np.linalg.norm(toward) * (axes @ (ahead / np.linalg.norm(ahead)))
+    return found
 
 
 def _camera_axes(yaw_deg: float, pitch_deg: float) -> NDArray[np.float64]:

@@ -1,4 +1,4 @@
-"""A clip ready to be played: its world, with everybody in place, and what is said and pointed at."""
+"""A clip ready to be played: its world with all in place, what is said and what is pointed at."""
 
 from __future__ import annotations
 
@@ -35,8 +35,10 @@ _READY_M = (0.17, 0.10, -0.04)
 #: part of the person's height.
 _SHOW_AHEAD_M = 0.44
 _SHOW_HEIGHT = 0.76
-#: The palm takes things from above, m over their highest point.
-_ABOVE_M = 0.02
+#: Things up to this height are taken from above, higher ones from the person's side, m.
+_LOW_M = 0.12
+#: The palm is so far from the box around what it takes, m.
+_PALM_M = 0.02
 #: The longest clip: so many seconds of pictures lie between the first steps of two clips.
 LONGEST_S = 10.0
 
@@ -123,8 +125,8 @@ def _world(
         sound_rate_hz=settings.sound_rate_hz,
         settle_s=_SETTLE_S,
     )
-    world.place_agent(layout.person(stance_m), layout.person_yaw_deg, agent=PERSON)
-    world.place_agent(layout.robot(), layout.yaw_deg, agent=ROBOT)
+    world.place_agent(layout.person(stance_m).tolist(), layout.person_yaw_deg, agent=PERSON)
+    world.place_agent(layout.robot().tolist(), layout.yaw_deg, agent=ROBOT)
     return world
 
 
@@ -146,10 +148,11 @@ def _prepared(
     person = Person(world, user)
     robot_eyes = layout.robot() + np.array([0.0, ROBOT_EYE_M, 0.0])
     ready = _ready(layout, stance_m)
-    grasp, shown = _grasp(world, target, layout), _shown(layout, user, plan, stance_m)
+    grasp = _grasp(world, target, layout)
+    shown = _shown(layout, user, plan, stance_m) + grasp - _middle(world, target)
     rest = Pose(robot_eyes, ready[0], ready[1])
     for place in (grasp, shown):
-        person.take(_with_hand(rest, person.hand, place))
+        person.take(rest.with_palm(person.hand, place))
         if np.linalg.norm(person.palm(person.joints()) - place) > _REACHED_M:
             return None
     person.take(rest)
@@ -160,6 +163,8 @@ def _prepared(
     meant = next((p for p in points if _is_hit(world, person, rest, p, target)), None)
     if meant is None:
         return None
+    person.take(dataclasses.replace(rest.pointing_to(person.hand, meant), look_at=meant))
+    eyes = person.joints()["eyes"]
     person.take(rest)
     if plan.type == "speak":
         phrase = relation_phrase(world, target, things, random)
@@ -188,22 +193,12 @@ def _prepared(
     )
 
 
-def _with_hand(rest: Pose, hand: str, place: Point) -> Pose:
-    """The pose at rest with another place of the hand that acts."""
-    return dataclasses.replace(rest, **{hand: place})
-
-
-def pointing_pose(rest: Pose, hand: str, aim: Point) -> Pose:
-    """The pose of a person who points."""
-    away = {hand: None, "pointing": hand, "point_at": aim, "look_at": aim}
-    return dataclasses.replace(rest, **away)
-
-
 def _is_hit(world: dwell.World, person: Person, rest: Pose, aim: Point, target: str) -> bool:
     """Whether the ray of who points there meets the target first."""
-    person.take(pointing_pose(rest, person.hand, aim))
+    person.take(dataclasses.replace(rest.pointing_to(person.hand, aim), look_at=aim))
     origin, direction = person.ray(person.joints())
-    return first_hit(world, origin, direction)[0] == world.object(target)["id"]
+    number: int = world.object(target)["id"]
+    return first_hit(world, origin, direction)[0] == number
 
 
 def _ready(layout: Layout, stance_m: float) -> tuple[Point, Point]:
@@ -217,14 +212,23 @@ def _ready(layout: Layout, stance_m: float) -> tuple[Point, Point]:
 
 
 def _grasp(world: dwell.World, target: str, layout: Layout) -> Point:
-    """Where a palm takes a thing: over its middle."""
-    thing = world.object(target)
-    x, y, z = thing["center"]
-    return np.array([x, y + thing["size"][1] / 2.0 + _ABOVE_M, z])
+    """Where a palm takes a thing: over its middle, or at its side that faces the person."""
+    size = np.asarray(world.object(target)["size"])
+    if size[1] <= _LOW_M:
+        return _middle(world, target) + np.array([0.0, size[1] / 2.0 + _PALM_M, 0.0])
+    toward_person = layout.point(0.0, 0.0, 1.0) - layout.point(0.0, 0.0, 0.0)
+    half = float(np.abs(toward_person) @ size) / 2.0
+    found: Point = _middle(world, target) + (half + _PALM_M) * toward_person
+    return found
+
+
+def _middle(world: dwell.World, thing: str) -> Point:
+    """The middle of the box around a thing, m."""
+    return np.asarray(world.object(thing)["center"], np.float64)
 
 
 def _shown(layout: Layout, user: UserParameters, plan: ClipPlan, stance_m: float) -> Point:
-    """Where the palm holds what it shows."""
+    """Where the middle of what is shown is held."""
     right, up = plan.show_offset_m
     ahead = TABLE_M[2] / 2.0 + PERSON_FROM_EDGE_M - _SHOW_AHEAD_M
     return layout.point(stance_m + right, _SHOW_HEIGHT * user.height_m + up, ahead)

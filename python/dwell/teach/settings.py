@@ -53,7 +53,7 @@ class TeachSettings:
 
     def __post_init__(self) -> None:
         """Checks the fields."""
-        checked = {
+        checked: dict[str, Any] = {
             "users": integer_in_range("users", self.users, low=1, high=1000),
             "clips": integer_in_range("clips", self.clips, low=1, high=1000),
             "seed": integer_in_range("seed", self.seed),

@@ -78,7 +78,8 @@ def mask_name(camera: str, key: KeyFrame) -> str:
 
 def _write_pictures(folder: Path, name: str, pictures: dict[str, list[Any]], form: str) -> None:
     if form == "npz":
-        np.savez_compressed(folder / f"{name}.npz", **{k: np.stack(v) for k, v in pictures.items()})
+        arrays: dict[str, Any] = {channel: np.stack(rows) for channel, rows in pictures.items()}
+        np.savez_compressed(folder / f"{name}.npz", **arrays)
         return
     for channel, frames in pictures.items():
         make_folder(folder / name / channel)
