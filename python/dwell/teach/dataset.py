@@ -83,10 +83,15 @@ def record(
     """
     settings = TeachSettings() if settings is None else settings
     folder = Path(out)
-    whole = {"format": FORMAT, "version": VERSION, **settings.as_dict()}
+    # Before the folder is begun; who goes on needs the house as it was.
+    house, _ = stage(settings.house)
+    whole = {
+        "format": FORMAT,
+        "version": VERSION,
+        **settings.as_dict(),
+        "house_contents": f"{hash(house):x}",
+    }
     _refuse_other(folder, whole)
-    # Before the folder is begun for it.
-    stage(settings.house)
     make_folder(folder)
     with _locked(folder):
         _refuse_other(folder, whole)
