@@ -5,15 +5,16 @@
 
 Classifiers are trained on all users but one and asked about that one, for each user in turn. The
 first word is judged by its counts (naive Bayes), all words likewise; sound and sight by a ridge
-regression on few numbers: levels of sound in bands and its length, and which parts of
-the picture of the Kinect ahead came nearer or went away since the first one. No label but the type is used. Printed are shares of
-right answers with the 95 % interval of chance (binomial), the confusions, and what must hold of the
-recording: rays without noise, phrases, occlusion. ``--out`` gets a sheet of pictures.
+regression on few numbers: levels of sound in bands and its length, and which parts of the picture
+of the Kinect ahead came nearer or went away since the first one. No label but the type is used.
+Printed are shares of right answers with the 95 % interval of chance (binomial), the confusions, and
+what must hold of the recording: rays, phrases, occlusion. ``--out`` gets a sheet of pictures.
 """
 
 from __future__ import annotations
 
 import argparse
+import itertools
 import json
 import math
 from collections import Counter
@@ -80,7 +81,7 @@ def sound_features(clip: RecordedClip) -> Array:
     power = np.abs(np.fft.rfft(blocks * np.hanning(block), axis=2)) ** 2
     at_hz = np.fft.rfftfreq(block, 1.0 / rate_hz)
     rows = []
-    for low, high in zip(BANDS_HZ, BANDS_HZ[1:], strict=False):
+    for low, high in itertools.pairwise(BANDS_HZ):
         level = 10.0 * np.log10(power[:, :, (at_hz >= low) & (at_hz < high)].sum(2) + 1e-9)
         rows += [level.mean(1), level.std(1), level.max(1)]
     return np.array([*np.concatenate(rows), sound.shape[1] / rate_hz])
@@ -102,7 +103,12 @@ def share(said: list[str], types: list[str]) -> dict[str, float]:
     n, chance = len(types), max(Counter(types).values()) / len(types)
     half = 1.96 * math.sqrt(chance * (1.0 - chance) / n)
     right = sum(a == b for a, b in zip(said, types, strict=True)) / n
-    return {"right": right, "chance_low": chance - half, "chance_high": chance + half, "clips": n}
+    return {
+        "right": right,
+        "chance_low": chance - half,
+        "chance_high": chance + half,
+        "clips": n,
+    }
 
 
 def confusion(said: list[str], types: list[str]) -> dict[str, dict[str, int]]:

@@ -1,4 +1,4 @@
-"""Recordings of a person who teaches: what is written, whether it is true, and whether it goes on."""
+"""Recordings of a person who teaches: what is written, whether it is true, how it goes on."""
 
 from __future__ import annotations
 
@@ -18,8 +18,11 @@ from dwell.files import open_exclusive
 from dwell.teach import RecordedClip, TeachSettings, record, recorded_clips
 from dwell.teach.dataset import clips_of
 from dwell.teach.motion import HandPath, Stroke, minimum_jerk
+from dwell.teach.person import Pose
 from dwell.teach.phrases import read_phrase
+from dwell.teach.places import free_layout
 from dwell.teach.pointing import first_hit, turned_aim
+from dwell.teach.scene import TABLE, stage
 from dwell.teach.session import Session, open_session
 
 SMALL = TeachSettings(users=1, clips=3, seed=5, fps=4, width=64, pointing_noise_deg=0.0)
@@ -56,9 +59,11 @@ def test_a_user_points_shows_and_speaks(folder: Path, clips: dict[str, RecordedC
     ]
     for clip in clips.values():
         times = clip.label["frames"]["times_s"]
-        assert np.allclose(np.diff(times), 0.25) and times[0] == 0.0
+        assert np.allclose(np.diff(times), 0.25)
+        assert times[0] == 0.0
         front = clip.pictures("kinect_front")
-        assert front.shape == (len(times), 48, 64, 3) and front.dtype == np.uint8
+        assert front.shape == (len(times), 48, 64, 3)
+        assert front.dtype == np.uint8
         assert clip.pictures("kinect_front", "depth").dtype == np.uint16
         assert clip.pictures("kinect_top").shape == front.shape
         assert clip.pictures("hd").shape == (len(times), 72, 128, 3)
@@ -85,7 +90,8 @@ def test_labels_lie_where_pictures_show_things(clips: dict[str, RecordedClip]) -
                 whole = box[3] < camera["height"] and box[2] < camera["width"] and box[0] > 0
                 if not whole:
                     continue
-                assert box[0] - 1 <= column <= box[2] + 1 and box[1] - 1 <= row <= box[3] + 1
+                assert box[0] - 1 <= column <= box[2] + 1
+                assert box[1] - 1 <= row <= box[3] + 1
                 seen += 1
                 if camera["has_depth"]:
                     depth_m = clip.pictures(name, "depth")[key["frame"]] / 1000.0
@@ -135,7 +141,9 @@ def test_phrases_name_the_target(clips: dict[str, RecordedClip]) -> None:
         assert (label["speech"]["relation"] is not None) == (label["type"] == "speak")
 
 
-def ray_meets_box(origin: Array, direction: Array, center: Array, size: Array) -> tuple[float, float]:
+def ray_meets_box(
+    origin: Array, direction: Array, center: Array, size: Array
+) -> tuple[float, float]:
     """Where a ray enters and leaves a box along the axes; nothing where the first is larger."""
     with np.errstate(divide="ignore"):
         a = (center - size / 2.0 - origin) / direction
@@ -146,8 +154,6 @@ def ray_meets_box(origin: Array, direction: Array, center: Array, size: Array) -
 def check_ray(session: Session) -> None:
     """A user without noise who points: the line from the eyes leads to the target and meets it."""
     person, world = session.person, session.world
-    from dwell.teach.person import Pose
-
     person.take(Pose(session.meant, *session.ready).pointing_to(person.hand, session.aim))
     joints = person.joints()
     origin, direction = person.ray(joints)
@@ -187,7 +193,11 @@ def test_ten_users_of_thirty_clips() -> None:
 
 def test_pointing_deviates_as_much_as_stated() -> None:
     """Normal in two directions of 2 degrees: the angle is Rayleigh's, of mean 2 sqrt(pi / 2)."""
-    random, eyes, aim = np.random.default_rng(0), np.array([0.3, 1.6, -0.2]), np.array([1.0, 0.9, 0.4])
+    random, eyes, aim = (
+        np.random.default_rng(0),
+        np.array([0.3, 1.6, -0.2]),
+        np.array([1.0, 0.9, 0.4]),
+    )
     angles = []
     for right, up in random.normal(0.0, 2.0, (4000, 2)):
         there = turned_aim(eyes, aim, right, up) - eyes
@@ -257,8 +267,38 @@ def test_other_recordings_and_other_files_stay(folder: Path, tmp_path: Path) -> 
 
 
 def test_two_processes_do_not_record_into_one_folder(tmp_path: Path) -> None:
-    with open_exclusive(tmp_path / ".recording"), pytest.raises(ValueError, match="another process"):
+    with (
+        open_exclusive(tmp_path / ".recording"),
+        pytest.raises(ValueError, match="another process"),
+    ):
         record(tmp_path, SMALL)
+
+
+def test_the_table_stands_free_in_a_furnished_house() -> None:
+    """Boxes of all things of the house, against those of table, person and robot."""
+    house, layout = stage("builtin:apartment")
+    rows = {row["name"]: row for row in dwell.World(house, agents=0).objects()}
+    table = rows.pop(TABLE)
+    places = [(table["center"], [size / 2.0 for size in table["size"]])]
+    places += [(place, [0.2, 0.0, 0.2]) for place in (layout.person(0.0), layout.robot())]
+    for row in rows.values():
+        low = row["center"][1] - row["size"][1] / 2.0
+        if low > 1.9 or row["size"][1] < 0.05:
+            # Lamps hang above, rugs lie below.
+            continue
+        for middle, half in places:
+            gaps = [
+                abs(row["center"][k] - middle[k]) - row["size"][k] / 2.0 - half[k] for k in (0, 2)
+            ]
+            assert max(gaps) > -0.01, row["name"]
+
+
+def test_a_house_without_room_for_the_table_is_refused() -> None:
+    closet = dwell.HouseBuilder("closet").room("closet", (0.0, 0.0, 1.2, 2.0)).build()
+    with pytest.raises(
+        dwell.ConfigError, match=r"closet: no room has 1\.6 by 2\.5 m of free floor"
+    ):
+        free_layout(closet)
 
 
 @pytest.mark.parametrize(
@@ -288,6 +328,8 @@ def test_the_command_records_and_says_what_it_cannot(
     (clip,) = recorded_clips(out)
     assert clip.pictures("kinect_top", "depth").shape[1:] == (24, 32)
     refused = command("record", "teach", out, *options[:-2])
-    assert refused.returncode == 1 and "was begun with form 'npz'" in refused.stderr
+    assert refused.returncode == 1
+    assert "was begun with form 'npz'" in refused.stderr
     small = command("record", "teach", tmp_path / "x", "--house", "builtin:shed")
-    assert small.returncode == 1 and not (tmp_path / "x").exists()
+    assert small.returncode == 1
+    assert not (tmp_path / "x").exists()

@@ -15,10 +15,10 @@ from dwell.teach.layout import ROBOT_FROM_EDGE_M, TABLE_M, Layout
 _RADIUS_M = 0.2
 #: Where one must be able to stand, on both sides of the middle of the table: along it, and across
 #: it as far as the robot, m.
-_HALF_WIDTH_M = TABLE_M[0] / 2.0 + 0.05 - _RADIUS_M
+_HALF_WIDTH_M = TABLE_M[0] / 2.0 + 0.1 - _RADIUS_M
 _HALF_LENGTH_M = TABLE_M[2] / 2.0 + ROBOT_FROM_EDGE_M
 #: From one place that is looked at to the next, m.
-_STEP_M = 0.2
+_STEP_M = 0.1
 
 
 def free_layout(house: dwell.House) -> Layout:
