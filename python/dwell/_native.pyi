@@ -75,11 +75,14 @@ __all__ = [
     "world_graph_json",
     "world_heard",
     "world_holds",
+    "world_person_hand",
+    "world_person_joints",
     "world_refer",
     "world_relation_array",
     "world_relations",
     "world_say",
     "world_select",
+    "world_set_gesture",
     "world_speaks",
 ]
 
@@ -487,6 +490,9 @@ def vocal_efforts() -> list[str]:
 def world_heard(world: World, agent: int) -> list[dict[str, Any]]:
     """``[{speaker, token, direction, level_db, sti}]``: what was understood in the last step."""
 
+def world_person_hand(world: World, agent: int) -> str: ...
+def world_person_joints(world: World, agent: int) -> dict[str, list[float]]: ...
+def world_set_gesture(world: World, agent: int, gesture: _Data) -> None: ...
 def world_say(world: World, agent: int, words: str | _Data, effort: str) -> bool:
     """Numbers of words, or a text of them; whether the agent says it."""
 

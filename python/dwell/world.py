@@ -33,6 +33,7 @@ from dwell.heads import Head
 from dwell.house import House
 from dwell.navigation import Navigation, Walker, walker_settings
 from dwell.outside_rooms import warn_outside_rooms
+from dwell.person_api import PersonApi
 from dwell.sound_api import SoundApi
 from dwell.world_settings import Laws, with_head, world_settings
 
@@ -51,7 +52,7 @@ _MAX_ID = 2**32 - 1
 JointCommand = Literal["off", "position", "velocity", "effort"]
 
 
-class World(ActionApi, GuideApi, SoundApi):
+class World(ActionApi, GuideApi, PersonApi, SoundApi):
     """A running world with its own state over a shared house.
 
     A copy, or what comes out of a pickle, goes on from the moment it was made.
@@ -73,7 +74,9 @@ class World(ActionApi, GuideApi, SoundApi):
             house: A house or a HOUSE string.
             agents: How many agents live in it, all of the default body. Each is seen as a capsule
                 by others and by cameras that are not its own; pictures of a house want 0. Or a body
-                for each, as a mapping of what differs: ``radius_m``, ``height_m``,
+                for each, as a mapping of what differs: ``kind`` (``"person"``: it is seen as a
+                jointed person, see :meth:`set_gesture`; then also ``hand`` and ``colors``),
+                ``radius_m``, ``height_m``,
                 ``eye_height_m``, ``step_height_m``, ``max_slope_rad``, ``lift_kg``, ``reach_m``,
                 ``push_force_n``, ``hand_effort``, ``max_carry_size_m``, ``camera_fov_deg`` and
                 ``locomotion``, which is ``{"walking": {...}}`` (``max_speed_m_s``,

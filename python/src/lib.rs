@@ -30,6 +30,7 @@ mod navigation;
 #[cfg(feature = "panic-for-tests")]
 mod panic_for_tests;
 mod panics;
+mod persons;
 mod picture;
 mod pictures_for_people;
 mod prepared_env;
@@ -89,6 +90,9 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(speech::vocal_efforts, module)?)?;
     module.add_function(wrap_pyfunction!(speech::world_heard, module)?)?;
     module.add_function(wrap_pyfunction!(speech::world_say, module)?)?;
+    module.add_function(wrap_pyfunction!(persons::world_person_hand, module)?)?;
+    module.add_function(wrap_pyfunction!(persons::world_person_joints, module)?)?;
+    module.add_function(wrap_pyfunction!(persons::world_set_gesture, module)?)?;
     module.add_function(wrap_pyfunction!(speech::world_speaks, module)?)?;
     module.add_function(wrap_pyfunction!(relations::world_holds, module)?)?;
     module.add_function(wrap_pyfunction!(relations::world_select, module)?)?;

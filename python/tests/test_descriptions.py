@@ -84,7 +84,7 @@ def test_levels_say_what_they_need() -> None:
     with pytest.raises(dwell.ConfigError, match="expected the bytes"):
         world.describe("changes", since="yesterday")  # type: ignore[call-overload]
     with pytest.raises(dwell.DwellError, match="snapshot"):
-        world.describe("changes", since=b"dwworld8")
+        world.describe("changes", since=b"dwworld9")
     other = dwell.World("builtin:apartment", agents=0).snapshot()
     with pytest.raises(dwell.DwellError, match="another house"):
         world.describe("changes", since=other)

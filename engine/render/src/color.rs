@@ -38,6 +38,11 @@ impl SrgbTables {
         self.decode[byte as usize]
     }
 
+    /// Linear light of a colour.
+    pub(crate) fn decode3(&self, srgb: [u8; 3]) -> glam::Vec3 {
+        glam::Vec3::from_array(srgb.map(|byte| self.decode(byte)))
+    }
+
     /// The byte of linear light; what is not in 0 to 1 is clamped, NaN is black.
     #[inline]
     pub(crate) fn encode(&self, linear: f32) -> u8 {

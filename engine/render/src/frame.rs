@@ -2,7 +2,8 @@
 
 use crate::camera::Camera;
 use crate::error::RenderError;
-use dwell_scene::{EntityId, PartId, Pose};
+use dwell_scene::rays::CAPSULE_PIECES;
+use dwell_scene::{AgentId, EntityId, Id, PartId, Pose};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -143,6 +144,18 @@ pub struct PreviousPoses<'a> {
     pub moved_parts: &'a [(PartId, Pose)],
     /// Earlier positions of the agents' feet, m. Shape (agent,); those beyond its end have not moved.
     pub agents: &'a [Vec3],
+    /// Earlier poses of the pieces of agents that are persons, by agent; the pieces of others have not moved. Shape of each
+    /// (piece,).
+    pub persons: &'a [(AgentId, Vec<Pose>)],
+}
+
+impl PreviousPoses<'_> {
+    /// The earlier pose of a piece of an agent's body, if it is a person's and known.
+    pub(crate) fn person_piece(&self, agent: usize, piece: usize) -> Option<Pose> {
+        let own = piece.checked_sub(CAPSULE_PIECES)?;
+        let found = self.persons.iter().find(|(id, _)| id.index() == agent)?;
+        found.1.get(own).copied()
+    }
 }
 
 /// The images of one view in the caller's memory; `None`: not wanted. Rows from the top, without gaps.

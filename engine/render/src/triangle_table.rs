@@ -3,7 +3,7 @@
 use crate::material::ShadingMaterial;
 use dwell_scene::bvh::flat::PackedRow;
 use dwell_scene::interrupt::PollEvery;
-use dwell_scene::rays::{BODY_PIECES, body_meshes};
+use dwell_scene::rays::{BODY_PIECES, CAPSULE_PIECES, RayScene, body_meshes};
 use dwell_scene::{House, Id, Mesh, PartId, PlacedMesh, Pose, State, SurfaceOwner};
 use glam::{Affine3A, DVec3, Mat3A, Vec2, Vec3, Vec3A, Vec4};
 use std::collections::BTreeMap;
@@ -149,20 +149,22 @@ impl TriangleTable {
         }
         for (piece, mesh) in body_meshes().iter().enumerate() {
             all.bodies[piece] = all.triangles.len() as u32;
+            let quick = (piece < CAPSULE_PIECES).then(|| looks[looks.len() - 1].opaque_srgb());
             for triangle in 0..mesh.triangles.len() {
-                all.add_body_triangle(mesh, triangle, looks.len() - 1, looks);
+                all.add_body_triangle(mesh, triangle, looks.len() - 1, quick.flatten());
             }
         }
         all
     }
 
-    /// A triangle of agents' bodies. Pieces are only stretched along the axes of their symmetry, so that normals stay.
+    /// A triangle of agents' bodies. Pieces of capsules are only stretched along the axes of their symmetry, so that normals
+    /// stay; those of persons are turned and grow evenly, and their colour is that of the person.
     fn add_body_triangle(
         &mut self,
         mesh: &Mesh,
         triangle: usize,
         material: usize,
-        looks: &[ShadingMaterial],
+        quick: Option<[u8; 3]>,
     ) {
         let [a, b, c] = mesh.corners(triangle);
         let normal = (b - a).cross(c - a).normalize_or_zero();
@@ -174,7 +176,7 @@ impl TriangleTable {
         });
         self.corner_normals
             .push(corner_normals(mesh, triangle, &Affine3A::IDENTITY, normal));
-        self.quick.push(match looks[material].opaque_srgb() {
+        self.quick.push(match quick {
             Some([r, g, b]) => [r, g, b, 255],
             None => [0, 0, 0, NEEDS_SHADING],
         });
@@ -257,10 +259,10 @@ impl TriangleTable {
         self.movable.get(instance as usize).copied()
     }
 
-    /// The number of the agent whose body an instance belongs to.
-    pub(crate) fn agent_of(&self, instance: u32) -> Option<usize> {
+    /// The number of the agent whose body an instance belongs to, and that of its piece.
+    pub(crate) fn agent_of(&self, instance: u32) -> Option<(usize, usize)> {
         let behind = (instance as usize).checked_sub(self.movable.len());
-        behind.map(|piece| piece / BODY_PIECES)
+        behind.map(|piece| (piece / BODY_PIECES, piece % BODY_PIECES))
     }
 
     #[inline]
@@ -281,9 +283,15 @@ impl TriangleTable {
 
     /// From the space of [`TriangleShading::normal`] to the world; `None` where that is the world, or turned as the world is.
     #[inline]
-    pub(crate) fn pose<'a>(&self, instance: Option<u32>, state: &'a State) -> Option<&'a Pose> {
-        let part = self.part_of(instance?)?;
-        state.part_pose.get(part)
+    pub(crate) fn pose<'a>(
+        &self,
+        instance: Option<u32>,
+        (scene, state): (&'a RayScene, &'a State),
+    ) -> Option<&'a Pose> {
+        match self.part_of(instance?) {
+            Some(part) => state.part_pose.get(part),
+            None => scene.person_piece(instance?).map(|piece| &piece.pose),
+        }
     }
 
     /// Memory held, bytes.

@@ -1,6 +1,7 @@
 //! Contents of an instance image: things with their pixels, and the boxes around them.
 
 use crate::cpu::CpuRenderer;
+use dwell_scene::person::{person_meshes, person_pieces, skeleton_of};
 use dwell_scene::{Aabb, Entity, EntityId, Id, PartId, Pose, State};
 use glam::Vec3;
 use std::collections::BTreeMap;
@@ -50,7 +51,7 @@ pub struct OrientedBox {
 
 impl CpuRenderer {
     /// The box around a thing as it stands, turned as its first part is: around the boxes of its parts, each in the part's own
-    /// axes. Of an agent: around its body, turned as it faces. Nothing for structure, and for objects without a surface.
+    /// axes. Of an agent: around its body, or the figure of a person, turned as it faces. Nothing for structure, and for objects without a surface.
     pub fn oriented_box(&self, state: &State, entity: EntityId) -> Option<OrientedBox> {
         let house = self.house();
         let (world_from_frame, bounds) = match house.entity(entity)? {
@@ -73,18 +74,31 @@ impl CpuRenderer {
                 }
                 (frame, bounds)
             }
-            Entity::Agent(agent) => {
-                let agent = state.agents.get(agent)?;
+            Entity::Agent(id) => {
+                let agent = state.agents.get(id)?;
+                let frame = Pose::from_position_yaw(agent.position, agent.yaw_rad);
+                if let Some(joints) = skeleton_of(house, state, id) {
+                    let from_world = frame.inverse().to_affine();
+                    let pieces = person_pieces(&joints);
+                    let shown = pieces.iter().zip(person_meshes());
+                    let boxes = shown.filter(|(piece, _)| piece.scale > 0.0).map(|(piece, mesh)| {
+                        let map = from_world * piece.world_from_mesh();
+                        let points = mesh.mesh.positions.iter();
+                        Aabb::from_points(points.map(|point| map.transform_point3(*point)))
+                    });
+                    let bounds = boxes.fold(Aabb::EMPTY, |all, one| all.union(&one));
+                    return Some(OrientedBox {
+                        world_from_box: frame * Pose::from_position(bounds.center()),
+                        size: bounds.size(),
+                    });
+                }
                 let radius = agent.body.radius_m;
                 let height = agent.height_m().max(2.0 * radius);
                 let bounds = Aabb::new(
                     Vec3::new(-radius, 0.0, -radius),
                     Vec3::new(radius, height, radius),
                 );
-                (
-                    Pose::from_position_yaw(agent.position, agent.yaw_rad),
-                    bounds,
-                )
+                (frame, bounds)
             }
             _ => return None,
         };

@@ -58,6 +58,7 @@ fn translation_before_a_plane_flows_as_worked_out() {
         world_from_camera: Pose::from_position(Vec3::new(x, y, z)),
         moved_parts: &[],
         agents: &[],
+        persons: &[],
     };
     // The camera went right by 0.1 m and down by 0.05 m: things go left and up.
     for flow in flow(&world, &view, from(-0.1, 0.05, 0.0)) {
@@ -125,6 +126,7 @@ fn what_moves_flows_and_what_rests_does_not() {
         world_from_camera: Pose::IDENTITY,
         moved_parts: &[(part, was)],
         agents: &[],
+        persons: &[],
     };
     let (frame, flows) = (world.shot(&view), flow(&world, &view, before));
     let id = world.house.entity_of_object(thing).0;
@@ -155,6 +157,7 @@ fn nothing_flows_as_if_it_were_far_away() {
         world_from_camera: Pose::new(Vec3::new(1.0, 2.0, 3.0), rotation_from_yaw_pitch(0.3, 0.0)),
         moved_parts: &[],
         agents: &[],
+        persons: &[],
     };
     // Turned to the right by 0.3 rad: everything goes left by 64 · 0.3 / 2 pi columns.
     for flow in flow(&world, &view, before) {
@@ -414,6 +417,7 @@ fn cameras_see_agents_bodies() {
         world_from_camera: pose,
         moved_parts: &[],
         agents: &[Vec3::new(1.0, 0.0, 2.5), Vec3::new(4.2, 0.0, 2.5)],
+        persons: &[],
     };
     let flows = flow(&world, &view, before);
     let z = frame.depth[pixel];

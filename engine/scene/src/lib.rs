@@ -22,6 +22,7 @@ mod mesh;
 pub mod navigation;
 pub mod packing;
 pub mod parallel;
+pub mod person;
 pub mod random;
 pub mod rays;
 pub mod simd_dispatch;
@@ -51,7 +52,8 @@ pub use mesh::Mesh;
 pub use sky::{Daytime, Sky, SkyDome, Weather};
 pub use space::Pose;
 pub use state::{
-    Address, AgentBody, AgentState, BaseState, Contact, DifferentialDrive, HolonomicBase,
-    JointParameters, LeggedLocomotion, Locomotion, Parameter, State, SupportDirection, Velocity,
+    Address, AgentBody, AgentState, BaseState, Contact, DifferentialDrive, Gesture, HolonomicBase,
+    JointParameters, LeggedLocomotion, Locomotion, Parameter, PersonBody, PersonColors, PersonGait,
+    PersonLook, PersonState, Pointing, Reach, Side, State, SupportDirection, Velocity,
 };
 pub use texture::Texture;

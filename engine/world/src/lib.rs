@@ -35,6 +35,7 @@ pub mod memory_estimate;
 pub mod metrics;
 mod motion_history;
 mod parse_settings;
+mod persons;
 mod plain_json_error;
 mod recordings;
 mod release_memory;

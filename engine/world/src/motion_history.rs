@@ -1,6 +1,7 @@
 //! Poses of a control step ago, for flow, blur and rolling shutters.
 
-use dwell_scene::{AgentId, Id, PartId, Pose, State, math};
+use dwell_scene::person::{person_pieces, skeleton_of};
+use dwell_scene::{AgentId, House, Id, PartId, Pose, State, math};
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 
@@ -15,6 +16,10 @@ pub struct LastStepMotion {
     pub previous_eye_poses: Vec<Pose>,
     /// The agents' feet, m. Shape (agent,); empty before the first step.
     pub previous_feet: Vec<Vec3>,
+    /// Previous poses of the pieces of agents that are persons and have moved. Shape of each (piece,).
+    pub previous_persons: Vec<(AgentId, Vec<Pose>)>,
+    /// Poses of the pieces of all persons at the end of the last step, or where they were placed: gestures come later.
+    pub(crate) shown_persons: Vec<(AgentId, Vec<Pose>)>,
 }
 
 impl LastStepMotion {
@@ -30,12 +35,30 @@ impl LastStepMotion {
         self.previous_feet.clone_from(&before.feet);
     }
 
+    /// Records what the figures of persons do in a step.
+    pub(crate) fn record_persons(&mut self, house: &House, now: &State) {
+        if now.persons.is_empty() && self.shown_persons.is_empty() {
+            return;
+        }
+        let shown = figures(house, now);
+        let before = std::mem::replace(&mut self.shown_persons, shown);
+        let moved = |person: &(AgentId, Vec<Pose>)| !self.shown_persons.contains(person);
+        self.previous_persons = before.into_iter().filter(moved).collect();
+    }
+
+    /// Takes the figures of persons as they are for those from which the next step begins.
+    pub(crate) fn begin_persons(&mut self, house: &House, now: &State) {
+        self.shown_persons = figures(house, now);
+    }
+
     /// Clears the history.
     pub(crate) fn clear(&mut self) {
         self.has_step = false;
         self.previous_part_poses.clear();
         self.previous_eye_poses.clear();
         self.previous_feet.clear();
+        self.previous_persons.clear();
+        self.shown_persons.clear();
     }
 
     /// Returns the previous pose of an agent's eyes; the current one before the first step.
@@ -52,7 +75,9 @@ impl LastStepMotion {
     /// Returns whether nothing but eyes has moved.
     pub(crate) fn is_scene_still(&self, now: &State) -> bool {
         let feet = self.previous_feet.iter().zip(now.agents.iter());
-        self.previous_part_poses.is_empty() && feet.into_iter().all(|(was, is)| *was == is.position)
+        self.previous_part_poses.is_empty()
+            && self.previous_persons.is_empty()
+            && feet.into_iter().all(|(was, is)| *was == is.position)
     }
 
     /// Moves parts and agents of a copy of the present back by the part `share` of a step.
@@ -65,6 +90,17 @@ impl LastStepMotion {
             is.position += (*was - is.position) * share;
         }
     }
+}
+
+/// The poses of the pieces of all persons.
+fn figures(house: &House, state: &State) -> Vec<(AgentId, Vec<Pose>)> {
+    let persons = state.persons.keys();
+    let figure = |agent: &AgentId| {
+        let joints = skeleton_of(house, state, *agent)?;
+        let pieces = person_pieces(&joints);
+        Some((*agent, pieces.iter().map(|piece| piece.pose).collect()))
+    };
+    persons.filter_map(figure).collect()
 }
 
 /// The part of the state that is kept while a step is made. Memory is reused from step to step.

@@ -36,7 +36,7 @@ pub struct World {
     /// Poses before the last step.
     pub(crate) motion_history: LastStepMotion,
     /// Memory for it.
-    before: PreviousState,
+    pub(crate) before: PreviousState,
     /// The state that [`World::reset`] goes back to; worlds of one config share it.
     pub(crate) initial: Arc<InitialWorld>,
 }
@@ -60,6 +60,8 @@ impl World {
         let (state, physics) = (start.state.clone(), start.physics.clone());
         let mut rays = RayScene::new(engines.house().clone());
         rays.update(&state);
+        let mut motion_history = LastStepMotion::default();
+        motion_history.begin_persons(engines.house(), &state);
         Ok(Self {
             engines,
             config: config.clone(),
@@ -69,7 +71,7 @@ impl World {
             sound: WorldSound::new(config),
             events: Vec::new(),
             key: RandomKey::root(0),
-            motion_history: LastStepMotion::default(),
+            motion_history,
             before: PreviousState::default(),
             initial: start,
         })
@@ -81,17 +83,22 @@ impl World {
     /// None so far: the start is a copy of one that was possible.
     pub fn reset(&mut self, key: RandomKey) -> Result<(), WorldError> {
         self.state.clone_from(&self.initial.state);
+        self.draw_persons(key);
         self.physics.clone_from(&self.initial.physics);
         self.rays.update(&self.state);
         self.sound.reset();
         self.events.clear();
         self.motion_history.clear();
+        let house = self.engines.house();
+        self.motion_history.begin_persons(house, &self.state);
         self.key = key;
         Ok(())
     }
 
     /// As [`Self::reset`], in a world in which nothing has happened since it was made.
     pub(crate) fn reset_fresh(&mut self, key: RandomKey) {
+        self.draw_persons(key);
+        self.rays.update(&self.state);
         self.key = key;
     }
 
@@ -107,7 +114,10 @@ impl World {
             .step(&mut self.state, controls, &mut self.events)?;
         self.state.step += 1;
         self.state.time_s = self.state.step as f64 * self.config.step_s();
+        self.advance_persons();
         self.motion_history.record(&self.before, &self.state);
+        let house = self.engines.house();
+        self.motion_history.record_persons(house, &self.state);
         self.rays.update(&self.state);
         self.sound.add_contact_sounds(&StepContext {
             house: self.engines.house(),
@@ -128,6 +138,7 @@ impl World {
     /// Performs an action of an agent's hand.
     pub fn act(&mut self, agent: AgentId, action: &dyn HandAction) -> ActionOutcome {
         let outcome = self.physics.act(&mut self.state, &self.rays, agent, action);
+        self.show_reach(agent, &outcome);
         self.rays.update(&self.state);
         outcome
     }
@@ -175,6 +186,8 @@ impl World {
         }
         self.physics
             .place_agent(&mut self.state, agent, position, yaw_rad)?;
+        self.motion_history
+            .begin_persons(self.engines.house(), &self.state);
         self.rays.update(&self.state);
         Ok(())
     }
@@ -186,6 +199,8 @@ impl World {
     /// have; nothing has changed then.
     pub fn set_agents(&mut self, placements: &[AgentPlacement]) -> Result<(), WorldError> {
         self.physics.set_agents(&mut self.state, placements)?;
+        self.motion_history
+            .begin_persons(self.engines.house(), &self.state);
         self.rays.update(&self.state);
         Ok(())
     }

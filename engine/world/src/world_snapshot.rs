@@ -8,11 +8,11 @@ use crate::initial_state::{SnapshotBase, SnapshotParts, serialize_snapshot_parts
 use crate::sound::WorldSound;
 use crate::world::World;
 use dwell_scene::packing::{pack_to_size, unpack};
-use dwell_scene::{AgentBody, Id, State};
+use dwell_scene::{AgentBody, Id, PersonBody, State};
 use xxhash_rust::xxh3::xxh3_64;
 
 /// Header of a world's snapshot: its kind and version.
-const MAGIC: &[u8] = b"dwworld8";
+const MAGIC: &[u8] = b"dwworld9";
 
 /// The fields that are checked before the rest is unpacked.
 #[derive(serde::Serialize, serde::Deserialize)]
@@ -21,8 +21,15 @@ struct SnapshotHeader {
     house: u64,
     /// The agents' bodies as the world was made with them.
     agents: Vec<AgentBody>,
+    /// Those of them that are persons. Shape (agent,).
+    persons: Vec<Option<PersonBody>>,
     /// Hash of the initial state's bytes.
     base: u64,
+}
+
+/// What makes bodies persons'. Shape (agent,).
+fn persons_of(bodies: &[AgentBody]) -> Vec<Option<PersonBody>> {
+    bodies.iter().map(|body| body.person).collect()
 }
 
 impl World {
@@ -36,6 +43,7 @@ impl World {
         let head = SnapshotHeader {
             house: self.house().fingerprint(),
             agents: self.config().agents.clone(),
+            persons: persons_of(&self.config().agents),
             base: base.checksum,
         };
         let mut told =
@@ -99,7 +107,7 @@ impl World {
         let refuse = |why: String| WorldError::Snapshot(why);
         let told = bytes
             .strip_prefix(MAGIC)
-            .ok_or_else(|| refuse("it does not begin with \"dwworld8\"".to_owned()))?;
+            .ok_or_else(|| refuse("it does not begin with \"dwworld9\"".to_owned()))?;
         let (sum, told) = told
             .split_first_chunk::<8>()
             .ok_or_else(|| refuse("it is too short".to_owned()))?;
@@ -115,8 +123,12 @@ impl World {
             return Err(refuse(format!("it belongs to another house than {name:?}")));
         }
         // Bodies as they were made: what was set since is in the state.
-        if head.agents != self.config().agents {
-            let (found, allowed) = (head.agents.len(), self.config().agents.len());
+        let mut agents = head.agents;
+        for (body, person) in agents.iter_mut().zip(&head.persons) {
+            body.person = *person;
+        }
+        if agents != self.config().agents {
+            let (found, allowed) = (agents.len(), self.config().agents.len());
             return Err(refuse(format!(
                 "it has {found} agents, and the world {allowed}; their number and the bodies they were made with must be the same"
             )));
@@ -132,7 +144,11 @@ impl World {
         let parts: SnapshotParts =
             postcard::from_bytes(&body).map_err(|error| refuse(error.to_string()))?;
         let state = State::from_bytes(self.house(), &parts.state)?;
-        if state.agents.len() != head.agents.len() {
+        let persons = state.persons.iter().map(|(id, person)| (id.index(), person.body));
+        let told = head.persons.iter().enumerate();
+        if state.agents.len() != agents.len()
+            || !persons.eq(told.filter_map(|(k, person)| Some((k, (*person)?))))
+        {
             return Err(refuse("its state has other agents than it says".to_owned()));
         }
         Ok((parts, state))

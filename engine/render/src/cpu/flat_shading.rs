@@ -146,7 +146,7 @@ impl ImageBand<'_> {
                 others |= same;
                 continue;
             }
-            let pose = renderer.triangle_table.pose(instance, self.state);
+            let pose = renderer.triangle_table.pose(instance, self.posed());
             let image = renderer.textures.image(texture);
             let places = SimdLevel::best_available().run(TexelLocator {
                 seen,

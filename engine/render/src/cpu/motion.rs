@@ -4,6 +4,7 @@ use super::CpuRenderer;
 use super::camera_rays::PrimaryHit;
 use crate::camera::{Camera, Projection};
 use crate::frame::PreviousPoses;
+use dwell_scene::rays::RayScene;
 use dwell_scene::{Id, State};
 use glam::{Vec2, Vec3};
 
@@ -59,13 +60,18 @@ impl CpuRenderer {
     pub(super) fn previous_position(
         &self,
         sight: &PrimaryHit,
-        state: &State,
+        (scene, state): (&RayScene, &State),
         before: &PreviousPoses<'_>,
     ) -> Vec3 {
         let Some(instance) = sight.instance else {
             return sight.point;
         };
-        if let Some(agent) = self.triangle_table.agent_of(instance) {
+        if let Some((agent, piece)) = self.triangle_table.agent_of(instance) {
+            if let Some(now) = scene.person_piece(instance) {
+                let in_piece = now.pose.inverse().transform_point(sight.point);
+                let was = before.person_piece(agent, piece).unwrap_or(now.pose);
+                return was.transform_point(in_piece);
+            }
             let was = before.agents.get(agent);
             let now = state
                 .agents

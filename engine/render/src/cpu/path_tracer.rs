@@ -150,11 +150,11 @@ impl PathTracer<'_> {
         path: BounceBudget,
         sampler: &mut PixelSampler,
     ) -> (Vec3, f32) {
-        let (renderer, state) = (self.renderer, self.band.state);
+        let renderer = self.renderer;
         let position = renderer
             .triangle_table
             .table_index(sight.instance, sight.triangle);
-        let skin = renderer.surface_at_point(&self.band.rays, state, sight, position);
+        let skin = renderer.surface_at_point(&self.band.rays, self.band.posed(), sight, position);
         let (facing, smooth) = renderer.normals(&skin, sight, position, weights);
         let off = sight.point + facing * SHADOW_RAY_OFFSET_M;
         if skin.material.mirror && path.mirrors > 0 {

@@ -10,6 +10,7 @@ use crate::light::{IncidentLight, ShadingPoint, room_lookup_point, sky_luminance
 use crate::material::ShadingMaterial;
 use crate::texture_filter::{MIN_FOOTPRINT_COSINE, TextureFootprint};
 use dwell_scene::bvh::Ray;
+use dwell_scene::rays::RayScene;
 use dwell_scene::{Entity, EntityId, Pose, State};
 use glam::Vec3;
 
@@ -159,20 +160,20 @@ impl CpuRenderer {
     pub(super) fn surface_at_hit<'a>(
         &'a self,
         rays: &CameraRayGenerator,
-        state: &'a State,
+        posed: (&'a RayScene, &'a State),
         sight: &PrimaryHit,
     ) -> ShadedSurface<'a> {
         let position = self
             .triangle_table
             .table_index(sight.instance, sight.triangle);
-        self.surface_at_point(rays, state, sight, position)
+        self.surface_at_point(rays, posed, sight, position)
     }
 
     #[inline]
     pub(super) fn surface_at_point<'a>(
         &'a self,
         rays: &CameraRayGenerator,
-        state: &'a State,
+        posed: (&'a RayScene, &'a State),
         sight: &PrimaryHit,
         position: usize,
     ) -> ShadedSurface<'a> {
@@ -186,7 +187,10 @@ impl CpuRenderer {
             depth,
             ..
         } = sight;
-        let pose = self.triangle_table.pose(sight.instance, state);
+        let pose = self.triangle_table.pose(sight.instance, posed);
+        if let Some(piece) = sight.instance.and_then(|piece| posed.0.person_piece(piece)) {
+            color = SrgbTables::tables().decode3(piece.srgb);
+        }
         let standing = triangle.posed(pose);
         let normal = standing.normal;
         if let Some(texture) = look.texture() {
@@ -408,7 +412,7 @@ impl ImageBand<'_> {
         mirrors: u32,
         weights: impl FnOnce() -> (f32, f32),
     ) -> OutgoingLight {
-        let skin = renderer.surface_at_point(&self.rays, self.state, sight, position);
+        let skin = renderer.surface_at_point(&self.rays, self.posed(), sight, position);
         let &PrimaryHit {
             point, direction, ..
         } = sight;

@@ -9,6 +9,7 @@ use crate::light::{Exposure, Lighting};
 use dwell_scene::State;
 use dwell_scene::bvh::SceneBvh;
 use dwell_scene::interrupt::PollEvery;
+use dwell_scene::rays::RayScene;
 use glam::Vec3;
 
 /// Packets between checks for cancellation.
@@ -17,6 +18,8 @@ const PACKETS_PER_CHECK: usize = 32;
 /// Rows of a picture, with their destination.
 pub(super) struct ImageBand<'a> {
     pub(super) scene: SceneBvh<'a>,
+    /// The scene whose trees these are.
+    all: &'a RayScene,
     pub(super) state: &'a State,
     before: Option<PreviousPoses<'a>>,
     pub(super) rays: CameraRayGenerator,
@@ -46,6 +49,7 @@ impl<'a> ImageBand<'a> {
             let rows = BAND_ROWS.min(last - first_row);
             bands.push(Self {
                 scene: job.scene.bvh(),
+                all: job.scene,
                 state: job.state,
                 before: job.before,
                 rays,
@@ -56,6 +60,11 @@ impl<'a> ImageBand<'a> {
                 frame: rest.split_off_pixels(rows * width),
             });
         }
+    }
+
+    /// What says how things stand: scene and state.
+    pub(super) fn posed(&self) -> (&'a RayScene, &'a State) {
+        (self.all, self.state)
     }
 
     /// Writes the pixels.
@@ -161,7 +170,7 @@ impl<'a> ImageBand<'a> {
         let sight = packet.closest_hit(lane);
         let skin = sight
             .as_ref()
-            .map(|sight| renderer.surface_at_hit(&self.rays, self.state, sight));
+            .map(|sight| renderer.surface_at_hit(&self.rays, self.posed(), sight));
         let put = |buffer: &mut Option<&mut [f32]>, value: Vec3| {
             if let Some(buffer) = buffer {
                 buffer[pixel * 3..pixel * 3 + 3].copy_from_slice(&value.to_array());
@@ -176,6 +185,7 @@ impl<'a> ImageBand<'a> {
         };
         put(&mut self.frame.normals, normal);
         put(&mut self.frame.albedo, albedo);
+        let posed = self.posed();
         let Some(buffer) = &mut self.frame.flow else {
             return;
         };
@@ -187,7 +197,7 @@ impl<'a> ImageBand<'a> {
             let camera = self.rays.camera();
             match &sight {
                 Some(sight) => {
-                    let was = renderer.previous_position(sight, self.state, before);
+                    let was = renderer.previous_position(sight, posed, before);
                     motion::point_flow(camera, before, image, was)
                 }
                 None => motion::direction_flow(camera, before, image, packet.direction(lane)),

@@ -331,9 +331,15 @@ impl PackedBatch {
             };
             self.rows.extend(flat_pose(&pose));
         }
-        for way in previous_agent_offsets(job.state, before) {
-            for _ in 0..BODY_PIECES {
-                self.rows.extend(flat_pose(&Pose::from_position(way)));
+        let parts = job.scene.house().geometry().movable.len();
+        for (agent, way) in previous_agent_offsets(job.state, before).enumerate() {
+            for piece in 0..BODY_PIECES {
+                let instance = (parts + agent * BODY_PIECES + piece) as u32;
+                let pose = match job.scene.person_piece(instance) {
+                    Some(now) => before.person_piece(agent, piece).unwrap_or(now.pose),
+                    None => Pose::from_position(way),
+                };
+                self.rows.extend(flat_pose(&pose));
             }
         }
         first

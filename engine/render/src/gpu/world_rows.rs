@@ -68,6 +68,14 @@ fn pack_world(job: &RenderJob<'_>, rows: &mut Vec<PackedRow>) {
         let pose = parts
             .get(instance)
             .and_then(|part| job.state.part_pose.get(*part));
-        rows.extend(flat_pose(pose.unwrap_or(&Pose::IDENTITY)));
+        let piece = job.scene.person_piece(instance as u32);
+        let pose = pose.or(piece.map(|piece| &piece.pose));
+        let [rotation, mut position] = flat_pose(pose.unwrap_or(&Pose::IDENTITY));
+        // The colour of a person's piece.
+        position[3] = piece.map_or(0, |piece| {
+            let [r, g, b] = piece.srgb;
+            u32::from_le_bytes([r, g, b, 255])
+        });
+        rows.extend([rotation, position]);
     }
 }

@@ -117,6 +117,7 @@ fn cameras_agree(path: VisibilityPath, cameras: &[(&'static str, Camera)]) {
                 world_from_camera: was,
                 moved_parts: &parts,
                 agents: &agents,
+                persons: &[],
             };
             let mut view = *view;
             // Every other camera is the first agent's.

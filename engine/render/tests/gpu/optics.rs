@@ -158,6 +158,7 @@ fn what_was_endlessly_far_beside_the_picture_has_no_flow() {
         world_from_camera: place,
         moved_parts: &moved,
         agents: &[],
+        persons: &[],
     };
     for (name, camera) in cameras() {
         let view = View::new(camera, place);

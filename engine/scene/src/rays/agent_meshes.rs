@@ -1,14 +1,22 @@
-//! Meshes of agents' bodies for cameras: capsules of three pieces, each a mesh of unit size that is stretched to the agent.
+//! Meshes of agents' bodies for cameras: capsules of three pieces, each a mesh of unit size that is stretched to the agent, and
+//! the pieces of persons. Every agent has places for both; those of the other kind are hidden.
 
 use crate::bvh::{RayMask, TriangleBvh, TriangleTag};
+use crate::house::House;
+use crate::ids::AgentId;
 use crate::mesh::Mesh;
-use crate::state::AgentState;
+use crate::person::{PERSON_PIECES, person_meshes, person_pieces, skeleton_of};
+use crate::space::Pose;
+use crate::state::{AgentState, State};
 use glam::{Affine3A, Quat, Vec3};
 use std::f32::consts::{PI, TAU};
 use std::sync::{Arc, LazyLock};
 
-/// Pieces of a body: the lower end, the middle, the upper end.
-pub const BODY_PIECES: usize = 3;
+/// Pieces of a capsule: the lower end, the middle, the upper end.
+pub const CAPSULE_PIECES: usize = 3;
+
+/// Pieces of a body: those of a capsule, then those of a person.
+pub const BODY_PIECES: usize = CAPSULE_PIECES + PERSON_PIECES;
 
 /// Corners around a piece.
 const AROUND: u16 = 24;
@@ -16,8 +24,8 @@ const AROUND: u16 = 24;
 const ROWS: u16 = 12;
 
 struct AgentMeshes {
-    meshes: [Mesh; BODY_PIECES],
-    trees: [Arc<TriangleBvh>; BODY_PIECES],
+    meshes: Vec<Mesh>,
+    trees: Vec<Arc<TriangleBvh>>,
 }
 
 static SHAPES: LazyLock<AgentMeshes> = LazyLock::new(|| {
@@ -30,9 +38,8 @@ static SHAPES: LazyLock<AgentMeshes> = LazyLock::new(|| {
         .collect();
     let ball = turned(&ball, &ball);
     let tube = turned(&[(1.0, 0.0), (1.0, 1.0)], &[(1.0, 0.0), (1.0, 0.0)]);
-    let meshes = [ball.clone(), tube, ball];
-    let trees = [0, 1, 2].map(|k: usize| {
-        let mesh = &meshes[k];
+    let mut meshes = vec![ball.clone(), tube, ball];
+    let tree = |mesh: &Mesh| {
         let tag = |_| TriangleTag {
             id: 0,
             mask: RayMask::BODY,
@@ -42,7 +49,12 @@ static SHAPES: LazyLock<AgentMeshes> = LazyLock::new(|| {
             &mesh.triangles,
             tag,
         ))
-    });
+    };
+    let mut trees: Vec<_> = meshes.iter().map(tree).collect();
+    for piece in person_meshes() {
+        meshes.push(piece.mesh.clone());
+        trees.push(piece.tree.clone());
+    }
     AgentMeshes { meshes, trees }
 });
 
@@ -77,18 +89,52 @@ fn turned(profile: &[(f32, f32)], normals: &[(f32, f32)]) -> Mesh {
     mesh
 }
 
-/// The meshes of a body's pieces, of unit radius; the middle reaches from 0 to 1 along Y, the ends are centred.
-pub fn body_meshes() -> &'static [Mesh; BODY_PIECES] {
+/// The meshes of a body's pieces. Those of a capsule are of unit radius; the middle reaches from 0 to 1 along Y, the ends are
+/// centred. Those of a person are of unit height.
+pub fn body_meshes() -> &'static [Mesh] {
     &SHAPES.meshes
 }
 
 /// The trees of [`body_meshes`].
-pub fn body_trees() -> &'static [Arc<TriangleBvh>; BODY_PIECES] {
+pub fn body_trees() -> &'static [Arc<TriangleBvh>] {
     &SHAPES.trees
 }
 
-/// Returns the transforms of an agent's pieces: a capsule of its radius from its feet to its present height.
-pub(super) fn piece_transforms(agent: &AgentState) -> [Affine3A; BODY_PIECES] {
+/// Returns the transforms of an agent's pieces, and writes how those of a person are placed and coloured.
+pub(super) fn place_body(
+    (house, state): (&House, &State),
+    (id, agent): (AgentId, &AgentState),
+    placed: &mut [Option<PlacedPiece>],
+) -> [Affine3A; BODY_PIECES] {
+    let mut transforms = [Affine3A::ZERO; BODY_PIECES];
+    let person = state.persons.get(&id).zip(skeleton_of(house, state, id));
+    let Some((person, joints)) = person else {
+        placed.fill(None);
+        transforms[..CAPSULE_PIECES].copy_from_slice(&capsule_transforms(agent));
+        return transforms;
+    };
+    placed[..CAPSULE_PIECES].fill(None);
+    for (k, piece) in person_pieces(&joints).iter().enumerate() {
+        transforms[CAPSULE_PIECES + k] = piece.world_from_mesh();
+        placed[CAPSULE_PIECES + k] = Some(PlacedPiece {
+            pose: piece.pose,
+            srgb: person.look.color(k),
+        });
+    }
+    transforms
+}
+
+/// A piece of a person in the scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlacedPiece {
+    /// `world_from_piece`.
+    pub pose: Pose,
+    /// Its colour, sRGB.
+    pub srgb: [u8; 3],
+}
+
+/// Returns the transforms of a capsule of an agent's radius from its feet to its present height.
+fn capsule_transforms(agent: &AgentState) -> [Affine3A; CAPSULE_PIECES] {
     let radius = agent.body.radius_m;
     let middle = (agent.height_m() - 2.0 * radius).max(0.0);
     let at = |height: f32, scale: Vec3| {
@@ -158,7 +204,7 @@ mod tests {
 
     #[test]
     fn pieces_face_outwards() {
-        for mesh in body_meshes() {
+        for mesh in &body_meshes()[..CAPSULE_PIECES] {
             for triangle in 0..mesh.triangles.len() {
                 let [a, b, c] = mesh.corners(triangle);
                 let normal = (b - a).cross(c - a);

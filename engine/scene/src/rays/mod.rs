@@ -2,7 +2,7 @@
 
 mod agent_meshes;
 
-pub use agent_meshes::{BODY_PIECES, body_meshes, body_trees};
+pub use agent_meshes::{BODY_PIECES, CAPSULE_PIECES, PlacedPiece, body_meshes, body_trees};
 
 use crate::bvh::{Hit, Instance, InstanceSet, PacketHits, Ray, RayMask, RayPacket, SceneBvh};
 use crate::house::{House, PlacedMesh, SurfaceHit, SurfaceOwner, normals_map};
@@ -23,6 +23,8 @@ pub struct RayScene {
     moving: InstanceSet,
     /// Transforms of each moving part, then of the pieces of agents' bodies. Shape (instance,).
     world_from_mesh: Vec<Affine3A>,
+    /// Of the pieces of agents' bodies, those of persons. Shape (agent x piece,).
+    pieces: Vec<Option<PlacedPiece>>,
 }
 
 impl RayScene {
@@ -37,6 +39,7 @@ impl RayScene {
         Self {
             moving: InstanceSet::new(moving_part_instances(&house)),
             world_from_mesh: start,
+            pieces: Vec::new(),
             house,
         }
     }
@@ -48,12 +51,11 @@ impl RayScene {
         if self.world_from_mesh.len() != parts + state.agents.len() * BODY_PIECES {
             self.rebuild_instances(state);
         }
-        for (agent, pieces) in state
-            .agents
-            .iter()
-            .zip(self.world_from_mesh[parts..].chunks_exact_mut(BODY_PIECES))
-        {
-            pieces.copy_from_slice(&agent_meshes::piece_transforms(agent));
+        let transforms = self.world_from_mesh[parts..].chunks_exact_mut(BODY_PIECES);
+        let pieces = self.pieces.chunks_exact_mut(BODY_PIECES);
+        for (agent, (transforms, pieces)) in state.agents.iter_ids().zip(transforms.zip(pieces)) {
+            let placed = agent_meshes::place_body((&self.house, state), agent, pieces);
+            transforms.copy_from_slice(&placed);
         }
         let geometry = self.house.geometry();
         for (place, part) in self.world_from_mesh.iter_mut().zip(&geometry.movable) {
@@ -78,6 +80,7 @@ impl RayScene {
         self.moving = InstanceSet::new(instances);
         self.world_from_mesh
             .resize(self.moving.len(), Affine3A::IDENTITY);
+        self.pieces = vec![None; state.agents.len() * BODY_PIECES];
     }
 
     /// Returns the trees of the scene.
@@ -91,6 +94,14 @@ impl RayScene {
     /// Returns the transform of an instance's mesh, if there are that many.
     pub fn world_from_mesh(&self, instance: usize) -> Option<&Affine3A> {
         self.world_from_mesh.get(instance)
+    }
+
+    /// Where an instance that is a piece of a person stands, and its colour; `None` for all others.
+    #[inline]
+    pub fn person_piece(&self, instance: u32) -> Option<&PlacedPiece> {
+        let parts = self.house.geometry().movable.len();
+        let piece = (instance as usize).checked_sub(parts)?;
+        self.pieces.get(piece)?.as_ref()
     }
 
     /// The house.

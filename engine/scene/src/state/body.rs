@@ -2,14 +2,12 @@
 //! `agent/N/body/FIELD`. It is stored in the agent's state only.
 
 use super::numeric_field::{NumericField, number, parameters, set};
+use super::person::PersonBody;
 use super::{Locomotion, Parameter};
 use crate::error::SceneError;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
-/// The body of an agent: a capsule with an eye and two ears.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
+/// The body of an agent: a capsule with an eye and two ears, which may be seen as a person.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AgentBody {
     /// Radius of the capsule, m; 0.05 to 1.
     pub radius_m: f32,
@@ -36,6 +34,8 @@ pub struct AgentBody {
     pub camera_fov_deg: f32,
     /// Its locomotion; default: it walks.
     pub locomotion: Locomotion,
+    /// What makes it a person for all who see it; `None`: it is seen as the capsule that it is for physics.
+    pub person: Option<PersonBody>,
 }
 
 impl Default for AgentBody {
@@ -55,6 +55,7 @@ impl Default for AgentBody {
             max_carry_size_m: 1.0,
             camera_fov_deg: 90.0,
             locomotion: Locomotion::default(),
+            person: None,
         }
     }
 }
@@ -80,8 +81,19 @@ impl AgentBody {
     /// The range of the field of view of cameras at an agent's eyes, degrees.
     pub(super) const FOV_RANGE_DEG: [f64; 2] = [1.0, 170.0];
 
+    /// A person of a height, m: as [`AgentBody::default`], with eyes where persons have them.
+    #[must_use]
+    pub fn person(height_m: f32) -> Self {
+        Self {
+            height_m,
+            eye_height_m: PersonBody::EYE_HEIGHT * height_m,
+            person: Some(PersonBody::default()),
+            ..Self::default()
+        }
+    }
+
     /// Returns its numbers by name, with units and their ranges given the others: it is at least twice as high as its
-    /// radius, and its eyes are not above it. The fields of the address `agent/N/body/FIELD`.
+    /// radius, its eyes are not above it, and a person is as high as persons are. The fields of the address `agent/N/body/FIELD`.
     pub fn parameters(&self) -> Vec<(&'static str, Parameter)> {
         let mut all = parameters(BODY, self);
         for (name, parameter) in &mut all {
@@ -90,6 +102,11 @@ impl AgentBody {
                 "height_m" => {
                     let least = f64::from((2.0 * self.radius_m).max(self.eye_height_m));
                     parameter.low = parameter.low.max(least);
+                    if self.person.is_some() {
+                        let [low, high] = PersonBody::HEIGHT_RANGE_M.map(f64::from);
+                        parameter.low = parameter.low.max(low);
+                        parameter.high = parameter.high.min(high);
+                    }
                 }
                 "eye_height_m" => parameter.high = parameter.high.min(f64::from(self.height_m)),
                 _ => {}

@@ -4,6 +4,7 @@ mod address;
 mod agent;
 mod agent_address;
 mod body;
+mod body_fields;
 mod bounds;
 mod canonical;
 mod joint;
@@ -16,6 +17,7 @@ mod numeric_field;
 mod overrides;
 mod parameter;
 mod part;
+mod person;
 mod relations;
 mod snapshot;
 
@@ -25,6 +27,9 @@ pub use body::AgentBody;
 pub use joint::JointParameters;
 pub use locomotion::{DifferentialDrive, HolonomicBase, LeggedLocomotion, Locomotion};
 pub use parameter::Parameter;
+pub use person::{
+    Gesture, PersonBody, PersonColors, PersonGait, PersonLook, PersonState, Pointing, Reach, Side,
+};
 pub use relations::{Contact, SupportDirection};
 
 use crate::articulation::JointCommand;
@@ -60,6 +65,9 @@ pub struct State {
     pub joint_command: IdVec<JointId, JointCommand>,
     /// The agents.
     pub agents: IdVec<AgentId, AgentState>,
+    /// Those of the agents that are persons. In bytes they follow everything else, and take none where there are none.
+    #[serde(skip)]
+    pub persons: BTreeMap<AgentId, PersonState>,
 
     // ---- set by actions
     /// True for objects that are switched on; objects without a switch stay `false`. Shape (object,).
@@ -104,6 +112,7 @@ impl State {
             joint_velocity: IdVec::filled(0.0, joints),
             joint_command: IdVec::filled(JointCommand::Off, joints),
             agents: IdVec::new(),
+            persons: BTreeMap::new(),
             switched_on: house
                 .objects
                 .iter()

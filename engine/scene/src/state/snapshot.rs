@@ -1,8 +1,10 @@
 //! Serialization and hash of a state.
 
-use super::State;
+use super::{PersonState, State};
 use crate::error::SceneError;
 use crate::house::House;
+use crate::ids::{AgentId, Id};
+use std::collections::BTreeMap;
 use xxhash_rust::xxh3::xxh3_64;
 
 const MAGIC: &[u8; 4] = b"dwst";
@@ -11,8 +13,13 @@ const HEADER: usize = 4 + 4 + 8 + 8;
 
 impl State {
     fn snapshot_body(&self) -> Vec<u8> {
-        postcard::to_stdvec(self)
-            .expect("a state is plain data that postcard can always write to memory")
+        let mut body = postcard::to_stdvec(self)
+            .expect("a state is plain data that postcard can always write to memory");
+        if !self.persons.is_empty() {
+            let persons = postcard::to_stdvec(&self.persons);
+            body.extend(persons.expect("persons are plain data that can always be written"));
+        }
+        body
     }
 
     /// Returns a hash that changes with any bit of the state, derived fields and stored order included.
@@ -59,8 +66,13 @@ impl State {
         if word(16) != xxh3_64(body) {
             return refuse("its check sum does not fit: it is damaged".to_owned());
         }
-        let state: Self =
-            postcard::from_bytes(body).map_err(|error| SceneError::Snapshot(error.to_string()))?;
+        let damaged = |error: postcard::Error| SceneError::Snapshot(error.to_string());
+        let (mut state, rest): (Self, &[u8]) =
+            postcard::take_from_bytes(body).map_err(damaged)?;
+        if !rest.is_empty() {
+            let persons = postcard::from_bytes(rest).map_err(damaged)?;
+            state.take_persons(persons)?;
+        }
         for address in state.overrides.keys() {
             if state.canonical(house, address)? != *address {
                 return refuse(format!(
@@ -99,6 +111,26 @@ impl State {
             ));
         }
         Ok(state)
+    }
+
+    /// Takes the persons of a snapshot.
+    fn take_persons(&mut self, persons: BTreeMap<AgentId, PersonState>) -> Result<(), SceneError> {
+        for (agent, person) in &persons {
+            let count = self.agents.len();
+            let refuse = |why: &str| {
+                let why = format!("its person {} {why}; there are {count} agents", agent.0);
+                Err(SceneError::Snapshot(why))
+            };
+            if agent.index() >= count {
+                return refuse("is no agent");
+            }
+            if !person.is_finite() {
+                return refuse("has numbers that are not finite");
+            }
+            self.agents[*agent].body.person = Some(person.body);
+        }
+        self.persons = persons;
+        Ok(())
     }
 }
 

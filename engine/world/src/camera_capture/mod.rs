@@ -108,6 +108,7 @@ impl World {
             world_from_camera,
             moved_parts: &past.previous_part_poses,
             agents: &past.previous_feet,
+            persons: &past.previous_persons,
         })
     }
 }

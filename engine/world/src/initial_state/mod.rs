@@ -7,7 +7,8 @@ pub(crate) use snapshot_base::{SnapshotBase, SnapshotParts, serialize_snapshot_p
 use crate::config::WorldConfig;
 use crate::error::WorldError;
 use dwell_physics::{PhysicsConfig, PhysicsModel, PhysicsWorld, StartReport};
-use dwell_scene::{Address, AgentStart, AgentState, House, State};
+use dwell_scene::random::RandomKey;
+use dwell_scene::{Address, AgentStart, AgentState, House, PersonState, State};
 use glam::Vec3;
 use std::sync::{Arc, OnceLock};
 
@@ -44,7 +45,11 @@ impl InitialWorld {
         for (k, body) in config.agents.iter().enumerate() {
             let start = house.agent_starts.get(k).copied().unwrap_or(spot);
             let agent = AgentState::new(*body, start.position, start.yaw_rad);
-            state.agents.push(agent);
+            let id = state.agents.push(agent);
+            if let Some(person) = body.person {
+                let person = PersonState::new(person, RandomKey::root(0).child(k as u64));
+                state.persons.insert(id, person);
+            }
         }
         state.laws = crate::laws::normalize_laws(house, &config.laws)?;
         let values: Vec<(Address, f64)> = config

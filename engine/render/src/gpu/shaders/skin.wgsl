@@ -51,6 +51,14 @@ fn place_of(world: u32, source: u32) -> Place {
     return Place(numbers(frame[row]), numbers(frame[row + 1u]).xyz);
 }
 
+// The colour of a person's piece, sRGB, and 255; 0 for everything else.
+fn tint_of(world: u32, source: u32) -> u32 {
+    if source == 0u {
+        return 0u;
+    }
+    return frame[frame[world].y + (source - 1u) * INSTANCE_ROWS + 6u].w;
+}
+
 fn into(place: Place, point: vec3<f32>) -> vec3<f32> {
     return rotate(conjugate(place.rotation), point - place.position);
 }
@@ -76,7 +84,10 @@ fn neighbours(coordinate: f32, size: u32) -> Neighbours {
 }
 
 fn texel(index: u32) -> vec4<f32> {
-    let bytes = table_word(tables[1].w, index);
+    return decoded(table_word(tables[1].w, index));
+}
+
+fn decoded(bytes: u32) -> vec4<f32> {
     let decode = tables[1].x;
     return vec4<f32>(
         table_number(decode, bytes & 255u),
@@ -181,6 +192,10 @@ fn skin_of(v: View, s: Sight) -> Skin {
     let more = tables[look + 2u];
     let place = place_of(v.world, s.source);
     var skin = Skin(base.xyz, base.w, rotate(place.rotation, numbers(facts).xyz), glow.xyz, more.y != 0u);
+    let tint = tint_of(v.world, s.source);
+    if tint != 0u {
+        skin.color = decoded(tint).xyz;
+    }
     if more.x != NOTHING {
         let area = numbers(frame[v.row + 11u]).xy;
         let covered = (area.x + area.y * s.depth * s.depth) * s.per_length;

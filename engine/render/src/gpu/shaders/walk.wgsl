@@ -327,10 +327,13 @@ fn walk(ray: Ray, hidden: i32, world: u32, n: ptr<function, Nearest>) {
     }
 }
 
+// As `rays::BODY_PIECES`.
+const BODY_PIECES: u32 = 25u;
+
 // The row of the mesh of an instance: the parts that move, then the pieces of agents' bodies.
 fn mesh_row(instance: u32) -> u32 {
     let parts = tables[2].z;
-    let k = select(instance, parts + (instance - parts) % 3u, instance >= parts);
+    let k = select(instance, parts + (instance - parts) % BODY_PIECES, instance >= parts);
     return tables[1].z + k * 2u;
 }
 

@@ -1,0 +1,133 @@
+//! The pieces of a person: which mesh stands where, and in which colour.
+
+use super::meshes::Shape;
+use super::skeleton::{PersonSkeleton, limb_rotation};
+use crate::space::Pose;
+use crate::state::PersonLook;
+use glam::{Affine3A, Quat, Vec3};
+
+/// The colour of a piece.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Tone {
+    Skin,
+    Hair,
+    Face,
+    Shirt,
+    Trousers,
+    Shoes,
+}
+
+/// Eyes and mouth, sRGB.
+const FACE: [u8; 3] = [44, 24, 24];
+
+/// The pieces of a person.
+pub const PERSON_PIECES: usize = 22;
+
+/// Their kinds and colours; those of arms and legs left first.
+pub(super) const PIECES: [(Shape, Tone); PERSON_PIECES] = [
+    (Shape::Head, Tone::Skin),
+    (Shape::Hair, Tone::Hair),
+    (Shape::Face, Tone::Face),
+    (Shape::Neck, Tone::Skin),
+    (Shape::Trunk, Tone::Shirt),
+    (Shape::Pelvis, Tone::Trousers),
+    (Shape::UpperArm, Tone::Shirt),
+    (Shape::Forearm, Tone::Skin),
+    (Shape::LeftPalm, Tone::Skin),
+    (Shape::Fingers, Tone::Skin),
+    (Shape::PointingFinger, Tone::Skin),
+    (Shape::UpperArm, Tone::Shirt),
+    (Shape::Forearm, Tone::Skin),
+    (Shape::RightPalm, Tone::Skin),
+    (Shape::Fingers, Tone::Skin),
+    (Shape::PointingFinger, Tone::Skin),
+    (Shape::Thigh, Tone::Trousers),
+    (Shape::Shin, Tone::Trousers),
+    (Shape::Foot, Tone::Shoes),
+    (Shape::Thigh, Tone::Trousers),
+    (Shape::Shin, Tone::Trousers),
+    (Shape::Foot, Tone::Shoes),
+];
+
+/// A piece of a person where it stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PersonPiece {
+    /// `world_from_piece`; the mesh is as many times larger as the person is high, m.
+    pub pose: Pose,
+    /// Its size over the mesh's: the person's height; 0 for what is not shown.
+    pub scale: f32,
+}
+
+impl PersonPiece {
+    /// From its mesh to the world.
+    pub fn world_from_mesh(&self) -> Affine3A {
+        if self.scale == 0.0 {
+            return Affine3A::ZERO;
+        }
+        Affine3A::from_scale_rotation_translation(
+            Vec3::splat(self.scale),
+            self.pose.rotation,
+            self.pose.position,
+        )
+    }
+}
+
+impl PersonLook {
+    /// The colour of a piece, sRGB.
+    pub fn color(&self, piece: usize) -> [u8; 3] {
+        match PIECES[piece % PERSON_PIECES].1 {
+            Tone::Skin => self.skin,
+            Tone::Hair => self.hair,
+            Tone::Face => FACE,
+            Tone::Shirt => self.shirt,
+            Tone::Trousers => self.trousers,
+            Tone::Shoes => self.shoes,
+        }
+    }
+}
+
+/// The pieces of a person with these joints, in the order of [`super::person_meshes`].
+pub fn person_pieces(joints: &PersonSkeleton) -> [PersonPiece; PERSON_PIECES] {
+    let body = joints.trunk.rotation;
+    let limb = |from: Vec3, to: Vec3| {
+        let along = (to - from).normalize_or(Vec3::NEG_Y);
+        Pose::new(from, limb_rotation(body, along).normalize())
+    };
+    let neck = {
+        let along = joints.trunk.transform_point(Vec3::Y * (super::proportions::TRUNK * joints.height_m));
+        limb(joints.head_joint.position, along)
+    };
+    let still = |position: Vec3, rotation: Quat| Pose::new(position, rotation.normalize());
+    let head = still(joints.head_joint.position, joints.head_joint.rotation);
+    let trunk = still(joints.trunk.position, body);
+    let shown = |pose: Pose| PersonPiece {
+        pose,
+        scale: joints.height_m,
+    };
+    let mut pieces = [shown(trunk); PERSON_PIECES];
+    pieces[..4].copy_from_slice(&[head, head, head, neck].map(shown));
+    for (arm, pieces) in joints.arms.iter().zip(pieces[6..16].chunks_exact_mut(5)) {
+        let hand = limb(arm.wrist, arm.finger_tip);
+        pieces.copy_from_slice(
+            &[
+                limb(arm.shoulder, arm.elbow),
+                limb(arm.elbow, arm.wrist),
+                hand,
+                hand,
+                hand,
+            ]
+            .map(shown),
+        );
+        // Either stretched fingers, or one and a fist.
+        pieces[if arm.is_pointing { 3 } else { 4 }].scale = 0.0;
+    }
+    for (leg, pieces) in joints.legs.iter().zip(pieces[16..].chunks_exact_mut(3)) {
+        let parts = [
+            limb(leg.hip, leg.knee),
+            limb(leg.knee, leg.ankle),
+            still(leg.ankle, leg.foot),
+        ];
+        pieces.copy_from_slice(&parts.map(shown));
+    }
+    pieces
+}
