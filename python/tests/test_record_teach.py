@@ -165,7 +165,7 @@ def check_ray(session: Session) -> None:
     )
     assert enters - 1e-3 <= distance_m <= leaves + 1e-3
     toward = session.meant - joints["eyes"]
-    cosine = toward @ direction / np.linalg.norm(toward)
+    cosine = float(toward @ direction / np.linalg.norm(toward))
     assert math.degrees(math.acos(min(1.0, cosine))) < 0.3
 
 

@@ -119,8 +119,7 @@ class _Player:
             if step % settings.steps_a_frame == 0:
                 self._take(time_s)
                 if step in keys or step == last:
-                    names = keys.get(step, "end")
-                    self._key(names, time_s)
+                    self._key(keys.get(step, "end"), time_s)
             if step == last:
                 break
             speaks = world.speaks(PERSON)

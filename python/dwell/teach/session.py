@@ -15,7 +15,7 @@ from dwell.teach.person import PERSON, ROBOT, Person, Pose, person_body
 from dwell.teach.phrases import Phrase, deictic_phrase, relation_phrase
 from dwell.teach.plan import ClipPlan
 from dwell.teach.pointing import aim_points, first_hit, turned_aim
-from dwell.teach.scene import furnished, place_things, stage
+from dwell.teach.scene import TABLE, furnished, place_things, stage
 from dwell.teach.settings import TeachSettings
 from dwell.teach.things import POOL
 from dwell.teach.users import UserParameters
@@ -142,7 +142,7 @@ def _prepared(
 ) -> Session | None:
     """The session, or ``None`` where the target cannot be seen, reached or told of."""
     target = POOL[plan.target].name
-    things = [row["name"] for row in world.objects() if "teaching_table" in row["rests_on"]]
+    things = [row["name"] for row in world.objects() if TABLE in row["rests_on"]]
     if target not in things:
         return None
     person = Person(world, user)
@@ -224,7 +224,8 @@ def _grasp(world: dwell.World, target: str, layout: Layout) -> Point:
 
 def _middle(world: dwell.World, thing: str) -> Point:
     """The middle of the box around a thing, m."""
-    return np.asarray(world.object(thing)["center"], np.float64)
+    middle: Point = np.asarray(world.object(thing)["center"], np.float64)
+    return middle
 
 
 def _shown(layout: Layout, user: UserParameters, plan: ClipPlan, stance_m: float) -> Point:
