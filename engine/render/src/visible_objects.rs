@@ -81,11 +81,14 @@ impl CpuRenderer {
                     let from_world = frame.inverse().to_affine();
                     let pieces = person_pieces(&joints);
                     let shown = pieces.iter().zip(person_meshes());
-                    let boxes = shown.filter(|(piece, _)| piece.scale > 0.0).map(|(piece, mesh)| {
-                        let map = from_world * piece.world_from_mesh();
-                        let points = mesh.mesh.positions.iter();
-                        Aabb::from_points(points.map(|point| map.transform_point3(*point)))
-                    });
+                    let boxes =
+                        shown
+                            .filter(|(piece, _)| piece.scale > 0.0)
+                            .map(|(piece, mesh)| {
+                                let map = from_world * piece.world_from_mesh();
+                                let points = mesh.mesh.positions.iter();
+                                Aabb::from_points(points.map(|point| map.transform_point3(*point)))
+                            });
                     let bounds = boxes.fold(Aabb::EMPTY, |all, one| all.union(&one));
                     return Some(OrientedBox {
                         world_from_box: frame * Pose::from_position(bounds.center()),

@@ -144,7 +144,10 @@ impl World {
         let parts: SnapshotParts =
             postcard::from_bytes(&body).map_err(|error| refuse(error.to_string()))?;
         let state = State::from_bytes(self.house(), &parts.state)?;
-        let persons = state.persons.iter().map(|(id, person)| (id.index(), person.body));
+        let persons = state
+            .persons
+            .iter()
+            .map(|(id, person)| (id.index(), person.body));
         let told = head.persons.iter().enumerate();
         if state.agents.len() != agents.len()
             || !persons.eq(told.filter_map(|(k, person)| Some((k, (*person)?))))

@@ -4,7 +4,9 @@ use super::agreement::Pair;
 use super::compare::Count;
 use super::houses::views;
 use dwell_render::{Camera, PreviousPoses, Projection, VisibilityPath};
-use dwell_scene::{AgentBody, AgentState, Id, PartId, Pose};
+use dwell_scene::person::{person_pieces, skeleton_of};
+use dwell_scene::random::RandomKey;
+use dwell_scene::{AgentBody, AgentId, AgentState, Id, PartId, PersonGait, PersonState, Pose};
 use glam::{Quat, Vec3};
 use std::sync::Arc;
 
@@ -53,10 +55,22 @@ pub(crate) fn cameras() -> Vec<(&'static str, Camera)> {
     ]
 }
 
-/// The pair of renderers with the earlier poses of moved parts and the earlier positions of agents.
-type Moved = (Pair, Vec<(PartId, Pose)>, Vec<Vec3>);
+/// The pair of renderers with the earlier poses of moved parts, the earlier positions of agents, and those of the pieces of persons.
+type Moved = (
+    Pair,
+    Vec<(PartId, Pose)>,
+    Vec<Vec3>,
+    Vec<(AgentId, Vec<Pose>)>,
+);
 
-/// A furnished house in which parts and two agents have moved.
+/// The poses of the pieces of an agent that is a person.
+fn figure(pair: &Pair, agent: AgentId) -> Vec<Pose> {
+    let joints = skeleton_of(&pair.house, &pair.state, agent).unwrap();
+    let pieces = person_pieces(&joints);
+    pieces.iter().map(|piece| piece.pose).collect()
+}
+
+/// A furnished house in which parts and two agents have moved, of which the second is a person.
 fn moved(path: VisibilityPath) -> Option<Moved> {
     let house = Arc::new(dwell_houses::open("seed:5").unwrap().0);
     let mut pair = Pair::new(house, path)?;
@@ -72,6 +86,20 @@ fn moved(path: VisibilityPath) -> Option<Moved> {
         let body = AgentState::new(AgentBody::default(), *feet + Vec3::new(0.1, 0.0, 0.05), 0.4);
         pair.state.agents.push(body);
     }
+    let walker = AgentId::from_index(1);
+    let body = AgentBody::person(1.6);
+    pair.state.agents[walker].body = body;
+    let mut person = PersonState::new(body.person.unwrap(), RandomKey::root(3));
+    person.gait = PersonGait {
+        phase: 0.15,
+        stride_m: 1.1,
+        direction: glam::Vec2::Y,
+    };
+    pair.state.persons.insert(walker, person);
+    let persons = vec![(walker, figure(&pair, walker))];
+    person.gait.phase = 0.25;
+    person.gesture.right_hand = Some(feet[1] + Vec3::new(0.4, 1.2, -0.3));
+    pair.state.persons.insert(walker, person);
     let mut before = Vec::new();
     for (k, part) in pair.house.geometry().movable.iter().enumerate() {
         if k % 3 == 0 {
@@ -84,7 +112,7 @@ fn moved(path: VisibilityPath) -> Option<Moved> {
     }
     before.sort_by_key(|(part, _)| part.index());
     pair.scene.update(&pair.state);
-    Some((pair, before, feet))
+    Some((pair, before, feet, persons))
 }
 
 #[test]
@@ -103,7 +131,7 @@ fn pinholes_see_the_same_by_raster_after_things_moved() {
 }
 
 fn cameras_agree(path: VisibilityPath, cameras: &[(&'static str, Camera)]) {
-    let Some((pair, parts, agents)) = moved(path) else {
+    let Some((pair, parts, agents, persons)) = moved(path) else {
         return;
     };
     for (name, camera) in cameras.iter().copied() {
@@ -117,14 +145,12 @@ fn cameras_agree(path: VisibilityPath, cameras: &[(&'static str, Camera)]) {
                 world_from_camera: was,
                 moved_parts: &parts,
                 agents: &agents,
-                persons: &[],
+                persons: &persons,
             };
             let mut view = *view;
             // Every other camera is the first agent's.
-            view.hidden_entity = (k % 2 == 0).then(|| {
-                pair.house
-                    .entity_of_agent(dwell_scene::AgentId::from_index(0))
-            });
+            view.hidden_entity =
+                (k % 2 == 0).then(|| pair.house.entity_of_agent(AgentId::from_index(0)));
             for frames in pair.shoot_after(&[view], Some(before)) {
                 compared.compare(&format!("{name}, view {k}"), &camera, &frames);
             }

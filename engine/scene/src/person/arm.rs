@@ -18,7 +18,10 @@ pub(super) fn two_links(
     side: Vec3,
 ) -> (Vec3, Vec3) {
     let way = target - root;
-    let (low, high) = ((first - second).abs() / STRAIGHT, (first + second) * STRAIGHT);
+    let (low, high) = (
+        (first - second).abs() / STRAIGHT,
+        (first + second) * STRAIGHT,
+    );
     let ahead = way.normalize_or(Vec3::NEG_Y);
     let distance = way.length().clamp(low, high);
     // Beyond reach the end lies on the line; within, exactly at the target.

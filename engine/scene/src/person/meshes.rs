@@ -75,7 +75,11 @@ fn tube(rings: &[Ring], around: u16) -> Mesh {
         mesh.positions.push(Vec3::new(0.0, y, z));
         for step in 0..count {
             let (a, b) = (row * count + step, row * count + (step + 1) % count);
-            let triangle = if is_upper { [a, b, middle] } else { [b, a, middle] };
+            let triangle = if is_upper {
+                [a, b, middle]
+            } else {
+                [b, a, middle]
+            };
             mesh.triangles.push(triangle);
         }
     }
@@ -104,7 +108,13 @@ fn ellipsoid(half: Vec3, middle: Vec3, (rows, around): (u16, u16)) -> Mesh {
 }
 
 /// The part of an ellipsoid within `reach_rad` of its upper pole, which leans back by `tilt_rad`.
-fn dome(half: Vec3, middle: Vec3, reach_rad: f32, tilt_rad: f32, (rows, around): (u16, u16)) -> Mesh {
+fn dome(
+    half: Vec3,
+    middle: Vec3,
+    reach_rad: f32,
+    tilt_rad: f32,
+    (rows, around): (u16, u16),
+) -> Mesh {
     // Poles are almost points: triangles there keep an area.
     let rings: Vec<Ring> = (0..=rows)
         .map(|row| {
@@ -244,11 +254,7 @@ fn palm(inwards: f32) -> Mesh {
         [-0.008, 0.010, 0.016, 0.0],
         [0.004, 0.009, 0.012, 0.0],
     ];
-    let mut thumb = limb(
-        0.034,
-        &[Vec2::new(0.0, 0.0068), Vec2::new(1.0, 0.0052)],
-        8,
-    );
+    let mut thumb = limb(0.034, &[Vec2::new(0.0, 0.0068), Vec2::new(1.0, 0.0052)], 8);
     let lean = super::leg::rotation_x(0.62);
     for point in &mut thumb.positions {
         *point = lean * *point + Vec3::new(inwards * 0.004, -0.018, -0.017);
@@ -337,12 +343,22 @@ fn shape(kind: Shape) -> Mesh {
         Shape::Pelvis => pelvis(),
         Shape::UpperArm => limb(
             UPPER_ARM,
-            &[at(0.0, 0.027), at(0.4, 0.027), at(0.85, 0.022), at(1.0, 0.021)],
+            &[
+                at(0.0, 0.027),
+                at(0.4, 0.027),
+                at(0.85, 0.022),
+                at(1.0, 0.021),
+            ],
             12,
         ),
         Shape::Forearm => limb(
             FOREARM,
-            &[at(0.0, 0.019), at(0.25, 0.0205), at(0.7, 0.016), at(1.0, 0.0125)],
+            &[
+                at(0.0, 0.019),
+                at(0.25, 0.0205),
+                at(0.7, 0.016),
+                at(1.0, 0.0125),
+            ],
             12,
         ),
         Shape::LeftPalm => palm(1.0),
@@ -351,12 +367,22 @@ fn shape(kind: Shape) -> Mesh {
         Shape::PointingFinger => pointing_finger(),
         Shape::Thigh => limb(
             THIGH,
-            &[at(0.0, 0.046), at(0.3, 0.045), at(0.8, 0.034), at(1.0, 0.031)],
+            &[
+                at(0.0, 0.046),
+                at(0.3, 0.045),
+                at(0.8, 0.034),
+                at(1.0, 0.031),
+            ],
             12,
         ),
         Shape::Shin => limb(
             SHIN,
-            &[at(0.0, 0.030), at(0.25, 0.032), at(0.6, 0.026), at(1.0, 0.0215)],
+            &[
+                at(0.0, 0.030),
+                at(0.25, 0.032),
+                at(0.6, 0.026),
+                at(1.0, 0.0215),
+            ],
             12,
         ),
         Shape::Foot => foot(),
@@ -429,7 +455,10 @@ mod tests {
 
     #[test]
     fn a_person_has_about_two_thousand_triangles() {
-        let count: usize = person_meshes().iter().map(|piece| piece.mesh.triangles.len()).sum();
+        let count: usize = person_meshes()
+            .iter()
+            .map(|piece| piece.mesh.triangles.len())
+            .sum();
         assert!((1000..6000).contains(&count), "{count}");
     }
 }

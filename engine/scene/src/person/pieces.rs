@@ -94,7 +94,9 @@ pub fn person_pieces(joints: &PersonSkeleton) -> [PersonPiece; PERSON_PIECES] {
         Pose::new(from, limb_rotation(body, along).normalize())
     };
     let neck = {
-        let along = joints.trunk.transform_point(Vec3::Y * (super::proportions::TRUNK * joints.height_m));
+        let along = joints
+            .trunk
+            .transform_point(Vec3::Y * (super::proportions::TRUNK * joints.height_m));
         limb(joints.head_joint.position, along)
     };
     let still = |position: Vec3, rotation: Quat| Pose::new(position, rotation.normalize());
@@ -130,4 +132,54 @@ pub fn person_pieces(joints: &PersonSkeleton) -> [PersonPiece; PERSON_PIECES] {
         pieces.copy_from_slice(&parts.map(shown));
     }
     pieces
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::person::{person_meshes, skeleton_of};
+    use crate::random::RandomKey;
+    use crate::{AgentBody, AgentState, House, PersonState, ShoeboxMaterials, State};
+
+    /// From sole to crown a figure is as high as its person, within 1 %, and wide as shoulders are: 0.259 of that.
+    #[test]
+    fn a_figure_is_as_large_as_its_person() {
+        let house = House::shoebox([6.0, 3.0, 5.0], &ShoeboxMaterials::default()).unwrap();
+        for height_m in [1.45, 1.7, 2.0] {
+            let mut state = State::new(&house);
+            let body = AgentBody::person(height_m);
+            let feet = Vec3::new(1.0, 0.2, -2.0);
+            let id = state.agents.push(AgentState::new(body, feet, 0.0));
+            let person = PersonState::new(body.person.unwrap(), RandomKey::root(1));
+            state.persons.insert(id, person);
+            let joints = skeleton_of(&house, &state, id).unwrap();
+            let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
+            let (mut left, mut right) = (f32::INFINITY, f32::NEG_INFINITY);
+            for (k, (piece, mesh)) in person_pieces(&joints)
+                .iter()
+                .zip(person_meshes())
+                .enumerate()
+            {
+                if piece.scale == 0.0 {
+                    continue;
+                }
+                let map = piece.world_from_mesh();
+                for point in &mesh.mesh.positions {
+                    let point = map.transform_point3(*point);
+                    (low, high) = (low.min(point.y), high.max(point.y));
+                    // The upper arms are the widest at the shoulders.
+                    if PIECES[k].0 == Shape::UpperArm && point.y > joints.arms[0].shoulder.y {
+                        (left, right) = (left.min(point.x), right.max(point.x));
+                    }
+                }
+            }
+            assert!((low - feet.y).abs() < 0.005 * height_m, "{low}");
+            assert!(
+                (high - low - height_m).abs() < 0.01 * height_m,
+                "{high} {low}"
+            );
+            let wide = (right - left) / height_m;
+            assert!((wide - 0.259).abs() < 0.01, "{wide}");
+        }
+    }
 }

@@ -200,7 +200,13 @@ fn skeleton(agent: &AgentState, person: &PersonState, held: Option<Vec3>) -> Per
             BEHIND_EYES,
         ));
         let from = (shoulder, side, &world_from_body);
-        arm(agent, person, from, eyes, held.filter(|_| side == person.body.hand))
+        arm(
+            agent,
+            person,
+            from,
+            eyes,
+            held.filter(|_| side == person.body.hand),
+        )
     });
     let legs = sides.map(|side| {
         let hip = Vec3::new(sign(side) * HIP_SIDE, HIP_HEIGHT, BEHIND_EYES) * height_m + down;
@@ -277,7 +283,10 @@ fn arm(
         (Some(palm), _) => arm_to_palm(shoulder, palm, height_m, elbow_side),
         (None, Some(pointing)) => {
             let ahead = agent.world_from_eye().transform_vector(Vec3::NEG_Z);
-            let target = pointing.at.or(gesture.look_at).unwrap_or(eyes + ahead * 100.0);
+            let target = pointing
+                .at
+                .or(gesture.look_at)
+                .unwrap_or(eyes + ahead * 100.0);
             let tip = pointing_tip(eyes, shoulder, target, height_m);
             arm_to_tip(shoulder, tip, height_m, elbow_side)
         }

@@ -67,8 +67,7 @@ impl State {
             return refuse("its check sum does not fit: it is damaged".to_owned());
         }
         let damaged = |error: postcard::Error| SceneError::Snapshot(error.to_string());
-        let (mut state, rest): (Self, &[u8]) =
-            postcard::take_from_bytes(body).map_err(damaged)?;
+        let (mut state, rest): (Self, &[u8]) = postcard::take_from_bytes(body).map_err(damaged)?;
         if !rest.is_empty() {
             let persons = postcard::from_bytes(rest).map_err(damaged)?;
             state.take_persons(persons)?;
@@ -136,7 +135,8 @@ impl State {
 
 #[cfg(test)]
 mod tests {
-    use crate::{AgentBody, AgentState, House, ShoeboxMaterials, State};
+    use crate::random::RandomKey;
+    use crate::{AgentBody, AgentState, House, PersonState, ShoeboxMaterials, State};
     use glam::Vec3;
 
     #[test]
@@ -158,6 +158,32 @@ mod tests {
             assert!(State::from_bytes(&house, &damaged).is_err(), "byte {k}");
         }
         assert!(State::from_bytes(&house, &bytes[..bytes.len() - 1]).is_err());
+    }
+
+    #[test]
+    fn persons_come_back_with_their_bodies_and_cost_nothing_where_there_are_none() {
+        let house = House::shoebox([6.0, 3.0, 5.0], &ShoeboxMaterials::default()).unwrap();
+        let mut state = State::new(&house);
+        let body = AgentBody::person(1.8);
+        let mut agent = AgentState::new(body, Vec3::ZERO, 0.4);
+        let id = state.agents.push(agent);
+        let bare = state.to_bytes(&house).len();
+        let mut person = PersonState::new(body.person.unwrap(), RandomKey::root(2));
+        person.gait.phase = 0.3;
+        state.persons.insert(id, person);
+        let bytes = state.to_bytes(&house);
+        assert_eq!(State::from_bytes(&house, &bytes).unwrap(), state);
+        let mut moved = state.clone();
+        moved.persons.get_mut(&id).unwrap().gait.phase = 0.4;
+        assert_ne!(moved.hash(), state.hash());
+        // A capsule of the same numbers has the bytes that it always had.
+        agent.body.person = None;
+        let mut capsule = State::new(&house);
+        capsule.agents.push(agent);
+        assert_eq!(capsule.to_bytes(&house).len(), bare);
+        person.gait.phase = f32::NAN;
+        state.persons.insert(id, person);
+        assert!(State::from_bytes(&house, &state.to_bytes(&house)).is_err());
     }
 
     #[test]
