@@ -214,11 +214,11 @@ def _ready(layout: Layout, stance_m: float) -> tuple[Point, Point]:
 def _grasp(world: dwell.World, target: str, layout: Layout) -> Point:
     """Where a palm takes a thing: over its middle, or at its side that faces the person."""
     size = np.asarray(world.object(target)["size"])
-    if size[1] <= _LOW_M:
-        return _middle(world, target) + np.array([0.0, size[1] / 2.0 + _PALM_M, 0.0])
-    toward_person = layout.point(0.0, 0.0, 1.0) - layout.point(0.0, 0.0, 0.0)
-    half = float(np.abs(toward_person) @ size) / 2.0
-    found: Point = _middle(world, target) + (half + _PALM_M) * toward_person
+    toward_palm = np.array([0.0, 1.0, 0.0])
+    if size[1] > _LOW_M:
+        toward_palm = layout.point(0.0, 0.0, 1.0) - layout.point(0.0, 0.0, 0.0)
+    half_m = float(np.abs(toward_palm) @ size) / 2.0
+    found: Point = _middle(world, target) + (half_m + _PALM_M) * toward_palm
     return found
 
 
