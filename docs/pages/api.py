@@ -29,6 +29,15 @@ _BESIDE = {
     "dwell.relations": ("orders", "graph_arrays", "to_networkx"),
     "dwell.sound_maps": ("SoundMap",),
     "dwell.sounds": ("signals", "write_wav", "read_wav"),
+    "dwell.teach": (
+        "record",
+        "recorded_clips",
+        "RecordedClip",
+        "TeachSettings",
+        "UserParameters",
+        "user_parameters",
+        "Clip",
+    ),
     "dwell.world": ("actions",),
 }
 

@@ -113,6 +113,7 @@ _MODULES = {
     "sound_maps",
     "sounds",
     "tasks",
+    "teach",
     "world",
 }
 

@@ -23,6 +23,7 @@ COMMANDS = {
     "generate": "houses from seeds, in bulk, written as files",
     "episodes": "seeded episodes of a task over many houses, as a file",
     "evaluate": "a policy plays episodes; its result, and whether a result holds",
+    "record": "data sets: a person at a table points, shows and speaks",
     "measure": "tables of measurements into a bundle that calibrate reads",
     "calibrate": "measured data against the simulation: what is missing, and what it gains",
     "bench": "throughput of a stage",
