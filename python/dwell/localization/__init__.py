@@ -1,0 +1,1 @@
+"""Localization of sounds: recordings with labels, measures, and baselines."""
