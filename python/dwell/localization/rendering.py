@@ -22,7 +22,7 @@ from dwell.localization.layouts import Layout
 from dwell.localization.pool import Pool
 from dwell.localization.rooms import OpenHouse
 from dwell.localization.scenes import Scene, SceneSource
-from dwell.localization.settings import NEW_RESPONSE, Settings
+from dwell.localization.settings import NEW_EARLY, NEW_LATE, Settings
 from dwell.localization.trajectory import Trajectory, axes
 
 #: Movement from one response of the direct sound to the next, m and degrees.
@@ -144,21 +144,30 @@ class Renderer:
         sound: _Sound,
         seed: int,
     ) -> None:
+        opened, preset = self._opened, self._settings.preset
         rate = self._settings.rate_hz
         first_s, length_s = source.onset / rate, len(sound) / rate
-        bounds = NEW_RESPONSE[self._settings.preset]
-        times = _node_times(listener, source.way, first_s, length_s, bounds)
-        weights = _crossfades(times, first_s, len(sound), rate)
-        for node, (time_s, (begin, weight)) in enumerate(zip(times, weights, strict=True)):
-            place = _place(source.way, time_s)
-            piece, at = sound[begin : begin + len(weight)], source.onset + begin
-            for one, ways in zip(
-                found, self._split(found, place, listener, time_s, seed + node), strict=True
-            ):
-                if not node:
-                    one.responses.append(ways)
-                add_at(one.early, at, convolved(piece * weight, ways[1]))
-                add_at(one.late, at, convolved(piece * np.sqrt(weight), ways[2]))
+        begins = self._split(found, _place(source.way, first_s), listener, first_s, seed)
+        for one, ways in zip(found, begins, strict=True):
+            one.responses.append(ways)
+        for bounds, below, above, is_late in (
+            (NEW_EARLY[preset], opened.direct, opened.early, False),
+            (NEW_LATE[preset], opened.early, opened.full, True),
+        ):
+            times = _node_times(listener, source.way, first_s, length_s, bounds)
+            weights = _crossfades(times, first_s, len(sound), rate)
+            for node, (time_s, (begin, weight)) in enumerate(zip(times, weights, strict=True)):
+                place = _place(source.way, time_s)
+                less, more = (
+                    self._heard(scene, found, place, listener, time_s, seed + node)
+                    for scene in (below, above)
+                )
+                # Late sound from one place to the next is incoherent: its energies add up.
+                piece = sound[begin : begin + len(weight)]
+                piece = piece * (np.sqrt(weight) if is_late else weight)
+                for one, first, second in zip(found, less, more, strict=True):
+                    out = one.late if is_late else one.early
+                    add_at(out, source.onset + begin, convolved(piece, _minus(second, first)))
         self._glide(found, listener, source, sound, seed)
 
     def _delays_s(

@@ -25,8 +25,10 @@ ACOUSTICS: dict[str, dict[str, Any]] = {
     "rl": {"rays": 300, "image_order": 2, "max_duration_s": 1.0, "bin_s": 0.008},
     "full": {"rays": 5000, "image_order": 3, "max_duration_s": 2.0, "bin_s": 0.004},
 }
-#: How far and how much something moves until its reflections are computed anew, m and degrees.
-NEW_RESPONSE = {"rl": (0.5, 15.0), "full": (0.35, 5.0)}
+#: How far and how much something moves until its early reflections, and its late sound, are
+#: computed anew, m and degrees.
+NEW_EARLY = {"rl": (0.5, 15.0), "full": (0.35, 5.0)}
+NEW_LATE = {"rl": (1.0, 30.0), "full": (0.35, 5.0)}
 _MAX_SOURCES = 4
 
 
