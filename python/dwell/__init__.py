@@ -101,6 +101,7 @@ _MODULES = {
     "heads",
     "house",
     "listening",
+    "localization",
     "measures",
     "navigation",
     "places",

@@ -20,6 +20,7 @@ COMMANDS = {
     "describe": "sentences about houses",
     "check-text": "whether sentences are true of a house",
     "ir": "an impulse response between two points",
+    "localize": "recordings with labels of where sounds are, and how well they are found",
     "generate": "houses from seeds, in bulk, written as files",
     "episodes": "seeded episodes of a task over many houses, as a file",
     "evaluate": "a policy plays episodes; its result, and whether a result holds",

@@ -1,0 +1,124 @@
+"""Labels of sound events in the form of the DCASE challenge: a row for each source and frame."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dwell import ConfigError
+from dwell.files import atomic_write, read
+
+#: A frame of labels, s.
+FRAME_S = 0.1
+#: More than hours of labels have.
+_MAX_BYTES = 256 * 2**20
+_EXPECTED = "frame, class, source, azimuth, elevation and, if known, distance"
+
+
+@dataclass(frozen=True)
+class Label:
+    """Where one source is while one frame lasts.
+
+    Attributes:
+        frame: The frame, of 100 ms, from 0.
+        class_index: What sounds, a number of the list of classes.
+        source: Which source, from 0.
+        azimuth_deg: 0 ahead of the array, positive to the left, -180 to 180.
+        elevation_deg: Positive up, -90 to 90.
+        distance_m: From the array's centre, m; ``None``: not known.
+    """
+
+    frame: int
+    class_index: int
+    source: int
+    azimuth_deg: float
+    elevation_deg: float
+    distance_m: float | None = None
+
+
+def direction(azimuth_deg: float, elevation_deg: float) -> NDArray[np.float64]:
+    """The unit vector (front, left, up) of a direction."""
+    azimuth, elevation = math.radians(azimuth_deg), math.radians(elevation_deg)
+    level = math.cos(elevation)
+    return np.array([level * math.cos(azimuth), level * math.sin(azimuth), math.sin(elevation)])
+
+
+def angles_deg(vector: NDArray[np.float64]) -> tuple[float, float]:
+    """Azimuth and elevation of a vector (front, left, up) that is not 0."""
+    front, left, up = (float(part) for part in vector)
+    return (
+        math.degrees(math.atan2(left, front)),
+        math.degrees(math.atan2(up, math.hypot(front, left))),
+    )
+
+
+def write_labels(path: str | os.PathLike[str], labels: Iterable[Label]) -> None:
+    """Writes labels as CSV without a header: angles in degrees to a tenth, distances in cm.
+
+    Raises:
+        OSError: The system refuses.
+    """
+    rows = []
+    for row in sorted(labels, key=lambda row: (row.frame, row.source, row.class_index)):
+        cells = [f"{row.frame}", f"{row.class_index}", f"{row.source}"]
+        cells += [f"{_tenth(row.azimuth_deg)}", f"{_tenth(row.elevation_deg)}"]
+        if row.distance_m is not None:
+            cells.append(f"{_tenth(100.0 * row.distance_m)}")
+        rows.append(",".join(cells) + "\n")
+    with atomic_write(path) as draft:
+        draft.write_text("".join(rows), "utf-8")
+
+
+def _tenth(value: float) -> str:
+    # Without a negative zero.
+    return f"{round(value, 1) + 0.0:.1f}"
+
+
+def read_labels(path: str | os.PathLike[str]) -> list[Label]:
+    """Reads labels as :func:`write_labels` and the challenge write them: 5 or 6 columns.
+
+    Raises:
+        ConfigError: A row is of another form, or a number is out of range.
+        OSError: The system refuses, or it is no regular file.
+    """
+    name = os.fspath(path)
+    try:
+        text = read(path, _MAX_BYTES).decode()
+    except UnicodeDecodeError as error:
+        raise ConfigError(f"{name}: byte {error.start} is not UTF-8") from None
+    except ValueError as error:
+        raise ConfigError(str(error)) from None
+    rows = []
+    for number, line in enumerate(text.splitlines(), start=1):
+        if line.strip():
+            rows.append(_label(f"{name} line {number}", line))
+    return rows
+
+
+def _label(at: str, line: str) -> Label:
+    cells = [cell.strip() for cell in line.split(",")]
+    if len(cells) not in (5, 6):
+        raise ConfigError(f"{at}: {len(cells)} columns; expected {_EXPECTED}")
+    try:
+        frame, class_index, source = (int(cell) for cell in cells[:3])
+        numbers = [float(cell) for cell in cells[3:]]
+    except ValueError:
+        raise ConfigError(f"{at}: found {line!r:.80}; expected numbers: {_EXPECTED}") from None
+    azimuth, elevation, *distance = numbers
+    if min(frame, class_index, source) < 0 or max(frame, class_index, source) >= 2**31:
+        raise ConfigError(f"{at}: frame, class and source are whole numbers from 0")
+    # NaN is in no range.
+    if not (abs(azimuth) <= 360.0 and abs(elevation) <= 90.0):
+        raise ConfigError(
+            f"{at}: azimuth {azimuth:g}, elevation {elevation:g}; allowed are -360 to 360 and -90 "
+            "to 90 degrees"
+        )
+    if distance and not 0.0 <= distance[0] < 1e9:
+        raise ConfigError(f"{at}: distance {distance[0]:g}; allowed are cm from 0")
+    metres = distance[0] / 100.0 if distance else None
+    return Label(frame, class_index, source, azimuth, elevation, metres)
