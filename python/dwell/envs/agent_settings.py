@@ -63,6 +63,7 @@ class AgentRoster:
         names: The agents' names.
         rows: The engine's settings of each.
         bodies: The engine's settings of each one's body.
+        team_names: Of each the name of its team, empty where it states none.
         teams: Of each the places of those of its team, itself among them.
         voices: What each can say, where it can.
         players: The places of those who take actions; the others are scripted.
@@ -71,6 +72,7 @@ class AgentRoster:
     names: list[str]
     rows: list[dict[str, Any]]
     bodies: list[dict[str, Any]]
+    team_names: list[str]
     teams: list[list[int]]
     voices: list[Voice | None]
     players: list[int]
@@ -111,7 +113,8 @@ class AgentRoster:
             names,
             [_row(f"agents.{n}", k, s) for k, (n, s) in enumerate(zip(names, own, strict=True))],
             bodies([settings.get("body", {}) for settings in own]),
-            [[k for k, other in enumerate(teams) if other == team] for team in teams],
+            teams,
+            places_of_teams(teams),
             [
                 Voice.of(f"agents.{n}.voice", s["voice"])
                 if "voice" in s
@@ -130,6 +133,11 @@ class AgentRoster:
         if name in self.names:
             return self.names.index(str(name))
         raise ConfigError(f"agent is {quoted(name)}; allowed are {abbreviated_list(self.names)}")
+
+
+def places_of_teams(teams: Sequence[str]) -> list[list[int]]:
+    """Of each agent the places of those of its team, itself among them."""
+    return [[k for k, other in enumerate(teams) if other == team] for team in teams]
 
 
 def _row(at: str, number: int, settings: Mapping[str, Any]) -> dict[str, Any]:
@@ -169,6 +177,17 @@ class MultiAgentSetup:
     config: str
     limit: int | None
     heads: Sequence[Head]
+
+    @classmethod
+    def plain(cls, task: str, agents: object) -> MultiAgentSetup:
+        """Of so many agents of a task, all else by default.
+
+        Raises:
+            ConfigError: The number or the task is wrong.
+        """
+        names = ("sensors", "laws", "parameters", "task_settings", "stride", "actions", "world")
+        own = {"agents": agents, "action_mode": "discrete", "max_cycles": OF_TASKS}
+        return cls.of(task, {**dict.fromkeys(names), **own, "voice": False, "muted": False})
 
     @classmethod
     def of(cls, task: str, given: Mapping[str, Any]) -> MultiAgentSetup:

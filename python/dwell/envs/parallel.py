@@ -16,6 +16,7 @@ from pettingzoo import ParallelEnv
 from dwell import ConfigError
 from dwell.arguments import integer_in_range, kept, quoted, refuse_unknown
 from dwell.camera import camera_settings
+from dwell.envs.action_modes import EngineActions
 from dwell.envs.agent_forms import AgentForms
 from dwell.envs.agent_settings import OF_TASKS, Agents, MultiAgentSetup
 from dwell.envs.agent_state import agent_state_rows, state_space
@@ -144,6 +145,7 @@ class DwellParallelEnv(EpisodeCalls, CurrentStateApi, ParallelEnv, EzPickle):  #
         self.render_mode = checked_render_mode(render_mode)
         setup = MultiAgentSetup.of(task, given)
         self._roster, self._config, self._limit = setup.roster, setup.config, setup.limit
+        self._heads = setup.heads
         self._shelf = shelf_of(given["houses"], None)
         threads = None if threads is None else integer_in_range("threads", threads, low=1)
         self._closed = False
@@ -155,6 +157,8 @@ class DwellParallelEnv(EpisodeCalls, CurrentStateApi, ParallelEnv, EzPickle):  #
         self._goals: list[dict[str, Any]] = []
         #: Each agent's distance to its goal after the last step, m; NaN where there is none.
         self._distances = np.full(len(self._roster.names), np.nan)
+        #: Whose task the last step fulfilled, and whose episode it ended, by the agents' places.
+        self._ruling = (np.zeros(0, np.bool_), np.zeros(0, np.bool_))
         self._stopped = True
         self._call: str | None = None
         self._alone = np.ones(1, np.bool_)
@@ -286,11 +290,12 @@ class DwellParallelEnv(EpisodeCalls, CurrentStateApi, ParallelEnv, EzPickle):  #
         live = self.agents
         if not live and not actions:
             return {}, {}, {}, {}, {}
-        taken = self._forms.one(actions, live)
+        taken = EngineActions.interleaved(self._forms.one(actions, live))
         with self._playing("step"):
             answer, _ = self._runner.step(taken)
             rewards = self._forms.rewards(answer)[0]
             self._distances[:] = np.asarray(answer["distance_to_goal"])
+            self._ruling = (np.asarray(answer["success"]), np.asarray(answer["terminated"]))
             cut = self._limit is not None and int(self._runner.batch.steps()[0]) >= self._limit
             ended = {name: bool(answer["terminated"][self._roster.place(name)]) for name in live}
             observations = self._observations(live)
