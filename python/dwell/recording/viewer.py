@@ -175,11 +175,15 @@ class Recording:
         """Logs an agent's path: positions (x, y, z), m."""
         self._log(["world", "ways", name], self._rr.LineStrips3D([way], radii=[0.02]))
 
+    def at_step(self, step: int) -> None:
+        """What follows is of this step."""
+        self._stream.set_time("step", sequence=step)
+
     def step(
         self,
         step: int,
         agent: Mapping[str, Any],
-        image: NDArray[Any],
+        image: NDArray[Any] | None,
         camera: Camera,
         *,
         name: str | None = None,
@@ -190,15 +194,16 @@ class Recording:
         Args:
             step: The step's number.
             agent: A row of ``World.agents()``.
-            image: Its colours.
+            image: Its colours, if there is a picture.
             camera: What they were taken with: a pinhole at the eyes.
             name: Its name, where there are several.
             label: What stands at its body.
         """
         rr = self._rr
-        self._stream.set_time("step", sequence=step)
+        self.at_step(step)
         path = ["world", "agent"] if name is None else ["world", "agents", name]
-        self._walkers["agent" if name is None else name] = rr.new_entity_path(path)
+        if image is not None:
+            self._walkers["agent" if name is None else name] = rr.new_entity_path(path)
         x, y, z = agent["position"]
         body = agent["body"]
         middle = [x, y + body["height_m"] / 2, z]
@@ -209,7 +214,8 @@ class Recording:
         eye = (x, y + body["eye_height_m"], z)
         yaw_deg, pitch_deg = map(math.degrees, (agent["yaw_rad"], agent["pitch_rad"]))
         self._pinhole([*path, "eye"], camera, eye, yaw_deg, pitch_deg, static=False)
-        self._log([*path, "eye", "rgb"], rr.Image(image), static=False)
+        if image is not None:
+            self._log([*path, "eye", "rgb"], rr.Image(image), static=False)
 
     def holds(self, name: str, thing: str | None, place: Sequence[float] | None) -> None:
         """What an agent holds from this step on, and where that is, m; ``None``: nothing."""
