@@ -29,6 +29,7 @@ except ImportError as error:
 from dwell.envs.parallel import DwellParallelEnv
 from dwell.envs.parallel_recorder import ParallelReplayRecorder
 from dwell.envs.parallel_vector import DwellParallelVectorEnv
+from dwell.envs.plain_infos import PlainInfos
 
 if TYPE_CHECKING:
     from pettingzoo import AECEnv
@@ -37,6 +38,7 @@ __all__ = [
     "DwellParallelEnv",
     "DwellParallelVectorEnv",
     "ParallelReplayRecorder",
+    "PlainInfos",
     "env",
     "parallel_env",
     "vector_env",
