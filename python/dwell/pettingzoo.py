@@ -29,7 +29,7 @@ except ImportError as error:
 from dwell.envs.parallel import DwellParallelEnv
 from dwell.envs.parallel_recorder import ParallelReplayRecorder
 from dwell.envs.parallel_vector import DwellParallelVectorEnv
-from dwell.envs.plain_infos import PlainInfos
+from dwell.envs.torchrl_compatible import TorchRLCompatible
 
 if TYPE_CHECKING:
     from pettingzoo import AECEnv
@@ -38,7 +38,7 @@ __all__ = [
     "DwellParallelEnv",
     "DwellParallelVectorEnv",
     "ParallelReplayRecorder",
-    "PlainInfos",
+    "TorchRLCompatible",
     "env",
     "parallel_env",
     "vector_env",

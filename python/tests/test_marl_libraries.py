@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from pettingzoo.utils import parallel_to_aec
 
+import dwell
 from dwell import pettingzoo as zoo
 
 pytestmark = [
@@ -30,7 +31,7 @@ SETTINGS: dict[str, Any] = {
 
 def test_infos_are_left_out_but_for_masks() -> None:
     """Needs no library."""
-    env = zoo.PlainInfos(zoo.parallel_env("PointNav", action_mask=True, **SETTINGS))
+    env = zoo.TorchRLCompatible(zoo.parallel_env("PointNav", action_mask=True, **SETTINGS))
     bare = zoo.parallel_env("PointNav", action_mask=True, **SETTINGS)
     _, infos = env.reset(seed=1)
     _, told = bare.reset(seed=1)
@@ -41,6 +42,11 @@ def test_infos_are_left_out_but_for_masks() -> None:
         }
         for name, info in mine.items():
             assert np.array_equal(info["action_mask"], theirs[name]["action_mask"])
+    env.step({"agent_0": 0, "agent_1": 1, "agent_2": 1})
+    assert env.agents == ["agent_1", "agent_2"]
+    env.step(actions)
+    with pytest.raises(dwell.ConfigError, match="agent_9"):
+        env.step({**actions, "agent_9": 1})
 
 
 def test_torchrl_steps_them_to_the_same_bits() -> None:
@@ -51,7 +57,7 @@ def test_torchrl_steps_them_to_the_same_bits() -> None:
     from torchrl.envs.utils import check_env_specs
 
     own = zoo.parallel_env("PointNav", **SETTINGS)
-    env = PettingZooWrapper(zoo.PlainInfos(own), use_mask=True, categorical_actions=True)
+    env = PettingZooWrapper(zoo.TorchRLCompatible(own), use_mask=True, categorical_actions=True)
     check_env_specs(env)
     # Agent 1 stops in the third step.
     plan = np.array([[1, 1 if step != 2 else 0, 2] for step in range(6)])
@@ -82,7 +88,7 @@ def test_torchrl_steps_agents_that_take_turns() -> None:
     pytest.importorskip("torchrl", reason="needs TorchRL (pip install torchrl)")
     from torchrl.envs.libs.pettingzoo import PettingZooWrapper
 
-    own = zoo.PlainInfos(zoo.parallel_env("PointNav", **SETTINGS))
+    own = zoo.TorchRLCompatible(zoo.parallel_env("PointNav", **SETTINGS))
     env = PettingZooWrapper(parallel_to_aec(own), use_mask=True, seed=1)
     assert env.rollout(6).batch_size[0] <= 6
 
