@@ -77,7 +77,10 @@ class AgentForms:
         self.players = roster.players
         count = len(self.names)
         silent = [action_form(config, batch.answer_fields(k), k) for k in range(count)]
-        self._masks = [masked_form(action_mask, form) for form in silent]
+        self._masks = []
+        for name, form in zip(self.names, silent, strict=True):
+            with _of_agent(name):
+                self._masks.append(masked_form(action_mask, form))
         self._forms = [
             form if voice is None else VoicedActions(form, voice)
             for form, voice in zip(silent, roster.voices, strict=True)

@@ -162,9 +162,11 @@ class DwellParallelEnv(EpisodeCalls, CurrentStateApi, ParallelEnv, EzPickle):  #
         self._stopped = True
         self._call: str | None = None
         self._alone = np.ones(1, np.bool_)
+        with setup.built(self._shelf[0]):
+            runner = self._runner
         self._forms = AgentForms(
             self._config,
-            self._runner,
+            runner,
             self._roster,
             action_mask=action_mask,
             shared_reward=shared_reward,

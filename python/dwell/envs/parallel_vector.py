@@ -129,9 +129,10 @@ class DwellParallelVectorEnv(EzPickle):
         self._players, everybody = roster.players, len(roster.names)
         self._shelf = shelf = shelf_of(given["houses"], None)
         threads = None if threads is None else integer_in_range("threads", threads, low=1)
-        self._runner = runner = NativeBatch(
-            [shelf[0]] * count, setup.config, threads, overlap=overlap, heads=setup.heads
-        )
+        with setup.built(shelf[0]):
+            self._runner = runner = NativeBatch(
+                [shelf[0]] * count, setup.config, threads, overlap=overlap, heads=setup.heads
+            )
         pool = EnvPool(shelf, setup.config, setup.heads, threads)
         self._places = HouseAssignment(runner, pool, integer_in_range("load_ahead", load_ahead))
         self._forms = AgentForms(
