@@ -198,6 +198,95 @@ def test_snapshots_forks_and_pickles_go_on_with_the_same_bits(mode: str) -> None
         env.restore(single.snapshot())
 
 
+@pytest.mark.parametrize("mode", ["discrete", "dict"])
+def test_snapshots_and_forks_of_a_vector_go_on_with_the_same_bits(mode: str) -> None:
+    settings: dict[str, Any] = {
+        "agents": {"a": {"action_mode": mode}, "b": {"voice": True}, "c": {"scripted": True}},
+        "houses": ["builtin:studio", "builtin:apartment"],
+        "sensors": ["gps", "compass"],
+        "max_cycles": 4,
+        "copy": True,
+    }
+    many = zoo.vector_env(2, "PointNav", **settings)
+    many.reset(seed=8)
+    for space in many.batched_action_spaces.values():
+        space.seed(3)
+
+    def actions() -> dict[str, Any]:
+        return {name: space.sample() for name, space in many.batched_action_spaces.items()}
+
+    many.step(actions())
+    # Agent b's episode ends in environment 0.
+    last = actions()
+    last["b"]["action"][:] = [0, 2]
+    seen, *_ = many.step(last)
+    saved, fork = many.snapshot(), many.fork()
+    other = zoo.vector_env(2, "PointNav", **settings)
+    back, _ = other.restore(saved)
+    assert bits(back) == bits(seen)
+    began = 0
+    for _ in range(7):
+        taken = actions()
+        seen, rewards, ended, cut, infos = many.step(taken)
+        began += not infos["a"]["active"][0]
+        for copy in (fork, other):
+            again = copy.step(taken)
+            assert bits(again[0]) == bits(seen)
+            for mine, theirs in zip((rewards, ended, cut), again[1:4], strict=True):
+                assert all(np.array_equal(mine[name], theirs[name]) for name in mine)
+            assert np.array_equal(again[4]["b"]["active"], infos["b"]["active"])
+            assert list(again[4]["b"]["episode_id"]) == list(infos["b"]["episode_id"])
+            assert copy.state_hashes() == many.state_hashes()
+            assert np.array_equal(copy.state(), many.state())
+    assert began >= 1
+    assert many.world(1).time_s == other.world(1).time_s
+    # Into another environment, and into one of the two.
+    other.restore([None, saved[0]])
+    hashes = zoo.vector_env(2, "PointNav", **settings)
+    hashes.restore([saved[0], saved[0]])
+    assert other.state_hashes()[1] == hashes.state_hashes()[0] == hashes.state_hashes()[1]
+
+
+def test_snapshots_of_a_vector_that_do_not_fit_are_refused() -> None:
+    many = zoo.vector_env(2, agents={"a": {}, "b": {}}, **STUDIO)
+    with pytest.raises(dwell.UsageError, match="no episode of environments"):
+        many.snapshot()
+    many.reset(seed=1)
+    saved, before = many.snapshot(), many.state_hashes()
+    single = zoo.parallel_env(agents={"a": {}, "b": {}}, **STUDIO)
+    single.reset(seed=1)
+    others = zoo.vector_env(2, agents={"b": {}, "a": {}}, **STUDIO)
+    others.reset(seed=1)
+    for given, told in (
+        (saved[:1], "expected a list of 2"),
+        ([saved[0], b""], re.escape("snapshots[1]: snapshot refused: it is empty")),
+        ([saved[0], saved[1][:-3]], re.escape("snapshots[1]: snapshot refused: its check sum")),
+        ([single.snapshot(), None], re.escape("snapshots[0]: snapshot refused")),
+        (others.snapshot(), "of agents"),
+    ):
+        with pytest.raises(dwell.ConfigError, match=told):
+            many.restore(given)
+    assert many.state_hashes() == before
+
+
+def test_masks_are_each_agents_own() -> None:
+    agents: dict[str, Any] = {"a": {"actions": ["stop", "open", "pick"]}, "b": {}, "c": {}}
+    env = zoo.parallel_env(agents=agents, action_mask=True, **HOME)
+    _, infos = env.reset(seed=3)
+    many = zoo.vector_env(1, agents=agents, action_mask=True, **HOME)
+    _, told = many.reset(seed=[3])
+    # What the engine says of each agent alone, whatever the forms: nothing is in a hand yet.
+    for name in agents:
+        mask = infos[name]["action_mask"]
+        assert mask.shape == (env.action_space(name).n,)
+        assert np.array_equal(told[name]["action_mask"][0], mask)
+        names = env.action_names(name)
+        if "drop" in names:
+            assert mask[names.index("drop")] == 0
+            assert mask[names.index("move_forward")] == 1
+        assert mask[names.index("stop")] == 1
+
+
 def test_rewards_are_shared_within_a_team() -> None:
     agents: dict[str, Any] = {
         "a": {"team": "red"},
