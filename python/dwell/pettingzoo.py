@@ -27,12 +27,22 @@ except ImportError as error:
     ) from error
 
 from dwell.envs.parallel import DwellParallelEnv
+from dwell.envs.parallel_recorder import ParallelReplayRecorder
 from dwell.envs.parallel_vector import DwellParallelVectorEnv
+from dwell.envs.torchrl_compatible import TorchRLCompatible
 
 if TYPE_CHECKING:
     from pettingzoo import AECEnv
 
-__all__ = ["DwellParallelEnv", "DwellParallelVectorEnv", "env", "parallel_env", "vector_env"]
+__all__ = [
+    "DwellParallelEnv",
+    "DwellParallelVectorEnv",
+    "ParallelReplayRecorder",
+    "TorchRLCompatible",
+    "env",
+    "parallel_env",
+    "vector_env",
+]
 
 
 def parallel_env(task: str = "Free", **settings: Any) -> DwellParallelEnv:  # noqa: ANN401 - of the class

@@ -6,7 +6,7 @@ import dataclasses
 import hashlib
 import json
 import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +17,7 @@ from dwell.arguments import (
     instance_of,
     integer_in_range,
     mapping,
+    number_in_range,
     quoted,
     sequence_items,
     text,
@@ -25,6 +26,15 @@ from dwell.arguments import (
 )
 from dwell.files import atomic_write, read_json
 from dwell.house import House
+from dwell.replay_agents import (
+    AgentStep,
+    PlayedAgents,
+    ReplayAgent,
+    agent_rows,
+    check_agents,
+    engine_steps,
+    scripted_places,
+)
 from dwell.stated_episodes import checked_episode
 
 if TYPE_CHECKING:
@@ -39,6 +49,8 @@ _FORMAT = "dwell-replay"
 _VERSION, _VERSION_WITH_TARGETS = 2, 3
 #: Of files of episodes that state their start or goal.
 _VERSION_STATED = 4
+#: Of files of episodes of several agents.
+_VERSION_OF_AGENTS = 5
 #: More than any episode is long; its file stays below what is read.
 MAX_STEPS = 1_000_000
 
@@ -47,9 +59,12 @@ MAX_STEPS = 1_000_000
 class ReplayStep:
     """An episode at one step.
 
+    Of an episode of several agents ``action``, ``reward``, ``instruction`` and ``success`` are of
+    the first one.
+
     Attributes:
         step: How many steps were made.
-        action: The name of the last action; ``None`` at the start.
+        action: The name of the last action; ``None`` at the start, and where there was none.
         reward: What the last step gave; 0 at the start.
         world: The world as it is, to look at and listen to; the same object at every step.
         instruction: What the episode asks.
@@ -66,6 +81,7 @@ class ReplayStep:
     is_same: bool
     instruction: str
     success: bool
+    agents: Mapping[str, AgentStep] = dataclasses.field(default_factory=dict)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -78,12 +94,15 @@ class Replay:
         config: Task, sensors, laws, parameters and rates as JSON for the native side.
         parts: Names of the classes of the Python parts it was played with, empty for most.
         actions: The actions, in order: names, or mappings with ``action`` and what else is said:
-            ``velocity``, ``pixel``, ``object``.
+            ``velocity``, ``pixel``, ``object``, ``answer``. Of several agents for each step those
+            of who acted, by name; they may have ``say`` (``tokens`` and ``effort``).
         hashes: The state's hash at the start and after each action, hexadecimal.
-        instruction: What was asked.
-        success: Whether it was done at the end.
+        instruction: What was asked; of several agents the first one.
+        success: Whether it was done at the end; of several agents by the first one.
         made_by: The version of dwell that recorded it.
         stated: What the episode stated of its start and goal; ``None``: all was drawn.
+        agents: The agents of an episode of several, in the order of ``config``; else empty.
+        shared_reward: Which share of their rewards is the mean of their teams'.
         path: The file it was read from, if it was.
         sums: The check sums of all fields of the file; files of version 1 have none.
     """
@@ -98,6 +117,8 @@ class Replay:
     success: bool
     made_by: str
     stated: Mapping[str, Any] | None = None
+    agents: tuple[ReplayAgent, ...] = ()
+    shared_reward: float = 0.0
     path: str | None = dataclasses.field(default=None, compare=False)
     sums: Mapping[str, str] | None = dataclasses.field(default=None, compare=False, repr=False)
 
@@ -118,13 +139,15 @@ class Replay:
         if not isinstance(row, dict) or row.get("format") != _FORMAT:
             raise MeasuredDataError(f"{path}: format: no {_FORMAT} file")
         version = row.get("version")
-        if version not in (1, _VERSION, _VERSION_WITH_TARGETS, _VERSION_STATED):
+        if isinstance(version, bool) or version not in range(1, _VERSION_OF_AGENTS + 1):
             raise MeasuredDataError(
-                f"{path}: version is {quoted(version)}; this dwell reads 1 to {_VERSION_STATED}"
+                f"{path}: version is {quoted(version)}; this dwell reads 1 to {_VERSION_OF_AGENTS}"
             )
         known = set(_FIELDS) - ({"sums"} if version == 1 else set())
         if version == _VERSION_STATED:
             known.add("stated")
+        if version == _VERSION_OF_AGENTS:
+            known |= {*_OF_AGENTS}
         if wrong := sorted(known ^ set(row)):
             what = "unknown" if wrong[0] in row else "missing"
             raise MeasuredDataError(f"{path}: field {wrong[0]!r} is {what} in version {version}")
@@ -142,9 +165,20 @@ class Replay:
                 success=boolean("success", row["success"]),
                 made_by=text("made_by", row["made_by"]),
                 stated=checked_episode("stated", row["stated"]) if "stated" in row else None,
+                agents=tuple(
+                    ReplayAgent.of_row(f"agents[{k}]", one)
+                    for k, one in enumerate(
+                        sequence_items("agents", row.get("agents", []), "expected a list of agents")
+                    )
+                ),
+                shared_reward=number_in_range(
+                    "shared_reward", row.get("shared_reward", 0.0), 0.0, 1.0
+                ),
                 path=path,
                 sums=None if version == 1 else mapping("sums", row["sums"]),
             )
+            if version == _VERSION_OF_AGENTS and not replay.agents:
+                raise ConfigError("agents: found none in version 5")
             replay.check()
         except ConfigError as error:
             raise MeasuredDataError(f"{path}: {error}") from None
@@ -166,6 +200,8 @@ class Replay:
                 checked_episode("stated", self.stated)
             if self.sums is not None:
                 mapping("sums", self.sums)
+            if self.agents:
+                self._check_agents()
         except ConfigError as error:
             raise MeasuredDataError(f"{self._at()}: {error}") from None
         try:
@@ -178,6 +214,24 @@ class Replay:
                 f"expected at most {MAX_STEPS} actions and one hash more"
             )
 
+    def _check_agents(self) -> None:
+        """Refuses agents that do not fit the other fields.
+
+        Raises:
+            ConfigError: The message begins with the field.
+        """
+        number_in_range("shared_reward", self.shared_reward, 0.0, 1.0)
+        if self.parts or self.stated is not None:
+            raise ConfigError("agents: episodes of several have no parts, and state no start")
+        check_agents(self.agents, self.actions, self._settings())
+        first = self.agents[0]
+        for name in ("instruction", "success"):
+            if getattr(self, name) != getattr(first, name):
+                raise ConfigError(
+                    f"{name} is {quoted(getattr(self, name))}; of {first.name}, the first agent, "
+                    f"it is {quoted(getattr(first, name))}"
+                )
+
     def _engine_actions(self) -> list[EngineActions]:
         """The actions as the engine takes them; of equal names the same object.
 
@@ -186,6 +240,9 @@ class Replay:
         """
         from dwell.envs.action_modes import EngineActions
 
+        if self.agents:
+            return [*engine_steps(self.agents, self._rows())]
+
         by_name: dict[str, EngineActions] = {}
         found = []
         for k, action in enumerate(self.actions):
@@ -193,9 +250,15 @@ class Replay:
                 found.append(by_name[action])
                 continue
             found.append(EngineActions.of_row(f"actions[{k}]", action))
+            if found[-1].tokens is not None:
+                raise ConfigError(f"actions[{k}] has 'say'; those of several agents have it alone")
             if isinstance(action, str):
                 by_name[action] = found[-1]
         return found
+
+    def _rows(self) -> list[Mapping[str, Any]]:
+        """The actions of several agents: for each step those by name."""
+        return [mapping(f"actions[{k}]", row) for k, row in enumerate(self.actions)]
 
     def _stated(self) -> dict[str, Any]:
         """The fields of a file, but for its check sums."""
@@ -205,6 +268,12 @@ class Replay:
         row["config"] = self._settings()
         if self.stated is not None:
             row |= {"version": _VERSION_STATED, "stated": dict(self.stated)}
+        if self.agents:
+            row |= {
+                "version": _VERSION_OF_AGENTS,
+                "agents": agent_rows(self.agents),
+                "shared_reward": self.shared_reward,
+            }
         return row
 
     def _settings(self) -> dict[str, Any]:
@@ -259,12 +328,18 @@ class Replay:
             runner = self._runner(task, reward, renderer, house)
             runner.reset([self.seed], stated=[self.stated])
             world = World.of_env(runner.houses[0], _native.World.of_env(runner.batch, 0))
-            moment = self._moment(0, runner, world)
+            played = None
+            if self.agents:
+                scripted = scripted_places(self._settings())
+                played = PlayedAgents(self.agents, self.shared_reward, scripted, runner)
+            moment = self._moment(0, runner, world, None, played)
         yield moment
         for step, action in enumerate(self._engine_actions(), 1):
             with self._named(f"actions[{step - 1}]: "):
+                if played is not None:
+                    played.before(action, world)
                 answer, _ = runner.step(action)
-                moment = self._moment(step, runner, world, answer)
+                moment = self._moment(step, runner, world, answer, played)
             yield moment
 
     def _runner(
@@ -303,14 +378,34 @@ class Replay:
             raise type(error)(f"{self._at()}: {place}{error}") from error
 
     def _moment(
-        self, step: int, runner: NativeBatch, world: World, answer: Mapping[str, Any] | None = None
+        self,
+        step: int,
+        runner: NativeBatch,
+        world: World,
+        answer: Mapping[str, Any] | None,
+        played: PlayedAgents | None,
     ) -> ReplayStep:
+        is_same = f"{world.state_hash():016x}" == self.hashes[step]
+        if played is not None:
+            row = mapping("action", self.actions[step - 1]) if step else None
+            agents = played.after(step, row, answer, world)
+            first = agents[self.agents[0].name]
+            return ReplayStep(
+                step=step,
+                action=None if first.action is None else _name(first.action),
+                reward=first.reward,
+                world=world,
+                is_same=is_same,
+                instruction=first.instruction,
+                success=first.success,
+                agents=agents,
+            )
         return ReplayStep(
             step=step,
             action=_name(self.actions[step - 1]) if step else None,
             reward=0.0 if answer is None else float(answer["reward"][0]),
             world=world,
-            is_same=f"{world.state_hash():016x}" == self.hashes[step],
+            is_same=is_same,
             instruction=runner.batch.instruction(0),
             success=answer is not None and bool(answer["success"][0]),
         )
@@ -356,8 +451,11 @@ class Replay:
 
     def _played_otherwise(self, parts: Mapping[str, Any]) -> Iterator[str]:
         """The stated fields that do not hold when the episode is played."""
-        differs = False
+        differs, ended = False, dict[str, int]()
         for moment in self.play(**parts):
+            for name, agent in moment.agents.items():
+                if not agent.acts:
+                    ended.setdefault(name, moment.step)
             if moment.step == 0 and moment.instruction != self.instruction:
                 yield (
                     f"instruction: the file states {quoted(self.instruction)}, "
@@ -371,6 +469,8 @@ class Replay:
                 )
         if moment.success != self.success:
             yield f"success: the file states {self.success}, played it is {moment.success}"
+        if self.agents:
+            yield from _agent_differences(self.agents, moment.agents, ended)
 
 
 def _without_pictures(config: dict[str, Any]) -> dict[str, Any]:
@@ -388,21 +488,50 @@ def _without_pictures(config: dict[str, Any]) -> dict[str, Any]:
     def shown(row: object) -> bool:
         return isinstance(row, dict) and row.get("kind") in pictures
 
+    general = config.get("task", "InstructionFollowing")
+    usual = {row["name"]: [{"kind": kind} for kind in row["sensors"]] for row in _native.tasks()}
     agents = config.get("agents")
-    own_tasks = isinstance(agents, list) and any("task" in row for row in agents)
-    if config.get("sensors") is None and not own_tasks:
-        name = config.get("task", "InstructionFollowing")
-        tasks = [row for row in _native.tasks() if row["name"] == name]
-        usual = [{"kind": kind} for row in tasks for kind in row["sensors"]]
-        config = config | ({"sensors": usual} if tasks else {})
+    if isinstance(agents, list) and config.get("sensors") is None:
+        # Whose sensors nobody chose has those of its task.
+        agents = [
+            {**row, "sensors": usual[row.get("task", general)]}
+            if isinstance(row, dict)
+            and row.get("sensors") is None
+            and row.get("task", general) in usual
+            else row
+            for row in agents
+        ]
+    elif config.get("sensors") is None and general in usual:
+        config = config | {"sensors": usual[general]}
     if isinstance(agents, list):
         config = config | {"agents": [kept(row) for row in agents]}
     result = kept(config)
     return result if isinstance(result, dict) else config
 
 
+def _agent_differences(
+    agents: Sequence[ReplayAgent], played: Mapping[str, AgentStep], ended: Mapping[str, int]
+) -> Iterator[str]:
+    """What the file states of the agents and does not hold at the end of the episode."""
+    for k, agent in enumerate(agents):
+        own = played[agent.name]
+        for field, found in (
+            ("instruction", own.instruction),
+            ("success", own.success),
+            ("ended", ended.get(agent.name)),
+        ):
+            stated = getattr(agent, field)
+            if stated != found:
+                yield (
+                    f"agents[{k}].{field}: of {agent.name} the file states {quoted(stated)}, "
+                    f"played it is {quoted(found)}"
+                )
+
+
+#: Fields of files of several agents alone.
+_OF_AGENTS = ("agents", "shared_reward")
 #: Fields of a replay that are not in every file.
-_UNLISTED = ("path", "sums", "stated")
+_UNLISTED = ("path", "sums", "stated", *_OF_AGENTS)
 #: The fields of a file.
 _FIELDS = (
     "format",

@@ -149,7 +149,8 @@ def test_what_no_file_can_hold_is_refused(tmp_path: Path, apartment: dwell.House
 WRONG: list[tuple[str, object, str]] = [
     ("format", "other", "no dwell-replay"),
     ("version", 4, "field 'stated' is missing in version 4"),
-    ("version", 5, "version is 5"),
+    ("version", 5, "field 'agents' is missing in version 5"),
+    ("version", 6, "version is 6"),
     ("success", "yes", "success is 'yes'"),
     ("seed", -1, "seed is -1"),
     ("seed", 1e39, "seed is 1e+39"),

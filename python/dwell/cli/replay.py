@@ -22,6 +22,7 @@ from dwell.cli.write_files import add_bits, save_sound, write_image
 from dwell.engine_types import Channel
 
 if TYPE_CHECKING:
+    from dwell.replay_agents import ReplayAgent
     from dwell.replays import Replay, ReplayStep
 
 #: Beside the pictures, what ``--sensors`` takes.
@@ -40,6 +41,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--sensors",
         help=f"what to take at the agent's eyes and ears: {','.join(get_args(Channel))},{_AUDIO}",
     )
+    parser.add_argument("--agent", metavar="NAME", help="of several whose; default the first")
     parser.add_argument("--every", type=count, default=1, help="take a picture every so many steps")
     parser.add_argument("--width", type=count, default=320)
     parser.add_argument("--height", type=count, default=240)
@@ -54,6 +56,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Plays the episode if anything asks for it, and says what it is."""
+    from dwell.replay_agents import agent_rows
     from dwell.replays import Replay
 
     if (args.sensors is None) != (args.out is None):
@@ -62,14 +65,16 @@ def run(args: argparse.Namespace) -> int:
         raise ValueError("--every is 0; allowed are whole numbers from 1")
     if args.sensors is None:
         refuse_unused(args, {"file", "verify", "json"}, "a replay without --sensors")
-    taker = None if args.sensors is None else _Taker(args)
     replay = Replay.read(args.file)
+    taker = None if args.sensors is None else _Taker(args, _place(replay, args.agent))
     told: dict[str, Any] = {
         "house": replay.house,
         "instruction": replay.instruction,
         "steps": len(replay.actions),
         "success": replay.success,
     }
+    if replay.agents:
+        told["agents"] = agent_rows(replay.agents)
     if args.verify:
         told["differences"] = replay.differences()
     if taker is not None:
@@ -81,10 +86,32 @@ def run(args: argparse.Namespace) -> int:
         print_json(told)
     else:
         for name, value in told.items():
+            if name == "agents":
+                for agent in replay.agents:
+                    print(f"{agent.name}: {_outcome(agent)}")
+                continue
             print(f"{name}: {(value or 'none') if name == 'differences' else value}")
     for sentence in different:
         print(f"{args.file}: {sentence}", file=sys.stderr)
     return 1 if different else 0
+
+
+def _place(replay: Replay, name: str | None) -> int:
+    """The place of the agent whose eyes and ears are asked for."""
+    names = [agent.name for agent in replay.agents]
+    if name is None:
+        return 0
+    if name not in names:
+        allowed = ", ".join(names) or "none: it is an episode of one agent"
+        raise ValueError(f"--agent is {name!r}; allowed are {allowed}")
+    return names.index(name)
+
+
+def _outcome(agent: ReplayAgent) -> str:
+    """What an agent was asked, and how it ended."""
+    asked = agent.instruction or "nothing was asked"
+    until = "went on to the end" if agent.ended is None else f"ended at step {agent.ended}"
+    return f"{asked} {'succeeded' if agent.success else 'no success'}, {until}"
 
 
 def _take(replay: Replay, args: argparse.Namespace, taker: _Taker) -> None:
@@ -98,7 +125,7 @@ def _take(replay: Replay, args: argparse.Namespace, taker: _Taker) -> None:
 class _Taker:
     """Takes what ``--sensors`` asks for at the steps of an episode, and writes it."""
 
-    def __init__(self, args: argparse.Namespace) -> None:
+    def __init__(self, args: argparse.Namespace, agent: int) -> None:
         known: tuple[Channel, ...] = get_args(Channel)
         names = [name.strip() for name in args.sensors.split(",")]
         for name in names:
@@ -110,6 +137,7 @@ class _Taker:
         self._camera = Camera(
             args.width, args.height, args.fov_deg, preset=args.preset, classes=args.classes
         )
+        self._agent = agent
         self._out: Path = args.out
         self._every: int = args.every
         self._heard: list[Any] = []
@@ -122,7 +150,9 @@ class _Taker:
     def take(self, moment: ReplayStep) -> None:
         """Looks and listens at one step."""
         if self._channels and moment.step % self._every == 0:
-            images = moment.world.render(agent=0, camera=self._camera, channels=self._channels)
+            images = moment.world.render(
+                agent=self._agent, camera=self._camera, channels=self._channels
+            )
             for channel, image in images.items():
                 name = f"{channel}_{moment.step:05}"
                 self.files += write_image(self._out, name, channel, image)
@@ -130,7 +160,7 @@ class _Taker:
             if moment.step == 0:
                 self._rate_hz = moment.world.sound_rate_hz
                 self._samples = moment.world.samples_a_step
-            heard = moment.world.listen(self._samples)
+            heard = moment.world.listen(self._samples, agent=self._agent)
             if moment.step:
                 self._heard.append(heard)
 

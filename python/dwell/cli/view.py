@@ -7,7 +7,7 @@ import os
 import sys
 from pathlib import Path
 
-from dwell.cli.common import count, path, print_json, refuse_unused
+from dwell.cli.common import count, count_from_1, path, print_json, refuse_unused
 from dwell.files import atomic_write
 
 
@@ -23,14 +23,27 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--task", help="the scripted expert of this task plays an episode, recorded step by step"
     )
+    parser.add_argument(
+        "--agents",
+        type=count_from_1,
+        help="how many agents play --task's episode; default as many as it needs",
+    )
     parser.add_argument("--seed", type=count, default=0, help="of --task's episode")
     parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
 
 
 def run(args: argparse.Namespace) -> int:
     """Shows surfaces, boxes, lamps, joints, cameras, ways of sound, and how an episode goes."""
+    from dwell import _native
     from dwell.house import House
-    from dwell.recording import Recording, record_episode, record_house, record_replay, sdk
+    from dwell.recording import (
+        Recording,
+        record_agents,
+        record_episode,
+        record_house,
+        record_replay,
+        sdk,
+    )
     from dwell.replays import Replay
     from dwell.world import World
 
@@ -50,7 +63,12 @@ def run(args: argparse.Namespace) -> int:
         if replay is not None:
             record_replay(recording, house, replay)
         if args.task is not None:
-            record_episode(recording, house, args.task, args.seed)
+            needed = {row["name"]: row["min_agents"] for row in _native.tasks()}
+            agents = needed.get(args.task, 1) if args.agents is None else args.agents
+            if agents == 1:
+                record_episode(recording, house, args.task, args.seed)
+            else:
+                record_agents(recording, house, args.task, agents, args.seed)
         recording.close()
 
     if args.out is None:

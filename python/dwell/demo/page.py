@@ -5,7 +5,7 @@ from __future__ import annotations
 from html import escape
 from typing import Any
 
-from dwell.demo.plot import line_plot
+from dwell.demo.plot import level_plot, line_plot
 
 _STYLE = """
 :root{color-scheme:light dark;--ink:#1d2430;--soft:#5a6575;--paper:#fbfaf8;--card:#fff;--line:#e2dfd9;
@@ -24,6 +24,7 @@ border-bottom:1px solid var(--line);vertical-align:top}.yes{color:var(--accent);
 grid-template-columns:1fr 1fr;gap:1rem;align-items:start}@media(max-width:720px){.two,.row{grid-template-columns:1fr}}
 svg{width:100%;height:auto}svg text{fill:var(--soft);font-size:11px}.axis{stroke:var(--line)}
 .before{fill:var(--warn)}.after{fill:var(--accent)}
+.line{fill:none;stroke-width:1.5}.before.line{stroke:var(--warn)}.after.line{stroke:var(--accent)}
 """
 
 
@@ -83,6 +84,45 @@ def _errand(errand: dict[str, Any]) -> str:
     )
 
 
+def _side(left_deg: float) -> str:
+    """A direction in words: ``63 degrees to the left``."""
+    return f"{abs(left_deg):.0f} degrees to the {'left' if left_deg >= 0 else 'right'}"
+
+
+def _second_agent(told: dict[str, Any]) -> str:
+    """When the other was heard and seen first, out of what was measured."""
+    if "refused" in told:
+        return f"<p>No second agent: {escape(told['refused'])}</p>"
+    heard, seen = told["heard"], told["seen"]
+    marks, sentences = [], []
+    if heard is None:
+        sentences.append("No word of it was heard.")
+    else:
+        word = (
+            f"\u201c{heard['word']}\u201d" if heard["word"] else "a word that it did not understand"
+        )
+        marks.append((heard["time_s"], "heard first"))
+        sentences.append(
+            f"Heard first after {heard['time_s']:g} s: {word}, {heard['level_db']:g} dB SPL, from "
+            f"{_side(heard['left_deg'])}, with {heard['pixels']} pixels of it in view."
+        )
+    if seen is None:
+        sentences.append("It did not come into view.")
+    else:
+        marks.append((seen["time_s"], "seen first"))
+        sentences.append(
+            f"Seen first after {seen['time_s']:g} s: {seen['pixels']} pixels of the instance mask."
+        )
+    plot = level_plot(told["levels_db"], told["step_s"], marks)
+    return (
+        f'<div class="two"><figure><img src="{told["film"]}" alt="what the first agent saw"></figure><div>'
+        f"<p>Another agent comes from a room out of sight and says \u201c{escape(told['words'])}\u201d, over "
+        f"and over. The first stands and turns to where its ears tell it that the words come from.</p>"
+        f"<p><strong>{escape(' '.join(sentences))}</strong></p></div></div><figure>{plot}<figcaption "
+        "class='soft'>Level at the left (orange) and the right ear (green), dB SPL.</figcaption></figure>"
+    )
+
+
 def _calibration(found: dict[str, Any]) -> str:
     plots = "".join(
         f"<figure>{line_plot(plot['title'], plot['unit'], plot['before'], plot['after'])}</figure>"
@@ -138,7 +178,8 @@ def html(story: dict[str, Any]) -> str:
         f"<h2>Every room</h2>{_rooms(story)}"
         f"<h2>The house in words</h2>{text}"
         f"<h2>An instruction</h2>{_instruction(story['instruction'])}"
-        f"<h2>An errand</h2>{_errand(story['errand'])}{viewer}"
+        f"<h2>An errand</h2>{_errand(story['errand'])}"
+        f"<h2>A second agent</h2>{_second_agent(story['second_agent'])}{viewer}"
         f"<h2>A hidden error, found</h2>{_calibration(story['calibration'])}"
         f"<h2>How fast</h2><p class='soft'>Short runs on this machine, beside everything else.</p>"
         f"{_figures(story['figures'])}</main></body></html>"

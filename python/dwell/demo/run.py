@@ -9,7 +9,16 @@ from pathlib import Path
 from typing import Any
 
 from dwell import ConfigError, plans
-from dwell.demo import calibration, episode, instruction, page, recording, rooms, throughput
+from dwell.demo import (
+    calibration,
+    episode,
+    instruction,
+    page,
+    recording,
+    rooms,
+    second_agent,
+    throughput,
+)
 from dwell.house import House
 
 Progress = Callable[[float, str], None]
@@ -62,9 +71,12 @@ def _fill(name: str, folder: Path, progress: Progress) -> dict[str, Any]:
     story["instruction"] = instruction.follow(name, folder)
     progress(0.3, "opening, taking, listening")
     story["errand"] = episode.run_episode(
-        house, folder, lambda part: progress(0.3 + 0.3 * part, "walking")
+        house, folder, lambda part: progress(0.3 + 0.25 * part, "walking")
     )
+    progress(0.55, "meeting another agent")
+    story["second_agent"] = second_agent.meet(house, folder)
     ways = [("#1f7a6d", story["instruction"].get("way", [])), ("#c4532f", story["errand"]["way"])]
+    ways += [("#3b6fb5", way) for way in story["second_agent"].get("ways", [])[1:]]
     world = story["errand"]["world"]
     plans.floor_plan(world, longest_edge=1000, ways=ways).save(folder / "map.png")
     plans.dollhouse(world, width=1000).save(folder / "dollhouse.png")
@@ -75,7 +87,7 @@ def _fill(name: str, folder: Path, progress: Progress) -> dict[str, Any]:
     progress(0.75, "timing every stage")
     story["figures"] = throughput.measure(name, lambda part: progress(0.75 + 0.2 * part, "timing"))
     progress(0.95, "recording for the Rerun viewer")
-    story["recording"] = recording.write(story["errand"], episode.CAMERA, folder)
+    story["recording"] = recording.write(story["errand"], story["second_agent"], folder)
     (folder / "index.html").write_text(page.html(story), "utf-8")
     return {
         "house": name,
@@ -83,6 +95,9 @@ def _fill(name: str, folder: Path, progress: Progress) -> dict[str, Any]:
         "fulfilled": story["instruction"].get("success", False),
         "errand": [line["sentence"] for line in story["errand"]["log"]],
         "errand_full_scale_pa": story["errand"]["full_scale_pa"],
+        "second_agent": {
+            name: story["second_agent"].get(name) for name in ("heard", "seen", "refused")
+        },
         "verdict": story["calibration"]["sentence"],
         "figures": story["figures"],
     }

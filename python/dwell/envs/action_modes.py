@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import abc
 import dataclasses
+import itertools
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -18,10 +19,12 @@ from numpy.typing import NDArray
 from dwell import ConfigError, UsageError, _native
 from dwell.arguments import (
     boolean,
+    choice,
     from_json,
     integer_in_range,
     mapping,
     quoted,
+    sequence_items,
 )
 from dwell.envs.action_arrays import (
     choices_below,
@@ -139,6 +142,11 @@ class EngineActions:
             row["answer"] = self.answers[env].tolist()
         if self.questions is not None and self.questions[env].any():
             row["question"] = self.questions[env].tolist()
+        if self.tokens is not None and self.tokens[env, 0] > 0:
+            # All up to the first 0; behind it nothing is said.
+            words = [*itertools.takewhile(bool, self.tokens[env].tolist())]
+            effort = NORMAL_EFFORT if self.efforts is None else int(self.efforts[env])
+            row["say"] = {"tokens": words, "effort": _native.vocal_efforts()[effort]}
         return row if len(row) > 1 else str(row["action"])
 
     @classmethod
@@ -150,7 +158,7 @@ class EngineActions:
         """
         fields = {"action": row} if isinstance(row, str) else mapping(at, row)
         names = _native.actions()
-        allowed = ("action", "velocity", "pixel", "object", "answer", "question")
+        allowed = ("action", "velocity", "pixel", "object", "answer", "question", "say")
         if unknown := sorted(set(fields) - {*allowed}):
             raise ConfigError(f"{at} has {unknown[0]!r}; allowed are {', '.join(allowed)}")
         if fields.get("action") not in names:
@@ -158,7 +166,8 @@ class EngineActions:
             raise ConfigError(f"{at} is {found}; allowed are {', '.join(names)}")
         numbers = np.array([names.index(fields["action"])], np.int64)
         one = (1,)
-        velocity, pixel, thing, answer, question = (fields.get(key) for key in allowed[1:])
+        velocity, pixel, thing, answer, question, say = (fields.get(key) for key in allowed[1:])
+        tokens, efforts = (None, None) if say is None else _said(f"{at}: say", say)
         return cls(
             numbers,
             None
@@ -170,7 +179,28 @@ class EngineActions:
             if answer is None
             else numbers_within(f"{at}: answer", answer, one, ANSWER_FIELDS, (-1e6, 1e6)),
             questions=None if question is None else question_row(f"{at}: question", question),
+            tokens=tokens,
+            efforts=efforts,
         )
+
+
+def _said(at: str, say: object) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """The words and the effort of ``say`` in a file, shapes (1, 8) and (1,).
+
+    Raises:
+        ConfigError: They are none; the message begins with ``at``.
+    """
+    fields = exact_fields(at, say, ("tokens", "effort"))
+    words = sequence_items(f"{at}: tokens", fields["tokens"], "expected numbers of words")
+    last = len(_native.vocabulary())
+    if not 1 <= len(words) <= MAX_TOKENS:
+        raise ConfigError(f"{at}: {len(words)} tokens; allowed are 1 to {MAX_TOKENS}")
+    tokens = np.zeros((1, MAX_TOKENS), np.int64)
+    for k, word in enumerate(words):
+        tokens[0, k] = integer_in_range(f"{at}: tokens[{k}]", word, low=1, high=last)
+    known = _native.vocal_efforts()
+    effort = choice(f"{at}: effort", fields["effort"], known)
+    return tokens, np.array([known.index(effort)], np.int64)
 
 
 class DiscreteActions:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -17,6 +17,25 @@ from dwell.envs.agent_settings import AgentRoster
 from dwell.envs.asking import AskingActions
 from dwell.envs.native_batch import NativeBatch
 from dwell.envs.voice import VoicedActions
+
+#: That of an agent that takes none: it is scripted, or its episode has ended.
+NO_ACTION = EngineActions(np.full(1, -1, np.int64))
+
+
+def shared_rewards(
+    own: NDArray[np.float64], teams: Sequence[Sequence[int]], share: float
+) -> NDArray[np.float64]:
+    """Rewards of which a share is the mean of the agent's team, shape (environment, agent).
+
+    Args:
+        own: What each agent is paid itself.
+        teams: Of each agent the places of those of its team, itself among them.
+        share: 0 (all private) to 1.
+    """
+    if not share:
+        return own
+    team = np.stack([own[:, [*places]].mean(axis=1) for places in teams], axis=1)
+    return (1.0 - share) * own + share * team
 
 
 @contextlib.contextmanager
@@ -62,13 +81,17 @@ class AgentForms:
             action_form(config, batch.answer_fields(k), k, asks=batch.takes_questions(k))
             for k in range(count)
         ]
-        self._masks = [masked_form(action_mask, form) for form in silent]
+        self._masks = []
+        for name, form in zip(self.names, silent, strict=True):
+            with _of_agent(name):
+                self._masks.append(masked_form(action_mask, form))
         self._forms = [
             form if voice is None else VoicedActions(form, voice)
             for form, voice in zip(silent, roster.voices, strict=True)
         ]
         self.measures = [batch.measures(k) for k in range(count)]
-        self._share = number_in_range("shared_reward", shared_reward, 0.0, 1.0)
+        #: Which share of a reward is the mean of the agent's team.
+        self.share = number_in_range("shared_reward", shared_reward, 0.0, 1.0)
         self._teams = roster.teams
         self.action_spaces: dict[str, spaces.Space[Any]] = {
             self.names[k]: self._forms[k].space for k in self.players
@@ -81,8 +104,11 @@ class AgentForms:
         """The names of an agent's actions, in the order of their numbers."""
         return [*self._forms[agent].names]
 
-    def one(self, actions: object, live: list[str]) -> EngineActions:
+    def one(self, actions: object, live: list[str]) -> list[EngineActions]:
         """The actions of one environment, by the agents' names, as the engine takes them.
+
+        Returns:
+            Those of each agent, :data:`NO_ACTION` of who takes none.
 
         Raises:
             ConfigError: They are not one for each agent of ``live``, or one is none.
@@ -100,12 +126,12 @@ class AgentForms:
                 f"actions: none of {abbreviated_list(missing)}; expected one for each of "
                 f"{abbreviated_list(live)}"
             )
-        taken = [EngineActions(np.full(1, -1, np.int64))] * len(self.names)
+        taken = [NO_ACTION] * len(self.names)
         for k in self.players:
             if self.names[k] in given:
                 with _of_agent(self.names[k]):
                     taken[k] = self._forms[k].one(given[self.names[k]])
-        return EngineActions.interleaved(taken)
+        return taken
 
     def many(self, actions: object, acts: NDArray[np.bool_]) -> EngineActions:
         """The actions of several environments, by the agents' names, as the engine takes them.
@@ -134,10 +160,7 @@ class AgentForms:
     def rewards(self, answer: Mapping[str, Any]) -> NDArray[np.float64]:
         """What each agent is paid, shape (environment, agent)."""
         own = np.asarray(answer["reward"], np.float64).reshape(-1, len(self.names))
-        if not self._share:
-            return own
-        team = np.stack([own[:, places].mean(axis=1) for places in self._teams], axis=1)
-        return (1.0 - self._share) * own + self._share * team
+        return shared_rewards(own, self._teams, self.share)
 
     def masks(self, runner: NativeBatch) -> list[NDArray[np.int8] | None]:
         """Of each agent the actions that are not ruled out, (environment, action), if asked for."""

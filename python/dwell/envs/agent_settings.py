@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, TypedDict
 
-from dwell import ConfigError, _native
+from dwell import ConfigError, DwellError, _native
 from dwell.arguments import (
     abbreviated_list,
     boolean,
     checked_fields,
+    from_json,
     integer_in_range,
     mapping,
     quoted,
     refuse_unknown,
     text,
     text_list,
+    to_json,
 )
 from dwell.configs import bodies
 from dwell.envs.action_modes import checked_mode
@@ -24,6 +28,7 @@ from dwell.envs.config import env_json, sensor_rows, step_limit
 from dwell.envs.python_tasks import NativeSettings
 from dwell.envs.voice import Voice
 from dwell.heads import Head
+from dwell.house import House
 from dwell.schemas import setting_checks
 from dwell.world_settings import with_head
 
@@ -63,6 +68,7 @@ class AgentRoster:
         names: The agents' names.
         rows: The engine's settings of each.
         bodies: The engine's settings of each one's body.
+        team_names: Of each the name of its team, empty where it states none.
         teams: Of each the places of those of its team, itself among them.
         voices: What each can say, where it can.
         players: The places of those who take actions; the others are scripted.
@@ -71,6 +77,7 @@ class AgentRoster:
     names: list[str]
     rows: list[dict[str, Any]]
     bodies: list[dict[str, Any]]
+    team_names: list[str]
     teams: list[list[int]]
     voices: list[Voice | None]
     players: list[int]
@@ -107,11 +114,18 @@ class AgentRoster:
         teams = [
             text(f"agents.{n}.team", s.get("team", "")) for n, s in zip(names, own, strict=True)
         ]
+        rows = []
+        for k, (name, settings) in enumerate(zip(names, own, strict=True)):
+            with of_agents(names, name):
+                rows.append(_row(f"agents.{name}", k, settings))
+        with of_agents(names):
+            stated = bodies([settings.get("body", {}) for settings in own])
         return cls(
             names,
-            [_row(f"agents.{n}", k, s) for k, (n, s) in enumerate(zip(names, own, strict=True))],
-            bodies([settings.get("body", {}) for settings in own]),
-            [[k for k, other in enumerate(teams) if other == team] for team in teams],
+            rows,
+            stated,
+            teams,
+            places_of_teams(teams),
             [
                 Voice.of(f"agents.{n}.voice", s["voice"])
                 if "voice" in s
@@ -130,6 +144,34 @@ class AgentRoster:
         if name in self.names:
             return self.names.index(str(name))
         raise ConfigError(f"agent is {quoted(name)}; allowed are {abbreviated_list(self.names)}")
+
+
+@contextlib.contextmanager
+def of_agents(names: Sequence[str], name: str | None = None) -> Iterator[None]:
+    """What is refused meanwhile tells of agents by their names, not by their numbers.
+
+    Args:
+        names: The agents'.
+        name: That of the only one whom it can be about, if there is one.
+    """
+    try:
+        yield
+    except DwellError as error:
+        told = re.sub(
+            r"\bagents\[(\d+)\]",
+            lambda found: (
+                f"agents.{names[int(found[1])]}" if int(found[1]) < len(names) else found[0]
+            ),
+            str(error),
+        )
+        if name is not None and not told.startswith(f"agents.{name}"):
+            told = f"agents.{name}: {told}"
+        raise type(error)(told) from None
+
+
+def places_of_teams(teams: Sequence[str]) -> list[list[int]]:
+    """Of each agent the places of those of its team, itself among them."""
+    return [[k for k, other in enumerate(teams) if other == team] for team in teams]
 
 
 def _row(at: str, number: int, settings: Mapping[str, Any]) -> dict[str, Any]:
@@ -169,6 +211,49 @@ class MultiAgentSetup:
     config: str
     limit: int | None
     heads: Sequence[Head]
+
+    @contextlib.contextmanager
+    def built(self, house: House) -> Iterator[None]:
+        """Environments are built in a house: what is refused names the agent whose setting it is.
+
+        The engine names an agent by its number, or a setting alone. Then those agents are asked for
+        one by one to whom the same is told when they are alone, where that is not everybody.
+        """
+        names = self.roster.names
+        with of_agents(names):
+            try:
+                yield
+            except DwellError as error:
+                if "agents[" in str(error):
+                    raise
+                wrong = [k for k in range(len(names)) if self._alone(house, k) == str(error)]
+                if not wrong or len(wrong) == len(names):
+                    raise
+                raise type(error)(f"agents.{names[wrong[0]]}: {error}") from None
+
+    def _alone(self, house: House, agent: int) -> str | None:
+        """What is refused of an agent alone."""
+        from dwell.envs.native_batch import NativeBatch
+
+        settings = mapping("config", from_json("config", self.config))
+        row = {**self.roster.rows[agent], "agent": 0, "scripted": False}
+        world = {**settings.get("world", {}), "agents": [self.roster.bodies[agent]]}
+        try:
+            NativeBatch([house], to_json({**settings, "agents": [row], "world": world}), 1)
+        except DwellError as error:
+            return str(error)
+        return None
+
+    @classmethod
+    def plain(cls, task: str, agents: object) -> MultiAgentSetup:
+        """Of so many agents of a task, all else by default.
+
+        Raises:
+            ConfigError: The number or the task is wrong.
+        """
+        names = ("sensors", "laws", "parameters", "task_settings", "stride", "actions", "world")
+        own = {"agents": agents, "action_mode": "discrete", "max_cycles": OF_TASKS}
+        return cls.of(task, {**dict.fromkeys(names), **own, "voice": False, "muted": False})
 
     @classmethod
     def of(cls, task: str, given: Mapping[str, Any]) -> MultiAgentSetup:

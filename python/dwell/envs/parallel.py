@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import json
 from collections.abc import Mapping, Sequence
 from typing import Any, NoReturn
 
@@ -14,10 +13,12 @@ from numpy.typing import NDArray
 from pettingzoo import ParallelEnv
 
 from dwell import ConfigError
-from dwell.arguments import integer_in_range, kept, quoted, refuse_unknown
+from dwell.arguments import integer_in_range, kept, refuse_unknown
 from dwell.camera import camera_settings
+from dwell.envs.action_modes import EngineActions
 from dwell.envs.agent_forms import AgentForms
 from dwell.envs.agent_settings import OF_TASKS, Agents, MultiAgentSetup
+from dwell.envs.agent_snapshots import agent_parts, parts_of_agents
 from dwell.envs.agent_state import agent_state_rows, state_space
 from dwell.envs.config import (
     CACHED_HOUSES,
@@ -144,6 +145,7 @@ class DwellParallelEnv(EpisodeCalls, CurrentStateApi, ParallelEnv, EzPickle):  #
         self.render_mode = checked_render_mode(render_mode)
         setup = MultiAgentSetup.of(task, given)
         self._roster, self._config, self._limit = setup.roster, setup.config, setup.limit
+        self._heads = setup.heads
         self._shelf = shelf_of(given["houses"], None)
         threads = None if threads is None else integer_in_range("threads", threads, low=1)
         self._closed = False
@@ -155,12 +157,16 @@ class DwellParallelEnv(EpisodeCalls, CurrentStateApi, ParallelEnv, EzPickle):  #
         self._goals: list[dict[str, Any]] = []
         #: Each agent's distance to its goal after the last step, m; NaN where there is none.
         self._distances = np.full(len(self._roster.names), np.nan)
+        #: Whose task the last step fulfilled, and whose episode it ended, by the agents' places.
+        self._ruling = (np.zeros(0, np.bool_), np.zeros(0, np.bool_))
         self._stopped = True
         self._call: str | None = None
         self._alone = np.ones(1, np.bool_)
+        with setup.built(self._shelf[0]):
+            runner = self._runner
         self._forms = AgentForms(
             self._config,
-            self._runner,
+            runner,
             self._roster,
             action_mask=action_mask,
             shared_reward=shared_reward,
@@ -286,11 +292,12 @@ class DwellParallelEnv(EpisodeCalls, CurrentStateApi, ParallelEnv, EzPickle):  #
         live = self.agents
         if not live and not actions:
             return {}, {}, {}, {}, {}
-        taken = self._forms.one(actions, live)
+        taken = EngineActions.interleaved(self._forms.one(actions, live))
         with self._playing("step"):
             answer, _ = self._runner.step(taken)
             rewards = self._forms.rewards(answer)[0]
             self._distances[:] = np.asarray(answer["distance_to_goal"])
+            self._ruling = (np.asarray(answer["success"]), np.asarray(answer["terminated"]))
             cut = self._limit is not None and int(self._runner.batch.steps()[0]) >= self._limit
             ended = {name: bool(answer["terminated"][self._roster.place(name)]) for name in live}
             observations = self._observations(live)
@@ -380,16 +387,11 @@ class DwellParallelEnv(EpisodeCalls, CurrentStateApi, ParallelEnv, EzPickle):  #
         """
         self._refuse_stopped("snapshot")
         assert self._np_random is not None
-        told = {
-            "of": self._roster.names,
-            "agents": self.agents,
-            "distances": [_or_none(d) for d in self._distances],
-        }
         saved = EnvSnapshot(
             episode_id=self._shelf.episode_id(self._house, self._seed),
             done=not self.agents,
             stream=self._np_random,
-            parts=json.dumps(told).encode(),
+            parts=agent_parts(self._roster.names, self.agents, self._distances.tolist()),
             world=self._runner.batch.snapshot(0),
         )
         return saved.to_bytes()
@@ -412,7 +414,8 @@ class DwellParallelEnv(EpisodeCalls, CurrentStateApi, ParallelEnv, EzPickle):  #
             house, seed = self._shelf.episode(saved.episode_id)
         except ConfigError as error:
             raise ConfigError(f"snapshot refused: {error}") from None
-        live, distances = self._parts(saved.parts)
+        at = "snapshot refused"
+        live, distances = parts_of_agents(at, saved.parts, self._roster.names)
         with self._playing("restore"):
             self._runner_of(house).batch.restore(0, saved.world)
             self._house, self._seed, self._np_random = house, seed, saved.stream
@@ -421,24 +424,6 @@ class DwellParallelEnv(EpisodeCalls, CurrentStateApi, ParallelEnv, EzPickle):  #
             observations = self._observations(live)
             self.agents = live
         return observations, self._infos(live)
-
-    def _parts(self, parts: bytes) -> tuple[list[str], list[float]]:
-        """The agents that act on, and all distances, out of a snapshot."""
-        try:
-            told = json.loads(parts)
-            everybody = [str(name) for name in told["of"]]
-            live = [str(name) for name in told["agents"]]
-            distances = [float("nan") if d is None else float(d) for d in told["distances"]]
-        except (ValueError, KeyError, TypeError, RecursionError) as error:
-            raise ConfigError(
-                f"snapshot refused: it is of no environment of several agents: {quoted(error)}"
-            ) from None
-        names = self._roster.names
-        if everybody != names or len(distances) != len(names) or not set(live) <= set(names):
-            raise ConfigError(
-                f"snapshot refused: it is of agents {quoted(everybody)}; here are {quoted(names)}"
-            )
-        return live, distances
 
 
 def _run(
@@ -452,7 +437,3 @@ def _first(batched: Any) -> Any:  # noqa: ANN401 - of any action space
     if isinstance(batched, Mapping):
         return {key: _first(value) for key, value in batched.items()}
     return int(batched[0]) if isinstance(batched[0], np.integer) else batched[0]
-
-
-def _or_none(value: float) -> float | None:
-    return None if np.isnan(value) else float(value)

@@ -13,12 +13,14 @@ from gymnasium.utils import EzPickle
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from dwell import UsageError, _native
-from dwell.arguments import boolean, integer_in_range, kept, refuse_unknown
+from dwell import ConfigError, UsageError, _native
+from dwell.arguments import boolean, integer_in_range, kept, quoted, refuse_unknown
 from dwell.envs.agent_forms import AgentForms
 from dwell.envs.agent_settings import OF_TASKS, Agents, MultiAgentSetup
+from dwell.envs.agent_snapshots import agent_parts, parts_of_agents
 from dwell.envs.agent_state import agent_state_rows, state_space
 from dwell.envs.config import CACHED_HOUSES, Houses, arguments_of, kept_houses
+from dwell.envs.current_state import forked
 from dwell.envs.env_pool import EnvPool
 from dwell.envs.episode_calls import another_call
 from dwell.envs.episode_shelf import shelf_of
@@ -26,7 +28,9 @@ from dwell.envs.house_assignment import HouseAssignment
 from dwell.envs.info_keys import INFO_KEYS, step_infos
 from dwell.envs.native_batch import NativeBatch
 from dwell.envs.python_tasks import NativeSensors
+from dwell.envs.snapshots import EnvSnapshot
 from dwell.envs.vector_reset import VectorReset
+from dwell.world import World
 from dwell.world_settings import Laws
 
 #: Arrays by name, by the agents' names.
@@ -129,9 +133,10 @@ class DwellParallelVectorEnv(EzPickle):
         self._players, everybody = roster.players, len(roster.names)
         self._shelf = shelf = shelf_of(given["houses"], None)
         threads = None if threads is None else integer_in_range("threads", threads, low=1)
-        self._runner = runner = NativeBatch(
-            [shelf[0]] * count, setup.config, threads, overlap=overlap, heads=setup.heads
-        )
+        with setup.built(shelf[0]):
+            self._runner = runner = NativeBatch(
+                [shelf[0]] * count, setup.config, threads, overlap=overlap, heads=setup.heads
+            )
         pool = EnvPool(shelf, setup.config, setup.heads, threads)
         self._places = HouseAssignment(runner, pool, integer_in_range("load_ahead", load_ahead))
         self._forms = AgentForms(
@@ -352,6 +357,94 @@ class DwellParallelVectorEnv(EzPickle):
         """The state hash of every environment."""
         batch = self._begun("state_hashes")
         return [batch.state_hash(k) for k in range(self.num_envs)]
+
+    def world(self, env: int) -> World:
+        """The world in which an environment's episodes are played."""
+        k = integer_in_range("env", env, high=self.num_envs - 1)
+        self._begun("world")
+        return self._runner.world(k)
+
+    def snapshot(self) -> list[bytes]:
+        """Every environment as bytes: world, episodes, who acts on, and the seeds that follow.
+
+        Raises:
+            UsageError: No episode has begun in one of them.
+        """
+        batch, names = self._begun("snapshot"), self._forms.names
+        rows = []
+        for k, stream in enumerate(self._streams):
+            assert stream is not None
+            live = [name for j, name in enumerate(names) if self._active[k, j]]
+            saved = EnvSnapshot(
+                episode_id=self._places.episode_id(k, self._seeds[k]),
+                done=bool(self._over[k]),
+                stream=stream,
+                parts=agent_parts(names, live, self._distances[k].tolist()),
+                world=batch.snapshot(k),
+            )
+            rows.append(saved.to_vector_bytes())
+        return rows
+
+    def restore(self, snapshots: Sequence[bytes | None]) -> tuple[ByAgent, ByAgent]:
+        """Restores snapshots in environments; the next steps give the same bits.
+
+        A snapshot may go to another environment, and to several.
+
+        Args:
+            snapshots: One for each environment; ``None`` leaves it where it is.
+
+        Returns:
+            Observations of that moment, and infos as :meth:`reset` gives.
+
+        Raises:
+            ConfigError: They are not one for each, or one is of something else. Nothing has changed
+                then, unless the engine refuses a damaged world: the environments that were given
+                snapshots want a reset afterwards.
+        """
+        with self._calling("restore"):
+            given: object = snapshots
+            if not isinstance(given, list | tuple) or len(given) != self.num_envs:
+                raise ConfigError(
+                    f"snapshots is {quoted(given, 60)}; expected a list of {self.num_envs}: bytes, "
+                    "or None, for each environment"
+                )
+            rows = {
+                k: self._saved(f"snapshots[{k}]", snapshot)
+                for k, snapshot in enumerate(given)
+                if snapshot is not None
+            }
+            which = np.array([k in rows for k in range(self.num_envs)], np.bool_)
+            self._stopped[which] = True
+            self._places.move({k: (house, None) for k, (_, house, *_) in rows.items()})
+            following: dict[int, tuple[int, int]] = {}
+            for k, (saved, _, seed, live, distances) in rows.items():
+                self._runner.batch.restore(k, saved.world)
+                self._seeds[k], self._streams[k], self._over[k] = seed, saved.stream, saved.done
+                self._active[k] = [name in live for name in self._forms.names]
+                self._distances[k] = distances
+                following[k] = self._shelf.draw(deepcopy(saved.stream))
+            self._places.look_ahead(following)
+            self._runner.observe(which)
+            self._stopped[which] = False
+            return self._observations(), self._infos()
+
+    def _saved(
+        self, at: str, snapshot: object
+    ) -> tuple[EnvSnapshot, int, int, list[str], list[float]]:
+        """A snapshot with its house, its seed, who acts on, and distances."""
+        saved = EnvSnapshot.of_vector_bytes(at, snapshot)
+        refused = f"{at}: snapshot refused"
+        try:
+            house, seed = self._shelf.episode(saved.episode_id)
+        except ConfigError as error:
+            raise ConfigError(f"{refused}: {error}") from None
+        live, distances = parts_of_agents(refused, saved.parts, self._forms.names)
+        return saved, house, seed, live, distances
+
+    def fork(self) -> DwellParallelVectorEnv:
+        """Others at the same moment of the same episodes, which go on by themselves."""
+        made: DwellParallelVectorEnv = forked(self)
+        return made
 
     def close(self) -> None:
         """Closes the worlds; after it everything but ``close`` is refused."""

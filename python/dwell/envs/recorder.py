@@ -6,7 +6,7 @@ import dataclasses
 import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import gymnasium
 import numpy as np
@@ -16,14 +16,16 @@ from numpy.typing import NDArray
 from dwell import ConfigError, UsageError, __version__
 from dwell.arguments import file_path
 from dwell.envs.action_modes import EngineActions
+from dwell.envs.config import HouseCache
 from dwell.envs.single import DwellEnv
 from dwell.envs.vector import DwellVectorEnv
 from dwell.files import make_folder
+from dwell.heads import Head
 from dwell.replays import MAX_STEPS, Replay
 from dwell.stated_episodes import seed_of
 
 #: Why an episode goes on no further.
-_FULL = f"{MAX_STEPS} steps are written, all that a file holds; reset begins another"
+EPISODE_IS_FULL = f"{MAX_STEPS} steps are written, all that a file holds; reset begins another"
 
 
 class _EpisodeInProgress:
@@ -154,7 +156,7 @@ class ReplayRecorder(gymnasium.Wrapper[dict[str, Any], Any, dict[str, Any], Any]
         if not isinstance(env.unwrapped, DwellEnv):
             raise ConfigError(f"env is {env!r}; expected an environment of dwell")
         self._env = env.unwrapped
-        _refuse_what_files_cannot_name(self._env)
+        refuse_what_files_cannot_name(self._env)
         self._folder = Path(file_path("folder", folder))
         make_folder(self._folder)
         self._running: _EpisodeInProgress | None = None
@@ -189,7 +191,7 @@ class ReplayRecorder(gymnasium.Wrapper[dict[str, Any], Any, dict[str, Any], Any]
             self._running = running
             if running.is_full:
                 self._write()
-                raise UsageError(_FULL)
+                raise UsageError(EPISODE_IS_FULL)
         observation, reward, terminated, truncated, info = self.env.step(action)
         if running is not None:
             row = self._env._actions.one(action).row(0)
@@ -245,7 +247,7 @@ class VectorReplayRecorder(VectorWrapper[dict[str, Any], Any, dict[str, Any], An
             raise ConfigError(f"env is {env!r}; expected a vector environment of dwell")
         super().__init__(env)
         self._envs = env.unwrapped
-        _refuse_what_files_cannot_name(self._envs)
+        refuse_what_files_cannot_name(self._envs)
         self._folder = Path(file_path("folder", folder))
         make_folder(self._folder)
         self._running: dict[int, _EpisodeInProgress] = {}
@@ -281,7 +283,7 @@ class VectorReplayRecorder(VectorWrapper[dict[str, Any], Any, dict[str, Any], An
             self._running[k] = running
             if running.is_full:
                 self._write(k)
-                raise UsageError(f"environment {k}: {_FULL}")
+                raise UsageError(f"environment {k}: {EPISODE_IS_FULL}")
 
     def stepped(
         self,
@@ -309,7 +311,21 @@ class VectorReplayRecorder(VectorWrapper[dict[str, Any], Any, dict[str, Any], An
             del self._running[env]
 
 
-def _refuse_what_files_cannot_name(env: DwellEnv | DwellVectorEnv) -> None:
+class _InNamedHouses(Protocol):
+    """Environments with houses, whose agents may wear measured heads."""
+
+    _shelf: HouseCache
+
+    @property
+    def _heads(self) -> Sequence[Head]: ...
+
+
+def refuse_what_files_cannot_name(env: _InNamedHouses) -> None:
+    """Refuses houses that were handed over as objects, and measured heads.
+
+    Raises:
+        ConfigError: A file cannot name one.
+    """
     if env._shelf.has_objects:
         raise ConfigError(
             "houses: a house was handed over as an object, which a file cannot name; write it "

@@ -10,9 +10,12 @@ import numpy as np
 
 from dwell import _native
 from dwell.acoustics import AcousticScene
+from dwell.arguments import from_json
 from dwell.camera import Camera
 from dwell.house import House
+from dwell.recording.agents import RecordedAgents
 from dwell.recording.viewer import Recording
+from dwell.replay_agents import PlayedAgents, ReplayAgent, scripted_places, with_ears
 from dwell.replays import Replay
 from dwell.world import World
 
@@ -69,9 +72,71 @@ def record_episode(recording: Recording, house: House, task: str, seed: int) -> 
     return steps
 
 
+def record_agents(recording: Recording, house: House, task: str, agents: int, seed: int) -> int:
+    """An episode of several agents, as the task's scripted experts play it.
+
+    Returns:
+        How many steps it took.
+
+    Raises:
+        ConfigError: There is no such task, or it is not for so many agents.
+        DwellError: The house has nothing to do for it.
+    """
+    from gymnasium.utils import seeding
+
+    from dwell.envs.action_modes import EngineActions
+    from dwell.envs.agent_settings import MultiAgentSetup
+    from dwell.envs.episode_shelf import shelf_of
+    from dwell.envs.native_batch import NativeBatch
+
+    setup = MultiAgentSetup.plain(task, agents)
+    runner = NativeBatch([house], setup.config, None)
+    # As an environment of PettingZoo draws its first episode.
+    _, episode = shelf_of(house, None).draw(seeding.np_random(seed)[0])
+    runner.reset([episode])
+    world, names = runner.world(0), setup.roster.names
+    unknown = [ReplayAgent(name, "", "", success=False, ended=None) for name in names]
+    played = PlayedAgents(unknown, 0.0, [False] * len(names), runner)
+    config = from_json("config", setup.config)
+    listeners = [name for name, is_open in zip(names, with_ears(config), strict=True) if is_open]
+    shown = RecordedAgents(recording, Camera(256, 192, 90.0), listeners)
+    now = played.after(0, None, None, world)
+    limit = _MAX_STEPS if setup.limit is None else min(setup.limit, _MAX_STEPS)
+    step = 0
+    while True:
+        shown.step(step, world, now)
+        acts = np.array([now[name].acts for name in names])
+        if step >= limit or not acts.any():
+            break
+        step += 1
+        actions = EngineActions(
+            np.where(acts, runner.expert_actions(), -1),
+            answers=runner.batch.expert_answers().reshape(len(names), -1),
+            tokens=runner.batch.expert_utterances().reshape(len(names), -1),
+        )
+        played.before(actions, world)
+        now = played.after(step, None, runner.step(actions)[0], world)
+    shown.finish()
+    return step
+
+
 def record_replay(recording: Recording, house: House, replay: Replay) -> None:
-    """A recorded episode as it went: its way, and what the agent saw at every step."""
+    """A recorded episode as it went: its way, and what the agent saw at every step.
+
+    Of an episode of several agents all of them, as :class:`RecordedAgents` shows them.
+    """
     camera = Camera(256, 192, 90.0)
+    if replay.agents:
+        config = from_json("config", replay.config)
+        open_ears, scripted = with_ears(config), scripted_places(config)
+        listeners = [
+            agent.name for k, agent in enumerate(replay.agents) if open_ears[k] or not scripted[k]
+        ]
+        agents = RecordedAgents(recording, camera, listeners)
+        for moment in replay.play(house=house):
+            agents.step(moment.step, moment.world, moment.agents)
+        agents.finish()
+        return
     recording.text("instruction", replay.instruction)
     way = []
     for moment in replay.play(house=house):

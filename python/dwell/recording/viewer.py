@@ -66,7 +66,9 @@ class Recording:
             self._stream.save(str(out))
         self._cameras: list[str] = []
         self._texts: list[str] = []
-        self._walks = False
+        #: The paths of the agents that walk, by their names.
+        self._walkers: dict[str, str] = {}
+        self._speaks = self._hears = False
         self._corners: tuple[NDArray[Any], NDArray[Any]] | None = None
         self._log(["world"], self._rr.ViewCoordinates.RIGHT_HAND_Y_UP)
 
@@ -173,30 +175,68 @@ class Recording:
         """Logs an agent's path: positions (x, y, z), m."""
         self._log(["world", "ways", name], self._rr.LineStrips3D([way], radii=[0.02]))
 
+    def at_step(self, step: int) -> None:
+        """What follows is of this step."""
+        self._stream.set_time("step", sequence=step)
+
     def step(
-        self, step: int, agent: Mapping[str, Any], image: NDArray[Any], camera: Camera
+        self,
+        step: int,
+        agent: Mapping[str, Any],
+        image: NDArray[Any] | None,
+        camera: Camera,
+        *,
+        name: str | None = None,
+        label: str | None = None,
     ) -> None:
         """An agent at a step of its way, with what it saw.
 
         Args:
             step: The step's number.
             agent: A row of ``World.agents()``.
-            image: Its colours.
+            image: Its colours, if there is a picture.
             camera: What they were taken with: a pinhole at the eyes.
+            name: Its name, where there are several.
+            label: What stands at its body.
         """
         rr = self._rr
-        self._walks = True
-        self._stream.set_time("step", sequence=step)
-        path = ["world", "agent"]
+        self.at_step(step)
+        path = ["world", "agent"] if name is None else ["world", "agents", name]
+        if image is not None:
+            self._walkers["agent" if name is None else name] = rr.new_entity_path(path)
         x, y, z = agent["position"]
         body = agent["body"]
         middle = [x, y + body["height_m"] / 2, z]
         size = [2 * body["radius_m"], body["height_m"], 2 * body["radius_m"]]
-        self._log([*path, "body"], rr.Boxes3D(centers=[middle], sizes=[size]), static=False)
+        labels = None if label is None else [label]
+        box = rr.Boxes3D(centers=[middle], sizes=[size], labels=labels)
+        self._log([*path, "body"], box, static=False)
         eye = (x, y + body["eye_height_m"], z)
         yaw_deg, pitch_deg = map(math.degrees, (agent["yaw_rad"], agent["pitch_rad"]))
         self._pinhole([*path, "eye"], camera, eye, yaw_deg, pitch_deg, static=False)
-        self._log([*path, "eye", "rgb"], rr.Image(image), static=False)
+        if image is not None:
+            self._log([*path, "eye", "rgb"], rr.Image(image), static=False)
+
+    def holds(self, name: str, thing: str | None, place: Sequence[float] | None) -> None:
+        """What an agent holds from this step on, and where that is, m; ``None``: nothing."""
+        rr = self._rr
+        path = ["world", "agents", name, "holds"]
+        if thing is None or place is None:
+            self._log(path, rr.Clear(recursive=False), static=False)
+            return
+        self._log(path, rr.Points3D([place], radii=[0.05], labels=[thing]), static=False)
+
+    def told(self, name: str, what: str) -> None:
+        """A line about an agent at this step: what it says, understands, takes or lets go of."""
+        self._speaks = True
+        self._log(["agents", name], self._rr.TextLog(what), static=False)
+
+    def ears(self, name: str, levels_db: Sequence[float]) -> None:
+        """The levels at an agent's ears in this step, left and right, dB SPL."""
+        self._hears = True
+        for ear, level_db in zip(("left", "right"), levels_db, strict=True):
+            path = ["heard", name, f"{ear} ear, dB SPL"]
+            self._log(path, self._rr.Scalars(float(level_db)), static=False)
 
     def sound(
         self, name: str, paths: Sequence[Mapping[str, Any]], listener: Sequence[float]
@@ -244,8 +284,16 @@ class Recording:
             look["eye_controls"] = eye(position=place.tolist(), look_target=middle.tolist())
         house = blueprint.Spatial3DView(origin="/world", contents=contents, name="house", **look)
         texts = [blueprint.TextDocumentView(origin=f"/{name}", name=name) for name in self._texts]
-        agent = "/world/agent/eye"
-        eyes = [blueprint.Spatial2DView(origin=agent, contents=[f"+ {agent}/rgb"], name="agent")]
+        eyes = [
+            blueprint.Spatial2DView(origin=f"{path}/eye", contents=[f"+ {path}/eye/rgb"], name=name)
+            for name, path in self._walkers.items()
+        ]
+        # Of several agents what all see stands in one place.
+        seen = [blueprint.Grid(*eyes, name="agents")] if len(eyes) > 1 else eyes
+        if self._speaks:
+            texts.append(blueprint.TextLogView(origin="/agents", name="said and done"))
+        if self._hears:
+            texts.append(blueprint.TimeSeriesView(origin="/heard", name="heard"))
 
         def images(image: str) -> Any:  # noqa: ANN401 - a container, where the SDK has types
             views = [
@@ -257,7 +305,7 @@ class Recording:
             return blueprint.Grid(*views, name=image)
 
         tabs = [images(image) for image in ("rgb", "depth", "ids") if self._cameras]
-        beside = blueprint.Tabs(*(eyes if self._walks else []), *tabs, *texts)
+        beside = blueprint.Tabs(*seen, *tabs, *texts)
         return blueprint.Blueprint(blueprint.Horizontal(house, beside, column_shares=[3, 2]))
 
     def _log(self, path: list[str], what: object, *, static: bool = True) -> None:

@@ -1,0 +1,193 @@
+"""Recording of episodes of several agents while they are played."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pettingzoo.utils import BaseParallelWrapper
+
+from dwell import ConfigError, UsageError, __version__
+from dwell.arguments import file_path
+from dwell.envs.action_modes import EngineActions
+from dwell.envs.parallel import DwellParallelEnv
+from dwell.envs.recorder import EPISODE_IS_FULL, refuse_what_files_cannot_name, write_numbered
+from dwell.files import make_folder
+from dwell.replay_agents import ReplayAgent
+from dwell.replays import MAX_STEPS, Replay
+from dwell.stated_episodes import seed_of
+
+ByAgent = dict[str, dict[str, Any]]
+#: What a step gives.
+Step = tuple[ByAgent, dict[str, float], dict[str, bool], dict[str, bool], ByAgent]
+
+
+class ParallelReplayRecorder(BaseParallelWrapper):  # type: ignore[misc] # untyped
+    """Writes every episode of an environment of several agents into a folder.
+
+    The files are ``episode_0000.replay`` and so on, with the actions of all agents, what they said,
+    and when each one's episode ended; :class:`dwell.Replay` reads them. A file is written when the
+    last agent's episode ends, when the next ones begin, or at ``close``, as
+    :class:`dwell.envs.ReplayRecorder` does.
+
+    Examples:
+        >>> import tempfile
+        >>> import dwell
+        >>> from dwell.pettingzoo import ParallelReplayRecorder, parallel_env
+        >>> folder = tempfile.mkdtemp()
+        >>> env = parallel_env(agents=2, houses="builtin:studio", sensors=["gps"])
+        >>> env = ParallelReplayRecorder(env, folder)
+        >>> observations, infos = env.reset(seed=1)
+        >>> observations, *_ = env.step({"agent_0": 1, "agent_1": 0})
+        >>> env.close()
+        >>> replay = dwell.Replay.read(f"{folder}/episode_0000.replay")
+        >>> replay.actions, [agent.ended for agent in replay.agents]
+        (({'agent_0': 'move_forward', 'agent_1': 'stop'},), [None, 1])
+        >>> replay.first_difference()
+    """
+
+    def __init__(self, env: object, folder: str | os.PathLike[str]) -> None:
+        """Wraps an environment of dwell, whatever other wrappers are around it.
+
+        Raises:
+            ConfigError: It is none of dwell, or its house or head cannot be named in a file.
+            OSError: The folder is none, or cannot be made.
+        """
+        own = getattr(env, "unwrapped", env)
+        if not isinstance(own, DwellParallelEnv):
+            raise ConfigError(f"env is {env!r}; expected an environment of dwell.pettingzoo")
+        super().__init__(env)
+        self._env = own
+        refuse_what_files_cannot_name(own)
+        self._folder = Path(file_path("folder", folder))
+        make_folder(self._folder)
+        self._running: _EpisodeOfAgents | None = None
+
+    def reset(
+        self, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[ByAgent, ByAgent]:
+        """Begins an episode; the one before is written."""
+        self._write()
+        observations, infos = self.env.reset(seed=seed, options=options)
+        self._running = _EpisodeOfAgents(self._env, infos)
+        return observations, infos
+
+    def step(self, actions: dict[str, Any]) -> Step:
+        """Makes a step.
+
+        Raises:
+            UsageError: Something else changed the world since the last step, such as a restored
+                snapshot; no file can hold that. Or the episode is longer than any file holds.
+            OSError: The episode ended and cannot be written; it is kept.
+        """
+        running, live = self._running, [*self._env.agents]
+        if running is not None and live:
+            # Not written where it is refused.
+            self._running = None
+            running.check(self._env.state_hash())
+            self._running = running
+            if running.is_full:
+                self._write()
+                raise UsageError(EPISODE_IS_FULL)
+        answer: Step = self.env.step(actions)
+        if running is not None and live:
+            taken = self._env._forms.one(actions, live)
+            running.stepped(taken, self._env.state_hash(), self._env._ruling)
+            if not self._env.agents:
+                self._write()
+        return answer
+
+    def close(self) -> None:
+        """Writes the episode that runs, and closes the environment."""
+        self._write()
+        super().close()
+
+    def _write(self) -> None:
+        if self._running is not None:
+            self._running.write(self._folder)
+        self._running = None
+
+
+class _EpisodeOfAgents:
+    """An episode of several agents that is being recorded."""
+
+    def __init__(self, env: DwellParallelEnv, infos: ByAgent) -> None:
+        roster, batch = env._roster, env._runner.batch
+        about = next(iter(infos.values()))
+        self._agents = [
+            ReplayAgent(name, team, batch.instruction(0, k), success=False, ended=None)
+            for k, (name, team) in enumerate(zip(roster.names, roster.team_names, strict=True))
+        ]
+        self._replay = Replay(
+            house=str(about["scene_id"]),
+            seed=seed_of(str(about["episode_id"])),
+            config=env._config,
+            parts=(),
+            actions=(),
+            hashes=(),
+            instruction=self._agents[0].instruction,
+            success=False,
+            made_by=__version__,
+            shared_reward=env._forms.share,
+        )
+        self._actions: list[dict[str, Any]] = []
+        self._hashes = [f"{env.state_hash():016x}"]
+
+    def check(self, state_hash: int) -> None:
+        """Refuses a world that is not as the last step left it.
+
+        Raises:
+            UsageError: No file can hold how it came there.
+        """
+        if f"{state_hash:016x}" != self._hashes[-1]:
+            raise UsageError(
+                "the world was changed since the last step by something else than actions (also by "
+                "listen, which opens ears: name the sensor audio instead); its episode cannot be "
+                "recorded further; reset begins another"
+            )
+
+    def stepped(
+        self,
+        actions: list[EngineActions],
+        state_hash: int,
+        ruling: tuple[NDArray[np.bool_], NDArray[np.bool_]],
+    ) -> None:
+        """A step was made; ``ruling``: whose success and whose end it was, by place."""
+        success, terminated = ruling
+        self._actions.append(
+            {
+                agent.name: own.row(0)
+                for agent, own in zip(self._agents, actions, strict=True)
+                if own.numbers[0] >= 0
+            }
+        )
+        self._hashes.append(f"{state_hash:016x}")
+        for k, agent in enumerate(self._agents):
+            if agent.ended is None:
+                self._agents[k] = dataclasses.replace(
+                    agent,
+                    success=bool(success[k]),
+                    ended=len(self._actions) if terminated[k] else None,
+                )
+
+    def write(self, folder: Path) -> None:
+        """Writes the steps so far, if there are any."""
+        if not self._actions:
+            return
+        replay = dataclasses.replace(
+            self._replay,
+            actions=tuple(self._actions),
+            hashes=tuple(self._hashes),
+            success=self._agents[0].success,
+            agents=tuple(self._agents),
+        )
+        write_numbered(replay, folder)
+
+    @property
+    def is_full(self) -> bool:
+        """True if no file holds a further step."""
+        return len(self._actions) == MAX_STEPS
