@@ -28,7 +28,9 @@ def resident_mb() -> float:
     return pages * os.sysconf("SC_PAGE_SIZE") / 1e6
 
 
-def known_house(task: str, house: str, count: int, *, memory: bool) -> dict[str, object]:
+def known_house(
+    task: str, house: str, count: int, *, memory: bool
+) -> dict[str, object]:
     """Resets in one house."""
     env = DwellEnv(task, houses=house)
     env.reset(seed=1)
@@ -63,7 +65,9 @@ def cold(task: str, houses: list[str]) -> float:
 
 def warm(task: str, houses: list[str], count: int) -> float:
     """What a step takes longer that begins an episode in a house opened ahead, ms, the median."""
-    env = DwellVectorEnv(1, task, houses=houses, autoreset_mode="NextStep", max_episode_steps=4)
+    env = DwellVectorEnv(
+        1, task, houses=houses, autoreset_mode="NextStep", max_episode_steps=4
+    )
     env.reset(seed=1)
     begins, others = [], []
     ended = False
@@ -81,10 +85,14 @@ def warm(task: str, houses: list[str], count: int) -> float:
 
 def main() -> None:
     """Measures and prints."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
+    parser = argparse.ArgumentParser(
+        description=__doc__.splitlines()[0] if __doc__ else ""
+    )
     parser.add_argument("--task", default="InstructionFollowing")
     parser.add_argument("--house", default="builtin:apartment")
-    parser.add_argument("--count", type=int, default=100, help="resets in the known house")
+    parser.add_argument(
+        "--count", type=int, default=100, help="resets in the known house"
+    )
     parser.add_argument("--memory", action="store_true")
     args = parser.parse_args()
     houses = [f"seed:{k}" for k in range(1, 7)]

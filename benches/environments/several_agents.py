@@ -28,8 +28,14 @@ HOUSES = ("seed:1", "seed:2", "seed:3", "seed:4")
 #: Agents, sensors, house by name.
 CASES: dict[str, tuple[int, Any, str]] = {
     **{f"4 agents rgb 64 binaural {house}": (4, BINAURAL, house) for house in HOUSES},
-    **{f"{agents} agents rgb 64 seed:1": (agents, RGB, "seed:1") for agents in (1, 2, 4, 8, 16)},
-    **{f"{agents} agents gps seed:1": (agents, ["gps"], "seed:1") for agents in (1, 4, 16)},
+    **{
+        f"{agents} agents rgb 64 seed:1": (agents, RGB, "seed:1")
+        for agents in (1, 2, 4, 8, 16)
+    },
+    **{
+        f"{agents} agents gps seed:1": (agents, ["gps"], "seed:1")
+        for agents in (1, 4, 16)
+    },
     **{
         f"{agents} agents rgb 64 binaural seed:1": (agents, BINAURAL, "seed:1")
         for agents in (1, 2, 4, 8)
@@ -52,14 +58,19 @@ def made(agents: int, sensors: Any, house: str) -> DwellParallelEnv:  # noqa: AN
     )
 
 
-def play(env: DwellParallelEnv, stream: np.random.Generator, seconds: float) -> tuple[int, float]:
+def play(
+    env: DwellParallelEnv, stream: np.random.Generator, seconds: float
+) -> tuple[int, float]:
     """Joint steps that are made in so many seconds, and s of processor."""
     steps, start, cpu = 0, time.perf_counter(), time.process_time()
     while time.perf_counter() - start < seconds:
         if not env.agents:
             env.reset()
         moves = stream.integers(len(WALK), size=len(env.agents))
-        numbers = [("move_forward", "turn_left", "turn_right").index(WALK[move]) for move in moves]
+        numbers = [
+            ("move_forward", "turn_left", "turn_right").index(WALK[move])
+            for move in moves
+        ]
         env.step(dict(zip(env.agents, numbers, strict=True)))
         steps += 1
     return steps, time.process_time() - cpu
@@ -93,17 +104,24 @@ def run_memory(episodes: int) -> None:
     for episode in range(episodes + 1):
         env.reset()
         env.step(dict.fromkeys(env.agents, 0))
-        if episode in (100, episodes) or (episode and episode % max(1, episodes // 10) == 0):
+        if episode in (100, episodes) or (
+            episode and episode % max(1, episodes // 10) == 0
+        ):
             with open("/proc/self/statm", encoding="utf-8") as file:
                 pages = int(file.read().split()[1])
             resident = pages * resource.getpagesize() / 1e6
-            print(json.dumps({"episodes": episode, "resident_mb": round(resident, 1)}), flush=True)
+            print(
+                json.dumps({"episodes": episode, "resident_mb": round(resident, 1)}),
+                flush=True,
+            )
 
 
 def main() -> None:
     """Reads the arguments."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("--case", action="append", choices=[*CASES], help="default: all")
+    parser.add_argument(
+        "--case", action="append", choices=[*CASES], help="default: all"
+    )
     parser.add_argument("--seconds", type=float, default=5.0, help="a repeat takes")
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument(

@@ -67,7 +67,9 @@ class TimedBatch:
             try:
                 return found(*args, **kwargs)
             finally:
-                self.spent[name] = self.spent.get(name, 0.0) + time.perf_counter() - start
+                self.spent[name] = (
+                    self.spent.get(name, 0.0) + time.perf_counter() - start
+                )
 
         return call
 
@@ -78,7 +80,9 @@ def talking_agent(env: DwellEnv | DwellVectorEnv, case: Case) -> Callable[[int],
     The way leads from one end of the floor to the other and back.
     """
     worlds = (
-        [env.world] if isinstance(env, DwellEnv) else [env.world(k) for k in range(env.num_envs)]
+        [env.world]
+        if isinstance(env, DwellEnv)
+        else [env.world(k) for k in range(env.num_envs)]
     )
     navigation = dwell.House.open(case.house).navigation()
     points = navigation.points()
@@ -166,10 +170,14 @@ def cases() -> dict[str, Case]:
     for count in (None, 64):
         for label, sensors in (("body", ["gps"]), ("rgbd", RGBD)):
             for house in HOUSES:
-                found[f"free {label} x{count or 1} {house}"] = Case("Free", house, sensors, count)
+                found[f"free {label} x{count or 1} {house}"] = Case(
+                    "Free", house, sensors, count
+                )
     for house in HOUSES:
         found[f"free steps heard {house}"] = Case("Free", house, ["audio"])
-        found[f"free talker heard {house}"] = Case("Free", house, ["audio"], source=True)
+        found[f"free talker heard {house}"] = Case(
+            "Free", house, ["audio"], source=True
+        )
     apartment = ("InstructionFollowing", "builtin:apartment")
     pictures = ["rgb", "depth", "semantic", "instruction"]
     found["instructions body"] = Case(*apartment, ["instruction"])
@@ -180,7 +188,9 @@ def cases() -> dict[str, Case]:
 
 def main() -> None:
     """Measures and prints."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
+    parser = argparse.ArgumentParser(
+        description=__doc__.splitlines()[0] if __doc__ else ""
+    )
     parser.add_argument("--seconds", type=float, default=6.0, help="for each case")
     parser.add_argument("--repeats", type=int, default=5, help="the median counts")
     parser.add_argument("--case", default="", help="cases whose name has this")
@@ -193,7 +203,9 @@ def main() -> None:
         if args.json:
             print(json.dumps({"case": name, **row}), flush=True)
             continue
-        calls = ", ".join(f"{call} {ms:.2f}" for call, ms in row["ms"].items() if ms >= 0.01)
+        calls = ", ".join(
+            f"{call} {ms:.2f}" for call, ms in row["ms"].items() if ms >= 0.01
+        )
         low, high = row["from_to"]
         print(
             f"{name:32} {row['steps_per_s']:7.0f}/s ({low:.0f} to {high:.0f})  "

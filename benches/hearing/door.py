@@ -31,7 +31,9 @@ def main() -> None:
     parser.add_argument("--door", default="door_4")
     parser.add_argument("--sounds", type=int, default=19)
     parser.add_argument("--preset", default="full")
-    parser.add_argument("--before", type=int, default=5, help="steps before the door opens")
+    parser.add_argument(
+        "--before", type=int, default=5, help="steps before the door opens"
+    )
     parser.add_argument("--steps", type=int, default=120)
     parser.add_argument("--quiet", action="store_true", help="the last line alone")
     args = parser.parse_args()
@@ -44,7 +46,9 @@ def main() -> None:
     k = 0
     while playing(world) < args.sounds:
         world.play(
-            signals[k % len(signals)], at=things[k * len(things) // args.sounds]["name"], loop=True
+            signals[k % len(signals)],
+            at=things[k * len(things) // args.sounds]["name"],
+            loop=True,
         )
         k += 1
     world.listen()
@@ -60,7 +64,9 @@ def main() -> None:
         if step >= args.before:
             times.append(took)
         if not args.quiet:
-            print(f"{step:4} {1000 * took:9.1f} ms  {playing(world):3} sounds  door {now:6.3f}")
+            print(
+                f"{step:4} {1000 * took:9.1f} ms  {playing(world):3} sounds  door {now:6.3f}"
+            )
     print(
         f"longest {max(times):.3f} s, 99th percentile {np.percentile(times, 99):.3f} s, "
         f"mean {np.mean(times):.3f} s, {playing(world)} things sound"

@@ -36,7 +36,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--houses", type=int, default=50)
     parser.add_argument("--rounds", type=int, default=7)
-    parser.add_argument("--trim", action="store_true", help="malloc_trim after each house")
+    parser.add_argument(
+        "--trim", action="store_true", help="malloc_trim after each house"
+    )
     parser.add_argument("--mallopt", default="", help="such as mmap=1048576,arenas=1")
     args = parser.parse_args()
     libc = ctypes.CDLL("libc.so.6")
@@ -44,7 +46,9 @@ def main() -> None:
         name, value = option.split("=")
         if not libc.mallopt(_OPTIONS[name], int(value)):
             raise SystemExit(f"glibc refuses {option}")
-    kept: collections.deque[tuple[dwell.World, object]] = collections.deque(maxlen=_KEPT)
+    kept: collections.deque[tuple[dwell.World, object]] = collections.deque(
+        maxlen=_KEPT
+    )
     ends = []
     started, trimmed = time.perf_counter(), 0.0
     for k in range(args.rounds):
@@ -58,7 +62,8 @@ def main() -> None:
                 trimmed += time.perf_counter() - before
         ends.append(resident_mib())
         print(
-            f"round {k + 1}: {ends[-1]:.1f} MiB, {time.perf_counter() - started:.1f} s", flush=True
+            f"round {k + 1}: {ends[-1]:.1f} MiB, {time.perf_counter() - started:.1f} s",
+            flush=True,
         )
     first = min(max(args.rounds // 10, 2), args.rounds - 2)
     rounds = np.arange(first, args.rounds)

@@ -37,7 +37,11 @@ def freed(fixed: list[Box], moving: list[Box]) -> list[Box]:
     for center, half in sorted(moving, key=lambda box: float(box[0][1])):
         center = center.copy()
         for _ in range(200):
-            hit = [(c, h) for c, h in placed if np.all(np.abs(center - c) < half + h - OVERLAP_M)]
+            hit = [
+                (c, h)
+                for c, h in placed
+                if np.all(np.abs(center - c) < half + h - OVERLAP_M)
+            ]
             if not hit:
                 break
             center[1] = max(float(c[1] + h[1]) for c, h in hit) + half[1] + GAP_M
@@ -63,7 +67,9 @@ def of_house(name: str, toys: int, seed: int) -> tuple[list[Box], list[Box]]:
     return fixed, freed(fixed, moving)
 
 
-def of_script(path: Path, root: str, house: str, extra: int) -> tuple[list[Box], list[Box]]:
+def of_script(
+    path: Path, root: str, house: str, extra: int
+) -> tuple[list[Box], list[Box]]:
     """What a script's ``setup`` makes; it has lifted its boxes itself."""
     spec = importlib.util.spec_from_file_location(path.stem, path)
     if spec is None or spec.loader is None:
@@ -83,7 +89,10 @@ def rows(boxes: list[Box]) -> list[dict[str, list[float]]]:
 
 
 def scene(
-    fixed: list[Box], moving: list[Box], density_kg_m3: float = 300.0, rate_hz: float = 100.0
+    fixed: list[Box],
+    moving: list[Box],
+    density_kg_m3: float = 300.0,
+    rate_hz: float = 100.0,
 ) -> dict[str, object]:
     """What ``dwell bench physics --boxes`` reads."""
     return {
@@ -102,14 +111,20 @@ def main() -> None:
     house.add_argument("house", metavar="HOUSE")
     house.add_argument("--toys", type=int, default=50)
     house.add_argument("--seed", type=int, default=7)
-    script = kinds.add_parser("script", help="of a script with setup(root, house, extra)")
+    script = kinds.add_parser(
+        "script", help="of a script with setup(root, house, extra)"
+    )
     script.add_argument("script", type=Path)
     script.add_argument("root")
     script.add_argument("house")
     script.add_argument("--extra", type=int, default=50)
     for part in (house, script):
-        part.add_argument("--density", type=float, default=300.0, help="of what moves, kg/m3")
-        part.add_argument("--rate", type=float, default=100.0, help="physics steps a second")
+        part.add_argument(
+            "--density", type=float, default=300.0, help="of what moves, kg/m3"
+        )
+        part.add_argument(
+            "--rate", type=float, default=100.0, help="physics steps a second"
+        )
         part.add_argument("--out", type=Path, required=True)
     args = parser.parse_args()
     if args.kind == "house":

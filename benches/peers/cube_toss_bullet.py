@@ -44,7 +44,10 @@ def scene() -> int:
     bullet.connect(bullet.DIRECT)
     bullet.setGravity(0, 0, -9.81)
     bullet.setTimeStep(1.0 / (RATE_HZ * STEPS))
-    moments = " ".join(f'i{a}{a}="{INERTIA_KG_M2}"' for a in "xyz") + ' ixy="0" ixz="0" iyz="0"'
+    moments = (
+        " ".join(f'i{a}{a}="{INERTIA_KG_M2}"' for a in "xyz")
+        + ' ixy="0" ixz="0" iyz="0"'
+    )
     edge = 2 * HALF_WIDTH_M
     urdf = (
         f'<robot name="cube"><link name="cube"><inertial><mass value="{MASS_KG}"/>'
@@ -68,7 +71,9 @@ def scene() -> int:
     return cube
 
 
-def score(cube: int, toss: dict[str, np.ndarray], start: dict[str, str]) -> tuple[float, ...]:
+def score(
+    cube: int, toss: dict[str, np.ndarray], start: dict[str, str]
+) -> tuple[float, ...]:
     """Means over samples: position in cube widths, rotation in degrees, e_q."""
     first = int(start["eval_start_k"])
     place, turn = toss["p"][first:], toss["q"][first:]
@@ -93,7 +98,9 @@ def main() -> None:
     """Scores every toss and prints the table's row."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=Path, help="the cube_toss folder")
-    parser.add_argument("--out", type=Path, required=True, help="toss, position, rotation, e_q")
+    parser.add_argument(
+        "--out", type=Path, required=True, help="toss, position, rotation, e_q"
+    )
     args = parser.parse_args()
     table = pq.read_table(args.folder / "data.parquet")
     column = {name: table[name].to_numpy() for name in table.column_names}

@@ -54,7 +54,9 @@ def axis_depth(buffer: NDArray[np.float32]) -> NDArray[np.float32]:
 def main() -> None:
     """Loads, keeps some pictures, then draws on demand."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("name", choices=("dwell", "dwell_lit", "panda3d", "mujoco", "pybullet"))
+    parser.add_argument(
+        "name", choices=("dwell", "dwell_lit", "panda3d", "mujoco", "pybullet")
+    )
     parser.add_argument("folder", type=Path)
     parser.add_argument("--house", default="builtin:apartment")
     parser.add_argument("--size", type=int, default=128)

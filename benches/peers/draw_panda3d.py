@@ -11,7 +11,8 @@ from draw import FAR_M, FOV_DEG, NEAR_M, Renderer, View, axis_depth
 from panda3d import core
 
 core.loadPrcFileData(
-    "", "load-display p3headlessgl\naudio-library-name null\nsync-video 0\nframebuffer-srgb 0\n"
+    "",
+    "load-display p3headlessgl\naudio-library-name null\nsync-video 0\nframebuffer-srgb 0\n",
 )
 
 
@@ -30,7 +31,10 @@ def load(folder: Path, size: int) -> Renderer:
     lens.set_fov(FOV_DEG, FOV_DEG)
     lens.set_near_far(NEAR_M, FAR_M)
     eye = root.attach_new_node(core.Camera("eye", lens))
-    for light, strength in ((core.AmbientLight("all"), 0.5), (core.PointLight("lamp"), 0.6)):
+    for light, strength in (
+        (core.AmbientLight("all"), 0.5),
+        (core.PointLight("lamp"), 0.6),
+    ):
         light.set_color((strength, strength, strength, 1))
         root.set_light(eye.attach_new_node(light))
     buffer.make_display_region().set_camera(eye)
@@ -39,7 +43,9 @@ def load(folder: Path, size: int) -> Renderer:
     def draw(view: View) -> tuple[Any, Any]:
         position = core.LPoint3f(*view["position"])
         eye.set_pos(position)
-        eye.look_at(root, position + core.LVector3f(*view["forward"]), core.LVector3f(0, 1, 0))
+        eye.look_at(
+            root, position + core.LVector3f(*view["forward"]), core.LVector3f(0, 1, 0)
+        )
         engine.render_frame()
         return (
             np.frombuffer(rgb.get_ram_image(), np.uint8),
@@ -52,7 +58,9 @@ def load(folder: Path, size: int) -> Renderer:
         return color, axis_depth(seen[1].reshape(size, size)[::-1])
 
     driver = buffer.get_gsg().get_driver_renderer()
-    return Renderer(draw, pictures, f"textures, a lamp at the eye, no shadows; {driver}")
+    return Renderer(
+        draw, pictures, f"textures, a lamp at the eye, no shadows; {driver}"
+    )
 
 
 def _target(size: int) -> tuple[Any, Any, Any]:
@@ -72,7 +80,9 @@ def _target(size: int) -> tuple[Any, Any, Any]:
         core.GraphicsPipe.BF_refuse_window,
     )
     if buffer is None:
-        raise SystemExit("Panda3D can make no picture in memory here (EGL gives it no OpenGL)")
+        raise SystemExit(
+            "Panda3D can make no picture in memory here (EGL gives it no OpenGL)"
+        )
     rgb, depth = core.Texture("rgb"), core.Texture("depth")
     depth.set_format(core.Texture.F_depth_component)
     depth.set_component_type(core.Texture.T_float)

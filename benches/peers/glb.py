@@ -110,7 +110,9 @@ def read(path: Path) -> list[Part]:
     """The parts of a house, by material."""
     file = _File(path)
     pieces: dict[int, list[tuple[NDArray[Any], ...]]] = {}
-    open_nodes = [(root, np.eye(4)) for root in file.json["scenes"][file.json["scene"]]["nodes"]]
+    open_nodes = [
+        (root, np.eye(4)) for root in file.json["scenes"][file.json["scene"]]["nodes"]
+    ]
     while open_nodes:
         index, parent = open_nodes.pop()
         node = file.json["nodes"][index]
@@ -120,7 +122,9 @@ def read(path: Path) -> list[Part]:
             continue
         for primitive in file.json["meshes"][node["mesh"]]["primitives"]:
             names = primitive["attributes"]
-            positions = file.accessor(names["POSITION"]) @ world[:3, :3].T + world[:3, 3]
+            positions = (
+                file.accessor(names["POSITION"]) @ world[:3, :3].T + world[:3, 3]
+            )
             normals = file.accessor(names["NORMAL"]) @ np.linalg.inv(world[:3, :3])
             uv = file.accessor(names["TEXCOORD_0"])
             triangles = file.accessor(primitive["indices"]).reshape(-1, 3)
@@ -131,15 +135,21 @@ def read(path: Path) -> list[Part]:
 
 def _part(file: _File, material: int, pieces: list[tuple[NDArray[Any], ...]]) -> Part:
     look = file.json["materials"][material].get("pbrMetallicRoughness", {})
-    positions, normals, uv = (np.concatenate([piece[k] for piece in pieces]) for k in range(3))
+    positions, normals, uv = (
+        np.concatenate([piece[k] for piece in pieces]) for k in range(3)
+    )
     firsts = np.cumsum([0] + [len(piece[0]) for piece in pieces])
-    triangles = [piece[3] + first for piece, first in zip(pieces, firsts[:-1], strict=True)]
+    triangles = [
+        piece[3] + first for piece, first in zip(pieces, firsts[:-1], strict=True)
+    ]
     image = None
     if (texture := look.get("baseColorTexture")) is not None:
         source = file.json["textures"][texture["index"]]["source"]
         image = file.view(file.json["images"][source]["bufferView"])
         moved = texture.get("extensions", {}).get("KHR_texture_transform", {})
-        uv = uv * np.array(moved.get("scale", (1, 1))) + np.array(moved.get("offset", (0, 0)))
+        uv = uv * np.array(moved.get("scale", (1, 1))) + np.array(
+            moved.get("offset", (0, 0))
+        )
     length = np.linalg.norm(normals, axis=1, keepdims=True)
     return Part(
         positions=positions.astype(np.float32),

@@ -66,7 +66,11 @@ def of_energies(responses: np.ndarray) -> list[float]:
     """Relative standard deviation of energies of 10 ms, the mean over each window."""
     step = SCENE["fs"] * STEP_MS // 1000
     count = responses.shape[1] // step
-    energy = (responses[:, : count * step].astype(np.float64) ** 2).reshape(-1, count, step).sum(2)
+    energy = (
+        (responses[:, : count * step].astype(np.float64) ** 2)
+        .reshape(-1, count, step)
+        .sum(2)
+    )
     spread = energy.std(0, ddof=1) / np.maximum(energy.mean(0), 1e-30)
     return [float(spread[a // STEP_MS : b // STEP_MS].mean()) for a, b in WINDOWS_MS]
 
@@ -74,19 +78,30 @@ def of_energies(responses: np.ndarray) -> list[float]:
 def of_measures(responses: np.ndarray) -> list[float]:
     """Standard deviation of each measure, the mean over octaves; dwell measures all programs."""
     heard = [measures.response_metrics(response, SCENE["fs"]) for response in responses]
-    octaves = [k for k, row in enumerate(heard[0]) if 200 < float(row["centre_hz"] or 0) < 5000]
+    octaves = [
+        k for k, row in enumerate(heard[0]) if 200 < float(row["centre_hz"] or 0) < 5000
+    ]
     spreads = []
     for _, key, relative in MEASURES:
-        values = np.array([[rows[k][key] for k in octaves] for rows in heard], np.float64)
+        values = np.array(
+            [[rows[k][key] for k in octaves] for rows in heard], np.float64
+        )
         spread = values.std(0, ddof=1)
         spreads.append(float(np.mean(spread / values.mean(0) if relative else spread)))
     return spreads
 
 
-def heard(python: str, name: str, folder: Path, rays: int, times: int) -> dict[str, Any] | str:
+def heard(
+    python: str, name: str, folder: Path, rays: int, times: int
+) -> dict[str, Any] | str:
     """Seconds a response and noise, or why there are none."""
     out = folder / f"{name}_{rays}.npz"
-    words = [python, str(HERE / f"hear_{name}.py"), str(folder / "scene.json"), str(out)]
+    words = [
+        python,
+        str(HERE / f"hear_{name}.py"),
+        str(folder / "scene.json"),
+        str(out),
+    ]
     told = subprocess.run(
         [*words, "--rays", str(rays), "--times", str(times)],
         capture_output=True,
@@ -117,8 +132,12 @@ def seconds_at(curve: list[dict[str, Any]], which: int, wanted: float) -> float:
 def main() -> int:
     """Measures and prints."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n\n")[0])
-    parser.add_argument("--times", type=int, default=12, help="responses of each setting")
-    parser.add_argument("--rlr", action="store_true", help="install it, too (CC BY-NC 4.0)")
+    parser.add_argument(
+        "--times", type=int, default=12, help="responses of each setting"
+    )
+    parser.add_argument(
+        "--rlr", action="store_true", help="install it, too (CC BY-NC 4.0)"
+    )
     parser.add_argument("--out", type=Path, default=Path("out/peers"))
     args = parser.parse_args()
     folder = args.out.resolve() / "sound"
@@ -148,7 +167,9 @@ def main() -> int:
     for name in names:
         if name in missing:
             continue
-        print(f"\ndwell is so many times as fast as {name} at its noise, by {name}'s rays:")
+        print(
+            f"\ndwell is so many times as fast as {name} at its noise, by {name}'s rays:"
+        )
         for which, noise in enumerate(NOISES):
             ratios = [
                 one["s"] / seconds_at(curves["dwell"], which, one["noise"][which])

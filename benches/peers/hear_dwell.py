@@ -14,7 +14,9 @@ def load(scene: Path, rays: int) -> Heard:
     source = next(iter(room.sources.values()))
     receiver = next(iter(room.receivers.values()))
     traced = AcousticScene(str(scene), rays=rays, image_order=3, **room.config())
-    return lambda seed: traced.impulse_response(source, receiver, seed=seed, threads=1)[0]
+    return lambda seed: traced.impulse_response(source, receiver, seed=seed, threads=1)[
+        0
+    ]
 
 
 run(load)

@@ -44,7 +44,9 @@ def mujoco_rate(scene: Scene, steps: int) -> float:
     spec = mujoco.MjSpec()
     spec.option.gravity = [0, -GRAVITY_M_S2, 0]
     spec.option.timestep = 1.0 / scene["physics_rate_hz"]
-    plane = spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=[50, 50, 0.1])
+    plane = spec.worldbody.add_geom(
+        type=mujoco.mjtGeom.mjGEOM_PLANE, size=[50, 50, 0.1]
+    )
     # Its Z is up, ours Y.
     plane.quat = [np.sqrt(0.5), -np.sqrt(0.5), 0, 0]
     plane.pos = [0, floor(scene), 0]
@@ -54,7 +56,9 @@ def mujoco_rate(scene: Scene, steps: int) -> float:
     for box in scene["dynamic"]:
         body = spec.worldbody.add_body(pos=box["center"])
         body.add_freejoint()
-        body.add_geom(type=kind, size=box["half_extents"], density=scene["density_kg_m3"])
+        body.add_geom(
+            type=kind, size=box["half_extents"], density=scene["density_kg_m3"]
+        )
     model = spec.compile()
     data = mujoco.MjData(model)
     start = time.perf_counter()
@@ -76,7 +80,12 @@ def bullet_rate(scene: Scene, steps: int) -> float:
         for box in scene[name]:
             half = box["half_extents"]
             shape = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=half)
-            mass = 8.0 * float(np.prod(half)) * scene["density_kg_m3"] * (name == "dynamic")
+            mass = (
+                8.0
+                * float(np.prod(half))
+                * scene["density_kg_m3"]
+                * (name == "dynamic")
+            )
             pybullet.createMultiBody(mass, shape, basePosition=box["center"])
     start = time.perf_counter()
     for _ in range(steps):
@@ -112,8 +121,12 @@ def main() -> None:
     """Measures and prints."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("boxes", type=Path)
-    parser.add_argument("--house", default="builtin:apartment", help="whose walls dwell has")
-    parser.add_argument("--dwell", default="dwell", help="the command, with its first words")
+    parser.add_argument(
+        "--house", default="builtin:apartment", help="whose walls dwell has"
+    )
+    parser.add_argument(
+        "--dwell", default="dwell", help="the command, with its first words"
+    )
     parser.add_argument("--steps", type=int, default=1000)
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--json", action="store_true")

@@ -27,7 +27,11 @@ import numpy as np
 
 HERE = Path(__file__).resolve().parent
 #: Peers as pip knows them, with the versions that were tried.
-PEERS = {"panda3d": "panda3d==1.10.16", "mujoco": "mujoco==4.0.0", "pybullet": "pybullet==3.2.7"}
+PEERS = {
+    "panda3d": "panda3d==1.10.16",
+    "mujoco": "mujoco==4.0.0",
+    "pybullet": "pybullet==3.2.7",
+}
 TITLES = {"panda3d": "Panda3D", "mujoco": "MuJoCo", "pybullet": "PyBullet"}
 #: Depth within this part counts as the same, and so much of a picture must be the same. Glass
 #: makes the difference: some write its depth, others that of what is behind.
@@ -45,12 +49,21 @@ def environment(
     python = folder / "env" / "bin" / "python"
     if not python.exists():
         subprocess.run([sys.executable, "-m", "venv", str(folder / "env")], check=True)
-    pip = [str(python), "-m", "pip", "--disable-pip-version-check", "install", "--quiet"]
+    pip = [
+        str(python),
+        "-m",
+        "pip",
+        "--disable-pip-version-check",
+        "install",
+        "--quiet",
+    ]
     subprocess.run([*pip, "numpy", "pillow"], check=True)
     missing = {}
     for name, wanted in peers.items():
         wheels = [] if compile_too else ["--only-binary", ":all:"]
-        told = subprocess.run([*pip, *wheels, wanted], capture_output=True, text=True, check=False)
+        told = subprocess.run(
+            [*pip, *wheels, wanted], capture_output=True, text=True, check=False
+        )
         if told.returncode != 0:
             missing[name] = f"pip cannot install {wanted}: {last_line(told.stderr)}"
     return python, missing
@@ -59,7 +72,9 @@ def environment(
 class Drawer:
     """A renderer in a process of its own, with the house loaded."""
 
-    def __init__(self, python: str, name: str, folder: Path, house: str, size: int) -> None:
+    def __init__(
+        self, python: str, name: str, folder: Path, house: str, size: int
+    ) -> None:
         """Starts it; it answers once its pictures are kept."""
         words = [python, str(HERE / "draw.py"), name, str(folder)]
         self.errors = folder / f"{name}.log"
@@ -132,19 +147,30 @@ def same_pictures(folder: Path, name: str) -> float:
     return float(np.mean(off < SAME_DEPTH))
 
 
-def dropped(peer_python: Path, folder: Path, args: argparse.Namespace) -> dict[str, Any]:
+def dropped(
+    peer_python: Path, folder: Path, args: argparse.Namespace
+) -> dict[str, Any]:
     """Physics steps a second of all engines, by physics.py."""
-    words = [str(peer_python), str(HERE / "physics.py"), str(folder / "boxes.json"), "--json"]
+    words = [
+        str(peer_python),
+        str(HERE / "physics.py"),
+        str(folder / "boxes.json"),
+        "--json",
+    ]
     dwell = shlex.join([sys.executable, "-m", "dwell.cli"])
     options = ["--dwell", dwell, "--house", args.house, "--repeats", str(args.rounds)]
-    told = subprocess.run([*words, *options], check=False, capture_output=True, text=True)
+    told = subprocess.run(
+        [*words, *options], check=False, capture_output=True, text=True
+    )
     if told.returncode != 0:
         raise SystemExit(told.stderr)
     figures: dict[str, Any] = json.loads(told.stdout.splitlines()[-1])
     return figures
 
 
-def table(views: dict[str, dict[str, Any]], steps: dict[str, Any], args: argparse.Namespace) -> str:
+def table(
+    views: dict[str, dict[str, Any]], steps: dict[str, Any], args: argparse.Namespace
+) -> str:
     """The Markdown table."""
     flat, lit = views["dwell"]["rate"], views["dwell_lit"]["rate"]
     rows = [
@@ -153,7 +179,9 @@ def table(views: dict[str, dict[str, Any]], steps: dict[str, Any], args: argpars
         "| --- | --- | --- | --- | --- |",
     ]
     for name, figures in views.items():
-        title = {"dwell": "dwell, `flat`", "dwell_lit": "dwell, `lit`"}.get(name) or _title(name)
+        title = {"dwell": "dwell, `flat`", "dwell_lit": "dwell, `lit`"}.get(
+            name
+        ) or _title(name)
         rows.append(
             f"| {title}: {figures['told']} | {figures['rate']:,.0f} "
             f"| {flat / figures['rate']:.2g} | {lit / figures['rate']:.2g} "
@@ -174,19 +202,25 @@ def table(views: dict[str, dict[str, Any]], steps: dict[str, Any], args: argpars
     }
     for name, title in titles.items():
         if name in rates:
-            rows.append(f"| {title} | {rates[name]:,.0f} | {rates['dwell'] / rates[name]:.2g} |")
+            rows.append(
+                f"| {title} | {rates[name]:,.0f} | {rates['dwell'] / rates[name]:.2g} |"
+            )
     return "\n".join(rows)
 
 
 def main() -> int:
     """Measures and prints."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("house", metavar="HOUSE", nargs="?", default="builtin:apartment")
+    parser.add_argument(
+        "house", metavar="HOUSE", nargs="?", default="builtin:apartment"
+    )
     parser.add_argument("--size", type=int, default=128, help="pixels across and down")
     parser.add_argument("--views", type=int, default=100)
     parser.add_argument("--rounds", type=int, default=5, help="the median counts")
     parser.add_argument("--out", type=Path, default=Path("out/peers"))
-    parser.add_argument("--compile", action="store_true", help="peers without a wheel by source")
+    parser.add_argument(
+        "--compile", action="store_true", help="peers without a wheel by source"
+    )
     args = parser.parse_args()
     folder = args.out.resolve()
     folder.mkdir(parents=True, exist_ok=True)
@@ -208,10 +242,14 @@ def main() -> int:
     for name, why in missing.items():
         print(f"{TITLES[name]} is missing: {why}")
     (folder / "table.md").write_text(text + "\n", "utf-8")
-    (folder / "figures.json").write_text(json.dumps({"views": views, "physics": steps}), "utf-8")
+    (folder / "figures.json").write_text(
+        json.dumps({"views": views, "physics": steps}), "utf-8"
+    )
     others = [name for name, figures in views.items() if figures["same"] < SAME_PICTURE]
     if others:
-        print(f"These did not draw the same views, so their figures mean nothing: {others}")
+        print(
+            f"These did not draw the same views, so their figures mean nothing: {others}"
+        )
     return int(bool(others))
 
 
@@ -234,5 +272,7 @@ def last_line(text: str) -> str:
 
 if __name__ == "__main__":
     if shutil.which("nvidia-smi"):
-        print("There is an NVIDIA driver here: the OpenGL peers may draw on it, dwell on the cpu.")
+        print(
+            "There is an NVIDIA driver here: the OpenGL peers may draw on it, dwell on the cpu."
+        )
     sys.exit(main())

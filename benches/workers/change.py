@@ -18,7 +18,9 @@ import numpy as np
 from dwell.envs import DwellVectorEnv
 
 
-def step_times(args: argparse.Namespace, load_ahead: int) -> tuple[list[float], list[float]]:
+def step_times(
+    args: argparse.Namespace, load_ahead: int
+) -> tuple[list[float], list[float]]:
     """Seconds of steps that begin episodes, and of the others."""
     envs = DwellVectorEnv(
         args.envs,

@@ -28,7 +28,9 @@ from dwell.envs import DwellEnv
 
 def episode(env: DwellEnv, seed: int, steps: int) -> None:
     """Plays the walk from the start."""
-    walk = [k for k, name in enumerate(env.actions()) if "forward" in name or "turn" in name]
+    walk = [
+        k for k, name in enumerate(env.actions()) if "forward" in name or "turn" in name
+    ]
     env.reset(seed=seed)
     for step in range(steps):
         if env.step(np.int64(walk[(step // 3) % len(walk)]))[2]:
@@ -36,7 +38,10 @@ def episode(env: DwellEnv, seed: int, steps: int) -> None:
 
 
 def worker(
-    seeds: list[int], args: argparse.Namespace, ready: Barrier, ends: Queue[tuple[float, float]]
+    seeds: list[int],
+    args: argparse.Namespace,
+    ready: Barrier,
+    ends: Queue[tuple[float, float]],
 ) -> None:
     """Plays its episodes when all are ready, and says when it was done."""
     sensors = args.sensors.split(",") if args.sensors else None
@@ -54,7 +59,9 @@ def rates(workers: int, episodes: int, args: argparse.Namespace) -> tuple[float,
     fork = multiprocessing.get_context("fork")
     ready, ends = fork.Barrier(workers + 1), fork.Queue()
     processes = [
-        fork.Process(target=worker, args=(list(range(k, episodes, workers)), args, ready, ends))
+        fork.Process(
+            target=worker, args=(list(range(k, episodes, workers)), args, ready, ends)
+        )
         for k in range(workers)
     ]
     for process in processes:
@@ -65,17 +72,23 @@ def rates(workers: int, episodes: int, args: argparse.Namespace) -> tuple[float,
     for process in processes:
         process.join()
     steps = episodes * args.steps
-    return steps / (max(end for end, _ in done) - start), steps / sum(cpu for _, cpu in done)
+    return steps / (max(end for end, _ in done) - start), steps / sum(
+        cpu for _, cpu in done
+    )
 
 
 def main() -> None:
     """Prints each round and the ratios of the medians."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--workers", default="2,16", help="numbers of workers, the last the most")
+    parser.add_argument(
+        "--workers", default="2,16", help="numbers of workers, the last the most"
+    )
     parser.add_argument("--steps", type=int, default=25, help="of an episode")
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--house", default="builtin:apartment")
-    parser.add_argument("--sensors", default="", help="names with commas; default the task's own")
+    parser.add_argument(
+        "--sensors", default="", help="names with commas; default the task's own"
+    )
     args = parser.parse_args()
     sizes = [int(size) for size in args.workers.split(",")]
     world = dwell.World(args.house)
@@ -84,11 +97,15 @@ def main() -> None:
     for _ in range(args.rounds):
         for size in sizes:
             found[size].append(rates(size, max(sizes), args))
-        shown = {size: [round(rate, 1) for rate in all_[-1]] for size, all_ in found.items()}
+        shown = {
+            size: [round(rate, 1) for rate in all_[-1]] for size, all_ in found.items()
+        }
         print(json.dumps(shown), flush=True)
     for size in sizes[1:]:
         pairs = list(zip(found[size], found[sizes[0]], strict=True))
-        wall, cpu = (statistics.median(many[k] / few[k] for many, few in pairs) for k in (0, 1))
+        wall, cpu = (
+            statistics.median(many[k] / few[k] for many, few in pairs) for k in (0, 1)
+        )
         print(
             f"{size} workers beside {sizes[0]}: {wall:.3f} times the steps per second, "
             f"{cpu:.3f} times those per second of processor time"
