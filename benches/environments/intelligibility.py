@@ -92,7 +92,11 @@ def cases() -> Iterator[tuple[str, dwell.World, str]]:
     for level_db in (40.0, 50.0, 60.0, 70.0, 80.0):
         world = pair(house, 2.0)
         world.play("noise", at=(6.0, 1.5, 8.0), level_db=level_db, loop=True)
-        yield f"hall, 2 m, noise of {level_db:g} dB (at 1 m) 2.2 m beside", world, "normal"
+        yield (
+            f"hall, 2 m, noise of {level_db:g} dB (at 1 m) 2.2 m beside",
+            world,
+            "normal",
+        )
     for name, house in (
         ("an open door", rooms(walls="brick", opened=1.0)),
         ("a closed door", rooms(walls="brick", opened=0.0)),
@@ -102,7 +106,9 @@ def cases() -> Iterator[tuple[str, dwell.World, str]]:
 
 
 def pair(
-    house: dwell.House, distance_m: float, at: tuple[float, float, float] = (4.0, 0.0, 6.0)
+    house: dwell.House,
+    distance_m: float,
+    at: tuple[float, float, float] = (4.0, 0.0, 6.0),
 ) -> dwell.World:
     """A world in which agent 1 stands so far from agent 0, facing it."""
     world = dwell.World(house, agents=2)
@@ -118,7 +124,10 @@ def main() -> None:
     given = parser.parse_args()
     for name, world, effort in cases():
         row = spoken(world, given.utterances, effort)
-        print(json.dumps({"case": name, **{k: round(v, 3) for k, v in row.items()}}), flush=True)
+        print(
+            json.dumps({"case": name, **{k: round(v, 3) for k, v in row.items()}}),
+            flush=True,
+        )
 
 
 if __name__ == "__main__":

@@ -97,7 +97,10 @@ def run_memory(episodes: int) -> None:
             with open("/proc/self/statm", encoding="utf-8") as file:
                 pages = int(file.read().split()[1])
             resident = pages * resource.getpagesize() / 1e6
-            print(json.dumps({"episodes": episode, "resident_mb": round(resident, 1)}), flush=True)
+            print(
+                json.dumps({"episodes": episode, "resident_mb": round(resident, 1)}),
+                flush=True,
+            )
 
 
 def main() -> None:

@@ -44,7 +44,9 @@ def main() -> None:
     k = 0
     while playing(world) < args.sounds:
         world.play(
-            signals[k % len(signals)], at=things[k * len(things) // args.sounds]["name"], loop=True
+            signals[k % len(signals)],
+            at=things[k * len(things) // args.sounds]["name"],
+            loop=True,
         )
         k += 1
     world.listen()

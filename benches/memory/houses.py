@@ -58,7 +58,8 @@ def main() -> None:
                 trimmed += time.perf_counter() - before
         ends.append(resident_mib())
         print(
-            f"round {k + 1}: {ends[-1]:.1f} MiB, {time.perf_counter() - started:.1f} s", flush=True
+            f"round {k + 1}: {ends[-1]:.1f} MiB, {time.perf_counter() - started:.1f} s",
+            flush=True,
         )
     first = min(max(args.rounds // 10, 2), args.rounds - 2)
     rounds = np.arange(first, args.rounds)

@@ -83,7 +83,10 @@ def rows(boxes: list[Box]) -> list[dict[str, list[float]]]:
 
 
 def scene(
-    fixed: list[Box], moving: list[Box], density_kg_m3: float = 300.0, rate_hz: float = 100.0
+    fixed: list[Box],
+    moving: list[Box],
+    density_kg_m3: float = 300.0,
+    rate_hz: float = 100.0,
 ) -> dict[str, object]:
     """What ``dwell bench physics --boxes`` reads."""
     return {

@@ -61,5 +61,7 @@ def load(folder: Path, size: int) -> Renderer:
         return rgb, renderer.render()
 
     return Renderer(
-        draw, lambda seen: seen, "one colour a material, a lamp at the eye, no shadows; EGL"
+        draw,
+        lambda seen: seen,
+        "one colour a material, a lamp at the eye, no shadows; EGL",
     )

@@ -11,7 +11,8 @@ from draw import FAR_M, FOV_DEG, NEAR_M, Renderer, View, axis_depth
 from panda3d import core
 
 core.loadPrcFileData(
-    "", "load-display p3headlessgl\naudio-library-name null\nsync-video 0\nframebuffer-srgb 0\n"
+    "",
+    "load-display p3headlessgl\naudio-library-name null\nsync-video 0\nframebuffer-srgb 0\n",
 )
 
 
@@ -30,7 +31,10 @@ def load(folder: Path, size: int) -> Renderer:
     lens.set_fov(FOV_DEG, FOV_DEG)
     lens.set_near_far(NEAR_M, FAR_M)
     eye = root.attach_new_node(core.Camera("eye", lens))
-    for light, strength in ((core.AmbientLight("all"), 0.5), (core.PointLight("lamp"), 0.6)):
+    for light, strength in (
+        (core.AmbientLight("all"), 0.5),
+        (core.PointLight("lamp"), 0.6),
+    ):
         light.set_color((strength, strength, strength, 1))
         root.set_light(eye.attach_new_node(light))
     buffer.make_display_region().set_camera(eye)

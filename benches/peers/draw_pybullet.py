@@ -46,5 +46,7 @@ def load(folder: Path, size: int) -> Renderer:
         return rgb, axis_depth(np.reshape(seen[3], (size, size)).astype(np.float32))
 
     return Renderer(
-        draw, pictures, "one colour a material, a lamp far away, no shadows; TinyRenderer, one core"
+        draw,
+        pictures,
+        "one colour a material, a lamp far away, no shadows; TinyRenderer, one core",
     )

@@ -86,7 +86,12 @@ def of_measures(responses: np.ndarray) -> list[float]:
 def heard(python: str, name: str, folder: Path, rays: int, times: int) -> dict[str, Any] | str:
     """Seconds a response and noise, or why there are none."""
     out = folder / f"{name}_{rays}.npz"
-    words = [python, str(HERE / f"hear_{name}.py"), str(folder / "scene.json"), str(out)]
+    words = [
+        python,
+        str(HERE / f"hear_{name}.py"),
+        str(folder / "scene.json"),
+        str(out),
+    ]
     told = subprocess.run(
         [*words, "--rays", str(rays), "--times", str(times)],
         capture_output=True,

@@ -16,7 +16,14 @@ Heard = Callable[[int], np.ndarray]
 def box(size: list[float]) -> tuple[np.ndarray, np.ndarray]:
     """Corners, shape (8, 3), and triangles, shape (12, 3), of a box that is seen from within."""
     corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]) * size
-    sides = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    sides = [
+        (0, 1, 3, 2),
+        (4, 6, 7, 5),
+        (0, 4, 5, 1),
+        (2, 3, 7, 6),
+        (0, 2, 6, 4),
+        (1, 5, 7, 3),
+    ]
     triangles = [half for a, b, c, d in sides for half in ((a, b, c), (a, c, d))]
     return corners, np.array(triangles)
 

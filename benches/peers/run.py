@@ -27,7 +27,11 @@ import numpy as np
 
 HERE = Path(__file__).resolve().parent
 #: Peers as pip knows them, with the versions that were tried.
-PEERS = {"panda3d": "panda3d==1.10.16", "mujoco": "mujoco==4.0.0", "pybullet": "pybullet==3.2.7"}
+PEERS = {
+    "panda3d": "panda3d==1.10.16",
+    "mujoco": "mujoco==4.0.0",
+    "pybullet": "pybullet==3.2.7",
+}
 TITLES = {"panda3d": "Panda3D", "mujoco": "MuJoCo", "pybullet": "PyBullet"}
 #: Depth within this part counts as the same, and so much of a picture must be the same. Glass
 #: makes the difference: some write its depth, others that of what is behind.
@@ -45,7 +49,14 @@ def environment(
     python = folder / "env" / "bin" / "python"
     if not python.exists():
         subprocess.run([sys.executable, "-m", "venv", str(folder / "env")], check=True)
-    pip = [str(python), "-m", "pip", "--disable-pip-version-check", "install", "--quiet"]
+    pip = [
+        str(python),
+        "-m",
+        "pip",
+        "--disable-pip-version-check",
+        "install",
+        "--quiet",
+    ]
     subprocess.run([*pip, "numpy", "pillow"], check=True)
     missing = {}
     for name, wanted in peers.items():
@@ -134,7 +145,12 @@ def same_pictures(folder: Path, name: str) -> float:
 
 def dropped(peer_python: Path, folder: Path, args: argparse.Namespace) -> dict[str, Any]:
     """Physics steps a second of all engines, by physics.py."""
-    words = [str(peer_python), str(HERE / "physics.py"), str(folder / "boxes.json"), "--json"]
+    words = [
+        str(peer_python),
+        str(HERE / "physics.py"),
+        str(folder / "boxes.json"),
+        "--json",
+    ]
     dwell = shlex.join([sys.executable, "-m", "dwell.cli"])
     options = ["--dwell", dwell, "--house", args.house, "--repeats", str(args.rounds)]
     told = subprocess.run([*words, *options], check=False, capture_output=True, text=True)

@@ -36,7 +36,10 @@ def episode(env: DwellEnv, seed: int, steps: int) -> None:
 
 
 def worker(
-    seeds: list[int], args: argparse.Namespace, ready: Barrier, ends: Queue[tuple[float, float]]
+    seeds: list[int],
+    args: argparse.Namespace,
+    ready: Barrier,
+    ends: Queue[tuple[float, float]],
 ) -> None:
     """Plays its episodes when all are ready, and says when it was done."""
     sensors = args.sensors.split(",") if args.sensors else None

@@ -19,12 +19,10 @@ from numpy.typing import NDArray
 from dwell import ConfigError, UsageError, _native
 from dwell.arguments import (
     boolean,
-    choice,
     from_json,
     integer_in_range,
     mapping,
     quoted,
-    sequence_items,
 )
 from dwell.envs.action_arrays import (
     choices_below,
@@ -35,6 +33,7 @@ from dwell.envs.action_arrays import (
     whole_numbers,
 )
 from dwell.envs.asking import MAX_QUESTION_TOKENS, AskingActions, question_row
+from dwell.envs.utterance_rows import MAX_TOKENS, NORMAL_EFFORT, said_of_row
 
 #: Of the first axis of velocities: forward, right, turn to the left, look up.
 _VELOCITY_NAMES = ("forward", "right", "turn", "look")
@@ -48,10 +47,6 @@ _LEAST_TURN = 0.06
 _IDS = 1 << 20
 #: Numbers that an answer can have, whatever the task.
 ANSWER_FIELDS = 4
-#: The most words of an utterance.
-MAX_TOKENS = 8
-#: The number of the vocal effort of conversation.
-NORMAL_EFFORT = 1
 
 
 @dataclasses.dataclass(frozen=True)
@@ -167,7 +162,7 @@ class EngineActions:
         numbers = np.array([names.index(fields["action"])], np.int64)
         one = (1,)
         velocity, pixel, thing, answer, question, say = (fields.get(key) for key in allowed[1:])
-        tokens, efforts = (None, None) if say is None else _said(f"{at}: say", say)
+        tokens, efforts = (None, None) if say is None else said_of_row(f"{at}: say", say)
         return cls(
             numbers,
             None
@@ -182,25 +177,6 @@ class EngineActions:
             tokens=tokens,
             efforts=efforts,
         )
-
-
-def _said(at: str, say: object) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """The words and the effort of ``say`` in a file, shapes (1, 8) and (1,).
-
-    Raises:
-        ConfigError: They are none; the message begins with ``at``.
-    """
-    fields = exact_fields(at, say, ("tokens", "effort"))
-    words = sequence_items(f"{at}: tokens", fields["tokens"], "expected numbers of words")
-    last = len(_native.vocabulary())
-    if not 1 <= len(words) <= MAX_TOKENS:
-        raise ConfigError(f"{at}: {len(words)} tokens; allowed are 1 to {MAX_TOKENS}")
-    tokens = np.zeros((1, MAX_TOKENS), np.int64)
-    for k, word in enumerate(words):
-        tokens[0, k] = integer_in_range(f"{at}: tokens[{k}]", word, low=1, high=last)
-    known = _native.vocal_efforts()
-    effort = choice(f"{at}: effort", fields["effort"], known)
-    return tokens, np.array([known.index(effort)], np.int64)
 
 
 class DiscreteActions:

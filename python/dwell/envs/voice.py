@@ -21,13 +21,8 @@ from dwell.arguments import (
     text_list,
 )
 from dwell.envs.action_arrays import choices_below, exact_fields, plain_array
-from dwell.envs.action_modes import (
-    MAX_TOKENS,
-    NORMAL_EFFORT,
-    ActionForm,
-    AnsweredActions,
-    EngineActions,
-)
+from dwell.envs.action_modes import ActionForm, AnsweredActions, EngineActions
+from dwell.envs.utterance_rows import MAX_TOKENS, NORMAL_EFFORT
 
 
 @functools.cache
