@@ -1,6 +1,7 @@
 //! Tasks: goals of episodes and verdicts on steps. One file each, and one line in [`all`].
 
 mod audio_nav;
+mod carry;
 mod cooperate;
 mod door_leaves;
 mod embodied_qa;
@@ -257,6 +258,7 @@ pub fn all() -> &'static [TaskKind] {
         pied_piper::KIND,
         social_nav::KIND,
         hide_and_seek::KIND,
+        carry::KIND,
     ]
 }
 
