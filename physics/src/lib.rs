@@ -53,7 +53,7 @@ pub use config::{ContactFriction, PhysicsConfig};
 pub use contact::{ContactEntity, ContactEvent, ContactKind, ContactPhase, ExcessEventTotals};
 pub use engine::PairCounts;
 pub use error::PhysicsError;
-pub use hands::Grasp;
+pub use hands::{BOTH_HANDS, Grasp};
 pub use model::PhysicsModel;
 pub use outcome::{ActionOutcome, DelayedOutcome, OutcomeCode, PointedTarget};
 pub use report::{FrozenObject, MovedAgent, MovedObject, PassThroughJoint, StartReport};

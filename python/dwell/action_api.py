@@ -28,8 +28,8 @@ class ActionApi(StateApi):
 
         Args:
             action: ``pick``, ``drop``, ``place``, ``place_at``, ``put_in``, ``throw``, ``push``,
-                ``pull``, ``open``, ``close``, ``toggle`` or ``point``; or a mapping with ``kind``
-                and details.
+                ``pull``, ``open``, ``close``, ``toggle``, ``point`` or ``grip``; or a mapping with
+                ``kind`` and details.
             object: The thing's name, or its id as instance images show it. Without it, and
                 without ``pixel`` and ``direction``, what the agent looks at is meant; of ``drop``
                 and ``throw`` what it holds, and nothing else may be named.

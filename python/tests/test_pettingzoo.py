@@ -33,7 +33,7 @@ STUDIO: dict[str, Any] = {"houses": "builtin:studio", "sensors": ["gps", "compas
 HOME: dict[str, Any] = {"houses": "builtin:apartment", "sensors": ["gps"]}
 TASKS = [task["name"] for task in _native.tasks()]
 #: Those whose full contract runs in every test run; the others are slow.
-QUICK = ("PointNav", "Cooperate", "PiedPiper", "SocialNav")
+QUICK = ("PointNav", "Cooperate", "PiedPiper", "SocialNav", "HideAndSeek")
 
 
 def bits(observations: Observations) -> dict[str, dict[str, bytes]]:

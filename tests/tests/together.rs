@@ -135,6 +135,7 @@ fn scripted_agents_go_on_from_snapshots_and_stop_is_no_success() {
     for (task, agents, scripted) in [
         ("PiedPiper", 3, &[1, 2][..]),
         ("SocialNav", 2, &[1][..]),
+        ("HideAndSeek", 2, &[1][..]),
         ("Cooperate", 2, &[0][..]),
     ] {
         let mut first = env(task, Value::Null, agents, scripted, false);

@@ -101,11 +101,21 @@ impl Env {
     ) -> Result<Vec<Option<StepAction>>, WorldError> {
         let taken = actions.iter().enumerate().map(|(place, action)| {
             let agent = &self.agents[place];
-            match (agent.done, agent.scripted) {
-                (true, _) => Ok(None),
-                (false, true) => self.expert_step(place).map(Some),
-                (false, false) => Ok((*action).map(Into::into)),
-            }
+            let is_held_still = agent.task.is_held_still();
+            let chosen = match (agent.done, agent.scripted) {
+                (true, _) => None,
+                (false, true) => Some(self.expert_step(place)?),
+                (false, false) => (*action).map(Into::into),
+            };
+            // Who is held still may speak.
+            Ok(chosen.map(|chosen: StepAction| StepAction {
+                utterance: chosen.utterance,
+                ..if is_held_still {
+                    DiscreteAction::Wait.into()
+                } else {
+                    chosen
+                }
+            }))
         });
         taken.collect()
     }

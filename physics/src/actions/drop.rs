@@ -17,6 +17,6 @@ impl HandAction for Drop {
     }
 
     fn check(&self, hand: &HandContext<'_>) -> Result<(), Box<ActionOutcome>> {
-        hand.context.held_object_of(hand.actor).map(|_| ())
+        hand.context.grip_of(hand.actor).map(|_| ())
     }
 }

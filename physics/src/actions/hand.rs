@@ -156,7 +156,13 @@ impl ActionContext<'_> {
             );
         };
         let object = self.hands.held_objects[place].object;
+        let at_edge = self.hands.held_objects[place].edge().is_some();
         self.hands.open_hand(self.dynamics, state, place);
+        if at_edge {
+            // It may have been set down.
+            self.articulation
+                .write_bodies_and_joints(self.dynamics, state);
+        }
         let sentence = format!("You let go of the {}.", self.dynamics.name_of(object));
         done(OutcomeCode::Done, sentence, Some(object))
     }

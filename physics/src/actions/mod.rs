@@ -4,6 +4,7 @@
 mod close;
 mod doors;
 mod drop;
+mod grip;
 mod hand;
 mod hand_action;
 mod open;
@@ -25,6 +26,7 @@ mod throw;
 
 pub use close::Close;
 pub use drop::Drop;
+pub use grip::Grip;
 pub use hand_action::{HandAction, HandContext};
 pub use open::Open;
 pub use pick::Pick;

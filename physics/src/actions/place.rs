@@ -53,12 +53,15 @@ impl Place {
 
 impl HandAction for Place {
     fn perform(&self, hand: &mut HandContext<'_>) -> ActionResult {
+        if hand.context.grip_of(hand.actor)?.edge().is_some() {
+            return Ok(hand.context.release(hand.state, hand.actor.id));
+        }
         hand.context
             .place_on(hand.state, hand.actor, self.target.as_ref())
     }
 
     fn check(&self, hand: &HandContext<'_>) -> Result<(), Box<ActionOutcome>> {
-        hand.context.held_object_of(hand.actor).map(|_| ())
+        hand.context.grip_of(hand.actor).map(|_| ())
     }
 }
 
@@ -84,11 +87,28 @@ impl ActionContext<'_> {
         Ok(done(OutcomeCode::Done, sentence, spot.on))
     }
 
-    /// Returns the agent's grip, or the refusal for an empty hand.
+    /// Returns the agent's grip of what it holds alone, or the refusal for an empty hand and for the edge of a large thing.
     pub(super) fn held_object_of(
         &self,
         actor: Actor<'_>,
     ) -> Result<HeldObject, Box<ActionOutcome>> {
+        let grip = self.grip_of(actor)?;
+        if grip.edge().is_none() {
+            return Ok(grip);
+        }
+        let sentence = format!(
+            "You hold the {} by its edge; it can only be set down. Drop it.",
+            self.dynamics.name_of(grip.object)
+        );
+        Err(Box::new(fail(
+            OutcomeCode::TooLarge,
+            sentence,
+            Some(grip.object),
+        )))
+    }
+
+    /// Returns the agent's grip, or the refusal for an empty hand.
+    pub(super) fn grip_of(&self, actor: Actor<'_>) -> Result<HeldObject, Box<ActionOutcome>> {
         let grip = self
             .hands
             .held_objects

@@ -7,6 +7,7 @@ use super::{
 };
 use crate::bases::WheelMotion;
 use crate::dynamics::Dynamics;
+use crate::hands::Hands;
 use crate::outcome::{DelayedOutcome, OutcomeCode, fail};
 use dwell_scene::{AgentBody, AgentId, AgentState, Id, LeggedLocomotion, Locomotion, State};
 use glam::Vec3;
@@ -55,11 +56,10 @@ impl Agents {
     /// Each finds its way with the others where they stood before the step; who would meet stops where they meet.
     pub(crate) fn advance(
         &mut self,
-        dynamics: &mut Dynamics,
+        (dynamics, hands): (&mut Dynamics, &mut Hands),
         state: &mut State,
         controls: &[AgentControl],
-        ways: &mut [MovementRecord],
-        first: bool,
+        (ways, first): (&mut [MovementRecord], bool),
         notices: &mut Vec<DelayedOutcome>,
     ) {
         let mut planned = Vec::with_capacity(ways.len());
@@ -69,6 +69,9 @@ impl Agents {
             planned.push(self.plan_move(dynamics, state, (id, control), way, first, notices));
         }
         stop_at_meetings(state, &mut planned);
+        if hands.has_edge_grips() {
+            stay_at_edges((dynamics, hands), state, &mut planned);
+        }
         let mut pushes = Vec::new();
         for (index, (plan, way)) in planned.into_iter().zip(ways).enumerate() {
             let id = AgentId::from_index(index);
@@ -285,6 +288,42 @@ pub(super) fn agent_queries<'a>(
         agent: id,
         body,
     }
+}
+
+/// Cuts short the movements of agents who hold the edges of things, and moves what they carry.
+fn stay_at_edges(
+    (dynamics, hands): (&mut Dynamics, &mut Hands),
+    state: &State,
+    planned: &mut [PlannedMove],
+) {
+    let ends = |planned: &[PlannedMove]| -> Vec<Vec3> {
+        planned.iter().map(|plan| plan.agent.position).collect()
+    };
+    let put = |planned: &mut [PlannedMove], ends: &[Vec3]| {
+        for (plan, end) in planned.iter_mut().zip(ends) {
+            plan.agent.position = *end;
+        }
+    };
+    let wanted = ends(planned);
+    let mut limited = wanted.clone();
+    hands.limit_holders(dynamics, state, &mut limited);
+    if limited != wanted {
+        // Who stops earlier may be in somebody's way.
+        put(planned, &limited);
+        stop_at_meetings(state, planned);
+        let mut made = ends(planned);
+        for group in hands.holders_together(dynamics) {
+            let is_cut = |id: &AgentId| made[id.index()] != limited[id.index()];
+            if group.iter().any(is_cut) {
+                for id in &group {
+                    made[id.index()] = state.agents[*id].position;
+                }
+            }
+        }
+        put(planned, &made);
+        limited = made;
+    }
+    hands.move_carried(dynamics, state, &limited);
 }
 
 /// Stops agents who would meet where they meet.

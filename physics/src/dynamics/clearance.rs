@@ -101,6 +101,37 @@ impl Dynamics {
         })
     }
 
+    /// Returns how deep a body would be in other things under a pose, m: in what stands firm, agents that do not hold it among it, and in
+    /// what moves freely.
+    pub(crate) fn overlap_depths_m(&self, body: usize, place: &RapierPose) -> [f32; 2] {
+        let mut depths_m = [0.0_f32; 2];
+        let queries = self.engine.queries(QueryFilter::default());
+        let holders = &self.collision_exclusions.carriers;
+        for piece in &self.model.bodies[body].pieces {
+            let at = *place * piece.pose;
+            let bounds = shapes::bounds(&piece.shape, &at);
+            let aabb = Aabb::new(bounds.min, bounds.max);
+            for (_, collider) in queries.intersect_aabb_conservative(aabb) {
+                let entry = self.entry_of(collider);
+                let holds = |agent| holders.binary_search(&(body as u32, agent)).is_ok();
+                if entry.body == Some(body as u32) || entry.agent().is_some_and(holds) {
+                    continue;
+                }
+                let (there, shape) = (collider.position(), collider.shape());
+                let found = query::contact(there, shape, &at, &*piece.shape, 0.0);
+                let Ok(Some(contact)) = found else { continue };
+                let loose = entry.body.is_some_and(|other| {
+                    let other = other as usize;
+                    self.statuses[other] == BodyStatus::Free
+                        && self.model.bodies[other].joint.is_none()
+                });
+                let depth_m = &mut depths_m[usize::from(loose)];
+                *depth_m = depth_m.max(-contact.dist);
+            }
+        }
+        depths_m
+    }
+
     /// Returns whether a body would overlap nothing under a pose, besides agents that hold it.
     pub(crate) fn is_clear(&self, body: usize, place: &RapierPose) -> bool {
         self.first_overlap(body, place, HolderCollision::Ignored)

@@ -1,6 +1,7 @@
 //! Carrying: a held object follows the hand in front of the eye as a rigid body, so that walls stop it.
 
 use super::Grasp;
+use super::edge_grip::EdgeGrip;
 use crate::body::BodyHandle;
 use crate::engine::RapierWorld;
 use crate::model::PhysicsModel;
@@ -34,6 +35,32 @@ const GENTLE_M_S: f32 = 0.6;
 const GENTLE_M_S2: f32 = 3.0;
 const GENTLE_S: f32 = 4.0;
 
+/// The way a hand holds: as [`Grasp`] has it, in the same bytes, or by an edge together with others.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) enum HandGrasp {
+    Kinematic,
+    Spring {
+        frequency_hz: f32,
+        damping_ratio: f32,
+    },
+    Edge(EdgeGrip),
+}
+
+impl From<Grasp> for HandGrasp {
+    fn from(grasp: Grasp) -> Self {
+        match grasp {
+            Grasp::Kinematic => Self::Kinematic,
+            Grasp::Spring {
+                frequency_hz,
+                damping_ratio,
+            } => Self::Spring {
+                frequency_hz,
+                damping_ratio,
+            },
+        }
+    }
+}
+
 /// A grip of an object.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct HeldObject {
@@ -41,17 +68,17 @@ pub(crate) struct HeldObject {
     pub(crate) body: u32,
     pub(crate) agent: AgentId,
     /// Orientation of the object in the hand.
-    hand_from_body: Quat,
+    pub(super) hand_from_body: Quat,
     /// The middle of the object in its own frame, m.
-    middle_in_body: Vec3,
+    pub(super) middle_in_body: Vec3,
     /// Half of its largest horizontal edge, m.
-    half_m: f32,
+    pub(super) half_m: f32,
     /// Position of its middle before the last physics step, m.
     pub(crate) last_center: Vec3,
-    stuck_s: f32,
-    grasp: Grasp,
+    pub(super) stuck_s: f32,
+    pub(super) grasp: HandGrasp,
     /// Set if something stands on it or lies in it: it is then moved gently.
-    loaded: bool,
+    pub(super) loaded: bool,
 }
 
 impl HeldObject {
@@ -80,7 +107,7 @@ impl HeldObject {
             half_m: 0.5 * size.x.max(size.z),
             last_center: world_from_body.transform_point(local.center()),
             stuck_s: 0.0,
-            grasp,
+            grasp: grasp.into(),
             loaded,
         }
     }
@@ -123,7 +150,7 @@ pub(crate) fn pull_towards_hand(
     };
     let mass = rigid.mass().max(1e-6);
     let (linear, angular) = match grip.grasp {
-        Grasp::Kinematic => {
+        HandGrasp::Kinematic => {
             let angular = (turn / dt_s).clamp_length_max(FASTEST_TURN_RAD_S);
             let arm = rigid.center_of_mass() - now.translation;
             let spin = angular.cross(arm);
@@ -141,7 +168,7 @@ pub(crate) fn pull_towards_hand(
                 (rigid.linvel() + change, angular)
             }
         }
-        Grasp::Spring {
+        HandGrasp::Spring {
             frequency_hz,
             damping_ratio,
         } => {
@@ -160,6 +187,8 @@ pub(crate) fn pull_towards_hand(
                 (rigid.angvel() + twist).clamp_length_max(FASTEST_TURN_RAD_S),
             )
         }
+        // What is held by its edges follows its holders' feet.
+        HandGrasp::Edge(_) => return false,
     };
     rigid.set_linvel(linear, false);
     rigid.set_angvel(angular, false);
@@ -197,7 +226,7 @@ impl ImplicitSpring {
 impl HeldObject {
     /// Returns whether it carries the whole weight.
     pub(crate) fn has_kinematic_grasp(&self) -> bool {
-        self.grasp == Grasp::Kinematic
+        self.grasp == HandGrasp::Kinematic
     }
 
     /// Returns the position of a held body's middle, m.

@@ -1,8 +1,11 @@
 //! Hands: objects that agents hold, and those just released.
 
+mod edge_grip;
 mod grasp;
 mod held_object;
 
+pub use edge_grip::BOTH_HANDS;
+pub(crate) use edge_grip::edge_point;
 pub use grasp::Grasp;
 pub(crate) use held_object::{HeldObject, held_body_target_pose};
 
@@ -10,7 +13,7 @@ use crate::dynamics::Dynamics;
 use crate::outcome::{DelayedOutcome, OutcomeCode, fail};
 use dwell_scene::{Aabb, AgentId, AgentState, State};
 use glam::Vec3;
-use held_object::release;
+use held_object::{HandGrasp, release};
 use rapier3d::dynamics::RigidBody;
 
 /// The hands of all agents.
@@ -41,8 +44,13 @@ impl Hands {
         state: &mut State,
         notices: &mut Vec<DelayedOutcome>,
     ) {
+        self.update_lifts(dynamics, state);
         let mut place = 0;
         while place < self.held_objects.len() {
+            if self.held_objects[place].edge().is_some() {
+                place += 1;
+                continue;
+            }
             let HeldObject {
                 body,
                 agent,
@@ -78,6 +86,10 @@ impl Hands {
     /// Opens the hand of the grip at index `place`.
     pub(crate) fn open_hand(&mut self, dynamics: &mut Dynamics, state: &mut State, place: usize) {
         let grip = self.held_objects.remove(place);
+        if grip.edge().is_some() {
+            self.leave_edge(dynamics, state, &grip);
+            return;
+        }
         let velocity = state.agents[grip.agent].velocity;
         let body = grip.body as usize;
         let scale = self.gravity_scale(dynamics, body);
@@ -109,8 +121,13 @@ impl Hands {
         state: &mut State,
         notices: &mut Vec<DelayedOutcome>,
     ) {
+        self.drop_distant_edges(dynamics, state, notices);
         let mut place = 0;
         while place < self.held_objects.len() {
+            if self.held_objects[place].edge().is_some() {
+                place += 1;
+                continue;
+            }
             let agent = state.agents[self.held_objects[place].agent];
             let body = dynamics.bodies[self.held_objects[place].body as usize];
             let grip = &mut self.held_objects[place];
@@ -141,6 +158,9 @@ impl Hands {
         let mut moved = false;
         for place in 0..self.held_objects.len() {
             let grip = self.held_objects[place];
+            if grip.edge().is_some() {
+                continue;
+            }
             let handle = dynamics.bodies[grip.body as usize].handle;
             let Some(now) = dynamics
                 .engine

@@ -284,7 +284,12 @@ impl PhysicsWorld {
                 .iter()
                 .position(|grip| grip.agent == id)
             {
-                self.bring_held(state, place, &agent);
+                if self.hands.held_objects[place].edge().is_some() {
+                    // Nobody is put elsewhere with a table in its hands.
+                    self.hands.open_hand(&mut self.dynamics, state, place);
+                } else {
+                    self.bring_held(state, place, &agent);
+                }
             }
         }
         self.dynamics.flush();

@@ -2,6 +2,7 @@
 
 mod agent_placement;
 mod begin;
+mod carry_space;
 mod external_changes;
 mod non_finite;
 mod parameters;

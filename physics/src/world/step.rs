@@ -62,7 +62,9 @@ impl PhysicsWorld {
     /// colliders moved.
     fn physics_step(&mut self, state: &State, events: &mut Vec<ContactEvent>) -> bool {
         self.articulation.drive_motors(&mut self.dynamics, state);
-        let led = self.agents.list.iter().map(|agent| agent.handle);
+        let lifted = self.hands.lifted_bodies(&self.dynamics);
+        let agents = self.agents.list.iter().map(|agent| agent.handle);
+        let led = agents.chain(lifted);
         self.dynamics.engine.wake_bodies_in_reach(led);
         self.articulation.update_resistance_laws(&mut self.dynamics);
         let efforts = self.articulation.apply_efforts(&mut self.dynamics);
@@ -98,8 +100,13 @@ impl PhysicsWorld {
         first: bool,
     ) {
         let (dynamics, notices) = (&mut self.dynamics, &mut self.notices);
-        self.agents
-            .advance(dynamics, state, controls, ways, first, notices);
+        self.agents.advance(
+            (dynamics, &mut self.hands),
+            state,
+            controls,
+            (ways, first),
+            notices,
+        );
         self.hands.step_held_objects(dynamics, state, notices);
         actions::advance_pushes(&mut self.pushes, dynamics, state, notices);
     }

@@ -79,8 +79,11 @@ impl World {
     /// Returns what an action is done to, if it is done to a thing that others may reach for, too.
     fn contestable_target(&self, step: &AgentAction) -> Option<Target> {
         let kind = step.action.kind();
-        // Any number of agents may point at a thing, or put something on it.
-        let shares = matches!(step.action, DiscreteAction::Place | DiscreteAction::Point);
+        // Any number of agents may point at a thing, put something on it, or take hold of its edge.
+        let shares = matches!(
+            step.action,
+            DiscreteAction::Place | DiscreteAction::Point | DiscreteAction::Grip
+        );
         if !kind.is_hand_action() || !kind.takes_target() || shares {
             return None;
         }

@@ -73,6 +73,7 @@ actions! {
         Push = of_hand::<hand::Push>("push"),
         Pull = of_hand::<hand::Pull>("pull"),
         Point = of_hand::<hand::Point>("point"),
+        Grip = of_hand::<hand::Grip>("grip"),
     ]
     others: [
         of_hand::<hand::PlaceAt>("place_at"),
@@ -82,6 +83,9 @@ actions! {
 impl DiscreteAction {
     /// Those that environments have unless others are named: the first twelve.
     pub const DEFAULT: &[Self] = Self::ALL.split_at(12).0;
+
+    /// All that one agent alone can do: all but the last.
+    pub const ALONE: &[Self] = Self::ALL.split_at(18).0;
 
     /// The row of the table.
     pub fn kind(self) -> &'static ActionKind {

@@ -32,7 +32,13 @@ impl ActionMode {
         match self {
             Self::Discrete => of_task,
             Self::Velocity => vec![DiscreteAction::Stop],
-            Self::Pointer | Self::Object | Self::Dict => DiscreteAction::ALL.to_vec(),
+            Self::Pointer | Self::Object | Self::Dict => {
+                let alone = DiscreteAction::ALONE.iter().copied();
+                let others = of_task
+                    .into_iter()
+                    .filter(|own| !DiscreteAction::ALONE.contains(own));
+                alone.chain(others).collect()
+            }
         }
     }
 }

@@ -1,12 +1,14 @@
 //! Tasks: goals of episodes and verdicts on steps. One file each, and one line in [`all`].
 
 mod audio_nav;
+mod carry;
 mod cooperate;
 mod dialogue;
 mod door_leaves;
 mod embodied_qa;
 mod free;
 mod goal_cells;
+mod hide_and_seek;
 mod image_nav;
 mod instruction_following;
 mod instruction_following_v1;
@@ -121,6 +123,11 @@ pub trait Task: Debug + Send + Sync {
     /// What the hand is used on in an action of its agent that states no target, where the task knows better than the view.
     fn hand_target(&self, _world: &World, _action: DiscreteAction) -> Option<HandTarget> {
         None
+    }
+
+    /// Returns whether its agent may not act in the next step: whatever it chooses, it waits. What it says is said.
+    fn is_held_still(&self) -> bool {
+        false
     }
 
     /// The fields of the answer that it expects with `stop`, in order, at most [`MAX_ANSWER_FIELDS`]; none for most.
@@ -264,6 +271,8 @@ pub fn all() -> &'static [TaskKind] {
         cooperate::KIND,
         pied_piper::KIND,
         social_nav::KIND,
+        hide_and_seek::KIND,
+        carry::KIND,
     ]
 }
 
