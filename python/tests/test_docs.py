@@ -279,7 +279,13 @@ def test_the_page_for_who_begins_says_what_the_engine_does() -> None:
         (task["id"], task["about"], task["sensors"]) for task in tasks
     ]
     longer = {task["name"]: task["max_steps"] for task in tasks if task["max_steps"] != 1000}
-    assert longer == {"Rearrange": 5000, "Tidy": 3000, "Cooperate": 1500, "SocialNav": 1500, "Carry": 1500}
+    assert longer == {
+        "Rearrange": 5000,
+        "Tidy": 3000,
+        "Cooperate": 1500,
+        "SocialNav": 1500,
+        "Carry": 1500,
+    }
     assert "after 5,000" in text.split("## Environments")[1].split("<!--")[0]
     info = text.split("## Info")[1].split("## Sensors")[0]
     assert [key for key in (*INFO_KEYS, *EPISODE_KEYS) if f"`{key}`" not in info] == []
