@@ -142,7 +142,7 @@ def test_the_mask_of_a_person_is_where_its_joints_are() -> None:
         assert low[0] - margin < columns.min() < low[0] + 3
         assert high[0] - 3 < columns.max() < high[0] + margin
         assert high[1] - 3 < rows.max() < high[1] + margin
-        # The crown of somebody of 1.7 m, within 1 %, whose head is not farther than 0.15 m from its axis.
+        # The crown of 1.7 m, within 1 %, of a head that is not farther than 0.15 m from its axis.
         crowns = [0.5 * height - focal * up / away for up, away in ((0.817, 1.85), (0.783, 2.15))]
         assert crowns[0] - 1 < rows.min() < crowns[1] + 1
 
