@@ -1,7 +1,6 @@
 //! Gestures and joints of persons, for Python.
 
 use crate::answers::PyValue;
-use crate::engine_call::EngineCall;
 use crate::values::JsonArgument;
 use crate::world::PyWorld;
 use dwell_scene::Gesture;

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import re
 from collections.abc import Callable
@@ -19,12 +20,20 @@ pytestmark = pytest.mark.usefixtures("open_once")
 #: Segment lengths over height (Winter 2009, figure 4.1), typed in here once more.
 UPPER_ARM, FOREARM, HAND, THIGH, SHIN = 0.186, 0.146, 0.108, 0.245, 0.246
 
-HOUSE = "builtin:lobby"
+
+@functools.cache
+def hall() -> dwell.House:
+    """A bare room."""
+    return dwell.House.shoebox((12.0, 3.0, 8.0))
 
 
-def person(house: str = HOUSE, **body: object) -> World:
-    """A world with a person in the middle of a room and a capsule that watches."""
-    return World(house, agents=[{"kind": "person", **body}, {}])  # type: ignore[typeddict-item]
+def person(*, seed: int = 0, **body: object) -> World:
+    """A world with a person in the middle of a hall, who faces -Z, and a capsule in its corner."""
+    agents = [{"kind": "person", **body}, {}]
+    world = World(hall(), agents=agents, seed=seed)  # type: ignore[arg-type]
+    world.place_agent((6.0, 0.0, 4.0), yaw_deg=0.0)
+    world.place_agent((1.0, 0.0, 1.0), agent=1)
+    return world
 
 
 def wide(values: ArrayLike) -> NDArray[np.float64]:
@@ -133,8 +142,9 @@ def test_the_mask_of_a_person_is_where_its_joints_are() -> None:
         assert low[0] - margin < columns.min() < low[0] + 3
         assert high[0] - 3 < columns.max() < high[0] + margin
         assert high[1] - 3 < rows.max() < high[1] + margin
-        crown = 0.5 * height - focal * (1.7 - 0.9) / 2.0
-        assert rows.min() == pytest.approx(crown, abs=6)
+        # The crown of 1.7 m, within 1 %, of a head that is not farther than 0.15 m from its axis.
+        crowns = [0.5 * height - focal * up / away for up, away in ((0.817, 1.85), (0.783, 2.15))]
+        assert crowns[0] - 1 < rows.min() < crowns[1] + 1
 
 
 def test_everybody_else_sees_a_person_and_itself_it_does_not_see() -> None:
@@ -239,35 +249,25 @@ def walk(world: World, steps: int, speed: float) -> list[dict[str, NDArray[np.fl
 
 
 def test_feet_alternate_stand_still_and_swing() -> None:
-    world = World("builtin:apartment", agents=[{"kind": "person", "radius_m": 0.1}])
-    # The longest way that a person can go straight ahead from where it starts.
-    best: tuple[float, float] = (0.0, 0.0)
-    start, first = world.agents()[0]["position"], world.snapshot()
-    for yaw_deg in range(0, 360, 30):
-        world.restore(first)
-        world.place_agent(start, yaw_deg=float(yaw_deg))
-        ends = walk(world, 60, 1.0)[-1]["feet"]
-        best = max(best, (float(np.linalg.norm(ends - start)), float(yaw_deg)))
-    assert best[0] > 1.5
-    world.restore(first)
-    world.place_agent(start, yaw_deg=best[1])
-    steps = int((best[0] - 0.2) / 1.0 * 20)
-    rows = walk(world, steps, 1.0)
-    yaw = np.radians(best[1])
-    ahead = np.array((-np.sin(yaw), 0.0, -np.cos(yaw)))
+    world = person()
+    world.place_agent((2.0, 0.0, 4.0), yaw_deg=-90.0)
+    rows = walk(world, 140, 1.0)
+    ahead = np.array((1.0, 0.0, 0.0))
+    way = (rows[-1]["feet"] - rows[6]["feet"]) @ ahead
+    assert way == pytest.approx(6.7, abs=0.1)
     gaps = [(row["left_toe"] - row["right_toe"]) @ ahead for row in rows[6:]]
     signs = [np.sign(gap) for gap in gaps if abs(gap) > 0.05]
     changes = sum(a != b for a, b in itertools.pairwise(signs))
     # 1 m/s: steps of 0.62 m (the walk ratio 0.39 m s).
-    expected = best[0] / 0.62
+    expected = way / 0.624
     assert changes == pytest.approx(expected, abs=1.5), (changes, expected)
     slips: list[float] = []
     swings: list[float] = []
     for side in ("left", "right"):
         for a, b in itertools.pairwise(rows[6:]):
             heights = [row[f"{side}_toe"][1] - row["feet"][1] for row in (a, b)]
-            way = (b[f"{side}_toe"] - a[f"{side}_toe"]) @ ahead
-            (slips if max(heights) < 0.006 else swings).append(way)
+            moved = (b[f"{side}_toe"] - a[f"{side}_toe"]) @ ahead
+            (slips if max(heights) < 0.006 else swings).append(moved)
     # A standing foot goes less than 1 cm a step of 5 cm, a swinging one farther than the body.
     assert len(slips) > 10
     assert np.median(np.abs(slips)) < 0.01
@@ -345,21 +345,26 @@ def test_snapshots_and_copies_have_the_same_figure_and_bits() -> None:
         )
         assert all(np.array_equal(a[name], b[name]) for name in a)
     with pytest.raises(dwell.DwellError, match="bodies they were made with"):
-        World(HOUSE, agents=[{"height_m": 1.7, "eye_height_m": 0.936 * 1.7}, {}]).restore(saved)
+        World(hall(), agents=[{"height_m": 1.7, "eye_height_m": 0.936 * 1.7}, {}]).restore(saved)
 
 
 def test_what_a_hand_holds_is_in_the_hand() -> None:
     world = World("builtin:apartment", agents=[{"kind": "person"}])
-    for row in world.objects():
-        world.restore(world.snapshot())
-        outcome = world.act("pick", object=row["name"], agent=0)
-        if outcome.success:
-            break
-    else:
-        pytest.skip("nothing is in reach at the start")
-    world.step()
-    joints, held = world.person_joints(0), world.body(row["name"])
-    assert length(joints["right_palm"], held["position"]) < 0.4
+    x, _, z = world.body("book_1")["position"]
+    world.place_agent((x, 0.0, z + 0.65), yaw_deg=0.0, pitch_deg=-30.0)
+    hanging = length(world.person_joints(0)["right_palm"], world.body("book_1")["position"])
+    assert world.act("pick", "book_1").success
+    for _ in range(3):
+        joints, held = world.person_joints(0), world.body("book_1")["position"]
+        # Half of the book's length from its middle.
+        assert length(joints["right_palm"], held) < 0.15 < hanging
+        check_lengths(joints, 1.7)
+        world.step([[0.3, 0.0, 0.5, 0.0]])
+    world.act("drop")
+    for _ in range(20):
+        world.step()
+    joints = world.person_joints(0)
+    assert joints["right_palm"][1] == pytest.approx(joints["left_palm"][1], abs=1e-3)
 
 
 def test_colours_are_drawn_or_stated() -> None:
@@ -372,11 +377,9 @@ def test_colours_are_drawn_or_stated() -> None:
 
     red = shirt(person(colors={"shirt": [255, 0, 0]}))
     assert red == pytest.approx((1.0, 0.0, 0.0), abs=1e-3)
-    bodies = [{"kind": "person"}, {}]
-    drawn = {tuple(shirt(World(HOUSE, agents=bodies, seed=seed))) for seed in range(12)}  # type: ignore[arg-type]
-    assert len(drawn) > 2
-    again = {tuple(shirt(World(HOUSE, agents=bodies, seed=seed))) for seed in range(12)}  # type: ignore[arg-type]
-    assert again == drawn
+    drawn = [tuple(shirt(person(seed=seed))) for seed in range(8)]
+    assert len(set(drawn)) > 2
+    assert [tuple(shirt(person(seed=seed))) for seed in range(8)] == drawn
 
 
 @pytest.mark.parametrize(
@@ -403,10 +406,10 @@ def test_wrong_gestures_are_refused_with_a_sentence(
 
 def test_wrong_bodies_are_refused_with_a_sentence() -> None:
     for body, told in (
-        ({"kind": "person", "height_m": 2.2}, "height_m is 2.2 (range 1.45 to 2 m)"),
+        ({"kind": "person", "height_m": 2.2}, "height_m is 2.2 (range 1.45 to 2 m of a person)"),
         ({"hand": "left"}, 'hand is of bodies of the kind "person"'),
         ({"kind": "robot"}, "robot"),
         ({"kind": "person", "colors": {"hat": [1, 2, 3]}}, "hat"),
     ):
         with pytest.raises(dwell.DwellError, match=re.escape(told)):
-            World(HOUSE, agents=[body])  # type: ignore[list-item]
+            World(hall(), agents=[body])  # type: ignore[list-item]

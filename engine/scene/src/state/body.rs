@@ -133,6 +133,12 @@ impl AgentBody {
                 allowed: "a value within its range",
             })
         };
+        if let (Some(_), [low, high]) = (self.person, PersonBody::HEIGHT_RANGE_M)
+            && !(low..=high).contains(&self.height_m)
+        {
+            let found = format!("{} (range {low} to {high} m of a person)", self.height_m);
+            return refuse("height_m", found);
+        }
         let refused = |(_, parameter): &(_, Parameter)| !parameter.admits(parameter.value);
         let all = self.parameters();
         // A number out of its own range invalidates those of the others, so it is named first.

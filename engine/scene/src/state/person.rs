@@ -74,13 +74,14 @@ pub struct PersonLook {
 /// Skins.
 ///
 /// # Source
-/// Every other one of the ten tones of E. Monk, "The Monk Skin Tone Scale", 2023, doi:10.31235/osf.io/pdf4c.
+/// The patches "light skin" and "dark skin" of the `ColorChecker` (C. S. `McCamy` et al., J. Appl. Photogr. Eng. 2, 1976), and the
+/// tones 5, 6 and 8 of E. Monk, "The Monk Skin Tone Scale", 2023. Its lightest are paler than walls when they are lit.
 const SKINS: [[u8; 3]; 5] = [
-    [0xf6, 0xed, 0xe4],
-    [0xf7, 0xea, 0xd0],
+    [194, 150, 130],
+    [115, 82, 68],
     [0xd7, 0xbd, 0x96],
-    [0x82, 0x5c, 0x43],
-    [0x3a, 0x31, 0x2a],
+    [0xa0, 0x7e, 0x56],
+    [0x60, 0x41, 0x34],
 ];
 const HAIRS: [[u8; 3]; 5] = [
     [28, 22, 20],
