@@ -38,6 +38,7 @@ _ANNOTATIONS = {
     ("WorldSettings", "sound_head"): "Head | str | os.PathLike[str] | None",
     ("WorldSettings", "sound_root"): "str | os.PathLike[str] | None",
     ("BodySettings", "locomotion"): "Locomotion",
+    ("BodySettings", "colors"): "Mapping[str, Sequence[int]]",
     ("AcousticSettings", "air"): "AirSettings",
     ("GeneratorSettings", "rooms"): "Sequence[str]",
     ("GeneratorSettings", "adjacency"): "Sequence[tuple[str, str]]",

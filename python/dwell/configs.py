@@ -9,7 +9,14 @@ from collections.abc import Mapping, Sequence
 from typing import Any, get_args
 
 from dwell._native import ConfigError
-from dwell.arguments import checked_fields, finite_number, integer_in_range, mapping, quoted
+from dwell.arguments import (
+    checked_fields,
+    finite_number,
+    integer_in_range,
+    mapping,
+    quoted,
+    sequence_items,
+)
 from dwell.engine_types import LocomotionName
 from dwell.schemas import setting_checks
 
@@ -34,6 +41,21 @@ def _locomotion(name: str, value: object) -> object:
     }
 
 
+def _colors(name: str, value: object) -> object:
+    rows = {}
+    for part, color in mapping(name, value, "sRGB by what it is the colour of").items():
+        channels = sequence_items(f"{name}.{part}", color, "expected three numbers of 0 to 255")
+        if len(channels) != 3:
+            raise ConfigError(
+                f"{name}.{part} is {quoted(color)}; expected three numbers of 0 to 255"
+            )
+        rows[part] = [
+            integer_in_range(f"{name}.{part}[{k}]", channel, high=255)
+            for k, channel in enumerate(channels)
+        ]
+    return rows
+
+
 def bodies(agents: object) -> list[dict[str, Any]]:
     """A body for each agent, from a count or from mappings of what differs from the default."""
     if isinstance(agents, str | bytes) or not isinstance(agents, Sequence):
@@ -41,7 +63,7 @@ def bodies(agents: object) -> list[dict[str, Any]]:
             return [{} for _ in range(integer_in_range("agents", agents, high=64))]
         except ConfigError as error:
             raise ConfigError(f"{error}, and lists of a mapping for each body") from None
-    known = {**setting_checks("AgentBody"), "locomotion": _locomotion}
+    known = {**setting_checks("AgentBody"), "locomotion": _locomotion, "colors": _colors}
     rows = []
     for k, body in enumerate(agents):
         if not isinstance(body, Mapping):

@@ -64,9 +64,11 @@ class BodySettings(TypedDict, total=False):
 
     #: Radius of the capsule, m; 0.05 to 1.
     radius_m: float
-    #: Height of the capsule, m; at least twice the radius, at most 3.
+    #: Height of the capsule, m; at least twice the radius, at most 3; 1.45 to 2 of a person,
+    #: default 1.7 there.
     height_m: float
-    #: Height of eyes and ears above the feet, m; at most the height.
+    #: Height of eyes and ears above the feet, m; at most the height; of a person 0.936 of its
+    #: height by default.
     eye_height_m: float
     #: The highest step that it climbs, m; 0 to 1.
     step_height_m: float
@@ -90,6 +92,12 @@ class BodySettings(TypedDict, total=False):
     camera_fov_deg: float
     #: Its locomotion; default: it walks.
     locomotion: Locomotion
+    #: `"capsule"` (default) or `"person"`: a jointed figure that is seen as a person.
+    kind: Literal["capsule", "person"]
+    #: The hand with which a person holds and reaches, default `"right"`.
+    hand: Literal["left", "right"]
+    #: Colours of a person, sRGB, 0 to 255; what is not stated is drawn.
+    colors: Mapping[str, Sequence[int]]
 
 
 class AirSettings(TypedDict, total=False):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Literal
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +11,10 @@ from numpy.typing import NDArray
 from dwell import _native
 from dwell.arguments import choice, integer_in_range, point
 
-_SIDES = ("left", "right")
+_SIDES: tuple[Literal["left", "right"], ...] = ("left", "right")
+
+#: A point, m.
+_Point: TypeAlias = Sequence[float] | NDArray[np.floating[Any]]
 
 
 class PersonApi:
@@ -23,11 +26,11 @@ class PersonApi:
         self,
         agent: int,
         *,
-        look_at: Sequence[float] | None = None,
-        left_hand: Sequence[float] | None = None,
-        right_hand: Sequence[float] | None = None,
+        look_at: _Point | None = None,
+        left_hand: _Point | None = None,
+        right_hand: _Point | None = None,
         pointing: Literal["left", "right"] | None = None,
-        point_at: Sequence[float] | None = None,
+        point_at: _Point | None = None,
     ) -> None:
         """Sets what a person looks at and reaches for, at once and until the next call.
 
@@ -40,8 +43,8 @@ class PersonApi:
                 side, 57 up or down); ``None``: where its camera looks.
             left_hand: Where the middle of the left palm is, m. Out of reach (0.386 of its height)
                 the palm is on the line from the shoulder to it. ``None``: the arm hangs or swings.
-            right_hand: As ``left_hand``. ``None`` for the hand that holds a thing, or has just acted
-                on one: it is there.
+            right_hand: As ``left_hand``. With ``None`` the hand that holds a thing, or has just
+                acted on one, is there.
             pointing: The hand whose index finger is stretched. Without a target of its own the arm
                 is stretched so that the line from between the eyes through the finger tip meets
                 ``point_at``, as people point (Taylor and McCloskey 1988, Herbort and Kunde 2016).
@@ -88,7 +91,7 @@ class PersonApi:
         Returns:
             ``eyes`` (the point between them), ``head`` (its middle), ``neck``, ``pelvis``, and of
             ``left_`` and ``right_``: ``shoulder``, ``elbow``, ``wrist``, ``palm`` (its middle),
-            ``finger_tip``, ``hip``, ``knee``, ``ankle`` and ``toe`` (the ball of the foot).
+            ``finger_tip``, ``hip``, ``knee``, ``ankle`` and ``toe``.
 
         Raises:
             ConfigError: There is no such agent, or it is no person.

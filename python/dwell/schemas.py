@@ -31,7 +31,15 @@ _BOUNDS = {
     "uint64": (0, 2**64 - 1),
 }
 #: What the package takes in other forms than the engine.
-_WITHOUT_CHECK = {"agents", "laws", "locomotion", "parameters", "sound_head", "sound_root"}
+_WITHOUT_CHECK = {
+    "agents",
+    "colors",
+    "laws",
+    "locomotion",
+    "parameters",
+    "sound_head",
+    "sound_root",
+}
 #: Checks of lists of numbers by their length.
 _LISTS: dict[int, Check] = {2: two_numbers, 3: point}
 

@@ -200,7 +200,8 @@ def test_every_environment_has_its_section(pages: ModuleType) -> None:
 def test_settings_of_worlds_and_bodies_are_those_that_worlds_take(pages: ModuleType) -> None:
     page = pages.environments.page()
     room = dwell.House.shoebox((4.0, 2.5, 4.0), substance="plaster")
-    body = dwell.World(room).agents()[0]["body"]
+    # Of a person all fields are told; of a capsule those of persons are not.
+    body = dwell.World(room, agents=[{"kind": "person"}]).agents()[0]["body"]
     assert [row[0] for row in rows_of(page, "## Bodies of agents")] == list(body)
     with pytest.raises(dwell.ConfigError) as refused:
         dwell.World(room, no_such_setting=1)

@@ -97,8 +97,10 @@ impl World {
 
     /// As [`Self::reset`], in a world in which nothing has happened since it was made.
     pub(crate) fn reset_fresh(&mut self, key: RandomKey) {
-        self.draw_persons(key);
-        self.rays.update(&self.state);
+        if !self.state.persons.is_empty() {
+            self.draw_persons(key);
+            self.rays.update(&self.state);
+        }
         self.key = key;
     }
 

@@ -79,3 +79,14 @@ fn pack_world(job: &RenderJob<'_>, rows: &mut Vec<PackedRow>) {
         rows.extend([rotation, position]);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use dwell_scene::rays::BODY_PIECES;
+
+    #[test]
+    fn shaders_count_the_pieces_of_bodies_as_the_scene_does() {
+        let line = format!("const BODY_PIECES: u32 = {BODY_PIECES}u;");
+        assert!(include_str!("shaders/walk.wgsl").contains(&line), "{line}");
+    }
+}

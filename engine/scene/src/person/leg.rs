@@ -67,10 +67,11 @@ fn foot_at(phase: f32, gait: &PersonGait, height_m: f32) -> Foot {
     }
 }
 
-/// How far hips sink so that a straight leg reaches where its heel comes down, m.
+/// How far hips sink so that the leg that is ahead reaches the floor, m.
 pub(super) fn hip_drop_m(gait: &PersonGait, height_m: f32) -> f32 {
     let length = (SHIN + THIGH) * height_m;
-    let ahead = AHEAD * STANCE * gait.stride_m;
+    let along = |phase: f32| foot_at(phase - phase.floor(), gait, height_m).along_m;
+    let ahead = along(gait.phase).max(along(gait.phase + 0.5)).max(0.0);
     let reached = (length * length - ahead * ahead).max(0.0).sqrt();
     (length - reached).min(0.03 * height_m)
 }
@@ -80,7 +81,7 @@ pub(super) fn leg_at(hip: Vec3, phase: f32, gait: &PersonGait, height_m: f32) ->
     let foot = foot_at(phase, gait, height_m);
     let way = Vec3::new(gait.direction.x, 0.0, -gait.direction.y);
     let flat = Vec3::new(hip.x, ANKLE * height_m + foot.above_m, hip.z) + way * foot.along_m;
-    // Heels rise about the ball of the foot, toes about the heel.
+    // Heels rise about the toes, toes about the heel.
     let turn = rotation_x(-foot.pitch_rad);
     let pivot = if foot.pitch_rad > 0.0 {
         Vec3::new(0.0, -ANKLE, -BALL) * height_m

@@ -139,14 +139,14 @@ fn limb(length: f32, radii: &[Vec2], around: u16) -> Mesh {
         let (sine, cosine) = math::sin_cos(angle);
         (radius * cosine, radius * sine)
     };
-    for angle in [1.4, 0.9, 0.45] {
+    for angle in [1.35, 0.75] {
         let (radius, below) = round(last.y, angle);
         rings.push([-length - below, radius, radius, 0.0]);
     }
     for at in radii.iter().rev() {
         rings.push([-length * at.x, at.y, at.y, 0.0]);
     }
-    for angle in [0.45, 0.9, 1.4] {
+    for angle in [0.75, 1.35] {
         let (radius, above) = round(first.y, angle);
         rings.push([above, radius, radius, 0.0]);
     }
@@ -166,21 +166,21 @@ fn head() -> Mesh {
     let skull = ellipsoid(
         Vec3::new(0.045, 0.065, 0.056),
         Vec3::new(0.0, 0.03, 0.004),
-        (12, 16),
+        (8, 12),
     );
     let jaw = ellipsoid(
         Vec3::new(0.033, 0.03, 0.036),
         Vec3::new(0.0, -0.006, -0.016),
-        (6, 12),
+        (4, 8),
     );
     let nose = ellipsoid(
         Vec3::new(0.0075, 0.013, 0.012),
         Vec3::new(0.0, 0.018, -0.054),
-        (6, 8),
+        (4, 6),
     );
     let ear = |x: f32| {
         let half = Vec3::new(0.006, 0.016, 0.01);
-        ellipsoid(half, Vec3::new(x, 0.026, 0.008), (6, 8))
+        ellipsoid(half, Vec3::new(x, 0.026, 0.008), (3, 5))
     };
     joined(&[skull, jaw, nose, ear(-0.045), ear(0.045)])
 }
@@ -191,11 +191,11 @@ fn hair() -> Mesh {
         Vec3::new(0.0, 0.032, 0.008),
         1.75,
         0.62,
-        (7, 16),
+        (5, 12),
     );
     let brow = |x: f32| {
         let half = Vec3::new(0.011, 0.0022, 0.003);
-        ellipsoid(half, Vec3::new(x, 0.046, -0.0475), (4, 8))
+        ellipsoid(half, Vec3::new(x, 0.046, -0.0475), (3, 4))
     };
     joined(&[cap, brow(-0.018), brow(0.018)])
 }
@@ -204,12 +204,12 @@ fn hair() -> Mesh {
 fn face() -> Mesh {
     let eye = |x: f32| {
         let half = Vec3::new(0.0075, 0.0048, 0.005);
-        ellipsoid(half, Vec3::new(x, 0.031, -0.0465), (6, 8))
+        ellipsoid(half, Vec3::new(x, 0.031, -0.0465), (4, 6))
     };
     let mouth = ellipsoid(
         Vec3::new(0.014, 0.0028, 0.004),
         Vec3::new(0.0, -0.008, -0.0485),
-        (4, 8),
+        (3, 5),
     );
     joined(&[eye(-0.018), eye(0.018), mouth])
 }
@@ -219,17 +219,16 @@ fn trunk() -> Mesh {
     let (half, top) = (0.5 * SHOULDER_BREADTH, TRUNK);
     let rings = [
         [0.028, 0.086, 0.056, 0.0],
-        [0.06, 0.082, 0.053, 0.0],
-        [0.10, 0.08, 0.053, -0.002],
-        [0.15, 0.088, 0.06, -0.006],
-        [0.20, 0.097, 0.066, -0.008],
-        [0.245, 0.106, 0.064, -0.004],
-        [top - 0.012, half - 0.014, 0.05, 0.0],
-        [top + 0.012, half - 0.03, 0.04, 0.002],
-        [top + 0.028, 0.062, 0.034, 0.004],
-        [top + 0.037, 0.034, 0.028, 0.005],
+        [0.08, 0.080, 0.053, -0.002],
+        [0.15, 0.088, 0.060, -0.006],
+        [0.21, 0.098, 0.066, -0.008],
+        [0.25, 0.107, 0.062, -0.004],
+        [top - 0.004, half - 0.012, 0.050, 0.0],
+        [top + 0.018, half - 0.024, 0.040, 0.002],
+        [top + 0.031, 0.062, 0.033, 0.004],
+        [top + 0.039, 0.034, 0.028, 0.005],
     ];
-    tube(&rings, 18)
+    tube(&rings, 14)
 }
 
 fn pelvis() -> Mesh {
@@ -242,7 +241,7 @@ fn pelvis() -> Mesh {
         [0.045, 0.088, 0.058, 0.0],
         [0.052, 0.08, 0.052, 0.0],
     ];
-    tube(&rings, 16)
+    tube(&rings, 12)
 }
 
 /// The palm with its thumb, which is ahead of a hanging hand and close to the body's middle.
@@ -259,7 +258,7 @@ fn palm(inwards: f32) -> Mesh {
     for point in &mut thumb.positions {
         *point = lean * *point + Vec3::new(inwards * 0.004, -0.018, -0.017);
     }
-    joined(&[tube(&rings, 12), with_normals(thumb)])
+    joined(&[tube(&rings, 8), with_normals(thumb)])
 }
 
 /// Four fingers, a little bent.
@@ -268,7 +267,7 @@ fn fingers() -> Mesh {
         let z = (f32::from(k) - 1.5) * 0.0112;
         let length = HAND - 0.056 - 0.005 - 0.004 * (f32::from(k) - 1.0).abs();
         let radii = [Vec2::new(0.0, 0.0056), Vec2::new(1.0, 0.0046)];
-        let mut mesh = limb(length, &radii, 8);
+        let mut mesh = limb(length, &radii, 4);
         for point in &mut mesh.positions {
             *point += Vec3::new(0.0, -0.056, z);
         }
@@ -280,7 +279,7 @@ fn fingers() -> Mesh {
 /// The index finger stretched, the others in a fist.
 fn pointing_finger() -> Mesh {
     let radii = [Vec2::new(0.0, 0.006), Vec2::new(1.0, 0.0048)];
-    let mut index = limb(HAND - 0.05 - 0.0048, &radii, 8);
+    let mut index = limb(HAND - 0.05 - 0.0048, &radii, 6);
     for point in &mut index.positions {
         *point += Vec3::new(0.0, -0.05, -0.0168);
     }
@@ -296,7 +295,7 @@ fn pointing_finger() -> Mesh {
     let fist = ellipsoid(
         Vec3::new(0.014, 0.014, 0.019),
         Vec3::new(0.0, -0.062, 0.005),
-        (6, 10),
+        (4, 7),
     );
     joined(&[with_normals(index), fist])
 }
@@ -320,7 +319,7 @@ fn foot() -> Mesh {
         .iter()
         .map(|[along, high, wide]| [along * FOOT, wide * half, 0.5 * high, 0.5 * high])
         .collect();
-    let mut mesh = tube(&rings, 12);
+    let mut mesh = tube(&rings, 8);
     // From along Y to along -Z; soles are flat.
     for point in &mut mesh.positions {
         *point = Vec3::new(point.x, point.z - ANKLE, heel - point.y);
@@ -338,53 +337,25 @@ fn shape(kind: Shape) -> Mesh {
         Shape::Head => head(),
         Shape::Hair => hair(),
         Shape::Face => face(),
-        Shape::Neck => limb(0.07, &[at(0.0, 0.028), at(1.0, 0.032)], 12),
+        Shape::Neck => limb(0.07, &[at(0.0, 0.028), at(1.0, 0.032)], 8),
         Shape::Trunk => trunk(),
         Shape::Pelvis => pelvis(),
         Shape::UpperArm => limb(
             UPPER_ARM,
-            &[
-                at(0.0, 0.027),
-                at(0.4, 0.027),
-                at(0.85, 0.022),
-                at(1.0, 0.021),
-            ],
-            12,
+            &[at(0.0, 0.026), at(0.5, 0.0255), at(1.0, 0.021)],
+            8,
         ),
         Shape::Forearm => limb(
             FOREARM,
-            &[
-                at(0.0, 0.019),
-                at(0.25, 0.0205),
-                at(0.7, 0.016),
-                at(1.0, 0.0125),
-            ],
-            12,
+            &[at(0.0, 0.019), at(0.3, 0.0205), at(1.0, 0.0125)],
+            8,
         ),
         Shape::LeftPalm => palm(1.0),
         Shape::RightPalm => palm(-1.0),
         Shape::Fingers => fingers(),
         Shape::PointingFinger => pointing_finger(),
-        Shape::Thigh => limb(
-            THIGH,
-            &[
-                at(0.0, 0.046),
-                at(0.3, 0.045),
-                at(0.8, 0.034),
-                at(1.0, 0.031),
-            ],
-            12,
-        ),
-        Shape::Shin => limb(
-            SHIN,
-            &[
-                at(0.0, 0.030),
-                at(0.25, 0.032),
-                at(0.6, 0.026),
-                at(1.0, 0.0215),
-            ],
-            12,
-        ),
+        Shape::Thigh => limb(THIGH, &[at(0.0, 0.046), at(0.4, 0.044), at(1.0, 0.031)], 8),
+        Shape::Shin => limb(SHIN, &[at(0.0, 0.030), at(0.3, 0.032), at(1.0, 0.0215)], 8),
         Shape::Foot => foot(),
     }
 }
@@ -454,11 +425,11 @@ mod tests {
     }
 
     #[test]
-    fn a_person_has_about_two_thousand_triangles() {
+    fn a_person_is_cheap() {
         let count: usize = person_meshes()
             .iter()
             .map(|piece| piece.mesh.triangles.len())
             .sum();
-        assert!((1000..6000).contains(&count), "{count}");
+        assert!((1000..3000).contains(&count), "{count}");
     }
 }

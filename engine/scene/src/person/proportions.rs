@@ -47,5 +47,5 @@ pub(super) const SHOULDER_SIDE: f32 = 0.5 * SHOULDER_BREADTH - 0.026;
 pub(super) const HIP_SIDE: f32 = 0.5 * HIP_BREADTH - 0.044;
 /// How far the line of shoulders and hips is behind the eyes.
 pub(super) const BEHIND_EYES: f32 = 0.045;
-/// From the ankle to the ball of the foot, on which a heel rises.
-pub(super) const BALL: f32 = 0.09;
+/// From the ankle to the toes on which a heel rises.
+pub(super) const BALL: f32 = 0.108;

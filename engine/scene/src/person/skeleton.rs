@@ -56,7 +56,7 @@ pub struct Leg {
     pub knee: Vec3,
     /// The ankle.
     pub ankle: Vec3,
-    /// The ball of the foot, on the floor while it stands.
+    /// The toes, on the floor while the foot stands.
     pub toe: Vec3,
     /// `world_from_foot`: toes along -Z.
     pub foot: Quat,
