@@ -154,7 +154,7 @@ def ray_meets_box(
 def check_ray(session: Session) -> None:
     """A user without noise who points: the line from the eyes leads to the target and meets it."""
     person, world = session.person, session.world
-    person.take(Pose(session.meant, *session.ready).pointing_to(person.hand, session.aim))
+    person.take(Pose(session.meant, *session.ready).pointing_to(person.hand, session.finger))
     joints = person.joints()
     origin, direction = person.ray(joints)
     thing = world.object(session.target)

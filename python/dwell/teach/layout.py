@@ -17,7 +17,7 @@ THINGS_HALF_WIDTH_M = 0.56
 #: Where on the table things lie: from the person's edge, m.
 THINGS_FROM_EDGE_M = (0.10, 0.44)
 #: From the person's edge of the table to the middle of its body, m.
-PERSON_FROM_EDGE_M = 0.24
+PERSON_FROM_EDGE_M = 0.17
 #: From the robot's edge of the table to its middle, m.
 ROBOT_FROM_EDGE_M = 0.75
 

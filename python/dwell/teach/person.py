@@ -20,7 +20,14 @@ PERSON, ROBOT = 0, 1
 
 def person_body(user: UserParameters) -> BodySettings:
     """The body of a user, as ``agents`` of a world takes it."""
-    return {"kind": "person", "height_m": user.height_m, "hand": user.hand}
+    body: BodySettings = {
+        "kind": "person",
+        "height_m": user.height_m,
+        "hand": user.hand,
+        # It stands close to the table.
+        "radius_m": 0.15,
+    }
+    return body
 
 
 @dataclasses.dataclass(frozen=True)

@@ -159,7 +159,7 @@ class _Player:
         elif session.plan.type == "point":
             # Where the palm is in the end, the figure says.
             looking = dataclasses.replace(self._rest, look_at=session.meant)
-            self._person.take(looking.pointing_to(self._person.hand, session.aim))
+            self._person.take(looking.pointing_to(self._person.hand, session.finger))
             palm = self._person.palm(self._person.joints())
             strokes = [Stroke(*reach, palm)]
         else:
@@ -184,11 +184,11 @@ class _Player:
         hand, points = self._person.hand, session.plan.type == "point"
         pose = dataclasses.replace(self._rest, look_at=self._gaze.at(time_s))
         if points and time_s >= times.reach_end_s:
-            pose = pose.pointing_to(hand, session.aim)
+            pose = pose.pointing_to(hand, session.finger)
         else:
             pose = pose.with_palm(hand, self._path.at(time_s))
             if points and time_s > times.reach_start_s:
-                pose = dataclasses.replace(pose, pointing=hand, point_at=session.aim)
+                pose = dataclasses.replace(pose, pointing=hand, point_at=session.finger)
         self._person.take(pose)
         if session.plan.type == "show" and time_s >= times.lift_start_s:
             self._carry(time_s)

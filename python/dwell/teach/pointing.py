@@ -14,6 +14,8 @@ from dwell.teach.motion import Point
 _EDGE = 48
 #: Nearer than this to its eyes a person sees nothing but itself, m.
 _FACE_M = 0.3
+#: A finger stops so far short of what it points at, m: people point, and do not touch.
+_SHORT_M = 0.12
 #: A ray begins so far from the finger tip, m: the finger is no hit.
 _CLEAR_M = 0.03
 
@@ -76,6 +78,17 @@ def aim_points(world: dwell.World, eyes: Point, target: str) -> tuple[list[Point
     frame = _camera_axes(yaw, pitch)
     points = [eyes + frame @ seen["surfels"].reshape(-1, 9)[k, :3].astype(float) for k in chosen]
     return points, hidden[0] if hidden else 1.0
+
+
+def finger_goal(eyes: Point, aim: Point) -> Point:
+    """Where the finger goes that points at something near: short of it, on the line from the eyes.
+
+    What is farther than an arm reaches is pointed at along the same line.
+    """
+    toward = aim - eyes
+    distance = float(np.linalg.norm(toward))
+    found: Point = eyes + max(distance - _SHORT_M, 0.0) / distance * toward
+    return found
 
 
 def turned_aim(eyes: Point, aim: Point, right_deg: float, up_deg: float) -> Point:

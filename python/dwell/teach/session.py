@@ -14,7 +14,7 @@ from dwell.teach.motion import Point
 from dwell.teach.person import PERSON, ROBOT, Person, Pose, person_body
 from dwell.teach.phrases import Phrase, deictic_phrase, relation_phrase
 from dwell.teach.plan import ClipPlan
-from dwell.teach.pointing import aim_points, first_hit, turned_aim
+from dwell.teach.pointing import aim_points, finger_goal, first_hit, turned_aim
 from dwell.teach.scene import TABLE, furnished, place_things, stage
 from dwell.teach.settings import TeachSettings
 from dwell.teach.things import POOL
@@ -63,6 +63,7 @@ class Session:
         robot_eyes: What the person looks at when it does not look at the target, m.
         meant: The point of the target that the person means, m.
         aim: The point that it points at, with the noise of its pointing, m.
+        finger: Where the finger goes, short of that on the line from the eyes, m.
         tries: How many tables were laid.
     """
 
@@ -81,6 +82,7 @@ class Session:
     robot_eyes: Point
     meant: Point
     aim: Point
+    finger: Point
     tries: int
 
 
@@ -163,7 +165,8 @@ def _prepared(
     meant = next((p for p in points if _is_hit(world, person, rest, p, target)), None)
     if meant is None:
         return None
-    person.take(dataclasses.replace(rest.pointing_to(person.hand, meant), look_at=meant))
+    # Eyes move as the head turns.
+    person.take(dataclasses.replace(rest, look_at=meant))
     eyes = person.joints()["eyes"]
     person.take(rest)
     if plan.type == "speak":
@@ -173,6 +176,7 @@ def _prepared(
     if phrase is None:
         return None
     right_deg, up_deg = (draw * user.pointing_noise_deg for draw in plan.aim_noise)
+    aim = turned_aim(eyes, meant, right_deg, up_deg)
     return Session(
         settings=settings,
         user=user,
@@ -188,14 +192,17 @@ def _prepared(
         shown=shown,
         robot_eyes=robot_eyes,
         meant=meant,
-        aim=turned_aim(eyes, meant, right_deg, up_deg),
+        aim=aim,
+        finger=finger_goal(eyes, aim),
         tries=tries,
     )
 
 
 def _is_hit(world: dwell.World, person: Person, rest: Pose, aim: Point, target: str) -> bool:
     """Whether the ray of who points there meets the target first."""
-    person.take(dataclasses.replace(rest.pointing_to(person.hand, aim), look_at=aim))
+    looking = dataclasses.replace(rest, look_at=aim)
+    person.take(looking)
+    person.take(looking.pointing_to(person.hand, finger_goal(person.joints()["eyes"], aim)))
     origin, direction = person.ray(person.joints())
     number: int = world.object(target)["id"]
     return first_hit(world, origin, direction)[0] == number
