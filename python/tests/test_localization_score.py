@@ -169,6 +169,7 @@ def test_baselines_are_scored_with_a_report_and_a_picture(
         assert found["angle_deg"]["median"] < 1.0
         distances = [(row["from"], row["frames"]) for row in found["by"]["distance_m"]]
         assert distances == [(1.0, 10), (3.0, 10)]
+        assert [row["is"] for row in found["by"]["sources"]] == ["1"]
         assert [row["is"] for row in found["by"]["occlusion"]] == ["none", "edge"]
     with Image.open(plot) as picture:
         assert picture.width > 400

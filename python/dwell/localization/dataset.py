@@ -140,8 +140,8 @@ class DatasetMaker:
 
         Args:
             out: The folder.
-            on_skip: Is told of a house that cannot be opened, whose clips are left out, and of one
-                in which a clip cannot be.
+            on_skip: Is told of a house that cannot be opened, whose clips are left out, or of a
+                clip for which its house has no place; and why.
 
         Yields:
             The number of each clip in order, and whether it was made now.
@@ -167,7 +167,7 @@ class DatasetMaker:
             try:
                 scene = draw_scene(opened, self.settings, self.pool, clip)
             except ConfigError as error:
-                on_skip(name, str(error))
+                on_skip(f"clip {clip}", str(error))
                 yield clip, False
                 continue
             self._write(out, scene, opened)

@@ -77,7 +77,9 @@ def diffuse_noise(
     edges[-1] = len(hz)
     for k, (first, last) in enumerate(itertools.pairwise(edges)):
         part = (place[first:last] - k)[:, None]
-        low, high = (white[first:last] @ root.T for root in roots[k : k + 2])
+        # Not by BLAS, whose sums may depend on how many threads it has.
+        some = white[first:last]
+        low, high = (np.einsum("fj,ij->fi", some, root) for root in roots[k : k + 2])
         mixed[first:last] = (1.0 - part) * low + part * high
     found = np.fft.irfft(mixed.T, size)[:, :samples]
     scaled: NDArray[np.float64] = found / np.sqrt(np.mean(found**2))

@@ -65,7 +65,14 @@ class Renderer:
         self._speed = 343.2 * float(np.sqrt(kelvin / 293.15))
 
     def record(self, scene: Scene, layouts: Sequence[Layout]) -> list[Recording]:
-        """What each layout records of a scene, without noise. All hear the same rays."""
+        """What each layout records of a scene, without noise. All hear the same rays.
+
+        Raises:
+            ConfigError: A source that is no appliance begins in a wall, a thing, or outside.
+        """
+        if self._settings.sounds != "household":
+            for number, source in enumerate(scene.sources):
+                self._opened.check_free(f"source {number}", source.way.points[0])
         found = []
         for layout in layouts:
             shape = (layout.channels, self._settings.samples)

@@ -30,7 +30,6 @@ _EDGES: dict[str, tuple[float, ...]] = {
     "t20_s": (0.0, 0.3, 0.5, 0.8, 1.2, 100.0),
     "drr_db": (-100.0, -10.0, -5.0, 0.0, 5.0, 100.0),
     "snr_db": (-100.0, 0.0, 10.0, 20.0, 30.0, 1000.0),
-    "sources": (1.0, 2.0, 3.0, 4.0, 5.0),
 }
 _OCCLUSIONS = ("none", "edge", "wall", "all")
 
@@ -253,6 +252,14 @@ def _groups(errors: list[FrameError], max_angle_deg: float) -> dict[str, list[di
             if inside:
                 rows.append({"from": low, "to": high, **_summary(inside, max_angle_deg)})
         found[name] = rows
+    counts = sorted({fact for one in errors if isinstance(fact := one.facts["sources"], float)})
+    found["sources"] = [
+        {
+            "is": f"{count:g}",
+            **_summary([one for one in errors if one.facts["sources"] == count], max_angle_deg),
+        }
+        for count in counts
+    ]
     found["occlusion"] = [
         {"is": kind, **_summary(inside, max_angle_deg)}
         for kind in _OCCLUSIONS
