@@ -254,7 +254,7 @@ fn sides_are_the_agents(env: &mut Env, at: [f32; 2], judged: &mut [i32; 2]) {
 #[test]
 fn questions_cost_and_are_limited() {
     let settings = json!({"max_questions": 3, "question_cost": 0.25});
-    let [mut asking, mut silent] = [env(settings.clone()), env(settings)];
+    let (mut asking, mut silent) = (env(settings.clone()), env(settings));
     for env in [&mut asking, &mut silent] {
         env.reset(3).unwrap();
     }
@@ -364,7 +364,7 @@ fn starts_are_as_far_from_all_that_fits() {
 /// A snapshot keeps what was asked and ruled out, and the reply.
 #[test]
 fn a_dialogue_goes_on_from_a_snapshot() {
-    let [mut one, mut other] = [env(Value::Null), env(Value::Null)];
+    let (mut one, mut other) = (env(Value::Null), env(Value::Null));
     one.reset(11).unwrap();
     let info = step(&mut one, DiscreteAction::Wait, "Is it red?");
     other.restore(&one.snapshot().unwrap()).unwrap();

@@ -295,7 +295,7 @@ fn settings_that_cannot_be_are_refused_in_a_sentence() {
             ..EnvConfig::default()
         };
         let made = Env::new(dwell_tests::apartment(), &config);
-        let told = made.and_then(|mut env| env.reset(0).map(|_| ()));
+        let told = made.and_then(|mut env| env.reset(0));
         let told = told.unwrap_err().to_string();
         assert!(told.contains(part), "{told}");
     }

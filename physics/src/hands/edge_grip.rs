@@ -290,7 +290,7 @@ impl Hands {
             return;
         }
         let pose = next_pose(rigid);
-        let lowered = self.lowered_pose(dynamics, body, &pose);
+        let lowered = lowered_pose(dynamics, body, &pose);
         dynamics.engine.wake_around(handle);
         let Some(rigid) = dynamics.engine.bodies.get_mut(handle) else {
             return;
@@ -314,21 +314,6 @@ impl Hands {
             }
         }
         dynamics.flush();
-    }
-
-    /// Returns the pose in which a lifted body is set down: lower, as far as it was lifted and nothing is in the way.
-    fn lowered_pose(&self, dynamics: &Dynamics, body: usize, pose: &RapierPose) -> RapierPose {
-        let allowed = dynamics.overlap_depths_m(body, pose);
-        let lower = |by_m: f32| {
-            let mut lower = *pose;
-            lower.translation.y -= by_m;
-            lower
-        };
-        let is_free = |by_m: f32| {
-            let depths = dynamics.overlap_depths_m(body, &lower(by_m));
-            depths[0] <= allowed[0] && depths[1] <= allowed[1]
-        };
-        lower(free_share(|share| is_free(share * LIFT_M)) * LIFT_M)
     }
 
     /// Sets down what has become too heavy for those who hold it, after a change of their strength or of its mass.
@@ -524,6 +509,21 @@ fn free_share(is_free: impl Fn(f32) -> bool) -> f32 {
         step *= 0.5;
     }
     free
+}
+
+/// Returns the pose in which a lifted body is set down: lower, as far as it was lifted and nothing is in the way.
+fn lowered_pose(dynamics: &Dynamics, body: usize, pose: &RapierPose) -> RapierPose {
+    let allowed = dynamics.overlap_depths_m(body, pose);
+    let lower = |by_m: f32| {
+        let mut lower = *pose;
+        lower.translation.y -= by_m;
+        lower
+    };
+    let is_free = |by_m: f32| {
+        let depths = dynamics.overlap_depths_m(body, &lower(by_m));
+        depths[0] <= allowed[0] && depths[1] <= allowed[1]
+    };
+    lower(free_share(|share| is_free(share * LIFT_M)) * LIFT_M)
 }
 
 #[cfg(test)]

@@ -201,7 +201,8 @@ fn a_snapshot_of_a_house_with_other_bodies_is_foreign() {
     let bytes = run(0.1, "oak").world.snapshot();
     let mut same = run(0.1, "oak");
     same.world.restore(&mut same.state, &bytes).unwrap();
-    for mut other in [run(0.11, "oak"), run(0.1, "steel")] {
+    for (side, substance) in [(0.11, "oak"), (0.1, "steel")] {
+        let mut other = run(side, substance);
         let refused = other.world.restore(&mut other.state, &bytes);
         let message = refused.unwrap_err().to_string();
         assert!(message.contains("another house"), "{message}");

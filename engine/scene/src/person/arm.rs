@@ -60,7 +60,7 @@ fn along_forearm(elbow: Vec3, towards: Vec3, height_m: f32) -> [Vec3; 4] {
 /// the target itself where that is nearer.
 ///
 /// # Source
-/// Who points brings the finger tip to the line from eye to target: J. L. Taylor, D. I. McCloskey, "Pointing", Behavioural
+/// Who points brings the finger tip to the line from eye to target: J. L. Taylor, D. I. `McCloskey`, "Pointing", Behavioural
 /// Brain Research 29, 1988; O. Herbort, W. Kunde, "Spatial (mis-)interpretation of pointing gestures to distal referents",
 /// J. Exp. Psychol.: Human Perception and Performance 42, 2016.
 pub(super) fn pointing_tip(eyes: Vec3, shoulder: Vec3, target: Vec3, height_m: f32) -> Vec3 {

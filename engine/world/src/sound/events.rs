@@ -102,7 +102,7 @@ impl WorldSound {
         self.add_footsteps(step);
     }
 
-    fn add(&mut self, step: &StepContext<'_>, id: u64, late_s: f64, sound: ContactSound) {
+    fn add(&mut self, id: u64, late_s: f64, sound: ContactSound) {
         let late = ((late_s.max(0.0) * f64::from(self.rate_hz)) as u64).min(self.block as u64 - 1);
         let length = (sound.duration_s() * f64::from(self.rate_hz)).ceil() as u64;
         if self.touches.len() == MOST_RINGING {
@@ -128,10 +128,10 @@ impl WorldSound {
         }
     }
 
-    fn add_impact(&mut self, step: &StepContext<'_>, late_s: f64, sound: ImpactSound) {
+    fn add_impact(&mut self, late_s: f64, sound: ImpactSound) {
         let id = FIRST_BLOW_ID + self.next_blow % FIRST_BLOW_ID;
         self.next_blow += 1;
-        self.add(step, id, late_s, ContactSound::Impact(sound));
+        self.add(id, late_s, ContactSound::Impact(sound));
     }
 
     fn add_impacts(&mut self, step: &StepContext<'_>) {
@@ -147,7 +147,7 @@ impl WorldSound {
                 partners: partners(step, event),
                 key: step.key.child("blow").child(self.next_blow),
             };
-            self.add_impact(step, event.time_s - step.start_s, sound);
+            self.add_impact(event.time_s - step.start_s, sound);
         }
     }
 
@@ -178,7 +178,7 @@ impl WorldSound {
                 contact_key: place,
             };
             let id = FIRST_RUB_ID + (a.rotate_left(20) ^ b) % FIRST_BLOW_ID;
-            self.add(step, id, 0.0, ContactSound::Friction(sound));
+            self.add(id, 0.0, ContactSound::Friction(sound));
         }
     }
 
@@ -227,7 +227,7 @@ impl WorldSound {
             }),
         };
         if friction > 0.0 {
-            self.add(step, FIRST_JOINT_ID + u64::from(joint.0), 0.0, sound);
+            self.add(FIRST_JOINT_ID + u64::from(joint.0), 0.0, sound);
         }
         let shut = |position: f32| (position - of.closed).abs() <= closed_within(of.kind);
         let hits = speed.max(speed_before.abs());
@@ -256,9 +256,9 @@ impl WorldSound {
         let blow = slam(impulse_n_s, speed_m_s, partners, "slam");
         let tongue = ContactPartner::body("steel", LATCH_KG, LATCH_M);
         let latch = slam(LATCH_KG * LATCH_M_S, LATCH_M_S, [tongue, leaf], "latch");
-        self.add_impact(step, 0.0, blow);
+        self.add_impact(0.0, blow);
         if of.kind == JointKind::Hinge && of.parent.is_none() {
-            self.add_impact(step, 0.01, latch);
+            self.add_impact(0.01, latch);
         }
     }
 
@@ -315,7 +315,7 @@ impl WorldSound {
                     }),
                 ),
             };
-            self.add(step, FIRST_FOOT_ID + u64::from(id.0), late_s, sound);
+            self.add(FIRST_FOOT_ID + u64::from(id.0), late_s, sound);
         }
     }
 }

@@ -254,7 +254,7 @@ fn equal_laws_on_one_motor_keep_their_own_memory() {
             spec("first_order_lag", Some("elbow"), &[("tau_s", 0.2)]),
         ]
     };
-    let [mut plain, mut applied] = [elbow(laws()).0, elbow(laws()).0];
+    let (mut plain, mut applied) = (elbow(laws()).0, elbow(laws()).0);
     let joint = plain.house.joints.ids().next().unwrap();
     for step in 0..40 {
         let command = JointCommand::Position(if step < 15 { 0.7 } else { -0.4 });

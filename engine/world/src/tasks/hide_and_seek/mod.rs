@@ -20,7 +20,7 @@ use crate::schema;
 use crate::world::World;
 use dwell_scene::navigation::NavGrid;
 use dwell_scene::random::RandomKey;
-use dwell_scene::{AgentId, Pose};
+use dwell_scene::{AgentId, AgentState, Pose};
 use dwell_semantics::vocabulary;
 use glam::Vec3;
 use hiding_place::hiding_place;
@@ -205,7 +205,7 @@ impl HideAndSeekTask {
                 .state()
                 .agents
                 .get(hider)
-                .map(|agent| agent.eye_position());
+                .map(AgentState::eye_position);
             let turn =
                 head.and_then(|head| face_point(world, self.setup.agent, head, &self.setup.stride));
             return turn.unwrap_or(DiscreteAction::Wait);
