@@ -567,19 +567,17 @@ fn sources_that_begin_side_by_side_share_a_response() {
     let receiver = head(Vec3::new(4.6, 1.2, 3.3), 0.7);
     let whole = radio(6 * BLOCK);
     let fifth: Vec<f32> = whole.iter().map(|x| x / 5.0).collect();
-    let hear = |count: u64, signal: &[f32]| {
+    let hear = |count: u64, whole: &[f32]| {
         let (mut heard, mut traced) = (Vec::new(), Vec::new());
-        // Of settings for learning, but for all five of them.
-        let config = StreamConfig {
-            max_sources: 5,
-            ..StreamConfig::rl()
-        };
+        let mut config = StreamConfig::rl();
+        config.max_sources = 5;
         let mut stream = stream(&hall, config);
-        for block in signal.chunks_exact(BLOCK) {
+        for signal in whole.chunks_exact(BLOCK) {
+            let position = SOURCE;
             let source = |id| ActiveSource {
                 id,
-                position: SOURCE,
-                signal: block,
+                position,
+                signal,
             };
             let sources: Vec<_> = (5..5 + count).map(source).collect();
             let mut out = vec![0.0; 2 * BLOCK];

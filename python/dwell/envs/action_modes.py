@@ -33,6 +33,7 @@ from dwell.envs.action_arrays import (
     whole_numbers,
 )
 from dwell.envs.asking import MAX_QUESTION_TOKENS, AskingActions, question_row
+from dwell.envs.movement_velocities import velocities_of
 from dwell.envs.utterance_rows import MAX_TOKENS, NORMAL_EFFORT, said_of_row
 
 #: Of the first axis of velocities: forward, right, turn to the left, look up.
@@ -342,7 +343,7 @@ class VelocityActions:
 
     def expert(self, numbers: NDArray[np.int64]) -> Any:  # noqa: ANN401 - of the space
         """As :meth:`DiscreteActions.expert`; to wait is to turn by less than half a degree."""
-        velocities = _velocities_of(numbers)
+        velocities = velocities_of(numbers)
         for k, number in enumerate(numbers.tolist()):
             if number == self._wait:
                 velocities[k, 2] = _LEAST_TURN
@@ -415,7 +416,7 @@ class DictActions:
             for number in numbers.tolist()
         ]
         moves = np.where(np.array(hands) > 0, self._wait, numbers)
-        velocities = _velocities_of(moves)
+        velocities = velocities_of(moves)
         return {
             "base": velocities[:, :3],
             "head": velocities[:, 3:],
@@ -579,27 +580,3 @@ def _place_of(number: int, known: list[int], hands: list[str]) -> int:
     raise UsageError(
         f"the expert wants to {name}, which is none of the hand's actions: {', '.join(hands)}"
     )
-
-
-def _velocities_of(numbers: NDArray[np.int64]) -> NDArray[np.float32]:
-    """The velocities of discrete movement actions, shape (n, 4).
-
-    Raises:
-        UsageError: One is of the hand, which velocities cannot say.
-    """
-    moves = {
-        "move_forward": (1, 0, 0, 0),
-        "turn_left": (0, 0, 1, 0),
-        "turn_right": (0, 0, -1, 0),
-        "look_up": (0, 0, 0, 1),
-        "look_down": (0, 0, 0, -1),
-        "stop": (0, 0, 0, 0),
-        "wait": (0, 0, 0, 0),
-    }
-    names = [*_native.actions(), "wait"]
-    rows = []
-    for number in numbers.tolist():
-        if names[number] not in moves:
-            raise UsageError(f"the expert wants to {names[number]}, which velocities cannot say")
-        rows.append(moves[names[number]])
-    return np.array(rows, np.float32).reshape(-1, 4)
