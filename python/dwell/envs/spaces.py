@@ -111,7 +111,9 @@ class SensorSpace:
     def space(self) -> spaces.Space[Any]:
         """The observation's space."""
         if self.is_text:
-            return SharedText(min_length=1, max_length=int(self.high), charset=_native.charset())
+            return SharedText(
+                min_length=int(self.low), max_length=int(self.high), charset=_native.charset()
+            )
         if self.is_tokens:
             return spaces.MultiDiscrete(np.full(self.shape, int(self.high)), dtype=np.int32)
         low, high = np.array([self.low, self.high]).astype(_DTYPES[self.dtype])
