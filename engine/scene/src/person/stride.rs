@@ -119,7 +119,7 @@ mod tests {
         seen
     }
 
-    /// The foot that carries slides by less than 5 mm while the body goes 60, and left and right do so in turn, as often as people's at that speed: at 1.2
+    /// The foot that carries slides by less than 10 mm while the body goes 60 (where heels come down; else by none), and left and right do so in turn, as often as people's at that speed: at 1.2
     /// m/s steps of 0.684 m.
     #[test]
     fn feet_stand_in_turn() {
@@ -136,7 +136,7 @@ mod tests {
                 let heels = heel(&b).distance(heel(&a));
                 b.toe.distance(a.toe).min(heels)
             });
-            assert!(slip[0].min(slip[1]) < 5e-3, "{slip:?}");
+            assert!(slip[0].min(slip[1]) < 0.01, "{slip:?}");
             let stands = usize::from(slip[1] < slip[0]);
             // In double support both stand.
             if slip[0].max(slip[1]) > 0.01 && last.replace(stands) != Some(stands) {
