@@ -16,7 +16,7 @@ const STANCE: f32 = 0.6;
 /// The part of a stride at which the heel begins to rise.
 const HEEL_RISES: f32 = 0.35;
 /// How far a foot is ahead of the hip when its heel comes down, as a part of what the body goes in a stance.
-const AHEAD: f32 = 0.42;
+const AHEAD: f32 = 0.38;
 /// The stride of full movements, as a part of the height.
 const FULL_STRIDE: f32 = 0.8;
 /// Angles of a foot in a full stride: its toes up when it comes down, its heel up when it leaves.
@@ -73,7 +73,7 @@ pub(super) fn hip_drop_m(gait: &PersonGait, height_m: f32) -> f32 {
     let along = |phase: f32| foot_at(phase - phase.floor(), gait, height_m).along_m;
     let ahead = along(gait.phase).max(along(gait.phase + 0.5)).max(0.0);
     let reached = (length * length - ahead * ahead).max(0.0).sqrt();
-    (length - reached).min(0.03 * height_m)
+    (length - reached).min(0.037 * height_m)
 }
 
 /// The joints of a leg. `hip`, in the person's frame, whose origin is on the floor; `phase`: of its own stride.
