@@ -33,7 +33,7 @@ fn boxes(path: VisibilityPath) -> Option<Pair> {
 const EYE: Vec3 = Vec3::new(5.5, 2.5, 5.5);
 
 fn view(camera: Camera, k: usize) -> View {
-    let target = Vec3::new(0.1 * k as f32, 0.3, 1.0);
+    let target = Vec3::new(0.04 * k as f32, 0.3, 1.0);
     View {
         preset: [Preset::Flat, Preset::Lit][k % 2],
         ..look(camera, EYE, target)
@@ -65,8 +65,10 @@ struct Case {
     most: BatchLimits,
 }
 
-/// More than the largest table of the room takes, and less than what grows.
-const BYTES: u64 = 160 << 10;
+/// More than the largest table of the room takes (the corners, with those of a person's pieces), and less than what grows.
+const BYTES: u64 = 400 << 10;
+/// Views of a batch, and worlds.
+const VIEWS: usize = 100;
 
 fn cases() -> Vec<Case> {
     let pinhole = |edge: u32| Camera::from_fov(edge, edge, 80.0).unwrap();
@@ -77,22 +79,22 @@ fn cases() -> Vec<Case> {
     vec![
         Case {
             what: "images and first hits",
-            views: (0..40).map(|k| view(pinhole(16), k)).collect(),
+            views: (0..VIEWS).map(|k| view(pinhole(16), k)).collect(),
             rows: None,
             are_worlds_apart: false,
             most: bytes,
         },
         Case {
             what: "rows of worlds",
-            views: (0..40).map(|k| view(pinhole(2), k)).collect(),
+            views: (0..VIEWS).map(|k| view(pinhole(2), k)).collect(),
             rows: None,
             are_worlds_apart: true,
             most: bytes,
         },
         Case {
             what: "rays of lenses",
-            views: (0..40)
-                .map(|k| view(fisheye(8.0 + 0.1 * k as f32), k))
+            views: (0..VIEWS)
+                .map(|k| view(fisheye(8.0 + 0.04 * k as f32), k))
                 .collect(),
             rows: Some((11, 12)),
             are_worlds_apart: false,
@@ -100,11 +102,11 @@ fn cases() -> Vec<Case> {
         },
         Case {
             what: "groups of a call",
-            views: (0..40).map(|k| view(pinhole(16), k)).collect(),
+            views: (0..VIEWS).map(|k| view(pinhole(16), k)).collect(),
             rows: None,
             are_worlds_apart: false,
             most: BatchLimits {
-                groups: 5,
+                groups: 12,
                 ..BatchLimits::NONE
             },
         },
@@ -163,11 +165,11 @@ fn a_batch_too_large_for_any_buffer_is_cut_and_shows_the_same() {
     let Some(shared) = gpu() else { return };
     for path in VisibilityPath::ALL {
         let Some(pair) = boxes(path) else { return };
-        let worlds: Vec<(RayScene, State)> = (0..40)
+        let worlds: Vec<(RayScene, State)> = (0..VIEWS)
             .map(|k| {
                 let mut state = pair.state.clone();
                 for pose in &mut state.part_pose {
-                    pose.position.y += 0.01 * k as f32;
+                    pose.position.y += 0.004 * k as f32;
                 }
                 let mut scene = RayScene::new(pair.house.clone());
                 scene.update(&state);
@@ -202,13 +204,13 @@ fn a_view_too_large_for_a_buffer_is_refused_by_name() {
     };
     let small = Gpu::open_adapter(shared.adapter(), most).unwrap();
     let small = GpuRenderer::new(small, pair.cpu.clone(), VisibilityPath::Compute).unwrap();
-    let view = view(Camera::from_fov(128, 128, 80.0).unwrap(), 0);
+    let view = view(Camera::from_fov(256, 256, 80.0).unwrap(), 0);
     let mut frame = Frame::new(&view.camera, ImageChannels::default());
     let job = RenderJob::new(&pair.scene, &pair.state, view, frame.as_mut());
     let error = small.render_batch(&mut [job], Threads::ONE).unwrap_err();
     let error = error.to_string();
     assert!(
-        error.contains("first hits") && error.contains("163840"),
+        error.contains("first hits") && error.contains(&BYTES.to_string()),
         "{error}"
     );
 }
