@@ -80,7 +80,8 @@ fn fitted_pose(pose: &RapierPose, feet_in_body: &[Vec3], feet: &[Vec3]) -> Rapie
         sine += a.z * b.x - a.x * b.z;
         cosine += a.x * b.x + a.z * b.z;
     }
-    let turn = Quat::from_rotation_y(math::atan2(sine, cosine));
+    let (sine, cosine) = math::sin_cos(0.5 * math::atan2(sine, cosine));
+    let turn = Quat::from_xyzw(0.0, sine, 0.0, cosine);
     let mut fitted = RapierPose::from_rotation((turn * pose.rotation).normalize());
     fitted.translation = to + turn * (pose.translation - from);
     fitted
