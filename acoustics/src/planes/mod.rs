@@ -14,6 +14,7 @@ pub(crate) use edges::EdgeTable;
 use dwell_scene::bvh::Hit;
 use dwell_scene::{Aabb, House, Id, PartId, Pose, State};
 use glam::Vec3;
+use std::collections::BTreeSet;
 
 /// Marks a triangle without a plane: it reflects rays, but has no images.
 pub const NO_PLANE: u32 = u32::MAX;
@@ -116,6 +117,7 @@ impl PlaneTable {
         largest.truncate(200);
 
         let structures = house.structure.len();
+        let jointed: BTreeSet<PartId> = house.joints.iter().map(|joint| joint.child).collect();
         let mut moving = Vec::with_capacity(geometry.movable.len());
         for part in geometry.movable.iter().copied() {
             let placed = geometry.placed_part(part);
@@ -142,12 +144,11 @@ impl PlaneTable {
             let pose = house.parts[part].world_from_part;
             at_start.extend(planes.iter().map(|plane| moved(plane, &pose)));
             let size_m = Aabb::from_points(corners.into_iter().flatten()).size();
-            let hangs = house.joints.iter().any(|joint| joint.child == part);
             let is_panel = |plane: &Plane| plane.area_m2 >= MIN_PANEL_AREA_M2;
             moving.push(MovingPlanes {
                 part,
                 first,
-                is_large: hangs && size_m.length() >= MIN_JOINTED_SIZE_M
+                is_large: jointed.contains(&part) && size_m.length() >= MIN_JOINTED_SIZE_M
                     || planes.iter().any(is_panel),
                 planes,
             });

@@ -14,4 +14,4 @@ mod stride;
 pub use meshes::{PersonMesh, person_meshes};
 pub use pieces::{PERSON_PIECES, PersonPiece, person_pieces};
 pub use skeleton::{Arm, Leg, PersonSkeleton, held_point, skeleton_of};
-pub use stride::advance_persons;
+pub use stride::{WALK_RATIO, advance_persons};

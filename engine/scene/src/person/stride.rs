@@ -12,7 +12,7 @@ use std::f32::consts::PI;
 /// # Source
 /// The walk ratio is the same at all speeds, 0.0065 m a step a minute: N. Sekiya, H. Nagasaki, H. Ito, T. Furuna, J. Orthop.
 /// Sports Phys. Ther. 24, 1996.
-const WALK_RATIO: f32 = 0.39;
+pub const WALK_RATIO: f32 = 0.39;
 /// The longest stride of a figure, as a part of its height.
 const LONGEST_STRIDE: f32 = 0.82;
 /// The stride of one who turns on the spot, as a part of the height.

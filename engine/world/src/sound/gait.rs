@@ -1,16 +1,11 @@
 //! Footfalls of walking agents.
 
 use dwell_scene::math::wrap_angle;
+use dwell_scene::person::WALK_RATIO;
 use dwell_scene::{AgentState, Locomotion};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Length of a step over the steps a second, m s, of a body 1.7 m high.
-///
-/// # Source
-/// The walk ratio is the same at all speeds, 0.0065 m a step a minute: N. Sekiya, H. Nagasaki, H. Ito, T. Furuna, J. Orthop.
-/// Sports Phys. Ther. 24, 1996.
-const WALK_RATIO: f32 = 0.39;
 /// A turn on the spot that takes a step, rad.
 const TURN_RAD: f32 = std::f32::consts::FRAC_PI_4;
 /// Speed of the feet in a turn on the spot, m/s.
