@@ -73,6 +73,7 @@ fn entry(law: &LawInfo, page: &mut String) {
         equation,
         source,
         acts_on,
+        regimes,
         rivals,
         separating_experiment,
         ..
@@ -113,6 +114,12 @@ fn entry(law: &LawInfo, page: &mut String) {
         let numbers = numbers.collect::<Vec<_>>().join(", ");
         row(page, format!("\nUsual: {numbers} ({}).", usual.about));
     }
+    let regimes = regimes
+        .iter()
+        .map(|regime| serde_json::to_string(regime).unwrap().replace('"', "`"))
+        .collect::<Vec<_>>()
+        .join(", ");
+    row(page, format!("\nActs in: {regimes}."));
     row(
         page,
         format!(
@@ -153,4 +160,27 @@ fn the_page_lists_every_law() {
         "docs/laws.md is not what the laws say (first difference: {differs:?}); \
          write it anew with UPDATE_GOLDEN=1 cargo test -p dwell-tests --test laws_page"
     );
+}
+
+/// Calibration finds laws by their probes: each law has a point at which it acts, in its bounds, and says where it acts.
+#[test]
+fn every_law_says_where_it_acts_and_where_a_search_begins() {
+    for law in dwell::laws::all() {
+        let id = law.id;
+        assert!(!law.regimes.is_empty(), "{id} acts in no regime");
+        assert!(!law.probes.is_empty(), "{id} has no probe");
+        let names = |probe: &[(&'static str, f64)]| probe.iter().map(|p| p.0).collect::<Vec<_>>();
+        for probe in law.probes {
+            assert_eq!(names(probe), names(law.probes[0]), "{id}");
+            let mut acts = false;
+            for (name, value) in *probe {
+                let param = law
+                    .param(name)
+                    .unwrap_or_else(|| panic!("{id} has no {name}"));
+                assert!((param.low..=param.high).contains(value), "{id} {name}");
+                acts |= (value - param.default).abs() > 0.0;
+            }
+            assert!(acts, "{id}: a probe is the default");
+        }
+    }
 }

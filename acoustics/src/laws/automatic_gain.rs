@@ -2,7 +2,7 @@
 
 use super::microphone_stage::{MicrophoneStage, SampleBlock, StageState};
 use super::{AcousticLaw, SignalStage};
-use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::law::{EngineKind, LawRegime, ParamInfo};
 use dwell_scene::{LawInfo, LawValues};
 
 pub(super) const LAW: AcousticLaw = AcousticLaw {
@@ -59,6 +59,12 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
                 plausible: [10.0, 40.0],
             },
         ],
+        regimes: &[
+            LawRegime::DirectSound,
+            LawRegime::EarlySound,
+            LawRegime::LateSound,
+        ],
+        probes: &[&[("strength", 0.5)]],
         rivals: &["microphone_clipping", "absorption", "microphone_gain"],
         separating_experiment: "play the same sound at two levels: automatic gain makes the difference smaller, from the beginning of \
                                 a passage to its end, and lifts tails that were loud at first; a clip touches only peaks; absorption \

@@ -6,7 +6,7 @@ use crate::bands::{self, BAND_COUNT};
 use crate::fft::RealFft;
 
 use crate::receiver_channel::ReceiverChannel;
-use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::law::{EngineKind, LawRegime, ParamInfo};
 use dwell_scene::random::RandomKey;
 use dwell_scene::{LawInfo, LawValues};
 use glam::DVec3;
@@ -63,6 +63,8 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
                 plausible: [50.0, 360.0],
             },
         ],
+        regimes: &[LawRegime::NoiseFloor],
+        probes: &[&[("level_pa", 0.002), ("slope_db_per_octave", -3.0)]],
         rivals: &["microphone_noise", "second_slope"],
         separating_experiment: "record with all sources off by two microphones close to each other: background noise is nearly the same \
                                 in both at low frequencies, self-noise is not; play the same sound louder: a second slope of the decay \

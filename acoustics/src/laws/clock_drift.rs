@@ -2,7 +2,7 @@
 
 use super::microphone_stage::{MicrophoneStage, SampleBlock, StageState, fade_in, fade_in_weights};
 use super::{AcousticLaw, SignalStage};
-use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::law::{EngineKind, LawRegime, ParamInfo};
 use dwell_scene::{LawInfo, LawValues};
 use std::sync::LazyLock;
 
@@ -36,6 +36,12 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
                 plausible: [0.0, 0.1],
             },
         ],
+        regimes: &[
+            LawRegime::DirectSound,
+            LawRegime::EarlySound,
+            LawRegime::LateSound,
+        ],
+        probes: &[&[("drift_ppm", 100.0)]],
         rivals: &["temperature_error", "recording_delay", "room_scale"],
         separating_experiment: "measure the length or pitch of the excitation itself in the recording: a clock changes it as much as \
                                 the arrivals, warmth leaves it; by size: one kelvin is 1700 ppm, clocks are off by 10 to 100 ppm",

@@ -2,7 +2,7 @@
 
 use super::microphone_stage::{MicrophoneStage, SampleBlock, StatelessStage};
 use super::{AcousticLaw, SignalStage};
-use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::law::{EngineKind, LawRegime, ParamInfo};
 use dwell_scene::{LawInfo, LawValues};
 
 pub(super) const LAW: AcousticLaw = AcousticLaw {
@@ -34,6 +34,12 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
                 high: 1.0,
                 plausible: [0.0, 1.0],
             },
+        ],
+        regimes: &[LawRegime::DirectSound, LawRegime::EarlySound],
+        probes: &[
+            &[("limit_pa", 1.0)],
+            &[("limit_pa", 0.3)],
+            &[("limit_pa", 0.1)],
         ],
         rivals: &["automatic_gain", "absorption", "microphone_gain"],
         separating_experiment: "play the same sound at two levels: a clip changes only what is loud, within a period, and adds harmonics \

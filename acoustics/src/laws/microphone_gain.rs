@@ -2,7 +2,7 @@
 
 use super::microphone_stage::{MicrophoneStage, SampleBlock, StatelessStage};
 use super::{AcousticLaw, SignalStage};
-use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::law::{EngineKind, LawRegime, ParamInfo};
 use dwell_scene::{LawInfo, LawValues};
 
 pub(super) const LAW: AcousticLaw = AcousticLaw {
@@ -22,6 +22,13 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
             high: 120.0,
             plausible: [-20.0, 20.0],
         }],
+        regimes: &[
+            LawRegime::DirectSound,
+            LawRegime::EarlySound,
+            LawRegime::LateSound,
+            LawRegime::NoiseFloor,
+        ],
+        probes: &[&[("gain_db", 2.0)]],
         rivals: &["source_gain", "distance", "automatic_gain"],
         separating_experiment: "compare levels at several positions, at two levels of the source, and with all sources off: a gain is \
                                 the same number of decibels at all times, bands, places and levels; that of a microphone raises \

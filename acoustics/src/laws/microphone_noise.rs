@@ -2,7 +2,7 @@
 
 use super::microphone_stage::{MicrophoneStage, SampleBlock, StatelessStage};
 use super::{AcousticLaw, SignalStage};
-use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::law::{EngineKind, LawRegime, ParamInfo};
 use dwell_scene::{LawInfo, LawValues};
 
 pub(super) const LAW: AcousticLaw = AcousticLaw {
@@ -23,6 +23,8 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
             // 10 to 40 dB SPL.
             plausible: [6.3e-5, 2e-3],
         }],
+        regimes: &[LawRegime::NoiseFloor],
+        probes: &[&[("sigma_pa", 0.0003)]],
         rivals: &["background_noise", "second_slope"],
         separating_experiment: "record with all sources off, then move the microphone: self-noise is the same everywhere and \
                                 unlike in two microphones, background noise is neither; play the same sound louder: a \

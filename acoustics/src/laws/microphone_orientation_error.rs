@@ -1,7 +1,7 @@
 //! Orientation error of microphones and heads.
 
 use super::{AcousticLaw, PathEffects, SignalStage, angle};
-use dwell_scene::law::EngineKind;
+use dwell_scene::law::{EngineKind, LawRegime};
 use dwell_scene::{LawInfo, LawValues};
 
 pub(super) const LAW: AcousticLaw = AcousticLaw {
@@ -19,6 +19,8 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
             angle("pitch_deg", 90.0, 20.0),
             angle("roll_deg", 180.0, 20.0),
         ],
+        regimes: &[LawRegime::DirectSound, LawRegime::EarlySound],
+        probes: &[&[("yaw_deg", 15.0), ("pitch_deg", 10.0), ("roll_deg", 10.0)]],
         rivals: &[
             "microphone_position_error",
             "source_directivity_error",

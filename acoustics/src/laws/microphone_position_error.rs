@@ -1,7 +1,7 @@
 //! Position error of microphones.
 
 use super::{AcousticLaw, PathEffects, SignalStage};
-use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::law::{EngineKind, LawRegime, ParamInfo};
 use dwell_scene::{LawInfo, LawValues};
 
 /// The parameter of the offset along one axis.
@@ -27,6 +27,8 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
         engine: EngineKind::Acoustics,
         acts_on: "sensor",
         params: &[offset("right_m"), offset("up_m"), offset("back_m")],
+        regimes: &[LawRegime::DirectSound, LawRegime::EarlySound],
+        probes: &[&[("right_m", 0.05), ("up_m", 0.05), ("back_m", 0.05)]],
         rivals: &["recording_delay", "temperature_error", "room_scale"],
         separating_experiment: "play from opposite sides of the microphone: what comes later from one side comes earlier from the other, \
                                 and all reflections agree with one displacement; a delay is the same from all sides, warmth \

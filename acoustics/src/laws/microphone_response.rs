@@ -4,7 +4,7 @@ use super::fir::FirFilter;
 use super::microphone_stage::MicrophoneStage;
 use super::{AcousticLaw, BAND_DB, SignalStage, bands_db};
 use crate::minimum_phase::MinimumPhaseDesigner;
-use dwell_scene::law::EngineKind;
+use dwell_scene::law::{EngineKind, LawRegime};
 use dwell_scene::{LawInfo, LawValues};
 
 /// Duration of the transform, s: the lowest band is as wide as its inverse.
@@ -22,6 +22,22 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
         engine: EngineKind::Acoustics,
         acts_on: "sensor",
         params: &BAND_DB,
+        regimes: &[
+            LawRegime::DirectSound,
+            LawRegime::EarlySound,
+            LawRegime::LateSound,
+            LawRegime::NoiseFloor,
+        ],
+        probes: &[&[
+            ("db_63", 2.0),
+            ("db_125", 2.0),
+            ("db_250", 2.0),
+            ("db_500", 2.0),
+            ("db_1000", 2.0),
+            ("db_2000", 2.0),
+            ("db_4000", 2.0),
+            ("db_8000", 2.0),
+        ]],
         rivals: &["source_response", "absorption", "no_air_absorption"],
         separating_experiment: "compare direct and late sound at several places: a response is the same number of decibels in both, \
                                 absorption grows with time; with all sources off, background noise bears the response of the \

@@ -1,7 +1,7 @@
 //! Reduced absorption by air.
 
 use super::{AcousticLaw, PathEffects, SignalStage};
-use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::law::{EngineKind, LawRegime, ParamInfo};
 use dwell_scene::{LawInfo, LawValues};
 
 pub(super) const LAW: AcousticLaw = AcousticLaw {
@@ -22,6 +22,12 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
             high: 1.0,
             plausible: [0.0, 1.0],
         }],
+        regimes: &[
+            LawRegime::DirectSound,
+            LawRegime::EarlySound,
+            LawRegime::LateSound,
+        ],
+        probes: &[&[("missing", 0.5)]],
         rivals: &["absorption", "source_response", "microphone_response"],
         separating_experiment: "compare the direct sound at 2 m and at 8 m: air takes decibels for every metre, more the higher the \
                                 frequency, where surfaces take them for every reflection and responses take as many at any \

@@ -3,7 +3,7 @@
 use super::fir::FirFilter;
 use super::microphone_stage::MicrophoneStage;
 use super::{AcousticLaw, SignalStage};
-use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::law::{EngineKind, LawRegime, ParamInfo};
 use dwell_scene::{LawInfo, LawValues};
 
 /// Most taps on either side of a delay between samples.
@@ -27,6 +27,12 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
             high: 1.0,
             plausible: [0.0, 0.1],
         }],
+        regimes: &[
+            LawRegime::DirectSound,
+            LawRegime::EarlySound,
+            LawRegime::LateSound,
+        ],
+        probes: &[&[("delay_s", 0.005)]],
         rivals: &[
             "temperature_error",
             "clock_drift",

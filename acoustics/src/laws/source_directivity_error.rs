@@ -1,7 +1,7 @@
 //! Orientation and directivity errors of sources.
 
 use super::{AcousticLaw, PathEffects, SignalStage, angle};
-use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::law::{EngineKind, LawRegime, ParamInfo};
 use dwell_scene::{LawInfo, LawValues};
 
 pub(super) const LAW: AcousticLaw = AcousticLaw {
@@ -36,6 +36,8 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
                 plausible: [0.0, 15.0],
             },
         ],
+        regimes: &[LawRegime::DirectSound, LawRegime::EarlySound],
+        probes: &[&[("yaw_deg", 20.0), ("pitch_deg", 5.0), ("beam_db", 3.0)]],
         rivals: &["source_gain", "source_response", "absorption"],
         separating_experiment: "turn the source on the spot: the direct sound and the first reflections change by other decibels than \
                                 stated for each turn, high octaves most, late sound hardly; a gain or a response changes by the \

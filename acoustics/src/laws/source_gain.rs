@@ -1,7 +1,7 @@
 //! Level error of sources.
 
 use super::{AcousticLaw, PathEffects, SignalStage};
-use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::law::{EngineKind, LawRegime, ParamInfo};
 use dwell_scene::{LawInfo, LawValues};
 
 pub(super) const LAW: AcousticLaw = AcousticLaw {
@@ -21,6 +21,12 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
             high: 120.0,
             plausible: [-20.0, 20.0],
         }],
+        regimes: &[
+            LawRegime::DirectSound,
+            LawRegime::EarlySound,
+            LawRegime::LateSound,
+        ],
+        probes: &[&[("gain_db", 2.0)]],
         rivals: &["microphone_gain", "distance", "source_directivity_error"],
         separating_experiment: "compare levels at several positions, and with all sources off: a gain is the same number of decibels \
                                 at all times, bands and places, a wrong distance is not; the gain of a microphone raises background \

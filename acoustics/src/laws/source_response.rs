@@ -1,7 +1,7 @@
 //! Spectrum error of sources.
 
 use super::{AcousticLaw, BAND_DB, PathEffects, SignalStage, bands_db};
-use dwell_scene::law::EngineKind;
+use dwell_scene::law::{EngineKind, LawRegime};
 use dwell_scene::{LawInfo, LawValues};
 
 pub(super) const LAW: AcousticLaw = AcousticLaw {
@@ -16,6 +16,21 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
         engine: EngineKind::Acoustics,
         acts_on: "world",
         params: &BAND_DB,
+        regimes: &[
+            LawRegime::DirectSound,
+            LawRegime::EarlySound,
+            LawRegime::LateSound,
+        ],
+        probes: &[&[
+            ("db_63", 2.0),
+            ("db_125", 2.0),
+            ("db_250", 2.0),
+            ("db_500", 2.0),
+            ("db_1000", 2.0),
+            ("db_2000", 2.0),
+            ("db_4000", 2.0),
+            ("db_8000", 2.0),
+        ]],
         rivals: &["microphone_response", "absorption", "no_air_absorption"],
         separating_experiment: "compare direct and late sound at several places: a response is the same number of decibels in both, \
                                 absorption grows with time; with all sources off, background noise bears the response of the \

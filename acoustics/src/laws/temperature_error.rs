@@ -1,7 +1,7 @@
 //! Error of the air temperature.
 
 use super::{AcousticLaw, PathEffects, SignalStage};
-use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::law::{EngineKind, LawRegime, ParamInfo};
 use dwell_scene::{LawInfo, LawValues};
 
 pub(super) const LAW: AcousticLaw = AcousticLaw {
@@ -22,6 +22,12 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
             high: 60.0,
             plausible: [-10.0, 10.0],
         }],
+        regimes: &[
+            LawRegime::DirectSound,
+            LawRegime::EarlySound,
+            LawRegime::LateSound,
+        ],
+        probes: &[&[("offset_k", 5.0)]],
         rivals: &["clock_drift", "recording_delay", "room_scale"],
         separating_experiment: "record at two or more distances with the excitation itself on a second channel: arrivals after it \
                                 stretch with warmth, in proportion to their time and by 1700 ppm for a kelvin, while the \

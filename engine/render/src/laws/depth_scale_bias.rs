@@ -1,7 +1,7 @@
 //! Depths with a scale and an offset error.
 
 use super::{DepthContext, RenderLaw, RenderStage};
-use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::law::{EngineKind, LawRegime, ParamInfo};
 use dwell_scene::random::RandomKey;
 use dwell_scene::{LawInfo, LawValues};
 
@@ -32,6 +32,8 @@ pub(super) const LAW: RenderLaw = RenderLaw {
                 plausible: [-0.05, 0.05],
             },
         ],
+        regimes: &[LawRegime::StillImage, LawRegime::MovingImage],
+        probes: &[&[("scale", 0.01), ("bias_m", 0.01)]],
         rivals: &["focal_length_error", "mount_offset"],
         separating_experiment: "stand before a wall at three known distances: scale is the slope, bias the rest; a mount moved along \
                                 the axis looks like bias, and shifts things at the side as well; a focal length acts only sideways",

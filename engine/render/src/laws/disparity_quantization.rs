@@ -1,7 +1,7 @@
 //! Depth from quantized disparities.
 
 use super::{DepthContext, RenderLaw, RenderStage};
-use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::law::{EngineKind, LawRegime, ParamInfo};
 use dwell_scene::random::RandomKey;
 use dwell_scene::{LawInfo, LawValues};
 
@@ -42,6 +42,8 @@ pub(super) const LAW: RenderLaw = RenderLaw {
                 plausible: [100.0, 2000.0],
             },
         ],
+        regimes: &[LawRegime::StillImage, LawRegime::MovingImage],
+        probes: &[&[("step_px", 0.125)]],
         rivals: &["kinect_depth", "redwood_depth"],
         separating_experiment: "move slowly away from a wall: quantization is a saw-tooth over depth that comes back the same, noise \
                                 is not",

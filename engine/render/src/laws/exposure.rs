@@ -2,7 +2,7 @@
 
 use super::{RenderLaw, RenderStage};
 use crate::camera::Camera;
-use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::law::{EngineKind, LawRegime, ParamInfo};
 use dwell_scene::random::RandomKey;
 use dwell_scene::{LawInfo, LawValues, math};
 use glam::Vec3;
@@ -41,6 +41,13 @@ pub(super) const LAW: RenderLaw = RenderLaw {
             factor_param("blue", 0.1, 10.0, [0.5, 2.0]),
             factor_param("gamma", 0.2, 5.0, [0.7, 1.4]),
         ],
+        regimes: &[LawRegime::StillImage, LawRegime::MovingImage],
+        probes: &[&[
+            ("stops", 0.3),
+            ("red", 1.05),
+            ("blue", 1.05),
+            ("gamma", 1.05),
+        ]],
         rivals: &["light_power", "vignetting"],
         separating_experiment: "switch a lamp: its light changes with place and throws shadows, exposure changes all pixels alike; \
                                 dark and bright patches together separate gamma from a factor",

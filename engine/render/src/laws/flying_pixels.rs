@@ -1,7 +1,7 @@
 //! Flying pixels: readings between a thing and what lies behind it.
 
 use super::{DepthContext, RenderLaw, RenderStage};
-use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::law::{EngineKind, LawRegime, ParamInfo};
 use dwell_scene::random::RandomKey;
 use dwell_scene::{LawInfo, LawValues};
 
@@ -43,6 +43,8 @@ pub(super) const LAW: RenderLaw = RenderLaw {
                 plausible: [0.02, 0.5],
             },
         ],
+        regimes: &[LawRegime::StillImage, LawRegime::MovingImage],
+        probes: &[&[("probability", 0.3)]],
         rivals: &["kinect_depth", "depth_color_offset"],
         separating_experiment: "look at the edge of a thing before a far wall: mixed pixels lie between the two depths on both sides \
                                 of the edge, lateral noise gives one or the other, an offset between cameras has a sign by side",

@@ -2,7 +2,7 @@
 
 use super::{RenderLaw, RenderStage};
 use crate::camera::Camera;
-use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::law::{EngineKind, LawRegime, ParamInfo};
 use dwell_scene::{LawInfo, LawValues};
 
 pub(super) const LAW: RenderLaw = RenderLaw {
@@ -23,6 +23,8 @@ pub(super) const LAW: RenderLaw = RenderLaw {
             high: 0.5,
             plausible: [-0.05, 0.05],
         }],
+        regimes: &[LawRegime::StillImage, LawRegime::MovingImage],
+        probes: &[&[("relative_error", 0.01)]],
         rivals: &["lens_distortion", "depth_scale_bias", "object_size"],
         separating_experiment: "look at one thing from two distances: a scale of the thing or of distance changes its size with \
                                 1/z, a focal length by the same part at both; look at straight edges in the corners: only a \

@@ -1,7 +1,7 @@
 //! The noise of the first Kinect, along the ray and across it.
 
 use super::{DepthContext, RenderLaw, RenderStage};
-use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::law::{EngineKind, LawRegime, ParamInfo};
 use dwell_scene::random::RandomKey;
 use dwell_scene::{LawInfo, LawValues, math};
 use glam::{Vec2, Vec3};
@@ -35,6 +35,8 @@ pub(super) const LAW: RenderLaw = RenderLaw {
             noise_multiple_param("axial"),
             noise_multiple_param("lateral"),
         ],
+        regimes: &[LawRegime::StillImage, LawRegime::MovingImage],
+        probes: &[&[("axial", 0.5), ("lateral", 0.5)]],
         rivals: &["redwood_depth", "disparity_quantization", "flying_pixels"],
         separating_experiment: "look at one wall frontally and at 70 degrees, at three distances: axial noise grows with z^2 and with \
                                 the angle, quantization not with the angle; an edge before a far wall shows the lateral noise",

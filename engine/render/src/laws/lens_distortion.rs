@@ -2,7 +2,7 @@
 
 use super::{RenderLaw, RenderStage};
 use crate::camera::{Camera, Projection};
-use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::law::{EngineKind, LawRegime, ParamInfo};
 use dwell_scene::{LawInfo, LawValues};
 
 const fn coefficient_param(name: &'static str, plausible: f64) -> ParamInfo {
@@ -35,6 +35,8 @@ pub(super) const LAW: RenderLaw = RenderLaw {
             coefficient_param("p1", 0.01),
             coefficient_param("p2", 0.01),
         ],
+        regimes: &[LawRegime::StillImage, LawRegime::MovingImage],
+        probes: &[&[("k1", 0.02), ("k2", 0.02), ("p1", 0.001), ("p2", 0.001)]],
         rivals: &["focal_length_error", "principal_point_error"],
         separating_experiment: "fill the corners of the image: a focal length moves points by r, radial terms by r^3 and r^5, \
                                 tangential ones not evenly around the middle",

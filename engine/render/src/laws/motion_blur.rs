@@ -1,7 +1,7 @@
 //! Motion blur: light that is gathered while things move.
 
 use super::{RenderLaw, RenderStage, Shutter};
-use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::law::{EngineKind, LawRegime, ParamInfo};
 use dwell_scene::{LawInfo, LawValues};
 
 pub(super) const LAW: RenderLaw = RenderLaw {
@@ -25,6 +25,8 @@ pub(super) const LAW: RenderLaw = RenderLaw {
             high: 0.1,
             plausible: [1e-4, 0.033],
         }],
+        regimes: &[LawRegime::MovingImage],
+        probes: &[&[("exposure_s", 0.01)]],
         rivals: &["defocus", "rolling_shutter"],
         separating_experiment: "hold the camera still: defocus stays, motion blur goes; its width grows with speed and lies along \
                                 the movement",

@@ -2,7 +2,7 @@
 
 use super::{RenderLaw, RenderStage};
 use crate::camera::Camera;
-use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::law::{EngineKind, LawRegime, ParamInfo};
 use dwell_scene::{LawInfo, LawValues};
 
 const fn shift_param(name: &'static str) -> ParamInfo {
@@ -26,6 +26,8 @@ pub(super) const LAW: RenderLaw = RenderLaw {
         engine: EngineKind::Render,
         acts_on: "agent",
         params: &[shift_param("right_px"), shift_param("down_px")],
+        regimes: &[LawRegime::StillImage, LawRegime::MovingImage],
+        probes: &[&[("right_px", 2.0), ("down_px", 2.0)]],
         rivals: &["camera_yaw", "camera_pitch"],
         separating_experiment: "turn the camera about its axis: the shift stays in the image, that of a turned mount turns along; \
                                 near the corners a turned camera also changes shapes",

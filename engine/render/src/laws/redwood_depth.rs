@@ -1,7 +1,7 @@
 //! The depth noise of the Redwood benchmark.
 
 use super::{DepthContext, RenderLaw, RenderStage};
-use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::law::{EngineKind, LawRegime, ParamInfo};
 use dwell_scene::random::RandomKey;
 use dwell_scene::{LawInfo, LawValues};
 
@@ -26,6 +26,8 @@ pub(super) const LAW: RenderLaw = RenderLaw {
             high: 10.0,
             plausible: [0.0, 2.0],
         }],
+        regimes: &[LawRegime::StillImage, LawRegime::MovingImage],
+        probes: &[&[("strength", 0.5)]],
         rivals: &["kinect_depth", "disparity_quantization"],
         separating_experiment: "look at one wall frontally at several distances and draw the histogram of readings: this noise keeps \
                                 to the steps of 1/8 of a disparity, axial noise fills the gaps between them",

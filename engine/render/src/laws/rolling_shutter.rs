@@ -1,7 +1,7 @@
 //! Rolling shutter: rows that are exposed one after another.
 
 use super::{RenderLaw, RenderStage, Shutter};
-use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::law::{EngineKind, LawRegime, ParamInfo};
 use dwell_scene::{LawInfo, LawValues};
 
 pub(super) const LAW: RenderLaw = RenderLaw {
@@ -24,6 +24,8 @@ pub(super) const LAW: RenderLaw = RenderLaw {
             high: 1e-2,
             plausible: [1e-5, 3e-5],
         }],
+        regimes: &[LawRegime::MovingImage],
+        probes: &[&[("line_s", 2e-05)]],
         rivals: &["time_offset", "camera_roll"],
         separating_experiment: "look at an upright edge at rest and while the camera turns: only rolling rows shear it, and the \
                                 other way round when it turns the other way; a time offset moves all rows alike",

@@ -2,7 +2,7 @@
 
 use super::{RenderLaw, RenderStage};
 use crate::camera::Camera;
-use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::law::{EngineKind, LawRegime, ParamInfo};
 use dwell_scene::random::{RandomKey, RandomStream};
 use dwell_scene::{LawInfo, LawValues};
 use glam::Vec3;
@@ -36,6 +36,8 @@ pub(super) const LAW: RenderLaw = RenderLaw {
                 plausible: [2e-4, 0.02],
             },
         ],
+        regimes: &[LawRegime::StillImage, LawRegime::MovingImage],
+        probes: &[&[("gain", 0.001), ("read", 0.005)]],
         rivals: &["samples_per_pixel"],
         separating_experiment: "take many pictures of a still scene and draw the variance over the mean of each pixel (photon \
                                 transfer): shot noise is a slope, read noise the rest at black; noise of rendering goes when \

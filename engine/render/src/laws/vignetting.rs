@@ -2,7 +2,7 @@
 
 use super::{RenderLaw, RenderStage};
 use crate::camera::Camera;
-use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::law::{EngineKind, LawRegime, ParamInfo};
 use dwell_scene::random::RandomKey;
 use dwell_scene::{LawInfo, LawValues};
 use glam::{Vec2, Vec3};
@@ -26,6 +26,8 @@ pub(super) const LAW: RenderLaw = RenderLaw {
             high: 1.0,
             plausible: [0.0, 1.0],
         }],
+        regimes: &[LawRegime::StillImage, LawRegime::MovingImage],
+        probes: &[&[("strength", 0.5)]],
         rivals: &["exposure", "light_power"],
         separating_experiment: "turn the camera so that one evenly lit wall wanders from the middle to a corner: only vignetting \
                                 darkens it there",

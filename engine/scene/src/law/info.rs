@@ -16,6 +16,36 @@ pub enum EngineKind {
     Render,
 }
 
+/// A regime of motion, of a sound's decay or of a picture, in which a law acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LawRegime {
+    /// A body touches nothing.
+    Flight,
+    /// A contact begins or ends within a few steps.
+    Impact,
+    /// A body in contact whose surface moves along the other.
+    Sliding,
+    /// A body in contact that turns without sliding.
+    Rolling,
+    /// A body at rest, or a sensor that is.
+    Resting,
+    /// A joint or a wheel under command.
+    Driven,
+    /// The first arrival.
+    DirectSound,
+    /// Reflections within 80 ms of the first arrival.
+    EarlySound,
+    /// What comes later.
+    LateSound,
+    /// What is left when the sound has decayed.
+    NoiseFloor,
+    /// A picture by a camera at rest.
+    StillImage,
+    /// A picture by a camera that moves.
+    MovingImage,
+}
+
 /// One number of a law.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ParamInfo {
@@ -52,6 +82,11 @@ pub struct LawInfo {
     pub acts_on: &'static str,
     /// Its parameters.
     pub params: &'static [ParamInfo],
+    /// The regimes in which it acts; elsewhere data must not show it.
+    pub regimes: &'static [LawRegime],
+    /// Parameters that data can determine, at small plausible values from which a search may begin: at least one point, all
+    /// with the same names. Parameters that no point names are known, or follow from what is installed.
+    pub probes: &'static [&'static [(&'static str, f64)]],
     /// Ids of laws and nuisances that look alike in data.
     pub rivals: &'static [&'static str],
     /// The experiment that separates it from its rivals.

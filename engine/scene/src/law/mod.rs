@@ -11,7 +11,7 @@ mod spec;
 mod target;
 mod values;
 
-pub use info::{EngineKind, LawInfo, ParamInfo};
+pub use info::{EngineKind, LawInfo, LawRegime, ParamInfo};
 pub use install::check_and_canonicalize;
 pub use registry::{ActiveLaw, Law, LawRegistry};
 pub use spec::LawSpec;

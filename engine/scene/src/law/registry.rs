@@ -37,6 +37,8 @@ pub struct Law<A> {
 ///             high: 10.0,
 ///             plausible: [0.5, 2.0],
 ///         }],
+///         regimes: &[],
+///         probes: &[],
 ///         rivals: &["offset"],
 ///         separating_experiment: "measure at two inputs",
 ///     },
@@ -139,6 +141,8 @@ mod tests {
                 ..FACTOR
             },
         ],
+        regimes: &[],
+        probes: &[],
         rivals: &["lag"],
         separating_experiment: "measure at two inputs",
     };

@@ -283,6 +283,8 @@ mod tests {
         engine: EngineKind::Physics,
         acts_on: "object",
         params: &[param("c_d", 0.0), param("density", 1.2)],
+        regimes: &[],
+        probes: &[],
         rivals: &[],
         separating_experiment: "",
     };

@@ -5,7 +5,7 @@ use crate::error::PhysicsError;
 use crate::joints::{MotorLaw, MotorState, StatefulLaw};
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, LawRegime, ParamInfo};
 use dwell_scene::{JointCommand, JointId, LawInfo, LawValues, State};
 use std::collections::BTreeMap;
 
@@ -42,6 +42,12 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                 high: 1e3,
                 plausible: [0.0, 0.05],
             },
+        ],
+        regimes: &[LawRegime::Driven],
+        probes: &[
+            &[("half_width", 0.005)],
+            &[("half_width", 0.02)],
+            &[("half_width", 0.06)],
         ],
         rivals: &["friction", "latency", "timestamp_offset"],
         separating_experiment: "move the target slowly up and down over the same range: backlash leaves a gap of 2 b \

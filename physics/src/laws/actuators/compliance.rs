@@ -5,7 +5,7 @@ use crate::error::PhysicsError;
 use crate::joints::{ActuationGain, JointActuation, MotorLaw, StatefulLaw};
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, LawRegime, ParamInfo};
 use dwell_scene::{JointId, LawInfo, LawValues, State};
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
@@ -30,6 +30,8 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
             high: 1.0,
             plausible: [0.001, 0.01],
         }],
+        regimes: &[LawRegime::Driven],
+        probes: &[&[("compliance", 0.003)], &[("compliance", 0.03)]],
         rivals: &["backlash", "motor_constants", "mass"],
         separating_experiment: "hold still and hang known loads on the joint, upwards and downwards: what gives deflects in \
                                 proportion to the load and rings when it is struck; backlash jumps by the same way for every \

@@ -5,7 +5,7 @@ use crate::error::PhysicsError;
 use crate::joints::{MotorLaw, MotorState, StatefulLaw};
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, LawRegime, ParamInfo};
 use dwell_scene::{JointCommand, LawInfo, LawValues, State};
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
@@ -35,6 +35,12 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                 high: 1e4,
                 plausible: [0.01, 2.0],
             },
+        ],
+        regimes: &[LawRegime::Driven],
+        probes: &[
+            &[("half_width", 0.005)],
+            &[("half_width", 0.02)],
+            &[("half_width", 0.05)],
         ],
         rivals: &["backlash", "friction"],
         separating_experiment: "tell it small slow ramps from both sides: a deadband stops short on either side by the same \

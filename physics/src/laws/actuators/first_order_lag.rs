@@ -5,7 +5,7 @@ use crate::error::PhysicsError;
 use crate::joints::{MotorLaw, MotorState, StatefulLaw};
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, LawRegime, ParamInfo};
 use dwell_scene::{JointCommand, LawInfo, LawValues, State, math};
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
@@ -27,6 +27,8 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
             high: 10.0,
             plausible: [0.005, 0.3],
         }],
+        regimes: &[LawRegime::Driven],
+        probes: &[&[("tau_s", 0.01)], &[("tau_s", 0.05)]],
         rivals: &["latency", "rate_limit", "friction"],
         separating_experiment: "tell it sines at two frequencies: a lag takes amplitude and its phase ends at 90 degrees, a \
                                 delay takes none and its phase grows in proportion to frequency; steps of two sizes tell \

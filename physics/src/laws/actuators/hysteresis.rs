@@ -5,7 +5,7 @@ use crate::error::PhysicsError;
 use crate::joints::{JointLoad, JointResistance, ResistanceLaw, SlipSpring, StatefulLaw};
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, LawRegime, ParamInfo};
 use dwell_scene::{JointId, LawInfo, LawValues, State};
 use std::collections::BTreeMap;
 
@@ -38,6 +38,11 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                 high: 1e6,
                 plausible: [1.0, 1000.0],
             },
+        ],
+        regimes: &[LawRegime::Driven],
+        probes: &[
+            &[("max_effort", 0.05), ("stiffness", 20.0)],
+            &[("max_effort", 0.2), ("stiffness", 100.0)],
         ],
         rivals: &["joint_friction", "backlash", "joint_compliance"],
         separating_experiment: "with the motor off turn the joint a little and let go: what is elastic springs back by up to \

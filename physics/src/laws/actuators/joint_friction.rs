@@ -5,7 +5,7 @@ use crate::error::PhysicsError;
 use crate::joints::{JointLoad, JointResistance, ResistanceLaw, StatefulLaw};
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, LawRegime, ParamInfo};
 use dwell_scene::{JointId, LawInfo, LawValues, State, math};
 
 const fn term(name: &'static str, unit: &'static str, high: f64, plausible: [f64; 2]) -> ParamInfo {
@@ -63,6 +63,11 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
             term("external_load_stribeck", "1", 1.0, [0.0, 0.5]),
             term("motor_quadratic", "1/(N m) or 1/N", 1.0, [0.0, 0.01]),
             term("external_quadratic", "1/(N m) or 1/N", 1.0, [0.0, 0.01]),
+        ],
+        regimes: &[LawRegime::Driven],
+        probes: &[
+            &[("coulomb", 0.02), ("viscous", 0.005)],
+            &[("coulomb", 0.002), ("viscous", 0.05)],
         ],
         rivals: &["motor_constants", "backlash", "deadband", "saturation"],
         separating_experiment: "lift a load and let it drop with the motor off: viscous friction stays and back-EMF does \

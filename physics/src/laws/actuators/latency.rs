@@ -5,7 +5,7 @@ use crate::error::PhysicsError;
 use crate::joints::{MotorLaw, MotorState, StatefulLaw, motor_command};
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, LawRegime, ParamInfo};
 use dwell_scene::{JointCommand, JointId, LawInfo, LawValues, State};
 use std::collections::{BTreeMap, VecDeque};
 
@@ -27,6 +27,8 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
             high: 2.0,
             plausible: [0.002, 0.15],
         }],
+        regimes: &[LawRegime::Driven],
+        probes: &[&[("delay_s", 0.01)], &[("delay_s", 0.05)]],
         rivals: &["first_order_lag", "timestamp_offset", "backlash"],
         separating_experiment: "tell it steps, or sines at two frequencies: a delay shifts a step and leaves its shape, and \
                                 its phase grows with frequency without end; a lag rounds the step and its phase ends at \

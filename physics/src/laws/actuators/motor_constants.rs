@@ -7,7 +7,7 @@ use crate::joints::{
 };
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, LawRegime, ParamInfo};
 use dwell_scene::{JointId, LawInfo, LawValues, State};
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
@@ -73,6 +73,8 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                 plausible: [1e-8, 0.05],
             },
         ],
+        regimes: &[LawRegime::Driven],
+        probes: &[&[("torque_scale", 0.9)]],
         rivals: &["joint_friction", "saturation", "mass", "inertia_error"],
         separating_experiment: "let the joint drop with the motor off and with power and no command: back-EMF brakes only the \
                                 second, viscous friction both; repeat a motion with a known load added: a torque constant \

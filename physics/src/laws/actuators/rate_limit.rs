@@ -5,7 +5,7 @@ use crate::error::PhysicsError;
 use crate::joints::{MotorLaw, MotorState, StatefulLaw};
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, LawRegime, ParamInfo};
 use dwell_scene::{JointCommand, LawInfo, LawValues, State};
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
@@ -27,6 +27,12 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
             high: 1e6,
             plausible: [0.5, 20.0],
         }],
+        regimes: &[LawRegime::Driven],
+        probes: &[
+            &[("max_rate", 6.0)],
+            &[("max_rate", 2.0)],
+            &[("max_rate", 0.7)],
+        ],
         rivals: &["saturation", "first_order_lag", "friction"],
         separating_experiment: "tell it steps of two sizes: with a rate limit the slope is the same for both and the time \
                                 grows with the size, with a lag the time is the same",

@@ -5,7 +5,7 @@ use crate::error::PhysicsError;
 use crate::joints::{JointActuation, MotorLaw, StatefulLaw};
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, LawRegime, ParamInfo};
 use dwell_scene::{JointId, LawInfo, LawValues, State};
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
@@ -26,6 +26,12 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
             high: 1e6,
             plausible: [0.05, 200.0],
         }],
+        regimes: &[LawRegime::Driven],
+        probes: &[
+            &[("max_effort", 5.0)],
+            &[("max_effort", 1.0)],
+            &[("max_effort", 0.2)],
+        ],
         rivals: &["rate_limit", "friction"],
         separating_experiment: "sweep the amplitude of a sine or lift growing loads: below its bound a saturated motor is \
                                 exact, friction errs from the smallest effort on, a wrong constant in proportion",

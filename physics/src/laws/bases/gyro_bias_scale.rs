@@ -5,7 +5,7 @@ use crate::bases::BaseLaw;
 use crate::error::PhysicsError;
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, LawRegime, ParamInfo};
 use dwell_scene::{AgentId, LawInfo, LawValues, State};
 use std::sync::Arc;
 
@@ -36,6 +36,8 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                 plausible: [0.97, 1.03],
             },
         ],
+        regimes: &[LawRegime::Driven, LawRegime::Resting],
+        probes: &[&[("bias_rad_s", 0.003), ("scale", 1.01)]],
         rivals: &["unequal_wheels", "timestamp_offset"],
         separating_experiment: "let it rest for a minute, then turn ten times on the spot each way: a bias drifts with \
                                 time also at rest, a scale errs with the angle and with its sign, and a wrong wheel base \

@@ -6,7 +6,7 @@ use crate::bases::WheelMotion;
 use crate::error::PhysicsError;
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, LawRegime, ParamInfo};
 use dwell_scene::{AgentId, LawInfo, LawValues, State};
 use std::sync::Arc;
 
@@ -38,6 +38,12 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
             ratio("base_ratio", [0.97, 1.03]),
             ratio("radius_scale", [0.97, 1.03]),
         ],
+        regimes: &[LawRegime::Driven],
+        probes: &[&[
+            ("radius_ratio", 1.01),
+            ("base_ratio", 1.01),
+            ("radius_scale", 1.01),
+        ]],
         rivals: &["gyro_bias_scale", "wheel_slip", "length_scale"],
         separating_experiment: "drive a square of several metres clockwise and counter-clockwise: unequal wheels bend both \
                                 the same way in space, a wrong base turns both too far or too little, and only straight \

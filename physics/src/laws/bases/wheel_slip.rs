@@ -6,7 +6,7 @@ use crate::bases::WheelMotion;
 use crate::error::PhysicsError;
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, LawRegime, ParamInfo};
 use dwell_scene::{AgentId, LawInfo, LawValues, State};
 use std::sync::Arc;
 
@@ -30,6 +30,8 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
             high: 10.0,
             plausible: [0.001, 0.1],
         }],
+        regimes: &[LawRegime::Driven],
+        probes: &[&[("slip_per_m_s2", 0.02)]],
         rivals: &["unequal_wheels", "length_scale"],
         separating_experiment: "drive the same way once slowly and once with hard starts and soft stops: a wrong radius \
                                 errs with the way whatever the speed, slip only where the speed changes",

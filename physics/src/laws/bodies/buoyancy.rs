@@ -6,7 +6,7 @@ use crate::inertia::{BodyInertia, MassLaw};
 use crate::laws::target::moving_bodies;
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, LawRegime, ParamInfo};
 use dwell_scene::{LawInfo, LawValues, State};
 use std::sync::Arc;
 
@@ -48,6 +48,8 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                 plausible: [0.0, 2.0],
             },
         ],
+        regimes: &[LawRegime::Flight],
+        probes: &[&[("fluid_density_kg_m3", 1.2)]],
         rivals: &["gravity", "mass", "length_scale", "timestamp_offset"],
         separating_experiment: "drop two objects of one shape and different density: gravity, clock and scale treat them \
                                 alike, the air carries the lighter one more",

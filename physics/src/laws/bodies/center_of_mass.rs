@@ -5,7 +5,7 @@ use crate::inertia::{BodyInertia, MassLaw};
 use crate::laws::target::moving_bodies;
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, LawRegime, ParamInfo};
 use dwell_scene::{LawInfo, LawValues, State};
 use glam::Vec3;
 use rapier3d::math::Pose as RapierPose;
@@ -36,6 +36,8 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
         engine: ActsIn::Physics,
         acts_on: "object",
         params: &[offset("x_m"), offset("y_m"), offset("z_m")],
+        regimes: &[LawRegime::Flight, LawRegime::Impact],
+        probes: &[&[("x_m", 0.002), ("y_m", 0.002), ("z_m", 0.002)]],
         rivals: &["marker_offset", "inertia_error", "frame_tilt"],
         separating_experiment: "throw the object spinning and let it tip over its edges: a marker that is off circles in \
                                 flight in the same way, but only the centre of mass decides over which edge it falls and \

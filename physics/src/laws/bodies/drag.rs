@@ -5,7 +5,7 @@ use crate::error::PhysicsError;
 use crate::joints::{ExternalWrench, LinkLaw, LinkState};
 use crate::laws::{BodyLaw, LawContext, LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, LawRegime, ParamInfo};
 use dwell_scene::{LawInfo, LawValues, State};
 use std::sync::Arc;
 
@@ -32,6 +32,8 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
             AREA,
             AIR_DENSITY,
         ],
+        regimes: &[LawRegime::Flight],
+        probes: &[&[("c_d", 0.3)]],
         rivals: &["gravity", "mass", "timestamp_offset", "viscous_damping"],
         separating_experiment: "drop the object from two heights that differ by a factor of four or more, or drop two \
                                 bodies of the same shape and different mass: drag alone bends the path in proportion \

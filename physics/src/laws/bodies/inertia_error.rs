@@ -5,7 +5,7 @@ use crate::inertia::{BodyInertia, MassLaw};
 use crate::laws::target::moving_bodies;
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, LawRegime, ParamInfo};
 use dwell_scene::{LawInfo, LawValues, State};
 use glam::{Mat3, Vec3};
 use std::sync::Arc;
@@ -52,6 +52,8 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
             product("yz"),
             product("zx"),
         ],
+        regimes: &[LawRegime::Flight, LawRegime::Impact],
+        probes: &[&[("x", 0.1), ("y", 0.1), ("z", 0.1)]],
         rivals: &["mass", "center_of_mass_offset", "collision_shape"],
         separating_experiment: "spin the object freely about three axes for the ratios of its moments (the scale cannot be \
                                 seen without a force), and let it hit the floor with a corner, or add a known mass, for \

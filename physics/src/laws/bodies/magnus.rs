@@ -5,7 +5,7 @@ use crate::error::PhysicsError;
 use crate::joints::{ExternalWrench, LinkLaw, LinkState};
 use crate::laws::{BodyLaw, LawContext, LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, LawRegime, ParamInfo};
 use dwell_scene::{LawInfo, LawValues, State, math};
 use glam::Quat;
 use std::f32::consts::PI;
@@ -36,6 +36,8 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
             AREA,
             AIR_DENSITY,
         ],
+        regimes: &[LawRegime::Flight],
+        probes: &[&[("c_l", 0.5)]],
         rivals: &["frame_tilt", "wind", "gravity"],
         separating_experiment: "throw the object twice alike with the spin turned round, its spin measured: only lift \
                                 changes sides; a tilted frame and wind push the same way both times",

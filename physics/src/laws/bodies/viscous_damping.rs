@@ -5,7 +5,7 @@ use crate::joints::{ExternalWrench, LinkLaw, LinkState};
 use crate::laws::target::moving_bodies;
 use crate::laws::{BodyLaw, LawContext, LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, LawRegime, ParamInfo};
 use dwell_scene::{LawInfo, LawValues, State, math};
 use std::sync::Arc;
 
@@ -38,6 +38,8 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                 plausible: [0.0, 0.5],
             },
         ],
+        regimes: &[LawRegime::Flight, LawRegime::Sliding, LawRegime::Rolling],
+        probes: &[&[("linear_per_s", 0.1), ("angular_per_s", 0.1)]],
         rivals: &["drag", "rolling_resistance", "torsional_friction"],
         separating_experiment: "let the object move freely at speeds that differ by a factor of three or more: linear drag \
                                 takes the same share of the speed in each second, quadratic drag a share that grows with \

@@ -5,7 +5,7 @@ use crate::error::PhysicsError;
 use crate::joints::{ExternalWrench, LinkLaw, LinkState};
 use crate::laws::{BodyLaw, LawContext, LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, LawRegime, ParamInfo};
 use dwell_scene::{LawInfo, LawValues, State};
 use glam::Vec3;
 use std::sync::Arc;
@@ -68,6 +68,8 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
             AREA,
             AIR_DENSITY,
         ],
+        regimes: &[LawRegime::Flight],
+        probes: &[&[("x_m_s", 0.3), ("y_m_s", 0.05), ("z_m_s", 0.3)]],
         rivals: &["frame_tilt", "drag", "magnus"],
         separating_experiment: "put a light and a heavy object of one shape side by side, or switch the fan off: wind moves \
                                 the light one, a tilted floor or frame both",

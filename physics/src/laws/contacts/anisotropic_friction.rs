@@ -4,7 +4,7 @@ use crate::contact::{ContactLaw, ContactScope, ContactValues, LawContact};
 use crate::error::PhysicsError;
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, LawRegime, ParamInfo};
 use dwell_scene::{LawInfo, LawValues, State, math};
 use glam::Vec3;
 use std::sync::Arc;
@@ -51,6 +51,13 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                 high: 3.2,
                 plausible: [-3.2, 3.2],
             },
+        ],
+        regimes: &[LawRegime::Sliding],
+        probes: &[
+            &[("grain", 0.1), ("pile", 0.01), ("axis_rad", 0.1)],
+            &[("grain", 0.1), ("pile", 0.01), ("axis_rad", 0.8)],
+            &[("grain", 0.01), ("pile", 0.1), ("axis_rad", 0.1)],
+            &[("grain", 0.01), ("pile", 0.1), ("axis_rad", 1.7)],
         ],
         rivals: &["frame_tilt", "friction", "stribeck_friction"],
         separating_experiment: "slide the object with one speed along the grain, against it and across, and let it fly \

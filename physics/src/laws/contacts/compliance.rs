@@ -4,7 +4,7 @@ use crate::engine::ContactCompliance;
 use crate::error::PhysicsError;
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, LawRegime, ParamInfo};
 use dwell_scene::{LawInfo, LawValues, State};
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
@@ -42,6 +42,11 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                 high: 5.0,
                 plausible: [0.02, 1.0],
             },
+        ],
+        regimes: &[LawRegime::Impact, LawRegime::Resting],
+        probes: &[
+            &[("natural_frequency_hz", 60.0), ("damping_ratio", 0.3)],
+            &[("natural_frequency_hz", 20.0), ("damping_ratio", 0.3)],
         ],
         rivals: &[
             "restitution",

@@ -5,7 +5,7 @@ use crate::contact::ContactScope;
 use crate::error::PhysicsError;
 use crate::laws::{BodyLaw, LawContext, LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, LawRegime, ParamInfo};
 use dwell_scene::{LawInfo, LawValues, State};
 use std::sync::Arc;
 
@@ -30,6 +30,8 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
             high: 1.0,
             plausible: [0.0005, 0.1],
         }],
+        regimes: &[LawRegime::Rolling],
+        probes: &[&[("c_rr", 0.01)]],
         rivals: &["frame_tilt", "drag", "viscous_damping"],
         separating_experiment: "let the ball roll in two opposite directions and at speeds that differ by a factor of three: \
                                 rolling resistance slows it alike each time, a tilted floor helps one way, air takes more \

@@ -4,7 +4,7 @@ use crate::contact::{ContactLaw, ContactScope, ContactValues, LawContact};
 use crate::error::PhysicsError;
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, LawRegime, ParamInfo};
 use dwell_scene::{LawInfo, LawValues, State, math};
 use std::sync::Arc;
 
@@ -44,6 +44,8 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                 plausible: [0.5, 2.0],
             },
         ],
+        regimes: &[LawRegime::Sliding, LawRegime::Resting],
+        probes: &[&[("static_ratio", 1.3)]],
         rivals: &["friction", "backlash", "anisotropic_friction"],
         separating_experiment: "tilt the floor slowly until the object starts to slide, then until one that was pushed \
                                 stops: two angles mean two frictions; a single coefficient, and play, have one",

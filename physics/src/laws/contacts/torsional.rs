@@ -5,7 +5,7 @@ use crate::contact::ContactScope;
 use crate::error::PhysicsError;
 use crate::laws::{BodyLaw, LawContext, LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, LawRegime, ParamInfo};
 use dwell_scene::{LawInfo, LawValues, State};
 use std::sync::Arc;
 
@@ -30,6 +30,8 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
             high: 1.0,
             plausible: [0.0, 0.05],
         }],
+        regimes: &[LawRegime::Sliding, LawRegime::Rolling],
+        probes: &[&[("radius_m", 0.01)]],
         rivals: &["viscous_damping", "inertia_error", "friction"],
         separating_experiment: "spin the object on the floor at two speeds, and in the air: friction of the patch takes the \
                                 same spin from it in each second and nothing in flight",

@@ -4,7 +4,7 @@ use crate::contact::{ContactLaw, ContactScope, ContactValues, LawContact};
 use crate::error::PhysicsError;
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
-use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
+use dwell_scene::law::{EngineKind as ActsIn, LawRegime, ParamInfo};
 use dwell_scene::{LawInfo, LawValues, State};
 use std::sync::Arc;
 
@@ -39,6 +39,8 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                 plausible: [0.5, 5.0],
             },
         ],
+        regimes: &[LawRegime::Impact],
+        probes: &[&[("slope_s_m", 0.05)]],
         rivals: &["restitution", "drag", "contact_compliance"],
         separating_experiment: "drop the object from heights that differ by a factor of sixteen (four in speed) and compare \
                                 the share of the speed that is left: one restitution leaves the same share everywhere, and \
