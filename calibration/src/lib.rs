@@ -16,6 +16,7 @@
 pub mod bundle;
 mod error;
 pub mod example;
+mod experiment;
 mod fit;
 mod format_number;
 mod options;
@@ -23,7 +24,6 @@ mod progress;
 mod report;
 pub mod rollout;
 mod select;
-mod twin;
 
 pub use error::CalibrationError;
 pub use options::Options;
@@ -34,9 +34,9 @@ pub use report::{
 pub use select::{ChannelResidual, HeldOutGain, ResidualNoiseTest, SplitHalfAgreement};
 
 use bundle::file::BundleKind;
+use experiment::{Experiment, FlightExperiment, RoomExperiment, ServoExperiment};
 use progress::{CallbackProgress, ProgressReporter as _};
 use std::path::Path;
-use twin::{FlightTwin, RoomTwin, ServoTwin, Twin};
 
 /// Compares the measured bundle in the folder `path` with its simulation and reports what the simulation lacks.
 ///
@@ -144,10 +144,10 @@ fn find_missing_causes(
             "none: only impulse responses are measured in a house",
         ));
     }
-    let mut twin: Box<dyn Twin> = match bundle.kind() {
-        BundleKind::Trajectory => Box::new(FlightTwin::new(bundle, options)?),
-        BundleKind::Servo => Box::new(ServoTwin::new(bundle, options)?),
-        BundleKind::ImpulseResponse => Box::new(RoomTwin::new(bundle, options)?),
+    let mut experiment: Box<dyn Experiment> = match bundle.kind() {
+        BundleKind::Trajectory => Box::new(FlightExperiment::new(bundle, options)?),
+        BundleKind::Servo => Box::new(ServoExperiment::new(bundle, options)?),
+        BundleKind::ImpulseResponse => Box::new(RoomExperiment::new(bundle, options)?),
         BundleKind::PoseTrajectory | BundleKind::Drive => {
             return Err(CalibrationError::field(
                 bundle.name.clone(),
@@ -157,8 +157,8 @@ fn find_missing_causes(
             ));
         }
     };
-    let findings = select::find_causes(twin.as_mut(), options, progress)?;
-    let report = report::build(bundle, twin.as_ref(), &findings);
+    let findings = select::find_causes(experiment.as_mut(), options, progress)?;
+    let report = report::build(bundle, experiment.as_ref(), &findings);
     progress.stage(1.0, "done")?;
     Ok(report)
 }

@@ -25,9 +25,9 @@ pub struct Options {
     pub bootstrap_draws: usize,
     /// True if samples far from the rest count less (Huber's loss from three robust standard deviations on); default true.
     pub robust: bool,
-    /// Physics steps per second in the simulation twin, Hz; 60 to 1,000, default 240.
+    /// Physics steps per second in the simulation experiment, Hz; 60 to 1,000, default 240.
     pub physics_rate_hz: f64,
-    /// Sound rays per impulse response in the simulation twin; 100 to 100,000, default 2,500.
+    /// Sound rays per impulse response in the simulation experiment; 100 to 100,000, default 2,500.
     pub rays: usize,
 }
 

@@ -403,24 +403,35 @@ fn surface_of(at: &str, side: &str, surface: &SurfaceManifest) -> CheckResult {
     Ok(())
 }
 
+/// The unit of a channel of a kind of measurement; `None`: there is no such channel.
+fn channel_unit(kind: BundleKind, name: &str) -> Option<&'static str> {
+    let known: &[(&str, &[&str])] = match kind {
+        BundleKind::Trajectory => &[("m", &["x", "y", "z"]), ("rad/s", &["wx", "wy", "wz"])],
+        BundleKind::Servo => &[("rad", &["position"])],
+        BundleKind::ImpulseResponse | BundleKind::PoseTrajectory | BundleKind::Drive => &[],
+    };
+    let found = known.iter().find(|(_, names)| names.contains(&name));
+    found.map(|(unit, _)| *unit)
+}
+
 fn channels(at: &str, manifest: &MeasurementDescription) -> CheckResult {
-    let (allowed, unit): (&[&str], &str) = match manifest.kind {
-        BundleKind::Trajectory => (&["x", "y", "z"], "m"),
-        BundleKind::Servo => (&["position"], "rad"),
+    let allowed = match manifest.kind {
+        BundleKind::Trajectory => "one of x, y, z (m) and wx, wy, wz (rad/s)",
+        BundleKind::Servo => "position (rad)",
         BundleKind::ImpulseResponse | BundleKind::PoseTrajectory | BundleKind::Drive => {
             return Ok(());
         }
     };
     for (k, channel) in manifest.channels.iter().enumerate() {
         let of = |field: &str| format!("channels[{k}].{field}");
-        if !allowed.contains(&channel.name.as_str()) {
+        let Some(unit) = channel_unit(manifest.kind, &channel.name) else {
             return Err(CalibrationError::field(
                 at,
                 of("name"),
                 format!("{:?}", channel.name),
-                format!("one of {allowed:?}"),
+                allowed,
             ));
-        }
+        };
         if manifest.channels[..k]
             .iter()
             .any(|other| other.name == channel.name)

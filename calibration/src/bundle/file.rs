@@ -26,6 +26,10 @@ pub struct MeasurementDescription {
     /// The meaning of the numbers of `trajectory.csv`.
     #[serde(default)]
     pub channels: Vec<ChannelManifest>,
+    /// The clock that stamps `command.csv` (kind `servo`); `null`: one called `controller`. Where it is the channels' own, nothing is late
+    /// for the clocks' sake; else the offset between them is fitted, and a latency cannot be told from it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub command_clock: Option<String>,
     /// The meaning of the numbers of `poses.csv` and `starts.csv` (kind `pose_trajectory`).
     #[serde(default)]
     pub poses: Option<PoseTableFormat>,
@@ -207,9 +211,10 @@ pub struct BandTable {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ChannelManifest {
-    /// `x`, `y`, `z` of a body in m, or `position` of a joint in rad.
+    /// `x`, `y`, `z` of a body in m, its spin `wx`, `wy`, `wz` about the axes of the world in rad/s, or `position` of a joint
+    /// in rad.
     pub name: String,
-    /// The SI unit: `m` or `rad`.
+    /// The SI unit: `m`, `rad/s` or `rad`.
     pub unit: String,
     /// The clock that stamps it; channels of one clock share its offset.
     pub clock: String,

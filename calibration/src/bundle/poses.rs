@@ -340,6 +340,7 @@ mod tests {
             licence: String::new(),
             kind: BundleKind::PoseTrajectory,
             scene: SceneManifest::default(),
+            command_clock: None,
             channels: Vec::new(),
             poses: Some(PoseTableFormat {
                 rate_hz: RATE_HZ,

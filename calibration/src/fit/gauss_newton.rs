@@ -3,8 +3,8 @@
 use super::normal::{self, NormalBlock};
 use super::robust::HuberLoss;
 use crate::error::CalibrationError;
+use crate::experiment::{Experiment, ParameterIndex, ParameterVector, cause_range};
 use crate::progress::ProgressReporter;
-use crate::twin::{ParameterIndex, ParameterVector, Twin, cause_range};
 use dwell_scene::parallel::Threads;
 use nalgebra::{DMatrix, DVector};
 
@@ -23,7 +23,7 @@ pub(crate) struct CauseSet {
 
 /// The inputs of a fit.
 pub(crate) struct FitTask<'a> {
-    pub(crate) twin: &'a dyn Twin,
+    pub(crate) experiment: &'a dyn Experiment,
     /// The episodes, by position.
     pub(crate) set: &'a [usize],
     pub(crate) threads: Threads,
@@ -63,9 +63,9 @@ impl FitTask<'_> {
         let causes = model
             .causes
             .iter()
-            .flat_map(|cause| cause_range(self.twin, *cause))
+            .flat_map(|cause| cause_range(self.experiment, *cause))
             .map(ParameterIndex::Cause);
-        let shared = (0..self.twin.shared_nuisances().len()).map(ParameterIndex::Shared);
+        let shared = (0..self.experiment.shared_nuisances().len()).map(ParameterIndex::Shared);
         self.run(shared.chain(causes).collect(), start)
     }
 
@@ -166,7 +166,7 @@ impl FitTask<'_> {
     ) -> ParameterVector {
         let mut moved = point.clone();
         let bounded = |slot: ParameterIndex, value: f64| {
-            let parameter = self.twin.parameter(slot);
+            let parameter = self.experiment.parameter(slot);
             value.clamp(parameter.low, parameter.high)
         };
         for (slot, change) in global.iter().zip(step.global.iter()) {
@@ -190,11 +190,11 @@ impl FitTask<'_> {
     }
 
     fn evaluate(&self, point: &ParameterVector) -> Result<Evaluation, CalibrationError> {
-        let (twin, set) = (self.twin, self.set);
+        let (experiment, set) = (self.experiment, self.set);
         let done = self.threads.map(set.len(), |k| {
             let episode = set[k];
-            let measured = &twin.episodes()[episode];
-            let predictions = twin.predict(episode, &point.values(episode))?;
+            let measured = &experiment.episodes()[episode];
+            let predictions = experiment.predict(episode, &point.values(episode))?;
             if predictions.len() != measured.measured.len()
                 || predictions.iter().any(|value| !value.is_finite())
             {
@@ -230,17 +230,18 @@ impl FitTask<'_> {
         now: &Evaluation,
         loss: HuberLoss,
     ) -> Result<Vec<NormalBlock>, CalibrationError> {
-        let own = self.twin.episode_nuisances().len();
+        let own = self.experiment.episode_nuisances().len();
         let slots: Vec<ParameterIndex> = (0..own)
             .map(ParameterIndex::Own)
             .chain(global.iter().copied())
             .collect();
-        let (twin, set) = (self.twin, self.set);
+        let (experiment, set) = (self.experiment, self.set);
         let done = self.threads.map(set.len(), |k| {
             let episode = set[k];
-            let sd = &twin.episodes()[episode].sd;
+            let sd = &experiment.episodes()[episode].sd;
             let base = &now.predictions[k];
-            let mut jacobian = twin.derivatives(episode, &point.values(episode), base, &slots)?;
+            let mut jacobian =
+                experiment.derivatives(episode, &point.values(episode), base, &slots)?;
             let mut residual = DVector::from_column_slice(&now.residuals[k]);
             for (row, sd) in sd.iter().enumerate() {
                 let weight = loss.weight(residual[row]).sqrt();

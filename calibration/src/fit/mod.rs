@@ -10,4 +10,4 @@ mod robust;
 pub(crate) use cma_es::CmaEs;
 pub(crate) use gauss_newton::{CauseSet, FitResult, FitTask};
 pub(crate) use least_squares::{Variable, least_squares};
-pub(crate) use robust::median;
+pub(crate) use robust::{HuberLoss, median};

@@ -7,19 +7,22 @@ use super::data::{
 use super::plot::plots;
 use crate::bundle::Bundle;
 use crate::bundle::file::BundleKind;
+use crate::experiment::{Experiment, FitParameter, Intervention, ParameterIndex};
 use crate::format_number::{format_list, format_number, format_percent};
 use crate::select::{
     Decision, Estimate, Findings, ScoredModel, SingleCause, by_channel, estimates, sd_of,
 };
-use crate::twin::{Cause, CauseBinding, FitParameter, ParameterIndex, Twin};
-use dwell_scene::LawSpec;
 
 /// The version of the report's form.
 const VERSION: u32 = 1;
 
 /// Puts findings into a report.
-pub(crate) fn build(bundle: &Bundle, twin: &dyn Twin, findings: &Findings) -> CalibrationReport {
-    let verdict = verdict(twin, findings);
+pub(crate) fn build(
+    bundle: &Bundle,
+    experiment: &dyn Experiment,
+    findings: &Findings,
+) -> CalibrationReport {
+    let verdict = verdict(experiment, findings);
     let named = matches!(verdict, CalibrationVerdict::Named { .. });
     let chosen = if named {
         &findings.chosen
@@ -30,24 +33,24 @@ pub(crate) fn build(bundle: &Bundle, twin: &dyn Twin, findings: &Findings) -> Ca
     let (set_after, after) = all_residuals(findings, chosen);
     let name = |set: &[usize]| {
         set.iter()
-            .map(|k| twin.episodes()[*k].name.clone())
+            .map(|k| experiment.episodes()[*k].name.clone())
             .collect()
     };
     let candidates: Vec<CandidateCause> = findings
         .singles
         .iter()
-        .map(|single| candidate(twin, single))
+        .map(|single| candidate(experiment, single))
         .collect();
     CalibrationReport {
         version: VERSION,
         title: bundle.manifest.title.clone(),
         licence: bundle.manifest.licence.clone(),
         kind: bundle.kind(),
-        sentence: verdict_sentence(&verdict, &candidates, twin, findings),
+        sentence: verdict_sentence(&verdict, &candidates, experiment, findings),
         fitted_episodes: name(&findings.split.train),
         held_out_episodes: name(&findings.split.held_out),
-        residuals_before: by_channel(twin, &set_before, &before),
-        residuals_after: by_channel(twin, &set_after, &after),
+        residuals_before: by_channel(experiment, &set_before, &before),
+        residuals_after: by_channel(experiment, &set_after, &after),
         remainder_before: findings.remainder_before,
         remainder_after: if named {
             findings.remainder_after
@@ -55,18 +58,18 @@ pub(crate) fn build(bundle: &Bundle, twin: &dyn Twin, findings: &Findings) -> Ca
             findings.remainder_before
         },
         agreement: findings.agreement.clone(),
-        nuisances: nuisances(twin, chosen),
+        nuisances: nuisances(experiment, chosen),
         found: if named {
-            found(twin, findings)
+            found(experiment, findings)
         } else {
             FoundEffects::default()
         },
         plots: plots(
-            twin,
+            experiment,
             (&set_before, &before),
             named.then_some((&set_after[..], &after[..])),
         ),
-        notes: notes(bundle, twin, findings),
+        notes: notes(bundle, experiment, findings),
         candidates,
         verdict,
     }
@@ -103,32 +106,40 @@ fn fitted(parameter: &FitParameter, estimate: &Estimate) -> FittedParameter {
     }
 }
 
-fn parameters(twin: &dyn Twin, judged: &ScoredModel, cause: usize) -> Vec<FittedParameter> {
-    let found = estimates(twin, &judged.fit, judged.effective_count, cause);
-    let parameters = twin.causes()[cause].parameters.iter();
+fn parameters(
+    experiment: &dyn Experiment,
+    judged: &ScoredModel,
+    cause: usize,
+) -> Vec<FittedParameter> {
+    let found = estimates(experiment, &judged.fit, judged.effective_count, cause);
+    let parameters = experiment.causes()[cause].parameters.iter();
     parameters
         .zip(&found)
         .map(|(parameter, estimate)| fitted(parameter, estimate))
         .collect()
 }
 
-fn candidate(twin: &dyn Twin, single: &SingleCause) -> CandidateCause {
-    let cause = &twin.causes()[single.cause];
+fn candidate(experiment: &dyn Experiment, single: &SingleCause) -> CandidateCause {
+    let cause = &experiment.causes()[single.cause];
+    let parameters = cause.parameters.iter().zip(&single.estimates);
     CandidateCause {
         id: cause.id.clone(),
         name: cause.name.clone(),
         equation: cause.equation.clone(),
-        parameters: parameters(twin, &single.scored, single.cause),
-        delta_bic: single.advantage.delta_bic,
-        gain: single.advantage.gain,
+        parameters: parameters
+            .map(|(parameter, estimate)| fitted(parameter, estimate))
+            .collect(),
+        delta_bic: single.delta_bic,
+        gain: single.gain,
+        idle: single.is_idle,
         passes: single.passes,
         implausible: single.implausible.clone(),
         separating_experiment: cause.separating_experiment.clone(),
     }
 }
 
-fn verdict(twin: &dyn Twin, findings: &Findings) -> CalibrationVerdict {
-    let cause = |index: &usize| &twin.causes()[*index];
+fn verdict(experiment: &dyn Experiment, findings: &Findings) -> CalibrationVerdict {
+    let cause = |index: &usize| &experiment.causes()[*index];
     match (&findings.decision, findings.advantage_over_base) {
         (Decision::Named(causes), Some(against)) if !causes.is_empty() => {
             CalibrationVerdict::Named {
@@ -139,19 +150,29 @@ fn verdict(twin: &dyn Twin, findings: &Findings) -> CalibrationVerdict {
                         law: cause(index).id.clone(),
                         name: cause(index).name.clone(),
                         equation: cause(index).equation.clone(),
-                        parameters: parameters(twin, &findings.chosen, *index),
+                        parameters: parameters(experiment, &findings.chosen, *index),
                     })
                     .collect(),
                 gain: against.gain,
             }
         }
-        (Decision::OneOf(causes), _) => CalibrationVerdict::OneOf {
-            laws: causes.iter().map(|index| cause(index).id.clone()).collect(),
-            separating_experiments: causes
-                .iter()
-                .map(|index| cause(index).separating_experiment.clone())
-                .collect(),
-        },
+        (Decision::OneOf(sets), _) => {
+            let mut members: Vec<usize> = Vec::new();
+            for index in sets.iter().flatten() {
+                if !members.contains(index) {
+                    members.push(*index);
+                }
+            }
+            let ids = |set: &Vec<usize>| set.iter().map(|index| cause(index).id.clone()).collect();
+            CalibrationVerdict::OneOf {
+                laws: ids(&members),
+                sets: sets.iter().map(ids).collect(),
+                separating_experiments: members
+                    .iter()
+                    .map(|index| cause(index).separating_experiment.clone())
+                    .collect(),
+            }
+        }
         (Decision::Unexplained(reason), _) => CalibrationVerdict::Unexplained {
             reason: reason.clone(),
         },
@@ -193,7 +214,7 @@ fn in_words(parameters: &[FittedParameter]) -> String {
 fn verdict_sentence(
     verdict: &CalibrationVerdict,
     candidates: &[CandidateCause],
-    twin: &dyn Twin,
+    experiment: &dyn Experiment,
     findings: &Findings,
 ) -> String {
     let name = |id: &String| {
@@ -206,7 +227,7 @@ fn verdict_sentence(
         CalibrationVerdict::NoEffect => {
             let limits: Vec<String> = candidates
                 .iter()
-                .filter(|c| c.parameters.len() == 1)
+                .filter(|c| c.parameters.len() == 1 && !c.idle)
                 .map(|c| {
                     let p = &c.parameters[0];
                     let [low, high] = p.interval.map(format_number);
@@ -226,33 +247,44 @@ fn verdict_sentence(
                 .map(|e| format!("{}, {}", e.name, in_words(&e.parameters)))
                 .collect();
             let [low, high] = gain.share_interval.map(format_percent);
-            let rest = if findings.remainder_after.is_structured() {
-                " Something small and systematic is left that has no name here."
+            let is_of_measurement = |effect: &NamedEffect| {
+                let mut causes = experiment.causes().iter();
+                causes.any(|cause| cause.id == effect.law && cause.is_of_measurement())
+            };
+            let lead = if effects.iter().all(is_of_measurement) {
+                "What is wrong is the measurement, not the simulation"
             } else {
-                ""
+                "What the simulation lacks"
             };
             format!(
-                "What the simulation lacks is {}. It takes away {} ({low} to {high}) of the squared error on episodes \
-                 that no fit has seen.{rest}",
+                "{lead}: {}. It takes away {} ({low} to {high}) of the squared error on episodes that no fit has seen.",
                 told.join("; and "),
                 format_percent(gain.share)
             )
         }
         CalibrationVerdict::OneOf {
-            laws,
+            sets,
             separating_experiments,
+            ..
         } => {
-            let names: Vec<String> = laws.iter().map(name).collect();
+            let sets: Vec<String> = sets
+                .iter()
+                .map(|set| set.iter().map(name).collect::<Vec<_>>().join(" with "))
+                .collect();
             format!(
                 "Something is missing, but this data cannot tell apart {}. What would: {}.",
-                format_list(&names),
+                format_list(&sets),
                 separating_experiments.join("; ")
             )
         }
         CalibrationVerdict::Unexplained { reason } => {
-            let worst = by_channel(twin, &findings.split.train, &findings.base.fit.residuals)
-                .into_iter()
-                .max_by(|a, b| a.chi2_per_count.total_cmp(&b.chi2_per_count));
+            let worst = by_channel(
+                experiment,
+                &findings.split.train,
+                &findings.base.fit.residuals,
+            )
+            .into_iter()
+            .max_by(|a, b| a.chi2_per_count.total_cmp(&b.chi2_per_count));
             let size = worst.map_or_else(String::new, |w| {
                 format!(
                     " It is worth {}{} in {}.",
@@ -268,8 +300,8 @@ fn verdict_sentence(
     }
 }
 
-fn nuisances(twin: &dyn Twin, judged: &ScoredModel) -> Vec<NuisanceParameter> {
-    let shared = twin.shared_nuisances().iter().enumerate();
+fn nuisances(experiment: &dyn Experiment, judged: &ScoredModel) -> Vec<NuisanceParameter> {
+    let shared = experiment.shared_nuisances().iter().enumerate();
     shared
         .map(|(k, parameter)| NuisanceParameter {
             name: parameter.name.clone(),
@@ -284,35 +316,20 @@ fn nuisances(twin: &dyn Twin, judged: &ScoredModel) -> Vec<NuisanceParameter> {
         .collect()
 }
 
-fn found(twin: &dyn Twin, findings: &Findings) -> FoundEffects {
-    let mut found = FoundEffects::default();
-    for index in &findings.chosen.model.causes {
-        let cause: &Cause = &twin.causes()[*index];
-        let values = parameters(twin, &findings.chosen, *index);
-        match &cause.installs_as {
-            CauseBinding::Law { version, target } => found.laws.push(LawSpec {
-                id: cause.id.clone(),
-                version: *version,
-                target: target.clone(),
-                params: values
-                    .iter()
-                    .map(|p| (p.name.clone(), p.value))
-                    .chain(cause.fixed.clone())
-                    .collect(),
-            }),
-            CauseBinding::Addresses(addresses) => {
-                let pairs = addresses.iter().zip(&values);
-                found
-                    .parameters
-                    .extend(pairs.map(|(address, p)| (address.clone(), p.value)));
-            }
-            CauseBinding::Unsupported => {}
-        }
+fn found(experiment: &dyn Experiment, findings: &Findings) -> FoundEffects {
+    let chosen = &findings.chosen;
+    let install = Intervention::to_install(
+        experiment.causes(),
+        &chosen.fit.point.causes,
+        &chosen.model.causes,
+    );
+    FoundEffects {
+        laws: install.laws,
+        parameters: install.overrides.into_iter().collect(),
     }
-    found
 }
 
-fn notes(bundle: &Bundle, twin: &dyn Twin, findings: &Findings) -> Vec<String> {
+fn notes(bundle: &Bundle, experiment: &dyn Experiment, findings: &Findings) -> Vec<String> {
     let mut notes = Vec::new();
     if !findings.split.by_group {
         notes.push(
@@ -344,7 +361,7 @@ fn notes(bundle: &Bundle, twin: &dyn Twin, findings: &Findings) -> Vec<String> {
     if !missing.is_empty() {
         notes.push(format!("Not measured: {}.", format_list(&missing)));
     }
-    let own: Vec<String> = twin
+    let own: Vec<String> = experiment
         .episode_nuisances()
         .iter()
         .map(|parameter| parameter.name.clone())

@@ -23,8 +23,10 @@ pub enum CalibrationVerdict {
     },
     /// Some cause acts, but these cannot be told apart with this data.
     OneOf {
-        /// Their ids.
+        /// The ids of all of them.
         laws: Vec<String>,
+        /// The explanations that fit alike, the best first: each is the ids of effects that act together.
+        sets: Vec<Vec<String>>,
         /// The experiments that would separate them.
         separating_experiments: Vec<String>,
     },
@@ -78,8 +80,11 @@ pub struct CandidateCause {
     pub parameters: Vec<FittedParameter>,
     /// Fall of the Bayesian information criterion against nuisances alone.
     pub delta_bic: f64,
-    /// Gain on held-out episodes against nuisances alone.
-    pub gain: HeldOutGain,
+    /// Gain on held-out episodes against nuisances alone; `null` for a cause that gains too little to first order to be
+    /// fitted: its parameters and `delta_bic` are then those of first order.
+    pub gain: Option<HeldOutGain>,
+    /// True if nothing in the data depends on it, so that they say nothing of it.
+    pub idle: bool,
     /// True if both speak for it.
     pub passes: bool,
     /// The reason why it is not plausible; `null` where it is.

@@ -101,8 +101,9 @@ impl CalibrationReport {
 
     fn table_of_causes(&self, out: &mut String) {
         out.push_str(
-            "<h2>Causes that were tried</h2><p class=\"soft\">Each was fitted alone. It counts when the information \
-             criterion (BIC) falls far enough and the episodes that no fit has seen get better beyond chance.</p>",
+            "<h2>Causes that were tried</h2><p class=\"soft\">Each alone: those that gain most to first order were fitted in full. A \
+             cause counts when the information criterion (BIC) falls far enough, by more than chance gives the best of the \
+             library, and the episodes that no fit has seen get better.</p>",
         );
         out.push_str(&svg::gains(&self.candidates));
         out.push_str(
@@ -197,7 +198,23 @@ impl CalibrationReport {
 
 fn write_cause_row(out: &mut String, candidate: &CandidateCause) {
     let told: Vec<String> = candidate.parameters.iter().map(parameter).collect();
-    let [low, high] = candidate.gain.share_interval.map(format_percent);
+    let gain = candidate.gain.map_or_else(String::new, |gain| {
+        let [low, high] = gain.share_interval.map(format_percent);
+        format!(
+            "{}<br><span class=\"soft\">{low} to {high}</span>",
+            format_percent(gain.share)
+        )
+    });
+    if candidate.idle {
+        let _ = write!(
+            out,
+            "<tr><td><b>{}</b><br><span class=\"soft\">{}</span></td><td colspan=\"4\" class=\"soft\">nothing in this data \
+             depends on it</td></tr>",
+            escape(&candidate.name),
+            escape(&candidate.equation)
+        );
+        return;
+    }
     let judgement = match (&candidate.implausible, candidate.passes) {
         (Some(why), true) => format!("fits, but {}", escape(why)),
         (_, true) => "passes".to_owned(),
@@ -206,12 +223,11 @@ fn write_cause_row(out: &mut String, candidate: &CandidateCause) {
     let _ = write!(
         out,
         "<tr><td><b>{}</b><br><span class=\"soft\">{}</span></td><td class=\"n\">{}</td><td class=\"n\">{}</td>\
-         <td class=\"n\">{}<br><span class=\"soft\">{low} to {high}</span></td><td>{judgement}</td></tr>",
+         <td class=\"n\">{gain}</td><td>{judgement}</td></tr>",
         escape(&candidate.name),
         escape(&candidate.equation),
         told.join("<br>"),
         format_number(candidate.delta_bic),
-        format_percent(candidate.gain.share)
     );
 }
 

@@ -1,7 +1,7 @@
 //! Residuals over time, thinned out.
 
 use super::data::ResidualPlot;
-use crate::twin::Twin;
+use crate::experiment::Experiment;
 
 /// Points of a picture.
 const MOST_POINTS: usize = 1200;
@@ -10,26 +10,30 @@ type ResidualSeries<'a> = (&'a [usize], &'a [Vec<f64>]);
 
 /// A picture for each channel.
 pub(super) fn plots(
-    twin: &dyn Twin,
+    experiment: &dyn Experiment,
     before: (&Vec<usize>, &Vec<Vec<f64>>),
     after: Option<ResidualSeries<'_>>,
 ) -> Vec<ResidualPlot> {
-    let channels = twin.channels().iter().enumerate();
+    let channels = experiment.channels().iter().enumerate();
     channels
         .map(|(channel, info)| ResidualPlot {
             title: info.name.clone(),
-            unit: info.unit.to_owned(),
-            before: points(twin, (before.0, before.1), channel),
-            after: after.map_or_else(Vec::new, |after| points(twin, after, channel)),
-            noise_sd: noise_sd(twin, channel),
+            unit: info.unit.clone(),
+            before: points(experiment, (before.0, before.1), channel),
+            after: after.map_or_else(Vec::new, |after| points(experiment, after, channel)),
+            noise_sd: noise_sd(experiment, channel),
         })
         .collect()
 }
 
-fn points(twin: &dyn Twin, (set, residuals): ResidualSeries<'_>, channel: usize) -> Vec<[f64; 2]> {
+fn points(
+    experiment: &dyn Experiment,
+    (set, residuals): ResidualSeries<'_>,
+    channel: usize,
+) -> Vec<[f64; 2]> {
     let mut all = Vec::new();
     for (episode, residual) in set.iter().zip(residuals) {
-        let measured = &twin.episodes()[*episode];
+        let measured = &experiment.episodes()[*episode];
         let here = (0..residual.len()).filter(|k| measured.channel[*k] == channel);
         all.extend(here.map(|k| [measured.t_s[k], residual[k] * measured.sd[k]]));
     }
@@ -37,9 +41,9 @@ fn points(twin: &dyn Twin, (set, residuals): ResidualSeries<'_>, channel: usize)
     all.into_iter().step_by(stride).collect()
 }
 
-fn noise_sd(twin: &dyn Twin, channel: usize) -> f64 {
+fn noise_sd(experiment: &dyn Experiment, channel: usize) -> f64 {
     let (mut square, mut count) = (0.0, 0.0_f64);
-    for measured in twin.episodes() {
+    for measured in experiment.episodes() {
         for (sd, _) in measured
             .sd
             .iter()

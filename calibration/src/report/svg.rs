@@ -2,6 +2,7 @@
 
 use super::data::{CandidateCause, ResidualPlot};
 use crate::format_number::format_number;
+use crate::select::HeldOutGain;
 use std::fmt::Write as _;
 
 pub(crate) const WIDTH: f64 = 640.0;
@@ -131,10 +132,14 @@ pub(super) fn residuals(plot: &ResidualPlot, name: &str) -> String {
 
 /// The held-out gain of every cause with its interval.
 pub(super) fn gains(candidates: &[CandidateCause]) -> String {
+    let candidates: Vec<(&CandidateCause, HeldOutGain)> = candidates
+        .iter()
+        .filter_map(|candidate| Some((candidate, candidate.gain?)))
+        .collect();
     let row = 24.0;
     let height = TOP + BOTTOM + row * candidates.len() as f64;
     let (left, right) = (170.0, 30.0);
-    let ends = candidates.iter().flat_map(|c| c.gain.share_interval);
+    let ends = candidates.iter().flat_map(|c| c.1.share_interval);
     let low = ends.fold(-0.05, f64::min).max(-1.0);
     let x = AxisScale {
         low: 100.0 * low,
@@ -153,20 +158,17 @@ pub(super) fn gains(candidates: &[CandidateCause]) -> String {
             format_number(tick)
         );
     }
-    for (k, candidate) in candidates.iter().enumerate() {
+    for (k, (candidate, gain)) in candidates.iter().enumerate() {
         let y = TOP + row * (k as f64 + 0.5);
         let class = if candidate.passes { "yes" } else { "no" };
-        let [a, b] = candidate
-            .gain
-            .share_interval
-            .map(|share| x.to_pixels(100.0 * share));
+        let [a, b] = gain.share_interval.map(|share| x.to_pixels(100.0 * share));
         let _ = write!(
             out,
             "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{}</text><line class=\"{class}\" x1=\"{a:.1}\" y1=\"{y:.1}\" x2=\"{b:.1}\" y2=\"{y:.1}\"/><circle class=\"{class}\" cx=\"{:.1}\" cy=\"{y:.1}\" r=\"4\"/>",
             left - 10.0,
             y + 4.0,
             super::html::escape(&candidate.id),
-            x.to_pixels(100.0 * candidate.gain.share)
+            x.to_pixels(100.0 * gain.share)
         );
     }
     out.push_str("</svg>");

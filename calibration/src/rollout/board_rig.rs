@@ -3,7 +3,7 @@
 use super::motion::MotionState;
 use super::pose_tracks::{PoseTracks, TrackedBody};
 use crate::error::CalibrationError;
-use crate::twin::test_world::{
+use crate::experiment::experiment_world::{
     BOARD_SUBSTANCE, ExperimentObject, ExperimentWorld, OBJECT_SUBSTANCE,
 };
 use dwell_physics::{ContactFriction, PhysicsConfig};

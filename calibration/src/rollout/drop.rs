@@ -6,9 +6,11 @@ use super::series::{ModelParameter, ModelledSubject, SimulationModel};
 use super::subject::RolloutSubject;
 use crate::bundle::{self, Bundle};
 use crate::error::CalibrationError;
+use crate::experiment::experiment_world::{
+    ExperimentObject, ExperimentWorld, hermite_interpolation,
+};
+use crate::experiment::{air_density_kg_m3, gravity_m_s2};
 use crate::report::FoundEffects;
-use crate::twin::test_world::{ExperimentObject, ExperimentWorld, hermite_interpolation};
-use crate::twin::{air_density_kg_m3, gravity_m_s2};
 use dwell_physics::PhysicsConfig;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{LawSpec, PartId};

@@ -7,7 +7,7 @@ use super::regime::{self, Regime};
 use super::subject::RolloutSubject;
 use crate::bundle::{self, Bundle, MeasuredEpisode, PoseRates, rotation_vector_between};
 use crate::error::CalibrationError;
-use crate::twin::gravity_m_s2;
+use crate::experiment::gravity_m_s2;
 use dwell_scene::random::RandomKey;
 use glam::DVec3;
 use std::path::Path;

@@ -3,7 +3,7 @@
 use super::compare::{CauseComparer, Estimate, ScoredModel, estimates};
 use super::residual::effective_count;
 use crate::error::CalibrationError;
-use crate::twin::{ResidualStructure, cause_range};
+use crate::experiment::{ResidualStructure, cause_range};
 use serde::Serialize;
 
 /// Number of standard deviations of difference from which on the name is refuted.
@@ -30,25 +30,29 @@ impl SplitHalfAgreement {
     }
 }
 
-/// Fits `judged`'s first cause apart in two halves of the training episodes; `None` where there are too few.
+/// Fits one of `judged`'s causes apart in two halves of the training episodes; `None` where there are too few.
 pub(super) fn agreement(
     all: &CauseComparer<'_>,
     judged: &ScoredModel,
+    cause: usize,
 ) -> Result<Option<SplitHalfAgreement>, CalibrationError> {
-    let Some(cause) = judged.model.causes.first() else {
-        return Ok(None);
-    };
-    if all.twin.residual_structure() != ResidualStructure::OverTime || all.split.train.len() < 6 {
+    if all.experiment.residual_structure() != ResidualStructure::OverTime
+        || all.split.train.len() < 6
+    {
         return Ok(None);
     }
-    let first = cause_range(all.twin, *cause).start;
-    let default = all.twin.causes()[*cause].parameters[0].default;
+    let first = cause_range(all.experiment, cause).start;
+    let default = all.experiment.causes()[cause].parameters[0].default;
     let mut felt = Vec::new();
     for episode in &all.split.train {
         let mut without = judged.fit.point.clone();
-        let with = all.twin.predict(*episode, &without.values(*episode))?;
+        let with = all
+            .experiment
+            .predict(*episode, &without.values(*episode))?;
         without.causes[first] = default;
-        let without = all.twin.predict(*episode, &without.values(*episode))?;
+        let without = all
+            .experiment
+            .predict(*episode, &without.values(*episode))?;
         let square: f64 = with
             .iter()
             .zip(&without)
@@ -66,8 +70,8 @@ pub(super) fn agreement(
         let mut set: Vec<usize> = part.iter().map(|(_, episode)| *episode).collect();
         set.sort_unstable();
         let fit = all.fit_on(&set, &judged.model, &judged.fit.point)?;
-        let worth = effective_count(all.twin, &set, &fit.residuals);
-        found[k] = estimates(all.twin, &fit, worth, *cause)[0];
+        let worth = effective_count(all.experiment, &set, &fit.residuals);
+        found[k] = estimates(all.experiment, &fit, worth, cause)[0];
     }
     let [weak, strong] = found;
     let sd = weak.sd.hypot(strong.sd);

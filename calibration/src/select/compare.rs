@@ -4,16 +4,18 @@ use super::gain::{HeldOutGain, gain};
 use super::residual::effective_count;
 use super::split::EpisodeSplit;
 use crate::error::CalibrationError;
+use crate::experiment::{
+    Experiment, ParameterIndex, ParameterVector, ResidualStructure, cause_range,
+};
 use crate::fit::{CauseSet, FitResult, FitTask};
 use crate::options::Options;
 use crate::progress::ProgressReporter;
-use crate::twin::{ParameterIndex, ParameterVector, ResidualStructure, Twin, cause_range};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 
 /// The inputs that all comparisons share.
 pub(crate) struct CauseComparer<'a> {
-    pub(crate) twin: &'a dyn Twin,
+    pub(crate) experiment: &'a dyn Experiment,
     pub(crate) split: &'a EpisodeSplit,
     pub(crate) options: &'a Options,
     pub(crate) threads: Threads,
@@ -62,13 +64,13 @@ impl Estimate {
 impl CauseComparer<'_> {
     fn task<'b>(&'b self, set: &'b [usize], robust: bool) -> FitTask<'b> {
         FitTask {
-            twin: self.twin,
+            experiment: self.experiment,
             set,
             threads: self.threads,
             // Levels of a response have no outliers, and each fit of a room costs much.
             robust: robust
                 && self.options.robust
-                && self.twin.residual_structure() == ResidualStructure::OverTime,
+                && self.experiment.residual_structure() == ResidualStructure::OverTime,
             progress: self.progress,
         }
     }
@@ -92,11 +94,11 @@ impl CauseComparer<'_> {
         let train = self.task(&self.split.train, true);
         let mut start = from.clone();
         if let Some(cause) = model.causes.last() {
-            let first = cause_range(self.twin, *cause).start;
+            let range = cause_range(self.experiment, *cause);
             let mut best = train.loss_at(from)?;
-            for value in &self.twin.causes()[*cause].starts {
+            for probe in &self.experiment.causes()[*cause].probes {
                 let mut there = from.clone();
-                there.causes[first] = *value;
+                there.causes[range.clone()].copy_from_slice(probe);
                 let loss = train.loss_at(&there).unwrap_or(f64::INFINITY);
                 if loss < best {
                     (best, start) = (loss, there);
@@ -107,7 +109,7 @@ impl CauseComparer<'_> {
         let held_out = self
             .task(&self.split.held_out, false)
             .fit_episode_nuisances(&fit.point)?;
-        let effective_count = effective_count(self.twin, &self.split.train, &fit.residuals);
+        let effective_count = effective_count(self.experiment, &self.split.train, &fit.residuals);
         Ok(ScoredModel {
             model: model.clone(),
             fit,
@@ -156,12 +158,12 @@ impl CauseComparer<'_> {
 
 /// The estimates of a cause's parameters.
 pub(crate) fn estimates(
-    twin: &dyn Twin,
+    experiment: &dyn Experiment,
     fit: &FitResult,
     effective_count: f64,
     cause: usize,
 ) -> Vec<Estimate> {
-    let range = cause_range(twin, cause);
+    let range = cause_range(experiment, cause);
     range
         .map(|slot| Estimate {
             value: fit.point.causes[slot],

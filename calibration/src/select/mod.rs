@@ -3,7 +3,9 @@
 mod agreement;
 mod compare;
 mod gain;
+mod plausibility;
 mod residual;
+mod screen;
 mod split;
 mod verdict;
 

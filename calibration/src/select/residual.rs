@@ -1,7 +1,7 @@
 //! Residuals between measurement and simulation.
 
+use crate::experiment::{Experiment, ResidualStructure};
 use crate::fit::median;
-use crate::twin::{ResidualStructure, Twin};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -91,13 +91,13 @@ pub(crate) fn noise_from_differences(sequences: &[&[f64]]) -> Option<f64> {
 
 /// Splits residuals of a set by channel. `residuals`: in standard deviations, shape (episode of the set, datum).
 fn by_sequence<'a>(
-    twin: &dyn Twin,
+    experiment: &dyn Experiment,
     set: &[usize],
     residuals: &'a [Vec<f64>],
 ) -> BTreeMap<usize, Vec<&'a [f64]>> {
     let mut all: BTreeMap<usize, Vec<&[f64]>> = BTreeMap::new();
     for (episode, residual) in set.iter().zip(residuals) {
-        let channel = &twin.episodes()[*episode].channel;
+        let channel = &experiment.episodes()[*episode].channel;
         for range in sequences(channel) {
             all.entry(channel[range.start])
                 .or_default()
@@ -109,17 +109,17 @@ fn by_sequence<'a>(
 
 /// The residual report.
 pub(crate) fn by_channel(
-    twin: &dyn Twin,
+    experiment: &dyn Experiment,
     set: &[usize],
     residuals: &[Vec<f64>],
 ) -> Vec<ChannelResidual> {
     let mut report = Vec::new();
-    for (index, info) in twin.channels().iter().enumerate() {
+    for (index, info) in experiment.channels().iter().enumerate() {
         let mut values = Vec::new();
         let mut normalised = Vec::new();
         let mut squares_of_sd = 0.0;
         for (episode, residual) in set.iter().zip(residuals) {
-            let measured = &twin.episodes()[*episode];
+            let measured = &experiment.episodes()[*episode];
             for (k, r) in residual
                 .iter()
                 .enumerate()
@@ -133,14 +133,14 @@ pub(crate) fn by_channel(
         if values.is_empty() {
             continue;
         }
-        let sequences = by_sequence(twin, set, residuals)
+        let sequences = by_sequence(experiment, set, residuals)
             .remove(&index)
             .unwrap_or_default();
         let n = values.len() as f64;
         let rho = autocorrelation(&sequences);
         report.push(ChannelResidual {
             channel: info.name.clone(),
-            unit: info.unit.to_owned(),
+            unit: info.unit.clone(),
             count: values.len(),
             effective_count: effective_sample_size(values.len(), rho),
             autocorrelation: rho,
@@ -155,10 +155,14 @@ pub(crate) fn by_channel(
 }
 
 /// Returns the effective number of all residuals.
-pub(super) fn effective_count(twin: &dyn Twin, set: &[usize], residuals: &[Vec<f64>]) -> f64 {
-    match twin.residual_structure() {
+pub(super) fn effective_count(
+    experiment: &dyn Experiment,
+    set: &[usize],
+    residuals: &[Vec<f64>],
+) -> f64 {
+    match experiment.residual_structure() {
         ResidualStructure::OverTime => {
-            let all = by_sequence(twin, set, residuals);
+            let all = by_sequence(experiment, set, residuals);
             let counted = all.values().map(|sequences| {
                 let count = sequences.iter().map(|sequence| sequence.len()).sum();
                 effective_sample_size(count, autocorrelation(sequences))
@@ -201,16 +205,16 @@ impl ResidualNoiseTest {
         self.ratio > self.threshold
     }
 
-    pub(crate) fn of(twin: &dyn Twin, set: &[usize], residuals: &[Vec<f64>]) -> Self {
-        match twin.residual_structure() {
-            ResidualStructure::OverTime => Self::in_time(twin, set, residuals),
-            ResidualStructure::ByCell => Self::in_cells(twin, set, residuals),
+    pub(crate) fn of(experiment: &dyn Experiment, set: &[usize], residuals: &[Vec<f64>]) -> Self {
+        match experiment.residual_structure() {
+            ResidualStructure::OverTime => Self::in_time(experiment, set, residuals),
+            ResidualStructure::ByCell => Self::in_cells(experiment, set, residuals),
         }
     }
 
-    fn in_time(twin: &dyn Twin, set: &[usize], residuals: &[Vec<f64>]) -> Self {
+    fn in_time(experiment: &dyn Experiment, set: &[usize], residuals: &[Vec<f64>]) -> Self {
         let (mut sum, mut count) = (0.0, 0);
-        for sequences in by_sequence(twin, set, residuals).values() {
+        for sequences in by_sequence(experiment, set, residuals).values() {
             let all = || sequences.iter().flat_map(|sequence| sequence.iter());
             let Some(floor) = noise_from_differences(sequences).filter(|noise| *noise > 0.0) else {
                 continue;
@@ -231,10 +235,10 @@ impl ResidualNoiseTest {
         }
     }
 
-    fn in_cells(twin: &dyn Twin, set: &[usize], residuals: &[Vec<f64>]) -> Self {
+    fn in_cells(experiment: &dyn Experiment, set: &[usize], residuals: &[Vec<f64>]) -> Self {
         let mut cells: BTreeMap<(usize, u64), Vec<f64>> = BTreeMap::new();
         for (episode, residual) in set.iter().zip(residuals) {
-            let measured = &twin.episodes()[*episode];
+            let measured = &experiment.episodes()[*episode];
             for (k, r) in residual.iter().enumerate() {
                 cells
                     .entry((measured.channel[k], measured.t_s[k].to_bits()))

@@ -1,6 +1,6 @@
 //! The split of episodes into those that are fitted and those held out from all fitting.
 
-use crate::twin::EpisodeData;
+use crate::experiment::EpisodeData;
 use dwell_scene::random::RandomKey;
 use std::collections::BTreeSet;
 

@@ -1,27 +1,35 @@
 //! From fits to a verdict.
 
 use super::agreement::{SplitHalfAgreement, agreement};
-use super::compare::{CauseComparer, ModelAdvantage, ScoredModel, estimates};
+use super::compare::{CauseComparer, Estimate, ModelAdvantage, ScoredModel, estimates};
+use super::gain::HeldOutGain;
+use super::plausibility::implausible;
 use super::residual::{ResidualNoiseTest, noise_from_differences};
+use super::screen::{LinearGain, Screen};
 use super::split::EpisodeSplit;
 use crate::error::CalibrationError;
+use crate::experiment::{Experiment, ParameterVector, ResidualStructure};
 use crate::fit::CauseSet;
 use crate::options::Options;
 use crate::progress::ProgressReporter;
-use crate::twin::{FitParameter, ParameterVector, ResidualStructure, Twin};
 use dwell_scene::parallel::Threads;
+use dwell_scene::random::RandomKey;
 
-/// Share of the misfit that a name must explain where something systematic is left.
-const LEAST_EXPLAINED: f64 = 0.8;
+/// The most effects of one model.
+const MOST_EFFECTS: usize = 4;
+/// Causes that are fitted in full at each stage: those that gain most to first order.
+const MOST_FITTED: usize = 8;
+/// Share of the best cause's gain to first order below which no cause is fitted in full.
+const LEAST_SHARE: f64 = 0.1;
 
 /// All findings, before they are put into words.
 pub(crate) struct Findings {
     pub(crate) split: EpisodeSplit,
     /// Nuisances alone.
     pub(crate) base: ScoredModel,
-    /// Each cause alone, in the order of the twin's causes.
+    /// Each cause alone, in the order of the experiment's causes.
     pub(crate) singles: Vec<SingleCause>,
-    /// The model that is reported: nuisances alone, a cause, or two.
+    /// The model that is reported: nuisances alone, or with causes.
     pub(crate) chosen: ScoredModel,
     /// `chosen` against nuisances alone.
     pub(crate) advantage_over_base: Option<ModelAdvantage>,
@@ -34,11 +42,17 @@ pub(crate) struct Findings {
 /// A cause alone.
 pub(crate) struct SingleCause {
     pub(crate) cause: usize,
-    pub(crate) scored: ScoredModel,
-    pub(crate) advantage: ModelAdvantage,
+    /// Its parameters: fitted, or to first order.
+    pub(crate) estimates: Vec<Estimate>,
+    /// Fall of the information criterion, to first order where it was not fitted.
+    pub(crate) delta_bic: f64,
+    /// `None` where it was not fitted.
+    pub(crate) gain: Option<HeldOutGain>,
     pub(crate) passes: bool,
     /// The reason why it is not plausible, if it is not.
     pub(crate) implausible: Option<String>,
+    /// True if nothing in the data depends on it.
+    pub(crate) is_idle: bool,
 }
 
 /// The verdict, by positions of causes.
@@ -46,88 +60,89 @@ pub(crate) struct SingleCause {
 pub(crate) enum Decision {
     NoEffect,
     Named(Vec<usize>),
-    OneOf(Vec<usize>),
+    /// Sets of causes that explain the data alike.
+    OneOf(Vec<Vec<usize>>),
     Unexplained(String),
+}
+
+/// A model that is tried, against the one that it extends.
+struct Trial {
+    scored: ScoredModel,
+    advantage: ModelAdvantage,
+    passes: bool,
+    implausible: Option<String>,
 }
 
 /// Finds what the simulation lacks.
 pub(crate) fn find_causes(
-    twin: &mut dyn Twin,
+    experiment: &mut dyn Experiment,
     options: &Options,
     progress: &dyn ProgressReporter,
 ) -> Result<Findings, CalibrationError> {
-    let split = EpisodeSplit::new(twin.episodes(), options.held_out_share, options.seed);
+    let split = EpisodeSplit::new(experiment.episodes(), options.held_out_share, options.seed);
     let threads = Threads::resolve(options.threads);
     progress.stage(0.1, "fitting starts, offsets and noise")?;
-    let start = estimate_noise(twin, &split, options, threads, progress)?;
+    let start = estimate_noise(experiment, &split, options, threads, progress)?;
     let all = CauseComparer {
-        twin,
+        experiment,
         split: &split,
         options,
         threads,
         progress,
     };
     let base = all.fit_and_score(&CauseSet::default(), &start)?;
-    let mut fitted = Vec::new();
-    let count = all.twin.causes().len();
-    for (cause, info) in all.twin.causes().iter().enumerate() {
-        let fraction = 0.2 + 0.5 * cause as f32 / count as f32;
-        progress.stage(fraction, &format!("trying {}", info.name))?;
-        let model = CauseSet {
-            causes: vec![cause],
-        };
-        fitted.push(all.fit_and_score(&model, &base.fit.point)?);
-    }
-    let best = fitted
-        .iter()
-        .min_by(|a, b| a.fit.loss.total_cmp(&b.fit.loss));
-    let worth = best.map_or(1.0, ScoredModel::effective_weight);
-    let singles: Vec<SingleCause> = fitted
-        .into_iter()
-        .enumerate()
-        .map(|(cause, judged)| {
-            let against = all.advantage_over(&judged, &base, worth);
-            SingleCause {
-                cause,
-                passes: all.is_better(&against),
-                implausible: implausible(all.twin, &judged, cause),
-                scored: judged,
-                advantage: against,
-            }
-        })
-        .collect();
-    progress.stage(0.7, "comparing causes")?;
-    let remainder =
-        |judged: &ScoredModel| ResidualNoiseTest::of(all.twin, &split.train, &judged.fit.residuals);
+    let remainder = |scored: &ScoredModel| {
+        ResidualNoiseTest::of(all.experiment, &split.train, &scored.fit.residuals)
+    };
     let remainder_before = remainder(&base);
-    let (decision, chosen) = decide(&all, &base, &singles, &remainder_before)?;
-    let mut decision = decision;
+    let search = Search { all: &all };
+    let (singles, first) = search.singles(&base)?;
+    let chosen = match first {
+        Some(first) => search.extend(first)?,
+        None => base.clone(),
+    };
+    progress.stage(0.8, "comparing explanations")?;
     let remainder_after = remainder(&chosen);
     let mut found_agreement = None;
-    if let Decision::Named(causes) = &decision {
-        progress.stage(0.9, "checking that the cause has one size everywhere")?;
-        found_agreement = agreement(&all, &chosen)?;
-        let name = &all.twin.causes()[causes[0]].name;
-        let explained =
-            1.0 - (remainder_after.ratio - 1.0) / (remainder_before.ratio - 1.0).max(1e-9);
-        if let Some(agreement) = found_agreement
-            .as_ref()
-            .filter(|agreement| agreement.is_refuting())
-        {
-            decision = Decision::Unexplained(format!(
-                "{name} fits best, but it would have to be {} where it acts weakly and {} where it acts strongly, {:.1} \
-                 standard deviations apart: one value does not serve, so it is not the cause",
-                crate::format_number::format_number(agreement.weak),
-                crate::format_number::format_number(agreement.strong),
-                agreement.z.abs()
-            ));
-        } else if remainder_after.is_structured() && explained < LEAST_EXPLAINED {
-            decision = Decision::Unexplained(format!(
-                "{name} takes away {:.0} % of the misfit, and what is left is still systematic",
-                100.0 * explained.clamp(0.0, 1.0)
-            ));
+    let decision = if chosen.model.causes.is_empty() {
+        if remainder_before.is_structured() {
+            Decision::Unexplained(rejection_reason(&all, &singles))
+        } else {
+            Decision::NoEffect
         }
-    }
+    } else if remainder_after.is_structured() {
+        Decision::Unexplained(structure_reason(
+            &all,
+            &chosen,
+            &remainder_before,
+            &remainder_after,
+        ))
+    } else {
+        let decision = search.alternatives(&chosen, &base)?;
+        if let Decision::Named(causes) = &decision {
+            progress.stage(0.9, "checking that each cause has one size everywhere")?;
+            let mut refuted = None;
+            for cause in causes {
+                let found = agreement(&all, &chosen, *cause)?;
+                if let Some(found) = &found
+                    && found.is_refuting()
+                {
+                    refuted.get_or_insert_with(|| (*cause, found.clone()));
+                }
+                found_agreement = found_agreement.or(found);
+            }
+            match refuted {
+                Some((cause, found)) => {
+                    let reason = disagreement_reason(&all, cause, &found);
+                    found_agreement = Some(found);
+                    Decision::Unexplained(reason)
+                }
+                None => decision,
+            }
+        } else {
+            decision
+        }
+    };
     let advantage_over_base = (!chosen.model.causes.is_empty())
         .then(|| all.advantage_over(&chosen, &base, chosen.effective_weight()));
     Ok(Findings {
@@ -143,30 +158,303 @@ pub(crate) fn find_causes(
     })
 }
 
+/// The search for effects: one, then one more as long as something systematic is left.
+struct Search<'a> {
+    all: &'a CauseComparer<'a>,
+}
+
+impl Search<'_> {
+    /// The causes that are worth a full fit beside a model, the most promising first, with what each gains to first order,
+    /// and the gain that chance would give the best.
+    fn shortlist(
+        &self,
+        now: &ScoredModel,
+    ) -> Result<(Vec<LinearGain>, Vec<usize>, f64), CalibrationError> {
+        let causes = 0..self.all.experiment.causes().len();
+        let which: Vec<usize> = causes.filter(|k| !now.model.causes.contains(k)).collect();
+        let screen = Screen::new(self.all, &now.fit, &which)?;
+        let gains = screen.gains();
+        let key = RandomKey::root(self.all.options.seed).child("screen");
+        let by_chance = screen.gain_by_chance(key);
+        let best = gains.iter().map(|gain| gain.gain).fold(0.0, f64::max);
+        let mut order: Vec<&LinearGain> = gains
+            .iter()
+            .filter(|gain| !gain.is_idle && gain.gain >= LEAST_SHARE * best && gain.gain > 0.0)
+            .collect();
+        order.sort_by(|a, b| b.gain.total_cmp(&a.gain).then(a.cause.cmp(&b.cause)));
+        let short = order
+            .iter()
+            .take(MOST_FITTED)
+            .map(|gain| gain.cause)
+            .collect();
+        Ok((gains, short, by_chance))
+    }
+
+    /// Fits a model and compares it with a smaller one.
+    fn fit(
+        &self,
+        causes: Vec<usize>,
+        from: &ParameterVector,
+    ) -> Result<ScoredModel, CalibrationError> {
+        self.all.fit_and_score(&CauseSet { causes }, from)
+    }
+
+    /// Fits each of the causes beside a model and judges it against that model.
+    fn trials(
+        &self,
+        now: &ScoredModel,
+        short: &[usize],
+        by_chance: f64,
+    ) -> Result<Vec<Trial>, CalibrationError> {
+        let mut fitted = Vec::new();
+        for (k, cause) in short.iter().enumerate() {
+            let fraction = 0.2 + 0.5 * k as f32 / short.len() as f32;
+            let name = &self.all.experiment.causes()[*cause].name;
+            self.all
+                .progress
+                .stage(fraction, &format!("trying {name}"))?;
+            let mut causes = now.model.causes.clone();
+            causes.push(*cause);
+            fitted.push(self.fit(causes, &now.fit.point)?);
+        }
+        let best = fitted
+            .iter()
+            .min_by(|a, b| a.fit.loss.total_cmp(&b.fit.loss));
+        let worth = best.map_or(1.0, ScoredModel::effective_weight);
+        Ok(fitted
+            .into_iter()
+            .map(|scored| {
+                let advantage = self.all.advantage_over(&scored, now, worth);
+                let fall = now.fit.loss - scored.fit.loss;
+                Trial {
+                    passes: self.all.is_better(&advantage) && fall > by_chance,
+                    implausible: self.implausible(&scored),
+                    scored,
+                    advantage,
+                }
+            })
+            .collect())
+    }
+
+    fn implausible(&self, scored: &ScoredModel) -> Option<String> {
+        let causes = scored.model.causes.iter();
+        causes
+            .clone()
+            .find_map(|cause| implausible(self.all.experiment, scored, *cause))
+    }
+
+    /// Every cause alone, and the best model of one that passes and is plausible, or else the best that passes.
+    fn singles(
+        &self,
+        base: &ScoredModel,
+    ) -> Result<(Vec<SingleCause>, Option<ScoredModel>), CalibrationError> {
+        self.all
+            .progress
+            .stage(0.15, "looking through the library")?;
+        let (gains, short, by_chance) = self.shortlist(base)?;
+        let trials = self.trials(base, &short, by_chance)?;
+        let mean_square = base.fit.loss / base.effective_count.max(1.0);
+        let count = base.effective_count.max(2.0);
+        let mut singles: Vec<SingleCause> = gains
+            .iter()
+            .map(|linear| {
+                let left = (base.fit.loss - linear.gain).max(f64::MIN_POSITIVE);
+                let parameters = linear.changes.len() as f64;
+                SingleCause {
+                    cause: linear.cause,
+                    estimates: linear.estimates(self.all.experiment, &base.fit.point, mean_square),
+                    delta_bic: count * (base.fit.loss / left).ln() - parameters * count.ln(),
+                    gain: None,
+                    passes: false,
+                    implausible: None,
+                    is_idle: linear.is_idle,
+                }
+            })
+            .collect();
+        for trial in &trials {
+            let cause = trial.scored.model.causes[0];
+            if let Some(single) = singles.iter_mut().find(|single| single.cause == cause) {
+                let (fit, worth) = (&trial.scored.fit, trial.scored.effective_count);
+                single.estimates = estimates(self.all.experiment, fit, worth, cause);
+                single.delta_bic = trial.advantage.delta_bic;
+                single.gain = Some(trial.advantage.gain);
+                single.passes = trial.passes;
+                single.implausible.clone_from(&trial.implausible);
+            }
+        }
+        let first = best_trial(trials);
+        Ok((singles, first))
+    }
+
+    /// Adds effects as long as something systematic is left, and leaves out those that are not needed any more.
+    fn extend(&self, first: ScoredModel) -> Result<ScoredModel, CalibrationError> {
+        let mut now = first;
+        while now.model.causes.len() < MOST_EFFECTS {
+            let left = ResidualNoiseTest::of(
+                self.all.experiment,
+                &self.all.split.train,
+                &now.fit.residuals,
+            );
+            if !left.is_structured() {
+                break;
+            }
+            let (_, short, by_chance) = self.shortlist(&now)?;
+            let trials = self.trials(&now, &short, by_chance)?;
+            let Some(larger) = best_trial(trials) else {
+                break;
+            };
+            now = self.without_idle(larger)?;
+        }
+        Ok(now)
+    }
+
+    /// The model without those causes that the others make needless.
+    fn without_idle(&self, mut now: ScoredModel) -> Result<ScoredModel, CalibrationError> {
+        let mut k = 0;
+        while now.model.causes.len() > 1 && k < now.model.causes.len() {
+            let mut causes = now.model.causes.clone();
+            let dropped = causes.remove(k);
+            let mut from = now.fit.point.clone();
+            self.reset(&mut from, dropped);
+            let smaller = self.fit(causes, &from)?;
+            let needed = self
+                .all
+                .advantage_over(&now, &smaller, now.effective_weight());
+            if needed.delta_bic > self.all.options.min_delta_bic {
+                k += 1;
+            } else {
+                (now, k) = (smaller, 0);
+            }
+        }
+        Ok(now)
+    }
+
+    /// Puts a cause back to its default.
+    fn reset(&self, point: &mut ParameterVector, cause: usize) {
+        let range = crate::experiment::cause_range(self.all.experiment, cause);
+        let parameters = &self.all.experiment.causes()[cause].parameters;
+        for (slot, parameter) in range.zip(parameters) {
+            point.causes[slot] = parameter.default;
+        }
+    }
+
+    /// Which explanations fit the data as well: each effect is exchanged for every other one that could stand for it.
+    fn alternatives(
+        &self,
+        chosen: &ScoredModel,
+        base: &ScoredModel,
+    ) -> Result<Decision, CalibrationError> {
+        let worth = chosen.effective_weight();
+        let own = self.all.advantage_over(chosen, base, worth).delta_bic;
+        let own_fault = self.implausible(chosen);
+        let mut sets: Vec<(f64, Vec<usize>)> = Vec::new();
+        if own_fault.is_none() {
+            sets.push((own, chosen.model.causes.clone()));
+        }
+        for (k, cause) in chosen.model.causes.iter().enumerate() {
+            let mut rest = chosen.model.causes.clone();
+            rest.remove(k);
+            let without = if rest.is_empty() {
+                base.clone()
+            } else {
+                let mut from = chosen.fit.point.clone();
+                self.reset(&mut from, *cause);
+                self.fit(rest.clone(), &from)?
+            };
+            let (_, short, _) = self.shortlist(&without)?;
+            for other in short.iter().filter(|other| *other != cause) {
+                let mut causes = rest.clone();
+                causes.insert(k, *other);
+                let mut sorted = causes.clone();
+                sorted.sort_unstable();
+                let is_known = |set: &Vec<usize>| {
+                    let mut set = set.clone();
+                    set.sort_unstable();
+                    set == sorted
+                };
+                if sets.iter().any(|(_, set)| is_known(set)) {
+                    continue;
+                }
+                // The exchanged cause is fitted last, so that its probes are tried.
+                let mut order = rest.clone();
+                order.push(*other);
+                let scored = self.fit(order, &without.fit.point)?;
+                let fall = self.all.advantage_over(&scored, base, worth).delta_bic;
+                if own - fall < self.all.options.rival_delta_bic
+                    && self.implausible(&scored).is_none()
+                {
+                    sets.push((fall, causes));
+                }
+            }
+        }
+        sets.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut sets: Vec<Vec<usize>> = sets.into_iter().map(|(_, set)| set).collect();
+        Ok(match (sets.len(), own_fault) {
+            (0, fault) => Decision::Unexplained(format!(
+                "{} fits best, but it is not plausible: {}",
+                self.names(&chosen.model.causes),
+                fault.unwrap_or_default()
+            )),
+            // What fits best is not plausible, and another explanation is: it is one that was looked for.
+            (1, Some(_)) | (1, None) if sets[0] == chosen.model.causes => {
+                Decision::Named(sets.remove(0))
+            }
+            _ => Decision::OneOf(sets),
+        })
+    }
+
+    fn names(&self, causes: &[usize]) -> String {
+        names(self.all, causes)
+    }
+}
+
+fn names(all: &CauseComparer<'_>, causes: &[usize]) -> String {
+    let names: Vec<String> = causes
+        .iter()
+        .map(|cause| all.experiment.causes()[*cause].name.clone())
+        .collect();
+    crate::format_number::format_list(&names)
+}
+
+/// The trial that passes with the largest fall of the criterion, a plausible one before others.
+fn best_trial(trials: Vec<Trial>) -> Option<ScoredModel> {
+    let passing = trials.into_iter().filter(|trial| trial.passes);
+    let best = passing.max_by(|a, b| {
+        let plausible = |trial: &Trial| trial.implausible.is_none();
+        plausible(a)
+            .cmp(&plausible(b))
+            .then(a.advantage.delta_bic.total_cmp(&b.advantage.delta_bic))
+    });
+    best.map(|trial| trial.scored)
+}
+
 /// Fits the nuisances, and estimates the noise of channels that do not state it from the residuals.
 fn estimate_noise(
-    twin: &mut dyn Twin,
+    experiment: &mut dyn Experiment,
     split: &EpisodeSplit,
     options: &Options,
     threads: Threads,
     progress: &dyn ProgressReporter,
 ) -> Result<ParameterVector, CalibrationError> {
-    let start = ParameterVector::start(twin);
-    if twin.residual_structure() != ResidualStructure::OverTime
-        || twin.channels().iter().all(|channel| channel.noise_known)
+    let start = ParameterVector::start(experiment);
+    if experiment.residual_structure() != ResidualStructure::OverTime
+        || experiment
+            .channels()
+            .iter()
+            .all(|channel| channel.noise_known)
     {
         return Ok(start);
     }
     let fit = CauseComparer {
-        twin,
+        experiment,
         split,
         options,
         threads,
         progress,
     }
     .fit_on(&split.train, &CauseSet::default(), &start)?;
-    for channel in 0..twin.channels().len() {
-        if twin.channels()[channel].noise_known {
+    for channel in 0..experiment.channels().len() {
+        if experiment.channels()[channel].noise_known {
             continue;
         }
         let residuals: Vec<Vec<f64>> = split
@@ -174,7 +462,7 @@ fn estimate_noise(
             .iter()
             .zip(&fit.residuals)
             .map(|(episode, residual)| {
-                let channels = &twin.episodes()[*episode].channel;
+                let channels = &experiment.episodes()[*episode].channel;
                 (0..residual.len())
                     .filter(|k| channels[*k] == channel)
                     .map(|k| residual[k])
@@ -190,7 +478,7 @@ fn estimate_noise(
             .filter(|sd| *sd > 0.0)
             .unwrap_or_else(spread)
             .max(1e-9);
-        for measured in twin.episodes_mut() {
+        for measured in experiment.episodes_mut() {
             for (sd_here, channel_here) in measured.sd.iter_mut().zip(&measured.channel) {
                 if *channel_here == channel {
                     *sd_here *= sd;
@@ -201,140 +489,55 @@ fn estimate_noise(
     Ok(fit.point)
 }
 
-/// The reason why a fitted cause is not plausible: a parameter at its bound, or outside of what a physicist would believe.
-fn implausible(twin: &dyn Twin, judged: &ScoredModel, cause: usize) -> Option<String> {
-    let found = estimates(twin, &judged.fit, judged.effective_count, cause);
-    let parameters = &twin.causes()[cause].parameters;
-    let at_bound = |p: &FitParameter, value: f64| {
-        let near = 1e-9 * (1.0 + value.abs());
-        (value - p.low < near || p.high - value < near) && (value - p.default).abs() > near
-    };
-    parameters.iter().zip(&found).find_map(|(p, estimate)| {
-        let [low, high] = estimate.interval();
-        let number = crate::format_number::format_number;
-        // A parameter that the data leave where it was needs no plausibility.
-        if low <= p.default && p.default <= high {
-            None
-        } else if parameters.len() == 1 && at_bound(p, estimate.value) {
-            Some(format!(
-                "{} ends at its bound {} {}",
-                p.name,
-                number(estimate.value),
-                p.unit
-            ))
-        } else if high < p.plausible[0] || low > p.plausible[1] {
-            let [a, b] = p.plausible.map(number);
-            Some(format!(
-                "{} would be {} {}, plausible are {a} to {b}",
-                p.name,
-                number(estimate.value),
-                p.unit
-            ))
-        } else {
-            None
-        }
-    })
-}
-
-fn decide(
-    all: &CauseComparer<'_>,
-    base: &ScoredModel,
-    singles: &[SingleCause],
-    remainder: &ResidualNoiseTest,
-) -> Result<(Decision, ScoredModel), CalibrationError> {
-    let mut passing: Vec<&SingleCause> = singles.iter().filter(|single| single.passes).collect();
-    passing.sort_by(|a, b| b.advantage.delta_bic.total_cmp(&a.advantage.delta_bic));
-    let causes = all.twin.causes();
-    let Some(best) = passing.first() else {
-        let decision = if remainder.is_structured() {
-            Decision::Unexplained(rejection_reason(all, singles))
-        } else {
-            Decision::NoEffect
-        };
-        return Ok((decision, base.clone()));
-    };
-    // Rivals count whether or not each passes on its own: a cause that fits as well could be it.
-    let close = |single: &&SingleCause| {
-        best.advantage.delta_bic - single.advantage.delta_bic < all.options.rival_delta_bic
-    };
-    let rivals: Vec<&SingleCause> = singles.iter().filter(close).collect();
-    let plausible: Vec<&&SingleCause> = rivals
-        .iter()
-        .filter(|single| single.implausible.is_none())
-        .collect();
-    match plausible[..] {
-        [] => {
-            let why = best.implausible.clone().unwrap_or_default();
-            let name = &causes[best.cause].name;
-            let decision =
-                Decision::Unexplained(format!("{name} fits best, but it is not plausible: {why}"));
-            Ok((decision, best.scored.clone()))
-        }
-        [only] => second_cause(all, only, singles),
-        _ => {
-            let set = plausible.iter().map(|single| single.cause).collect();
-            Ok((Decision::OneOf(set), plausible[0].scored.clone()))
-        }
-    }
-}
-
 /// The reason why no cause passes, with the one that comes nearest.
 fn rejection_reason(all: &CauseComparer<'_>, singles: &[SingleCause]) -> String {
-    let best = singles
+    let fitted = singles
         .iter()
-        .max_by(|a, b| a.advantage.delta_bic.total_cmp(&b.advantage.delta_bic));
+        .filter_map(|single| Some((single, single.gain?)));
+    let best = fitted.max_by(|a, b| a.0.delta_bic.total_cmp(&b.0.delta_bic));
     let none = "none of the causes in the library fits it";
-    match best.filter(|best| best.advantage.delta_bic > all.options.min_delta_bic) {
-        Some(best) => {
-            let [low, high] = best
-                .advantage
-                .gain
+    match best.filter(|(best, _)| best.delta_bic > all.options.min_delta_bic) {
+        Some((best, gain)) => {
+            let [low, high] = gain
                 .share_interval
                 .map(crate::format_number::format_percent);
             format!(
                 "{none}; nearest comes {}, whose gain on episodes that no fit has seen is not certain ({low} to {high} of \
                  the squared error)",
-                all.twin.causes()[best.cause].name
+                all.experiment.causes()[best.cause].name
             )
         }
         None => none.to_owned(),
     }
 }
 
-/// Searches for a second cause beside the first.
-fn second_cause(
+/// The reason why what fits best is no name: something systematic is left.
+fn structure_reason(
     all: &CauseComparer<'_>,
-    first: &SingleCause,
-    singles: &[SingleCause],
-) -> Result<(Decision, ScoredModel), CalibrationError> {
-    let remainder = ResidualNoiseTest::of(all.twin, &all.split.train, &first.scored.fit.residuals);
-    let alone = (Decision::Named(vec![first.cause]), first.scored.clone());
-    // A second cause is searched only where the first leaves structure.
-    if !remainder.is_structured() {
-        return Ok(alone);
-    }
-    let mut best: Option<(f64, ScoredModel)> = None;
-    for other in singles.iter().filter(|single| single.cause != first.cause) {
-        let model = CauseSet {
-            causes: vec![first.cause, other.cause],
-        };
-        let judged = all.fit_and_score(&model, &first.scored.fit.point)?;
-        let against = all.advantage_over(&judged, &first.scored, judged.effective_weight());
-        let plausible = model
-            .causes
-            .iter()
-            .all(|cause| implausible(all.twin, &judged, *cause).is_none());
-        if plausible
-            && all.is_better(&against)
-            && best
-                .as_ref()
-                .is_none_or(|(delta, _)| against.delta_bic > *delta)
-        {
-            best = Some((against.delta_bic, judged));
-        }
-    }
-    Ok(match best {
-        Some((_, judged)) => (Decision::Named(judged.model.causes.clone()), judged),
-        None => alone,
-    })
+    chosen: &ScoredModel,
+    before: &ResidualNoiseTest,
+    after: &ResidualNoiseTest,
+) -> String {
+    let explained = 1.0 - (after.ratio - 1.0) / (before.ratio - 1.0).max(1e-9);
+    format!(
+        "{} takes away {:.0} % of the misfit, and what is left is still systematic",
+        names(all, &chosen.model.causes),
+        100.0 * explained.clamp(0.0, 1.0)
+    )
+}
+
+/// The reason why a cause that fits is none: its size is not one.
+fn disagreement_reason(
+    all: &CauseComparer<'_>,
+    cause: usize,
+    found: &SplitHalfAgreement,
+) -> String {
+    format!(
+        "{} fits best, but it would have to be {} where it acts weakly and {} where it acts strongly, {:.1} standard \
+         deviations apart: one value does not serve, so it is not the cause",
+        all.experiment.causes()[cause].name,
+        crate::format_number::format_number(found.weak),
+        crate::format_number::format_number(found.strong),
+        found.z.abs()
+    )
 }

@@ -21,9 +21,9 @@ use super::{
     diverges_under_noise, predict_windows, refinements, scores, window_scores,
 };
 use crate::error::CalibrationError;
+use crate::experiment::experiment_world::{BOARD_SUBSTANCE, OBJECT_SUBSTANCE};
 use crate::progress::{CallbackProgress, ProgressReporter};
 use crate::report::{FoundEffects, page};
-use crate::twin::test_world::{BOARD_SUBSTANCE, OBJECT_SUBSTANCE};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use serde::{Deserialize, Serialize};

@@ -1,18 +1,22 @@
 //! The simulation of the measurement, as fitting sees it.
 
 mod air;
+mod cause;
+pub(crate) mod experiment_world;
+mod fault;
 mod features;
 mod flight;
-mod parameter;
+mod intervention;
 mod room;
 mod servo;
-pub(crate) mod test_world;
 
 pub(crate) use air::{air_density_kg_m3, gravity_m_s2};
-pub(crate) use flight::FlightTwin;
-pub(crate) use parameter::{Cause, CauseBinding, FitParameter};
-pub(crate) use room::RoomTwin;
-pub(crate) use servo::ServoTwin;
+pub(crate) use cause::{Cause, CauseBinding, FitParameter};
+pub(crate) use fault::Fault;
+pub(crate) use flight::FlightExperiment;
+pub(crate) use intervention::Intervention;
+pub(crate) use room::RoomExperiment;
+pub(crate) use servo::ServoExperiment;
 
 use crate::error::CalibrationError;
 use nalgebra::DMatrix;
@@ -23,7 +27,7 @@ pub(crate) struct EpisodeData {
     pub(crate) name: String,
     pub(crate) group: String,
     pub(crate) measured: Vec<f64>,
-    /// Position in [`Twin::channels`]. Shape as `y`.
+    /// Position in [`Experiment::channels`]. Shape as `y`.
     pub(crate) channel: Vec<usize>,
     /// Time from the start of the episode, s. Shape as `y`.
     pub(crate) t_s: Vec<f64>,
@@ -35,7 +39,7 @@ pub(crate) struct EpisodeData {
 #[derive(Clone, Debug)]
 pub(crate) struct ChannelInfo {
     pub(crate) name: String,
-    pub(crate) unit: &'static str,
+    pub(crate) unit: String,
     /// True if the bundle, or theory, says how large the noise is.
     pub(crate) noise_known: bool,
 }
@@ -52,7 +56,7 @@ pub(crate) enum ResidualStructure {
 /// A point of the parameter space: a value for each parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ParameterVector {
-    /// Of all causes, one after the other, as in [`Twin::causes`].
+    /// Of all causes, one after the other, as in [`Experiment::causes`].
     pub(crate) causes: Vec<f64>,
     /// Nuisances that all episodes share.
     pub(crate) shared: Vec<f64>,
@@ -72,7 +76,7 @@ pub(crate) enum ParameterIndex {
 }
 
 /// The simulation of the measurement.
-pub(crate) trait Twin: Sync {
+pub(crate) trait Experiment: Sync {
     /// The episodes.
     fn episodes(&self) -> &[EpisodeData];
     /// The episodes, for estimates of their noise.
@@ -219,25 +223,31 @@ impl ParameterVector {
     }
 
     /// Returns the initial point of a fit: no cause acts.
-    pub(crate) fn start(twin: &dyn Twin) -> Self {
-        let parameters = twin.causes().iter().flat_map(|cause| &cause.parameters);
+    pub(crate) fn start(experiment: &dyn Experiment) -> Self {
+        let parameters = experiment
+            .causes()
+            .iter()
+            .flat_map(|cause| &cause.parameters);
         Self {
             causes: parameters.map(|parameter| parameter.default).collect(),
-            shared: twin
+            shared: experiment
                 .shared_nuisances()
                 .iter()
                 .map(|parameter| parameter.default)
                 .collect(),
-            episode_nuisances: (0..twin.episodes().len())
-                .map(|k| twin.initial_nuisances(k))
+            episode_nuisances: (0..experiment.episodes().len())
+                .map(|k| experiment.initial_nuisances(k))
                 .collect(),
         }
     }
 }
 
 /// The positions of a cause's parameters in [`ParameterVector::causes`].
-pub(crate) fn cause_range(twin: &dyn Twin, cause: usize) -> std::ops::Range<usize> {
-    let counts = twin.causes().iter().map(|cause| cause.parameters.len());
+pub(crate) fn cause_range(experiment: &dyn Experiment, cause: usize) -> std::ops::Range<usize> {
+    let counts = experiment
+        .causes()
+        .iter()
+        .map(|cause| cause.parameters.len());
     let first: usize = counts.take(cause).sum();
-    first..first + twin.causes()[cause].parameters.len()
+    first..first + experiment.causes()[cause].parameters.len()
 }

@@ -2,8 +2,8 @@
 
 use super::features::{self, FilterRingingModel, WINDOWS};
 use super::{
-    Cause, CauseBinding, ChannelInfo, EpisodeData, EpisodeParameters, FitParameter, ParameterIndex,
-    ResidualStructure, Twin,
+    Cause, CauseBinding, ChannelInfo, EpisodeData, EpisodeParameters, Experiment, FitParameter,
+    ParameterIndex, ResidualStructure,
 };
 use crate::bundle::file::{RoomManifest, SurfaceManifest};
 use crate::bundle::{Bundle, ROOM_SURFACES};
@@ -30,7 +30,7 @@ const MOST_MATERIALS: usize = 8;
 const LEAST_SD_DB: f64 = 0.4;
 
 /// Impulse responses of a room.
-pub(crate) struct RoomTwin {
+pub(crate) struct RoomExperiment {
     episodes: Vec<EpisodeData>,
     channels: Vec<ChannelInfo>,
     causes: Vec<Cause>,
@@ -48,7 +48,7 @@ pub(crate) struct RoomTwin {
     addresses: Vec<String>,
 }
 
-impl RoomTwin {
+impl RoomExperiment {
     /// Prepares the room of a bundle, or the house that the options name.
     pub(crate) fn new(bundle: &Bundle, options: &Options) -> Result<Self, CalibrationError> {
         let fault =
@@ -122,7 +122,7 @@ impl RoomTwin {
                 .clone()
                 .map(|band| ChannelInfo {
                     name: format!("{} Hz", centre(band)),
-                    unit: "dB",
+                    unit: "dB".into(),
                     noise_known: true,
                 })
                 .collect(),
@@ -209,7 +209,7 @@ impl RoomTwin {
     }
 }
 
-/// Returns the acoustic settings of the twin.
+/// Returns the acoustic settings of the experiment.
 fn config(bundle: &Bundle, options: &Options, rate_hz: u32) -> AcousticConfig {
     let air = &bundle.manifest.scene.environment;
     AcousticConfig {
@@ -318,15 +318,15 @@ fn causes(
                 "measure close to {name} and far from it: its own early reflections change their level, the late decay \
                  shows the sum over all surfaces alone; or cover it and measure again"
             ),
-            installs_as: CauseBinding::Addresses(addresses),
+            binding: CauseBinding::Addresses(addresses),
             fixed: Vec::new(),
-            starts: Vec::new(),
+            probes: Vec::new(),
         });
     }
     Ok((causes, all))
 }
 
-impl Twin for RoomTwin {
+impl Experiment for RoomExperiment {
     fn episodes(&self) -> &[EpisodeData] {
         &self.episodes
     }

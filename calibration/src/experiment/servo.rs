@@ -1,0 +1,183 @@
+//! A servo: each episode is a run of commands through the engine's own joint.
+
+use super::experiment_world::{ExperimentObject, ExperimentWorld, hermite_interpolation};
+use super::flight::{channels, episode_data};
+use super::{
+    Cause, ChannelInfo, EpisodeData, EpisodeParameters, Experiment, Fault, FitParameter,
+    Intervention, ResidualStructure,
+};
+use crate::bundle::Bundle;
+use crate::error::CalibrationError;
+use crate::options::Options;
+use dwell_physics::PhysicsConfig;
+use dwell_scene::{JointCommand, JointId, Servo};
+
+/// Edge of the box around the servo, m.
+const ROOM_M: f32 = 4.0;
+/// The clock that stamps commands where the manifest does not say.
+const CONTROLLER_CLOCK: &str = "controller";
+/// Largest offset between the two clocks, s.
+const MOST_OFFSET_S: f64 = 0.2;
+
+/// A joint that is driven by a position servo.
+pub(crate) struct ServoExperiment {
+    episodes: Vec<EpisodeData>,
+    channels: Vec<ChannelInfo>,
+    causes: Vec<Cause>,
+    shared: Vec<FitParameter>,
+    own: Vec<FitParameter>,
+    /// (time from the episode's first sample, target) of each episode, by time.
+    commands: Vec<Vec<(f64, f64)>>,
+    stage: ExperimentWorld,
+    rate_hz: f64,
+}
+
+impl ServoExperiment {
+    /// Prepares the joint of a bundle.
+    pub(crate) fn new(bundle: &Bundle, options: &Options) -> Result<Self, CalibrationError> {
+        let joint = &bundle.manifest.scene.joints[0];
+        let servo = Servo {
+            stiffness: joint.stiffness_n_m_rad as f32,
+            damping: joint.damping_n_m_s_rad as f32,
+            max_effort: joint.max_torque_n_m as f32,
+            ..Servo::default()
+        };
+        let hinge = (servo, joint.friction_n_m as f32);
+        let arm = ExperimentObject::arm(&joint.name, joint.inertia_kg_m2, hinge);
+        let config = PhysicsConfig {
+            control_rate_hz: options.physics_rate_hz as f32,
+            physics_rate_hz: options.physics_rate_hz as f32,
+            sleeping: false,
+            ..PhysicsConfig::default()
+        };
+        let commands = bundle
+            .episodes
+            .iter()
+            .map(|episode| {
+                let first = episode
+                    .samples
+                    .iter()
+                    .map(|s| s.t_s)
+                    .fold(f64::INFINITY, f64::min);
+                episode
+                    .commands
+                    .iter()
+                    .map(|command| (command.t_s - first, command.value))
+                    .collect()
+            })
+            .collect();
+        let one_clock = bundle.manifest.channels.iter().all(|channel| {
+            let commands = bundle.manifest.command_clock.as_deref();
+            commands.unwrap_or(CONTROLLER_CLOCK) == channel.clock
+        });
+        Ok(Self {
+            episodes: bundle
+                .episodes
+                .iter()
+                .map(|episode| episode_data(bundle, episode))
+                .collect(),
+            channels: channels(bundle),
+            causes: causes(&joint.name),
+            shared: if one_clock {
+                Vec::new()
+            } else {
+                let name = "time offset of commands against positions";
+                vec![FitParameter::nuisance(name, "s", 2e-3).within(-MOST_OFFSET_S, MOST_OFFSET_S)]
+            },
+            own: vec![FitParameter::nuisance("start position", "rad", 2e-3).within(-3.0, 3.0)],
+            stage: ExperimentWorld::new(ROOM_M, &arm, config)?,
+            rate_hz: options.physics_rate_hz,
+            commands,
+        })
+    }
+}
+
+/// What can act on a driven joint: laws of joints, its friction and damping, and the scale of commands.
+fn causes(joint: &str) -> Vec<Cause> {
+    let laws = dwell_physics::laws::all()
+        .filter(|law| law.acts_on == "joint")
+        .map(|law| Cause::of_law(law, &[joint.to_owned()], &[]));
+    laws.chain([Fault::CommandScale.cause(), Fault::Smoothing.cause()])
+        .collect()
+}
+
+impl Experiment for ServoExperiment {
+    fn episodes(&self) -> &[EpisodeData] {
+        &self.episodes
+    }
+
+    fn episodes_mut(&mut self) -> &mut [EpisodeData] {
+        &mut self.episodes
+    }
+
+    fn channels(&self) -> &[ChannelInfo] {
+        &self.channels
+    }
+
+    fn residual_structure(&self) -> ResidualStructure {
+        ResidualStructure::OverTime
+    }
+
+    fn causes(&self) -> &[Cause] {
+        &self.causes
+    }
+
+    fn shared_nuisances(&self) -> &[FitParameter] {
+        &self.shared
+    }
+
+    fn episode_nuisances(&self) -> &[FitParameter] {
+        &self.own
+    }
+
+    fn initial_nuisances(&self, episode: usize) -> Vec<f64> {
+        vec![self.episodes[episode].measured[0]]
+    }
+
+    fn predict(
+        &self,
+        episode: usize,
+        at: &EpisodeParameters<'_>,
+    ) -> Result<Vec<f64>, CalibrationError> {
+        let measured = &self.episodes[episode];
+        let joint = JointId(0);
+        let mut start = self.stage.clone();
+        start.state.joint_position[joint] = at.episode_nuisances[0] as f32;
+        start.adopt_state()?;
+        let intervention = Intervention::new(&self.causes, at.causes);
+        let faults = intervention.faults;
+        // The law's memory begins where the joint stands, so it is installed after the joint was put there.
+        let mut stage = start.with_laws_and_overrides(intervention.laws, &[])?;
+        let commands = &self.commands[episode];
+        let step_s = 1.0 / self.rate_hz;
+        let duration = measured.t_s.iter().copied().fold(0.0, f64::max) + MOST_OFFSET_S;
+        let steps = (duration * self.rate_hz).ceil() as usize + 1;
+        let mut track = Vec::with_capacity(steps + 1);
+        track.push((at.episode_nuisances[0], 0.0));
+        let mut next = 0;
+        // Until the first command the servo holds where it stands.
+        let mut target = at.episode_nuisances[0];
+        for k in 0..steps {
+            // A command counts from the step in whose middle it has come.
+            let now = (k as f64 + 0.5) * step_s;
+            while next < commands.len() && commands[next].0 <= now {
+                target = faults.command_scale * commands[next].1;
+                next += 1;
+            }
+            stage.state.joint_command[joint] = JointCommand::Position(target as f32);
+            stage.step()?;
+            let velocity = stage.state.joint_velocity[joint];
+            track.push((
+                f64::from(stage.state.joint_position[joint]),
+                f64::from(velocity),
+            ));
+        }
+        let offset = at.shared.first().copied().unwrap_or(0.0);
+        let position = |t: f64| hermite_interpolation(&track, step_s, t + offset);
+        Ok(measured
+            .t_s
+            .iter()
+            .map(|t| faults.sample(*t, position))
+            .collect())
+    }
+}
