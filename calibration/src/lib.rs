@@ -34,7 +34,7 @@ pub use report::{
 pub use select::{ChannelResidual, HeldOutGain, ResidualNoiseTest, SplitHalfAgreement};
 
 use bundle::file::BundleKind;
-use experiment::{Experiment, FlightExperiment, RoomExperiment, ServoExperiment};
+use experiment::{DriveExperiment, Experiment, FlightExperiment, RoomExperiment, ServoExperiment};
 use progress::{CallbackProgress, ProgressReporter as _};
 use std::path::Path;
 
@@ -66,8 +66,6 @@ pub enum CalibrationOutcome {
     Causes(Box<CalibrationReport>),
     /// Prediction errors of roll-outs of tosses, with contact parameters by cross-validation.
     ContactStudy(Box<rollout::study::StudyReport>),
-    /// Prediction errors of roll-outs of drives, with parameters of the base by cross-validation.
-    DriveStudy(Box<rollout::series::ModelComparisonReport>),
 }
 
 impl CalibrationOutcome {
@@ -76,13 +74,12 @@ impl CalibrationOutcome {
         match self {
             Self::Causes(report) => report.to_json(),
             Self::ContactStudy(report) => report.to_json(),
-            Self::DriveStudy(report) => report.to_json(),
         }
     }
 }
 
-/// As [`calibrate`] for kinds whose causes are named, as [`rollout::study::run`] for pose trajectories, which are
-/// compared with the scores of `peers` too, and as [`rollout::series::run`] for drives.
+/// As [`calibrate`] for kinds whose causes are named, and as [`rollout::study::run`] for pose trajectories, which are
+/// compared with the scores of `peers` too.
 ///
 /// # Errors
 /// As those.
@@ -105,17 +102,6 @@ pub fn calibrate_any(
         let models = rollout::study::models();
         let report = rollout::study::run(&tracks, &models, peers, &settings, progress)?;
         return Ok(CalibrationOutcome::ContactStudy(Box::new(report)));
-    }
-    if bundle.kind() == BundleKind::Drive {
-        let drives = rollout::drive::DriveRecordings::of(&bundle)?;
-        let settings = rollout::series::SeriesOptions {
-            seed: options.seed,
-            threads: options.threads,
-            bootstrap_draws: options.bootstrap_draws,
-            ..rollout::series::SeriesOptions::default()
-        };
-        let report = rollout::series::run(&drives, &rollout::drive::models(), &settings, progress)?;
-        return Ok(CalibrationOutcome::DriveStudy(Box::new(report)));
     }
     let report = find_missing_causes(&bundle, options, &CallbackProgress::new(progress))?;
     Ok(CalibrationOutcome::Causes(Box::new(report)))
@@ -148,7 +134,8 @@ fn find_missing_causes(
         BundleKind::Trajectory => Box::new(FlightExperiment::new(bundle, options)?),
         BundleKind::Servo => Box::new(ServoExperiment::new(bundle, options)?),
         BundleKind::ImpulseResponse => Box::new(RoomExperiment::new(bundle, options)?),
-        BundleKind::PoseTrajectory | BundleKind::Drive => {
+        BundleKind::Drive => Box::new(DriveExperiment::new(bundle)?),
+        BundleKind::PoseTrajectory => {
             return Err(CalibrationError::field(
                 bundle.name.clone(),
                 "kind",

@@ -165,7 +165,7 @@ fn quadratic_drag_is_named_with_its_coefficient() {
 }
 
 #[test]
-fn linear_drag_and_gravity_get_their_own_names() {
+fn linear_drag_gets_its_own_name() {
     let report = throws(
         World {
             linear: 0.2,
@@ -175,16 +175,49 @@ fn linear_drag_and_gravity_get_their_own_names() {
     );
     let (rate, _) = named(&report, "viscous_damping");
     assert!((rate / 0.2 - 1.0).abs() < 0.05, "{}", table(&report));
+    assert_eq!(report.found_laws()[0].target.as_deref(), Some("ball"));
+}
+
+/// Flights alone do not tell gravity from scales of lengths and of the clock: g s / tau² is all that they show.
+#[test]
+fn gravity_and_scales_are_not_told_apart_by_flights() {
     let report = throws(
         World {
-            gravity: 9.74,
+            gravity: 9.78,
             ..QUIET
         },
         22,
     );
-    let (gravity, _) = named(&report, "gravity");
-    assert!((gravity - 9.74).abs() < 0.02, "{}", table(&report));
-    assert!((report.found_parameters()["world/gravity_m_s2"] - gravity).abs() < 1e-12);
+    let CalibrationVerdict::OneOf { sets, .. } = &report.verdict else {
+        panic!("{}", table(&report));
+    };
+    for id in ["gravity", "length_scale", "clock_scale"] {
+        assert!(sets.contains(&vec![id.to_owned()]), "{}", table(&report));
+    }
+    assert!(report.found_parameters().is_empty());
+    let gravity = report
+        .candidates
+        .iter()
+        .find(|c| c.id == "gravity")
+        .unwrap();
+    assert!(
+        (gravity.parameters[0].value - 9.78).abs() < 0.02,
+        "{}",
+        table(&report)
+    );
+    // No place on Earth has this gravity: what is off is the measurement.
+    let report = throws(
+        World {
+            gravity: 9.6,
+            ..QUIET
+        },
+        23,
+    );
+    let CalibrationVerdict::OneOf { laws, .. } = &report.verdict else {
+        panic!("{}", table(&report));
+    };
+    assert!(!laws.contains(&"gravity".to_owned()), "{}", table(&report));
+    assert!(laws.contains(&"length_scale".to_owned()) && laws.contains(&"clock_scale".to_owned()));
 }
 
 /// Ten seeds, half of them with heavy tails: no name, and nothing unexplained.
@@ -222,6 +255,7 @@ fn what_cannot_be_told_apart_is_said_to_be_so() {
     let CalibrationVerdict::OneOf {
         laws,
         separating_experiments,
+        ..
     } = &report.verdict
     else {
         panic!("{}", table(&report));

@@ -17,6 +17,8 @@ pub(crate) enum Fault {
     CommandScale,
     /// The tracker's forward is not the robot's.
     HeadingOffset,
+    /// The tracker's stamps are late: what it writes is older than they say.
+    TrackerDelay,
 }
 
 /// The size of each fault.
@@ -29,6 +31,7 @@ pub(crate) struct FaultValues {
     pub(crate) smoothing_s: f64,
     pub(crate) command_scale: f64,
     pub(crate) heading_offset_rad: f64,
+    pub(crate) tracker_delay_s: f64,
 }
 
 impl Default for FaultValues {
@@ -40,6 +43,7 @@ impl Default for FaultValues {
             smoothing_s: 0.0,
             command_scale: 1.0,
             heading_offset_rad: 0.0,
+            tracker_delay_s: 0.0,
         }
     }
 }
@@ -57,13 +61,14 @@ impl FaultValues {
             (Fault::Smoothing, [window]) => self.smoothing_s = *window,
             (Fault::CommandScale, [scale]) => self.command_scale = *scale,
             (Fault::HeadingOffset, [angle]) => self.heading_offset_rad = *angle,
+            (Fault::TrackerDelay, [delay]) => self.tracker_delay_s = *delay,
             _ => debug_assert!(false, "{fault:?} has another number of parameters"),
         }
     }
 
     /// The written value at a stamp of a quantity that truly is `truth` at each time.
     pub(crate) fn sample(&self, t_s: f64, truth: impl Fn(f64) -> f64) -> f64 {
-        let t_s = t_s / self.clock_scale;
+        let t_s = t_s / self.clock_scale - self.tracker_delay_s;
         if self.smoothing_s <= 0.0 {
             return truth(t_s);
         }
@@ -185,6 +190,16 @@ impl Fault {
                     "drive straight on and compare the written heading with the written direction of travel",
                 ],
                 &[("offset_rad", "rad", 0.0, [-0.5, 0.5], [-0.3, 0.3], 0.02)],
+            ),
+            Self::TrackerDelay => cause(
+                self,
+                [
+                    "tracker_delay",
+                    "a tracker whose stamps are late",
+                    "written(t) = true(t - delay), delay in s",
+                    "start and stop at once: a late tracker shows the start late, and by the same time at any speed",
+                ],
+                &[("delay_s", "s", 0.0, [-0.5, 0.5], [-0.3, 0.3], 0.03)],
             ),
         }
     }

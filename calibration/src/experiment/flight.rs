@@ -411,6 +411,7 @@ fn line(points: &[(f64, f64)]) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::experiment::{ParameterVector, cause_range};
 
     fn experiment() -> FlightExperiment {
         let folder = tempfile::tempdir().unwrap();
@@ -426,8 +427,13 @@ mod tests {
         let own = [1.0, 3.0, 1.5, 2.0, -1.0, 0.5];
         let (start, speed) = ([1.0, 1.5, -1.0], [3.0, 2.0, 0.5]);
         for (gravity, rate) in [(9.806_65, 0.0), (9.78, 0.0), (5.0, 0.0), (9.806_65, 0.7)] {
+            let mut causes = ParameterVector::start(&experiment).causes;
+            for (id, value) in [("viscous_damping", rate), ("gravity", gravity)] {
+                let index = experiment.causes.iter().position(|cause| cause.id == id);
+                causes[cause_range(&experiment, index.unwrap()).start] = value;
+            }
             let values = EpisodeParameters {
-                causes: &[0.0, rate, gravity],
+                causes: &causes,
                 shared: &[],
                 episode_nuisances: &own,
             };

@@ -2,6 +2,7 @@
 
 mod air;
 mod cause;
+mod drive;
 pub(crate) mod experiment_world;
 mod fault;
 mod features;
@@ -12,6 +13,7 @@ mod servo;
 
 pub(crate) use air::{air_density_kg_m3, gravity_m_s2};
 pub(crate) use cause::{Cause, CauseBinding, FitParameter};
+pub(crate) use drive::DriveExperiment;
 pub(crate) use fault::Fault;
 pub(crate) use flight::FlightExperiment;
 pub(crate) use intervention::Intervention;

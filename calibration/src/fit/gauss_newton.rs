@@ -19,6 +19,19 @@ const TOLERANCE: f64 = 0.02;
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct CauseSet {
     pub(crate) causes: Vec<usize>,
+    /// Positions in [`ParameterVector::causes`] that stay at their default: their causes act by other parameters.
+    pub(crate) held: Vec<usize>,
+}
+
+impl CauseSet {
+    /// The positions in [`ParameterVector::causes`] that are fitted.
+    pub(crate) fn slots(&self, experiment: &dyn Experiment) -> Vec<usize> {
+        self.causes
+            .iter()
+            .flat_map(|cause| cause_range(experiment, *cause))
+            .filter(|slot| !self.held.contains(slot))
+            .collect()
+    }
 }
 
 /// The inputs of a fit.
@@ -60,11 +73,8 @@ impl FitTask<'_> {
         model: &CauseSet,
         start: &ParameterVector,
     ) -> Result<FitResult, CalibrationError> {
-        let causes = model
-            .causes
-            .iter()
-            .flat_map(|cause| cause_range(self.experiment, *cause))
-            .map(ParameterIndex::Cause);
+        let slots = model.slots(self.experiment);
+        let causes = slots.into_iter().map(ParameterIndex::Cause);
         let shared = (0..self.experiment.shared_nuisances().len()).map(ParameterIndex::Shared);
         self.run(shared.chain(causes).collect(), start)
     }

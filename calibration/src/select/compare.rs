@@ -13,6 +13,9 @@ use crate::progress::ProgressReporter;
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 
+/// Standard deviations from its default within which the data do not move a parameter.
+const MOVED_SD: f64 = 3.0;
+
 /// The inputs that all comparisons share.
 pub(crate) struct CauseComparer<'a> {
     pub(crate) experiment: &'a dyn Experiment,
@@ -105,17 +108,69 @@ impl CauseComparer<'_> {
                 }
             }
         }
-        let fit = train.fit(model, &start)?;
+        let (model, fit) = self.without_idle_parameters(model, train.fit(model, &start)?)?;
         let held_out = self
             .task(&self.split.held_out, false)
             .fit_episode_nuisances(&fit.point)?;
         let effective_count = effective_count(self.experiment, &self.split.train, &fit.residuals);
         Ok(ScoredModel {
-            model: model.clone(),
+            model,
             fit,
             held_out,
             effective_count,
         })
+    }
+
+    /// Holds those parameters of the last cause at their default that the data do not move, one after the other: a law with
+    /// several parts often acts by one.
+    fn without_idle_parameters(
+        &self,
+        model: &CauseSet,
+        fit: FitResult,
+    ) -> Result<(CauseSet, FitResult), CalibrationError> {
+        let (mut model, mut fit) = (model.clone(), fit);
+        let Some(cause) = model.causes.last().copied() else {
+            return Ok((model, fit));
+        };
+        // Each band of a surface has its own absorption, and a fit of a room costs much.
+        if self.experiment.residual_structure() != ResidualStructure::OverTime {
+            return Ok((model, fit));
+        }
+        let train = self.task(&self.split.train, true);
+        let range = cause_range(self.experiment, cause);
+        let parameters = &self.experiment.causes()[cause].parameters;
+        loop {
+            let free: Vec<usize> = range
+                .clone()
+                .filter(|slot| !model.held.contains(slot))
+                .collect();
+            let count = effective_count(self.experiment, &self.split.train, &fit.residuals);
+            let distance = |slot: usize| {
+                let sd = sd_of(&fit, count, ParameterIndex::Cause(slot));
+                let moved = fit.point.causes[slot] - parameters[slot - range.start].default;
+                if sd > 0.0 { moved.abs() / sd } else { 0.0 }
+            };
+            let weakest = free
+                .iter()
+                .copied()
+                .min_by(|a, b| distance(*a).total_cmp(&distance(*b)));
+            let Some(weakest) = weakest.filter(|slot| free.len() > 1 && distance(*slot) < MOVED_SD)
+            else {
+                return Ok((model, fit));
+            };
+            let mut smaller = model.clone();
+            smaller.held.push(weakest);
+            let mut start = fit.point.clone();
+            start.causes[weakest] = parameters[weakest - range.start].default;
+            let tried = train.fit(&smaller, &start)?;
+            let loss = fit.loss.max(f64::MIN_POSITIVE);
+            let worth = count / fit.data.max(1) as f64;
+            let rise = worth * fit.data as f64 * (tried.loss.max(f64::MIN_POSITIVE) / loss).ln();
+            if rise > count.max(2.0).ln() {
+                return Ok((model, fit));
+            }
+            (model, fit) = (smaller, tried);
+        }
     }
 
     /// Returns the advantage of `larger` over `smaller`. `effective_weight`: independent residuals per residual, the same for all models

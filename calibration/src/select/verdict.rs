@@ -190,13 +190,15 @@ impl Search<'_> {
         Ok((gains, short, by_chance))
     }
 
-    /// Fits a model and compares it with a smaller one.
+    /// Fits these causes, with what a model holds of them held.
     fn fit(
         &self,
         causes: Vec<usize>,
+        like: &CauseSet,
         from: &ParameterVector,
     ) -> Result<ScoredModel, CalibrationError> {
-        self.all.fit_and_score(&CauseSet { causes }, from)
+        let held = like.held.clone();
+        self.all.fit_and_score(&CauseSet { causes, held }, from)
     }
 
     /// Fits each of the causes beside a model and judges it against that model.
@@ -213,9 +215,9 @@ impl Search<'_> {
             self.all
                 .progress
                 .stage(fraction, &format!("trying {name}"))?;
-            let mut causes = now.model.causes.clone();
-            causes.push(*cause);
-            fitted.push(self.fit(causes, &now.fit.point)?);
+            let mut model = now.model.clone();
+            model.causes.push(*cause);
+            fitted.push(self.all.fit_and_score(&model, &now.fit.point)?);
         }
         let best = fitted
             .iter()
@@ -316,7 +318,7 @@ impl Search<'_> {
             let dropped = causes.remove(k);
             let mut from = now.fit.point.clone();
             self.reset(&mut from, dropped);
-            let smaller = self.fit(causes, &from)?;
+            let smaller = self.fit(causes, &now.model, &from)?;
             let needed = self
                 .all
                 .advantage_over(&now, &smaller, now.effective_weight());
@@ -359,7 +361,7 @@ impl Search<'_> {
             } else {
                 let mut from = chosen.fit.point.clone();
                 self.reset(&mut from, *cause);
-                self.fit(rest.clone(), &from)?
+                self.fit(rest.clone(), &chosen.model, &from)?
             };
             let (_, short, _) = self.shortlist(&without)?;
             for other in short.iter().filter(|other| *other != cause) {
@@ -378,7 +380,7 @@ impl Search<'_> {
                 // The exchanged cause is fitted last, so that its probes are tried.
                 let mut order = rest.clone();
                 order.push(*other);
-                let scored = self.fit(order, &without.fit.point)?;
+                let scored = self.fit(order, &without.model, &without.fit.point)?;
                 let fall = self.all.advantage_over(&scored, base, worth).delta_bic;
                 if own - fall < self.all.options.rival_delta_bic
                     && self.implausible(&scored).is_none()

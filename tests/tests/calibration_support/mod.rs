@@ -135,14 +135,20 @@ pub(crate) fn table(report: &dwell_calibration::CalibrationReport) -> String {
     )
     .unwrap();
     for c in &report.candidates {
-        let [low, high] = c.gain.share_interval;
-        let [nat_low, nat_high] = c.gain.log_density_interval;
-        write!(
-            out,
-            "  {}: fall of BIC {:.1}, held-out share {:.3} ({low:.3} to {high:.3}), {:.2} nat ({nat_low:.2} to {nat_high:.2});",
-            c.id, c.delta_bic, c.gain.share, c.gain.log_density
-        )
-        .unwrap();
+        if c.idle {
+            continue;
+        }
+        write!(out, "  {}: fall of BIC {:.1};", c.id, c.delta_bic).unwrap();
+        if let Some(gain) = c.gain {
+            let [low, high] = gain.share_interval;
+            let [nat_low, nat_high] = gain.log_density_interval;
+            write!(
+                out,
+                " held-out share {:.3} ({low:.3} to {high:.3}), {:.2} nat ({nat_low:.2} to {nat_high:.2});",
+                gain.share, gain.log_density
+            )
+            .unwrap();
+        }
         for p in &c.parameters {
             write!(
                 out,

@@ -30,7 +30,7 @@ pub struct DriveRig {
 
 impl DriveRig {
     /// The robot with `laws`, in a world with `finer` steps between two samples.
-    pub(super) fn new(
+    pub(crate) fn new(
         base: &NominalBase,
         rate_hz: f64,
         finer: u32,
@@ -80,7 +80,7 @@ impl DriveRig {
 
     /// The way that the robot makes while its wheels turn so far from sample to sample (rad): places from its start on, the
     /// start first, with x forward and y to the left there (m) and the heading (rad, not wrapped).
-    pub(super) fn simulated_path(
+    pub(crate) fn simulated_path(
         &self,
         turned_rad: &[[f64; 2]],
         rate_hz: f64,
