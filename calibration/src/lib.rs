@@ -29,7 +29,7 @@ pub use error::CalibrationError;
 pub use options::Options;
 pub use report::{
     CalibrationReport, CalibrationVerdict, CandidateCause, FittedParameter, FoundEffects,
-    NamedEffect, NuisanceParameter, ResidualPlot,
+    NamedEffect, NuisanceParameter, Provenance, ResidualPlot,
 };
 pub use select::{ChannelResidual, HeldOutGain, ResidualNoiseTest, SplitHalfAgreement};
 
@@ -145,7 +145,7 @@ fn find_missing_causes(
         }
     };
     let findings = select::find_causes(experiment.as_mut(), options, progress)?;
-    let report = report::build(bundle, experiment.as_ref(), &findings);
+    let report = report::build(bundle, experiment.as_ref(), &findings, options.seed);
     progress.stage(1.0, "done")?;
     Ok(report)
 }

@@ -105,6 +105,55 @@ pub(crate) struct MeasuredResponse {
 }
 
 impl Bundle {
+    /// Returns the XXH3 hash (64 bits, as hexadecimal digits) of the description and of every number, in the order of the
+    /// files' episodes.
+    pub(crate) fn digest(&self) -> String {
+        let mut hasher = xxhash_rust::xxh3::Xxh3::new();
+        hasher.update(&serde_json::to_vec(&self.manifest).unwrap_or_default());
+        let mut number = |value: f64| hasher.update(&value.to_bits().to_le_bytes());
+        for episode in &self.episodes {
+            for sample in &episode.samples {
+                number(sample.entity as f64);
+                number(sample.channel as f64);
+                number(sample.t_s);
+                number(sample.value);
+            }
+            for command in &episode.commands {
+                number(command.t_s);
+                number(command.value);
+            }
+            for response in &episode.responses {
+                response.source_m.iter().copied().for_each(&mut number);
+                response.receiver_m.iter().copied().for_each(&mut number);
+                number(f64::from(response.rate_hz));
+                response
+                    .samples
+                    .iter()
+                    .copied()
+                    .map(f64::from)
+                    .for_each(&mut number);
+            }
+            for pose in &episode.poses {
+                number(pose.t_s);
+                pose.position.to_array().into_iter().for_each(&mut number);
+                pose.rotation.to_array().into_iter().for_each(&mut number);
+            }
+            for row in &episode.drive {
+                for value in [
+                    row.t_s,
+                    row.x,
+                    row.y,
+                    row.heading,
+                    row.left_rad,
+                    row.right_rad,
+                ] {
+                    number(value);
+                }
+            }
+        }
+        format!("{:016x}", hasher.digest())
+    }
+
     /// Returns the kind of measurement.
     pub(crate) fn kind(&self) -> BundleKind {
         self.manifest.kind

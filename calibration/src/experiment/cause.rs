@@ -124,6 +124,22 @@ impl Cause {
         }
     }
 
+    /// The addresses under which a world holds one of its parameters; none for a fault of the measurement.
+    pub(crate) fn addresses(&self, parameter: usize) -> Vec<String> {
+        let name = &self.parameters[parameter].name;
+        match &self.binding {
+            CauseBinding::Law { targets, .. } if targets.is_empty() => {
+                vec![format!("law/{}/{name}", self.id)]
+            }
+            CauseBinding::Law { targets, .. } => targets
+                .iter()
+                .map(|target| format!("law/{}@{target}/{name}", self.id))
+                .collect(),
+            CauseBinding::Addresses(addresses) => vec![addresses[parameter].clone()],
+            CauseBinding::Measurement(_) => Vec::new(),
+        }
+    }
+
     /// Returns whether it is a fault of the measurement.
     pub(crate) fn is_of_measurement(&self) -> bool {
         matches!(self.binding, CauseBinding::Measurement(_))

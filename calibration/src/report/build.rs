@@ -2,7 +2,7 @@
 
 use super::data::{
     CalibrationReport, CalibrationVerdict, CandidateCause, FittedParameter, FoundEffects,
-    NamedEffect, NuisanceParameter,
+    NamedEffect, NuisanceParameter, Provenance,
 };
 use super::plot::plots;
 use crate::bundle::Bundle;
@@ -12,6 +12,7 @@ use crate::format_number::{format_list, format_number, format_percent};
 use crate::select::{
     Decision, Estimate, Findings, ScoredModel, SingleCause, by_channel, estimates, sd_of,
 };
+use std::collections::BTreeMap;
 
 /// The version of the report's form.
 const VERSION: u32 = 1;
@@ -21,6 +22,7 @@ pub(crate) fn build(
     bundle: &Bundle,
     experiment: &dyn Experiment,
     findings: &Findings,
+    seed: u64,
 ) -> CalibrationReport {
     let verdict = verdict(experiment, findings);
     let named = matches!(verdict, CalibrationVerdict::Named { .. });
@@ -60,7 +62,7 @@ pub(crate) fn build(
         agreement: findings.agreement.clone(),
         nuisances: nuisances(experiment, chosen),
         found: if named {
-            found(experiment, findings)
+            found(bundle, experiment, findings, seed)
         } else {
             FoundEffects::default()
         },
@@ -316,16 +318,44 @@ fn nuisances(experiment: &dyn Experiment, judged: &ScoredModel) -> Vec<NuisanceP
         .collect()
 }
 
-fn found(experiment: &dyn Experiment, findings: &Findings) -> FoundEffects {
+fn found(
+    bundle: &Bundle,
+    experiment: &dyn Experiment,
+    findings: &Findings,
+    seed: u64,
+) -> FoundEffects {
     let chosen = &findings.chosen;
     let install = Intervention::to_install(
         experiment.causes(),
         &chosen.fit.point.causes,
         &chosen.model.causes,
     );
+    let mut intervals = BTreeMap::new();
+    for index in &chosen.model.causes {
+        let cause = &experiment.causes()[*index];
+        for (k, value) in parameters(experiment, chosen, *index).iter().enumerate() {
+            for address in cause.addresses(k) {
+                intervals.insert(address, value.interval);
+            }
+        }
+    }
+    let is_installed = !install.laws.is_empty() || !install.overrides.is_empty();
     FoundEffects {
         laws: install.laws,
         parameters: install.overrides.into_iter().collect(),
+        intervals,
+        provenance: findings
+            .advantage_over_base
+            .filter(|_| is_installed)
+            .map(|advantage| Provenance {
+                title: bundle.manifest.title.clone(),
+                data_xxh3: bundle.digest(),
+                version: env!("CARGO_PKG_VERSION").to_owned(),
+                seed,
+                fitted_episodes: findings.split.train.len(),
+                held_out_episodes: findings.split.held_out.len(),
+                gain: advantage.gain,
+            }),
     }
 }
 

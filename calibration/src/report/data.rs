@@ -113,6 +113,29 @@ pub struct FoundEffects {
     pub laws: Vec<LawSpec>,
     /// Parameters to override, by address.
     pub parameters: BTreeMap<String, f64>,
+    /// 95 % interval of every value above, by address (`law/ID@TARGET/PARAM` for those of laws).
+    pub intervals: BTreeMap<String, [f64; 2]>,
+    /// What it rests on; `null` where nothing was found.
+    pub provenance: Option<Provenance>,
+}
+
+/// The data and the fit that a finding rests on.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Provenance {
+    /// The bundle's title.
+    pub title: String,
+    /// XXH3 hash (64 bits, hexadecimal) of the bundle's description and numbers.
+    pub data_xxh3: String,
+    /// The version of dwell that found it.
+    pub version: String,
+    /// Seed of the held-out groups and of all draws.
+    pub seed: u64,
+    /// Episodes that were fitted.
+    pub fitted_episodes: usize,
+    /// Episodes that were held out from all fitting.
+    pub held_out_episodes: usize,
+    /// The gain on those.
+    pub gain: HeldOutGain,
 }
 
 /// The residuals over time, before and after, thinned out for a picture.

@@ -11,6 +11,6 @@ mod write;
 pub(crate) use build::build;
 pub use data::{
     CalibrationReport, CalibrationVerdict, CandidateCause, FittedParameter, FoundEffects,
-    NamedEffect, NuisanceParameter, ResidualPlot,
+    NamedEffect, NuisanceParameter, Provenance, ResidualPlot,
 };
 pub(crate) use write::write_atomically;

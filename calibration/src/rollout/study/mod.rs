@@ -351,5 +351,6 @@ fn found_effects(tracks: &PoseTracks, best: &ModelReport) -> FoundEffects {
         ]
         .into_iter()
         .collect(),
+        ..FoundEffects::default()
     }
 }
