@@ -31,7 +31,9 @@ pub use report::{
     CalibrationReport, CalibrationVerdict, CandidateCause, FittedParameter, FoundEffects,
     NamedEffect, NuisanceParameter, Provenance, ResidualPlot,
 };
-pub use select::{ChannelResidual, HeldOutGain, ResidualNoiseTest, SplitHalfAgreement};
+pub use select::{
+    ChannelResidual, HeldOutGain, LearnableRemainder, ResidualNoiseTest, SplitHalfAgreement,
+};
 
 use bundle::file::BundleKind;
 use experiment::{DriveExperiment, Experiment, FlightExperiment, RoomExperiment, ServoExperiment};

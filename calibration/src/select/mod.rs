@@ -3,6 +3,7 @@
 mod agreement;
 mod compare;
 mod gain;
+mod learnable;
 mod plausibility;
 mod residual;
 mod screen;
@@ -12,6 +13,7 @@ mod verdict;
 pub use agreement::SplitHalfAgreement;
 pub use gain::HeldOutGain;
 pub(crate) use gain::share_gained;
+pub use learnable::LearnableRemainder;
 pub use residual::{ChannelResidual, ResidualNoiseTest};
 
 pub(crate) use compare::{Estimate, ScoredModel, estimates, sd_of};

@@ -1,5 +1,6 @@
 //! Residuals between measurement and simulation.
 
+use super::learnable::LearnableRemainder;
 use crate::experiment::{Experiment, ResidualStructure};
 use crate::fit::median;
 use serde::Serialize;
@@ -69,24 +70,56 @@ pub(super) fn effective_sample_size(count: usize, autocorrelation: f64) -> f64 {
     (count as f64 * (1.0 - rho) / (1.0 + rho)).max(1.0)
 }
 
-/// The noise of a residual from its third differences, in which what is smooth cancels; robust against jumps. `None` for
-/// fewer than 12 differences.
-///
-/// # Source
-/// Variance of third differences of white noise: 1 + 9 + 9 + 1 = 20 times its own.
-pub(crate) fn noise_from_differences(sequences: &[&[f64]]) -> Option<f64> {
-    let mut differences: Vec<f64> = sequences
+/// The noise of residuals as a process: what neighbours differ by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct NoiseFloor {
+    pub(crate) sd: f64,
+    /// Correlation of the noise with the next sample's.
+    pub(crate) correlation: f64,
+}
+
+/// Largest correlation of neighbours that counts as one of noise.
+const MOST_CORRELATED: f64 = 0.95;
+/// Outliers count as so many medians.
+const OUTLIER_MEDIANS: f64 = 6.0;
+
+/// Mean square of the differences of an order, outliers clipped.
+fn mean_square_difference(sequences: &[&[f64]], weights: &[f64]) -> (f64, usize) {
+    let mut sizes: Vec<f64> = sequences
         .iter()
         .flat_map(|sequence| {
             sequence
-                .windows(4)
-                .map(|w| (w[3] - 3.0 * w[2] + 3.0 * w[1] - w[0]).abs())
+                .windows(weights.len())
+                .map(|w| w.iter().zip(weights).map(|(a, b)| a * b).sum::<f64>().abs())
         })
         .collect();
-    if differences.len() < 12 {
+    let count = sizes.len();
+    let limit = OUTLIER_MEDIANS * median(&mut sizes);
+    let clipped = sizes.iter().map(|size| size.min(limit).powi(2));
+    (clipped.sum::<f64>() / count.max(1) as f64, count)
+}
+
+/// The noise of a residual from its differences, in which what is smooth cancels. `None` for fewer than 12 third
+/// differences, and where most neighbours are equal.
+///
+/// # Source
+/// For an autoregression of first order with variance s² and correlation c the mean squares of first, second and third
+/// differences are 2 (1 - c) s² times 1, 3 - c and 10 - 5 c + c²; for white noise 2, 6 and 20 s².
+pub(crate) fn noise_from_differences(sequences: &[&[f64]]) -> Option<NoiseFloor> {
+    let (first, _) = mean_square_difference(sequences, &[1.0, -1.0]);
+    let (second, _) = mean_square_difference(sequences, &[1.0, -2.0, 1.0]);
+    let (third, count) = mean_square_difference(sequences, &[1.0, -3.0, 3.0, -1.0]);
+    if count < 12 || first <= 0.0 || third <= 0.0 {
         return None;
     }
-    Some(1.4826 * median(&mut differences) / 20.0_f64.sqrt())
+    // The estimate's own error is about 3 / sqrt(n): correlation within it counts as none.
+    let found = 3.0 - second / first - 6.0 / (count as f64).sqrt();
+    let c = found.clamp(0.0, MOST_CORRELATED);
+    let share = 2.0 * (1.0 - c) * (10.0 - 5.0 * c + c * c);
+    Some(NoiseFloor {
+        sd: (third / share).sqrt(),
+        correlation: c,
+    })
 }
 
 /// Splits residuals of a set by channel. `residuals`: in standard deviations, shape (episode of the set, datum).
@@ -193,6 +226,8 @@ pub(super) fn effective_count(
 /// A test for residuals beyond noise.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ResidualNoiseTest {
+    /// What can be learned of it; `null` where that is not tried: responses of rooms, or too few episodes.
+    pub learnable: Option<LearnableRemainder>,
     /// Mean square of the residuals over that of their noise: 1 for noise alone.
     pub ratio: f64,
     /// The ratio above which noise alone is no explanation.
@@ -202,7 +237,7 @@ pub struct ResidualNoiseTest {
 impl ResidualNoiseTest {
     /// Returns whether something systematic is left.
     pub(crate) fn is_structured(&self) -> bool {
-        self.ratio > self.threshold
+        self.ratio > self.threshold || self.learnable.is_some_and(|found| found.is_structured())
     }
 
     pub(crate) fn of(experiment: &dyn Experiment, set: &[usize], residuals: &[Vec<f64>]) -> Self {
@@ -216,7 +251,7 @@ impl ResidualNoiseTest {
         let (mut sum, mut count) = (0.0, 0);
         for sequences in by_sequence(experiment, set, residuals).values() {
             let all = || sequences.iter().flat_map(|sequence| sequence.iter());
-            let Some(floor) = noise_from_differences(sequences).filter(|noise| *noise > 0.0) else {
+            let Some(floor) = noise_from_differences(sequences).map(|floor| floor.sd) else {
                 continue;
             };
             // A few outliers are no structure.
@@ -229,6 +264,7 @@ impl ResidualNoiseTest {
         }
         let n = count.max(1) as f64;
         Self {
+            learnable: None,
             ratio: if count > 0 { sum / n } else { 1.0 },
             // The floor's own error by the median of autocorrelated differences is about 2.5/sqrt(n).
             threshold: 1.25 + 12.0 / n.sqrt(),
@@ -257,6 +293,7 @@ impl ResidualNoiseTest {
         let count = cells.len().max(1) as f64;
         let within = within / f64::max(freedom, 1.0);
         Self {
+            learnable: None,
             ratio: if within > 0.0 {
                 common / count / within
             } else {
@@ -281,7 +318,7 @@ mod tests {
                 .map(|k| 3.0 * (f64::from(k) * 0.02).sin() + 0.1 * stream.normal())
                 .collect();
             let found = noise_from_differences(&[&values]).unwrap();
-            assert!((found / 0.1 - 1.0).abs() < 0.25, "{found}");
+            assert!((found.sd / 0.1 - 1.0).abs() < 0.25, "{found:?}");
         }
         assert_eq!(noise_from_differences(&[&[1.0, 2.0, 3.0]]), None);
     }
@@ -296,6 +333,9 @@ mod tests {
                 last
             })
             .collect();
+        let floor = noise_from_differences(&[&correlated]).unwrap();
+        let sd = 1.0 / (1.0_f64 - 0.81).sqrt();
+        assert!((floor.sd / sd - 1.0).abs() < 0.4, "{floor:?} {sd}");
         let rho = autocorrelation(&[&correlated]);
         assert!((rho - 0.9).abs() < 0.05, "{rho}");
         let worth = effective_sample_size(2000, rho);

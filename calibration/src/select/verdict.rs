@@ -3,6 +3,7 @@
 use super::agreement::{SplitHalfAgreement, agreement};
 use super::compare::{CauseComparer, Estimate, ModelAdvantage, ScoredModel, estimates};
 use super::gain::HeldOutGain;
+use super::learnable::LearnableRemainder;
 use super::plausibility::implausible;
 use super::residual::{ResidualNoiseTest, noise_from_differences};
 use super::screen::{LinearGain, Screen};
@@ -91,18 +92,15 @@ pub(crate) fn find_causes(
         progress,
     };
     let base = all.fit_and_score(&CauseSet::default(), &start)?;
-    let remainder = |scored: &ScoredModel| {
-        ResidualNoiseTest::of(all.experiment, &split.train, &scored.fit.residuals)
-    };
-    let remainder_before = remainder(&base);
     let search = Search { all: &all };
+    let remainder_before = search.remainder(&base)?;
     let (singles, first) = search.singles(&base)?;
     let chosen = match first {
         Some(first) => search.extend(first)?,
         None => base.clone(),
     };
     progress.stage(0.8, "comparing explanations")?;
-    let remainder_after = remainder(&chosen);
+    let remainder_after = search.remainder(&chosen)?;
     let mut found_agreement = None;
     let decision = if chosen.model.causes.is_empty() {
         if remainder_before.is_structured() {
@@ -164,6 +162,23 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
+    /// The test of what a model leaves.
+    fn remainder(&self, scored: &ScoredModel) -> Result<ResidualNoiseTest, CalibrationError> {
+        let (all, split) = (self.all, self.all.split);
+        let found = ResidualNoiseTest::of(all.experiment, &split.train, &scored.fit.residuals);
+        if all.experiment.residual_structure() != ResidualStructure::OverTime {
+            return Ok(found);
+        }
+        let learnable = LearnableRemainder::new(
+            all.experiment,
+            (&split.train, &scored.fit),
+            (&split.held_out, &scored.held_out),
+            all.threads,
+            RandomKey::root(all.options.seed).child("learner"),
+        )?;
+        Ok(ResidualNoiseTest { learnable, ..found })
+    }
+
     /// The causes that are worth a full fit beside a model, the most promising first, with what each gains to first order,
     /// and the gain that chance would give the best.
     fn shortlist(
@@ -292,12 +307,7 @@ impl Search<'_> {
     fn extend(&self, first: ScoredModel) -> Result<ScoredModel, CalibrationError> {
         let mut now = first;
         while now.model.causes.len() < MOST_EFFECTS {
-            let left = ResidualNoiseTest::of(
-                self.all.experiment,
-                &self.all.split.train,
-                &now.fit.residuals,
-            );
-            if !left.is_structured() {
+            if !self.remainder(&now)?.is_structured() {
                 break;
             }
             let (_, short, by_chance) = self.shortlist(&now)?;
@@ -477,7 +487,7 @@ fn estimate_noise(
             (residuals.iter().flatten().map(|r| r * r).sum::<f64>() / n).sqrt()
         };
         let sd = noise_from_differences(&slices)
-            .filter(|sd| *sd > 0.0)
+            .map(|floor| floor.sd)
             .unwrap_or_else(spread)
             .max(1e-9);
         for measured in experiment.episodes_mut() {
