@@ -68,9 +68,12 @@ def _init(args: argparse.Namespace) -> int:
         files.insert(0, Path(kind))
         kind = None
     if files:
-        raise ValueError("--init prints a template and reads nothing else; give it alone")
-    template = KINDS[kind or "pose_trajectory"].template
-    mapping = {"kind": template["kind"], "confirmed": False, **template}
+        from dwell.measured.guessing import guessed_map
+
+        mapping = guessed_map(files, kind)
+    else:
+        template = KINDS[kind or "pose_trajectory"].template
+        mapping = {"kind": template["kind"], "confirmed": False, **template}
     sys.stdout.write(json.dumps(mapping, indent=2) + "\n")
     return 0
 
