@@ -25,6 +25,8 @@ class Axes:
         """The key ``axes``, or ``up`` where a map has that."""
         up = choice(mapping, "up", ("y", "z"), at)
         told = mapping.get("axes")
+        if told is None and up is None and "axes" in mapping:
+            raise ValueError(f"{at}: axes is null: which axis is up? Allowed is {_ALLOWED}")
         if up is not None and told is not None:
             raise ValueError(f"{at}: both 'up' and 'axes' say which axis is up; leave one out")
         found = told if told is not None else f"{up}_up" if up is not None else default

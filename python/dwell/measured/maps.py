@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -124,6 +124,12 @@ def require(part: Mapping[str, Any], key: str, at: str) -> Any:  # noqa: ANN401 
     if part.get(key) is None:
         raise ValueError(f"{at}: {key!r} is missing")
     return part[key]
+
+
+def require_filled(part: Mapping[str, Any], keys: Sequence[str], at: str) -> None:
+    """Refuses a part of which something was not filled in."""
+    for key in keys:
+        require(part, key, at)
 
 
 def choice(part: Mapping[str, Any], key: str, allowed: tuple[str, ...], at: str) -> str | None:

@@ -78,6 +78,11 @@ class ColumnUnits:
         if column not in self._told:
             return self._default(dimension)
         told, at = self._told[column], f"{self._at}: units: column {column!r}"
+        if told is None:
+            raise ValueError(
+                f"{at} has no unit; write one of {list(UNITS[dimension])}, or an object with one "
+                f"of {list(_TOLD)}"
+            )
         if isinstance(told, dict):
             return _by_numbers(told, dimension, at)
         if told not in UNITS[dimension]:

@@ -8,7 +8,7 @@ from typing import Any
 
 from dwell.arguments import finite_number
 from dwell.measured.kinds.form import Kind, counted, listing, write_episodes, write_manifest
-from dwell.measured.maps import TABLE, Job, Map, column_list, columns_of, require
+from dwell.measured.maps import TABLE, Job, Map, column_list, columns_of, require, require_filled
 from dwell.measured.places import Place
 from dwell.measured.readers import Row
 from dwell.measured.samples import Field, SampleReader, singles
@@ -68,6 +68,7 @@ FEWEST = 42
 def _write(job: Job) -> dict[str, Any]:
     part, here = job.part("table")
     told, base_at = job.part("base")
+    require_filled(told, ("wheel_radius_m", "wheel_base_m"), base_at)
     base = dict(told)
     ticks = require(base, "ticks_per_turn", base_at)
     if not isinstance(ticks, int | float) or not ticks > 0:

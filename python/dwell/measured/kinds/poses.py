@@ -10,7 +10,7 @@ from dwell.arguments import finite_number
 from dwell.measured import rotations
 from dwell.measured.axes import Axes
 from dwell.measured.kinds.form import Kind, counted, listing, write_episodes, write_manifest
-from dwell.measured.maps import TABLE, Job, Map, choice, columns_of, require
+from dwell.measured.maps import TABLE, Job, Map, choice, columns_of, require, require_filled
 from dwell.measured.samples import Episode, Field, SampleReader, single, singles
 from dwell.measured.tables import MeasuredTable
 from dwell.measured.units import ColumnUnits
@@ -102,7 +102,11 @@ def _write(job: Job) -> dict[str, Any]:
     part, here = job.part("table")
     body, _ = job.part("body")
     form, form_at = job.part("poses")
-    board, _ = job.part("board")
+    board, board_at = job.part("board")
+    require_filled(body, ("name", "mass_kg"), f"{at}: body")
+    if body.get("radius_m") is None:
+        require(body, "half_extents_m", f"{at}: body")
+    require_filled(board, ("friction", "restitution"), board_at)
     rate_hz = finite_number(f"{form_at}: rate_hz", require(form, "rate_hz", form_at))
     frame = choice(form, "angular_velocity", ("body", "world"), form_at)
     place = columns_of(part, "position", 3, here)

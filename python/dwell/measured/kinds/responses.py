@@ -22,6 +22,7 @@ from dwell.measured.maps import (
     column_list,
     point,
     require,
+    require_filled,
 )
 from dwell.measured.places import Place
 from dwell.measured.samples import single
@@ -140,6 +141,7 @@ def _write(job: Job) -> dict[str, Any]:
                 job.progress(0.1, f"{count} responses")
     scene = {}
     if mapping.get("room") is not None:
+        require_filled(mapping["room"], ("size_m", "surfaces"), f"{at}: room")
         scene["room"] = mapping["room"]
     job.draft.fields["scene.room."] = f"{at}: room."
     write_manifest(job, KIND.version, scene, {})

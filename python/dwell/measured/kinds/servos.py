@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from dwell.measured.kinds.form import Kind, counted, listing, write_episodes, write_manifest
-from dwell.measured.maps import TABLE, Job, Map, column_list, require
+from dwell.measured.maps import TABLE, Job, Map, column_list, require, require_filled
 from dwell.measured.places import Place
 from dwell.measured.samples import Episode, Field, SampleReader, Samples, single
 from dwell.measured.tables import MeasuredTable
@@ -65,6 +65,12 @@ _SCHEMA: Map = {
         "target": "",
     },
 }
+_JOINT_VALUES = (
+    "inertia_kg_m2",
+    "stiffness_n_m_rad",
+    "damping_n_m_s_rad",
+    "max_torque_n_m",
+)
 #: Samples of an episode below which nothing can be predicted.
 FEWEST = 6
 #: Time, s; target, rad; where it stands.
@@ -76,7 +82,8 @@ Commands = dict[str, list[Command]]
 def _write(job: Job) -> dict[str, Any]:
     part, here = job.part("table")
     joint, joint_at = job.part("joint")
-    name = str(require(joint, "name", joint_at))
+    require_filled(joint, ("name", *_JOINT_VALUES), joint_at)
+    name = str(joint["name"])
     position, target = require(part, "position", here), part.get("target")
     commands = job.mapping.get("commands")
     if (target is None) == (commands is None):
