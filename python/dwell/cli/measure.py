@@ -1,4 +1,4 @@
-"""``dwell measure import``: files of measurements into a bundle that ``dwell calibrate`` reads."""
+"""``dwell measure``: files of measurements into a bundle, and which states a bundle has."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _ASKED = ""
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Adds the options."""
-    what = parser.add_subparsers(dest="what", metavar="import", required=True)
+    what = parser.add_subparsers(dest="what", metavar="import|coverage", required=True)
     command = what.add_parser(
         "import", help="read tables (CSV, Parquet, LeRobot, HDF5, MCAP), WAV and SOFA"
     )
@@ -32,10 +32,16 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "impulse_response)",
     )
     command.add_argument("--json", action="store_true", help="one JSON object on standard output")
+    command = what.add_parser("coverage", help="which states a bundle has, and what to record")
+    command.add_argument("measured", type=path, metavar="NAME.measured", help="the bundle")
+    command.add_argument("--out", type=path, metavar="FILE.png", help="the picture to write")
+    command.add_argument("--json", action="store_true", help="one JSON object on standard output")
 
 
 def run(args: argparse.Namespace) -> int:
-    """Imports, checks the bundle as ``dwell calibrate`` would, and moves it into place."""
+    """Imports and checks as ``dwell calibrate`` would, or looks at a bundle."""
+    if args.what == "coverage":
+        return _coverage(args)
     if args.init is not None:
         return _init(args)
     from dwell.measured.importing import import_files
@@ -53,6 +59,29 @@ def run(args: argparse.Namespace) -> int:
         print(f"{args.out}: {counts['episodes']} episodes, {counts['rows']} rows{left_out}")
         for note in counts.get("notes", []):
             print(f"  {note}")
+    return 0
+
+
+def _coverage(args: argparse.Namespace) -> int:
+    """Draws the recorded states and prints what to record."""
+    from dwell.calibration import coverage
+    from dwell.files import atomic_write, check_writable
+
+    if args.out is not None:
+        if args.out.suffix != ".png":
+            raise ValueError(f"--out is {args.out}; a name that ends in .png is needed")
+        check_writable(args.out)
+    found = coverage(args.measured)
+    if args.out is not None:
+        picture = found.picture()
+        with atomic_write(args.out) as draft:
+            picture.save(draft, "PNG")
+    if args.json:
+        axes = list(found.names)
+        told = {"kind": found.kind, "axes": axes, "share": found.share, "advice": found.advice}
+        print_json(told)
+    else:
+        print("\n".join(found.advice))
     return 0
 
 

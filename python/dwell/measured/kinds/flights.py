@@ -8,7 +8,7 @@ import numpy as np
 
 from dwell.measured.axes import Axes
 from dwell.measured.kinds.form import Kind, counted, listing, write_episodes, write_manifest
-from dwell.measured.maps import TABLE, Job, Map, require
+from dwell.measured.maps import TABLE, Job, Map, require, require_filled
 from dwell.measured.places import Place
 from dwell.measured.samples import Field, SampleReader, single
 from dwell.measured.tables import MeasuredTable, cell_text
@@ -39,6 +39,7 @@ TEMPLATE: Map = {
 _SCHEMA: Map = {
     "axes": (str, list),
     "noise_sd": {"x": 1.0, "y": 1.0, "z": 1.0},
+    "body": {"name": "", "mass_kg": 1.0, "radius_m": 1.0},
     "bodies": {
         "file": "",
         "part": "",
@@ -56,7 +57,12 @@ FEWEST = 6
 
 def _write(job: Job) -> dict[str, Any]:
     part, here = job.part("table")
-    listed, bodies, body_of = _bodies(job)
+    if (job.mapping.get("body") is None) == (job.mapping.get("bodies") is None):
+        raise ValueError(
+            f"{job.at}: what flew is one 'body', or a table of 'bodies': one of them is needed"
+        )
+    listed, bodies, body_of = _bodies(job) if job.mapping.get("bodies") else _one_body(job)
+    everyone = job.mapping.get("body")
     channels = require(part, "channels", here)
     for channel, column in channels.items():
         if not isinstance(column, str):
@@ -75,7 +81,7 @@ def _write(job: Job) -> dict[str, Any]:
 
     def accept(_place: Place, name: str) -> bool:
         seen[name] = None
-        if name in body_of:
+        if everyone is not None or name in body_of:
             return True
         left_out[name] = None
         return False
@@ -94,7 +100,7 @@ def _write(job: Job) -> dict[str, Any]:
     with job.draft.table("trajectory.csv", "episode,t_s,entity,channel,value", origin) as write:
         for episode in samples.episodes:
             values = axes.vectors(episode.values) if turned else episode.values
-            body = body_of[episode.source]
+            body = everyone["name"] if everyone is not None else body_of[episode.source]
             for k, stamp in enumerate(samples.stamps(episode)):
                 place = episode.place(k)
                 for name, value in zip(names, values[k], strict=True):
@@ -108,6 +114,14 @@ def _write(job: Job) -> dict[str, Any]:
     write_manifest(job, KIND.version, {"bodies": list(bodies.values())}, {"channels": told})
     write_episodes(job, listing(samples.episodes))
     return counted(job, samples.rows, len(samples.episodes), left_out)
+
+
+def _one_body(job: Job) -> tuple[str, dict[str, Map], dict[str, str]]:
+    """The body of all episodes."""
+    body, at = job.part("body")
+    require_filled(body, ("name", "mass_kg", "radius_m"), at)
+    job.draft.fields["scene.bodies[0]."] = f"{at}."
+    return job.at, {body["name"]: body}, {}
 
 
 def _bodies(job: Job) -> tuple[str, dict[str, Map], dict[str, str]]:
