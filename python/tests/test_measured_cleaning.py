@@ -311,6 +311,17 @@ def test_the_order_of_a_quaternion_is_told_by_boxes_that_come_to_rest(tmp_path: 
     assert '"quaternion_xyzw": ["qy", "qz", "qw", "qx"]' in told
 
 
+def test_a_clock_that_is_a_tenth_off_is_told(tmp_path: Path) -> None:
+    """Positions and rate_hz agree with the times, velocities with the true clock."""
+    slower = with_table(POSES, seconds_per_unit=1.1)
+    slower["poses"] = {**POSES["poses"], "rate_hz": 100.0 / 1.1}
+    counts = brought(tmp_path, slower)
+    assert counts["notes"] == [
+        "velocities are 1.100 times what positions and rate_hz show: is the scale of the clock or "
+        "of lengths off?"
+    ]
+
+
 def test_times_since_1970_count_from_the_first_where_the_map_says_so(tmp_path: Path) -> None:
     def epoch(rows: Rows) -> None:
         for row in rows:

@@ -18,6 +18,8 @@ _WRONG_SHARE, _RIGHT_SHARE = 0.5, 0.25
 #: Turning below which a sample says nothing, rad/s, and samples that are needed.
 _TELLING_RAD_S = 0.5
 _FEWEST = 50
+#: Deviation of velocities from differences of positions that is told.
+_SCALE_TOLERANCE = 0.05
 #: A box lies flat where its vertical is so near to an axis of its own.
 _FLAT = np.cos(np.radians(4.0))
 #: Episodes that are needed to say how they end.
@@ -81,6 +83,25 @@ def readings(pairs: Sequence[tuple[Array, Array, float]]) -> dict[Reading, float
         for in_body, share in (shares or {}).items():
             found[Reading(swapped, in_body)] = share
     return found
+
+
+def speed_note(episodes: Sequence[Episode], rate_hz: float) -> str | None:
+    """What velocities say of the scales of clock and lengths; ``None`` where they agree."""
+    along = shown_square = 0.0
+    for episode in episodes:
+        place, stated = episode.values[:, :3], episode.values[1:-1, 7:10]
+        if len(place) < 3:
+            continue
+        shown = (place[2:] - place[:-2]) * (0.5 * rate_hz)
+        known = ~np.isnan(stated).any(axis=1)
+        along += float((stated[known] * shown[known]).sum())
+        shown_square += float((shown[known] ** 2).sum())
+    if shown_square == 0.0 or abs(along / shown_square - 1.0) < _SCALE_TOLERANCE:
+        return None
+    return (
+        f"velocities are {along / shown_square:.3f} times what positions and rate_hz show: is the "
+        "scale of the clock or of lengths off?"
+    )
 
 
 def lying_flat(ends: Array, up: Array) -> float:

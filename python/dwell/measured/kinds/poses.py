@@ -127,6 +127,8 @@ def _write(job: Job) -> dict[str, Any]:
     step_s = 1.0 / rate_hz if rate_hz > 0 else None
     samples = reader.read(step_s=step_s, fewest=FEWEST)
     rotations.check(samples.episodes, reader.table.name, quaternion, rates[1], frame, axes, rate_hz)
+    if has_rates and (note := rotations.speed_note(samples.episodes, rate_hz)) is not None:
+        job.notes.append(note)
     job.draft.fields |= {"scene.bodies[0].": f"{at}: body.", "scene.board.": f"{at}: board."}
     origin = {"t_s": [reader.clock], "episode": ["/".join(reader.episode)]}
     for names, own in ((("x", "y", "z"), place), (("vx", "vy", "vz"), rates[0])):
