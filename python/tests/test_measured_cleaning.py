@@ -114,6 +114,9 @@ def test_tripled_frames_are_told_and_left_out_where_the_map_says_so(
 def test_a_body_at_rest_and_steps_of_a_sensor_are_no_repeated_frames() -> None:
     rest = np.concatenate([np.arange(30.0), np.full(300, 30.0)])[:, None]
     assert repeats([rest]) == 1
+    # Long rests with moves between them, as of a servo.
+    moves = [np.concatenate([np.arange(k, k + 5.0), np.full(400, k + 5.0)]) for k in range(9)]
+    assert repeats([np.concatenate(moves)[:, None]]) == 1
     steps = np.floor(np.linspace(0.0, 40.0, 500) ** 1.3)[:, None]
     assert repeats([steps]) == 1
     frames = np.repeat(np.concatenate([np.arange(30.0), np.full(5, 30.0)]), 4)[3:, None]

@@ -200,6 +200,9 @@ def test_files_in_which_nothing_is_known_are_refused(tmp_path: Path) -> None:
     (tmp_path / "a.csv").write_text("colour,size\nred,1\n")
     with pytest.raises(ValueError, match=r"a\.csv: nothing that is known is measured there"):
         guessed_map([tmp_path / "a.csv"])
+    (tmp_path / "b.csv").write_text("t,x,y,z\n")
+    with pytest.raises(ValueError, match=r"b\.csv: no rows"):
+        guessed_map([tmp_path / "b.csv"])
     with pytest.raises(ValueError, match="no table has a column of positions"):
         guessed_map([tmp_path / "a.csv"], "servo")
 

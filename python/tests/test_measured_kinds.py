@@ -125,7 +125,7 @@ def test_commands_may_stand_in_a_table_of_their_own(tmp_path: Path) -> None:
         (lambda m: m["table"].update(position=None), "'position' is missing"),
         (lambda m: m["joint"].update(stiffness=3), "no key 'stiffness'; allowed are"),
         (lambda m: m["joint"].update(max_torque_n_m=-3), r"map\.json: joint\.max_torque_n_m is -3"),
-        (lambda m: m.update(confirmed=False), '"confirmed" is false: read it correct what is'),
+        (lambda m: m.update(confirmed=False), '"confirmed" is false: read it, correct what is'),
         (lambda m: m.update(confirmed="yes"), "confirmed is 'yes'; true or false is needed"),
     ],
 )

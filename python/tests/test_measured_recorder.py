@@ -156,6 +156,8 @@ def test_nothing_is_written_over(tmp_path: Path) -> None:
     (tmp_path / "a.log.csv").write_text("")
     with pytest.raises(FileExistsError, match=r"a\.log\.csv: is there already"):
         Recorder(Arm(), tmp_path / "a.measured", MAP)
+    with pytest.raises(dwell.ConfigError, match="nothing was recorded"):
+        Recorder(Arm(), tmp_path / "b.measured", MAP).write()
     with pytest.raises(dwell.ConfigError, match="step_s"):
         Recorder(Arm(), tmp_path / "b.measured", MAP, step_s=0.0)
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 #: Frames that each stand so many times at most are recognised.
 _MOST_REPEATS = 10
-#: Share of rows whose frames stand a whole number of times, and changes of frames, that tell.
+#: Share of frames that stand a whole number of times, and changes of frames, that tell.
 _TELLING_SHARE = 0.9
 _FEWEST_CHANGES = 20
 
@@ -134,9 +134,9 @@ def repeats(episodes: Sequence[NDArray[np.float64]]) -> int:
     runs = np.concatenate(found) if found else np.zeros(0, np.int64)
     if len(runs) < _FEWEST_CHANGES:
         return 1
-    total = runs.sum()
     for times in range(_MOST_REPEATS, 1, -1):
-        if runs[runs % times == 0].sum() >= _TELLING_SHARE * total:
+        # By frames, not by rows: one long rest of a body would outweigh them all.
+        if (runs % times == 0).mean() >= _TELLING_SHARE:
             return times
     return 1
 

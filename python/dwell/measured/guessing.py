@@ -9,6 +9,8 @@ import json
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
+
 from dwell.measured.guesses import Guess
 from dwell.measured.guesses.drives import guess_drive
 from dwell.measured.guesses.flights import guess_flight
@@ -51,7 +53,9 @@ def guessed_map(files: list[Path], kind: str | None = None) -> Map:
     for name, guess in _GUESSES.items():
         if kind in (None, name):
             try:
-                return _printed(guess(tables, sounds))
+                # Numbers that are too large are for the checks of the import.
+                with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+                    return _printed(guess(tables, sounds))
             except LookupError as error:
                 reasons.append(f"{name}: {error.args[0]}")
     named = ", ".join(path.name for path in files)

@@ -9,6 +9,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from dwell.files import make_folder
 from dwell.measured.draft import BundleDraft
 from dwell.measured.kinds import KINDS
@@ -39,7 +41,9 @@ def import_files(
     draft = BundleDraft(part, str(map_file))
     try:
         job = Job(mapping, str(map_file), given, draft, progress)
-        counts = KINDS[mapping["kind"]].write(job)
+        # Numbers that are too large are told by the bundle's checks, with their places.
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            counts = KINDS[mapping["kind"]].write(job)
         from dwell import DwellError, _native
 
         progress(0.9, "checking the bundle")

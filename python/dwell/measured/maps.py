@@ -90,7 +90,7 @@ def read_map(path: Path, schemas: Mapping[str, Map]) -> Map:
     check_keys(mapping, schemas[kind], str(path))
     if mapping.get("confirmed") is False:
         count = len(mapping.get("why") or {})
-        guesses = f"its {count} guesses, each with its reason under 'why'," if count else "it"
+        guesses = f"its {count} guesses, each with its reason under 'why'," if count else "it,"
         raise ValueError(
             f'{path}: "confirmed" is false: read {guesses} correct what is wrong, and write '
             '"confirmed": true; until then nothing is imported'

@@ -127,9 +127,12 @@ class Recorder(gymnasium.Wrapper[ObsType, ActType, ObsType, ActType], Generic[Ob
             Counts, as of ``dwell measure import``.
 
         Raises:
+            ConfigError: Nothing was recorded.
             ValueError: The bundle's checks refuse the recording; log and map stay.
         """
         self._end()
+        if not self.episodes:
+            raise ConfigError(f"{self._out}: nothing was recorded; reset and step before")
         self._is_written = True
         table = {**self._mapping["table"], "file": self.log_file.name}
         table |= {"episode": "episode", "split_group": "group", "t_s": "t_s"}

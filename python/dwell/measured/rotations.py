@@ -96,7 +96,9 @@ def speed_note(episodes: Sequence[Episode], rate_hz: float) -> str | None:
         known = ~np.isnan(stated).any(axis=1)
         along += float((stated[known] * shown[known]).sum())
         shown_square += float((shown[known] ** 2).sum())
-    if shown_square == 0.0 or abs(along / shown_square - 1.0) < _SCALE_TOLERANCE:
+    if shown_square == 0.0 or not np.isfinite([along, shown_square]).all():
+        return None
+    if abs(along / shown_square - 1.0) < _SCALE_TOLERANCE:
         return None
     return (
         f"velocities are {along / shown_square:.3f} times what positions and rate_hz show: is the "

@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 
 from dwell import csv_values
 from dwell.measured.readers import Row, open_table, reader_of
-from dwell.measured.tables import INDEX_COLUMN, cell_text
+from dwell.measured.tables import INDEX_COLUMN, NO_NUMBER, cell_text
 
 Array = NDArray[np.float64]
 #: Rows of a table that are looked at.
 MOST_ROWS = 20_000
-#: Texts that stand for no number.
-_NO_NUMBER = ("", "nan", "na", "n/a", "null", "none", "-")
+#: Share of cells of a column of numbers that may be something else.
+_FEW_TEXTS = 0.1
 
 
 @dataclass
@@ -94,6 +94,8 @@ def surveyed(files: list[Path]) -> list[Survey]:
         for part in [None] if parts is None else parts(path):
             table = open_table(path, part)
             rows = list(itertools.islice(table.rows, MOST_ROWS))
+            if not rows:
+                raise ValueError(f"{path}: no rows{'' if part is None else f' in {part!r}'}")
             own = _of_rows(path, part, table.columns, rows, table.delimiter)
             own.facts = dict(table.facts)
             key = (path.suffix, part, tuple(table.columns))
@@ -125,20 +127,23 @@ def _of_rows(
 
 
 def _as_numbers(cells: list[object], delimiter: str) -> Array | None:
-    """Numbers, of which some may be missing; ``None`` where a cell is something else."""
+    """Numbers, of which some may be missing; ``None`` where more than a few cells are texts."""
     found = np.full(len(cells), math.nan)
-    known = False
+    known = texts = 0
     for k, cell in enumerate(cells):
-        if cell is None or (isinstance(cell, str) and cell.strip().lower() in _NO_NUMBER):
+        if cell is None or (isinstance(cell, str) and cell.strip().lower() in NO_NUMBER):
             continue
         try:
             if isinstance(cell, float) and not math.isfinite(cell):
                 continue
             found[k] = csv_values.parse_cell_number("", {"": cell}, "", delimiter)
         except ValueError:
-            return None
-        known = True
-    return found if known or not cells else None
+            # A slip in a cell or two is for the import to name.
+            texts += 1
+            if texts > _FEW_TEXTS * len(cells):
+                return None
+        known += 1
+    return found if known > texts or not cells else None
 
 
 def _append(survey: Survey, other: Survey) -> None:

@@ -16,7 +16,7 @@ from dwell.measured.readers import Row, open_table
 #: Columns that every table has: the file's name without its suffix, and the row, from 0.
 FILE_COLUMN, INDEX_COLUMN = "{file}", "{index}"
 #: Cells that stand for no number.
-_NO_NUMBER = {"", "nan", "na", "n/a", "null", "none", "-"}
+NO_NUMBER = {"", "nan", "na", "n/a", "null", "none", "-", "inf", "+inf", "-inf"}
 
 
 def cell_text(value: object) -> str:
@@ -59,10 +59,11 @@ class MeasuredTable:
             found = open_table(path, self._section)
             self.delimiter = found.delimiter
             csv_values.require_unique_columns(path, found.columns, self._needed)
+            stem = path.stem
             for number, row in found.rows:
-                row.setdefault(FILE_COLUMN, path.stem)
+                row.setdefault(FILE_COLUMN, stem)
                 row.setdefault(INDEX_COLUMN, number - 1)
-                if all(cell_text(row[name]) in values for name, values in self._only.items()):
+                if all(cell_text(row.get(name)) in told for name, told in self._only.items()):
                     matched = True
                     yield Place(path, number), row
         if self._only and not matched:
@@ -71,7 +72,9 @@ class MeasuredTable:
 
     def text(self, row: Row, columns: list[str]) -> str:
         """The texts of columns, joined by a slash."""
-        return "/".join(cell_text(row[name]) for name in columns)
+        if len(columns) == 1:
+            return cell_text(row.get(columns[0]))
+        return "/".join(cell_text(row.get(name)) for name in columns)
 
     def number(self, place: Place, row: Row, column: str) -> float:
         """A finite number in a column."""
@@ -82,7 +85,7 @@ class MeasuredTable:
         value = row.get(column)
         if type(value) is float or type(value) is int:
             return value if math.isfinite(value) else math.nan
-        if value is None or (isinstance(value, str) and value.strip().lower() in _NO_NUMBER):
+        if value is None or (isinstance(value, str) and value.strip().lower() in NO_NUMBER):
             return math.nan
         return csv_values.parse_cell_number(str(place), row, column, self.delimiter)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,6 +15,15 @@ _UNITS = ("m", "cm", "mm", "in", "ft")
 #: Deviation from g that is taken for it; the share of samples that must fall, and how many times
 #: as many must fall as rise alike, which noise does.
 _TOLERANCE, _TELLING_SHARE, _TELLING_RATIO = 0.15, 0.05, 4.0
+#: What a map says of axes, by the axis that falls and the sign of height along it.
+AXES: dict[tuple[int, float], Any] = {
+    (1, 1.0): "y_up",
+    (2, 1.0): "z_up",
+    (0, 1.0): ["y", "x", "-z"],
+    (0, -1.0): ["y", "-x", "z"],
+    (1, -1.0): ["x", "-y", "-z"],
+    (2, -1.0): ["x", "-z", "y"],
+}
 #: Reaches of an acceleration: as parts of an episode, and in samples, which catch short flights.
 _PARTS, _SAMPLES = (4, 8, 16), (2, 3, 5)
 

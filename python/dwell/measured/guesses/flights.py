@@ -14,8 +14,9 @@ from dwell.measured.guesses import (
     guess_table,
     start,
 )
-from dwell.measured.guesses.poses import _AXES
+from dwell.measured.guesses.falling import AXES
 from dwell.measured.survey import Survey
+from dwell.measured.units import UNITS
 
 
 def guess_flight(tables: list[Survey], _sounds: list[Path]) -> Guess:
@@ -49,22 +50,17 @@ def guess_flight(tables: list[Survey], _sounds: list[Path]) -> Guess:
             dict(zip("xyz", columns, strict=True)),
             "three columns that differ in x, y and z",
         )
-        axes = None if fall is None else _AXES[fall]
+        axes = None if fall is None else AXES[fall]
         why = "nothing falls: fill it in"
         guess.say("axes", axes, why if fall is None else f"column {columns[fall[0]]!r} falls")
     else:
         guess.say("table.channels", {"y": columns[0]}, f"column {columns[0]!r} is called a height")
         if fall is not None and fall[1] < 0:
             unit = guess.mapping["table"]["units"].pop(columns[0])
-            guess.unit(columns[0], {"factor": -_factor(unit)}, "it grows downwards")
+            factor = -UNITS["length"][unit]
+            guess.unit(columns[0], {"factor": factor}, "it grows downwards")
     _guess_bodies(guess, tables)
     return guess
-
-
-def _factor(unit: str) -> float:
-    from dwell.measured.units import UNITS
-
-    return UNITS["length"][unit]
 
 
 def _guess_bodies(guess: Guess, tables: list[Survey]) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from itertools import product
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -20,17 +19,9 @@ from dwell.measured.guesses import (
     guess_table,
     start,
 )
+from dwell.measured.guesses.falling import AXES
 from dwell.measured.survey import Survey
 from dwell.measured.units import UNITS
-
-_AXES: dict[tuple[int, float], Any] = {
-    (1, 1.0): "y_up",
-    (2, 1.0): "z_up",
-    (0, 1.0): ["y", "x", "-z"],
-    (0, -1.0): ["y", "-x", "z"],
-    (1, -1.0): ["x", "-y", "-z"],
-    (2, -1.0): ["x", "-z", "y"],
-}
 
 
 def guess_poses(tables: list[Survey], _sounds: list[Path]) -> Guess:
@@ -58,7 +49,7 @@ def guess_poses(tables: list[Survey], _sounds: list[Path]) -> Guess:
     spins = [t for t in found if names.is_spin(t[0]) and not t[0].startswith("ic_")]
     times = guess_cleaning(guess, survey, clock, [*place, *turn[0]])
     fall = guess_length(guess, survey, clock, place)
-    axes = "y_up" if fall is None else _AXES[fall]
+    axes = "y_up" if fall is None else AXES[fall]
     guess.say(
         "axes",
         axes,

@@ -7,7 +7,7 @@ from pathlib import Path
 from dwell.measured.readers import csv_files, hdf5_files, lerobot, mcap_files, parquet_files
 from dwell.measured.readers.form import OpenTable, Row, TableReader
 
-__all__ = ["READERS", "OpenTable", "Row", "TableReader", "open_table", "reader_of", "row_files"]
+__all__ = ["READERS", "OpenTable", "Row", "TableReader", "open_table", "reader_of"]
 
 READERS: tuple[TableReader, ...] = (
     csv_files.READER,
@@ -46,10 +46,3 @@ def open_table(path: Path, part: str | None = None) -> OpenTable:
     if part is not None and reader.parts is None:
         raise ValueError(f"{path}: a {reader.about} file holds one table; leave out 'part'")
     return reader.open(path, part)
-
-
-def row_files(path: Path) -> bool:
-    """Returns whether some reader knows the file's suffix."""
-    if path.is_dir():
-        return True
-    return any(path.suffix.lower() in reader.suffixes for reader in READERS)
