@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from test_measure import MAPS, shared
 from test_measured_cleaning import in_world, swapped, tripled
 from test_measured_kinds import JOINT, SERVO, log, recordings
 from test_measured_readers import lerobot
@@ -184,6 +185,65 @@ def test_a_lerobot_dataset_s_joint_is_guessed(tmp_path: Path) -> None:
     assert table["position"] == "observation.state.shoulder.pos"
     assert table["target"] == "action.shoulder.pos"
     assert "the first of 2 joints" in guess["why"]["table.position"]
+
+
+def test_commands_on_a_topic_of_their_own_are_guessed(tmp_path: Path) -> None:
+    module = pytest.importorskip("mcap.writer", reason="MCAP needs the package mcap")
+    for run in range(4):
+        with (tmp_path / f"run{run}.mcap").open("wb") as file:
+            writer = module.Writer(file)
+            writer.start()
+            schema = writer.register_schema("numbers", "jsonschema", b"{}")
+            states = writer.register_channel("/joint_states", "json", schema)
+            goals = writer.register_channel("/arm/command", "json", schema)
+            for k in range(30):
+                at_ns = 1_700_000_000_000_000_000 + 50_000_000 * k
+                state = json.dumps({"position": [0.02 * k]}).encode()
+                writer.add_message(states, at_ns, state, at_ns)
+                if k % 10 == 0:
+                    goal = json.dumps({"data": [0.02 * (k + 10)]}).encode()
+                    writer.add_message(goals, at_ns, goal, at_ns)
+            writer.finish()
+    files = sorted(tmp_path.glob("*.mcap"))
+    guess = guessed_map(files)
+    assert guess["table"]["part"] == "/joint_states"
+    assert guess["table"]["episode"] == "{file}"
+    commands = guess["commands"]
+    assert (commands["part"], commands["target"]) == ("/arm/command", "data[0]")
+    (tmp_path / "map.json").write_text(json.dumps(confirmed(guess, joint=JOINT)))
+    out = tmp_path / "o.measured"
+    assert import_files(files, tmp_path / "map.json", out, lambda *_: None)["rows"] == 120
+    with (out / "command.csv").open() as file:
+        rows = [row for row in csv.DictReader(file) if row["episode"] == "run2"]
+    assert [float(row["t_s"]) for row in rows] == pytest.approx([0.0, 0.5, 1.0])
+    assert [float(row["value"]) for row in rows] == pytest.approx([0.2, 0.4, 0.6])
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "wanted"),
+    [
+        ("cube_toss", "pose_trajectory", {"axes": "z_up"}),
+        ("ball_drops", "trajectory", {}),
+        ("diffdrive_odometry", "drive", {}),
+        ("servo_backlash", "servo", {}),
+    ],
+)
+def test_real_sets_are_recognised(name: str, kind: str, wanted: dict[str, Any]) -> None:
+    folder = shared() / name
+    if not folder.is_dir():
+        pytest.skip(f"{folder} is absent")
+    pytest.importorskip("pyarrow", reason="Parquet needs pyarrow")
+    guess = guessed_map([folder / "data.parquet", folder / "index.csv"])
+    mapping = json.loads((MAPS / f"{name}.json").read_text())
+    assert guess["kind"] == kind
+    assert wanted.items() <= guess.items()
+    keys = {*mapping["table"]} - {"metres_per_unit", "units", "episode", "split_group"}
+    assert {key: guess["table"][key] for key in keys} == {k: mapping["table"][k] for k in keys}
+    for part in ("poses", "base"):
+        if part in mapping:
+            assert guess[part]["rate_hz"] == mapping[part]["rate_hz"]
+    if kind == "pose_trajectory":
+        assert guess["poses"]["angular_velocity"] == "body"
 
 
 def test_responses_are_guessed_from_a_table_of_wav_files(tmp_path: Path) -> None:

@@ -56,7 +56,17 @@ EPISODES = (
 GROUPS = ("split_group", "session", "set", "day", "object", "log")
 #: Names of sensors' readings and of what they were told, of a joint.
 POSITIONS = ("position", "pos", "present_position", "angle", "q", "joint", "encoder", "measured")
-TARGETS = ("target", "goal", "command", "cmd", "desired", "setpoint", "reference", "action")
+TARGETS = (
+    "target",
+    "goal",
+    "command",
+    "cmd",
+    "desired",
+    "setpoint",
+    "reference",
+    "action",
+    "actions",
+)
 HEADINGS = ("heading", "theta", "yaw", "psi", "phi")
 HEIGHTS = ("height", "altitude", "y", "z", "h")
 NAMES = ("ball", "body", "object", "name", "thing")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from pathlib import Path
 from typing import Any
 
@@ -38,7 +39,7 @@ def guess_servo(tables: list[Survey], _sounds: list[Path]) -> Guess:
         if found is not None:
             break
     else:
-        raise LookupError("no table has a column of positions and one of targets")
+        return _guess_apart(tables)
     position, target, why_these = found
     guess = start("servo")
     guess_table(guess, survey)
@@ -56,10 +57,59 @@ def guess_servo(tables: list[Survey], _sounds: list[Path]) -> Guess:
     guess_cleaning(guess, survey, clock, [position])
     for column in (position, target):
         guess.unit(column, *_unit(column, survey.numbers[position], survey.numbers[target]))
+    _guess_joint(guess, position)
+    return guess
+
+
+def _guess_joint(guess: Guess, position: str) -> None:
     guess.say("joint.name", names.bare(position), "any name")
     for key in _JOINT:
         guess.say(f"joint.{key}", None, f"{UNKNOWN}; a value before any fit will do")
+
+
+def _guess_apart(tables: list[Survey]) -> Guess:
+    """A map of positions in one table and commands in another, as topics of a log.
+
+    Raises:
+        LookupError: There is no such pair.
+    """
+    commanding = [t for t in tables if any(word in _title(t) for word in names.TARGETS)]
+    for survey, commands in itertools.product(tables, commanding):
+        if survey is commands or survey in commanding:
+            continue
+        position = names.first_named(survey.numbers, names.POSITIONS)
+        target = names.first_named(commands.numbers, (*names.TARGETS, *names.POSITIONS, "data"))
+        clock = names.first_named(commands.numbers, names.TIMES)
+        if position is not None and target is not None and clock is not None:
+            break
+    else:
+        raise LookupError("no table has a column of positions and one of targets")
+    guess = start("servo")
+    guess_table(guess, survey)
+    of_samples = guess_clock(guess, survey)
+    guess.say("table.position", position, "its name")
+    guess_cleaning(guess, survey, of_samples, [position])
+    both = (survey.numbers[position], commands.numbers[target])
+    guess.unit(position, *_unit(position, *both))
+    why = "its name tells of commands"
+    guess.say("commands.file", commands.file, why)
+    if commands.part is not None:
+        guess.say("commands.part", commands.part, why)
+    guess.say("commands.episode", guess.mapping["table"]["episode"], "as of the positions")
+    guess.say("commands.t_s", clock, "its name; on the clock of the positions")
+    guess.say("commands.target", target, "its name")
+    unit, why = _unit(target, *both)
+    units = {target: unit}
+    time_unit = guess.mapping["table"]["units"].get(of_samples.column)
+    if clock == of_samples.column and time_unit is not None:
+        units[clock] = time_unit
+    guess.say("commands.units", units, why)
+    _guess_joint(guess, position)
     return guess
+
+
+def _title(survey: Survey) -> str:
+    return (survey.part or survey.path.stem).lower()
 
 
 def _columns(survey: Survey) -> tuple[str, str, str] | None:
@@ -85,6 +135,8 @@ def _unit(column: str, positions: Array, targets: Array) -> tuple[Any, str]:
     if named in ("rad", "deg", "mrad", "turn"):
         return named, "its name says so"
     both = np.concatenate([positions[~np.isnan(positions)], targets[~np.isnan(targets)]])
+    if not len(both):
+        return None, "no number tells: fill it in"
     low, high = float(both.min()), float(both.max())
     if (both == np.rint(both)).all() and high > 360.0:
         turn = 4096 if high <= 4096 else 16384 if high <= 16384 else None
