@@ -338,6 +338,15 @@ def test_times_since_1970_count_from_the_first_where_the_map_says_so(tmp_path: P
     assert times[3] == pytest.approx(0.01)
 
 
+def test_air_that_is_no_number_or_none_that_is_breathed_is_refused(tmp_path: Path) -> None:
+    told = refused(tmp_path, {**FLIGHT, "g_m_s2": "x"})
+    assert "map.json: g_m_s2 is 'x'; expected a number" in told
+    told = refused(tmp_path, {**FLIGHT, "environment": {"temperature_c": 300}})
+    assert "map.json: environment.temperature_c is 300; allowed is -40 to 60" in told
+    told = refused(tmp_path, with_table(FLIGHT, channels={"height": "y"}))
+    assert "no channel 'height'; allowed are ['x', 'y', 'z']" in told
+
+
 def test_one_episode_is_refused(tmp_path: Path) -> None:
     told = refused(tmp_path, FLIGHT, lambda rows: rows.__delitem__(slice(40, None)))
     assert "episodes" in told

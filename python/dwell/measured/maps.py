@@ -20,6 +20,9 @@ TEXT_OR_OBJECT: tuple[type, ...] = (str, dict)
 #: An object whose keys are names of the user.
 NAMES: Map = {}
 
+#: What is checked where it is used.
+ANYTHING = None
+
 #: Keys of every map, whatever it measures.
 COMMON: Map = {
     "kind": "",
@@ -28,8 +31,8 @@ COMMON: Map = {
     "title": "",
     "licence": "",
     "notes": "",
-    "g_m_s2": 1.0,
-    "environment": {"temperature_c": 1.0, "humidity_pct": 1.0, "pressure_pa": 1.0},
+    "g_m_s2": ANYTHING,
+    "environment": {"temperature_c": ANYTHING, "humidity_pct": ANYTHING, "pressure_pa": ANYTHING},
 }
 #: Keys of every table of samples.
 TABLE: Map = {
@@ -105,7 +108,7 @@ def check_keys(found: Map, schema: Map, at: str) -> None:
         if key not in schema:
             raise ValueError(f"{at}: no key {key!r}; allowed are {list(schema)}")
         form = schema[key]
-        if value is None:
+        if value is None or form is ANYTHING:
             continue
         if isinstance(form, tuple):
             kinds = form

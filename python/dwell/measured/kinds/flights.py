@@ -51,6 +51,8 @@ _SCHEMA: Map = {
     },
     "table": {**TABLE, "metres_per_unit": 1.0, "channels": {}},
 }
+#: What each channel of the bundle measures, and its unit there.
+_CHANNELS = {"x": ("length", "m"), "y": ("length", "m"), "z": ("length", "m")}
 #: Samples of an episode below which nothing can be predicted.
 FEWEST = 6
 
@@ -67,6 +69,8 @@ def _write(job: Job) -> dict[str, Any]:
     for channel, column in channels.items():
         if not isinstance(column, str):
             raise ValueError(f"{here}: channels.{channel} is {column!r:.60}; text is needed")
+        if channel not in _CHANNELS:
+            raise ValueError(f"{here}: no channel {channel!r}; allowed are {list(_CHANNELS)}")
     axes = Axes(job.mapping, job.at)
     turned = job.mapping.get("axes") is not None
     if turned and set(channels) != {"x", "y", "z"}:
@@ -75,7 +79,8 @@ def _write(job: Job) -> dict[str, Any]:
             "there. Of a height alone write {'y': its column}, without axes"
         )
     names = ["x", "y", "z"] if turned else list(channels)
-    reader = SampleReader(job, part, here, [Field(channels[name], "length") for name in names])
+    fields = [Field(channels[name], _CHANNELS[name][0]) for name in names]
+    reader = SampleReader(job, part, here, fields)
     left_out: dict[str, None] = {}
     seen: dict[str, None] = {}
 
@@ -108,7 +113,12 @@ def _write(job: Job) -> dict[str, Any]:
     job.progress(0.7, f"{samples.rows} rows of {reader.table.name}")
     noise = job.mapping.get("noise_sd") or {}
     told = [
-        {"name": name, "unit": "m", "clock": "tracker", "noise_sd": noise.get(name)}
+        {
+            "name": name,
+            "unit": _CHANNELS[name][1],
+            "clock": "tracker",
+            "noise_sd": noise.get(name),
+        }
         for name in names
     ]
     write_manifest(job, KIND.version, {"bodies": list(bodies.values())}, {"channels": told})

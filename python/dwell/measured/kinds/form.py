@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from dwell.arguments import finite_number
 from dwell.measured.maps import COMMON, Job, Map
 from dwell.measured.samples import Episode
 
@@ -42,7 +43,11 @@ class Kind:
 def write_manifest(job: Job, version: int, scene: Map, more: Map) -> None:
     """The manifest."""
     mapping = job.mapping
-    environment = {"g_m_s2": mapping.get("g_m_s2"), **(mapping.get("environment") or {})}
+    told = {"g_m_s2": mapping.get("g_m_s2"), **(mapping.get("environment") or {})}
+    environment = {
+        key: None if value is None else finite_number(f"{job.at}: {key}", value)
+        for key, value in told.items()
+    }
     manifest = {
         "version": version,
         "title": mapping.get("title") or "measured",
