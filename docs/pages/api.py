@@ -13,7 +13,7 @@ from pages.tables import code, table
 #: What is public besides the names of `dwell` and `dwell.envs`: what these return, and functions
 #: that stand beside them.
 _BESIDE = {
-    "dwell.calibration": ("write_example",),
+    "dwell.calibration": ("write_example", "Recorder", "coverage", "Coverage"),
     "dwell.echogram": ("Echogram",),
     "dwell.episode_maker": ("EpisodeMaker",),
     "dwell.habitat_conversion": ("HabitatConverter", "Comparison"),

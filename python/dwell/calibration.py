@@ -18,6 +18,10 @@ from dwell.arguments import (
     text,
 )
 from dwell.files import make_folder
+from dwell.measured.coverage import Coverage, coverage
+from dwell.measured.recorder import Recorder
+
+__all__ = ["Coverage", "Recorder", "calibrate", "coverage", "write_example"]
 
 
 def calibrate(

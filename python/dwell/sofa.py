@@ -43,100 +43,33 @@ def read_head(path: str) -> HeadFile:
     """
     if not Path(path).exists():
         raise MeasuredDataError(f"{path}: there is no such file")
-    return _Reader(path, _native.Hdf5.open(path)).head()
+    return _HeadReader(path, _native.Hdf5.open(path)).head()
 
 
-class _Reader:
+class SofaReader:
     """One open file."""
 
     def __init__(self, path: str, file: _native.Hdf5) -> None:
+        """A file, and its path for messages."""
         self.path = path
         self.file = file
 
     def fault(self, variable: str, why: str) -> MeasuredDataError:
+        """The fault of a variable."""
         return MeasuredDataError(f"{self.path}: {variable}: {why}")
 
-    def head(self) -> HeadFile:
-        """All of it, checked."""
-        self.check_convention()
-        shape = self.shape("Data.IR")
-        if len(shape) != 3:
-            raise self.fault("Data.IR", f"expected axes (M, R, N), found shape {shape}")
-        count, receivers, samples = shape
-        if receivers != 2:
-            raise self.fault("Data.IR", f"{receivers} receivers; a head has 2 ears")
-        if count * samples == 0:
-            raise self.fault(
-                "Data.IR", f"{count} directions of {samples} samples; both are at least 1"
-            )
-        responses = self.numbers("Data.IR")
+    def rate_hz(self) -> float:
+        """Samples a second."""
         rates = self.numbers("Data.SamplingRate").ravel()
         units = self.file.text("Data.SamplingRate", "Units") or "hertz"
         if units.lower() not in ("hertz", "hz"):
             raise self.fault("Data.SamplingRate", f"Units is {units!r}; allowed is 'hertz'")
         if rates.size == 0 or rates[0] <= 0.0 or (rates != rates[0]).any():
             raise self.fault("Data.SamplingRate", f"{rates}; allowed is one rate above 0 Hz")
-        delays = self.rows("Data.Delay", count, 2) if self.has("Data.Delay") else None
-        late = np.zeros((count, 2)) if delays is None else delays
-        if self.left_is_second():
-            responses, late = responses[:, ::-1], late[:, ::-1]
-        return HeadFile(
-            self.sources(count),
-            np.ascontiguousarray(responses, np.float32),
-            np.ascontiguousarray(late, np.float64),
-            float(rates[0]),
-        )
-
-    def check_convention(self) -> None:
-        found = self.file.text(None, "SOFAConventions")
-        if found is None:
-            raise self.fault("SOFAConventions", "missing; this is no SOFA file")
-        if found != CONVENTION:
-            spectra = " (spectra)" if found.endswith("HRTF") else ""
-            raise self.fault(
-                "SOFAConventions", f"{found!r}{spectra}; heads are read from {CONVENTION!r}"
-            )
-        if (data := self.file.text(None, "DataType") or "FIR") != "FIR":
-            raise self.fault("DataType", f"{data!r}; allowed is 'FIR'")
-
-    def left_is_second(self) -> bool:
-        """Returns whether the second receiver is the left ear."""
-        ears = self.numbers("ReceiverPosition")
-        if ears.ndim not in (2, 3) or ears.shape[:2] != (2, 3):
-            raise self.fault(
-                "ReceiverPosition", f"expected shape (2, 3, I or M), found {ears.shape}"
-            )
-        places = np.moveaxis(ears.reshape(2, 3, -1), 1, 2)
-        sideways = self.cartesian("ReceiverPosition", places)[..., 1]
-        left = sideways[0] - sideways[1]
-        if not ((left > 1e-6).all() or (left < -1e-6).all()):
-            raise self.fault(
-                "ReceiverPosition", "no receiver is left (+y) of the other in every measurement"
-            )
-        return bool((left < 0.0).all())
-
-    def sources(self, count: int) -> NDArray[np.float64]:
-        """Positions of the sources, in the head's axes. Shape (M, 3)."""
-
-        def place(name: str, like: str | None = None) -> NDArray[np.float64]:
-            return self.cartesian(name, self.rows(name, count, 3), like)
-
-        sources = place("SourcePosition")
-        if self.has("ListenerPosition"):
-            sources = sources - place("ListenerPosition")
-        front, up = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
-        front, up = np.tile(front, (count, 1)), np.tile(up, (count, 1))
-        if self.has("ListenerView"):
-            front = self.unit("ListenerView", place("ListenerView"))
-        if self.has("ListenerUp"):
-            up = place("ListenerUp", "ListenerView")
-        upright = up - front * (front * up).sum(axis=1, keepdims=True)
-        up = self.unit("ListenerUp", upright)
-        left = np.cross(up, front)
-        x, y, z = ((sources * axis).sum(axis=1) for axis in (front, left, up))
-        return np.stack([-y, z, -x], axis=1)
+        return float(rates[0])
 
     def unit(self, name: str, rows: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Rows of length 1."""
         length = np.linalg.norm(rows, axis=1, keepdims=True)
         if (length < 1e-6).any():
             raise self.fault(name, "points nowhere")
@@ -187,6 +120,7 @@ class _Reader:
         return np.broadcast_to(values, (count, columns))
 
     def numbers(self, name: str) -> NDArray[np.float64]:
+        """A variable, all of it finite."""
         self.shape(name)
         numbers, shape = self.file.numbers(name)
         if not np.isfinite(numbers).all():
@@ -194,10 +128,91 @@ class _Reader:
         return numbers.reshape(shape)
 
     def shape(self, name: str) -> tuple[int, ...]:
+        """The lengths of the axes of a variable that must be there."""
         shape = self.file.shape(name)
         if shape is None:
             raise self.fault(name, "missing")
         return tuple(shape)
 
     def has(self, name: str) -> bool:
+        """Returns whether there is such a variable."""
         return self.file.shape(name) is not None
+
+
+class _HeadReader(SofaReader):
+    """The file of a head."""
+
+    def head(self) -> HeadFile:
+        """All of it, checked."""
+        self.check_convention()
+        shape = self.shape("Data.IR")
+        if len(shape) != 3:
+            raise self.fault("Data.IR", f"expected axes (M, R, N), found shape {shape}")
+        count, receivers, samples = shape
+        if receivers != 2:
+            raise self.fault("Data.IR", f"{receivers} receivers; a head has 2 ears")
+        if count * samples == 0:
+            raise self.fault(
+                "Data.IR", f"{count} directions of {samples} samples; both are at least 1"
+            )
+        responses = self.numbers("Data.IR")
+        rate_hz = self.rate_hz()
+        delays = self.rows("Data.Delay", count, 2) if self.has("Data.Delay") else None
+        late = np.zeros((count, 2)) if delays is None else delays
+        if self.left_is_second():
+            responses, late = responses[:, ::-1], late[:, ::-1]
+        return HeadFile(
+            self.sources(count),
+            np.ascontiguousarray(responses, np.float32),
+            np.ascontiguousarray(late, np.float64),
+            rate_hz,
+        )
+
+    def check_convention(self) -> None:
+        found = self.file.text(None, "SOFAConventions")
+        if found is None:
+            raise self.fault("SOFAConventions", "missing; this is no SOFA file")
+        if found != CONVENTION:
+            spectra = " (spectra)" if found.endswith("HRTF") else ""
+            raise self.fault(
+                "SOFAConventions", f"{found!r}{spectra}; heads are read from {CONVENTION!r}"
+            )
+        if (data := self.file.text(None, "DataType") or "FIR") != "FIR":
+            raise self.fault("DataType", f"{data!r}; allowed is 'FIR'")
+
+    def left_is_second(self) -> bool:
+        """Returns whether the second receiver is the left ear."""
+        ears = self.numbers("ReceiverPosition")
+        if ears.ndim not in (2, 3) or ears.shape[:2] != (2, 3):
+            raise self.fault(
+                "ReceiverPosition", f"expected shape (2, 3, I or M), found {ears.shape}"
+            )
+        places = np.moveaxis(ears.reshape(2, 3, -1), 1, 2)
+        sideways = self.cartesian("ReceiverPosition", places)[..., 1]
+        left = sideways[0] - sideways[1]
+        if not ((left > 1e-6).all() or (left < -1e-6).all()):
+            raise self.fault(
+                "ReceiverPosition", "no receiver is left (+y) of the other in every measurement"
+            )
+        return bool((left < 0.0).all())
+
+    def sources(self, count: int) -> NDArray[np.float64]:
+        """Positions of the sources, in the head's axes. Shape (M, 3)."""
+
+        def place(name: str, like: str | None = None) -> NDArray[np.float64]:
+            return self.cartesian(name, self.rows(name, count, 3), like)
+
+        sources = place("SourcePosition")
+        if self.has("ListenerPosition"):
+            sources = sources - place("ListenerPosition")
+        front, up = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
+        front, up = np.tile(front, (count, 1)), np.tile(up, (count, 1))
+        if self.has("ListenerView"):
+            front = self.unit("ListenerView", place("ListenerView"))
+        if self.has("ListenerUp"):
+            up = place("ListenerUp", "ListenerView")
+        upright = up - front * (front * up).sum(axis=1, keepdims=True)
+        up = self.unit("ListenerUp", upright)
+        left = np.cross(up, front)
+        x, y, z = ((sources * axis).sum(axis=1) for axis in (front, left, up))
+        return np.stack([-y, z, -x], axis=1)

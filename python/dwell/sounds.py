@@ -16,8 +16,8 @@ from dwell.files import atomic_write, read
 #: A sound file that is read has at most so many bytes.
 _MAX_READ_BYTES = 512 * 2**20
 
-#: Formats of samples in a WAV file: whole numbers, and numbers of IEEE 754.
-_PCM, _FLOAT = 1, 3
+#: Formats of samples in a WAV file: whole numbers, numbers of IEEE 754, and what is told later on.
+_PCM, _FLOAT, _EXTENSIBLE = 1, 3, 0xFFFE
 #: What one sample of all channels takes has 16 bits.
 _MAX_FRAME_BYTES = 2**16 - 1
 #: Chunks have lengths of 32 bits.
@@ -85,11 +85,12 @@ def write_wav(
 def read_wav(
     path: str | os.PathLike[str], *, full_scale_pa: float = 1.0
 ) -> tuple[NDArray[np.float32], int]:
-    """Reads WAV of 32-bit float or 16 bits, as :func:`write_wav` writes it.
+    """Reads WAV of 16, 24 or 32 bits, or of 32- or 64-bit float.
 
     Args:
         path: The file.
-        full_scale_pa: Of 16 bits, the pressure at full scale, Pa, above 0; 1: fractions of it.
+        full_scale_pa: Of whole numbers, the pressure at full scale, Pa, above 0; 1: fractions
+            of it.
 
     Returns:
         The sound, shape (channel, sample), Pa, and the samples a second.
@@ -112,20 +113,31 @@ def read_wav(
     if len(layout) < 16 or data is None:
         raise MeasuredDataError(f"{path}: a WAV file has the chunks fmt and data")
     form, channels, rate_hz, _, _, bits = struct.unpack_from("<HHIIHH", layout)
-    kinds = {(_FLOAT, 32): ("<f4", 1.0), (_PCM, 16): ("<i2", full_scale_pa / 32767.0)}
+    if form == _EXTENSIBLE and len(layout) >= 26:
+        # The format proper stands at the head of a longer identifier.
+        form = int.from_bytes(layout[24:26], "little")
+    kinds = {(_FLOAT, 32): "<f4", (_FLOAT, 64): "<f8"}
+    kinds |= {(_PCM, 16): "<i2", (_PCM, 24): "<i4", (_PCM, 32): "<i4"}
     if (form, bits) not in kinds or not channels:
         raise MeasuredDataError(
             f"{path}: {channels} channels of format {form} with {bits} bits; "
-            "expected format 3 (float) with 32 bits or 1 (PCM) with 16"
+            "expected format 3 (float) with 32 or 64 bits or 1 (PCM) with 16, 24 or 32"
         )
-    kind, scale = kinds[form, bits]
+    kind = kinds[form, bits]
+    scale = 1.0 if form == _FLOAT else full_scale_pa / (2 ** (bits - 1) - 1)
     frame = channels * bits // 8
     if len(data) % frame:
         raise MeasuredDataError(
             f"{path}: its data has {len(data)} bytes; expected a multiple of {frame}, as one "
             f"sample of {channels} channels of {bits} bits has"
         )
-    frames = np.frombuffer(data, kind).reshape(-1, channels)
+    if bits == 24:
+        # Into the upper three bytes of four, which keeps the sign.
+        packed = np.zeros((len(data) // 3, 4), np.uint8)
+        packed[:, 1:] = np.frombuffer(data, np.uint8).reshape(-1, 3)
+        frames = (packed.view(kind) >> 8).reshape(-1, channels)
+    else:
+        frames = np.frombuffer(data, kind).reshape(-1, channels)
     return (frames.T * np.float64(scale)).astype(np.float32), rate_hz
 
 

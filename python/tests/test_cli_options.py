@@ -46,7 +46,7 @@ ROOM = """{"shoebox": [4, 3, 2.5], "walls": {"x0": "a", "x1": "a", "y0": "a", "y
         ("info --map x.json", "map"),
         (f"view {HOUSE} --seed 3 --out x.rrd", "seed"),
         ("replay x.replay --verify --width 40", "width"),
-        ("measure import a.csv --init", "init"),
+        ("measure import a.csv --init --out x.measured", "init"),
     ],
 )
 def test_options_that_nothing_would_read_are_refused(

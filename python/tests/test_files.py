@@ -522,10 +522,10 @@ def test_odd_names_are_refused_by_one_sentence(
 def test_odd_tables_are_refused_by_one_sentence(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from dwell.measured_templates import FLIGHT
+    from dwell.measured.kinds import KINDS
 
     meaning, table = tmp_path / "map.json", tmp_path / "index.csv"
-    meaning.write_text(json.dumps({**FLIGHT, "g_m_s2": 9.81}))
+    meaning.write_text(json.dumps({**KINDS["trajectory"].template, "g_m_s2": 9.81}))
     for text in (b'episode,"\n' + b"x" * 200_000, b"\xff\xfe\n", b"episode\n\xff\n", b"a\0b\n1\n"):
         table.write_bytes(text)
         options = ["--map", str(meaning), "--out", str(tmp_path / "x.measured")]

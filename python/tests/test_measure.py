@@ -15,7 +15,8 @@ from typing import Any
 import pytest
 
 from dwell import _native
-from dwell.measured_import import import_files, open_table
+from dwell.measured.importing import import_files
+from dwell.measured.readers import open_table
 
 ROOT = Path(__file__).resolve().parents[2]
 MAPS = ROOT / "examples" / "measured"
@@ -195,10 +196,10 @@ def test_a_parquet_table_is_closed_where_its_rows_end(tmp_path: Path) -> None:
     path = tmp_path / "data.parquet"
     parquet.write_table(pyarrow.table({"t_s": [0.0, 0.5], "y": [1.0, 2.0]}), path)
     # A file that is left open is a warning, which is an error here.
-    columns, rows = open_table(path, ",")
-    assert columns == ["t_s", "y"]
-    assert [*rows] == [(1, {"t_s": 0.0, "y": 1.0}), (2, {"t_s": 0.5, "y": 2.0})]
-    del rows
+    table = open_table(path)
+    assert table.columns == ["t_s", "y"]
+    assert [*table.rows] == [(1, {"t_s": 0.0, "y": 1.0}), (2, {"t_s": 0.5, "y": 2.0})]
+    del table
     gc.collect()
 
 
@@ -208,7 +209,8 @@ def shared() -> Path:
 
 
 @pytest.mark.parametrize(
-    ("name", "episodes"), [("cube_toss", 367), ("ball_drops", None), ("diffdrive_odometry", 114)]
+    ("name", "episodes"),
+    [("cube_toss", 367), ("ball_drops", None), ("diffdrive_odometry", 114), ("servo_backlash", 10)],
 )
 def test_real_sets_are_imported_whole(tmp_path: Path, name: str, episodes: int | None) -> None:
     folder = shared() / name

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from dwell.csv_values import TimeParser
-from dwell.measured_import import import_files
+from dwell.measured.importing import import_files
 
 Rows = list[list[Any]]
 FLIGHT: dict[str, Any] = {
@@ -248,8 +248,6 @@ def counted_on(rows: Rows) -> None:
 
 
 SAYS: list[tuple[dict[str, Any], Callable[[Rows], object], str]] = [
-    (FLIGHT, put(17, 3, ""), "data.csv row 17: column 'y' is empty.*: fill it in, or leave"),
-    (FLIGHT, put(17, 3, "NaN"), "data.csv row 17: column 'y' is 'NaN'.*: fill it in, or leave"),
     (FLIGHT, put(17, 3, "\uff11"), "row 17: column 'y' is '\uff11'; a finite number is needed"),
     (FLIGHT, put(17, 3, "1.2 m"), "row 17: column 'y' is '1.2 m'.*: the number alone"),
     (FLIGHT, put(17, 3, '"1,25"'), "row 17: column 'y' is '1,25'.*decimal comma. Write 1.25"),

@@ -1,43 +1,51 @@
-"""``dwell measure import``: tables of measurements into a bundle that ``dwell calibrate`` reads."""
+"""``dwell measure``: files of measurements into a bundle, and which states a bundle has."""
 
 from __future__ import annotations
 
 import argparse
 import json
 import sys
+from pathlib import Path
 from typing import Any
 
 from dwell.cli.common import ProgressBar, path, print_json
 
+_ASKED = ""
+
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Adds the options."""
-    what = parser.add_subparsers(dest="what", metavar="import", required=True)
-    command = what.add_parser("import", help="read tables (CSV; Parquet with pyarrow)")
-    command.add_argument("files", nargs="*", type=path, metavar="FILES", help="the tables")
+    what = parser.add_subparsers(dest="what", metavar="import|coverage", required=True)
+    command = what.add_parser(
+        "import", help="read tables (CSV, Parquet, LeRobot, HDF5, MCAP), WAV and SOFA"
+    )
+    command.add_argument("files", nargs="*", type=path, metavar="FILES", help="the files")
     command.add_argument("--map", type=path, metavar="FILE", help="what the columns mean (JSON)")
     command.add_argument("--out", type=path, metavar="NAME.measured", help="the bundle to write")
     command.add_argument(
         "--init",
         nargs="?",
-        const="pose_trajectory",
-        choices=["pose_trajectory", "trajectory", "drive"],
+        const=_ASKED,
         metavar="KIND",
-        help="print a template of the map (pose_trajectory, trajectory or drive) and leave",
+        help="print a map and leave: with FILES one that is filled in with what was guessed and "
+        "why; without, the template of KIND (pose_trajectory, trajectory, drive, servo or "
+        "impulse_response)",
     )
+    command.add_argument("--json", action="store_true", help="one JSON object on standard output")
+    command = what.add_parser("coverage", help="which states a bundle has, and what to record")
+    command.add_argument("measured", type=path, metavar="NAME.measured", help="the bundle")
+    command.add_argument("--out", type=path, metavar="FILE.png", help="the picture to write")
     command.add_argument("--json", action="store_true", help="one JSON object on standard output")
 
 
 def run(args: argparse.Namespace) -> int:
-    """Imports, checks the bundle as ``dwell calibrate`` would, and moves it into place."""
-    from dwell.measured_import import import_files
-    from dwell.measured_templates import TEMPLATES
+    """Imports and checks as ``dwell calibrate`` would, or looks at a bundle."""
+    if args.what == "coverage":
+        return _coverage(args)
+    if args.init is not None:
+        return _init(args)
+    from dwell.measured.importing import import_files
 
-    if args.init:
-        if args.files or args.map or args.out:
-            raise ValueError("--init prints a template and reads nothing else; give it alone")
-        sys.stdout.write(json.dumps(TEMPLATES[args.init], indent=2) + "\n")
-        return 0
     if not args.files or args.map is None or args.out is None:
         print(
             "dwell measure import: FILES, --map and --out are needed (or --init)", file=sys.stderr
@@ -49,6 +57,53 @@ def run(args: argparse.Namespace) -> int:
     else:
         left_out = _left_out(counts)
         print(f"{args.out}: {counts['episodes']} episodes, {counts['rows']} rows{left_out}")
+        for note in counts.get("notes", []):
+            print(f"  {note}")
+    return 0
+
+
+def _coverage(args: argparse.Namespace) -> int:
+    """Draws the recorded states and prints what to record."""
+    from dwell.calibration import coverage
+    from dwell.files import atomic_write, check_writable
+
+    if args.out is not None:
+        if args.out.suffix != ".png":
+            raise ValueError(f"--out is {args.out}; a name that ends in .png is needed")
+        check_writable(args.out)
+    found = coverage(args.measured)
+    if args.out is not None:
+        picture = found.picture()
+        with atomic_write(args.out) as draft:
+            picture.save(draft, "PNG")
+    if args.json:
+        axes = list(found.names)
+        told = {"kind": found.kind, "axes": axes, "share": found.share, "advice": found.advice}
+        print_json(told)
+    else:
+        print("\n".join(found.advice))
+    return 0
+
+
+def _init(args: argparse.Namespace) -> int:
+    """Prints a map."""
+    from dwell.measured.kinds import KINDS
+
+    if args.map or args.out:
+        raise ValueError("--init prints a map and writes no bundle; leave out --map and --out")
+    kind, files = args.init or None, list(args.files)
+    if kind is not None and kind not in KINDS:
+        # The first of the files, which stand behind the option.
+        files.insert(0, Path(kind))
+        kind = None
+    if files:
+        from dwell.measured.guessing import guessed_map
+
+        mapping = guessed_map(files, kind)
+    else:
+        template = KINDS[kind or "pose_trajectory"].template
+        mapping = {"kind": template["kind"], "confirmed": False, **template}
+    sys.stdout.write(json.dumps(mapping, indent=2) + "\n")
     return 0
 
 

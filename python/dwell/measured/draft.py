@@ -10,28 +10,39 @@ import contextlib
 import csv
 import re
 from array import array
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
 
+from dwell.measured.places import Place
 
-class _Source(Protocol):
-    """A table that is read row by row."""
 
-    path: Path
-    row: int
+class WriteRow(Protocol):
+    """Writes a row, and notes where it comes from."""
+
+    def __call__(self, row: list[str], place: Place | None = None, /) -> None:
+        """The cells in the order of the head."""
 
 
 @dataclass
 class _Origin:
     """Where the rows of a table of the bundle come from."""
 
-    source: _Source
     #: The user's column of each field; of a field with several, those that take turns.
     columns: Mapping[str, Sequence[str]]
-    #: The user's row of each row.
+    paths: list[Path] = field(default_factory=list)
+    numbers: dict[Path, int] = field(default_factory=dict)
+    #: The user's file and row of each row.
+    files: array[int] = field(default_factory=lambda: array("L"))
     rows: array[int] = field(default_factory=lambda: array("Q"))
+
+    def add(self, place: Place) -> None:
+        number = self.numbers.setdefault(place.path, len(self.numbers))
+        if number == len(self.paths):
+            self.paths.append(place.path)
+        self.files.append(number)
+        self.rows.append(place.row)
 
 
 class BundleDraft:
@@ -45,76 +56,62 @@ class BundleDraft:
         self.fields: dict[str, str] = {}
         self._origins: dict[str, _Origin] = {}
         #: The table of samples, and where each episode begins in it.
-        self._main: _Source | None = None
-        self._episodes: dict[str, int] = {}
+        self._main = ""
+        self._episodes: dict[str, Place] = {}
         self._clock = self._name = ""
+        #: What becomes of gaps, for who can have it otherwise.
+        self.gap_hint = ""
 
-    def measured(self, source: _Source, clock: str, episode: str) -> None:
+    def measured(self, table: str, clock: str, episode: str) -> None:
         """Says which table holds the samples, and its columns of times and of episodes."""
-        self._main, self._clock, self._name = source, clock, episode
+        self._main, self._clock, self._name = table, clock, episode
 
-    def begins(self, episode: str) -> None:
+    def begins(self, episode: str, place: Place) -> None:
         """Notes an episode's first row."""
-        if self._main is not None:
-            self._episodes.setdefault(episode, self._main.row)
+        self._episodes.setdefault(episode, place)
 
     @contextlib.contextmanager
     def table(
-        self,
-        name: str,
-        head: str,
-        source: _Source | None = None,
-        columns: Mapping[str, Sequence[str]] | None = None,
-    ) -> Iterator[Callable[[list[str]], None]]:
-        """A CSV file that is written row by row; each comes from the row that ``source`` is at."""
+        self, name: str, head: str, columns: Mapping[str, Sequence[str]] | None = None
+    ) -> Iterator[WriteRow]:
+        """A CSV file that is written row by row; each comes from a place of the user's files."""
         with (self.folder / name).open("w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file, lineterminator="\n")
             writer.writerow(head.split(","))
-            if source is None:
-                yield writer.writerow
-                return
-            origin = self._origins.setdefault(name, _Origin(source, columns or {}))
+            origin = self._origins.setdefault(name, _Origin(columns or {}))
 
-            def write(row: list[str]) -> None:
+            def write(row: list[str], place: Place | None = None, /) -> None:
                 writer.writerow(row)
-                origin.rows.append(origin.source.row)
+                if place is not None:
+                    origin.add(place)
 
             yield write
 
     def told(self, fault: str, out: Path) -> str:
         """A fault of the bundle as one of the user's files."""
+        told = self._told(fault, out)
+        is_gap = "missing before it" in told or "fill the gap in" in told
+        return told + self.gap_hint if is_gap else told
+
+    def _told(self, fault: str, out: Path) -> str:
         here = re.escape(str(self.folder))
         if found := re.match(rf"{here}/manifest\.json: (\S+)( is .*)", fault, re.DOTALL):
             return f"{self._field(found[1])}{found[2]}"
         if found := re.match(rf"{here}/episodes\.csv line (\d+): \S+( is .*)", fault, re.DOTALL):
             row = [*self._episodes.values()][int(found[1]) - 2 :][:1]
-            return f"{self._row(row)}: column {self._name!r}{found[2]}"
+            where = str(row[0]) if row else self._table()
+            return f"{where}: column {self._name!r}{found[2]}"
         if found := re.match(rf"{here}/([a-z]+\.csv)(?: line (\d+))?(.*)", fault, re.DOTALL):
             origin = self._origins.get(found[1])
-            if origin is not None:
-                return self._in_table(origin, found[2], found[3])
+            if origin is not None and origin.paths:
+                return _in_table(origin, found[2], found[3])
         elif found := re.match(rf"{here}(, episode .*?)?: (.*)", fault, re.DOTALL):
             said = re.sub(r"^t_s is", f"column {self._clock!r} is", found[2])
-            return f"{self._row([])}{found[1] or ''}: {said}"
+            return f"{self._table()}{found[1] or ''}: {said}"
         return fault.replace(str(self.folder), str(out))
 
-    def _in_table(self, origin: _Origin, line: str | None, rest: str) -> str:
-        """A fault of a table: ``rest`` is what follows its name and line."""
-        where = str(origin.source.path)
-        at = int(line) - 2 if line else -1
-        if 0 <= at < len(origin.rows):
-            where += f" row {origin.rows[at]}"
-        said = re.match(r"(.*?: )(\S+)( is .*)", rest, re.DOTALL)
-        columns = origin.columns.get(said[2]) if said else None
-        if said is None or not columns:
-            return f"{where}{rest}"
-        turn = max(at, 0) % len(columns)
-        return f"{where}{said[1]}column {columns[turn]!r}{said[3]}"
-
-    def _row(self, row: Sequence[int]) -> str:
-        """A row of the table of samples."""
-        name = self._map_file if self._main is None else str(self._main.path)
-        return f"{name} row {row[0]}" if row else name
+    def _table(self) -> str:
+        return self._main or self._map_file
 
     def _field(self, name: str) -> str:
         """A field of the manifest, as the user has it."""
@@ -122,3 +119,17 @@ class BundleDraft:
             if name == known or (known.endswith(".") and name.startswith(known)):
                 return told + name.removeprefix(known)
         return f"{self._map_file}: {name}"
+
+
+def _in_table(origin: _Origin, line: str | None, rest: str) -> str:
+    """A fault of a table: ``rest`` is what follows its name and line."""
+    where = str(origin.paths[0])
+    at = int(line) - 2 if line else -1
+    if 0 <= at < len(origin.rows):
+        where = str(Place(origin.paths[origin.files[at]], origin.rows[at]))
+    said = re.match(r"(.*?: )(\S+)( is .*)", rest, re.DOTALL)
+    columns = origin.columns.get(said[2]) if said else None
+    if said is None or not columns:
+        return f"{where}{rest}"
+    turn = max(at, 0) % len(columns)
+    return f"{where}{said[1]}column {columns[turn]!r}{said[3]}"

@@ -1,0 +1,68 @@
+"""Measurements of users into the bundle that calibration reads, by the word of a map."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dwell.files import make_folder
+from dwell.measured.draft import BundleDraft
+from dwell.measured.kinds import KINDS
+from dwell.measured.maps import Job, read_map
+
+
+def import_files(
+    files: list[Path], map_file: Path, out: Path, progress: Callable[[float, str], None]
+) -> dict[str, Any]:
+    """Writes the bundle ``out`` whole, or nothing.
+
+    Raises:
+        ValueError: A map or a file that cannot be used; the message names file, column and row.
+        FileExistsError: ``out`` is there already.
+        ModuleNotFoundError: A package that reads a file is missing; the message names the extra.
+    """
+    if os.path.lexists(out):
+        found = "is there already" if out.exists() else "is a link that leads to nothing"
+        raise FileExistsError(f"{out}: {found}; remove it or choose another name")
+    mapping = read_map(map_file, {name: kind.keys() for name, kind in KINDS.items()})
+    given: dict[str, Path] = {}
+    for path in files:
+        other = given.setdefault(path.name, path)
+        if other is not path:
+            raise ValueError(f"{path}: has the name of {other}, and maps name files; rename one")
+    make_folder(out.parent)
+    part = Path(tempfile.mkdtemp(prefix=f".{out.name}.", dir=out.parent))
+    draft = BundleDraft(part, str(map_file))
+    try:
+        job = Job(mapping, str(map_file), given, draft, progress)
+        # Numbers that are too large are told by the bundle's checks, with their places.
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            counts = KINDS[mapping["kind"]].write(job)
+        from dwell import DwellError, _native
+
+        progress(0.9, "checking the bundle")
+        try:
+            counts["episodes"] = _native.check_measured(str(part))
+        except DwellError as error:
+            told = draft.told(str(error), out)
+            # What was left out may be why.
+            left_out = f" ({'; '.join(job.notes)})" if job.notes else ""
+            raise ValueError(told + left_out) from None
+        part.chmod(0o755)
+        os.rename(part, out)
+    except OSError as error:
+        # What people know is the name that they gave.
+        named = "" if error.filename is None else os.fsdecode(error.filename)
+        if error.errno is not None and (not named or named.startswith(str(part))):
+            error.filename, error.filename2 = os.fspath(out), None
+        raise
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
+    progress(1.0, "done")
+    return counts
