@@ -234,6 +234,7 @@ fn gravity_and_scales_are_not_told_apart_by_flights() {
     let report = throws(
         World {
             gravity: 9.78,
+            noise_m: 0.0005,
             ..QUIET
         },
         22,
@@ -416,8 +417,8 @@ fn every_law_of_flight_and_every_fault_of_a_tracker_is_found() {
         "magnus" => spinning,
         "buoyancy" => balloon,
         "wind" => World {
-            c_d: 0.5,
-            wind: [1.5, -1.0],
+            c_d: 1.0,
+            wind: [0.9, -0.7],
             ..QUIET
         },
         "length_scale" => World {

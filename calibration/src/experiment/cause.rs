@@ -8,6 +8,8 @@ use dwell_scene::law::ParamInfo;
 const STEP_SHARE: f64 = 0.2;
 /// Defaults above this stand for "without a limit"; steps are then shares of the probe itself.
 const UNLIMITED: f64 = 1e5;
+/// Ratio of a limit that is tried to the next one.
+const LIMIT_RATIO: f64 = 1.5;
 
 /// A fitted parameter.
 #[derive(Clone, Debug, PartialEq)]
@@ -92,6 +94,24 @@ pub(crate) struct Cause {
     pub(crate) fixed: Vec<(String, f64)>,
 }
 
+/// The points from which a fit of a law begins: its own; and of a limit that is not there by default, which does nothing
+/// until something reaches it, a row of sizes.
+fn probes(info: &LawInfo) -> Vec<Vec<f64>> {
+    if let Some([(name, _)]) = info.probes.first()
+        && let Some(param) = info.param(name)
+        && param.default > UNLIMITED
+    {
+        let [low, high] = param.plausible;
+        let sizes = std::iter::successors(Some(high), |size| Some(size / LIMIT_RATIO));
+        return sizes
+            .take_while(|size| *size >= low)
+            .map(|size| vec![size])
+            .collect();
+    }
+    let of = |probe: &&[(&str, f64)]| probe.iter().map(|(_, value)| *value).collect();
+    info.probes.iter().map(of).collect()
+}
+
 impl Cause {
     /// An engine's law, with the parameters that its probes name; `known` gives values of others.
     pub(crate) fn of_law(info: &LawInfo, targets: &[String], known: &[(&str, f64)]) -> Self {
@@ -106,11 +126,7 @@ impl Cause {
             name: info.name.to_owned(),
             equation: info.equation.to_owned(),
             parameters: parameters.collect(),
-            probes: info
-                .probes
-                .iter()
-                .map(|probe| probe.iter().map(|(_, value)| *value).collect())
-                .collect(),
+            probes: probes(info),
             separating_experiment: info.separating_experiment.to_owned(),
             binding: CauseBinding::Law {
                 version: info.version,

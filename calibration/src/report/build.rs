@@ -232,8 +232,15 @@ fn verdict_sentence(
                 .filter(|c| c.parameters.len() == 1 && !c.idle)
                 .map(|c| {
                     let p = &c.parameters[0];
-                    let [low, high] = p.interval.map(format_number);
-                    format!("{} {low} to {high}{}", p.name, unit_suffix(&p.unit))
+                    // What is not shown to act may be absent, whatever the estimate.
+                    let [low, high] = [p.interval[0].min(p.default), p.interval[1].max(p.default)]
+                        .map(format_number);
+                    format!(
+                        "{} of {} {low} to {high}{}",
+                        p.name,
+                        c.id,
+                        unit_suffix(&p.unit)
+                    )
                 })
                 .collect();
             let limits = if limits.is_empty() {

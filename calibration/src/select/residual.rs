@@ -80,6 +80,12 @@ pub(crate) struct NoiseFloor {
 
 /// Largest correlation of neighbours that counts as one of noise.
 const MOST_CORRELATED: f64 = 0.95;
+/// The longest distance that noise may remember, samples.
+const MOST_LAG: usize = 20;
+/// Correlation that counts as forgotten.
+const FORGOTTEN: f64 = 0.1;
+/// Correlation above which distant values are alike.
+const ALIKE: f64 = 0.15;
 /// Outliers count as so many medians.
 const OUTLIER_MEDIANS: f64 = 6.0;
 
@@ -99,6 +105,33 @@ fn mean_square_difference(sequences: &[&[f64]], weights: &[f64]) -> (f64, usize)
     (clipped.sum::<f64>() / count.max(1) as f64, count)
 }
 
+/// Returns whether values far apart are more alike than an autoregression of first order with this correlation allows.
+///
+/// # Source
+/// M. S. Bartlett, Suppl. J. R. Stat. Soc. 8, 27 (1946), for the variance of autocorrelations.
+fn remembers(sequences: &[&[f64]], correlation: f64) -> bool {
+    let count: usize = sequences.iter().map(|sequence| sequence.len()).sum();
+    let square: f64 = sequences.iter().flat_map(|s| s.iter()).map(|r| r * r).sum();
+    let forgotten = (1..=MOST_LAG).find(|lag| libm::pow(correlation, *lag as f64) < FORGOTTEN);
+    let first = forgotten.unwrap_or(MOST_LAG);
+    (first..=2 * MOST_LAG).any(|lag| {
+        let pairs: usize = sequences.iter().map(|s| s.len().saturating_sub(lag)).sum();
+        if 2 * pairs < count || square <= 0.0 {
+            return false;
+        }
+        let product: f64 = sequences
+            .iter()
+            .flat_map(|s| s.iter().zip(s.iter().skip(lag)))
+            .map(|(a, b)| a * b)
+            .sum();
+        let alike = (product / pairs as f64) / (square / count as f64);
+        // The standard deviation of an autocorrelation after noise has forgotten (Bartlett).
+        let c2 = correlation * correlation;
+        let sd = ((1.0 + c2) / (1.0 - c2) / pairs as f64).sqrt();
+        alike.abs() > ALIKE + 3.0 * sd
+    })
+}
+
 /// The noise of a residual from its differences, in which what is smooth cancels. `None` for fewer than 12 third
 /// differences, and where most neighbours are equal.
 ///
@@ -114,7 +147,11 @@ pub(crate) fn noise_from_differences(sequences: &[&[f64]]) -> Option<NoiseFloor>
     }
     // The estimate's own error is about 3 / sqrt(n): correlation within it counts as none.
     let found = 3.0 - second / first - 6.0 / (count as f64).sqrt();
-    let c = found.clamp(0.0, MOST_CORRELATED);
+    let mut c = found.clamp(0.0, MOST_CORRELATED);
+    // Noise forgets; what is still alike when it should have is motion that was not modelled.
+    if c > 0.0 && remembers(sequences, c) {
+        c = 0.0;
+    }
     let share = 2.0 * (1.0 - c) * (10.0 - 5.0 * c + c * c);
     Some(NoiseFloor {
         sd: (third / share).sqrt(),

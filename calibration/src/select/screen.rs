@@ -6,7 +6,7 @@
 
 use super::compare::{CauseComparer, Estimate};
 use crate::error::CalibrationError;
-use crate::experiment::{Experiment, ParameterIndex, ParameterVector, cause_range};
+use crate::experiment::{Cause, Experiment, ParameterIndex, ParameterVector, cause_range};
 use crate::fit::{FitResult, HuberLoss};
 use dwell_scene::random::RandomKey;
 use nalgebra::{DMatrix, DVector};
@@ -16,10 +16,21 @@ use std::ops::Range;
 const NULL_DRAWS: usize = 400;
 /// Share of the draws whose largest gain lies below the threshold.
 const NULL_QUANTILE: f64 = 0.99;
+/// Change of the sum of squares that can be seen, squared standard deviations.
+const SEEN: f64 = 1.0;
 /// Part of a column's size below which nothing of it is left beside nuisances.
 const NOTHING_LEFT: f64 = 1e-6;
 /// Part of a column's size in whose direction a parameter counts as determined.
 const DETERMINED: f64 = 1e-4;
+
+/// The columns of a probe: its whole effect, and beside it the derivatives there by several parameters: a law that begins to
+/// act at once has none at its default.
+fn probe_columns(cause: &Cause) -> usize {
+    match cause.parameters.len() {
+        1 => 1,
+        several => 1 + several,
+    }
+}
 
 /// The columns of a cause: derivatives, or the whole effect of a probe.
 struct ColumnBlock {
@@ -72,7 +83,7 @@ impl Screen {
             let info = &experiment.causes()[*cause];
             add(*cause, info.parameters.len(), false);
             for _ in &info.probes {
-                add(*cause, 1, true);
+                add(*cause, probe_columns(info), true);
             }
         }
         let shared = experiment.shared_nuisances().len();
@@ -108,7 +119,7 @@ impl Screen {
     }
 
     /// What each cause gains, in the order in which they were asked for.
-    pub(super) fn gains(&self) -> Vec<LinearGain> {
+    pub(super) fn gains(&self, experiment: &dyn Experiment) -> Vec<LinearGain> {
         let gram = self.reduced(&self.grams, |_| 1.0);
         let mut found: Vec<LinearGain> = Vec::new();
         for block in &self.blocks {
@@ -119,12 +130,22 @@ impl Screen {
                 if changes[0] > 0.0 && gain > last.gain {
                     last.gain = gain;
                 }
-                last.is_idle &= inverse[(0, 0)] == 0.0;
+                let first = block.columns.start;
+                last.is_idle &= gram[(first, first)] < SEEN;
                 continue;
             }
+            // The whole plausible range of a parameter moves the sum of squares by less than one standard deviation's.
+            let parameters = experiment.causes()[block.cause].parameters.iter();
+            let is_unseen = parameters.zip(block.columns.clone()).all(|(parameter, k)| {
+                let [low, high] = parameter
+                    .plausible
+                    .map(|end| (end - parameter.default).abs());
+                let width = low.max(high).min(parameter.high - parameter.low);
+                width.is_finite() && gram[(k, k)] * width * width < SEEN
+            });
             found.push(LinearGain {
                 cause: block.cause,
-                is_idle: (0..inverse.nrows()).all(|k| inverse[(k, k)] == 0.0),
+                is_idle: is_unseen,
                 gain,
                 changes,
                 inverse,
@@ -222,14 +243,22 @@ fn episode_gram(
             // What the engine refuses as a small change is no small effect.
             .unwrap_or_else(|_| DMatrix::zeros(base.len(), slots.len()));
         columns = beside(columns, &derivatives);
-        for probe in &experiment.causes()[*cause].probes {
+        let info = &experiment.causes()[*cause];
+        for probe in &info.probes {
             let mut there = fit.point.clone();
             there.causes[range.clone()].copy_from_slice(probe);
-            let effect = match experiment.predict(episode, &there.values(episode)) {
-                Ok(there) => there.iter().zip(&base).map(|(a, b)| a - b).collect(),
-                Err(_) => vec![0.0; base.len()],
+            let at_probe = there.values(episode);
+            let nothing = |columns: usize| DMatrix::zeros(base.len(), columns);
+            let Ok(changed) = experiment.predict(episode, &at_probe) else {
+                columns = beside(columns, &nothing(probe_columns(info)));
+                continue;
             };
+            let effect: Vec<f64> = changed.iter().zip(&base).map(|(a, b)| a - b).collect();
             columns = beside(columns, &DMatrix::from_column_slice(base.len(), 1, &effect));
+            if probe_columns(info) > 1 {
+                let more = experiment.derivatives(episode, &at_probe, &changed, &slots);
+                columns = beside(columns, &more.unwrap_or_else(|_| nothing(slots.len())));
+            }
         }
     }
     for (row, sd) in measured.sd.iter().enumerate() {

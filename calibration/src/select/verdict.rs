@@ -19,9 +19,11 @@ use dwell_scene::random::RandomKey;
 /// The most effects of one model.
 const MOST_EFFECTS: usize = 4;
 /// Causes that are fitted in full at each stage: those that gain most to first order.
-const MOST_FITTED: usize = 8;
+const MOST_FITTED: usize = 6;
 /// Share of the best cause's gain to first order below which no cause is fitted in full.
-const LEAST_SHARE: f64 = 0.1;
+const LEAST_SHARE: f64 = 0.25;
+/// Share of the gain by chance below which, where nothing systematic is left, no cause is fitted in full.
+const CLEARLY_CHANCE: f64 = 0.5;
 
 /// All findings, before they are put into words.
 pub(crate) struct Findings {
@@ -94,9 +96,9 @@ pub(crate) fn find_causes(
     let base = all.fit_and_score(&CauseSet::default(), &start)?;
     let search = Search { all: &all };
     let remainder_before = search.remainder(&base)?;
-    let (singles, first) = search.singles(&base)?;
-    let chosen = match first {
-        Some(first) => search.extend(first)?,
+    let (singles, trials) = search.singles(&base, &remainder_before)?;
+    let chosen = match best_trial(&trials) {
+        Some(first) => search.extend(first.clone())?,
         None => base.clone(),
     };
     progress.stage(0.8, "comparing explanations")?;
@@ -116,7 +118,7 @@ pub(crate) fn find_causes(
             &remainder_after,
         ))
     } else {
-        let decision = search.alternatives(&chosen, &base)?;
+        let decision = search.alternatives(&chosen, &base, &trials)?;
         if let Decision::Named(causes) = &decision {
             progress.stage(0.9, "checking that each cause has one size everywhere")?;
             let mut refuted = None;
@@ -188,7 +190,7 @@ impl Search<'_> {
         let causes = 0..self.all.experiment.causes().len();
         let which: Vec<usize> = causes.filter(|k| !now.model.causes.contains(k)).collect();
         let screen = Screen::new(self.all, &now.fit, &which)?;
-        let gains = screen.gains();
+        let gains = screen.gains(self.all.experiment);
         let key = RandomKey::root(self.all.options.seed).child("screen");
         let by_chance = screen.gain_by_chance(key);
         let best = gains.iter().map(|gain| gain.gain).fold(0.0, f64::max);
@@ -232,7 +234,12 @@ impl Search<'_> {
                 .stage(fraction, &format!("trying {name}"))?;
             let mut model = now.model.clone();
             model.causes.push(*cause);
-            fitted.push(self.all.fit_and_score(&model, &now.fit.point)?);
+            match self.all.fit_and_score(&model, &now.fit.point) {
+                Ok(scored) => fitted.push(scored),
+                Err(CalibrationError::Interrupted) => return Err(CalibrationError::Interrupted),
+                // The engine refuses some of its values, such as a centre of mass outside of a body: it is none of those.
+                Err(error) => tracing::info!("{name} is left out: {error}"),
+            }
         }
         let best = fitted
             .iter()
@@ -260,15 +267,20 @@ impl Search<'_> {
             .find_map(|cause| implausible(self.all.experiment, scored, *cause))
     }
 
-    /// Every cause alone, and the best model of one that passes and is plausible, or else the best that passes.
+    /// Every cause alone, and the fits of those that gain most.
     fn singles(
         &self,
         base: &ScoredModel,
-    ) -> Result<(Vec<SingleCause>, Option<ScoredModel>), CalibrationError> {
+        remainder: &ResidualNoiseTest,
+    ) -> Result<(Vec<SingleCause>, Vec<Trial>), CalibrationError> {
         self.all
             .progress
             .stage(0.15, "looking through the library")?;
-        let (gains, short, by_chance) = self.shortlist(base)?;
+        let (gains, mut short, by_chance) = self.shortlist(base)?;
+        let best = gains.iter().map(|gain| gain.gain).fold(0.0, f64::max);
+        if !remainder.is_structured() && best < CLEARLY_CHANCE * by_chance {
+            short.clear();
+        }
         let trials = self.trials(base, &short, by_chance)?;
         let mean_square = base.fit.loss / base.effective_count.max(1.0);
         let count = base.effective_count.max(2.0);
@@ -299,8 +311,7 @@ impl Search<'_> {
                 single.implausible.clone_from(&trial.implausible);
             }
         }
-        let first = best_trial(trials);
-        Ok((singles, first))
+        Ok((singles, trials))
     }
 
     /// Adds effects as long as something systematic is left, and leaves out those that are not needed any more.
@@ -312,7 +323,7 @@ impl Search<'_> {
             }
             let (_, short, by_chance) = self.shortlist(&now)?;
             let trials = self.trials(&now, &short, by_chance)?;
-            let Some(larger) = best_trial(trials) else {
+            let Some(larger) = best_trial(&trials).cloned() else {
                 break;
             };
             now = self.without_idle(larger)?;
@@ -355,6 +366,7 @@ impl Search<'_> {
         &self,
         chosen: &ScoredModel,
         base: &ScoredModel,
+        singles: &[Trial],
     ) -> Result<Decision, CalibrationError> {
         let worth = chosen.effective_weight();
         let own = self.all.advantage_over(chosen, base, worth).delta_bic;
@@ -373,7 +385,14 @@ impl Search<'_> {
                 self.reset(&mut from, *cause);
                 self.fit(rest.clone(), &chosen.model, &from)?
             };
-            let (_, short, _) = self.shortlist(&without)?;
+            let short = if rest.is_empty() {
+                singles
+                    .iter()
+                    .map(|trial| trial.scored.model.causes[0])
+                    .collect()
+            } else {
+                self.shortlist(&without)?.1
+            };
             for other in short.iter().filter(|other| *other != cause) {
                 let mut causes = rest.clone();
                 causes.insert(k, *other);
@@ -390,7 +409,13 @@ impl Search<'_> {
                 // The exchanged cause is fitted last, so that its probes are tried.
                 let mut order = rest.clone();
                 order.push(*other);
-                let scored = self.fit(order, &without.model, &without.fit.point)?;
+                let known = singles
+                    .iter()
+                    .find(|trial| trial.scored.model.causes == order);
+                let scored = match known {
+                    Some(trial) => trial.scored.clone(),
+                    None => self.fit(order, &without.model, &without.fit.point)?,
+                };
                 let fall = self.all.advantage_over(&scored, base, worth).delta_bic;
                 if own - fall < self.all.options.rival_delta_bic
                     && self.implausible(&scored).is_none()
@@ -429,15 +454,15 @@ fn names(all: &CauseComparer<'_>, causes: &[usize]) -> String {
 }
 
 /// The trial that passes with the largest fall of the criterion, a plausible one before others.
-fn best_trial(trials: Vec<Trial>) -> Option<ScoredModel> {
-    let passing = trials.into_iter().filter(|trial| trial.passes);
+fn best_trial(trials: &[Trial]) -> Option<&ScoredModel> {
+    let passing = trials.iter().filter(|trial| trial.passes);
     let best = passing.max_by(|a, b| {
         let plausible = |trial: &Trial| trial.implausible.is_none();
         plausible(a)
             .cmp(&plausible(b))
             .then(a.advantage.delta_bic.total_cmp(&b.advantage.delta_bic))
     });
-    best.map(|trial| trial.scored)
+    best.map(|trial| &trial.scored)
 }
 
 /// Fits the nuisances, and estimates the noise of channels that do not state it from the residuals.
