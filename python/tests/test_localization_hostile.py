@@ -71,7 +71,7 @@ def test_files_that_were_cut_are_made_again(whole: Path, data: Path) -> None:
 
 
 def edited(data: Path, **fields: object) -> Path:
-    """Changes the details of the first clip: of the clip, or as ``record_NAME`` of its recording."""
+    """Changes details of the first clip; ``record_NAME``: of its recording."""
     path = sorted(data.glob("details_dev/*/*.json"))[0]
     details: dict[str, Any] = json.loads(path.read_text())
     for name, value in fields.items():
@@ -96,7 +96,7 @@ def edited(data: Path, **fields: object) -> Path:
         ("snr_db", {}, "snr_db is {}; expected a number"),
         ("rate_hz", "x", "rate_hz is 'x'; allowed are whole numbers from 0"),
         ("record_full_scale_pa", "x", "recordings.foa.full_scale_pa is 'x'; expected a number"),
-        ("record_full_scale_pa", 0, "recordings.foa.full_scale_pa is 0; allowed are numbers above 0"),
+        ("record_full_scale_pa", 0, "full_scale_pa is 0; allowed are numbers above 0"),
         ("record_sources", [{"drr_db": "x"}], "sources[0].drr_db is 'x'; expected a number"),
         ("record_file", 5, "recordings.foa.file is 5; expected text"),
         ("record_file", "/etc/hostname", "allowed are files in the data set's folder"),

@@ -1,4 +1,4 @@
-"""What the details of a clip say of one array's recording: checked, for they come with data sets of others."""
+"""What the details of a clip say of a recording, checked: data sets come from strangers."""
 
 from __future__ import annotations
 
