@@ -261,9 +261,12 @@ def file_path(name: str, value: object) -> str:
 def path(name: str, value: object) -> str:
     """The path of a file or folder, as text."""
     try:
-        return text(name, os.fspath(value))  # type: ignore[call-overload] # what this finds out
+        found = text(name, os.fspath(value))  # type: ignore[call-overload] # what this finds out
     except TypeError:
         raise ConfigError(f"{name} is {quoted(value)}; expected text or a path") from None
+    if "\0" in found:
+        raise ConfigError(f"{name} is {quoted(found)}; a path holds no NUL")
+    return found
 
 
 def openable_file(name: str, value: object) -> str:

@@ -279,12 +279,18 @@ def write_common(
     conditions: Mapping[str, str] | None = None,
 ) -> None:
     """The manifest and the list of episodes."""
+    g_m_s2 = mapping.get("g_m_s2")
     manifest = {
         "version": 3 if mapping["kind"] == "drive" else 2,
         "title": mapping.get("title") or "measured",
         "licence": mapping.get("licence") or "unknown",
         "kind": mapping["kind"],
-        "scene": {"environment": {"g_m_s2": mapping.get("g_m_s2")}, **scene},
+        "scene": {
+            "environment": {
+                "g_m_s2": None if g_m_s2 is None else finite_number(f"{at}: g_m_s2", g_m_s2)
+            },
+            **scene,
+        },
         "notes": mapping.get("notes") or "",
         **more,
     }
