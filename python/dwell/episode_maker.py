@@ -14,7 +14,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dwell import ConfigError, HouseError, _native
-from dwell.arguments import integer_in_range, mapping, plain_settings, refuse_unknown
+from dwell.arguments import (
+    boolean,
+    integer_in_range,
+    mapping,
+    part_of_parts,
+    plain_settings,
+    refuse_unknown,
+    text_list,
+)
 from dwell.episodes import Episode, Header, task_of
 from dwell.house import House
 from dwell.house_list import HouseList
@@ -80,15 +88,13 @@ class EpisodeMaker:
             HouseError: The HOUSES strings are wrong.
         """
         about = task_of(task)
-        given = [houses] if isinstance(houses, str) else [*houses]
+        given = [houses] if isinstance(houses, str) else text_list("houses", houses)
         self.houses = HouseList(given)
         if not self.houses:
             raise ConfigError("houses: expected at least one HOUSES string, found none")
-        which, shards = shard
-        shards = integer_in_range("shard N", shards, low=1)
-        which = integer_in_range("shard K", which, high=shards - 1)
+        which, shards = part_of_parts("shard", shard)
         self._asks = bool(about["asks"])
-        self._expert = expert
+        self._expert = boolean("expert", expert)
         self._on_skip = on_skip
         self._max_steps = int(about["max_steps"])
         self._sensors = sensors_of_goals(task)
@@ -122,8 +128,10 @@ class EpisodeMaker:
         """The episodes of pieces of the shard, in the order of the pieces.
 
         Raises:
-            ConfigError: There is no house in which the task can be played.
+            ConfigError: There is no house in which the task can be played, or ``workers`` is no
+                whole number from 1.
         """
+        workers = integer_in_range("workers", workers, low=1)
         left = iter(parts)
         # A few ahead, and no more: there may be very many.
         ahead: deque[tuple[range, Future[list[Episode]]]] = deque()

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import math
 import os
+import re
 import shutil
 import struct
 import subprocess
@@ -16,6 +18,8 @@ import pytest
 
 import dwell
 from dwell.localization.dataset import DatasetMaker
+from dwell.localization.labels import Label, read_labels, write_labels
+from dwell.localization.measures import JointMeasures
 from dwell.localization.pool import Pool
 from dwell.localization.settings import Settings
 from dwell.sounds import write_wav
@@ -99,8 +103,8 @@ def edited(data: Path, **fields: object) -> Path:
         ("record_full_scale_pa", 0, "full_scale_pa is 0; allowed are numbers above 0"),
         ("record_sources", [{"drr_db": "x"}], "sources[0].drr_db is 'x'; expected a number"),
         ("record_file", 5, "recordings.foa.file is 5; expected text"),
-        ("record_file", "/etc/hostname", "allowed are files in the data set's folder"),
-        ("record_file", "../foa.wav", "allowed are files in the data set's folder"),
+        ("record_file", "/etc/hostname", "allowed are paths within the folder"),
+        ("record_file", "../foa.wav", "allowed are paths within the folder"),
     ],
 )  # fmt: skip
 def test_details_are_checked(
@@ -176,3 +180,64 @@ def test_shards_have_a_limit_that_is_told(tmp_path: Path, command: Command) -> N
     ran = command("localize", "make", "shoebox:0", *options)
     assert ran.returncode == 2
     assert "expected K/N with K below N, whole numbers up to 99999, found '0/1000000'" in ran.stderr
+
+
+def test_a_frame_has_no_more_rows_of_a_class_than_can_be_paired(
+    whole: Path, tmp_path: Path, command: Command
+) -> None:
+    for labels in whole.glob("metadata_dev/*/*.csv"):
+        (tmp_path / labels.name).write_text("0,0,0,0,0,100\n" * 101)
+    ran = command("localize", "score", whole, "--estimates", tmp_path)
+    assert ran.returncode == 1
+    assert "estimate: more than 100 rows of class 0 in frame 0; allowed are 100" in ran.stderr
+
+
+ODD_LABELS = [
+    (None, "is None; expected labels"),
+    ([1], "[0] is 1; expected a Label"),
+    ([Label(-1, 0, 0, 0.0, 0.0)], "[0].frame is -1; allowed are whole numbers"),
+    ([Label(0, 0, 0, math.nan, 0.0)], "[0].azimuth_deg is nan; allowed are finite numbers"),
+    ([Label(0, 0, 0, 0.0, 91.0)], "[0].elevation_deg is 91; allowed are -90 to 90 degrees"),
+    ([Label(0, 0, 0, 0.0, 0.0, -1.0)], "[0].distance_m is -1; allowed are 0 to 1e+07 m"),
+]
+
+
+@pytest.mark.parametrize(("labels", "told"), ODD_LABELS)
+def test_labels_are_checked(tmp_path: Path, labels: Any, told: str) -> None:  # noqa: ANN401
+    with pytest.raises(dwell.ConfigError, match=f"estimate ?{re.escape(told)}"):
+        JointMeasures().add([], labels)
+    with pytest.raises(dwell.ConfigError, match=re.escape(told)):
+        write_labels(tmp_path / "x.csv", labels)
+    assert not (tmp_path / "x.csv").exists()
+
+
+@pytest.mark.parametrize(
+    ("fields", "told"),
+    [
+        ({"houses": 5}, "houses is 5; expected a list of text"),
+        ({"settings": None}, "settings is None; expected Settings"),
+        ({"shard": 5}, "shard is 5; expected two whole numbers"),
+        ({"shard": (1,)}, "shard is (1,); expected two whole numbers"),
+        ({"shard": (0, 0)}, "shard[1] is 0; allowed are whole numbers from 1"),
+        ({"shard": (2, 1)}, "shard[0] is 2; allowed are whole numbers from 0 to 0"),
+        ({"shard": (-1, 2)}, "shard[0] is -1; allowed are whole numbers from 0 to 1"),
+    ],
+)
+def test_what_a_maker_is_told_is_checked(fields: dict[str, Any], told: str) -> None:
+    arguments: dict[str, Any] = {"houses": "shoebox:0", "settings": SETTINGS, "count": 2, **fields}
+    with pytest.raises(dwell.ConfigError, match=re.escape(told)):
+        DatasetMaker(**arguments)
+
+
+def test_classes_are_a_list() -> None:
+    with pytest.raises(dwell.ConfigError, match="classes is 5; expected classes"):
+        JointMeasures(classes=5)  # type: ignore[arg-type] # on purpose
+
+
+def test_paths_are_text_or_paths(tmp_path: Path) -> None:
+    assert [is_new for _, is_new in maker().make(str(tmp_path / "data"))] == [True, True]
+    number: Any = 5
+    for call in (lambda: [*maker().make(number)], lambda: write_labels(number, []),
+                 lambda: read_labels(number)):  # fmt: skip
+        with pytest.raises(dwell.ConfigError, match="is 5; expected text or a path"):
+            call()

@@ -17,6 +17,7 @@ from test_measure import quiet, tosses
 import dwell
 from dwell import pettingzoo as zoo
 from dwell.episode_maker import EpisodeMaker
+from dwell.evaluation import evaluate
 from dwell.measured_import import import_files
 
 Command = Callable[..., subprocess.CompletedProcess[str]]
@@ -110,3 +111,31 @@ def test_who_stops_making_episodes_does_not_wait_for_experts() -> None:
     begun = time.perf_counter()
     made.close()
     assert time.perf_counter() - begun < 0.5 * piece_s
+
+
+@pytest.mark.parametrize(
+    ("fields", "told"),
+    [
+        ({"task": 5}, "task is 5; expected text"),
+        ({"houses": 5}, "houses is 5; expected a list of text"),
+        ({"shard": 5}, "shard is 5; expected two whole numbers"),
+        ({"shard": (1, 1)}, "shard[0] is 1; allowed are whole numbers from 0 to 0"),
+        ({"expert": "yes"}, "expert is 'yes'; allowed are True and False"),
+    ],
+)
+def test_what_a_maker_of_episodes_is_told_is_checked(fields: dict[str, Any], told: str) -> None:
+    arguments: dict[str, Any] = {"task": "PointNav", "houses": "builtin:studio", "count": 1}
+    with pytest.raises(dwell.ConfigError, match=re.escape(told)):
+        EpisodeMaker(**{**arguments, **fields})
+
+
+@pytest.mark.parametrize("workers", [0, "2", True])
+def test_workers_of_a_maker_of_episodes_are_a_number(workers: Any) -> None:  # noqa: ANN401
+    maker = EpisodeMaker("PointNav", "builtin:studio", count=1)
+    with pytest.raises(dwell.ConfigError, match=re.escape(f"workers is {workers!r}; allowed are")):
+        [*maker.episodes(workers=workers)]
+
+
+def test_episodes_to_evaluate_are_files() -> None:
+    with pytest.raises(dwell.ConfigError, match="episodes is 5; expected the path of a file"):
+        evaluate("random", episodes=5)  # type: ignore[arg-type] # on purpose

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 from typing import Any
 
 from dwell import ConfigError
-from dwell.arguments import above_zero, finite_number, integer_in_range, mapping, text
+from dwell.arguments import above_zero, finite_number, inner_path, integer_in_range, mapping, text
 from dwell.files import read_json
 from dwell.localization.settings import RATES_HZ
 
@@ -45,7 +45,7 @@ class ClipFacts:
         occlusion: Of each source how much hides it, one of :data:`OCCLUSIONS`.
     """
 
-    file: PurePosixPath
+    file: str
     full_scale_pa: float
     rates_hz: tuple[int, ...]
     snr_db: float | None
@@ -73,7 +73,7 @@ def clip_facts(path: Path, details: dict[str, Any], array: str) -> ClipFacts:
         raise ConfigError(f"{at}.sources has {len(known)} rows; the clip has {len(sources)}")
     room = mapping(f"{path}: room", details.get("room", {}))
     return ClipFacts(
-        file=_inside(f"{at}.file", record.get("file")),
+        file=inner_path(f"{at}.file", record.get("file")),
         full_scale_pa=above_zero(f"{at}.full_scale_pa", record.get("full_scale_pa")),
         rates_hz=_rates(f"{path}: rate_hz", details.get("rate_hz")),
         snr_db=_number(f"{path}: snr_db", details.get("snr_db")),
@@ -112,13 +112,3 @@ def _occlusion(name: str, value: object) -> str | None:
     if found is not None and found not in OCCLUSIONS:
         raise ConfigError(f"{name} is {found!r:.60}; allowed are {', '.join(OCCLUSIONS)}")
     return found
-
-
-def _inside(name: str, value: object) -> PurePosixPath:
-    """A path that leads nowhere out of the folder it stands in."""
-    path = PurePosixPath(text(name, value))
-    if path.is_absolute() or ".." in path.parts or "\0" in str(path):
-        raise ConfigError(
-            f"{name} is {str(path)!r:.80}; allowed are files in the data set's folder"
-        )
-    return path

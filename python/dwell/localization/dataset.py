@@ -7,6 +7,7 @@ shard it is made, whatever was made before, and on however many processors.
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError, DwellError
-from dwell.arguments import integer_in_range
+from dwell.arguments import file_path, integer_in_range, part_of_parts, quoted, text_list
 from dwell.files import atomic_write
 from dwell.listening import Point
 from dwell.localization.clip_facts import read_details
@@ -86,12 +87,15 @@ class DatasetMaker:
             MeasuredDataError: A sound file is none.
             OSError: The system refuses to read a sound file.
         """
-        self.houses = house_list([houses] if isinstance(houses, str) else houses)
+        if not isinstance(settings, Settings):
+            raise ConfigError(f"settings is {quoted(settings)}; expected Settings")
+        names = [houses] if isinstance(houses, str) else text_list("houses", houses)
+        self.houses = house_list(names)
         if not self.houses:
             raise ConfigError("houses is empty; expected one or more HOUSE strings")
         self.settings = settings
         self.count = integer_in_range("count", count, low=1, high=10_000_000)
-        which, shards = shard
+        which, shards = part_of_parts("shard", shard)
         self.clips = range(which * self.count // shards, (which + 1) * self.count // shards)
         self.pool = Pool(settings.sounds)
         self._layouts = settings.layouts()
@@ -183,7 +187,7 @@ class DatasetMaker:
 
     def make(
         self,
-        out: Path,
+        out: str | os.PathLike[str],
         *,
         on_skip: Callable[[str, str], None] = lambda house, why: None,
     ) -> Iterator[tuple[int, bool]]:
@@ -200,6 +204,7 @@ class DatasetMaker:
         Raises:
             OSError: The system refuses to write.
         """
+        out = Path(file_path("out", out))
         opened: OpenHouse | None = None
         bad: set[str] = set()
         for clip in self.clips:

@@ -10,6 +10,8 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+from dwell import ConfigError
+from dwell.arguments import file_path, quoted
 from dwell.files import atomic_write, is_draft, make_folder, open_exclusive, read_json
 from dwell.teach.plan import ClipPlan, clip_plans
 from dwell.teach.play import play
@@ -82,7 +84,9 @@ def record(
         DwellError: The house cannot be opened, or has no place for the table.
     """
     settings = TeachSettings() if settings is None else settings
-    folder = Path(out)
+    if not isinstance(settings, TeachSettings):
+        raise ConfigError(f"settings is {quoted(settings)}; expected TeachSettings")
+    folder = Path(file_path("out", out))
     # Before the folder is begun; who goes on needs the house as it was.
     house, _ = stage(settings.house)
     whole = {
