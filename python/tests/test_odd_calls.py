@@ -139,3 +139,35 @@ def test_workers_of_a_maker_of_episodes_are_a_number(workers: Any) -> None:  # n
 def test_episodes_to_evaluate_are_files() -> None:
     with pytest.raises(dwell.ConfigError, match="episodes is 5; expected the path of a file"):
         evaluate("random", episodes=5)  # type: ignore[arg-type] # on purpose
+
+
+def test_recorders_and_wrappers_say_which_environments_they_take(tmp_path: Path) -> None:
+    several: Any = zoo.parallel_env("PointNav", agents=2, **STUDIO)
+    with pytest.raises(dwell.ConfigError, match="ParallelReplayRecorder records several"):
+        dwell.envs.ReplayRecorder(several, tmp_path)
+    alone = gymnasium.make("dwell/PointNav-v0", **STUDIO)
+    for env in (None, 5, alone):
+        with pytest.raises(
+            dwell.ConfigError, match=r"expected one of dwell\.pettingzoo\.parallel_env"
+        ):
+            zoo.TorchRLCompatible(env)
+    zoo.TorchRLCompatible(several).reset(seed=1)
+
+
+def test_a_task_that_there_is_not_plays_no_replay(tmp_path: Path) -> None:
+    env = dwell.envs.ReplayRecorder(gymnasium.make("dwell/PointNav-v0", **STUDIO), tmp_path)
+    env.reset(seed=1)
+    env.step(6)
+    env.close()
+    replay = dwell.Replay.read(tmp_path / "episode_0000.replay")
+    with pytest.raises(dwell.ConfigError, match="task is 'x'; "):
+        next(replay.play(task="x"))
+    assert next(replay.play(task="PointNav")).step == 0
+
+
+@pytest.mark.parametrize("seekers", [[0, 0], [], [0, 1]])
+def test_seekers_stand_once(seekers: list[int]) -> None:
+    settings = {"seekers": seekers}
+    env = zoo.parallel_env("HideAndSeek", agents=2, task_settings=settings, **STUDIO)
+    with pytest.raises(dwell.ConfigError, match=re.escape(f"seekers is {seekers} of 2 agents")):
+        env.reset(seed=1)
