@@ -12,6 +12,7 @@ import os
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, ValuesView
 from collections.abc import Set as AbstractSet
+from pathlib import PurePath
 from typing import Any, TypeVar
 
 import numpy as np
@@ -110,6 +111,24 @@ def above_zero(name: str, value: object) -> float:
     if number <= 0.0:
         raise ConfigError(f"{name} is {number:g}; allowed are numbers above 0")
     return number
+
+
+def part_of_parts(name: str, value: object) -> tuple[int, int]:
+    """Which of how many parts, from 0: (K, N)."""
+    expected = "two whole numbers, a part from 0 and how many parts there are"
+    rows = sequence_items(name, value, f"expected {expected}")
+    if len(rows) != 2:
+        raise ConfigError(f"{name} is {quoted(value)}; expected {expected}")
+    parts = integer_in_range(f"{name}[1]", rows[1], low=1)
+    return integer_in_range(f"{name}[0]", rows[0], high=parts - 1), parts
+
+
+def inner_path(name: str, value: object) -> str:
+    """A path within a folder: neither absolute nor with ``..``, which would lead out of it."""
+    found = file_path(name, value)
+    if os.path.isabs(found) or ".." in PurePath(found).parts:
+        raise ConfigError(f"{name} is {quoted(found, 80)}; allowed are paths within the folder")
+    return found
 
 
 def instance_of(name: str, value: object, kind: type[_Kind]) -> _Kind:
@@ -261,9 +280,12 @@ def file_path(name: str, value: object) -> str:
 def path(name: str, value: object) -> str:
     """The path of a file or folder, as text."""
     try:
-        return text(name, os.fspath(value))  # type: ignore[call-overload] # what this finds out
+        found = text(name, os.fspath(value))  # type: ignore[call-overload] # what this finds out
     except TypeError:
         raise ConfigError(f"{name} is {quoted(value)}; expected text or a path") from None
+    if "\0" in found:
+        raise ConfigError(f"{name} is {quoted(found)}; a path holds no NUL")
+    return found
 
 
 def openable_file(name: str, value: object) -> str:

@@ -8,6 +8,8 @@ import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from dwell.arguments import abbreviated_list
+
 #: What parts the cells of a row, by the head of the table.
 DELIMITERS = (",", ";", "\t")
 
@@ -34,7 +36,9 @@ def require_unique_columns(path: Path, columns: Sequence[str], names: Sequence[s
         if name not in columns:
             near = similar_column(name, columns)
             meant = f"; write {near!r} in the map if that is meant" if near else ""
-            raise ValueError(f"{path}: no column {name!r}; it has {list(columns)}{meant}")
+            raise ValueError(
+                f"{path}: no column {name!r}; it has {abbreviated_list(columns, 20)}{meant}"
+            )
 
 
 def similar_column(name: str, columns: Sequence[str]) -> str | None:

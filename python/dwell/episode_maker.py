@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import functools
 import itertools
+import threading
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -13,7 +14,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dwell import ConfigError, HouseError, _native
-from dwell.arguments import integer_in_range, mapping, plain_settings, refuse_unknown
+from dwell.arguments import (
+    boolean,
+    integer_in_range,
+    mapping,
+    part_of_parts,
+    plain_settings,
+    refuse_unknown,
+    text_list,
+)
 from dwell.episodes import Episode, Header, task_of
 from dwell.house import House
 from dwell.house_list import HouseList
@@ -79,15 +88,13 @@ class EpisodeMaker:
             HouseError: The HOUSES strings are wrong.
         """
         about = task_of(task)
-        given = [houses] if isinstance(houses, str) else [*houses]
+        given = [houses] if isinstance(houses, str) else text_list("houses", houses)
         self.houses = HouseList(given)
         if not self.houses:
             raise ConfigError("houses: expected at least one HOUSES string, found none")
-        which, shards = shard
-        shards = integer_in_range("shard N", shards, low=1)
-        which = integer_in_range("shard K", which, high=shards - 1)
+        which, shards = part_of_parts("shard", shard)
         self._asks = bool(about["asks"])
-        self._expert = expert
+        self._expert = boolean("expert", expert)
         self._on_skip = on_skip
         self._max_steps = int(about["max_steps"])
         self._sensors = sensors_of_goals(task)
@@ -121,33 +128,48 @@ class EpisodeMaker:
         """The episodes of pieces of the shard, in the order of the pieces.
 
         Raises:
-            ConfigError: There is no house in which the task can be played.
+            ConfigError: There is no house in which the task can be played, or ``workers`` is no
+                whole number from 1.
         """
+        workers = integer_in_range("workers", workers, low=1)
         left = iter(parts)
         # A few ahead, and no more: there may be very many.
         ahead: deque[tuple[range, Future[list[Episode]]]] = deque()
         pool = ThreadPoolExecutor(workers)
+        stop = threading.Event()
         try:
             while True:
                 for part in itertools.islice(left, 2 * workers - len(ahead)):
-                    ahead.append((part, pool.submit(self._some, part, workers)))
+                    ahead.append((part, pool.submit(self._some, part, workers, stop)))
                 if not ahead:
                     return
                 part, future = ahead.popleft()
                 yield part, future.result()
         finally:
+            # Nobody waits for the pieces that are being made: their threads end with the next step.
+            stop.set()
             pool.shutdown(cancel_futures=True)
 
-    def _some(self, places: range, workers: int) -> list[Episode]:
+    def _some(self, places: range, workers: int, stop: threading.Event) -> list[Episode]:
         envs: dict[str, NativeBatch] = {}
-        return [self.episode(place, envs, 1 if workers > 1 else None) for place in places]
+        threads = 1 if workers > 1 else None
+        made = []
+        for place in places:
+            if stop.is_set():
+                break
+            made.append(self.episode(place, envs, threads, stop))
+        return made
 
     def house_of(self, place: int) -> str:
         """The house that is tried first for an episode."""
         return self.houses[place * len(self.houses) // self.header.count]
 
     def episode(
-        self, place: int, envs: dict[str, NativeBatch] | None = None, threads: int | None = None
+        self,
+        place: int,
+        envs: dict[str, NativeBatch] | None = None,
+        threads: int | None = None,
+        stop: threading.Event | None = None,
     ) -> Episode:
         """Makes the episode at a place.
 
@@ -155,6 +177,8 @@ class EpisodeMaker:
             place: From 0 to ``count`` - 1.
             envs: Environments by house, of which the last is kept for the next call.
             threads: How many threads to use.
+            stop: Ends the expert's episode, and all tries of other houses, once it is set; what
+                comes back then is no whole episode.
 
         Raises:
             ConfigError: There is no house in which the task can be played, by the engine's words.
@@ -165,10 +189,12 @@ class EpisodeMaker:
         tries, sentence = min(len(self.houses), _MOST_HOUSES_IN_VAIN), ""
         for house in range(first, first + tries):
             name = self.houses[house % len(self.houses)]
-            found = self._in_house(name, next(drawn), envs, threads)
+            found = self._in_house(name, next(drawn), envs, threads, stop)
             if isinstance(found, Episode):
                 return found
             sentence = found
+            if stop is not None and stop.is_set():
+                break
             self._on_skip(name, sentence)
         every = "no house" if tries == len(self.houses) else f"none of {tries} houses in a row"
         raise ConfigError(f"{self.header.task} can be played in {every} of these: {sentence}")
@@ -179,6 +205,7 @@ class EpisodeMaker:
         seeds: Sequence[int],
         envs: dict[str, NativeBatch],
         threads: int | None,
+        stop: threading.Event | None,
     ) -> Episode | str:
         """An episode in a house, or why there is none."""
         sentence = ""
@@ -189,7 +216,7 @@ class EpisodeMaker:
                 envs[name] = self._env(name, threads)
             for seed in seeds:
                 try:
-                    return self._begun(envs[name], name, seed)
+                    return self._begun(envs[name], name, seed, stop)
                 except ConfigError as error:
                     if _UNPLAYABLE not in str(error):
                         raise
@@ -211,11 +238,13 @@ class EpisodeMaker:
         config = env_json(NativeSettings(header.task, header.task_settings, self._sensors))
         return NativeBatch([_house(name, threads)], config, threads)
 
-    def _begun(self, env: NativeBatch, name: str, seed: int) -> Episode:
+    def _begun(
+        self, env: NativeBatch, name: str, seed: int, stop: threading.Event | None
+    ) -> Episode:
         env.reset([seed])
         one = begun_episode(env, name, seed)
         if self._expert and self._asks:
-            one = dataclasses.replace(one, **expert_run(env, self._max_steps))
+            one = dataclasses.replace(one, **expert_run(env, self._max_steps, stop))
         return one
 
 
@@ -268,8 +297,15 @@ def drawn_seeds(seed: int, place: int) -> Iterator[list[int]]:
         yield [int(stream.integers(2**63)) for _ in range(_SEEDS_IN_A_HOUSE)]
 
 
-def expert_run(env: NativeBatch, most_steps: int) -> dict[str, Any]:
+def expert_run(
+    env: NativeBatch, most_steps: int, stop: threading.Event | None = None
+) -> dict[str, Any]:
     """Plays the episode that has begun with the task's expert.
+
+    Args:
+        env: The environment.
+        most_steps: After so many steps it is over.
+        stop: Ends it earlier, once it is set.
 
     Returns:
         ``expert_actions``: how many it took, ``stop`` included; ``expert_path_length``, m;
@@ -278,7 +314,8 @@ def expert_run(env: NativeBatch, most_steps: int) -> dict[str, Any]:
     for count in itertools.count(1):
         answers, questions = env.batch.expert_answers(), env.batch.expert_questions()
         answer = env.batch.step(env.expert_actions(), answers=answers, questions=questions)
-        if answer["terminated"][0] or count == most_steps:
+        is_stopped = stop is not None and stop.is_set()
+        if answer["terminated"][0] or count == most_steps or is_stopped:
             break
     return {
         "expert_actions": count,

@@ -316,7 +316,7 @@ def task_of(name: str) -> dict[str, Any]:
         ConfigError: There is none of the name.
     """
     tasks = {task["name"]: task for task in _native.tasks()}
-    if name not in tasks:
+    if text("task", name) not in tasks:
         raise ConfigError(f"task is {quoted(name)}; {allowed_values(name, tasks)}")
     return tasks[name]
 

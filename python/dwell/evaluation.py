@@ -60,7 +60,7 @@ class EpisodeSet:
         """
         from dwell.envs.episode_shelf import EpisodeIndex
 
-        header = EpisodeIndex([*paths]).header
+        header = EpisodeIndex(paths).header
         files = [read(path) for path in paths]
         houses = dict.fromkeys(house for file in files for house in file.header.houses)
         return cls(

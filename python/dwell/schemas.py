@@ -114,8 +114,8 @@ def words(schema: Mapping[str, Any]) -> list[str]:
 
 
 def _word(allowed: Sequence[str], name: str, value: object) -> str:
-    """Text; which words there are, the engine says."""
-    if not isinstance(value, str):
+    """One of several words."""
+    if not isinstance(value, str) or value not in allowed:
         raise ConfigError(
             f"{name} is {quoted(value)}; allowed are {', '.join(map(quoted, allowed))}"
         )

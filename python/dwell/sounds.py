@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from dwell import ConfigError, MeasuredDataError, _native, arguments
 from dwell.arguments import above_zero, integer_in_range, real_array
-from dwell.files import atomic_write, read
+from dwell.files import atomic_write, open_file, read
 
 #: A sound file that is read has at most so many bytes.
 _MAX_READ_BYTES = 512 * 2**20
@@ -139,6 +139,21 @@ def read_wav(
     else:
         frames = np.frombuffer(data, kind).reshape(-1, channels)
     return (frames.T * np.float64(scale)).astype(np.float32), rate_hz
+
+
+def is_whole_wav(path: str | os.PathLike[str]) -> bool:
+    """Whether a file of :func:`write_wav` is there and as long as it says.
+
+    Raises:
+        OSError: The system refuses, or it is no regular file.
+    """
+    try:
+        with open_file(path) as file:
+            head, size = file.read(12), os.fstat(file.fileno()).st_size
+    except FileNotFoundError:
+        return False
+    is_wave = head[:4] == b"RIFF" and head[8:] == b"WAVE"
+    return is_wave and size == 8 + int.from_bytes(head[4:8], "little")
 
 
 def _chunks(name: str, file: bytes) -> dict[bytes, bytes]:

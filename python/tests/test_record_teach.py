@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import math
+import os
+import shutil
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
@@ -265,6 +268,52 @@ def test_other_recordings_and_other_files_stay(folder: Path, tmp_path: Path) -> 
     with pytest.raises(ValueError, match=r"holds something else \(letter.txt\)"):
         record(tmp_path, SMALL)
     assert [path.name for path in tmp_path.iterdir()] == ["letter.txt"]
+
+
+def test_what_is_missing_in_a_recording_is_told(folder: Path, tmp_path: Path) -> None:
+    whole = contents(folder)
+    copy = Path(shutil.copytree(folder, tmp_path / "copy"))
+    (copy / "user_01" / "user.json").unlink()
+    record(copy, SMALL)
+    assert contents(copy) == whole
+    clip = copy / "user_01" / "show_01"
+    for lost in ("hd/rgb/000001.png", "kinect_top/depth/000000.png", "audio.wav"):
+        (clip / lost).unlink()
+        with pytest.raises(
+            ValueError, match=rf"show_01/{lost} is missing or empty; remove .*show_01,"
+        ):
+            record(copy, SMALL)
+        shutil.copy(folder / "user_01" / "show_01" / lost, clip / lost)
+    (clip / "label.json").write_text("{")
+    with pytest.raises(ValueError, match=r"label\.json: no JSON.*; remove .*show_01, and the clip"):
+        record(copy, SMALL)
+    shutil.rmtree(clip)
+    record(copy, SMALL)
+    assert contents(copy) == whole
+
+
+def test_a_full_disk_is_told_with_the_clip(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr("dwell.teach.writer.Image.Image.save", full)
+    with pytest.raises(OSError, match=r"No space left on device: .*user_01/\w+_01"):
+        record(tmp_path / "out", SMALL)
+    assert [path.name for path in (tmp_path / "out" / "user_01").iterdir()] == ["user.json"]
+
+
+def test_a_folder_that_another_process_begins_in_this_moment_is_not_something_else(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    listed = os.listdir
+
+    def begun(path: str) -> list[str]:
+        (tmp_path / "dataset.json").write_text("{}")
+        return listed(path)
+
+    monkeypatch.setattr("dwell.teach.dataset.os.listdir", begun)
+    with pytest.raises(ValueError, match="was begun with format None"):
+        record(tmp_path, SMALL)
 
 
 def test_two_processes_do_not_record_into_one_folder(tmp_path: Path) -> None:

@@ -6,6 +6,7 @@ import argparse
 import sys
 from typing import Any
 
+from dwell.arguments import quoted
 from dwell.cli.common import count, print_json
 
 
@@ -41,7 +42,7 @@ def run(args: argparse.Namespace) -> int:
             found = world.check(sentence, viewer=viewer)
         except ConfigError as error:
             rows.append({"text": sentence, "error": str(error)})
-            print(f"dwell check-text: {sentence!r}: {error}", file=sys.stderr)
+            print(f"dwell check-text: {quoted(sentence, 200)}: {error}", file=sys.stderr)
             continue
         rows.append({"text": sentence, **found})
         if not args.json:

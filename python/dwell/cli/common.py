@@ -67,7 +67,8 @@ def shard(text: str) -> tuple[int, int]:
     match = re.fullmatch(r"([0-9]{1,5})/([0-9]{1,5})", text)
     which, shards = map(int, match.groups()) if match else (0, 0)
     if not which < shards:
-        raise argparse.ArgumentTypeError(f"expected K/N with K below N, found {text!r}")
+        told = f"expected K/N with K below N, whole numbers up to 99999, found {text!r:.60}"
+        raise argparse.ArgumentTypeError(told)
     return which, shards
 
 
@@ -98,14 +99,14 @@ def path(text: str) -> Path:
     return Path(text)
 
 
-def refuse_other_suffix(out: Path | None, suffix: str) -> None:
-    """Refuses a file that by its name would be of another format than what is written.
+def refuse_other_suffix(out: Path | None, suffix: str, option: str = "--out") -> None:
+    """Refuses a file that by its name would be of another format than what an option writes.
 
     Raises:
         ValueError: Its suffix is another.
     """
     if out is not None and out.suffix.lower() != suffix:
-        raise ValueError(f"--out is {os.fspath(out)!r}; expected the name of a {suffix} file")
+        raise ValueError(f"{option} is {os.fspath(out)!r}; expected the name of a {suffix} file")
 
 
 #: What the arguments of commands hold beside options.

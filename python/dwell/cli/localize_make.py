@@ -7,7 +7,7 @@ import sys
 import time
 
 from dwell.cli.common import ProgressBar, count, count_from_1, number, path, print_json, shard
-from dwell.cli.job_journal import claim
+from dwell.cli.job_journal import claim, refuse_other
 
 #: Houses that were skipped and are told of on standard error.
 _MOST_TOLD = 10
@@ -106,6 +106,9 @@ def run(args: argparse.Namespace) -> int:
         seed=args.seed,
     )
     maker = DatasetMaker(args.houses, settings, count=args.count, shard=args.shard)
+    refuse_other(args.out, maker.to_json())
+    if not (args.out / "dataset.json").exists():
+        maker.refuse_unopenable()
     claim(args.out, maker.to_json())
     skipped: dict[str, str] = {}
 

@@ -63,8 +63,8 @@ def run(args: argparse.Namespace) -> int:
 
     if bool(args.baseline) == (args.estimates is not None):
         raise ValueError("expected one of --baseline and --estimates")
-    for file, suffix in ((args.out, ".json"), (args.plot, ".png")):
-        refuse_other_suffix(file, suffix)
+    for option, file, suffix in (("--out", args.out, ".json"), ("--plot", args.plot, ".png")):
+        refuse_other_suffix(file, suffix, option)
         if file is not None:
             check_writable(file)
     if args.estimates is not None:

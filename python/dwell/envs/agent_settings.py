@@ -99,7 +99,7 @@ class AgentRoster:
             given = {f"agent_{k}": {} for k in range(count)}
         if not 1 <= len(given) <= MAX_AGENTS:
             raise ConfigError(f"agents has {len(given)} of them; {_EXPECTED}")
-        names = [text("agents: a name", name) for name in given]
+        names = [_name(name) for name in given]
         own = [mapping(f"agents.{name}", given[name]) for name in names]
         for name, settings in zip(names, own, strict=True):
             known = [*AgentSettings.__annotations__]
@@ -172,6 +172,13 @@ def of_agents(names: Sequence[str], name: str | None = None) -> Iterator[None]:
 def places_of_teams(teams: Sequence[str]) -> list[list[int]]:
     """Of each agent the places of those of its team, itself among them."""
     return [[k for k, other in enumerate(teams) if other == team] for team in teams]
+
+
+def _name(name: str) -> str:
+    """The name of an agent: errors, files and lists of words for people have it."""
+    if not name or not name.isprintable():
+        raise ConfigError(f"agents: a name is {quoted(name)}; expected letters that can be printed")
+    return name
 
 
 def _row(at: str, number: int, settings: Mapping[str, Any]) -> dict[str, Any]:

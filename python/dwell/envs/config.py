@@ -273,7 +273,14 @@ def sensor_rows(
 ) -> list[dict[str, Any]]:
     """Kinds with their settings. A sensor whose settings hold ``kind`` keeps its name beside it."""
     by_name = isinstance(sensors, Mapping)
-    named: dict[str, Any] = {} if by_name else {name: {} for name in text_list("sensors", sensors)}
+    named: dict[str, Any] = {}
+    for name in [] if by_name else text_list("sensors", sensors):
+        if name in named:
+            raise ConfigError(
+                f"sensors: {name!r:.60} stands there twice; several of one kind have names of "
+                'their own: {"left": {"kind": "rgb"}, "right": {"kind": "rgb"}}'
+            )
+        named[name] = {}
     rows = []
     for name, settings in (mapping("sensors", sensors) if by_name else named).items():
         if not isinstance(settings, Mapping) or "kind" not in settings:

@@ -14,7 +14,7 @@ from gymnasium.vector import VectorEnv, VectorWrapper
 from numpy.typing import NDArray
 
 from dwell import ConfigError, UsageError, __version__
-from dwell.arguments import file_path
+from dwell.arguments import file_path, quoted
 from dwell.envs.action_modes import EngineActions
 from dwell.envs.config import HouseCache
 from dwell.envs.single import DwellEnv
@@ -152,9 +152,12 @@ class ReplayRecorder(gymnasium.Wrapper[dict[str, Any], Any, dict[str, Any], Any]
         given: object = env
         if isinstance(given, VectorEnv):
             raise ConfigError(f"env is {env!r}; VectorReplayRecorder records such environments")
+        if not isinstance(given, gymnasium.Env) or not isinstance(env.unwrapped, DwellEnv):
+            raise ConfigError(
+                f"env is {quoted(env)}; expected an environment of dwell with one agent; "
+                "dwell.pettingzoo.ParallelReplayRecorder records several"
+            )
         super().__init__(env)
-        if not isinstance(env.unwrapped, DwellEnv):
-            raise ConfigError(f"env is {env!r}; expected an environment of dwell")
         self._env = env.unwrapped
         refuse_what_files_cannot_name(self._env)
         self._folder = Path(file_path("folder", folder))

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
+from pettingzoo import ParallelEnv
 from pettingzoo.utils import BaseParallelWrapper
+
+from dwell import ConfigError
+from dwell.arguments import quoted
 
 ByAgent = dict[str, dict[str, Any]]
 
@@ -16,6 +20,18 @@ class TorchRLCompatible(BaseParallelWrapper):  # type: ignore[misc] # untyped
     that ``reset`` and ``step`` give the same keys; names of houses and goals are text. It also
     gives actions of agents whose episodes have ended; nobody looks at them.
     """
+
+    def __init__(self, env: object) -> None:
+        """Wraps an environment in which all agents act at once.
+
+        Raises:
+            ConfigError: It is none.
+        """
+        if not isinstance(env, ParallelEnv):
+            raise ConfigError(
+                f"env is {quoted(env)}; expected one of dwell.pettingzoo.parallel_env"
+            )
+        super().__init__(env)
 
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None

@@ -7,6 +7,7 @@ shard it is made, whatever was made before, and on however many processors.
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -15,9 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError, DwellError
-from dwell.arguments import integer_in_range
-from dwell.files import atomic_write, read_json
+from dwell.arguments import file_path, integer_in_range, part_of_parts, quoted, text_list
+from dwell.files import atomic_write
 from dwell.listening import Point
+from dwell.localization.clip_facts import read_details
 from dwell.localization.draws import Draws
 from dwell.localization.labels import FRAME_S, Label, angles_deg, write_labels
 from dwell.localization.layouts import Layout
@@ -28,7 +30,7 @@ from dwell.localization.rooms import OpenHouse, house_list
 from dwell.localization.scenes import Scene, draw_scene
 from dwell.localization.settings import Settings
 from dwell.localization.trajectory import seen_from
-from dwell.sounds import write_wav
+from dwell.sounds import is_whole_wav, write_wav
 
 #: Sound travels so far in a second for labels, m.
 _SPEED_M_S = 343.2
@@ -85,12 +87,15 @@ class DatasetMaker:
             MeasuredDataError: A sound file is none.
             OSError: The system refuses to read a sound file.
         """
-        self.houses = house_list([houses] if isinstance(houses, str) else houses)
+        if not isinstance(settings, Settings):
+            raise ConfigError(f"settings is {quoted(settings)}; expected Settings")
+        names = [houses] if isinstance(houses, str) else text_list("houses", houses)
+        self.houses = house_list(names)
         if not self.houses:
             raise ConfigError("houses is empty; expected one or more HOUSE strings")
         self.settings = settings
         self.count = integer_in_range("count", count, low=1, high=10_000_000)
-        which, shards = shard
+        which, shards = part_of_parts("shard", shard)
         self.clips = range(which * self.count // shards, (which + 1) * self.count // shards)
         self.pool = Pool(settings.sounds)
         self._layouts = settings.layouts()
@@ -127,16 +132,66 @@ class DatasetMaker:
         return "dev-test" if self.is_test(self.houses[self.house_number(clip)]) else "dev-train"
 
     def details(self, out: Path, clip: int) -> Path:
-        """The file that is written last, so that a clip whose file is there is whole."""
+        """The file that is written last."""
         return out / "details_dev" / self.part_of(clip) / f"{self.name_of(clip)}.json"
+
+    def is_whole(self, out: Path, clip: int) -> bool:
+        """Whether all files of a clip are there, and none of them is cut.
+
+        Raises:
+            OSError: The system refuses, or something is no regular file.
+        """
+        details = self.details(out, clip)
+        if not details.exists():
+            return False
+        try:
+            sources = len(read_details(details)["sources"])
+        except (ConfigError, TypeError):
+            return False
+        name, part = self.name_of(clip), self.part_of(clip)
+        sounds = []
+        for layout in self._recorded(is_test=part == "dev-test"):
+            sounds.append(out / layout.folder / part / f"{name}.wav")
+            if self.settings.parts:
+                folder = out / f"{layout.folder}_parts"
+                sounds += [folder / f"{name}_{one}.wav" for one in _PARTS]
+            if self.settings.responses:
+                folder = out / f"{layout.folder}_responses"
+                sounds += [folder / f"{name}_source{k}.wav" for k in range(sources)]
+        labels = out / "metadata_dev" / part / f"{name}.csv"
+        return labels.exists() and all(is_whole_wav(path) for path in sounds)
+
+    def refuse_unopenable(self) -> None:
+        """Refuses HOUSES of which none can be opened, before a folder is begun for them.
+
+        Raises:
+            HouseError: None can; the message is of the first one.
+            ConfigError: The same, where the houses have no place for recordings.
+        """
+        first: DwellError | OSError | None = None
+        for name in dict.fromkeys(self.houses[self.house_number(clip)] for clip in self.clips):
+            try:
+                OpenHouse(name, self.settings)
+            except (DwellError, OSError) as error:
+                first = first or error
+            else:
+                return
+        if first is not None:
+            raise first
+
+    def _recorded(self, *, is_test: bool) -> list[Layout]:
+        """The arrays that record in a part."""
+        held_out = self.settings.held_out_arrays
+        named = zip(self.settings.arrays, self._layouts, strict=True)
+        return [one for name, one in named if is_test or name not in held_out]
 
     def make(
         self,
-        out: Path,
+        out: str | os.PathLike[str],
         *,
         on_skip: Callable[[str, str], None] = lambda house, why: None,
     ) -> Iterator[tuple[int, bool]]:
-        """Makes the clips of the shard that are not there.
+        """Makes the clips of the shard that are not there, or of which a file is missing or cut.
 
         Args:
             out: The folder.
@@ -149,11 +204,12 @@ class DatasetMaker:
         Raises:
             OSError: The system refuses to write.
         """
+        out = Path(file_path("out", out))
         opened: OpenHouse | None = None
         bad: set[str] = set()
         for clip in self.clips:
             name = self.houses[self.house_number(clip)]
-            if name in bad or self.details(out, clip).exists():
+            if name in bad or self.is_whole(out, clip):
                 yield clip, False
                 continue
             try:
@@ -174,13 +230,7 @@ class DatasetMaker:
             yield clip, True
 
     def _write(self, out: Path, scene: Scene, opened: OpenHouse) -> None:
-        is_test = self.is_test(scene.house)
-        held_out = self.settings.held_out_arrays
-        layouts = [
-            one
-            for name, one in zip(self.settings.arrays, self._layouts, strict=True)
-            if is_test or name not in held_out
-        ]
+        layouts = self._recorded(is_test=self.is_test(scene.house))
         recordings = Renderer(opened, self.settings, self.pool).record(scene, layouts)
         files = {}
         for recording in recordings:
@@ -272,19 +322,3 @@ def _ratio_db(direct: NDArray[np.float64], rest: tuple[NDArray[np.float64], ...]
     whole = _whole(rest)
     above, below = float(np.sum(direct**2)), float(np.sum(whole**2))
     return 10.0 * float(np.log10(above / below)) if above > 0.0 < below else None
-
-
-def read_details(path: Path) -> dict[str, Any]:
-    """The details of a clip, as a run wrote them.
-
-    Raises:
-        ConfigError: It is no such file.
-        OSError: The system refuses.
-    """
-    try:
-        found = read_json(path)
-    except ValueError as error:
-        raise ConfigError(str(error)) from None
-    if not isinstance(found, dict) or not {"clip", "sources", "recordings"} <= set(found):
-        raise ConfigError(f"{path}: no details of a clip, as dwell localize make writes them")
-    return found

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError
+from dwell.arguments import file_path, integer_in_range, number_in_range, quoted
 from dwell.files import atomic_write, read
 
 #: A frame of labels, s.
@@ -57,20 +58,43 @@ def angles_deg(vector: NDArray[np.float64]) -> tuple[float, float]:
     )
 
 
+def checked_labels(name: str, labels: object) -> Iterator[Label]:
+    """The rows of an argument, of any length, each one that could be written and read.
+
+    Raises:
+        ConfigError: One is none.
+    """
+    if not isinstance(labels, Iterable):
+        raise ConfigError(f"{name} is {quoted(labels)}; expected labels")
+    for k, row in enumerate(labels):
+        if not isinstance(row, Label):
+            raise ConfigError(f"{name}[{k}] is {quoted(row)}; expected a Label")
+        for field in ("frame", "class_index", "source"):
+            integer_in_range(f"{name}[{k}].{field}", getattr(row, field), high=2**31 - 1)
+        number_in_range(f"{name}[{k}].azimuth_deg", row.azimuth_deg, -360.0, 360.0, "degrees")
+        number_in_range(f"{name}[{k}].elevation_deg", row.elevation_deg, -90.0, 90.0, "degrees")
+        if row.distance_m is not None:
+            number_in_range(f"{name}[{k}].distance_m", row.distance_m, 0.0, 1e7, "m")
+        yield row
+
+
 def write_labels(path: str | os.PathLike[str], labels: Iterable[Label]) -> None:
     """Writes labels as CSV without a header: angles in degrees to a tenth, distances in cm.
 
     Raises:
+        ConfigError: ``path`` is none, or a row is none that can be read again.
         OSError: The system refuses.
     """
-    rows = []
-    for row in sorted(labels, key=lambda row: (row.frame, row.source, row.class_index)):
+    place, rows = file_path("path", path), []
+    for row in sorted(
+        checked_labels("labels", labels), key=lambda row: (row.frame, row.source, row.class_index)
+    ):
         cells = [f"{row.frame}", f"{row.class_index}", f"{row.source}"]
         cells += [f"{_tenth(row.azimuth_deg)}", f"{_tenth(row.elevation_deg)}"]
         if row.distance_m is not None:
             cells.append(f"{_tenth(100.0 * row.distance_m)}")
         rows.append(",".join(cells) + "\n")
-    with atomic_write(path) as draft:
+    with atomic_write(place) as draft:
         draft.write_text("".join(rows), "utf-8")
 
 
@@ -86,9 +110,9 @@ def read_labels(path: str | os.PathLike[str]) -> list[Label]:
         ConfigError: A row is of another form, or a number is out of range.
         OSError: The system refuses, or it is no regular file.
     """
-    name = os.fspath(path)
+    name = file_path("path", path)
     try:
-        text = read(path, _MAX_BYTES).decode()
+        text = read(name, _MAX_BYTES).decode()
     except UnicodeDecodeError as error:
         raise ConfigError(f"{name}: byte {error.start} is not UTF-8") from None
     except ValueError as error:

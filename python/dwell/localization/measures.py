@@ -17,12 +17,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError
-from dwell.arguments import above_zero, choice, integer_in_range, number_in_range
+from dwell.arguments import (
+    above_zero,
+    choice,
+    integer_in_range,
+    number_in_range,
+    sequence_items,
+)
 from dwell.localization.assignment import least_cost_pairs
-from dwell.localization.labels import Label, direction
+from dwell.localization.labels import Label, checked_labels, direction
 
 #: What is averaged over classes.
 _AVERAGED = ("f20", "le_cd_deg", "lr_cd", "relative_distance_error")
+#: Rows of a class in a frame.
+_MOST_AT_ONCE = 100
 #: Labels of one class by frame.
 _Frames = dict[int, list[Label]]
 
@@ -92,14 +100,23 @@ class JointMeasures:
         self._classes = (
             None
             if classes is None
-            else [integer_in_range(f"classes[{k}]", one) for k, one in enumerate(classes)]
+            else [
+                integer_in_range(f"classes[{k}]", one)
+                for k, one in enumerate(sequence_items("classes", classes, "expected classes"))
+            ]
         )
         self._counts: dict[int, _Counts] = defaultdict(_Counts)
         self._substituted = self._deleted = self._inserted = 0
 
     def add(self, reference: Iterable[Label], estimate: Iterable[Label]) -> None:
-        """Counts one recording."""
-        first, second = self._segments(reference), self._segments(estimate)
+        """Counts one recording.
+
+        Raises:
+            ConfigError: These are no labels that can be written, or one frame has more than 100 of
+                a class.
+        """
+        first = self._segments("reference", reference)
+        second = self._segments("estimate", estimate)
         for segment in sorted({*first, *second}):
             wrong, missed = 0, 0
             given, found = first.get(segment, {}), second.get(segment, {})
@@ -110,12 +127,19 @@ class JointMeasures:
             self._deleted += max(0, missed - wrong)
             self._inserted += max(0, wrong - missed)
 
-    def _segments(self, labels: Iterable[Label]) -> dict[int, dict[int, _Frames]]:
+    def _segments(self, name: str, labels: Iterable[Label]) -> dict[int, dict[int, _Frames]]:
         """Labels by segment, class and frame."""
         found: dict[int, dict[int, _Frames]] = {}
-        for row in labels:
+        for row in checked_labels(name, labels):
             kinds = found.setdefault(row.frame // self._segment, {})
-            kinds.setdefault(row.class_index, {}).setdefault(row.frame, []).append(row)
+            rows = kinds.setdefault(row.class_index, {}).setdefault(row.frame, [])
+            rows.append(row)
+            if len(rows) > _MOST_AT_ONCE:
+                # They are paired, in a time that grows with the third power.
+                raise ConfigError(
+                    f"{name}: more than {_MOST_AT_ONCE} rows of class {row.class_index} in frame "
+                    f"{row.frame}; allowed are {_MOST_AT_ONCE}"
+                )
         return found
 
     def _judge(self, counts: _Counts, given: _Frames, found: _Frames) -> tuple[int, int]:

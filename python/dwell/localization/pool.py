@@ -35,6 +35,8 @@ _OF_HOUSES = ("dishwasher", "fan", "fridge", "hum", "microwave", "toilet_flush",
 _FILE_LEVEL_DB = 65.0
 _REFERENCE_PA = 2e-5
 _MAX_FILES = 100_000
+#: Of a file: its samples a second, and how long it is, s. More would take memory without bound.
+_RATES_HZ, _MAX_S = (1_000, 384_000), 300.0
 
 
 @dataclass(frozen=True)
@@ -82,7 +84,7 @@ class Pool:
         found = sorted(self._folder.glob("*/*.wav"))[: _MAX_FILES + 1]
         if not found or len(found) > _MAX_FILES:
             raise ConfigError(
-                f"sounds: {len(found)} files CLASS/NAME.wav in {sounds}; allowed are 1 to "
+                f"sounds: {len(found)} files CLASS/NAME.wav in {sounds!r}; allowed are 1 to "
                 f"{_MAX_FILES}"
             )
         self.classes = sorted({path.parent.name for path in found})
@@ -96,6 +98,17 @@ class Pool:
     def _read(self, name: str) -> tuple[NDArray[np.float64], int]:
         path = os.path.join(self._folder or "", name)
         channels, rate_hz = read_wav(path)
+        low, high = _RATES_HZ
+        if not low <= rate_hz <= high:
+            raise ConfigError(
+                f"{path}: {rate_hz} samples a second; allowed are {low} to {high}: write it anew "
+                "with the rate it was recorded at"
+            )
+        if channels.shape[1] > _MAX_S * rate_hz:
+            raise ConfigError(
+                f"{path}: {channels.shape[1] / rate_hz:.0f} s long; allowed are {_MAX_S:g} s: cut "
+                "it into several files"
+            )
         mono = channels.mean(axis=0, dtype=np.float64)
         if not mono.size or not np.isfinite(mono).all() or not np.any(mono):
             raise ConfigError(f"{path}: its samples are none, silent or no numbers")

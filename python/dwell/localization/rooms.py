@@ -147,6 +147,11 @@ def house_list(houses: Sequence[str]) -> HouseList:
                 found.append_name(f"shoebox:{number}")
         elif shoebox_number(name) is not None:
             found.append_name(name)
+        elif name.startswith("shoebox:"):
+            raise ConfigError(
+                f"houses: found {name!r:.80}; allowed are shoebox:N and shoebox:A..B with whole "
+                "numbers of at most 18 digits"
+            )
         else:
             found.append(name)
     return found

@@ -16,7 +16,13 @@ from dwell import ConfigError
 from dwell.arguments import choice, quoted
 from dwell.localization.assignment import least_cost_pairs
 from dwell.localization.baselines import BASELINES, blocks_of, fits
-from dwell.localization.dataset import read_details
+from dwell.localization.clip_facts import (
+    OCCLUSIONS,
+    ClipFacts,
+    array_names,
+    clip_facts,
+    read_details,
+)
 from dwell.localization.labels import FRAME_S, Label, angles_deg, direction, read_labels
 from dwell.localization.layouts import PRESETS, Layout, layout
 from dwell.localization.measures import JointMeasures, angles_between_deg
@@ -31,7 +37,6 @@ _EDGES: dict[str, tuple[float, ...]] = {
     "drr_db": (-100.0, -10.0, -5.0, 0.0, 5.0, 100.0),
     "snr_db": (-100.0, 0.0, 10.0, 20.0, 30.0, 1000.0),
 }
-_OCCLUSIONS = ("none", "edge", "wall", "all")
 
 
 @dataclass(frozen=True)
@@ -53,13 +58,13 @@ class Clip:
     """A recording of a data set, with its truth.
 
     Attributes:
-        details: What is known of it.
+        facts: What is known of it.
         labels: Where sources are.
         sound: Its file.
         name: Its name.
     """
 
-    details: dict[str, Any]
+    facts: ClipFacts
     labels: list[Label]
     sound: Path
     name: str
@@ -69,18 +74,25 @@ def clips_of(folder: Path, array: str, part: str | None = None) -> Iterator[Clip
     """The recordings of an array in a data set, in order.
 
     Raises:
-        ConfigError: There is none.
+        ConfigError: There is none, or a file is none of a data set; the message names it.
         OSError: The system refuses.
     """
     found = 0
     for path in sorted((folder / "details_dev").glob(f"{part or '*'}/*.json")):
         details = read_details(path)
-        if array not in details["recordings"]:
+        if array not in array_names(path, details):
             continue
-        labels = folder / "metadata_dev" / path.parent.name / f"{path.stem}.csv"
-        sound = folder / str(details["recordings"][array]["file"])
+        facts = clip_facts(path, details, array)
+        csv = folder / "metadata_dev" / path.parent.name / f"{path.stem}.csv"
+        labels = read_labels(csv)
+        for row in labels:
+            if row.source >= len(facts.drr_db):
+                raise ConfigError(
+                    f"{csv}: source is {row.source}; {path} has {len(facts.drr_db)} of them, "
+                    "counted from 0"
+                )
         found += 1
-        yield Clip(details, read_labels(labels), sound, path.stem)
+        yield Clip(facts, labels, folder / facts.file, path.stem)
     if not found:
         raise ConfigError(
             f"{folder}: no recording of {quoted(array)}"
@@ -115,14 +127,22 @@ def baseline(name: str, array: Layout) -> Callable[[Clip], list[Label]]:
         raise ConfigError(f"{array.name}: {why}")
 
     def said(clip: Clip) -> list[Label]:
-        scale = float(clip.details["recordings"][array.name]["full_scale_pa"])
-        sound, rate_hz = read_wav(clip.sound, full_scale_pa=scale)
+        sound, rate_hz = read_wav(clip.sound, full_scale_pa=clip.facts.full_scale_pa)
+        if rate_hz not in clip.facts.rates_hz:
+            allowed = ", ".join(map(str, clip.facts.rates_hz))
+            raise ConfigError(f"{clip.sound}: {rate_hz} samples a second; allowed are {allowed}")
         if sound.shape[0] != array.channels:
             raise ConfigError(
                 f"{clip.sound}: {sound.shape[0]} channels; {array.name} has {array.channels}"
             )
         found = []
+        frames = int(sound.shape[1] / rate_hz / FRAME_S + 1e-9)
         for frame, rows in _by_frame(clip.labels).items():
+            if frame >= frames:
+                raise ConfigError(
+                    f"{clip.sound}: has {frames} frames of {1000.0 * FRAME_S:g} ms, counted from "
+                    f"0; its labels name frame {frame}"
+                )
             first = max(0, round((frame * FRAME_S - _CONTEXT_S) * rate_hz))
             last = round(((frame + 1) * FRAME_S + _CONTEXT_S) * rate_hz)
             blocks = blocks_of(sound[:, first:last], rate_hz, array)
@@ -200,10 +220,7 @@ def _directions(labels: list[Label]) -> NDArray[np.float64]:
 
 def _errors(clip: Clip, found: list[Label]) -> list[FrameError]:
     """Errors of estimates that have a label of their class in their frame."""
-    room = clip.details.get("room", {})
-    record = next(
-        one for one in clip.details["recordings"].values() if clip.sound.match(str(one["file"]))
-    )
+    known = clip.facts
     estimates, errors = _by_frame(found), []
     for frame, rows in _by_frame(clip.labels).items():
         for kind in sorted({row.class_index for row in rows}):
@@ -216,14 +233,14 @@ def _errors(clip: Clip, found: list[Label]) -> list[FrameError]:
                 source = given[row].source
                 facts: dict[str, float | str | None] = {
                     "distance_m": given[row].distance_m,
-                    "t20_s": room.get("t20_s"),
-                    "drr_db": record["sources"][source]["drr_db"],
-                    "snr_db": clip.details["snr_db"],
+                    "t20_s": known.t20_s,
+                    "drr_db": known.drr_db[source],
+                    "snr_db": known.snr_db,
                     "sources": float(len(rows)),
-                    "occlusion": clip.details["sources"][source]["occlusion"],
+                    "occlusion": known.occlusion[source],
                 }
-                known = {name: fact for name, fact in facts.items() if fact is not None}
-                errors.append(FrameError(float(angles[row, column]), known))
+                told_of = {name: fact for name, fact in facts.items() if fact is not None}
+                errors.append(FrameError(float(angles[row, column]), told_of))
     return errors
 
 
@@ -262,7 +279,7 @@ def _groups(errors: list[FrameError], max_angle_deg: float) -> dict[str, list[di
     ]
     found["occlusion"] = [
         {"is": kind, **_summary(inside, max_angle_deg)}
-        for kind in _OCCLUSIONS
+        for kind in OCCLUSIONS
         if (inside := [one for one in errors if one.facts.get("occlusion") == kind])
     ]
     return found

@@ -10,6 +10,8 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+from dwell import ConfigError
+from dwell.arguments import file_path, quoted
 from dwell.files import atomic_write, is_draft, make_folder, open_exclusive, read_json
 from dwell.teach.plan import ClipPlan, clip_plans
 from dwell.teach.play import play
@@ -18,7 +20,7 @@ from dwell.teach.session import open_session
 from dwell.teach.settings import TeachSettings
 from dwell.teach.things import POOL, THINGS_OF_A_USER
 from dwell.teach.users import UserParameters, user_parameters
-from dwell.teach.writer import LABEL, write_clip
+from dwell.teach.writer import LABEL, missing_file, write_clip
 
 #: What the folder holds beside those of users.
 DATASET, MANIFEST, USER = "dataset.json", "manifest.jsonl", "user.json"
@@ -82,7 +84,9 @@ def record(
         DwellError: The house cannot be opened, or has no place for the table.
     """
     settings = TeachSettings() if settings is None else settings
-    folder = Path(out)
+    if not isinstance(settings, TeachSettings):
+        raise ConfigError(f"settings is {quoted(settings)}; expected TeachSettings")
+    folder = Path(file_path("out", out))
     # Before the folder is begun; who goes on needs the house as it was.
     house, _ = stage(settings.house)
     whole = {
@@ -100,7 +104,8 @@ def record(
         rows, made = [], 0
         count = settings.users * settings.clips
         for done, clip in enumerate(clips_of(settings)):
-            label = _label_there(folder / clip.folder)
+            _write_user(folder, clip)
+            label = _label_there(folder / clip.folder, settings)
             if label is None:
                 label = _record_clip(folder, settings, clip)
                 made += 1
@@ -113,31 +118,36 @@ def record(
 
 
 def _record_clip(folder: Path, settings: TeachSettings, clip: Clip) -> dict[str, Any]:
-    place = folder / clip.folder
-    user = place.parent / USER
+    session = open_session(settings, clip.user, clip.plan)
+    return write_clip(folder / clip.folder, session, play(session))
+
+
+def _write_user(folder: Path, clip: Clip) -> None:
+    """Writes the parameters of a clip's user, where they are not there."""
+    user = folder / user_folder(clip.user) / USER
     if not user.exists():
         _write_json(user, clip.user.as_dict())
-    session = open_session(settings, clip.user, clip.plan)
-    return write_clip(place, session, play(session))
 
 
-def _label_there(place: Path) -> dict[str, Any] | None:
+def _label_there(place: Path, settings: TeachSettings) -> dict[str, Any] | None:
     """The label of a clip that is whole; folders get their name when they are.
 
     Raises:
-        ValueError: Something else stands there.
+        ValueError: Something else stands there, or a file is missing.
     """
     if not os.path.lexists(place):
         return None
+    anew = f"remove {place}, and the clip is recorded anew"
     try:
         label = read_json(place / LABEL)
     except FileNotFoundError:
-        raise ValueError(
-            f"{place} has no {LABEL}: it is no clip, or was changed; remove it, and it is "
-            "recorded anew"
-        ) from None
+        raise ValueError(f"{place} has no {LABEL}: it is no clip, or was changed; {anew}") from None
+    except ValueError as error:
+        raise ValueError(f"{error}; {anew}") from None
     if not isinstance(label, dict):
-        raise ValueError(f"{place / LABEL}: expected an object, found {label!r:.60}")
+        raise ValueError(f"{place / LABEL}: expected an object, found {label!r:.60}; {anew}")
+    if missing := missing_file(place, label, settings.form):
+        raise ValueError(f"{place / missing} is missing or empty; {anew}")
     return label
 
 
@@ -169,11 +179,14 @@ def _refuse_other(folder: Path, whole: dict[str, Any]) -> None:
     if not file.exists():
         if folder.is_dir():
             others = (n for n in os.listdir(folder) if not is_draft(n) and n != _LOCK)
-            if other := next(others, None):
+            other = next(others, None)
+            # What another process has just begun is no other thing than this.
+            if other and not file.exists():
                 raise ValueError(
                     f"{folder} holds something else ({other}); expected an empty or a new folder"
                 )
-        return
+        if not file.exists():
+            return
     found = read_json(file)
     if not isinstance(found, dict):
         raise ValueError(f"{file}: expected an object, found {found!r:.60}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 import json
 import os
 import shutil
@@ -44,8 +45,11 @@ def whole_folder(place: Path) -> Iterator[Path]:
     try:
         yield draft
         os.replace(draft, place)
-    except BaseException:
+    except BaseException as error:
         shutil.rmtree(draft, ignore_errors=True)
+        # Of a disk that is full the system says no name.
+        if isinstance(error, OSError) and error.filename is None:
+            raise OSError(error.errno, error.strerror, os.fspath(place)) from None
         raise
 
 
@@ -71,6 +75,40 @@ def write_clip(place: Path, session: Session, clip: PlayedClip) -> dict[str, Any
     return label
 
 
+def missing_file(place: Path, label: dict[str, Any], form: str) -> str | None:
+    """The first file of a written clip, below its folder, that is not there or empty."""
+    try:
+        frames = range(int(label["frames"]["count"]))
+        masks = [str(view["mask"]) for key in label["key_frames"] for view in key["views"].values()]
+    except (KeyError, TypeError, ValueError, AttributeError):
+        # Whoever lists the clips says what a label lacks.
+        return None
+    names = itertools.chain(("audio.wav", "speech.txt", *masks), _picture_files(frames, form))
+    return next((name for name in names if not _is_there(place / name)), None)
+
+
+def _picture_files(frames: range, form: str) -> Iterator[str]:
+    for mount in MOUNTS:
+        if form == "npz":
+            yield f"{mount.name}.npz"
+            continue
+        for channel in ("rgb", "depth") if mount.has_depth else ("rgb",):
+            for number in frames:
+                yield picture_name(mount.name, channel, number)
+
+
+def _is_there(file: Path) -> bool:
+    try:
+        return file.stat().st_size > 0
+    except OSError:
+        return False
+
+
+def picture_name(camera: str, channel: str, frame: int) -> str:
+    """The file of a picture below the clip's folder."""
+    return f"{camera}/{channel}/{frame:06}.png"
+
+
 def mask_name(camera: str, key: KeyFrame) -> str:
     """The file of a mask below the clip's folder."""
     return f"masks/{camera}_{key.frame:06}.png"
@@ -84,7 +122,7 @@ def _write_pictures(folder: Path, name: str, pictures: dict[str, list[Any]], for
     for channel, frames in pictures.items():
         make_folder(folder / name / channel)
         for number, picture in enumerate(frames):
-            file = folder / name / channel / f"{number:06}.png"
+            file = folder / picture_name(name, channel, number)
             Image.fromarray(picture).save(file, format="PNG")
 
 

@@ -1,0 +1,172 @@
+"""Odd values of calls and commands: which are refused, and whether the sentence leads on."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import gymnasium
+import pytest
+from test_measure import quiet, tosses
+
+import dwell
+from dwell import pettingzoo as zoo
+from dwell.episode_maker import EpisodeMaker
+from dwell.evaluation import evaluate
+from dwell.measured_import import import_files
+
+Command = Callable[..., subprocess.CompletedProcess[str]]
+STUDIO: dict[str, Any] = {"houses": "builtin:studio", "sensors": ["gps"]}
+
+pytestmark = pytest.mark.usefixtures("open_once")
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (5, "options is 5; expected values by name"),
+        ([], "options is []; expected values by name"),
+    ],
+)
+def test_options_of_several_agents_are_by_name(options: Any, told: str) -> None:  # noqa: ANN401
+    env = zoo.parallel_env("PointNav", agents=2, **STUDIO)
+    with pytest.raises(dwell.ConfigError, match=re.escape(told)):
+        env.reset(seed=1, options=options)
+    env.reset(seed=1, options={"house": 0})
+
+
+@pytest.mark.parametrize("name", ["", "a\x1b[31m", "a\0b", "a\u202eb", "a\nb"])
+def test_names_of_agents_can_be_printed(name: str) -> None:
+    told = re.escape(f"agents: a name is {name!r}; expected letters that can be printed")
+    with pytest.raises(dwell.ConfigError, match=told):
+        zoo.parallel_env("PointNav", agents={name: {}}, **STUDIO)
+    zoo.parallel_env("PointNav", agents={"Jörg 2": {}}, **STUDIO)
+
+
+def test_a_sensor_stands_once_among_names() -> None:
+    with pytest.raises(dwell.ConfigError, match="sensors: 'gps' stands there twice"):
+        gymnasium.make("dwell/PointNav-v0", houses="builtin:studio", sensors=["gps", "rgb", "gps"])
+
+
+@pytest.mark.parametrize(
+    ("body", "told"),
+    [
+        ({"kind": "persona"}, "agents[1].kind is 'persona'; allowed are 'capsule', 'person'"),
+        (
+            {"kind": "person", "hand": "both"},
+            "agents[1].hand is 'both'; allowed are 'left', 'right'",
+        ),
+    ],
+)
+def test_words_of_bodies_are_told_with_the_body(body: dict[str, Any], told: str) -> None:
+    with pytest.raises(dwell.ConfigError, match=re.escape(told)):
+        dwell.World("builtin:studio", agents=[{}, body])
+
+
+def test_a_path_with_nul_is_none() -> None:
+    env = gymnasium.make("dwell/PointNav-v0", **STUDIO)
+    with pytest.raises(dwell.ConfigError, match=r"folder is 'a\\x00b'; a path holds no NUL"):
+        dwell.envs.ReplayRecorder(env, "a\0b")
+
+
+def test_a_long_sentence_is_not_told_whole(command: Command) -> None:
+    ran = command("check-text", "builtin:studio", "There is a bed." * 2_000)
+    assert ran.returncode == 1
+    assert len(ran.stderr) < 500
+    assert "the text has 30000 bytes; allowed are 4096" in ran.stderr
+
+
+def test_a_constant_of_a_map_is_told_with_the_map(tmp_path: Path) -> None:
+    files, path = tosses(tmp_path)
+    mapping = json.loads(path.read_text())
+    path.write_text(json.dumps({**mapping, "g_m_s2": "x"}))
+    with pytest.raises(ValueError, match=r"map\.json: g_m_s2 is 'x'; expected a number"):
+        import_files(files, path, tmp_path / "a.measured", quiet)
+
+
+def test_of_many_columns_the_first_are_told(tmp_path: Path) -> None:
+    files, path = tosses(tmp_path)
+    files[0].write_text(",".join(f"c{k}" for k in range(10_000)) + "\n")
+    with pytest.raises(ValueError, match=r"no column 'id'; it has .*\(10000 in all\)") as raised:
+        import_files(files, path, tmp_path / "a.measured", quiet)
+    assert len(str(raised.value)) < 500
+
+
+def test_who_stops_making_episodes_does_not_wait_for_experts() -> None:
+    maker = EpisodeMaker("PointNav", "builtin:studio", count=64, seed=1, expert=True)
+    alone = maker.in_parts(maker.parts())
+    begun = time.perf_counter()
+    next(alone)
+    piece_s = time.perf_counter() - begun
+    alone.close()
+    made = maker.in_parts(maker.parts(), workers=2)
+    next(made)
+    # Other pieces are being played now.
+    begun = time.perf_counter()
+    made.close()
+    assert time.perf_counter() - begun < 0.5 * piece_s
+
+
+@pytest.mark.parametrize(
+    ("fields", "told"),
+    [
+        ({"task": 5}, "task is 5; expected text"),
+        ({"houses": 5}, "houses is 5; expected a list of text"),
+        ({"shard": 5}, "shard is 5; expected two whole numbers"),
+        ({"shard": (1, 1)}, "shard[0] is 1; allowed are whole numbers from 0 to 0"),
+        ({"expert": "yes"}, "expert is 'yes'; allowed are True and False"),
+    ],
+)
+def test_what_a_maker_of_episodes_is_told_is_checked(fields: dict[str, Any], told: str) -> None:
+    arguments: dict[str, Any] = {"task": "PointNav", "houses": "builtin:studio", "count": 1}
+    with pytest.raises(dwell.ConfigError, match=re.escape(told)):
+        EpisodeMaker(**{**arguments, **fields})
+
+
+@pytest.mark.parametrize("workers", [0, "2", True])
+def test_workers_of_a_maker_of_episodes_are_a_number(workers: Any) -> None:  # noqa: ANN401
+    maker = EpisodeMaker("PointNav", "builtin:studio", count=1)
+    with pytest.raises(dwell.ConfigError, match=re.escape(f"workers is {workers!r}; allowed are")):
+        [*maker.episodes(workers=workers)]
+
+
+def test_episodes_to_evaluate_are_files() -> None:
+    with pytest.raises(dwell.ConfigError, match="episodes is 5; expected the path of a file"):
+        evaluate("random", episodes=5)  # type: ignore[arg-type] # on purpose
+
+
+def test_recorders_and_wrappers_say_which_environments_they_take(tmp_path: Path) -> None:
+    several: Any = zoo.parallel_env("PointNav", agents=2, **STUDIO)
+    with pytest.raises(dwell.ConfigError, match="ParallelReplayRecorder records several"):
+        dwell.envs.ReplayRecorder(several, tmp_path)
+    alone = gymnasium.make("dwell/PointNav-v0", **STUDIO)
+    for env in (None, 5, alone):
+        with pytest.raises(
+            dwell.ConfigError, match=r"expected one of dwell\.pettingzoo\.parallel_env"
+        ):
+            zoo.TorchRLCompatible(env)
+    zoo.TorchRLCompatible(several).reset(seed=1)
+
+
+def test_a_task_that_there_is_not_plays_no_replay(tmp_path: Path) -> None:
+    env = dwell.envs.ReplayRecorder(gymnasium.make("dwell/PointNav-v0", **STUDIO), tmp_path)
+    env.reset(seed=1)
+    env.step(6)
+    env.close()
+    replay = dwell.Replay.read(tmp_path / "episode_0000.replay")
+    with pytest.raises(dwell.ConfigError, match="task is 'x'; "):
+        next(replay.play(task="x"))
+    assert next(replay.play(task="PointNav")).step == 0
+
+
+@pytest.mark.parametrize("seekers", [[0, 0], [], [0, 1]])
+def test_seekers_stand_once(seekers: list[int]) -> None:
+    settings = {"seekers": seekers}
+    env = zoo.parallel_env("HideAndSeek", agents=2, task_settings=settings, **STUDIO)
+    with pytest.raises(dwell.ConfigError, match=re.escape(f"seekers is {seekers} of 2 agents")):
+        env.reset(seed=1)
