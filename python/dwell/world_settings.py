@@ -29,6 +29,8 @@ from dwell.heads import Head, head_of
 Laws = str | os.PathLike[str] | Mapping[str, Any] | Sequence[str | Mapping[str, Any]] | None
 
 _FOUND = {"laws", "parameters"}
+#: What calibration says of it besides, for readers.
+_FOUND_ABOUT = {"intervals", "provenance"}
 #: More than anybody has causes for; each is looked for among those before it.
 _MAX_LAWS = 1_000
 _EXPECTED = (
@@ -71,8 +73,9 @@ def found(laws: Laws) -> tuple[list[dict[str, Any]], dict[str, float]]:
         return [], {}
     parameters: Mapping[str, float] = {}
     if isinstance(laws, Mapping) and _FOUND & set(laws):
-        if unknown := sorted(set(laws) - _FOUND):
-            raise ConfigError(f"{at}: no field {unknown[0]!r}; allowed are {sorted(_FOUND)}")
+        if unknown := sorted(set(laws) - _FOUND - _FOUND_ABOUT):
+            allowed = sorted(_FOUND | _FOUND_ABOUT)
+            raise ConfigError(f"{at}: no field {unknown[0]!r}; allowed are {allowed}")
         parameters = laws.get("parameters", {})
         laws = laws.get("laws", [])
     if not isinstance(parameters, Mapping):

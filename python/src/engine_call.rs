@@ -41,8 +41,8 @@ impl EngineCall for Python<'_> {
                            let it set a flag, and call when that call has ended";
             return Err(to_python(PyFault::Usage(message.to_owned())));
         }
-        logs::sync_level(self);
-        let hears_signals = fork_safety::is_main_thread(self);
+        logs::sync_level(self)?;
+        let hears_signals = fork_safety::is_main_thread(self)?;
         // A call that begins while the interpreter ends is of the thread that ends it.
         ENDS_PYTHON.set(!is_python_running());
         let call = fork_safety::EngineCallGuard::begin(self);

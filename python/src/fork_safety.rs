@@ -5,6 +5,7 @@
 //! with the GIL: none can begin before the fork is done.
 
 use crate::callbacks;
+use pyo3::exceptions::PyException;
 use pyo3::prelude::*;
 use pyo3::types::{PyCFunction, PyDict};
 use std::cell::Cell;
@@ -53,17 +54,24 @@ impl Drop for EngineCallGuard {
 }
 
 /// Returns whether this is the thread on which Python runs handlers of signals.
-pub(crate) fn is_main_thread(py: Python<'_>) -> bool {
+///
+/// # Errors
+///
+/// What a handler of signals raises while Python is asked.
+pub(crate) fn is_main_thread(py: Python<'_>) -> PyResult<bool> {
     let generation = GENERATION.load(Ordering::Relaxed);
     if let Some((of, is_main)) = MAIN.get()
         && of == generation
     {
-        return is_main;
+        return Ok(is_main);
     }
-    // Where threading cannot say, no thread counts as the main one.
-    let is_main = is_registered(py).unwrap_or(false);
+    let is_main = match is_registered(py) {
+        // Where threading cannot say, no thread counts as the main one.
+        Err(error) if error.is_instance_of::<PyException>(py) => false,
+        answer => answer?,
+    };
     MAIN.set(Some((generation, is_main)));
-    is_main
+    Ok(is_main)
 }
 
 fn is_registered(py: Python<'_>) -> PyResult<bool> {

@@ -161,22 +161,26 @@ pub(crate) fn install() {
 }
 
 /// The loggers `dwell` and root, once somebody has imported `logging`: before that nobody can have set a level.
-fn loggers(py: Python<'_>) -> Option<&'static (Py<PyAny>, Py<PyAny>)> {
+fn loggers(py: Python<'_>) -> PyResult<&'static (Py<PyAny>, Py<PyAny>)> {
     static LOGGERS: PyOnceLock<(Py<PyAny>, Py<PyAny>)> = PyOnceLock::new();
     if let Some(known) = LOGGERS.get(py) {
-        return Some(known);
+        return Ok(known);
     }
-    let modules = py.import("sys").and_then(|sys| sys.getattr("modules"));
-    let logging = modules.and_then(|all| all.get_item("logging")).ok()?;
-    let own = callbacks::call(&logging.getattr("getLogger").ok()?, ("dwell",)).ok()?;
-    let both = (own.unbind(), logging.getattr("root").ok()?.unbind());
-    Some(LOGGERS.get_or_init(py, || both))
+    let logging = py.import("sys")?.getattr("modules")?.get_item("logging")?;
+    let own = callbacks::call(&logging.getattr("getLogger")?, ("dwell",))?;
+    let both = (own.unbind(), logging.getattr("root")?.unbind());
+    Ok(LOGGERS.get_or_init(py, || both))
 }
 
 /// Reads the level that is wanted.
-pub(crate) fn sync_level(py: Python<'_>) {
-    let Some((own, root)) = loggers(py) else {
-        return;
+///
+/// # Errors
+///
+/// What a handler of signals raises while Python is asked.
+pub(crate) fn sync_level(py: Python<'_>) -> PyResult<()> {
+    let (own, root) = match loggers(py) {
+        Err(error) if error.is_instance_of::<PyException>(py) => return Ok(()),
+        both => both?,
     };
     let level = |logger: &Py<PyAny>| -> Option<i64> {
         let level = logger.bind(py).getattr(intern!(py, "level")).ok()?;
@@ -187,6 +191,7 @@ pub(crate) fn sync_level(py: Python<'_>) {
     if LEAST.swap(least, Ordering::Relaxed) != least {
         tracing::callsite::rebuild_interest_cache();
     }
+    Ok(())
 }
 
 /// Delivers the waiting records to Python. Returns an exception that is no fault of a handler of logs but ends the program: Ctrl-C, which

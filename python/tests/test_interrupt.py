@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
+import sys
 import threading
 from collections.abc import Callable
 from pathlib import Path
@@ -208,3 +210,27 @@ def test_other_threads_go_on_when_the_main_one_is_interrupted() -> None:
         thread.join()
     # What a thread raises besides is an error of pytest.
     assert all((image == images[0]).all() for image in images)
+
+
+@pytest.mark.parametrize("asked", ["threading.main_thread", "logging.getLogger"])
+def test_ctrl_c_while_the_first_call_asks_python_is_raised(asked: str) -> None:
+    script = f"""
+import logging, threading
+from dwell import _native
+
+module, name = {asked.split(".")[0]}, "{asked.split(".")[1]}"
+real = getattr(module, name)
+
+def interrupted(*arguments):
+    setattr(module, name, real)
+    raise KeyboardInterrupt
+
+setattr(module, name, interrupted)
+try:
+    _native.tasks()
+except KeyboardInterrupt:
+    print("raised")
+print(len(_native.tasks()) > 0)
+"""
+    ran = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert ran.stdout.split() == ["raised", "True"]

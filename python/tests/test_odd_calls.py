@@ -18,7 +18,7 @@ import dwell
 from dwell import pettingzoo as zoo
 from dwell.episode_maker import EpisodeMaker
 from dwell.evaluation import evaluate
-from dwell.measured_import import import_files
+from dwell.measured.importing import import_files
 
 Command = Callable[..., subprocess.CompletedProcess[str]]
 STUDIO: dict[str, Any] = {"houses": "builtin:studio", "sensors": ["gps"]}
