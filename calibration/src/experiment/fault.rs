@@ -93,11 +93,14 @@ impl FaultValues {
     }
 }
 
-/// The cause of a fault. Each parameter: name, unit, default, bounds, plausible range, probe.
+/// A parameter of a fault: name, unit, default, bounds, plausible range, probe.
+type FaultParameter<'a> = (&'a str, &'a str, f64, [f64; 2], [f64; 2], f64);
+
+/// The cause of a fault.
 fn cause(
     fault: Fault,
     [id, name, equation, experiment]: [&str; 4],
-    parameters: &[(&str, &str, f64, [f64; 2], [f64; 2], f64)],
+    parameters: &[FaultParameter<'_>],
 ) -> Cause {
     Cause {
         id: id.into(),

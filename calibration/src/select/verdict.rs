@@ -433,9 +433,7 @@ impl Search<'_> {
                 fault.unwrap_or_default()
             )),
             // What fits best is not plausible, and another explanation is: it is one that was looked for.
-            (1, Some(_)) | (1, None) if sets[0] == chosen.model.causes => {
-                Decision::Named(sets.remove(0))
-            }
+            (1, _) if sets[0] == chosen.model.causes => Decision::Named(sets.remove(0)),
             _ => Decision::OneOf(sets),
         })
     }
@@ -512,8 +510,7 @@ fn estimate_noise(
             (residuals.iter().flatten().map(|r| r * r).sum::<f64>() / n).sqrt()
         };
         let sd = noise_from_differences(&slices)
-            .map(|floor| floor.sd)
-            .unwrap_or_else(spread)
+            .map_or_else(spread, |floor| floor.sd)
             .max(1e-9);
         for measured in experiment.episodes_mut() {
             for (sd_here, channel_here) in measured.sd.iter_mut().zip(&measured.channel) {
