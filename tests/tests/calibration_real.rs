@@ -85,16 +85,14 @@ fn falling_balls_get_a_defensible_verdict() {
     for candidate in &report.candidates {
         let p = &candidate.parameters[0];
         println!(
-            "  {} {} = {:.4} ({:.4} to {:.4}), fall of BIC {:.1}, held-out share {:.2} ({:.2} to {:.2})",
+            "  {} {} = {:.4} ({:.4} to {:.4}), fall of BIC {:.1}, held-out share {:?}",
             candidate.id,
             p.name,
             p.value,
             p.interval[0],
             p.interval[1],
             candidate.delta_bic,
-            candidate.gain.share,
-            candidate.gain.share_interval[0],
-            candidate.gain.share_interval[1]
+            candidate.gain.map(|gain| gain.share)
         );
     }
     match &report.verdict {
