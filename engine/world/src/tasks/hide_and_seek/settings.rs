@@ -102,12 +102,12 @@ impl Teams {
         let named: Vec<u32> = settings.seekers.clone().unwrap_or_else(usual);
         let (seekers, hiders): (Vec<u32>, Vec<u32>) =
             (0..count).partition(|agent| named.contains(agent));
-        let known = named.iter().all(|agent| *agent < count);
+        let known = named.iter().all(|agent| *agent < count) && seekers.len() == named.len();
         if !known || seekers.is_empty() || hiders.is_empty() {
             return Err(WorldError::Config {
                 field: "seekers",
                 found: format!("{named:?} of {count} agents"),
-                allowed: "numbers of agents, at least one and not all of them".to_owned(),
+                allowed: "numbers of agents, each once, at least one and not all of them".to_owned(),
             });
         }
         let ids = |numbers: Vec<u32>| numbers.into_iter().map(AgentId).collect();
