@@ -5,13 +5,14 @@
     reason = "a test stops at the first surprise, in its helpers too"
 )]
 
+use dwell_calibration::bundle::file::BoardManifest;
 use dwell_calibration::rollout::study::{
     ContactModel, ContactParameter, PeerScores, StudyOptions, run,
 };
 use dwell_calibration::rollout::{
-    BoardRig, HORIZONS, MotionState, NominalContact, PoseTrack, PoseTracks, Regime, RigSettings,
-    TrackedBody, TrackerNoise, WindowOptions, diverges_under_noise, predict_windows, scores,
-    window_scores, window_start,
+    BoardRig, HORIZONS, MotionState, PoseTrack, PoseTracks, Regime, RigSettings, TrackedBody,
+    TrackerNoise, WindowOptions, diverges_under_noise, predict_windows, scores, window_scores,
+    window_start,
 };
 use dwell_physics::ContactFriction;
 use dwell_scene::parallel::Threads;
@@ -33,9 +34,10 @@ fn tracks(episodes: Vec<PoseTrack>) -> PoseTracks {
         title: "made up".into(),
         licence: "CC0-1.0".into(),
         body,
-        nominal: NominalContact {
+        board: BoardManifest {
             friction: 0.3,
             restitution: 0.0,
+            substances: None,
         },
         rate_hz: RATE_HZ,
         gravity_m_s2: GRAVITY_M_S2,
@@ -183,7 +185,7 @@ fn roll_outs_meet_their_own_tosses_and_threads_change_nothing() {
 #[test]
 fn hidden_friction_is_found_out_of_fold() {
     let mut tracks = tossed(0.25, 12);
-    tracks.nominal.friction = 0.4;
+    tracks.board.friction = 0.4;
     let friction = ContactParameter {
         name: "friction",
         unit: "1",

@@ -459,8 +459,10 @@ ODD = "a\x1b[31m\x00\x9b\u202eb"
 
 
 def test_names_command_no_terminal(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(dwell.HouseError) as refused:
+    with pytest.raises(dwell.ConfigError, match=r"house is .*a\\x1b\[31m.*a path holds no NUL"):
         dwell.House.open(f"{tmp_path}/{ODD}.glb")
+    with pytest.raises(dwell.HouseError) as refused:
+        dwell.House.open(f"{tmp_path}/{ODD}.glb".replace("\0", ""))
     assert "\\u001b[31m" in str(refused.value)
     assert cli.main(["info", f"{tmp_path}/{ODD}.glb"]) == 1
     assert cli.main([f"{ODD}", "info"]) == 2

@@ -1,7 +1,7 @@
 //! Checks of a bundle's manifest: required fields, and ranges that make sense.
 
 use super::file::{BodyManifest, BundleKind, MeasurementDescription, SurfaceManifest, VERSION};
-use super::{Bundle, limits, odometry, poses, unit_checks};
+use super::limits;
 use crate::error::CalibrationError;
 use dwell_scene::material::library;
 use std::collections::BTreeMap;
@@ -10,13 +10,8 @@ type CheckResult = Result<(), CalibrationError>;
 
 /// The sides of a box-shaped room, as scene's shoebox names them.
 pub(crate) const ROOM_SURFACES: [&str; 6] = ["floor", "ceiling", "west", "east", "north", "south"];
-/// Episodes below which nothing can be held out.
-const FEWEST_EPISODES: usize = 4;
 /// Densities of bodies, kg/m3: from a balloon, which is mostly what it floats in, to beyond osmium.
 const DENSITIES_KG_M3: [f64; 2] = [0.05, 25_000.0];
-/// Poses of an episode below which nothing can be predicted from them.
-const FEWEST_POSES: usize = 6;
-
 /// Positions by the names of a manifest.
 pub(super) struct NameIndex {
     entities: BTreeMap<String, usize>,
@@ -186,6 +181,9 @@ pub(super) fn check_manifest(at: &str, manifest: &MeasurementDescription) -> Che
     if let Some(board) = &scene.board {
         range(at, "scene.board.friction", board.friction, 0.0, 10.0)?;
         range(at, "scene.board.restitution", board.restitution, 0.0, 1.0)?;
+        for substance in board.substances.iter().flatten() {
+            known_substance(at, "scene.board.substances", substance)?;
+        }
     }
     if let Some(base) = &scene.base {
         range(
@@ -353,18 +351,23 @@ fn pose_form(at: &str, manifest: &MeasurementDescription) -> CheckResult {
     Ok(())
 }
 
+fn known_substance(at: &str, field: &str, name: &str) -> CheckResult {
+    if library().get(name).is_some() {
+        return Ok(());
+    }
+    let allowed = "a substance of the engine's table, such as plaster, carpet or parquet";
+    Err(CalibrationError::field(
+        at,
+        field,
+        format!("{name:?}"),
+        allowed,
+    ))
+}
+
 fn surface_of(at: &str, side: &str, surface: &SurfaceManifest) -> CheckResult {
     let of = |field: &str| format!("scene.room.surfaces.{side}.{field}");
-    if let Some(substance) = &surface.substance
-        && library().get(substance).is_none()
-    {
-        let allowed = "a substance of the engine's table, such as plaster, carpet or parquet";
-        return Err(CalibrationError::field(
-            at,
-            of("substance"),
-            format!("{substance:?}"),
-            allowed,
-        ));
+    if let Some(substance) = &surface.substance {
+        known_substance(at, &of("substance"), substance)?;
     }
     if surface.substance.is_none() && surface.absorption.is_none() {
         return Err(missing(
@@ -459,147 +462,11 @@ fn channels(at: &str, manifest: &MeasurementDescription) -> CheckResult {
     Ok(())
 }
 
-fn missing(at: &str, what: &str, needed: &str) -> CalibrationError {
+/// The error of something that is not there.
+pub(super) fn missing(at: &str, what: &str, needed: &str) -> CalibrationError {
     CalibrationError::Missing {
         at: at.to_owned(),
         what: what.to_owned(),
         needed: needed.to_owned(),
     }
-}
-
-/// Checks that the data suffice.
-pub(super) fn check_sufficient_data(bundle: &Bundle) -> CheckResult {
-    let scene = &bundle.manifest.scene;
-    let at = format!("{}/manifest.json", bundle.name);
-    match bundle.kind() {
-        BundleKind::Trajectory if scene.bodies.is_empty() => {
-            return Err(missing(
-                &at,
-                "scene.bodies",
-                "a trajectory needs the body that flew",
-            ));
-        }
-        BundleKind::Trajectory if scene.bodies.iter().any(|body| body.radius_m.is_none()) => {
-            return Err(missing(
-                &at,
-                "scene.bodies[].radius_m",
-                "free flight is computed for spheres",
-            ));
-        }
-        BundleKind::Servo if scene.joints.len() != 1 || !scene.bodies.is_empty() => {
-            return Err(CalibrationError::field(
-                at,
-                "scene.joints",
-                scene.joints.len(),
-                "exactly one joint, and no bodies",
-            ));
-        }
-        BundleKind::Trajectory | BundleKind::Servo if bundle.manifest.channels.is_empty() => {
-            return Err(missing(
-                &at,
-                "channels",
-                "what the numbers mean must be said",
-            ));
-        }
-        _ => {}
-    }
-    let found = bundle.episodes.len();
-    if found < FEWEST_EPISODES {
-        let (at, needed) = (bundle.name.clone(), FEWEST_EPISODES);
-        return Err(CalibrationError::TooFew {
-            at,
-            what: "episodes",
-            found,
-            needed,
-        });
-    }
-    for episode in &bundle.episodes {
-        let at = format!("{}, episode {}", bundle.name, episode.name);
-        match bundle.kind() {
-            BundleKind::ImpulseResponse if episode.responses.is_empty() => {
-                return Err(missing(
-                    &at,
-                    "a row of ir.csv",
-                    "every episode needs an impulse response",
-                ));
-            }
-            BundleKind::Trajectory | BundleKind::Servo if episode.samples.len() < 6 => {
-                let (what, found, needed) = ("rows of trajectory.csv", episode.samples.len(), 6);
-                return Err(CalibrationError::TooFew {
-                    at,
-                    what,
-                    found,
-                    needed,
-                });
-            }
-            BundleKind::PoseTrajectory if episode.poses.len() < FEWEST_POSES => {
-                let (what, found, needed) =
-                    ("rows of poses.csv", episode.poses.len(), FEWEST_POSES);
-                return Err(CalibrationError::TooFew {
-                    at,
-                    what,
-                    found,
-                    needed,
-                });
-            }
-            BundleKind::Trajectory
-                if episode
-                    .samples
-                    .iter()
-                    .any(|s| s.entity != episode.samples[0].entity) =>
-            {
-                return Err(CalibrationError::field(
-                    at,
-                    "entity",
-                    "more than one",
-                    "one body an episode",
-                ));
-            }
-            BundleKind::Servo if episode.commands.is_empty() => {
-                return Err(missing(
-                    &at,
-                    "a row of command.csv",
-                    "a servo's episode needs its commands",
-                ));
-            }
-            _ => {}
-        }
-        let mut channels = episode.samples.chunk_by(|a, b| a.channel == b.channel);
-        channels.try_for_each(|samples| {
-            let times: Vec<f64> = samples.iter().map(|s| s.t_s).collect();
-            unit_checks::check_sample_times(&at, &times)
-        })?;
-    }
-    match bundle.kind() {
-        BundleKind::PoseTrajectory => {
-            poses::check_poses(&bundle.name, &bundle.manifest, &bundle.episodes)?;
-        }
-        BundleKind::Drive => {
-            odometry::check_drives(&bundle.name, &bundle.manifest, &bundle.episodes)?;
-        }
-        BundleKind::Trajectory | BundleKind::Servo | BundleKind::ImpulseResponse => {}
-    }
-    durations(bundle)?;
-    unit_checks::check_flights(&bundle.name, &bundle.manifest, &bundle.episodes)
-}
-
-/// Checks that no episode is longer than can be computed.
-fn durations(bundle: &Bundle) -> CheckResult {
-    for episode in &bundle.episodes {
-        let samples = episode.samples.iter().map(|s| s.t_s);
-        let poses = episode.poses.iter().map(|p| p.t_s);
-        let drive = episode.drive.iter().map(|row| row.t_s);
-        let times: Vec<f64> = samples.chain(poses).chain(drive).collect();
-        let span = |f: fn(f64, f64) -> f64, from: f64| times.iter().copied().fold(from, f);
-        let duration = span(f64::max, f64::NEG_INFINITY) - span(f64::min, f64::INFINITY);
-        if duration > 600.0 {
-            return Err(CalibrationError::field(
-                format!("{}, episode {}", bundle.name, episode.name),
-                "the time from first to last sample",
-                duration,
-                "at most 600 s",
-            ));
-        }
-    }
-    Ok(())
 }

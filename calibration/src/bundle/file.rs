@@ -121,6 +121,26 @@ pub struct BoardManifest {
     pub friction: f64,
     /// Restitution of the pair, 0 to 1.
     pub restitution: f64,
+    /// The substances of bodies and board in the materials library, under whose pair found values are installed; `null`: rubber
+    /// and plywood.
+    #[serde(default)]
+    pub substances: Option<[String; 2]>,
+}
+
+impl BoardManifest {
+    /// The address of a contact value of bodies and board.
+    pub(crate) fn pair_address(&self, value: &str) -> String {
+        let [body, board] = self.pair();
+        format!("pair/{body}~{board}/{value}")
+    }
+
+    /// The substances of bodies and board.
+    pub(crate) fn pair(&self) -> [&str; 2] {
+        match &self.substances {
+            Some([body, board]) => [body, board],
+            None => ["rubber", "plywood"],
+        }
+    }
 }
 
 /// Air and gravity; `null` where it was not measured.

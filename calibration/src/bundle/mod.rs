@@ -22,6 +22,7 @@ mod odometry;
 mod poses;
 mod read;
 mod row;
+mod sufficiency;
 mod unit_checks;
 mod wav;
 
@@ -45,8 +46,6 @@ pub(crate) struct MeasuredEpisode {
     pub(crate) name: String,
     /// Episodes of one group are held out together.
     pub(crate) group: String,
-    /// The special conditions.
-    pub(crate) conditions: String,
     /// By entity, then channel, each by time.
     pub(crate) samples: Vec<MeasuredSample>,
     /// By actuator, each by time.

@@ -5,6 +5,7 @@ use super::file::{
     BundleKind, CommandRow, EpisodeRow, ImpulseResponseRow, MeasurementDescription, TrajectoryRow,
 };
 use super::limits;
+use super::sufficiency;
 use super::{Bundle, MeasuredEpisode, MeasuredResponse, MeasuredSample, odometry, poses, row, wav};
 use crate::error::CalibrationError;
 use dwell_scene::file::{self, ReadError};
@@ -60,7 +61,7 @@ pub(crate) fn read(folder: &Path) -> Result<Bundle, CalibrationError> {
         }
         BundleKind::Drive => odometry::read(folder, &by_name, &mut bundle.episodes)?,
     }
-    check::check_sufficient_data(&bundle)?;
+    sufficiency::check_sufficient_data(&bundle)?;
     Ok(bundle)
 }
 
@@ -192,7 +193,6 @@ fn episodes(folder: &Path) -> Result<Vec<MeasuredEpisode>, CalibrationError> {
         found.push(MeasuredEpisode {
             name: row.episode,
             group: row.split_group,
-            conditions: row.conditions,
             ..MeasuredEpisode::default()
         });
         Ok(())

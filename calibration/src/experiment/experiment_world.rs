@@ -1,5 +1,6 @@
 //! Small houses in which trajectories and servos are simulated, and the physics worlds over them.
 
+use crate::bundle::file::BoardManifest;
 use crate::error::CalibrationError;
 use dwell_physics::{PhysicsConfig, PhysicsWorld};
 use dwell_scene::material::library;
@@ -12,12 +13,8 @@ use std::sync::Arc;
 
 /// Half the edge of the box that stands for the servo's load, m.
 const ARM_HALF_EDGE_M: f32 = 0.1;
-/// Substance of all tracked things.
-pub(crate) const OBJECT_SUBSTANCE: &str = "rubber";
-/// Substance of the board; its contact values with the thing are overridden.
-pub(crate) const BOARD_SUBSTANCE: &str = "plywood";
-/// Half the board's edge, m.
-const BOARD_HALF_EDGE_M: f32 = 4.0;
+/// Substance of things that touch nothing.
+const OBJECT_SUBSTANCE: &str = "rubber";
 /// Height at which a thing waits above the board until it is placed, m.
 const WAITING_HEIGHT_M: f32 = 2.0;
 
@@ -36,8 +33,18 @@ pub(crate) struct ExperimentObject {
     pub(crate) collider: Collider,
     /// The servo and Coulomb friction of its hinge; `None`: it is free.
     pub(crate) hinge: Option<(Servo, f32)>,
-    /// True if it waits above a board, the plane y = 0.
-    pub(crate) board: bool,
+    /// The board above which it waits, the plane y = 0.
+    pub(crate) board: Option<Board>,
+    /// Its substance.
+    pub(crate) substance: String,
+}
+
+/// A board that things touch.
+pub(crate) struct Board {
+    /// Half its edge, m.
+    pub(crate) half_edge_m: f32,
+    /// Its substance.
+    pub(crate) substance: String,
 }
 
 impl ExperimentObject {
@@ -51,17 +58,30 @@ impl ExperimentObject {
                 radius: radius_m as f32,
             },
             hinge: None,
-            board: false,
+            board: None,
+            substance: OBJECT_SUBSTANCE.to_owned(),
         }
     }
 
-    /// A box above a board.
-    pub(crate) fn box_above_board(name: &str, mass_kg: f64, half_extents_m: [f64; 3]) -> Self {
+    /// A box.
+    pub(crate) fn cuboid(name: &str, mass_kg: f64, half_extents_m: [f64; 3]) -> Self {
         let half = Vec3::from(half_extents_m.map(|half| half as f32));
         Self {
             collider: Collider::cuboid(-half, half),
-            board: true,
             ..Self::ball(name, mass_kg, 0.1)
+        }
+    }
+
+    /// The same above a board, of the substances that the manifest says.
+    pub(crate) fn above_board(self, half_edge_m: f32, board: &BoardManifest) -> Self {
+        let [thing, board] = board.pair().map(str::to_owned);
+        Self {
+            board: Some(Board {
+                half_edge_m,
+                substance: board,
+            }),
+            substance: thing,
+            ..self
         }
     }
 
@@ -74,7 +94,8 @@ impl ExperimentObject {
             mass_kg: (inertia_kg_m2 * 12.0 / f64::from(8.0 * half * half)) as f32,
             collider: Collider::cuboid(Vec3::splat(-half), Vec3::splat(half)),
             hinge: Some(hinge),
-            board: false,
+            board: None,
+            substance: OBJECT_SUBSTANCE.to_owned(),
         }
     }
 }
@@ -106,8 +127,8 @@ impl ExperimentWorld {
             piece.room = None;
         }
         add_object(&mut data, thing);
-        if thing.board {
-            put_board(&mut data);
+        if let Some(board) = &thing.board {
+            put_board(&mut data, board);
         }
         let house = Arc::new(House::new(data).map_err(|e| fault(&e))?);
         let mut state = State::new(&house);
@@ -148,6 +169,16 @@ impl ExperimentWorld {
         Ok(stage)
     }
 
+    /// A copy in which thing and board have the manifest's friction and restitution.
+    pub(crate) fn with_pair(&self, board: &BoardManifest) -> Result<Self, CalibrationError> {
+        let addresses = ["friction", "restitution"].map(|value| board.pair_address(value));
+        let values = [
+            (addresses[0].as_str(), board.friction),
+            (addresses[1].as_str(), board.restitution),
+        ];
+        self.with_laws_and_overrides(Vec::new(), &values)
+    }
+
     /// Adopts changes of the state.
     pub(crate) fn adopt_state(&mut self) -> Result<(), CalibrationError> {
         let adopted = self.world.adopt_state(&mut self.state);
@@ -165,7 +196,7 @@ impl ExperimentWorld {
 fn add_object(data: &mut HouseData, thing: &ExperimentObject) {
     let material = data.materials.push(Material::from_substance(
         "thing",
-        library().get_or_default(OBJECT_SUBSTANCE),
+        library().get_or_default(&thing.substance),
     ));
     let mesh = data.meshes.push(Arc::new(octahedron()));
     let (object, part) = (
@@ -193,7 +224,7 @@ fn add_object(data: &mut HouseData, thing: &ExperimentObject) {
         object,
         name: "part".into(),
         fixed: false,
-        world_from_part: if thing.board {
+        world_from_part: if thing.board.is_some() {
             Pose::from_position(Vec3::new(0.0, WAITING_HEIGHT_M, 0.0))
         } else {
             Pose::IDENTITY
@@ -217,10 +248,10 @@ fn add_object(data: &mut HouseData, thing: &ExperimentObject) {
 }
 
 /// The board: a slab below the plane y = 0, one convex piece without inner edges.
-fn put_board(data: &mut HouseData) {
+fn put_board(data: &mut HouseData, board: &Board) {
     let material = data.materials.push(Material::from_substance(
         "board",
-        library().get_or_default(BOARD_SUBSTANCE),
+        library().get_or_default(&board.substance),
     ));
     let mesh = data.meshes.push(Arc::new(octahedron()));
     let (object, part) = (
@@ -240,7 +271,7 @@ fn put_board(data: &mut HouseData) {
         first_part: part,
         part_count: 1,
     });
-    let (half, thickness) = (BOARD_HALF_EDGE_M, 0.5);
+    let (half, thickness) = (board.half_edge_m, 0.5);
     data.parts.push(Part {
         object,
         name: "part".into(),

@@ -1,7 +1,7 @@
 //! A servo: each episode is a run of commands through the engine's own joint.
 
 use super::experiment_world::{ExperimentObject, ExperimentWorld, hermite_interpolation};
-use super::flight::{channels, episode_data};
+use super::tables::{channels, episode_data};
 use super::{
     Cause, ChannelInfo, EpisodeData, EpisodeParameters, Experiment, Fault, FitParameter,
     Intervention, ResidualStructure,

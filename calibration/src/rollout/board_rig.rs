@@ -2,10 +2,9 @@
 
 use super::motion::MotionState;
 use super::pose_tracks::{PoseTracks, TrackedBody};
+use crate::bundle::file::BoardManifest;
 use crate::error::CalibrationError;
-use crate::experiment::experiment_world::{
-    BOARD_SUBSTANCE, ExperimentObject, ExperimentWorld, OBJECT_SUBSTANCE,
-};
+use crate::experiment::experiment_world::{ExperimentObject, ExperimentWorld};
 use dwell_physics::{ContactFriction, PhysicsConfig};
 use dwell_scene::{LawSpec, PartId};
 use glam::{DQuat, DVec3, Quat, Vec3};
@@ -13,6 +12,8 @@ use glam::{DQuat, DVec3, Quat, Vec3};
 /// Physics steps between two samples, as the published evaluation of cube tosses has them.
 pub const STEPS_PER_SAMPLE: u32 = 10;
 
+/// Half the board's edge, m.
+const BOARD_HALF_EDGE_M: f32 = 4.0;
 /// The body's only part.
 const BODY: PartId = PartId(0);
 
@@ -22,6 +23,7 @@ pub struct BoardRig {
     stage: ExperimentWorld,
     /// The law that turns the inertia of a solid body into the measured one.
     inertia: LawSpec,
+    board: BoardManifest,
 }
 
 /// The settings of a rig.
@@ -57,8 +59,8 @@ impl BoardRig {
         times: u32,
     ) -> Result<Self, CalibrationError> {
         let body = &tracks.body;
-        let thing =
-            ExperimentObject::box_above_board(&body.name, body.mass_kg, body.half_extents_m);
+        let thing = ExperimentObject::cuboid(&body.name, body.mass_kg, body.half_extents_m)
+            .above_board(BOARD_HALF_EDGE_M, &tracks.board);
         let rate_hz = tracks.rate_hz as f32;
         let config = PhysicsConfig {
             control_rate_hz: rate_hz,
@@ -73,10 +75,11 @@ impl BoardRig {
         let rig = Self {
             stage: stage.with_laws_and_overrides(Vec::new(), &gravity)?,
             inertia: inertia(&tracks.body),
+            board: tracks.board.clone(),
         };
         rig.with_settings(&RigSettings {
-            friction: tracks.nominal.friction,
-            restitution: tracks.nominal.restitution,
+            friction: tracks.board.friction,
+            restitution: tracks.board.restitution,
             laws: Vec::new(),
         })
     }
@@ -86,8 +89,8 @@ impl BoardRig {
     /// # Errors
     /// [`CalibrationError::Simulation`] for a value or law that physics does not take.
     pub fn with_settings(&self, settings: &RigSettings) -> Result<Self, CalibrationError> {
-        let pair = format!("pair/{OBJECT_SUBSTANCE}~{BOARD_SUBSTANCE}");
-        let (friction, restitution) = (format!("{pair}/friction"), format!("{pair}/restitution"));
+        let [friction, restitution] =
+            ["friction", "restitution"].map(|value| self.board.pair_address(value));
         let values = [
             (friction.as_str(), settings.friction),
             (restitution.as_str(), settings.restitution),
@@ -98,6 +101,7 @@ impl BoardRig {
                 .stage
                 .with_laws_and_overrides(laws.cloned().collect(), &values)?,
             inertia: self.inertia.clone(),
+            board: self.board.clone(),
         })
     }
 

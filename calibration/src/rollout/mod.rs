@@ -1,13 +1,10 @@
 //! Roll-outs: a measured motion is put into the simulation, which predicts what comes after it.
 //!
 //! Whole episodes start where the bundle says ([`scores`]); windows ([`predict_windows`]) start at any sample and look 1 to 40 samples
-//! ahead. A [`RolloutSubject`] is what can be rolled out: tosses of a box onto a board ([`PoseTracks`]), a robot on two wheels
-//! ([`drive`]), falling balls ([`mod@drop`]). Models of tosses are compared by a [`study`], those of the others by [`series`].
+//! ahead. Tosses of a box onto a board ([`PoseTracks`]) are rolled out; a [`study`] compares models of their contact.
 
 mod board_rig;
 mod box_plot;
-pub mod drive;
-pub mod drop;
 pub(crate) mod html;
 mod initial_state;
 mod motion;
@@ -16,7 +13,6 @@ mod refine;
 mod regime;
 mod residuals;
 mod score;
-pub mod series;
 pub mod study;
 mod subject;
 mod summary;
@@ -25,7 +21,7 @@ mod windows;
 pub use board_rig::{BoardRig, RigSettings, STEPS_PER_SAMPLE};
 pub use initial_state::{TrackerNoise, window_start};
 pub use motion::{Deviation, MotionState};
-pub use pose_tracks::{NominalContact, PoseTrack, PoseTracks, TrackedBody};
+pub use pose_tracks::{PoseTrack, PoseTracks, TrackedBody};
 pub use refine::{REFINEMENT_FACTOR, StepRefinementEffect, refinements};
 pub use regime::Regime;
 pub use residuals::{Quantiles, ResidualGroup, ResidualGroups};

@@ -5,6 +5,7 @@ use super::initial_state::{TrackerNoise, window_start};
 use super::motion::{Deviation, MotionState};
 use super::regime::{self, Regime};
 use super::subject::RolloutSubject;
+use crate::bundle::file::BoardManifest;
 use crate::bundle::{self, Bundle, MeasuredEpisode, PoseRates, rotation_vector_between};
 use crate::error::CalibrationError;
 use crate::experiment::gravity_m_s2;
@@ -21,8 +22,8 @@ pub struct PoseTracks {
     pub licence: String,
     /// The body.
     pub body: TrackedBody,
-    /// The contact values of body and board before any fit.
-    pub nominal: NominalContact,
+    /// The board, with the contact values before any fit.
+    pub board: BoardManifest,
     /// Samples per second, Hz.
     pub rate_hz: f64,
     /// Acceleration of free fall, m/s².
@@ -44,15 +45,6 @@ pub struct TrackedBody {
     pub half_extents_m: [f64; 3],
     /// Principal moments of inertia about its axes, kg·m².
     pub inertia_kg_m2: [f64; 3],
-}
-
-/// Contact values before any fit.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NominalContact {
-    /// Coulomb friction of the pair.
-    pub friction: f64,
-    /// Restitution of the pair.
-    pub restitution: f64,
 }
 
 /// One episode.
@@ -136,10 +128,7 @@ impl PoseTracks {
             title: bundle.manifest.title.clone(),
             licence: bundle.manifest.licence.clone(),
             body: tracked,
-            nominal: NominalContact {
-                friction: board.friction,
-                restitution: board.restitution,
-            },
+            board: board.clone(),
             rate_hz: form.rate_hz,
             gravity_m_s2,
             noise: TrackerNoise::estimate(&episodes, step_s, gravity_m_s2),
@@ -170,10 +159,6 @@ impl RolloutSubject for PoseTracks {
 
     fn regimes(&self, episode: usize) -> &[Regime] {
         &self.episodes[episode].regimes
-    }
-
-    fn past_samples(&self) -> usize {
-        0
     }
 
     fn divergence_threshold(&self) -> Deviation {

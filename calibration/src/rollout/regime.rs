@@ -15,42 +15,17 @@ pub enum Regime {
     Impact,
     /// It touches the board and moves: it slides, rolls or tips.
     Contact,
-    /// A robot changes its speed.
-    Accelerating,
-    /// It turns on the spot.
-    Turning,
-    /// It drives a curve at a steady speed.
-    Curve,
-    /// It drives straight on at a steady speed.
-    Straight,
     /// It lies or stands still.
     Rest,
 }
 
 impl Regime {
-    /// All of them: what a toss goes through, what a robot does, rest.
-    pub const ALL: [Self; 8] = [
-        Self::Flight,
-        Self::Impact,
-        Self::Contact,
-        Self::Accelerating,
-        Self::Turning,
-        Self::Curve,
-        Self::Straight,
-        Self::Rest,
-    ];
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Flight, Self::Impact, Self::Contact, Self::Rest];
 
     /// The one of several that decides about a window: the hardest to predict.
     pub fn hardest(regimes: &[Self]) -> Self {
-        let order = [
-            Self::Impact,
-            Self::Contact,
-            Self::Flight,
-            Self::Accelerating,
-            Self::Turning,
-            Self::Curve,
-            Self::Straight,
-        ];
+        let order = [Self::Impact, Self::Contact, Self::Flight];
         let found = order.into_iter().find(|regime| regimes.contains(regime));
         found.unwrap_or(Self::Rest)
     }
@@ -61,10 +36,6 @@ impl Regime {
             Self::Flight => "flight",
             Self::Impact => "impact",
             Self::Contact => "sliding, rolling",
-            Self::Accelerating => "accelerating",
-            Self::Turning => "turning on the spot",
-            Self::Curve => "curve, steady",
-            Self::Straight => "straight, steady",
             Self::Rest => "rest",
         }
     }

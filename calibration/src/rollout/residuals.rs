@@ -1,4 +1,4 @@
-//! Distributions of residuals: by regime, by speed, by kind of episode, for several models beside each other.
+//! Distributions of residuals: by regime and by speed, for several models beside each other.
 
 use super::regime::Regime;
 use super::windows::WindowPrediction;
@@ -64,14 +64,8 @@ pub struct Quantiles {
 /// A model's name and its windows; the windows of all models are the same.
 pub(crate) type ModelWindows<'a> = (&'a str, &'a [WindowPrediction]);
 
-/// All pictures of the windows that look `horizon` samples ahead: position and, where there are, rotation, by regime, by speed, and
-/// by `kinds` (of each episode) where these are more than one.
-pub(crate) fn all(
-    rows: &[ModelWindows<'_>],
-    horizon: usize,
-    rotation: bool,
-    kinds: &[&str],
-) -> Vec<ResidualGroups> {
+/// All pictures of the windows that look `horizon` samples ahead: position and rotation, by regime and by speed.
+pub(crate) fn all(rows: &[ModelWindows<'_>], horizon: usize) -> Vec<ResidualGroups> {
     // Every model has the same windows in the same order.
     let ahead: Vec<(&str, Vec<&WindowPrediction>)> = rows
         .iter()
@@ -88,7 +82,7 @@ pub(crate) fn all(
         (ResidualKind::Position, "position", "mm"),
         (ResidualKind::Rotation, "rotation", "degrees"),
     ];
-    for (residual, word, unit) in which.into_iter().take(if rotation { 2 } else { 1 }) {
+    for (residual, word, unit) in which {
         let mut push = |by: &str, groups: Vec<ResidualGroup>| {
             if groups.len() > 1 {
                 found.push(ResidualGroups {
@@ -105,14 +99,6 @@ pub(crate) fn all(
         });
         push("regime", regimes.into_iter().flatten().collect());
         push("speed", by_speed(rows, residual));
-        let mut names: Vec<&str> = kinds.to_vec();
-        names.sort_unstable();
-        names.dedup();
-        let by_kind = names.iter().map(|name| {
-            let label = (*name).to_owned();
-            group(rows, residual, label, &|end| kinds[end.start.0] == *name)
-        });
-        push("kind", by_kind.flatten().collect());
     }
     found
 }

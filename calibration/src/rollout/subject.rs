@@ -19,16 +19,8 @@ pub trait RolloutSubject: Sync {
     /// Returns the regime at each sample. Shape (sample,).
     fn regimes(&self, episode: usize) -> &[Regime];
 
-    /// Number of samples before a start from which its state is estimated.
-    fn past_samples(&self) -> usize;
-
     /// The deviation beyond which two predictions are of different outcomes.
     fn divergence_threshold(&self) -> Deviation;
-
-    /// Returns the most informative horizon, which pictures show, one of [`HORIZONS`](super::HORIZONS).
-    fn most_informative_horizon(&self) -> usize {
-        10
-    }
 
     /// The motions at the `samples` samples after the sample `at`. The state there is estimated from measurements up to
     /// it and none after; with a `nudge` it is drawn from within the uncertainty of that estimate.

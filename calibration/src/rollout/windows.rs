@@ -77,7 +77,7 @@ fn predict_episode_windows<S: RolloutSubject>(
     let last = measured.len().saturating_sub(1);
     let limit = subject.divergence_threshold();
     let mut ends = Vec::new();
-    for at in (subject.past_samples()..last).step_by(windowing.stride.max(1)) {
+    for at in (0..last).step_by(windowing.stride.max(1)) {
         let samples = longest.min(last - at);
         let plain = subject.simulate(rig, episode, at, samples, None)?;
         let mut nudged = Vec::new();

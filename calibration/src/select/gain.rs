@@ -61,17 +61,6 @@ pub(super) fn gain(
     }
 }
 
-/// The relative decrease of a squared error from `before` to `after` (of each group), and its 95 % interval.
-pub(crate) fn share_gained(
-    before: &[f64],
-    after: &[f64],
-    draws: usize,
-    key: RandomKey,
-) -> (f64, [f64; 2]) {
-    let found = gain(before, after, 1.0, 1.0, draws.max(1), key);
-    (found.share, found.share_interval)
-}
-
 fn interval(values: &mut [f64]) -> [f64; 2] {
     values.sort_by(f64::total_cmp);
     let at = |share: f64| {

@@ -193,9 +193,11 @@ impl Learner {
             if sd > 0.0 { 1.0 / sd } else { 0.0 }
         });
         let mut stream = key.child("waves").stream();
+        // Points of a normal distribution are about sqrt(2 INPUTS) apart: a kernel narrower than that sees no neighbours.
+        let width = (2.0 * INPUTS as f64).sqrt();
         let waves = (0..FEATURES)
             .map(|_| {
-                let frequency = std::array::from_fn(|_| stream.normal());
+                let frequency = std::array::from_fn(|_| stream.normal() / width);
                 (frequency, std::f64::consts::TAU * stream.uniform())
             })
             .collect();

@@ -12,7 +12,6 @@ mod verdict;
 
 pub use agreement::SplitHalfAgreement;
 pub use gain::HeldOutGain;
-pub(crate) use gain::share_gained;
 pub use learnable::LearnableRemainder;
 pub use residual::{ChannelResidual, ResidualNoiseTest};
 

@@ -145,11 +145,11 @@ pub(crate) fn noise_from_differences(sequences: &[&[f64]]) -> Option<NoiseFloor>
     if count < 12 || first <= 0.0 || third <= 0.0 {
         return None;
     }
-    // The estimate's own error is about 3 / sqrt(n): correlation within it counts as none.
-    let found = 3.0 - second / first - 6.0 / (count as f64).sqrt();
+    let found = 3.0 - second / first;
     let mut c = found.clamp(0.0, MOST_CORRELATED);
-    // Noise forgets; what is still alike when it should have is motion that was not modelled.
-    if c > 0.0 && remembers(sequences, c) {
+    // The estimate's own error is about 3 / sqrt(n): correlation within it counts as none. And noise forgets; what is
+    // still alike when it should have is motion that was not modelled.
+    if c < 6.0 / (count as f64).sqrt() || remembers(sequences, c) {
         c = 0.0;
     }
     let share = 2.0 * (1.0 - c) * (10.0 - 5.0 * c + c * c);

@@ -9,25 +9,26 @@ mod search;
 mod search_cache;
 mod write;
 
-pub(super) use folds::folds;
 pub use model::{ContactModel, ContactParameter, further_models, standard_models as models};
 pub use other_simulator::{PeerScores, SimulatorComparison, SimulatorScoreDifference};
 
 use super::refine::sentence as told;
 use super::residuals::{self, ResidualGroups};
 use super::{
-    BoardRig, MeanDeviation, PoseTracks, REFINEMENT_FACTOR, RolloutSubject as _, ScoreSummary,
-    StepRefinementEffect, TrackerNoise, WindowOptions, WindowPrediction, WindowScore,
-    diverges_under_noise, predict_windows, refinements, scores, window_scores,
+    BoardRig, MeanDeviation, PoseTracks, REFINEMENT_FACTOR, ScoreSummary, StepRefinementEffect,
+    TrackerNoise, WindowOptions, WindowPrediction, WindowScore, diverges_under_noise,
+    predict_windows, refinements, scores, window_scores,
 };
 use crate::error::CalibrationError;
-use crate::experiment::experiment_world::{BOARD_SUBSTANCE, OBJECT_SUBSTANCE};
 use crate::progress::{CallbackProgress, ProgressReporter};
 use crate::report::{FoundEffects, page};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
+
+/// The horizon that pictures show, samples.
+const SHOWN_HORIZON: usize = 10;
 
 /// Settings of [`run`]. Every field has a default; unknown fields are refused.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -176,7 +177,7 @@ pub fn run(
             .iter()
             .map(|r| told(r.model.name, &r.refinements))
             .collect(),
-        residuals: residuals::all(&rows, tracks.most_informative_horizon(), true, &[]),
+        residuals: residuals::all(&rows, SHOWN_HORIZON),
         sentence: best.map_or_else(String::new, |best| sentence(best, &reports)),
         found: best.map_or_else(FoundEffects::default, |best| found_effects(tracks, best)),
         models: reports,
@@ -240,7 +241,7 @@ fn study_model(
                 search::search(model, &plain, tracks, &train, options, key, progress)
             })?
         };
-        let settings = model.settings(&values, tracks.nominal);
+        let settings = model.settings(&values, &tracks.board);
         rigs.push(plain.with_settings(&settings)?);
         fine.push(plain_fine.with_settings(&settings)?);
         chosen.push(values);
@@ -341,13 +342,15 @@ fn sentence(best: &ModelReport, all: &[ModelReport]) -> String {
 fn found_effects(tracks: &PoseTracks, best: &ModelReport) -> FoundEffects {
     let settings = best
         .model
-        .settings(&best.median_parameters(), tracks.nominal);
-    let pair = format!("pair/{OBJECT_SUBSTANCE}~{BOARD_SUBSTANCE}");
+        .settings(&best.median_parameters(), &tracks.board);
     FoundEffects {
         laws: settings.laws,
         parameters: [
-            (format!("{pair}/friction"), settings.friction),
-            (format!("{pair}/restitution"), settings.restitution),
+            (tracks.board.pair_address("friction"), settings.friction),
+            (
+                tracks.board.pair_address("restitution"),
+                settings.restitution,
+            ),
         ]
         .into_iter()
         .collect(),

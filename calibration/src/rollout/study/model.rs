@@ -1,6 +1,7 @@
 //! Contact models whose parameters are fitted to tosses.
 
-use crate::rollout::{NominalContact, RigSettings};
+use crate::bundle::file::BoardManifest;
+use crate::rollout::RigSettings;
 use dwell_physics::ContactFriction;
 use dwell_scene::LawSpec;
 use serde::Serialize;
@@ -136,7 +137,7 @@ impl ContactParameter {
 
 impl ContactModel {
     /// Returns the settings of a rig for these values, one for each parameter.
-    pub fn settings(&self, values: &[f64], nominal: NominalContact) -> RigSettings {
+    pub fn settings(&self, values: &[f64], nominal: &BoardManifest) -> RigSettings {
         let value = |name: &str| {
             let mut pairs = self.parameters.iter().zip(values);
             pairs.find(|(p, _)| p.name == name).map(|(_, v)| *v)

@@ -43,8 +43,8 @@ pub(super) fn search(
     let threads = Threads::resolve(options.threads);
     let starts = model.parameters.iter().map(|parameter| {
         let own = match parameter.name {
-            "friction" => Some(tracks.nominal.friction),
-            "restitution" => Some(tracks.nominal.restitution),
+            "friction" => Some(tracks.board.friction),
+            "restitution" => Some(tracks.board.restitution),
             _ => None,
         };
         own.map_or(0.5, |value| parameter.position_of(value))
@@ -63,7 +63,7 @@ pub(super) fn search(
     };
     let judge = |point: &[f64], which: &[usize]| {
         progress.check()?;
-        let set = rig.with_settings(&model.settings(&values(point), tracks.nominal))?;
+        let set = rig.with_settings(&model.settings(&values(point), &tracks.board))?;
         Ok::<f64, CalibrationError>(cost(&scores(&set, tracks, which, threads)?))
     };
     let [first, then] = options.generations;

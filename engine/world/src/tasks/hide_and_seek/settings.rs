@@ -107,7 +107,8 @@ impl Teams {
             return Err(WorldError::Config {
                 field: "seekers",
                 found: format!("{named:?} of {count} agents"),
-                allowed: "numbers of agents, each once, at least one and not all of them".to_owned(),
+                allowed: "numbers of agents, each once, at least one and not all of them"
+                    .to_owned(),
             });
         }
         let ids = |numbers: Vec<u32>| numbers.into_iter().map(AgentId).collect();

@@ -1,6 +1,6 @@
 //! The simulation of a robot on an empty floor.
 
-use super::NominalBase;
+use super::recording::{NominalBase, wrapped};
 use crate::error::CalibrationError;
 use dwell_physics::{AgentControl, PhysicsConfig, PhysicsWorld};
 use dwell_scene::{
@@ -19,23 +19,18 @@ const FASTEST_RAD_S: f32 = 1000.0;
 const BODY_M: [f32; 2] = [0.1, 0.25];
 
 /// A robot in an empty room, ready to be driven.
-#[derive(Clone)]
-pub struct DriveRig {
+pub(super) struct DriveRig {
     world: PhysicsWorld,
     state: State,
     robot: AgentId,
-    /// The angle by which the tracker's heading is off the robot's, rad.
-    pub(super) heading_offset_rad: f64,
 }
 
 impl DriveRig {
-    /// The robot with `laws`, in a world with `finer` steps between two samples.
-    pub(crate) fn new(
+    /// The robot with `laws`, in a world with a step between two samples: the base follows exact arcs.
+    pub(super) fn new(
         base: &NominalBase,
         rate_hz: f64,
-        finer: u32,
         laws: Vec<LawSpec>,
-        heading_offset_rad: f64,
     ) -> Result<Self, CalibrationError> {
         let fault =
             |error: &dyn std::fmt::Display| CalibrationError::simulation("the robot", error);
@@ -44,7 +39,7 @@ impl DriveRig {
         let house = Arc::new(room);
         let config = PhysicsConfig {
             control_rate_hz: rate_hz as f32,
-            physics_rate_hz: rate_hz as f32 * finer as f32,
+            physics_rate_hz: rate_hz as f32,
             ..PhysicsConfig::default()
         };
         let mut state = State::new(&house);
@@ -74,13 +69,12 @@ impl DriveRig {
             world,
             state,
             robot,
-            heading_offset_rad,
         })
     }
 
     /// The way that the robot makes while its wheels turn so far from sample to sample (rad): places from its start on, the
     /// start first, with x forward and y to the left there (m) and the heading (rad, not wrapped).
-    pub(crate) fn simulated_path(
+    pub(super) fn simulated_path(
         &self,
         turned_rad: &[[f64; 2]],
         rate_hz: f64,
@@ -103,7 +97,7 @@ impl DriveRig {
                 .map_err(|error| CalibrationError::simulation("a step of the robot", error))?;
             let agent = &state.agents[self.robot];
             let yaw = f64::from(agent.yaw_rad);
-            heading += super::wrapped(yaw - last_yaw);
+            heading += wrapped(yaw - last_yaw);
             last_yaw = yaw;
             let moved = agent.position - start;
             way.push([-f64::from(moved.z), -f64::from(moved.x), heading]);

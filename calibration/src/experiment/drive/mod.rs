@@ -3,14 +3,18 @@
 //! Long drives are cut into windows with a start of their own: what a wheel did not grip once must not be carried along to
 //! the end of the drive.
 
+mod recording;
+mod rig;
+
 use super::{
     Cause, ChannelInfo, EpisodeData, EpisodeParameters, Experiment, Fault, FitParameter,
     Intervention, ParameterIndex, ResidualStructure,
 };
 use crate::bundle::Bundle;
 use crate::error::CalibrationError;
-use crate::rollout::drive::{DriveRecordings, DriveRig, NominalBase};
 use dwell_scene::law::LawRegime;
+use recording::{DriveRecordings, NominalBase};
+use rig::DriveRig;
 
 /// Duration of a window, s.
 const WINDOW_S: f64 = 10.0;
@@ -134,7 +138,7 @@ impl Experiment for DriveExperiment {
     ) -> Result<Vec<f64>, CalibrationError> {
         let intervention = Intervention::new(&self.causes, at.causes);
         let faults = intervention.faults;
-        let rig = DriveRig::new(&self.base, self.rate_hz, 1, intervention.laws, 0.0)?;
+        let rig = DriveRig::new(&self.base, self.rate_hz, intervention.laws)?;
         let path = rig.simulated_path(&self.turned_rad[episode], self.rate_hz)?;
         let [x, y, heading] = at.episode_nuisances else {
             return Err(CalibrationError::simulation(
