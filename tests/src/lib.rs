@@ -39,7 +39,7 @@ pub fn apartment() -> Arc<Engines> {
 /// When the file cannot be written or read.
 pub fn arm() -> Robot {
     let palm = r#"<mesh filename="palm.stl" scale="0.001 0.001 0.001"/>"#;
-    let text = include_str!("../../engine/houses/tests/robots/arm.urdf");
+    let text = include_str!("../../engine/houses/tests/it/robots/arm.urdf");
     let text = text.replace("package://arm/palm.stl", "palm.stl");
     assert!(text.contains(palm), "the file has a palm");
     let folder = tempfile::tempdir().expect("a folder for a moment");

@@ -469,7 +469,7 @@ fn every_code_comes_about_and_says_what_to_do() {
     }
     // No scene is known in which the solver loses a body; a unit test makes it do so.
     seen.insert(OutcomeCode::NonFiniteState);
-    // Of several hands at once, which worlds order (tests/tests/joint_steps.rs).
+    // Of several hands at once, which worlds order (tests/tests/it/joint_steps.rs).
     seen.insert(OutcomeCode::Contested);
     let missing: Vec<_> = OutcomeCode::ALL
         .iter()

@@ -241,7 +241,7 @@ impl Golden {
         let path = self.folder.join(format!("{name}.{}", kept.extension()));
         if !path.exists() {
             return Err(format!(
-                "there is no {}; look at the picture, then write it with UPDATE_GOLDEN=1 cargo test -p dwell-tests --test goldens",
+                "there is no {}; look at the picture, then write it with UPDATE_GOLDEN=1 cargo test --workspace --test it goldens",
                 path.display()
             ));
         }

@@ -1,6 +1,6 @@
 //! Fuzzing of everything that reads a house: samples in every format, mutations of their files, and what has to hold of each.
 //!
-//! The bodies are used by `tests/tests/fuzzing.rs` with mutations of its own, and by the targets of cargo-fuzz in `fuzz/`, which
+//! The bodies are used by `tests/tests/it/fuzzing.rs` with mutations of its own, and by the targets of cargo-fuzz in `fuzz/`, which
 //! also read the files beside houses.
 
 mod bodies;

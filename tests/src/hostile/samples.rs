@@ -114,14 +114,14 @@ pub fn sample(name: &str) -> Sample {
         "mjcf" => {
             put(
                 "m.xml",
-                include_str!("../../../engine/houses/tests/robots/rooms.xml"),
+                include_str!("../../../engine/houses/tests/it/robots/rooms.xml"),
             );
             "m.xml".to_owned()
         }
         "robot" => {
             put(
                 "m.xml",
-                include_str!("../../../engine/houses/tests/robots/arm.xml"),
+                include_str!("../../../engine/houses/tests/it/robots/arm.xml"),
             );
             put("palm.stl", PALM);
             "m.xml".to_owned()
@@ -129,7 +129,7 @@ pub fn sample(name: &str) -> Sample {
         "urdf" => {
             put(
                 "r.urdf",
-                include_str!("../../../engine/houses/tests/robots/arm.urdf"),
+                include_str!("../../../engine/houses/tests/it/robots/arm.urdf"),
             );
             put("palm.stl", PALM);
             "r.urdf".to_owned()

@@ -2,7 +2,7 @@
 //! memory. `docs/hostile-input.md` says what is capped.
 #![expect(clippy::unwrap_used, reason = "tests stop at the first surprise")]
 
-#[path = "../common/mod.rs"]
+#[path = "../it/common/mod.rs"]
 mod common;
 mod gltf;
 mod kit;
