@@ -375,6 +375,8 @@ impl Search<'_> {
         if own_fault.is_none() {
             sets.push((own, chosen.model.causes.clone()));
         }
+        // What fits better than all that is plausible, and why it is no explanation.
+        let mut better: Option<(f64, Vec<usize>, String)> = None;
         for (k, cause) in chosen.model.causes.iter().enumerate() {
             let mut rest = chosen.model.causes.clone();
             rest.remove(k);
@@ -417,14 +419,30 @@ impl Search<'_> {
                     None => self.fit(order, &without.model, &without.fit.point)?,
                 };
                 let fall = self.all.advantage_over(&scored, base, worth).delta_bic;
-                if own - fall < self.all.options.rival_delta_bic
-                    && self.implausible(&scored).is_none()
-                {
-                    sets.push((fall, causes));
+                match self.implausible(&scored) {
+                    None if own - fall < self.all.options.rival_delta_bic => {
+                        sets.push((fall, causes));
+                    }
+                    Some(fault)
+                        if fall - own > self.all.options.rival_delta_bic
+                            && better.as_ref().is_none_or(|(most, ..)| fall > *most) =>
+                    {
+                        better = Some((fall, causes, fault));
+                    }
+                    _ => {}
                 }
             }
         }
         sets.sort_by(|a, b| b.0.total_cmp(&a.0));
+        if let (Some((fall, causes, fault)), Some((most, next))) = (&better, sets.first())
+            && fall - most > self.all.options.rival_delta_bic
+        {
+            return Ok(Decision::Unexplained(format!(
+                "{} fits best by far, but it is not plausible: {fault}; {}, which is, fits worse",
+                self.names(causes),
+                self.names(next)
+            )));
+        }
         let mut sets: Vec<Vec<usize>> = sets.into_iter().map(|(_, set)| set).collect();
         Ok(match (sets.len(), own_fault) {
             (0, fault) => Decision::Unexplained(format!(

@@ -153,7 +153,7 @@ fn wheels_and_base_are_named_with_their_sizes() {
 #[test]
 fn slip_is_named() {
     let robot = Robot {
-        slip: 0.2,
+        slip: 0.08,
         ..Robot::default()
     };
     let report = drives(robot, 32);
@@ -163,7 +163,26 @@ fn slip_is_named() {
     };
     assert_eq!((law.as_str(), effects.len()), ("wheel_slip", 1));
     let found = effects[0].parameters[0].value;
-    assert!((found / 0.2 - 1.0).abs() < 0.15, "{}", table(&report));
+    assert!((found / 0.08 - 1.0).abs() < 0.15, "{}", table(&report));
+}
+
+/// Twice the slip that is plausible, 0.1 s²/m: what fits worse is no name for it.
+#[test]
+fn slip_beyond_what_is_plausible_gets_no_other_name() {
+    let robot = Robot {
+        slip: 0.2,
+        ..Robot::default()
+    };
+    let report = drives(robot, 32);
+    let CalibrationVerdict::Unexplained { .. } = &report.verdict else {
+        panic!("{}", table(&report));
+    };
+    assert!(
+        report.sentence.contains("slip of driven wheels"),
+        "{}",
+        report.sentence
+    );
+    assert!(report.found_laws().is_empty());
 }
 
 /// Stamps 80 ms late are a fault of the tracker, and change no simulator.

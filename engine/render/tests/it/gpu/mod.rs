@@ -5,8 +5,6 @@
     reason = "tests may stop at the first surprise; a skip is printed"
 )]
 
-use crate::common;
-
 mod agreement;
 mod batches;
 mod cameras;
