@@ -163,6 +163,7 @@ pub(super) fn check_manifest(at: &str, manifest: &MeasurementDescription) -> Che
     let air = &scene.environment;
     for (field, value, low, high) in [
         ("temperature_c", air.temperature_c, -40.0, 60.0),
+        ("temperature_sd_k", air.temperature_sd_k, 0.01, 20.0),
         ("humidity_pct", air.humidity_pct, 0.0, 100.0),
         ("pressure_pa", air.pressure_pa, 3e4, 2e5),
         ("g_m_s2", air.g_m_s2, 0.0, 100.0),
@@ -516,12 +517,11 @@ pub(super) fn check_sufficient_data(bundle: &Bundle) -> CheckResult {
     for episode in &bundle.episodes {
         let at = format!("{}, episode {}", bundle.name, episode.name);
         match bundle.kind() {
-            BundleKind::ImpulseResponse if episode.responses.is_empty() => {
-                return Err(missing(
-                    &at,
-                    "a row of ir.csv",
-                    "every episode needs an impulse response",
-                ));
+            BundleKind::ImpulseResponse
+                if episode.responses.is_empty() && episode.arrivals.is_empty() =>
+            {
+                let needed = "every episode needs an impulse response";
+                return Err(missing(&at, "a row of ir.csv", needed));
             }
             BundleKind::Trajectory | BundleKind::Servo if episode.samples.len() < 6 => {
                 let (what, found, needed) = ("rows of trajectory.csv", episode.samples.len(), 6);

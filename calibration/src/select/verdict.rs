@@ -25,6 +25,10 @@ const LEAST_SHARE: f64 = 0.25;
 /// Share of the gain by chance below which, where nothing systematic is left, no cause is fitted in full.
 const CLEARLY_CHANCE: f64 = 0.5;
 
+/// Share of the fall of the criterion by which a cause may be behind an equivalent one and still be a rival of it: what makes
+/// the difference is less well modelled than what they have in common.
+const EQUIVALENT_SHARE: f64 = 0.25;
+
 /// All findings, before they are put into words.
 pub(crate) struct Findings {
     pub(crate) split: EpisodeSplit,
@@ -169,7 +173,18 @@ impl Search<'_> {
         let (all, split) = (self.all, self.all.split);
         let found = ResidualNoiseTest::of(all.experiment, &split.train, &scored.fit.residuals);
         if all.experiment.residual_structure() != ResidualStructure::OverTime {
-            return Ok(found);
+            let own = all.experiment.structure(&split.train, &scored.fit.point)?;
+            return Ok(match own {
+                // That which is further beyond its threshold is reported.
+                Some(own) if own.ratio * found.threshold > found.ratio * own.threshold => {
+                    ResidualNoiseTest {
+                        learnable: None,
+                        ratio: own.ratio,
+                        threshold: own.threshold,
+                    }
+                }
+                _ => found,
+            });
         }
         let learnable = LearnableRemainder::new(
             all.experiment,
@@ -385,7 +400,8 @@ impl Search<'_> {
                 self.reset(&mut from, *cause);
                 self.fit(rest.clone(), &chosen.model, &from)?
             };
-            let short = if rest.is_empty() {
+            let equivalents = self.all.experiment.equivalents(*cause);
+            let mut short = if rest.is_empty() {
                 singles
                     .iter()
                     .map(|trial| trial.scored.model.causes[0])
@@ -393,6 +409,13 @@ impl Search<'_> {
             } else {
                 self.shortlist(&without)?.1
             };
+            short.extend(
+                equivalents
+                    .iter()
+                    .filter(|other| !chosen.model.causes.contains(other) && !short.contains(other))
+                    .copied()
+                    .collect::<Vec<_>>(),
+            );
             for other in short.iter().filter(|other| *other != cause) {
                 let mut causes = rest.clone();
                 causes.insert(k, *other);
@@ -417,9 +440,12 @@ impl Search<'_> {
                     None => self.fit(order, &without.model, &without.fit.point)?,
                 };
                 let fall = self.all.advantage_over(&scored, base, worth).delta_bic;
-                if own - fall < self.all.options.rival_delta_bic
-                    && self.implausible(&scored).is_none()
-                {
+                let allowed = if equivalents.contains(other) {
+                    (EQUIVALENT_SHARE * own).max(self.all.options.rival_delta_bic)
+                } else {
+                    self.all.options.rival_delta_bic
+                };
+                if own - fall < allowed && self.implausible(&scored).is_none() {
                     sets.push((fall, causes));
                 }
             }
