@@ -1,5 +1,7 @@
 //! From fits to a verdict.
 
+mod extension;
+
 use super::agreement::{SplitHalfAgreement, agreement};
 use super::compare::{CauseComparer, Estimate, ModelAdvantage, ScoredModel, estimates};
 use super::gain::HeldOutGain;
@@ -16,8 +18,6 @@ use crate::progress::ProgressReporter;
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 
-/// The most effects of one model.
-const MOST_EFFECTS: usize = 4;
 /// Causes that are fitted in full at each stage: those that gain most to first order.
 const MOST_FITTED: usize = 6;
 /// Share of the best cause's gain to first order below which no cause is fitted in full.
@@ -102,7 +102,7 @@ pub(crate) fn find_causes(
     let remainder_before = search.remainder(&base)?;
     let (singles, trials) = search.singles(&base, &remainder_before)?;
     let chosen = match best_trial(&trials) {
-        Some(first) => search.extend(first.clone())?,
+        Some(first) => search.extend(first.clone(), &base)?,
         None => base.clone(),
     };
     progress.stage(0.8, "comparing explanations")?;
@@ -327,23 +327,6 @@ impl Search<'_> {
             }
         }
         Ok((singles, trials))
-    }
-
-    /// Adds effects as long as something systematic is left, and leaves out those that are not needed any more.
-    fn extend(&self, first: ScoredModel) -> Result<ScoredModel, CalibrationError> {
-        let mut now = first;
-        while now.model.causes.len() < MOST_EFFECTS {
-            if !self.remainder(&now)?.is_structured() {
-                break;
-            }
-            let (_, short, by_chance) = self.shortlist(&now)?;
-            let trials = self.trials(&now, &short, by_chance)?;
-            let Some(larger) = best_trial(&trials).cloned() else {
-                break;
-            };
-            now = self.without_idle(larger)?;
-        }
-        Ok(now)
     }
 
     /// The model without those causes that the others make needless.
