@@ -50,8 +50,8 @@ pub(super) fn read(
     })
 }
 
-/// Checks that sides of one material state the same values.
-pub(super) fn check_materials(
+/// Checks how well places are known, and that sides of one material state the same values.
+pub(super) fn check_room(
     name: &str,
     manifest: &MeasurementDescription,
 ) -> Result<(), CalibrationError> {
@@ -59,6 +59,12 @@ pub(super) fn check_materials(
         return Ok(());
     };
     let at = format!("{name}/manifest.json");
+    if let Some(sd) = room.position_sd_m
+        && !(1e-4..=1.0).contains(&sd)
+    {
+        let field = "scene.room.position_sd_m";
+        return Err(CalibrationError::field(at, field, sd, "0.0001 to 1 m"));
+    }
     for (side, surface) in &room.surfaces {
         let Some(material) = &surface.material else {
             continue;

@@ -208,6 +208,10 @@ pub struct RoomManifest {
     pub size_m: [f64; 3],
     /// `floor` (y = 0), `ceiling`, `west` (x = 0), `east`, `north` (z = 0), `south`.
     pub surfaces: BTreeMap<String, SurfaceManifest>,
+    /// Standard deviation of the places of sides, sources and microphones, m; `null`: 0.005. Echoes' times are compared where
+    /// it is at most some 0.014 m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub position_sd_m: Option<f64>,
 }
 
 /// The known properties of a surface of the room.

@@ -54,7 +54,7 @@ pub(crate) fn read(folder: &Path) -> Result<Bundle, CalibrationError> {
             } else {
                 responses(folder, &bundle.manifest, &by_name, &mut bundle.episodes)?;
             }
-            arrivals::check_materials(&bundle.name, &bundle.manifest)?;
+            arrivals::check_room(&bundle.name, &bundle.manifest)?;
         }
         BundleKind::PoseTrajectory => {
             poses::read(

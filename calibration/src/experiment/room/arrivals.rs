@@ -14,7 +14,7 @@ const PROMINENCE_DB: f64 = 3.0;
 /// Least level of an arrival against what the direct sound has at its distance, dB.
 const LEAST_DB: f64 = -12.0;
 /// Least lag of an arrival behind the direct sound, s: less is the direct sound's own length.
-const LEAST_LAG_S: f64 = 3.5e-4;
+const LEAST_LAG_S: f64 = 3e-4;
 /// The direct sound is over after this, s, in a recording whose arrivals can be told apart.
 const RINGING_S: f64 = 1.2e-3;
 /// Level to which it has fallen by then, dB.
@@ -23,13 +23,29 @@ const RINGING_DB: f64 = -9.0;
 const MOST_LAG_S: f64 = 0.025;
 /// Arrivals are matched as long as no more than [`DENSE_COUNT`] are predicted within this time, s.
 const DENSE_S: f64 = 4e-3;
-const DENSE_COUNT: usize = 9;
-/// Standard deviation of a time: a sample's part and some millimetres of place, s.
-pub(super) const TIME_SD_S: f64 = 5e-5;
+const DENSE_COUNT: usize = 20;
+/// Standard deviation of the time of an arrival in a recording, s.
+const PICK_SD_S: f64 = 4e-5;
+/// Standard deviation of a way's length over that of places: a source, a microphone and, twice, a side.
+const WAY_SDS: f64 = 2.449_489_742_783_178;
+/// Standard deviation of places where nothing is told of it, m.
+const POSITION_SD_M: f64 = 0.005;
+/// Standard deviation of times up to which echoes can be told apart, s.
+const MOST_SD_S: f64 = 1.1e-4;
 /// Difference of times beyond which an arrival counts as unmatched, s.
 const UNMATCHED_S: f64 = 2e-4;
 /// The same for arrivals whose path is known, s.
 const WRONG_PICK_S: f64 = 4e-4;
+
+/// The standard deviation of the difference of a time from its prediction, s, for places that are known so well, m.
+pub(super) fn time_sd_s(position_sd_m: Option<f64>, speed_m_s: f64) -> f64 {
+    PICK_SD_S.hypot(WAY_SDS * position_sd_m.unwrap_or(POSITION_SD_M) / speed_m_s)
+}
+
+/// Returns whether echoes of this standard deviation (s) can be told apart.
+pub(super) fn are_comparable(time_sd_s: f64) -> bool {
+    time_sd_s <= MOST_SD_S
+}
 
 /// An arrival in a recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -215,7 +231,7 @@ const FOREIGN_S: f64 = 1.5e-4;
 /// Least level of a common echo against the direct sound, dB.
 const COMMON_DB: f64 = -14.0;
 /// The longest lag that is looked at, s.
-const MOST_COMMON_LAG_S: f64 = 0.012;
+const MOST_COMMON_LAG_S: f64 = 0.013;
 /// Recordings without a predicted arrival at a lag, from which on it says something.
 const FEWEST_RECORDINGS: usize = 4;
 /// Share of them that have the echo.

@@ -18,7 +18,7 @@ use crate::bundle::file::ResponseTimes;
 use crate::bundle::{Bundle, MeasuredEpisode};
 use crate::error::CalibrationError;
 use crate::options::Options;
-use arrivals::{PickedArrivals, TIME_SD_S};
+use arrivals::PickedArrivals;
 use causes::ABSORPTION_STEP;
 use dwell_acoustics::bands::NOMINAL_CENTRES_HZ;
 use dwell_acoustics::{AcousticConfig, Air};
@@ -41,7 +41,7 @@ const OFFSET_STEP_MS: f64 = 0.01;
 /// The direct sound of a recording whose sound rings is so many times less sharp.
 const RINGING_SDS: f64 = 4.0;
 /// Mean square of the mismatch of echoes, in standard deviations, above which they come from elsewhere.
-const FOREIGN_ECHOES: f64 = 4.0;
+const FOREIGN_ECHOES: f64 = 1.6;
 /// Echoes below which their mean square says nothing.
 const FEWEST_ECHOES: usize = 20;
 /// Sample rate where nothing was sampled, Hz.
@@ -76,6 +76,8 @@ pub(crate) struct RoomExperiment {
     /// The bands that are compared, by their position in the engine's.
     bands: std::ops::Range<usize>,
     times: ResponseTimes,
+    /// Standard deviation of a time, s.
+    time_sd_s: f64,
     /// The cause of each parameter, and its position in it.
     owners: Vec<(usize, usize)>,
 }
@@ -115,6 +117,9 @@ impl RoomExperiment {
         let bands = rate_hz.map_or(0..0, levels::bands);
         let (pairs, mut layouts): (Vec<_>, Vec<_>) = bundle.episodes.iter().map(layout).unzip();
         let simulator = RoomSimulator::new(stage, room.clone(), config, pairs, options.seed);
+        let position_sd_m = room.as_ref().and_then(|room| room.position_sd_m);
+        let speed_m_s = config.air.speed_of_sound_m_s();
+        let time_sd_s = arrivals::time_sd_s(position_sd_m, speed_m_s);
         // Which echoes are compared follows from how dense the room as described makes them.
         for (k, (layout, episode)) in layouts.iter_mut().zip(&bundle.episodes).enumerate() {
             let simulated = simulator.responses(k, &Intervention::default())?;
@@ -122,6 +127,9 @@ impl RoomExperiment {
             layout.picked = both
                 .map(|(response, simulated)| arrivals::pick(response, &simulated.times_s))
                 .collect();
+            if !arrivals::are_comparable(time_sd_s) {
+                layout.picked.iter_mut().for_each(|one| one.echoes.clear());
+            }
         }
         let recordings: Vec<BoxRecording<'_>> = bundle
             .episodes
@@ -174,7 +182,7 @@ impl RoomExperiment {
         let both = bundle.episodes.iter().zip(&layouts);
         Ok(Self {
             episodes: both
-                .map(|(episode, layout)| episode_data(episode, layout, &bands))
+                .map(|(episode, layout)| episode_data(episode, layout, &bands, time_sd_s))
                 .collect(),
             channels: channels(&bands),
             own: if times == ResponseTimes::Relative {
@@ -189,6 +197,7 @@ impl RoomExperiment {
             simulator,
             bands,
             times,
+            time_sd_s,
             owners,
         })
     }
@@ -357,6 +366,7 @@ fn episode_data(
     episode: &MeasuredEpisode,
     layout: &EpisodeLayout,
     bands: &std::ops::Range<usize>,
+    time_sd_s: f64,
 ) -> EpisodeData {
     let mut measured = EpisodeData {
         name: episode.name.clone(),
@@ -382,18 +392,18 @@ fn episode_data(
             }
         }
         let sd_s = if picked.rings {
-            RINGING_SDS * TIME_SD_S
+            RINGING_SDS * time_sd_s
         } else {
-            TIME_SD_S
+            time_sd_s
         };
         time(&mut measured, direct, picked.direct_s, sd_s);
         for echo in &picked.echoes {
-            time(&mut measured, echoes, echo.t_s, TIME_SD_S);
+            time(&mut measured, echoes, echo.t_s, time_sd_s);
         }
     }
     for known in &layout.known {
         let channel = if known.side.is_none() { direct } else { echoes };
-        time(&mut measured, channel, known.t_s, TIME_SD_S);
+        time(&mut measured, channel, known.t_s, time_sd_s);
     }
     measured
 }
@@ -551,7 +561,7 @@ impl Experiment for RoomExperiment {
             for (one, picked) in simulated.iter().zip(&self.layouts[*episode].picked) {
                 let predicted = predicted_s(one, *stretch, *offset_s);
                 for echo in &picked.echoes {
-                    sum += (arrivals::mismatch_s(echo.t_s, &predicted) / TIME_SD_S).powi(2);
+                    sum += (arrivals::mismatch_s(echo.t_s, &predicted) / self.time_sd_s).powi(2);
                     count += 1;
                 }
                 let direct_s = one.written_s(one.direct_s, *stretch) + offset_s;

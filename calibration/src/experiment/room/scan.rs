@@ -6,13 +6,13 @@ use super::arrivals::{PickedArrivals, mismatch_s};
 use crate::bundle::file::ResponseTimes;
 
 /// Reflections of the images.
-const ORDER: i32 = 3;
+const ORDER: i32 = 4;
 /// Stretches that are tried, and their step.
 const MOST_STRETCH: f64 = 0.08;
 const STRETCH_STEP: f64 = 0.002;
 /// Places of walls that are tried, as shares of the edge, and their step, m.
 const WALL_RANGE: [f64; 2] = [-0.25, 0.3];
-const WALL_STEP_M: f64 = 0.03;
+const WALL_STEP_M: f64 = 0.04;
 /// Places nearer to what is known are left to the fit.
 const NEAR_M: f64 = 0.02;
 /// Least distance of a moved wall from sources and microphones, m.
@@ -173,7 +173,7 @@ mod tests {
         let size_m = [5.2, 2.7, 4.1];
         let config = AcousticConfig {
             rays: 0,
-            image_order: 3,
+            image_order: ORDER as usize,
             discovery_rays: 0,
             ..AcousticConfig::full()
         };
