@@ -59,7 +59,9 @@ pub(super) fn causes(
     let stretch = room.map_or(1.0, |room| {
         scan::best_stretch(recordings, room.size_m, speed_m_s, manifest.response_times)
     });
-    for law in dwell_acoustics::laws::all() {
+    // The scale of a recording's pressure is unknown, so that it shows no pressures.
+    let in_pascal = |law: &&dwell_scene::LawInfo| law.params.iter().any(|p| p.unit == "Pa");
+    for law in dwell_acoustics::laws::all().filter(|law| !in_pascal(law)) {
         let mut cause = Cause::of_law(law, &[], &[]);
         if cause.id == "temperature_error" {
             judge_temperature(&mut cause, manifest, config.air.temperature_c, stretch);

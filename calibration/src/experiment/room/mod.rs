@@ -5,6 +5,7 @@
 
 mod arrivals;
 mod causes;
+mod data;
 mod levels;
 mod scan;
 mod simulation;
@@ -14,12 +15,13 @@ use super::{
     Cause, CauseBinding, ChannelInfo, EpisodeData, EpisodeParameters, Experiment, FitParameter,
     Intervention, ParameterIndex, ParameterVector, ResidualStructure, StructureTest,
 };
+use crate::bundle::Bundle;
 use crate::bundle::file::ResponseTimes;
-use crate::bundle::{Bundle, MeasuredEpisode};
 use crate::error::CalibrationError;
 use crate::options::Options;
 use arrivals::PickedArrivals;
 use causes::ABSORPTION_STEP;
+use data::{EpisodeLayout, MS, channels, check_rates, episode_data, layout};
 use dwell_acoustics::bands::NOMINAL_CENTRES_HZ;
 use dwell_acoustics::{AcousticConfig, Air};
 use glam::Vec3;
@@ -32,36 +34,14 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::sync::Arc;
 
-/// Floor of the standard deviation from chance and the ray count, dB.
-const LEAST_SD_DB: f64 = 0.4;
-/// Times are compared in ms.
-const MS: f64 = 1e3;
 /// Step of a time offset, ms.
 const OFFSET_STEP_MS: f64 = 0.01;
-/// The direct sound of a recording whose sound rings is so many times less sharp.
-const RINGING_SDS: f64 = 4.0;
 /// Mean square of the mismatch of echoes, in standard deviations, above which they come from elsewhere.
 const FOREIGN_ECHOES: f64 = 1.6;
 /// Echoes below which their mean square says nothing.
 const FEWEST_ECHOES: usize = 20;
 /// Sample rate where nothing was sampled, Hz.
 const NO_RATE_HZ: u32 = 16_000;
-
-/// An arrival whose path is known.
-#[derive(Clone, Copy, Debug)]
-struct KnownArrival {
-    /// Position among the episode's pairs.
-    pair: usize,
-    side: Option<usize>,
-    t_s: f64,
-}
-
-/// What an episode's numbers are.
-#[derive(Clone, Debug, Default)]
-struct EpisodeLayout {
-    picked: Vec<PickedArrivals>,
-    known: Vec<KnownArrival>,
-}
 
 /// Impulse responses of a room.
 pub(crate) struct RoomExperiment {
@@ -163,6 +143,8 @@ impl RoomExperiment {
             &recordings,
         )?;
         let times = bundle.manifest.response_times;
+        let smear = FilterRingingModel::new(rate_hz.unwrap_or(NO_RATE_HZ));
+        let causes = without_taken_up(causes, &simulator, &smear, times);
         let offset = FitParameter::nuisance("time offset", "ms", OFFSET_STEP_MS);
         let mut shared: Vec<FitParameter> = bands
             .clone()
@@ -190,7 +172,7 @@ impl RoomExperiment {
             } else {
                 Vec::new()
             },
-            smear: FilterRingingModel::new(rate_hz.unwrap_or(NO_RATE_HZ)),
+            smear,
             causes,
             shared,
             layouts,
@@ -288,124 +270,40 @@ impl RoomExperiment {
     }
 }
 
+/// Leaves out laws that do no more, in the first episode, than what gains and offsets take up, such as another response of the
+/// source.
+fn without_taken_up(
+    causes: Vec<Cause>,
+    simulator: &RoomSimulator,
+    smear: &FilterRingingModel,
+    times: ResponseTimes,
+) -> Vec<Cause> {
+    let acts = |cause: &Cause| {
+        if !matches!(cause.binding, CauseBinding::Law { .. }) {
+            return true;
+        }
+        let responses = |values: &[f64]| {
+            let intervention = Intervention::new(std::slice::from_ref(cause), values);
+            simulator.responses(0, &intervention)
+        };
+        let defaults: Vec<f64> = cause.parameters.iter().map(|p| p.default).collect();
+        cause.probes.iter().any(|probe| {
+            let (Ok(before), Ok(changed)) = (responses(&defaults), responses(probe)) else {
+                return false;
+            };
+            let any_offset = times != ResponseTimes::Absolute;
+            simulation::differs_beyond_nuisances(&before, &changed, smear, any_offset)
+        })
+    };
+    causes.into_iter().filter(acts).collect()
+}
+
 /// Times at which a recording has the early paths, rising, s.
 fn predicted_s(one: &SimulatedResponse, stretch: f64, offset_s: f64) -> Vec<f64> {
     let times = one.times_s.iter();
     times
         .map(|t| one.written_s(*t, stretch) + offset_s)
         .collect()
-}
-
-/// Checks that all responses have one rate.
-fn check_rates(bundle: &Bundle, rate_hz: Option<u32>) -> Result<(), CalibrationError> {
-    for episode in &bundle.episodes {
-        let other = episode
-            .responses
-            .iter()
-            .find(|response| Some(response.rate_hz) != rate_hz);
-        if let (Some(other), Some(rate_hz)) = (other, rate_hz) {
-            let at = format!("{}/ir.csv, episode {}", bundle.name, episode.name);
-            let allowed = format!("{rate_hz}, as the first");
-            return Err(CalibrationError::field(
-                at,
-                "rate_hz",
-                other.rate_hz,
-                allowed,
-            ));
-        }
-    }
-    Ok(())
-}
-
-/// The pairs of source and receiver of an episode, and its arrivals among them.
-fn layout(episode: &MeasuredEpisode) -> (Vec<(Vec3, Vec3)>, EpisodeLayout) {
-    let place = |p: [f64; 3]| Vec3::from_array(p.map(|x| x as f32));
-    let mut pairs: Vec<(Vec3, Vec3)> = episode
-        .responses
-        .iter()
-        .map(|r| (place(r.source_m), place(r.receiver_m)))
-        .collect();
-    let mut known = Vec::new();
-    for arrival in &episode.arrivals {
-        let ends = (place(arrival.source_m), place(arrival.receiver_m));
-        let pair = pairs.iter().position(|other| *other == ends);
-        let pair = pair.unwrap_or_else(|| {
-            pairs.push(ends);
-            pairs.len() - 1
-        });
-        known.push(KnownArrival {
-            pair,
-            side: arrival.side,
-            t_s: arrival.t_s,
-        });
-    }
-    let layout = EpisodeLayout {
-        picked: Vec::new(),
-        known,
-    };
-    (pairs, layout)
-}
-
-fn channels(bands: &std::ops::Range<usize>) -> Vec<ChannelInfo> {
-    let channel = |name: String, unit: &str| ChannelInfo {
-        name,
-        unit: unit.into(),
-        noise_known: true,
-    };
-    let levels = bands
-        .clone()
-        .map(|band| channel(format!("{} Hz", NOMINAL_CENTRES_HZ[band]), "dB"));
-    levels
-        .chain(["direct sound", "echoes"].map(|name| channel(name.into(), "ms")))
-        .collect()
-}
-
-/// An episode's numbers: levels of a response by band and window, the time of its direct sound, and those of its echoes;
-/// then arrivals whose paths are known.
-fn episode_data(
-    episode: &MeasuredEpisode,
-    layout: &EpisodeLayout,
-    bands: &std::ops::Range<usize>,
-    time_sd_s: f64,
-) -> EpisodeData {
-    let mut measured = EpisodeData {
-        name: episode.name.clone(),
-        group: episode.group.clone(),
-        ..EpisodeData::default()
-    };
-    let (direct, echoes) = (bands.len(), bands.len() + 1);
-    let time = |measured: &mut EpisodeData, channel: usize, t_s: f64, sd_s: f64| {
-        measured.measured.push(MS * t_s);
-        measured.channel.push(channel);
-        measured.t_s.push(t_s);
-        measured.sd.push(MS * sd_s);
-    };
-    for (response, picked) in episode.responses.iter().zip(&layout.picked) {
-        measured.measured.extend(levels::measured_db(response));
-        for band in bands.clone() {
-            for window in 0..WINDOWS {
-                let edges = &levels::EDGES_S[window..window + 2];
-                measured.channel.push(band - bands.start);
-                measured.t_s.push(0.5 * (edges[0] + edges[1]));
-                let chance_db = levels::random_deviation_db(band, window);
-                measured.sd.push(chance_db.hypot(LEAST_SD_DB));
-            }
-        }
-        let sd_s = if picked.rings {
-            RINGING_SDS * time_sd_s
-        } else {
-            time_sd_s
-        };
-        time(&mut measured, direct, picked.direct_s, sd_s);
-        for echo in &picked.echoes {
-            time(&mut measured, echoes, echo.t_s, time_sd_s);
-        }
-    }
-    for known in &layout.known {
-        let channel = if known.side.is_none() { direct } else { echoes };
-        time(&mut measured, channel, known.t_s, time_sd_s);
-    }
-    measured
 }
 
 /// Returns the acoustic settings of the experiment.

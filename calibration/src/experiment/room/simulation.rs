@@ -14,7 +14,7 @@ use glam::Vec3;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Simulations of an episode that are remembered.
-const REMEMBERED: usize = 12;
+const REMEMBERED: usize = 48;
 /// Lengths of two ways whose times show what a recorder does to times, m.
 const WAYS_M: [f64; 2] = [3.0, 15.0];
 
@@ -203,6 +203,9 @@ impl RoomSimulator {
                 let path = once.find(|path| sides[path.planes[0] as usize] == Some(side))?;
                 Some(echogram.delay_s(path))
             });
+            // Directions of arrival are not compared, and take the most room.
+            let mut echogram = echogram;
+            echogram.tail.directions = Vec::new();
             found.push(SimulatedResponse {
                 times_s,
                 side_times_s,
@@ -243,6 +246,42 @@ fn single_path(like: &Echogram, way_m: f64) -> Echogram {
         speed_m_s: like.speed_m_s,
         ..Echogram::default()
     }
+}
+
+/// Changes of levels, dB, and of times, s, below which a law counts as one that gains and offsets take up.
+const TAKEN_UP_DB: f64 = 0.3;
+const TAKEN_UP_S: f64 = 1e-7;
+
+/// Returns whether `changed` differs from `before` by more than a gain in each band and, where `any_offset`, an offset of all
+/// times.
+pub(super) fn differs_beyond_nuisances(
+    before: &[SimulatedResponse],
+    changed: &[SimulatedResponse],
+    smear: &FilterRingingModel,
+    any_offset: bool,
+) -> bool {
+    let none = [0.0; dwell_acoustics::bands::BAND_COUNT];
+    let spread = |values: &[f64]| {
+        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+        values.iter().copied().fold(f64::NEG_INFINITY, f64::max) - low
+    };
+    before.iter().zip(changed).any(|(before, changed)| {
+        let levels = [before, changed].map(|one| one.levels_db(smear, 1.0, &none));
+        let change: Vec<f64> = levels[1]
+            .iter()
+            .zip(&levels[0])
+            .map(|(a, b)| a - b)
+            .collect();
+        let louder = change
+            .chunks_exact(levels::WINDOWS)
+            .any(|band| spread(band) > TAKEN_UP_DB);
+        let times = before.times_s.iter().zip(&changed.times_s);
+        let mut later: Vec<f64> = times.map(|(a, b)| changed.written_s(*b, 1.0) - a).collect();
+        if !any_offset {
+            later.push(0.0);
+        }
+        louder || spread(&later) > TAKEN_UP_S
+    })
 }
 
 impl SimulatedResponse {

@@ -78,7 +78,7 @@ _PLACES: Map = {
 _SCHEMA: Map = {
     "axes": TEXT_OR_LIST,
     "origin": [],
-    "room": {"size_m": [], "surfaces": NAMES},
+    "room": {"size_m": [], "surfaces": NAMES, "position_sd_m": 1.0},
     "table": {
         "file": TEXT_OR_LIST,
         "part": "",
