@@ -177,8 +177,16 @@ mod tests {
             discovery_rays: 0,
             ..AcousticConfig::full()
         };
-        let stage =
-            RoomStage::of_box(&RoomManifest { size_m, surfaces }, &[0.0; 6], config).unwrap();
+        let stage = RoomStage::of_box(
+            &RoomManifest {
+                size_m,
+                surfaces,
+                position_sd_m: None,
+            },
+            &[0.0; 6],
+            config,
+        )
+        .unwrap();
         let (source, receiver) = ([1.0, 1.1, 1.4], [3.7, 1.6, 2.9]);
         let place = |p: [f64; 3]| Vec3::from_array(p.map(|x| x as f32));
         let paths = stage

@@ -114,7 +114,11 @@ mod tests {
             .map(|side| (side.to_owned(), SurfaceManifest::default()))
             .into();
         let size_m = [5.0, 2.6, 4.0];
-        let room = RoomManifest { size_m, surfaces };
+        let room = RoomManifest {
+            size_m,
+            surfaces,
+            position_sd_m: None,
+        };
         let config = AcousticConfig {
             rays: 0,
             image_order: 1,
