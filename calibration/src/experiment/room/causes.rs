@@ -76,12 +76,17 @@ pub(super) fn causes(
         if (scale - 1.0).abs() > 1e-9 {
             cause.probes.push(vec![scale]);
         }
-        let experiment = match fault {
-            Fault::ClockScale => {
-                "record a known clock for ten minutes with the recorder, or measure the length of the excitation in the recording"
-            }
-            _ => "measure one length of the room again, with another instrument",
+        let (name, experiment) = match fault {
+            Fault::ClockScale => (
+                "another rate of the recorder's clock",
+                "record a known clock for ten minutes with the recorder, or measure the length of the excitation in the recording",
+            ),
+            _ => (
+                "another scale of the lengths of the room",
+                "measure one length of the room again, with another instrument",
+            ),
         };
+        name.clone_into(&mut cause.name);
         experiment.clone_into(&mut cause.separating_experiment);
         all.push(cause);
     }

@@ -145,7 +145,7 @@ impl RoomExperiment {
         let times = bundle.manifest.response_times;
         let smear = FilterRingingModel::new(rate_hz.unwrap_or(NO_RATE_HZ));
         let causes = without_taken_up(causes, &simulator, &smear, times);
-        let offset = FitParameter::nuisance("time offset", "ms", OFFSET_STEP_MS);
+        let offset = FitParameter::nuisance("time of the direct sound", "ms", OFFSET_STEP_MS);
         let mut shared: Vec<FitParameter> = bands
             .clone()
             .map(|band| {
@@ -154,7 +154,7 @@ impl RoomExperiment {
             })
             .collect();
         if times == ResponseTimes::CommonOffset {
-            shared.push(offset.clone());
+            shared.push(FitParameter::nuisance("time offset", "ms", OFFSET_STEP_MS));
         }
         let owners = causes
             .iter()
@@ -194,14 +194,23 @@ impl RoomExperiment {
             .map_err(|error| CalibrationError::simulation(&self.episodes[episode].name, error))
     }
 
-    /// The offset of an episode's times, s.
-    fn offset_s(&self, at: &EpisodeParameters<'_>) -> f64 {
-        let found = match self.times {
-            ResponseTimes::Absolute => None,
-            ResponseTimes::CommonOffset => at.shared.last(),
-            ResponseTimes::Relative => at.episode_nuisances.first(),
-        };
-        found.map_or(0.0, |offset| offset / MS)
+    /// What is added to the written times of an episode's arrivals, s. Where each episode has an offset of its own, it is the
+    /// time of the first direct sound, which no stretch of times then moves.
+    fn offset_s(
+        &self,
+        at: &EpisodeParameters<'_>,
+        simulated: &[SimulatedResponse],
+        stretch: f64,
+    ) -> f64 {
+        match self.times {
+            ResponseTimes::Absolute => 0.0,
+            ResponseTimes::CommonOffset => at.shared.last().map_or(0.0, |offset| offset / MS),
+            ResponseTimes::Relative => {
+                let own = at.episode_nuisances.first().map_or(0.0, |own| own / MS);
+                let first = simulated.first();
+                own - first.map_or(0.0, |one| one.written_s(one.direct_s, stretch))
+            }
+        }
     }
 
     /// The predictions, from what was simulated.
@@ -217,7 +226,8 @@ impl RoomExperiment {
             intervention.faults.clock_scale,
             intervention.faults.length_scale,
         );
-        let (stretch, offset_s) = (clock / length, self.offset_s(at));
+        let stretch = clock / length;
+        let offset_s = self.offset_s(at, simulated, stretch);
         // Written lengths are `length` times the true ones, and so are the simulated.
         let air = self.simulator.stage().scene.config().air;
         let more = air.energy_decay_per_m().map(|m| m * (1.0 / length - 1.0));
@@ -377,11 +387,13 @@ impl Experiment for RoomExperiment {
             return vec![0.0];
         };
         let layout = &self.layouts[episode];
-        let first = layout.picked.first().zip(simulated.first());
         let direct = layout.known.iter().find(|known| known.side.is_none());
-        let offset_s = match (first, direct) {
-            (Some((picked, simulated)), _) => picked.direct_s - simulated.direct_s,
-            (None, Some(known)) => known.t_s - simulated[known.pair].direct_s,
+        // The time of the first direct sound.
+        let offset_s = match (layout.picked.first(), direct) {
+            (Some(picked), _) => picked.direct_s,
+            (None, Some(known)) => {
+                known.t_s - simulated[known.pair].direct_s + simulated[0].direct_s
+            }
             (None, None) => 0.0,
         };
         vec![MS * offset_s]
@@ -451,7 +463,8 @@ impl Experiment for RoomExperiment {
             let intervention = Intervention::new(&self.causes, at.causes);
             let simulated = self.simulated(*episode, &intervention)?;
             let stretch = intervention.faults.clock_scale / intervention.faults.length_scale;
-            simulations.push((*episode, simulated, stretch, self.offset_s(&at)));
+            let offset_s = self.offset_s(&at, &simulated, stretch);
+            simulations.push((*episode, simulated, stretch, offset_s));
         }
         let (mut sum, mut count) = (0.0, 0_usize);
         let mut recordings = Vec::new();

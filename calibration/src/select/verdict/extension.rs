@@ -6,14 +6,14 @@ use crate::experiment::ResidualStructure;
 
 /// The most effects of one model.
 const MOST_EFFECTS: usize = 4;
-/// Share of what the effects before it took, from which on a further effect counts though the test of what is left is met.
-const SECOND_SHARE: f64 = 0.1;
+/// Share of what is left that a further effect takes away, from which on it counts though the test of what is left is met.
+const SECOND_SHARE: f64 = 0.15;
 
 impl Search<'_> {
     /// Adds effects as long as something systematic is left, and leaves out those that are not needed any more.
     ///
-    /// Cells hide a second effect from the test of what is left: there an effect is added, too, that takes a fair part of
-    /// what the effects before it took.
+    /// Cells hide a second effect from the test of what is left: there an effect is added, too, that takes a fair part of what
+    /// is left.
     pub(super) fn extend(
         &self,
         first: ScoredModel,
@@ -29,7 +29,7 @@ impl Search<'_> {
             let least = if is_structured {
                 0.0
             } else {
-                SECOND_SHARE * (base.fit.loss - now.fit.loss)
+                SECOND_SHARE * now.fit.loss
             };
             let (gains, short, by_chance) = self.shortlist(&now)?;
             let most = gains.iter().map(|gain| gain.gain).fold(0.0, f64::max);
