@@ -282,6 +282,48 @@ def test_a_sofa_file_is_read_with_its_places_and_delays(tmp_path: Path, kind: st
     assert late[3:] == pytest.approx(data[2, 1], rel=1e-6)
 
 
+def test_arrivals_that_others_picked_are_imported_without_sound(tmp_path: Path) -> None:
+    rows = ["mic,spk,path,ms"]
+    rows += [f"m{k},s{k % 2},{path},{5 + k}" for k in range(4) for path in ("direct", "floor")]
+    (tmp_path / "toa.csv").write_text("\n".join(rows) + "\n")
+    (tmp_path / "places.csv").write_text(
+        "kind,id,x,y,z\nspk,s0,1,1,1.5\nspk,s1,5,1,1.5\n"
+        + "".join(f"mic,m{k},3,{1 + 0.5 * k},1.2\n" for k in range(4))
+    )
+    places = {"file": "places.csv", "name": "id", "position": ["x", "y", "z"]}
+    mapping = {key: value for key, value in ROOM.items() if key not in ("table", "places")}
+    mapping |= {
+        "environment": {"temperature_c": 21.0, "temperature_sd_k": 0.5},
+        "response_times": "absolute",
+        "arrivals": {
+            "file": "toa.csv",
+            "episode": ["mic"],
+            "split_group": "spk",
+            "path": "path",
+            "t_s": "ms",
+            "units": {"ms": "ms"},
+            "source": "spk",
+            "receiver": "mic",
+        },
+        "places": {
+            "sources": {**places, "only": {"kind": "spk"}},
+            "receivers": {**places, "only": {"kind": "mic"}},
+        },
+    }
+    counts = brought(tmp_path, mapping, "toa.csv", "places.csv")
+    assert (counts["rows"], counts["episodes"]) == (8, 4)
+    rows_found = rows_of(tmp_path, "arrivals.csv")
+    assert [row["path"] for row in rows_found[:2]] == ["direct", "floor"]
+    # z up, with the origin at the far corner of y: (5, 1, 1.5) is (5, 1.5, 3).
+    third = rows_found[2]
+    assert [float(third[f"source_{axis}"]) for axis in "xyz"] == [5.0, 1.5, 3.0]
+    assert float(third["t_s"]) == pytest.approx(0.006)
+    manifest = json.loads((tmp_path / "o.measured" / "manifest.json").read_text())
+    assert manifest["response_times"] == "absolute"
+    with pytest.raises(ValueError, match="response_times"):
+        brought(tmp_path, mapping | {"response_times": "somehow"}, "toa.csv", "places.csv")
+
+
 def test_a_sofa_file_of_a_head_is_no_room(tmp_path: Path) -> None:
     h5py = pytest.importorskip("h5py")
     with h5py.File(tmp_path / "a.sofa", "w") as file:

@@ -8,6 +8,7 @@ mod automatic_gain;
 mod background_noise;
 mod clock_drift;
 mod fir;
+mod humidity_error;
 mod microphone_clipping;
 mod microphone_gain;
 mod microphone_noise;
@@ -48,6 +49,7 @@ enum SignalStage {
 /// The laws of this engine.
 static LAWS: LawRegistry<SignalStage> = LawRegistry::new(&[
     temperature_error::LAW,
+    humidity_error::LAW,
     no_air_absorption::LAW,
     source_gain::LAW,
     source_response::LAW,

@@ -15,6 +15,9 @@ use serde::{Deserialize, Serialize};
 pub(crate) struct PathEffects {
     /// Difference of the true from the stated air temperature, K.
     pub(super) temperature_error_k: f64,
+    /// Difference of the true from the stated relative humidity, %.
+    #[serde(default)]
+    pub(super) humidity_error_pct: f64,
     /// Share of the air's absorption, 0 to 1.
     pub(super) air_absorption: f64,
     /// Level of all sources above the stated one, dB. Shape (band,).
@@ -44,6 +47,7 @@ impl Default for PathEffects {
     fn default() -> Self {
         Self {
             temperature_error_k: 0.0,
+            humidity_error_pct: 0.0,
             air_absorption: 1.0,
             source_db: [0.0; BAND_COUNT],
             source_rotation_deg: [0.0; 2],
@@ -59,9 +63,11 @@ impl PathEffects {
     /// Returns the settings with the true air, kept within the range of [`Air::check`].
     pub(crate) fn effective_config(&self, stated: &AcousticConfig) -> AcousticConfig {
         let temperature_c = stated.air.temperature_c + self.temperature_error_k;
+        let humidity_pct = stated.air.humidity_pct + self.humidity_error_pct;
         AcousticConfig {
             air: Air {
                 temperature_c: temperature_c.clamp(-40.0, 60.0),
+                humidity_pct: humidity_pct.clamp(0.0, 100.0),
                 ..stated.air
             },
             ..*stated

@@ -103,6 +103,11 @@ impl AcousticScene {
         scene
     }
 
+    /// Returns a receiver at the pose that the laws of microphones' poses give it.
+    pub fn true_receiver(&self, receiver: &Receiver) -> Receiver {
+        self.effects().true_receiver(receiver)
+    }
+
     /// Returns laws' effects on air and sources.
     pub(crate) fn effects(&self) -> &PathEffects {
         self.data.effects()

@@ -323,6 +323,10 @@ fn verdict(hall: &Hall, hidden: &[LawSpec], seed: u64) -> Option<&'static str> {
     let growth = difference(&change[1], &change[0]);
     let (high, low) = (growth[growth.len() - 1], growth[2]);
     let near = change[0][growth.len() - 1];
+    // Drier air takes more, which nothing left out can.
+    if high < -0.1 && high < 2.0 * low && (near - 0.5 * high).abs() < 0.1 {
+        return Some("humidity_error");
+    }
     if high > 0.1 && high > 2.0 * low && (near - 0.5 * high).abs() < 0.1 {
         return Some("no_air_absorption");
     }
@@ -365,6 +369,7 @@ fn hide(id: &str, random: &mut Random) -> LawSpec {
     };
     match id {
         "temperature_error" => law(id, &[("offset_k", either_sign(random, 3.0, 10.0))]),
+        "humidity_error" => law(id, &[("offset_pct", -uniform(random, 35.0, 42.0))]),
         "no_air_absorption" => law(id, &[("missing", uniform(random, 0.8, 1.0))]),
         "source_gain" | "microphone_gain" => {
             law(id, &[("gain_db", either_sign(random, 2.0, 12.0))])

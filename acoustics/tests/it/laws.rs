@@ -23,6 +23,7 @@ fn each() -> Vec<LawSpec> {
     let response = [("db_250", -6.0), ("db_2000", 4.0), ("db_4000", -9.0)];
     let every = vec![
         law("temperature_error", &[("offset_k", 12.0)]),
+        law("humidity_error", &[("offset_pct", -40.0)]),
         law("no_air_absorption", &[("missing", 1.0)]),
         law("source_gain", &[("gain_db", -3.0)]),
         law("source_response", &response),

@@ -79,6 +79,38 @@ fn warmth_stretches_all_arrivals_alike() {
     }
 }
 
+/// Dry air takes decibels a metre as ISO 9613-1 has them, and lets sound be as fast as before.
+#[test]
+fn dry_air_absorbs_for_every_metre() {
+    let hall = hall();
+    let stated = echogram(&hall, Vec::new());
+    for offset_pct in [-35.0, 30.0, 80.0] {
+        let other = echogram(
+            &hall,
+            vec![law("humidity_error", &[("offset_pct", offset_pct)])],
+        );
+        let air = Air {
+            humidity_pct: (50.0_f64 + offset_pct).min(100.0),
+            ..Air::default()
+        };
+        let (before, now) = (
+            Air::default().energy_decay_per_m(),
+            air.energy_decay_per_m(),
+        );
+        assert_eq!(stated.speed_m_s, other.speed_m_s);
+        for (a, b) in stated.paths.iter().zip(&other.paths) {
+            for band in 0..BAND_COUNT {
+                let wanted = ((before[band] - now[band]) * a.length_m).exp();
+                let found = f64::from(b.energy[band]) / f64::from(a.energy[band]);
+                assert!(
+                    (found / wanted - 1.0).abs() < 1e-5,
+                    "{offset_pct} {band}: {found} {wanted}"
+                );
+            }
+        }
+    }
+}
+
 /// A2: the missing absorption is decibels a metre, more the higher the frequency, in the direct sound too.
 #[test]
 fn missing_air_is_decibels_for_every_metre() {

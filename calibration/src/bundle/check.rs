@@ -158,6 +158,7 @@ pub(super) fn check_manifest(at: &str, manifest: &MeasurementDescription) -> Che
     let air = &scene.environment;
     for (field, value, low, high) in [
         ("temperature_c", air.temperature_c, -40.0, 60.0),
+        ("temperature_sd_k", air.temperature_sd_k, 0.01, 20.0),
         ("humidity_pct", air.humidity_pct, 0.0, 100.0),
         ("pressure_pa", air.pressure_pa, 3e4, 2e5),
         ("g_m_s2", air.g_m_s2, 0.0, 100.0),

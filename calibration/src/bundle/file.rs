@@ -30,12 +30,34 @@ pub struct MeasurementDescription {
     /// for the clocks' sake; else the offset between them is fitted, and a latency cannot be told from it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub command_clock: Option<String>,
+    /// What is known of the times of impulse responses and arrivals (kind `impulse_response`).
+    #[serde(default, skip_serializing_if = "ResponseTimes::is_default")]
+    pub response_times: ResponseTimes,
     /// The meaning of the numbers of `poses.csv` and `starts.csv` (kind `pose_trajectory`).
     #[serde(default)]
     pub poses: Option<PoseTableFormat>,
     /// Anything else.
     #[serde(default)]
     pub notes: String,
+}
+
+/// What is known of when the source sounded.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ResponseTimes {
+    /// Nothing: each episode has a time offset of its own, which is fitted.
+    #[default]
+    Relative,
+    /// All episodes have the same unknown offset, as of a converter.
+    CommonOffset,
+    /// Times count from the moment when the source sounds, as with a loop-back.
+    Absolute,
+}
+
+impl ResponseTimes {
+    fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
 }
 
 /// The kind of measurement that a bundle holds.
@@ -149,6 +171,9 @@ impl BoardManifest {
 pub struct AmbientConditions {
     /// Temperature, degrees Celsius; `null`: 20 is assumed.
     pub temperature_c: Option<f64>,
+    /// Standard deviation of the temperature where it was measured, K; `null`: it is a guess, and any of a room's is plausible.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub temperature_sd_k: Option<f64>,
     /// Relative humidity, percent; `null`: 50 is assumed.
     pub humidity_pct: Option<f64>,
     /// Static pressure, Pa; `null`: 101,325 is assumed.
@@ -203,6 +228,10 @@ pub struct RoomManifest {
     pub size_m: [f64; 3],
     /// `floor` (y = 0), `ceiling`, `west` (x = 0), `east`, `north` (z = 0), `south`.
     pub surfaces: BTreeMap<String, SurfaceManifest>,
+    /// Standard deviation of the places of sides, sources and microphones, m; `null`: 0.005. Echoes' times are compared where
+    /// it is at most some 0.014 m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub position_sd_m: Option<f64>,
 }
 
 /// The known properties of a surface of the room.
@@ -215,6 +244,10 @@ pub struct SurfaceManifest {
     pub absorption: Option<BandTable>,
     /// Scattering of energy, the same in all bands.
     pub scattering: Option<f64>,
+    /// The name of its material; `null`: that of the side. Sides with one name are of one material, whose absorption is found
+    /// for all of them together, and state the same values.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub material: Option<String>,
 }
 
 /// A quantity by frequency.
@@ -302,6 +335,27 @@ pub struct ImpulseResponseRow {
     pub receiver_z: f64,
     /// Sample rate, Hz; the WAV file's own must be the same.
     pub rate_hz: u32,
+}
+
+/// A row of `arrivals.csv`: when a sound arrives that was picked from a recording.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[expect(
+    missing_docs,
+    reason = "coordinates in m, documented once at the head of `bundle`"
+)]
+pub struct ArrivalRow {
+    /// The episode.
+    pub episode: String,
+    pub source_x: f64,
+    pub source_y: f64,
+    pub source_z: f64,
+    pub receiver_x: f64,
+    pub receiver_y: f64,
+    pub receiver_z: f64,
+    /// `direct`, or the side of the room that reflects it once.
+    pub path: String,
+    /// Time of arrival, s.
+    pub t_s: f64,
 }
 
 /// A row of `poses.csv`. Axes are the world's (right-handed, y up); the velocities may be empty, all six at once.

@@ -7,6 +7,7 @@
 //! | `trajectory.csv` | `episode, t_s, entity, channel, value` (kinds trajectory and servo) |
 //! | `command.csv` | `episode, t_s, actuator, kind, value` (kind servo) |
 //! | `ir.csv` | `episode, file, source_x, source_y, source_z, receiver_x, receiver_y, receiver_z, rate_hz` (kind `impulse_response`) |
+//! | `arrivals.csv` | `episode, source_x, ..., receiver_z, path, t_s` (kind `impulse_response`, in place of `ir.csv`) |
 //! | `poses.csv` | `episode, t_s, entity, x, y, z, qx, qy, qz, qw, vx, vy, vz, wx, wy, wz` (kind `pose_trajectory`) |
 //! | `starts.csv` | `episode, sample, vx, vy, vz, wx, wy, wz` (kind `pose_trajectory`; may be absent) |
 //! | `drive.csv` | `episode, t_s, x, y, heading, left_rad, right_rad` (kind `drive`) |
@@ -16,6 +17,7 @@
 
 pub mod file;
 
+mod arrivals;
 mod check;
 mod limits;
 mod odometry;
@@ -51,6 +53,7 @@ pub(crate) struct MeasuredEpisode {
     /// By actuator, each by time.
     pub(crate) commands: Vec<CommandRow>,
     pub(crate) responses: Vec<MeasuredResponse>,
+    pub(crate) arrivals: Vec<MeasuredArrival>,
     /// By time.
     pub(crate) poses: Vec<PoseSample>,
     /// The sample to roll out from, and the velocities there; `None`: the first, as measured.
@@ -103,6 +106,16 @@ pub(crate) struct MeasuredResponse {
     pub(crate) samples: Vec<f32>,
 }
 
+/// One arrival that was picked from a recording.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct MeasuredArrival {
+    pub(crate) source_m: [f64; 3],
+    pub(crate) receiver_m: [f64; 3],
+    /// The position in [`ROOM_SURFACES`] of the side that reflects it; `None`: the direct sound.
+    pub(crate) side: Option<usize>,
+    pub(crate) t_s: f64,
+}
+
 impl Bundle {
     /// Returns the XXH3 hash (64 bits, as hexadecimal digits) of the description and of every number, in the order of the
     /// files' episodes.
@@ -131,6 +144,12 @@ impl Bundle {
                     .copied()
                     .map(f64::from)
                     .for_each(&mut number);
+            }
+            for arrival in &episode.arrivals {
+                arrival.source_m.iter().copied().for_each(&mut number);
+                arrival.receiver_m.iter().copied().for_each(&mut number);
+                number(arrival.side.map_or(-1.0, |side| side as f64));
+                number(arrival.t_s);
             }
             for pose in &episode.poses {
                 number(pose.t_s);

@@ -297,7 +297,7 @@ pub(crate) fn rotation_vector_between(a: DQuat, b: DQuat) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bundle::file::{BundleKind, PoseTableFormat, SceneManifest, VERSION};
+    use crate::bundle::file::{BundleKind, PoseTableFormat, ResponseTimes, SceneManifest, VERSION};
 
     const RATE_HZ: f64 = 100.0;
 
@@ -341,6 +341,7 @@ mod tests {
             kind: BundleKind::PoseTrajectory,
             scene: SceneManifest::default(),
             command_clock: None,
+            response_times: ResponseTimes::default(),
             channels: Vec::new(),
             poses: Some(PoseTableFormat {
                 rate_hz: RATE_HZ,

@@ -6,7 +6,9 @@ use super::file::{
 };
 use super::limits;
 use super::sufficiency;
-use super::{Bundle, MeasuredEpisode, MeasuredResponse, MeasuredSample, odometry, poses, row, wav};
+use super::{
+    Bundle, MeasuredEpisode, MeasuredResponse, MeasuredSample, arrivals, odometry, poses, row, wav,
+};
 use crate::error::CalibrationError;
 use dwell_scene::file::{self, ReadError};
 use serde::de::DeserializeOwned;
@@ -48,7 +50,12 @@ pub(crate) fn read(folder: &Path) -> Result<Bundle, CalibrationError> {
             commands(folder, &names, &by_name, &mut bundle.episodes)?;
         }
         BundleKind::ImpulseResponse => {
-            responses(folder, &bundle.manifest, &by_name, &mut bundle.episodes)?;
+            if folder.join("arrivals.csv").exists() {
+                arrivals::read(folder, &by_name, &bundle.manifest, &mut bundle.episodes)?;
+            } else {
+                responses(folder, &bundle.manifest, &by_name, &mut bundle.episodes)?;
+            }
+            arrivals::check_room(&bundle.name, &bundle.manifest)?;
         }
         BundleKind::PoseTrajectory => {
             poses::read(

@@ -61,12 +61,11 @@ pub(super) fn check_sufficient_data(bundle: &Bundle) -> CheckResult {
     for episode in &bundle.episodes {
         let at = format!("{}, episode {}", bundle.name, episode.name);
         match bundle.kind() {
-            BundleKind::ImpulseResponse if episode.responses.is_empty() => {
-                return Err(missing(
-                    &at,
-                    "a row of ir.csv",
-                    "every episode needs an impulse response",
-                ));
+            BundleKind::ImpulseResponse
+                if episode.responses.is_empty() && episode.arrivals.is_empty() =>
+            {
+                let needed = "every episode needs an impulse response";
+                return Err(missing(&at, "a row of ir.csv", needed));
             }
             BundleKind::Trajectory | BundleKind::Servo if episode.samples.len() < 6 => {
                 let (what, found, needed) = ("rows of trajectory.csv", episode.samples.len(), 6);

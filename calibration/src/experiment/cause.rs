@@ -73,6 +73,11 @@ pub(crate) enum CauseBinding {
     Law { version: u32, targets: Vec<String> },
     /// Each parameter stands at an address of the state.
     Addresses(Vec<String>),
+    /// Each parameter stands at several addresses of the state. Shape (parameter, address).
+    SharedAddresses(Vec<Vec<String>>),
+    /// Another place of a side of the room, by its position in [`ROOM_SURFACES`](crate::bundle::ROOM_SURFACES): an edit of the
+    /// scene.
+    Wall(usize),
     /// It belongs to the measurement: the simulator is right, and what was written down is not.
     Measurement(Fault),
 }
@@ -152,7 +157,8 @@ impl Cause {
                 .map(|target| format!("law/{}@{target}/{name}", self.id))
                 .collect(),
             CauseBinding::Addresses(addresses) => vec![addresses[parameter].clone()],
-            CauseBinding::Measurement(_) => Vec::new(),
+            CauseBinding::SharedAddresses(addresses) => addresses[parameter].clone(),
+            CauseBinding::Wall(_) | CauseBinding::Measurement(_) => Vec::new(),
         }
     }
 

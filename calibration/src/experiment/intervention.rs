@@ -11,6 +11,8 @@ pub(crate) struct Intervention {
     /// Values by address.
     pub(crate) overrides: Vec<(String, f64)>,
     pub(crate) faults: FaultValues,
+    /// How far each side of the room lies further out, m.
+    pub(crate) wall_offsets_m: [f64; 6],
 }
 
 impl Intervention {
@@ -36,6 +38,17 @@ impl Intervention {
                             .map(|((address, _), value)| (address.clone(), *value)),
                     );
                 }
+                CauseBinding::SharedAddresses(groups) => {
+                    for ((group, parameter), value) in
+                        groups.iter().zip(&cause.parameters).zip(values)
+                    {
+                        if (*value - parameter.default).abs() > 0.0 {
+                            let each = group.iter().map(|address| (address.clone(), *value));
+                            found.overrides.extend(each);
+                        }
+                    }
+                }
+                CauseBinding::Wall(side) => found.wall_offsets_m[*side] += values[0],
                 CauseBinding::Measurement(fault) => found.faults.set(*fault, values),
             }
         }
@@ -65,7 +78,14 @@ impl Intervention {
                     let pairs = addresses.iter().cloned().zip(values.iter().copied());
                     found.overrides.extend(pairs);
                 }
-                CauseBinding::Measurement(_) => {}
+                CauseBinding::SharedAddresses(groups) => {
+                    for (group, value) in groups.iter().zip(values) {
+                        let each = group.iter().map(|address| (address.clone(), *value));
+                        found.overrides.extend(each);
+                    }
+                }
+                // The room's house is not that of those who install it.
+                CauseBinding::Wall(_) | CauseBinding::Measurement(_) => {}
             }
         }
         found

@@ -6,7 +6,6 @@ mod cause;
 mod drive;
 pub(crate) mod experiment_world;
 mod fault;
-mod features;
 mod intervention;
 mod room;
 mod servo;
@@ -56,6 +55,15 @@ pub(crate) enum ResidualStructure {
     ByCell,
 }
 
+/// An experiment's own test of what is left.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct StructureTest {
+    /// The size of what is left; 1 for nothing.
+    pub(crate) ratio: f64,
+    /// The ratio above which chance is no explanation.
+    pub(crate) threshold: f64,
+}
+
 /// A point of the parameter space: a value for each parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ParameterVector {
@@ -94,6 +102,18 @@ pub(crate) trait Experiment: Sync {
     fn shared_nuisances(&self) -> &[FitParameter];
     /// Nuisances of each episode.
     fn episode_nuisances(&self) -> &[FitParameter];
+    /// Causes that the data of any experiment of this kind cannot tell from `cause`, by position: they bear an effect together.
+    fn equivalents(&self, _cause: usize) -> Vec<usize> {
+        Vec::new()
+    }
+    /// A test of this experiment's own for what `point` leaves in a set of episodes.
+    fn structure(
+        &self,
+        _set: &[usize],
+        _point: &ParameterVector,
+    ) -> Result<Option<StructureTest>, CalibrationError> {
+        Ok(None)
+    }
     /// Returns the initial values of an episode's nuisances.
     fn initial_nuisances(&self, episode: usize) -> Vec<f64>;
 

@@ -80,6 +80,9 @@ pub(super) fn schur_complement(blocks: &[NormalBlock]) -> DMatrix<f64> {
 
 /// The inverse of [`reduced`].
 pub(super) fn inverse(matrix: &DMatrix<f64>) -> DMatrix<f64> {
+    if matrix.is_empty() {
+        return matrix.clone();
+    }
     solve(matrix, &DMatrix::identity(matrix.nrows(), matrix.nrows()))
 }
 

@@ -414,7 +414,9 @@ fn notes(bundle: &Bundle, experiment: &dyn Experiment, findings: &Findings) -> V
             "A time offset is no effect in free flight: a flight that starts earlier starts elsewhere.".to_owned(),
         ),
         BundleKind::ImpulseResponse => notes.push(
-            "Time offsets are taken out by aligning the onsets, gains by a fitted level in every band.".to_owned(),
+            "Levels are compared from the direct sound on, with a fitted gain in every band; echoes are compared with the nearest \
+             that the simulation has, where the direct sound is short and places are known to a centimetre."
+                .to_owned(),
         ),
         BundleKind::Servo | BundleKind::PoseTrajectory | BundleKind::Drive => {}
     }

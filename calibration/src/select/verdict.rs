@@ -1,5 +1,7 @@
 //! From fits to a verdict.
 
+mod extension;
+
 use super::agreement::{SplitHalfAgreement, agreement};
 use super::compare::{CauseComparer, Estimate, ModelAdvantage, ScoredModel, estimates};
 use super::gain::HeldOutGain;
@@ -16,14 +18,16 @@ use crate::progress::ProgressReporter;
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 
-/// The most effects of one model.
-const MOST_EFFECTS: usize = 4;
 /// Causes that are fitted in full at each stage: those that gain most to first order.
 const MOST_FITTED: usize = 6;
 /// Share of the best cause's gain to first order below which no cause is fitted in full.
 const LEAST_SHARE: f64 = 0.25;
 /// Share of the gain by chance below which, where nothing systematic is left, no cause is fitted in full.
 const CLEARLY_CHANCE: f64 = 0.5;
+
+/// Share of the fall of the criterion by which a cause may be behind an equivalent one and still be a rival of it: what makes
+/// the difference is less well modelled than what they have in common.
+const EQUIVALENT_SHARE: f64 = 0.25;
 
 /// All findings, before they are put into words.
 pub(crate) struct Findings {
@@ -98,7 +102,7 @@ pub(crate) fn find_causes(
     let remainder_before = search.remainder(&base)?;
     let (singles, trials) = search.singles(&base, &remainder_before)?;
     let chosen = match best_trial(&trials) {
-        Some(first) => search.extend(first.clone())?,
+        Some(first) => search.extend(first.clone(), &base)?,
         None => base.clone(),
     };
     progress.stage(0.8, "comparing explanations")?;
@@ -169,7 +173,18 @@ impl Search<'_> {
         let (all, split) = (self.all, self.all.split);
         let found = ResidualNoiseTest::of(all.experiment, &split.train, &scored.fit.residuals);
         if all.experiment.residual_structure() != ResidualStructure::OverTime {
-            return Ok(found);
+            let own = all.experiment.structure(&split.train, &scored.fit.point)?;
+            return Ok(match own {
+                // That which is further beyond its threshold is reported.
+                Some(own) if own.ratio * found.threshold > found.ratio * own.threshold => {
+                    ResidualNoiseTest {
+                        learnable: None,
+                        ratio: own.ratio,
+                        threshold: own.threshold,
+                    }
+                }
+                _ => found,
+            });
         }
         let learnable = LearnableRemainder::new(
             all.experiment,
@@ -314,23 +329,6 @@ impl Search<'_> {
         Ok((singles, trials))
     }
 
-    /// Adds effects as long as something systematic is left, and leaves out those that are not needed any more.
-    fn extend(&self, first: ScoredModel) -> Result<ScoredModel, CalibrationError> {
-        let mut now = first;
-        while now.model.causes.len() < MOST_EFFECTS {
-            if !self.remainder(&now)?.is_structured() {
-                break;
-            }
-            let (_, short, by_chance) = self.shortlist(&now)?;
-            let trials = self.trials(&now, &short, by_chance)?;
-            let Some(larger) = best_trial(&trials).cloned() else {
-                break;
-            };
-            now = self.without_idle(larger)?;
-        }
-        Ok(now)
-    }
-
     /// The model without those causes that the others make needless.
     fn without_idle(&self, mut now: ScoredModel) -> Result<ScoredModel, CalibrationError> {
         let mut k = 0;
@@ -387,7 +385,8 @@ impl Search<'_> {
                 self.reset(&mut from, *cause);
                 self.fit(rest.clone(), &chosen.model, &from)?
             };
-            let short = if rest.is_empty() {
+            let equivalents = self.all.experiment.equivalents(*cause);
+            let mut short = if rest.is_empty() {
                 singles
                     .iter()
                     .map(|trial| trial.scored.model.causes[0])
@@ -395,6 +394,13 @@ impl Search<'_> {
             } else {
                 self.shortlist(&without)?.1
             };
+            short.extend(
+                equivalents
+                    .iter()
+                    .filter(|other| !chosen.model.causes.contains(other) && !short.contains(other))
+                    .copied()
+                    .collect::<Vec<_>>(),
+            );
             for other in short.iter().filter(|other| *other != cause) {
                 let mut causes = rest.clone();
                 causes.insert(k, *other);
@@ -419,10 +425,13 @@ impl Search<'_> {
                     None => self.fit(order, &without.model, &without.fit.point)?,
                 };
                 let fall = self.all.advantage_over(&scored, base, worth).delta_bic;
+                let allowed = if equivalents.contains(other) {
+                    (EQUIVALENT_SHARE * own).max(self.all.options.rival_delta_bic)
+                } else {
+                    self.all.options.rival_delta_bic
+                };
                 match self.implausible(&scored) {
-                    None if own - fall < self.all.options.rival_delta_bic => {
-                        sets.push((fall, causes));
-                    }
+                    None if own - fall < allowed => sets.push((fall, causes)),
                     Some(fault)
                         if fall - own > self.all.options.rival_delta_bic
                             && better.as_ref().is_none_or(|(most, ..)| fall > *most) =>

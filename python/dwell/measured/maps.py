@@ -32,7 +32,12 @@ COMMON: Map = {
     "licence": "",
     "notes": "",
     "g_m_s2": ANYTHING,
-    "environment": {"temperature_c": ANYTHING, "humidity_pct": ANYTHING, "pressure_pa": ANYTHING},
+    "environment": {
+        "temperature_c": ANYTHING,
+        "temperature_sd_k": ANYTHING,
+        "humidity_pct": ANYTHING,
+        "pressure_pa": ANYTHING,
+    },
 }
 #: Keys of every table of samples.
 TABLE: Map = {

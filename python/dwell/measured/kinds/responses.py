@@ -1,4 +1,4 @@
-"""Impulse responses of a room: WAV files beside a table of places, or a SOFA file."""
+"""Impulse responses of a room: WAV files beside a table of places, a SOFA file, or arrivals alone."""
 
 from __future__ import annotations
 
@@ -64,12 +64,21 @@ TEMPLATE: Map = {
         "receivers": {"file": "positions.csv", "name": "mic", "position": ["x", "y", "z"]},
     },
     "sofa": None,
+    "arrivals": None,
+    "response_times": None,
 }
-_PLACES: Map = {"file": "", "part": "", "name": TEXT_OR_LIST, "position": [], "units": NAMES}
+_PLACES: Map = {
+    "file": "",
+    "part": "",
+    "only": NAMES,
+    "name": TEXT_OR_LIST,
+    "position": [],
+    "units": NAMES,
+}
 _SCHEMA: Map = {
     "axes": TEXT_OR_LIST,
     "origin": [],
-    "room": {"size_m": [], "surfaces": NAMES},
+    "room": {"size_m": [], "surfaces": NAMES, "position_sd_m": 1.0},
     "table": {
         "file": TEXT_OR_LIST,
         "part": "",
@@ -86,10 +95,28 @@ _SCHEMA: Map = {
     },
     "places": {"sources": NAMES, "receivers": NAMES},
     "sofa": {"file": TEXT_OR_LIST, "episode": ""},
+    "arrivals": {
+        "file": TEXT_OR_LIST,
+        "part": "",
+        "only": NAMES,
+        "episode": TEXT_OR_LIST,
+        "split_group": TEXT_OR_LIST,
+        "conditions": TEXT_OR_LIST,
+        "units": NAMES,
+        "source": TEXT_OR_LIST,
+        "receiver": TEXT_OR_LIST,
+        "path": "",
+        "t_s": "",
+    },
+    "response_times": "",
 }
+#: What is known of times, as in bundles.
+_TIMES = ("relative", "common_offset", "absolute")
 #: Responses of a bundle, as for the reader of bundles.
 _MAX_RESPONSES = 2000
-_HEAD = "episode,file,source_x,source_y,source_z,receiver_x,receiver_y,receiver_z,rate_hz"
+_ENDS = "source_x,source_y,source_z,receiver_x,receiver_y,receiver_z"
+_HEAD = f"episode,file,{_ENDS},rate_hz"
+_ARRIVALS_HEAD = f"episode,{_ENDS},path,t_s"
 Point = NDArray[np.float64]
 
 
@@ -109,17 +136,42 @@ class _Response:
 
 def _write(job: Job) -> dict[str, Any]:
     mapping, at = job.mapping, job.at
-    if (mapping.get("table") is None) == (mapping.get("sofa") is None):
+    given = [key for key in ("table", "sofa", "arrivals") if mapping.get(key) is not None]
+    if len(given) != 1:
         raise ValueError(
-            f"{at}: responses come from a 'table' of WAV files or from 'sofa': one of them is "
-            "needed"
+            f"{at}: responses come from a 'table' of WAV files or from 'sofa', or there are "
+            "'arrivals' alone: one of them is needed"
         )
+    times = choice(mapping, "response_times", _TIMES, at)
     axes = Axes(mapping, at)
     zero = mapping.get("origin")
     origin = np.zeros(3) if zero is None else np.array(point(zero, f"{at}: origin"))
-    found = _from_sofa(job) if mapping.get("table") is None else _from_table(job)
-    (job.draft.folder / "ir").mkdir()
     episodes: dict[str, tuple[str, str, str]] = {}
+    if given == ["arrivals"]:
+        count = _write_arrivals(job, axes, origin, episodes)
+    else:
+        found = _from_sofa(job) if given == ["sofa"] else _from_table(job)
+        count = _write_responses(job, found, axes, origin, episodes)
+    scene = {}
+    if mapping.get("room") is not None:
+        require_filled(mapping["room"], ("size_m", "surfaces"), f"{at}: room")
+        scene["room"] = mapping["room"]
+    job.draft.fields["scene.room."] = f"{at}: room."
+    more = {} if times is None else {"response_times": times}
+    write_manifest(job, KIND.version, scene, more)
+    write_episodes(job, [*episodes.values()])
+    return counted(job, count, len(episodes), {})
+
+
+def _write_responses(
+    job: Job,
+    found: Iterator[_Response],
+    axes: Axes,
+    origin: Point,
+    episodes: dict[str, tuple[str, str, str]],
+) -> int:
+    """The responses and their table; returns how many there are."""
+    (job.draft.folder / "ir").mkdir()
     count = 0
     with job.draft.table("ir.csv", _HEAD, {"episode": ["episode"]}) as write:
         for response in found:
@@ -139,14 +191,42 @@ def _write(job: Job) -> dict[str, Any]:
             write([*row, str(response.rate_hz)], response.place)
             if count % 16 == 0:
                 job.progress(0.1, f"{count} responses")
-    scene = {}
-    if mapping.get("room") is not None:
-        require_filled(mapping["room"], ("size_m", "surfaces"), f"{at}: room")
-        scene["room"] = mapping["room"]
-    job.draft.fields["scene.room."] = f"{at}: room."
-    write_manifest(job, KIND.version, scene, {})
-    write_episodes(job, [*episodes.values()])
-    return counted(job, count, len(episodes), {})
+    return count
+
+
+def _write_arrivals(
+    job: Job,
+    axes: Axes,
+    origin: Point,
+    episodes: dict[str, tuple[str, str, str]],
+) -> int:
+    """The arrivals that a table lists; returns how many there are."""
+    part, at = job.part("arrivals")
+    table = MeasuredTable(part, job.files, at)
+    units = ColumnUnits(part, at)
+    path, time = require(part, "path", at), require(part, "t_s", at)
+    episode = names_of(part, "episode", at, [])
+    group = names_of(part, "split_group", at, episode)
+    conditions = names_of(part, "conditions", at, [])
+    ends = [_End(job, part, at, key, units) for key in ("source", "receiver")]
+    in_s = units.unit(time, "time")
+    columns = [*episode, *group, *conditions, path, time, *ends[0].columns, *ends[1].columns]
+    table.has([*dict.fromkeys(columns)])
+    units.refuse_unused()
+    count = 0
+    with job.draft.table("arrivals.csv", _ARRIVALS_HEAD, {"episode": ["episode"]}) as write:
+        for place, row in table:
+            count += 1
+            name, of_group, words = (
+                table.text(row, names) for names in (episode, group, conditions)
+            )
+            episodes.setdefault(name, (name, of_group, words))
+            job.draft.begins(name, place)
+            both = np.stack([end.of(table, place, row) for end in ends]) - origin
+            places = [single(float(v)) for v in axes.vectors(both).ravel()]
+            t_s = in_s.one(table.number(place, row, time))
+            write([name, *places, table.text(row, [path]), repr(float(t_s))], place)
+    return count
 
 
 def _from_table(job: Job) -> Iterator[_Response]:

@@ -6,6 +6,8 @@
     reason = "a test stops at the first surprise, in its helpers too"
 )]
 
+pub(crate) mod shoebox;
+
 use std::fmt::Write as _;
 use std::path::Path;
 

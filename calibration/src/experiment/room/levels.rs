@@ -129,8 +129,14 @@ impl FilterRingingModel {
         }
     }
 
-    /// Levels of an echogram, dB, by band, then window, as [`measured_db`] has them.
-    pub(super) fn simulated_db(&self, echogram: &Echogram) -> Vec<f64> {
+    /// Levels of an echogram, dB, by band, then window, as [`measured_db`] has them, with all times `stretch` times as long, and
+    /// with `more_decay_per_m` (1/m, by band) on every way besides the air's.
+    pub(super) fn simulated_db(
+        &self,
+        echogram: &Echogram,
+        stretch: f64,
+        more_decay_per_m: &[f64; BAND_COUNT],
+    ) -> Vec<f64> {
         let direct_s = echogram.direct_length_m / echogram.speed_m_s;
         let mut arrivals: Vec<(f64, [f64; BAND_COUNT])> = echogram
             .paths
@@ -145,6 +151,17 @@ impl FilterRingingModel {
         let bin_s = echogram.tail.bin_s;
         let bins = echogram.tail.bins.iter().enumerate();
         arrivals.extend(bins.map(|(k, bin)| ((k as f64 + 0.5) * bin_s - direct_s, *bin)));
+        if more_decay_per_m.iter().any(|m| *m != 0.0) {
+            for (t_s, energy) in &mut arrivals {
+                let way_m = (*t_s + direct_s) * echogram.speed_m_s;
+                for (energy, m) in energy.iter_mut().zip(more_decay_per_m) {
+                    *energy *= libm::exp(-m * way_m);
+                }
+            }
+        }
+        for (t_s, _) in &mut arrivals {
+            *t_s *= stretch;
+        }
         let mut levels = Vec::new();
         for band in bands(self.rate_hz) {
             let mut energies = [0.0; WINDOWS];
@@ -214,7 +231,7 @@ mod tests {
         };
         let (a, b) = (
             measured_db(&response),
-            FilterRingingModel::new(rate_hz).simulated_db(&echogram),
+            FilterRingingModel::new(rate_hz).simulated_db(&echogram, 1.0, &[0.0; BAND_COUNT]),
         );
         assert_eq!(a.len(), bands(rate_hz).len() * WINDOWS);
         for band in 0..bands(rate_hz).len() {

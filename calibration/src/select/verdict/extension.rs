@@ -1,0 +1,85 @@
+//! More than one effect.
+
+use super::{ScoredModel, Search, best_trial};
+use crate::error::CalibrationError;
+use crate::experiment::ResidualStructure;
+
+/// The most effects of one model.
+const MOST_EFFECTS: usize = 4;
+/// Share of what is left that a further effect takes away, from which on it counts though the test of what is left is met.
+const SECOND_SHARE: f64 = 0.15;
+
+impl Search<'_> {
+    /// Adds effects as long as something systematic is left, and leaves out those that are not needed any more.
+    ///
+    /// Cells hide a second effect from the test of what is left: there an effect is added, too, that takes a fair part of what
+    /// is left.
+    pub(super) fn extend(
+        &self,
+        first: ScoredModel,
+        base: &ScoredModel,
+    ) -> Result<ScoredModel, CalibrationError> {
+        let by_cell = self.all.experiment.residual_structure() == ResidualStructure::ByCell;
+        let mut now = first;
+        while now.model.causes.len() < MOST_EFFECTS {
+            let is_structured = self.remainder(&now)?.is_structured();
+            if !is_structured && !by_cell {
+                break;
+            }
+            let least = if is_structured {
+                0.0
+            } else {
+                SECOND_SHARE * now.fit.loss
+            };
+            let (gains, short, by_chance) = self.shortlist(&now)?;
+            let most = gains.iter().map(|gain| gain.gain).fold(0.0, f64::max);
+            if most < least {
+                break;
+            }
+            let trials = self.trials(&now, &short, by_chance)?;
+            let larger = best_trial(&trials).filter(|l| now.fit.loss - l.fit.loss > least);
+            let Some(larger) = larger.cloned() else {
+                break;
+            };
+            now = self.without_idle(larger)?;
+            if by_cell {
+                now = self.exchanged(now, base)?;
+            }
+        }
+        Ok(now)
+    }
+
+    /// The model with the causes of which others, beside the rest, explain more exchanged for these: the first of a pair was
+    /// chosen without the second.
+    fn exchanged(
+        &self,
+        mut now: ScoredModel,
+        base: &ScoredModel,
+    ) -> Result<ScoredModel, CalibrationError> {
+        for k in 0..now.model.causes.len() {
+            let mut rest = now.model.causes.clone();
+            if rest.len() < 2 {
+                break;
+            }
+            let left_out = rest.remove(k);
+            let mut from = now.fit.point.clone();
+            self.reset(&mut from, left_out);
+            let without = self.fit(rest, &now.model, &from)?;
+            let (_, short, by_chance) = self.shortlist(&without)?;
+            let others: Vec<usize> = short
+                .into_iter()
+                .filter(|other| *other != left_out)
+                .collect();
+            let trials = self.trials(&without, &others, by_chance)?;
+            let worth = now.effective_weight();
+            let fall =
+                |scored: &ScoredModel| self.all.advantage_over(scored, base, worth).delta_bic;
+            if let Some(better) = best_trial(&trials)
+                && fall(better) > fall(&now) + self.all.options.rival_delta_bic
+            {
+                now = better.clone();
+            }
+        }
+        Ok(now)
+    }
+}
