@@ -22,6 +22,7 @@ mod odometry;
 mod poses;
 mod read;
 mod row;
+mod spins;
 mod unit_checks;
 mod wav;
 

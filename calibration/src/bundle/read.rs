@@ -5,7 +5,9 @@ use super::file::{
     BundleKind, CommandRow, EpisodeRow, ImpulseResponseRow, MeasurementDescription, TrajectoryRow,
 };
 use super::limits;
-use super::{Bundle, MeasuredEpisode, MeasuredResponse, MeasuredSample, odometry, poses, row, wav};
+use super::{
+    Bundle, MeasuredEpisode, MeasuredResponse, MeasuredSample, odometry, poses, row, spins, wav,
+};
 use crate::error::CalibrationError;
 use dwell_scene::file::{self, ReadError};
 use serde::de::DeserializeOwned;
@@ -61,6 +63,7 @@ pub(crate) fn read(folder: &Path) -> Result<Bundle, CalibrationError> {
         BundleKind::Drive => odometry::read(folder, &by_name, &mut bundle.episodes)?,
     }
     check::check_sufficient_data(&bundle)?;
+    spins::check_spins(&bundle.name, &bundle.manifest, &bundle.episodes)?;
     Ok(bundle)
 }
 

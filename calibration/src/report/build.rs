@@ -48,6 +48,7 @@ pub(crate) fn build(
         title: bundle.manifest.title.clone(),
         licence: bundle.manifest.licence.clone(),
         kind: bundle.kind(),
+        finished: findings.is_finished,
         sentence: verdict_sentence(&verdict, &candidates, experiment, findings),
         fitted_episodes: name(&findings.split.train),
         held_out_episodes: name(&findings.split.held_out),

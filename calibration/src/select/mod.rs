@@ -5,6 +5,7 @@ mod compare;
 mod gain;
 mod learnable;
 mod plausibility;
+mod reasons;
 mod residual;
 mod screen;
 mod split;
