@@ -110,7 +110,11 @@ pub fn calibrate_any(
             ..rollout::study::StudyOptions::default()
         };
         let models = rollout::study::models();
-        let report = rollout::study::run(&tracks, &models, peers, &settings, progress)?;
+        let mut going_on = |done: f32, what: &str| {
+            let goes_on = progress(done, what);
+            goes_on && !options.stop.is_raised()
+        };
+        let report = rollout::study::run(&tracks, &models, peers, &settings, &mut going_on)?;
         return Ok(CalibrationOutcome::ContactStudy(Box::new(report)));
     }
     let progress = CallbackProgress::until(progress, deadline);

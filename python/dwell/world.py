@@ -108,7 +108,10 @@ class World(ActionApi, GuideApi, PersonApi, SoundApi):
         further, self._heads = with_head(config)
         for head in self._heads:
             self.house.native.add_head(head.native)
-        settings = {"agents": bodies(agents), **world_settings(laws, parameters, further, randomize)}
+        settings = {
+            "agents": bodies(agents),
+            **world_settings(laws, parameters, further, randomize),
+        }
         self._config, self._seed = to_json(settings), integer_in_range("seed", seed)
         self._native = _native.World(self.house.native, self._config, self._seed)
         for agent in self.agents():

@@ -94,7 +94,10 @@ mod tests {
         assert_eq!(told(rad_s), "");
         assert_eq!(told(-rad_s), "");
         let degrees = told(rad_s * DEGREES);
-        assert!(degrees.contains("episode a") && degrees.contains("in deg/s? Import"), "{degrees}");
+        assert!(
+            degrees.contains("episode a") && degrees.contains("in deg/s? Import"),
+            "{degrees}"
+        );
         let rpm = told(-rad_s * RPM);
         assert!(rpm.contains("in deg/s or rpm?"), "{rpm}");
         assert!(told(1e6).contains("leave the episode out"));

@@ -10,6 +10,7 @@ mod flight;
 mod intervention;
 mod room;
 mod servo;
+mod windows;
 
 pub(crate) use air::{air_density_kg_m3, gravity_m_s2};
 pub(crate) use cause::{Cause, CauseBinding, FitParameter};
@@ -95,6 +96,11 @@ pub(crate) trait Experiment: Sync {
     fn episode_nuisances(&self) -> &[FitParameter];
     /// Returns the initial values of an episode's nuisances.
     fn initial_nuisances(&self, episode: usize) -> Vec<f64>;
+
+    /// What was done with the data before, in sentences.
+    fn notes(&self) -> Vec<String> {
+        Vec::new()
+    }
 
     /// Returns the predictions of [`EpisodeData::measured`].
     fn predict(

@@ -410,6 +410,7 @@ fn notes(bundle: &Bundle, experiment: &dyn Experiment, findings: &Findings) -> V
             format_list(&own)
         ));
     }
+    notes.extend(experiment.notes());
     match bundle.kind() {
         BundleKind::Trajectory => notes.push(
             "A time offset is no effect in free flight: a flight that starts earlier starts elsewhere.".to_owned(),

@@ -5,6 +5,7 @@ mod compare;
 mod gain;
 mod learnable;
 mod plausibility;
+mod quantum;
 mod reasons;
 mod residual;
 mod screen;

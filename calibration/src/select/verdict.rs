@@ -5,6 +5,7 @@ use super::compare::{CauseComparer, Estimate, ModelAdvantage, ScoredModel, estim
 use super::gain::HeldOutGain;
 use super::learnable::LearnableRemainder;
 use super::plausibility::implausible;
+use super::quantum::rounding_sd;
 use super::reasons::{
     disagreement_reason, names, rejection_reason, structure_reason, unfinished_reason,
 };
@@ -502,6 +503,7 @@ fn estimate_noise(
         progress,
     }
     .fit_on(&split.train, &CauseSet::default(), &start)?;
+    let rounding = rounding_sd(experiment);
     for channel in 0..experiment.channels().len() {
         if experiment.channels()[channel].noise_known {
             continue;
@@ -523,9 +525,12 @@ fn estimate_noise(
             let n = residuals.iter().map(Vec::len).sum::<usize>().max(1) as f64;
             (residuals.iter().flatten().map(|r| r * r).sum::<f64>() / n).sqrt()
         };
+        let least = rounding.get(&channel).copied();
         let sd = noise_from_differences(&slices)
-            .map_or_else(spread, |floor| floor.sd)
-            .max(1e-9);
+            .map(|floor| floor.sd)
+            .or(least)
+            .unwrap_or_else(spread)
+            .max(least.unwrap_or(1e-9));
         for measured in experiment.episodes_mut() {
             for (sd_here, channel_here) in measured.sd.iter_mut().zip(&measured.channel) {
                 if *channel_here == channel {

@@ -258,9 +258,8 @@ class MultiAgentSetup:
         Raises:
             ConfigError: The number or the task is wrong.
         """
-        names = ("sensors", "laws", "parameters", "randomize", "task_settings", "stride")
-        names += ("actions", "world")
-        own = {"agents": agents, "action_mode": "discrete", "max_cycles": OF_TASKS}
+        names = ("sensors", "laws", "parameters", "randomize", "task_settings", "stride", "actions")
+        own = {"agents": agents, "action_mode": "discrete", "max_cycles": OF_TASKS, "world": None}
         return cls.of(task, {**dict.fromkeys(names), **own, "voice": False, "muted": False})
 
     @classmethod

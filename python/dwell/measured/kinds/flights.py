@@ -119,7 +119,9 @@ def _write(job: Job) -> dict[str, Any]:
             values = episode.values
             if turned:
                 # Spins turn as vectors do: the axes are right-handed.
-                values = np.hstack([axes.vectors(part) for part in np.split(values, len(names) // 3, 1)])
+                values = np.hstack(
+                    [axes.vectors(part) for part in np.split(values, len(names) // 3, 1)]
+                )
             body = everyone["name"] if everyone is not None else body_of[episode.source]
             for k, stamp in enumerate(samples.stamps(episode)):
                 place = episode.place(k)
