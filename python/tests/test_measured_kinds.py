@@ -1,4 +1,4 @@
-"""Servos, spins and impulse responses: what is written against what was made, and what is refused."""
+"""Servos, spins and impulse responses: what is written and what was made, and what is refused."""
 
 from __future__ import annotations
 

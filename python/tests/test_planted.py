@@ -72,3 +72,72 @@ def put(rows: list[Row], name: str, values: Array) -> None:
 
 def candidates(report: dict[str, Any]) -> dict[str, dict[str, Any]]:
     return {row["id"]: row for row in report["candidates"]}
+
+
+def value(report: dict[str, Any], cause: str) -> tuple[float, list[float]]:
+    """The first parameter of a cause alone, and its interval."""
+    found = next(row for row in report["candidates"] if row["id"] == cause)["parameters"][0]
+    return found["value"], found["interval"]
+
+
+def test_drag_planted_on_real_drops_adds_to_the_drag_that_is_there(tmp_path: Path) -> None:
+    more = 0.3
+    bundle = brought(tmp_path, "ball_drops")
+    manifest = json.loads((bundle / "manifest.json").read_text())
+    bodies = {row["name"]: row for row in manifest["scene"]["bodies"]}
+
+    def plant(rows: list[Row]) -> None:
+        body = bodies[rows[0]["entity"]]
+        k = 1.2 * more * np.pi * body["radius_m"] ** 2 / (2.0 * body["mass_kg"])
+        t, y = column(rows, "t_s"), column(rows, "value")
+        # The measured path as a polynomial, its speed, and the lag d behind it: d'' = k u^2 with
+        # u the speed that is left, v - d'.
+        fine = np.linspace(t[0], t[-1], 2000)
+        path = np.polynomial.Polynomial.fit(t, y, 6)
+        speed = np.minimum(path.deriv()(fine), 0.0)
+        step, lag, rate = fine[1] - fine[0], np.zeros_like(fine), 0.0
+        for j in range(1, len(fine)):
+            rate += step * k * min(speed[j] + rate, 0.0) ** 2
+            lag[j] = lag[j - 1] + step * rate
+        put(rows, "value", y + np.interp(t, fine, lag))
+
+    before = calibrate(bundle)
+    after = calibrate(planted(bundle, "trajectory.csv", plant))
+    found = value(after, "drag")[0] - value(before, "drag")[0]
+    print(
+        "drag", value(before, "drag"), value(after, "drag"), before["sentence"], after["sentence"]
+    )
+    assert found == pytest.approx(more, rel=0.3)
+
+
+def test_a_delay_planted_on_real_drives_is_found(tmp_path: Path) -> None:
+    delay_s = 0.15
+    bundle = brought(tmp_path, "diffdrive_odometry")
+
+    def plant(rows: list[Row]) -> None:
+        t = column(rows, "t_s")
+        for name in ("x", "y", "heading"):
+            values = column(rows, name)
+            values = np.unwrap(values) if name == "heading" else values
+            put(rows, name, np.interp(t - delay_s, t, values))
+
+    before = calibrate(bundle)
+    after = calibrate(planted(bundle, "drive.csv", plant))
+    found = value(after, "tracker_delay")[0] - value(before, "tracker_delay")[0]
+    print("delay", value(before, "tracker_delay"), value(after, "tracker_delay"))
+    assert found == pytest.approx(delay_s, rel=0.2)
+
+
+def test_a_scale_planted_on_real_drives_is_found(tmp_path: Path) -> None:
+    scale = 1.03
+    bundle = brought(tmp_path, "diffdrive_odometry")
+
+    def plant(rows: list[Row]) -> None:
+        for name in ("x", "y"):
+            put(rows, name, scale * column(rows, name))
+
+    before = calibrate(bundle)
+    after = calibrate(planted(bundle, "drive.csv", plant))
+    found = value(after, "length_scale")[0] / value(before, "length_scale")[0]
+    print("scale", value(before, "length_scale"), value(after, "length_scale"))
+    assert found == pytest.approx(scale, abs=0.005)

@@ -108,10 +108,12 @@ def test_what_is_told_goes_before_what_was_found(shoebox: dwell.House) -> None:
     ],
 )
 def test_intervals_that_are_none_are_refused(
-    shoebox: dwell.House, randomize: Any, told: str  # noqa: ANN401 - what is refused
+    shoebox: dwell.House,
+    randomize: object,
+    told: str,
 ) -> None:
     with pytest.raises(dwell.DwellError, match=told):
-        dwell.World(shoebox, randomize=randomize)
+        dwell.World(shoebox, randomize=randomize)  # type: ignore[arg-type] # what is refused
 
 
 def test_a_file_of_intervals_is_named(shoebox: dwell.House, tmp_path: Path) -> None:
