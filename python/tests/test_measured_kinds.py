@@ -168,7 +168,7 @@ def test_spins_of_balls_turn_with_the_axes(tmp_path: Path) -> None:
     ("change", "told"),
     [
         # 150 turns a second in the units of others, read as rad/s.
-        (lambda m: m["table"]["units"].update(spin_y={"factor": 54000.0}), "in deg/s"),
+        (lambda m: m["table"]["units"].update(spin_y={"factor": 5400.0}), "in deg/s"),
         (lambda m: m["table"]["units"].update(spin_y={"factor": 900.0}), "in deg/s or rpm"),
         (lambda m: m["table"]["units"].update(spin_x="m/s"), "is of a speed, and the column"),
         (lambda m: m["table"]["channels"].pop("wx"), "wx, wy and wz all or none"),

@@ -2,7 +2,7 @@
 
 use super::experiment_world::{ExperimentObject, ExperimentWorld, hermite_interpolation};
 use super::flight::{channels, episode_data};
-use super::windows::{WINDOW_S, spread_evenly, windows_between_rests};
+use super::windows::{LONG_S, spread_evenly, windows_between_rests};
 use super::{
     Cause, ChannelInfo, EpisodeData, EpisodeParameters, Experiment, Fault, FitParameter,
     Intervention, ResidualStructure,
@@ -20,7 +20,7 @@ const CONTROLLER_CLOCK: &str = "controller";
 /// Largest offset between the two clocks, s.
 const MOST_OFFSET_S: f64 = 0.2;
 /// Longest time that is simulated of all runs together, s.
-const MOST_SIMULATED_S: f64 = 120.0;
+const MOST_SIMULATED_S: f64 = 60.0;
 
 /// A joint that is driven by a position servo.
 pub(crate) struct ServoExperiment {
@@ -183,7 +183,7 @@ impl Experiment for ServoExperiment {
         let (kept, all) = (self.episodes.len(), self.windows);
         let thinned = (kept < all).then(|| {
             format!(
-                "Runs longer than {WINDOW_S} s were cut where the joint rests; {kept} of {all} windows, spread evenly over \
+                "Runs longer than {LONG_S} s were cut where the joint rests; {kept} of {all} windows in which it moves, spread evenly over \
                  the runs, were simulated: {MOST_SIMULATED_S} s."
             )
         });

@@ -2,8 +2,10 @@
 
 use std::ops::Range;
 
-/// Duration above which a recording of a joint is cut, and of its windows where it rests often enough, s.
-pub(super) const WINDOW_S: f64 = 10.0;
+/// Duration above which a recording of a joint is cut, s.
+pub(super) const LONG_S: f64 = 10.0;
+/// Least duration of its windows, s.
+const WINDOW_S: f64 = 3.0;
 /// Time for which a joint rests where a window may begin, s.
 const REST_S: f64 = 0.25;
 /// Share of the range of an episode's positions within which a joint rests.
@@ -12,7 +14,8 @@ const REST_SHARE: f64 = 0.02;
 const FEWEST: usize = 12;
 
 /// The windows of a recording whose samples stand at rising times `t_s`: each begins where the joint has rested for a while under one
-/// command, so that nothing before it matters, and lasts until it rests again [`WINDOW_S`] later. Shorter recordings are one window.
+/// command, so that nothing before it matters, and lasts until it rests again at least [`WINDOW_S`] later. Windows in which nothing is
+/// told and nothing moves are left out. Shorter recordings are one window.
 pub(super) fn windows_between_rests(
     t_s: &[f64],
     position: &[f64],
@@ -23,7 +26,7 @@ pub(super) fn windows_between_rests(
         let fold = |f: fn(f64, f64) -> f64, from: f64| values.iter().copied().fold(from, f);
         fold(f64::max, f64::NEG_INFINITY) - fold(f64::min, f64::INFINITY)
     };
-    if t_s.len() < 2 * FEWEST || span(t_s) <= WINDOW_S {
+    if t_s.len() < 2 * FEWEST || span(t_s) <= LONG_S {
         return vec![all];
     }
     let still = REST_SHARE * span(position);
@@ -43,7 +46,13 @@ pub(super) fn windows_between_rests(
         }
     }
     found.push(start..t_s.len());
-    found
+    let moves = |rows: &Range<usize>| {
+        let (from, to) = (t_s[rows.start], t_s[rows.end - 1]);
+        let told = command_times_s.iter().any(|t| *t > from && *t <= to);
+        told || span(&position[rows.clone()]) > still
+    };
+    found.retain(moves);
+    if found.is_empty() { vec![all] } else { found }
 }
 
 /// Positions of the windows that are simulated, spread evenly: all of them, or as many as last `most_s` together.
@@ -72,13 +81,23 @@ mod tests {
             .collect();
         let commands: Vec<f64> = (0..10).map(|k| f64::from(k) * 4.0).collect();
         let found = windows_between_rests(&t_s, &position, &commands);
-        assert!(found.len() >= 3, "{found:?}");
+        assert!(found.len() >= 8, "{found:?}");
         assert_eq!((found[0].start, found[found.len() - 1].end), (0, 400));
         for pair in found.windows(2) {
             assert_eq!(pair[0].end, pair[1].start);
             let since = t_s[pair[1].start] % 4.0;
             assert!(since > 0.7, "{since}");
         }
+        // A rest of a minute is left out.
+        let still: Vec<f64> = (0..600).map(|k| 20.0 + f64::from(k) * 0.1).collect();
+        let (mut long_t, mut long) = (t_s[..200].to_vec(), position[..200].to_vec());
+        long_t.extend(&still);
+        long.extend(vec![position[199]; still.len()]);
+        let found = windows_between_rests(&long_t, &long, &commands[..5]);
+        assert!(
+            found.iter().all(|rows| long_t[rows.start] < 20.0),
+            "{found:?}"
+        );
         // Shorter ones stay whole, and what never rests does.
         assert_eq!(
             windows_between_rests(&t_s[..90], &position[..90], &commands),
