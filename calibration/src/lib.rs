@@ -27,6 +27,7 @@ mod select;
 
 pub use error::CalibrationError;
 pub use options::Options;
+pub use progress::StopSignal;
 pub use report::{
     CalibrationReport, CalibrationVerdict, CandidateCause, FittedParameter, FoundEffects,
     NamedEffect, NuisanceParameter, Provenance, ResidualPlot,
@@ -37,7 +38,7 @@ pub use select::{
 
 use bundle::file::BundleKind;
 use experiment::{BallExperiment, DriveExperiment, Experiment, RoomExperiment, ServoExperiment};
-use progress::{CallbackProgress, ProgressReporter as _};
+use progress::{CallbackProgress, Deadline, ProgressReporter as _};
 use std::path::Path;
 
 /// Compares the measured bundle in the folder `path` with its simulation and reports what the simulation lacks.
@@ -56,7 +57,8 @@ pub fn calibrate(
     progress: &mut dyn FnMut(f32, &str) -> bool,
 ) -> Result<CalibrationReport, CalibrationError> {
     options.check()?;
-    let progress = CallbackProgress::new(progress);
+    let deadline = Deadline::after(options.budget_s, &options.stop);
+    let progress = CallbackProgress::until(progress, deadline);
     progress.stage(0.0, "reading the measured data")?;
     find_missing_causes(&bundle::read(path)?, options, &progress)
 }
@@ -92,8 +94,14 @@ pub fn calibrate_any(
     progress: &mut dyn FnMut(f32, &str) -> bool,
 ) -> Result<CalibrationOutcome, CalibrationError> {
     options.check()?;
+    let deadline = Deadline::after(options.budget_s, &options.stop);
     let bundle = bundle::read(path)?;
     if bundle.kind() == BundleKind::PoseTrajectory {
+        if let Some(budget_s) = options.budget_s {
+            let allowed = "none: a study of roll-outs has no verdict before its end";
+            let at = bundle.name.clone();
+            return Err(CalibrationError::field(at, "budget_s", budget_s, allowed));
+        }
         let tracks = rollout::PoseTracks::from_bundle(&bundle)?;
         let settings = rollout::study::StudyOptions {
             seed: options.seed,
@@ -102,10 +110,15 @@ pub fn calibrate_any(
             ..rollout::study::StudyOptions::default()
         };
         let models = rollout::study::models();
-        let report = rollout::study::run(&tracks, &models, peers, &settings, progress)?;
+        let mut going_on = |done: f32, what: &str| {
+            let goes_on = progress(done, what);
+            goes_on && !options.stop.is_raised()
+        };
+        let report = rollout::study::run(&tracks, &models, peers, &settings, &mut going_on)?;
         return Ok(CalibrationOutcome::ContactStudy(Box::new(report)));
     }
-    let report = find_missing_causes(&bundle, options, &CallbackProgress::new(progress))?;
+    let progress = CallbackProgress::until(progress, deadline);
+    let report = find_missing_causes(&bundle, options, &progress)?;
     Ok(CalibrationOutcome::Causes(Box::new(report)))
 }
 

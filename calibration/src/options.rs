@@ -1,6 +1,7 @@
 //! Options of calibration.
 
 use crate::error::CalibrationError;
+use crate::progress::StopSignal;
 use serde::{Deserialize, Serialize};
 
 /// Settings of [`calibrate`](crate::calibrate). Every field has a default; unknown fields are refused.
@@ -29,6 +30,12 @@ pub struct Options {
     pub physics_rate_hz: f64,
     /// Sound rays per impulse response in the simulation experiment; 100 to 100,000, default 2,500.
     pub rays: usize,
+    /// Time after which the search ends with what it has, s, 0 to 10,000,000; default `null`, no limit. A search that it ends names
+    /// nothing, and what it has tried by then depends on the machine.
+    pub budget_s: Option<f64>,
+    /// Ends the search as `budget_s` does, once it is raised.
+    #[serde(skip)]
+    pub stop: StopSignal,
 }
 
 impl Default for Options {
@@ -45,6 +52,8 @@ impl Default for Options {
             robust: true,
             physics_rate_hz: 240.0,
             rays: 2_500,
+            budget_s: None,
+            stop: StopSignal::default(),
         }
     }
 }
@@ -73,6 +82,9 @@ impl Options {
         range("rival_delta_bic", self.rival_delta_bic, 0.0, 100.0)?;
         range("min_gain_share", self.min_gain_share, 0.0, 1.0)?;
         range("bootstrap_draws", self.bootstrap_draws as f64, 100.0, 1e5)?;
+        if let Some(budget_s) = self.budget_s {
+            range("budget_s", budget_s, 0.0, 1e7)?;
+        }
         range("physics_rate_hz", self.physics_rate_hz, 60.0, 1000.0)?;
         range("rays", self.rays as f64, 100.0, 1e5)
     }

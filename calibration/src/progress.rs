@@ -2,6 +2,54 @@
 
 use crate::error::CalibrationError;
 use std::cell::RefCell;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// Ends a search early, from another thread or from within its progress callback. Copies share the signal.
+#[derive(Clone, Debug, Default)]
+pub struct StopSignal(Arc<AtomicBool>);
+
+impl StopSignal {
+    /// Asks the search to end with what it has.
+    pub fn raise(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    /// Returns whether it was raised.
+    pub fn is_raised(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+impl PartialEq for StopSignal {
+    fn eq(&self, other: &Self) -> bool {
+        self.is_raised() == other.is_raised()
+    }
+}
+
+/// When a search ends at the latest.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Deadline {
+    end: Option<Instant>,
+    stop: StopSignal,
+}
+
+impl Deadline {
+    /// So many seconds from now, or when the signal is raised.
+    pub(crate) fn after(budget_s: Option<f64>, stop: &StopSignal) -> Self {
+        let budget = budget_s.map(Duration::from_secs_f64);
+        Self {
+            end: budget.and_then(|budget| Instant::now().checked_add(budget)),
+            stop: stop.clone(),
+        }
+    }
+
+    /// Returns whether it is over.
+    pub(crate) fn is_over(&self) -> bool {
+        self.stop.is_raised() || self.end.is_some_and(|end| Instant::now() >= end)
+    }
+}
 
 /// Takes a fraction and a sentence, and answers whether to go on.
 type ProgressCallback<'a> = &'a mut dyn FnMut(f32, &str) -> bool;
@@ -19,17 +67,26 @@ pub(crate) trait ProgressReporter {
     /// # Errors
     /// [`CalibrationError::Interrupted`] when the caller wants to stop.
     fn check(&self) -> Result<(), CalibrationError>;
+
+    /// When the work ends with what it has.
+    fn deadline(&self) -> &Deadline;
 }
 
 /// A reporter that calls back the caller.
 pub(crate) struct CallbackProgress<'a> {
     now: RefCell<(ProgressCallback<'a>, f32, String)>,
+    deadline: Deadline,
 }
 
 impl<'a> CallbackProgress<'a> {
     pub(crate) fn new(listener: ProgressCallback<'a>) -> Self {
+        Self::until(listener, Deadline::default())
+    }
+
+    pub(crate) fn until(listener: ProgressCallback<'a>, deadline: Deadline) -> Self {
         Self {
             now: RefCell::new((listener, 0.0, String::new())),
+            deadline,
         }
     }
 }
@@ -51,5 +108,9 @@ impl ProgressReporter for CallbackProgress<'_> {
         } else {
             Err(CalibrationError::Interrupted)
         }
+    }
+
+    fn deadline(&self) -> &Deadline {
+        &self.deadline
     }
 }

@@ -32,7 +32,7 @@ _TYPED_DICTS = (
     ("GeneratorSettings", "HouseSpec", "What :meth:`dwell.House.generate` may be told."),
 )
 #: What the package has as arguments of their own.
-_OWN = {"WorldSettings": ("agents", "laws", "parameters")}
+_OWN = {"WorldSettings": ("agents", "laws", "parameters", "randomize")}
 #: What the package takes in other forms than the engine.
 _ANNOTATIONS = {
     ("WorldSettings", "sound_head"): "Head | str | os.PathLike[str] | None",

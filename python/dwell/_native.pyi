@@ -480,6 +480,7 @@ def calibrate(
     house: str | None = ...,
     progress: Any | None = ...,
     peers: Sequence[str] = ...,
+    budget_s: float | None = ...,
 ) -> str:
     """Reads a measured bundle and answers the report as one JSON object."""
 

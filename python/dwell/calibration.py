@@ -11,6 +11,7 @@ from typing import Any
 from dwell import ConfigError, _native
 from dwell.arguments import (
     file_path,
+    finite_number,
     integer_in_range,
     openable_file,
     quoted,
@@ -28,22 +29,25 @@ def calibrate(
     measured: str | os.PathLike[str],
     *,
     house: str | None = None,
-    progress: Callable[[float, str], None] | None = None,
+    progress: Callable[[float, str], bool | None] | None = None,
     peers: Sequence[str | os.PathLike[str]] = (),
+    budget_s: float | None = None,
 ) -> dict[str, Any]:
     """Compares a measured bundle with its simulation and names what is missing.
 
     Args:
         measured: The folder ``NAME.measured``.
         house: The house it was measured in, if the bundle does not say.
-        progress: Called with a fraction (0 to 1) and a sentence.
+        progress: Called with a fraction (0 to 1) and a sentence; ``False`` ends the search with
+            what it has.
         peers: Tables of another simulator's scores (``episode, position_widths, rotation_deg,
             e_q``), compared episode by episode; for pose trajectories.
+        budget_s: Time after which the search ends with what it has, s; not for pose trajectories.
 
     Returns:
         The report: residuals, candidates, verdict, gain on held-out episodes; of pose trajectories
         (``kind``) the errors of roll-outs by model, horizon and regime, out of fold. ``html`` is a
-        page.
+        page. A search that was ended early says ``"finished": False`` and names nothing.
 
     Raises:
         MeasuredDataError: The bundle or a table cannot be used; the message names file, line and
@@ -55,7 +59,8 @@ def calibrate(
     if progress is not None and not callable(progress):
         raise ConfigError(f"progress is {quoted(progress)}; expected a function or None")
     named = None if house is None else text("house", house)
-    told = _native.calibrate(file_path("measured", measured), named, progress, names)
+    budget = None if budget_s is None else finite_number("budget_s", budget_s)
+    told = _native.calibrate(file_path("measured", measured), named, progress, names, budget)
     report: dict[str, Any] = json.loads(told)
     return report
 

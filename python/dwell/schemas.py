@@ -37,6 +37,7 @@ _WITHOUT_CHECK = {
     "laws",
     "locomotion",
     "parameters",
+    "randomize",
     "sound_head",
     "sound_root",
 }

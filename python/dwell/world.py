@@ -35,7 +35,7 @@ from dwell.navigation import Navigation, Walker, walker_settings
 from dwell.outside_rooms import warn_outside_rooms
 from dwell.person_api import PersonApi
 from dwell.sound_api import SoundApi
-from dwell.world_settings import Laws, with_head, world_settings
+from dwell.world_settings import Laws, Randomize, with_head, world_settings
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -66,6 +66,7 @@ class World(ActionApi, GuideApi, PersonApi, SoundApi):
         seed: int = 0,
         laws: Laws = None,
         parameters: Mapping[str, float] | None = None,
+        randomize: Randomize = None,
         **config: Unpack[WorldSettings],
     ) -> None:
         """Makes a world.
@@ -92,6 +93,9 @@ class World(ActionApi, GuideApi, PersonApi, SoundApi):
                 ``None`` and what is empty install none.
             parameters: Values by address, such as ``{"world/gravity_m_s2": 1.62}``; they go before
                 those that calibration found.
+            randomize: Intervals from which ``seed`` draws, evenly: ``{address: [low, high]}``; or
+                what calibration found, as a mapping or as the path of its ``found.json``, which is
+                installed, too.
             **config: ``control_rate_hz``, ``physics_rate_hz``, ``sound_rate_hz``, ``sound_preset``,
                 ``sound_root`` (the folder below which sound files are), ``sound_head`` (a
                 :class:`dwell.Head` or the path of its SOFA file: on it are all ears), ``settle_s``
@@ -104,7 +108,10 @@ class World(ActionApi, GuideApi, PersonApi, SoundApi):
         further, self._heads = with_head(config)
         for head in self._heads:
             self.house.native.add_head(head.native)
-        settings = {"agents": bodies(agents), **world_settings(laws, parameters, further)}
+        settings = {
+            "agents": bodies(agents),
+            **world_settings(laws, parameters, further, randomize),
+        }
         self._config, self._seed = to_json(settings), integer_in_range("seed", seed)
         self._native = _native.World(self.house.native, self._config, self._seed)
         for agent in self.agents():

@@ -28,6 +28,10 @@ from dwell.heads import Head, head_of
 #: (laws and parameters), as a mapping or by path.
 Laws = str | os.PathLike[str] | Mapping[str, Any] | Sequence[str | Mapping[str, Any]] | None
 
+#: Intervals from which each episode draws: what calibration found, as a mapping or by path, or
+#: ``[low, high]`` by address.
+Randomize = str | os.PathLike[str] | Mapping[str, Any] | None
+
 _FOUND = {"laws", "parameters"}
 #: What calibration says of it besides, for readers.
 _FOUND_ABOUT = {"intervals", "provenance"}
@@ -100,6 +104,43 @@ def found(laws: Laws) -> tuple[list[dict[str, Any]], dict[str, float]]:
         raise ConfigError(f"{at}: found {len(laws)} laws; allowed are at most {_MAX_LAWS}")
     rows = [_row(f"{at}[{k}]", law) for k, law in enumerate(laws)]
     return rows, _values("parameters", parameters)
+
+
+def intervals(randomize: Randomize) -> tuple[Laws, dict[str, list[float]]]:
+    """What is installed beside what is drawn, and the intervals by address.
+
+    Raises:
+        ConfigError: It is neither what calibration found nor intervals by address.
+        OSError: It is the path of a file that the system refuses to read.
+    """
+    if randomize is None:
+        return None, {}
+    at = "randomize"
+    if isinstance(randomize, str | os.PathLike):
+        at = f"randomize: {os.fspath(randomize)}"
+        try:
+            randomize = read_json(randomize)
+        except ValueError as error:
+            raise ConfigError(f"randomize: {error}") from error
+    given = mapping(at, randomize, "what calibration found, or [low, high] by address")
+    fixed: Laws = None
+    if (_FOUND | _FOUND_ABOUT) & set(given):
+        if unknown := sorted(set(given) - _FOUND - _FOUND_ABOUT):
+            allowed = sorted(_FOUND | _FOUND_ABOUT)
+            raise ConfigError(f"{at}: no field {unknown[0]!r}; allowed are {allowed}")
+        fixed = {name: given[name] for name in sorted(_FOUND & set(given))}
+        given = mapping(f"{at}: intervals", given.get("intervals", {}), "[low, high] by address")
+    rows = {address: _interval(f"{at}: {address}", ends) for address, ends in given.items()}
+    return fixed, rows
+
+
+def _interval(at: str, ends: object) -> list[float]:
+    """The two ends of an interval."""
+    if isinstance(ends, Sequence) and not isinstance(ends, str | bytes) and len(ends) == 2:
+        low, high = (finite_number(at, end) for end in ends)
+        if low <= high:
+            return [low, high]
+    raise ConfigError(f"{at} is {quoted(ends)}; expected [low, high] with low <= high")
 
 
 def _row(at: str, given: str | Mapping[str, Any]) -> dict[str, Any]:
@@ -183,15 +224,20 @@ def with_head(
 
 
 def world_settings(
-    laws: Laws, parameters: Mapping[str, float] | None, further: Mapping[str, Any] | None
+    laws: Laws,
+    parameters: Mapping[str, float] | None,
+    further: Mapping[str, Any] | None,
+    randomize: Randomize = None,
 ) -> dict[str, Any]:
     """The native WorldConfig. ``parameters`` take precedence over those beside the laws.
+
+    What calibration found is installed with ``randomize``, too, where ``laws`` do not say else.
 
     Raises:
         ConfigError: ``further`` names what has an argument of its own.
     """
     further = {} if further is None else mapping("world", further)
-    for name in sorted(_FOUND & set(further)):
+    for name in sorted({*_FOUND, "randomize"} & set(further)):
         raise ConfigError(f"world: holds {name!r}; give it as the argument {name}= instead")
     further = checked("WorldConfig", further)
     if "agents" in further:
@@ -203,7 +249,14 @@ def world_settings(
     if further.get("sound_root") is not None:
         further = {**further, "sound_root": path("sound_root", further["sound_root"])}
     rows, values = found(laws)
+    fixed, drawn = intervals(randomize)
+    found_rows, found_values = found(fixed)
+    said = {(row["id"], row.get("target")) for row in rows}
+    rows += [row for row in found_rows if (row["id"], row.get("target")) not in said]
+    values = {**found_values, **values}
     if (renderer := os.environ.get("DWELL_RENDERER")) and "renderer" not in further:
         further = {**further, "renderer": renderer}
     own = {} if parameters is None else _values("parameters", parameters)
-    return {"laws": rows, "parameters": {**values, **own}, **further}
+    # What is usual is not stated: files say it as they always did.
+    more = {"randomize": drawn} if drawn else {}
+    return {"laws": rows, "parameters": {**values, **own}, **more, **further}

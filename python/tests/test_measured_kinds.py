@@ -1,4 +1,4 @@
-"""Servos and impulse responses: what is written against what was made, and what is refused."""
+"""Servos, spins and impulse responses: what is written and what was made, and what is refused."""
 
 from __future__ import annotations
 
@@ -111,6 +111,76 @@ def test_commands_may_stand_in_a_table_of_their_own(tmp_path: Path) -> None:
     commands = rows_of(tmp_path, "command.csv")
     assert len(commands) == 8
     assert float(commands[1]["value"]) == pytest.approx(math.pi / 2)
+
+
+def test_targets_beside_positions_have_their_clock(tmp_path: Path) -> None:
+    log(tmp_path)
+    brought(tmp_path, SERVO, "log.csv")
+    manifest = json.loads((tmp_path / "o.measured" / "manifest.json").read_text())
+    assert manifest["command_clock"] == manifest["channels"][0]["clock"] == "encoder"
+
+
+def spun(folder: Path, *, lost: bool = False) -> None:
+    """Four throws, z up, of a ball that spins about the user's y and z, in turns a second."""
+    rows = ["throw,t,x,y,z,spin_x,spin_y,spin_z"]
+    for throw in range(4):
+        for k in range(30):
+            t = k / 60
+            z = 1.5 + (2 + throw) * t - 4.905 * t * t
+            spins = ",," if lost and k % 3 else f"0,{10 + throw},-2"
+            rows.append(f"{throw},{t},{3 * t},0,{z},{spins}")
+    (folder / "throws.csv").write_text("\n".join(rows) + "\n")
+
+
+def spins(unit: str) -> dict[str, Any]:
+    columns = {f"w{axis}": f"spin_{axis}" for axis in "xyz"}
+    return {
+        "kind": "trajectory",
+        "axes": "z_up",
+        "body": {"name": "ball", "mass_kg": 0.0027, "radius_m": 0.02},
+        "noise_sd": {"wy": 0.5},
+        "table": {
+            "file": "throws.csv",
+            "episode": "throw",
+            "t_s": "t",
+            "channels": {axis: axis for axis in "xyz"} | columns,
+            "units": dict.fromkeys(columns.values(), unit),
+        },
+    }
+
+
+def test_spins_of_balls_turn_with_the_axes(tmp_path: Path) -> None:
+    spun(tmp_path, lost=True)
+    assert brought(tmp_path, spins("turn/s"), "throws.csv")["rows"] == 120
+    rows = [row for row in rows_of(tmp_path, "trajectory.csv") if row["episode"] == "1"]
+    first = {row["channel"]: float(row["value"]) for row in reversed(rows)}
+    # The engine's y is the user's z, its z the user's -y.
+    wanted = {"wx": 0.0, "wy": -2 * 2 * math.pi, "wz": -11 * 2 * math.pi}
+    assert {name: first[name] for name in wanted} == pytest.approx(wanted)
+    counts = {name: sum(row["channel"] == name for row in rows) for name in ("y", "wy")}
+    assert counts == {"y": 30, "wy": 10}
+    manifest = json.loads((tmp_path / "o.measured" / "manifest.json").read_text())
+    units = {row["name"]: (row["unit"], row["noise_sd"]) for row in manifest["channels"]}
+    assert (units["x"], units["wy"]) == (("m", None), ("rad/s", 0.5))
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        # 150 turns a second in the units of others, read as rad/s.
+        (lambda m: m["table"]["units"].update(spin_y={"factor": 5400.0}), "in deg/s"),
+        (lambda m: m["table"]["units"].update(spin_y={"factor": 900.0}), "in deg/s or rpm"),
+        (lambda m: m["table"]["units"].update(spin_x="m/s"), "is of a speed, and the column"),
+        (lambda m: m["table"]["channels"].pop("wx"), "wx, wy and wz all or none"),
+        (lambda m: m["table"].update(channels={"wx": "spin_x"}), "x, y and z are there"),
+    ],
+)
+def test_slips_of_spins_are_told(tmp_path: Path, change: Any, told: str) -> None:  # noqa: ANN401
+    spun(tmp_path)
+    mapping = spins("turn/s")
+    change(mapping)
+    with pytest.raises(ValueError, match=told):
+        brought(tmp_path, mapping, "throws.csv")
 
 
 @pytest.mark.parametrize(

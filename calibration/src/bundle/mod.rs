@@ -24,6 +24,7 @@ mod odometry;
 mod poses;
 mod read;
 mod row;
+mod spins;
 mod sufficiency;
 mod unit_checks;
 mod wav;

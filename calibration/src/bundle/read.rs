@@ -7,7 +7,8 @@ use super::file::{
 use super::limits;
 use super::sufficiency;
 use super::{
-    Bundle, MeasuredEpisode, MeasuredResponse, MeasuredSample, arrivals, odometry, poses, row, wav,
+    Bundle, MeasuredEpisode, MeasuredResponse, MeasuredSample, arrivals, odometry, poses, row,
+    spins, wav,
 };
 use crate::error::CalibrationError;
 use dwell_scene::file::{self, ReadError};
@@ -69,6 +70,7 @@ pub(crate) fn read(folder: &Path) -> Result<Bundle, CalibrationError> {
         BundleKind::Drive => odometry::read(folder, &by_name, &mut bundle.episodes)?,
     }
     sufficiency::check_sufficient_data(&bundle)?;
+    spins::check_spins(&bundle.name, &bundle.manifest, &bundle.episodes)?;
     Ok(bundle)
 }
 

@@ -10,6 +10,7 @@ mod intervention;
 mod room;
 mod servo;
 mod tables;
+mod windows;
 
 pub(crate) use air::{air_density_kg_m3, gravity_m_s2};
 pub(crate) use ball::BallExperiment;
@@ -116,6 +117,11 @@ pub(crate) trait Experiment: Sync {
     }
     /// Returns the initial values of an episode's nuisances.
     fn initial_nuisances(&self, episode: usize) -> Vec<f64>;
+
+    /// What was done with the data before, in sentences.
+    fn notes(&self) -> Vec<String> {
+        Vec::new()
+    }
 
     /// Returns the predictions of [`EpisodeData::measured`].
     fn predict(

@@ -1,7 +1,8 @@
-//! A servo: each episode is a run of commands through the engine's own joint.
+//! A servo: each episode is a run of commands through the engine's own joint. Long runs are cut where the joint rests.
 
 use super::experiment_world::{ExperimentObject, ExperimentWorld, hermite_interpolation};
 use super::tables::{channels, episode_data};
+use super::windows::{LONG_S, spread_evenly, windows_between_rests};
 use super::{
     Cause, ChannelInfo, EpisodeData, EpisodeParameters, Experiment, Fault, FitParameter,
     Intervention, ResidualStructure,
@@ -18,6 +19,8 @@ const ROOM_M: f32 = 4.0;
 const CONTROLLER_CLOCK: &str = "controller";
 /// Largest offset between the two clocks, s.
 const MOST_OFFSET_S: f64 = 0.2;
+/// Longest time that is simulated of all runs together, s.
+const MOST_SIMULATED_S: f64 = 60.0;
 
 /// A joint that is driven by a position servo.
 pub(crate) struct ServoExperiment {
@@ -26,8 +29,10 @@ pub(crate) struct ServoExperiment {
     causes: Vec<Cause>,
     shared: Vec<FitParameter>,
     own: Vec<FitParameter>,
-    /// (time from the episode's first sample, target) of each episode, by time.
+    /// (time from the episode's first sample, target) of each episode, by time; the first is the one that was in force.
     commands: Vec<Vec<(f64, f64)>>,
+    /// Windows of which `episodes` are an even choice.
+    windows: usize,
     stage: ExperimentWorld,
     rate_hz: f64,
 }
@@ -50,32 +55,27 @@ impl ServoExperiment {
             sleeping: false,
             ..PhysicsConfig::default()
         };
-        let commands = bundle
+        let runs: Vec<(EpisodeData, Vec<(f64, f64)>)> = bundle
             .episodes
             .iter()
-            .map(|episode| {
-                let first = episode
-                    .samples
-                    .iter()
-                    .map(|s| s.t_s)
-                    .fold(f64::INFINITY, f64::min);
-                episode
-                    .commands
-                    .iter()
-                    .map(|command| (command.t_s - first, command.value))
-                    .collect()
-            })
+            .flat_map(|run| windows(bundle, run))
             .collect();
+        let durations: Vec<f64> = runs.iter().map(|(run, _)| duration_s(run)).collect();
+        let count = runs.len();
+        let kept = spread_evenly(&durations, MOST_SIMULATED_S);
+        let (episodes, commands) = runs
+            .into_iter()
+            .enumerate()
+            .filter(|(k, _)| kept.binary_search(k).is_ok())
+            .map(|(_, run)| run)
+            .unzip();
         let one_clock = bundle.manifest.channels.iter().all(|channel| {
             let commands = bundle.manifest.command_clock.as_deref();
             commands.unwrap_or(CONTROLLER_CLOCK) == channel.clock
         });
         Ok(Self {
-            episodes: bundle
-                .episodes
-                .iter()
-                .map(|episode| episode_data(bundle, episode))
-                .collect(),
+            episodes,
+            windows: count,
             channels: channels(bundle),
             causes: causes(&joint.name),
             shared: if one_clock {
@@ -90,6 +90,51 @@ impl ServoExperiment {
             commands,
         })
     }
+}
+
+/// The time from an episode's first sample to its last, s.
+fn duration_s(episode: &EpisodeData) -> f64 {
+    episode.t_s.iter().copied().fold(0.0, f64::max)
+}
+
+/// The windows of a run, each with its commands.
+fn windows(
+    bundle: &Bundle,
+    run: &crate::bundle::MeasuredEpisode,
+) -> Vec<(EpisodeData, Vec<(f64, f64)>)> {
+    let whole = episode_data(bundle, run);
+    let first = run
+        .samples
+        .iter()
+        .map(|s| s.t_s)
+        .fold(f64::INFINITY, f64::min);
+    let commands: Vec<(f64, f64)> = run
+        .commands
+        .iter()
+        .map(|command| (command.t_s - first, command.value))
+        .collect();
+    let times: Vec<f64> = commands.iter().map(|(t, _)| *t).collect();
+    let found = windows_between_rests(&whole.t_s, &whole.measured, &times);
+    if found.len() == 1 {
+        return vec![(whole, commands)];
+    }
+    let window = |rows: std::ops::Range<usize>| {
+        let (start, last) = (whole.t_s[rows.start], whole.t_s[rows.end - 1]);
+        let data = EpisodeData {
+            name: format!("{} from {start:.1} s", whole.name),
+            group: whole.group.clone(),
+            measured: whole.measured[rows.clone()].to_vec(),
+            channel: whole.channel[rows.clone()].to_vec(),
+            t_s: whole.t_s[rows.clone()].iter().map(|t| t - start).collect(),
+            sd: whole.sd[rows].to_vec(),
+        };
+        // The command in force comes first.
+        let from = times.partition_point(|t| *t <= start).saturating_sub(1);
+        let own = commands[from..].iter();
+        let own = own.take_while(|(t, _)| *t <= last + MOST_OFFSET_S);
+        (data, own.map(|(t, value)| (t - start, *value)).collect())
+    };
+    found.into_iter().map(window).collect()
 }
 
 /// What can act on a driven joint: laws of joints, its friction and damping, and the scale of commands.
@@ -134,6 +179,17 @@ impl Experiment for ServoExperiment {
         vec![self.episodes[episode].measured[0]]
     }
 
+    fn notes(&self) -> Vec<String> {
+        let (kept, all) = (self.episodes.len(), self.windows);
+        let thinned = (kept < all).then(|| {
+            format!(
+                "Runs longer than {LONG_S} s were cut where the joint rests; {kept} of {all} windows in which it moves, spread evenly over \
+                 the runs, were simulated: {MOST_SIMULATED_S} s."
+            )
+        });
+        thinned.into_iter().collect()
+    }
+
     fn predict(
         &self,
         episode: usize,
@@ -150,7 +206,7 @@ impl Experiment for ServoExperiment {
         let mut stage = start.with_laws_and_overrides(intervention.laws, &[])?;
         let commands = &self.commands[episode];
         let step_s = 1.0 / self.rate_hz;
-        let duration = measured.t_s.iter().copied().fold(0.0, f64::max) + MOST_OFFSET_S;
+        let duration = duration_s(measured) + MOST_OFFSET_S;
         let steps = (duration * self.rate_hz).ceil() as usize + 1;
         let mut track = Vec::with_capacity(steps + 1);
         track.push((at.episode_nuisances[0], 0.0));

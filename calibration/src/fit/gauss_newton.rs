@@ -139,6 +139,9 @@ impl FitTask<'_> {
         let count = now.residuals.iter().map(Vec::len).sum::<usize>().max(1) as f64;
         for _ in 0..most {
             self.progress.check()?;
+            if self.progress.deadline().is_over() {
+                break;
+            }
             let (before, least) = (value, TOLERANCE * value / count);
             for _ in 0..MOST_DAMPINGS {
                 let step = normal::step(&blocks, damping);

@@ -48,6 +48,7 @@ pub(crate) fn build(
         title: bundle.manifest.title.clone(),
         licence: bundle.manifest.licence.clone(),
         kind: bundle.kind(),
+        finished: findings.is_finished,
         sentence: verdict_sentence(&verdict, &candidates, experiment, findings),
         fitted_episodes: name(&findings.split.train),
         held_out_episodes: name(&findings.split.held_out),
@@ -409,6 +410,7 @@ fn notes(bundle: &Bundle, experiment: &dyn Experiment, findings: &Findings) -> V
             format_list(&own)
         ));
     }
+    notes.extend(experiment.notes());
     match bundle.kind() {
         BundleKind::Trajectory => notes.push(
             "A time offset is no effect in free flight: a flight that starts earlier starts elsewhere.".to_owned(),

@@ -168,6 +168,8 @@ pub struct CalibrationReport {
     pub verdict: CalibrationVerdict,
     /// The verdict as a sentence.
     pub sentence: String,
+    /// False where the search was ended before it had compared all causes: nothing is named then.
+    pub finished: bool,
     /// Episodes that were fitted, and episodes that were held out from all fitting.
     pub fitted_episodes: Vec<String>,
     /// See `fitted_episodes`.

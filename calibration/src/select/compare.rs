@@ -154,7 +154,9 @@ impl CauseComparer<'_> {
                 .iter()
                 .copied()
                 .min_by(|a, b| distance(*a).total_cmp(&distance(*b)));
-            let Some(weakest) = weakest.filter(|slot| free.len() > 1 && distance(*slot) < MOVED_SD)
+            let is_over = self.progress.deadline().is_over();
+            let Some(weakest) =
+                weakest.filter(|slot| !is_over && free.len() > 1 && distance(*slot) < MOVED_SD)
             else {
                 return Ok((model, fit));
             };

@@ -5,6 +5,8 @@ mod compare;
 mod gain;
 mod learnable;
 mod plausibility;
+mod quantum;
+mod reasons;
 mod residual;
 mod screen;
 mod split;

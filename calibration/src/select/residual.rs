@@ -1,6 +1,7 @@
 //! Residuals between measurement and simulation.
 
 use super::learnable::LearnableRemainder;
+use super::quantum::rounding_sd;
 use crate::experiment::{Experiment, ResidualStructure};
 use crate::fit::median;
 use serde::Serialize;
@@ -159,6 +160,18 @@ pub(crate) fn noise_from_differences(sequences: &[&[f64]]) -> Option<NoiseFloor>
     })
 }
 
+/// Root mean square of the standard deviations of a channel, in its unit.
+fn mean_sd(experiment: &dyn Experiment, set: &[usize], channel: usize) -> f64 {
+    let episodes = set.iter().map(|episode| &experiment.episodes()[*episode]);
+    let (sum, count) = episodes
+        .flat_map(|episode| episode.sd.iter().zip(&episode.channel))
+        .filter(|(_, other)| **other == channel)
+        .fold((0.0, 0), |(sum, count), (sd, _)| (sum + sd * sd, count + 1));
+    (sum / f64::from(count.max(1)))
+        .sqrt()
+        .max(f64::MIN_POSITIVE)
+}
+
 /// Splits residuals of a set by channel. `residuals`: in standard deviations, shape (episode of the set, datum).
 fn by_sequence<'a>(
     experiment: &dyn Experiment,
@@ -286,9 +299,15 @@ impl ResidualNoiseTest {
 
     fn in_time(experiment: &dyn Experiment, set: &[usize], residuals: &[Vec<f64>]) -> Self {
         let (mut sum, mut count) = (0.0, 0);
-        for sequences in by_sequence(experiment, set, residuals).values() {
+        let rounding = rounding_sd(experiment);
+        for (channel, sequences) in &by_sequence(experiment, set, residuals) {
             let all = || sequences.iter().flat_map(|sequence| sequence.iter());
-            let Some(floor) = noise_from_differences(sequences).map(|floor| floor.sd) else {
+            let found = noise_from_differences(sequences).map(|floor| floor.sd);
+            // Residuals count standard deviations.
+            let rounding = rounding
+                .get(channel)
+                .map(|sd| sd / mean_sd(experiment, set, *channel));
+            let Some(floor) = found.into_iter().chain(rounding).reduce(f64::max) else {
                 continue;
             };
             // A few outliers are no structure.

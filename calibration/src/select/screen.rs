@@ -90,13 +90,21 @@ impl Screen {
         let loss = HuberLoss::from_residuals(fit.residuals.iter().flatten());
         all.progress.check()?;
         let train = &all.split.train;
+        let deadline = all.progress.deadline();
         let grams = all.threads.map(train.len(), |k| {
             let episode = train[k];
-            episode_gram(experiment, episode, fit, &fit.residuals[k], which, loss)
+            // Of a search that ends early the first episodes say what looks promising.
+            if k > 0 && deadline.is_over() {
+                return None;
+            }
+            let residual = &fit.residuals[k];
+            Some(episode_gram(
+                experiment, episode, fit, residual, which, loss,
+            ))
         });
         Ok(Self {
             blocks,
-            grams: grams.into_iter().collect::<Result<_, _>>()?,
+            grams: grams.into_iter().flatten().collect::<Result<_, _>>()?,
             shared,
         })
     }

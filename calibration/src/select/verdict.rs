@@ -7,6 +7,10 @@ use super::compare::{CauseComparer, Estimate, ModelAdvantage, ScoredModel, estim
 use super::gain::HeldOutGain;
 use super::learnable::LearnableRemainder;
 use super::plausibility::implausible;
+use super::quantum::rounding_sd;
+use super::reasons::{
+    disagreement_reason, names, rejection_reason, structure_reason, unfinished_reason,
+};
 use super::residual::{ResidualNoiseTest, noise_from_differences};
 use super::screen::{LinearGain, Screen};
 use super::split::EpisodeSplit;
@@ -44,6 +48,8 @@ pub(crate) struct Findings {
     pub(crate) remainder_after: ResidualNoiseTest,
     pub(crate) agreement: Option<SplitHalfAgreement>,
     pub(crate) decision: Decision,
+    /// False where the search was ended early.
+    pub(crate) is_finished: bool,
 }
 
 /// A cause alone.
@@ -108,7 +114,10 @@ pub(crate) fn find_causes(
     progress.stage(0.8, "comparing explanations")?;
     let remainder_after = search.remainder(&chosen)?;
     let mut found_agreement = None;
-    let decision = if chosen.model.causes.is_empty() {
+    let is_over = || progress.deadline().is_over();
+    let decision = if is_over() {
+        Decision::Unexplained(unfinished_reason(&all, &singles))
+    } else if chosen.model.causes.is_empty() {
         if remainder_before.is_structured() {
             Decision::Unexplained(rejection_reason(&all, &singles))
         } else {
@@ -147,6 +156,12 @@ pub(crate) fn find_causes(
             decision
         }
     };
+    // What came last may have been cut short.
+    let decision = match decision {
+        Decision::Unexplained(reason) => Decision::Unexplained(reason),
+        _ if is_over() => Decision::Unexplained(unfinished_reason(&all, &singles)),
+        decision => decision,
+    };
     let advantage_over_base = (!chosen.model.causes.is_empty())
         .then(|| all.advantage_over(&chosen, &base, chosen.effective_weight()));
     Ok(Findings {
@@ -157,6 +172,7 @@ pub(crate) fn find_causes(
         remainder_before,
         remainder_after,
         agreement: found_agreement,
+        is_finished: !is_over(),
         decision,
         split,
     })
@@ -242,6 +258,9 @@ impl Search<'_> {
     ) -> Result<Vec<Trial>, CalibrationError> {
         let mut fitted = Vec::new();
         for (k, cause) in short.iter().enumerate() {
+            if self.all.progress.deadline().is_over() {
+                break;
+            }
             let fraction = 0.2 + 0.5 * k as f32 / short.len() as f32;
             let name = &self.all.experiment.causes()[*cause].name;
             self.all
@@ -332,7 +351,8 @@ impl Search<'_> {
     /// The model without those causes that the others make needless.
     fn without_idle(&self, mut now: ScoredModel) -> Result<ScoredModel, CalibrationError> {
         let mut k = 0;
-        while now.model.causes.len() > 1 && k < now.model.causes.len() {
+        let is_over = || self.all.progress.deadline().is_over();
+        while now.model.causes.len() > 1 && k < now.model.causes.len() && !is_over() {
             let mut causes = now.model.causes.clone();
             let dropped = causes.remove(k);
             let mut from = now.fit.point.clone();
@@ -402,6 +422,9 @@ impl Search<'_> {
                     .collect::<Vec<_>>(),
             );
             for other in short.iter().filter(|other| *other != cause) {
+                if self.all.progress.deadline().is_over() {
+                    break;
+                }
                 let mut causes = rest.clone();
                 causes.insert(k, *other);
                 let mut sorted = causes.clone();
@@ -470,14 +493,6 @@ impl Search<'_> {
     }
 }
 
-fn names(all: &CauseComparer<'_>, causes: &[usize]) -> String {
-    let names: Vec<String> = causes
-        .iter()
-        .map(|cause| all.experiment.causes()[*cause].name.clone())
-        .collect();
-    crate::format_number::format_list(&names)
-}
-
 /// The trial that passes with the largest fall of the criterion, a plausible one before others.
 fn best_trial(trials: &[Trial]) -> Option<&ScoredModel> {
     let passing = trials.iter().filter(|trial| trial.passes);
@@ -515,6 +530,7 @@ fn estimate_noise(
         progress,
     }
     .fit_on(&split.train, &CauseSet::default(), &start)?;
+    let rounding = rounding_sd(experiment);
     for channel in 0..experiment.channels().len() {
         if experiment.channels()[channel].noise_known {
             continue;
@@ -536,9 +552,12 @@ fn estimate_noise(
             let n = residuals.iter().map(Vec::len).sum::<usize>().max(1) as f64;
             (residuals.iter().flatten().map(|r| r * r).sum::<f64>() / n).sqrt()
         };
+        let least = rounding.get(&channel).copied();
         let sd = noise_from_differences(&slices)
-            .map_or_else(spread, |floor| floor.sd)
-            .max(1e-9);
+            .map(|floor| floor.sd)
+            .or(least)
+            .unwrap_or_else(spread)
+            .max(least.unwrap_or(1e-9));
         for measured in experiment.episodes_mut() {
             for (sd_here, channel_here) in measured.sd.iter_mut().zip(&measured.channel) {
                 if *channel_here == channel {
@@ -548,57 +567,4 @@ fn estimate_noise(
         }
     }
     Ok(fit.point)
-}
-
-/// The reason why no cause passes, with the one that comes nearest.
-fn rejection_reason(all: &CauseComparer<'_>, singles: &[SingleCause]) -> String {
-    let fitted = singles
-        .iter()
-        .filter_map(|single| Some((single, single.gain?)));
-    let best = fitted.max_by(|a, b| a.0.delta_bic.total_cmp(&b.0.delta_bic));
-    let none = "none of the causes in the library fits it";
-    match best.filter(|(best, _)| best.delta_bic > all.options.min_delta_bic) {
-        Some((best, gain)) => {
-            let [low, high] = gain
-                .share_interval
-                .map(crate::format_number::format_percent);
-            format!(
-                "{none}; nearest comes {}, whose gain on episodes that no fit has seen is not certain ({low} to {high} of \
-                 the squared error)",
-                all.experiment.causes()[best.cause].name
-            )
-        }
-        None => none.to_owned(),
-    }
-}
-
-/// The reason why what fits best is no name: something systematic is left.
-fn structure_reason(
-    all: &CauseComparer<'_>,
-    chosen: &ScoredModel,
-    before: &ResidualNoiseTest,
-    after: &ResidualNoiseTest,
-) -> String {
-    let explained = 1.0 - (after.ratio - 1.0) / (before.ratio - 1.0).max(1e-9);
-    format!(
-        "{} takes away {:.0} % of the misfit, and what is left is still systematic",
-        names(all, &chosen.model.causes),
-        100.0 * explained.clamp(0.0, 1.0)
-    )
-}
-
-/// The reason why a cause that fits is none: its size is not one.
-fn disagreement_reason(
-    all: &CauseComparer<'_>,
-    cause: usize,
-    found: &SplitHalfAgreement,
-) -> String {
-    format!(
-        "{} fits best, but it would have to be {} where it acts weakly and {} where it acts strongly, {:.1} standard \
-         deviations apart: one value does not serve, so it is not the cause",
-        all.experiment.causes()[cause].name,
-        crate::format_number::format_number(found.weak),
-        crate::format_number::format_number(found.strong),
-        found.z.abs()
-    )
 }

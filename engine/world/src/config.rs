@@ -47,6 +47,10 @@ pub struct WorldConfig {
     pub settle_s: Option<f64>,
     /// Parameters that differ from the house's, by address.
     pub parameters: BTreeMap<String, f64>,
+    /// Parameters that every episode draws anew from its seed, by address: evenly between the two ends, as far as the parameter may
+    /// be there. They go before `parameters` and the numbers of `laws`.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub randomize: BTreeMap<String, [f64; 2]>,
 }
 
 /// Returns whether a back end is the default, which files do not mention.
@@ -69,6 +73,7 @@ impl Default for WorldConfig {
             laws: Vec::new(),
             settle_s: None,
             parameters: BTreeMap::new(),
+            randomize: BTreeMap::new(),
         }
     }
 }
@@ -125,6 +130,12 @@ impl WorldConfig {
         }
         if self.agents.len() > 64 {
             return fault("agents", self.agents.len().to_string(), "at most 64".into());
+        }
+        for (address, [low, high]) in &self.randomize {
+            if !(low.is_finite() && high.is_finite() && low <= high) {
+                let found = format!("{low} to {high} for {address}");
+                return fault("randomize", found, "finite numbers, rising".into());
+            }
         }
         for (k, body) in self.agents.iter().enumerate() {
             body.check().map_err(|error| with_agent_index(k, error))?;

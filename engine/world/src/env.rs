@@ -169,7 +169,7 @@ impl Env {
         self.clear_episodes();
         // A copy of the start beside the first one would only take its time and memory.
         if std::mem::take(&mut self.is_new) {
-            self.world.reset_fresh(key);
+            self.world.reset_fresh(key)?;
         } else {
             self.world.reset(key)?;
         }

@@ -58,6 +58,9 @@ impl World {
         }
         engines.check_sounds()?;
         let start = engines.initial_world(config)?;
+        for text in config.randomize.keys() {
+            crate::laws::parameter(&start.state, engines.house(), &text.parse()?)?;
+        }
         let (state, physics) = (start.state.clone(), start.physics.clone());
         let mut rays = RayScene::new(engines.house().clone());
         rays.update(&state);
@@ -86,7 +89,7 @@ impl World {
     /// Goes back to the start; random streams begin anew under `key`.
     ///
     /// # Errors
-    /// None so far: the start is a copy of one that was possible.
+    /// [`WorldError`] for a parameter of `randomize` that cannot be what was drawn.
     pub fn reset(&mut self, key: RandomKey) -> Result<(), WorldError> {
         self.state.clone_from(&self.initial.state);
         self.draw_persons(key);
@@ -98,16 +101,37 @@ impl World {
         let house = self.engines.house();
         self.motion_history.begin_persons(house, &self.state);
         self.key = key;
-        Ok(())
+        self.draw_parameters()
     }
 
     /// As [`Self::reset`], in a world in which nothing has happened since it was made.
-    pub(crate) fn reset_fresh(&mut self, key: RandomKey) {
+    ///
+    /// # Errors
+    /// As [`Self::reset`].
+    pub(crate) fn reset_fresh(&mut self, key: RandomKey) -> Result<(), WorldError> {
         if !self.state.persons.is_empty() {
             self.draw_persons(key);
             self.rays.update(&self.state);
         }
         self.key = key;
+        self.draw_parameters()
+    }
+
+    /// Draws the parameters of [`WorldConfig::randomize`] under the episode's key, each from a stream of its own.
+    fn draw_parameters(&mut self) -> Result<(), WorldError> {
+        if self.config.randomize.is_empty() {
+            return Ok(());
+        }
+        let key = self.key.child("parameters");
+        let drawn = self.config.randomize.iter().map(|(text, ends)| {
+            let address: Address = text.parse()?;
+            let known = self.parameter(&address)?;
+            let [low, high] = ends.map(|end| end.clamp(known.low, known.high));
+            let share = key.child(text.as_str()).stream().uniform();
+            Ok((address, low + (high - low) * share))
+        });
+        let drawn = drawn.collect::<Result<Vec<_>, WorldError>>()?;
+        self.set_parameters(&drawn)
     }
 
     /// Makes one control step. `controls`: one for each agent; agents without one stand still.

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
+import signal
+import sys
 from collections.abc import Iterator
 from typing import Any
 
@@ -23,6 +26,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
         default=[],
         metavar="FILE.csv",
         help="scores of another simulator on the same pose trajectories",
+    )
+    parser.add_argument(
+        "--budget-s",
+        type=float,
+        metavar="S",
+        help="seconds after which the search ends with what it has tried; Ctrl-C does so, too",
     )
     parser.add_argument(
         "--out", type=path, metavar="DIR", help="for report.html, report.json, found.json"
@@ -59,11 +68,52 @@ def roll_outs(report: dict[str, Any]) -> Iterator[str]:
             )
 
 
+class _Progress:
+    """A progress bar that ends the search once somebody has pressed Ctrl-C."""
+
+    def __init__(self) -> None:
+        """Nobody has."""
+        self._bar = ProgressBar()
+        self._goes_on = True
+
+    def __call__(self, fraction: float, what: str) -> bool:
+        """Shows it; says whether the search goes on."""
+        self._bar(fraction, what)
+        return self._goes_on
+
+    @contextlib.contextmanager
+    def interruptible(self) -> Iterator[None]:
+        """Meanwhile the first Ctrl-C ends the search; the second one is as ever."""
+        try:
+            before = signal.signal(signal.SIGINT, lambda *_: self._end())
+        except ValueError:  # Signals are the main thread's.
+            yield
+            return
+        self._before = before
+        try:
+            yield
+        finally:
+            signal.signal(signal.SIGINT, before)
+
+    def _end(self) -> None:
+        self._goes_on = False
+        signal.signal(signal.SIGINT, self._before)
+        print("\nending with what was tried; Ctrl-C again: at once", file=sys.stderr)
+
+
 def run(args: argparse.Namespace) -> int:
     """Calibrates, writes the report, and prints the verdict."""
     from dwell.calibration import calibrate
 
-    report = calibrate(args.measured, house=args.house, progress=ProgressBar(), peers=args.peer)
+    progress = _Progress()
+    with progress.interruptible():
+        report = calibrate(
+            args.measured,
+            house=args.house,
+            progress=progress,
+            peers=args.peer,
+            budget_s=args.budget_s,
+        )
     page = report.pop("html", "")
     if args.out:
         files = {

@@ -258,8 +258,8 @@ class MultiAgentSetup:
         Raises:
             ConfigError: The number or the task is wrong.
         """
-        names = ("sensors", "laws", "parameters", "task_settings", "stride", "actions", "world")
-        own = {"agents": agents, "action_mode": "discrete", "max_cycles": OF_TASKS}
+        names = ("sensors", "laws", "parameters", "randomize", "task_settings", "stride", "actions")
+        own = {"agents": agents, "action_mode": "discrete", "max_cycles": OF_TASKS, "world": None}
         return cls.of(task, {**dict.fromkeys(names), **own, "voice": False, "muted": False})
 
     @classmethod
@@ -278,6 +278,7 @@ class MultiAgentSetup:
             NativeSettings(task, given["task_settings"], given["sensors"]),
             laws=given["laws"],
             parameters=given["parameters"],
+            randomize=given["randomize"],
             stride=given["stride"],
             action_mode=given["action_mode"],
             actions=given["actions"],

@@ -33,7 +33,7 @@ from dwell.envs.python_tasks import NativeSettings, RewardChoice, Sensors
 from dwell.house import House
 from dwell.house_list import HouseList
 from dwell.schemas import setting_checks
-from dwell.world_settings import Laws, world_settings
+from dwell.world_settings import Laws, Randomize, world_settings
 
 Houses = str | os.PathLike[str] | House | Sequence[str | os.PathLike[str] | House]
 #: A file of episodes, or several, as the shards of one.
@@ -49,6 +49,7 @@ class EnvSettings(TypedDict, total=False):
     reward: RewardChoice
     laws: Laws
     parameters: Mapping[str, float] | None
+    randomize: Randomize
     task_settings: Mapping[str, Any] | None
     #: ``forward_m``, ``turn_deg``, ``look_deg``.
     stride: Mapping[str, float] | None
@@ -235,6 +236,7 @@ def env_json(
     *,
     laws: Laws = None,
     parameters: Mapping[str, float] | None = None,
+    randomize: Randomize = None,
     stride: Mapping[str, float] | None = None,
     action_mode: str = "discrete",
     actions: Sequence[str] | None = None,
@@ -248,7 +250,7 @@ def env_json(
     """
     config: dict[str, Any] = {
         "task": text("task", native.task),
-        "world": world_settings(laws, parameters, world),
+        "world": world_settings(laws, parameters, world, randomize),
     }
     if native.settings is not None:
         config["task_settings"] = mapping("task_settings", native.settings)

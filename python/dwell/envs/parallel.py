@@ -43,7 +43,7 @@ from dwell.envs.snapshots import EnvSnapshot
 from dwell.heads import Head
 from dwell.object_state_api import agent_states
 from dwell.world import World
-from dwell.world_settings import Laws
+from dwell.world_settings import Laws, Randomize
 
 
 class DwellParallelEnv(EpisodeCalls, CurrentStateApi, ParallelEnv, EzPickle):  # type: ignore[misc] # untyped
@@ -71,6 +71,7 @@ class DwellParallelEnv(EpisodeCalls, CurrentStateApi, ParallelEnv, EzPickle):  #
         sensors: NativeSensors = None,
         laws: Laws = None,
         parameters: Mapping[str, float] | None = None,
+        randomize: Randomize = None,
         task_settings: Mapping[str, Any] | None = None,
         stride: Mapping[str, float] | None = None,
         action_mode: str = "discrete",
@@ -99,6 +100,7 @@ class DwellParallelEnv(EpisodeCalls, CurrentStateApi, ParallelEnv, EzPickle):  #
             sensors: Names of sensors, or settings by name; default each task's own choice.
             laws: Laws to install, or what calibration found.
             parameters: Values by address.
+            randomize: Intervals from which each episode draws, or what calibration found.
             task_settings: The settings of the task.
             stride: How far movement actions go.
             action_mode: The form of actions, as of :class:`dwell.envs.DwellEnv`.
@@ -128,6 +130,7 @@ class DwellParallelEnv(EpisodeCalls, CurrentStateApi, ParallelEnv, EzPickle):  #
             "sensors": kept(sensors),
             "laws": kept(laws),
             "parameters": kept(parameters),
+            "randomize": kept(randomize),
             "task_settings": kept(task_settings),
             "stride": kept(stride),
             "action_mode": action_mode,

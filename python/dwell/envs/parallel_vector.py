@@ -31,7 +31,7 @@ from dwell.envs.python_tasks import NativeSensors
 from dwell.envs.snapshots import EnvSnapshot
 from dwell.envs.vector_reset import VectorReset
 from dwell.world import World
-from dwell.world_settings import Laws
+from dwell.world_settings import Laws, Randomize
 
 #: Arrays by name, by the agents' names.
 ByAgent = dict[str, dict[str, Any]]
@@ -57,6 +57,7 @@ class DwellParallelVectorEnv(EzPickle):
         sensors: NativeSensors = None,
         laws: Laws = None,
         parameters: Mapping[str, float] | None = None,
+        randomize: Randomize = None,
         task_settings: Mapping[str, Any] | None = None,
         stride: Mapping[str, float] | None = None,
         action_mode: str = "discrete",
@@ -83,6 +84,7 @@ class DwellParallelVectorEnv(EzPickle):
             sensors: Names of sensors, or settings by name.
             laws: Laws to install, or what calibration found.
             parameters: Values by address.
+            randomize: Intervals from which each episode draws, or what calibration found.
             task_settings: The settings of the task.
             stride: How far movement actions go.
             action_mode: The form of actions.
@@ -109,6 +111,7 @@ class DwellParallelVectorEnv(EzPickle):
             "sensors": kept(sensors),
             "laws": kept(laws),
             "parameters": kept(parameters),
+            "randomize": kept(randomize),
             "task_settings": kept(task_settings),
             "stride": kept(stride),
             "action_mode": action_mode,

@@ -47,7 +47,7 @@ from dwell.heads import Head
 from dwell.object_state_api import agent_states
 from dwell.stated_episodes import checked_episode, id_and_stated, id_with_stated
 from dwell.world import World
-from dwell.world_settings import Laws, with_head
+from dwell.world_settings import Laws, Randomize, with_head
 
 #: The image that ``render()`` gives.
 RENDER_CAMERA = Camera(width=320, height=240)
@@ -77,6 +77,7 @@ class DwellEnv(EpisodeCalls, CurrentStateApi, gymnasium.Env[dict[str, Any], Any]
         reward: RewardChoice = None,
         laws: Laws = None,
         parameters: Mapping[str, float] | None = None,
+        randomize: Randomize = None,
         task_settings: Mapping[str, Any] | None = None,
         stride: Mapping[str, float] | None = None,
         action_mode: str = "discrete",
@@ -103,6 +104,9 @@ class DwellEnv(EpisodeCalls, CurrentStateApi, gymnasium.Env[dict[str, Any], Any]
             laws: Laws to install; or what calibration found (laws and parameters), as a mapping or
                 as the path of its ``found.json``.
             parameters: Values by address; they go before those that calibration found.
+            randomize: Intervals from which each episode draws by its seed, evenly: ``{address:
+                [low, high]}``; or what calibration found, as a mapping or as the path of its
+                ``found.json``, which is installed, too.
             task_settings: The task's own settings; the arguments of a task in Python.
             stride: How far movement actions go: ``forward_m``, ``turn_deg``, ``look_deg``.
             action_mode: The form of actions: ``discrete`` (the number of an action; hands act on
@@ -127,6 +131,7 @@ class DwellEnv(EpisodeCalls, CurrentStateApi, gymnasium.Env[dict[str, Any], Any]
         # Copies: a pickle makes this environment anew, whatever the caller does with his own.
         houses, sensors, laws = kept_houses(houses), kept(sensors), kept(laws)
         parameters, task_settings = kept(parameters), kept(task_settings)
+        randomize = kept(randomize)
         stride, world, actions = kept(stride), kept(world), kept(actions)
         episodes = kept(episodes)
         EzPickle.__init__(
@@ -138,6 +143,7 @@ class DwellEnv(EpisodeCalls, CurrentStateApi, gymnasium.Env[dict[str, Any], Any]
             reward=reward,
             laws=laws,
             parameters=parameters,
+            randomize=randomize,
             task_settings=task_settings,
             stride=stride,
             action_mode=action_mode,
@@ -161,6 +167,7 @@ class DwellEnv(EpisodeCalls, CurrentStateApi, gymnasium.Env[dict[str, Any], Any]
             native,
             laws=laws,
             parameters=parameters,
+            randomize=randomize,
             stride=stride,
             action_mode=action_mode,
             actions=actions,

@@ -52,7 +52,7 @@ from dwell.envs.snapshots import EnvSnapshot
 from dwell.envs.step_recorder import Recorder
 from dwell.envs.vector_reset import VectorReset
 from dwell.world import World
-from dwell.world_settings import Laws, with_head
+from dwell.world_settings import Laws, Randomize, with_head
 
 
 def _autoreset_mode(mode: object) -> AutoresetMode:
@@ -91,6 +91,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
         reward: RewardChoice = None,
         laws: Laws = None,
         parameters: Mapping[str, float] | None = None,
+        randomize: Randomize = None,
         task_settings: Mapping[str, Any] | None = None,
         stride: Mapping[str, float] | None = None,
         action_mode: str = "discrete",
@@ -118,6 +119,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
             reward: A subclass of :class:`dwell.Reward`.
             laws: Laws to install, or what calibration found.
             parameters: Values by address.
+            randomize: Intervals from which each episode draws, or what calibration found.
             task_settings: The task's own settings.
             stride: How far movement actions go.
             action_mode: As of a single environment.
@@ -145,6 +147,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
         # Copies: a pickle makes these environments anew, whatever the caller does with his own.
         houses, sensors, laws = kept_houses(houses), kept(sensors), kept(laws)
         parameters, task_settings = kept(parameters), kept(task_settings)
+        randomize = kept(randomize)
         stride, world, actions = kept(stride), kept(world), kept(actions)
         episodes = kept(episodes)
         EzPickle.__init__(
@@ -157,6 +160,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
             reward=reward,
             laws=laws,
             parameters=parameters,
+            randomize=randomize,
             task_settings=task_settings,
             stride=stride,
             action_mode=action_mode,
@@ -187,6 +191,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
             native,
             laws=laws,
             parameters=parameters,
+            randomize=randomize,
             stride=stride,
             action_mode=action_mode,
             actions=actions,

@@ -6,6 +6,7 @@
 mod recording;
 mod rig;
 
+use super::windows::spread_evenly;
 use super::{
     Cause, ChannelInfo, EpisodeData, EpisodeParameters, Experiment, Fault, FitParameter,
     Intervention, ParameterIndex, ResidualStructure,
@@ -18,6 +19,8 @@ use rig::DriveRig;
 
 /// Duration of a window, s.
 const WINDOW_S: f64 = 10.0;
+/// Longest time that is simulated of all drives together, s.
+const MOST_SIMULATED_S: f64 = 1200.0;
 /// Samples below which the rest of a drive is no window of its own.
 const FEWEST: usize = 40;
 /// What the tracker sees: places in m, the heading in rad.
@@ -33,6 +36,8 @@ pub(crate) struct DriveExperiment {
     rate_hz: f64,
     /// Rotations of the wheels from sample to sample of each window, rad. Shape (window, sample - 1).
     turned_rad: Vec<Vec<[f64; 2]>>,
+    /// Windows of which `episodes` are an even choice.
+    windows: usize,
 }
 
 impl DriveExperiment {
@@ -40,7 +45,8 @@ impl DriveExperiment {
     pub(crate) fn new(bundle: &Bundle) -> Result<Self, CalibrationError> {
         let drives = DriveRecordings::of(bundle)?;
         let samples = ((WINDOW_S * drives.rate_hz).round() as usize).max(FEWEST);
-        let (mut episodes, mut turned_rad) = (Vec::new(), Vec::new());
+        let (mut episodes, mut turned_rad) =
+            (Vec::<EpisodeData>::new(), Vec::<Vec<[f64; 2]>>::new());
         for drive in &drives.episodes {
             let count = drive.planar_poses.len();
             for first in (0..count).step_by(samples) {
@@ -65,6 +71,20 @@ impl DriveExperiment {
                 turned_rad.push(drive.wheel_rotation_rad[first + 1..end].to_vec());
             }
         }
+        let durations: Vec<f64> = turned_rad
+            .iter()
+            .map(|turned| turned.len() as f64 / drives.rate_hz)
+            .collect();
+        let windows = episodes.len();
+        let kept = spread_evenly(&durations, MOST_SIMULATED_S);
+        let episodes = kept
+            .iter()
+            .map(|k| std::mem::take(&mut episodes[*k]))
+            .collect();
+        let turned_rad = kept
+            .iter()
+            .map(|k| std::mem::take(&mut turned_rad[*k]))
+            .collect();
         let laws = dwell_physics::laws::all()
             .filter(|law| law.acts_on == "agent" && law.regimes.contains(&LawRegime::Driven))
             .map(|law| Cause::of_law(law, &[], &[]));
@@ -92,6 +112,7 @@ impl DriveExperiment {
             rate_hz: drives.rate_hz,
             episodes,
             turned_rad,
+            windows,
         })
     }
 }
@@ -129,6 +150,17 @@ impl Experiment for DriveExperiment {
         let measured = &self.episodes[episode].measured;
         let samples = measured.len() / CHANNELS.len();
         (0..CHANNELS.len()).map(|k| measured[k * samples]).collect()
+    }
+
+    fn notes(&self) -> Vec<String> {
+        let (kept, all) = (self.episodes.len(), self.windows);
+        let thinned = (kept < all).then(|| {
+            format!(
+                "{kept} of {all} windows of {WINDOW_S} s, spread evenly over the drives, were simulated: \
+                 {MOST_SIMULATED_S} s."
+            )
+        });
+        thinned.into_iter().collect()
     }
 
     fn predict(
@@ -231,6 +263,7 @@ mod tests {
             },
             rate_hz: 10.0,
             turned_rad: vec![vec![[0.5, 0.6], [0.2, 0.9], [0.7, 0.1]]],
+            windows: 1,
         };
         let mut point = ParameterVector::start(&experiment);
         point.causes[0] = 1.1;

@@ -21,7 +21,7 @@ impl Search<'_> {
     ) -> Result<ScoredModel, CalibrationError> {
         let by_cell = self.all.experiment.residual_structure() == ResidualStructure::ByCell;
         let mut now = first;
-        while now.model.causes.len() < MOST_EFFECTS {
+        while now.model.causes.len() < MOST_EFFECTS && !self.all.progress.deadline().is_over() {
             let is_structured = self.remainder(&now)?.is_structured();
             if !is_structured && !by_cell {
                 break;

@@ -1,4 +1,4 @@
-"""Flights of balls: one height or all three coordinates."""
+"""Flights of balls: one height or all three coordinates, and how they spin."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ TEMPLATE: Map = {
 }
 _SCHEMA: Map = {
     "axes": (str, list),
-    "noise_sd": {"x": 1.0, "y": 1.0, "z": 1.0},
+    "noise_sd": {"x": 1.0, "y": 1.0, "z": 1.0, "wx": 1.0, "wy": 1.0, "wz": 1.0},
     "body": {"name": "", "mass_kg": 1.0, "radius_m": 1.0},
     "bodies": {
         "file": "",
@@ -49,10 +49,13 @@ _SCHEMA: Map = {
         "mass_kg": "",
         "diameter_m": "",
     },
-    "table": {**TABLE, "metres_per_unit": 1.0, "channels": {}},
+    "table": {**TABLE, "metres_per_unit": 1.0, "radians_per_unit": 1.0, "channels": {}},
 }
 #: What each channel of the bundle measures, and its unit there.
-_CHANNELS = {"x": ("length", "m"), "y": ("length", "m"), "z": ("length", "m")}
+_CHANNELS = {
+    **dict.fromkeys("xyz", ("length", "m")),
+    **dict.fromkeys(("wx", "wy", "wz"), ("spin", "rad/s")),
+}
 #: Samples of an episode below which nothing can be predicted.
 FEWEST = 6
 
@@ -73,13 +76,14 @@ def _write(job: Job) -> dict[str, Any]:
             raise ValueError(f"{here}: no channel {channel!r}; allowed are {list(_CHANNELS)}")
     axes = Axes(job.mapping, job.at)
     turned = job.mapping.get("axes") is not None
-    if turned and set(channels) != {"x", "y", "z"}:
-        raise ValueError(
-            f"{here}: channels are {list(channels)}; axes turns flights of which x, y and z are "
-            "there. Of a height alone write {'y': its column}, without axes"
-        )
-    names = ["x", "y", "z"] if turned else list(channels)
-    fields = [Field(channels[name], _CHANNELS[name][0]) for name in names]
+    names = _turned_names(channels, here) if turned else list(channels)
+    if not set(names) & {"x", "y", "z"}:
+        raise ValueError(f"{here}: channels are {names}; a flight has a place, y or x, y and z")
+    spins = [_CHANNELS[name][0] == "spin" for name in names]
+    fields = [
+        Field(channels[name], _CHANNELS[name][0], optional=spin)
+        for name, spin in zip(names, spins, strict=True)
+    ]
     reader = SampleReader(job, part, here, fields)
     left_out: dict[str, None] = {}
     seen: dict[str, None] = {}
@@ -98,17 +102,32 @@ def _write(job: Job) -> dict[str, Any]:
             f"{'/'.join(reader.episode)!r}, and {sorted(body_of)[:3]} in column "
             f"{job.mapping['bodies']['episode']!r} of {listed}; write the same names"
         )
-    order = axes.order if turned else range(len(names))
-    columns = [channels[names[k]] for k in order]
+    order = [*axes.order, *(3 + k for k in axes.order)] if turned else [*range(len(names))]
+    columns = [channels[names[k]] for k in order[: len(names)]]
+    for episode in samples.episodes:
+        unseen = np.isnan(episode.values).all(axis=0)
+        if unseen.any():
+            column = channels[names[int(unseen.argmax())]]
+            raise ValueError(
+                f"{episode.place(0)}: episode {episode.name!r} has no number in column {column!r}; "
+                "leave the episode or the channel out"
+            )
     origin = {"t_s": [reader.clock], "episode": ["/".join(reader.episode)], "value": columns}
     origin |= {name: [column] for name, column in zip(names, columns, strict=True)}
     with job.draft.table("trajectory.csv", "episode,t_s,entity,channel,value", origin) as write:
         for episode in samples.episodes:
-            values = axes.vectors(episode.values) if turned else episode.values
+            values = episode.values
+            if turned:
+                # Spins turn as vectors do: the axes are right-handed.
+                values = np.hstack(
+                    [axes.vectors(part) for part in np.split(values, len(names) // 3, 1)]
+                )
             body = everyone["name"] if everyone is not None else body_of[episode.source]
             for k, stamp in enumerate(samples.stamps(episode)):
                 place = episode.place(k)
                 for name, value in zip(names, values[k], strict=True):
+                    if value != value:
+                        continue
                     write([episode.name, stamp, body, name, single(float(value))], place)
     job.progress(0.7, f"{samples.rows} rows of {reader.table.name}")
     noise = job.mapping.get("noise_sd") or {}
@@ -124,6 +143,20 @@ def _write(job: Job) -> dict[str, Any]:
     write_manifest(job, KIND.version, {"bodies": list(bodies.values())}, {"channels": told})
     write_episodes(job, listing(samples.episodes))
     return counted(job, samples.rows, len(samples.episodes), left_out)
+
+
+def _turned_names(channels: Map, here: str) -> list[str]:
+    """The channels in the order in which axes turns them."""
+    names = ["x", "y", "z"]
+    if set(channels) - set(names):
+        names += ["wx", "wy", "wz"]
+    if set(channels) != set(names):
+        raise ValueError(
+            f"{here}: channels are {list(channels)}; axes turns flights of which x, y and z are "
+            "there, and wx, wy and wz all or none. Of a height alone write {'y': its column}, "
+            "without axes"
+        )
+    return names
 
 
 def _one_body(job: Job) -> tuple[str, dict[str, Map], dict[str, str]]:

@@ -116,7 +116,9 @@ def _write(job: Job) -> dict[str, Any]:
     job.draft.fields["scene.joints[0]."] = f"{joint_at}."
     noise = (job.mapping.get("noise_sd") or {}).get("position")
     channel = {"name": "position", "unit": "rad", "clock": "encoder", "noise_sd": noise}
-    write_manifest(job, KIND.version, {"joints": [joint]}, {"channels": [channel]})
+    # Targets that stand beside the positions have their time.
+    clock = {} if target is None else {"command_clock": channel["clock"]}
+    write_manifest(job, KIND.version, {"joints": [joint]}, {"channels": [channel], **clock})
     write_episodes(job, listing(samples.episodes))
     return counted(job, samples.rows, len(samples.episodes), {})
 
