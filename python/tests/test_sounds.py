@@ -16,7 +16,9 @@ SOUND = np.random.default_rng(0).normal(0.0, 3.0, (3, 401)).astype(np.float32)
 
 
 def test_a_preset_or_folder_that_there_is_not_is_refused_at_once(tmp_path: Path) -> None:
-    with pytest.raises(dwell.ConfigError, match="sound_preset is 'loud'.*'rl', 'full', 'reference'"):
+    with pytest.raises(
+        dwell.ConfigError, match=r"sound_preset is 'loud'.*'rl', 'full', 'reference'"
+    ):
         dwell.World("builtin:studio", sound_preset="loud")  # type: ignore[arg-type] # what is tested
     with pytest.raises(dwell.ConfigError, match=r"sound_root is .*nowhere.*No such file"):
         DwellEnv("Free", sensors=["gps"], world={"sound_root": str(tmp_path / "nowhere")})

@@ -1,4 +1,4 @@
-"""Impulse responses of a room: WAV files beside a table of places, a SOFA file, or arrivals alone."""
+"""Impulse responses of a room: WAV files and a table of places, a SOFA file, or arrivals."""
 
 from __future__ import annotations
 
