@@ -13,8 +13,8 @@ use calibration_support::table;
 use dwell_calibration::{CalibrationReport, CalibrationVerdict, Options, calibrate};
 
 const POSITIONS: usize = 12;
-/// Fewer than usual, for speed.
-const RAYS: usize = 800;
+/// Rays where times decide: fewer than usual, for speed.
+const FEW_RAYS: usize = 800;
 /// A temperature that somebody wrote down, and one that somebody measured.
 const WRITTEN: &str = r#"{"temperature_c": 20.0, "humidity_pct": 50.0, "pressure_pa": 101325.0}"#;
 const MEASURED: &str = r#"{"temperature_c": 20.0, "temperature_sd_k": 0.5, "humidity_pct": 50.0, "pressure_pa": 101325.0}"#;
@@ -35,11 +35,15 @@ fn is_skipped() -> bool {
 }
 
 fn judge(truth: &Truth, environment: &str, seed: u64) -> CalibrationReport {
+    judge_with(truth, environment, seed, Options::default().rays)
+}
+
+fn judge_with(truth: &Truth, environment: &str, seed: u64, rays: usize) -> CalibrationReport {
     let folder = tempfile::tempdir().unwrap();
     write(folder.path(), truth, POSITIONS, environment, seed);
     let options = Options {
         seed,
-        rays: RAYS,
+        rays,
         ..Options::default()
     };
     let report = calibrate(folder.path(), &options, &mut |_, _| true).unwrap();
@@ -128,7 +132,7 @@ fn nothing_is_found_where_nothing_is_hidden() {
             gain,
             ..Truth::default()
         };
-        let report = judge(&truth, WRITTEN, seed);
+        let report = judge_with(&truth, WRITTEN, seed, FEW_RAYS);
         assert_eq!(
             report.verdict,
             CalibrationVerdict::NoEffect,
@@ -144,7 +148,7 @@ fn warmth_stands_beside_clock_and_lengths() {
     if is_skipped() {
         return;
     }
-    let report = judge(&warmer(15.0), WRITTEN, 21);
+    let report = judge_with(&warmer(15.0), WRITTEN, 21, FEW_RAYS);
     let expected: Vec<Vec<String>> = STRETCHING.map(|id| vec![id.to_owned()]).into();
     assert_eq!(sets(&report), expected, "{}", table(&report));
     assert!(report.found_laws().is_empty(), "{}", table(&report));
@@ -171,7 +175,7 @@ fn a_slow_recorder_is_not_warmth_where_a_thermometer_was_read() {
         clock: 0.98,
         ..Truth::default()
     };
-    let report = judge(&truth, MEASURED, 22);
+    let report = judge_with(&truth, MEASURED, 22, FEW_RAYS);
     let expected = [
         vec!["clock_scale".to_owned()],
         vec!["length_scale".to_owned()],
@@ -187,7 +191,7 @@ fn a_wall_that_stands_further_away_is_named() {
         let edge = [5.2, 2.7, 4.1][side / 2];
         let mut truth = Truth::default();
         truth.further_m[side] = 0.12 * edge;
-        let report = judge(&truth, WRITTEN, seed);
+        let report = judge_with(&truth, WRITTEN, seed, FEW_RAYS);
         let name = format!("wall_position/{}", SIDES[side]);
         assert_eq!(sets(&report), [vec![name]], "{}", table(&report));
         let CalibrationVerdict::Named { effects, .. } = &report.verdict else {
@@ -214,7 +218,7 @@ fn an_echo_of_the_recorder_is_left_unexplained() {
             comb,
             ..Truth::default()
         };
-        let report = judge(&truth, WRITTEN, seed);
+        let report = judge_with(&truth, WRITTEN, seed, FEW_RAYS);
         assert!(
             matches!(report.verdict, CalibrationVerdict::Unexplained { .. }),
             "{comb:?}: {}",
