@@ -19,6 +19,8 @@ const ROOM_TEMPERATURES_C: [f64; 2] = [0.0, 40.0];
 const TEMPERATURE_SDS: f64 = 3.0;
 /// Share of an edge by which a wall may stand elsewhere.
 const WALL_SHARE: f64 = 0.3;
+/// Standard deviations of places within which a wall is plausible, where they are told.
+const WALL_SDS: f64 = 4.0;
 /// Temperature at which the speed of sound is 343.2 m/s, K.
 const REFERENCE_K: f64 = 293.15;
 /// Causes that change all times in one proportion: in one room at one temperature they are one.
@@ -144,6 +146,9 @@ fn wall(
     let edge_m = room.size_m[SIDES[side].0];
     let inward_m = scan::inward_room_m(recordings, room.size_m, SIDES[side]);
     let low = -inward_m.min(WALL_SHARE * edge_m);
+    // Where it is told how well places are known, only that is plausible.
+    let known = room.position_sd_m.map(|sd| WALL_SDS * sd);
+    let plausible_m = known.unwrap_or(WALL_SHARE * edge_m);
     let probe = scan::best_wall_offset_m(
         recordings,
         room.size_m,
@@ -163,7 +168,7 @@ fn wall(
             default: 0.0,
             low,
             high: WALL_SHARE * edge_m,
-            plausible: [-WALL_SHARE * edge_m, WALL_SHARE * edge_m],
+            plausible: [-plausible_m, plausible_m],
             step: 0.01,
         }],
         probes: probe.map(|offset| vec![offset]).into_iter().collect(),

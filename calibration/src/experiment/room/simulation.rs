@@ -183,7 +183,7 @@ impl RoomSimulator {
                 let [near, far] = WAYS_M.map(|way_m| {
                     let one = single_path(&echogram, way_m);
                     [recorded(&one), arriving(&one)]
-                        .map(|response| levels::onset_s(&plain_response(response.samples, rate_hz)))
+                        .map(|response| centre_of_energy_s(&response.samples, rate_hz))
                 });
                 let scale = (far[0] - near[0]) / (far[1] - near[1]).max(1e-6);
                 MicrophoneEffect {
@@ -225,6 +225,17 @@ fn plain_response(samples: Vec<f32>, rate_hz: u32) -> MeasuredResponse {
         rate_hz,
         samples,
     }
+}
+
+/// The mean time of a response, weighted by its energy, s: of a single way it moves with the way as smoothly as that.
+fn centre_of_energy_s(samples: &[f32], rate_hz: u32) -> f64 {
+    let (mut energy, mut moment) = (0.0, 0.0);
+    for (k, sample) in samples.iter().enumerate() {
+        let square = f64::from(*sample).powi(2);
+        energy += square;
+        moment += square * k as f64;
+    }
+    moment / f64::max(energy, f64::MIN_POSITIVE) / f64::from(rate_hz)
 }
 
 /// The echogram of a single way.

@@ -36,6 +36,8 @@ impl Search<'_> {
             if most < least {
                 break;
             }
+            // Of a few recordings turned signs leave too much to chance for a second effect; its share stands for that.
+            let by_chance = if by_cell { 0.0 } else { by_chance };
             let trials = self.trials(&now, &short, by_chance)?;
             let larger = best_trial(&trials).filter(|l| now.fit.loss - l.fit.loss > least);
             let Some(larger) = larger.cloned() else {
@@ -65,12 +67,12 @@ impl Search<'_> {
             let mut from = now.fit.point.clone();
             self.reset(&mut from, left_out);
             let without = self.fit(rest, &now.model, &from)?;
-            let (_, short, by_chance) = self.shortlist(&without)?;
+            let (_, short, _) = self.shortlist(&without)?;
             let others: Vec<usize> = short
                 .into_iter()
                 .filter(|other| *other != left_out)
                 .collect();
-            let trials = self.trials(&without, &others, by_chance)?;
+            let trials = self.trials(&without, &others, 0.0)?;
             let worth = now.effective_weight();
             let fall =
                 |scored: &ScoredModel| self.all.advantage_over(scored, base, worth).delta_bic;
