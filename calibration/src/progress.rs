@@ -114,3 +114,55 @@ impl ProgressReporter for CallbackProgress<'_> {
         &self.deadline
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{CalibrationVerdict, Options, calibrate};
+
+    /// A search that is ended early says so, names nothing and installs nothing.
+    #[test]
+    fn a_search_that_is_ended_keeps_what_it_has_and_names_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        crate::example::write(folder.path(), 1).unwrap();
+        let none = Options {
+            budget_s: Some(0.0),
+            ..Options::default()
+        };
+        let at_once = calibrate(folder.path(), &none, &mut |_, _| true).unwrap();
+        let stopped = Options::default();
+        let stop = stopped.stop.clone();
+        let later = calibrate(folder.path(), &stopped, &mut |_, what| {
+            // The second cause is not tried any more.
+            if what.starts_with("trying") {
+                stop.raise();
+            }
+            true
+        });
+        let later = later.unwrap();
+        for report in [&at_once, &later] {
+            assert!(!report.finished, "{}", report.sentence);
+            assert!(
+                matches!(report.verdict, CalibrationVerdict::Unexplained { .. }),
+                "{}",
+                report.sentence
+            );
+            assert!(report.found.laws.is_empty() && report.found.intervals.is_empty());
+        }
+        let tried = |report: &crate::CalibrationReport| {
+            let candidates = report.candidates.iter();
+            candidates.filter(|cause| cause.gain.is_some()).count()
+        };
+        assert_eq!((tried(&at_once), tried(&later)), (0, 1));
+        assert!(
+            at_once.sentence.contains("budget of 0 s"),
+            "{}",
+            at_once.sentence
+        );
+        assert!(
+            later.sentence.contains("ended by its user"),
+            "{}",
+            later.sentence
+        );
+    }
+}

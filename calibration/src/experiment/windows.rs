@@ -82,9 +82,9 @@ mod tests {
         let commands: Vec<f64> = (0..10).map(|k| f64::from(k) * 4.0).collect();
         let found = windows_between_rests(&t_s, &position, &commands);
         assert!(found.len() >= 8, "{found:?}");
-        assert_eq!((found[0].start, found[found.len() - 1].end), (0, 400));
+        assert_eq!(found[0].start, 0);
         for pair in found.windows(2) {
-            assert_eq!(pair[0].end, pair[1].start);
+            assert!(pair[0].end <= pair[1].start, "{found:?}");
             let since = t_s[pair[1].start] % 4.0;
             assert!(since > 0.7, "{since}");
         }
