@@ -37,7 +37,7 @@ pub use select::{
 };
 
 use bundle::file::BundleKind;
-use experiment::{BallExperiment, DriveExperiment, Experiment, RoomExperiment, ServoExperiment};
+use experiment::{DriveExperiment, Experiment, FlightExperiment, RoomExperiment, ServoExperiment};
 use progress::{CallbackProgress, Deadline, ProgressReporter as _};
 use std::path::Path;
 
@@ -146,7 +146,7 @@ fn find_missing_causes(
         ));
     }
     let mut experiment: Box<dyn Experiment> = match bundle.kind() {
-        BundleKind::Trajectory => Box::new(BallExperiment::new(bundle, options)?),
+        BundleKind::Trajectory => Box::new(FlightExperiment::new(bundle, options)?),
         BundleKind::Servo => Box::new(ServoExperiment::new(bundle, options)?),
         BundleKind::ImpulseResponse => Box::new(RoomExperiment::new(bundle, options)?),
         BundleKind::Drive => Box::new(DriveExperiment::new(bundle)?),

@@ -117,7 +117,6 @@ impl ProgressReporter for CallbackProgress<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::{CalibrationVerdict, Options, calibrate};
 
     /// A search that is ended early says so, names nothing and installs nothing.

@@ -149,24 +149,6 @@ def spins(unit: str) -> dict[str, Any]:
     }
 
 
-def test_a_ball_bounces_where_the_map_has_a_board(tmp_path: Path) -> None:
-    rows = ["drop,t,y"]
-    for drop in range(4):
-        for k in range(60):
-            t = k / 60 - (2 * 0.5 / 9.81) ** 0.5
-            y = 0.5 - 0.5 * 9.81 * (k / 60) ** 2 if t < 0 else 2.5 * t - 0.5 * 9.81 * t * t
-            rows.append(f"{drop},{k / 60},{max(y, 0.0) + 0.02}")
-    (tmp_path / "throws.csv").write_text("\n".join(rows) + "\n")
-    table = {"file": "throws.csv", "episode": "drop", "t_s": "t", "channels": {"y": "y"}}
-    ball = {**spins("rad/s"), "axes": None, "noise_sd": None, "table": table}
-    with pytest.raises(ValueError, match=r"scene\.board"):
-        brought(tmp_path, ball, "throws.csv")
-    board = {"friction": 0.4, "restitution": 0.8, "substances": ["rubber", "concrete"]}
-    brought(tmp_path, {**ball, "board": board}, "throws.csv")
-    manifest = json.loads((tmp_path / "o.measured" / "manifest.json").read_text())
-    assert manifest["scene"]["board"] == board
-
-
 def test_spins_of_balls_turn_with_the_axes(tmp_path: Path) -> None:
     spun(tmp_path, lost=True)
     assert brought(tmp_path, spins("turn/s"), "throws.csv")["rows"] == 120

@@ -206,7 +206,7 @@ pub(super) fn check_flights(
     let at = format!("{name}/{file}");
     let all: Vec<[CoordinateTrack; 3]> = episodes.iter().map(|e| tracks(manifest, e)).collect();
     check_fall_direction(&at, manifest, &all)?;
-    if manifest.kind != BundleKind::Trajectory || manifest.scene.board.is_some() {
+    if manifest.kind != BundleKind::Trajectory {
         return Ok(());
     }
     for (episode, [_, height, _]) in episodes.iter().zip(&all) {
@@ -215,8 +215,8 @@ pub(super) fn check_flights(
                 format!("{at}, episode {}", episode.name),
                 "y",
                 format!("falling until t_s {t_s:.4} and rising by {rise_m:.3} m after it"),
-                "free flight, which never rises again: a bounce, or a hand? Leave out the rows from there on, give them \
-                 another episode's name, or describe the board that it bounces from (\"board\" in the map, scene.board)",
+                "free flight, which never rises again: a bounce, or a hand? Leave out the rows from there on, or give them \
+                 another episode's name",
             ));
         }
     }

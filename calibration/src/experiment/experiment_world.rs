@@ -169,16 +169,6 @@ impl ExperimentWorld {
         Ok(stage)
     }
 
-    /// A copy in which thing and board have the manifest's friction and restitution.
-    pub(crate) fn with_pair(&self, board: &BoardManifest) -> Result<Self, CalibrationError> {
-        let addresses = ["friction", "restitution"].map(|value| board.pair_address(value));
-        let values = [
-            (addresses[0].as_str(), board.friction),
-            (addresses[1].as_str(), board.restitution),
-        ];
-        self.with_laws_and_overrides(Vec::new(), &values)
-    }
-
     /// Adopts changes of the state.
     pub(crate) fn adopt_state(&mut self) -> Result<(), CalibrationError> {
         let adopted = self.world.adopt_state(&mut self.state);

@@ -1,22 +1,22 @@
 //! The simulation of the measurement, as fitting sees it.
 
 mod air;
-mod ball;
 mod cause;
 mod drive;
 pub(crate) mod experiment_world;
 mod fault;
+mod flight;
 mod intervention;
 mod room;
 mod servo;
 mod tables;
 mod windows;
 
-pub(crate) use air::{air_density_kg_m3, gravity_m_s2};
-pub(crate) use ball::BallExperiment;
+pub(crate) use air::gravity_m_s2;
 pub(crate) use cause::{Cause, CauseBinding, FitParameter};
 pub(crate) use drive::DriveExperiment;
 pub(crate) use fault::Fault;
+pub(crate) use flight::FlightExperiment;
 pub(crate) use intervention::Intervention;
 pub(crate) use room::RoomExperiment;
 pub(crate) use servo::ServoExperiment;

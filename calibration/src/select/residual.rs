@@ -146,11 +146,11 @@ pub(crate) fn noise_from_differences(sequences: &[&[f64]]) -> Option<NoiseFloor>
     if count < 12 || first <= 0.0 || third <= 0.0 {
         return None;
     }
-    let found = 3.0 - second / first;
-    let mut c = found.clamp(0.0, MOST_CORRELATED);
-    // The estimate's own error is about 3 / sqrt(n): correlation within it counts as none. And noise forgets; what is
-    // still alike when it should have is motion that was not modelled.
-    if c < 6.0 / (count as f64).sqrt() || remembers(sequences, c) {
+    let found = (3.0 - second / first).clamp(0.0, MOST_CORRELATED);
+    // The estimate's own error is about 3 / sqrt(n): what is certain of it is taken. Noise forgets; what is still alike when
+    // it should have is motion that was not modelled.
+    let mut c = (found - 6.0 / (count as f64).sqrt()).max(0.0);
+    if remembers(sequences, found) {
         c = 0.0;
     }
     let share = 2.0 * (1.0 - c) * (10.0 - 5.0 * c + c * c);

@@ -16,8 +16,6 @@ Map = dict[str, Any]
 
 #: What a key may hold, for keys that may hold one of several kinds.
 TEXT_OR_LIST: tuple[type, ...] = (str, list)
-#: The board that things touch: contact values before any fit, and the substances of both.
-BOARD: dict[str, Any] = {"friction": 1.0, "restitution": 1.0, "substances": []}
 TEXT_OR_OBJECT: tuple[type, ...] = (str, dict)
 #: An object whose keys are names of the user.
 NAMES: Map = {}

@@ -119,7 +119,10 @@ fn the_surface_with_another_absorption_is_named() {
 #[test]
 fn nothing_is_found_where_nothing_is_hidden() {
     let cases = [(11, 0.1), (12, 5.0), (13, 1.0), (14, 1.0)];
-    for (seed, gain) in cases.into_iter().take(if dwell_tests::runs_all() { 4 } else { 1 }) {
+    for (seed, gain) in cases
+        .into_iter()
+        .take(if dwell_tests::runs_all() { 4 } else { 1 })
+    {
         let truth = Truth {
             gain,
             ..Truth::default()
@@ -179,7 +182,10 @@ fn a_slow_recorder_is_not_warmth_where_a_thermometer_was_read() {
 #[test]
 fn a_wall_that_stands_further_away_is_named() {
     let cases = [(1_usize, 23), (4, 24)];
-    for (side, seed) in cases.into_iter().take(if dwell_tests::runs_all() { 2 } else { 1 }) {
+    for (side, seed) in cases
+        .into_iter()
+        .take(if dwell_tests::runs_all() { 2 } else { 1 })
+    {
         let edge = [5.2, 2.7, 4.1][side / 2];
         let mut truth = Truth::default();
         truth.further_m[side] = 0.12 * edge;

@@ -4,7 +4,6 @@ mod action_modes;
 mod agents;
 mod agreement;
 mod authored;
-mod calibration_bounce;
 mod calibration_drive;
 mod calibration_flight;
 mod calibration_real;

@@ -1,4 +1,4 @@
-"""Balls that fly, and bounce, slide and roll on a board: heights or coordinates, and spins."""
+"""Flights of balls: one height or all three coordinates, and how they spin."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from dwell.measured.axes import Axes
 from dwell.measured.kinds.form import Kind, counted, listing, write_episodes, write_manifest
-from dwell.measured.maps import BOARD, TABLE, Job, Map, require, require_filled
+from dwell.measured.maps import TABLE, Job, Map, require, require_filled
 from dwell.measured.places import Place
 from dwell.measured.samples import Field, SampleReader, single
 from dwell.measured.tables import MeasuredTable, cell_text
@@ -40,7 +40,6 @@ _SCHEMA: Map = {
     "axes": (str, list),
     "noise_sd": {"x": 1.0, "y": 1.0, "z": 1.0, "wx": 1.0, "wy": 1.0, "wz": 1.0},
     "body": {"name": "", "mass_kg": 1.0, "radius_m": 1.0},
-    "board": BOARD,
     "bodies": {
         "file": "",
         "part": "",
@@ -141,13 +140,7 @@ def _write(job: Job) -> dict[str, Any]:
         }
         for name in names
     ]
-    scene: dict[str, Any] = {"bodies": list(bodies.values())}
-    if job.mapping.get("board"):
-        board, board_at = job.part("board")
-        require_filled(board, ("friction", "restitution"), board_at)
-        job.draft.fields["scene.board."] = f"{board_at}."
-        scene["board"] = board
-    write_manifest(job, KIND.version, scene, {"channels": told})
+    write_manifest(job, KIND.version, {"bodies": list(bodies.values())}, {"channels": told})
     write_episodes(job, listing(samples.episodes))
     return counted(job, samples.rows, len(samples.episodes), left_out)
 

@@ -10,16 +10,7 @@ from dwell.arguments import finite_number
 from dwell.measured import rotations
 from dwell.measured.axes import Axes
 from dwell.measured.kinds.form import Kind, counted, listing, write_episodes, write_manifest
-from dwell.measured.maps import (
-    BOARD,
-    TABLE,
-    Job,
-    Map,
-    choice,
-    columns_of,
-    require,
-    require_filled,
-)
+from dwell.measured.maps import TABLE, Job, Map, choice, columns_of, require, require_filled
 from dwell.measured.samples import Episode, Field, SampleReader, single, singles
 from dwell.measured.tables import MeasuredTable
 from dwell.measured.units import ColumnUnits
@@ -68,7 +59,7 @@ _SCHEMA: Map = {
         "half_extents_m": [],
         "inertia_kg_m2": [],
     },
-    "board": BOARD,
+    "board": {"friction": 1.0, "restitution": 1.0, "substances": []},
     "poses": {"rate_hz": 1.0, "angular_velocity": "", "filtering": ""},
     "table": {
         **TABLE,

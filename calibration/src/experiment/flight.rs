@@ -1,48 +1,40 @@
-//! Balls: each episode is one that flies, and bounces, slides and rolls on a board where there is one, through the engine's
-//! own physics.
+//! Free flight: each episode is a ball that flies through the engine's own physics.
 
-mod causes;
-mod motion;
-
-use super::experiment_world::{ExperimentObject, ExperimentWorld};
+use super::air::{air_density_kg_m3, gravity_m_s2};
+use super::experiment_world::{ExperimentObject, ExperimentWorld, hermite_interpolation};
 use super::tables::{channels, episode_data};
 use super::{
-    Cause, ChannelInfo, EpisodeData, EpisodeParameters, Experiment, FitParameter, Intervention,
-    ParameterIndex, ResidualStructure, gravity_m_s2,
+    Cause, CauseBinding, ChannelInfo, EpisodeData, EpisodeParameters, Experiment, Fault,
+    FitParameter, Intervention, ParameterIndex, ResidualStructure,
 };
 use crate::bundle::Bundle;
 use crate::error::CalibrationError;
 use crate::options::Options;
 use dwell_physics::PhysicsConfig;
 use dwell_scene::PartId;
+use dwell_scene::law::LawRegime;
 use glam::Vec3;
-use motion::{BallMotion, FIRST_SPIN};
 
 /// Number of samples from which an episode's start is estimated.
 const START_SAMPLES: usize = 8;
 /// The quantities that can be measured: positions, then spins.
-const QUANTITIES: [&str; motion::QUANTITIES] = ["x", "y", "z", "wx", "wy", "wz"];
-/// Height over the board below which a ball starts on it, m; real boards and trackers are a few millimetres off.
-const TOUCHING_M: f64 = 0.006;
-/// Speed along the vertical below which such a ball does not leave it, m/s.
-const STAYING_M_S: f64 = 0.15;
-/// Most that the tracker's zero is off the board, m.
-const MOST_HEIGHT_OFFSET_M: f64 = 0.05;
-/// Height as a quantity.
-const HEIGHT: usize = 1;
-/// Half the board's edge as a share of the house's.
-const BOARD_SHARE: f32 = 0.45;
+const QUANTITIES: [&str; 6] = ["x", "y", "z", "wx", "wy", "wz"];
+/// The first of the spins.
+const FIRST_SPIN: usize = 3;
+/// Acceleration of free fall between equator and pole at heights of up to 3 km, m/s².
+const EARTH_GRAVITY_M_S2: [f64; 2] = [9.77, 9.84];
+/// The precision of a local gravity that was measured, m/s².
+const MEASURED_GRAVITY_M_S2: f64 = 2e-3;
 /// The ball in its tiny house.
 const BALL: PartId = PartId(0);
 
-/// Balls of one bundle.
-pub(crate) struct BallExperiment {
+/// Free flight of bodies.
+pub(crate) struct FlightExperiment {
     episodes: Vec<EpisodeData>,
     /// The position in [`QUANTITIES`] of each channel.
     quantities: Vec<usize>,
     channels: Vec<ChannelInfo>,
     causes: Vec<Cause>,
-    shared: Vec<FitParameter>,
     own: Vec<FitParameter>,
     own_starts: Vec<Start>,
     stages: Vec<ExperimentWorld>,
@@ -50,10 +42,6 @@ pub(crate) struct BallExperiment {
     stage_of: Vec<usize>,
     rate_hz: f64,
     gravity_m_s2: f64,
-    /// Radius of each episode's ball where there is a board, m.
-    board_radius_m: Option<Vec<f64>>,
-    /// True for episodes that start on the board. Shape (episode,).
-    starts_on_board: Vec<bool>,
 }
 
 /// What a nuisance of an episode is the start of.
@@ -67,7 +55,10 @@ enum Start {
     Spin(usize),
 }
 
-impl BallExperiment {
+/// The simulated motion: value and rate of change of each quantity at equal steps. Shape (quantity, step).
+type Tracks = [Vec<(f64, f64)>; 6];
+
+impl FlightExperiment {
     /// Prepares the bodies of a bundle.
     pub(crate) fn new(bundle: &Bundle, options: &Options) -> Result<Self, CalibrationError> {
         let manifest = &bundle.manifest;
@@ -115,94 +106,41 @@ impl BallExperiment {
             .filter(|sample| quantities[sample.channel] < FIRST_SPIN)
             .fold(0.0_f64, |reach, sample| reach.max(sample.value.abs()));
         let size_m = (4.0 * reach + 40.0).min(1000.0) as f32;
-        let board = manifest.scene.board.as_ref();
-        // `bundle::read` has required the radius.
-        let radii_m: Vec<f64> = manifest
-            .scene
-            .bodies
-            .iter()
-            .map(|body| body.radius_m.unwrap_or(0.0))
-            .collect();
         let mut stages = Vec::new();
-        for (body, radius_m) in manifest.scene.bodies.iter().zip(&radii_m) {
-            let mut ball = ExperimentObject::ball(&body.name, body.mass_kg, *radius_m);
-            if let Some(board) = board {
-                ball = ball.above_board(BOARD_SHARE * size_m, board);
-            }
+        for body in &manifest.scene.bodies {
+            // `bundle::read` has required the radius.
+            let ball =
+                ExperimentObject::ball(&body.name, body.mass_kg, body.radius_m.unwrap_or(0.0));
             let config = PhysicsConfig {
                 control_rate_hz: options.physics_rate_hz as f32,
                 physics_rate_hz: options.physics_rate_hz as f32,
                 sleeping: false,
-                // Where nothing touches and nothing holds, finer steps would only round more often.
-                solver_substeps: if board.is_some() { 4 } else { 1 },
+                // Nothing touches and nothing holds: finer steps would only round more often.
+                solver_substeps: 1,
                 ..PhysicsConfig::default()
             };
-            let stage = ExperimentWorld::new(size_m, &ball, config)?;
-            stages.push(match board {
-                Some(board) => stage.with_pair(board)?,
-                None => stage,
-            });
+            stages.push(ExperimentWorld::new(size_m, &ball, config)?);
         }
-        let stage_of: Vec<usize> = bundle
-            .episodes
-            .iter()
-            .map(|episode| episode.samples[0].entity)
-            .collect();
-        let mut found = Self {
+        Ok(Self {
             episodes: bundle
                 .episodes
                 .iter()
                 .map(|episode| episode_data(bundle, episode))
                 .collect(),
             channels: channels(bundle),
-            causes: causes::causes(manifest),
-            shared: match board {
-                Some(_) => {
-                    let most = MOST_HEIGHT_OFFSET_M;
-                    let name = "height of the tracker's zero above the board";
-                    vec![FitParameter::nuisance(name, "m", 1e-3).within(-most, most)]
-                }
-                None => Vec::new(),
-            },
+            causes: causes(bundle),
+            stage_of: bundle
+                .episodes
+                .iter()
+                .map(|episode| episode.samples[0].entity)
+                .collect(),
             rate_hz: options.physics_rate_hz,
             quantities,
             own,
             own_starts,
             stages,
             gravity_m_s2: gravity_m_s2(manifest),
-            board_radius_m: board.map(|_| stage_of.iter().map(|body| radii_m[*body]).collect()),
-            starts_on_board: vec![false; bundle.episodes.len()],
-            stage_of,
-        };
-        found.starts_on_board = (0..found.episodes.len())
-            .map(|episode| found.is_on_board_first(episode))
-            .collect();
-        Ok(found)
-    }
-
-    /// Returns whether an episode's first samples are those of a ball that lies, slides or rolls on the board.
-    fn is_on_board_first(&self, episode: usize) -> bool {
-        let Some(radii_m) = &self.board_radius_m else {
-            return false;
-        };
-        if !self.quantities.contains(&HEIGHT) {
-            return true;
-        }
-        let (height, speed) = line(&self.first_samples(episode, HEIGHT, 0.0));
-        height - radii_m[episode] < TOUCHING_M && speed.abs() < STAYING_M_S
-    }
-
-    /// The first samples of a quantity: time (s) and value, freed from half `fall` times the square of the time.
-    fn first_samples(&self, episode: usize, quantity: usize, fall: f64) -> Vec<(f64, f64)> {
-        let measured = &self.episodes[episode];
-        (0..measured.measured.len())
-            .filter(|k| self.quantities[measured.channel[*k]] == quantity)
-            .take(START_SAMPLES)
-            .map(|k| {
-                let t = measured.t_s[k];
-                (t, measured.measured[k] + 0.5 * fall * t.powi(2))
-            })
-            .collect()
+        })
     }
 
     /// The motion from a start on, for so long.
@@ -212,16 +150,12 @@ impl BallExperiment {
         intervention: Intervention,
         own: &[f64],
         duration_s: f64,
-    ) -> Result<BallMotion, CalibrationError> {
+    ) -> Result<Tracks, CalibrationError> {
         let overrides: Vec<(&str, f64)> = intervention
             .overrides
             .iter()
             .map(|(address, value)| (address.as_str(), *value))
             .collect();
-        let gravity_m_s2 = overrides
-            .iter()
-            .find(|(address, _)| *address == causes::GRAVITY)
-            .map_or(self.gravity_m_s2, |(_, value)| *value);
         let mut stage = self.stages[self.stage_of[episode]]
             .with_laws_and_overrides(intervention.laws, &overrides)?;
         let (mut position, mut velocity, mut spin) = ([0.0; 3], Vec3::ZERO, Vec3::ZERO);
@@ -232,22 +166,12 @@ impl BallExperiment {
                 Start::Spin(axis) => spin[axis] = *value as f32,
             }
         }
-        let radius_m = self.board_radius_m.as_ref().map(|radii| radii[episode]);
-        if let Some(radius_m) = radius_m {
-            if self.starts_on_board[episode] {
-                (position[HEIGHT], velocity[HEIGHT]) = (radius_m, 0.0);
-            }
-            // A start within the board is one on it.
-            position[HEIGHT] = position[HEIGHT].max(radius_m);
-            stage.state.part_pose[BALL].position = Vec3::new(0.0, position[HEIGHT] as f32, 0.0);
-        }
         let steps = (duration_s * self.rate_hz).ceil() as usize + 1;
         let start = stage.state.part_pose[BALL].position;
         stage.state.part_velocity[BALL].linear = velocity;
         stage.state.part_velocity[BALL].angular = spin;
         stage.adopt_state()?;
-        let mut tracks: [Vec<(f64, f64)>; motion::QUANTITIES] =
-            std::array::from_fn(|_| Vec::with_capacity(steps + 1));
+        let mut tracks: Tracks = std::array::from_fn(|_| Vec::with_capacity(steps + 1));
         for axis in 0..3 {
             tracks[axis].push((position[axis], f64::from(velocity[axis])));
             tracks[FIRST_SPIN + axis].push((f64::from(spin[axis]), 0.0));
@@ -263,16 +187,59 @@ impl BallExperiment {
                 tracks[FIRST_SPIN + axis].push((f64::from(speed.angular[axis]), 0.0));
             }
         }
-        Ok(BallMotion {
-            tracks,
-            step_s: 1.0 / self.rate_hz,
-            gravity_m_s2,
-            bounces: radius_m.is_some(),
-        })
+        Ok(tracks)
     }
 }
 
-impl Experiment for BallExperiment {
+/// What can act on a body in flight: laws of bodies, gravity, and the tracker's faults.
+fn causes(bundle: &Bundle) -> Vec<Cause> {
+    let manifest = &bundle.manifest;
+    let density = ("air_density_kg_m3", air_density_kg_m3(manifest));
+    let targets: Vec<String> = manifest
+        .scene
+        .bodies
+        .iter()
+        .map(|body| body.name.clone())
+        .collect();
+    let laws = dwell_physics::laws::all()
+        .filter(|law| law.acts_on == "object" && law.regimes.contains(&LawRegime::Flight))
+        .map(|law| Cause::of_law(law, &targets, &[density]));
+    let faults = [Fault::LengthScale, Fault::ClockScale, Fault::FrameTilt].map(Fault::cause);
+    laws.chain([gravity(manifest)]).chain(faults).collect()
+}
+
+/// Another acceleration of free fall. Where it was measured, only that value is plausible.
+fn gravity(manifest: &crate::bundle::file::MeasurementDescription) -> Cause {
+    let told = gravity_m_s2(manifest);
+    let plausible = if manifest.scene.environment.g_m_s2.is_some() {
+        [told - MEASURED_GRAVITY_M_S2, told + MEASURED_GRAVITY_M_S2]
+    } else {
+        EARTH_GRAVITY_M_S2
+    };
+    Cause {
+        id: "gravity".into(),
+        name: "another acceleration of free fall".into(),
+        equation: "dv/dt = -g, with g in m/s2".into(),
+        parameters: vec![FitParameter {
+            name: "gravity_m_s2".into(),
+            unit: "m/s2".into(),
+            default: told,
+            low: 0.0,
+            high: 30.0,
+            plausible,
+            step: 0.2,
+        }],
+        probes: Vec::new(),
+        separating_experiment: "throw flat and steep, slow and fast: gravity changes the vertical motion alone, by the same \
+                                amount at every speed; for scales of lengths and of the clock, measure a known length and \
+                                time a pendulum"
+            .into(),
+        binding: CauseBinding::Addresses(vec!["world/gravity_m_s2".into()]),
+        fixed: Vec::new(),
+    }
+}
+
+impl Experiment for FlightExperiment {
     fn episodes(&self) -> &[EpisodeData] {
         &self.episodes
     }
@@ -295,7 +262,7 @@ impl Experiment for BallExperiment {
 
     /// A time offset is none here: a flight that starts earlier starts elsewhere.
     fn shared_nuisances(&self) -> &[FitParameter] {
-        &self.shared
+        &[]
     }
 
     fn episode_nuisances(&self) -> &[FitParameter] {
@@ -303,15 +270,29 @@ impl Experiment for BallExperiment {
     }
 
     fn initial_nuisances(&self, episode: usize) -> Vec<f64> {
+        let measured = &self.episodes[episode];
+        let first = |quantity: usize, fall: f64| -> Vec<(f64, f64)> {
+            (0..measured.measured.len())
+                .filter(|k| self.quantities[measured.channel[*k]] == quantity)
+                .take(START_SAMPLES)
+                .map(|k| {
+                    let t = measured.t_s[k];
+                    (t, measured.measured[k] + fall * t.powi(2))
+                })
+                .collect()
+        };
         let along = |axis: usize| {
-            let falls = axis == HEIGHT && !self.starts_on_board[episode];
-            let fall = if falls { self.gravity_m_s2 } else { 0.0 };
-            line(&self.first_samples(episode, axis, fall))
+            let fall = if axis == 1 {
+                0.5 * self.gravity_m_s2
+            } else {
+                0.0
+            };
+            line(&first(axis, fall))
         };
         let starts = self.own_starts.iter().map(|start| match *start {
             Start::Position(axis) => along(axis).0,
             Start::Speed(axis) => along(axis).1,
-            Start::Spin(axis) => line(&self.first_samples(episode, FIRST_SPIN + axis, 0.0)).0,
+            Start::Spin(axis) => line(&first(FIRST_SPIN + axis, 0.0)).0,
         });
         starts.collect()
     }
@@ -326,13 +307,11 @@ impl Experiment for BallExperiment {
         let faults = intervention.faults;
         let last = measured.t_s.iter().copied().fold(0.0, f64::max);
         let duration_s = last / faults.clock_scale;
-        let motion = self.fly(episode, intervention, at.episode_nuisances, duration_s)?;
-        let zero_m = at.shared.first().copied().unwrap_or(0.0);
-        let value = |quantity: usize, t: f64| {
-            let zero_m = if quantity == HEIGHT { zero_m } else { 0.0 };
-            motion.value(quantity, t) - zero_m
-        };
+        let tracks = self.fly(episode, intervention, at.episode_nuisances, duration_s)?;
+        let step_s = 1.0 / self.rate_hz;
         let written = |quantity: usize, t: f64| {
+            let value =
+                |quantity: usize, t: f64| hermite_interpolation(&tracks[quantity], step_s, t);
             if quantity >= FIRST_SPIN {
                 return faults.sample(t, |t| value(quantity, t));
             }
@@ -351,7 +330,7 @@ impl Experiment for BallExperiment {
             .collect())
     }
 
-    /// The start of a flight shifts all of it, but for heights over a board.
+    /// The start of a flight shifts all of it.
     fn derivative(
         &self,
         episode: usize,
@@ -365,9 +344,6 @@ impl Experiment for BallExperiment {
         let Start::Position(axis) = self.own_starts[k] else {
             return None;
         };
-        if axis == HEIGHT && self.board_radius_m.is_some() {
-            return None;
-        }
         let faults = Intervention::new(&self.causes, at.causes).faults;
         let weight = |quantity: usize| {
             if quantity < FIRST_SPIN {
@@ -404,11 +380,11 @@ mod tests {
     use super::*;
     use crate::experiment::{ParameterVector, cause_range};
 
-    fn experiment() -> BallExperiment {
+    fn experiment() -> FlightExperiment {
         let folder = tempfile::tempdir().unwrap();
         crate::example::write(folder.path(), 1).unwrap();
         let bundle = crate::bundle::read(folder.path()).unwrap();
-        BallExperiment::new(&bundle, &Options::default()).unwrap()
+        FlightExperiment::new(&bundle, &Options::default()).unwrap()
     }
 
     /// Flights of the engine match closed forms: a parabola under any gravity, and Stokes' fall.
