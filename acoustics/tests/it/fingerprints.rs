@@ -32,13 +32,17 @@ const LOUD_PA: f64 = 30.0;
 /// Bands tested: 250 Hz to 4 kHz.
 const BANDS: std::ops::Range<usize> = 2..7;
 
-fn room() -> Hall {
+/// Heated air in winter, which absorbs most.
+const WINTER_PCT: f64 = 15.0;
+/// Air of which drier air absorbs more, as no air whose absorption is left out does.
+const SUMMER_PCT: f64 = 50.0;
+
+fn room(humidity_pct: f64) -> Hall {
     let config = AcousticConfig {
         max_duration_s: 0.3,
         air_absorption: true,
-        // Heated air in winter, which absorbs most.
         air: Air {
-            humidity_pct: 15.0,
+            humidity_pct,
             ..Air::default()
         },
         image_order: 1,
@@ -416,7 +420,7 @@ fn hide(id: &str, random: &mut Random) -> LawSpec {
 
 #[test]
 fn every_law_is_found_by_its_fingerprint() {
-    let hall = room();
+    let halls = [WINTER_PCT, SUMMER_PCT].map(room);
     // A seed for each law in turn; all of three with all tests.
     let every = std::env::var_os("DWELL_TEST_ALL").is_some();
     for (k, info) in laws::all().enumerate() {
@@ -426,7 +430,8 @@ fn every_law_is_found_by_its_fingerprint() {
             }
             let mut random = RandomKey::root(seed).child(info.id).stream();
             let hidden = hide(info.id, &mut random);
-            let found = verdict(&hall, std::slice::from_ref(&hidden), seed);
+            let hall = &halls[usize::from(info.id == "humidity_error")];
+            let found = verdict(hall, std::slice::from_ref(&hidden), seed);
             assert_eq!(found, Some(info.id), "{hidden:?}");
         }
     }
@@ -434,7 +439,7 @@ fn every_law_is_found_by_its_fingerprint() {
 
 #[test]
 fn nothing_is_found_where_nothing_is_hidden() {
-    let hall = room();
+    let hall = room(WINTER_PCT);
     for seed in 0..6 {
         assert_eq!(verdict(&hall, &[], seed), None, "{seed}");
     }

@@ -143,8 +143,10 @@ fn an_episode_has_the_bits_of_the_golden_digest_in_every_process_and_for_any_num
     }
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("digests");
+    // A test's thread has the test's path as its name.
+    let this = std::thread::current();
     let mut other = Command::new(std::env::current_exe().unwrap())
-        .args(["--exact", "an_episode_has_the_bits_of_the_golden_digest_in_every_process_and_for_any_number_of_threads"])
+        .args(["--exact", this.name().unwrap()])
         .env(AGAIN, &out)
         .spawn()
         .unwrap();
