@@ -22,7 +22,7 @@ from dwell.envs.config import EnvSettings, arguments_of
 pytestmark = pytest.mark.usefixtures("open_once")
 
 #: What World has as arguments of their own.
-_OWN = {"agents", "laws", "parameters"}
+_OWN = {"agents", "laws", "parameters", "randomize"}
 
 
 def _allowed(message: str) -> set[str]:
@@ -53,7 +53,7 @@ def test_a_task_is_registered_with_what_environments_know() -> None:
     with pytest.raises(dwell.ConfigError) as env:
         _native.Batch([room.native], '{"nope": 1}')
     # Laws and parameters are the world's there; the others are of Python alone.
-    own = {"houses", "episodes", "reward", "laws", "parameters", "threads"}
+    own = {"houses", "episodes", "reward", "laws", "parameters", "randomize", "threads"}
     own |= {"max_episode_steps", "render_mode", "action_mask"}
     # The engine takes several agents; Python's environments are about one.
     assert _allowed(str(env.value)) - {"agents"} == arguments - own - {"agent"}

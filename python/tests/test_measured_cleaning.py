@@ -344,7 +344,7 @@ def test_air_that_is_no_number_or_none_that_is_breathed_is_refused(tmp_path: Pat
     told = refused(tmp_path, {**FLIGHT, "environment": {"temperature_c": 300}})
     assert "map.json: environment.temperature_c is 300; allowed is -40 to 60" in told
     told = refused(tmp_path, with_table(FLIGHT, channels={"height": "y"}))
-    assert "no channel 'height'; allowed are ['x', 'y', 'z']" in told
+    assert "no channel 'height'; allowed are ['x', 'y', 'z', 'wx', 'wy', 'wz']" in told
 
 
 def test_one_episode_is_refused(tmp_path: Path) -> None:

@@ -6,6 +6,7 @@ import csv
 import json
 import math
 import os
+import shutil
 import struct
 import wave
 from pathlib import Path
@@ -390,6 +391,7 @@ def test_arrivals_that_others_picked_are_imported_without_sound(tmp_path: Path) 
     assert float(third["t_s"]) == pytest.approx(0.006)
     manifest = json.loads((tmp_path / "o.measured" / "manifest.json").read_text())
     assert manifest["response_times"] == "absolute"
+    shutil.rmtree(tmp_path / "o.measured")
     with pytest.raises(ValueError, match="response_times"):
         brought(tmp_path, mapping | {"response_times": "somehow"}, "toa.csv", "places.csv")
 
