@@ -124,7 +124,7 @@ fn acceleration_index(regime: Regime) -> usize {
         Regime::Flight => 0,
         Regime::Impact => 1,
         Regime::Rest => 3,
-        _ => 2,
+        Regime::Contact => 2,
     }
 }
 

@@ -196,8 +196,8 @@ fn vertex(values: &[f64], k: usize) -> f64 {
 fn distance_to_nearest(t_s: f64, others_s: &[f64]) -> f64 {
     let after = others_s.partition_point(|other| *other < t_s);
     let mut nearest = f64::INFINITY;
-    for k in after.saturating_sub(1)..(after + 1).min(others_s.len()) {
-        let distance = t_s - others_s[k];
+    for other_s in &others_s[after.saturating_sub(1)..(after + 1).min(others_s.len())] {
+        let distance = t_s - other_s;
         if distance.abs() < nearest.abs() {
             nearest = distance;
         }
