@@ -1,4 +1,9 @@
 //! Sound against theory.
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "tests may stop at the first surprise, and may talk"
+)]
 
 mod absorption;
 mod angles;

@@ -101,10 +101,13 @@ mod tests {
         // Shorter ones stay whole, and what never rests does.
         assert_eq!(
             windows_between_rests(&t_s[..90], &position[..90], &commands),
-            [0..90]
+            std::slice::from_ref(&(0..90))
         );
         let sine: Vec<f64> = t_s.iter().map(|t| libm::sin(3.0 * t)).collect();
-        assert_eq!(windows_between_rests(&t_s, &sine, &[]), [0..400]);
+        assert_eq!(
+            windows_between_rests(&t_s, &sine, &[]),
+            std::slice::from_ref(&(0..400))
+        );
     }
 
     #[test]

@@ -1,4 +1,9 @@
 //! Words against the scene.
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "tests may stop at the first surprise, and may talk"
+)]
 
 mod algebra;
 mod antecedents;

@@ -1,4 +1,9 @@
 //! What crosses engines.
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "tests may stop at the first surprise, and may talk"
+)]
 
 mod action_modes;
 mod agents;

@@ -1,4 +1,9 @@
 //! Houses of all formats.
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "tests may stop at the first surprise, and may talk"
+)]
 
 mod authoring;
 mod common;
