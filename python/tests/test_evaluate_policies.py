@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import subprocess
 import sys
@@ -58,7 +59,9 @@ def forget(before: set[str]) -> None:
             del sys.modules[name]
 
 
-def stop_after(count: int, monkeypatch: pytest.MonkeyPatch) -> None:
+@contextlib.contextmanager
+def stopped_after(count: int) -> Iterator[None]:
+    """Ctrl-C after so many episodes."""
     add, left = Journal.add, [count]
 
     def stop(self: Journal, *args: object) -> None:
@@ -67,22 +70,22 @@ def stop_after(count: int, monkeypatch: pytest.MonkeyPatch) -> None:
             raise KeyboardInterrupt
         add(self, *args)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(Journal, "add", stop)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Journal, "add", stop)
+        yield
 
 
 @pytest.mark.parametrize("changed", ["spinner.py", "beside.py"])
 def test_a_policy_that_has_changed_does_not_go_on(
-    changed: str, folder: Path, command: Command, monkeypatch: pytest.MonkeyPatch
+    changed: str, folder: Path, command: Command
 ) -> None:
     (folder / "spinner.py").write_text(SPINNER)
     (folder / "beside.py").write_text("DIRECTION = 2\n\n\ndef other():\n    return 1\n")
     (folder / "spinner.py").write_text(f"from beside import other\n{SPINNER}")
     args = ("evaluate", "spinner:Spin", *OPTIONS, "--sensors", "gps", "--out", folder / "r.json")
     before = {*sys.modules}
-    stop_after(2, monkeypatch)
-    assert command(*args).returncode == 130
-    monkeypatch.undo()
-    monkeypatch.chdir(folder)
+    with stopped_after(2):
+        assert command(*args).returncode == 130
     kept = folder / ".r.json.part"
     written = kept.read_bytes()
     old = (folder / changed).read_text()
@@ -248,23 +251,20 @@ def test_more_modes_than_there_are_are_refused(command: Command) -> None:
     assert command("evaluate", "stop", *OPTIONS, "--action-mode", "thought").returncode == 2
 
 
-def test_processes_give_the_same_bytes(
-    folder: Path, command: Command, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_processes_give_the_same_bytes(folder: Path, command: Command) -> None:
     (folder / "spinner.py").write_text(SPINNER)
     (folder / "beside.py").write_text("DIRECTION = 2\n")
     maker = EpisodeMaker("PointNav", "builtin:studio", count=5, seed=5)
     dwell.episodes.write(folder / "val.jsonl", maker.header, maker.episodes())
     args = ("evaluate", "spinner:Spin", "--episodes", folder / "val.jsonl", "--sensors", "gps")
-    assert command(*args, "--out", folder / "one.json").returncode == 0
+    # Several first: they find the policy's folder where no earlier command has named it.
     two = command(*args, "--out", folder / "two.json", "--workers", "2")
     assert two.returncode == 0, two.stderr
+    assert command(*args, "--out", folder / "one.json").returncode == 0
     assert (folder / "two.json").read_bytes() == (folder / "one.json").read_bytes()
     # Begun by one and ended by several, the same; and errors come back whole.
-    stop_after(2, monkeypatch)
-    assert command(*args, "--out", folder / "cut.json").returncode == 130
-    monkeypatch.undo()
-    monkeypatch.chdir(folder)
+    with stopped_after(2):
+        assert command(*args, "--out", folder / "cut.json").returncode == 130
     assert command(*args, "--out", folder / "cut.json", "--workers", "3").returncode == 0
     assert (folder / "cut.json").read_bytes() == (folder / "one.json").read_bytes()
     (folder / "my_faulty_policy.py").write_text(FAULTY)

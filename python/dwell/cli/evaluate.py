@@ -7,6 +7,7 @@ import hashlib
 import json
 import sys
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 from dwell.arguments import from_json
@@ -92,8 +93,11 @@ def run(args: argparse.Namespace) -> int:
     from dwell.policies import PolicyError
 
     if args.policy is not None and ":" in args.policy:
-        # A policy lies where the command is given more often than in an installed package.
-        sys.path.insert(0, "")
+        # A policy lies where the command is given more often than in an installed package. Not "":
+        # to processes of its own, multiprocessing gives that as the folder of its own import.
+        here = str(Path.cwd())
+        if here not in sys.path:
+            sys.path.insert(0, here)
     try:
         return _verify(args) if args.verify is not None else _evaluate(args)
     except PolicyError as error:
