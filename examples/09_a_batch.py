@@ -30,7 +30,7 @@ batch.close()
 # Bulk jobs are commands: they show progress, write atomically, and go on where they stopped.
 with tempfile.TemporaryDirectory() as folder:
     out = Path(folder, "rooms.jsonl")
-    command = [sys.executable, "-m", "dwell.cli", "describe", "seed:0..2?home=studio"]
+    command = [sys.executable, "-m", "dwell", "describe", "seed:0..2?home=studio"]
     subprocess.run([*command, "--level", "room", "--out", out], check=True)
     rows = [json.loads(line) for line in out.read_text("utf-8").splitlines()]
 print(f"{len(rows)} descriptions by dwell {dwell.__version__}; the first has {sorted(rows[0])}")

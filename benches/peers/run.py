@@ -151,7 +151,7 @@ def dropped(peer_python: Path, folder: Path, args: argparse.Namespace) -> dict[s
         str(folder / "boxes.json"),
         "--json",
     ]
-    dwell = shlex.join([sys.executable, "-m", "dwell.cli"])
+    dwell = shlex.join([sys.executable, "-m", "dwell"])
     options = ["--dwell", dwell, "--house", args.house, "--repeats", str(args.rounds)]
     told = subprocess.run([*words, *options], check=False, capture_output=True, text=True)
     if told.returncode != 0:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,8 +23,8 @@ from dwell.arguments import (
     three_numbers,
     to_json,
     two_numbers,
-    unit_quaternion,
 )
+from dwell.body_api import BodyApi
 from dwell.camera import MAX_PIXELS, Camera, camera_settings
 from dwell.configs import bodies
 from dwell.engine_types import Channel
@@ -49,10 +49,8 @@ _OWN = ("house", "_native", "_config", "_seed", "_heads")
 #: Ids have 32 bits.
 _MAX_ID = 2**32 - 1
 
-JointCommand = Literal["off", "position", "velocity", "effort"]
 
-
-class World(ActionApi, GuideApi, PersonApi, SoundApi):
+class World(ActionApi, BodyApi, GuideApi, PersonApi, SoundApi):
     """A running world with its own state over a shared house.
 
     A copy, or what comes out of a pickle, goes on from the moment it was made.
@@ -369,109 +367,6 @@ class World(ActionApi, GuideApi, PersonApi, SoundApi):
         return self._native.listen(
             integer_in_range("agent", agent), integer_in_range("samples", samples, low=1)
         )
-
-    def joints(self) -> list[dict[str, Any]]:
-        """Every joint: id, name, object, kind, limits, motor, position, velocity, command."""
-        return self._native.joints()
-
-    def command_joint(self, joint: int, kind: JointCommand, value: float = 0.0) -> None:
-        """Commands a joint's motor, until the next command.
-
-        Args:
-            joint: Its id, as in :meth:`joints`.
-            kind: ``position`` (rad or m), ``velocity`` (per second), ``effort`` (N m or N) or
-                ``off``.
-            value: The number.
-
-        Raises:
-            ConfigError: For a kind or a joint that does not exist, or a number that is not finite.
-            UsageError: The joint cannot obey.
-        """
-        joint = integer_in_range("joint", joint, high=_MAX_ID)
-        self._native.command_joint(joint, text("kind", kind), finite_number("value", value))
-
-    def set_joints(self, joints: Mapping[int, tuple[float, float]]) -> None:
-        """Sets positions and velocities of joints at once; what hangs on them moves along.
-
-        Args:
-            joints: By id, as in :meth:`joints`: (rad or m, and per second).
-
-        Raises:
-            ConfigError: For what is no pair of finite numbers, and a joint that there is not.
-            DwellError: A position is beyond the joint's limits, or a speed beyond 1000 rad/s or
-                m/s. Nothing has changed then.
-        """
-        if not isinstance(joints, Mapping):
-            raise ConfigError(f"joints is {quoted(joints)}; expected (position, velocity) by id")
-        rows = []
-        for joint, stand in joints.items():
-            position, velocity = two_numbers(f"joint {quoted(joint)}: (position, velocity)", stand)
-            rows.append((integer_in_range("joint", joint, high=_MAX_ID), position, velocity))
-        self._native.set_joints(rows)
-
-    def body(self, object: str, *, part: str | None = None) -> dict[str, tuple[float, ...]]:
-        """A thing's pose and velocities.
-
-        Args:
-            object: Its name.
-            part: One of its parts, by name; without it the first that moves.
-
-        Returns:
-            ``position`` (m) and ``rotation`` (x, y, z, w) of the part's origin, ``linear_m_s`` and
-            ``angular_rad_s``.
-        """
-        body = self._native.body(
-            text("object", object), None if part is None else text("part", part)
-        )
-        return {name: tuple(values) for name, values in body.items()}
-
-    def set_body(
-        self,
-        object: str,
-        *,
-        part: str | None = None,
-        position: Sequence[float] | None = None,
-        rotation: Sequence[float] | None = None,
-        linear_m_s: Sequence[float] = (0.0, 0.0, 0.0),
-        angular_rad_s: Sequence[float] = (0.0, 0.0, 0.0),
-    ) -> None:
-        """Places a thing that moves freely, or the base of a free robot.
-
-        It is awake afterwards, what hangs on it by joints moves along, and :meth:`body` reads back
-        what was set. Joints are set by :meth:`set_joints`, agents by :meth:`place_agent`.
-
-        Args:
-            object: Its name.
-            part: One of its parts, by name; without it the first that moves.
-            position: Of the part's origin, m; where it is, if left out.
-            rotation: (x, y, z, w) of any length but 0; as it is, if left out.
-            linear_m_s: Velocity of the part's origin; at rest, if left out.
-            angular_rad_s: Rotation about the world's axes.
-
-        Raises:
-            ConfigError: For a thing that does not exist or what is no finite number.
-            DwellError: It is fixed, held, frozen at the start or moved by a joint, or physics
-                cannot keep the numbers. Nothing has changed then.
-
-        Examples:
-            >>> import dwell
-            >>> world = dwell.World("builtin:apartment")
-            >>> name = next(thing["name"] for thing in world.objects() if thing["pickable"])
-            >>> world.set_body(name, position=(1.0, 1.5, 1.0), linear_m_s=(0.0, 2.0, 0.0))
-            >>> world.body(name)["linear_m_s"]
-            (0.0, 2.0, 0.0)
-        """
-        now = self.body(object, part=part)
-        turn = now["rotation"] if rotation is None else unit_quaternion("rotation", rotation)
-        row = {
-            "object": object,
-            "part": part,
-            "position": now["position"] if position is None else point("position", position),
-            "rotation": turn,
-            "linear_m_s": three_numbers("linear_m_s", linear_m_s),
-            "angular_rad_s": three_numbers("angular_rad_s", angular_rad_s),
-        }
-        self._native.set_bodies([row])
 
     def parameter(self, address: str) -> dict[str, Any]:
         """The parameter at an address: value, unit, low, high."""

@@ -1,6 +1,7 @@
 //! Results of the engines as values of Python: mappings, lists, text and numbers, without JSON text in between.
 
 use crate::errors::PyFault;
+use dwell_scene::interrupt;
 use pyo3::IntoPyObject;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -67,6 +68,8 @@ impl<'py> IntoPyObject<'py> for PyValue {
             Self::Rows(rows) => {
                 let list = PyList::empty(py);
                 for row in rows {
+                    // Lists may be long, and nobody else asks while Python's objects are made.
+                    py.check_signals()?;
                     list.append(row)?;
                 }
                 list.into_any()
@@ -116,6 +119,7 @@ fn fields(variant: Option<&'static str>, count: usize) -> MapSerializer {
 
 impl SequenceSerializer {
     fn push(&mut self, value: &(impl Serialize + ?Sized)) -> Result<(), Error> {
+        interrupt::unwind_if_cancelled();
         self.rows.push(value.serialize(AnswerSerializer)?);
         Ok(())
     }

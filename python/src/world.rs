@@ -54,7 +54,7 @@ impl PyWorld {
         py.engine(|| self.reach(|running| interrupt::uninterruptible(|| work(running))))
     }
 
-    /// Changes the world at the end of a long preparation: a signal during it leaves the world as it was.
+    /// Changes the world by work that leaves it as it was when a signal stops it: a long preparation with a change at its end, or a step.
     fn prepare<T: Send>(
         &self,
         py: Python<'_>,
@@ -172,13 +172,13 @@ impl PyWorld {
                 ..AgentControl::default()
             })
             .collect();
-        self.with(py, |running| Ok(running.world.step(&controls)?))
+        self.prepare(py, |running| Ok(running.world.step_or_stay(&controls)?))
     }
 
     fn step_fields(&self, py: Python<'_>, controls: JsonArgument) -> PyResult<()> {
-        self.with(py, |running| {
+        self.prepare(py, |running| {
             let controls: Vec<AgentControl> = controls.read()?;
-            Ok(running.world.step(&controls)?)
+            Ok(running.world.step_or_stay(&controls)?)
         })
     }
 

@@ -26,7 +26,7 @@ pytestmark = pytest.mark.usefixtures("open_once")
 
 def process(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
     """``dwell ARGUMENTS`` in a process of its own; the fixture ``command`` runs it in this one."""
-    command = [sys.executable, "-m", "dwell.cli", *map(str, arguments)]
+    command = [sys.executable, "-m", "dwell", *map(str, arguments)]
     return subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
 
 

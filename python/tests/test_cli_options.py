@@ -69,7 +69,7 @@ def test_a_number_that_stands_twice_is_refused(capsys: pytest.CaptureFixture[str
 
 
 def in_shell(command: str) -> subprocess.CompletedProcess[str]:
-    whole = command.replace("dwell", f"{sys.executable} -m dwell.cli", 1)
+    whole = command.replace("dwell", f"{sys.executable} -m dwell", 1)
     return subprocess.run(
         whole, shell=True, capture_output=True, text=True, timeout=300, check=False
     )
@@ -96,7 +96,7 @@ def test_a_full_disk_behind_standard_output_is_named(command: str) -> None:
 @pytest.mark.skipif(not Path("/proc/self/limits").exists(), reason="the limits of Linux")
 def test_a_picture_that_memory_cannot_hold_is_refused(tmp_path: Path) -> None:
     done = subprocess.run(
-        f"ulimit -v 1500000; exec {sys.executable} -m dwell.cli render {HOUSE} --width 16000 "
+        f"ulimit -v 1500000; exec {sys.executable} -m dwell render {HOUSE} --width 16000 "
         f"--height 16000 --sensors rgb,albedo --at 0,1.5,0 --out {tmp_path / 'out'}",
         shell=True,
         capture_output=True,
@@ -124,7 +124,7 @@ def test_a_name_that_the_stream_cannot_print_is_escaped(tmp_path: Path) -> None:
     house.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     for encoding, told in (("ascii", "\\u00e4\\u2192"), ("latin-1", "ä\\u2192")):
         done = subprocess.run(
-            [sys.executable, "-m", "dwell.cli", "info", str(house), "--json"],
+            [sys.executable, "-m", "dwell", "info", str(house), "--json"],
             env={**os.environ, "PYTHONIOENCODING": encoding},
             capture_output=True,
             timeout=300,

@@ -111,7 +111,7 @@ def test_an_agent_walks_through_a_generated_house() -> None:
 
 
 def process(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "dwell.cli", "generate", *map(str, arguments)]
+    command = [sys.executable, "-m", "dwell", "generate", *map(str, arguments)]
     return subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
 
 
@@ -154,7 +154,7 @@ def test_bulk_houses_open_again_and_the_manifest_tells_them(
 def test_a_run_that_was_killed_goes_on_and_ends_as_if_it_had_not_been(tmp_path: Path) -> None:
     whole, cut = tmp_path / "whole", tmp_path / "cut"
     assert process(*STUDIOS, "--out", whole).returncode == 0
-    command = [sys.executable, "-m", "dwell.cli", "generate", *STUDIOS, "--out", str(cut)]
+    command = [sys.executable, "-m", "dwell", "generate", *STUDIOS, "--out", str(cut)]
     journal = cut / ".manifest.jsonl.part"
     running = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     while running.poll() is None:

@@ -120,7 +120,7 @@ def test_what_a_measured_room_cannot_be_names_its_file(
     values = {**room, **places, **changes}
     file = tmp_path / "room.json"
     file.write_text(json.dumps({key: value for key, value in values.items() if value is not None}))
-    command = [sys.executable, "-m", "dwell.cli", "ir", str(file)]
+    command = [sys.executable, "-m", "dwell", "ir", str(file)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 1
     assert told in done.stderr

@@ -150,14 +150,21 @@ def test_what_was_stopped_while_it_was_prepared_is_prepared_again(
     assert world.state_hash() == twin.state_hash()
 
 
-def test_a_handler_runs_in_the_middle_of_what_is_never_stopped_half_way() -> None:
-    # Contacts as hard as they can be take a second a step.
+def hard_world() -> dwell.World:
+    """Contacts as hard as they can be take a second a step."""
     hard = {"contact_compliance": {"natural_frequency_hz": 1000.0}}
-    world, twin = (dwell.World("builtin:studio", laws=hard, settle_s=0.0) for _ in range(2))
-    assert cut_off(world.step) == "ended"
+    return dwell.World("builtin:studio", laws=hard, settle_s=0.0)
+
+
+def test_a_long_step_that_was_stopped_leaves_the_world_as_it_was() -> None:
+    world, twin = hard_world(), hard_world()
+    assert cut_off(world.step, at=3) == "stopped"
+    assert world.snapshot() == twin.snapshot()
+    assert world.events() == twin.events()
+    world.step()
     twin.step()
     assert world.time_s == twin.time_s
-    assert world.state_hash() == twin.state_hash()
+    assert world.snapshot() == twin.snapshot()
 
 
 def test_a_handler_that_does_not_raise_leaves_the_call_alone() -> None:

@@ -120,7 +120,7 @@ def test_a_bad_cell_is_named_by_file_column_and_row(tmp_path: Path, cell: str) -
 
 
 def test_the_command_prints_a_template_that_it_reads(tmp_path: Path) -> None:
-    command = [sys.executable, "-m", "dwell.cli", "measure", "import"]
+    command = [sys.executable, "-m", "dwell", "measure", "import"]
     for kind in ("pose_trajectory", "trajectory", "drive"):
         done = subprocess.run(
             [*command, "--init", kind], capture_output=True, text=True, check=True

@@ -37,7 +37,7 @@ def recorded(*arguments: str | Path) -> dict[str, list[tuple[str, Any]]]:
     """The recording of ``dwell view``: for each column its chunks' entity paths and cells."""
     chunk = pytest.importorskip("rerun.chunk", reason="needs the Rerun SDK of `make demo`")
     out = arguments[-1]
-    command = [sys.executable, "-m", "dwell.cli", "view", *map(str, arguments), "--json"]
+    command = [sys.executable, "-m", "dwell", "view", *map(str, arguments), "--json"]
     done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout) == {"file": str(out)}

@@ -296,6 +296,35 @@ def test_things_are_set_to_any_pose_and_velocity(apartment: dwell.House) -> None
     assert world.state_hash() == before
 
 
+def test_several_things_are_set_at_once_or_none(apartment: dwell.House) -> None:
+    world = dwell.World(apartment)
+    names = [thing["name"] for thing in world.objects() if thing["pickable"]][:3]
+    turned = world.body(names[2])["rotation"]
+    rows = [{"object": name, "position": (1.0, 1.5 + k, 2.0)} for k, name in enumerate(names)]
+    rows[1] |= {"rotation": (0.0, 2.0, 0.0, 0.0), "linear_m_s": (0.0, 1.0, 0.0), "part": None}
+    world.set_bodies(row for row in rows)
+    for k, name in enumerate(names):
+        assert world.body(name)["position"] == (1.0, 1.5 + k, 2.0)
+    assert world.body(names[1])["rotation"] == (0.0, 1.0, 0.0, 0.0)
+    assert world.body(names[1])["linear_m_s"] == (0.0, 1.0, 0.0)
+    assert world.body(names[2])["rotation"] == turned
+    before = world.state_hash()
+    world.set_bodies([])
+    for wrong, match in [
+        ({"object": "unicorn"}, "no object"),
+        ({"position": (0.0, 1.0, 0.0)}, r"bodies\[1\] is .*the name of a thing as object"),
+        ({"object": names[2], "positon": (0.0, 1.0, 0.0)}, r"bodies\[1\].*did you mean position"),
+        ({"object": names[2], "position": (0.0, 1.0)}, r"bodies\[1\]\.position"),
+        ({"object": names[0]}, r"bodies\[1\] is '.*', as bodies\[0\] is"),
+        (names[2], r"bodies\[1\] is "),
+    ]:
+        with pytest.raises(dwell.ConfigError, match=match):
+            world.set_bodies([{"object": names[0], "position": (2.0, 2.0, 2.0)}, wrong])  # type: ignore[list-item]
+    with pytest.raises(dwell.ConfigError, match="bodies is"):
+        world.set_bodies({"object": names[0]})  # type: ignore[arg-type]
+    assert world.state_hash() == before
+
+
 def test_houses_survive_their_own_form(apartment: dwell.House, tmp_path: os.PathLike[str]) -> None:
     path = os.path.join(tmp_path, "copy.dwell")
     assert apartment.write(path, "dwell") == []

@@ -111,6 +111,11 @@ impl<I: Id, T> IdVec<I, T> {
         id
     }
 
+    /// Removes the items from index `count` on.
+    pub fn truncate(&mut self, count: usize) {
+        self.items.truncate(count);
+    }
+
     /// The number of items.
     pub fn len(&self) -> usize {
         self.items.len()

@@ -13,6 +13,7 @@ use dwell_physics::{
 };
 use dwell_render::BackEnd;
 use dwell_scene::bvh::{Ray, RayMask};
+use dwell_scene::interrupt;
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
@@ -139,11 +140,46 @@ impl World {
     /// # Errors
     /// [`WorldError::Physics`] for numbers that are not finite or too many controls.
     pub fn step(&mut self, controls: &[AgentControl]) -> Result<(), WorldError> {
-        self.events.clear();
         let began_s = self.physics.time_s();
+        self.step_physics(controls)?;
+        self.conclude_step(began_s)
+    }
+
+    /// As [`World::step`], but a cancellation meanwhile ([`interrupt`]) leaves the world as it was before. Short steps end first.
+    ///
+    /// # Errors
+    /// As [`World::step`].
+    pub fn step_or_stay(&mut self, controls: &[AgentControl]) -> Result<(), WorldError> {
+        if !self.physics.is_next_step_long() {
+            return interrupt::uninterruptible(|| self.step(controls));
+        }
+        let began_s = self.physics.time_s();
+        let before = (
+            self.state.clone(),
+            self.physics.clone(),
+            self.events.clone(),
+        );
+        match interrupt::catch_interrupt(|| self.step_physics(controls)) {
+            Ok(outcome) => outcome?,
+            Err(interrupted) => {
+                (self.state, self.physics, self.events) = before;
+                interrupted.resume();
+            }
+        }
+        interrupt::uninterruptible(|| self.conclude_step(began_s))
+    }
+
+    /// The part of a step in which things move.
+    fn step_physics(&mut self, controls: &[AgentControl]) -> Result<(), WorldError> {
+        self.events.clear();
         self.before.capture(&self.state);
-        self.physics
-            .step(&mut self.state, controls, &mut self.events)?;
+        Ok(self
+            .physics
+            .step(&mut self.state, controls, &mut self.events)?)
+    }
+
+    /// The part of a step that follows from what has moved.
+    fn conclude_step(&mut self, began_s: f64) -> Result<(), WorldError> {
         self.state.step += 1;
         self.state.time_s = self.state.step as f64 * self.config.step_s();
         self.advance_persons();

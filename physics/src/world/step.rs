@@ -7,12 +7,23 @@ use crate::contact::ContactEvent;
 use crate::error::PhysicsError;
 use dwell_scene::{State, interrupt};
 
+/// Awake bodies times physics steps from which on a control step counts as long: some milliseconds, many times what a copy of the
+/// world takes.
+const LONG_BODY_STEPS: usize = 400;
+
 impl PhysicsWorld {
+    /// Returns whether the next [`PhysicsWorld::step`] may take so long that a copy of the world beforehand costs little beside it.
+    pub fn is_next_step_long(&self) -> bool {
+        let awake = self.dynamics.engine.islands.num_active_bodies();
+        awake * self.dynamics.settings.steps_per_control as usize >= LONG_BODY_STEPS
+    }
+
     /// Makes one control step: agents move by `controls` (those without one stand still), then bodies, joints and contacts;
     /// `state` is updated, and impacts, sliding and rolling are appended to `events` in the order of time and pair: at most
     /// [`max_events_per_step`](crate::PhysicsConfig::max_events_per_step), see [`PhysicsWorld::events_beyond_limit`].
     ///
-    /// The state's `time_s` and `step` belong to the caller and are left alone.
+    /// The state's `time_s` and `step` belong to the caller and are left alone. A cancellation ([`interrupt`]) may leave the step
+    /// half made: go on with copies of world and state that were taken before.
     ///
     /// # Errors
     /// [`PhysicsError::ForeignState`] for another world's state, [`PhysicsError::UnknownAgent`] for more controls than

@@ -149,6 +149,22 @@ fn drop_unused(data: &mut HouseData, once: &UsedAssets) {
 
 /// Drops those of some materials, and their images, that nothing shows any more.
 pub(super) fn remove_unused_materials(data: &mut HouseData, materials: &[MaterialId]) {
+    let mut unused: BTreeSet<MaterialId> = materials.iter().copied().collect();
+    let pieces = data.structure.iter().map(|piece| &piece.materials);
+    let parts = data.parts.iter().map(|part| &part.materials);
+    for id in pieces.chain(parts).flatten() {
+        if unused.remove(id) && unused.is_empty() {
+            return;
+        }
+    }
+    // Those of a thing that was just added are the last: numbers of others stay, which keeps adding thousands of things cheap.
+    let first = data.materials.len() - unused.len();
+    let are_last = unused.iter().all(|id| id.index() >= first);
+    let are_plain = unused.iter().all(|id| data.materials[*id].texture.is_none());
+    if are_last && are_plain {
+        data.materials.truncate(first);
+        return;
+    }
     let once = UsedAssets {
         meshes: BTreeSet::new(),
         materials: materials.iter().map(|id| id.0).collect(),

@@ -1,4 +1,4 @@
-"""``python -m dwell.cli``."""
+"""``python -m dwell``."""
 
 from dwell.cli import main
 
