@@ -86,14 +86,14 @@ fn a_further_world_keeps_little() {
     }
 }
 
-/// Resets leave nothing behind: 300 in two houses, 10,000 in all with `DWELL_TEST_ALL=1`.
+/// Resets leave nothing behind: 100 in two houses, 10,000 in all with `DWELL_TEST_ALL=1`.
 #[test]
 fn resets_leave_nothing_behind() {
     let _alone = ALONE.lock().unwrap();
     let (resets, houses) = if dwell_tests::runs_all() {
         (10_000, houses())
     } else {
-        (300, vec!["builtin:studio".to_owned(), "seed:7".to_owned()])
+        (100, vec!["builtin:studio".to_owned(), "seed:7".to_owned()])
     };
     for name in houses {
         let engines = Engines::new(Arc::new(dwell_houses::open(&name).unwrap().0));

@@ -185,9 +185,14 @@ fn the_order_of_the_images_does_not_change_the_energy() {
 }
 
 /// Thinning out faint rays is fair: it changes neither level nor decay beyond chance. Of one trace that is thinned, the late energy has
-/// an error of 4.5 %: eight bring it to 0.07 dB.
+/// an error of 4.5 %: eight bring it to 0.07 dB. With `DWELL_TEST_ALL=1`: it traces for as long as all others here; those with
+/// closed forms trace with roulette, too.
 #[test]
 fn roulette_is_unbiased() {
+    if std::env::var_os("DWELL_TEST_ALL").is_none() {
+        println!("skipped: slow; DWELL_TEST_ALL=1 runs it");
+        return;
+    }
     const TRACES: u64 = 8;
     let [all, thinned] = [120.0, 15.0].map(|roulette_db| {
         let config = AcousticConfig {

@@ -101,17 +101,27 @@ impl SymmetricMatrix {
     }
 
     pub(super) fn multiply(&self, vector: &[f64]) -> Vec<f64> {
-        let row = |i: usize| {
+        let mut product = vec![0.0; self.size];
+        self.multiply_into(vector, &mut product);
+        product
+    }
+
+    fn multiply_into(&self, vector: &[f64], product: &mut [f64]) {
+        for (i, entry) in product.iter_mut().enumerate() {
             let row = &self.values[i * self.size..(i + 1) * self.size];
-            row.iter().zip(vector).map(|(a, b)| a * b).sum()
-        };
-        (0..self.size).map(row).collect()
+            *entry = row.iter().zip(vector).map(|(a, b)| a * b).sum();
+        }
     }
 
     /// Returns the Cholesky factor; a diagonal entry lost to rounding becomes tiny instead of negative.
     pub(super) fn cholesky(&self) -> CholeskyFactor {
-        let n = self.size;
-        let mut l = vec![0.0; n * n];
+        let mut factor = CholeskyFactor::of_size(self.size);
+        self.cholesky_into(&mut factor);
+        factor
+    }
+
+    fn cholesky_into(&self, factor: &mut CholeskyFactor) {
+        let (n, l) = (self.size, &mut factor.l);
         for j in 0..n {
             let mut pivot = self.get(j, j);
             for k in 0..j {
@@ -127,7 +137,6 @@ impl SymmetricMatrix {
                 l[i * n + j] = value / root;
             }
         }
-        CholeskyFactor { size: n, l }
     }
 }
 
@@ -138,9 +147,19 @@ pub(super) struct CholeskyFactor {
 }
 
 impl CholeskyFactor {
+    fn of_size(size: usize) -> Self {
+        let l = vec![0.0; size * size];
+        Self { size, l }
+    }
+
     pub(super) fn solve(&self, right: &[f64]) -> Vec<f64> {
-        let n = self.size;
         let mut x = right.to_vec();
+        self.solve_in_place(&mut x);
+        x
+    }
+
+    fn solve_in_place(&self, x: &mut [f64]) {
+        let n = self.size;
         for i in 0..n {
             for k in 0..i {
                 x[i] -= self.l[i * n + k] * x[k];
@@ -153,7 +172,26 @@ impl CholeskyFactor {
             }
             x[i] /= self.l[i * n + i];
         }
-        x
+    }
+}
+
+/// Memory for gradients, which one solution wants by the hundred. Each has shape (freedom,).
+struct GradientBuffers {
+    velocity: Vec<f64>,
+    off: Vec<f64>,
+    efforts: Vec<f64>,
+    gradient: Vec<f64>,
+}
+
+impl GradientBuffers {
+    fn of_size(size: usize) -> Self {
+        let zeros = || vec![0.0; size];
+        Self {
+            velocity: zeros(),
+            off: zeros(),
+            efforts: zeros(),
+            gradient: zeros(),
+        }
     }
 }
 
@@ -170,10 +208,14 @@ impl EffortProblem {
     /// Returns the velocities at the end of the step. Shape (freedom,).
     pub(super) fn solve(&self) -> Vec<f64> {
         let mut velocity = self.free_velocities.clone();
-        let mut before: Option<Vec<f64>> = None;
+        let mut buffers = GradientBuffers::of_size(velocity.len());
+        let (mut way, mut curvature) = (velocity.clone(), self.inertia.clone());
+        let mut factor = CholeskyFactor::of_size(curvature.size);
+        let (mut falls, mut before) = (Vec::with_capacity(self.terms.len()), Vec::new());
+        let mut was_whole = false;
         for _ in 0..MOST_ITERATIONS {
-            let mut curvature = self.inertia.clone();
-            let mut falls = Vec::with_capacity(self.terms.len());
+            curvature.values.clone_from(&self.inertia.values);
+            falls.clear();
             for element in &self.terms {
                 // The Hessian: H + h J^T diag(-d tau / d v) J.
                 let (_, fall) = element.effort_and_slope(element.velocity(&velocity));
@@ -186,17 +228,23 @@ impl EffortProblem {
                 falls.push(fall);
             }
             // A whole step along unchanged slopes is exact.
-            if before.as_ref() == Some(&falls) {
+            if was_whole && before == falls {
                 break;
             }
-            let gradient: Vec<f64> = self.gradient(&velocity).iter().map(|g| -g).collect();
+            buffers.velocity.clone_from(&velocity);
+            self.gradient(&mut buffers);
+            for (d, g) in way.iter_mut().zip(&buffers.gradient) {
+                *d = -g;
+            }
             // Newton's step: Hessian * way = -gradient.
-            let way = curvature.cholesky().solve(&gradient);
-            let stride = self.line_search_step(&velocity, &way);
+            curvature.cholesky_into(&mut factor);
+            factor.solve_in_place(&mut way);
+            let stride = self.line_search_step(&velocity, &way, &mut buffers);
             for (v, d) in velocity.iter_mut().zip(&way) {
                 *v += stride * d;
             }
-            before = (stride == 1.0).then_some(falls);
+            was_whole = stride == 1.0;
+            std::mem::swap(&mut before, &mut falls);
         }
         velocity
     }
@@ -204,39 +252,47 @@ impl EffortProblem {
     /// Returns the efforts that lead to these velocities. Shape (freedom,).
     pub(super) fn efforts(&self, velocity: &[f64]) -> Vec<f64> {
         let mut efforts = vec![0.0; velocity.len()];
-        for element in &self.terms {
-            element.add(
-                element.effort_and_slope(element.velocity(velocity)).0,
-                &mut efforts,
-            );
-        }
+        self.efforts_into(velocity, &mut efforts);
         efforts
     }
 
-    fn gradient(&self, velocity: &[f64]) -> Vec<f64> {
-        let off: Vec<f64> = velocity
-            .iter()
-            .zip(&self.free_velocities)
-            .map(|(v, f)| v - f)
-            .collect();
+    fn efforts_into(&self, velocity: &[f64], efforts: &mut [f64]) {
+        efforts.fill(0.0);
+        for element in &self.terms {
+            let (effort, _) = element.effort_and_slope(element.velocity(velocity));
+            element.add(effort, efforts);
+        }
+    }
+
+    /// Computes the gradient at the buffers' velocity.
+    fn gradient(&self, buffers: &mut GradientBuffers) {
+        let GradientBuffers {
+            velocity,
+            off,
+            efforts,
+            gradient,
+        } = buffers;
+        for ((off, v), f) in off.iter_mut().zip(&*velocity).zip(&self.free_velocities) {
+            *off = v - f;
+        }
         // H (v - v_free) - h J^T tau(J v).
-        let mut gradient = self.inertia.multiply(&off);
-        for (g, effort) in gradient.iter_mut().zip(self.efforts(velocity)) {
+        self.inertia.multiply_into(off, gradient);
+        self.efforts_into(velocity, efforts);
+        for (g, effort) in gradient.iter_mut().zip(&*efforts) {
             *g -= self.dt_s * effort;
         }
-        gradient
     }
 
     /// Returns the step length along `way`: to the minimum, at most 1.
-    fn line_search_step(&self, from: &[f64], way: &[f64]) -> f64 {
+    fn line_search_step(&self, from: &[f64], way: &[f64], buffers: &mut GradientBuffers) -> f64 {
         // The derivative along the way.
-        let rise = |stride: f64| -> f64 {
-            let there: Vec<f64> = from.iter().zip(way).map(|(v, d)| v + stride * d).collect();
-            self.gradient(&there)
-                .iter()
-                .zip(way)
-                .map(|(g, d)| g * d)
-                .sum()
+        let mut rise = |stride: f64| -> f64 {
+            for ((there, v), d) in buffers.velocity.iter_mut().zip(from).zip(way) {
+                *there = v + stride * d;
+            }
+            self.gradient(buffers);
+            let along = buffers.gradient.iter().zip(way);
+            along.map(|(g, d)| g * d).sum()
         };
         // Relative to the slope at the start, the rest at the end is rounding.
         if rise(1.0) <= 1e-9 * rise(0.0).abs() {
@@ -317,7 +373,10 @@ mod tests {
                 ],
                 dt_s: 0.01,
             };
-            let left = problem.gradient(&problem.solve());
+            let mut buffers = GradientBuffers::of_size(3);
+            buffers.velocity = problem.solve();
+            problem.gradient(&mut buffers);
+            let left = buffers.gradient;
             assert!(left.iter().all(|g| g.abs() < 1e-9), "{seed}: {left:?}");
         }
     }

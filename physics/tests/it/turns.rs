@@ -134,7 +134,7 @@ fn a_chain_that_whirls_stays_finite() {
     let speeds: &[f32] = if std::env::var_os("DWELL_TEST_ALL").is_some() {
         &[-1000.0, -600.0, -180.0, 125.0, 200.0, 400.0, 1000.0]
     } else {
-        &[-1000.0, -180.0, 200.0, 1000.0]
+        &[-1000.0, 180.0]
     };
     for (first, second) in speeds.iter().flat_map(|a| speeds.iter().map(|b| (*a, *b))) {
         for bend in [0.0, 1.0] {

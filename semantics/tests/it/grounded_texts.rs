@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 fn houses() -> Vec<String> {
     let mut names = vec!["builtin:studio".to_owned(), "builtin:apartment".to_owned()];
-    let seeds = std::env::var("DWELL_TEST_SEEDS").map_or(4, |count| count.parse().unwrap());
+    let seeds = std::env::var("DWELL_TEST_SEEDS").map_or(1, |count| count.parse().unwrap());
     names.extend((0..seeds).map(|seed| format!("seed:{seed}")));
     names
 }

@@ -270,7 +270,9 @@ fn swap_in(name: &str) -> usize {
 
 #[test]
 fn swapped_words_are_found() {
-    let seeds = (0..6).map(|seed| format!("seed:{seed}"));
+    // Six of them with `DWELL_TEST_ALL=1`.
+    let all = std::env::var_os("DWELL_TEST_ALL").is_some();
+    let seeds = (0..if all { 6 } else { 1 }).map(|seed| format!("seed:{seed}"));
     let houses = ["builtin:studio", "builtin:apartment"].map(str::to_owned);
     let houses: Vec<String> = houses.into_iter().chain(seeds).collect();
     let wrong: usize = houses.iter().map(|name| swap_in(name)).sum();

@@ -44,7 +44,7 @@ fn what_a_mask_rules_out_fails() {
         let mut env = env(house, "Free");
         let mut trial = Env::new(env.world().engines().clone(), &config("Free")).unwrap();
         let mut stream = RandomKey::root(8).child(house).stream();
-        for step in 0..120 {
+        for step in 0..if dwell_tests::runs_all() { 120 } else { 48 } {
             let object = ObjectId(stream.below(env.world().house().objects.len()) as u32);
             if step % 4 == 0 {
                 stand_before(

@@ -8,12 +8,12 @@ use std::collections::BTreeMap;
 
 /// Number of seeds that are looked at.
 fn seeds() -> usize {
-    if dwell_tests::runs_all() { 300 } else { 120 }
+    if dwell_tests::runs_all() { 300 } else { 40 }
 }
 
 /// Of these, the number of seeds whose houses settle for two seconds.
 fn settled() -> usize {
-    if dwell_tests::runs_all() { 30 } else { 15 }
+    if dwell_tests::runs_all() { 30 } else { 6 }
 }
 
 fn assert_valid(all: &[CheckCounts]) {

@@ -65,7 +65,7 @@ fn stopping_at_the_start_is_no_success() {
         let settings =
             json!({"reward": {"wrong_stop": -0.5, "step": -0.25}, "min_distance_m": 0.0});
         let mut env = env_with(kind.name, settings, &[]);
-        for seed in 0..20 {
+        for seed in 0..if dwell_tests::runs_all() { 20 } else { 6 } {
             env.reset(seed).unwrap();
             let info = &env.step(&[Some(DiscreteAction::Stop)]).unwrap()[0];
             assert!(
@@ -88,7 +88,7 @@ fn starts_lie_as_far_as_asked() {
     for kind in with_goal() {
         let settings = json!({"min_distance_m": 3.0, "max_distance_m": 5.0});
         let mut env = env_with(kind.name, settings, &[]);
-        for seed in 0..10 {
+        for seed in 0..if dwell_tests::runs_all() { 10 } else { 4 } {
             env.reset(seed).unwrap();
             let start_m = env.episode(0).unwrap().progress.start_distance_m.unwrap();
             assert!(
@@ -134,7 +134,7 @@ fn an_episode_that_ends_at_its_goal_needs_no_stop() {
             sparse["step_done_reward"] = json!(0.0);
         }
         let mut env = env_with(kind.name, sparse, &[]);
-        for seed in 0..3 {
+        for seed in 0..if dwell_tests::runs_all() { 3 } else { 1 } {
             env.reset(seed).unwrap();
             let ended = (0..kind.max_steps).find_map(|_| {
                 let action = env.expert_action(0).unwrap();

@@ -57,7 +57,13 @@ fn play(env: &mut Env, seed: u64) -> Vec<StepInfo> {
 #[test]
 fn who_is_told_by_voice_finds_the_thing_and_who_is_not_guesses() {
     let settings = json!({"choices": 8, "max_distance_m": 8.0});
-    for (muted, episodes) in [(false, 5), (true, 16)] {
+    // Those who guess, for as many episodes as tell them from those who know, with `DWELL_TEST_ALL=1`.
+    let series: &[(bool, u64)] = if dwell_tests::runs_all() {
+        &[(false, 5), (true, 16)]
+    } else {
+        &[(false, 3)]
+    };
+    for &(muted, episodes) in series {
         let mut env = env("Cooperate", settings.clone(), 2, &[], muted);
         let mut solved = 0;
         for seed in 0..episodes {
@@ -68,7 +74,7 @@ fn who_is_told_by_voice_finds_the_thing_and_who_is_not_guesses() {
         if muted {
             assert!(solved <= 7, "{solved} of {episodes}");
         } else {
-            assert!(solved >= 4, "{solved} of {episodes}");
+            assert!(u64::from(solved) + 1 >= episodes, "{solved} of {episodes}");
         }
     }
 }
@@ -105,7 +111,8 @@ fn who_follows_is_near_and_who_stands_is_not() {
             .position(|own| own.name == "following")
             .unwrap();
         let mut shares = [0.0, 0.0];
-        for seed in 0..6 {
+        let seeds = if dwell_tests::runs_all() { 6 } else { 3 };
+        for seed in 0..seeds {
             for (share, still) in shares.iter_mut().zip([false, true]) {
                 env.reset(seed).unwrap();
                 let mut actions = vec![Some(StepAction::from(DiscreteAction::Wait)); agents];
@@ -120,7 +127,7 @@ fn who_follows_is_near_and_who_stands_is_not() {
                 };
                 // Who never found the person has followed nobody.
                 let following = info.measures[place];
-                *share += if following.is_nan() { 0.0 } else { following } / 6.0;
+                *share += if following.is_nan() { 0.0 } else { following } / seeds as f64;
                 assert_eq!(info.result.success, following >= 0.5, "{task}, seed {seed}");
             }
         }
@@ -152,7 +159,7 @@ fn scripted_agents_go_on_from_snapshots_and_stop_is_no_success() {
             assert_eq!(format!("{one:?}"), format!("{other:?}"));
             assert_eq!(first.world().hash(), second.world().hash(), "{task}");
         }
-        for seed in 0..5 {
+        for seed in 0..if dwell_tests::runs_all() { 5 } else { 2 } {
             first.reset(seed).unwrap();
             let stop = vec![Some(DiscreteAction::Stop); agents];
             let infos = first.step(&stop).unwrap();

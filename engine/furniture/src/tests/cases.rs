@@ -10,7 +10,13 @@ use dwell_scene::random::RandomKey;
 use std::sync::OnceLock;
 
 /// Draws of each entry in each style.
-const KEYS: u64 = 20;
+fn keys() -> u64 {
+    if std::env::var_os("DWELL_TEST_ALL").is_some() {
+        20
+    } else {
+        6
+    }
+}
 
 /// One thing of the catalogue.
 pub(super) struct Case {
@@ -68,14 +74,14 @@ impl Summary {
     }
 }
 
-/// 20 draws of each entry in each style, built once for all tests.
+/// Draws of each entry in each style, built once for all tests.
 fn summaries() -> &'static [Vec<Summary>] {
     static ALL: OnceLock<Vec<Vec<Summary>>> = OnceLock::new();
     ALL.get_or_init(|| {
         let all = entries();
         Threads::default().map(all.len(), |k| {
             let styles = STYLES.iter().filter(|style| all[k].suits(style));
-            let cases = styles.flat_map(|style| (0..KEYS).map(move |number| (style, number)));
+            let cases = styles.flat_map(|style| (0..keys()).map(move |number| (style, number)));
             cases
                 .map(|(style, number)| Summary::new(&Case::new(&all[k], style, number)))
                 .collect()
@@ -83,7 +89,7 @@ fn summaries() -> &'static [Vec<Summary>] {
     })
 }
 
-/// Fails with what `check` finds at any of 20 draws of each entry in each style.
+/// Fails with what `check` finds at any draw of each entry in each style.
 pub(super) fn every_draw_in_every_style(check: impl Fn(&Summary) -> Vec<String>) {
     let faults = summaries().iter().flat_map(|draws| {
         let found = draws.iter().flat_map(|draw| {
@@ -96,14 +102,14 @@ pub(super) fn every_draw_in_every_style(check: impl Fn(&Summary) -> Vec<String>)
     judge(&faults.collect::<Vec<_>>());
 }
 
-/// The same for costly checks: 20 draws of each entry, the styles in turn.
+/// The same for costly checks: draws of each entry, the styles in turn.
 pub(super) fn every_draw(check: impl Fn(&Case) -> Vec<String> + Sync) {
     let all = entries();
     let found = Threads::default().map(all.len(), |k| {
         let entry = &all[k];
         let styles: Vec<&'static Style> =
             STYLES.iter().filter(|style| entry.suits(style)).collect();
-        let found = (0..KEYS).flat_map(|number| {
+        let found = (0..keys()).flat_map(|number| {
             let case = Case::new(entry, styles[number as usize % styles.len()], number);
             let at = format!("{} ({})", entry.kind, case.style.name);
             let faults = check(&case).into_iter();

@@ -160,7 +160,9 @@ pub(super) fn remove_unused_materials(data: &mut HouseData, materials: &[Materia
     // Those of a thing that was just added are the last: numbers of others stay, which keeps adding thousands of things cheap.
     let first = data.materials.len() - unused.len();
     let are_last = unused.iter().all(|id| id.index() >= first);
-    let are_plain = unused.iter().all(|id| data.materials[*id].texture.is_none());
+    let are_plain = unused
+        .iter()
+        .all(|id| data.materials[*id].texture.is_none());
     if are_last && are_plain {
         data.materials.truncate(first);
         return;

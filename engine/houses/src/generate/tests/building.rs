@@ -7,7 +7,14 @@ use dwell_scene::{House, State};
 use std::collections::BTreeSet;
 
 /// Seeds that are looked at in every run.
-const SEEDS: u64 = 300;
+fn seeds() -> u64 {
+    if tests_all() { 300 } else { 80 }
+}
+
+/// Returns whether tests take all their seeds (`make test-all`).
+fn tests_all() -> bool {
+    std::env::var_os("DWELL_TEST_ALL").is_some()
+}
 
 fn house(seed: u64, home: HomeKind, storeys: usize) -> House {
     let spec = HouseSpec {
@@ -23,7 +30,8 @@ fn house(seed: u64, home: HomeKind, storeys: usize) -> House {
 #[test]
 fn every_seed_gives_a_house_whose_names_are_unique_and_whose_rooms_have_a_type() {
     let mut given_up = 0;
-    for seed in 0..SEEDS {
+    let seeds = seeds();
+    for seed in 0..seeds {
         let generated = generate(seed, &HouseSpec::default())
             .unwrap_or_else(|error| panic!("seed {seed}: {error}"));
         given_up += generated.report.given_up.len();
@@ -33,8 +41,8 @@ fn every_seed_gives_a_house_whose_names_are_unique_and_whose_rooms_have_a_type()
         assert_eq!(names.len(), house.rooms.len());
         assert!(house.rooms.iter().all(|room| !room.kinds.is_empty()));
     }
-    println!("{given_up} wishes given up in {SEEDS} houses");
-    assert!(given_up < SEEDS as usize / 4, "{given_up}");
+    println!("{given_up} wishes given up in {seeds} houses");
+    assert!(given_up < seeds as usize / 4, "{given_up}");
 }
 
 #[test]
@@ -53,7 +61,7 @@ fn every_room_is_reached_when_doors_are_open() {
     ];
     let mut faults = Vec::new();
     for (k, (home, storeys)) in homes.into_iter().enumerate() {
-        for seed in 0..6 {
+        for seed in 0..if tests_all() { 6 } else { 2 } {
             let house = house(seed + 10 * k as u64, home, storeys);
             let grid = NavGrid::build(&house, &State::new(&house), &config).unwrap();
             let largest = grid.walkable().filter(|cell| grid.island(*cell) == Some(0));

@@ -1,7 +1,7 @@
 //! Batches: several worlds and cameras at once, memory that is kept, work that overlaps, and errors.
 
 use super::agreement::{Pair, gpu};
-use super::houses::views;
+use super::houses::{tests_all, views};
 use dwell_render::{
     BatchLimits, Camera, CpuRenderer, Frame, Gpu, GpuRenderer, ImageChannels, Preset, RenderError,
     RenderJob, View, VisibilityPath, VisibilityPathSpeeds,
@@ -134,7 +134,7 @@ fn a_view_is_drawn_by_one_call() {
         return;
     };
     let camera = Camera::from_fov(8, 8, 80.0).unwrap();
-    let views = views(&pair.house, camera, 64);
+    let views = views(&pair.house, camera, 12);
     let pieces = pair.scene.bvh().moving.len();
     assert!(pieces > 100, "{pieces}");
     let all = GpuRenderer::new(gpu().unwrap(), pair.cpu.clone(), VisibilityPath::Raster)
@@ -169,11 +169,7 @@ fn culling_changes_no_pixel() {
         .without_culling();
     let camera = Camera::from_fov(16, 12, 80.0).unwrap();
     // Software takes 17 ms a view.
-    let count = if std::env::var_os("DWELL_TEST_ALL").is_some() {
-        2000
-    } else {
-        500
-    };
+    let count = if tests_all() { 2000 } else { 60 };
     let views = views(&pair.house, camera, count);
     for (k, views) in views.chunks(250).enumerate() {
         let by = |renderer: &GpuRenderer| {
@@ -188,8 +184,13 @@ fn culling_changes_no_pixel() {
     }
 }
 
+/// With `DWELL_TEST_ALL=1`: it draws for as long as a measurement takes. `dwell doctor`, which has a test, shows its figures.
 #[test]
 fn a_measurement_chooses_the_quicker_path() {
+    if !tests_all() {
+        println!("skipped: slow; DWELL_TEST_ALL=1 runs it");
+        return;
+    }
     let Some(shared) = gpu() else { return };
     let house = Arc::new(dwell_houses::open("seed:4").unwrap().0);
     let speeds = shared

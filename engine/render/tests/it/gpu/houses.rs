@@ -53,7 +53,7 @@ pub(crate) fn suncg() -> Option<Arc<House>> {
 }
 
 /// Returns whether tests take all their views (`make test-all`).
-fn tests_all() -> bool {
+pub(crate) fn tests_all() -> bool {
     std::env::var_os("DWELL_TEST_ALL").is_some()
 }
 
@@ -74,8 +74,9 @@ fn agree(name: &str, house: &Arc<House>, count: usize, path: VisibilityPath) {
 #[test]
 fn the_sample_house_looks_the_same_by_cpu_and_gpu() {
     if let Some(house) = suncg() {
-        agree("SUNCG", &house, 50, VisibilityPath::Compute);
-        agree("SUNCG", &house, 50, VisibilityPath::Raster);
+        let count = if tests_all() { 50 } else { 10 };
+        agree("SUNCG", &house, count, VisibilityPath::Compute);
+        agree("SUNCG", &house, count, VisibilityPath::Raster);
     }
 }
 
@@ -114,7 +115,7 @@ fn lit_agrees(name: &str, house: Arc<House>, count: usize, path: VisibilityPath)
 
 #[test]
 fn lit_houses_look_the_same_by_cpu_and_gpu() {
-    let (in_suncg, generated) = if tests_all() { (200, 40) } else { (12, 6) };
+    let (in_suncg, generated) = if tests_all() { (200, 40) } else { (4, 3) };
     for path in VisibilityPath::ALL {
         if let Some(house) = suncg() {
             lit_agrees("SUNCG", house, in_suncg, path);
@@ -130,7 +131,7 @@ fn lit_houses_look_the_same_by_cpu_and_gpu() {
 fn generated_houses_look_the_same_by_cpu_and_gpu() {
     for seed in ["seed:3", "seed:8"] {
         let house = Arc::new(dwell_houses::open(seed).unwrap().0);
-        let count = if tests_all() { 200 } else { 20 };
+        let count = if tests_all() { 200 } else { 6 };
         agree(seed, &house, count, VisibilityPath::Compute);
         agree(seed, &house, count, VisibilityPath::Raster);
     }
