@@ -6,7 +6,7 @@
 
 use crate::fft::RealFft;
 use dwell_scene::Bands;
-use dwell_scene::interrupt::PollEvery;
+use dwell_scene::interrupt::CancelPoller;
 use realfft::num_complex::Complex;
 use std::ops::Range;
 
@@ -42,7 +42,7 @@ pub fn exact_centre_hz(band: usize) -> f64 {
 }
 
 /// Returns a material's values at the bands.
-pub fn sample(values: &Bands) -> BandValues {
+pub fn values_at_bands(values: &Bands) -> BandValues {
     NOMINAL_CENTRES_HZ.map(|centre| values.at(centre))
 }
 
@@ -93,9 +93,9 @@ impl FilterBank {
     pub fn new(rate_hz: f64, length: usize, overlap: f64) -> Self {
         let mut fft = RealFft::at_least(length + (WRAP_S * rate_hz) as usize);
         let mut shares = vec![vec![0.0; fft.bins()]; BAND_COUNT];
-        let mut poll = PollEvery::new(4096);
+        let mut poll = CancelPoller::new(4096);
         for bin in 0..fft.bins() {
-            poll.turn();
+            poll.count_one();
             let here = power_shares(bin as f64 * rate_hz / fft.len() as f64, overlap);
             for (band, share) in shares.iter_mut().zip(here) {
                 band[bin] = share as f32;
@@ -247,9 +247,9 @@ fn decimation_for_span(span: &Range<usize>, bins: usize) -> usize {
 fn pulse_energy_matrix(shares: &[Vec<f32>], band: usize) -> [[f64; BAND_COUNT]; BAND_COUNT] {
     let mut sums = [[0.0; BAND_COUNT]; BAND_COUNT];
     let last = shares[band].len() - 1;
-    let mut poll = PollEvery::new(4096);
+    let mut poll = CancelPoller::new(4096);
     for bin in (0..=last).filter(|bin| shares[band][*bin] > 0.0) {
-        poll.turn();
+        poll.count_one();
         // All bins but the first and the last represent two frequencies.
         let weight = if bin == 0 || bin == last { 0.5 } else { 1.0 } / last as f64;
         let here: [f64; BAND_COUNT] = std::array::from_fn(|k| f64::from(shares[k][bin]));

@@ -108,7 +108,7 @@ pub(crate) fn check_range(
 }
 
 /// Refuses a point that is not finite.
-pub(crate) fn finite(what: &'static str, point: glam::Vec3) -> Result<(), AcousticsError> {
+pub(crate) fn check_finite(what: &'static str, point: glam::Vec3) -> Result<(), AcousticsError> {
     if point.is_finite() && point.abs().max_element() <= 1e6 {
         return Ok(());
     }
@@ -128,7 +128,7 @@ mod tests {
             .unwrap_err()
             .to_string();
         assert_eq!(message, "air: humidity_pct is 120; allowed are 0 to 100");
-        let message = finite("the source", glam::Vec3::new(f32::NAN, 0.0, 1.0))
+        let message = check_finite("the source", glam::Vec3::new(f32::NAN, 0.0, 1.0))
             .unwrap_err()
             .to_string();
         assert_eq!(
@@ -136,7 +136,7 @@ mod tests {
             "the source stands at [NaN, 0.0, 1.0]; allowed are coordinates up to 1,000,000 m"
         );
         for (x, is_allowed) in [(1e6, true), (-1e6, true), (1e6_f32.next_up(), false)] {
-            let told = finite("the source", glam::Vec3::new(x, 0.0, 1.0));
+            let told = check_finite("the source", glam::Vec3::new(x, 0.0, 1.0));
             assert_eq!(told.is_ok(), is_allowed, "{x}");
         }
     }

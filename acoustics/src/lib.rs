@@ -44,7 +44,7 @@ pub mod metrics;
 mod microphone_chain;
 mod minimum_phase;
 mod planes;
-mod propagation_data;
+mod propagation_scene;
 mod ray_margin;
 mod receiver;
 mod receiver_channel;

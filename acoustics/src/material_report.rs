@@ -1,7 +1,7 @@
 //! Report of a house's acoustic materials: areas, absorption, and the share of default materials.
 
 use crate::bands::{BAND_COUNT, BandValues};
-use crate::propagation_data::PropagationData;
+use crate::propagation_scene::PropagationScene;
 use dwell_scene::material::library;
 use dwell_scene::{Id, MaterialId};
 use glam::Vec3;
@@ -50,7 +50,7 @@ pub struct MaterialReport {
 }
 
 impl MaterialReport {
-    pub(crate) fn new(data: &PropagationData) -> Self {
+    pub(crate) fn new(data: &PropagationScene) -> Self {
         let house = data.house();
         let mut area_of = vec![0.0_f64; house.materials.len()];
         let mut bounds: Option<(Vec3, Vec3)> = None;

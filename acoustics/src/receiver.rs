@@ -1,7 +1,7 @@
 //! Sources and receivers of sound.
 
 use crate::directivity::Directivity;
-use crate::error::{AcousticsError, check_range, finite};
+use crate::error::{AcousticsError, check_finite, check_range};
 use crate::head::HeadId;
 use dwell_scene::Pose;
 use glam::{Quat, Vec3};
@@ -50,7 +50,7 @@ impl SoundSourcePose {
 
     /// Checks that its position is finite and its directivity in range.
     pub(crate) fn check(&self) -> Result<(), AcousticsError> {
-        finite("the source", self.pose.position)?;
+        check_finite("the source", self.pose.position)?;
         check_unit_rotation("the source", self.pose.rotation)?;
         self.directivity.check()
     }
@@ -210,7 +210,7 @@ impl Receiver {
     /// [`AcousticsError`] names what is not.
     pub fn check(&self) -> Result<(), AcousticsError> {
         const AT: &str = "receiver";
-        finite("the receiver", self.pose.position)?;
+        check_finite("the receiver", self.pose.position)?;
         check_unit_rotation("the receiver", self.pose.rotation)?;
         match &self.kind {
             ReceiverKind::Omni | ReceiverKind::Binaural | ReceiverKind::Head(_) => Ok(()),
@@ -226,7 +226,7 @@ impl Receiver {
                 let count = microphones.len() as f64;
                 check_range(AT, "microphones", count, (1.0, most), "1 to 128")?;
                 microphones.iter().try_for_each(|microphone| {
-                    finite("a microphone", microphone.array_from_microphone.position)?;
+                    check_finite("a microphone", microphone.array_from_microphone.position)?;
                     check_unit_rotation("a microphone", microphone.array_from_microphone.rotation)?;
                     microphone.directivity.check()
                 })

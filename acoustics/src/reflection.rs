@@ -21,14 +21,14 @@ const GRAZING: f32 = 1e-4;
 /// is the largest absorption of such a surface; above it, the rest is subtracted at all angles alike. J. H. Rindel, Applied
 /// Acoustics 38, 223 (1993) proposes this for room acoustics programs.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Reflection {
+pub(crate) struct ReflectionCoefficients {
     /// Ratio of air's to the surface's impedance; 0 for a surface that does not depend on the angle. Shape (band,).
     admittance: BandValues,
     /// Reflected energy at the admittance of full reflection. Shape (band,).
     most: BandValues,
 }
 
-impl Reflection {
+impl ReflectionCoefficients {
     /// A surface that absorbs nothing.
     pub(crate) const RIGID: Self = Self {
         admittance: [0.0; crate::bands::BAND_COUNT],
@@ -108,7 +108,7 @@ mod tests {
     #[test]
     fn what_comes_from_all_sides_is_absorbed_as_the_table_has_it() {
         let absorption: BandValues = [0.0, 0.01, 0.1, 0.3, 0.6, 0.9, 0.97, 1.0];
-        let reflection = Reflection::angle_dependent(&absorption);
+        let reflection = ReflectionCoefficients::angle_dependent(&absorption);
         for (band, wanted) in absorption.into_iter().map(f64::from).enumerate() {
             let absorbed =
                 over_all_sides(|c| 1.0 - f64::from(reflection.reflected_share(c as f32)[band]));
@@ -122,13 +122,14 @@ mod tests {
     /// 2.5): 4 of 8 admittances.
     #[test]
     fn head_on_hard_walls_absorb_half_of_it() {
-        let kept = Reflection::angle_dependent(&[0.002; BAND_COUNT]).reflected_share(1.0)[3];
+        let kept =
+            ReflectionCoefficients::angle_dependent(&[0.002; BAND_COUNT]).reflected_share(1.0)[3];
         assert!((f64::from(1.0 - kept) / 0.002 - 0.5).abs() < 2e-3, "{kept}");
     }
 
     #[test]
     fn more_is_absorbed_the_flatter_it_comes() {
-        let reflection = Reflection::angle_dependent(&[0.2; BAND_COUNT]);
+        let reflection = ReflectionCoefficients::angle_dependent(&[0.2; BAND_COUNT]);
         let mut before = 1.0;
         for k in (3..=20).rev() {
             let kept = reflection.reflected_share(0.05 * k as f32)[0];
@@ -141,8 +142,8 @@ mod tests {
     fn along_a_surface_numbers_stay_numbers() {
         for absorption in [0.0, 1e-30, 0.5, 1.0] {
             for reflection in [
-                Reflection::angle_dependent(&[absorption; BAND_COUNT]),
-                Reflection::uniform(&[absorption; BAND_COUNT]),
+                ReflectionCoefficients::angle_dependent(&[absorption; BAND_COUNT]),
+                ReflectionCoefficients::uniform(&[absorption; BAND_COUNT]),
             ] {
                 for cosine in [0.0, 1e-20, 1.0] {
                     let kept = reflection.reflected_share(cosine)[0];

@@ -2,7 +2,7 @@
 
 use crate::bands::{self, BAND_COUNT, BandValues};
 use crate::config::AcousticConfig;
-use crate::reflection::Reflection;
+use crate::reflection::ReflectionCoefficients;
 use dwell_scene::{House, Material, MaterialId, State};
 
 /// The acoustic properties of a surface.
@@ -10,7 +10,7 @@ use dwell_scene::{House, Material, MaterialId, State};
 pub(crate) struct AcousticSurface {
     /// Random-incidence absorption of energy.
     pub(crate) absorption: BandValues,
-    pub(crate) reflection: Reflection,
+    pub(crate) reflection: ReflectionCoefficients,
     /// Scattered fraction of the reflected energy.
     pub(crate) scattering: BandValues,
     /// Transmitted energy, 0 to 1.
@@ -27,7 +27,7 @@ pub(crate) struct ReflectedEnergy {
 impl AcousticSurface {
     pub(crate) const RIGID: Self = Self {
         absorption: [0.0; BAND_COUNT],
-        reflection: Reflection::RIGID,
+        reflection: ReflectionCoefficients::RIGID,
         scattering: [0.0; BAND_COUNT],
         transmitted: [0.0; BAND_COUNT],
     };
@@ -51,15 +51,15 @@ impl AcousticSurface {
                 material.transmission_loss_db.clone(),
             ),
         };
-        let scattering = bands::sample(&scattering).map(|s| s.clamp(0.0, 1.0));
-        let loss_db = bands::sample(&loss_db);
-        let absorption = bands::sample(&absorption).map(|a| a.clamp(0.0, 1.0));
+        let scattering = bands::values_at_bands(&scattering).map(|s| s.clamp(0.0, 1.0));
+        let loss_db = bands::values_at_bands(&loss_db);
+        let absorption = bands::values_at_bands(&absorption).map(|a| a.clamp(0.0, 1.0));
         Self {
             absorption,
             reflection: if config.absorption_by_angle {
-                Reflection::angle_dependent(&absorption)
+                ReflectionCoefficients::angle_dependent(&absorption)
             } else {
-                Reflection::uniform(&absorption)
+                ReflectionCoefficients::uniform(&absorption)
             },
             scattering,
             transmitted: loss_db.map(|db| {

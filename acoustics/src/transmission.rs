@@ -1,7 +1,7 @@
 //! Transmission of sound through walls and doors.
 
 use crate::bands::{BAND_COUNT, BandValues};
-use crate::propagation_data::PropagationData;
+use crate::propagation_scene::PropagationScene;
 use crate::ray_margin::ray_offset_m;
 use dwell_scene::SurfaceOwner;
 use dwell_scene::bvh::{Hit, Ray, RayMask};
@@ -28,7 +28,7 @@ struct TransmittingWall {
 
 /// Returns the energy transmitted from `source` to `receiver` through all walls between, and their number.
 pub(crate) fn transmitted_path(
-    data: &PropagationData,
+    data: &PropagationScene,
     rays: &RayScene,
     source: Vec3,
     receiver: Vec3,
@@ -72,7 +72,7 @@ pub(crate) struct WallExit {
 
 /// Returns the exit of `ray`, which hits a wall at `hit`; `None` where nothing is transmitted.
 pub(crate) fn exit_behind_wall(
-    data: &PropagationData,
+    data: &PropagationScene,
     rays: &RayScene,
     ray: &Ray,
     hit: &Hit,
@@ -104,7 +104,7 @@ pub(crate) fn exit_behind_wall(
 }
 
 impl TransmittingWall {
-    fn new(data: &PropagationData, rays: &RayScene, hit: &Hit) -> Self {
+    fn new(data: &PropagationScene, rays: &RayScene, hit: &Hit) -> Self {
         let surface = rays.surface(hit);
         Self {
             owner: surface.owner,
@@ -144,7 +144,7 @@ mod tests {
     fn a_call_is_stopped_at_every_surface() {
         let house = Arc::new(House::new(HouseData::default()).unwrap());
         let rays = RayScene::new(house.clone());
-        let data = PropagationData::new(house, AcousticConfig::full());
+        let data = PropagationScene::new(house, AcousticConfig::full());
         let stopped = interrupt::interruptible(
             || true,
             || {

@@ -7,7 +7,7 @@
 
 use dwell_scene::parallel::Threads;
 use dwell_scene::{House, Pose, State};
-use dwell_semantics::check::Listener;
+use dwell_semantics::check::Addressee;
 use dwell_semantics::describe::{
     TextOptions, captions, describe_rooms, describe_route, describe_view,
 };
@@ -95,7 +95,7 @@ fn main() {
         let state = State::new(semantics.house());
         captions(&semantics.scene(&state), TextOptions::default()).len()
     });
-    let listener = |viewer| Listener {
+    let listener = |viewer| Addressee {
         viewer: Some(viewer),
         agent: None,
     };

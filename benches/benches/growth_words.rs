@@ -11,7 +11,7 @@ use dwell::{Engines, Env, EnvConfig};
 use dwell_houses::authoring::{FileAccess, HousePlan, build, edit, edits_from_json};
 use dwell_scene::interrupt;
 use dwell_scene::{Aabb, AgentStart, House, HouseData, Id, JointId, ObjectId, PartId, Pose, State};
-use dwell_semantics::check::Listener;
+use dwell_semantics::check::Addressee;
 use dwell_semantics::graph::scene_graph;
 use dwell_semantics::instruct::{InstructionKind, candidates};
 use dwell_semantics::{Semantics, Viewer, describe};
@@ -279,7 +279,7 @@ fn words(rows: &mut Rows, shape: Shape, house: &Arc<House>) {
         scene_graph(&semantics.scene(&state), Some(&viewer))
     });
     rows.row(shape, count, "view", || {
-        let listener = Listener {
+        let listener = Addressee {
             viewer: Some(viewer),
             agent: None,
         };

@@ -26,14 +26,14 @@ pub mod rollout;
 mod select;
 
 pub use error::CalibrationError;
-pub use options::Options;
+pub use options::CalibrationOptions;
 pub use progress::StopSignal;
 pub use report::{
     CalibrationReport, CalibrationVerdict, CandidateCause, FittedParameter, FoundEffects,
     NamedEffect, NuisanceParameter, Provenance, ResidualPlot,
 };
 pub use select::{
-    ChannelResidual, HeldOutGain, LearnableRemainder, ResidualNoiseTest, SplitHalfAgreement,
+    ChannelResidual, HeldOutGain, LearnableResidual, ResidualNoiseTest, SplitHalfAgreement,
 };
 
 use bundle::file::BundleKind;
@@ -53,12 +53,12 @@ use std::path::Path;
 /// Equal bundle and options give the same bits for any number of threads.
 pub fn calibrate(
     path: &Path,
-    options: &Options,
+    options: &CalibrationOptions,
     progress: &mut dyn FnMut(f32, &str) -> bool,
 ) -> Result<CalibrationReport, CalibrationError> {
     options.check()?;
     let deadline = Deadline::after(options.budget_s, &options.stop);
-    let progress = CallbackProgress::until(progress, deadline);
+    let progress = CallbackProgress::with_deadline(progress, deadline);
     progress.stage(0.0, "reading the measured data")?;
     find_missing_causes(&bundle::read(path)?, options, &progress)
 }
@@ -89,7 +89,7 @@ impl CalibrationOutcome {
 /// As those.
 pub fn calibrate_any(
     path: &Path,
-    options: &Options,
+    options: &CalibrationOptions,
     peers: &[rollout::study::PeerScores],
     progress: &mut dyn FnMut(f32, &str) -> bool,
 ) -> Result<CalibrationOutcome, CalibrationError> {
@@ -117,7 +117,7 @@ pub fn calibrate_any(
         let report = rollout::study::run(&tracks, &models, peers, &settings, &mut going_on)?;
         return Ok(CalibrationOutcome::ContactStudy(Box::new(report)));
     }
-    let progress = CallbackProgress::until(progress, deadline);
+    let progress = CallbackProgress::with_deadline(progress, deadline);
     let report = find_missing_causes(&bundle, options, &progress)?;
     Ok(CalibrationOutcome::Causes(Box::new(report)))
 }
@@ -133,7 +133,7 @@ pub fn check_bundle(path: &Path) -> Result<(BundleKind, usize), CalibrationError
 
 fn find_missing_causes(
     bundle: &bundle::Bundle,
-    options: &Options,
+    options: &CalibrationOptions,
     progress: &CallbackProgress<'_>,
 ) -> Result<CalibrationReport, CalibrationError> {
     progress.stage(0.05, "building the simulation")?;

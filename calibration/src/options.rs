@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// Settings of [`calibrate`](crate::calibrate). Every field has a default; unknown fields are refused.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Options {
+pub struct CalibrationOptions {
     /// The room of impulse responses as a HOUSE string, instead of the box that the bundle describes.
     pub house: Option<String>,
     /// Seed of everything that is drawn: the held-out groups, the bootstrap, the sound rays.
@@ -38,7 +38,7 @@ pub struct Options {
     pub stop: StopSignal,
 }
 
-impl Default for Options {
+impl Default for CalibrationOptions {
     fn default() -> Self {
         Self {
             house: None,
@@ -58,7 +58,7 @@ impl Default for Options {
     }
 }
 
-impl Options {
+impl CalibrationOptions {
     /// Checks every range.
     ///
     /// # Errors
@@ -96,10 +96,10 @@ mod tests {
 
     #[test]
     fn settings_out_of_range_are_named() {
-        Options::default().check().unwrap();
-        let options = Options {
+        CalibrationOptions::default().check().unwrap();
+        let options = CalibrationOptions {
             held_out_share: f64::NAN,
-            ..Options::default()
+            ..CalibrationOptions::default()
         };
         let message = options.check().unwrap_err().to_string();
         assert!(

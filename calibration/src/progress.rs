@@ -80,10 +80,10 @@ pub(crate) struct CallbackProgress<'a> {
 
 impl<'a> CallbackProgress<'a> {
     pub(crate) fn new(listener: ProgressCallback<'a>) -> Self {
-        Self::until(listener, Deadline::default())
+        Self::with_deadline(listener, Deadline::default())
     }
 
-    pub(crate) fn until(listener: ProgressCallback<'a>, deadline: Deadline) -> Self {
+    pub(crate) fn with_deadline(listener: ProgressCallback<'a>, deadline: Deadline) -> Self {
         Self {
             now: RefCell::new((listener, 0.0, String::new())),
             deadline,
@@ -117,19 +117,19 @@ impl ProgressReporter for CallbackProgress<'_> {
 
 #[cfg(test)]
 mod tests {
-    use crate::{CalibrationVerdict, Options, calibrate};
+    use crate::{CalibrationOptions, CalibrationVerdict, calibrate};
 
     /// A search that is ended early says so, names nothing and installs nothing.
     #[test]
     fn a_search_that_is_ended_keeps_what_it_has_and_names_nothing() {
         let folder = tempfile::tempdir().unwrap();
         crate::example::write(folder.path(), 1).unwrap();
-        let none = Options {
+        let none = CalibrationOptions {
             budget_s: Some(0.0),
-            ..Options::default()
+            ..CalibrationOptions::default()
         };
         let at_once = calibrate(folder.path(), &none, &mut |_, _| true).unwrap();
-        let stopped = Options::default();
+        let stopped = CalibrationOptions::default();
         let stop = stopped.stop.clone();
         let later = calibrate(folder.path(), &stopped, &mut |_, what| {
             // The second cause is not tried any more.

@@ -6,7 +6,7 @@
 )]
 
 use dwell_calibration::bundle::file::BundleKind;
-use dwell_calibration::{CalibrationError, Options, calibrate};
+use dwell_calibration::{CalibrationError, CalibrationOptions, calibrate};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
@@ -17,9 +17,11 @@ fn after(change: impl FnOnce(&Path)) -> String {
     dwell_calibration::example::write(folder.path(), 1).unwrap();
     change(folder.path());
     // A bundle that is read after all is stopped before the work begins.
-    let found = calibrate(folder.path(), &Options::default(), &mut |fraction, _| {
-        fraction < 0.04
-    });
+    let found = calibrate(
+        folder.path(),
+        &CalibrationOptions::default(),
+        &mut |fraction, _| fraction < 0.04,
+    );
     found.unwrap_err().to_string()
 }
 
@@ -161,7 +163,7 @@ fn faults_are_named_with_file_line_and_field() {
     );
     let missing = calibrate(
         Path::new("no such folder"),
-        &Options::default(),
+        &CalibrationOptions::default(),
         &mut |_, _| true,
     );
     assert!(matches!(missing, Err(CalibrationError::Read { .. })));
@@ -189,7 +191,7 @@ fn room(folder: &Path, file: &str) -> String {
         format!("{head}\na,{file},1,1,1,2,2,2,16000\n"),
     )
     .unwrap();
-    let found = calibrate(folder, &Options::default(), &mut |_, _| true);
+    let found = calibrate(folder, &CalibrationOptions::default(), &mut |_, _| true);
     found.unwrap_err().to_string()
 }
 
@@ -230,13 +232,13 @@ fn damaged_bytes_are_refused_or_read() {
             fs::write(&path, &bytes).unwrap();
             drop(calibrate(
                 folder.path(),
-                &Options::default(),
+                &CalibrationOptions::default(),
                 &mut |fraction, _| fraction < 0.04,
             ));
             fs::write(&path, &sound[..k]).unwrap();
             drop(calibrate(
                 folder.path(),
-                &Options::default(),
+                &CalibrationOptions::default(),
                 &mut |fraction, _| fraction < 0.04,
             ));
         }

@@ -10,9 +10,9 @@ use dwell_calibration::rollout::study::{
     ContactModel, ContactParameter, PeerScores, StudyOptions, run,
 };
 use dwell_calibration::rollout::{
-    BoardRig, HORIZONS, MotionState, PoseTrack, PoseTracks, Regime, RigSettings, TrackedBody,
-    TrackerNoise, WindowOptions, diverges_under_noise, predict_windows, scores, window_scores,
-    window_start,
+    BoardRig, ContactRegime, HORIZONS, MotionState, PoseTrack, PoseTracks, RigSettings,
+    TrackedBody, TrackerNoise, WindowOptions, diverges_under_noise, predict_windows, scores,
+    window_scores, window_start,
 };
 use dwell_physics::ContactFriction;
 use dwell_scene::parallel::Threads;
@@ -129,7 +129,7 @@ fn tossed(friction: f64, count: usize) -> PoseTracks {
             PoseTrack {
                 name: format!("toss {k}"),
                 group: format!("toss {k}"),
-                regimes: vec![Regime::Flight; motions.len()],
+                regimes: vec![ContactRegime::Flight; motions.len()],
                 motions,
                 start: 0,
                 start_motion: start,
@@ -270,7 +270,7 @@ fn window_starts_in_flight_do_not_lag() {
     let track = PoseTrack {
         name: "flight".into(),
         group: "flight".into(),
-        regimes: vec![Regime::Flight; motions.len()],
+        regimes: vec![ContactRegime::Flight; motions.len()],
         motions,
         start: 0,
         start_motion: start,
@@ -301,7 +301,7 @@ fn a_cube_on_its_edge_is_chance_and_a_flat_one_is_not() {
         PoseTrack {
             name: format!("{degrees}"),
             group: format!("{degrees}"),
-            regimes: vec![Regime::Contact; motions.len()],
+            regimes: vec![ContactRegime::Contact; motions.len()],
             motions,
             start: 0,
             start_motion: start,

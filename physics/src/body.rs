@@ -2,7 +2,7 @@
 
 use crate::convert::from_rapier;
 use crate::engine::RapierWorld;
-use crate::model::{BodyPlan, PhysicsModel};
+use crate::model::{BodyDefinition, PhysicsModel};
 use dwell_scene::{House, ObjectId, PartId, Pose, State, Velocity};
 use rapier3d::dynamics::{RigidBodyHandle, RigidBodyType};
 use rapier3d::geometry::ColliderHandle;
@@ -40,10 +40,10 @@ pub(crate) fn body_type(hold: BodyStatus) -> RigidBodyType {
 pub(crate) fn density_factors(model: &PhysicsModel, state: &State) -> Vec<Vec<f32>> {
     let house = &model.house;
     if state.overrides.is_empty() {
-        let ones = |body: &BodyPlan| vec![1.0; body.parts.len()];
+        let ones = |body: &BodyDefinition| vec![1.0; body.parts.len()];
         return model.bodies.iter().map(ones).collect();
     }
-    let of_parts = |body: &BodyPlan| -> Vec<f32> {
+    let of_parts = |body: &BodyDefinition| -> Vec<f32> {
         let parts = body.parts.iter();
         parts
             .map(|(part, _)| state.part_mass_factor(house, *part))
@@ -78,7 +78,7 @@ pub(crate) fn density_factors(model: &PhysicsModel, state: &State) -> Vec<Vec<f3
 /// Writes a body's poses and velocities into the state.
 pub(crate) fn write_parts(
     engine: &RapierWorld,
-    plan: &BodyPlan,
+    plan: &BodyDefinition,
     body: &BodyHandle,
     state: &mut State,
 ) {

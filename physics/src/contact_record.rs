@@ -86,7 +86,7 @@ impl ContactPipeline {
             events,
         );
         self.tracker
-            .record_undone_displacements(&dynamics.engine, &self.motion, settings.dt_s);
+            .record_ccd_lost_displacements(&dynamics.engine, &self.motion, settings.dt_s);
     }
 
     /// Emits the remaining events of a control step; `first`: the index of its first event.

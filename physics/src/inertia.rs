@@ -1,6 +1,6 @@
 //! Mass, centre of mass and inertia of a body.
 
-use crate::model::{BodyPlan, PhysicsModel};
+use crate::model::{BodyDefinition, PhysicsModel};
 use dwell_scene::{House, State};
 use glam::{Mat3, Vec3};
 use rapier3d::dynamics::MassProperties;
@@ -22,7 +22,7 @@ pub(crate) struct BodyInertia {
 impl BodyInertia {
     /// Returns the inertia of a body's pieces and stated parts in a world, with each part's density times its factor. Shape
     /// of `factors`: (part,).
-    pub(crate) fn of(house: &House, plan: &BodyPlan, state: &State, factors: &[f32]) -> Self {
+    pub(crate) fn of(house: &House, plan: &BodyDefinition, state: &State, factors: &[f32]) -> Self {
         let given = plan.explicit_mass_properties(house, state, factors);
         let mut all = given.unwrap_or_default();
         for piece in &plan.pieces {

@@ -48,7 +48,7 @@ mod start;
 mod world;
 
 pub use actions::{HandAction, Target};
-pub use agents::{AgentControl, AgentTouch, BodyTouch};
+pub use agents::{AgentContacts, AgentControl, BodyContact};
 pub use config::{ContactFriction, PhysicsConfig};
 pub use contact::{ContactEntity, ContactEvent, ContactKind, ContactPhase, ExcessEventTotals};
 pub use engine::PairCounts;

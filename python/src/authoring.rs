@@ -10,7 +10,7 @@ use dwell_scene::House;
 use serde_json::Value;
 
 /// The report of damage with a sentence for each warning.
-pub(crate) fn rows(report: &LoadReport) -> Result<Value, PyFault> {
+pub(crate) fn report_rows(report: &LoadReport) -> Result<Value, PyFault> {
     let mut rows = serde_json::to_value(report)?;
     if let Some(warnings) = rows["warnings"].as_array_mut() {
         for (row, warning) in warnings.iter_mut().zip(report.warnings()) {
@@ -21,15 +21,15 @@ pub(crate) fn rows(report: &LoadReport) -> Result<Value, PyFault> {
 }
 
 /// The house of a plan.
-pub(crate) fn built(plan_json: &str) -> Result<(House, Value), PyFault> {
+pub(crate) fn build_plan(plan_json: &str) -> Result<(House, Value), PyFault> {
     let plan = HousePlan::from_json(plan_json.as_bytes(), &FileLocation::file("plan"))?;
     let (house, report) = authoring::build(&plan, &FileAccess::Anywhere)?;
     check_signals(&house, 0)?;
-    Ok((house, rows(&report)?))
+    Ok((house, report_rows(&report)?))
 }
 
 /// The same house with edits.
-pub(crate) fn edited(
+pub(crate) fn apply_edits(
     base: &House,
     base_report: &Value,
     edits_json: &str,
@@ -39,7 +39,7 @@ pub(crate) fn edited(
     check_signals(&house, base.emitters.len())?;
     let mut all = report_of(base_report);
     all.append(report);
-    Ok((house, rows(&all)?))
+    Ok((house, report_rows(&all)?))
 }
 
 /// Refuses signals that do not exist.
@@ -67,7 +67,7 @@ fn unmapped(house: &House, report: &Value) -> UnmappedNames {
 
 /// Counts, rooms and categories, with what stayed unmapped.
 pub(crate) fn info(engines: &Engines, report: &Value) -> Result<PyValue, PyFault> {
-    let mut info = dwell::info(engines, report);
+    let mut info = dwell::house_info(engines, report);
     info["unmapped"] = serde_json::to_value(unmapped(engines.house(), report))?;
     PyValue::of(&info)
 }

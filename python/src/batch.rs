@@ -161,11 +161,11 @@ impl PyBatch {
 
     /// Returns whose each sensor is, by the agent's place.
     fn sensor_agents(&self, py: Python<'_>) -> PyResult<Vec<usize>> {
-        self.with(py, |batch| Ok(batch.agent_of_sensors()))
+        self.with(py, |batch| Ok(batch.sensor_agents()))
     }
 
     fn specs(&self, py: Python<'_>) -> PyResult<PyValue> {
-        self.with(py, |batch| PyValue::of(&batch.specs()))
+        self.with(py, |batch| PyValue::of(&batch.sensor_specs()))
     }
 
     /// Begins the episodes of seeds, `None`: goes on. `stated`: what each states of its start and goal, where it states anything.
@@ -358,7 +358,7 @@ impl PyBatch {
         outs: Vec<Option<Bound<'py, PyAny>>>,
     ) -> PyResult<()> {
         let which = arrays::as_contiguous_slice("which", &which)?.to_vec();
-        let specs = self.with(py, |batch| Ok(batch.specs()))?;
+        let specs = self.with(py, |batch| Ok(batch.sensor_specs()))?;
         let mut lent = Vec::new();
         for (k, out) in outs.iter().enumerate() {
             let Some(spec) = specs.get(k) else { break };

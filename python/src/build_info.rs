@@ -44,7 +44,7 @@ pub(crate) fn action_table() -> PyResult<PyValue> {
     let kinds = dwell::actions::all().iter().map(|kind| {
         json!({
             "name": kind.name,
-            "about": kind.about(),
+            "about": kind.description(),
             "is_of_hand": kind.is_hand_action(),
             "target": kind.target_description(),
             "fields": kind.fields(),

@@ -23,7 +23,7 @@ pub(crate) fn calibrate(
 ) -> PyResult<String> {
     let mut raised = None;
     let report = py.engine(|| -> Result<String, PyFault> {
-        let options = dwell_calibration::Options {
+        let options = dwell_calibration::CalibrationOptions {
             house: house.map(str::to_owned),
             threads: Some(Threads::try_resolve(None)?.count()),
             budget_s,

@@ -6,7 +6,7 @@ use crate::values::JsonArgument;
 use crate::world_access::WorldAccess;
 use dwell_scene::House;
 use dwell_scene::random::RandomKey;
-use dwell_semantics::check::{GroundedPhrase, Listener};
+use dwell_semantics::check::{Addressee, GroundedPhrase};
 use dwell_semantics::describe::{
     GroundedText, TextLength, TextOptions, TextStyle, captions, describe_changes, describe_house,
     describe_rooms, describe_route, describe_view,
@@ -168,7 +168,7 @@ pub(crate) struct DescriptionRequest<'a> {
     /// How it is told.
     pub(crate) options: TextArguments<'a>,
     /// Who listens.
-    pub(crate) listener: Listener,
+    pub(crate) listener: Addressee,
     /// The goal of a route.
     pub(crate) to: Option<Term>,
     /// The scene before the changes.
@@ -242,7 +242,7 @@ impl WorldAccess<'_> {
         &self,
         level: &str,
         options: TextArguments<'_>,
-        listener: Listener,
+        listener: Addressee,
         to: Option<JsonArgument>,
         since: Option<&[u8]>,
     ) -> Result<PyValue, PyFault> {

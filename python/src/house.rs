@@ -44,7 +44,7 @@ impl PyHouse {
     fn open(py: Python<'_>, house: &str, threads: Option<usize>) -> PyResult<Self> {
         py.engine(|| -> Result<_, PyFault> {
             let (house, report) = dwell_houses::open_with(house, Threads::try_resolve(threads)?)?;
-            Ok(Self::from_house(house, authoring::rows(&report)?))
+            Ok(Self::from_house(house, authoring::report_rows(&report)?))
         })
     }
 
@@ -52,7 +52,7 @@ impl PyHouse {
     #[staticmethod]
     fn built(py: Python<'_>, plan_json: &str) -> PyResult<Self> {
         py.engine(|| {
-            let (house, report) = authoring::built(plan_json)?;
+            let (house, report) = authoring::build_plan(plan_json)?;
             Ok::<_, PyFault>(Self::from_house(house, report))
         })
     }
@@ -60,7 +60,7 @@ impl PyHouse {
     /// The same house with edits, as `dwell_houses::authoring::Edit` in JSON.
     fn edited(&self, py: Python<'_>, edits_json: &str) -> PyResult<Self> {
         py.engine(|| {
-            let (house, report) = authoring::edited(self.house(), &self.report, edits_json)?;
+            let (house, report) = authoring::apply_edits(self.house(), &self.report, edits_json)?;
             Ok::<_, PyFault>(Self::from_house(house, report))
         })
     }

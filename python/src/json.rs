@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 
 /// Returns the nesting depth of arrays and objects, and the largest number of values and names that the text can hold.
 #[pyfunction]
-pub(crate) fn json_extent(py: Python<'_>, text: &[u8]) -> PyResult<(usize, usize)> {
+pub(crate) fn json_size_bounds(py: Python<'_>, text: &[u8]) -> PyResult<(usize, usize)> {
     py.engine(|| Ok::<_, PyFault>(extent(text)))
 }
 

@@ -10,7 +10,7 @@ use crate::world_access::WorldAccess;
 use dwell_scene::AgentId;
 use dwell_scene::Id;
 use dwell_scene::random::RandomKey;
-use dwell_semantics::check::{CheckResult, Checker, Listener, QuestionAnswer};
+use dwell_semantics::check::{Addressee, CheckResult, Checker, QuestionAnswer};
 use dwell_semantics::describe::describe_reference;
 use dwell_semantics::form::Form;
 use dwell_semantics::language::Language;
@@ -24,11 +24,11 @@ impl WorldAccess<'_> {
         &self,
         viewer: JsonArgument,
         agent: Option<usize>,
-    ) -> Result<Listener, PyFault> {
+    ) -> Result<Addressee, PyFault> {
         let agent = agent.map(|agent| self.agent(agent)).transpose()?;
         let eyes = |agent: AgentId| dwell_semantics::Viewer::of_agent(self.world.state(), agent);
         let viewer = self.viewer(viewer)?;
-        Ok(Listener {
+        Ok(Addressee {
             viewer: viewer.or_else(|| agent.and_then(eyes)),
             agent,
         })
@@ -83,7 +83,7 @@ fn truth(truth: Truth) -> Value {
     truth.value().map_or(Value::Null, Value::Bool)
 }
 
-fn unread(error: dwell_semantics::language::ReadError) -> PyFault {
+fn unread(error: dwell_semantics::language::ParseError) -> PyFault {
     PyFault::Config(error.to_string())
 }
 

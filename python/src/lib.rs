@@ -80,7 +80,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(calibrate::calibrate, module)?)?;
     module.add_function(wrap_pyfunction!(calibrate::calibration_example, module)?)?;
     module.add_function(wrap_pyfunction!(calibrate::check_measured, module)?)?;
-    module.add_function(wrap_pyfunction!(json::json_extent, module)?)?;
+    module.add_function(wrap_pyfunction!(json::json_size_bounds, module)?)?;
     module.add_function(wrap_pyfunction!(prepared_env::prepared_envs, module)?)?;
     module.add_function(wrap_pyfunction!(language::language_read, module)?)?;
     module.add_function(wrap_pyfunction!(language::language_say, module)?)?;

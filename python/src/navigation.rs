@@ -64,7 +64,7 @@ impl PyNavigation {
     }
 
     /// Updates the grid; returns the number of rebuilt columns.
-    pub(crate) fn follow(&self, state: &State) -> Result<usize, PyFault> {
+    pub(crate) fn update_grid(&self, state: &State) -> Result<usize, PyFault> {
         let mut moment = self.moment()?;
         interrupt::uninterruptible(|| {
             // A shared grid is copied first.

@@ -9,7 +9,7 @@ use crate::world_access::WorldAccess;
 use dwell_scene::space::rotation_from_yaw_pitch;
 use dwell_scene::{AgentId, EntityId, Id, LevelId, Pose, RoomId};
 use dwell_semantics::color::ColorVocabulary;
-use dwell_semantics::graph::{Related, default_relation_codes, relations, scene_graph};
+use dwell_semantics::graph::{RelationTriple, default_relation_codes, relations, scene_graph};
 use dwell_semantics::predicates::{Predicate, all, find};
 use dwell_semantics::selections::{self, Selection};
 use dwell_semantics::{SemanticScene, Term, UndecidedReason, Viewer, object_attributes};
@@ -163,7 +163,7 @@ impl WorldAccess<'_> {
         &self,
         names: Option<Vec<String>>,
         viewer: Option<&Viewer>,
-    ) -> Result<Vec<Related>, PyFault> {
+    ) -> Result<Vec<RelationTriple>, PyFault> {
         let codes = match names {
             None => default_relation_codes(viewer.is_some()),
             Some(names) => names
@@ -204,7 +204,7 @@ fn number(house: &dwell_scene::House, term: Term) -> i32 {
     match term {
         Term::Room(id) => -1 - id.0 as i32,
         Term::Storey(id) => STOREYS - id.0 as i32,
-        other => dwell_semantics::graph::number_of(house, other),
+        other => dwell_semantics::graph::node_id(house, other),
     }
 }
 

@@ -67,6 +67,6 @@ pub(crate) fn world_speaks(
 ) -> PyResult<bool> {
     world.get().with(py, |running| {
         let agent = running.agent(agent)?;
-        Ok(running.world.speaks(agent))
+        Ok(running.world.is_speaking(agent))
     })
 }

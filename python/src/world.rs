@@ -351,11 +351,13 @@ impl PyWorld {
 
     fn follow(&self, py: Python<'_>, navigation: &Bound<'_, PyNavigation>) -> PyResult<usize> {
         let navigation = navigation.get();
-        self.read_interruptible(py, |running| navigation.follow(running.world.state()))
+        self.read_interruptible(py, |running| navigation.update_grid(running.world.state()))
     }
 
     fn merged_events(&self, py: Python<'_>) -> PyResult<PyValue> {
-        self.read_interruptible(py, |running| PyValue::of(&running.world.merged_events()))
+        self.read_interruptible(py, |running| {
+            PyValue::of(&running.world.events_beyond_limit())
+        })
     }
 
     fn path(

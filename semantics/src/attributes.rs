@@ -1,6 +1,6 @@
 //! The attributes of objects, as data.
 
-use crate::color::Pattern;
+use crate::color::SurfacePattern;
 use crate::scene::{SemanticScene, Term};
 use crate::size::SizeClass;
 use dwell_scene::ObjectId;
@@ -26,7 +26,7 @@ pub struct ObjectAttributes {
     /// Spoken colour words with their shares of what is seen of it, largest first.
     pub colors: Vec<(String, f32)>,
     /// The pattern of most of it, by its predicate's name; `None` for plain things.
-    pub pattern: Option<Pattern>,
+    pub pattern: Option<SurfacePattern>,
     /// Substances by name with their shares of its surface, largest first.
     pub substances: Vec<(String, f32)>,
     /// Its size for its kind.

@@ -80,7 +80,7 @@ impl Categories {
             let index = rows.len();
             let name = row.text("name")?;
             if by_name.insert(name, index).is_some() {
-                return Err(row.fault(format!("the name {name:?} is taken")));
+                return Err(row.error(format!("the name {name:?} is taken")));
             }
             aliases.extend(row.list("aliases")?.into_iter().map(|alias| (alias, index)));
             rows.push(SemanticCategory {

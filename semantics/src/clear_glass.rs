@@ -7,7 +7,7 @@ use dwell_scene::rays::RayScene;
 pub(crate) const CLEAR_OPACITY: f32 = 0.6;
 
 /// Returns whether one sees through the surface that a ray met.
-pub(crate) fn is_clear(rays: &RayScene, hit: &Hit) -> bool {
+pub(crate) fn is_transparent(rays: &RayScene, hit: &Hit) -> bool {
     let material = rays.surface(hit).material;
     rays.house().materials[material].opacity < CLEAR_OPACITY
 }

@@ -48,7 +48,7 @@ impl<'a> CsvTable<'a> {
 
 impl<'a> CsvRecord<'_, 'a> {
     /// A fault in this row.
-    pub(crate) fn fault(&self, what: String) -> SemanticsError {
+    pub(crate) fn error(&self, what: String) -> SemanticsError {
         SemanticsError::Table {
             file: self.table.file,
             line: self.index + 2,
@@ -61,7 +61,7 @@ impl<'a> CsvRecord<'_, 'a> {
         let place = self.table.head.iter().position(|name| *name == column);
         place
             .map(|k| self.table.rows[self.index][k])
-            .ok_or_else(|| self.fault(format!("no column {column:?}")))
+            .ok_or_else(|| self.error(format!("no column {column:?}")))
     }
 
     /// The parts of the field under `column`, split at semicolons; an empty field has none.
@@ -77,7 +77,7 @@ impl<'a> CsvRecord<'_, 'a> {
     pub(crate) fn number<N: std::str::FromStr>(&self, column: &str) -> Result<N, SemanticsError> {
         let text = self.text(column)?;
         text.parse()
-            .map_err(|_| self.fault(format!("{column} is {text:?}, allowed is a number")))
+            .map_err(|_| self.error(format!("{column} is {text:?}, allowed is a number")))
     }
 
     /// 0 or 1 under `column`.
@@ -85,7 +85,7 @@ impl<'a> CsvRecord<'_, 'a> {
         match self.text(column)? {
             "0" => Ok(false),
             "1" => Ok(true),
-            other => Err(self.fault(format!("{column} is {other:?}, allowed are 0 and 1"))),
+            other => Err(self.error(format!("{column} is {other:?}, allowed are 0 and 1"))),
         }
     }
 }

@@ -61,7 +61,7 @@ impl RoomDoorway {
     }
 
     /// The rooms that it leads to from `room`.
-    pub fn beyond(&self, room: RoomId) -> impl Iterator<Item = RoomId> {
+    pub fn rooms_beyond(&self, room: RoomId) -> impl Iterator<Item = RoomId> {
         let rooms = self.rooms.iter().copied();
         rooms.filter(move |other| *other != room)
     }

@@ -63,7 +63,7 @@ pub fn plural(noun: &str) -> String {
 
 /// One and several of the things that a name means. Names that are plural already take a counter: "pair of scissors",
 /// "set of towels".
-pub fn counted_noun(name: &str) -> (String, String) {
+pub fn singular_and_plural(name: &str) -> (String, String) {
     let last = name.rsplit(' ').next().unwrap_or_default();
     let is_plural = last.len() > 3
         && last.ends_with('s')
@@ -80,7 +80,7 @@ pub fn counted_noun(name: &str) -> (String, String) {
 
 /// A noun with its adjectives: those of size before all, those of look before what they are seen on: "small brown chair",
 /// "large stack of red books", "pair of small black shoes". Either may be empty.
-pub fn qualified(size: &str, look: &str, noun: &str) -> String {
+pub fn with_adjectives(size: &str, look: &str, noun: &str) -> String {
     let row = |words: &[&str]| -> String {
         let words: Vec<&str> = words
             .iter()
@@ -135,7 +135,7 @@ pub fn with_article(phrase: &str) -> String {
 }
 
 /// A count as a word up to twelve, then as digits.
-pub fn count(number: usize) -> String {
+pub fn cardinal(number: usize) -> String {
     const WORDS: [&str; 13] = [
         "no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten",
         "eleven", "twelve",
@@ -173,7 +173,7 @@ pub fn counted(number: usize, singular: &str, plural: &str) -> String {
     if number == 1 {
         with_article(singular)
     } else {
-        format!("{} {plural}", count(number))
+        format!("{} {plural}", cardinal(number))
     }
 }
 
@@ -190,7 +190,7 @@ pub fn list<S: AsRef<str>>(items: &[S]) -> String {
 }
 
 /// "is" or "are".
-pub fn be(number: usize) -> &'static str {
+pub fn copula(number: usize) -> &'static str {
     if number == 1 { "is" } else { "are" }
 }
 
@@ -278,7 +278,10 @@ mod tests {
             ("stack of coins", "stack of coins", "stacks of coins"),
         ];
         for (name, one, several) in cases {
-            assert_eq!(counted_noun(name), (one.to_owned(), several.to_owned()));
+            assert_eq!(
+                singular_and_plural(name),
+                (one.to_owned(), several.to_owned())
+            );
         }
     }
 
@@ -306,7 +309,7 @@ mod tests {
             (("", "", "pair of shoes"), "pair of shoes"),
         ];
         for ((size, look, noun), text) in cases {
-            assert_eq!(qualified(size, look, noun), text);
+            assert_eq!(with_adjectives(size, look, noun), text);
         }
     }
 }

@@ -2,8 +2,10 @@
 
 use crate::category::{SemanticCategory, categories};
 use crate::clear_glass::CLEAR_OPACITY;
-use crate::color::{ColorShare, ColorVocabulary, MaterialColors, Pattern, color_words, divides};
-use crate::english::counted_noun;
+use crate::color::{
+    ColorShare, ColorVocabulary, MaterialColors, SurfacePattern, color_words, speakers_disagree,
+};
+use crate::english::singular_and_plural;
 use crate::form::{Description, Noun};
 use crate::geometry::mapped_area_m2;
 use crate::kind_noun::{KindNoun, kind_nouns};
@@ -39,7 +41,7 @@ pub struct ObjectFacts {
     /// Its colours in spoken words with their shares, largest first; empty for things that are nearly all clear glass or mirror.
     pub colors: Vec<(&'static str, f32)>,
     /// The pattern of most of it; `None` for plain things, and for pictures, screens and books.
-    pub pattern: Option<Pattern>,
+    pub pattern: Option<SurfacePattern>,
     /// Whether at least half of what is seen of it is clear glass or mirror.
     pub(crate) is_mostly_clear: bool,
     /// Its substances with their shares of the surface, largest first.
@@ -64,7 +66,7 @@ impl ObjectFacts {
         let is_low = extents_m.y < LEAST_WARDROBE_M;
         let (noun, plural) = match (kind, category) {
             (None, Some(row)) if is_low && row.name == "wardrobe_cabinet" => {
-                counted_noun("cabinet")
+                singular_and_plural("cabinet")
             }
             (Some(kind), _) => (kind.singular.to_owned(), kind.plural.to_owned()),
             (None, Some(row)) => (row.singular.to_owned(), row.plural.to_owned()),
@@ -72,7 +74,7 @@ impl ObjectFacts {
         };
         let (noun, plural) = match noun.as_str() {
             // An object, as opposed to a piece of the building.
-            "wall" | "floor" | "ceiling" => counted_noun(&format!("{noun} piece")),
+            "wall" | "floor" | "ceiling" => singular_and_plural(&format!("{noun} piece")),
             _ => (noun, plural),
         };
         let areas = areas_m2(house, id);
@@ -239,12 +241,12 @@ impl ObjectFacts {
     }
 
     /// Returns whether noun, size, colours and material of a description fit it; its state and modifiers are left aside.
-    pub(crate) fn fits(&self, description: &Description) -> bool {
+    pub(crate) fn matches_properties(&self, description: &Description) -> bool {
         self.fits_with(description, Truth::is_true)
     }
 
     /// The same, or whether some people would say that they fit.
-    pub(crate) fn may_fit(&self, description: &Description) -> bool {
+    pub(crate) fn may_match_properties(&self, description: &Description) -> bool {
         self.fits_with(description, |color| !color.is_false())
             && (description.colors.is_empty() || !self.colors.is_empty())
     }
@@ -262,7 +264,7 @@ impl ObjectFacts {
     }
 
     /// Returns whether it belongs to a hole in a wall: a door, a window, a curtain. It marks no place of other things.
-    pub fn is_opening(&self) -> bool {
+    pub fn belongs_to_opening(&self) -> bool {
         let classes = ["door", "window", "curtain", "blinds"];
         self.category
             .is_some_and(|row| classes.contains(&row.nyu40_name))
@@ -314,7 +316,7 @@ fn unknown_noun(category: &dwell_scene::Category) -> (String, String) {
     if noun.is_empty() {
         ("thing".to_owned(), "things".to_owned())
     } else {
-        counted_noun(&noun)
+        singular_and_plural(&noun)
     }
 }
 
@@ -395,7 +397,7 @@ pub(crate) fn shows_color<'a>(words: impl Iterator<Item = &'a str> + Clone, word
         return Truth::True;
     }
     let mut words = words;
-    if words.any(|own| divides(own, word)) {
+    if words.any(|own| speakers_disagree(own, word)) {
         return Truth::Undecided(UndecidedReason::DividedColor);
     }
     Truth::False
@@ -428,7 +430,7 @@ fn pattern(
     paints: &MaterialColors,
     category: Option<&SemanticCategory>,
     areas: &[(MaterialId, f32)],
-) -> Option<Pattern> {
+) -> Option<SurfacePattern> {
     const SHOWING: [&str; 5] = ["picture", "television", "books", "paper", "clock"];
     if category.is_none_or(|row| SHOWING.contains(&row.nyu40_name) || SHOWING.contains(&row.name)) {
         return None;

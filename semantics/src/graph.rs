@@ -172,7 +172,7 @@ fn storey_node(house: &House, id: LevelId) -> StoreyNode {
 }
 
 /// The number that stands for a term in a graph: the sensors' id of a thing, the number of a room or a storey.
-pub fn number_of(house: &House, term: Term) -> i32 {
+pub fn node_id(house: &House, term: Term) -> i32 {
     match term {
         Term::Object(id) => house.entity_of_object(id).0,
         Term::Structure(id) => house.entity_of_structure(id).0,
@@ -201,7 +201,7 @@ fn nearest_in_front(scene: &SemanticScene<'_>, viewer: &Viewer) -> Vec<Term> {
 }
 
 /// One relation that holds: subject, predicate by its place in [`predicates::all`], object.
-pub type Related = (Term, usize, Term);
+pub type RelationTriple = (Term, usize, Term);
 
 /// Returns the relations of objects and agents by the binary predicates at `codes` of [`predicates::all`]; by subject, then by
 /// predicate. A relation that needs a viewer is evaluated for the 1,000 things nearest before it, and left out without one.
@@ -209,7 +209,7 @@ pub fn relations(
     scene: &SemanticScene<'_>,
     codes: &[usize],
     viewer: Option<&Viewer>,
-) -> Vec<Related> {
+) -> Vec<RelationTriple> {
     let all = predicates::all();
     let known = codes
         .iter()
@@ -220,7 +220,7 @@ pub fn relations(
     let front = viewer.map_or_else(Vec::new, |viewer| nearest_in_front(scene, viewer));
     let objects = scene.house().objects.ids().map(Term::Object);
     let subjects = objects.chain(scene.state.agents.ids().map(Term::Agent));
-    let mut found: Vec<Related> = Vec::new();
+    let mut found: Vec<RelationTriple> = Vec::new();
     for subject in subjects {
         interrupt::unwind_if_cancelled();
         for (code, predicate) in &known {
@@ -272,9 +272,9 @@ pub fn scene_graph(scene: &SemanticScene<'_>, viewer: Option<&Viewer>) -> SceneG
     let edges = found
         .into_iter()
         .map(|(subject, code, object)| RelationEdge {
-            subject: number_of(house, subject),
+            subject: node_id(house, subject),
             predicate: predicates::all()[code].name().to_owned(),
-            object: number_of(house, object),
+            object: node_id(house, object),
         });
     let mut relations: Vec<RelationEdge> = edges.collect();
     relations.sort_by(|p, q| {

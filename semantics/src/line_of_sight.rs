@@ -1,6 +1,6 @@
 //! Lines of sight from a viewer to a thing.
 
-use crate::clear_glass::is_clear;
+use crate::clear_glass::is_transparent;
 use crate::scene::{SemanticScene, Viewer};
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::rays::RayScene;
@@ -84,7 +84,7 @@ fn meets_first(rays: &RayScene, ray: &Ray, id: EntityId) -> bool {
         if hit.id == id.0 {
             return true;
         }
-        if !is_clear(rays, &hit) {
+        if !is_transparent(rays, &hit) {
             return false;
         }
         ray = ray.with_range(hit.distance_m + BEHIND_M, ray.far_m);

@@ -40,12 +40,12 @@ impl NounIndex {
     }
 
     /// The number of a thing's kind.
-    pub(crate) fn class_of(&self, object: ObjectId) -> u32 {
+    pub(crate) fn kind_of(&self, object: ObjectId) -> u32 {
         self.of[object]
     }
 
     /// The numbers of the kinds that may be called `noun`.
-    pub(crate) fn classes_called(
+    pub(crate) fn kinds_called(
         &self,
         facts: &IdVec<ObjectId, ObjectFacts>,
         noun: &str,
@@ -56,7 +56,7 @@ impl NounIndex {
     }
 
     /// The things of some kinds, ascending.
-    pub(crate) fn things(&self, kinds: &[u32]) -> Vec<ObjectId> {
+    pub(crate) fn objects_of_kinds(&self, kinds: &[u32]) -> Vec<ObjectId> {
         let kinds = kinds.iter().map(|kind| &self.all[*kind as usize]);
         let mut things: Vec<ObjectId> =
             kinds.flat_map(|kind| kind.things.iter().copied()).collect();

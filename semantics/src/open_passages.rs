@@ -1,6 +1,6 @@
 //! Passages between rooms that no door closes.
 
-use crate::room_outline::borders;
+use crate::room_outline::boundary_edges;
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::rays::RayScene;
 use dwell_scene::{Aabb, IdVec, RoomId};
@@ -45,7 +45,7 @@ pub(crate) fn passages(rays: &RayScene, doors: &[Aabb]) -> IdVec<RoomId, Vec<Roo
 fn widths(rays: &RayScene, doors: &[Aabb], room: RoomId) -> BTreeMap<RoomId, f32> {
     let house = rays.house();
     let mut open = BTreeMap::new();
-    for [a, b] in borders(&house.rooms[room]) {
+    for [a, b] in boundary_edges(&house.rooms[room]) {
         let length_m = a.distance(b);
         let steps = (length_m / STEP_M).ceil().max(1.0);
         let Some(along) = (b - a).try_normalize() else {

@@ -42,7 +42,7 @@ impl ReachableArea {
     }
 
     /// Returns whether from a place in it that `counts` a hand reaches the box: at most the reach from the eyes.
-    pub(crate) fn reaches(&self, bounds: &Aabb, counts: impl Fn(Vec3) -> bool) -> bool {
+    pub(crate) fn hand_reaches(&self, bounds: &Aabb, counts: impl Fn(Vec3) -> bool) -> bool {
         self.cells_at(bounds, self.reach_m).any(|cell| {
             let eye = cell + Vec3::Y * self.eye_height_m;
             let nearest = eye.clamp(bounds.min, bounds.max);

@@ -21,7 +21,7 @@ pub(crate) struct RoomOutline {
 
 impl RoomOutline {
     pub(crate) fn gather(room: &Room) -> Self {
-        let edges = borders(room);
+        let edges = boundary_edges(room);
         let longest = edges
             .iter()
             .max_by(|[a, b], [c, d]| a.distance_squared(*b).total_cmp(&c.distance_squared(*d)));
@@ -43,7 +43,7 @@ impl RoomOutline {
     }
 
     /// Returns where a point lies along the longer edge of the rectangle around the floor, -1 to 1 from end to end.
-    pub(crate) fn lengthwise_share(&self, point: Vec2) -> f32 {
+    pub(crate) fn lengthwise_position(&self, point: Vec2) -> f32 {
         let share = self.normalized_position(point);
         if self.half_m.x >= self.half_m.y {
             share.x
@@ -53,7 +53,7 @@ impl RoomOutline {
     }
 
     /// Returns the direction of the longest border, unit length; zero for a room without a floor.
-    pub(crate) fn along(&self) -> Vec2 {
+    pub(crate) fn long_axis(&self) -> Vec2 {
         self.along
     }
 
@@ -68,7 +68,7 @@ fn along_across(along: Vec2, point: Vec2) -> Vec2 {
 }
 
 /// The edges of a room's footprint that only one of its triangles has.
-pub(crate) fn borders(room: &Room) -> Vec<[Vec2; 2]> {
+pub(crate) fn boundary_edges(room: &Room) -> Vec<[Vec2; 2]> {
     let mut edges: BTreeMap<[[u32; 2]; 2], ([Vec2; 2], usize)> = BTreeMap::new();
     for [a, b, c] in &room.footprint {
         for [p, q] in [[*a, *b], [*b, *c], [*c, *a]] {

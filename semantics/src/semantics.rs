@@ -182,18 +182,21 @@ impl Semantics {
     }
 
     /// The structure pieces whose boxes share a point with `reach`, ascending.
-    pub(crate) fn structure_at(&self, reach: &Aabb) -> impl Iterator<Item = StructureId> + use<> {
-        let touching = self.structure_boxes.touching(reach).into_iter();
+    pub(crate) fn structures_in_box(
+        &self,
+        reach: &Aabb,
+    ) -> impl Iterator<Item = StructureId> + use<> {
+        let touching = self.structure_boxes.intersecting(reach).into_iter();
         touching.map(StructureId::from_index)
     }
 
-    pub(crate) fn kinds(&self) -> &NounIndex {
+    pub(crate) fn noun_index(&self) -> &NounIndex {
         &self.kinds
     }
 
     /// The numbers of the kinds of things that may be called `noun`.
     pub(crate) fn kinds_called(&self, noun: &str) -> Vec<u32> {
-        self.kinds.classes_called(&self.facts, noun)
+        self.kinds.kinds_called(&self.facts, noun)
     }
 }
 

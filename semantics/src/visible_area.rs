@@ -38,7 +38,7 @@ pub(crate) fn visible_surface_areas(
             let own = &bounds[ids[k]];
             // Each ray would hit all the others.
             let middle = Aabb::new(own.center(), own.center());
-            let others = tree.nearest_intersecting(&middle, MOST_AROUND + 1, |other| other != k);
+            let others = tree.k_nearest_intersecting(&middle, MOST_AROUND + 1, |other| other != k);
             if others.len() > MOST_AROUND {
                 Vec::new()
             } else {

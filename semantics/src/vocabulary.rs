@@ -31,7 +31,7 @@ pub fn vocabulary() -> &'static [&'static str] {
 }
 
 /// The number of different tokens, padding included: the `nvec` of a space of tokens.
-pub fn count() -> usize {
+pub fn size() -> usize {
     vocabulary().len() + 1
 }
 
@@ -97,7 +97,7 @@ mod tests {
         assert_eq!(tokens.len(), LENGTH);
         assert_eq!(detokenize(&tokens), "go to the kitchen .");
         assert_eq!(tokens[5..], [PAD; LENGTH - 5]);
-        assert!(tokens.iter().all(|t| (0..count() as i32).contains(t)));
+        assert!(tokens.iter().all(|t| (0..size() as i32).contains(t)));
         let message = tokenize("Go to the xyzzy.").unwrap_err().to_string();
         assert_eq!(
             message,

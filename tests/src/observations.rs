@@ -26,7 +26,7 @@ pub fn goal_sensors(task: &TaskKind) -> Vec<&'static str> {
 /// # Panics
 /// When the batch cannot observe, or a sensor leaves its range.
 pub fn observe(batch: &mut Batch) -> Vec<Vec<u8>> {
-    let specs = batch.specs();
+    let specs = batch.sensor_specs();
     let count = batch.envs().len();
     let mut bytes: Vec<Vec<u8>> = specs
         .iter()

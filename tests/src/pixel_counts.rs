@@ -26,7 +26,7 @@ pub fn adapter_paths() -> Vec<BackEnd> {
 /// # Errors
 /// As [`Batch::observe`].
 pub fn try_observe(batch: &mut Batch, which: &[bool]) -> Result<Vec<Vec<u8>>, WorldError> {
-    let specs = batch.specs();
+    let specs = batch.sensor_specs();
     let count = batch.envs().len();
     let buffers = |dtype: Dtype| -> Vec<usize> {
         let lengths = specs.iter();

@@ -64,7 +64,7 @@ pub fn place(batch: &mut Batch, agent: u32, position: Vec3, yaw_rad: f32) {
 /// # Panics
 /// When there is no such sensor, or it observes text.
 pub fn observed(batch: &mut Batch, name: &str) -> (Vec<f32>, Vec<usize>) {
-    let specs = batch.specs();
+    let specs = batch.sensor_specs();
     let place = specs.iter().position(|spec| spec.name == name);
     let place = place.expect("a sensor of that name");
     let mut floats: Vec<Vec<f32>> = Vec::new();

@@ -1,7 +1,7 @@
 //! Sound of a footstep.
 
 use super::friction_noise::{FrictionSound, FrictionSoundKind};
-use super::impact_force::{add_half_sine, hertz_contact_time_s, modulus_pa};
+use super::impact_force::{add_half_sine, effective_modulus_pa, hertz_contact_time_s};
 use super::radiation::Radiator;
 use super::{ContactPartner, samples};
 use dwell_scene::random::RandomKey;
@@ -89,7 +89,7 @@ impl FootstepSound {
             for (start_s, share) in [(0.0, 1.0), (self.toe_s(), TOE)] {
                 let strength = share * (0.85 + 0.3 * stream.uniform());
                 for (mass_kg, radius_m, substance) in self.impacting_masses() {
-                    let modulus = modulus_pa(substance, &self.floor.substance);
+                    let modulus = effective_modulus_pa(substance, &self.floor.substance);
                     let lasts_s = hertz_contact_time_s(mass_kg, radius_m, modulus, speed);
                     let impulse = mass_kg * speed * strength;
                     add_half_sine(&mut force, rate_hz, start_s, impulse, lasts_s);

@@ -1,6 +1,6 @@
 //! Sound of sliding and rolling.
 
-use super::impact_force::modulus_pa;
+use super::impact_force::effective_modulus_pa;
 use super::radiation::Radiator;
 use super::{ContactPartner, elastic, samples};
 use dwell_scene::random::RandomKey;
@@ -80,7 +80,7 @@ impl FrictionSound {
         };
         let rough = libm::pow(self.roughness_m() / 1e-5, BY_ROUGHNESS);
         let [a, b] = [0, 1].map(|k| self.partners[k].substance.as_str());
-        let modulus = modulus_pa(a, b);
+        let modulus = effective_modulus_pa(a, b);
         let hard = modulus / (modulus + SOFT_MODULUS_PA);
         (normal * factor * hard * rough * libm::pow(speed, BY_SPEED)).min(MAX_FORCE_SHARE * normal)
     }

@@ -25,7 +25,7 @@ pub(super) fn hertz_contact_time_s(
 }
 
 /// Returns the effective modulus of two surfaces in contact, Pa.
-pub(super) fn modulus_pa(a: &str, b: &str) -> f64 {
+pub(super) fn effective_modulus_pa(a: &str, b: &str) -> f64 {
     let yields = [a, b].map(|name| {
         let of = elastic(name);
         (1.0 - of.poisson * of.poisson) / of.contact_pa
@@ -52,7 +52,7 @@ pub(super) fn impact_duration_s(partners: &[ContactPartner; 2], speed_m_s: f64) 
         })
         .fold(f32::INFINITY, f32::min);
     let radius_m = (CURVATURE * f64::from(smallest)).clamp(CURVATURE_M.0, CURVATURE_M.1);
-    let modulus = modulus_pa(&partners[0].substance, &partners[1].substance);
+    let modulus = effective_modulus_pa(&partners[0].substance, &partners[1].substance);
     hertz_contact_time_s(mass_kg, radius_m, modulus, speed_m_s)
 }
 
@@ -83,7 +83,7 @@ mod tests {
     /// K. L. Johnson, Contact Mechanics, section 11.4: two steel spheres.
     #[test]
     fn steel_balls_touch_for_a_tenth_of_a_millisecond() {
-        let modulus = modulus_pa("steel", "steel");
+        let modulus = effective_modulus_pa("steel", "steel");
         assert!((modulus / (200e9 / (2.0 * (1.0 - 0.29 * 0.29))) - 1.0).abs() < 1e-12);
         // 1 cm radius, 33 g each: R = 5 mm, m = 16.4 g. The equation of motion, step by step.
         let (mass, radius, speed) = (0.0164, 0.005_f64, 1.0);

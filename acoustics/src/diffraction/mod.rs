@@ -11,7 +11,7 @@ mod insertion_loss;
 use crate::bands::BAND_COUNT;
 use crate::echogram::PropagationPath;
 use crate::planes::DiffractionEdge;
-use crate::propagation_data::PropagationData;
+use crate::propagation_scene::PropagationScene;
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::rays::RayScene;
 use edge_path::{EdgeFrame, EdgePath};
@@ -77,7 +77,7 @@ impl EdgePoint {
 
 /// Returns the paths from `source` around edges to `receiver`, which is out of sight.
 pub(crate) fn diffracted_paths(
-    data: &PropagationData,
+    data: &PropagationScene,
     rays: &RayScene,
     source: Vec3,
     receiver: Vec3,
@@ -171,7 +171,7 @@ pub(crate) fn diffracted_paths(
 
 /// Returns the share of the sound from a `source` in sight that edges beside the straight line pass. Shape (band,).
 pub(crate) fn line_of_sight_transmission(
-    data: &PropagationData,
+    data: &PropagationScene,
     rays: &RayScene,
     source: Vec3,
     receiver: Vec3,
@@ -182,7 +182,7 @@ pub(crate) fn line_of_sight_transmission(
 /// Returns the share of the sound that edges close to the straight line pass that hide nothing, except those of profiles
 /// that are `touched` anyway. Shape (band,).
 fn grazing_edge_transmission(
-    data: &PropagationData,
+    data: &PropagationScene,
     rays: &RayScene,
     source: Vec3,
     receiver: Vec3,
@@ -225,7 +225,7 @@ fn is_free(rays: &RayScene, a: DVec3, b: DVec3) -> bool {
 /// A way over an edge is no shorter than one over its middle less its length. Edges are tried in the order of that bound, a
 /// range of it at a time, until enough lie within the ranges tried.
 fn near_edges(
-    data: &PropagationData,
+    data: &PropagationScene,
     from: DVec3,
     to: DVec3,
     longest_m: f64,
@@ -336,7 +336,7 @@ fn sum_coherent_paths(ways: &mut [DiffractionPath], n_per_m: &[f64; BAND_COUNT])
 mod tests {
     use super::{EdgeFrame, LONGEST_DETOUR_M, MOST_EDGES, near_edges};
     use crate::AcousticConfig;
-    use crate::propagation_data::PropagationData;
+    use crate::propagation_scene::PropagationScene;
     use dwell_scene::random::RandomKey;
     use glam::{DVec3, Vec3};
     use std::sync::Arc;
@@ -347,7 +347,7 @@ mod tests {
         let (house, _) = dwell_houses::open("seed:2").unwrap();
         let bounds = house.data().rooms.iter().map(|room| room.bounds);
         let bounds = bounds.reduce(|a, b| a.union(&b)).unwrap();
-        let data = PropagationData::new(Arc::new(house), AcousticConfig::full());
+        let data = PropagationScene::new(Arc::new(house), AcousticConfig::full());
         let mut stream = RandomKey::root(5).stream();
         let mut place = || {
             let share = Vec3::new(

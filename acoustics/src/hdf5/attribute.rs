@@ -1,7 +1,7 @@
 //! Attributes: texts of a group or a variable.
 
 use super::btree2;
-use super::bytes::{Cursor, FileBytes, Hdf5Fault, Hdf5Result, unsupported};
+use super::bytes::{Cursor, FileBytes, Hdf5Error, Hdf5Result, unsupported};
 use super::datatype::Datatype;
 use super::fractal_heap::FractalHeap;
 use super::global_heap;
@@ -79,7 +79,7 @@ fn text_of(
         return Ok(None);
     }
     let (datatype, dataspace) = (part(sizes[1])?, part(sizes[2])?);
-    let fault = |why: &str| Err(Hdf5Fault(format!("{name}: {why}")));
+    let fault = |why: &str| Err(Hdf5Error(format!("{name}: {why}")));
     if version > 1 && flags & 3 != 0 {
         return fault("its description is shared with another object; not read");
     }

@@ -1,6 +1,6 @@
 //! B-trees of version 1: the entries of a group, and addresses of chunks.
 
-use super::bytes::{Cursor, FileBytes, Hdf5Fault, Hdf5Result};
+use super::bytes::{Cursor, FileBytes, Hdf5Error, Hdf5Result};
 
 /// Calls `each` with every leaf's entry: its key, and its address.
 ///
@@ -17,7 +17,7 @@ pub(super) fn for_each_entry(
     while let Some((address, expected)) = open.pop() {
         let mut node = source.at(address)?;
         let fault = || {
-            Hdf5Fault(format!(
+            Hdf5Error(format!(
                 "damaged at byte {address}: expected a node of a tree"
             ))
         };

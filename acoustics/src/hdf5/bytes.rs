@@ -9,13 +9,13 @@ const MOST_STRUCTURE_BYTES: u64 = 32 << 20;
 
 /// A fault of a file, as a sentence.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Hdf5Fault(pub(super) String);
+pub(super) struct Hdf5Error(pub(super) String);
 
-pub(super) type Hdf5Result<T> = Result<T, Hdf5Fault>;
+pub(super) type Hdf5Result<T> = Result<T, Hdf5Error>;
 
 /// Refuses with a sentence.
 pub(super) fn unsupported<T>(message: impl Into<String>) -> Hdf5Result<T> {
-    Err(Hdf5Fault(message.into()))
+    Err(Hdf5Error(message.into()))
 }
 
 /// Sizes of an address and of a length in a file, bytes.
@@ -68,7 +68,7 @@ impl<'a> FileBytes<'a> {
         };
         range().ok_or_else(|| {
             let size = self.bytes.len();
-            Hdf5Fault(format!(
+            Hdf5Error(format!(
                 "damaged: it points at {length} bytes from byte {address} on, and the file has {size}"
             ))
         })
@@ -176,7 +176,7 @@ impl<'a> Cursor<'a> {
         let at = self.position();
         let found = self.address()?;
         found.ok_or_else(|| {
-            Hdf5Fault(format!(
+            Hdf5Error(format!(
                 "damaged at byte {at}: expected an address, found none"
             ))
         })

@@ -1,6 +1,6 @@
 //! Fractal heaps, which hold links and attributes where there are many.
 
-use super::bytes::{Cursor, FileBytes, Hdf5Fault, Hdf5Result, unsupported};
+use super::bytes::{Cursor, FileBytes, Hdf5Error, Hdf5Result, unsupported};
 
 /// A heap: blocks in rows, whose sizes double from row to row.
 pub(super) struct FractalHeap {
@@ -85,13 +85,13 @@ impl FractalHeap {
         let (block, inside) = self.block_of(source, offset)?;
         let start = block.checked_add(inside);
         let start =
-            start.ok_or_else(|| Hdf5Fault(format!("damaged: an address beyond {block}")))?;
+            start.ok_or_else(|| Hdf5Error(format!("damaged: an address beyond {block}")))?;
         source.block(start, length).map(Some)
     }
 
     /// Returns the address of the block that holds an offset of the heap, and the offset in that block.
     fn block_of(&self, source: &FileBytes<'_>, offset: u64) -> Hdf5Result<(u64, u64)> {
-        let damaged = || Hdf5Fault(format!("damaged: a heap has nothing at {offset}"));
+        let damaged = || Hdf5Error(format!("damaged: a heap has nothing at {offset}"));
         let mut address = self.root.ok_or_else(damaged)?;
         let (mut rows, mut inside) = (self.rows, offset);
         // Each nested block is smaller than the one that contains it.

@@ -1,6 +1,6 @@
 //! The chunks of a variable as a grid, and its values from them.
 
-use super::bytes::{FileBytes, Hdf5Fault, Hdf5Result, unsupported};
+use super::bytes::{FileBytes, Hdf5Error, Hdf5Result, unsupported};
 use super::datatype::Datatype;
 use super::filters::FilterPipeline;
 use super::index;
@@ -193,7 +193,7 @@ pub(super) fn numbers(
         let stored = source.unbudgeted_bytes(chunk.address, chunk.size.unwrap_or(grid.bytes))?;
         let undone = filters.decode(stored, chunk.skipped_filters, whole);
         let bytes =
-            undone.map_err(|Hdf5Fault(why)| Hdf5Fault(format!("chunk {}: {why}", chunk.number)))?;
+            undone.map_err(|Hdf5Error(why)| Hdf5Error(format!("chunk {}: {why}", chunk.number)))?;
         grid.scatter_chunk(chunk.number, &bytes, of, size, shape, &mut values);
     }
     Ok(values)

@@ -3,7 +3,7 @@
 use super::arrays::{self, ArrayEntryFormat};
 use super::btree1;
 use super::btree2;
-use super::bytes::{Cursor, FileBytes, Hdf5Fault, Hdf5Result};
+use super::bytes::{Cursor, FileBytes, Hdf5Error, Hdf5Result};
 use super::grid::{ChunkGrid, StoredChunk};
 use super::layout::{ChunkIndex, ChunkedStorage};
 
@@ -54,7 +54,7 @@ pub(super) fn chunks(
         ChunkIndex::Implicit => {
             // All are stored or none is.
             let length = grid.count.checked_mul(grid.bytes);
-            let length = length.ok_or_else(|| Hdf5Fault("damaged: too many chunks".to_owned()))?;
+            let length = length.ok_or_else(|| Hdf5Error("damaged: too many chunks".to_owned()))?;
             source.unbudgeted_bytes(address, length)?;
             found.extend((0..grid.count).map(|number| StoredChunk {
                 number,

@@ -25,7 +25,7 @@ mod shape;
 mod superblock;
 
 use crate::error::AcousticsError;
-use bytes::{FileBytes, Hdf5Fault, Hdf5Result, unsupported};
+use bytes::{FileBytes, Hdf5Error, Hdf5Result, unsupported};
 use datatype::Datatype;
 use filters::FilterPipeline;
 use header::{ObjectHeader, kind};
@@ -61,7 +61,7 @@ impl Hdf5 {
     /// [`AcousticsError::Hdf5`] when they are no HDF5 file.
     pub fn open(bytes: Vec<u8>) -> Result<Self, AcousticsError> {
         let superblock =
-            superblock::read(&bytes).map_err(|Hdf5Fault(why)| AcousticsError::Hdf5(why))?;
+            superblock::read(&bytes).map_err(|Hdf5Error(why)| AcousticsError::Hdf5(why))?;
         Ok(Self { bytes, superblock })
     }
 
@@ -122,7 +122,7 @@ impl Hdf5 {
             &self.bytes[self.superblock.base_offset..],
             self.superblock.widths,
         );
-        work(&source).map_err(|Hdf5Fault(why)| AcousticsError::Hdf5(format!("{at}: {why}")))
+        work(&source).map_err(|Hdf5Error(why)| AcousticsError::Hdf5(format!("{at}: {why}")))
     }
 
     fn root<'s>(&self, source: &'s FileBytes<'_>) -> Hdf5Result<ObjectHeader<'s>> {

@@ -1,6 +1,6 @@
 //! Corners of early paths.
 
-use super::sequences::mirror;
+use super::sequences::compute_images;
 use crate::echogram::PropagationPath;
 use crate::planes::Plane;
 use glam::Vec3;
@@ -20,7 +20,7 @@ pub(crate) fn path_vertices(
             .collect();
     }
     let mut images = Vec::new();
-    let found = mirror(planes, source.as_dvec3(), &path.planes, &mut images);
+    let found = compute_images(planes, source.as_dvec3(), &path.planes, &mut images);
     let mut points = vec![receiver];
     let mut target = receiver.as_dvec3();
     if found {

@@ -2,7 +2,7 @@
 
 use crate::bands::BAND_COUNT;
 use crate::echogram::PropagationPath;
-use crate::propagation_data::PropagationData;
+use crate::propagation_scene::PropagationScene;
 use crate::transmission;
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::rays::RayScene;
@@ -10,7 +10,7 @@ use glam::Vec3;
 
 /// Returns the direct path; `None` when nothing is transmitted.
 pub(super) fn direct(
-    data: &PropagationData,
+    data: &PropagationScene,
     rays: &RayScene,
     source: Vec3,
     receiver: Vec3,

@@ -8,7 +8,7 @@ mod visibility;
 use crate::bands::BAND_COUNT;
 use crate::diffraction;
 use crate::echogram::PropagationPath;
-use crate::propagation_data::PropagationData;
+use crate::propagation_scene::PropagationScene;
 use crate::receiver::SoundSourcePose;
 pub(crate) use corners::path_vertices;
 use dwell_scene::rays::RayScene;
@@ -17,7 +17,7 @@ use visibility::ImageValidator;
 
 /// Returns all audible paths of order 0 to the configured order, by length.
 pub(crate) fn find_specular_paths(
-    data: &PropagationData,
+    data: &PropagationScene,
     rays: &RayScene,
     source: &SoundSourcePose,
     receiver: Vec3,
@@ -29,7 +29,7 @@ pub(crate) fn find_specular_paths(
 
 /// Applies the source's directivity to paths of an omnidirectional source.
 fn apply_source_directivity(
-    data: &PropagationData,
+    data: &PropagationScene,
     source: &SoundSourcePose,
     paths: &mut Vec<PropagationPath>,
 ) {
@@ -49,7 +49,7 @@ fn apply_source_directivity(
 
 /// The same for an omnidirectional source.
 fn find_omnidirectional(
-    data: &PropagationData,
+    data: &PropagationScene,
     rays: &RayScene,
     source: Vec3,
     receiver: Vec3,
@@ -86,7 +86,7 @@ fn find_omnidirectional(
 
 /// Returns the direct path, in sight or through walls, and where it is not in sight, the diffracted ones.
 fn direct_and_diffracted_paths(
-    data: &PropagationData,
+    data: &PropagationScene,
     rays: &RayScene,
     source: Vec3,
     receiver: Vec3,
@@ -115,7 +115,7 @@ fn direct_and_diffracted_paths(
 
 /// Subtracts the sound transmitted through a screen from the paths around it: it is not missing behind it (Babinet's principle).
 fn subtract_transmitted(
-    data: &PropagationData,
+    data: &PropagationScene,
     transmitted: &PropagationPath,
     around: &mut Vec<PropagationPath>,
 ) {
@@ -137,7 +137,7 @@ fn subtract_transmitted(
 /// Returns `known` paths between points that have moved, for an omnidirectional source: the direct paths, and the
 /// reflections that still exist.
 pub(crate) fn revalidate_paths(
-    data: &PropagationData,
+    data: &PropagationScene,
     rays: &RayScene,
     source: Vec3,
     receiver: Vec3,
@@ -147,7 +147,7 @@ pub(crate) fn revalidate_paths(
     let mut paths = direct_and_diffracted_paths(data, rays, source, receiver);
     let mut images = Vec::new();
     for path in known.iter().filter(|path| !path.planes.is_empty()) {
-        if sequences::mirror(data.planes(), source.as_dvec3(), &path.planes, &mut images) {
+        if sequences::compute_images(data.planes(), source.as_dvec3(), &path.planes, &mut images) {
             paths.extend(validator.path(&path.planes, &images));
         }
     }

@@ -1,7 +1,7 @@
 //! Candidate sequences of mirrors.
 
 use crate::planes::{NO_PLANE, Plane};
-use crate::propagation_data::PropagationData;
+use crate::propagation_scene::PropagationScene;
 use crate::ray_margin::ray_offset_m;
 use crate::sphere_sequences::fibonacci_direction;
 use dwell_scene::bvh::{Ray, RayMask};
@@ -20,7 +20,7 @@ const ON_PLANE_M: f64 = 1e-6;
 /// Candidates are all sequences of the largest planes, as long as an order has not too many of them, and those of rays from
 /// the receiver.
 pub(super) fn for_each_plane_sequence(
-    data: &PropagationData,
+    data: &PropagationScene,
     rays: &RayScene,
     source: Vec3,
     receiver: Vec3,
@@ -49,14 +49,14 @@ pub(super) fn for_each_plane_sequence(
     let mut images = Vec::new();
     for sequence in ray_traced_sequences(data, rays, receiver) {
         let known = sequence.len() <= exhaustive && sequence.iter().all(|p| tried.contains(p));
-        if !known && mirror(data.planes(), source, &sequence, &mut images) {
+        if !known && compute_images(data.planes(), source, &sequence, &mut images) {
             visit(&sequence, &images);
         }
     }
 }
 
 /// Computes the images of `source` behind each mirror in turn; false where one lies on its mirror.
-pub(super) fn mirror(
+pub(super) fn compute_images(
     planes: &[Plane],
     source: DVec3,
     sequence: &[u32],
@@ -110,7 +110,7 @@ impl SequenceSearch<'_> {
 
 /// Returns the sequences, from the source on, of specular rays from the receiver.
 fn ray_traced_sequences(
-    data: &PropagationData,
+    data: &PropagationScene,
     rays: &RayScene,
     receiver: Vec3,
 ) -> BTreeSet<Vec<u32>> {

@@ -1,7 +1,7 @@
 //! Visibility of image sources: the path back through the mirrors, in double precision and against the BVH.
 
 use crate::echogram::PropagationPath;
-use crate::propagation_data::PropagationData;
+use crate::propagation_scene::PropagationScene;
 use crate::ray_margin::ray_offset_m;
 use dwell_scene::bvh::{Hit, Ray, RayMask};
 use dwell_scene::rays::RayScene;
@@ -11,7 +11,7 @@ use glam::{DVec3, Vec3};
 const TOLERANCE_M: f32 = 2e-3;
 
 pub(super) struct ImageValidator<'a> {
-    data: &'a PropagationData,
+    data: &'a PropagationScene,
     rays: &'a RayScene,
     source: DVec3,
     receiver: DVec3,
@@ -19,7 +19,7 @@ pub(super) struct ImageValidator<'a> {
 
 impl<'a> ImageValidator<'a> {
     pub(super) fn new(
-        data: &'a PropagationData,
+        data: &'a PropagationScene,
         rays: &'a RayScene,
         source: Vec3,
         receiver: Vec3,

@@ -1,6 +1,6 @@
 //! From the index to words: which tokens a listener recognizes.
 
-use super::vocabulary_size::score_among;
+use super::vocabulary_size::score_for_set_size;
 use crate::error::{AcousticsError, check_range};
 use crate::utterance::{MAX_VOCABULARY, check_tokens};
 use dwell_scene::random::RandomKey;
@@ -44,7 +44,11 @@ pub fn token_recognition_probability(
     check_range(AT, "sti", sti, (0.0, 1.0), "0 to 1")?;
     let (size, most) = (f64::from(vocabulary_size), f64::from(MAX_VOCABULARY));
     check_range(AT, "vocabulary_size", size, (1.0, most), "1 to 127,500")?;
-    Ok(score_among(size.max(2.0), word_score(sti), TEST_WORDS))
+    Ok(score_for_set_size(
+        size.max(2.0),
+        word_score(sti),
+        TEST_WORDS,
+    ))
 }
 
 /// Draws what a listener hears of an utterance: each token independently right, another one (a confusion), or `None` (lost). Shape (token,).

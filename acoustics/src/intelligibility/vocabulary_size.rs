@@ -36,7 +36,7 @@ fn recognized(separation: f64, alternatives: f64) -> f64 {
 /// # Source
 /// D. M. Green, T. G. Birdsall, "The effect of vocabulary size on articulation score", Univ. Michigan, Technical Report 81 (1958), after G. A. Miller,
 /// G. A. Heise, W. Lichten, J. Exp. Psychol. 41, 329 (1951).
-pub(super) fn score_among(alternatives: f64, score: f64, reference: f64) -> f64 {
+pub(super) fn score_for_set_size(alternatives: f64, score: f64, reference: f64) -> f64 {
     if score <= 0.0 || score >= 1.0 {
         return score.clamp(0.0, 1.0);
     }
@@ -84,12 +84,12 @@ mod tests {
     #[test]
     fn fewer_words_are_easier() {
         for score in [0.001, 0.1, 0.5, 0.9, 0.999] {
-            assert!((score_among(1000.0, score, 1000.0) - score).abs() < 1e-4);
+            assert!((score_for_set_size(1000.0, score, 1000.0) - score).abs() < 1e-4);
             let scores = [2.0, 4.0, 32.0, 256.0, 1000.0, 10_000.0]
-                .map(|alternatives| score_among(alternatives, score, 1000.0));
+                .map(|alternatives| score_for_set_size(alternatives, score, 1000.0));
             assert!(scores.is_sorted_by(|a, b| a > b), "{scores:?}");
         }
-        assert_eq!(score_among(2.0, 0.0, 1000.0), 0.0);
-        assert_eq!(score_among(5.0, 1.0, 1000.0), 1.0);
+        assert_eq!(score_for_set_size(2.0, 0.0, 1000.0), 0.0);
+        assert_eq!(score_for_set_size(5.0, 1.0, 1000.0), 1.0);
     }
 }

@@ -73,8 +73,8 @@ pub fn binaural_metrics(
     let early = start + (EARLY_S * rate_hz) as usize;
     for (band, found) in metrics.bands.iter_mut().enumerate() {
         let pair = |filters: &mut ZeroPhaseFilters, spectra: &[Vec<_>; 2]| {
-            let left = filters.band(band, &spectra[0])?;
-            Some([left, filters.band(band, &spectra[1])?])
+            let left = filters.band_signal(band, &spectra[0])?;
+            Some([left, filters.band_signal(band, &spectra[1])?])
         };
         let Some(heard) = pair(&mut filters, &whole) else {
             continue;

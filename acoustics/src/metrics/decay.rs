@@ -67,7 +67,7 @@ impl EnergyCurve {
     ///
     /// # Source
     /// M. R. Schroeder, JASA 37, 409 (1965).
-    pub fn after(&self, time_s: f64) -> f64 {
+    pub fn energy_after(&self, time_s: f64) -> f64 {
         let part = |(start, end, energy): &(f64, f64, f64)| {
             if *start >= time_s {
                 *energy
@@ -139,12 +139,12 @@ impl EnergyCurve {
     /// # Source
     /// ISO 3382-1:2009, clause 5 and annex A.
     pub fn metrics(&self, arrival_s: f64, direct: f64) -> BandMetrics {
-        let all = self.after(arrival_s);
+        let all = self.energy_after(arrival_s);
         if all <= 0.0 {
             return BandMetrics::default();
         }
         let curve = self.decay_db(arrival_s);
-        let late = |after_s: f64| self.after(arrival_s + after_s);
+        let late = |after_s: f64| self.energy_after(arrival_s + after_s);
         let clarity = |after_s: f64| {
             let late = late(after_s);
             (late > 0.0 && late < all).then(|| 10.0 * libm::log10((all - late) / late))

@@ -89,7 +89,7 @@ impl BandWidth {
     ///
     /// # Source
     /// IEC 61260-1:2014 (limits); J. Antoni, JASA 127, 884 (2010) (slopes).
-    pub fn power(self, band: usize, frequency_hz: f64) -> f64 {
+    pub fn power_response(self, band: usize, frequency_hz: f64) -> f64 {
         if frequency_hz <= 0.0 {
             return 0.0;
         }
@@ -117,7 +117,7 @@ impl ZeroPhaseFilters {
         }
     }
 
-    /// Returns a signal's spectrum, for [`Self::band`].
+    /// Returns a signal's spectrum, for [`Self::band_signal`].
     pub(super) fn spectrum(&mut self, signal: &[f32]) -> Vec<Complex<f32>> {
         self.fft.forward(signal)
     }
@@ -129,9 +129,13 @@ impl ZeroPhaseFilters {
     /// Returns a band of a spectrum as a signal, scaled so that a pulse keeps its energy; nothing above half the rate.
     ///
     /// Ringing before the signal wraps around to the end. Shape (sample,), longer than the signal.
-    pub(super) fn band(&mut self, band: usize, spectrum: &[Complex<f32>]) -> Option<Vec<f32>> {
+    pub(super) fn band_signal(
+        &mut self,
+        band: usize,
+        spectrum: &[Complex<f32>],
+    ) -> Option<Vec<f32>> {
         let powers: Vec<f64> = (0..spectrum.len())
-            .map(|bin| self.width.power(band, self.frequency_hz(bin)))
+            .map(|bin| self.width.power_response(band, self.frequency_hz(bin)))
             .collect();
         let passed = powers.iter().sum::<f64>() / (spectrum.len() - 1) as f64;
         // A band with no more than the foot of a slope below half the rate gives nothing.
@@ -146,7 +150,7 @@ impl ZeroPhaseFilters {
         Some(self.fft.inverse(&mut filtered))
     }
 
-    /// Returns a spectrum low-passed at a frequency, in samples as those of [`Self::band`].
+    /// Returns a spectrum low-passed at a frequency, in samples as those of [`Self::band_signal`].
     pub(super) fn low_pass(&mut self, spectrum: &[Complex<f32>], edge_hz: f64) -> Vec<f32> {
         let gain = |bin: usize| {
             // A slope of half an octave, so that it rings little.
@@ -160,7 +164,7 @@ impl ZeroPhaseFilters {
         self.fft.inverse(&mut filtered)
     }
 
-    /// Returns the number of samples of [`Self::band`] before the signal.
+    /// Returns the number of samples of [`Self::band_signal`] before the signal.
     pub(super) fn leading_samples(&self) -> usize {
         (0.5 * RING_S * self.rate_hz) as usize
     }
@@ -211,7 +215,7 @@ mod tests {
                 // Breakpoints of narrower bands, IEC 61260-1:2014.
                 let above = 1.0 + (g(0.5 / b) - 1.0) / (g(0.5) - 1.0) * (g(exponent) - 1.0);
                 for ratio in [above, 1.0 / above] {
-                    let power = width.power(4, ratio * width.exact_centre_hz(4));
+                    let power = width.power_response(4, ratio * width.exact_centre_hz(4));
                     let attenuation_db = -10.0 * libm::log10(power);
                     assert!(
                         attenuation_db >= low && attenuation_db <= high,
@@ -228,7 +232,7 @@ mod tests {
             for k in 100..7000 {
                 let frequency_hz = f64::from(k);
                 let sum: f64 = (0..width.count())
-                    .map(|band| width.power(band, frequency_hz))
+                    .map(|band| width.power_response(band, frequency_hz))
                     .sum();
                 assert!((sum - 1.0).abs() < 1e-12, "{frequency_hz}: {sum}");
             }
@@ -244,7 +248,7 @@ mod tests {
             let mut filters = ZeroPhaseFilters::new(width, rate_hz, pulse.len());
             let spectrum = filters.spectrum(&pulse);
             for band in 0..width.count() {
-                let Some(found) = filters.band(band, &spectrum) else {
+                let Some(found) = filters.band_signal(band, &spectrum) else {
                     assert!(width.edges_hz(band).0 >= 8000.0);
                     continue;
                 };

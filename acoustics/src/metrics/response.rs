@@ -33,7 +33,7 @@ pub fn impulse_response_metrics(
         [samples, &samples[..direct], &rest[..]].map(|part| filters.spectrum(part));
     let arrival_s = start as f64 / rate_hz;
     for (band, found) in metrics.iter_mut().enumerate() {
-        let Some(filtered) = filters.band(band, &all) else {
+        let Some(filtered) = filters.band_signal(band, &all) else {
             continue;
         };
         let mut curve = EnergyCurve::new();
@@ -44,7 +44,11 @@ pub fn impulse_response_metrics(
             let time_s = sample as f64 / rate_hz;
             curve.add(time_s, time_s, f64::from(*x) * f64::from(*x));
         }
-        let mut energy = |part| filters.band(band, part).map_or(0.0, |part| energy(&part));
+        let mut energy = |part| {
+            filters
+                .band_signal(band, part)
+                .map_or(0.0, |part| energy(&part))
+        };
         let (direct, rest) = (energy(&direct), energy(&rest));
         *found = BandMetrics {
             drr_db: super::decibels(direct, rest),

@@ -2,7 +2,7 @@
 
 use super::TRIANGLES_PER_CHECK;
 use dwell_scene::Aabb;
-use dwell_scene::interrupt::PollEvery;
+use dwell_scene::interrupt::CancelPoller;
 use glam::{DVec3, Vec3};
 use std::collections::BTreeMap;
 
@@ -50,9 +50,9 @@ impl Plane {
 /// Equal input, equal output: larger triangles come first, equal ones in order.
 pub(super) fn cluster_coplanar(corners: &[[Vec3; 3]]) -> (Vec<Plane>, Vec<u32>) {
     let mut order: Vec<(usize, f64, DVec3)> = Vec::with_capacity(corners.len());
-    let mut pace = PollEvery::new(TRIANGLES_PER_CHECK);
+    let mut pace = CancelPoller::new(TRIANGLES_PER_CHECK);
     for (index, [a, b, c]) in corners.iter().enumerate() {
-        pace.turn();
+        pace.count_one();
         let (ab, ac) = ((*b - *a).as_dvec3(), (*c - *a).as_dvec3());
         let cross = ab.cross(ac);
         let longest = ab.length().max(ac.length()).max((ac - ab).length());
@@ -67,7 +67,7 @@ pub(super) fn cluster_coplanar(corners: &[[Vec3; 3]]) -> (Vec<Plane>, Vec<u32>) 
     let mut of_triangle = vec![super::NO_PLANE; corners.len()];
     let mut finder = PlaneFinder::default();
     for (index, area_m2, normal) in order {
-        pace.turn();
+        pace.count_one();
         // One of two opposite normals represents both.
         let first = normal.to_array().into_iter().find(|x| x.abs() > 1e-9);
         let normal = if first.is_some_and(|x| x < 0.0) {

@@ -3,7 +3,7 @@
 use super::disjoint_sets::DisjointSets;
 use super::edges::DiffractionEdge;
 use super::{NO_PLANE, TRIANGLES_PER_CHECK};
-use dwell_scene::interrupt::{self, PollEvery};
+use dwell_scene::interrupt::{self, CancelPoller};
 use glam::{DVec3, Vec3};
 use std::collections::HashMap;
 use std::f32::consts::{PI, TAU};
@@ -64,14 +64,14 @@ pub(super) fn find_edges(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Vec<Diff
     let sides = sides(&corners, &of_triangle);
     let cover = PlaneCoverage::new(&corners, &of_triangle);
     let (mut rims, mut edges) = (Vec::new(), Vec::new());
-    let mut pace = PollEvery::new(TRIANGLES_PER_CHECK);
+    let mut pace = CancelPoller::new(TRIANGLES_PER_CHECK);
     for group in sides.chunk_by(|a, b| a.key == b.key) {
         let folds = |side: &TriangleSide| {
             let mut others = group.iter();
             !others.any(|other| other.plane == side.plane && other.into.dot(side.into) < 0.0)
         };
         let open = group.iter().filter(|side| {
-            pace.turn();
+            pace.count_one();
             folds(side) && !cover.is_covered_beyond(side)
         });
         let into: Vec<Vec3> = open.map(|side| side.into).collect();
@@ -119,11 +119,11 @@ fn edges_from_face_boundaries(rims: &[FaceBoundarySegment]) -> Vec<DiffractionEd
         });
         corners.map(|p| (p / CELL_M).floor().to_array().map(|x| x as i32))
     };
-    let mut pace = PollEvery::new(TRIANGLES_PER_CHECK);
+    let mut pace = CancelPoller::new(TRIANGLES_PER_CHECK);
     let mut places = Vec::new();
     let mut own = Vec::new();
     for (k, rim) in rims.iter().enumerate() {
-        pace.turn();
+        pace.count_one();
         let [a, b] = rim.ends;
         let steps = (2.0 * a.distance(b) / CELL_M).ceil().max(1.0) as usize;
         for step in 0..=steps {
@@ -138,7 +138,7 @@ fn edges_from_face_boundaries(rims: &[FaceBoundarySegment]) -> Vec<DiffractionEd
     places.sort_unstable();
     let mut edges = Vec::new();
     for (k, rim) in rims.iter().enumerate() {
-        pace.turn();
+        pace.count_one();
         let middle = rim.ends[0].lerp(rim.ends[1], 0.5);
         let cell = (middle / CELL_M).floor().to_array().map(|x| x as i32);
         let first = places.partition_point(|place| place.0 < cell);
@@ -186,9 +186,9 @@ impl FaceBoundarySegment {
 /// Returns all sides of triangles, those of equal ends together.
 fn sides(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Vec<TriangleSide> {
     let mut sides = Vec::with_capacity(3 * corners.len());
-    let mut pace = PollEvery::new(TRIANGLES_PER_CHECK);
+    let mut pace = CancelPoller::new(TRIANGLES_PER_CHECK);
     for (triangle, plane) in corners.iter().zip(of_triangle) {
-        pace.turn();
+        pace.count_one();
         if *plane == NO_PLANE {
             continue;
         }
@@ -261,10 +261,10 @@ fn merge(pieces: &[DiffractionEdge]) -> Vec<DiffractionEdge> {
         .collect();
     ends.sort_unstable();
     let mut sets = DisjointSets::new(pieces.len());
-    let mut pace = PollEvery::new(TRIANGLES_PER_CHECK);
+    let mut pace = CancelPoller::new(TRIANGLES_PER_CHECK);
     for at in ends.chunk_by(|a, b| a.0 == b.0) {
         for (n, (_, a)) in at.iter().enumerate() {
-            pace.turn();
+            pace.count_one();
             for (_, b) in &at[n + 1..] {
                 let (p, q) = (&pieces[*a], &pieces[*b]);
                 if along(p).dot(along(q)).abs() > STRAIGHT

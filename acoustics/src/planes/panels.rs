@@ -3,7 +3,7 @@
 use super::disjoint_sets::DisjointSets;
 use super::{NO_PLANE, TRIANGLES_PER_CHECK};
 use dwell_scene::Aabb;
-use dwell_scene::interrupt::PollEvery;
+use dwell_scene::interrupt::CancelPoller;
 use glam::Vec3;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -39,10 +39,10 @@ pub(super) fn find_panels(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> PanelTa
             .then(a.cmp(b))
     });
     let mut sets = DisjointSets::new(corners.len());
-    let mut pace = PollEvery::new(TRIANGLES_PER_CHECK);
+    let mut pace = CancelPoller::new(TRIANGLES_PER_CHECK);
     let apart = join_equal(&order, &boxes, of_triangle, &mut sets);
     for (place, &a) in apart.iter().enumerate() {
-        pace.turn();
+        pace.count_one();
         // Boxes are sorted by their lower ends: later ones overlap until one begins after this one's end.
         for &b in &apart[place + 1..] {
             if of_triangle[b] != of_triangle[a] || boxes[b].min.x > boxes[a].max.x {

@@ -3,7 +3,7 @@
 use super::panels::{self, PanelTable};
 use super::{MIN_WALL_AREA_M2, NO_PLANE, Plane, TRIANGLES_PER_CHECK};
 use dwell_scene::Aabb;
-use dwell_scene::interrupt::PollEvery;
+use dwell_scene::interrupt::CancelPoller;
 use glam::{DVec3, Vec3};
 
 /// Largest distance of a wall from its panels, m: only waves below 50 Hz would take both for one.
@@ -34,12 +34,12 @@ pub(super) fn relief_depths_m(
         .collect();
     small.sort_unstable();
     let mut reliefs = vec![f32::INFINITY; corners.len()];
-    let mut pace = PollEvery::new(TRIANGLES_PER_CHECK);
+    let mut pace = CancelPoller::new(TRIANGLES_PER_CHECK);
     let mut pieces = Vec::new();
     for panel in small.chunk_by(|a, b| a.0 == b.0) {
         pieces.clear();
         for (_, k) in panel {
-            pace.turn();
+            pace.count_one();
             pieces.push(corners[*k]);
         }
         let own = &planes[of_triangle[panel[0].1] as usize];

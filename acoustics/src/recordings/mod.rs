@@ -177,7 +177,7 @@ impl Recording {
     /// [`MAX_SAMPLES`] at that rate or silence there.
     pub fn signal(&self, rate_hz: u32) -> Result<Signal, AcousticsError> {
         crate::signals::check_rate(rate_hz)?;
-        let length = resample::length(self.samples.len(), self.rate_hz, rate_hz);
+        let length = resample::resampled_length(self.samples.len(), self.rate_hz, rate_hz);
         if !(1..=MAX_SAMPLES).contains(&length) {
             let what = format!("samples at {rate_hz} Hz");
             let allowed = format!("1 to {MAX_SAMPLES}");

@@ -48,7 +48,7 @@ fn kernel() -> &'static [f64] {
 }
 
 /// Returns the resampled length of `count` samples.
-pub(super) fn length(count: usize, from_hz: u32, to_hz: u32) -> usize {
+pub(super) fn resampled_length(count: usize, from_hz: u32, to_hz: u32) -> usize {
     let (count, from) = (count as u128, u128::from(from_hz.max(1)));
     let samples = (count * u128::from(to_hz) * 2 + from) / (2 * from);
     samples.try_into().unwrap_or(usize::MAX)
@@ -68,7 +68,7 @@ pub fn resample(samples: &[f32], from_hz: u32, to_hz: u32) -> Vec<f32> {
     let scale = MIDDLE * (to as f64 / from as f64).min(1.0);
     let reach = (CROSSINGS as f64 / scale).ceil() as i64;
     let last = samples.len() as i64 - 1;
-    (0..length(samples.len(), from_hz, to_hz) as u64)
+    (0..resampled_length(samples.len(), from_hz, to_hz) as u64)
         .map(|n| {
             // In whole numbers, so that an hour is as exact as a second.
             let (whole, rest) = ((n * from / to) as i64, n * from % to);

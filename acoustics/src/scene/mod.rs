@@ -6,13 +6,13 @@ pub use early_paths::EarlyPath;
 
 use crate::config::AcousticConfig;
 use crate::echogram::{Echogram, PropagationPath};
-use crate::error::{AcousticsError, finite};
+use crate::error::{AcousticsError, check_finite};
 use crate::head::{Head, HeadSet};
 use crate::laws::{self, PathEffects, microphone_stage::StageContext};
 use crate::material_report::MaterialReport;
 use crate::microphone_chain::MicrophoneChain;
 use crate::planes::{DiffractionEdge, Plane};
-use crate::propagation_data::PropagationData;
+use crate::propagation_scene::PropagationScene;
 use crate::receiver::{Receiver, ReceiverKind, SoundSourcePose};
 use crate::response::ImpulseResponse;
 use crate::synthesis::{CachedGains, PathFilter, ReceiverContext, Synthesizer, UpperAirAbsorption};
@@ -39,7 +39,7 @@ pub struct AcousticScene {
     /// The original settings.
     stated: AcousticConfig,
     laws: Vec<LawSpec>,
-    data: PropagationData,
+    data: PropagationScene,
     synthesizer: Arc<Synthesizer>,
     heads: Arc<HeadSet>,
     /// Absorption by air above the highest band, where that can be heard.
@@ -53,10 +53,10 @@ impl AcousticScene {
     /// [`AcousticsError::Range`] for a setting out of range.
     pub fn new(house: Arc<House>, config: AcousticConfig) -> Result<Self, AcousticsError> {
         config.check()?;
-        let data = PropagationData::new(house, config);
+        let data = PropagationScene::new(house, config);
         let synthesizer = Synthesizer::shared(&config);
         Ok(Self {
-            upper_air: synthesizer.upper_air(&config, 1.0).map(Arc::new),
+            upper_air: synthesizer.upper_air_absorption(&config, 1.0).map(Arc::new),
             synthesizer,
             heads: Arc::new(HeadSet::new(&config)),
             stated: config,
@@ -85,7 +85,10 @@ impl AcousticScene {
         }
         let share = self.effects().air_absorption_share();
         if config.air != air || share != absorption {
-            self.upper_air = self.synthesizer.upper_air(&config, share).map(Arc::new);
+            self.upper_air = self
+                .synthesizer
+                .upper_air_absorption(&config, share)
+                .map(Arc::new);
         }
     }
 
@@ -114,7 +117,7 @@ impl AcousticScene {
     }
 
     /// Returns the data that rays, images and edges read.
-    pub(crate) fn data(&self) -> &PropagationData {
+    pub(crate) fn data(&self) -> &PropagationScene {
         &self.data
     }
 
@@ -152,7 +155,7 @@ impl AcousticScene {
     ) -> Result<(), AcousticsError> {
         source.check()?;
         for receiver in receivers {
-            finite("the receiver", *receiver)?;
+            check_finite("the receiver", *receiver)?;
         }
         let house = self.house();
         if !Arc::ptr_eq(rays.house(), house) && **rays.house() != **house {

@@ -11,7 +11,7 @@ pub(super) fn doorbell(canvas: &mut LoopBuilder) {
         // A free bar's modes: 1, 2.76, 5.40.
         for (ratio, decay_s, amplitude) in [(1.0, 1.6, 1.0), (2.756, 0.7, 0.3), (5.404, 0.25, 0.15)]
         {
-            canvas.decaying_tone(start_s, frequency_hz * ratio, decay_s, amplitude);
+            canvas.add_decaying_tone(start_s, frequency_hz * ratio, decay_s, amplitude);
         }
     }
 }
@@ -25,7 +25,7 @@ pub(super) fn microwave(canvas: &mut LoopBuilder) {
         (400.0, 0.35),
         (600.0, 0.2),
     ] {
-        canvas.continuous_tone(frequency_hz, amplitude);
+        canvas.add_continuous_tone(frequency_hz, amplitude);
     }
     let fan = canvas.shaped_noise("fan", |f| resonance_gain(f, 350.0, 700.0));
     let loop_s = canvas.loop_s();
@@ -45,7 +45,7 @@ pub(super) fn rain(canvas: &mut LoopBuilder) {
         let start_s = canvas.loop_s() * stream.uniform();
         let frequency_hz = 700.0 * libm::pow(6.0, stream.uniform());
         let size = 2.5 * stream.uniform() * stream.uniform() * stream.uniform();
-        canvas.decaying_tone(start_s, frequency_hz, 0.02 + 0.03 * stream.uniform(), size);
+        canvas.add_decaying_tone(start_s, frequency_hz, 0.02 + 0.03 * stream.uniform(), size);
     }
 }
 
@@ -58,7 +58,7 @@ pub(super) fn vacuum_cleaner(canvas: &mut LoopBuilder) {
     canvas.add_to_loop(&air, 1.0);
     canvas.add_to_loop(&body, 0.7);
     for (frequency_hz, amplitude) in [(500.0, 0.5), (1000.0, 0.25), (4500.0, 0.45), (100.0, 0.3)] {
-        canvas.continuous_tone(frequency_hz, amplitude);
+        canvas.add_continuous_tone(frequency_hz, amplitude);
     }
 }
 
@@ -67,7 +67,7 @@ pub(super) fn hair_dryer(canvas: &mut LoopBuilder) {
     let air = canvas.shaped_noise("air", |f| resonance_gain(f, 1500.0, 2500.0));
     canvas.add_to_loop(&air, 1.0);
     for (frequency_hz, amplitude) in [(250.0, 0.3), (1750.0, 0.5), (3500.0, 0.2)] {
-        canvas.continuous_tone(frequency_hz, amplitude);
+        canvas.add_continuous_tone(frequency_hz, amplitude);
     }
 }
 
@@ -78,8 +78,8 @@ pub(super) fn dishwasher(canvas: &mut LoopBuilder) {
         canvas.shaped_noise("pump", |f| resonance_gain(f, 180.0, 150.0)),
     );
     canvas.add_to_loop(&pump, 0.5);
-    canvas.continuous_tone(100.0, 0.3);
-    canvas.continuous_tone(300.0, 0.15);
+    canvas.add_continuous_tone(100.0, 0.3);
+    canvas.add_continuous_tone(300.0, 0.15);
     let turns = (0.5 * canvas.loop_s()).round().max(1.0);
     let period_s = canvas.loop_s() / turns;
     for turn in 0..turns as usize {

@@ -1,7 +1,7 @@
 //! Appliances, water, clocks, bells, steps.
 
 use super::loop_builder::{
-    LoopBuilder, Tone, raised_cosine_envelope, raised_cosine_rise, resonance_gain,
+    FadedTone, LoopBuilder, raised_cosine_envelope, raised_cosine_rise, resonance_gain,
 };
 use std::f64::consts::TAU;
 
@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 pub(super) fn alarm(canvas: &mut LoopBuilder) {
     for beep in 0..3 {
         for (harmonic, amplitude) in [(1.0, 1.0), (2.0, 0.2)] {
-            canvas.add_tone(Tone {
+            canvas.add_tone(FadedTone {
                 start_s: f64::from(beep),
                 duration_s: 0.5,
                 frequency_hz: 3100.0 * harmonic,
@@ -26,7 +26,7 @@ pub(super) fn clock(canvas: &mut LoopBuilder) {
         for (frequency_hz, amplitude) in
             [(1200.0, 0.4), (2400.0, 1.0), (3900.0, 0.8), (5600.0, 0.4)]
         {
-            canvas.decaying_tone(start_s, frequency_hz * pitch, 0.03, amplitude);
+            canvas.add_decaying_tone(start_s, frequency_hz * pitch, 0.03, amplitude);
         }
     }
 }
@@ -36,7 +36,7 @@ pub(super) fn fan(canvas: &mut LoopBuilder) {
     let air = canvas.shaped_noise("air", |f| 1.0 / (1.0 + (f / 500.0) * (f / 500.0)).sqrt());
     canvas.add_to_loop(&air, 1.0);
     for (harmonic, amplitude) in [(1.0, 0.25), (2.0, 0.15), (3.0, 0.08)] {
-        canvas.continuous_tone(117.0 * harmonic, amplitude);
+        canvas.add_continuous_tone(117.0 * harmonic, amplitude);
     }
 }
 
@@ -51,7 +51,7 @@ pub(super) fn footsteps(canvas: &mut LoopBuilder) {
         for (frequency_hz, decay_s, amplitude) in
             [(75.0, 0.12, 1.0), (160.0, 0.07, 0.6), (420.0, 0.04, 0.25)]
         {
-            canvas.decaying_tone(start_s, frequency_hz * pitch, decay_s, weight * amplitude);
+            canvas.add_decaying_tone(start_s, frequency_hz * pitch, decay_s, weight * amplitude);
         }
         canvas.add_noise(&sole, start_s + 0.01, 0.12, |t| {
             0.08 * weight * raised_cosine_envelope(t, 0.12, 0.05)
@@ -69,7 +69,7 @@ pub(super) fn fridge(canvas: &mut LoopBuilder) {
         (300.0, 0.2),
         (400.0, 0.12),
     ] {
-        canvas.continuous_tone(frequency_hz, amplitude);
+        canvas.add_continuous_tone(frequency_hz, amplitude);
     }
     let air = canvas.shaped_noise("air", |f| resonance_gain(f, 250.0, 500.0));
     canvas.add_to_loop(&air, 0.15);
@@ -78,7 +78,7 @@ pub(super) fn fridge(canvas: &mut LoopBuilder) {
 /// Harmonics of 100 Hz, as a transformer on 50 Hz mains gives them.
 pub(super) fn hum(canvas: &mut LoopBuilder) {
     for harmonic in 1..=8 {
-        canvas.continuous_tone(100.0 * f64::from(harmonic), 1.0 / f64::from(harmonic));
+        canvas.add_continuous_tone(100.0 * f64::from(harmonic), 1.0 / f64::from(harmonic));
     }
 }
 
@@ -152,7 +152,7 @@ pub(super) fn washing_machine(canvas: &mut LoopBuilder) {
     );
     canvas.add_to_loop(&motor, 0.4);
     for (harmonic, amplitude) in [(1.0, 0.4), (2.0, 0.3), (4.0, 0.15)] {
-        canvas.continuous_tone(100.0 * harmonic, amplitude);
+        canvas.add_continuous_tone(100.0 * harmonic, amplitude);
     }
     let turns = (0.8 * canvas.loop_s()).round();
     let period_s = canvas.loop_s() / turns;
@@ -161,7 +161,7 @@ pub(super) fn washing_machine(canvas: &mut LoopBuilder) {
         canvas.add_noise(&slosh, start_s, 0.7, |t| {
             0.9 * raised_cosine_envelope(t, 0.7, 0.3)
         });
-        canvas.decaying_tone(start_s + 0.35, 62.0, 0.25, 2.0);
+        canvas.add_decaying_tone(start_s + 0.35, 62.0, 0.25, 2.0);
     }
 }
 

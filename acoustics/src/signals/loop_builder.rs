@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 
 /// A tone with fade-in and fade-out.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Tone {
+pub(super) struct FadedTone {
     pub(super) start_s: f64,
     pub(super) duration_s: f64,
     pub(super) frequency_hz: f64,
@@ -56,7 +56,7 @@ impl LoopBuilder {
     }
 
     /// Adds a tone; nothing when it lies above 0.45 of the rate.
-    pub(super) fn add_tone(&mut self, tone: Tone) {
+    pub(super) fn add_tone(&mut self, tone: FadedTone) {
         if tone.frequency_hz > 0.45 * self.rate_hz {
             return;
         }
@@ -69,7 +69,7 @@ impl LoopBuilder {
     }
 
     /// Adds a continuous tone; its frequency is moved to the nearest that fits the loop.
-    pub(super) fn continuous_tone(&mut self, frequency_hz: f64, amplitude: f64) {
+    pub(super) fn add_continuous_tone(&mut self, frequency_hz: f64, amplitude: f64) {
         let loop_s = self.loop_s();
         let turns = (frequency_hz * loop_s).round().max(1.0);
         if turns / loop_s > 0.45 * self.rate_hz {
@@ -81,7 +81,7 @@ impl LoopBuilder {
     }
 
     /// Adds a decaying tone that begins with a short rise; its energy falls 60 dB in `decay_s`.
-    pub(super) fn decaying_tone(
+    pub(super) fn add_decaying_tone(
         &mut self,
         start_s: f64,
         frequency_hz: f64,

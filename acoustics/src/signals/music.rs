@@ -13,7 +13,7 @@ fn pluck(canvas: &mut LoopBuilder, start_s: f64, key: i32, amplitude: f64, decay
     let frequency_hz = pitch_hz(key);
     for partial in 1..=8 {
         let n = f64::from(partial);
-        canvas.decaying_tone(start_s, n * frequency_hz, decay_s / n.sqrt(), amplitude / n);
+        canvas.add_decaying_tone(start_s, n * frequency_hz, decay_s / n.sqrt(), amplitude / n);
     }
 }
 
@@ -55,7 +55,7 @@ pub(super) fn music_band(canvas: &mut LoopBuilder, amplitude: f64) {
             let at_s = start_s + f64::from(beat) * beat_s;
             pluck(canvas, at_s, chord[0] - 24, 0.9 * amplitude, 0.7);
             if beat % 2 == 0 {
-                canvas.decaying_tone(at_s, 58.0, 0.3, 1.2 * amplitude);
+                canvas.add_decaying_tone(at_s, 58.0, 0.3, 1.2 * amplitude);
             } else {
                 let decay = |t: f64| {
                     0.5 * amplitude * libm::exp(-28.0 * t) * raised_cosine_envelope(t, 0.2, 0.002)

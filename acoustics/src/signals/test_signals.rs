@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 
 /// A tone of 1 kHz, or what fits the loop next to it.
 pub(super) fn sine(canvas: &mut LoopBuilder) {
-    canvas.continuous_tone(1000.0, 1.0);
+    canvas.add_continuous_tone(1000.0, 1.0);
 }
 
 /// One sample a loop.

@@ -1,6 +1,6 @@
 //! The plan of a block: sources that are heard, and those that need new impulse responses.
 
-use super::source_state::{self, ListeningSituation, SituationChange, UpdateThreshold};
+use super::source_state::{self, ResponseInputChange, ResponseInputs, UpdateThreshold};
 use super::update_queue::{PartialTraceOutcome, UpdateRequest};
 use super::{ActiveSource, BlockReport, Stream, early};
 use crate::echogram::PropagationPath;
@@ -28,7 +28,7 @@ pub(super) struct PlannedSource {
     /// Positions of source and receiver.
     pub(super) positions: (Vec3, Pose),
     /// The new impulse response, and its situation; `None`: as before.
-    pub(super) new_response: Option<(ListeningSituation, ImpulseResponse)>,
+    pub(super) new_response: Option<(ResponseInputs, ImpulseResponse)>,
     /// Early paths outside the impulse response, at their present positions; `None`: none are.
     pub(super) tracked_paths: Option<Vec<PropagationPath>>,
     /// The block since which a new response waits for its turn.
@@ -108,8 +108,9 @@ impl Stream {
             let elsewhere =
                 known.is_some_and(|(then, _)| (then.source, then.receiver.pose) != want.positions);
             // A source that waits is rendered with its direct path and known reflections as they are now.
-            let moved =
-                moved || elsewhere || (want.is_waiting && want.change == SituationChange::Moved);
+            let moved = moved
+                || elsewhere
+                || (want.is_waiting && want.change == ResponseInputChange::Moved);
             known.filter(|_| glides && moved).map(|(_, response)| {
                 let chosen = early::select_tracked_paths(
                     &response.echogram.paths,
@@ -150,7 +151,7 @@ impl Stream {
         let last = voice.and_then(|voice| voice.tracked.last_positions);
         let position = one.position.or(last.map(|(source, _)| source))?;
         let receiver = around.receiver;
-        let now = ListeningSituation {
+        let now = ResponseInputs {
             source: position,
             receiver: receiver.clone(),
             parts: parts.to_vec(),
@@ -162,11 +163,11 @@ impl Stream {
                 |(then, _)| then.noise,
             ),
         };
-        let change = heard.map_or(SituationChange::Moved, |(then, _)| {
+        let change = heard.map_or(ResponseInputChange::Moved, |(then, _)| {
             if named {
                 then.change(&now, &around.threshold)
             } else {
-                then.change_after_end(&now, &around.threshold)
+                then.change_of_ended_source(&now, &around.threshold)
             }
         });
         Some(UpdateRequest {
@@ -242,9 +243,9 @@ impl Stream {
     pub(super) fn response_of_nearby_source(
         &self,
         rays: &RayScene,
-        now: &ListeningSituation,
-        alike: impl Fn(&ListeningSituation) -> bool,
-    ) -> Option<&(ListeningSituation, ImpulseResponse)> {
+        now: &ResponseInputs,
+        alike: impl Fn(&ResponseInputs) -> bool,
+    ) -> Option<&(ResponseInputs, ImpulseResponse)> {
         let heard = self
             .voices
             .iter()

@@ -14,7 +14,7 @@ mod update_queue;
 pub use config::StreamConfig;
 
 use crate::echogram::Echogram;
-use crate::error::{AcousticsError, finite};
+use crate::error::{AcousticsError, check_finite};
 use crate::fft::RealFft;
 use crate::microphone_chain::{self, MicrophoneChain};
 use crate::receiver::Receiver;
@@ -28,7 +28,7 @@ use dwell_scene::{PartId, Pose, State};
 use early::{DelayInterpolation, TrackedPath};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
-use source_state::{ListeningSituation, SourceState};
+use source_state::{ResponseInputs, SourceState};
 use update_queue::PartialTraceOutcome;
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -161,7 +161,7 @@ impl Stream {
     }
 
     /// Returns the number of blocks so far.
-    pub fn blocks(&self) -> u64 {
+    pub fn block_count(&self) -> u64 {
         self.block
     }
 
@@ -216,7 +216,7 @@ impl Stream {
         self.scene.check_receiver(receiver)?;
         for source in sources {
             check_length("a source's signal", size, source.signal.len())?;
-            finite("a source", source.position)?;
+            check_finite("a source", source.position)?;
         }
         self.scene.update(state);
         let receiver = &self.scene.effects().true_receiver(receiver);
@@ -253,13 +253,13 @@ impl Stream {
             }
             let fresh = voice.input.is_silent() || voice.current_response.is_none();
             voice.input.push(&mut self.fft, &signal);
-            let channels = |heard: &Option<(ListeningSituation, ImpulseResponse)>| {
+            let channels = |heard: &Option<(ResponseInputs, ImpulseResponse)>| {
                 heard.as_ref().map(|(_, response)| response.channels)
             };
             let channels_before = channels(&voice.current_response);
             let before = voice.tracked.paths.take();
             // Changes of air or microphone do not glide.
-            let effects = |heard: &Option<(ListeningSituation, ImpulseResponse)>| {
+            let effects = |heard: &Option<(ResponseInputs, ImpulseResponse)>| {
                 heard.as_ref().map(|(situation, _)| situation.effects)
             };
             let effects_before = effects(&voice.current_response);
@@ -451,7 +451,7 @@ fn delay_interpolation<'a>(
 /// Returns the samples of a response without its tracked paths, at `most` this many.
 fn response_without_tracked_paths(
     scene: &AcousticScene,
-    situation: &ListeningSituation,
+    situation: &ResponseInputs,
     response: &ImpulseResponse,
     most: Option<usize>,
 ) -> Vec<f32> {

@@ -2,7 +2,7 @@
 //! unbounded memory, endless loops or panics.
 
 use super::early::TrackedPath;
-use super::source_state::{ListeningSituation, SourceSnapshot};
+use super::source_state::{ResponseInputs, SourceSnapshot};
 use crate::directions::CELL_COUNT;
 use crate::echogram::{Echogram, EnergyHistogram, PropagationPath};
 use crate::response::ImpulseResponse;
@@ -52,7 +52,7 @@ fn check_voice(scene: &AcousticScene, voice: &SourceSnapshot) -> Result<(), Stri
 
 fn check_response(
     scene: &AcousticScene,
-    situation: &ListeningSituation,
+    situation: &ResponseInputs,
     response: &ImpulseResponse,
 ) -> Result<(), String> {
     let receiver = &situation.receiver;
@@ -267,7 +267,7 @@ mod tests {
         hear(&mut stream, 3);
     }
 
-    fn situation(voices: &mut [SourceSnapshot]) -> &mut ListeningSituation {
+    fn situation(voices: &mut [SourceSnapshot]) -> &mut ResponseInputs {
         &mut voices[0].current_response.as_mut().unwrap().0
     }
 

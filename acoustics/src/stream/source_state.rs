@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 
 /// The situation for which an impulse response was computed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct ListeningSituation {
+pub(super) struct ResponseInputs {
     pub(super) source: Vec3,
     pub(super) receiver: Receiver,
     /// Poses of the parts that are large enough to be heard. Shape (large part,).
@@ -32,7 +32,7 @@ pub(super) struct ListeningSituation {
 
 /// The kind of change between two situations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum SituationChange {
+pub(super) enum ResponseInputChange {
     /// No audible change.
     None,
     /// The head turned.
@@ -69,7 +69,7 @@ fn angle(a: glam::Quat, b: glam::Quat) -> f32 {
     2.0 * dwell_scene::math::acos(a.dot(b).abs().min(1.0))
 }
 
-impl ListeningSituation {
+impl ResponseInputs {
     /// Returns the displacement of source and receiver to `now`, m; displacements of large parts count [`PART_MOVEMENT_FACTOR`] times.
     pub(super) fn displacement_m(&self, now: &Self) -> f64 {
         let receivers = self.receiver.position().distance(now.receiver.position());
@@ -93,7 +93,7 @@ impl ListeningSituation {
             there.parts.clone_from(&now.parts);
         }
         self.receiver.kind == now.receiver.kind
-            && there.change(now, threshold) == SituationChange::None
+            && there.change(now, threshold) == ResponseInputChange::None
     }
 
     /// Returns whether more than poses changed, so that the old response must not be used any more.
@@ -106,11 +106,11 @@ impl ListeningSituation {
 
     /// As [`Self::change`], for a source that has ended: it rings out where it was heard last, and what it sent out before a
     /// door or the listener moved is not traced anew.
-    pub(super) fn change_after_end(
+    pub(super) fn change_of_ended_source(
         &self,
         now: &Self,
         threshold: &UpdateThreshold,
-    ) -> SituationChange {
+    ) -> ResponseInputChange {
         let mut there = now.clone();
         there.source = self.source;
         there.receiver.pose.position = self.receiver.pose.position;
@@ -120,7 +120,7 @@ impl ListeningSituation {
         self.change(&there, threshold)
     }
 
-    pub(super) fn change(&self, now: &Self, threshold: &UpdateThreshold) -> SituationChange {
+    pub(super) fn change(&self, now: &Self, threshold: &UpdateThreshold) -> ResponseInputChange {
         let far = |a: Vec3, b: Vec3, limit: f32| {
             // Not "farther than", so that a limit of 0 means any movement at all.
             a != b && a.distance(b) >= limit
@@ -137,17 +137,17 @@ impl ListeningSituation {
             || far(here.position(), there.position(), threshold.distance_m)
             || parts.any(|moved| moved)
         {
-            return SituationChange::Moved;
+            return ResponseInputChange::Moved;
         }
         let (a, b) = (here.rotation(), there.rotation());
         if a != b && angle(a, b) >= threshold.angle_rad {
             return if here.is_coincident() {
-                SituationChange::Rotated
+                ResponseInputChange::Rotated
             } else {
-                SituationChange::Moved
+                ResponseInputChange::Moved
             };
         }
-        SituationChange::None
+        ResponseInputChange::None
     }
 }
 
@@ -155,7 +155,7 @@ impl ListeningSituation {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct SourceSnapshot {
     pub(super) id: u64,
-    pub(super) current_response: Option<(ListeningSituation, ImpulseResponse)>,
+    pub(super) current_response: Option<(ResponseInputs, ImpulseResponse)>,
     pub(super) history: Vec<f32>,
     pub(super) tracked: TrackedPaths,
     pub(super) pending_update: PendingUpdate,
@@ -172,23 +172,19 @@ pub(super) struct PendingUpdate {
 /// The partial trace of a response.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct TraceJob {
-    pub(super) situation: ListeningSituation,
+    pub(super) situation: ResponseInputs,
     pub(super) progress: TraceProgress,
 }
 
 impl TraceJob {
     /// Returns whether its result will still be useful. The motion of slow parts meanwhile is covered by the later rays,
     /// and by its next update.
-    pub(super) fn is_still_valid(
-        &self,
-        now: &ListeningSituation,
-        threshold: &UpdateThreshold,
-    ) -> bool {
+    pub(super) fn is_still_valid(&self, now: &ResponseInputs, threshold: &UpdateThreshold) -> bool {
         let mut there = now.clone();
         if there.parts.len() == self.situation.parts.len() {
             there.parts.clone_from(&self.situation.parts);
         }
-        self.situation.change(&there, threshold) != SituationChange::Moved
+        self.situation.change(&there, threshold) != ResponseInputChange::Moved
     }
 }
 
@@ -205,7 +201,7 @@ pub(super) struct TrackedPaths {
 #[derive(Clone, Debug)]
 pub(super) struct SourceState {
     pub(super) id: u64,
-    pub(super) current_response: Option<(ListeningSituation, ImpulseResponse)>,
+    pub(super) current_response: Option<(ResponseInputs, ImpulseResponse)>,
     pub(super) input: ConvolverInput,
     pub(super) filter: PartitionedFilter,
     pub(super) tracked: TrackedPaths,

@@ -8,7 +8,7 @@
 
 use super::block_plan::BlockContext;
 use super::response_update::ResponseUpdater;
-use super::source_state::{ListeningSituation, SituationChange, SourceState, TraceJob};
+use super::source_state::{ResponseInputChange, ResponseInputs, SourceState, TraceJob};
 use super::tail_update::{TailHistory, partial_ray_count};
 use super::{BlockReport, Stream};
 use crate::error::AcousticsError;
@@ -35,13 +35,13 @@ pub(super) struct UpdateRequest<'a> {
     /// Positions of source and receiver.
     pub(super) positions: (Vec3, Pose),
     pub(super) source_state: Option<&'a SourceState>,
-    pub(super) now: ListeningSituation,
-    pub(super) change: SituationChange,
+    pub(super) now: ResponseInputs,
+    pub(super) change: ResponseInputChange,
     /// True if a tail of few rays is to be replaced by one of all rays.
     pub(super) has_stale_tail: bool,
     /// The block in which a new response became due.
     pub(super) due_block: u64,
-    pub(super) new_response: Option<(ListeningSituation, ImpulseResponse)>,
+    pub(super) new_response: Option<(ResponseInputs, ImpulseResponse)>,
     pub(super) partial_trace: PartialTraceOutcome,
     /// True while a new response still waits for its turn or for rays.
     pub(super) is_waiting: bool,
@@ -65,7 +65,7 @@ enum UpdateUrgency {
 }
 
 impl<'a> UpdateRequest<'a> {
-    pub(super) fn current_response(&self) -> Option<&'a (ListeningSituation, ImpulseResponse)> {
+    pub(super) fn current_response(&self) -> Option<&'a (ResponseInputs, ImpulseResponse)> {
         self.source_state
             .and_then(|voice| voice.current_response.as_ref())
     }
@@ -81,9 +81,9 @@ impl<'a> UpdateRequest<'a> {
             (_, Some((then, _))) if then.invalidates_response(&self.now) => {
                 UpdateUrgency::Immediate
             }
-            (SituationChange::Moved | SituationChange::Rotated, _) => UpdateUrgency::Moved,
-            (SituationChange::None, _) if self.has_stale_tail => UpdateUrgency::Stale,
-            (SituationChange::None, _) => UpdateUrgency::None,
+            (ResponseInputChange::Moved | ResponseInputChange::Rotated, _) => UpdateUrgency::Moved,
+            (ResponseInputChange::None, _) if self.has_stale_tail => UpdateUrgency::Stale,
+            (ResponseInputChange::None, _) => UpdateUrgency::None,
         }
     }
 }
@@ -176,15 +176,15 @@ impl Stream {
             around.large_part_moving,
         );
         // With bounded work, a place that the listener leaves again is not worth all rays.
-        let stays = budget.left.is_none() || want.change == SituationChange::None;
+        let stays = budget.left.is_none() || want.change == ResponseInputChange::None;
         let settles = want.has_stale_tail && stays && !budget.settled;
         budget.settled |= settles;
         match (want.change, heard) {
-            (SituationChange::None, Some(_)) if !settles => {
+            (ResponseInputChange::None, Some(_)) if !settles => {
                 want.is_waiting = true;
                 return Ok(());
             }
-            (SituationChange::Rotated, Some((then, response))) => {
+            (ResponseInputChange::Rotated, Some((then, response))) => {
                 want.is_waiting = !budget.may_start(ROTATION_COST_RAYS);
                 if !want.is_waiting {
                     budget.spend(ROTATION_COST_RAYS);
@@ -203,9 +203,9 @@ impl Stream {
         }
         // An impact on the table uses the response of the one before it, and the five of a plate that rattles use one: other
         // sources' impulse responses serve as well.
-        let usable = |then: &ListeningSituation| {
+        let usable = |then: &ResponseInputs| {
             (passing || !then.has_approximate_tail)
-                && then.change(&want.now, threshold) == SituationChange::None
+                && then.change(&want.now, threshold) == ResponseInputChange::None
         };
         let voices = self.voices.iter();
         let before = voices.filter_map(|voice| voice.current_response.as_ref());
@@ -217,7 +217,7 @@ impl Stream {
             want.new_response = Some(known.clone());
             return Ok(());
         }
-        let alike = |then: &ListeningSituation| {
+        let alike = |then: &ResponseInputs| {
             !settles && then.differs_by_positions_only(&want.now, threshold, passing)
         };
         let again = heard
@@ -234,7 +234,7 @@ impl Stream {
         &self,
         around: &BlockContext<'_>,
         want: &mut UpdateRequest<'_>,
-        (then, response): &(ListeningSituation, ImpulseResponse),
+        (then, response): &(ResponseInputs, ImpulseResponse),
         budget: &mut RayBudget,
         report: &mut BlockReport,
     ) -> Result<(), AcousticsError> {
@@ -332,7 +332,7 @@ impl Stream {
         &'a self,
         around: &BlockContext<'a>,
         id: u64,
-        situation: &'a ListeningSituation,
+        situation: &'a ResponseInputs,
     ) -> ResponseUpdater<'a> {
         ResponseUpdater {
             scene: &self.scene,

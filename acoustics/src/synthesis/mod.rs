@@ -117,7 +117,7 @@ impl Synthesizer {
     }
 
     /// Returns the absorption above the highest band by `config`'s air, with this `share` of it.
-    pub(crate) fn upper_air(
+    pub(crate) fn upper_air_absorption(
         &self,
         config: &AcousticConfig,
         share: f64,

@@ -6,7 +6,7 @@ use crate::bands::{BAND_COUNT, BandValues, FilterBank};
 use crate::directions::DirectionalEnergy;
 use crate::echogram::Echogram;
 use crate::receiver_channel::{Delay, ReceiverChannel};
-use dwell_scene::interrupt::PollEvery;
+use dwell_scene::interrupt::CancelPoller;
 use dwell_scene::random::{RandomKey, RandomStream};
 use glam::Vec3;
 use std::sync::LazyLock;
@@ -72,14 +72,14 @@ impl TailNoise<'_> {
             .map(|arrival| self.arrival_amplitudes(arrival, levels));
         let pulses: Vec<BandValues> = pulses.collect();
         let mut bus: BandSignals = vec![Vec::new(); BAND_COUNT];
-        let mut poll = PollEvery::new(ARRIVALS_BETWEEN_POLLS);
+        let mut poll = CancelPoller::new(ARRIVALS_BETWEEN_POLLS);
         for (channel, out) in channels.iter().zip(out.chunks_exact_mut(self.length)) {
             for band in &mut bus {
                 band.clear();
                 band.resize(self.length, 0.0);
             }
             for (arrival, pulse) in arrivals.iter().zip(&pulses) {
-                poll.turn();
+                poll.count_one();
                 let heard = channel.response(speed, arrival.from);
                 let pulse = std::array::from_fn(|band| pulse[band] * heard.gain[band]);
                 self.add_arrival(&mut bus, arrival.time_s, &pulse, &heard.delay);
@@ -119,7 +119,7 @@ impl TailNoise<'_> {
         let nowhere = DirectionalEnergy::default();
         let mut sampler = None;
         let mut arrivals = Vec::new();
-        let mut poll = PollEvery::new(ARRIVALS_BETWEEN_POLLS);
+        let mut poll = CancelPoller::new(ARRIVALS_BETWEEN_POLLS);
         for (k, bin) in self.energy.iter().enumerate() {
             if k % tail.bins_per_direction.max(1) == 0 {
                 sampler = None;
@@ -170,11 +170,11 @@ impl TailNoise<'_> {
             std::array::from_fn(|band| self.target_energy(band));
         let mut levels: BandGains = std::array::from_fn(|band| GainCurve::unity(&wanted[band]));
         let paths = self.bank.split_decimated(paths);
-        let mut poll = PollEvery::new(ARRIVALS_BETWEEN_POLLS);
+        let mut poll = CancelPoller::new(ARRIVALS_BETWEEN_POLLS);
         for _ in 0..rounds {
             let mut bus: BandSignals = vec![vec![0.0; self.length]; BAND_COUNT];
             for arrival in arrivals {
-                poll.turn();
+                poll.count_one();
                 let pulse = self.arrival_amplitudes(arrival, &levels);
                 self.add_arrival(&mut bus, arrival.time_s, &pulse, &Delay::None);
             }

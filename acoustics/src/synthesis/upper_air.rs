@@ -7,7 +7,7 @@ use crate::bands::{self, BAND_COUNT};
 use crate::config::AcousticConfig;
 use crate::fft::RealFft;
 use crate::minimum_phase::MinimumPhaseDesigner;
-use dwell_scene::interrupt::PollEvery;
+use dwell_scene::interrupt::CancelPoller;
 use realfft::num_complex::Complex;
 
 /// Ringing of the parts' filters beyond this wraps around to the other end, s: they are a third of an octave wide or more.
@@ -85,9 +85,9 @@ impl UpperBands {
         let fft = RealFft::at_least(length + (WRAP_S * rate_hz) as usize);
         let count = centres_hz(rate_hz).count();
         let mut shares = vec![(0, Vec::new()); count];
-        let mut poll = PollEvery::new(4096);
+        let mut poll = CancelPoller::new(4096);
         for bin in 0..fft.bins() {
-            poll.turn();
+            poll.count_one();
             let frequency_hz = bin as f64 * rate_hz / fft.len() as f64;
             // In thirds of an octave above the highest band, which includes everything below.
             let place = 10.0 * libm::log10(frequency_hz.max(1.0) / top_band_centre_hz());

@@ -13,7 +13,7 @@ use crate::bands::{BAND_COUNT, BandValues};
 use crate::config::AcousticConfig;
 use crate::directions::{CELL_COUNT, DirectionalEnergy};
 use crate::echogram::{EnergyHistogram, RayStatistics, SPAN_COUNT};
-use crate::propagation_data::PropagationData;
+use crate::propagation_scene::PropagationScene;
 use crate::receiver::SoundSourcePose;
 use dwell_scene::math::sin_cos;
 use dwell_scene::parallel::Threads;
@@ -168,7 +168,7 @@ fn direction_bin_count(config: &AcousticConfig) -> usize {
 
 /// The tails from one source to some receivers, all with the same rays.
 pub(crate) struct TailTrace<'a> {
-    data: &'a PropagationData,
+    data: &'a PropagationScene,
     rays: &'a RayScene,
     source: &'a SoundSourcePose,
     listeners: Vec<DetectionVolume>,
@@ -180,7 +180,7 @@ pub(crate) struct TailTrace<'a> {
 
 /// Traces the tails from `source` to `receivers`, all with the same `count` rays.
 pub(crate) fn trace(
-    data: &PropagationData,
+    data: &PropagationScene,
     rays: &RayScene,
     source: &SoundSourcePose,
     receivers: &[Vec3],
@@ -197,7 +197,7 @@ pub(crate) fn trace(
 impl<'a> TailTrace<'a> {
     /// Probes the surroundings of the receivers.
     pub(crate) fn new(
-        data: &'a PropagationData,
+        data: &'a PropagationScene,
         rays: &'a RayScene,
         source: &'a SoundSourcePose,
         receivers: &[Vec3],

@@ -6,7 +6,7 @@ use crate::bands::{BAND_COUNT, BandValues};
 use crate::directions::{CELL_COUNT, direction_cell};
 use crate::directivity::TabulatedPattern;
 use crate::echogram::SPAN_COUNT;
-use crate::propagation_data::PropagationData;
+use crate::propagation_scene::PropagationScene;
 use crate::ray_margin::ray_offset_m;
 use crate::sphere_sequences::direction_in_sequence;
 use crate::surface::ReflectedEnergy;
@@ -34,7 +34,7 @@ const STAGE_M: f32 = 5.0;
 
 /// The inputs common to all rays of one trace.
 pub(super) struct RayTracer<'a> {
-    pub(super) data: &'a PropagationData,
+    pub(super) data: &'a PropagationScene,
     pub(super) rays: &'a RayScene,
     pub(super) source: Vec3,
     /// The source's axis and its gains around it.

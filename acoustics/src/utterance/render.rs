@@ -1,9 +1,7 @@
 //! The sound of syllables.
 
 use super::speaker_voice::SpeakerVoice;
-use super::spectrum::{
-    HIGHEST_HZ, VoiceSpectrum, harmonic_amplitude, turbulence_density, whisper_density,
-};
+use super::spectrum::{HIGHEST_HZ, VoiceSpectrum, harmonic_amplitude, turbulence_psd, whisper_psd};
 use super::syllables::{
     CONSONANT_EDGE_S, ConsonantSound, PAUSE_S, Syllable, VOWEL_EDGE_S, syllables,
 };
@@ -95,7 +93,7 @@ impl Renderer<'_> {
                 ..
             } => {
                 let size = self.size;
-                let density = |f: f64| level * level * turbulence_density(f, *resonance_hz, size);
+                let density = |f: f64| level * level * turbulence_psd(f, *resonance_hz, size);
                 let noise = self.noise(key.child("turbulence"), density);
                 self.add(span, |k, _| noise[k]);
             }
@@ -127,7 +125,7 @@ impl Renderer<'_> {
         let Some(pitch_hz) = pitch_hz else {
             // The same key: the same noise, shaped by the one and the other.
             let [from, to] = tract.map(|formants_hz| {
-                let density = |f: f64| level * level * whisper_density(f, formants_hz, size);
+                let density = |f: f64| level * level * whisper_psd(f, formants_hz, size);
                 self.noise(key, density)
             });
             self.add(span, |k, t| {

@@ -29,13 +29,13 @@ pub(super) fn harmonic_amplitude(frequency_hz: f64, formants_hz: &[f64; 3], size
 }
 
 /// Power density of whispered sound with these formants, Hz, before the equalizer, 1/Hz: that of harmonics.
-pub(super) fn whisper_density(frequency_hz: f64, formants_hz: &[f64; 3], size: f64) -> f64 {
+pub(super) fn whisper_psd(frequency_hz: f64, formants_hz: &[f64; 3], size: f64) -> f64 {
     let amplitude = harmonic_amplitude(frequency_hz, formants_hz, size);
     0.5 * amplitude * amplitude / NOISE_PER_HARMONIC_HZ
 }
 
 /// Power density of turbulence of root mean square 1, before the equalizer, 1/Hz.
-pub(super) fn turbulence_density(frequency_hz: f64, resonance_hz: (f64, f64), size: f64) -> f64 {
+pub(super) fn turbulence_psd(frequency_hz: f64, resonance_hz: (f64, f64), size: f64) -> f64 {
     let (centre_hz, width_hz) = (resonance_hz.0 * size, resonance_hz.1);
     let gain = resonance_gain(frequency_hz, centre_hz, width_hz);
     // Integral of the squared resonance over all frequencies.
@@ -87,9 +87,8 @@ impl LongTermSpectrum {
                     resonance_hz,
                     level,
                     ..
-                } => lines.add_noise(|f| {
-                    power * level * level * turbulence_density(f, resonance_hz, size)
-                }),
+                } => lines
+                    .add_noise(|f| power * level * level * turbulence_psd(f, resonance_hz, size)),
             }
         }
         lines
@@ -105,7 +104,7 @@ impl LongTermSpectrum {
     ) {
         let size = voice.formant_ratio();
         if !effort.is_voiced() {
-            self.add_noise(|f| power * whisper_density(f, formants_hz, size));
+            self.add_noise(|f| power * whisper_psd(f, formants_hz, size));
             return;
         }
         for ratio in PITCHES {
@@ -243,7 +242,7 @@ mod tests {
     #[test]
     fn turbulence_has_the_power_that_it_is_scaled_to() {
         let sum: f64 = (0..4_000_000)
-            .map(|f| turbulence_density(0.1 * f64::from(f), (3000.0, 1500.0), 1.0) * 0.1)
+            .map(|f| turbulence_psd(0.1 * f64::from(f), (3000.0, 1500.0), 1.0) * 0.1)
             .sum();
         assert!((sum - 1.0).abs() < 0.1, "{sum}");
     }

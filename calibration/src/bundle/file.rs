@@ -31,8 +31,8 @@ pub struct MeasurementDescription {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub command_clock: Option<String>,
     /// What is known of the times of impulse responses and arrivals (kind `impulse_response`).
-    #[serde(default, skip_serializing_if = "ResponseTimes::is_default")]
-    pub response_times: ResponseTimes,
+    #[serde(default, skip_serializing_if = "ResponseTimeOrigin::is_default")]
+    pub response_times: ResponseTimeOrigin,
     /// The meaning of the numbers of `poses.csv` and `starts.csv` (kind `pose_trajectory`).
     #[serde(default)]
     pub poses: Option<PoseTableFormat>,
@@ -44,7 +44,7 @@ pub struct MeasurementDescription {
 /// What is known of when the source sounded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum ResponseTimes {
+pub enum ResponseTimeOrigin {
     /// Nothing: each episode has a time offset of its own, which is fitted.
     #[default]
     Relative,
@@ -54,7 +54,7 @@ pub enum ResponseTimes {
     Absolute,
 }
 
-impl ResponseTimes {
+impl ResponseTimeOrigin {
     fn is_default(&self) -> bool {
         *self == Self::default()
     }
@@ -152,12 +152,12 @@ pub struct BoardManifest {
 impl BoardManifest {
     /// The address of a contact value of bodies and board.
     pub(crate) fn pair_address(&self, value: &str) -> String {
-        let [body, board] = self.pair();
+        let [body, board] = self.substance_pair();
         format!("pair/{body}~{board}/{value}")
     }
 
     /// The substances of bodies and board.
-    pub(crate) fn pair(&self) -> [&str; 2] {
+    pub(crate) fn substance_pair(&self) -> [&str; 2] {
         match &self.substances {
             Some([body, board]) => [body, board],
             None => ["rubber", "plywood"],

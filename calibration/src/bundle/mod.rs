@@ -31,7 +31,7 @@ mod wav;
 
 use file::{BundleKind, CommandRow, DriveRow, MeasurementDescription};
 use glam::{DQuat, DVec3};
-pub(crate) use read::refused;
+pub(crate) use read::read_error;
 
 /// A bundle that was read and checked.
 #[derive(Clone, Debug)]
@@ -58,7 +58,7 @@ pub(crate) struct MeasuredEpisode {
     /// By time.
     pub(crate) poses: Vec<PoseSample>,
     /// The sample to roll out from, and the velocities there; `None`: the first, as measured.
-    pub(crate) known_start: Option<(usize, PoseRates)>,
+    pub(crate) known_start: Option<(usize, PoseVelocity)>,
     /// By time.
     pub(crate) drive: Vec<DriveRow>,
 }
@@ -74,12 +74,12 @@ pub(crate) struct PoseSample {
     /// World from body, unit length.
     pub(crate) rotation: DQuat,
     /// Velocities, if the tracker gives them.
-    pub(crate) rates: Option<PoseRates>,
+    pub(crate) rates: Option<PoseVelocity>,
 }
 
 /// Velocities, both along the axes of the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct PoseRates {
+pub(crate) struct PoseVelocity {
     /// m/s.
     pub(crate) linear: DVec3,
     /// rad/s.

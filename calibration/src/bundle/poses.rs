@@ -3,7 +3,7 @@
 use super::check::{self, NameIndex};
 use super::file::{AngularFrame, MeasurementDescription, PoseRow, StartVelocityRow};
 use super::read::{episode_index, for_each_row};
-use super::{MeasuredEpisode, PoseRates, PoseSample, unit_checks};
+use super::{MeasuredEpisode, PoseSample, PoseVelocity, unit_checks};
 use crate::error::CalibrationError;
 use glam::{DQuat, DVec3};
 use std::collections::BTreeMap;
@@ -91,7 +91,7 @@ fn starts(
         ] {
             check::check_finite(at, field, value, 1e4)?;
         }
-        let rates = PoseRates {
+        let rates = PoseVelocity {
             linear: DVec3::new(row.vx, row.vy, row.vz),
             angular: in_world(frame, pose.rotation, DVec3::new(row.wx, row.wy, row.wz)),
         };
@@ -124,7 +124,7 @@ fn parse_rates(
     row: &PoseRow,
     rotation: DQuat,
     frame: AngularFrame,
-) -> Result<Option<PoseRates>, CalibrationError> {
+) -> Result<Option<PoseVelocity>, CalibrationError> {
     let all = [row.vx, row.vy, row.vz, row.wx, row.wy, row.wz];
     let given: Vec<f64> = all.iter().flatten().copied().collect();
     let [vx, vy, vz, wx, wy, wz] = given[..] else {
@@ -142,7 +142,7 @@ fn parse_rates(
     for (field, value) in ["vx", "vy", "vz", "wx", "wy", "wz"].iter().zip(&given) {
         check::check_finite(at, field, *value, 1e4)?;
     }
-    Ok(Some(PoseRates {
+    Ok(Some(PoseVelocity {
         linear: DVec3::new(vx, vy, vz),
         angular: in_world(frame, rotation, DVec3::new(wx, wy, wz)),
     }))
@@ -297,7 +297,9 @@ pub(crate) fn rotation_vector_between(a: DQuat, b: DQuat) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bundle::file::{BundleKind, PoseTableFormat, ResponseTimes, SceneManifest, VERSION};
+    use crate::bundle::file::{
+        BundleKind, PoseTableFormat, ResponseTimeOrigin, SceneManifest, VERSION,
+    };
 
     const RATE_HZ: f64 = 100.0;
 
@@ -317,7 +319,7 @@ mod tests {
                         entity: 0,
                         position: DVec3::new(1.0, 2.0, 0.5) * t_s + fall,
                         rotation: turned * DQuat::from_rotation_x(1.2),
-                        rates: Some(PoseRates {
+                        rates: Some(PoseVelocity {
                             linear,
                             angular: spin,
                         }),
@@ -341,7 +343,7 @@ mod tests {
             kind: BundleKind::PoseTrajectory,
             scene: SceneManifest::default(),
             command_clock: None,
-            response_times: ResponseTimes::default(),
+            response_times: ResponseTimeOrigin::default(),
             channels: Vec::new(),
             poses: Some(PoseTableFormat {
                 rate_hz: RATE_HZ,
@@ -353,7 +355,7 @@ mod tests {
         check_poses("b", &manifest, &episodes).map_err(|error| error.to_string())
     }
 
-    fn rates(sample: &mut PoseSample) -> &mut PoseRates {
+    fn rates(sample: &mut PoseSample) -> &mut PoseVelocity {
         sample.rates.as_mut().unwrap()
     }
 

@@ -102,12 +102,12 @@ fn open(folder: &Path, relative: &str, limit: u64) -> Result<(fs::File, String),
             "a file inside the bundle",
         ));
     }
-    let file = file::open(&real, limit).map_err(refused(&path))?;
+    let file = file::open(&real, limit).map_err(read_error(&path))?;
     Ok((file, at))
 }
 
 /// The error of a file that was not read.
-pub(crate) fn refused(path: &Path) -> impl FnOnce(ReadError) -> CalibrationError {
+pub(crate) fn read_error(path: &Path) -> impl FnOnce(ReadError) -> CalibrationError {
     move |error| match error {
         ReadError::Io(source) => {
             let path = path.to_owned();
@@ -153,7 +153,7 @@ pub(super) fn for_each_row<T: DeserializeOwned>(
     let head = reader.headers().cloned();
     let head = head.map_err(|error| {
         let none = csv::StringRecord::new();
-        row::fault(&format!("{at} line 1"), &error, &none, &none)
+        row::row_error(&format!("{at} line 1"), &error, &none, &none)
     })?;
     for (count, record) in reader.records().enumerate() {
         // Line 1 is the head.
@@ -168,9 +168,9 @@ pub(super) fn for_each_row<T: DeserializeOwned>(
             });
         }
         let none = csv::StringRecord::new();
-        let cells = record.map_err(|error| row::fault(&here, &error, &head, &none))?;
+        let cells = record.map_err(|error| row::row_error(&here, &error, &head, &none))?;
         let record = cells.deserialize(Some(&head));
-        let record = record.map_err(|error| row::fault(&here, &error, &head, &cells))?;
+        let record = record.map_err(|error| row::row_error(&here, &error, &head, &cells))?;
         each(record, &here)?;
     }
     Ok(())

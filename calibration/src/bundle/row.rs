@@ -4,7 +4,7 @@ use crate::error::CalibrationError;
 use csv::{DeserializeErrorKind, ErrorKind, StringRecord};
 
 /// The fault of an invalid row: file and line, column, what was found, what to change.
-pub(super) fn fault(
+pub(super) fn row_error(
     at: &str,
     error: &csv::Error,
     head: &StringRecord,

@@ -1,6 +1,6 @@
 //! Causes as data, and their parameters.
 
-use super::fault::Fault;
+use super::fault::MeasurementFault;
 use dwell_scene::LawInfo;
 use dwell_scene::law::ParamInfo;
 
@@ -79,7 +79,7 @@ pub(crate) enum CauseBinding {
     /// scene.
     Wall(usize),
     /// It belongs to the measurement: the simulator is right, and what was written down is not.
-    Measurement(Fault),
+    Measurement(MeasurementFault),
 }
 
 /// Something that the simulation may lack or model wrongly, or that the measurement may have got wrong.

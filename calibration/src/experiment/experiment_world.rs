@@ -74,7 +74,7 @@ impl ExperimentObject {
 
     /// The same above a board, of the substances that the manifest says.
     pub(crate) fn above_board(self, half_edge_m: f32, board: &BoardManifest) -> Self {
-        let [thing, board] = board.pair().map(str::to_owned);
+        let [thing, board] = board.substance_pair().map(str::to_owned);
         Self {
             board: Some(Board {
                 half_edge_m,

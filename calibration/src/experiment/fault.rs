@@ -4,7 +4,7 @@ use super::cause::{Cause, CauseBinding, FitParameter};
 
 /// A fault of a clock or a tracker.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Fault {
+pub(crate) enum MeasurementFault {
     /// Written lengths are so many times the true ones.
     LengthScale,
     /// Written times are so many times the true ones.
@@ -53,15 +53,15 @@ const SMOOTHING_TAPS: usize = 7;
 
 impl FaultValues {
     /// Sets a fault to the values of its cause's parameters.
-    pub(crate) fn set(&mut self, fault: Fault, values: &[f64]) {
+    pub(crate) fn set(&mut self, fault: MeasurementFault, values: &[f64]) {
         match (fault, values) {
-            (Fault::LengthScale, [scale]) => self.length_scale = *scale,
-            (Fault::ClockScale, [scale]) => self.clock_scale = *scale,
-            (Fault::FrameTilt, [x, z]) => self.tilt_rad = [*x, *z],
-            (Fault::Smoothing, [window]) => self.smoothing_s = *window,
-            (Fault::CommandScale, [scale]) => self.command_scale = *scale,
-            (Fault::HeadingOffset, [angle]) => self.heading_offset_rad = *angle,
-            (Fault::TrackerDelay, [delay]) => self.tracker_delay_s = *delay,
+            (MeasurementFault::LengthScale, [scale]) => self.length_scale = *scale,
+            (MeasurementFault::ClockScale, [scale]) => self.clock_scale = *scale,
+            (MeasurementFault::FrameTilt, [x, z]) => self.tilt_rad = [*x, *z],
+            (MeasurementFault::Smoothing, [window]) => self.smoothing_s = *window,
+            (MeasurementFault::CommandScale, [scale]) => self.command_scale = *scale,
+            (MeasurementFault::HeadingOffset, [angle]) => self.heading_offset_rad = *angle,
+            (MeasurementFault::TrackerDelay, [delay]) => self.tracker_delay_s = *delay,
             _ => debug_assert!(false, "{fault:?} has another number of parameters"),
         }
     }
@@ -98,7 +98,7 @@ type FaultParameter<'a> = (&'a str, &'a str, f64, [f64; 2], [f64; 2], f64);
 
 /// The cause of a fault.
 fn cause(
-    fault: Fault,
+    fault: MeasurementFault,
     [id, name, equation, experiment]: [&str; 4],
     parameters: &[FaultParameter<'_>],
 ) -> Cause {
@@ -127,7 +127,7 @@ fn cause(
     }
 }
 
-impl Fault {
+impl MeasurementFault {
     /// The fault as a cause.
     pub(crate) fn cause(self) -> Cause {
         match self {
@@ -217,17 +217,17 @@ mod tests {
         let mut faults = FaultValues::default();
         let truth = |t: f64| t * t;
         assert!((faults.sample(2.0, truth) - 4.0).abs() < 1e-12);
-        faults.set(Fault::ClockScale, &[2.0]);
+        faults.set(MeasurementFault::ClockScale, &[2.0]);
         assert!((faults.sample(2.0, truth) - 1.0).abs() < 1e-12);
         faults = FaultValues::default();
-        faults.set(Fault::Smoothing, &[0.6]);
+        faults.set(MeasurementFault::Smoothing, &[0.6]);
         // The mean of t² over a window w is t² + w²/12; seven midpoints give 1 - 1/49 of the second.
         let expected = 4.0 + 0.36 / 12.0 * (1.0 - 1.0 / 49.0);
         assert!((faults.sample(2.0, truth) - expected).abs() < 1e-12);
         faults = FaultValues::default();
-        faults.set(Fault::LengthScale, &[1.5]);
+        faults.set(MeasurementFault::LengthScale, &[1.5]);
         assert_eq!(faults.axis_weights(1), [0.0, 1.5, 0.0]);
-        faults.set(Fault::FrameTilt, &[0.1, 0.0]);
+        faults.set(MeasurementFault::FrameTilt, &[0.1, 0.0]);
         // A fall along the true vertical (0, -1, 0) is written with a part along -z.
         let fall = |axis: usize| -faults.axis_weights(axis)[1] / 1.5;
         assert!(

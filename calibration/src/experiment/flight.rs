@@ -4,12 +4,12 @@ use super::air::{air_density_kg_m3, gravity_m_s2};
 use super::experiment_world::{ExperimentObject, ExperimentWorld, hermite_interpolation};
 use super::tables::{channels, episode_data};
 use super::{
-    Cause, CauseBinding, ChannelInfo, EpisodeData, EpisodeParameters, Experiment, Fault,
-    FitParameter, Intervention, ParameterIndex, ResidualStructure,
+    Cause, CauseBinding, ChannelInfo, EpisodeData, EpisodeParameters, Experiment, FitParameter,
+    MeasurementFault, ModelChanges, ParameterIndex, ResidualStructure,
 };
 use crate::bundle::Bundle;
 use crate::error::CalibrationError;
-use crate::options::Options;
+use crate::options::CalibrationOptions;
 use dwell_physics::PhysicsConfig;
 use dwell_scene::PartId;
 use dwell_scene::law::LawRegime;
@@ -60,7 +60,10 @@ type Tracks = [Vec<(f64, f64)>; 6];
 
 impl FlightExperiment {
     /// Prepares the bodies of a bundle.
-    pub(crate) fn new(bundle: &Bundle, options: &Options) -> Result<Self, CalibrationError> {
+    pub(crate) fn new(
+        bundle: &Bundle,
+        options: &CalibrationOptions,
+    ) -> Result<Self, CalibrationError> {
         let manifest = &bundle.manifest;
         let quantities: Vec<usize> = manifest
             .channels
@@ -147,7 +150,7 @@ impl FlightExperiment {
     fn fly(
         &self,
         episode: usize,
-        intervention: Intervention,
+        intervention: ModelChanges,
         own: &[f64],
         duration_s: f64,
     ) -> Result<Tracks, CalibrationError> {
@@ -204,7 +207,12 @@ fn causes(bundle: &Bundle) -> Vec<Cause> {
     let laws = dwell_physics::laws::all()
         .filter(|law| law.acts_on == "object" && law.regimes.contains(&LawRegime::Flight))
         .map(|law| Cause::of_law(law, &targets, &[density]));
-    let faults = [Fault::LengthScale, Fault::ClockScale, Fault::FrameTilt].map(Fault::cause);
+    let faults = [
+        MeasurementFault::LengthScale,
+        MeasurementFault::ClockScale,
+        MeasurementFault::FrameTilt,
+    ]
+    .map(MeasurementFault::cause);
     laws.chain([gravity(manifest)]).chain(faults).collect()
 }
 
@@ -303,7 +311,7 @@ impl Experiment for FlightExperiment {
         at: &EpisodeParameters<'_>,
     ) -> Result<Vec<f64>, CalibrationError> {
         let measured = &self.episodes[episode];
-        let intervention = Intervention::new(&self.causes, at.causes);
+        let intervention = ModelChanges::new(&self.causes, at.causes);
         let faults = intervention.faults;
         let last = measured.t_s.iter().copied().fold(0.0, f64::max);
         let duration_s = last / faults.clock_scale;
@@ -344,7 +352,7 @@ impl Experiment for FlightExperiment {
         let Start::Position(axis) = self.own_starts[k] else {
             return None;
         };
-        let faults = Intervention::new(&self.causes, at.causes).faults;
+        let faults = ModelChanges::new(&self.causes, at.causes).faults;
         let weight = |quantity: usize| {
             if quantity < FIRST_SPIN {
                 faults.axis_weights(quantity)[axis]
@@ -378,13 +386,13 @@ fn line(points: &[(f64, f64)]) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiment::{ParameterVector, cause_range};
+    use crate::experiment::{ParameterVector, parameter_range};
 
     fn experiment() -> FlightExperiment {
         let folder = tempfile::tempdir().unwrap();
         crate::example::write(folder.path(), 1).unwrap();
         let bundle = crate::bundle::read(folder.path()).unwrap();
-        FlightExperiment::new(&bundle, &Options::default()).unwrap()
+        FlightExperiment::new(&bundle, &CalibrationOptions::default()).unwrap()
     }
 
     /// Flights of the engine match closed forms: a parabola under any gravity, and Stokes' fall.
@@ -397,7 +405,7 @@ mod tests {
             let mut causes = ParameterVector::start(&experiment).causes;
             for (id, value) in [("viscous_damping", rate), ("gravity", gravity)] {
                 let index = experiment.causes.iter().position(|cause| cause.id == id);
-                causes[cause_range(&experiment, index.unwrap()).start] = value;
+                causes[parameter_range(&experiment, index.unwrap()).start] = value;
             }
             let values = EpisodeParameters {
                 causes: &causes,

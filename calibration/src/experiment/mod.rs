@@ -6,7 +6,7 @@ mod drive;
 pub(crate) mod experiment_world;
 mod fault;
 mod flight;
-mod intervention;
+mod model_changes;
 mod room;
 mod servo;
 mod tables;
@@ -15,9 +15,9 @@ mod windows;
 pub(crate) use air::gravity_m_s2;
 pub(crate) use cause::{Cause, CauseBinding, FitParameter};
 pub(crate) use drive::DriveExperiment;
-pub(crate) use fault::Fault;
+pub(crate) use fault::MeasurementFault;
 pub(crate) use flight::FlightExperiment;
-pub(crate) use intervention::Intervention;
+pub(crate) use model_changes::ModelChanges;
 pub(crate) use room::RoomExperiment;
 pub(crate) use servo::ServoExperiment;
 
@@ -272,7 +272,7 @@ impl ParameterVector {
 }
 
 /// The positions of a cause's parameters in [`ParameterVector::causes`].
-pub(crate) fn cause_range(experiment: &dyn Experiment, cause: usize) -> std::ops::Range<usize> {
+pub(crate) fn parameter_range(experiment: &dyn Experiment, cause: usize) -> std::ops::Range<usize> {
     let counts = experiment
         .causes()
         .iter()

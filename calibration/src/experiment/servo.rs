@@ -4,12 +4,12 @@ use super::experiment_world::{ExperimentObject, ExperimentWorld, hermite_interpo
 use super::tables::{channels, episode_data};
 use super::windows::{LONG_S, spread_evenly, windows_between_rests};
 use super::{
-    Cause, ChannelInfo, EpisodeData, EpisodeParameters, Experiment, Fault, FitParameter,
-    Intervention, ResidualStructure,
+    Cause, ChannelInfo, EpisodeData, EpisodeParameters, Experiment, FitParameter, MeasurementFault,
+    ModelChanges, ResidualStructure,
 };
 use crate::bundle::Bundle;
 use crate::error::CalibrationError;
-use crate::options::Options;
+use crate::options::CalibrationOptions;
 use dwell_physics::PhysicsConfig;
 use dwell_scene::{JointCommand, JointId, Servo};
 
@@ -39,7 +39,10 @@ pub(crate) struct ServoExperiment {
 
 impl ServoExperiment {
     /// Prepares the joint of a bundle.
-    pub(crate) fn new(bundle: &Bundle, options: &Options) -> Result<Self, CalibrationError> {
+    pub(crate) fn new(
+        bundle: &Bundle,
+        options: &CalibrationOptions,
+    ) -> Result<Self, CalibrationError> {
         let joint = &bundle.manifest.scene.joints[0];
         let servo = Servo {
             stiffness: joint.stiffness_n_m_rad as f32,
@@ -142,8 +145,11 @@ fn causes(joint: &str) -> Vec<Cause> {
     let laws = dwell_physics::laws::all()
         .filter(|law| law.acts_on == "joint")
         .map(|law| Cause::of_law(law, &[joint.to_owned()], &[]));
-    laws.chain([Fault::CommandScale.cause(), Fault::Smoothing.cause()])
-        .collect()
+    laws.chain([
+        MeasurementFault::CommandScale.cause(),
+        MeasurementFault::Smoothing.cause(),
+    ])
+    .collect()
 }
 
 impl Experiment for ServoExperiment {
@@ -200,7 +206,7 @@ impl Experiment for ServoExperiment {
         let mut start = self.stage.clone();
         start.state.joint_position[joint] = at.episode_nuisances[0] as f32;
         start.adopt_state()?;
-        let intervention = Intervention::new(&self.causes, at.causes);
+        let intervention = ModelChanges::new(&self.causes, at.causes);
         let faults = intervention.faults;
         // The law's memory begins where the joint stands, so it is installed after the joint was put there.
         let mut stage = start.with_laws_and_overrides(intervention.laws, &[])?;

@@ -3,7 +3,7 @@
 use super::normal::{self, NormalBlock};
 use super::robust::HuberLoss;
 use crate::error::CalibrationError;
-use crate::experiment::{Experiment, ParameterIndex, ParameterVector, cause_range};
+use crate::experiment::{Experiment, ParameterIndex, ParameterVector, parameter_range};
 use crate::progress::ProgressReporter;
 use dwell_scene::parallel::Threads;
 use nalgebra::{DMatrix, DVector};
@@ -25,10 +25,10 @@ pub(crate) struct CauseSet {
 
 impl CauseSet {
     /// The positions in [`ParameterVector::causes`] that are fitted.
-    pub(crate) fn slots(&self, experiment: &dyn Experiment) -> Vec<usize> {
+    pub(crate) fn parameter_indices(&self, experiment: &dyn Experiment) -> Vec<usize> {
         self.causes
             .iter()
-            .flat_map(|cause| cause_range(experiment, *cause))
+            .flat_map(|cause| parameter_range(experiment, *cause))
             .filter(|slot| !self.held.contains(slot))
             .collect()
     }
@@ -73,7 +73,7 @@ impl FitTask<'_> {
         model: &CauseSet,
         start: &ParameterVector,
     ) -> Result<FitResult, CalibrationError> {
-        let slots = model.slots(self.experiment);
+        let slots = model.parameter_indices(self.experiment);
         let causes = slots.into_iter().map(ParameterIndex::Cause);
         let shared = (0..self.experiment.shared_nuisances().len()).map(ParameterIndex::Shared);
         self.run(shared.chain(causes).collect(), start)

@@ -7,10 +7,11 @@ use super::data::{
 use super::plot::plots;
 use crate::bundle::Bundle;
 use crate::bundle::file::BundleKind;
-use crate::experiment::{Experiment, FitParameter, Intervention, ParameterIndex};
+use crate::experiment::{Experiment, FitParameter, ModelChanges, ParameterIndex};
 use crate::format_number::{format_list, format_number, format_percent};
 use crate::select::{
-    Decision, Estimate, Findings, ScoredModel, SingleCause, by_channel, estimates, sd_of,
+    Decision, Estimate, Findings, ScoredModel, SingleCause, channel_residuals, estimates,
+    parameter_sd,
 };
 use std::collections::BTreeMap;
 
@@ -52,8 +53,8 @@ pub(crate) fn build(
         sentence: verdict_sentence(&verdict, &candidates, experiment, findings),
         fitted_episodes: name(&findings.split.train),
         held_out_episodes: name(&findings.split.held_out),
-        residuals_before: by_channel(experiment, &set_before, &before),
-        residuals_after: by_channel(experiment, &set_after, &after),
+        residuals_before: channel_residuals(experiment, &set_before, &before),
+        residuals_after: channel_residuals(experiment, &set_after, &after),
         remainder_before: findings.remainder_before,
         remainder_after: if named {
             findings.remainder_after
@@ -288,7 +289,7 @@ fn verdict_sentence(
             )
         }
         CalibrationVerdict::Unexplained { reason } => {
-            let worst = by_channel(
+            let worst = channel_residuals(
                 experiment,
                 &findings.split.train,
                 &findings.base.fit.residuals,
@@ -317,7 +318,7 @@ fn nuisances(experiment: &dyn Experiment, judged: &ScoredModel) -> Vec<NuisanceP
             name: parameter.name.clone(),
             unit: parameter.unit.clone(),
             value: judged.fit.point.shared[k],
-            sd: sd_of(
+            sd: parameter_sd(
                 &judged.fit,
                 judged.effective_count,
                 ParameterIndex::Shared(k),
@@ -333,7 +334,7 @@ fn found(
     seed: u64,
 ) -> FoundEffects {
     let chosen = &findings.chosen;
-    let install = Intervention::to_install(
+    let install = ModelChanges::installable(
         experiment.causes(),
         &chosen.fit.point.causes,
         &chosen.model.causes,

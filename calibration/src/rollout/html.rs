@@ -2,7 +2,7 @@
 
 use super::box_plot;
 use super::residuals::ResidualGroups;
-use super::{HORIZONS, Regime, WindowScore};
+use super::{ContactRegime, HORIZONS, WindowScore};
 use crate::format_number::format_number;
 use crate::report::page;
 use std::fmt::Write as _;
@@ -18,7 +18,7 @@ pub(crate) fn windows(out: &mut String, model: &str, scores: &[WindowScore]) {
         let _ = write!(out, "<th>{horizon} ahead</th>");
     }
     out.push_str("</tr>");
-    let regimes = std::iter::once(None).chain(Regime::ALL.map(Some));
+    let regimes = std::iter::once(None).chain(ContactRegime::ALL.map(Some));
     let rows = regimes.map(|regime| (regime, false)).chain([(None, true)]);
     for (regime, diverging) in rows {
         let of = |w: &&WindowScore| w.regime == regime && w.diverging == diverging;
@@ -28,7 +28,7 @@ pub(crate) fn windows(out: &mut String, model: &str, scores: &[WindowScore]) {
         let word = if diverging {
             "diverging"
         } else {
-            regime.map_or("all others", Regime::name)
+            regime.map_or("all others", ContactRegime::name)
         };
         let _ = write!(out, "<tr><td>{word}</td>");
         for horizon in HORIZONS {

@@ -2,7 +2,7 @@
 
 use super::motion::MotionState;
 use super::pose_tracks::PoseTrack;
-use super::regime::Regime;
+use super::regime::ContactRegime;
 use crate::bundle::rotation_vector_between;
 use crate::fit::median;
 use dwell_scene::random::{RandomKey, RandomStream};
@@ -33,7 +33,10 @@ impl TrackerNoise {
         let (mut shifts, mut turns) = (Vec::new(), Vec::new());
         for track in episodes {
             for (motions, regimes) in track.motions.windows(3).zip(track.regimes.windows(3)) {
-                if regimes.iter().any(|regime| *regime != Regime::Flight) {
+                if regimes
+                    .iter()
+                    .any(|regime| *regime != ContactRegime::Flight)
+                {
                     continue;
                 }
                 let [a, b, c] = [&motions[0], &motions[1], &motions[2]];
@@ -96,7 +99,7 @@ pub fn window_start(
     }
     let fall = DVec3::NEG_Y * gravity_m_s2;
     let (position, linear) = kalman_filter(&places, regimes, step_s, noise.position_m, |regime| {
-        let drift = if regime == Regime::Flight {
+        let drift = if regime == ContactRegime::Flight {
             fall
         } else {
             DVec3::ZERO
@@ -119,22 +122,22 @@ const LINEAR_M_S2: [f64; 4] = [0.1, 150.0, 5.0, 0.3];
 /// The same for angular accelerations, rad/s².
 const ANGULAR_RAD_S2: [f64; 4] = [1.0, 1500.0, 100.0, 5.0];
 
-fn acceleration_index(regime: Regime) -> usize {
+fn acceleration_index(regime: ContactRegime) -> usize {
     match regime {
-        Regime::Flight => 0,
-        Regime::Impact => 1,
-        Regime::Rest => 3,
-        Regime::Contact => 2,
+        ContactRegime::Flight => 0,
+        ContactRegime::Impact => 1,
+        ContactRegime::Rest => 3,
+        ContactRegime::Contact => 2,
     }
 }
 
 /// The place and its rate at the last sample.
 fn kalman_filter(
     values: &[DVec3],
-    regimes: &[Regime],
+    regimes: &[ContactRegime],
     step_s: f64,
     noise: f64,
-    expected: impl Fn(Regime) -> (DVec3, f64),
+    expected: impl Fn(ContactRegime) -> (DVec3, f64),
 ) -> (DVec3, DVec3) {
     let (mut place, mut rate) = (values[0], DVec3::ZERO);
     let (mut pp, mut pv, mut vv) = (noise * noise, 0.0, UNKNOWN_SPEED * UNKNOWN_SPEED);
@@ -177,7 +180,7 @@ mod tests {
                 truth(k as f64 * step_s) + noise * off
             })
             .collect();
-        let regimes = vec![Regime::Flight; count];
+        let regimes = vec![ContactRegime::Flight; count];
         let fall = DVec3::NEG_Y * g;
         let (place, rate) = kalman_filter(&values, &regimes, step_s, noise, |_| (fall, 0.0));
         let end = (count - 1) as f64 * step_s;
@@ -217,7 +220,7 @@ mod tests {
             name: String::new(),
             group: String::new(),
             motions: vec![still; count],
-            regimes: vec![Regime::Flight; count],
+            regimes: vec![ContactRegime::Flight; count],
             start: 0,
             start_motion: still,
         };

@@ -22,12 +22,12 @@ pub use board_rig::{BoardRig, RigSettings, STEPS_PER_SAMPLE};
 pub use initial_state::{TrackerNoise, window_start};
 pub use motion::{Deviation, MotionState};
 pub use pose_tracks::{PoseTrack, PoseTracks, TrackedBody};
-pub use refine::{REFINEMENT_FACTOR, StepRefinementEffect, refinements};
-pub use regime::Regime;
+pub use refine::{REFINEMENT_FACTOR, StepRefinementEffect, step_refinement_effects};
+pub use regime::ContactRegime;
 pub use residuals::{Quantiles, ResidualGroup, ResidualGroups};
 pub use score::{MeanDeviation, deviations, diverges_under_noise, scores};
 pub use subject::RolloutSubject;
-pub use summary::{EpisodeSpread, ScoreSummary};
+pub use summary::{EpisodeStatistics, ScoreSummary};
 pub use windows::{
     HORIZONS, WindowOptions, WindowPrediction, WindowScore, predict_windows, window_scores,
 };

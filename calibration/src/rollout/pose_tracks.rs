@@ -3,10 +3,10 @@
 use super::board_rig::BoardRig;
 use super::initial_state::{TrackerNoise, window_start};
 use super::motion::{Deviation, MotionState};
-use super::regime::{self, Regime};
+use super::regime::{self, ContactRegime};
 use super::subject::RolloutSubject;
 use crate::bundle::file::BoardManifest;
-use crate::bundle::{self, Bundle, MeasuredEpisode, PoseRates, rotation_vector_between};
+use crate::bundle::{self, Bundle, MeasuredEpisode, PoseVelocity, rotation_vector_between};
 use crate::error::CalibrationError;
 use crate::experiment::gravity_m_s2;
 use dwell_scene::random::RandomKey;
@@ -57,7 +57,7 @@ pub struct PoseTrack {
     /// The measured motion. Shape (sample,).
     pub motions: Vec<MotionState>,
     /// The regime at each sample. Shape (sample,).
-    pub regimes: Vec<Regime>,
+    pub regimes: Vec<ContactRegime>,
     /// The sample that whole roll-outs start from.
     pub start: usize,
     /// The motion there, with velocities fitted to the flight before it where the bundle has them.
@@ -157,7 +157,7 @@ impl RolloutSubject for PoseTracks {
         &self.episodes[episode].motions
     }
 
-    fn regimes(&self, episode: usize) -> &[Regime] {
+    fn regimes(&self, episode: usize) -> &[ContactRegime] {
         &self.episodes[episode].regimes
     }
 
@@ -198,7 +198,7 @@ fn track(
                 // Backward differences; the first sample has what the second has.
                 let k = k.max(1);
                 let (a, b) = (&poses[k - 1], &poses[k]);
-                PoseRates {
+                PoseVelocity {
                     linear: (b.position - a.position) / step_s,
                     angular: rotation_vector_between(a.rotation, b.rotation) / step_s,
                 }

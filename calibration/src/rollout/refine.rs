@@ -1,7 +1,7 @@
 //! Refinement: the same windows with a quarter of the step, to find the solver's share of the residuals.
 
 use super::motion::Deviation;
-use super::regime::Regime;
+use super::regime::ContactRegime;
 use super::windows::{HORIZONS, WindowPrediction};
 use crate::fit::median;
 use crate::format_number::format_number;
@@ -22,7 +22,7 @@ pub struct StepRefinementEffect {
     /// Samples ahead.
     pub horizon: usize,
     /// The worst that the body does between start and end; `null`: all windows.
-    pub regime: Option<Regime>,
+    pub regime: Option<ContactRegime>,
     /// Number of windows.
     pub count: usize,
     /// Median distance from what was measured with the step and with a quarter of it, mm.
@@ -38,7 +38,7 @@ pub struct StepRefinementEffect {
 }
 
 /// Compares ends with those of the same windows at a quarter of the step.
-pub fn refinements(
+pub fn step_refinement_effects(
     coarse: &[WindowPrediction],
     fine: &[WindowPrediction],
 ) -> Vec<StepRefinementEffect> {
@@ -49,7 +49,7 @@ pub fn refinements(
         .collect();
     let mut found = Vec::new();
     for horizon in HORIZONS {
-        for regime in std::iter::once(None).chain(Regime::ALL.map(Some)) {
+        for regime in std::iter::once(None).chain(ContactRegime::ALL.map(Some)) {
             let here: Vec<_> = pairs
                 .iter()
                 .filter(|(a, _)| a.horizon == horizon && regime.is_none_or(|r| a.regime == r))
@@ -100,7 +100,7 @@ pub(crate) fn sentence(model: &str, refinements: &[StepRefinementEffect]) -> Str
             format!(
                 "{} ahead in {} ({a} to {b} mm, {c} to {d} degrees)",
                 r.horizon,
-                r.regime.map_or("all", Regime::name)
+                r.regime.map_or("all", ContactRegime::name)
             )
         })
         .collect();
@@ -136,7 +136,7 @@ mod tests {
                 WindowPrediction {
                     start: (0, k),
                     horizon: 5,
-                    regime: Regime::Impact,
+                    regime: ContactRegime::Impact,
                     speed_m_s: 1.0,
                     predicted,
                     deviation: Deviation::between(&predicted, &origin),
@@ -148,10 +148,10 @@ mod tests {
 
     #[test]
     fn a_residual_that_changes_with_the_step_is_named() {
-        let same = refinements(&ends(1e-3), &ends(1.05e-3));
+        let same = step_refinement_effects(&ends(1e-3), &ends(1.05e-3));
         assert!(same.iter().all(|r| !r.artefact && r.count == 30));
         assert!((same[0].apart_mm - 0.05).abs() < 1e-9);
-        let other = refinements(&ends(1e-3), &ends(0.8e-3));
+        let other = step_refinement_effects(&ends(1e-3), &ends(0.8e-3));
         assert!(other.iter().all(|r| r.artefact));
         assert!(sentence("m", &other).contains("solver artefact"));
         assert!(!sentence("m", &same).contains("artefact"));

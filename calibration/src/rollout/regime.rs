@@ -8,7 +8,7 @@ use serde::Serialize;
 /// The contact state of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Regime {
+pub enum ContactRegime {
     /// Nothing touches it.
     Flight,
     /// Within two samples of an impact.
@@ -19,7 +19,7 @@ pub enum Regime {
     Rest,
 }
 
-impl Regime {
+impl ContactRegime {
     /// All of them.
     pub const ALL: [Self; 4] = [Self::Flight, Self::Impact, Self::Contact, Self::Rest];
 
@@ -56,7 +56,7 @@ pub(super) fn regimes_of_track(
     body: &TrackedBody,
     step_s: f64,
     gravity_m_s2: DVec3,
-) -> Vec<Regime> {
+) -> Vec<ContactRegime> {
     let count = motions.len();
     let clear = |k: usize| lowest_m(&motions[k], body.half_extents_m) > CLEAR_M;
     // From differences of the positions: recorded velocities may be filtered.
@@ -75,13 +75,13 @@ pub(super) fn regimes_of_track(
             let near = k.saturating_sub(BLOW_SAMPLES)..(k + BLOW_SAMPLES + 1).min(count);
             let speed = motions[k].linear.length() + motions[k].angular.length() * reach;
             if blows[near].contains(&true) {
-                Regime::Impact
+                ContactRegime::Impact
             } else if clear(k) {
-                Regime::Flight
+                ContactRegime::Flight
             } else if speed < STILL_M_S {
-                Regime::Rest
+                ContactRegime::Rest
             } else {
-                Regime::Contact
+                ContactRegime::Contact
             }
         })
         .collect()
@@ -135,10 +135,10 @@ mod tests {
             })
             .collect();
         let found = regimes_of_track(&motions, &body, step_s, DVec3::NEG_Y * g);
-        assert_eq!(found[10], Regime::Flight);
-        assert_eq!(found[20], Regime::Impact);
-        assert_eq!(found[40], Regime::Contact);
-        assert_eq!(found[75], Regime::Rest);
+        assert_eq!(found[10], ContactRegime::Flight);
+        assert_eq!(found[20], ContactRegime::Impact);
+        assert_eq!(found[40], ContactRegime::Contact);
+        assert_eq!(found[75], ContactRegime::Rest);
         let tilted = MotionState {
             rotation: DQuat::from_rotation_z(45.0_f64.to_radians()),
             ..motions[79]

@@ -1,6 +1,6 @@
 //! Distributions of residuals: by regime and by speed, for several models beside each other.
 
-use super::regime::Regime;
+use super::regime::ContactRegime;
 use super::windows::WindowPrediction;
 use serde::Serialize;
 
@@ -93,7 +93,7 @@ pub(crate) fn all(rows: &[ModelWindows<'_>], horizon: usize) -> Vec<ResidualGrou
                 });
             }
         };
-        let regimes = Regime::ALL.map(|regime| {
+        let regimes = ContactRegime::ALL.map(|regime| {
             let label = regime.name().to_owned();
             group(rows, residual, label, &|end| end.regime == regime)
         });

@@ -1,7 +1,7 @@
 //! Subjects of roll-outs: measured motions, and a simulation that predicts them.
 
 use super::motion::{Deviation, MotionState};
-use super::regime::Regime;
+use super::regime::ContactRegime;
 use crate::error::CalibrationError;
 use dwell_scene::random::RandomKey;
 
@@ -17,7 +17,7 @@ pub trait RolloutSubject: Sync {
     fn measured(&self, episode: usize) -> &[MotionState];
 
     /// Returns the regime at each sample. Shape (sample,).
-    fn regimes(&self, episode: usize) -> &[Regime];
+    fn regimes(&self, episode: usize) -> &[ContactRegime];
 
     /// The deviation beyond which two predictions are of different outcomes.
     fn divergence_threshold(&self) -> Deviation;

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 /// Statistics over episodes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct EpisodeSpread {
+pub struct EpisodeStatistics {
     /// Mean.
     pub mean: f64,
     /// Median.
@@ -15,7 +15,7 @@ pub struct EpisodeSpread {
     pub sd: f64,
 }
 
-impl EpisodeSpread {
+impl EpisodeStatistics {
     /// The statistics of some values.
     pub fn of(values: &[f64]) -> Self {
         let count = values.len().max(1) as f64;
@@ -38,11 +38,11 @@ pub struct ScoreSummary {
     /// Number of episodes.
     pub count: usize,
     /// Distance, as a share of the body's width.
-    pub position_widths: EpisodeSpread,
+    pub position_widths: EpisodeStatistics,
     /// Angle, degrees.
-    pub rotation_deg: EpisodeSpread,
+    pub rotation_deg: EpisodeStatistics,
     /// The published loss.
-    pub e_q: EpisodeSpread,
+    pub e_q: EpisodeStatistics,
     /// The share of episodes with an `e_q` below 0.05.
     pub predicted_share: f64,
 }
@@ -54,9 +54,9 @@ impl ScoreSummary {
         let predicted = scores.iter().filter(|score| score.e_q < PREDICTED_E_Q);
         Self {
             count: scores.len(),
-            position_widths: EpisodeSpread::of(&column(|s| s.position_widths)),
-            rotation_deg: EpisodeSpread::of(&column(|s| s.rotation_deg)),
-            e_q: EpisodeSpread::of(&column(|s| s.e_q)),
+            position_widths: EpisodeStatistics::of(&column(|s| s.position_widths)),
+            rotation_deg: EpisodeStatistics::of(&column(|s| s.rotation_deg)),
+            e_q: EpisodeStatistics::of(&column(|s| s.e_q)),
             predicted_share: predicted.count() as f64 / scores.len().max(1) as f64,
         }
     }
@@ -68,7 +68,7 @@ mod tests {
 
     #[test]
     fn the_spread_is_that_of_the_books() {
-        let spread = EpisodeSpread::of(&[2.0, 4.0, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0]);
+        let spread = EpisodeStatistics::of(&[2.0, 4.0, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0]);
         assert_eq!(spread.mean, 5.0);
         assert!((spread.sd - (32.0_f64 / 7.0).sqrt()).abs() < 1e-15);
     }

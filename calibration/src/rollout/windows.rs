@@ -1,7 +1,7 @@
 //! Windows: from every measured sample, some samples ahead.
 
 use super::motion::{Deviation, MotionState};
-use super::regime::Regime;
+use super::regime::ContactRegime;
 use super::subject::RolloutSubject;
 use crate::error::CalibrationError;
 use crate::fit::median;
@@ -33,7 +33,7 @@ pub struct WindowPrediction {
     /// Samples ahead.
     pub horizon: usize,
     /// The worst that the body does between start and end.
-    pub regime: Regime,
+    pub regime: ContactRegime,
     /// Measured speed at the start, m/s.
     pub speed_m_s: f64,
     /// The prediction.
@@ -51,7 +51,7 @@ pub struct WindowScore {
     /// Samples ahead.
     pub horizon: usize,
     /// The worst that the body does between start and end; `null`: all windows.
-    pub regime: Option<Regime>,
+    pub regime: Option<ContactRegime>,
     /// True for the windows that the chaos guard marked, which are in no other row.
     pub diverging: bool,
     /// Number of windows.
@@ -93,7 +93,7 @@ fn predict_episode_windows<S: RolloutSubject>(
             ends.push(WindowPrediction {
                 start: (episode, at),
                 horizon,
-                regime: Regime::hardest(&regimes[at..=at + horizon]),
+                regime: ContactRegime::hardest(&regimes[at..=at + horizon]),
                 speed_m_s: measured[at].linear.length(),
                 predicted,
                 deviation: Deviation::between(&predicted, &measured[at + horizon]),
@@ -128,7 +128,7 @@ pub fn predict_windows<S: RolloutSubject>(
 pub fn window_scores(ends: &[WindowPrediction]) -> Vec<WindowScore> {
     let mut scores = Vec::new();
     for horizon in HORIZONS {
-        let regimes = std::iter::once(None).chain(Regime::ALL.map(Some));
+        let regimes = std::iter::once(None).chain(ContactRegime::ALL.map(Some));
         let steady = regimes.map(|regime| (regime, false));
         for (regime, diverging) in steady.chain([(None, true)]) {
             let here = ends.iter().filter(|end| {
@@ -147,7 +147,7 @@ pub fn window_scores(ends: &[WindowPrediction]) -> Vec<WindowScore> {
 
 fn score(
     horizon: usize,
-    regime: Option<Regime>,
+    regime: Option<ContactRegime>,
     diverging: bool,
     deviations: &[Deviation],
 ) -> WindowScore {

@@ -3,7 +3,7 @@
 use super::compare::{CauseComparer, Estimate, ScoredModel, estimates};
 use super::residual::effective_count;
 use crate::error::CalibrationError;
-use crate::experiment::{ResidualStructure, cause_range};
+use crate::experiment::{ResidualStructure, parameter_range};
 use serde::Serialize;
 
 /// Number of standard deviations of difference from which on the name is refuted.
@@ -41,7 +41,7 @@ pub(super) fn agreement(
     {
         return Ok(None);
     }
-    let first = cause_range(all.experiment, cause).start;
+    let first = parameter_range(all.experiment, cause).start;
     let default = all.experiment.causes()[cause].parameters[0].default;
     let mut felt = Vec::new();
     for episode in &all.split.train {

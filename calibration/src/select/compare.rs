@@ -5,10 +5,10 @@ use super::residual::effective_count;
 use super::split::EpisodeSplit;
 use crate::error::CalibrationError;
 use crate::experiment::{
-    Experiment, ParameterIndex, ParameterVector, ResidualStructure, cause_range,
+    Experiment, ParameterIndex, ParameterVector, ResidualStructure, parameter_range,
 };
 use crate::fit::{CauseSet, FitResult, FitTask};
-use crate::options::Options;
+use crate::options::CalibrationOptions;
 use crate::progress::ProgressReporter;
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
@@ -20,7 +20,7 @@ const MOVED_SD: f64 = 3.0;
 pub(crate) struct CauseComparer<'a> {
     pub(crate) experiment: &'a dyn Experiment,
     pub(crate) split: &'a EpisodeSplit,
-    pub(crate) options: &'a Options,
+    pub(crate) options: &'a CalibrationOptions,
     pub(crate) threads: Threads,
     pub(crate) progress: &'a dyn ProgressReporter,
 }
@@ -38,7 +38,7 @@ pub(crate) struct ScoredModel {
 
 impl ScoredModel {
     /// Independent residuals per residual.
-    pub(crate) fn effective_weight(&self) -> f64 {
+    pub(crate) fn effective_sample_ratio(&self) -> f64 {
         self.effective_count / self.fit.data.max(1) as f64
     }
 }
@@ -97,7 +97,7 @@ impl CauseComparer<'_> {
         let train = self.task(&self.split.train, true);
         let mut start = from.clone();
         if let Some(cause) = model.causes.last() {
-            let range = cause_range(self.experiment, *cause);
+            let range = parameter_range(self.experiment, *cause);
             let mut best = train.loss_at(from)?;
             for probe in &self.experiment.causes()[*cause].probes {
                 let mut there = from.clone();
@@ -137,7 +137,7 @@ impl CauseComparer<'_> {
             return Ok((model, fit));
         }
         let train = self.task(&self.split.train, true);
-        let range = cause_range(self.experiment, cause);
+        let range = parameter_range(self.experiment, cause);
         let parameters = &self.experiment.causes()[cause].parameters;
         loop {
             let free: Vec<usize> = range
@@ -146,7 +146,7 @@ impl CauseComparer<'_> {
                 .collect();
             let count = effective_count(self.experiment, &self.split.train, &fit.residuals);
             let distance = |slot: usize| {
-                let sd = sd_of(&fit, count, ParameterIndex::Cause(slot));
+                let sd = parameter_sd(&fit, count, ParameterIndex::Cause(slot));
                 let moved = fit.point.causes[slot] - parameters[slot - range.start].default;
                 if sd > 0.0 { moved.abs() / sd } else { 0.0 }
             };
@@ -220,17 +220,17 @@ pub(crate) fn estimates(
     effective_count: f64,
     cause: usize,
 ) -> Vec<Estimate> {
-    let range = cause_range(experiment, cause);
+    let range = parameter_range(experiment, cause);
     range
         .map(|slot| Estimate {
             value: fit.point.causes[slot],
-            sd: sd_of(fit, effective_count, ParameterIndex::Cause(slot)),
+            sd: parameter_sd(fit, effective_count, ParameterIndex::Cause(slot)),
         })
         .collect()
 }
 
 /// The standard deviation of a fitted parameter.
-pub(crate) fn sd_of(fit: &FitResult, effective_count: f64, slot: ParameterIndex) -> f64 {
+pub(crate) fn parameter_sd(fit: &FitResult, effective_count: f64, slot: ParameterIndex) -> f64 {
     let Some(k) = fit.slots.iter().position(|other| *other == slot) else {
         return 0.0;
     };

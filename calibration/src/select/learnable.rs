@@ -25,14 +25,14 @@ const CLIP: f64 = 5.0;
 
 /// What a learner takes away of the squared residuals of held-out episodes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct LearnableRemainder {
+pub struct LearnableResidual {
     /// The share that it takes away; 0 and below: nothing can be learned.
     pub share: f64,
     /// The probability that noise gives as much: from residuals whose signs are turned episode by episode.
     pub probability: f64,
 }
 
-impl LearnableRemainder {
+impl LearnableResidual {
     /// Returns whether the remainder is systematic.
     pub(crate) fn is_structured(&self) -> bool {
         self.share > LEAST_SHARE && self.probability < LEVEL
@@ -265,7 +265,7 @@ mod tests {
                 .chunks(80)
                 .map(|c| c.iter().map(|d| learner.predict(&d.0)).collect())
                 .collect();
-            let found = LearnableRemainder::of(&residuals, &predicted, RandomKey::root(5));
+            let found = LearnableResidual::of(&residuals, &predicted, RandomKey::root(5));
             assert!((least..=most).contains(&found.share), "{noise}: {found:?}");
             assert_eq!(found.is_structured(), noise < 1.0, "{found:?}");
         }

@@ -14,9 +14,9 @@ mod verdict;
 
 pub use agreement::SplitHalfAgreement;
 pub use gain::HeldOutGain;
-pub use learnable::LearnableRemainder;
+pub use learnable::LearnableResidual;
 pub use residual::{ChannelResidual, ResidualNoiseTest};
 
-pub(crate) use compare::{Estimate, ScoredModel, estimates, sd_of};
-pub(crate) use residual::by_channel;
+pub(crate) use compare::{Estimate, ScoredModel, estimates, parameter_sd};
+pub(crate) use residual::channel_residuals;
 pub(crate) use verdict::{Decision, Findings, SingleCause, find_causes};

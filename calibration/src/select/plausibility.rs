@@ -4,7 +4,7 @@ use super::compare::{ScoredModel, estimates};
 use crate::experiment::{Experiment, FitParameter};
 
 /// The reason why a fitted cause is not plausible: a parameter at its bound, or outside of what a physicist would believe.
-pub(super) fn implausible(
+pub(super) fn implausibility_reason(
     experiment: &dyn Experiment,
     judged: &ScoredModel,
     cause: usize,

@@ -1,6 +1,6 @@
 //! Residuals between measurement and simulation.
 
-use super::learnable::LearnableRemainder;
+use super::learnable::LearnableResidual;
 use super::quantum::rounding_sd;
 use crate::experiment::{Experiment, ResidualStructure};
 use crate::fit::median;
@@ -191,7 +191,7 @@ fn by_sequence<'a>(
 }
 
 /// The residual report.
-pub(crate) fn by_channel(
+pub(crate) fn channel_residuals(
     experiment: &dyn Experiment,
     set: &[usize],
     residuals: &[Vec<f64>],
@@ -277,7 +277,7 @@ pub(super) fn effective_count(
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ResidualNoiseTest {
     /// What can be learned of it; `null` where that is not tried: responses of rooms, or too few episodes.
-    pub learnable: Option<LearnableRemainder>,
+    pub learnable: Option<LearnableResidual>,
     /// Mean square of the residuals over that of their noise: 1 for noise alone.
     pub ratio: f64,
     /// The ratio above which noise alone is no explanation.

@@ -6,7 +6,7 @@
 
 use super::compare::{CauseComparer, Estimate};
 use crate::error::CalibrationError;
-use crate::experiment::{Cause, Experiment, ParameterIndex, ParameterVector, cause_range};
+use crate::experiment::{Cause, Experiment, ParameterIndex, ParameterVector, parameter_range};
 use crate::fit::{FitResult, HuberLoss};
 use dwell_scene::random::RandomKey;
 use nalgebra::{DMatrix, DVector};
@@ -40,7 +40,7 @@ struct ColumnBlock {
 }
 
 /// The linear view of a library around a fit.
-pub(super) struct Screen {
+pub(super) struct LinearScreening {
     blocks: Vec<ColumnBlock>,
     /// Normal matrices of each episode over shared nuisances, columns and residual, own nuisances eliminated.
     grams: Vec<DMatrix<f64>>,
@@ -61,7 +61,7 @@ pub(super) struct LinearGain {
     pub(super) is_idle: bool,
 }
 
-impl Screen {
+impl LinearScreening {
     /// Simulates the causes `which` around a fit on the training episodes.
     pub(super) fn new(
         all: &CauseComparer<'_>,
@@ -207,7 +207,7 @@ impl LinearGain {
         point: &ParameterVector,
         mean_square: f64,
     ) -> Vec<Estimate> {
-        let range = cause_range(experiment, self.cause);
+        let range = parameter_range(experiment, self.cause);
         range
             .zip(&self.changes)
             .enumerate()
@@ -244,7 +244,7 @@ fn episode_gram(
     let nuisances: Vec<ParameterIndex> = own.chain(shared).collect();
     let mut columns = experiment.derivatives(episode, &at, &base, &nuisances)?;
     for cause in which {
-        let range = cause_range(experiment, *cause);
+        let range = parameter_range(experiment, *cause);
         let slots: Vec<ParameterIndex> = range.clone().map(ParameterIndex::Cause).collect();
         let derivatives = experiment
             .derivatives(episode, &at, &base, &slots)

@@ -5,19 +5,19 @@ mod extension;
 use super::agreement::{SplitHalfAgreement, agreement};
 use super::compare::{CauseComparer, Estimate, ModelAdvantage, ScoredModel, estimates};
 use super::gain::HeldOutGain;
-use super::learnable::LearnableRemainder;
-use super::plausibility::implausible;
+use super::learnable::LearnableResidual;
+use super::plausibility::implausibility_reason;
 use super::quantum::rounding_sd;
 use super::reasons::{
     disagreement_reason, names, rejection_reason, structure_reason, unfinished_reason,
 };
 use super::residual::{ResidualNoiseTest, noise_from_differences};
-use super::screen::{LinearGain, Screen};
+use super::screen::{LinearGain, LinearScreening};
 use super::split::EpisodeSplit;
 use crate::error::CalibrationError;
 use crate::experiment::{Experiment, ParameterVector, ResidualStructure};
 use crate::fit::CauseSet;
-use crate::options::Options;
+use crate::options::CalibrationOptions;
 use crate::progress::ProgressReporter;
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
@@ -89,7 +89,7 @@ struct Trial {
 /// Finds what the simulation lacks.
 pub(crate) fn find_causes(
     experiment: &mut dyn Experiment,
-    options: &Options,
+    options: &CalibrationOptions,
     progress: &dyn ProgressReporter,
 ) -> Result<Findings, CalibrationError> {
     let split = EpisodeSplit::new(experiment.episodes(), options.held_out_share, options.seed);
@@ -163,7 +163,7 @@ pub(crate) fn find_causes(
         decision => decision,
     };
     let advantage_over_base = (!chosen.model.causes.is_empty())
-        .then(|| all.advantage_over(&chosen, &base, chosen.effective_weight()));
+        .then(|| all.advantage_over(&chosen, &base, chosen.effective_sample_ratio()));
     Ok(Findings {
         base,
         singles,
@@ -202,7 +202,7 @@ impl Search<'_> {
                 _ => found,
             });
         }
-        let learnable = LearnableRemainder::new(
+        let learnable = LearnableResidual::new(
             all.experiment,
             (&split.train, &scored.fit),
             (&split.held_out, &scored.held_out),
@@ -220,7 +220,7 @@ impl Search<'_> {
     ) -> Result<(Vec<LinearGain>, Vec<usize>, f64), CalibrationError> {
         let causes = 0..self.all.experiment.causes().len();
         let which: Vec<usize> = causes.filter(|k| !now.model.causes.contains(k)).collect();
-        let screen = Screen::new(self.all, &now.fit, &which)?;
+        let screen = LinearScreening::new(self.all, &now.fit, &which)?;
         let gains = screen.gains(self.all.experiment);
         let key = RandomKey::root(self.all.options.seed).child("screen");
         let by_chance = screen.gain_by_chance(key);
@@ -278,7 +278,7 @@ impl Search<'_> {
         let best = fitted
             .iter()
             .min_by(|a, b| a.fit.loss.total_cmp(&b.fit.loss));
-        let worth = best.map_or(1.0, ScoredModel::effective_weight);
+        let worth = best.map_or(1.0, ScoredModel::effective_sample_ratio);
         Ok(fitted
             .into_iter()
             .map(|scored| {
@@ -298,7 +298,7 @@ impl Search<'_> {
         let causes = scored.model.causes.iter();
         causes
             .clone()
-            .find_map(|cause| implausible(self.all.experiment, scored, *cause))
+            .find_map(|cause| implausibility_reason(self.all.experiment, scored, *cause))
     }
 
     /// Every cause alone, and the fits of those that gain most.
@@ -360,7 +360,7 @@ impl Search<'_> {
             let smaller = self.fit(causes, &now.model, &from)?;
             let needed = self
                 .all
-                .advantage_over(&now, &smaller, now.effective_weight());
+                .advantage_over(&now, &smaller, now.effective_sample_ratio());
             if needed.delta_bic > self.all.options.min_delta_bic {
                 k += 1;
             } else {
@@ -372,7 +372,7 @@ impl Search<'_> {
 
     /// Puts a cause back to its default.
     fn reset(&self, point: &mut ParameterVector, cause: usize) {
-        let range = crate::experiment::cause_range(self.all.experiment, cause);
+        let range = crate::experiment::parameter_range(self.all.experiment, cause);
         let parameters = &self.all.experiment.causes()[cause].parameters;
         for (slot, parameter) in range.zip(parameters) {
             point.causes[slot] = parameter.default;
@@ -386,7 +386,7 @@ impl Search<'_> {
         base: &ScoredModel,
         singles: &[Trial],
     ) -> Result<Decision, CalibrationError> {
-        let worth = chosen.effective_weight();
+        let worth = chosen.effective_sample_ratio();
         let own = self.all.advantage_over(chosen, base, worth).delta_bic;
         let own_fault = self.implausible(chosen);
         let mut sets: Vec<(f64, Vec<usize>)> = Vec::new();
@@ -509,7 +509,7 @@ fn best_trial(trials: &[Trial]) -> Option<&ScoredModel> {
 fn estimate_noise(
     experiment: &mut dyn Experiment,
     split: &EpisodeSplit,
-    options: &Options,
+    options: &CalibrationOptions,
     threads: Threads,
     progress: &dyn ProgressReporter,
 ) -> Result<ParameterVector, CalibrationError> {

@@ -94,7 +94,7 @@ impl Finish {
     }
 
     /// Share of substance in bars and thin plates of it: metal ones are tubes and sheets.
-    pub fn hollow_fill(&self) -> f32 {
+    pub fn hollow_fill_fraction(&self) -> f32 {
         let metals = ["steel", "chrome", "brass", "aluminium"];
         if metals.contains(&self.substance) {
             0.15
@@ -104,7 +104,7 @@ impl Finish {
     }
 
     /// Share of substance in something stuffed that it covers: the whole weighs as much as upholstery.
-    pub fn padded_fill(&self) -> f32 {
+    pub fn padded_fill_fraction(&self) -> f32 {
         let stuffed = library().get_or_default("upholstery").density_kg_m3;
         (stuffed / self.substance().density_kg_m3).min(1.0)
     }
@@ -288,7 +288,7 @@ pub const fn porcelain(name: &'static str, srgb: Srgb) -> Finish {
 }
 
 /// White sanitary ceramics.
-pub const fn sanitary() -> Finish {
+pub const fn sanitary_ware() -> Finish {
     Finish::plain("white_porcelain", "porcelain", [244, 244, 240])
 }
 
@@ -410,7 +410,7 @@ mod tests {
             glass(),
             mirror(),
             porcelain("p", WHITE),
-            sanitary(),
+            sanitary_ware(),
             terracotta(),
             granite(),
             marble(),

@@ -411,7 +411,7 @@ impl PartBuilder {
     /// The same part with one more bar or plate: metal ones are tubes and sheets.
     #[must_use]
     pub fn with_hollow(self, finish: &Finish, solid: SolidMesh) -> Self {
-        self.with_fill_fraction(finish, solid, finish.hollow_fill())
+        self.with_fill_fraction(finish, solid, finish.hollow_fill_fraction())
     }
 
     /// The same part with each of `solids`, bars or plates: metal ones are tubes and sheets.
@@ -429,7 +429,7 @@ impl PartBuilder {
     /// The same part with one more stuffed shape under a cover.
     #[must_use]
     pub fn with_padding(self, cover: &Finish, solid: SolidMesh) -> Self {
-        self.with_fill_fraction(cover, solid, cover.padded_fill())
+        self.with_fill_fraction(cover, solid, cover.padded_fill_fraction())
     }
 
     /// The same part with each of `solids`.

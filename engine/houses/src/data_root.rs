@@ -150,7 +150,7 @@ impl UserFile {
 }
 
 /// Returns whether a file is JSON by its name and holds one word of each list: enough to tell formats apart, before anything is parsed.
-pub(crate) fn is_json_with(path: &Path, lists: &[&[&str]]) -> bool {
+pub(crate) fn is_json_containing(path: &Path, lists: &[&[&str]]) -> bool {
     let is_json = path
         .extension()
         .is_some_and(|ending| ending.eq_ignore_ascii_case("json"));

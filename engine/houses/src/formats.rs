@@ -7,7 +7,7 @@ use dwell_scene::parallel::Threads;
 
 use crate::data_root::read_up_to;
 use crate::error::HousesError;
-use crate::opened::Opened;
+use crate::opened::OpenResult;
 use crate::report::LoadReport;
 
 /// A format of houses.
@@ -20,7 +20,7 @@ pub struct Format {
     /// Returns whether a HOUSE string means this format.
     pub recognizes: fn(&str) -> bool,
     /// Opens it.
-    pub open: fn(&str, Threads) -> Opened,
+    pub open: fn(&str, Threads) -> OpenResult,
 }
 
 /// All formats but plans, which rest on these, in the order in which they are tried. A new one is one folder and one entry here.
@@ -93,7 +93,7 @@ pub(crate) const FORMATS: &[Format] = &[
     },
 ];
 
-fn open_builtin(name: &str) -> Opened {
+fn open_builtin(name: &str) -> OpenResult {
     let known = || {
         crate::builtin::names()
             .iter()
@@ -111,7 +111,7 @@ fn open_builtin(name: &str) -> Opened {
 ///
 /// # Errors
 /// [`HousesError::UnknownHouse`] lists what is allowed; otherwise what the format says.
-pub(crate) fn open_by(formats: &[Format], house: &str, threads: Threads) -> Opened {
+pub(crate) fn open_by(formats: &[Format], house: &str, threads: Threads) -> OpenResult {
     let _span = tracing::debug_span!("open", house).entered();
     let Some(format) = formats.iter().find(|format| (format.recognizes)(house)) else {
         refuse_irregular(Path::new(house))?;

@@ -39,7 +39,7 @@ pub use formats::Format;
 pub use name_suggestions::nearest_names;
 pub use open::{formats, open, open_with, seed_range};
 pub use open_robot::open_robot;
-pub use opened::Opened;
+pub use opened::OpenResult;
 pub use parse_error_text::plain_parse_error;
 pub use report::{FileLocation, LoadReport, Warning};
 pub use robot::{Robot, with_robot};

@@ -10,7 +10,7 @@ use dwell_scene::parallel::Threads;
 use crate::authoring::{self, NameMapping};
 use crate::error::HousesError;
 use crate::formats::{FORMATS, Format, open_by};
-use crate::opened::Opened;
+use crate::opened::OpenResult;
 use crate::report::LoadReport;
 
 /// Number of formats that are tried before plans.
@@ -88,7 +88,7 @@ pub fn open_with(house: &str, threads: Threads) -> Result<(House, LoadReport), H
 }
 
 /// Opens a house with a map of its foreign names: `HOUSE?map=FILE`.
-fn open_mapped(house: &str, map: &str, threads: Threads) -> Opened {
+fn open_mapped(house: &str, map: &str, threads: Threads) -> OpenResult {
     if house.contains("?map=") {
         return Err(HousesError::Spec {
             field: "map".to_owned(),

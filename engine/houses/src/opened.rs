@@ -5,4 +5,4 @@ use crate::report::LoadReport;
 use dwell_scene::House;
 
 /// A house with the report of its survived damage.
-pub type Opened = Result<(House, LoadReport), HousesError>;
+pub type OpenResult = Result<(House, LoadReport), HousesError>;

@@ -61,7 +61,7 @@ pub use gpu::{
     AdapterInfo, AdapterKind, BatchLimits, Gpu, GpuRenderer, PendingBatch, VisibilityPath,
     VisibilityPathSpeeds, adapters,
 };
-pub use laws::{Optics, Shutter};
+pub use laws::{CameraLaws, Shutter};
 pub use map::{Dollhouse, DollhouseConfig, StoreyMap};
 pub use semantic::{ClassSet, EntityClasses, semantic_classes};
 pub use texture::texture_bytes;

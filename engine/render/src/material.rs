@@ -54,7 +54,7 @@ impl ShadingMaterial {
             mirror: material.metallic >= MIRROR_METALLIC && material.roughness <= MIRROR_ROUGHNESS,
         };
         if let Some(texture) = material.texture {
-            if let Some([r, g, b, a]) = textures.uniform(texture) {
+            if let Some([r, g, b, a]) = textures.uniform_color(texture) {
                 // An image of one colour is a colour.
                 look.base = std::array::from_fn(|k| look.base[k] * srgb.decode([r, g, b][k]));
                 look.opacity *= f32::from(a) / 255.0;

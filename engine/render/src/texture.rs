@@ -8,7 +8,7 @@
 use crate::color::SrgbTables;
 use crate::error::RenderError;
 use dwell_scene::bvh::flat::PackedRow;
-use dwell_scene::interrupt::{self, PollEvery};
+use dwell_scene::interrupt::{self, CancelPoller};
 use dwell_scene::parallel::Threads;
 use dwell_scene::{House, Id, Texture, TextureId};
 use glam::{Vec2, Vec4};
@@ -167,7 +167,7 @@ impl Textures {
     }
 
     /// The one colour of a texture that has only one.
-    pub(crate) fn uniform(&self, texture: TextureId) -> Option<[u8; 4]> {
+    pub(crate) fn uniform_color(&self, texture: TextureId) -> Option<[u8; 4]> {
         self.images[texture.index()].uniform
     }
 
@@ -352,7 +352,7 @@ fn next_mip_level(
     // An odd edge gives its last row to its neighbours.
     let covers =
         |k: usize, from: usize, to: usize| (k * from / to, ((k + 1) * from).div_ceil(to).min(from));
-    let mut pace = PollEvery::new(TEXELS_PER_CHECK);
+    let mut pace = CancelPoller::new(TEXELS_PER_CHECK);
     for y in 0..size.1 {
         pace.count_many(width);
         let (top, bottom) = covers(y, height, size.1);

@@ -2,7 +2,7 @@
 
 use crate::material::ShadingMaterial;
 use dwell_scene::bvh::flat::PackedRow;
-use dwell_scene::interrupt::PollEvery;
+use dwell_scene::interrupt::CancelPoller;
 use dwell_scene::rays::{BODY_PIECES, CAPSULE_PIECES, RayScene, body_meshes};
 use dwell_scene::{House, Id, Mesh, PartId, PlacedMesh, Pose, State, SurfaceOwner};
 use glam::{Affine3A, DVec3, Mat3A, Vec2, Vec3, Vec3A, Vec4};
@@ -116,9 +116,9 @@ impl TriangleTable {
             movable: geometry.movable.clone(),
             bodies: [0; BODY_PIECES],
         };
-        let mut pace = PollEvery::new(TRIANGLES_PER_CHECK);
+        let mut pace = CancelPoller::new(TRIANGLES_PER_CHECK);
         for source in &geometry.static_triangles {
-            pace.turn();
+            pace.count_one();
             let placed = &geometry.placed[source.placed as usize];
             all.add_house_triangle(
                 house,
@@ -143,7 +143,7 @@ impl TriangleTable {
                 continue;
             }
             for triangle in 0..house.meshes[placed.mesh].triangles.len() {
-                pace.turn();
+                pace.count_one();
                 all.add_house_triangle(house, placed, &placed.part_from_mesh, triangle, looks);
             }
         }

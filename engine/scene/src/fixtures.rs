@@ -73,7 +73,7 @@ pub struct SoundEmitter {
 
 impl SoundEmitter {
     /// Returns a signal that loops from the start.
-    pub fn steady(
+    pub fn looping(
         object: ObjectId,
         part: PartId,
         position: Vec3,

@@ -25,7 +25,7 @@ pub struct Interrupted(());
 
 impl Interrupted {
     /// Resumes unwinding towards the caller that requested the stop.
-    pub fn resume(self) -> ! {
+    pub fn resume_unwind(self) -> ! {
         resume_unwind(Box::new(self))
     }
 }
@@ -89,7 +89,7 @@ pub fn interruptible<R>(ask: fn() -> bool, work: impl FnOnce() -> R) -> Result<R
 /// Runs `work`, and catches the unwinding of a cancellation. Panics pass.
 ///
 /// # Errors
-/// [`Interrupted`] when the work was cancelled; pass it on by [`Interrupted::resume`] or as an error.
+/// [`Interrupted`] when the work was cancelled; pass it on by [`Interrupted::resume_unwind`] or as an error.
 pub fn catch_interrupt<R>(work: impl FnOnce() -> R) -> Result<R, Interrupted> {
     // Panics pass, and repairing interrupted data is up to the caller: that is the purpose of `catch_interrupt`.
     catch_unwind(AssertUnwindSafe(work)).map_err(|cause| match cause.downcast::<Interrupted>() {
@@ -111,18 +111,18 @@ pub fn unwind_if_cancelled() {
         poll_now();
     }
     if TOKEN.with_borrow(|token| token.as_ref().is_some_and(is_set)) {
-        Interrupted(()).resume();
+        Interrupted(()).resume_unwind();
     }
 }
 
 /// Calls [`unwind_if_cancelled`] once in a number of turns: for loops whose turns are hardly longer than a check.
 #[derive(Debug)]
-pub struct PollEvery {
+pub struct CancelPoller {
     every: usize,
     left: usize,
 }
 
-impl PollEvery {
+impl CancelPoller {
     /// Checks at the first turn, and again after `every` turns, at least one.
     pub fn new(every: usize) -> Self {
         Self { every, left: 0 }
@@ -130,7 +130,7 @@ impl PollEvery {
 
     /// Counts one turn.
     #[inline]
-    pub fn turn(&mut self) {
+    pub fn count_one(&mut self) {
         self.count_many(1);
     }
 
@@ -177,7 +177,7 @@ pub(crate) fn poll_now() {
 }
 
 /// Returns the token of the call that this thread works for.
-pub(crate) fn token() -> Option<CancelToken> {
+pub(crate) fn current_token() -> Option<CancelToken> {
     TOKEN.with_borrow(Clone::clone)
 }
 
@@ -281,7 +281,7 @@ mod tests {
         }
         let looks = |turns: &[usize]| {
             ASKED.store(0, Ordering::Relaxed);
-            let mut pace = PollEvery::new(10);
+            let mut pace = CancelPoller::new(10);
             for count in turns {
                 // Every look is one that asks.
                 POLL.set(Some(PollSchedule {
@@ -304,7 +304,7 @@ mod tests {
         let stopped = interruptible(yes, || {
             catch_interrupt(|| spin(100_000)).unwrap_or_else(|interrupted| {
                 mended = true;
-                interrupted.resume()
+                interrupted.resume_unwind()
             })
         });
         assert!(stopped.is_err() && mended);
@@ -314,6 +314,6 @@ mod tests {
     fn a_panic_is_no_interruption() {
         let panicked = catch_unwind(|| interruptible(no, || panic!("on purpose")));
         assert!(panicked.is_err());
-        assert!(!is_polling() && token().is_none());
+        assert!(!is_polling() && current_token().is_none());
     }
 }

@@ -49,11 +49,12 @@ pub use ids::{
 pub use law::{LawInfo, LawSpec, LawValues};
 pub use material::{Bands, Material};
 pub use mesh::Mesh;
-pub use sky::{Daytime, Sky, SkyDome, Weather};
+pub use sky::{Sky, SkyConditions, SkyDome, Weather};
 pub use space::Pose;
 pub use state::{
     Address, AgentBody, AgentState, BaseState, Contact, DifferentialDrive, Gesture, HolonomicBase,
     JointParameters, LeggedLocomotion, Locomotion, Parameter, PersonBody, PersonColors, PersonGait,
-    PersonLook, PersonState, Pointing, Reach, Side, State, SupportDirection, Velocity,
+    PersonState, PointingGesture, ReachGesture, ResolvedPersonColors, Side, State,
+    SupportDirection, Velocity,
 };
 pub use texture::Texture;

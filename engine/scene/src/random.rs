@@ -14,20 +14,20 @@ pub struct RandomKey(u128);
 
 /// One element of a key's path: a word or a number.
 #[derive(Clone, Copy, Debug)]
-pub enum Label<'a> {
+pub enum KeyElement<'a> {
     /// A purpose.
     Text(&'a str),
     /// A count: world, episode, step, index.
     Number(u64),
 }
 
-impl<'a> From<&'a str> for Label<'a> {
+impl<'a> From<&'a str> for KeyElement<'a> {
     fn from(word: &'a str) -> Self {
         Self::Text(word)
     }
 }
 
-impl From<u64> for Label<'_> {
+impl From<u64> for KeyElement<'_> {
     fn from(number: u64) -> Self {
         Self::Number(number)
     }
@@ -41,17 +41,17 @@ impl RandomKey {
 
     /// Returns the key of a child of this one.
     #[must_use]
-    pub fn child<'a>(self, label: impl Into<Label<'a>>) -> Self {
+    pub fn child<'a>(self, label: impl Into<KeyElement<'a>>) -> Self {
         // The hash's seed tells a word from a number, so that `child("a")` never equals `child(97)`.
         let parent = self.0.to_le_bytes();
         match label.into() {
-            Label::Text(word) => {
+            KeyElement::Text(word) => {
                 let mut bytes = Vec::with_capacity(16 + word.len());
                 bytes.extend_from_slice(&parent);
                 bytes.extend_from_slice(word.as_bytes());
                 Self(xxh3_128_with_seed(&bytes, 1))
             }
-            Label::Number(number) => {
+            KeyElement::Number(number) => {
                 let mut bytes = [0; 24];
                 bytes[..16].copy_from_slice(&parent);
                 bytes[16..].copy_from_slice(&number.to_le_bytes());

@@ -4,8 +4,8 @@ mod bvh_support;
 
 use bvh_support::{Oracle, Soup, ground, joined, permuted, rays_at, room};
 use dwell_scene::bvh::{
-    Hit, Instance, InstanceSet, PacketHits, Ray, RayMask, RayPacket, SceneBvh, TriangleBvh,
-    TriangleTag,
+    Hit, Instance, InstanceSet, PacketHits, Ray, RayMask, RayPacket, SceneBvh, TriangleAttributes,
+    TriangleBvh,
 };
 use dwell_scene::random::RandomKey;
 use glam::{Affine3A, Quat, Vec3};
@@ -420,7 +420,7 @@ fn trees_of_hopeless_input_are_right() {
     let tree = TriangleBvh::build_tagged(
         &[Vec3::ZERO, Vec3::X, Vec3::Z],
         &vec![[0, 1, 2]; 5000],
-        |k| TriangleTag::new(5000 - k as i32),
+        |k| TriangleAttributes::new(5000 - k as i32),
     );
     let hit = tree
         .closest(

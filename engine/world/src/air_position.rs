@@ -88,7 +88,7 @@ pub(crate) fn nearest_open_air_point(rays: &RayScene, place: Vec3) -> Vec3 {
 
 /// The points from which the house's own sounds are heard, in the frames of their parts, m: things' meshes are closed around many of
 /// them. Shape (emitter,).
-pub(crate) fn emitter_listening_points(house: &Arc<House>) -> Vec<Vec3> {
+pub(crate) fn emission_points(house: &Arc<House>) -> Vec<Vec3> {
     let rays = RayScene::new(house.clone());
     let place = |emitter: &SoundEmitter| {
         let pose = house.parts[emitter.part].world_from_part;
@@ -134,7 +134,7 @@ mod tests {
         for name in ["builtin:apartment", "builtin:studio", "seed:7", "seed:12"] {
             let house = Arc::new(dwell_houses::open(name).unwrap().0);
             let rays = RayScene::new(house.clone());
-            for (emitter, place) in house.emitters.iter().zip(emitter_listening_points(&house)) {
+            for (emitter, place) in house.emitters.iter().zip(emission_points(&house)) {
                 let pose = house.parts[emitter.part].world_from_part;
                 let told = pose.transform_point(emitter.position);
                 within += usize::from(min_openness_around(&rays, told) < ENOUGH);

@@ -32,10 +32,10 @@ const WAVES: usize = 4;
 
 /// In what two environments differ that a batch cannot join.
 fn batch_mismatch(first: &Env, other: &Env) -> Option<&'static str> {
-    let (agents, sensors) = (first.agents(), first.specs());
+    let (agents, sensors) = (first.agents(), first.sensor_specs());
     if !agents.eq(other.agents()) {
         Some("agents")
-    } else if sensors != other.specs() || first.agent_of_sensors() != other.agent_of_sensors() {
+    } else if sensors != other.sensor_specs() || first.sensor_agents() != other.sensor_agents() {
         Some("sensors")
     } else {
         None
@@ -209,14 +209,14 @@ impl Batch {
         self.envs[0].agents()
     }
 
-    /// Returns what every environment's sensors give, as [`Env::specs`]. Shape (sensor,).
-    pub fn specs(&self) -> Vec<SensorSpec> {
-        self.envs[0].specs()
+    /// Returns what every environment's sensors give, as [`Env::sensor_specs`]. Shape (sensor,).
+    pub fn sensor_specs(&self) -> Vec<SensorSpec> {
+        self.envs[0].sensor_specs()
     }
 
     /// Returns whose each sensor is, by the agent's place. Shape (sensor,).
-    pub fn agent_of_sensors(&self) -> Vec<usize> {
-        self.envs[0].agent_of_sensors()
+    pub fn sensor_agents(&self) -> Vec<usize> {
+        self.envs[0].sensor_agents()
     }
 
     /// Does `work` in the environments of `active`; then, where that is asked for, their pictures are under way.
@@ -341,7 +341,7 @@ impl Batch {
             stopped.for_each(|(env, _)| env.clear_episodes());
             self.under_way.clear();
             self.is_started.fill(false);
-            interrupted.resume()
+            interrupted.resume_unwind()
         })
     }
 
@@ -392,7 +392,7 @@ impl Batch {
     fn unsynthesized_signals(&self, active: &[bool]) -> (Vec<String>, u32) {
         let beginning = self.envs.iter().zip(active).filter(|(_, on)| **on);
         let (mut all, mut rate_hz) = (BTreeSet::new(), 0);
-        for (names, rate) in beginning.map(|(env, _)| env.signals()) {
+        for (names, rate) in beginning.map(|(env, _)| env.active_signals_and_rate()) {
             let unmade = names.into_iter();
             all.extend(unmade.filter(|name| signals::needs_synthesis(name, rate)));
             rate_hz = rate_hz.max(rate);
@@ -463,7 +463,7 @@ impl Batch {
         outs: &mut [ObservationBuffer<'_>],
     ) -> Result<(), WorldError> {
         self.check_count("which", which.len())?;
-        let specs = self.specs();
+        let specs = self.sensor_specs();
         if outs.len() != specs.len() {
             return Err(WorldError::InvalidCall(format!(
                 "observe: {} buffers for {} sensors",

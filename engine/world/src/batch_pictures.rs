@@ -1,6 +1,6 @@
 //! The pictures of a batch: the views of all worlds over one house in one submission.
 
-use crate::camera_capture::{ImageExposure, ImageRequest};
+use crate::camera_capture::{ImageRequest, OngoingExposure};
 use crate::env::Env;
 use crate::error::WorldError;
 use crate::sensor_requests::RenderedView;
@@ -30,7 +30,7 @@ struct PictureInProgress<'a> {
     place: usize,
     world: &'a World,
     picture: &'a mut RenderedView,
-    take: ImageExposure,
+    take: OngoingExposure,
 }
 
 /// Pictures by one renderer.
@@ -101,7 +101,7 @@ fn set_up_cameras(
             picture,
             ..
         } = &orders[k];
-        ImageExposure::new(world, request, !picture.frame.rgb.is_empty())
+        OngoingExposure::new(world, request, !picture.frame.rgb.is_empty())
     });
     let pairs = orders.into_iter().zip(takes);
     pairs
@@ -134,7 +134,7 @@ fn jobs<'a>(taking: &'a mut [PictureInProgress<'_>]) -> Vec<RenderJob<'a>> {
 
 /// Develops the pictures that were exposed.
 fn average_exposures<'a>(
-    pairs: impl Iterator<Item = (&'a mut ImageExposure, &'a mut RenderedView)>,
+    pairs: impl Iterator<Item = (&'a mut OngoingExposure, &'a mut RenderedView)>,
     threads: Threads,
 ) {
     let mut exposed: Vec<_> = pairs
@@ -174,7 +174,7 @@ pub(crate) struct PendingImages {
     renderer: Arc<Renderer>,
     submitted: PendingBatch,
     /// The pictures with the index of their environment and their place there. In the order of their work.
-    takes: Vec<(usize, usize, ImageExposure)>,
+    takes: Vec<(usize, usize, OngoingExposure)>,
 }
 
 /// Starts the pictures that environments order. Not those on the processor, which would be busy with them.

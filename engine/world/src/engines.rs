@@ -1,6 +1,6 @@
 //! The part of a house's worlds that they share: the house, and each engine's view of it, made at first use.
 
-use crate::air_position::emitter_listening_points;
+use crate::air_position::emission_points;
 use crate::config::WorldConfig;
 use crate::error::WorldError;
 use crate::initial_state::InitialWorld;
@@ -191,9 +191,9 @@ impl Engines {
     }
 
     /// The points from which the house's own sounds are heard, in the frames of their parts, m. Shape (emitter,).
-    pub(crate) fn emitter_listening_points(&self) -> &[Vec3] {
+    pub(crate) fn emission_points(&self) -> &[Vec3] {
         self.emitter_places
-            .get_or_init(|| emitter_listening_points(&self.house))
+            .get_or_init(|| emission_points(&self.house))
     }
 
     /// A sound file of the house at a sample rate; decoded once.

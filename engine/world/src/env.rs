@@ -271,7 +271,7 @@ mod tests {
     use crate::config::WorldConfig;
     use crate::env_config::SensorConfig;
     use crate::episode::StepResult;
-    use crate::tasks::{PlayedAction, Task};
+    use crate::tasks::{ExecutedAction, Task};
     use dwell_scene::parallel::Threads;
 
     fn env() -> Env {
@@ -358,7 +358,7 @@ mod tests {
             })
         }
 
-        fn judge(&mut self, _: &World, _: &mut Episode, _: &PlayedAction<'_>) -> StepResult {
+        fn judge(&mut self, _: &World, _: &mut Episode, _: &ExecutedAction<'_>) -> StepResult {
             StepResult::default()
         }
 

@@ -6,7 +6,7 @@ use crate::env_config::{ResolvedAgentConfig, SensorConfig};
 use crate::episode::{Episode, StepInfo, StepResult};
 use crate::error::WorldError;
 use crate::sensors::{self, Sensor, SensorSetup};
-use crate::tasks::{self, PlayedAction, Task, TaskKind, TaskSetup};
+use crate::tasks::{self, ExecutedAction, Task, TaskKind, TaskSetup};
 use crate::world::World;
 use dwell_physics::{ActionOutcome, Target};
 use dwell_render::Camera;
@@ -158,19 +158,19 @@ impl EnvAgent {
         };
         let (width, height) = (camera.width() as f32, camera.height() as f32);
         let place = Vec2::new(across * width, down * height);
-        World::image_target(&camera, body.world_from_eye() * mount, place)
+        World::ray_target(&camera, body.world_from_eye() * mount, place)
             .map_or(HandTarget::Nothing, HandTarget::At)
     }
 
     /// Judges the step that has just been made with `action`; `outcome`: what became of it.
-    pub(crate) fn judge(
+    pub(crate) fn evaluate_step(
         &mut self,
         world: &World,
         action: &StepAction,
         outcome: ActionOutcome,
     ) -> Option<StepInfo> {
         let episode = self.episode.as_mut()?;
-        let played = PlayedAction {
+        let played = ExecutedAction {
             action,
             outcome: &outcome,
         };
@@ -194,7 +194,7 @@ impl EnvAgent {
                 .task
                 .reply()
                 .map_or_else(String::new, |reply| reply.text.clone()),
-            speaks: world.speaks(self.id),
+            speaks: world.is_speaking(self.id),
             measures: self.task.measures(),
         })
     }
@@ -223,7 +223,7 @@ impl EnvAgent {
             progress: self.episode.as_ref()?.progress,
             collision: false,
             reply: String::new(),
-            speaks: world.speaks(self.id),
+            speaks: world.is_speaking(self.id),
             measures: self.task.measures(),
         })
     }

@@ -12,12 +12,12 @@ use dwell_scene::parallel::Threads;
 
 impl Env {
     /// Returns what the sensors give: those of the first agent in order, of the second, and so on. Shape (sensor,).
-    pub fn specs(&self) -> Vec<SensorSpec> {
+    pub fn sensor_specs(&self) -> Vec<SensorSpec> {
         self.sensors().map(|(_, sensor)| sensor.spec()).collect()
     }
 
     /// Returns whose each sensor is, by the agent's place. Shape (sensor,).
-    pub fn agent_of_sensors(&self) -> Vec<usize> {
+    pub fn sensor_agents(&self) -> Vec<usize> {
         let agents = self.agents.iter().enumerate();
         agents
             .flat_map(|(place, agent)| std::iter::repeat_n(place, agent.sensors.len()))
@@ -70,11 +70,11 @@ impl Env {
     }
 
     /// The signals that will be heard as soon as somebody listens, and their rate; none where no sensor listens.
-    pub(crate) fn signals(&self) -> (Vec<String>, u32) {
+    pub(crate) fn active_signals_and_rate(&self) -> (Vec<String>, u32) {
         if self.requests.listeners.is_empty() {
             return (Vec::new(), 0);
         }
-        self.world.signals()
+        self.world.active_signals_and_rate()
     }
 
     /// The world, and the buffers for its pictures, at the same time.
@@ -85,7 +85,7 @@ impl Env {
         (&self.world, &self.requests, &mut self.results)
     }
 
-    /// Writes the observation of a sensor, by its place among [`Self::specs`].
+    /// Writes the observation of a sensor, by its place among [`Self::sensor_specs`].
     ///
     /// # Errors
     /// [`WorldError::InvalidCall`] for a wrong index or length, or before the first reset.

@@ -3,7 +3,7 @@
 use crate::actions::{AgentAction, DiscreteAction, StepAction, StepUtterance};
 use crate::env::{Env, no_episode};
 use crate::episode::{
-    Answer, AnswerField, GoalPart, QuestionTokens, StepInfo, StepResult, TaskMeasure,
+    Answer, AnswerField, GoalField, QuestionTokens, StepInfo, StepResult, TaskMeasure,
 };
 use crate::error::{WorldError, no_agent};
 use dwell_acoustics::utterance::{MAX_TOKENS, VocalEffort};
@@ -81,7 +81,7 @@ impl Env {
                 None => agent.step_info_after_end(&self.world),
                 Some(action) => outcomes
                     .next()
-                    .and_then(|outcome| agent.judge(&self.world, action, outcome)),
+                    .and_then(|outcome| agent.evaluate_step(&self.world, action, outcome)),
             };
             infos.push(info.ok_or_else(|| no_episode("step"))?);
         }
@@ -213,7 +213,7 @@ impl Env {
     /// [`WorldError::InvalidCall`] for an agent that does not act.
     pub fn takes_questions(&self, agent: usize) -> Result<bool, WorldError> {
         let parts = self.agent(agent)?.kind.goal_parts;
-        Ok(parts.contains(&GoalPart::Replies))
+        Ok(parts.contains(&GoalField::Replies))
     }
 
     /// Returns what the scripted expert of one agent would do now, its answer included.

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 /// What the goals of a task have, which sensors of goals observe.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum GoalPart {
+pub enum GoalField {
     /// A place.
     Position,
     /// The class of a thing.

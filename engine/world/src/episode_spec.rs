@@ -95,7 +95,7 @@ impl StatedGoal {
     ///
     /// # Errors
     /// [`WorldError::Config`] names the field.
-    pub(crate) fn refuse_others(&self, task: &str, own: &[&str]) -> Result<(), WorldError> {
+    pub(crate) fn reject_other_fields(&self, task: &str, own: &[&str]) -> Result<(), WorldError> {
         let fields = self.fields();
         match fields.iter().find(|name| !own.contains(name)) {
             None => Ok(()),
@@ -111,7 +111,7 @@ impl StatedGoal {
     ///
     /// # Errors
     /// [`WorldError::Config`] where there is none.
-    pub(crate) fn place(&self, task: &str) -> Result<Vec3, WorldError> {
+    pub(crate) fn position(&self, task: &str) -> Result<Vec3, WorldError> {
         let position = self.position.map(Vec3::from_array);
         position.ok_or_else(|| WorldError::Config {
             field: "episode.goal",
@@ -258,11 +258,13 @@ mod tests {
             class: Some("chair".to_owned()),
             ..StatedGoal::default()
         };
-        let error = goal.refuse_others("PointNav", &["position"]).unwrap_err();
+        let error = goal
+            .reject_other_fields("PointNav", &["position"])
+            .unwrap_err();
         assert_eq!(
             error.to_string(),
             "episode.goal is one with class; allowed is of PointNav one with position"
         );
-        assert!(goal.place("PointNav").is_err());
+        assert!(goal.position("PointNav").is_err());
     }
 }

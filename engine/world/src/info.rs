@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
 /// Counts, rooms and categories of a house as one JSON object. `report`: the report of its reader.
-pub fn info(engines: &Engines, report: &Value) -> Value {
+pub fn house_info(engines: &Engines, report: &Value) -> Value {
     let house = engines.house();
     let mut categories: BTreeMap<&str, usize> = BTreeMap::new();
     for object in &house.objects {

@@ -64,7 +64,7 @@ pub use engines::Engines;
 pub use env::Env;
 pub use env_config::{AgentConfig, EnvConfig, SensorConfig};
 pub use episode::{
-    Answer, AnswerField, Episode, EpisodeGoal, GoalPart, MAX_ANSWER_FIELDS, MAX_QUESTION_TOKENS,
+    Answer, AnswerField, Episode, EpisodeGoal, GoalField, MAX_ANSWER_FIELDS, MAX_QUESTION_TOKENS,
     QuestionTokens, StepInfo, StepResult, TaskMeasure,
 };
 pub use episode_spec::{EpisodeSpec, StatedGoal, StatedStart};
@@ -74,7 +74,7 @@ pub use fixtures::{
     JointOverlay, LampFixture, ObjectBox, SceneOverlay, SoundSource, scene_overlay,
 };
 pub use floor_plan::{FloorPlanLabels, PlanDoor, PlanRoom, floor_plan};
-pub use info::{RoomViewpoint, best_room_viewpoints, info};
+pub use info::{RoomViewpoint, best_room_viewpoints, house_info};
 pub use listener::{Listener, MountedReceiver};
 pub use motion_history::LastStepMotion;
 pub use plain_json_error::plain_json_error;

@@ -65,7 +65,7 @@ impl Listener {
     }
 
     /// Returns a text that is equal for equal receivers alone; empty for ears.
-    pub(crate) fn receiver_text(&self) -> String {
+    pub(crate) fn receiver_key(&self) -> String {
         let text = self.receiver.as_ref().map(serde_json::to_string);
         // Plain data can always be written as JSON.
         text.and_then(Result::ok).unwrap_or_default()
@@ -82,7 +82,7 @@ mod tests {
         let head = Pose::from_position_yaw(Vec3::new(1.0, 1.5, 2.0), std::f32::consts::FRAC_PI_2);
         let ears = Listener::ears(AgentId(0));
         assert_eq!(ears.receiver_at(head, None), Receiver::binaural(head));
-        assert_eq!((ears.channels(), ears.receiver_text()), (2, String::new()));
+        assert_eq!((ears.channels(), ears.receiver_key()), (2, String::new()));
         let ahead = Pose::from_position(Vec3::new(0.0, 0.0, -0.5));
         let mounted = |kind| Listener {
             receiver: Some(MountedReceiver {
@@ -109,8 +109,8 @@ mod tests {
         );
         assert!(mounted(ReceiverKind::Head(HeadId(7))).check(None).is_err());
         assert_ne!(
-            wide.receiver_text(),
-            mounted(ReceiverKind::Omni).receiver_text()
+            wide.receiver_key(),
+            mounted(ReceiverKind::Omni).receiver_key()
         );
     }
 }

@@ -33,7 +33,7 @@ impl MemoryEstimate {
         let heard: u64 = ears
             .map(|(listener, samples)| (listener.channels() * samples) as u64)
             .sum();
-        let specs = env.specs();
+        let specs = env.sensor_specs();
         Self {
             world: world_bytes(env.world()) + heard * SAMPLE_BYTES,
             pictures: pictures.sum(),

@@ -5,7 +5,7 @@ use crate::world::World;
 use dwell_physics::ActionOutcome;
 use dwell_scene::person::{PersonSkeleton, advance_persons, skeleton_of};
 use dwell_scene::random::RandomKey;
-use dwell_scene::{AgentId, Gesture, Id, PersonLook, Reach, Side};
+use dwell_scene::{AgentId, Gesture, Id, ReachGesture, ResolvedPersonColors, Side};
 
 /// How long a hand stays at what it acted on, s.
 const REACH_S: f32 = 0.6;
@@ -15,7 +15,8 @@ impl World {
     pub(crate) fn draw_persons(&mut self, key: RandomKey) {
         let key = key.child("person");
         for (agent, person) in &mut self.state.persons {
-            person.look = PersonLook::draw(&person.body.colors, key.child(agent.index() as u64));
+            person.look =
+                ResolvedPersonColors::draw(&person.body.colors, key.child(agent.index() as u64));
         }
     }
 
@@ -33,10 +34,10 @@ impl World {
         let house = self.engines.house();
         let from = skeleton_of(house, &self.state, agent).map(|joints| joints.head);
         let touched = outcome.object.zip(from).and_then(|(object, from)| {
-            dwell_scene::person::held_point(house, &self.state, object, from)
+            dwell_scene::person::grasp_point(house, &self.state, object, from)
         });
         if let (Some(point), Some(person)) = (touched, self.state.persons.get_mut(&agent)) {
-            person.reach = Some(Reach {
+            person.reach = Some(ReachGesture {
                 point,
                 left_s: REACH_S,
             });
@@ -51,7 +52,7 @@ impl World {
     pub fn set_gesture(&mut self, agent: AgentId, gesture: Gesture) -> Result<(), WorldError> {
         self.check_person(agent)?;
         let wrong = gesture
-            .points()
+            .named_points()
             .find(|(_, point)| !point.is_finite() || point.abs().max_element() > 1000.0);
         if let Some((name, point)) = wrong {
             let found = point.to_array();

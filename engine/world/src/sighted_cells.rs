@@ -55,14 +55,14 @@ impl SightedCells {
     /// Takes in what an agent sees of its storey: all cells along level lines of sight, up to the first surface.
     ///
     /// `viewer`: the agent, the surfaces as they are, and the entity of its own body.
-    pub(crate) fn look(
+    pub(crate) fn mark_visible(
         &mut self,
         grid: &NavGrid,
         level: LevelId,
         sight: &SightSettings,
         (agent, rays, own): (&AgentState, &RayScene, EntityId),
     ) {
-        let columns = grid.columns();
+        let columns = grid.column_frame();
         let storey = self.0.entry(level);
         let cells = storey.or_insert_with(|| vec![0; columns.count()]);
         let mut see = |column: usize, is_surface: bool| {
@@ -163,7 +163,7 @@ fn for_each_column(
     length_m: f32,
     mut visit: impl FnMut(usize),
 ) {
-    let from = columns.in_columns([start.x, start.z]);
+    let from = columns.column_coordinates([start.x, start.z]);
     let way = [direction.x, direction.z];
     let length = length_m / columns.cell_m;
     let mut cell = from.map(|value| value.floor() as i64);

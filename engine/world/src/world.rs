@@ -300,8 +300,9 @@ impl World {
     }
 
     /// The signals of what is switched on, each once, and their sample rate, Hz.
-    pub(crate) fn signals(&self) -> (Vec<String>, u32) {
-        self.sound.active_signals(self.engines.house(), &self.state)
+    pub(crate) fn active_signals_and_rate(&self) -> (Vec<String>, u32) {
+        self.sound
+            .active_signals_and_rate(self.engines.house(), &self.state)
     }
 
     /// The object in the middle of an agent's view, within 10 m.
@@ -352,7 +353,7 @@ impl World {
 
     /// Returns whether laws of an agent's depth sensors look at normals.
     pub(crate) fn needs_normals(&self, agent: AgentId) -> bool {
-        dwell_render::Optics::of(&self.state.laws, agent).needs_normals()
+        dwell_render::CameraLaws::of(&self.state.laws, agent).needs_normals()
     }
 
     /// Returns the number of bodies that are awake: those for which a step takes time.
@@ -370,7 +371,7 @@ impl World {
     }
 
     /// The contact events of the last step beyond its limit: their number, and their impulse together.
-    pub fn merged_events(&self) -> dwell_physics::ExcessEventTotals {
+    pub fn events_beyond_limit(&self) -> dwell_physics::ExcessEventTotals {
         self.physics.events_beyond_limit()
     }
 

@@ -23,14 +23,14 @@ impl World {
     }
 
     /// [`Self::play`], to begin after `offset_s` seconds and to be silenced `duration_s` later; without them at once, and never.
-    pub(crate) fn play_between(
+    pub(crate) fn play_scheduled(
         &mut self,
         request: PlayRequest,
         offset_s: Option<f64>,
         duration_s: Option<f64>,
     ) -> Result<u64, WorldError> {
         let handle = self.play(request)?;
-        self.sound.delay(handle, offset_s, duration_s);
+        self.sound.schedule(handle, offset_s, duration_s);
         Ok(handle)
     }
 
@@ -82,7 +82,7 @@ impl World {
             let what = format!("no agent {}; there are {count}", agent.0);
             return Err(WorldError::InvalidCall(what));
         }
-        let words = dwell_semantics::vocabulary::count();
+        let words = dwell_semantics::vocabulary::size();
         let is_no_word = |token: &&u32| !(1..words).contains(&(**token as usize));
         if let Some(token) = utterance.tokens.iter().find(is_no_word) {
             return Err(WorldError::Config {
@@ -100,8 +100,8 @@ impl World {
     }
 
     /// Returns whether an agent's voice sounds in the next step.
-    pub fn speaks(&self, agent: AgentId) -> bool {
-        self.sound.speaks(agent)
+    pub fn is_speaking(&self, agent: AgentId) -> bool {
+        self.sound.is_speaking(agent)
     }
 
     /// What an agent has understood in the last step of what others say, the loudest first; nothing for one that does not listen.

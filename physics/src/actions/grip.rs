@@ -104,7 +104,7 @@ impl ActionContext<'_> {
     fn grip(&mut self, state: &mut State, actor: Actor<'_>, target: &Target) -> ActionResult {
         let (object, body) = self.object_to_grip(state, actor, target)?;
         let grip = HeldObject::at_edge(self.dynamics, (object, body), (actor.id, &actor.body));
-        self.hands.take_edge(self.dynamics, state, grip);
+        self.hands.grip_edge(self.dynamics, state, grip);
         self.articulation
             .write_bodies_and_joints(self.dynamics, state);
         let name = self.dynamics.name_of(object);

@@ -69,7 +69,7 @@ impl ActionContext<'_> {
         }
         let above = point + Vec3::Y * SURFACE_M;
         if let Some(blocker) = self.dynamics.first_reach_obstacle(eye, above) {
-            let name = self.name_of_entry(blocker);
+            let name = self.name_of_collider(blocker);
             let sentence =
                 format!("The {name} is between you and that place. Choose one in the open.");
             return refuse(OutcomeCode::NotVisible, sentence);

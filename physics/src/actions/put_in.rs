@@ -9,7 +9,7 @@ use crate::contact::ContactEntity;
 use crate::convert::to_rapier;
 use crate::dynamics::SupportFilter;
 use crate::hands::HeldObject;
-use crate::model::BodyPlan;
+use crate::model::BodyDefinition;
 use crate::outcome::{ActionOutcome, OutcomeCode, done, fail};
 use dwell_scene::{Aabb, House, ObjectId, Pose, Receptacle, ReceptacleKind, State};
 use glam::Vec3;
@@ -300,7 +300,7 @@ fn is_meant(space: &Receptacle, aim: &ResolvedTarget, state: &State) -> bool {
 }
 
 /// Returns the edges of a stable pose along a part's axes, m.
-fn size_in(plan: &BodyPlan, stance: &StablePose, world_from_part: &Pose) -> Vec3 {
+fn size_in(plan: &BodyDefinition, stance: &StablePose, world_from_part: &Pose) -> Vec3 {
     let turned = to_rapier(&Pose::new(
         Vec3::ZERO,
         world_from_part.rotation.inverse() * stance.rotation,

@@ -150,7 +150,7 @@ impl ActionContext<'_> {
     }
 
     /// Returns the name of a collider's owner for people.
-    pub(super) fn name_of_entry(&self, entry: &ColliderMetadata) -> String {
+    pub(super) fn name_of_collider(&self, entry: &ColliderMetadata) -> String {
         match entry.contact_entity {
             Some(ContactEntity::Structure(id)) => {
                 self.surface_name(dwell_scene::SurfaceOwner::Structure(id))

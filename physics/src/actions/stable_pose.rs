@@ -2,7 +2,7 @@
 
 use super::ActionContext;
 use crate::dynamics::{HolderCollision, SupportFilter};
-use crate::model::BodyPlan;
+use crate::model::BodyDefinition;
 use glam::{Quat, Vec3};
 use rapier3d::math::Pose as RapierPose;
 use std::f32::consts::{FRAC_PI_2, TAU};
@@ -40,7 +40,7 @@ fn horizontal_direction(k: usize) -> Vec3 {
 }
 
 /// Returns the point of a body that is furthest along a direction, relative to its origin.
-fn outermost(plan: &BodyPlan, rotation: Quat, direction: Vec3) -> Option<Vec3> {
+fn outermost(plan: &BodyDefinition, rotation: Quat, direction: Vec3) -> Option<Vec3> {
     let place = RapierPose::from_rotation(rotation);
     plan.pieces
         .iter()
@@ -54,7 +54,7 @@ fn outermost(plan: &BodyPlan, rotation: Quat, direction: Vec3) -> Option<Vec3> {
 }
 
 impl StablePose {
-    fn new(plan: &BodyPlan, rotation: Quat, center_of_mass_in_body: Vec3) -> Option<Self> {
+    fn new(plan: &BodyDefinition, rotation: Quat, center_of_mass_in_body: Vec3) -> Option<Self> {
         let bounds = plan.bounds(&RapierPose::from_rotation(rotation));
         let mut sole = [Vec3::ZERO; DIRECTIONS];
         for (k, point) in sole.iter_mut().enumerate() {
@@ -72,7 +72,7 @@ impl StablePose {
 
     /// As [`Self::new`]; `None` where the object topples by itself.
     pub(super) fn resting(
-        plan: &BodyPlan,
+        plan: &BodyDefinition,
         rotation: Quat,
         center_of_mass_in_body: Vec3,
     ) -> Option<Self> {
@@ -187,7 +187,7 @@ impl ActionContext<'_> {
             .dynamics
             .first_overlap(body, &pose, HolderCollision::Included)
         {
-            return Err(Some(self.name_of_entry(blocker)));
+            return Err(Some(self.name_of_collider(blocker)));
         }
         let carried = stance.sole.map(|point| {
             let above = pose.translation + point + Vec3::Y * GROUND_PROBE_M;

@@ -65,7 +65,7 @@ impl CharacterController<'_> {
         let slid = loose.slide_m_s * self.dt_s;
         let motion = motion + slid;
         if motion.length_squared() > 1e-14 {
-            if self.probe.is_inside_something(feet) {
+            if self.probe.is_core_blocked(feet) {
                 if let Some(out) = self.probe.exit_displacement(feet, MAX_EXIT_M) {
                     feet += out;
                 }
@@ -90,7 +90,7 @@ impl CharacterController<'_> {
     /// Makes one short piece of a movement.
     fn move_substep(&mut self, feet: Vec3, motion: Vec3, grounded: bool) -> Vec3 {
         let mut target = self.slide(feet, motion);
-        if target == feet || self.probe.is_inside_something(target) {
+        if target == feet || self.probe.is_core_blocked(target) {
             return feet;
         }
         let step = self.probe.body.step_height_m;
@@ -108,7 +108,7 @@ impl CharacterController<'_> {
                 let raised = Vec3::new(target.x, ground, target.z);
                 if self.is_too_steep(target, ground)
                     || !self.probe.can_rise(target, rise)
-                    || self.probe.is_inside_something(raised)
+                    || self.probe.is_core_blocked(raised)
                 {
                     return feet;
                 }
@@ -122,7 +122,7 @@ impl CharacterController<'_> {
 
     /// Returns whether a movement leads from above some surface to above none: out of the house.
     fn walks_off_floor(&self, feet: Vec3, target: Vec3) -> bool {
-        !self.probe.is_above_something(target) && self.probe.is_above_something(feet)
+        !self.probe.has_surface_below(target) && self.probe.has_surface_below(feet)
     }
 
     /// Moves as far as possible, sliding along obstacles.

@@ -37,7 +37,7 @@ impl AgentPath {
 
 /// Returns the share of its movement that each agent makes, 0 to 1, so that no two who were apart overlap, and none who overlapped
 /// come closer. Shape (agent,).
-pub(super) fn free_shares(paths: &[AgentPath]) -> Vec<f32> {
+pub(super) fn collision_free_fractions(paths: &[AgentPath]) -> Vec<f32> {
     let mut shares = vec![1.0_f32; paths.len()];
     // Each round stops at least one agent, and only later meetings depend on it.
     for _ in 0..paths.len() {
@@ -117,29 +117,33 @@ mod tests {
 
     #[test]
     fn one_alone_and_those_who_pass_are_free() {
-        assert_eq!(free_shares(&[path([0.0, 0.0], [1.0, 0.0])]), [1.0]);
+        assert_eq!(
+            collision_free_fractions(&[path([0.0, 0.0], [1.0, 0.0])]),
+            [1.0]
+        );
         let apart = [
             path([0.0, 0.0], [1.0, 0.0]),
             path([1.0, 0.5], [0.0, 0.5]),
             path([0.0, 5.0], [0.0, 5.0]),
         ];
-        assert_eq!(free_shares(&apart), [1.0; 3]);
+        assert_eq!(collision_free_fractions(&apart), [1.0; 3]);
         // One who walks behind another as fast as it, and one on the floor above.
         let row = [path([0.0, 0.0], [1.0, 0.0]), path([0.5, 0.0], [1.5, 0.0])];
-        assert_eq!(free_shares(&row), [1.0; 2]);
+        assert_eq!(collision_free_fractions(&row), [1.0; 2]);
         let mut above = path([0.5, 0.0], [0.5, 0.0]);
         (above.from.y, above.to.y) = (2.0, 2.0);
-        assert_eq!(free_shares(&[row[0], above]), [1.0; 2]);
+        assert_eq!(collision_free_fractions(&[row[0], above]), [1.0; 2]);
     }
 
     /// Head on both stop in the middle; one who stands is walked up to; the third of a row is stopped by the second's stop.
     #[test]
     fn those_who_meet_both_stop_where_they_meet() {
         let reach = 2.0 * RADIUS_M + SKIN_WIDTH_M;
-        let shares = free_shares(&[path([0.0, 0.0], [1.0, 0.0]), path([1.0, 0.0], [0.0, 0.0])]);
+        let shares =
+            collision_free_fractions(&[path([0.0, 0.0], [1.0, 0.0]), path([1.0, 0.0], [0.0, 0.0])]);
         assert!((shares[0] - 0.5 * (1.0 - reach)).abs() < 1e-3, "{shares:?}");
         assert_eq!(shares[0], shares[1]);
-        let shares = free_shares(&[
+        let shares = collision_free_fractions(&[
             path([0.0, 0.0], [1.0, 0.0]),
             path([1.0, 0.0], [1.0, 0.0]),
             path([-0.5, 0.0], [0.5, 0.0]),
@@ -152,9 +156,9 @@ mod tests {
     #[test]
     fn those_who_overlap_may_part_but_not_come_closer() {
         let closer = [path([0.0, 0.0], [0.1, 0.0]), path([0.2, 0.0], [0.2, 0.0])];
-        assert_eq!(free_shares(&closer), [0.0, 0.0]);
+        assert_eq!(collision_free_fractions(&closer), [0.0, 0.0]);
         let parting = [path([0.0, 0.0], [-0.1, 0.0]), path([0.2, 0.0], [0.3, 0.0])];
-        assert_eq!(free_shares(&parting), [1.0, 1.0]);
+        assert_eq!(collision_free_fractions(&parting), [1.0, 1.0]);
     }
 
     /// Random crowds: nobody overlaps at any moment, as sampled finely, and in any order each has the same share.
@@ -175,7 +179,7 @@ mod tests {
                     paths.push(own);
                 }
             }
-            let shares = free_shares(&paths);
+            let shares = collision_free_fractions(&paths);
             met += shares.iter().filter(|share| **share < 1.0).count();
             for moment in 0..=100 {
                 let time = moment as f32 * 0.01;
@@ -187,7 +191,7 @@ mod tests {
                 }
             }
             let turned: Vec<AgentPath> = paths.iter().rev().copied().collect();
-            let mut again = free_shares(&turned);
+            let mut again = collision_free_fractions(&turned);
             again.reverse();
             for (share, other) in shares.iter().zip(&again) {
                 assert!((share - other).abs() < 1e-5, "{shares:?} {again:?}");

@@ -14,7 +14,7 @@ mod wheeled_step;
 
 pub use control::AgentControl;
 pub(crate) use control::STEEPEST_LOOK_RAD;
-pub use touch::{AgentTouch, BodyTouch};
+pub use touch::{AgentContacts, BodyContact};
 
 pub(crate) use character_controller::{
     CharacterController, CharacterPush, FASTEST_FALL_M_S, PassiveVelocity,
@@ -118,7 +118,12 @@ pub(crate) fn insert(
         .density(0.0)
         .active_events(rapier3d::pipeline::ActiveEvents::CONTACT_FORCE_EVENTS)
         .contact_force_event_threshold(event_force_n);
-    let builder = dynamics::set_contact_properties(builder, values.self_pair(&entry), true, number);
+    let builder = dynamics::set_contact_properties(
+        builder,
+        values.self_contact_and_hook(&entry),
+        true,
+        number,
+    );
     engine
         .colliders
         .insert_with_parent(builder, handle, &mut engine.bodies);

@@ -1,6 +1,6 @@
 //! All agents' movements in one physics step.
 
-use super::meeting::{AgentPath, free_shares};
+use super::meeting::{AgentPath, collision_free_fractions};
 use super::wheeled_step::{self, BaseMotion};
 use super::{
     AgentControl, AgentCylinder, AgentQueries, Agents, CharacterController, CharacterPush,
@@ -306,13 +306,13 @@ fn stay_at_edges(
     };
     let wanted = ends(planned);
     let mut limited = wanted.clone();
-    hands.limit_holders(dynamics, state, &mut limited);
+    hands.limit_holder_movements(dynamics, state, &mut limited);
     if limited != wanted {
         // Who stops earlier may be in somebody's way.
         put(planned, &limited);
         stop_at_meetings(state, planned);
         let mut made = ends(planned);
-        for group in hands.holders_together(dynamics) {
+        for group in hands.holder_groups(dynamics) {
             let is_cut = |id: &AgentId| made[id.index()] != limited[id.index()];
             if group.iter().any(is_cut) {
                 for id in &group {
@@ -338,7 +338,11 @@ fn stop_at_meetings(state: &State, planned: &mut [PlannedMove]) {
         height_m: plan.agent.height_m(),
     };
     let paths: Vec<AgentPath> = planned.iter().zip(&state.agents).map(path).collect();
-    for ((plan, path), share) in planned.iter_mut().zip(&paths).zip(free_shares(&paths)) {
+    for ((plan, path), share) in planned
+        .iter_mut()
+        .zip(&paths)
+        .zip(collision_free_fractions(&paths))
+    {
         if share < 1.0 {
             plan.agent.position = path.from.lerp(path.to, share);
         }

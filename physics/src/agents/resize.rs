@@ -30,7 +30,7 @@ impl Agents {
             let [now, was] = [now, was].map(|body| agent_queries(dynamics, body, id, &others));
             let feet = agent.position;
             let cramped = now.is_cylinder_blocked(feet) && !was.is_cylinder_blocked(feet);
-            let inside = now.is_inside_something(feet) && !was.is_inside_something(feet);
+            let inside = now.is_core_blocked(feet) && !was.is_core_blocked(feet);
             if cramped || inside {
                 let body = &agent.body;
                 return Err(PhysicsError::Range {

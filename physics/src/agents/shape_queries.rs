@@ -227,7 +227,7 @@ impl AgentQueries<'_> {
     }
 
     /// Returns whether the core overlaps something immovable.
-    pub(crate) fn is_inside_something(&self, feet: Vec3) -> bool {
+    pub(crate) fn is_core_blocked(&self, feet: Vec3) -> bool {
         self.overlaps(feet, self.core())
     }
 
@@ -318,7 +318,7 @@ impl AgentQueries<'_> {
     }
 
     /// Returns whether some surface lies under the feet, however deep: agents do not walk out of the house into the void.
-    pub(crate) fn is_above_something(&self, feet: Vec3) -> bool {
+    pub(crate) fn has_surface_below(&self, feet: Vec3) -> bool {
         let predicate = |_: ColliderHandle, collider: &Collider| {
             let entry = self.entries.get(entry_index(collider));
             entry.is_some_and(|entry| entry.contact_entity.is_some())

@@ -93,7 +93,7 @@ fn find_spawn_point(
             next: 0,
         }
     }));
-    let fits = |place: Vec3| !cramped(place) && probe.is_above_something(place);
+    let fits = |place: Vec3| !cramped(place) && probe.has_surface_below(place);
     let left = search.places.iter().skip(search.next).copied();
     let found = left
         .enumerate()

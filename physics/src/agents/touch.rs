@@ -18,7 +18,7 @@ const BESIDE: f32 = 0.5;
 
 /// Something that an agent's body touches.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BodyTouch {
+pub struct BodyContact {
     /// From the body's axis to it, horizontal, unit length, in world space.
     pub direction: Vec3,
     /// The force with which it pressed on the body in the last physics step, N; 0 for what does not move freely.
@@ -27,9 +27,9 @@ pub struct BodyTouch {
 
 /// What an agent touches.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct AgentTouch {
+pub struct AgentContacts {
     /// Beside its body; a thing may be there several times.
-    pub body: Vec<BodyTouch>,
+    pub body: Vec<BodyContact>,
     /// The force between the held object and what it touches in the last physics step, N; `None` where it touches nothing or
     /// nothing is held.
     pub held_force_n: Option<f32>,
@@ -37,17 +37,27 @@ pub struct AgentTouch {
 
 impl Agents {
     /// Returns what an agent touches; nothing for one that does not exist.
-    pub(crate) fn touch(&self, dynamics: &Dynamics, state: &State, agent: AgentId) -> AgentTouch {
+    pub(crate) fn touch(
+        &self,
+        dynamics: &Dynamics,
+        state: &State,
+        agent: AgentId,
+    ) -> AgentContacts {
         let mut body = self.obstacles_beside(dynamics, state, agent);
         body.extend(self.pressing_bodies(dynamics, agent));
-        AgentTouch {
+        AgentContacts {
             body,
             held_force_n: held_object_force(dynamics, state, agent),
         }
     }
 
     /// Returns the obstacles that stop the body's movements where it stands.
-    fn obstacles_beside(&self, dynamics: &Dynamics, state: &State, id: AgentId) -> Vec<BodyTouch> {
+    fn obstacles_beside(
+        &self,
+        dynamics: &Dynamics,
+        state: &State,
+        id: AgentId,
+    ) -> Vec<BodyContact> {
         let Some(agent) = state
             .agents
             .get(id)
@@ -61,7 +71,7 @@ impl Agents {
             let way = forward_from_yaw(agent.yaw_rad + TAU * k as f32 / DIRECTIONS as f32);
             let hit = queries.cast(agent.position, way * TOUCH_M)?;
             let towards = -hit.normal.with_y(0.0);
-            Some(BodyTouch {
+            Some(BodyContact {
                 direction: if towards.length() > 0.05 {
                     towards.normalize_or_zero()
                 } else {
@@ -74,7 +84,7 @@ impl Agents {
     }
 
     /// Returns the bodies that press on an agent's capsule from beside it.
-    fn pressing_bodies(&self, dynamics: &Dynamics, agent: AgentId) -> Vec<BodyTouch> {
+    fn pressing_bodies(&self, dynamics: &Dynamics, agent: AgentId) -> Vec<BodyContact> {
         let engine = &dynamics.engine;
         let entry = self.list.get(agent.index()).map(|agent| agent.entry);
         // Colliders are inserted in the order of entries and never removed.
@@ -98,7 +108,7 @@ impl Agents {
                 let impulse: f32 = impulses.sum();
                 let direction = (plane.data.normal * sign).with_y(0.0);
                 if impulse > 0.0 && direction.length() > BESIDE {
-                    let touch = BodyTouch {
+                    let touch = BodyContact {
                         direction: direction.normalize_or_zero(),
                         force_n: impulse / engine.solver_call_s(),
                     };

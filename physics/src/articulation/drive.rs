@@ -13,7 +13,7 @@ pub(crate) const CLOSED_THRESHOLD: f32 = 0.02;
 
 impl WorldJoints {
     /// Sets the actuation of all joints from the state's targets.
-    pub(crate) fn drive(
+    pub(crate) fn set_actuation(
         &mut self,
         dynamics: &mut Dynamics,
         state: &mut State,

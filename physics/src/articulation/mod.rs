@@ -30,7 +30,7 @@ pub(crate) struct WorldJoints {
 
 impl WorldJoints {
     /// Reads the joints' coordinates from the state, at the beginning of a control step.
-    pub(crate) fn read(&mut self, state: &State) {
+    pub(crate) fn read_coordinates(&mut self, state: &State) {
         let joints = self.joints.iter();
         self.joint_coordinates = joints
             .map(|joint| joint_from_state(state, joint.id))
@@ -51,7 +51,7 @@ impl WorldJoints {
             body::write_parts(&dynamics.engine, plan, body, state);
         }
         for joint in &self.joints {
-            let now = joints::continued_coordinate(
+            let now = joints::coordinates_at_step_start(
                 &dynamics.engine,
                 joint,
                 joint_from_state(state, joint.id),

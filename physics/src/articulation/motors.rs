@@ -18,7 +18,7 @@ impl WorldJoints {
             if articulation.servo.is_none() {
                 continue;
             }
-            let now = joints::continued_coordinate(
+            let now = joints::coordinates_at_step_start(
                 &dynamics.engine,
                 &joint,
                 self.joint_coordinates[index],

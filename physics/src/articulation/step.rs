@@ -22,8 +22,9 @@ impl WorldJoints {
             return;
         }
         for (joint, joint_coordinates) in self.joints.iter().zip(&self.joint_coordinates) {
-            let position = joints::continued_coordinate(&dynamics.engine, joint, *joint_coordinates)
-                .position as f32;
+            let position =
+                joints::coordinates_at_step_start(&dynamics.engine, joint, *joint_coordinates)
+                    .position as f32;
             for law in &mut dynamics.laws.resistances {
                 law.effect.update_position(joint.id, position);
             }

@@ -29,7 +29,7 @@ pub(crate) struct BodyMotion {
 
 impl BodyMotion {
     /// Returns the rest of the body's displacement in the step since then, when it was stopped on its way and kept its speed.
-    pub(super) fn undone_displacement(&self, body: &RigidBody, dt_s: f32) -> Option<Vec3> {
+    pub(super) fn ccd_lost_displacement(&self, body: &RigidBody, dt_s: f32) -> Option<Vec3> {
         let fell = self.linear + self.gravity * dt_s;
         let free = (self.linear + fell) * (0.5 * dt_s);
         let rest = free - (body.center_of_mass() - self.center);

@@ -79,7 +79,7 @@ impl ContactTracker {
 
     /// Records the bodies that the last step stopped on their way: rapier moves fast bodies only a little into a surface,
     /// and the rest of their step is lost.
-    pub(crate) fn record_undone_displacements(
+    pub(crate) fn record_ccd_lost_displacements(
         &mut self,
         engine: &RapierWorld,
         before: &[BodyMotion],
@@ -91,7 +91,7 @@ impl ContactTracker {
             let moved = before
                 .get(index as usize)
                 .zip(engine.bodies.get(handle))
-                .and_then(|(motion, body)| motion.undone_displacement(body, dt_s));
+                .and_then(|(motion, body)| motion.ccd_lost_displacement(body, dt_s));
             if let Some(rest) = moved {
                 self.undone_displacements.insert(index, rest);
             }
@@ -360,7 +360,7 @@ fn empty_event(
     classes: (u16, u16),
     table: &ContactTable,
 ) -> ContactEvent {
-    let values = table.pair(classes.0, classes.1);
+    let values = table.pair_contact(classes.0, classes.1);
     ContactEvent {
         kind,
         phase,

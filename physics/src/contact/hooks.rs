@@ -66,8 +66,8 @@ pub(crate) struct ContactProperties<'a> {
 
 impl ContactProperties<'_> {
     /// Returns the values of a collider on itself, for rapier's own rule, and whether rapier asks the hook about its pairs instead.
-    pub(crate) fn self_pair(&self, entry: &ColliderMetadata) -> (PairContact, bool) {
-        let (mut own, mut special) = self.table.self_pair(&entry.surface);
+    pub(crate) fn self_contact_and_hook(&self, entry: &ColliderMetadata) -> (PairContact, bool) {
+        let (mut own, mut special) = self.table.self_contact_and_hook(&entry.surface);
         if self.is_compliant {
             own.restitution = 0.0;
             special |= entry.body.is_some();
@@ -126,7 +126,7 @@ impl PhysicsHooks for ContactHooks<'_> {
         rolling::correct_line_contact(manifold, (one, two), turns, self.dt_s);
         let class_a = a.surface.class(manifold.manifold.subshape1);
         let class_b = b.surface.class(manifold.manifold.subshape2);
-        let pair = table.pair(class_a, class_b);
+        let pair = table.pair_contact(class_a, class_b);
         *manifold.friction = pair.friction;
         *manifold.restitution = pair.restitution;
         if soft {

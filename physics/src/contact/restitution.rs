@@ -136,7 +136,7 @@ impl RestitutionContext<'_> {
     ) -> Option<FreeFlightImpact> {
         let rigid = engine.bodies.get(body)?;
         let (mut hits, mut stands) = (Vec::new(), true);
-        for pair in engine.pairs_of(rigid) {
+        for pair in engine.contact_pairs_of(rigid) {
             let other = [pair.collider1, pair.collider2]
                 .into_iter()
                 .filter_map(|collider| parent(engine, collider))

@@ -66,7 +66,9 @@ pub(crate) fn restore_rolling_hooks(
         let own = engine.bodies.get(handle);
         let own = own.and_then(|body| roller.collider(body));
         let asked = |index: usize| entries.get(index).is_some_and(&asked);
-        let rolls = bodies.get(handle).is_some_and(|body| roller.rolls(body));
+        let rolls = bodies
+            .get(handle)
+            .is_some_and(|body| roller.is_rolling(body));
         set_rolling_hook(engine, rolls, own, asked);
     }
 }

@@ -145,12 +145,15 @@ impl ContactTable {
     }
 
     /// Returns the values between two classes.
-    pub(crate) fn pair(&self, a: u16, b: u16) -> PairContact {
+    pub(crate) fn pair_contact(&self, a: u16, b: u16) -> PairContact {
         self.pairs[usize::from(a) * self.classes.len() + usize::from(b)]
     }
 
     /// Returns the values of a surface on itself, for rapier's own rule, and whether its pairs need a look-up instead.
-    pub(crate) fn self_pair(&self, surface: &SurfaceContactClasses) -> (PairContact, bool) {
+    pub(crate) fn self_contact_and_hook(
+        &self,
+        surface: &SurfaceContactClasses,
+    ) -> (PairContact, bool) {
         match surface {
             SurfaceContactClasses::Uniform(class) => {
                 let class = usize::from(*class);
@@ -259,13 +262,13 @@ mod tests {
         for (i, a) in table.classes.iter().enumerate() {
             for (j, b) in table.classes.iter().enumerate() {
                 let expected = state.pair_contact(a.substance, b.substance);
-                assert_eq!(table.pair(i as u16, j as u16), expected);
+                assert_eq!(table.pair_contact(i as u16, j as u16), expected);
             }
         }
         // Cast iron on oak is a published pair: one of the two needs the look-up.
         let special = |k: u32| {
             let surface = SurfaceContactClasses::Uniform(table.class_of_material[MaterialId(k)]);
-            table.self_pair(&surface).1
+            table.self_contact_and_hook(&surface).1
         };
         assert!(special(0) || special(1));
     }
@@ -285,7 +288,9 @@ mod tests {
         state.set_parameter(&house, &address, 0.0).unwrap();
         let table = ContactTable::new(&house, &state);
         let (floor, wall) = (MaterialId(0), MaterialId(1));
-        let pair = |t: &ContactTable| t.pair(t.class_of_material[floor], t.class_of_material[wall]);
+        let pair = |t: &ContactTable| {
+            t.pair_contact(t.class_of_material[floor], t.class_of_material[wall])
+        };
         assert_eq!(pair(&table).friction, 0.0);
         let address: Address = "pair/glass~plaster/friction".parse().unwrap();
         state.set_parameter(&house, &address, 0.3).unwrap();

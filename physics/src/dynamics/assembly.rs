@@ -7,7 +7,7 @@ use crate::engine::{ContactCompliance, RapierWorld};
 use crate::inertia::{self, BodyInertia};
 use crate::laws::LawSet;
 use crate::limits::PairDensity;
-use crate::model::{BodyPlan, CollisionPiece, PhysicsModel};
+use crate::model::{BodyDefinition, CollisionPiece, PhysicsModel};
 use dwell_scene::material::PairContact;
 use dwell_scene::{State, interrupt};
 use rapier3d::dynamics::{CoefficientCombineRule, RigidBodyBuilder, RigidBodyHandle, RigidBodySet};
@@ -126,8 +126,12 @@ pub(crate) fn insert_statics(
         let builder = ColliderBuilder::new(piece.shape.clone())
             .position(piece.pose)
             .density(0.0);
-        let builder =
-            set_contact_properties(builder, values.self_pair(&entry), false, entries.len());
+        let builder = set_contact_properties(
+            builder,
+            values.self_contact_and_hook(&entry),
+            false,
+            entries.len(),
+        );
         engine
             .colliders
             .insert_with_parent(builder, ground, &mut engine.bodies);
@@ -139,7 +143,7 @@ pub(crate) fn insert_statics(
 /// Inserts a rigid body with its colliders.
 pub(crate) fn insert_body(
     engine: &mut RapierWorld,
-    plan: &BodyPlan,
+    plan: &BodyDefinition,
     values: ContactProperties<'_>,
     entries: &mut Vec<ColliderMetadata>,
     place: BodyPlacement<'_>,
@@ -167,7 +171,7 @@ pub(crate) fn insert_body(
             .contact_force_event_threshold(place.event_force_n);
         let builder = set_contact_properties(
             builder,
-            values.self_pair(&entry),
+            values.self_contact_and_hook(&entry),
             place.needs_hook,
             entries.len(),
         );

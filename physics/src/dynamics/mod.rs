@@ -74,13 +74,13 @@ impl Dynamics {
             let body = self.engine.bodies.get(handle);
             let (own, rolls) = (
                 body.and_then(|body| roller.collider(body)),
-                body.is_some_and(|body| roller.rolls(body)),
+                body.is_some_and(|body| roller.is_rolling(body)),
             );
             let entries = &self.entries;
             let asked = |index: usize| {
                 entries
                     .get(index)
-                    .is_some_and(|entry| properties.self_pair(entry).1)
+                    .is_some_and(|entry| properties.self_contact_and_hook(entry).1)
             };
             changed |= rolling::set_rolling_hook(&mut self.engine, rolls, own, asked);
         }

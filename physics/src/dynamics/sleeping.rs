@@ -39,9 +39,9 @@ impl Dynamics {
     fn forget_pairs(&mut self, bodies: &[RigidBodyHandle]) {
         // They must first be known as fixed, or what they touch would wake when the pairs go.
         self.flush();
-        self.engine.toggle_broad_phase_proxies(bodies, true);
+        self.engine.move_broad_phase_proxies(bodies, true);
         self.flush();
-        self.engine.toggle_broad_phase_proxies(bodies, false);
+        self.engine.move_broad_phase_proxies(bodies, false);
         self.flush();
         self.engine.shrink_pair_storage();
     }

@@ -32,7 +32,7 @@ fn friction(settings: &ResolvedConfig) -> FrictionModel {
 }
 
 /// Returns the stiffest contacts that the rate allows.
-pub(crate) fn rigid(settings: &ResolvedConfig) -> IntegrationParameters {
+pub(crate) fn rigid_contact_parameters(settings: &ResolvedConfig) -> IntegrationParameters {
     let substeps = settings.config.solver_substeps as f32;
     let substep_hz = substeps / settings.dt_s;
     let softness = |share: f32| SpringCoefficients {
@@ -62,7 +62,7 @@ pub(crate) fn rigid(settings: &ResolvedConfig) -> IntegrationParameters {
 /// are exp(-2 z w h) and 2 exp(-z w h) cos(w h sqrt(1 - z^2)), so that impacts are exact. A constant force then sinks z w h
 /// (relative) too little. rapier makes c and e from a frequency and a damping ratio (E. Catto, Soft Constraints, GDC 2011);
 /// those that give the exact ones are returned.
-pub(crate) fn soft(
+pub(crate) fn compliant_contact_parameters(
     settings: &ResolvedConfig,
     compliance: ContactCompliance,
 ) -> (IntegrationParameters, u32) {

@@ -54,7 +54,7 @@ impl RapierWorld {
     pub(crate) fn new(settings: &ResolvedConfig, gravity_m_s2: f32) -> Self {
         Self {
             gravity: Vec3::new(0.0, -gravity_m_s2, 0.0),
-            parameters: contact_compliance::rigid(settings),
+            parameters: contact_compliance::rigid_contact_parameters(settings),
             runs: 1,
             soft: false,
             workspace: Workspace::new(),
@@ -77,8 +77,10 @@ impl RapierWorld {
     ) {
         self.soft = compliance.is_some();
         (self.parameters, self.runs) = match compliance {
-            Some(compliance) => contact_compliance::soft(settings, compliance),
-            None => (contact_compliance::rigid(settings), 1),
+            Some(compliance) => {
+                contact_compliance::compliant_contact_parameters(settings, compliance)
+            }
+            None => (contact_compliance::rigid_contact_parameters(settings), 1),
         };
     }
 
@@ -138,7 +140,7 @@ impl RapierWorld {
     }
 
     /// Returns the pairs of a body's colliders with others.
-    pub(crate) fn pairs_of<'a>(
+    pub(crate) fn contact_pairs_of<'a>(
         &'a self,
         body: &'a RigidBody,
     ) -> impl Iterator<Item = &'a ContactPair> {
@@ -149,9 +151,11 @@ impl RapierWorld {
     /// Returns whether something pressed on a body in the last step.
     fn is_pressed(&self, body: &RigidBody) -> bool {
         if self.soft {
-            return self.pairs_of(body).any(ContactPair::has_any_active_contact);
+            return self
+                .contact_pairs_of(body)
+                .any(ContactPair::has_any_active_contact);
         }
-        self.pairs_of(body)
+        self.contact_pairs_of(body)
             .flat_map(ContactPair::solver_manifolds)
             .flat_map(points)
             .any(|(_, point)| point.impulse > 0.0)
@@ -166,7 +170,7 @@ impl RapierWorld {
         }
         let pull = self.gravity.length();
         let slow = pull * self.parameters.dt;
-        self.pairs_of(body).any(|pair| {
+        self.contact_pairs_of(body).any(|pair| {
             let motion = |collider: ColliderHandle| {
                 let parent = self.colliders.get(collider).and_then(Collider::parent);
                 let parent = parent.and_then(|parent| self.bodies.get(parent));

@@ -305,7 +305,7 @@ impl RapierWorld {
             return others;
         };
         let parent = |collider| self.colliders.get(collider).and_then(Collider::parent);
-        for pair in self.pairs_of(rigid) {
+        for pair in self.contact_pairs_of(rigid) {
             if pair.has_any_active_contact() {
                 others.extend(
                     [pair.collider1, pair.collider2]
@@ -341,7 +341,7 @@ impl RapierWorld {
 
     /// Moves the boxes of bodies' colliders in rapier's tree to where they touch nothing, or back. rapier drops a pair when
     /// a box leaves the other, and does not make it again between two fixed bodies.
-    pub(crate) fn toggle_broad_phase_proxies(&mut self, bodies: &[RigidBodyHandle], away: bool) {
+    pub(crate) fn move_broad_phase_proxies(&mut self, bodies: &[RigidBodyHandle], away: bool) {
         let parameters = IntegrationParameters {
             length_unit: BOX_STEP_M / RAPIER_SKIN,
             ..*self.parameters()

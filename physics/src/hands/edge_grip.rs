@@ -223,7 +223,7 @@ impl Hands {
     }
 
     /// Takes hold of an edge.
-    pub(crate) fn take_edge(
+    pub(crate) fn grip_edge(
         &mut self,
         dynamics: &mut Dynamics,
         state: &mut State,
@@ -246,7 +246,7 @@ impl Hands {
     }
 
     /// Lets go of an edge; what can no longer be held up is set down.
-    pub(super) fn leave_edge(
+    pub(super) fn release_edge(
         &mut self,
         dynamics: &mut Dynamics,
         state: &mut State,
@@ -327,7 +327,12 @@ impl Hands {
     /// Cuts short the movements of agents who hold edges, so that nobody gets too far from its place and what they carry into nothing.
     ///
     /// `ends`: where each agent's movement in a physics step ends, m. Shape (agent,).
-    pub(crate) fn limit_holders(&self, dynamics: &Dynamics, state: &State, ends: &mut [Vec3]) {
+    pub(crate) fn limit_holder_movements(
+        &self,
+        dynamics: &Dynamics,
+        state: &State,
+        ends: &mut [Vec3],
+    ) {
         for body in self.bodies_held_at_edges() {
             let carriers = self.carriers_of(dynamics, body);
             let starts: Vec<Vec3> = carriers
@@ -370,13 +375,13 @@ impl Hands {
     }
 
     /// Returns groups of agents who hold one thing, each at least two.
-    pub(crate) fn holders_together(&self, dynamics: &Dynamics) -> Vec<Vec<AgentId>> {
+    pub(crate) fn holder_groups(&self, dynamics: &Dynamics) -> Vec<Vec<AgentId>> {
         let bodies = self.bodies_held_at_edges().into_iter();
         let groups = bodies.map(|body| self.carriers_of(dynamics, body).agents);
         groups.filter(|agents| agents.len() > 1).collect()
     }
 
-    /// Moves what is lifted to where its holders take it in this physics step; `ends` as for [`Self::limit_holders`].
+    /// Moves what is lifted to where its holders take it in this physics step; `ends` as for [`Self::limit_holder_movements`].
     pub(crate) fn move_carried(&mut self, dynamics: &mut Dynamics, state: &State, ends: &[Vec3]) {
         for body in self.bodies_held_at_edges() {
             let carriers = self.carriers_of(dynamics, body);

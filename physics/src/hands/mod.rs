@@ -87,7 +87,7 @@ impl Hands {
     pub(crate) fn open_hand(&mut self, dynamics: &mut Dynamics, state: &mut State, place: usize) {
         let grip = self.held_objects.remove(place);
         if grip.edge().is_some() {
-            self.leave_edge(dynamics, state, &grip);
+            self.release_edge(dynamics, state, &grip);
             return;
         }
         let velocity = state.agents[grip.agent].velocity;

@@ -23,7 +23,7 @@ const STICKING_MASS_RATIO: f64 = 1e4;
 
 /// The contact state of a support point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum SupportState {
+pub(super) enum SupportContactState {
     Sticking,
     /// It presses, and friction brakes it with this force, N.
     Sliding(DVec3),
@@ -31,7 +31,7 @@ pub(super) enum SupportState {
     Separated,
 }
 
-impl SupportState {
+impl SupportContactState {
     /// Returns the directions in which it holds.
     fn constrained_directions(self) -> [bool; 3] {
         match self {
@@ -94,7 +94,7 @@ impl ReducedProblem {
         motion: &TreeDynamics<'_>,
         loads: &TreeLoads,
         now: &[f64],
-        holds: &[SupportState],
+        holds: &[SupportContactState],
         dt_s: f64,
     ) -> Self {
         let mut inertia = motion.fixed_base_inertia();
@@ -228,7 +228,11 @@ fn point_jacobian_rows(
 
 impl BaseContactSolver {
     /// Returns the root's response when the joints have these velocities at the end of the step.
-    pub(super) fn base_response(&self, velocities: &[f64], holds: &[SupportState]) -> BaseResponse {
+    pub(super) fn base_response(
+        &self,
+        velocities: &[f64],
+        holds: &[SupportContactState],
+    ) -> BaseResponse {
         // I^c_0 v_0 = p_0 - F q'.
         let mut left = self.momentum;
         for (column, velocity) in self.shared.iter().zip(velocities) {
@@ -237,7 +241,7 @@ impl BaseContactSolver {
             }
         }
         let root = self.factor.solve(&left);
-        let force = |(rows, hold): (&[PointJacobian; 3], &SupportState)| {
+        let force = |(rows, hold): (&[PointJacobian; 3], &SupportContactState)| {
             let along = |k: usize| {
                 let moves = dot(&rows[k].root, &root) + dot(&rows[k].joints, velocities);
                 if hold.constrained_directions()[k] {
@@ -261,7 +265,7 @@ pub(super) fn update_support_states(
     motion: &TreeDynamics<'_>,
     loads: &TreeLoads,
     answer: &BaseResponse,
-    holds: &mut [SupportState],
+    holds: &mut [SupportContactState],
 ) -> bool {
     let mut changed = false;
     let weighed = motion.supports.iter().zip(&loads.support_weights);
@@ -270,11 +274,11 @@ pub(super) fn update_support_states(
         let aside = libm::hypot(force.x, force.z);
         let most = support.friction * weight;
         let next = match *hold {
-            SupportState::Separated => SupportState::Separated,
-            _ if force.y < 0.0 => SupportState::Separated,
-            SupportState::Sticking if aside > most => {
+            SupportContactState::Separated => SupportContactState::Separated,
+            _ if force.y < 0.0 => SupportContactState::Separated,
+            SupportContactState::Sticking if aside > most => {
                 let share = most / aside;
-                SupportState::Sliding(DVec3::new(force.x * share, 0.0, force.z * share))
+                SupportContactState::Sliding(DVec3::new(force.x * share, 0.0, force.z * share))
             }
             same => same,
         };

@@ -93,13 +93,13 @@ impl FreeJointChain {
             stands: true,
             gravity: engine.gravity.as_dvec3(),
         };
-        chain.follow_root(engine, tree);
+        chain.read_root_motion(engine, tree);
         chain.find_contacts(engine, tree, free, joints);
         chain
     }
 
     /// Reads the pose and motion of the root, and of parents that no free joint moves.
-    pub(super) fn follow_root(&mut self, engine: &RapierWorld, tree: &KinematicTree) {
+    pub(super) fn read_root_motion(&mut self, engine: &RapierWorld, tree: &KinematicTree) {
         for link in self.links.iter_mut().filter(|link| link.parent.is_none()) {
             let parent = engine.bodies.get(link.parent_handle);
             link.world_from_parent = parent.map_or(RigidTransform::IDENTITY, |parent| {

@@ -103,7 +103,7 @@ impl JointDof {
 
     /// A slipping spring: the effort at the middle of the step, where the midpoint rule keeps the energy of oscillations;
     /// at its end where the spring is too stiff for the step to follow.
-    pub(super) fn elastic(&self, spring: &SlipSpring) -> EffortTerm {
+    pub(super) fn slip_spring(&self, spring: &SlipSpring) -> EffortTerm {
         let (stiffness, most) = (f64::from(spring.stiffness), f64::from(spring.max_effort));
         let stiff = stiffness * self.dt_s * self.dt_s > self.inertia;
         let share = if stiff { 0.5 } else { 0.25 };

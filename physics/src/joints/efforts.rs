@@ -9,7 +9,7 @@ use super::PhysicsJoint;
 use super::effort_term::JointActuation;
 use super::forward_kinematics;
 use super::integration::{REST_DISPLACEMENT, TreeIntegration, TreeSolver};
-use super::joint_state::{JointKinematics, JointReading, is_untouched};
+use super::joint_state::{JointKinematics, JointReading, is_contact_free};
 use super::tree::KinematicTree;
 use super::tree_step::TreeStep;
 use super::{ExternalWrench, JointLoad, JointResistance, LinkState};
@@ -158,7 +158,7 @@ pub(crate) fn correct_tree_positions(
     for (going, now) in course.iter().zip(&standing.readings) {
         joint_coordinates[going.joint] = now.coordinate();
     }
-    let free = |going: &PredictedJoint| is_untouched(engine, &joints[going.joint]);
+    let free = |going: &PredictedJoint| is_contact_free(engine, &joints[going.joint]);
     let untouched = || course.iter().all(free);
     let pairs = before.iter().zip(&standing.readings);
     let struck = || {

@@ -8,7 +8,7 @@
 //! E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration (2006), II.1.1 and XI.3: the midpoint rule, and the
 //! energy of symmetric methods.
 
-use super::base_contacts::{self, BaseResponse, ReducedProblem, SupportState};
+use super::base_contacts::{self, BaseResponse, ReducedProblem, SupportContactState};
 use super::chain::{FreeJointChain, LawWrenchEvaluator};
 use super::convex_solver::{EffortProblem, EffortTerm, SymmetricMatrix};
 use super::effort_term::JointDof;
@@ -202,7 +202,7 @@ impl TreeSolver<'_> {
         let loads = motion.loads();
         let weights = motion.weight_support_efforts(&loads);
         let bare = motion.joint_space_inertia();
-        let mut holds = vec![SupportState::Sticking; motion.supports.len()];
+        let mut holds = vec![SupportContactState::Sticking; motion.supports.len()];
         let mut round = 0;
         loop {
             let reduced = ReducedProblem::of(motion, &loads, now, &holds, part_s);
@@ -348,7 +348,7 @@ impl TreeSolver<'_> {
         let damps = (resistance.damping > 0.0).then(|| freedom.damping(resistance.damping.into()));
         let rubs = resistance.friction > 0.0;
         let rubs = rubs.then(|| freedom.friction(resistance.friction.into()));
-        let springs = resistance.elastic.as_ref().map(|e| freedom.elastic(e));
+        let springs = resistance.elastic.as_ref().map(|e| freedom.slip_spring(e));
         let place = self.tree.joints[self.free[freedom.index]];
         let pulls = self.drivers.actuations[place].as_ref();
         let pulls = pulls.map(|pull| freedom.actuation(pull));

@@ -51,7 +51,7 @@ pub(crate) fn read_joint(
 
 /// Returns the coordinates from which physics goes on at a joint with the coordinates `last_known`: the same, where bodies
 /// differ from them by no more than their rounding.
-pub(crate) fn continued_coordinate(
+pub(crate) fn coordinates_at_step_start(
     engine: &RapierWorld,
     joint: &PhysicsJoint,
     last_known: JointKinematics,
@@ -134,7 +134,7 @@ impl JointReading {
     /// not known.
     pub(super) fn at_step_end(&self, engine: &RapierWorld, joint: &PhysicsJoint) -> Self {
         let (count, substep_s) = substeps(engine);
-        let turns_alone = is_untouched(engine, joint);
+        let turns_alone = is_contact_free(engine, joint);
         Self::measure_with(engine, joint, |now, axis| {
             let way = self.step_displacement(engine, now.velocity);
             let [child, parent] = [0, 1].map(|k| {
@@ -206,7 +206,7 @@ impl JointReading {
 }
 
 /// Returns whether a joint's body moves freely and nothing pressed on it in the last step.
-pub(super) fn is_untouched(engine: &RapierWorld, joint: &PhysicsJoint) -> bool {
+pub(super) fn is_contact_free(engine: &RapierWorld, joint: &PhysicsJoint) -> bool {
     let Some(body) = engine.bodies.get(joint.child_handle) else {
         return false;
     };

@@ -31,7 +31,7 @@ pub(crate) use efforts::{
 };
 pub(crate) use forward_kinematics::{ImposedJointState, matches_bodies, place_tree};
 pub(crate) use impulse_dynamics::{ImpulseDynamics, ImpulsePoint};
-pub(crate) use joint_state::{JointKinematics, continued_coordinate, read_joint};
+pub(crate) use joint_state::{JointKinematics, coordinates_at_step_start, read_joint};
 pub(crate) use latch::{closed_tolerance, is_at_closed_position, latch, release};
 pub(crate) use link_law::{ExternalWrench, LinkLaw, LinkState};
 pub(crate) use motor_law::{MotorLaw, MotorState, StatefulLaw, motor_command};

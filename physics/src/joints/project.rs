@@ -34,7 +34,7 @@ impl TreeStep {
         ends: &[Option<f64>],
         joint_coordinates: &mut [JointKinematics],
     ) {
-        self.chain.follow_root(engine, tree);
+        self.chain.read_root_motion(engine, tree);
         let (positions, velocities) = (self.positions(), self.velocities());
         let joints = self.joints(tree, joints);
         let motion = self.chain.dynamics_at(&positions, &velocities, None);

@@ -3,7 +3,7 @@
 use crate::body::BodyHandle;
 use crate::contact::{ColliderMetadata, ContactTable};
 use crate::engine::RapierWorld;
-use crate::model::BodyPlan;
+use crate::model::BodyDefinition;
 use dwell_scene::House;
 use rapier3d::dynamics::RigidBody;
 use std::fmt::Debug;
@@ -22,7 +22,7 @@ pub(crate) struct LawContext<'a> {
     pub(crate) engine: &'a mut RapierWorld,
     /// By the index of the body's plan in the model.
     pub(crate) bodies: &'a [BodyHandle],
-    pub(crate) plans: &'a [BodyPlan],
+    pub(crate) plans: &'a [BodyDefinition],
     /// Free bodies that are roots of trees and react to their joints: laws exert wrenches on them as on links, through
     /// [`LinkLaw`](crate::joints::LinkLaw).
     pub(crate) floating_roots: &'a [u32],

@@ -1,7 +1,7 @@
 //! The bodies that a law's target names.
 
 use crate::error::PhysicsError;
-use crate::model::{BodyPlan, PhysicsModel};
+use crate::model::{BodyDefinition, PhysicsModel};
 use dwell_scene::LawValues;
 use dwell_scene::law::is_part_named;
 
@@ -10,16 +10,16 @@ use dwell_scene::law::is_part_named;
 pub(super) fn moving_bodies<'a>(
     values: LawValues<'_>,
     model: &'a PhysicsModel,
-) -> Result<Vec<(u32, &'a BodyPlan)>, PhysicsError> {
+) -> Result<Vec<(u32, &'a BodyDefinition)>, PhysicsError> {
     let house = &model.house;
-    let object = |plan: &BodyPlan| house.objects[plan.object].name.as_str();
-    let named = |plan: &BodyPlan, name: &str| {
+    let object = |plan: &BodyDefinition| house.objects[plan.object].name.as_str();
+    let named = |plan: &BodyDefinition, name: &str| {
         let mut parts = plan.parts.iter();
         object(plan) == name || parts.any(|(part, _)| is_part_named(house, *part, name))
     };
     let target = values.spec.target.as_deref();
     let bodies = model.bodies.iter().enumerate();
-    let found: Vec<(u32, &BodyPlan)> = bodies
+    let found: Vec<(u32, &BodyDefinition)> = bodies
         .filter(|(_, plan)| target.is_none_or(|name| named(plan, name)))
         .map(|(index, plan)| (index as u32, plan))
         .collect();

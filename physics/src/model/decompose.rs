@@ -28,7 +28,7 @@ pub(super) fn convex_pieces(mesh: &Mesh, part_from_mesh: &Affine3A) -> Vec<Place
         .iter()
         .map(|p| part_from_mesh.transform_point3(*p))
         .collect();
-    let Some(whole) = shapes::hull(&points) else {
+    let Some(whole) = shapes::convex_hull(&points) else {
         return Vec::new();
     };
     let hull_m3 = f64::from(whole.shape.mass_properties(1.0).mass());
@@ -51,7 +51,7 @@ pub(super) fn convex_pieces(mesh: &Mesh, part_from_mesh: &Affine3A) -> Vec<Place
     let corners = decomposed.compute_primitive_intersections(&points, &mesh.triangles);
     let pieces: Vec<PlacedShape> = corners
         .iter()
-        .filter_map(|corners| shapes::hull(corners))
+        .filter_map(|corners| shapes::convex_hull(corners))
         .collect();
     if pieces.is_empty() {
         vec![whole]

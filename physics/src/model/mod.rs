@@ -6,7 +6,7 @@ mod rolling_cylinder;
 pub(crate) mod shapes;
 mod substance;
 
-pub(crate) use plan::{BodyPlan, CollisionPiece, MaterialAssignment, PieceOwner};
+pub(crate) use plan::{BodyDefinition, CollisionPiece, MaterialAssignment, PieceOwner};
 pub(crate) use rolling_cylinder::RollableCylinder;
 
 use dwell_scene::{Aabb, House, IdVec, ObjectId, PartId};
@@ -19,7 +19,7 @@ pub struct PhysicsModel {
     /// Pieces that never move, in world space: structure in order, then fixed parts in order.
     pub(crate) static_pieces: Vec<CollisionPiece>,
     /// Rigid bodies, in the order of their first parts.
-    pub(crate) bodies: Vec<BodyPlan>,
+    pub(crate) bodies: Vec<BodyDefinition>,
     /// The body of each part that moves.
     pub(crate) body_of_part: IdVec<PartId, Option<u32>>,
     /// Moving objects without collision pieces of their own, which have convex pieces of their visible mesh.

@@ -52,7 +52,7 @@ pub(crate) struct CollisionPiece {
 
 /// A rigid body: one or more parts that move together.
 #[derive(Clone)]
-pub(crate) struct BodyPlan {
+pub(crate) struct BodyDefinition {
     pub(crate) object: ObjectId,
     /// The parts with their poses on the body; the body's own frame is that of the first.
     pub(crate) parts: Vec<(PartId, Pose)>,
@@ -166,7 +166,7 @@ fn part_pieces(
                     materials: assign_materials(house, part.mesh, &part.materials, &triangles),
                 });
             }
-        } else if let Some(shaped) = shapes::convex(collider) {
+        } else if let Some(shaped) = shapes::convex_shape(collider) {
             pieces.push(part_collision_piece(house, id, shaped, density));
         }
     }
@@ -277,7 +277,7 @@ pub(super) fn plan(house: Arc<House>) -> PhysicsModel {
             let place = match (joint, root) {
                 (None, Some(body)) => {
                     // Parts without a joint move with the object's first such part.
-                    let plan: &mut BodyPlan = &mut bodies[body];
+                    let plan: &mut BodyDefinition = &mut bodies[body];
                     let frame = house.parts[plan.parts[0].0].world_from_part;
                     let body_from_part = frame.inverse() * part.world_from_part;
                     plan.parts.push((id, body_from_part));
@@ -298,7 +298,7 @@ pub(super) fn plan(house: Arc<House>) -> PhysicsModel {
                 root = Some(bodies.len());
             }
             body_of_part[id] = Some(bodies.len() as u32);
-            bodies.push(BodyPlan {
+            bodies.push(BodyDefinition {
                 object: object_id,
                 parts: vec![(id, Pose::IDENTITY)],
                 pieces,
@@ -372,7 +372,11 @@ fn structure_pieces(house: &House, meshes: &mut ShapeCache) -> Vec<CollisionPiec
 }
 
 /// Returns convex pieces of the visible meshes of a body's parts, for a body without collision pieces.
-fn stand_in_pieces(house: &House, meshes: &mut ShapeCache, body: &BodyPlan) -> Vec<CollisionPiece> {
+fn stand_in_pieces(
+    house: &House,
+    meshes: &mut ShapeCache,
+    body: &BodyDefinition,
+) -> Vec<CollisionPiece> {
     let mut pieces = Vec::new();
     for (id, body_from_part) in &body.parts {
         let part = &house.parts[*id];
@@ -410,7 +414,7 @@ fn stand_in_pieces(house: &House, meshes: &mut ShapeCache, body: &BodyPlan) -> V
     pieces
 }
 
-fn bounds(house: &House, statics: &[CollisionPiece], bodies: &[BodyPlan]) -> Aabb {
+fn bounds(house: &House, statics: &[CollisionPiece], bodies: &[BodyDefinition]) -> Aabb {
     let mut all = Aabb::EMPTY;
     for piece in statics {
         all = all.union(&shapes::bounds(&piece.shape, &piece.pose));
@@ -447,7 +451,7 @@ impl PieceOwner {
     }
 }
 
-impl BodyPlan {
+impl BodyDefinition {
     /// Returns the first part, whose frame is the body's.
     pub(crate) fn root(&self) -> PartId {
         self.parts[0].0

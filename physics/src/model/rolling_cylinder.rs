@@ -1,6 +1,6 @@
 //! Cylinders of bodies, which may roll.
 
-use super::{BodyPlan, CollisionPiece};
+use super::{BodyDefinition, CollisionPiece};
 use glam::Vec3;
 use rapier3d::dynamics::RigidBody;
 use rapier3d::geometry::ColliderHandle;
@@ -19,8 +19,8 @@ pub(crate) struct RollableCylinder {
 }
 
 /// Returns all cylinders of bodies, in order.
-pub(crate) fn rolling_cylinders(bodies: &[BodyPlan]) -> Vec<RollableCylinder> {
-    let of_body = |(index, plan): (usize, &BodyPlan)| {
+pub(crate) fn rolling_cylinders(bodies: &[BodyDefinition]) -> Vec<RollableCylinder> {
+    let of_body = |(index, plan): (usize, &BodyDefinition)| {
         let roller = move |(piece, shaped): (usize, &CollisionPiece)| {
             let cylinder = shaped.shape.as_cylinder()?;
             Some(RollableCylinder {
@@ -38,7 +38,7 @@ pub(crate) fn rolling_cylinders(bodies: &[BodyPlan]) -> Vec<RollableCylinder> {
 
 impl RollableCylinder {
     /// Returns whether it turns about its axis.
-    pub(crate) fn rolls(&self, body: &RigidBody) -> bool {
+    pub(crate) fn is_rolling(&self, body: &RigidBody) -> bool {
         let axis = body.position().rotation * self.axis_in_body;
         (body.angvel().dot(axis) * self.radius_m).abs() > MIN_ROLLING_M_S
     }

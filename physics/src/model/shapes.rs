@@ -32,7 +32,7 @@ impl PlacedShape {
 }
 
 /// Returns the shape of a convex piece; `None` for [`Collider::ExactMesh`] and for pieces without extent.
-pub(crate) fn convex(piece: &Collider) -> Option<PlacedShape> {
+pub(crate) fn convex_shape(piece: &Collider) -> Option<PlacedShape> {
     match piece {
         Collider::Cuboid {
             part_from_box,
@@ -67,13 +67,13 @@ pub(crate) fn convex(piece: &Collider) -> Option<PlacedShape> {
                 PlacedShape::convex(shape, to_rapier(part_from_cylinder))
             })
         }
-        Collider::Hull { points } => hull(points),
+        Collider::Hull { points } => convex_hull(points),
         Collider::ExactMesh => None,
     }
 }
 
 /// Returns the convex hull of points, or their box where they span no volume; `None` without a finite point.
-pub(crate) fn hull(points: &[Vec3]) -> Option<PlacedShape> {
+pub(crate) fn convex_hull(points: &[Vec3]) -> Option<PlacedShape> {
     let bounds = Aabb::from_points(points.iter().copied());
     if bounds.is_empty() {
         return None;
@@ -193,7 +193,7 @@ mod tests {
     #[test]
     fn a_hull_of_a_box_has_its_volume_and_a_sheet_becomes_a_thin_box() {
         let corners = Aabb::new(Vec3::ZERO, Vec3::new(1.0, 2.0, 0.5)).corners();
-        let shaped = hull(&corners).unwrap();
+        let shaped = convex_hull(&corners).unwrap();
         assert!((shaped.shape.mass_properties(1.0).mass() - 1.0).abs() < 1e-5);
         let sheet = [
             Vec3::ZERO,
@@ -201,8 +201,8 @@ mod tests {
             Vec3::new(1.0, 1.0, 1.0),
             Vec3::new(0.0, 1.0, 1.0),
         ];
-        assert!(hull(&sheet).unwrap().shape.as_cuboid().is_some());
-        assert!(hull(&[Vec3::splat(f32::NAN)]).is_none());
+        assert!(convex_hull(&sheet).unwrap().shape.as_cuboid().is_some());
+        assert!(convex_hull(&[Vec3::splat(f32::NAN)]).is_none());
     }
 
     #[test]
@@ -210,7 +210,11 @@ mod tests {
         // Points on a unit sphere: the kept hull has at least 90 % of 4/3 pi.
         let mut stream = dwell_scene::random::RandomKey::root(1).stream();
         let points: Vec<Vec3> = (0..5000).map(|_| stream.direction()).collect();
-        let volume = hull(&points).unwrap().shape.mass_properties(1.0).mass();
+        let volume = convex_hull(&points)
+            .unwrap()
+            .shape
+            .mass_properties(1.0)
+            .mass();
         assert!(volume > 0.9 * 4.0 / 3.0 * std::f32::consts::PI, "{volume}");
     }
 

@@ -1,11 +1,11 @@
 //! Collision exclusions of joints' leaves.
 
 use super::overlap::penetration_depth;
-use super::{CLEARANCE_M, StartResolver};
+use super::{CLEARANCE_M, PenetrationResolver};
 use crate::contact::{ColliderMetadata, CollisionExclusions, ContactEntity, entry_index};
 use crate::error::PhysicsError;
 use crate::limits;
-use crate::model::{BodyPlan, PhysicsModel, PieceOwner, shapes};
+use crate::model::{BodyDefinition, PhysicsModel, PieceOwner, shapes};
 use crate::report::{PassThroughJoint, StartReport};
 use dwell_scene::interrupt;
 use dwell_scene::{Mobility, ObjectId};
@@ -16,7 +16,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Distance from a leaf within which a thing may be one that it passes through, m.
 const LEAF_MARGIN_M: f32 = 0.01;
 
-impl StartResolver<'_> {
+impl PenetrationResolver<'_> {
     /// Returns the collision exclusions of joints' leaves: their own object, and the things that they overlap at the start.
     /// A robot's links have fewer: the links that they are jointed to, and the things that they are inside of at the start.
     ///
@@ -116,11 +116,11 @@ impl StartResolver<'_> {
     }
 
     /// Returns whether a body's object has a free root.
-    fn is_movable(&self, plan: &BodyPlan) -> bool {
+    fn is_movable(&self, plan: &BodyDefinition) -> bool {
         self.model.house.objects[plan.object].mobility == Mobility::Movable
     }
 
-    fn same_object(&self, entry: &ColliderMetadata, plan: &BodyPlan) -> bool {
+    fn same_object(&self, entry: &ColliderMetadata, plan: &BodyDefinition) -> bool {
         match entry.contact_entity {
             Some(ContactEntity::Part(part)) => self.model.house.parts[part].object == plan.object,
             _ => false,
@@ -190,7 +190,7 @@ impl JointedObjectPieces {
     clippy::option_option,
     reason = "hanging on nothing is not hanging on what stands"
 )]
-fn parent(model: &PhysicsModel, plan: &BodyPlan) -> Option<Option<u32>> {
+fn parent(model: &PhysicsModel, plan: &BodyDefinition) -> Option<Option<u32>> {
     let part = model.house.joints[plan.joint?].parent;
     Some(part.and_then(|part| model.body_of_part[part]))
 }

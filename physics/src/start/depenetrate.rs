@@ -2,11 +2,11 @@
 
 use super::overlap::Penetration;
 use super::placed_bodies::{PlacedBody, PlacedBodyIndex};
-use super::{CLEARANCE_M, ResolvedBody, StartResolver};
+use super::{CLEARANCE_M, PenetrationResolver, ResolvedBody};
 use crate::body::BodyStatus;
 use crate::contact::entry_index;
 use crate::convert::from_rapier;
-use crate::model::{BodyPlan, PieceOwner};
+use crate::model::{BodyDefinition, PieceOwner};
 use dwell_scene::math::sin_cos;
 use glam::Vec3;
 use rapier3d::geometry::{Collider, Ray};
@@ -26,12 +26,12 @@ const MOST_PUSHES_BESIDE: usize = 3;
 /// Depth of the search for a floor below, m.
 const FLOOR_M: f32 = 100.0;
 
-impl StartResolver<'_> {
+impl PenetrationResolver<'_> {
     /// Returns a place near `start` where a body overlaps nothing, on the same side of walls, floors and ceilings; `None`
     /// when there is none within the bound.
     pub(super) fn free_pose_near(
         &self,
-        plan: &BodyPlan,
+        plan: &BodyDefinition,
         start: RapierPose,
         placed: &PlacedBodyIndex,
     ) -> Option<RapierPose> {
@@ -46,7 +46,7 @@ impl StartResolver<'_> {
     /// Lifts a body out of something that it has sunk into by more than half, where no floor is below it.
     pub(super) fn lift_out(
         &self,
-        plan: &BodyPlan,
+        plan: &BodyDefinition,
         start: RapierPose,
         placed: &PlacedBodyIndex,
     ) -> Option<RapierPose> {
@@ -63,7 +63,7 @@ impl StartResolver<'_> {
 
     fn lift(
         &self,
-        plan: &BodyPlan,
+        plan: &BodyDefinition,
         start: RapierPose,
         placed: &PlacedBodyIndex,
     ) -> Option<RapierPose> {
@@ -78,7 +78,7 @@ impl StartResolver<'_> {
     /// Pushes a body to the side or up, or down from under something, but never through a wall, floor or ceiling.
     fn push_up_or_down(
         &self,
-        plan: &BodyPlan,
+        plan: &BodyDefinition,
         start: RapierPose,
         placed: &PlacedBodyIndex,
         limits: (f32, usize),
@@ -98,7 +98,7 @@ impl StartResolver<'_> {
     /// up or down. `limits`: the distance, m, and the number.
     fn push(
         &self,
-        plan: &BodyPlan,
+        plan: &BodyDefinition,
         start: RapierPose,
         placed: &PlacedBodyIndex,
         (way, (bound, most)): (Vec3, (f32, usize)),
@@ -126,19 +126,24 @@ impl StartResolver<'_> {
         None
     }
 
-    fn is_clear(&self, plan: &BodyPlan, place: &RapierPose, placed: &PlacedBodyIndex) -> bool {
+    fn is_clear(
+        &self,
+        plan: &BodyDefinition,
+        place: &RapierPose,
+        placed: &PlacedBodyIndex,
+    ) -> bool {
         let overlap = self.overlap(plan, place, placed);
         overlap.is_none_or(|overlap| !self.exceeds_tolerance(&overlap))
             && from_rapier(place).is_valid()
     }
 
     /// Returns whether a body's middle moves straight to another place through no wall, floor or ceiling.
-    fn is_reached(&self, plan: &BodyPlan, start: &RapierPose, place: &RapierPose) -> bool {
+    fn is_reached(&self, plan: &BodyDefinition, start: &RapierPose, place: &RapierPose) -> bool {
         let way = place.translation - start.translation;
         !self.is_barred(plan.bounds(start).center(), way)
     }
 
-    fn has_floor(&self, plan: &BodyPlan, place: &RapierPose) -> bool {
+    fn has_floor(&self, plan: &BodyDefinition, place: &RapierPose) -> bool {
         self.is_barred(plan.bounds(place).center(), Vec3::NEG_Y * FLOOR_M)
     }
 
@@ -215,7 +220,7 @@ impl StartResolver<'_> {
     /// Returns the nearest place beside a body where it overlaps nothing; never behind a wall.
     pub(super) fn nearest_free_pose(
         &self,
-        plan: &BodyPlan,
+        plan: &BodyDefinition,
         start: RapierPose,
         placed: &PlacedBodyIndex,
     ) -> Option<RapierPose> {

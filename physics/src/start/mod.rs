@@ -9,7 +9,7 @@ use crate::body::{BodyHandle, BodyStatus};
 use crate::config::ResolvedConfig;
 use crate::contact::ColliderMetadata;
 use crate::engine::RapierWorld;
-use crate::model::{BodyPlan, PhysicsModel};
+use crate::model::{BodyDefinition, PhysicsModel};
 use crate::report::{FrozenObject, MovedObject, StartReport};
 use dwell_scene::ObjectId;
 use overlap::Penetration;
@@ -24,7 +24,7 @@ const CLEARANCE_M: f32 = 5e-4;
 /// centimetres, and each try tests all of them.
 const MOST_OVERLAPPED: usize = 32;
 
-pub(crate) struct StartResolver<'a> {
+pub(crate) struct PenetrationResolver<'a> {
     pub(crate) engine: &'a RapierWorld,
     pub(crate) model: &'a PhysicsModel,
     pub(crate) entries: &'a [ColliderMetadata],
@@ -39,7 +39,7 @@ pub(crate) struct ResolvedBody {
     pub(crate) status: BodyStatus,
 }
 
-impl StartResolver<'_> {
+impl PenetrationResolver<'_> {
     fn body_pose(&self, body: usize) -> RapierPose {
         let handle = self.bodies[body].handle;
         self.engine
@@ -107,7 +107,12 @@ impl StartResolver<'_> {
     }
 
     /// Returns whether a body overlaps too many others to be freed.
-    fn is_crowded(&self, plan: &BodyPlan, place: &RapierPose, placed: &PlacedBodyIndex) -> bool {
+    fn is_crowded(
+        &self,
+        plan: &BodyDefinition,
+        place: &RapierPose,
+        placed: &PlacedBodyIndex,
+    ) -> bool {
         let near = placed.intersecting(&plan.bounds(place));
         let found = near
             .iter()

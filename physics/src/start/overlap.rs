@@ -1,9 +1,9 @@
 //! Penetration depths.
 
-use super::StartResolver;
+use super::PenetrationResolver;
 use super::placed_bodies::{PlacedBody, PlacedBodyIndex};
 use crate::contact::{ContactEntity, entry_index};
-use crate::model::{BodyPlan, CollisionPiece, PieceOwner, shapes};
+use crate::model::{BodyDefinition, CollisionPiece, PieceOwner, shapes};
 use dwell_scene::interrupt;
 use glam::Vec3;
 use rapier3d::math::Pose as RapierPose;
@@ -19,11 +19,11 @@ pub(super) struct Penetration {
     pub(super) other: PieceOwner,
 }
 
-impl StartResolver<'_> {
+impl PenetrationResolver<'_> {
     /// Returns the deepest overlap of a body under a pose with static pieces and with placed bodies.
     pub(super) fn overlap(
         &self,
-        plan: &BodyPlan,
+        plan: &BodyDefinition,
         place: &RapierPose,
         placed: &PlacedBodyIndex,
     ) -> Option<Penetration> {
@@ -64,7 +64,7 @@ impl StartResolver<'_> {
     /// Returns the deepest overlap of a body under a pose with another one whose box it intersects.
     pub(super) fn overlap_of_two(
         &self,
-        plan: &BodyPlan,
+        plan: &BodyDefinition,
         place: &RapierPose,
         other: &PlacedBody,
     ) -> Option<Penetration> {

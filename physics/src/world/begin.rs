@@ -7,7 +7,7 @@ use crate::joints;
 use crate::limits;
 use crate::model::PhysicsModel;
 use crate::report::StartReport;
-use crate::start::StartResolver;
+use crate::start::PenetrationResolver;
 use dwell_scene::State;
 use rapier3d::dynamics::RigidBodyHandle;
 
@@ -41,7 +41,7 @@ impl PhysicsWorld {
         )?;
         self.articulation.actuations = vec![None; self.articulation.joints.len()];
         self.dynamics.flush();
-        let start = StartResolver {
+        let start = PenetrationResolver {
             engine: &self.dynamics.engine,
             model: &model,
             entries: &self.dynamics.entries,

@@ -201,13 +201,13 @@ impl PhysicsWorld {
     /// Physics moves joints by their own coordinates. It goes on from those of the state where bodies agree with them up to
     /// the rounding of their poses and velocities, which are f32 in the world (some 5e-7 m at 5 m from the origin, 2e-6 m/s
     /// at 20 m/s, a few times over), and from the bodies' where they do not.
-    pub fn measure_joint(&self, state: &State, joint: JointId) -> Option<(f32, f32)> {
+    pub fn joint_kinematics(&self, state: &State, joint: JointId) -> Option<(f32, f32)> {
         let place = self
             .articulation
             .joints
             .binary_search_by_key(&joint, |other| other.id);
         let found = &self.articulation.joints[place.ok()?];
-        let now = joints::continued_coordinate(
+        let now = joints::coordinates_at_step_start(
             &self.dynamics.engine,
             found,
             joint_from_state(state, joint),

@@ -15,7 +15,7 @@ pub use agent_placement::AgentPlacement;
 pub use set_state::{BodyState, JointState};
 
 use crate::actions::{ActionContext, HandAction, HandContext, OngoingPush, Target};
-use crate::agents::{AgentTouch, Agents};
+use crate::agents::{AgentContacts, Agents};
 use crate::articulation::WorldJoints;
 use crate::body::{BodyHandle, BodyStatus};
 use crate::config::PhysicsConfig;
@@ -231,7 +231,7 @@ impl PhysicsWorld {
     }
 
     /// Returns what an agent's body and the object in its hand touch where `state` has them; nothing for an agent that does not exist.
-    pub fn touch(&self, state: &State, agent: AgentId) -> AgentTouch {
+    pub fn touch(&self, state: &State, agent: AgentId) -> AgentContacts {
         self.agents.touch(&self.dynamics, state, agent)
     }
 
@@ -273,7 +273,7 @@ impl PhysicsWorld {
             let mut found = entry.filter(|entry| entry.contact_entity == Some(contact_entity));
             found.next().map(|entry| entry.surface.class(0))
         };
-        Some(self.dynamics.table.pair(class(a)?, class(b)?))
+        Some(self.dynamics.table.pair_contact(class(a)?, class(b)?))
     }
 
     /// Simulated time since the world was made, s.

@@ -206,7 +206,9 @@ impl PhysicsWorld {
         self.dynamics.model.rolling_cylinders.iter().any(|roller| {
             let body = self.dynamics.bodies.get(roller.body());
             let body = body.and_then(|body| self.dynamics.engine.bodies.get(body.handle));
-            body.is_some_and(|body| roller.collider(body) == Some(collider) && roller.rolls(body))
+            body.is_some_and(|body| {
+                roller.collider(body) == Some(collider) && roller.is_rolling(body)
+            })
         })
     }
 
@@ -222,7 +224,7 @@ impl PhysicsWorld {
         else {
             return false;
         };
-        let mut rule = values.self_pair(&self.dynamics.entries[entry]);
+        let mut rule = values.self_contact_and_hook(&self.dynamics.entries[entry]);
         rule.1 |= self.is_rollable_cylinder(handle);
         let same_rule = collider.friction() == rule.0.friction
             && collider.restitution() == rule.0.restitution

@@ -240,7 +240,7 @@ impl PhysicsWorld {
     }
 
     /// Returns the motion of a free body as physics has it, by one of its parts; `None` for a body that does not move.
-    pub fn measure_body(&self, part: PartId) -> Option<BodyState> {
+    pub fn body_state(&self, part: PartId) -> Option<BodyState> {
         let index = (*self.dynamics.model.body_of_part.get(part)?)? as usize;
         let rigid = self
             .dynamics

@@ -244,7 +244,7 @@ impl PhysicsWorld {
             agents.push(agents::insert(engine, values, entries, id, agent, force));
         }
         let (engine, handles, entries) = (&mut built.engine, &built.bodies, &built.entries);
-        let asked = |entry: &ColliderMetadata| values.self_pair(entry).1;
+        let asked = |entry: &ColliderMetadata| values.self_contact_and_hook(entry).1;
         rolling::restore_rolling_hooks(
             &model.rolling_cylinders,
             (engine, handles, entries),

@@ -40,11 +40,11 @@ impl PhysicsWorld {
         self.notices.clear();
         let (tick_before, first_event) = (self.dynamics.tick, events.len());
         let slept = self.dynamics.engine.islands.num_active_bodies() == 0;
-        self.articulation.read(state);
+        self.articulation.read_coordinates(state);
         self.hands
             .drop_too_heavy(&mut self.dynamics, state, &mut self.notices);
         self.articulation
-            .drive(&mut self.dynamics, state, &mut self.notices);
+            .set_actuation(&mut self.dynamics, state, &mut self.notices);
         let mut ways = MovementRecord::all(state);
         let mut placed = false;
         for substep in 0..self.dynamics.settings.steps_per_control {

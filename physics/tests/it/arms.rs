@@ -243,7 +243,7 @@ fn any_pose_and_velocity_reads_back() {
         // The values of physics itself, not those written.
         for k in 0..6 {
             let id = JointId(k as u32);
-            let (there, speed) = run.world.measure_joint(&run.state, id).unwrap();
+            let (there, speed) = run.world.joint_kinematics(&run.state, id).unwrap();
             worst_q = worst_q.max((there - q[k]).abs());
             worst_v = worst_v.max((speed - v[k]).abs());
             let kept = (run.state.joint_position[id], run.state.joint_velocity[id]);

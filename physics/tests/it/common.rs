@@ -381,6 +381,6 @@ pub(crate) fn gravity() -> f32 {
 
 /// The pair's values, straight from the library.
 pub(crate) fn pair(a: &str, b: &str) -> (f32, f32) {
-    let pair = library().pair(a, b);
+    let pair = library().pair_contact(a, b);
     (pair.friction, pair.restitution)
 }

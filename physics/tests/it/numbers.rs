@@ -157,7 +157,7 @@ fn a_dumbbell_with_one_heavy_end_has_its_mass_there() {
     )
     .unwrap();
     run.world.adopt_state(&mut run.state).unwrap();
-    let now = run.world.measure_body(root).unwrap().velocity;
+    let now = run.world.body_state(root).unwrap().velocity;
     assert!(
         (now.linear - before.linear).length() < 1e-5,
         "{now:?} {before:?}"

@@ -78,7 +78,7 @@ fn any_pose_and_velocity_of_a_free_body_reads_back() {
         worst(&mut by_state, apart(&told(&run, part), &set));
         worst(
             &mut by_engine,
-            apart(&run.world.measure_body(part).unwrap(), &set),
+            apart(&run.world.body_state(part).unwrap(), &set),
         );
     }
     println!("state {by_state:?}, engine {by_engine:?}");
@@ -111,7 +111,7 @@ fn any_pose_and_velocity_of_a_robot_that_stands_free_reads_back() {
         run.world.set_bodies(&mut run.state, &[set]).unwrap();
         worst(&mut by_state, apart(&told(&run, root), &set));
         for joint in &joints {
-            let (q, v) = run.world.measure_joint(&run.state, joint.joint).unwrap();
+            let (q, v) = run.world.joint_kinematics(&run.state, joint.joint).unwrap();
             joints_off[0] = joints_off[0].max((q - joint.position).abs());
             joints_off[1] = joints_off[1].max((v - joint.velocity).abs());
             let kept = (
@@ -377,7 +377,7 @@ fn limits_of_a_joint_change_at_run_time() {
         run.state.joint_velocity[joint],
     );
     assert_eq!(there, (0.5, 0.0));
-    let (measured, _) = run.world.measure_joint(&run.state, joint).unwrap();
+    let (measured, _) = run.world.joint_kinematics(&run.state, joint).unwrap();
     assert!((measured - 0.5).abs() < 1e-6);
     assert!(stops_at(swing(&mut run), 0.5));
     assert!(set(&mut run, "lower", 0.6).unwrap_err().contains("to 0.5"));

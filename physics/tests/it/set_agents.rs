@@ -178,7 +178,7 @@ fn any_pose_and_velocity_of_a_urdf_robot_reads_back() {
         run.world.set_bodies(&mut run.state, &[body]).unwrap();
         assert_eq!(run.state.part_pose[root], body.pose, "{round}");
         assert_eq!(run.state.part_velocity[root], body.velocity, "{round}");
-        let there = run.world.measure_body(root).unwrap();
+        let there = run.world.body_state(root).unwrap();
         for (worst, found) in by_engine.iter_mut().zip([
             (there.pose.position - body.pose.position)
                 .abs()
@@ -199,7 +199,7 @@ fn any_pose_and_velocity_of_a_urdf_robot_reads_back() {
                 run.state.joint_velocity[set.joint],
             );
             assert_eq!(kept, (set.position, set.velocity), "{round}");
-            let (q, v) = run.world.measure_joint(&run.state, set.joint).unwrap();
+            let (q, v) = run.world.joint_kinematics(&run.state, set.joint).unwrap();
             joints_off[0] = joints_off[0].max((q - set.position).abs());
             joints_off[1] = joints_off[1].max((v - set.velocity).abs());
             let [q, v] = by_parts(&run, set.joint);
@@ -281,7 +281,7 @@ fn a_slide_goes_on_from_the_very_numbers_it_is_put_to() {
         };
         run.world.set_joints(&mut run.state, &[set]).unwrap();
         assert_eq!(
-            run.world.measure_joint(&run.state, joint),
+            run.world.joint_kinematics(&run.state, joint),
             Some((set.position, set.velocity))
         );
         let leaf = run.house.joints[joint].child;

@@ -4,7 +4,7 @@ use crate::category::categories;
 use crate::check::QuestionAnswer;
 use crate::color::ColorVocabulary;
 use crate::form::Noun;
-use crate::instruct::is_sought;
+use crate::instruct::is_search_target;
 use crate::room_kind::room_kinds;
 use crate::scene::{SemanticScene, Term};
 use crate::truth::Truth;
@@ -23,7 +23,10 @@ pub fn answers() -> &'static [String] {
         let rooms = rooms
             .filter(|row| named(row.name))
             .map(|row| row.singular.to_owned());
-        let things = categories().rows().iter().filter(|row| is_sought(row));
+        let things = categories()
+            .rows()
+            .iter()
+            .filter(|row| is_search_target(row));
         let all = ["yes", "no"]
             .map(str::to_owned)
             .into_iter()
@@ -43,12 +46,15 @@ pub fn answers() -> &'static [String] {
 }
 
 /// The number of an answer in [`answers`].
-pub fn answer_number(word: &str) -> Option<usize> {
+pub fn answer_index(word: &str) -> Option<usize> {
     answers().iter().position(|answer| answer == word)
 }
 
 /// An answer of the checker as one of [`answers`]; `None` where it is undecided, has several words, or other ones.
-pub(super) fn spoken(scene: &SemanticScene<'_>, answer: &QuestionAnswer) -> Option<&'static str> {
+pub(super) fn answer_word(
+    scene: &SemanticScene<'_>,
+    answer: &QuestionAnswer,
+) -> Option<&'static str> {
     match answer {
         QuestionAnswer::Truth(verdict) => match verdict.truth {
             Truth::True => listed("yes"),
@@ -71,7 +77,7 @@ pub(super) fn spoken(scene: &SemanticScene<'_>, answer: &QuestionAnswer) -> Opti
 }
 
 fn listed(word: &str) -> Option<&'static str> {
-    Some(answers().get(answer_number(word)?)?.as_str())
+    Some(answers().get(answer_index(word)?)?.as_str())
 }
 
 /// What a thing or room is called, where that is the noun of its kind.
@@ -79,7 +85,7 @@ pub(super) fn noun(scene: &SemanticScene<'_>, term: Term) -> Option<&'static str
     match term {
         Term::Object(object) => {
             let facts = scene.facts(object);
-            let row = facts.category.filter(|row| is_sought(row))?;
+            let row = facts.category.filter(|row| is_search_target(row))?;
             (facts.noun == row.singular).then_some(())?;
             listed(row.singular)
         }
@@ -102,7 +108,7 @@ mod tests {
         let unique: BTreeSet<&String> = answers().iter().collect();
         assert_eq!(unique.len(), answers().len());
         for (number, word) in answers().iter().enumerate() {
-            assert_eq!(answer_number(word), Some(number));
+            assert_eq!(answer_index(word), Some(number));
         }
         // The first ones never change their numbers.
         let first = [
@@ -110,8 +116,8 @@ mod tests {
         ];
         assert_eq!(answers()[..first.len()], first);
         for word in ["kitchen", "living room", "chair", "coffee table", "beige"] {
-            assert!(answer_number(word).is_some(), "{word}");
+            assert!(answer_index(word).is_some(), "{word}");
         }
-        assert_eq!(answer_number("wall"), None);
+        assert_eq!(answer_index("wall"), None);
     }
 }

@@ -1,14 +1,14 @@
 //! "What color is the sofa?", "What color is the chair in the kitchen?"
 
-use super::asker::{Asker, Sight};
+use super::question_generator::{AnswerEvidence, QuestionGenerator};
 use super::{AskedQuestion, QuestionKind};
 use crate::form::{AttributeKind, Description, Modifier, Question};
-use crate::refer::by_properties;
+use crate::refer::property_descriptions;
 use crate::scene::Term;
 use dwell_scene::{ObjectId, RoomId};
 
 fn ask(
-    asker: &Asker<'_>,
+    asker: &QuestionGenerator<'_>,
     kind: QuestionKind,
     name: Description,
     (object, room): (ObjectId, RoomId),
@@ -17,19 +17,21 @@ fn ask(
         kind: AttributeKind::Color,
         of: name.into(),
     };
-    let sight = Sight {
+    let sight = AnswerEvidence {
         seen: vec![object],
         target: Some(object),
         room,
     };
-    asker.ask(kind, question, sight)
+    asker.compose(kind, question, sight)
 }
 
-fn colorless(asker: &Asker<'_>, object: ObjectId) -> Option<Description> {
-    asker.names(object).find(|name| name.colors.is_empty())
+fn colorless(asker: &QuestionGenerator<'_>, object: ObjectId) -> Option<Description> {
+    asker
+        .referring_expressions(object)
+        .find(|name| name.colors.is_empty())
 }
 
-pub(super) fn candidates(asker: &Asker<'_>) -> Vec<AskedQuestion> {
+pub(super) fn candidates(asker: &QuestionGenerator<'_>) -> Vec<AskedQuestion> {
     let things = asker.things.iter();
     things
         .filter_map(|thing| {
@@ -40,20 +42,20 @@ pub(super) fn candidates(asker: &Asker<'_>) -> Vec<AskedQuestion> {
 }
 
 /// Of things that only their room tells apart.
-pub(super) fn candidates_in_rooms(asker: &Asker<'_>) -> Vec<AskedQuestion> {
+pub(super) fn candidates_in_rooms(asker: &QuestionGenerator<'_>) -> Vec<AskedQuestion> {
     let things = asker.things.iter();
     things
         .filter_map(|thing| {
             let (object, room) = *thing;
-            let place = asker.room_name(room)?;
+            let place = asker.room_description(room)?;
             if colorless(asker, object).is_some() {
                 return None;
             }
-            let names = by_properties(asker.scene, object).into_iter();
+            let names = property_descriptions(asker.scene, object).into_iter();
             let names = names.filter(|name| name.colors.is_empty());
             let mut there = names
                 .map(|name| name.with_modifier(Modifier::new("in_room", [place.clone().into()])));
-            let name = there.find(|name| asker.means(name, Term::Object(object)))?;
+            let name = there.find(|name| asker.refers_uniquely_to(name, Term::Object(object)))?;
             ask(asker, QuestionKind::ColorRoom, name, *thing)
         })
         .collect()

@@ -1,6 +1,6 @@
 //! "Is the sofa closer to the table than to the television?"
 
-use super::asker::{Asker, Sight};
+use super::question_generator::{AnswerEvidence, QuestionGenerator};
 use super::{AskedQuestion, QuestionKind};
 use crate::form::{Clause, Description, Question};
 use crate::predicates;
@@ -12,7 +12,7 @@ const MOST: usize = 6;
 /// Least ratio of the distances between the middles of the things, of which nobody is in doubt.
 const LEAST_RATIO: f32 = 1.5;
 
-pub(super) fn candidates(asker: &Asker<'_>) -> Vec<AskedQuestion> {
+pub(super) fn candidates(asker: &QuestionGenerator<'_>) -> Vec<AskedQuestion> {
     let mut found = Vec::new();
     for room in asker.scene.house().rooms.ids() {
         let things = largest_things(asker, room);
@@ -28,20 +28,20 @@ pub(super) fn candidates(asker: &Asker<'_>) -> Vec<AskedQuestion> {
 }
 
 /// The largest things of a room that have a name.
-fn largest_things(asker: &Asker<'_>, room: RoomId) -> Vec<(ObjectId, Description)> {
+fn largest_things(asker: &QuestionGenerator<'_>, room: RoomId) -> Vec<(ObjectId, Description)> {
     let own = asker.things.iter().filter(|(_, own)| *own == room);
     let volume = |object: ObjectId| asker.scene.extent(object).bounds.volume();
     let mut own: Vec<ObjectId> = own.map(|(object, _)| *object).collect();
     own.sort_by(|p, q| volume(*q).total_cmp(&volume(*p)));
     let named = own
         .into_iter()
-        .filter_map(|object| Some((object, asker.names(object).next()?)));
+        .filter_map(|object| Some((object, asker.referring_expressions(object).next()?)));
     named.take(MOST).collect()
 }
 
 /// Asked both ways round, with "yes" and "no" as answers.
 fn ask(
-    asker: &Asker<'_>,
+    asker: &QuestionGenerator<'_>,
     things: [&(ObjectId, Description); 3],
     room: RoomId,
 ) -> Option<AskedQuestion> {
@@ -75,10 +75,10 @@ fn ask(
         predicate: "closer_to".to_owned(),
         arguments,
     });
-    let sight = Sight {
+    let sight = AnswerEvidence {
         seen: vec![first, second, third],
         target: None,
         room,
     };
-    asker.ask(QuestionKind::Comparison, question, sight)
+    asker.compose(QuestionKind::Comparison, question, sight)
 }

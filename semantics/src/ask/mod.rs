@@ -3,7 +3,6 @@
 //! To add a kind: a file here with its candidates, and a line in [`candidates`].
 
 mod answers;
-mod asker;
 mod color;
 mod comparison;
 mod count;
@@ -11,20 +10,21 @@ mod existence;
 mod guessable;
 mod location;
 mod place;
+mod question_generator;
 mod state;
 
-pub use answers::{answer_number, answers};
+pub use answers::{answer_index, answers};
 pub use guessable::is_guessable;
-pub use state::StateToSet;
+pub use state::StateArrangement;
 
-use crate::check::{Checker, Listener};
+use crate::check::{Addressee, Checker};
 use crate::form::{Form, Question};
 use crate::instruct::{self, InstructionGoal, StepCondition};
 use crate::language::Language;
 use crate::scene::SemanticScene;
-use asker::Asker;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{ObjectId, RoomId};
+use question_generator::QuestionGenerator;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -102,14 +102,14 @@ pub struct AskedQuestion {
     /// The room in which the answer is seen.
     pub room: RoomId,
     /// What must be arranged for the answer to be true; `None` where it is true as the scene stands.
-    pub sets: Option<StateToSet>,
+    pub sets: Option<StateArrangement>,
 }
 
 impl AskedQuestion {
     /// Where one stands to answer: near the target and looking at it, as one finds it, or in the room.
     pub fn goal(&self) -> InstructionGoal {
         match self.target {
-            Some(target) => StepCondition::found_goal(target),
+            Some(target) => StepCondition::find_object_goal(target),
             None => InstructionGoal::rooms(vec![self.room]),
         }
     }
@@ -123,15 +123,15 @@ impl AskedQuestion {
 
     /// The answer of a scene, one of [`answers`]; `None` where it has none, or none of these.
     pub fn answer_in(&self, scene: &SemanticScene<'_>) -> Option<&'static str> {
-        let checker = Checker::new(scene, Listener::default());
-        answers::spoken(scene, &checker.answer(&self.question))
+        let checker = Checker::new(scene, Addressee::default());
+        answers::answer_word(scene, &checker.answer(&self.question))
     }
 }
 
 /// Every question of a kind that the scene offers, with one fixed wording each, in order. Left out is what can be answered from the
 /// words alone ([`is_guessable`]).
 pub fn candidates(scene: &SemanticScene<'_>, kind: QuestionKind) -> Vec<AskedQuestion> {
-    let asker = Asker::new(scene);
+    let asker = QuestionGenerator::new(scene);
     match kind {
         QuestionKind::Location => location::candidates(&asker),
         QuestionKind::Color => color::candidates(&asker),

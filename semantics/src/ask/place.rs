@@ -1,6 +1,6 @@
 //! "What is on the desk?", "What is next to the sofa?"
 
-use super::asker::{Asker, Sight};
+use super::question_generator::{AnswerEvidence, QuestionGenerator};
 use super::{AskedQuestion, QuestionKind, answers};
 use crate::form::{Clause, Phrase, Question};
 use crate::predicates;
@@ -10,7 +10,7 @@ use dwell_scene::{ObjectId, RoomId};
 /// Relations that are asked for, each with the one that lists what has it to a thing.
 const RELATIONS: [(&str, &str); 2] = [("on", "supports"), ("next_to", "next_to")];
 
-pub(super) fn candidates(asker: &Asker<'_>) -> Vec<AskedQuestion> {
+pub(super) fn candidates(asker: &QuestionGenerator<'_>) -> Vec<AskedQuestion> {
     let mut found = Vec::new();
     for (landmark, room) in asker.things.iter().copied() {
         for relation in RELATIONS {
@@ -21,7 +21,7 @@ pub(super) fn candidates(asker: &Asker<'_>) -> Vec<AskedQuestion> {
 }
 
 fn ask(
-    asker: &Asker<'_>,
+    asker: &QuestionGenerator<'_>,
     (relation, converse): (&str, &str),
     (landmark, room): (ObjectId, RoomId),
 ) -> Option<AskedQuestion> {
@@ -35,7 +35,7 @@ fn ask(
     if words.any(|other| other != Some(word)) {
         return None;
     }
-    let name = asker.names(landmark).next()?;
+    let name = asker.referring_expressions(landmark).next()?;
     let question = Question::Which {
         kind: None,
         clause: Clause::Holds {
@@ -43,10 +43,10 @@ fn ask(
             arguments: vec![Phrase::Hole, name.into()],
         },
     };
-    let sight = Sight {
+    let sight = AnswerEvidence {
         target: things.first().copied(),
         seen: things,
         room,
     };
-    asker.ask(QuestionKind::Place, question, sight)
+    asker.compose(QuestionKind::Place, question, sight)
 }

@@ -10,7 +10,7 @@ const MAX_NAMED: usize = 4;
 
 /// A definite noun phrase that several things fit: "the chair" where there are two.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Ambiguity {
+pub struct AmbiguousPhrase {
     /// The phrase.
     pub phrase: Phrase,
     /// The things that it fits, ascending; at least two.
@@ -22,8 +22,8 @@ pub struct Ambiguity {
 
 impl Checker<'_> {
     /// Returns the definite noun phrases of a form that several things fit, in the order of the text, each once.
-    pub fn ambiguities(&self, form: &Form) -> Vec<Ambiguity> {
-        let mut found: Vec<Ambiguity> = Vec::new();
+    pub fn ambiguities(&self, form: &Form) -> Vec<AmbiguousPhrase> {
+        let mut found: Vec<AmbiguousPhrase> = Vec::new();
         for phrase in form.phrases() {
             let Phrase::Described(own) = &phrase else {
                 continue;
@@ -34,10 +34,10 @@ impl Checker<'_> {
             {
                 continue;
             }
-            let terms = self.fitting(own);
+            let terms = self.matching_terms(own);
             if terms.len() > 1 {
                 let question = self.which_is_meant(own, &terms);
-                found.push(Ambiguity {
+                found.push(AmbiguousPhrase {
                     phrase,
                     terms,
                     question,

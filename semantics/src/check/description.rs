@@ -8,7 +8,7 @@ use crate::scene::Term;
 use crate::selections;
 use crate::truth::{Truth, UndecidedReason};
 use dwell_scene::StructureKind;
-use dwell_scene::interrupt::PollEvery;
+use dwell_scene::interrupt::CancelPoller;
 use std::rc::Rc;
 
 /// Things between checks for cancellation.
@@ -52,9 +52,9 @@ impl Checker<'_> {
 
     fn compute_extension(&self, description: &Description) -> Extension {
         let mut found = Extension::default();
-        let mut poll = PollEvery::new(THINGS_PER_CHECK);
+        let mut poll = CancelPoller::new(THINGS_PER_CHECK);
         for term in self.things_named(&description.noun) {
-            poll.turn();
+            poll.count_one();
             match self.fits(description, term) {
                 Truth::True => found.fits.push(term),
                 Truth::False => {}

@@ -9,7 +9,7 @@ use dwell_scene::Aabb;
 use glam::Vec3;
 
 /// A distance in the whole numbers that people say, m.
-pub(crate) fn spoken_distance_m(distance_m: f32) -> u32 {
+pub(crate) fn rounded_distance_m(distance_m: f32) -> u32 {
     distance_m.round().max(1.0) as u32
 }
 
@@ -43,7 +43,7 @@ impl Checker<'_> {
     ) -> WitnessedTruth {
         let decide = |distance_m: Option<f32>, terms: &[Term]| {
             let truth = match distance_m {
-                Some(distance_m) => Truth::from(spoken_distance_m(distance_m) == metres),
+                Some(distance_m) => Truth::from(rounded_distance_m(distance_m) == metres),
                 None => Truth::Undecided(UndecidedReason::WrongKind),
             };
             WitnessedTruth::fact("distance", terms, truth)

@@ -17,10 +17,10 @@ mod room;
 mod text;
 mod witness;
 
-pub use ambiguity::Ambiguity;
+pub use ambiguity::AmbiguousPhrase;
 pub use answer::QuestionAnswer;
-pub(crate) use distance::spoken_distance_m;
-pub(crate) use room::spoken_area_m2;
+pub(crate) use distance::rounded_distance_m;
+pub(crate) use room::rounded_area_m2;
 pub use text::{CheckedText, GroundedPhrase};
 pub use witness::Witness;
 
@@ -39,14 +39,14 @@ use witness::WitnessedTruth;
 
 /// The listener of a form: the agent that "you" denotes, and the viewer of left and right.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Listener {
+pub struct Addressee {
     /// The viewer from whom left, right, in front and behind are meant.
     pub viewer: Option<Viewer>,
     /// The agent that "you" denotes.
     pub agent: Option<AgentId>,
 }
 
-impl Listener {
+impl Addressee {
     /// Returns an agent as listener, with its own eyes as viewer.
     pub fn agent(scene: &SemanticScene<'_>, agent: AgentId) -> Self {
         Self {
@@ -68,7 +68,7 @@ pub struct CheckResult {
 /// A checker of forms in one scene for one listener. The extension of each description is computed once.
 pub struct Checker<'a> {
     scene: &'a SemanticScene<'a>,
-    listener: Listener,
+    listener: Addressee,
     extensions: RefCell<BTreeMap<Description, Rc<Extension>>>,
     /// The thing in place of [`Phrase::Hole`], which stands as an argument of a clause, never in a description.
     hole: Cell<Option<Term>>,
@@ -76,7 +76,7 @@ pub struct Checker<'a> {
 
 impl<'a> Checker<'a> {
     /// Returns a checker of a scene.
-    pub fn new(scene: &'a SemanticScene<'a>, listener: Listener) -> Self {
+    pub fn new(scene: &'a SemanticScene<'a>, listener: Addressee) -> Self {
         Self {
             scene,
             listener,
@@ -107,13 +107,13 @@ impl<'a> Checker<'a> {
     }
 
     /// Returns the things that a description fits, regardless of its quantifier, ascending; without those of which it is undecided.
-    pub fn fitting(&self, description: &Description) -> Vec<Term> {
+    pub fn matching_terms(&self, description: &Description) -> Vec<Term> {
         self.extension(description).fits.clone()
     }
 
     /// Returns the one thing that a description certainly denotes, said of what the listener sees where it sees some that fit; `None`
     /// where nothing or several things fit, or may fit.
-    pub fn denotes(&self, description: &Description) -> Option<Term> {
+    pub fn certain_referent(&self, description: &Description) -> Option<Term> {
         let extension = self.extension(description);
         match (&extension.fits[..], extension.fault) {
             ([only], None) if extension.undecided.is_empty() => Some(*only),
@@ -122,13 +122,13 @@ impl<'a> Checker<'a> {
     }
 
     /// The number of things that a description fits or may fit.
-    pub(crate) fn possible(&self, description: &Description) -> usize {
+    pub(crate) fn possible_count(&self, description: &Description) -> usize {
         let extension = self.extension(description);
         extension.fits.len() + extension.undecided.len()
     }
 
     /// The listener.
-    pub fn listener(&self) -> &Listener {
+    pub fn listener(&self) -> &Addressee {
         &self.listener
     }
 

@@ -8,7 +8,7 @@ use crate::scene::Term;
 use crate::truth::{Truth, UndecidedReason};
 
 /// A room's area in the whole numbers that people say, m².
-pub(crate) fn spoken_area_m2(area_m2: f32) -> u32 {
+pub(crate) fn rounded_area_m2(area_m2: f32) -> u32 {
     area_m2.round().max(1.0) as u32
 }
 
@@ -18,7 +18,7 @@ impl Checker<'_> {
             return WitnessedTruth::undecided(UndecidedReason::WrongKind);
         };
         let area_m2 = self.scene.semantics.room(room).area_m2;
-        let truth = Truth::from(spoken_area_m2(area_m2) == square_metres);
+        let truth = Truth::from(rounded_area_m2(area_m2) == square_metres);
         WitnessedTruth::fact("area", &[term], truth)
     }
 

@@ -2,11 +2,11 @@
 
 use super::{Checker, QuestionAnswer};
 use crate::form::{Form, Modifier, Phrase};
-use crate::language::{PhraseSpan, ReadError, Sentence};
+use crate::language::{ParseError, PhraseSpan, Sentence};
 use crate::predicates;
 use crate::scene::Term;
 use crate::truth::Truth;
-use dwell_scene::interrupt::PollEvery;
+use dwell_scene::interrupt::CancelPoller;
 use std::collections::BTreeSet;
 
 /// Things between checks for cancellation.
@@ -38,8 +38,8 @@ impl Checker<'_> {
     /// Reads one sentence with the nouns of the house, and checks or answers its preferred reading.
     ///
     /// # Errors
-    /// [`ReadError`] says what was not understood.
-    pub fn check_text(&self, text: &str) -> Result<CheckedText, ReadError> {
+    /// [`ParseError`] says what was not understood.
+    pub fn check_text(&self, text: &str) -> Result<CheckedText, ParseError> {
         let mut readings = self
             .scene
             .semantics
@@ -47,7 +47,7 @@ impl Checker<'_> {
             .read(text)?
             .forms
             .into_iter();
-        let form = readings.next().ok_or(ReadError::Empty)?;
+        let form = readings.next().ok_or(ParseError::Empty)?;
         let answer = self.answer_form(&form);
         Ok(CheckedText {
             form,
@@ -62,7 +62,7 @@ impl Checker<'_> {
         match form {
             Form::Claim(clause) => Some(QuestionAnswer::Truth(self.check(clause))),
             Form::Question(question) => Some(self.answer(question)),
-            Form::NounPhrase(phrase) => Some(QuestionAnswer::Things(self.denoted(phrase))),
+            Form::NounPhrase(phrase) => Some(QuestionAnswer::Things(self.denotation(phrase))),
             Form::Request(_) => None,
             Form::Several(forms) => forms.iter().rev().find_map(|form| self.answer_form(form)),
         }
@@ -71,16 +71,20 @@ impl Checker<'_> {
     /// Grounds the noun phrases of a text: finds the things that each denotes in the scene. Of a landmark ("a lamp on a table")
     /// those things count that what it is a landmark of has the relation to.
     pub fn ground(&self, said: &Sentence) -> Vec<GroundedPhrase> {
-        self.ground_of(said, None)
+        self.ground_caption(said, None)
     }
 
     /// As [`Self::ground`], of a text whose first phrase is about `subject` alone: a caption.
-    pub(crate) fn ground_of(&self, said: &Sentence, subject: Option<Term>) -> Vec<GroundedPhrase> {
+    pub(crate) fn ground_caption(
+        &self,
+        said: &Sentence,
+        subject: Option<Term>,
+    ) -> Vec<GroundedPhrase> {
         let mut found: Vec<GroundedPhrase> = Vec::with_capacity(said.phrases.len());
         for (k, span) in said.phrases.iter().enumerate() {
             let mut terms = match subject {
                 Some(subject) if k == 0 => vec![subject],
-                _ => self.denoted(&span.phrase),
+                _ => self.denotation(&span.phrase),
             };
             let mut outer = said.phrases[..k].iter().zip(&found).rev();
             let outer = outer.find(|(other, _)| other.start <= span.start && span.end <= other.end);
@@ -97,11 +101,14 @@ impl Checker<'_> {
     }
 
     /// The things that a phrase denotes, regardless of its quantifier, ascending.
-    pub fn denoted(&self, phrase: &Phrase) -> Vec<Term> {
+    pub fn denotation(&self, phrase: &Phrase) -> Vec<Term> {
         match phrase {
-            Phrase::Described(description) => self.fitting(description),
+            Phrase::Described(description) => self.matching_terms(description),
             Phrase::List(items) => {
-                let mut all: Vec<Term> = items.iter().flat_map(|item| self.denoted(item)).collect();
+                let mut all: Vec<Term> = items
+                    .iter()
+                    .flat_map(|item| self.denotation(item))
+                    .collect();
                 all.sort_unstable();
                 all.dedup();
                 all
@@ -137,11 +144,11 @@ impl Checker<'_> {
         if subjects.is_empty() {
             return;
         }
-        let mut poll = PollEvery::new(THINGS_PER_CHECK);
+        let mut poll = CancelPoller::new(THINGS_PER_CHECK);
         if predicate.is_listed() {
             let mut related: BTreeSet<Term> = BTreeSet::new();
             for subject in subjects.iter().filter(|s| predicate.takes(0, s.kind())) {
-                poll.turn();
+                poll.count_one();
                 related.extend(predicate.related(self.scene, *subject));
             }
             terms.retain(|term| predicate.takes(1, term.kind()) && related.contains(term));
@@ -150,7 +157,7 @@ impl Checker<'_> {
         let viewer = self.listener.viewer.as_ref();
         terms.retain(|term| {
             let mut holds = subjects.iter().map(|subject| {
-                poll.turn();
+                poll.count_one();
                 predicate.holds(self.scene, &[*subject, *term], viewer)
             });
             holds.any(Truth::is_true)

@@ -7,9 +7,9 @@ mod paint;
 mod pattern;
 mod vocabulary;
 
-pub use naming::divides;
+pub use naming::speakers_disagree;
 pub use oklab::Oklab;
 pub(crate) use paint::MaterialColors;
 pub use paint::{ColorShare, MENTION_SHARE, color_words};
-pub use pattern::Pattern;
+pub use pattern::SurfacePattern;
 pub use vocabulary::ColorVocabulary;

@@ -47,7 +47,7 @@ impl ColorNamingModel {
         for row in table.rows() {
             let at = [row.number("l")?, row.number("a")?, row.number("b")?];
             let place = corner(at.map(|x: i32| x / CELL as i32))
-                .ok_or_else(|| row.fault(format!("{at:?} is outside of the grid")))?;
+                .ok_or_else(|| row.error(format!("{at:?} is outside of the grid")))?;
             for (share, word) in naming.survey[place].iter_mut().zip(WORDS) {
                 *share = row.number::<f32>(word)? / 1000.0;
             }
@@ -215,7 +215,7 @@ fn surface_names() -> &'static [(Vec3, &'static str, f32)] {
             let lab = Vec3::new(row.number("l")?, row.number("a")?, row.number("b")?);
             let word = row.text("word")?;
             let word = words.iter().find(|known| **known == word);
-            let word = word.ok_or_else(|| row.fault("no word that is spoken".to_owned()))?;
+            let word = word.ok_or_else(|| row.error("no word that is spoken".to_owned()))?;
             Ok((lab, *word, row.number("count")?))
         });
         rows.collect()
@@ -256,7 +256,7 @@ pub(super) fn spoken_words() -> Vec<&'static str> {
 }
 
 /// Returns whether people divide on `word` for what is called `known`: one of them lies between the other and a third.
-pub fn divides(known: &str, word: &str) -> bool {
+pub fn speakers_disagree(known: &str, word: &str) -> bool {
     let is_part = |between: &str, part: &str| {
         let mut found = BETWEEN.iter().filter(|(name, _)| *name == between);
         found.any(|(_, pair)| pair.contains(&part))

@@ -1,7 +1,7 @@
 //! The colours of a thing.
 
-use super::naming::divides;
-use super::pattern::{Pattern, pattern};
+use super::naming::speakers_disagree;
+use super::pattern::{SurfacePattern, pattern};
 use super::{ColorVocabulary, Oklab};
 use dwell_scene::parallel::Threads;
 use dwell_scene::units::linear_from_srgb;
@@ -42,7 +42,7 @@ struct MaterialPalette {
     /// Its sorts of colour.
     sorts: Vec<ColorShare>,
     /// How they lie on it, where it has several.
-    pattern: Option<Pattern>,
+    pattern: Option<SurfacePattern>,
 }
 
 /// The colours of each material of a house.
@@ -72,7 +72,7 @@ impl MaterialColors {
     }
 
     /// How the colours of a material lie on it, where it has several.
-    pub(crate) fn pattern(&self, material: MaterialId) -> Option<Pattern> {
+    pub(crate) fn pattern(&self, material: MaterialId) -> Option<SurfacePattern> {
         self.0[material].pattern
     }
 
@@ -249,7 +249,7 @@ fn merge_divided(words: &mut Vec<(&'static str, f32)>) {
     let mut merged: Vec<(&'static str, f32, f32)> = Vec::new();
     for (word, share) in words.drain(..) {
         let mut known = merged.iter_mut();
-        match known.find(|(known, _, joined)| *joined == 0.0 && divides(known, word)) {
+        match known.find(|(known, _, joined)| *joined == 0.0 && speakers_disagree(known, word)) {
             Some((_, _, joined)) => *joined = share,
             None => merged.push((word, share, 0.0)),
         }

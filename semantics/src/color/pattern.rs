@@ -16,7 +16,7 @@ const CHANGES: usize = 3;
 /// How the colours of a surface lie on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Pattern {
+pub enum SurfacePattern {
     /// In bands side by side.
     Striped,
     /// In bands that cross.
@@ -26,7 +26,7 @@ pub enum Pattern {
     Other,
 }
 
-impl Pattern {
+impl SurfacePattern {
     /// The name of its predicate.
     pub fn name(self) -> &'static str {
         match self {
@@ -44,7 +44,7 @@ impl Pattern {
 ///
 /// # Source
 /// R. A. Fisher, *Statistical Methods for Research Workers*, 1925, chapters 7 and 8.
-pub(super) fn pattern(shades: &[([f32; 2], Oklab)]) -> Pattern {
+pub(super) fn pattern(shades: &[([f32; 2], Oklab)]) -> SurfacePattern {
     let whole = ShadeSums::of(shades.iter().map(|(_, shade)| shade));
     let total = whole.squares - whole.count_times_squared_mean();
     let explained = |axis: usize| {
@@ -64,11 +64,11 @@ pub(super) fn pattern(shades: &[([f32; 2], Oklab)]) -> Pattern {
     };
     let (columns, rows) = (explained(0), explained(1));
     if columns + rows < EXPLAINED {
-        Pattern::Other
+        SurfacePattern::Other
     } else if columns.min(rows) < ACROSS {
-        Pattern::Striped
+        SurfacePattern::Striped
     } else {
-        Pattern::Checked
+        SurfacePattern::Checked
     }
 }
 
@@ -124,7 +124,7 @@ mod tests {
     use super::*;
 
     /// The pattern of an image of 32 by 32 places that are red where `is_red`, else white.
-    fn found(is_red: impl Fn(usize, usize) -> bool) -> Pattern {
+    fn found(is_red: impl Fn(usize, usize) -> bool) -> SurfacePattern {
         let shades: Vec<_> = (0..32 * 32)
             .map(|k| {
                 let (x, y) = (k % 32, k / 32);
@@ -141,16 +141,22 @@ mod tests {
 
     #[test]
     fn stripes_checks_and_dots_differ() {
-        assert_eq!(found(|x, _| x / 4 % 2 == 0), Pattern::Striped);
-        assert_eq!(found(|_, y| y % 8 < 3), Pattern::Striped);
+        assert_eq!(found(|x, _| x / 4 % 2 == 0), SurfacePattern::Striped);
+        assert_eq!(found(|_, y| y % 8 < 3), SurfacePattern::Striped);
         // Threads of both directions over each other, as in gingham.
         assert_eq!(
             found(|x, y| x / 4 % 2 == 0 || y / 4 % 2 == 0),
-            Pattern::Checked
+            SurfacePattern::Checked
         );
         // A chessboard and a disc have no bands.
-        assert_eq!(found(|x, y| (x / 4 + y / 4) % 2 == 0), Pattern::Other);
+        assert_eq!(
+            found(|x, y| (x / 4 + y / 4) % 2 == 0),
+            SurfacePattern::Other
+        );
         let square = |x: usize| (x as i32 - 16).pow(2);
-        assert_eq!(found(|x, y| square(x) + square(y) < 100), Pattern::Other);
+        assert_eq!(
+            found(|x, y| square(x) + square(y) < 100),
+            SurfacePattern::Other
+        );
     }
 }

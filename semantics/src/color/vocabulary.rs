@@ -49,7 +49,7 @@ fn parse(file: &'static str, text: &'static str) -> Result<Vec<NamedColor>, Sema
     for row in table.rows() {
         let value = row.text("hex")?;
         let srgb =
-            hex(value).ok_or_else(|| row.fault(format!("hex is {value:?}, allowed is #rrggbb")))?;
+            hex(value).ok_or_else(|| row.error(format!("hex is {value:?}, allowed is #rrggbb")))?;
         let lab = Oklab::from_srgb(srgb.map(|c| f32::from(c) / 255.0));
         entries.push(NamedColor {
             name: row.text("name")?,

@@ -1,7 +1,7 @@
 //! What has changed between two states of a house.
 
 use super::text::{GroundedText, TextWriter};
-use crate::check::{Checker, Listener};
+use crate::check::{Addressee, Checker};
 use crate::form::{Clause, Description, Form, Modifier, Noun, Phrase, Quality, Quantifier};
 use crate::predicates;
 use crate::refer::{refer, room_phrase};
@@ -76,7 +76,7 @@ impl PlaceChange {
         let noun = Noun::Object(noun.to_owned());
         let there = Modifier::new(self.predicate, [self.landmark.clone()]);
         let what = Description::new(Quantifier::Some, noun).with_modifier(there);
-        let number = checker.fitting(&what).len() as u32;
+        let number = checker.matching_terms(&what).len() as u32;
         let quantifier = match number {
             0 => return None,
             1 => Quantifier::Some,
@@ -115,7 +115,7 @@ fn place_change(
     let named = |of: &[ObjectId], without: &[ObjectId]| {
         let mut others = of
             .iter()
-            .filter(|other| !without.contains(other) && !after.facts(**other).is_opening());
+            .filter(|other| !without.contains(other) && !after.facts(**other).belongs_to_opening());
         others.find_map(|other| refer(after, *other))
     };
     named(&new, &old)
@@ -131,7 +131,7 @@ fn place_change(
 pub fn describe_changes(
     before: &SemanticScene<'_>,
     after: &SemanticScene<'_>,
-    listener: Listener,
+    listener: Addressee,
     wording: Option<RandomKey>,
 ) -> GroundedText {
     let checker = Checker::new(after, listener);

@@ -3,7 +3,7 @@
 use super::options::{TextLength, TextOptions};
 use super::room::say_room;
 use super::text::{GroundedText, TextWriter};
-use crate::check::{Checker, Listener};
+use crate::check::{Addressee, Checker};
 use crate::form::{Description, Modifier, Noun, Phrase, Quantifier};
 use crate::scene::SemanticScene;
 use dwell_scene::{Id, LevelId, RoomId};
@@ -41,7 +41,7 @@ fn room_items(scene: &SemanticScene<'_>, rooms: &[RoomId]) -> Vec<Description> {
 /// The description of a house: the numbers of storeys, rooms and things, its rooms, then each of them, storey by storey; a short one
 /// ends before the rooms' own texts.
 pub fn describe_house(scene: &SemanticScene<'_>, options: TextOptions) -> GroundedText {
-    let checker = Checker::new(scene, Listener::default());
+    let checker = Checker::new(scene, Addressee::default());
     let mut writer = TextWriter::new(&checker, options.wording);
     let house = scene.house();
     let storeys = house.levels.len();

@@ -1,7 +1,7 @@
 //! Things of one kind as an item of a list: "four brown wooden chairs".
 
 use super::options::TextStyle;
-use crate::color::Pattern;
+use crate::color::SurfacePattern;
 use crate::form::{Description, Noun, Quantifier};
 use crate::predicates;
 use crate::scene::{SemanticScene, Term};
@@ -24,7 +24,7 @@ fn joint_state(scene: &SemanticScene<'_>, object: ObjectId) -> Option<&'static s
         .into_iter()
         .find(|name| holds(scene, name, object))?;
     // A cupboard is closed as a rule; a door's state is always of interest.
-    (state != "closed" || scene.facts(object).is_opening()).then_some(state)
+    (state != "closed" || scene.facts(object).belongs_to_opening()).then_some(state)
 }
 
 fn holds(scene: &SemanticScene<'_>, name: &str, object: ObjectId) -> bool {
@@ -56,7 +56,7 @@ pub(super) fn appearance(
             .contains(&facts.size)
             .then_some(facts.size),
         state: state
-            .or_else(|| facts.pattern.map(Pattern::name))
+            .or_else(|| facts.pattern.map(SurfacePattern::name))
             .map(str::to_owned),
         colors: colors.map(|(word, _)| (*word).to_owned()).collect(),
         material: facts.material_word().map(str::to_owned),
@@ -67,7 +67,8 @@ pub(super) fn appearance(
 /// Returns whether a thing fits what [`appearance`] may say of another.
 fn fits(scene: &SemanticScene<'_>, object: ObjectId, description: &Description) -> bool {
     let in_state = |name: &String| holds(scene, name, object);
-    scene.facts(object).fits(description) && description.state.as_ref().is_none_or(in_state)
+    scene.facts(object).matches_properties(description)
+        && description.state.as_ref().is_none_or(in_state)
 }
 
 impl NounGroup {
@@ -102,7 +103,7 @@ impl NounGroup {
         let number = self.objects.len() as u32;
         let is_divided = |object: &ObjectId| {
             let facts = scene.facts(*object);
-            facts.may_fit(&shared) && !facts.fits(&shared)
+            facts.may_match_properties(&shared) && !facts.matches_properties(&shared)
         };
         let is_exact = fitting.iter().all(alike) && !candidates.iter().any(is_divided);
         // "Two tables" would be false beside a coffee table, which is a table, too; of "two white chairs" beside a cream one people

@@ -3,9 +3,9 @@
 use super::hanging::MountedObject;
 use super::item::appearance;
 use super::options::{TextLength, TextOptions};
-use super::surroundings::{say_load, say_surroundings};
+use super::surroundings::{say_contents, say_surroundings};
 use super::text::{GroundedText, TextWriter};
-use crate::check::{Checker, Listener};
+use crate::check::{Addressee, Checker};
 use crate::form::{Description, Modifier, Noun, Quantifier};
 use crate::predicates;
 use crate::refer::{refer, room_phrase};
@@ -28,7 +28,8 @@ fn first_related(scene: &SemanticScene<'_>, object: ObjectId, name: &str) -> Opt
     let predicate = predicates::find(name).ok()?;
     let mut found = predicates::related_objects(scene, predicate, object);
     // A thing is placed by something larger than itself; the largest is the easiest to find.
-    let marks = |id: ObjectId| scene.facts(id).category.is_some() && !scene.facts(id).is_opening();
+    let marks =
+        |id: ObjectId| scene.facts(id).category.is_some() && !scene.facts(id).belongs_to_opening();
     found.retain(|other| name != "next_to" || marks(*other));
     found.retain(|other| name != "in" || !scene.is_seat_or_bed(*other));
     let volume = |id: ObjectId| scene.extent(id).bounds.volume();
@@ -102,16 +103,16 @@ fn description(scene: &SemanticScene<'_>, object: ObjectId, options: TextOptions
 /// A caption: "a brown wooden chair next to the table in the kitchen"; short: "a brown wooden chair". A long one is made of
 /// sentences, and goes on with where the thing stands and what lies on it, as far as a description fits it alone.
 pub fn caption(scene: &SemanticScene<'_>, object: ObjectId, options: TextOptions) -> GroundedText {
-    let checker = Checker::new(scene, Listener::default());
+    let checker = Checker::new(scene, Addressee::default());
     caption_with(&checker, object, options)
 }
 
 /// The captions of all objects, in order.
 pub fn captions(scene: &SemanticScene<'_>, options: TextOptions) -> Vec<GroundedText> {
-    let checker = Checker::new(scene, Listener::default());
+    let checker = Checker::new(scene, Addressee::default());
     let objects = scene.house().objects.ids().enumerate();
     objects
-        .map(|(k, object)| caption_with(&checker, object, options.of_text(k)))
+        .map(|(k, object)| caption_with(&checker, object, options.for_nth_text(k)))
         .collect()
 }
 
@@ -120,13 +121,13 @@ fn caption_with(checker: &Checker<'_>, object: ObjectId, options: TextOptions) -
     let mut writer = TextWriter::new(checker, options.wording);
     let description = description(scene, object, options);
     if options.length < TextLength::Long {
-        writer.say_of(description.into(), Term::Object(object));
+        writer.say_phrase_about(description.into(), Term::Object(object));
         return writer.finish();
     }
     writer.there_are(std::slice::from_ref(&description), &[]);
     if let Some(subject) = refer(scene, object) {
         say_surroundings(&mut writer, scene, object, &subject, Some(&description));
-        say_load(&mut writer, scene, object, &subject, options.style);
+        say_contents(&mut writer, scene, object, &subject, options.style);
     }
     writer.finish()
 }

@@ -33,7 +33,7 @@ pub(super) fn say_doors(writer: &mut TextWriter<'_>, scene: &SemanticScene<'_>, 
         }
         all.push(door);
         let destination = DoorDestination {
-            rooms: doorway.beyond(room).collect(),
+            rooms: doorway.rooms_beyond(room).collect(),
             outside: doorway.outside,
         };
         let noun = scene.facts(door).noun.as_str();

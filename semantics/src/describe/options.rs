@@ -74,7 +74,7 @@ pub struct TextOptions {
 
 impl TextOptions {
     /// The options of the `k`-th of several texts, with a wording of its own.
-    pub(super) fn of_text(self, k: usize) -> Self {
+    pub(super) fn for_nth_text(self, k: usize) -> Self {
         let wording = self.wording.map(|key| key.child(k as u64));
         Self { wording, ..self }
     }

@@ -1,7 +1,7 @@
 //! Referring expressions as texts.
 
 use super::text::{GroundedText, TextWriter};
-use crate::check::{Checker, Listener};
+use crate::check::{Addressee, Checker};
 use crate::form::Phrase;
 use crate::scene::{SemanticScene, Term};
 use crate::view::{ReferStrategy, refer_to};
@@ -12,7 +12,7 @@ use dwell_scene::random::RandomKey;
 /// `None` where no words do. `wording` draws the wordings.
 pub fn describe_reference(
     scene: &SemanticScene<'_>,
-    listener: Listener,
+    listener: Addressee,
     target: ObjectId,
     strategy: ReferStrategy,
     wording: Option<RandomKey>,
@@ -20,6 +20,6 @@ pub fn describe_reference(
     let checker = Checker::new(scene, listener);
     let description = refer_to(&checker, target, strategy)?;
     let mut writer = TextWriter::new(&checker, wording);
-    writer.say_of(Phrase::from(description), Term::Object(target));
+    writer.say_phrase_about(Phrase::from(description), Term::Object(target));
     Some(writer.finish())
 }

@@ -6,7 +6,7 @@ use super::openings::{say_doors, say_passages};
 use super::options::{TextLength, TextOptions, TextStyle};
 use super::surroundings::say_surroundings;
 use super::text::{GroundedText, TextWriter};
-use crate::check::{Checker, Listener, spoken_area_m2};
+use crate::check::{Addressee, Checker, rounded_area_m2};
 use crate::form::{
     Clause, Description, Form, Modifier, Noun, Phrase, Quantifier, RoomSurface, RoomSurfaceKind,
 };
@@ -26,7 +26,7 @@ pub(super) fn is_rug(scene: &SemanticScene<'_>, object: ObjectId) -> bool {
 fn say_area(writer: &mut TextWriter<'_>, scene: &SemanticScene<'_>, room: RoomId) {
     writer.say(Form::Claim(Clause::Area {
         room: room_phrase(scene, room),
-        square_metres: spoken_area_m2(scene.semantics.room(room).area_m2),
+        square_metres: rounded_area_m2(scene.semantics.room(room).area_m2),
     }));
 }
 
@@ -153,7 +153,7 @@ fn carrier_groups(
             .then(|| carried_by(scene, predicate, &[carrier]));
         groups.push(CarrierGroup {
             predicate,
-            carrier: told_apart.unwrap_or_else(|| in_room(scene, carrier, room)),
+            carrier: told_apart.unwrap_or_else(|| object_in_room(scene, carrier, room)),
             objects,
             candidates,
         });
@@ -185,7 +185,11 @@ fn carrier_groups(
 }
 
 /// "A table in the kitchen."
-pub(super) fn in_room(scene: &SemanticScene<'_>, object: ObjectId, room: RoomId) -> Description {
+pub(super) fn object_in_room(
+    scene: &SemanticScene<'_>,
+    object: ObjectId,
+    room: RoomId,
+) -> Description {
     let noun = Noun::Object(scene.facts(object).noun.clone());
     let in_room = Modifier::new("in_room", [room_phrase(scene, room)]);
     Description::new(Quantifier::Some, noun).with_modifier(in_room)
@@ -298,16 +302,16 @@ pub fn describe_room(
     room: RoomId,
     options: TextOptions,
 ) -> GroundedText {
-    let checker = Checker::new(scene, Listener::default());
+    let checker = Checker::new(scene, Addressee::default());
     describe_with(&checker, room, options)
 }
 
 /// The descriptions of all rooms, in order.
 pub fn describe_rooms(scene: &SemanticScene<'_>, options: TextOptions) -> Vec<GroundedText> {
-    let checker = Checker::new(scene, Listener::default());
+    let checker = Checker::new(scene, Addressee::default());
     let rooms = scene.house().rooms.ids().enumerate();
     rooms
-        .map(|(k, room)| describe_with(&checker, room, options.of_text(k)))
+        .map(|(k, room)| describe_with(&checker, room, options.for_nth_text(k)))
         .collect()
 }
 

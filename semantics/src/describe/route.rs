@@ -1,12 +1,12 @@
 //! The way from a place to a thing or a room, by doors, turns and landmarks.
 
 use super::options::{TextLength, TextOptions};
-use super::room::in_room;
+use super::room::object_in_room;
 use super::text::{GroundedText, TextWriter, claim};
-use crate::check::{Checker, Listener};
+use crate::check::{Addressee, Checker};
 use crate::form::{Description, Form, Noun, Phrase, Quantifier, RequestStep};
 use crate::refer::{refer, room_phrase};
-use crate::route::{ABOVE_FLOOR_M, RouteEvent, RouteFinder, SampledRoute, flat};
+use crate::route::{ABOVE_FLOOR_M, RouteEvent, RouteFinder, SampledRoute, to_xz};
 use crate::scene::{SemanticScene, Term, Viewer};
 use dwell_scene::AgentBody;
 use dwell_scene::navigation::{NavCell, NavGrid};
@@ -115,7 +115,7 @@ fn request(
 }
 
 /// Where somebody stands who looks from `viewer`.
-fn feet(scene: &SemanticScene<'_>, listener: &Listener, viewer: &Viewer) -> Vec3 {
+fn feet(scene: &SemanticScene<'_>, listener: &Addressee, viewer: &Viewer) -> Vec3 {
     let agent = listener
         .agent
         .and_then(|agent| scene.state.agents.get(agent));
@@ -138,7 +138,7 @@ fn feet(scene: &SemanticScene<'_>, listener: &Listener, viewer: &Viewer) -> Vec3
 /// viewer looks.
 pub fn describe_route(
     scene: &SemanticScene<'_>,
-    listener: Listener,
+    listener: Addressee,
     to: Term,
     options: TextOptions,
 ) -> Option<GroundedText> {
@@ -169,7 +169,7 @@ pub fn describe_route(
         goal: to.object(),
     };
     // On the way the listener sees other things than now.
-    let checker = Checker::new(scene, Listener::default());
+    let checker = Checker::new(scene, Addressee::default());
     let mut writer = TextWriter::new(&checker, options.wording);
     if let Term::Room(room) = to
         && finder.room_at(0) == Some(room)
@@ -179,7 +179,7 @@ pub fn describe_route(
         return Some(writer.finish());
     }
     let entries = finder.entries();
-    let mut events = finder.turns(flat(looks).normalize_or_zero());
+    let mut events = finder.turns(to_xz(looks).normalize_or_zero());
     if options.length != TextLength::Short {
         events.extend(finder.landmarks(&entries));
     }
@@ -208,7 +208,7 @@ pub fn describe_route(
     let last = to.object().map(|object| {
         let noun = Noun::Object(scene.facts(object).noun.clone());
         let any = || match scene.room_of(object) {
-            Some(room) => in_room(scene, object, room),
+            Some(room) => object_in_room(scene, object, room),
             None => Description::new(Quantifier::Some, noun),
         };
         refer(scene, object).unwrap_or_else(any)

@@ -34,7 +34,7 @@ fn landmarks(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<(&'static str, 
         others.retain(|other| {
             scene.room_of(*other) == scene.room_of(object)
                 && !told.contains(other)
-                && !scene.facts(*other).is_opening()
+                && !scene.facts(*other).belongs_to_opening()
                 && volume(*other) >= MIN_LANDMARK_SHARE * volume(object)
         });
         others.sort_by(|p, q| volume(*q).total_cmp(&volume(*p)).then(p.cmp(q)));
@@ -99,7 +99,7 @@ pub(super) fn say_surroundings(
 }
 
 /// Says what lies in and on a thing that `subject` describes; of a container without contents that it is empty.
-pub(super) fn say_load(
+pub(super) fn say_contents(
     writer: &mut TextWriter<'_>,
     scene: &SemanticScene<'_>,
     object: ObjectId,

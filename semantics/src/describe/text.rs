@@ -86,7 +86,7 @@ impl<'a> TextWriter<'a> {
     }
 
     /// Says a noun phrase that is about one thing.
-    pub(super) fn say_of(&mut self, phrase: Phrase, subject: Term) {
+    pub(super) fn say_phrase_about(&mut self, phrase: Phrase, subject: Term) {
         self.write(Form::NounPhrase(phrase), Some(subject));
     }
 
@@ -116,7 +116,7 @@ impl<'a> TextWriter<'a> {
         let start = self.written.text.len();
         self.written.text.push_str(&said.text);
         let mut terms = Vec::new();
-        for phrase in self.checker.ground_of(&said, subject) {
+        for phrase in self.checker.ground_caption(&said, subject) {
             terms.extend_from_slice(&phrase.terms);
             self.written.phrases.push(GroundedPhrase {
                 start: start + phrase.start,

@@ -4,7 +4,7 @@ use super::item::{grouped, items};
 use super::options::{TextLength, TextOptions, TextStyle};
 use super::room::{is_rug, surfaces};
 use super::text::{GroundedText, TextWriter, claim};
-use crate::check::{Checker, Listener, spoken_distance_m};
+use crate::check::{Addressee, Checker, rounded_distance_m};
 use crate::form::{Clause, Description, Form, Modifier, Noun, Phrase, Quantifier, RoomSurfaceKind};
 use crate::predicates;
 use crate::refer::room_phrase;
@@ -147,7 +147,7 @@ impl ViewTeller<'_, '_> {
     /// before it.
     fn seen_in(&self, object: ObjectId) -> Option<RoomId> {
         let scene = self.scene();
-        if !scene.facts(object).is_opening() {
+        if !scene.facts(object).belongs_to_opening() {
             return scene.room_of(object).or(self.room);
         }
         let doorway = scene.semantics.doorway(object);
@@ -223,7 +223,7 @@ impl ViewTeller<'_, '_> {
     fn own_room(&self, room: RoomId) -> Phrase {
         let noun = Noun::Room(self.scene().semantics.room(room).noun.clone());
         let plain = Description::new(Quantifier::The, noun);
-        match self.checker.denotes(&plain) {
+        match self.checker.certain_referent(&plain) {
             Some(Term::Room(found)) if found == room => plain.into(),
             _ => room_phrase(self.scene(), room),
         }
@@ -268,7 +268,7 @@ impl ViewTeller<'_, '_> {
             metres,
         };
         // By the box around the thing, which may be nearer than what is seen of it.
-        let metres = spoken_distance_m(sighting.distance_m);
+        let metres = rounded_distance_m(sighting.distance_m);
         let true_one = [metres, metres.saturating_sub(1)]
             .into_iter()
             .find(|metres| *metres > 0 && self.checker.check(&clause(*metres)).truth.is_true());
@@ -388,7 +388,7 @@ impl ViewTeller<'_, '_> {
             let Some(subject) = self.name(object).filter(|own| own.modifiers.is_empty()) else {
                 continue;
             };
-            if !self.scene().facts(object).is_opening() {
+            if !self.scene().facts(object).belongs_to_opening() {
                 if distances > 0 {
                     let sighting = self.survey.objects[&object];
                     self.say_distance(&subject, sighting);
@@ -409,7 +409,7 @@ impl ViewTeller<'_, '_> {
 /// out. Without a viewer nothing is seen.
 pub fn describe_view(
     scene: &SemanticScene<'_>,
-    listener: Listener,
+    listener: Addressee,
     options: TextOptions,
 ) -> GroundedText {
     let Some(viewer) = listener.viewer else {

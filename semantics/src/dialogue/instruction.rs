@@ -1,9 +1,9 @@
 //! Instructions that several things fit.
 
-use super::Topic;
-use crate::check::{Checker, Listener};
+use super::DialogueTopic;
+use crate::check::{Addressee, Checker};
 use crate::form::{Description, Form, Modifier, Noun, Quantifier, RequestStep};
-use crate::instruct::{self, is_sought};
+use crate::instruct::{self, is_search_target};
 use crate::refer::room_phrase;
 use crate::scene::{SemanticScene, Term};
 use dwell_scene::{ObjectId, RoomId, interrupt};
@@ -13,7 +13,7 @@ use std::collections::BTreeSet;
 #[derive(Clone, Debug, PartialEq)]
 pub struct AmbiguousInstruction {
     /// The form, and the phrase that several things fit.
-    pub topic: Topic,
+    pub topic: DialogueTopic,
     /// The words.
     pub text: String,
     /// The things that the phrase fits, ascending; at least two.
@@ -25,12 +25,14 @@ pub struct AmbiguousInstruction {
 ///
 /// All its things are such as are looked for, and lie in rooms. The ambiguity is that of the text as it is read.
 pub fn ambiguous_instructions(scene: &SemanticScene<'_>, most: usize) -> Vec<AmbiguousInstruction> {
-    let checker = Checker::new(scene, Listener::default());
+    let checker = Checker::new(scene, Addressee::default());
     let mut descriptions: BTreeSet<Description> = BTreeSet::new();
     for object in scene.house().objects.ids() {
         let facts = scene.facts(object);
-        let (Some(room), true) = (scene.room_of(object), facts.category.is_some_and(is_sought))
-        else {
+        let (Some(room), true) = (
+            scene.room_of(object),
+            facts.category.is_some_and(is_search_target),
+        ) else {
             continue;
         };
         let plain = Description::new(Quantifier::The, Noun::Object(facts.noun.clone()));
@@ -60,14 +62,14 @@ fn ambiguous(
     most: usize,
 ) -> Option<AmbiguousInstruction> {
     let scene = checker.scene();
-    let fits = checker.fitting(&description);
-    if !(2..=most).contains(&fits.len()) || checker.possible(&description) != fits.len() {
+    let fits = checker.matching_terms(&description);
+    if !(2..=most).contains(&fits.len()) || checker.possible_count(&description) != fits.len() {
         return None;
     }
     let things: Option<Vec<ObjectId>> = fits.iter().map(|term| term.object()).collect();
     let things = things?;
     let can_be_meant = |thing: &ObjectId| {
-        let sought = scene.facts(*thing).category.is_some_and(is_sought);
+        let sought = scene.facts(*thing).category.is_some_and(is_search_target);
         sought && scene.room_of(*thing).is_some() && scene.holder(*thing).is_none()
     };
     if !things.iter().all(can_be_meant) {
@@ -86,7 +88,7 @@ fn ambiguous(
     };
     let terms: Vec<Term> = things.iter().copied().map(Term::Object).collect();
     (found.terms == terms).then(|| AmbiguousInstruction {
-        topic: Topic {
+        topic: DialogueTopic {
             phrase: found.phrase.clone(),
             instruction,
         },

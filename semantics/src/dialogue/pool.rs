@@ -15,9 +15,9 @@ use std::collections::BTreeSet;
 /// Relations to other things that are asked about.
 const RELATIONS: [&str; 4] = ["on", "in", "hangs_on", "next_to"];
 
-/// A question about the thing that is meant, as [`super::Topic::read_question`] gives it.
+/// A question about the thing that is meant, as [`super::DialogueTopic::read_question`] gives it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PoolQuestion {
+pub struct ClarificationQuestion {
     /// The form.
     pub form: Form,
     /// The words.
@@ -28,7 +28,7 @@ pub struct PoolQuestion {
 /// colour, material and place, in order, each in one wording.
 ///
 /// None depends on where anybody stands or looks.
-pub fn question_pool(checker: &Checker<'_>, things: &[ObjectId]) -> Vec<PoolQuestion> {
+pub fn question_pool(checker: &Checker<'_>, things: &[ObjectId]) -> Vec<ClarificationQuestion> {
     let mut questions: BTreeSet<Question> = BTreeSet::new();
     for thing in things {
         interrupt::unwind_if_cancelled();
@@ -49,7 +49,7 @@ pub fn question_pool(checker: &Checker<'_>, things: &[ObjectId]) -> Vec<PoolQues
     let worded = questions.into_iter().chain(open).filter_map(|question| {
         let form = Form::Question(question);
         let text = instruct::say(language, &form, None)?.text;
-        Some(PoolQuestion { form, text })
+        Some(ClarificationQuestion { form, text })
     });
     worded.collect()
 }

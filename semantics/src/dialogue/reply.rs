@@ -52,7 +52,7 @@ impl Reply {
             },
             QuestionAnswer::Things(things) => Self::naming(scene, things),
             QuestionAnswer::Number(0) => Self::said("None."),
-            QuestionAnswer::Number(number @ 1..=12) => Self::sentence(&english::count(*number)),
+            QuestionAnswer::Number(number @ 1..=12) => Self::sentence(&english::cardinal(*number)),
             QuestionAnswer::Number(_) => Self::said("Many."),
             QuestionAnswer::Words(words) => Self::sentence(&english::list(words)),
             QuestionAnswer::Alternatives(fits) => match fits[..] {

@@ -4,7 +4,7 @@ use super::mention::{
     exactly_one_as_definite, is_any_room, is_indefinite_singular, is_singular,
     meets_selectional_restriction, subject_with_predicate, topic_of,
 };
-use super::visit::{Role, visit_clause, visit_form, visit_step};
+use super::visit::{PhraseRole, visit_clause, visit_form, visit_step};
 use super::{
     Clause, Description, Form, Modifier, Noun, Phrase, Quality, Quantifier, Question, RequestStep,
 };
@@ -61,7 +61,7 @@ impl Form {
     /// "It" stands for the subject of `before`, or for a thing that an earlier clause or step of the same sentence is about: the
     /// last one that the verb suits, by the table of categories. "One" has the noun of the last thing in the same role: a landmark after a
     /// landmark, else a subject or object.
-    pub fn readings_after(&self, before: Option<&Self>) -> Vec<Self> {
+    pub fn resolve_anaphora(&self, before: Option<&Self>) -> Vec<Self> {
         let mut forms = Vec::new();
         let mut open = VecDeque::from([Vec::new()]);
         for _ in 0..MAX_TRIES {
@@ -92,7 +92,7 @@ impl Form {
     }
 
     /// Returns whether nothing in the form stands for what was named before.
-    pub fn is_complete(&self) -> bool {
+    pub fn is_free_of_anaphora(&self) -> bool {
         let mut complete = true;
         visit_form(&mut self.clone(), &mut |phrase, _| {
             complete &= match phrase {
@@ -131,7 +131,7 @@ const MAX_TRIES: usize = 64;
 /// A thing that was named.
 struct Mention {
     phrase: Phrase,
-    role: Role,
+    role: PhraseRole,
     /// The clause or step that named it.
     unit: usize,
     /// With what its clause says of it, where its number is indefinite: "three cups are on the table".
@@ -171,7 +171,7 @@ impl Resolver {
         resolver
     }
 
-    fn mention(&mut self, phrase: &Phrase, role: Role) {
+    fn mention(&mut self, phrase: &Phrase, role: PhraseRole) {
         if matches!(phrase, Phrase::Described(_) | Phrase::Id(_)) {
             self.mentions.push(Mention {
                 phrase: phrase.clone(),
@@ -277,7 +277,7 @@ impl Resolver {
         // "Close the door if it is open": the door is named by the step.
         let topic = then.first().and_then(topic_of);
         if let Some(topic) = topic.filter(|_| self.mentions.is_empty()) {
-            self.mention(topic, Role::Topic);
+            self.mention(topic, PhraseRole::Topic);
             self.unit += 1;
         }
         self.clause(condition);
@@ -290,7 +290,7 @@ impl Resolver {
     fn resolve_unit(
         &mut self,
         verb: Option<&str>,
-        mut visit: impl FnMut(&mut dyn FnMut(&mut Phrase, Role)),
+        mut visit: impl FnMut(&mut dyn FnMut(&mut Phrase, PhraseRole)),
     ) {
         visit(&mut |phrase, role| {
             self.resolve(phrase, role, verb);
@@ -302,8 +302,8 @@ impl Resolver {
             Phrase::Pronoun => {
                 let topics = self.mentions.iter().rev().filter(|mention| {
                     mention.unit == self.unit
-                        && mention.role == Role::Topic
-                        && Form::NounPhrase(mention.phrase.clone()).is_complete()
+                        && mention.role == PhraseRole::Topic
+                        && Form::NounPhrase(mention.phrase.clone()).is_free_of_anaphora()
                 });
                 if let Some(topic) = topics.map(|mention| &mention.phrase).next() {
                     *phrase = topic.clone();
@@ -315,7 +315,7 @@ impl Resolver {
         self.subject = None;
     }
 
-    fn resolve(&mut self, phrase: &mut Phrase, role: Role, verb: Option<&str>) {
+    fn resolve(&mut self, phrase: &mut Phrase, role: PhraseRole, verb: Option<&str>) {
         match phrase {
             Phrase::Pronoun => {
                 let candidates = self.candidates(verb);
@@ -330,7 +330,7 @@ impl Resolver {
                     own.noun = noun;
                 }
             }
-            Phrase::Described(own) if role == Role::Landmark && is_any_room(own) => {
+            Phrase::Described(own) if role == PhraseRole::Landmark && is_any_room(own) => {
                 // "Go to the hall and open the door at the end": of the hall.
                 if let Some(room) = self.room_before() {
                     *phrase = room;
@@ -343,8 +343,9 @@ impl Resolver {
                     .rev()
                     .find_map(|mention| match &mention.phrase {
                         Phrase::Described(named)
-                            if mention.role == Role::Topic
-                                && Form::NounPhrase(mention.phrase.clone()).is_complete() =>
+                            if mention.role == PhraseRole::Topic
+                                && Form::NounPhrase(mention.phrase.clone())
+                                    .is_free_of_anaphora() =>
                         {
                             Some(mention.with_said.as_ref().unwrap_or(named))
                         }
@@ -379,7 +380,7 @@ impl Resolver {
                     named.quantifier,
                     Quantifier::The | Quantifier::Some | Quantifier::Exactly(1)
                 );
-                let is_complete = Form::NounPhrase(mention.phrase.clone()).is_complete();
+                let is_complete = Form::NounPhrase(mention.phrase.clone()).is_free_of_anaphora();
                 (named.noun == noun && is_one && is_complete).then_some((named, mention))
             });
             if let Some((named, mention)) = named.next() {
@@ -406,7 +407,7 @@ impl Resolver {
                 Quantifier::Exactly(count) | Quantifier::AtLeast(count) => count > 1,
                 _ => false,
             };
-            (mention.role == Role::Topic && are_several && named.noun == own.noun)
+            (mention.role == PhraseRole::Topic && are_several && named.noun == own.noun)
                 .then(|| mention.with_said.as_ref().unwrap_or(named))
         });
         if let Some(named) = named {
@@ -454,7 +455,7 @@ impl Resolver {
     }
 
     /// The noun of the last object in a role, else of the last one.
-    fn noun_in_role(&self, role: Role) -> Option<Noun> {
+    fn noun_in_role(&self, role: PhraseRole) -> Option<Noun> {
         let noun = |mention: &Mention| match &mention.phrase {
             Phrase::Described(own) if matches!(own.noun, Noun::Object(_)) => Some(own.noun.clone()),
             _ => None,
@@ -470,7 +471,7 @@ impl Resolver {
     fn candidates(&self, verb: Option<&str>) -> Vec<Phrase> {
         let mut found = self.named_before(verb);
         // What stands for something itself is no antecedent.
-        found.retain(|phrase| Form::NounPhrase(phrase.clone()).is_complete());
+        found.retain(|phrase| Form::NounPhrase(phrase.clone()).is_free_of_anaphora());
         found
     }
 
@@ -487,7 +488,7 @@ impl Resolver {
         earlier.sort_by_key(|mention| {
             let suits =
                 verb.is_none_or(|verb| meets_selectional_restriction(verb, &mention.phrase));
-            let landmark = mention.role == Role::Landmark;
+            let landmark = mention.role == PhraseRole::Landmark;
             (
                 !suits,
                 landmark,
@@ -518,7 +519,7 @@ impl Resolver {
             let own = self
                 .mentions
                 .iter()
-                .filter(|mention| mention.unit == self.unit && mention.role == Role::Topic);
+                .filter(|mention| mention.unit == self.unit && mention.role == PhraseRole::Topic);
             let own: Vec<&Mention> = own.collect();
             if let [first, .., _] = own[..] {
                 phrases.push(first.phrase.clone());

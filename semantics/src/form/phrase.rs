@@ -35,7 +35,7 @@ pub enum Noun {
     Structure(String),
     /// A storey.
     Storey,
-    /// The noun of a thing that was named before: "the red one". [`crate::form::Form::readings_after`] puts that in its place.
+    /// The noun of a thing that was named before: "the red one". [`crate::form::Form::resolve_anaphora`] puts that in its place.
     SameNoun,
     /// All that was said of things that were named before: "both of them". As [`Self::SameNoun`].
     SameThings,
@@ -163,13 +163,13 @@ pub enum Phrase {
     /// A list of which a clause holds one by one: "a table and two chairs".
     List(Vec<Phrase>),
     /// The thing that "the other lamp" is other than: one with the same noun that was named before.
-    /// [`crate::form::Form::readings_after`] puts that in its place.
+    /// [`crate::form::Form::resolve_anaphora`] puts that in its place.
     NamedBefore,
     /// The others of several: "the chairs are next to each other", each to another one.
     EachOther,
     /// The speaker: "me". Undecided in clauses: a scene does not know who speaks.
     Speaker,
-    /// "It": a thing that was named before. [`crate::form::Form::readings_after`] puts that in its place.
+    /// "It": a thing that was named before. [`crate::form::Form::resolve_anaphora`] puts that in its place.
     Pronoun,
     /// The open argument of a question.
     Hole,

@@ -4,7 +4,7 @@ use super::{Clause, Description, Form, Modifier, Phrase, Question, RequestStep};
 
 /// The role of a phrase.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Role {
+pub(super) enum PhraseRole {
     /// What a clause or a step is about: a subject, an object, a thing that is compared.
     Topic,
     /// What others stand in relation to: the table of "on the table".
@@ -12,7 +12,7 @@ pub(super) enum Role {
 }
 
 /// A call for each phrase with its role, the outer before the inner.
-pub(super) type Visit<'a> = &'a mut dyn FnMut(&mut Phrase, Role);
+pub(super) type PhraseVisitor<'a> = &'a mut dyn FnMut(&mut Phrase, PhraseRole);
 
 /// Predicates that compare two things of which none is the landmark of the other.
 const COMPARISONS: [&str; 8] = [
@@ -58,7 +58,7 @@ impl Form {
     }
 
     /// Returns the number of its descriptions with a comparison: "the cabinet larger than the table".
-    pub(crate) fn described_comparisons(&self) -> usize {
+    pub(crate) fn comparison_count(&self) -> usize {
         let mut number = 0;
         visit_form(&mut self.clone(), &mut |phrase, _| {
             if let Phrase::Described(own) = phrase {
@@ -86,7 +86,7 @@ fn landmark_modifiers(clause: &Clause) -> usize {
     }
 }
 
-pub(super) fn visit_form(form: &mut Form, visit: Visit<'_>) {
+pub(super) fn visit_form(form: &mut Form, visit: PhraseVisitor<'_>) {
     match form {
         Form::Claim(clause) => visit_clause(clause, visit),
         Form::Request(steps) => {
@@ -95,7 +95,7 @@ pub(super) fn visit_form(form: &mut Form, visit: Visit<'_>) {
             }
         }
         Form::Question(question) => visit_question(question, visit),
-        Form::NounPhrase(phrase) => visit_phrase(phrase, Role::Topic, visit),
+        Form::NounPhrase(phrase) => visit_phrase(phrase, PhraseRole::Topic, visit),
         Form::Several(forms) => {
             for form in forms {
                 visit_form(form, visit);
@@ -104,7 +104,7 @@ pub(super) fn visit_form(form: &mut Form, visit: Visit<'_>) {
     }
 }
 
-fn visit_question(question: &mut Question, visit: Visit<'_>) {
+fn visit_question(question: &mut Question, visit: PhraseVisitor<'_>) {
     match question {
         Question::Whether(clause) => visit_clause(clause, visit),
         Question::Alternatives(clauses) => {
@@ -119,11 +119,11 @@ fn visit_question(question: &mut Question, visit: Visit<'_>) {
             visit_clause(clause, visit);
         }
         Question::HowMany(what) => visit_description(what, visit),
-        Question::Attribute { of, .. } => visit_phrase(of, Role::Topic, visit),
+        Question::Attribute { of, .. } => visit_phrase(of, PhraseRole::Topic, visit),
     }
 }
 
-pub(super) fn visit_clause(clause: &mut Clause, visit: Visit<'_>) {
+pub(super) fn visit_clause(clause: &mut Clause, visit: PhraseVisitor<'_>) {
     match clause {
         Clause::Holds {
             predicate,
@@ -132,9 +132,9 @@ pub(super) fn visit_clause(clause: &mut Clause, visit: Visit<'_>) {
             let is_comparison = COMPARISONS.contains(&predicate.as_str());
             for (k, phrase) in arguments.iter_mut().enumerate() {
                 let role = if k == 0 || is_comparison {
-                    Role::Topic
+                    PhraseRole::Topic
                 } else {
-                    Role::Landmark
+                    PhraseRole::Landmark
                 };
                 visit_phrase(phrase, role, visit);
             }
@@ -144,10 +144,12 @@ pub(super) fn visit_clause(clause: &mut Clause, visit: Visit<'_>) {
         }
         | Clause::Exists(phrase)
         | Clause::Area { room: phrase, .. }
-        | Clause::HasSurfaces { room: phrase, .. } => visit_phrase(phrase, Role::Topic, visit),
+        | Clause::HasSurfaces { room: phrase, .. } => {
+            visit_phrase(phrase, PhraseRole::Topic, visit)
+        }
         Clause::Distance { subject, from, .. } => {
-            visit_phrase(subject, Role::Topic, visit);
-            visit_phrase(from, Role::Landmark, visit);
+            visit_phrase(subject, PhraseRole::Topic, visit);
+            visit_phrase(from, PhraseRole::Landmark, visit);
         }
         Clause::More { more, than } => {
             visit_description(more, visit);
@@ -162,16 +164,18 @@ pub(super) fn visit_clause(clause: &mut Clause, visit: Visit<'_>) {
     }
 }
 
-pub(super) fn visit_step(step: &mut RequestStep, visit: Visit<'_>) {
+pub(super) fn visit_step(step: &mut RequestStep, visit: PhraseVisitor<'_>) {
     match step {
         RequestStep::Turn(_) => {}
         RequestStep::GoTo(phrase)
         | RequestStep::Leave(phrase)
         | RequestStep::Do { object: phrase, .. }
-        | RequestStep::DoNot { object: phrase, .. } => visit_phrase(phrase, Role::Topic, visit),
+        | RequestStep::DoNot { object: phrase, .. } => {
+            visit_phrase(phrase, PhraseRole::Topic, visit)
+        }
         RequestStep::Put { object, to, .. } | RequestStep::Bring { object, to } => {
-            visit_phrase(object, Role::Topic, visit);
-            visit_phrase(to, Role::Landmark, visit);
+            visit_phrase(object, PhraseRole::Topic, visit);
+            visit_phrase(to, PhraseRole::Landmark, visit);
         }
         RequestStep::If {
             condition,
@@ -187,29 +191,29 @@ pub(super) fn visit_step(step: &mut RequestStep, visit: Visit<'_>) {
 }
 
 /// Visits a description that is no phrase of its own.
-fn visit_description(description: &mut Box<Description>, visit: Visit<'_>) {
+fn visit_description(description: &mut Box<Description>, visit: PhraseVisitor<'_>) {
     let mut phrase = Phrase::Described(description.clone());
-    visit_phrase(&mut phrase, Role::Topic, visit);
+    visit_phrase(&mut phrase, PhraseRole::Topic, visit);
     if let Phrase::Described(visited) = phrase {
         *description = visited;
     }
 }
 
-fn visit_modifiers(modifiers: &mut [Modifier], visit: Visit<'_>) {
+fn visit_modifiers(modifiers: &mut [Modifier], visit: PhraseVisitor<'_>) {
     for modifier in modifiers {
         for phrase in &mut modifier.arguments {
-            visit_phrase(phrase, Role::Landmark, visit);
+            visit_phrase(phrase, PhraseRole::Landmark, visit);
         }
     }
 }
 
-pub(super) fn visit_phrase(phrase: &mut Phrase, role: Role, visit: Visit<'_>) {
+pub(super) fn visit_phrase(phrase: &mut Phrase, role: PhraseRole, visit: PhraseVisitor<'_>) {
     visit(phrase, role);
     match phrase {
         Phrase::Described(description) => {
             let reference = description.selection.as_mut();
             if let Some(reference) = reference.and_then(|place| place.reference.as_deref_mut()) {
-                visit_phrase(reference, Role::Landmark, visit);
+                visit_phrase(reference, PhraseRole::Landmark, visit);
             }
             visit_modifiers(&mut description.modifiers, visit);
         }

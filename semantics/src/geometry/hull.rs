@@ -122,7 +122,7 @@ impl Hull {
     }
 
     /// The width across the narrowest way, m.
-    pub fn width_m(&self) -> f32 {
+    pub fn min_width_m(&self) -> f32 {
         let across = self.edges().filter_map(|(a, b)| {
             let (low, high) = self.range_along((b - a).try_normalize()?.perp());
             Some(high - low)
@@ -131,7 +131,7 @@ impl Hull {
     }
 
     /// The length of the border that lies at most `gap_m` from `other`, m: by steps of 2 cm, at least 8 an edge.
-    pub fn border_near_m(&self, other: &Self, gap_m: f32) -> f32 {
+    pub fn border_length_near_m(&self, other: &Self, gap_m: f32) -> f32 {
         let mut length_m = 0.0;
         for (a, b) in self.edges() {
             let edge_m = a.distance(b);

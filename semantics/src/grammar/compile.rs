@@ -2,7 +2,7 @@
 
 use super::GrammarError;
 use super::file::{GrammarFile, RuleFile};
-use super::template::{Piece, Variant, category, read};
+use super::template::{TemplateElement, VariantPattern, category, read};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A category with a variant, such as `np.several`.
@@ -90,16 +90,16 @@ impl Compiler<'_> {
     fn choices(
         &self,
         rule: &RuleFile,
-        pieces: &[Piece],
-        result: &(String, Variant),
+        pieces: &[TemplateElement],
+        result: &(String, VariantPattern),
     ) -> Result<Vec<BTreeMap<String, String>>, GrammarError> {
         let mut choices = vec![BTreeMap::new()];
         let mut places: Vec<(String, String)> =
             vec![(name_of(&result.1, usize::MAX), result.0.clone())];
         for (k, piece) in pieces.iter().enumerate() {
             match piece {
-                Piece::Word(_) | Piece::Inflected(..) => {}
-                Piece::Argument(at, variant) => {
+                TemplateElement::Word(_) | TemplateElement::Inflected(..) => {}
+                TemplateElement::Argument(at, variant) => {
                     places.push((name_of(variant, k), rule.arguments[*at].clone()));
                 }
             }
@@ -134,7 +134,7 @@ impl Compiler<'_> {
         &self,
         rule: &RuleFile,
         category: &str,
-        variant: &Variant,
+        variant: &VariantPattern,
         piece: usize,
         choice: &BTreeMap<String, String>,
     ) -> Result<usize, GrammarError> {
@@ -148,12 +148,12 @@ impl Compiler<'_> {
     fn symbol(
         &mut self,
         rule: &RuleFile,
-        (k, piece): (usize, &Piece),
+        (k, piece): (usize, &TemplateElement),
         choice: &BTreeMap<String, String>,
     ) -> Result<Symbol, GrammarError> {
         Ok(match piece {
-            Piece::Word(word) => Symbol::Word(word.clone()),
-            Piece::Inflected(name, variant) => {
+            TemplateElement::Word(word) => Symbol::Word(word.clone()),
+            TemplateElement::Inflected(name, variant) => {
                 let Some(forms) = self.file.words.get(name) else {
                     let known = self.file.words.keys().cloned().collect();
                     return Err(unknown(rule, "word", name, known));
@@ -166,7 +166,7 @@ impl Compiler<'_> {
                 })?;
                 Symbol::Word(word.to_lowercase())
             }
-            Piece::Argument(at, variant) => {
+            TemplateElement::Argument(at, variant) => {
                 let category = rule.arguments[*at].clone();
                 let variant = self.variant_of(rule, &category, variant, k, choice)?;
                 let kind = match category.as_str() {
@@ -191,7 +191,7 @@ impl Compiler<'_> {
     ) -> Result<(), GrammarError> {
         let pieces = read(text, rule.arguments.len())?;
         for argument in 0..rule.arguments.len() {
-            let said = |piece: &Piece| matches!(piece, Piece::Argument(at, _) if *at == argument);
+            let said = |piece: &TemplateElement| matches!(piece, TemplateElement::Argument(at, _) if *at == argument);
             if !pieces.iter().any(said) {
                 return Err(GrammarError::LeftOut {
                     rule: rule.function.clone(),
@@ -235,10 +235,10 @@ fn unknown(rule: &RuleFile, kind: &'static str, name: &str, known: Vec<String>) 
 }
 
 /// The name of a variant or variable; a piece that takes any variant has a variable of its own.
-fn name_of(variant: &Variant, piece: usize) -> String {
+fn name_of(variant: &VariantPattern, piece: usize) -> String {
     match variant {
-        Variant::Any => format!("#{piece}"),
-        Variant::Named(name) => name.clone(),
+        VariantPattern::Any => format!("#{piece}"),
+        VariantPattern::Named(name) => name.clone(),
     }
 }
 

@@ -175,8 +175,8 @@ impl Lexicon {
     /// Returns whether the word occurs in an entry, or is a number or an ordinal.
     pub(super) fn has_word(&self, word: &str) -> bool {
         word.bytes().all(|letter| letter.is_ascii_digit())
-            || self.count_of(word).is_some()
-            || self.ordinal_of(word).is_some()
+            || self.cardinal_value(word).is_some()
+            || self.ordinal_value(word).is_some()
             || self.words.contains(word)
     }
 
@@ -204,14 +204,14 @@ impl Lexicon {
     }
 
     /// The whole number that a word stands for: `"two"`, `"12"`.
-    pub(super) fn count_of(&self, word: &str) -> Option<u32> {
+    pub(super) fn cardinal_value(&self, word: &str) -> Option<u32> {
         let spelt = self.counts.iter().position(|known| known == word);
         let digits = || word.parse().ok().filter(|_| word.len() < 7);
         spelt.map(|number| number as u32).or_else(digits)
     }
 
     /// The number that an ordinal stands for, from 1: `"second"`, `"12th"`.
-    pub(super) fn ordinal_of(&self, word: &str) -> Option<u32> {
+    pub(super) fn ordinal_value(&self, word: &str) -> Option<u32> {
         let spelt = self.ordinals.iter().position(|known| known == word);
         let digits = || {
             let number = word.trim_end_matches(|letter: char| letter.is_ascii_lowercase());
@@ -222,7 +222,7 @@ impl Lexicon {
     }
 
     /// The word for a whole number.
-    pub(super) fn count(&self, number: u32) -> String {
+    pub(super) fn cardinal(&self, number: u32) -> String {
         let spelt = self.counts.get(number as usize);
         spelt.cloned().unwrap_or_else(|| number.to_string())
     }
@@ -263,13 +263,19 @@ mod tests {
             .set_numbers(&texts(&["no", "one", "two"]), &texts(&["first", "second"]))
             .unwrap();
         for number in 0..130 {
-            assert_eq!(lexicon.count_of(&lexicon.count(number)), Some(number));
+            assert_eq!(
+                lexicon.cardinal_value(&lexicon.cardinal(number)),
+                Some(number)
+            );
         }
         for number in 1..130 {
-            assert_eq!(lexicon.ordinal_of(&lexicon.ordinal(number)), Some(number));
+            assert_eq!(
+                lexicon.ordinal_value(&lexicon.ordinal(number)),
+                Some(number)
+            );
         }
-        assert_eq!(lexicon.ordinal_of("12st"), None);
-        assert_eq!(lexicon.count_of("99999999999"), None);
+        assert_eq!(lexicon.ordinal_value("12st"), None);
+        assert_eq!(lexicon.cardinal_value("99999999999"), None);
         assert!(lexicon.set_numbers(&texts(&["twenty one"]), &[]).is_err());
     }
 

@@ -12,14 +12,14 @@ pub(super) enum LinearizedNode {
 }
 
 /// A choice of wordings: called with their number, it returns an index below that.
-pub type ChooseWording<'a> = &'a mut dyn FnMut(usize) -> usize;
+pub type WordingChooser<'a> = &'a mut dyn FnMut(usize) -> usize;
 
 impl Grammar {
     pub(super) fn linearize_function(
         &self,
         tree: &Tree,
         category: NonTerminal,
-        choose: ChooseWording<'_>,
+        choose: WordingChooser<'_>,
     ) -> Option<Vec<LinearizedNode>> {
         let Tree::Apply {
             function,
@@ -50,7 +50,7 @@ impl Grammar {
         &self,
         symbols: &[Symbol],
         arguments: &[Tree],
-        choose: ChooseWording<'_>,
+        choose: WordingChooser<'_>,
     ) -> Option<Vec<LinearizedNode>> {
         let mut phrases = Vec::with_capacity(symbols.len());
         for symbol in symbols {
@@ -69,7 +69,7 @@ impl Grammar {
         &self,
         kind: &ArgumentKind,
         tree: &Tree,
-        choose: ChooseWording<'_>,
+        choose: WordingChooser<'_>,
     ) -> Option<Vec<LinearizedNode>> {
         match (kind, tree) {
             (ArgumentKind::Rules(category), _) => self.linearize_function(tree, *category, choose),
@@ -88,7 +88,7 @@ impl Grammar {
             (ArgumentKind::Count, Tree::Number { class, value })
                 if class == super::compile::COUNT =>
             {
-                Some(vec![LinearizedNode::Word(self.lexicon.count(*value))])
+                Some(vec![LinearizedNode::Word(self.lexicon.cardinal(*value))])
             }
             (ArgumentKind::Digits, Tree::Number { class, value })
                 if class == super::compile::DIGITS =>

@@ -14,16 +14,16 @@ mod file;
 mod lexicon;
 mod linearize;
 mod nearest;
-mod nodes;
 mod paraphrase;
 mod parse;
 mod template;
 mod text;
 mod tree;
+mod tree_interner;
 
 pub use error::GrammarError;
 pub use lexicon::{Lexicon, LexiconEntry, WordForms, words};
-pub use linearize::ChooseWording;
+pub use linearize::WordingChooser;
 pub use parse::Parse;
 pub use text::Span;
 pub use tree::Tree;
@@ -105,7 +105,11 @@ impl Grammar {
     }
 
     /// Linearizes a tree of any category: its text, with the spans of its parts; `None` if the grammar has no wording for it.
-    pub fn linearize(&self, tree: &Tree, choose: ChooseWording<'_>) -> Option<(String, Vec<Span>)> {
+    pub fn linearize(
+        &self,
+        tree: &Tree,
+        choose: WordingChooser<'_>,
+    ) -> Option<(String, Vec<Span>)> {
         let own = self.productions.of_function.keys();
         let own = own.filter(|(name, _)| tree.function() == Some(name.as_str()));
         let own = own.map(|(_, category)| category);
@@ -120,14 +124,14 @@ impl Grammar {
     }
 
     /// Returns normalized words with endings set apart and phrases replaced by others that mean the same.
-    pub fn paraphrase(&self, words: &[String]) -> Vec<String> {
+    pub fn canonicalize(&self, words: &[String]) -> Vec<String> {
         self.paraphrases.apply(words, |word| self.has_word(word))
     }
 
     /// Returns normalized words with endings set apart: "what's" as "what is".
     pub fn split_clitics(&self, words: &[String]) -> Vec<String> {
         self.paraphrases
-            .endings_apart(words, |word| self.has_word(word))
+            .split_clitics(words, |word| self.has_word(word))
     }
 
     /// The words of the rules and of the lexicon, in lower case; a word in both comes twice.

@@ -24,7 +24,7 @@ impl Paraphrases {
 
     /// Returns the words with phrases replaced from left to right, each once. Words of the language keep their endings.
     pub(super) fn apply(&self, text: &[String], is_word: impl Fn(&str) -> bool) -> Vec<String> {
-        let apart = self.endings_apart(text, is_word);
+        let apart = self.split_clitics(text, is_word);
         let mut replaced = Vec::with_capacity(apart.len());
         let mut rest = &apart[..];
         while let Some((first, others)) = rest.split_first() {
@@ -41,7 +41,7 @@ impl Paraphrases {
     }
 
     /// Returns the words with endings set apart; words of the language keep theirs.
-    pub(super) fn endings_apart(
+    pub(super) fn split_clitics(
         &self,
         text: &[String],
         is_word: impl Fn(&str) -> bool,

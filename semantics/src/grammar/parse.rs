@@ -4,7 +4,7 @@
 //! J. Earley, "An efficient context-free parsing algorithm", Communications of the ACM 13(2), 94 (1970).
 
 use super::compile::{ArgumentKind, NonTerminal, Symbol};
-use super::nodes::{NodeId, Nodes};
+use super::tree_interner::{TreeId, TreeInterner};
 use super::{Grammar, Tree};
 use dwell_scene::interrupt;
 use std::collections::BTreeMap;
@@ -74,14 +74,14 @@ pub struct Parse {
 }
 
 /// A reading: its cost and its tree.
-type Reading = (u32, NodeId);
+type Reading = (u32, TreeId);
 /// Arguments that were read, by their number, with their cost.
-type PartReading = (u32, Vec<Option<NodeId>>);
+type PartReading = (u32, Vec<Option<TreeId>>);
 
 /// What was read of each category over each span, and of each item, each worked out once.
 #[derive(Default)]
 struct ParseMemo {
-    nodes: Nodes,
+    nodes: TreeInterner,
     spans: BTreeMap<(NonTerminal, usize, usize), Vec<Reading>>,
     items: BTreeMap<(Item, usize), Vec<PartReading>>,
 }
@@ -139,7 +139,7 @@ impl Parser<'_> {
                 }
             }
             Symbol::Argument(_, ArgumentKind::Count) => {
-                if let Some(number) = lexicon.count_of(word) {
+                if let Some(number) = lexicon.cardinal_value(word) {
                     self.advance(item, at, at + 1, Child::Number(number));
                 }
             }
@@ -149,7 +149,7 @@ impl Parser<'_> {
                 }
             }
             Symbol::Argument(_, ArgumentKind::Ordinal) => {
-                if let Some(number) = lexicon.ordinal_of(word) {
+                if let Some(number) = lexicon.ordinal_value(word) {
                     self.advance(item, at, at + 1, Child::Number(number));
                 }
             }
@@ -205,7 +205,7 @@ impl Parser<'_> {
         for item in complete.into_iter().flatten() {
             let production = &self.grammar.productions.all[item.production];
             for (cost, arguments) in self.argument_readings(*item, end, known) {
-                let Some(arguments) = arguments.into_iter().collect::<Option<Vec<NodeId>>>() else {
+                let Some(arguments) = arguments.into_iter().collect::<Option<Vec<TreeId>>>() else {
                     continue;
                 };
                 let node = known.nodes.apply(&production.function, arguments);
@@ -264,7 +264,7 @@ impl Parser<'_> {
         child: Child,
         end: usize,
         known: &mut ParseMemo,
-    ) -> Vec<(u32, Option<NodeId>)> {
+    ) -> Vec<(u32, Option<TreeId>)> {
         match child {
             Child::Word => vec![(0, None)],
             Child::Entry(entry, cost) => {

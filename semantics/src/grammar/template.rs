@@ -4,7 +4,7 @@ use super::GrammarError;
 
 /// A variant of a category, such as singular or plural.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Variant {
+pub(super) enum VariantPattern {
     /// Any variant of the argument.
     Any,
     /// The variant of this name; else a variable over the variants of its category, with one value throughout a rule.
@@ -13,20 +13,20 @@ pub(super) enum Variant {
 
 /// An element of a template.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Piece {
+pub(super) enum TemplateElement {
     /// A word as it stands, in lower case, or a punctuation mark.
     Word(String),
     /// `[be.n]`: a word of the grammar's own in a variant.
-    Inflected(String, Variant),
+    Inflected(String, VariantPattern),
     /// `{1.n}`: an argument, counted from 0 here.
-    Argument(usize, Variant),
+    Argument(usize, VariantPattern),
 }
 
 /// A category with a variant: `cn.n`.
-pub(super) fn category(text: &str) -> (String, Variant) {
+pub(super) fn category(text: &str) -> (String, VariantPattern) {
     match text.split_once('.') {
-        Some((name, variant)) => (name.to_owned(), Variant::Named(variant.to_owned())),
-        None => (text.to_owned(), Variant::Any),
+        Some((name, variant)) => (name.to_owned(), VariantPattern::Named(variant.to_owned())),
+        None => (text.to_owned(), VariantPattern::Any),
     }
 }
 
@@ -34,7 +34,7 @@ pub(super) fn category(text: &str) -> (String, Variant) {
 ///
 /// # Errors
 /// [`GrammarError::Template`] for brackets that do not close and arguments that are not a number from 1 to `arity`.
-pub(super) fn read(text: &str, arity: usize) -> Result<Vec<Piece>, GrammarError> {
+pub(super) fn read(text: &str, arity: usize) -> Result<Vec<TemplateElement>, GrammarError> {
     let fault = |why: &'static str| GrammarError::Template {
         template: text.to_owned(),
         why,
@@ -53,13 +53,13 @@ pub(super) fn read(text: &str, arity: usize) -> Result<Vec<Piece>, GrammarError>
                 .ok()
                 .filter(|number| (1..=arity).contains(number))
                 .ok_or_else(|| fault("an argument is a number from 1 to that of the arguments"))?;
-            pieces.push(Piece::Argument(number - 1, variant));
+            pieces.push(TemplateElement::Argument(number - 1, variant));
         } else if let Some(inside) = inner('[', ']') {
             let inside = inside.ok_or_else(|| fault("[ without ]"))?;
             let (name, variant) = category(inside);
-            pieces.push(Piece::Inflected(name, variant));
+            pieces.push(TemplateElement::Inflected(name, variant));
         } else {
-            pieces.push(Piece::Word(part.to_lowercase()));
+            pieces.push(TemplateElement::Word(part.to_lowercase()));
         }
     }
     if pieces.is_empty() {
@@ -74,14 +74,14 @@ mod tests {
 
     #[test]
     fn templates_are_words_arguments_and_words_that_agree() {
-        let named = |name: &str| Variant::Named(name.to_owned());
+        let named = |name: &str| VariantPattern::Named(name.to_owned());
         assert_eq!(
             read("{1.n} [be.n] on {2}", 2).unwrap(),
             [
-                Piece::Argument(0, named("n")),
-                Piece::Inflected("be".to_owned(), named("n")),
-                Piece::Word("on".to_owned()),
-                Piece::Argument(1, Variant::Any),
+                TemplateElement::Argument(0, named("n")),
+                TemplateElement::Inflected("be".to_owned(), named("n")),
+                TemplateElement::Word("on".to_owned()),
+                TemplateElement::Argument(1, VariantPattern::Any),
             ]
         );
         for wrong in ["{3} x", "{0}", "{x}", "{1", "[be", ""] {

@@ -17,7 +17,7 @@ const FACED_HALF_ANGLE_RAD: f32 = std::f32::consts::FRAC_PI_4 / 3.0;
 
 /// What conditions are judged by.
 #[derive(Clone, Copy)]
-pub struct StepView<'a> {
+pub struct ConditionContext<'a> {
     /// The scene.
     pub scene: &'a SemanticScene<'a>,
     /// Its rays, up to date with its state.
@@ -60,8 +60,8 @@ pub enum StepCondition {
 
 impl StepCondition {
     /// Returns whether it is so; `false` for an agent that does not exist.
-    pub fn holds(self, view: &StepView<'_>) -> bool {
-        let StepView {
+    pub fn holds(self, view: &ConditionContext<'_>) -> bool {
+        let ConditionContext {
             scene, rays, agent, ..
         } = *view;
         let is = |predicate: &str, arguments: &[Term]| {
@@ -73,7 +73,7 @@ impl StepCondition {
         };
         match self {
             Self::AgentIn(room) => scene.room_of_agent(agent) == Some(room),
-            Self::Found(object) => Self::found_goal(object).is_reached(scene, rays, agent),
+            Self::Found(object) => Self::find_object_goal(object).is_reached(scene, rays, agent),
             Self::Faced(object) => {
                 let body = scene.state.agents.get(agent);
                 let near = body.is_some_and(|body| {
@@ -100,7 +100,7 @@ impl StepCondition {
     }
 
     /// The goal of an agent that is to find a thing.
-    pub fn found_goal(object: ObjectId) -> InstructionGoal {
+    pub fn find_object_goal(object: ObjectId) -> InstructionGoal {
         InstructionGoal::objects(vec![object], FOUND_M)
     }
 
@@ -140,7 +140,7 @@ impl StepCondition {
     }
 
     /// Returns whether it is about where the agent is and looks alone: once it was so, it need not stay so.
-    pub fn is_passing(self) -> bool {
+    pub fn is_transient(self) -> bool {
         let of_place = matches!(self, Self::AgentIn(_) | Self::Found(_) | Self::Faced(_));
         of_place || self.is_event()
     }
@@ -151,7 +151,7 @@ impl StepCondition {
     }
 }
 
-impl StepView<'_> {
+impl ConditionContext<'_> {
     fn sees(&self, object: ObjectId, field: FieldOfView) -> bool {
         let viewer = Viewer::of_agent(self.scene.state, self.agent);
         viewer.is_some_and(|viewer| {

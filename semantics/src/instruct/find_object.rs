@@ -21,7 +21,7 @@ const NOT_SOUGHT: [&str; 9] = [
 ];
 
 /// Returns whether things of a category are looked for.
-pub fn is_sought(category: &SemanticCategory) -> bool {
+pub fn is_search_target(category: &SemanticCategory) -> bool {
     !category.structure && !category.is_vague() && !NOT_SOUGHT.contains(&category.name)
 }
 
@@ -29,7 +29,8 @@ pub(super) fn candidates(scene: &SemanticScene<'_>) -> Vec<Instruction> {
     let objects = scene.house().objects.ids();
     objects
         .filter(|object| {
-            scene.facts(*object).category.is_some_and(is_sought) && scene.room_of(*object).is_some()
+            scene.facts(*object).category.is_some_and(is_search_target)
+                && scene.room_of(*object).is_some()
         })
         .filter_map(|object| {
             // Some milliseconds each.

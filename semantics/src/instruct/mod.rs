@@ -5,28 +5,28 @@
 mod condition;
 mod find_object;
 mod go_to_room;
+mod instruction_split;
 mod needed_words;
 mod route;
 mod step_kind;
 mod steps;
 mod task;
 mod thing_group;
-mod word_split;
 
-pub use condition::{StepCondition, StepView};
-pub use find_object::is_sought;
-pub use needed_words::needed_words;
+pub use condition::{ConditionContext, StepCondition};
+pub use find_object::is_search_target;
+pub use instruction_split::InstructionSplit;
+pub use needed_words::english_vocabulary;
 pub use route::{
-    PathWarp, RouteInstruction, RouteMilestone, RouteStep, RouteWalk, ToldWay, WalkProgress,
-    room_changes,
+    DescribedPath, DynamicTimeWarping, RouteInstruction, RouteMilestone, RouteProgress, RouteStep,
+    RouteTracker, room_changes,
 };
 pub use step_kind::{StepKind, states_of};
-pub(crate) use step_kind::{is_opened, is_switched};
+pub(crate) use step_kind::{is_openable, is_toggleable};
 pub use steps::{InstructionStep, conditional};
 pub(crate) use task::say;
 pub use task::{Instruction, InstructionGoal, InstructionKind, InstructionProgress};
 pub use thing_group::{ThingGroup, ThingSet, groups, thing_sets};
-pub use word_split::WordSplit;
 
 use crate::error::SemanticsError;
 use crate::scene::SemanticScene;

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 /// Every word of English as the engine says and reads it, and the marks, sorted.
 ///
 /// `assets/vocabulary.txt` holds these words in an order that never changes; a test compares the two.
-pub fn needed_words() -> BTreeSet<String> {
+pub fn english_vocabulary() -> BTreeSet<String> {
     let words = Language::english().grammar().words();
     words
         .map(str::to_owned)
@@ -23,7 +23,7 @@ mod tests {
     #[test]
     fn the_committed_vocabulary_holds_every_needed_word_once() {
         let known: BTreeSet<String> = vocabulary().iter().map(|word| (*word).to_owned()).collect();
-        let missing: Vec<String> = needed_words().difference(&known).cloned().collect();
+        let missing: Vec<String> = english_vocabulary().difference(&known).cloned().collect();
         if !missing.is_empty() && std::env::var_os("UPDATE_GOLDEN").is_some() {
             let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/vocabulary.txt");
             let all: Vec<String> = vocabulary()

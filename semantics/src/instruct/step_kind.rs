@@ -81,7 +81,10 @@ impl StepKind {
     }
 
     /// The verb of its request and what is so of a thing once it is done, where it is about that thing alone.
-    pub(super) fn of_thing(self, object: ObjectId) -> Option<(&'static str, StepCondition)> {
+    pub(super) fn verb_and_condition(
+        self,
+        object: ObjectId,
+    ) -> Option<(&'static str, StepCondition)> {
         Some(match self {
             Self::GoToRoom | Self::Bring | Self::PutOn | Self::PutIn => return None,
             Self::FindObject => ("find", StepCondition::Found(object)),
@@ -96,7 +99,7 @@ impl StepKind {
     }
 
     /// What is so of a thing that is taken to a destination; `None` for other kinds, and destinations of another sort.
-    pub(super) fn at_destination(self, object: ObjectId, to: Term) -> Option<StepCondition> {
+    pub(super) fn destination_condition(self, object: ObjectId, to: Term) -> Option<StepCondition> {
         match (self, to) {
             (Self::Bring, Term::Room(room)) => Some(StepCondition::LeftIn(object, room)),
             (Self::PutOn, Term::Object(on)) => Some(StepCondition::On(object, on)),
@@ -109,8 +112,8 @@ impl StepKind {
     pub fn applies(self, scene: &SemanticScene<'_>, object: ObjectId) -> bool {
         let thing = &scene.house().objects[object];
         let category = scene.facts(object).category;
-        let opens = || category.is_some_and(is_opened);
-        let switches = || category.is_some_and(is_switched);
+        let opens = || category.is_some_and(is_openable);
+        let switches = || category.is_some_and(is_toggleable);
         match self {
             Self::GoToRoom => false,
             Self::FindObject | Self::Face | Self::PointAt => true,
@@ -125,7 +128,7 @@ impl StepKind {
     }
 
     /// Returns whether a thing is as it asks already: open, on, in the room `to`.
-    pub(super) fn is_so(
+    pub(super) fn is_satisfied(
         self,
         scene: &SemanticScene<'_>,
         object: ObjectId,
@@ -145,9 +148,9 @@ impl StepKind {
 /// The two states, by their predicates, of which people say that a thing is in one; `None` for things without.
 pub fn states_of(scene: &SemanticScene<'_>, object: ObjectId) -> Option<[&'static str; 2]> {
     let category = scene.facts(object).category?;
-    if is_opened(category) {
+    if is_openable(category) {
         Some(["open", "closed"])
-    } else if is_switched(category) {
+    } else if is_toggleable(category) {
         Some(["switched_on", "switched_off"])
     } else {
         None
@@ -160,11 +163,11 @@ fn is(scene: &SemanticScene<'_>, predicate: &str, object: ObjectId) -> bool {
 }
 
 /// Returns whether one opens and closes things of a category.
-pub(crate) fn is_opened(category: &SemanticCategory) -> bool {
+pub(crate) fn is_openable(category: &SemanticCategory) -> bool {
     category.openable && !NOT_OPENED.contains(&category.name)
 }
 
 /// Returns whether one switches things of a category on and off.
-pub(crate) fn is_switched(category: &SemanticCategory) -> bool {
+pub(crate) fn is_toggleable(category: &SemanticCategory) -> bool {
     category.switchable && !NOT_SWITCHED.contains(&category.name)
 }

@@ -41,8 +41,8 @@ impl InstructionStep {
     }
 
     /// To do something to a thing; `None` for kinds that need a destination.
-    pub fn of_thing(kind: StepKind, object: ObjectId, words: Description) -> Option<Self> {
-        let (verb, condition) = kind.of_thing(object)?;
+    pub fn on_object(kind: StepKind, object: ObjectId, words: Description) -> Option<Self> {
+        let (verb, condition) = kind.verb_and_condition(object)?;
         let request = RequestStep::Do {
             verb: verb.to_owned(),
             object: words.into(),
@@ -56,13 +56,13 @@ impl InstructionStep {
         (object, words): (ObjectId, Description),
         (to, destination): (Term, Description),
     ) -> Option<Self> {
-        let condition = kind.at_destination(object, to)?;
+        let condition = kind.destination_condition(object, to)?;
         let request = request_to(kind, words, destination)?;
         Some(Self::of_one(kind, request, condition))
     }
 
     /// To do something to several things of a kind; `to`: the room of kinds that need one. `None` for kinds that are not done to several.
-    pub fn of_group(
+    pub fn on_group(
         kind: StepKind,
         group: &ThingGroup,
         to: Option<(RoomId, Description)>,
@@ -70,14 +70,14 @@ impl InstructionStep {
         let words = group.words.clone();
         let room = to.as_ref().map(|(room, _)| Term::Room(*room));
         let done = |object: &ObjectId| match room {
-            Some(room) => kind.at_destination(*object, room),
-            None => Some(kind.of_thing(*object)?.1),
+            Some(room) => kind.destination_condition(*object, room),
+            None => Some(kind.verb_and_condition(*object)?.1),
         };
         let conditions: Option<Vec<StepCondition>> = group.objects.iter().map(done).collect();
         let request = if let Some((_, destination)) = to {
             request_to(kind, words, destination)?
         } else {
-            let (verb, _) = kind.of_thing(*group.objects.first()?)?;
+            let (verb, _) = kind.verb_and_condition(*group.objects.first()?)?;
             RequestStep::Do {
                 verb: verb.to_owned(),
                 object: words.into(),
@@ -93,7 +93,7 @@ impl InstructionStep {
     }
 
     /// The request not to do it; `None` for what is not done to one thing.
-    pub fn forbidden(&self) -> Option<RequestStep> {
+    pub fn prohibition(&self) -> Option<RequestStep> {
         match &self.request {
             RequestStep::Do { verb, object } => Some(RequestStep::DoNot {
                 verb: verb.clone(),

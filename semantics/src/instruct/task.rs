@@ -1,7 +1,7 @@
 //! An instruction with its goal.
 
 use super::{CHARSET, MAX_TEXT_LEN};
-use crate::check::{Checker, GroundedPhrase, Listener};
+use crate::check::{Addressee, Checker, GroundedPhrase};
 use crate::error::SemanticsError;
 use crate::form::{Form, RequestStep};
 use crate::language::{Language, PhraseSpan, Sentence};
@@ -200,7 +200,7 @@ impl Instruction {
             text: self.text.clone(),
             phrases: self.phrases.clone(),
         };
-        Checker::new(scene, Listener::default()).ground(&sentence)
+        Checker::new(scene, Addressee::default()).ground(&sentence)
     }
 
     /// The words as numbers; shape ([`vocabulary::LENGTH`],), padded with 0.

@@ -1,8 +1,8 @@
 //! Several things of a kind that instructions ask for by number: "two cups", "every drawer in the kitchen".
 
-use super::find_object::is_sought;
+use super::find_object::is_search_target;
 use super::step_kind::StepKind;
-use crate::check::{Checker, Listener};
+use crate::check::{Addressee, Checker};
 use crate::form::{Description, Modifier, Noun, Quantifier};
 use crate::scene::{SemanticScene, Term};
 use dwell_scene::interrupt;
@@ -39,9 +39,10 @@ pub struct ThingSet {
 
 /// The things of each noun, in the house and in each of `rooms`, where there are several.
 pub fn thing_sets(scene: &SemanticScene<'_>, rooms: &[(RoomId, Description)]) -> Vec<ThingSet> {
-    let checker = Checker::new(scene, Listener::default());
+    let checker = Checker::new(scene, Addressee::default());
     let objects = scene.house().objects.ids();
-    let sought = objects.filter(|object| scene.facts(*object).category.is_some_and(is_sought));
+    let sought =
+        objects.filter(|object| scene.facts(*object).category.is_some_and(is_search_target));
     let nouns: BTreeSet<&str> = sought
         .map(|object| scene.facts(object).noun.as_str())
         .collect();
@@ -54,8 +55,8 @@ pub fn thing_sets(scene: &SemanticScene<'_>, rooms: &[(RoomId, Description)]) ->
             plain.clone().with_modifier(within)
         });
         for words in std::iter::once(plain.clone()).chain(of_rooms) {
-            let fitting = checker.fitting(&words);
-            let is_certain = checker.possible(&words) == fitting.len();
+            let fitting = checker.matching_terms(&words);
+            let is_certain = checker.possible_count(&words) == fitting.len();
             if is_certain && (2..=MOST).contains(&fitting.len()) {
                 let objects: Vec<ObjectId> = fitting.into_iter().filter_map(Term::object).collect();
                 found.push(ThingSet { words, objects });
@@ -79,7 +80,7 @@ pub fn groups(
 ) -> Vec<ThingGroup> {
     let mut found = Vec::new();
     for ThingSet { words, objects } in sets {
-        let is_so = |object: &ObjectId| kind.is_so(scene, *object, to);
+        let is_so = |object: &ObjectId| kind.is_satisfied(scene, *object, to);
         let (_, undone): (Vec<ObjectId>, Vec<ObjectId>) = objects.iter().copied().partition(is_so);
         let can = |object: &ObjectId| kind.applies(scene, *object) && is_possible(*object);
         let doable: Vec<ObjectId> = undone.iter().copied().filter(can).collect();

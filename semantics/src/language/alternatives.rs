@@ -1,7 +1,7 @@
 //! Questions for those of several clauses that are true: forms to trees, and trees to forms.
 
-use super::from_tree::{entry_id, holds};
-use super::phrases::{described, phrase};
+use super::from_tree::{atomic_clause, entry_id};
+use super::phrases::{nominal, phrase};
 use super::questions::question;
 use super::sets;
 use super::to_tree::TreeBuilder;
@@ -29,11 +29,11 @@ pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Vec<Clause
         }
         ("alternatives_left_right" | "alternatives_stand", [subject, landmark]) => {
             let (subject, landmark) = (phrase(subject)?, phrase(landmark)?);
-            let side = |name| holds(name, vec![subject.clone(), landmark.clone()]);
+            let side = |name| atomic_clause(name, vec![subject.clone(), landmark.clone()]);
             vec![side("left_of"), side("right_of")]
         }
         ("alternatives_subject", [kind, said, one, other]) => {
-            let kind = described(kind)?;
+            let kind = nominal(kind)?;
             of_kind(&kind, said, [phrase(one)?, phrase(other)?])?
         }
         ("alternatives_bare", [said, one, other]) => {
@@ -43,7 +43,7 @@ pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Vec<Clause
             comparison_both_ways(word, phrase(one)?, phrase(other)?)?
         }
         ("which_of_compared", [set, word, one, other]) => {
-            let kind = sets::set(set)?;
+            let kind = sets::set_description(set)?;
             let [one, other] = with_noun_of(&kind, [phrase(one)?, phrase(other)?]);
             comparison_both_ways(word, one, other)?
         }
@@ -71,7 +71,7 @@ fn related(subject: &Tree, relations: [&Tree; 2], landmarks: [&Tree; 2]) -> Opti
     let subject = phrase(subject)?;
     let mut clauses = Vec::with_capacity(2);
     for (relation, landmark) in relations.into_iter().zip(landmarks) {
-        clauses.push(holds(
+        clauses.push(atomic_clause(
             &entry_id(relation)?,
             vec![subject.clone(), phrase(landmark)?],
         ));
@@ -106,15 +106,15 @@ fn subjects(said: &Tree, subjects: [Phrase; 2]) -> Option<Vec<Clause>> {
 fn comparison_both_ways(word: &Tree, one: Phrase, other: Phrase) -> Option<Vec<Clause>> {
     let name = entry_id(word)?;
     Some(vec![
-        holds(&name, vec![one.clone(), other.clone()]),
-        holds(&name, vec![other, one]),
+        atomic_clause(&name, vec![one.clone(), other.clone()]),
+        atomic_clause(&name, vec![other, one]),
     ])
 }
 
 fn closer(subject: &Tree, one: &Tree, other: &Tree) -> Option<Vec<Clause>> {
     let (subject, one, other) = (phrase(subject)?, phrase(one)?, phrase(other)?);
     let to = |near: &Phrase, far: &Phrase| {
-        holds(
+        atomic_clause(
             "closer_to",
             vec![subject.clone(), near.clone(), far.clone()],
         )
@@ -128,11 +128,14 @@ impl TreeBuilder<'_> {
         match clauses {
             [first, second] => Some(Tree::apply(
                 "alternatives",
-                [self.whether(first)?, self.whether(second)?],
+                [
+                    self.whether_question(first)?,
+                    self.whether_question(second)?,
+                ],
             )),
             [first, rest @ ..] if rest.len() > 1 => Some(Tree::apply(
                 "alternatives",
-                [self.whether(first)?, self.alternatives(rest)?],
+                [self.whether_question(first)?, self.alternatives(rest)?],
             )),
             _ => None,
         }

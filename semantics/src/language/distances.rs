@@ -2,14 +2,14 @@
 
 use super::from_tree::number;
 use super::phrases::phrase;
-use super::to_tree::{Position, TreeBuilder, digits};
+use super::to_tree::{PhrasePosition, TreeBuilder, digits};
 use crate::form::{Clause, Phrase};
 use crate::grammar::Tree;
 
 impl TreeBuilder<'_> {
     /// "The sofa is about three metres away", "the sofa is about two metres from the window".
     pub(super) fn distance(&self, subject: &Phrase, from: &Phrase, metres: u32) -> Option<Tree> {
-        let mut arguments = vec![self.phrase(subject, Position::Free)?];
+        let mut arguments = vec![self.phrase(subject, PhrasePosition::Free)?];
         let mut function = match from {
             Phrase::Listener => "distance_away",
             _ => "distance",
@@ -20,7 +20,7 @@ impl TreeBuilder<'_> {
             metres => arguments.push(digits(metres)),
         }
         if *from != Phrase::Listener {
-            arguments.push(self.phrase(from, Position::Free)?);
+            arguments.push(self.phrase(from, PhrasePosition::Free)?);
         }
         Some(Tree::apply(&function, arguments))
     }

@@ -1,10 +1,10 @@
 //! Clauses of existence: "there is a chair", "on the table there are a cup and two plates", "on your left you see a lamp".
 
-use super::from_tree::{Parts, holds, number, parts, place_of, room};
+use super::from_tree::{FunctionApplication, atomic_clause, number, parts, place_of, room};
 use super::lexicon::ROOM_NOUN;
 use super::phrases::{between_two, phrase};
 use super::places;
-use super::to_tree::{Position, TreeBuilder, count};
+use super::to_tree::{PhrasePosition, TreeBuilder, count};
 use crate::form::{Clause, Description, Modifier, Noun, Phrase, Quantifier};
 use crate::grammar::Tree;
 
@@ -151,12 +151,12 @@ impl TreeBuilder<'_> {
             ("in_room" | "on_storey", [place]) => Tree::apply("front_place", [self.place(place)?]),
             ("leads_from", [room]) => Tree::apply("front_from", [self.room(room)?]),
             ("between", [a, b]) => {
-                let free = |phrase| self.phrase(phrase, Position::Free);
+                let free = |phrase| self.phrase(phrase, PhrasePosition::Free);
                 Tree::apply("front_between", [free(a)?, free(b)?])
             }
             (predicate, [landmark]) => {
                 let relation = self.relation_word(predicate, landmark)?;
-                let landmark = self.phrase(landmark, Position::Free)?;
+                let landmark = self.phrase(landmark, PhrasePosition::Free)?;
                 Tree::apply("front_relation", [relation, landmark])
             }
             _ => return None,
@@ -181,7 +181,10 @@ impl TreeBuilder<'_> {
 
     pub(super) fn item(&self, item: &Phrase) -> Option<Tree> {
         let Some(own) = description(item) else {
-            return Some(Tree::apply("item", [self.phrase(item, Position::Free)?]));
+            return Some(Tree::apply(
+                "item",
+                [self.phrase(item, PhrasePosition::Free)?],
+            ));
         };
         match (&own.noun, own.quantifier) {
             (Noun::Storey, Quantifier::Exactly(1)) if is_bare(own) => {
@@ -206,7 +209,10 @@ impl TreeBuilder<'_> {
                 Some(Tree::apply(function, [count(number), noun]))
             }
             (Noun::Room(_), _) => Some(Tree::apply("item_room", [self.room(item)?])),
-            _ => Some(Tree::apply("item", [self.phrase(item, Position::Free)?])),
+            _ => Some(Tree::apply(
+                "item",
+                [self.phrase(item, PhrasePosition::Free)?],
+            )),
         }
     }
 }
@@ -247,7 +253,7 @@ fn existence_parts<'a>(function: &str, arguments: &'a [Tree]) -> Option<Existenc
         },
         ("exists_front" | "exists_front_list", [front, items])
         | ("front_stands", [front, _, items]) => ExistenceParts {
-            modifiers: front_from_tree(front)?,
+            modifiers: fronted_modifiers_from_tree(front)?,
             items,
         },
         ("room_has" | "room_has_list" | "whether_room_has", [place, items]) => ExistenceParts {
@@ -267,7 +273,7 @@ fn existence_parts<'a>(function: &str, arguments: &'a [Tree]) -> Option<Existenc
             items,
         },
         ("see_place" | "see_place_list", [front, items]) => {
-            let mut modifiers = front_from_tree(front)?;
+            let mut modifiers = fronted_modifiers_from_tree(front)?;
             modifiers.push(seen());
             ExistenceParts { modifiers, items }
         }
@@ -275,7 +281,7 @@ fn existence_parts<'a>(function: &str, arguments: &'a [Tree]) -> Option<Existenc
     })
 }
 
-pub(super) fn front_from_tree(tree: &Tree) -> Option<Vec<Modifier>> {
+pub(super) fn fronted_modifiers_from_tree(tree: &Tree) -> Option<Vec<Modifier>> {
     Some(match parts(tree)? {
         ("front_place", [place]) => {
             let (predicate, place) = place_of(place)?;
@@ -309,7 +315,7 @@ pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Clause> {
         subject.modifiers.pop();
         let mut arguments = vec![Phrase::from(subject)];
         arguments.extend(seen.arguments.iter().cloned());
-        return Some(holds(&seen.predicate, arguments));
+        return Some(atomic_clause(&seen.predicate, arguments));
     }
     // "Two mats, a gray one and an orange one": the first is the sum of the others.
     if found.len() > 2 && is_several(&found[0]) && found[1..].iter().all(has_anaphoric_noun) {
@@ -395,7 +401,7 @@ pub(super) fn item_from_tree(tree: &Tree) -> Option<Phrase> {
 
 /// The phrases of the items of a clause of existence, with the modifiers that the clause adds, by their paths from the clause.
 pub(super) fn item_phrases(clause: &Tree, path: &[usize]) -> Vec<(Vec<usize>, Phrase)> {
-    let Some((function, arguments)): Option<Parts<'_>> = parts(clause) else {
+    let Some((function, arguments)): Option<FunctionApplication<'_>> = parts(clause) else {
         return Vec::new();
     };
     let Some(ExistenceParts { modifiers, items }) = existence_parts(function, arguments) else {

@@ -1,6 +1,6 @@
 //! Trees to forms: the meanings of the grammar's functions.
 
-use super::phrases::{described, modifier, phrase, relation_to, size};
+use super::phrases::{modifier, nominal, phrase, relation_predicate, size};
 use super::{
     distances, existence, numbers, places, questions, requests, rooms, sets, verb_phrases,
 };
@@ -12,10 +12,10 @@ use crate::grammar::Tree;
 use std::collections::BTreeMap;
 
 /// The function of a tree with its arguments.
-pub(super) type Parts<'a> = (&'a str, &'a [Tree]);
+pub(super) type FunctionApplication<'a> = (&'a str, &'a [Tree]);
 
 /// The function of a tree with its arguments; `None` for words and numbers.
-pub(super) fn parts(tree: &Tree) -> Option<Parts<'_>> {
+pub(super) fn parts(tree: &Tree) -> Option<FunctionApplication<'_>> {
     match tree {
         Tree::Apply {
             function,
@@ -46,10 +46,10 @@ pub(super) fn form(tree: &Tree) -> Option<Form> {
         ("request", [inner]) => Form::Request(requests::plan(inner)?),
         ("ask", [inner]) => Form::Question(questions::question(inner)?),
         ("ask_that", [inner]) => Form::Question(Question::Whether(clause(inner)?)),
-        ("ask_indirect", [inner]) => Form::Question(questions::indirect(inner)?),
+        ("ask_indirect", [inner]) => Form::Question(questions::indirect_question(inner)?),
         ("request_ask", [first, inner]) => Form::Several(vec![
             Form::Request(requests::plan(first)?),
-            Form::Question(questions::indirect(inner)?),
+            Form::Question(questions::indirect_question(inner)?),
         ]),
         ("several_questions", [first, second]) => Form::Several(vec![
             Form::Question(questions::question(first)?),
@@ -95,7 +95,7 @@ fn coordinated_clauses(tree: &Tree) -> Option<Vec<Clause>> {
     Some(clauses)
 }
 
-pub(super) fn holds(predicate: &str, arguments: Vec<Phrase>) -> Clause {
+pub(super) fn atomic_clause(predicate: &str, arguments: Vec<Phrase>) -> Clause {
     Clause::Holds {
         predicate: predicate.to_owned(),
         arguments,
@@ -105,61 +105,61 @@ pub(super) fn holds(predicate: &str, arguments: Vec<Phrase>) -> Clause {
 pub(super) fn possibly_negated_clause(tree: &Tree) -> Option<Clause> {
     let (function, arguments) = parts(tree)?;
     if let Some(plain) = function.strip_suffix("_not") {
-        let inner = affirmed(plain, arguments)?;
+        let inner = affirmative_clause(plain, arguments)?;
         return Some(Clause::Not(Box::new(inner)));
     }
-    affirmed(function, arguments)
+    affirmative_clause(function, arguments)
 }
 
-pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
+pub(super) fn affirmative_clause(function: &str, arguments: &[Tree]) -> Option<Clause> {
     Some(match (function, arguments) {
         ("holds" | "holds_verb" | "whether_holds" | "whether_verb", [subject, word, object]) => {
             let (subject, object) = (phrase(subject)?, phrase(object)?);
-            let predicate = relation_to(entry_id(word)?, &subject, &object);
-            holds(&predicate, vec![subject, object])
+            let predicate = relation_predicate(entry_id(word)?, &subject, &object);
+            atomic_clause(&predicate, vec![subject, object])
         }
-        ("holds_closer" | "whether_closer", [subject, near, far]) => holds(
+        ("holds_closer" | "whether_closer", [subject, near, far]) => atomic_clause(
             "closer_to",
             vec![phrase(subject)?, phrase(near)?, phrase(far)?],
         ),
-        ("closer_than" | "whether_closer_than", [subject, reference, other]) => holds(
+        ("closer_than" | "whether_closer_than", [subject, reference, other]) => atomic_clause(
             "closer_to",
             vec![phrase(reference)?, phrase(subject)?, phrase(other)?],
         ),
         ("see_room_from" | "whether_see_room_from", [from, to]) => {
-            holds("visible_from_room", vec![room(to)?, room(from)?])
+            atomic_clause("visible_from_room", vec![room(to)?, room(from)?])
         }
         ("holds_each_other" | "whether_each_other", [subject, word]) => {
-            holds(&entry_id(word)?, vec![phrase(subject)?, Phrase::EachOther])
+            atomic_clause(&entry_id(word)?, vec![phrase(subject)?, Phrase::EachOther])
         }
         ("list_holds_each_other", [items, word]) => {
-            holds(&entry_id(word)?, vec![subjects(items)?, Phrase::EachOther])
+            atomic_clause(&entry_id(word)?, vec![subjects(items)?, Phrase::EachOther])
         }
         ("holds_between" | "whether_between", [subject, a, b]) => {
-            holds("between", vec![phrase(subject)?, phrase(a)?, phrase(b)?])
+            atomic_clause("between", vec![phrase(subject)?, phrase(a)?, phrase(b)?])
         }
         ("holds_place" | "whether_place", [subject, place]) => {
             let (predicate, place) = place_of(place)?;
-            holds(&predicate, vec![phrase(subject)?, place])
+            atomic_clause(&predicate, vec![phrase(subject)?, place])
         }
-        ("left_at", [thing, relation, landmark]) => holds(
+        ("left_at", [thing, relation, landmark]) => atomic_clause(
             &entry_id(relation)?,
             vec![phrase(thing)?, phrase(landmark)?],
         ),
         ("left_in_place", [thing, place]) => {
             let (predicate, place) = place_of(place)?;
-            holds(&predicate, vec![phrase(thing)?, place])
+            atomic_clause(&predicate, vec![phrase(thing)?, place])
         }
         ("exists_neither", [one, other, place]) => {
             let place = modifier(place)?;
             let no = |noun: &Tree| {
-                let noun = described(noun)?.with_modifier(place.clone());
+                let noun = nominal(noun)?.with_modifier(place.clone());
                 Some(Clause::Exists(noun.with_quantifier(Quantifier::No).into()))
             };
             Clause::All(vec![no(one)?, no(other)?])
         }
         ("more_each", [more, there, than, elsewhere]) => {
-            numbers::more_in_places([more, there], [than, elsewhere])?
+            numbers::comparative_by_place([more, there], [than, elsewhere])?
         }
         ("is" | "whether_is", [subject, quality]) => is(phrase(subject)?, quality)?,
         ("says" | "whether_says", [subject, said]) => verb_phrases::clause(phrase(subject)?, said)?,
@@ -167,14 +167,14 @@ pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
             verb_phrases::clause(subjects(items)?, said)?
         }
         ("stands_list", [items, posture, said]) => {
-            verb_phrases::clause(subjects(items)?, &questions::standing(posture, said))?
+            verb_phrases::clause(subjects(items)?, &questions::posture_phrase(posture, said))?
         }
         ("stands" | "whether_stands", [subject, posture, said]) => {
-            verb_phrases::clause(phrase(subject)?, &questions::standing(posture, said))?
+            verb_phrases::clause(phrase(subject)?, &questions::posture_phrase(posture, said))?
         }
         ("says_and_has_thing", [subject, said, thing]) => Clause::All(vec![
             verb_phrases::clause(phrase(subject)?, said)?,
-            holds(
+            atomic_clause(
                 "has",
                 vec![phrase(subject)?, existence::items_from_tree(thing)?],
             ),
@@ -189,7 +189,7 @@ pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
         }
         ("says_and_has", [subject, said, load]) => Clause::All(vec![
             verb_phrases::clause(phrase(subject)?, said)?,
-            holds(
+            atomic_clause(
                 "supports",
                 vec![phrase(subject)?, existence::items_from_tree(load)?],
             ),
@@ -198,16 +198,16 @@ pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
             let Phrase::Described(own) = phrase(subject)? else {
                 return None;
             };
-            Clause::Exists(verb_phrases::with_said(*own, said)?.into())
+            Clause::Exists(verb_phrases::with_predications(*own, said)?.into())
         }
         ("holds_hang", [subject, mount]) => {
-            holds("hangs_on", vec![phrase(subject)?, phrase(mount)?])
+            atomic_clause("hangs_on", vec![phrase(subject)?, phrase(mount)?])
         }
         ("holds_verb_list", [subject, word, items]) => {
             let items = existence::items_from_tree(items)?;
             let subject = phrase(subject)?;
-            let predicate = relation_to(entry_id(word)?, &subject, &items);
-            holds(&predicate, vec![subject, items])
+            let predicate = relation_predicate(entry_id(word)?, &subject, &items);
+            atomic_clause(&predicate, vec![subject, items])
         }
         (
             "holds_carries" | "holds_carries_list" | "holds_content" | "holds_content_list"
@@ -216,13 +216,13 @@ pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
         ) => {
             let inside = function.contains("content");
             let predicate = if inside { "contains" } else { "supports" };
-            holds(
+            atomic_clause(
                 predicate,
                 vec![phrase(subject)?, existence::items_from_tree(items)?],
             )
         }
         ("fronted", [front, inner]) => fronted(
-            existence::front_from_tree(front)?,
+            existence::fronted_modifiers_from_tree(front)?,
             possibly_negated_clause(inner)?,
         )?,
         ("exists_all", [items, quality]) => {
@@ -244,7 +244,7 @@ pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
             let (subject, other) = (phrase(subject)?, phrase(other)?);
             Clause::All(vec![
                 verb_phrases::clause(subject.clone(), said)?,
-                holds(&entry_id(relation)?, vec![other, subject]),
+                atomic_clause(&entry_id(relation)?, vec![other, subject]),
             ])
         }
         ("see_none", [items]) => {
@@ -255,9 +255,9 @@ pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
             Clause::Not(Box::new(Clause::Exists(seen.into())))
         }
         ("more_where" | "whether_more_where", [what, one, other]) => {
-            numbers::more_where(what, one, other)?
+            numbers::comparative_by_modifier(what, one, other)?
         }
-        ("as_many" | "whether_as_many", [one, other]) => numbers::as_many(one, other)?,
+        ("as_many" | "whether_as_many", [one, other]) => numbers::equative(one, other)?,
         ("absolute", [first, subject, said]) => Clause::All(vec![
             possibly_negated_clause(first)?,
             verb_phrases::clause(phrase(subject)?, said)?,
@@ -290,38 +290,44 @@ pub(super) fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
             Clause::Not(Box::new(is(phrase(one)?, quality)?)),
             is(phrase(other)?, quality)?,
         ]),
-        ("more" | "whether_more", [more, than]) => numbers::more(more, than)?,
+        ("more" | "whether_more", [more, than]) => numbers::comparative(more, than)?,
         ("has_more" | "whether_has_more", [one, what, other]) => {
-            numbers::has_more(one, what, other)?
+            numbers::comparative_by_holder(one, what, other)?
         }
         ("same_color_all" | "whether_same_color_all", [set]) => {
-            let all: Phrase = sets::set(set)?.with_quantifier(Quantifier::Every).into();
-            holds("same_color", vec![all.clone(), all])
+            let all: Phrase = sets::set_description(set)?
+                .with_quantifier(Quantifier::Every)
+                .into();
+            atomic_clause("same_color", vec![all.clone(), all])
         }
         ("same_material_all" | "whether_same_material_all", [set]) => {
-            let all: Phrase = sets::set(set)?.with_quantifier(Quantifier::Every).into();
-            holds("same_material", vec![all.clone(), all])
+            let all: Phrase = sets::set_description(set)?
+                .with_quantifier(Quantifier::Every)
+                .into();
+            atomic_clause("same_material", vec![all.clone(), all])
         }
         ("same_color" | "whether_same_color", [a, b]) => {
-            holds("same_color", vec![phrase(a)?, phrase(b)?])
+            atomic_clause("same_color", vec![phrase(a)?, phrase(b)?])
         }
         ("same_material" | "whether_same_material", [a, b]) => {
-            holds("same_material", vec![phrase(a)?, phrase(b)?])
+            atomic_clause("same_material", vec![phrase(a)?, phrase(b)?])
         }
-        ("holds_mount" | "whether_mount", [subject, mount]) => holds(
+        ("holds_mount" | "whether_mount", [subject, mount]) => atomic_clause(
             "hangs_on",
             vec![phrase(subject)?, places::mount_from_tree(mount)?],
         ),
-        ("leads", [door, passage]) => holds_of(phrase(door)?, places::passage_from_tree(passage)?),
+        ("leads", [door, passage]) => {
+            modifier_clause(phrase(door)?, places::passage_from_tree(passage)?)
+        }
         ("holds_side" | "whether_side", [subject, side]) => {
-            holds_of(phrase(subject)?, places::side_from_tree(side)?)
+            modifier_clause(phrase(subject)?, places::side_from_tree(side)?)
         }
         ("list_holds", [items, word, object]) => {
-            holds(&entry_id(word)?, vec![subjects(items)?, phrase(object)?])
+            atomic_clause(&entry_id(word)?, vec![subjects(items)?, phrase(object)?])
         }
         ("list_holds_place", [items, place]) => {
             let (predicate, place) = place_of(place)?;
-            holds(&predicate, vec![subjects(items)?, place])
+            atomic_clause(&predicate, vec![subjects(items)?, place])
         }
         ("list_is", [items, quality]) => Clause::Is {
             subject: subjects(items)?,
@@ -355,10 +361,10 @@ fn fronted(modifiers: Vec<Modifier>, mut clause: Clause) -> Option<Clause> {
 }
 
 /// The clause that a modifier ascribes to a subject.
-pub(super) fn holds_of(subject: Phrase, modifier: Modifier) -> Clause {
+pub(super) fn modifier_clause(subject: Phrase, modifier: Modifier) -> Clause {
     let mut arguments = vec![subject];
     arguments.extend(modifier.arguments);
-    holds(&modifier.predicate, arguments)
+    atomic_clause(&modifier.predicate, arguments)
 }
 
 pub(super) fn subjects(tree: &Tree) -> Option<Phrase> {
@@ -414,7 +420,7 @@ pub(super) fn place_of(tree: &Tree) -> Option<(String, Phrase)> {
                 "in" => "contains",
                 _ => return None,
             };
-            let shared = described(noun)?.with_modifier(Modifier::new(converse, [phrase(other)?]));
+            let shared = nominal(noun)?.with_modifier(Modifier::new(converse, [phrase(other)?]));
             (relation, shared.into())
         }
         ("destination_end", [room]) => of("at_end_of", self::room(room)?),
@@ -450,7 +456,7 @@ pub(super) fn room(tree: &Tree) -> Option<Phrase> {
     match (function, arguments) {
         ("room_of_set", [inner]) => {
             let (function, arguments) = parts(inner)?;
-            return sets::phrase_of_set(function.strip_prefix("room_")?, arguments);
+            return sets::partitive_phrase(function.strip_prefix("room_")?, arguments);
         }
         ("room_it", []) => return Some(Phrase::Pronoun),
         ("room_subject", [inner]) => return room(inner),

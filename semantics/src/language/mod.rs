@@ -23,7 +23,7 @@ mod to_tree;
 mod verb_phrases;
 
 pub use read::{
-    MAX_TEXT_BYTES, MAX_WORDS, ReadError, Readings, SentenceError, SentenceReadings, UnknownWord,
+    MAX_TEXT_BYTES, MAX_WORDS, ParseError, Readings, SentenceError, SentenceReadings, UnknownWord,
 };
 pub use say::{PhraseSpan, Sentence};
 

@@ -1,14 +1,14 @@
 //! Numbers compared: forms to trees, and trees to forms.
 
 use super::from_tree::number;
-use super::phrases::{described, modifier, phrase};
+use super::phrases::{modifier, nominal, phrase};
 use super::to_tree::TreeBuilder;
 use crate::form::{Clause, Description, Modifier, Phrase, Quantifier};
 use crate::grammar::Tree;
 
 /// More of one than of the other. What is said of the second alone is said of both: "more chairs than tables in the kitchen".
-pub(super) fn more(more: &Tree, than: &Tree) -> Option<Clause> {
-    let (mut more, than) = (described(more)?, described(than)?);
+pub(super) fn comparative(more: &Tree, than: &Tree) -> Option<Clause> {
+    let (mut more, than) = (nominal(more)?, nominal(than)?);
     if more.modifiers.is_empty() {
         more.modifiers.clone_from(&than.modifiers);
     }
@@ -23,8 +23,8 @@ fn clause(more: Description, than: Description) -> Clause {
 }
 
 /// More of a kind in or on one thing than in or on another.
-pub(super) fn has_more(one: &Tree, what: &Tree, other: &Tree) -> Option<Clause> {
-    let what = described(what)?;
+pub(super) fn comparative_by_holder(one: &Tree, what: &Tree, other: &Tree) -> Option<Clause> {
+    let what = nominal(what)?;
     let within = |place: &Tree| {
         let place = phrase(place)?;
         Some(
@@ -36,31 +36,31 @@ pub(super) fn has_more(one: &Tree, what: &Tree, other: &Tree) -> Option<Clause> 
 }
 
 /// More of a kind of which one modifier holds than of which another does.
-pub(super) fn more_where(what: &Tree, one: &Tree, other: &Tree) -> Option<Clause> {
-    let what = described(what)?;
+pub(super) fn comparative_by_modifier(what: &Tree, one: &Tree, other: &Tree) -> Option<Clause> {
+    let what = nominal(what)?;
     let there = |place: &Tree| Some(what.clone().with_modifier(modifier(place)?));
     Some(clause(there(one)?, there(other)?))
 }
 
 /// More of a kind in one place than of another kind in another: "more jars on the shelf than mugs on the table".
-pub(super) fn more_in_places(more: [&Tree; 2], than: [&Tree; 2]) -> Option<Clause> {
-    let there = |[what, place]: [&Tree; 2]| Some(described(what)?.with_modifier(modifier(place)?));
+pub(super) fn comparative_by_place(more: [&Tree; 2], than: [&Tree; 2]) -> Option<Clause> {
+    let there = |[what, place]: [&Tree; 2]| Some(nominal(what)?.with_modifier(modifier(place)?));
     Some(clause(there(more)?, there(than)?))
 }
 
 /// Equal numbers: more of neither.
-pub(super) fn as_many(one: &Tree, other: &Tree) -> Option<Clause> {
+pub(super) fn equative(one: &Tree, other: &Tree) -> Option<Clause> {
     let not = |clause: Clause| Clause::Not(Box::new(clause));
     Some(Clause::All(vec![
-        not(more(one, other)?),
-        not(more(other, one)?),
+        not(comparative(one, other)?),
+        not(comparative(other, one)?),
     ]))
 }
 
 /// The clauses of "two or three chairs".
 pub(super) fn exact_count_clauses(one: &Tree, other: &Tree, what: &Tree) -> Option<Vec<Clause>> {
     let exactly = |count: &Tree| {
-        let what = described(what)?;
+        let what = nominal(what)?;
         let what = what.with_quantifier(Quantifier::Exactly(number(count)?));
         Some(Clause::Exists(Phrase::from(what)))
     };
@@ -69,7 +69,11 @@ pub(super) fn exact_count_clauses(one: &Tree, other: &Tree, what: &Tree) -> Opti
 
 impl TreeBuilder<'_> {
     /// The nouns of "more chairs than tables in the kitchen".
-    pub(super) fn compared(&self, more: &Description, than: &Description) -> Option<(Tree, Tree)> {
+    pub(super) fn compared_nouns(
+        &self,
+        more: &Description,
+        than: &Description,
+    ) -> Option<(Tree, Tree)> {
         let plain = |description: &Description| {
             description.quantifier == Quantifier::Some && description.selection.is_none()
         };

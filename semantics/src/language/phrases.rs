@@ -9,7 +9,7 @@ use crate::size::SizeClass;
 pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
     let (function, arguments) = parts(tree)?;
     let of = |quantifier, noun: &Tree| -> Option<Phrase> {
-        Some(described(noun)?.with_quantifier(quantifier).into())
+        Some(nominal(noun)?.with_quantifier(quantifier).into())
     };
     let selected =
         |noun: &Tree, order: &Tree, place, reference: Option<Phrase>| -> Option<Phrase> {
@@ -20,7 +20,7 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
             };
             let description = Description {
                 selection: Some(selection),
-                ..described(noun)?.with_quantifier(Quantifier::The)
+                ..nominal(noun)?.with_quantifier(Quantifier::The)
             };
             Some(description.into())
         };
@@ -32,12 +32,12 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
         };
         let description = Description {
             selection: Some(selection),
-            ..described(noun)?.with_quantifier(Quantifier::The)
+            ..nominal(noun)?.with_quantifier(Quantifier::The)
         };
         Some(description.into())
     };
     let that = |quantifier, noun: &Tree, predicate: String, other: Phrase| -> Option<Phrase> {
-        let mut description = described(noun)?.with_quantifier(quantifier);
+        let mut description = nominal(noun)?.with_quantifier(quantifier);
         description.modifiers.push(Modifier {
             negated: false,
             predicate,
@@ -56,7 +56,7 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
         ("at_most", [count, noun]) => of(Quantifier::AtMost(number(count)?), noun),
         ("more_than", [count, noun]) => of(sets::more_than(count)?, noun),
         ("fewer_than", [count, noun]) => of(sets::fewer_than(count)?, noun),
-        ("another" | "i_another", [noun]) => Some(described(noun)?.other().into()),
+        ("another" | "i_another", [noun]) => Some(nominal(noun)?.other().into()),
         ("another_same", []) => {
             let same = Description::new(Quantifier::Some, Noun::SameNoun);
             Some(same.other().into())
@@ -74,7 +74,7 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
             };
             let description = Description {
                 selection: Some(selection),
-                ..described(noun)?.with_modifier(side)
+                ..nominal(noun)?.with_modifier(side)
             };
             Some(description.with_quantifier(Quantifier::The).into())
         }
@@ -83,10 +83,10 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
         ("no_piece_of", [noun, place]) => quantified_piece(Quantifier::No, noun, Some(place)),
         ("closer_one", [noun, reference]) => {
             let reference = Some(phrase(reference)?);
-            Some(questions::with_selection(described(noun)?, "closest_to", reference).into())
+            Some(questions::with_selection(nominal(noun)?, "closest_to", reference).into())
         }
         ("other" | "i_other", [noun]) => {
-            let other = described(noun)?.with_quantifier(Quantifier::The).other();
+            let other = nominal(noun)?.with_quantifier(Quantifier::The).other();
             Some(other.into())
         }
         (
@@ -94,15 +94,15 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
             [word, noun],
         ) => {
             let order = questions::superlative_of(&entry_id(word)?, function.ends_with("_less"))?;
-            Some(questions::with_selection(described(noun)?, order, None).into())
+            Some(questions::with_selection(nominal(noun)?, order, None).into())
         }
-        ("superlative_of", [order, of]) => {
-            Some(questions::with_selection(sets::set(of)?, &entry_id(order)?, None).into())
-        }
+        ("superlative_of", [order, of]) => Some(
+            questions::with_selection(sets::set_description(of)?, &entry_id(order)?, None).into(),
+        ),
         ("comparative_of" | "comparative_less_of", [word, of]) => {
             let order =
                 questions::superlative_of(&entry_id(word)?, function == "comparative_less_of")?;
-            Some(questions::with_selection(sets::set(of)?, order, None).into())
+            Some(questions::with_selection(sets::set_description(of)?, order, None).into())
         }
         ("nobody", []) => {
             let person = Noun::Object("person".to_owned());
@@ -214,20 +214,20 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
         ("nth_left" | "i_nth_left", [noun]) => first_in(noun, "from_left"),
         ("nth_right" | "i_nth_right", [noun]) => first_in(noun, "from_right"),
         ("i_with", [noun, added]) => {
-            let noun = described(noun)?.with_quantifier(Quantifier::The);
+            let noun = nominal(noun)?.with_quantifier(Quantifier::The);
             Some(noun.with_modifier(modifier(added)?).into())
         }
         ("i_some_with", [noun, added]) => {
-            Some(described(noun)?.with_modifier(modifier(added)?).into())
+            Some(nominal(noun)?.with_modifier(modifier(added)?).into())
         }
         ("i_with_relative", [noun, added]) => {
-            let noun = described(noun)?.with_quantifier(Quantifier::The);
-            Some(verb_phrases::with_relative(noun, added)?.into())
+            let noun = nominal(noun)?.with_quantifier(Quantifier::The);
+            Some(verb_phrases::with_relative_clause(noun, added)?.into())
         }
         ("i_some_with_relative", [noun, added]) => {
-            Some(verb_phrases::with_relative(described(noun)?, added)?.into())
+            Some(verb_phrases::with_relative_clause(nominal(noun)?, added)?.into())
         }
-        _ => sets::phrase_of_set(function.strip_prefix("i_").unwrap_or(function), arguments),
+        _ => sets::partitive_phrase(function.strip_prefix("i_").unwrap_or(function), arguments),
     }
 }
 
@@ -266,7 +266,7 @@ fn indefinite_pronoun(tree: &Tree) -> Option<Description> {
             Some(indefinite_pronoun(inner)?.with_modifier(modifier(added)?))
         }
         ("nothing_with_relative" | "something_with_relative", [inner, added]) => {
-            verb_phrases::with_relative(indefinite_pronoun(inner)?, added)
+            verb_phrases::with_relative_clause(indefinite_pronoun(inner)?, added)
         }
         ("nothing_quality" | "something_quality", [inner, quality]) => {
             let mut description = indefinite_pronoun(inner)?;
@@ -279,7 +279,7 @@ fn indefinite_pronoun(tree: &Tree) -> Option<Description> {
 
 /// The landmarks of "between two chairs": one and another.
 pub(super) fn between_two(noun: &Tree) -> Option<[Phrase; 2]> {
-    let one: Phrase = described(noun)?.into();
+    let one: Phrase = nominal(noun)?.into();
     Some([one.clone(), one])
 }
 
@@ -306,13 +306,13 @@ fn is_picture(noun: &Noun) -> bool {
 }
 
 /// The description of a noun with its adjectives and modifiers; the caller sets its quantifier.
-pub(super) fn described(tree: &Tree) -> Option<Description> {
+pub(super) fn nominal(tree: &Tree) -> Option<Description> {
     let (function, arguments) = parts(tree)?;
     let plain = |noun: String| Description::new(Quantifier::Some, Noun::Object(noun));
     Some(match (function, arguments) {
-        ("plain", [inner]) => described(inner)?,
+        ("plain", [inner]) => nominal(inner)?,
         ("with" | "but_not", [noun, added]) => {
-            let mut description = described(noun)?;
+            let mut description = nominal(noun)?;
             let is_of = parts(added)?.0 == "modifier_of";
             let added = modifier(added)?;
             if added.predicate.starts_with("leads_") && !is_passage_noun(&description.noun) {
@@ -331,21 +331,23 @@ pub(super) fn described(tree: &Tree) -> Option<Description> {
             });
             description
         }
-        ("with_relative", [noun, added]) => verb_phrases::with_relative(described(noun)?, added)?,
+        ("with_relative", [noun, added]) => {
+            verb_phrases::with_relative_clause(nominal(noun)?, added)?
+        }
         ("with_material", [noun, word]) => {
-            let mut description = described(noun)?;
+            let mut description = nominal(noun)?;
             verb_phrases::add_quality(&mut description, Quality::Material(entry_id(word)?))?;
             description
         }
         ("way_between", [noun, one, other]) => {
-            let way = described(noun)?;
+            let way = nominal(noun)?;
             is_passage_noun(&way.noun).then_some(())?;
             let to = |place: &Tree| Some(Modifier::new("leads_to", [room(place)?]));
             way.with_modifier(to(one)?).with_modifier(to(other)?)
         }
-        ("with_apposition", [noun, added]) => described(noun)?.with_modifier(modifier(added)?),
+        ("with_apposition", [noun, added]) => nominal(noun)?.with_modifier(modifier(added)?),
         ("with_apposed_color", [noun, color]) => {
-            let mut description = described(noun)?;
+            let mut description = nominal(noun)?;
             verb_phrases::add_quality(&mut description, Quality::Color(entry_id(color)?))?;
             description
         }
@@ -355,7 +357,7 @@ pub(super) fn described(tree: &Tree) -> Option<Description> {
         }
         ("same_noun", []) => Description::new(Quantifier::Some, Noun::SameNoun),
         ("gathered", [head, tail]) => {
-            let mut description = described(tail)?;
+            let mut description = nominal(tail)?;
             let Noun::Object(tail) = &description.noun else {
                 return None;
             };
@@ -374,12 +376,12 @@ pub(super) fn described(tree: &Tree) -> Option<Description> {
             plain(noun).with_modifier(Modifier::new(predicate, [room.into()]))
         }
         ("color" | "color_tail", [word, inner]) => {
-            let mut description = described(inner)?;
+            let mut description = nominal(inner)?;
             description.colors.insert(0, entry_id(word)?);
             (description.colors.len() == 1).then_some(description)?
         }
         ("two_colors" | "two_colors_tail", [one, two, inner]) => {
-            let mut description = described(inner)?;
+            let mut description = nominal(inner)?;
             if !description.colors.is_empty() {
                 return None;
             }
@@ -387,17 +389,17 @@ pub(super) fn described(tree: &Tree) -> Option<Description> {
             description
         }
         ("material" | "material_tail", [word, inner]) => {
-            let mut description = described(inner)?;
+            let mut description = nominal(inner)?;
             let before = description.material.replace(entry_id(word)?);
             before.is_none().then_some(description)?
         }
         ("size" | "size_tail", [word, inner]) => {
-            let mut description = described(inner)?;
+            let mut description = nominal(inner)?;
             let before = description.size.replace(size(word)?);
             before.is_none().then_some(description)?
         }
         ("state", [word, inner]) => {
-            let mut description = described(inner)?;
+            let mut description = nominal(inner)?;
             let before = description.state.replace(entry_id(word)?);
             before.is_none().then_some(description)?
         }
@@ -438,7 +440,7 @@ pub(super) fn modifier(tree: &Tree) -> Option<Modifier> {
         ("modifier_without", [content]) => {
             return Some(Modifier {
                 negated: true,
-                ..Modifier::new("has", [described(content)?.into()])
+                ..Modifier::new("has", [nominal(content)?.into()])
             });
         }
         ("modifier_closer", [near, far]) => {
@@ -449,7 +451,10 @@ pub(super) fn modifier(tree: &Tree) -> Option<Modifier> {
             let thing: Phrase =
                 Description::new(Quantifier::Some, Noun::Object(Noun::ANY_OBJECT.to_owned()))
                     .into();
-            (relation_to(entry_id(word)?, &thing, &other), vec![other])
+            (
+                relation_predicate(entry_id(word)?, &thing, &other),
+                vec![other],
+            )
         }
         ("modifier_between_two", [both]) => ("between".to_owned(), between_two(both)?.into()),
         ("modifier_from", [word, other]) => (entry_id(word)?, vec![phrase(other)?]),
@@ -468,7 +473,7 @@ pub(super) fn modifier(tree: &Tree) -> Option<Modifier> {
 }
 
 /// The predicate of a relation word between two things: what is on a wall hangs there, and a thing that "holds" another has it.
-pub(super) fn relation_to(word: String, subject: &Phrase, landmark: &Phrase) -> String {
+pub(super) fn relation_predicate(word: String, subject: &Phrase, landmark: &Phrase) -> String {
     let hung = |own: &Description| match &own.noun {
         Noun::Structure(noun) => noun == "wall" || noun == "ceiling",
         _ => false,

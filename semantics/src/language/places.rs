@@ -3,7 +3,7 @@
 use super::existence::is_bare;
 use super::from_tree::{entry_id, parts, room};
 use super::lexicon::STRUCTURE;
-use super::to_tree::{Position, TreeBuilder};
+use super::to_tree::{PhrasePosition, TreeBuilder};
 use crate::form::{Clause, Description, Modifier, Noun, Phrase, Quantifier};
 use crate::grammar::Tree;
 
@@ -165,7 +165,7 @@ pub(super) fn passage_from_tree(tree: &Tree) -> Option<Modifier> {
 
 impl TreeBuilder<'_> {
     /// The tree of "the wall", which means any of that kind, with a side or a room.
-    pub(super) fn structure(&self, own: &Description, position: Position) -> Option<Tree> {
+    pub(super) fn structure(&self, own: &Description, position: PhrasePosition) -> Option<Tree> {
         let Noun::Structure(noun) = &own.noun else {
             return None;
         };
@@ -176,7 +176,7 @@ impl TreeBuilder<'_> {
             ..own.clone()
         };
         let noun = self.lexicon_entry(STRUCTURE, noun)?;
-        if own.quantifier == Quantifier::Every && position == Position::Free {
+        if own.quantifier == Quantifier::Every && position == PhrasePosition::Free {
             let any = bare.with_quantifier(Quantifier::Some);
             return is_bare(&any).then(|| self.every_piece(own, noun))?;
         }
@@ -186,14 +186,14 @@ impl TreeBuilder<'_> {
         if !own.colors.is_empty() || own.material.is_some() {
             return self.piece(own, noun, position);
         }
-        let prefix = if position == Position::Landmark {
+        let prefix = if position == PhrasePosition::Landmark {
             "i_"
         } else {
             ""
         };
         let named = |name: &str| format!("{prefix}{name}");
         Some(match &own.modifiers[..] {
-            [] if position == Position::Landmark => Tree::apply("i_structure", [noun]),
+            [] if position == PhrasePosition::Landmark => Tree::apply("i_structure", [noun]),
             [] => Tree::apply("structure_np", [noun]),
             [side] if attributive_side_to_tree(side).is_some() => Tree::apply(
                 &named("structure_flank"),
@@ -246,15 +246,15 @@ impl TreeBuilder<'_> {
     }
 
     /// The tree of any piece with its colour and substance.
-    fn piece(&self, own: &Description, noun: Tree, position: Position) -> Option<Tree> {
+    fn piece(&self, own: &Description, noun: Tree, position: PhrasePosition) -> Option<Tree> {
         let tree = self.structure_noun_phrase(own, noun)?;
         match (&own.modifiers[..], position) {
-            ([], Position::Landmark) => Some(Tree::apply("i_piece_np", [tree])),
-            ([], Position::Free) => Some(Tree::apply("piece_np", [tree])),
+            ([], PhrasePosition::Landmark) => Some(Tree::apply("i_piece_np", [tree])),
+            ([], PhrasePosition::Free) => Some(Tree::apply("piece_np", [tree])),
             ([there], position) if there.predicate == "in_room" && !there.negated => {
                 let function = match position {
-                    Position::Landmark => "i_piece_of",
-                    Position::Free => "piece_of",
+                    PhrasePosition::Landmark => "i_piece_of",
+                    PhrasePosition::Free => "piece_of",
                 };
                 let room = self.room(there.arguments.first()?)?;
                 Some(Tree::apply(function, [tree, room]))

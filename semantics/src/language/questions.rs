@@ -2,11 +2,12 @@
 
 use super::existence::{self, is_bare};
 use super::from_tree::{
-    affirmed, entry_id, holds, parts, place_of, possibly_negated_clause, quality_of, room,
+    affirmative_clause, atomic_clause, entry_id, parts, place_of, possibly_negated_clause,
+    quality_of, room,
 };
 use super::lexicon::{RELATION, ROOM_NOUN};
-use super::phrases::{described, modifier, phrase};
-use super::to_tree::{Position, TreeBuilder};
+use super::phrases::{modifier, nominal, phrase};
+use super::to_tree::{PhrasePosition, TreeBuilder};
 use super::{alternatives, numbers, places, sets, verb_phrases};
 use crate::form::{
     AttributeKind, Clause, Description, Modifier, Noun, OrdinalSelection, Phrase, Quantifier,
@@ -23,50 +24,54 @@ fn read_only_question(function: &str, arguments: &[Tree]) -> Option<Question> {
     };
     Some(match (function, arguments) {
         ("how_many_seen_of", [noun, added]) => {
-            let noun = described(noun)?.with_modifier(modifier(added)?);
+            let noun = nominal(noun)?.with_modifier(modifier(added)?);
             count(noun.with_modifier(Modifier::new("visible", [])))
         }
-        ("which_are_more", [one, other]) => {
-            Question::Alternatives(vec![numbers::more(one, other)?, numbers::more(other, one)?])
-        }
+        ("which_are_more", [one, other]) => Question::Alternatives(vec![
+            numbers::comparative(one, other)?,
+            numbers::comparative(other, one)?,
+        ]),
         ("which_has_more", [what, one, other]) => Question::Alternatives(vec![
-            numbers::has_more(one, what, other)?,
-            numbers::has_more(other, what, one)?,
+            numbers::comparative_by_holder(one, what, other)?,
+            numbers::comparative_by_holder(other, what, one)?,
         ]),
         ("where_are_more", [what, one, other]) => Question::Alternatives(vec![
-            numbers::more_where(what, one, other)?,
-            numbers::more_where(what, other, one)?,
+            numbers::comparative_by_modifier(what, one, other)?,
+            numbers::comparative_by_modifier(what, other, one)?,
         ]),
         ("which_count", [one, other, what]) => {
             Question::Alternatives(numbers::exact_count_clauses(one, other, what)?)
         }
         ("which_verb", [kind, verb, object]) => which(
-            Some(described(kind)?),
-            holds(&entry_id(verb)?, vec![Phrase::Hole, phrase(object)?]),
+            Some(nominal(kind)?),
+            atomic_clause(&entry_id(verb)?, vec![Phrase::Hole, phrase(object)?]),
         ),
         ("what_verb", [verb, object]) => which(
             None,
-            holds(&entry_id(verb)?, vec![Phrase::Hole, phrase(object)?]),
+            atomic_clause(&entry_id(verb)?, vec![Phrase::Hole, phrase(object)?]),
         ),
         ("what_has", [subject]) => which(
             None,
-            holds("belongs_to", vec![Phrase::Hole, phrase(subject)?]),
+            atomic_clause("belongs_to", vec![Phrase::Hole, phrase(subject)?]),
         ),
         ("what_seen_from", [place]) => which(
             None,
-            holds("visible_from_room", vec![Phrase::Hole, room(place)?]),
+            atomic_clause("visible_from_room", vec![Phrase::Hole, room(place)?]),
         ),
         ("how_many_verb" | "how_many_verb_not", [kind, verb, object]) => {
-            count(described(kind)?.with_modifier(Modifier {
+            count(nominal(kind)?.with_modifier(Modifier {
                 negated: function == "how_many_verb_not",
                 ..Modifier::new(&entry_id(verb)?, [phrase(object)?])
             }))
         }
         ("how_many_has", [noun, subject]) => {
             let within = Modifier::new("belongs_to", [phrase(subject)?]);
-            count(described(noun)?.with_modifier(within))
+            count(nominal(noun)?.with_modifier(within))
         }
-        ("what_inside", []) => which(None, holds("in", vec![Phrase::Hole, Phrase::Pronoun])),
+        ("what_inside", []) => which(
+            None,
+            atomic_clause("in", vec![Phrase::Hole, Phrase::Pronoun]),
+        ),
         ("either_room_has", [place, one, other]) => {
             let there = |item: &Tree| {
                 let Phrase::Described(own) = existence::items_from_tree(item)? else {
@@ -90,7 +95,7 @@ fn read_only_question(function: &str, arguments: &[Tree]) -> Option<Question> {
         }
         ("whether_either_seen", [one, other]) => {
             let seen = |noun: &Tree| {
-                let noun = described(noun)?.with_modifier(Modifier::new("visible", []));
+                let noun = nominal(noun)?.with_modifier(Modifier::new("visible", []));
                 Some(Clause::Exists(noun.into()))
             };
             Question::Whether(Clause::Any(vec![seen(one)?, seen(other)?]))
@@ -98,43 +103,43 @@ fn read_only_question(function: &str, arguments: &[Tree]) -> Option<Question> {
         ("any_of_two", [one, other, added]) => {
             let added = modifier(added)?;
             let exists = |noun: &Tree| {
-                let noun = described(noun)?.with_modifier(added.clone());
+                let noun = nominal(noun)?.with_modifier(added.clone());
                 Some(Clause::Exists(noun.into()))
             };
             Question::Whether(Clause::Any(vec![exists(one)?, exists(other)?]))
         }
         ("which_of_is_closer", [noun, reference]) => {
             let reference = Some(phrase(reference)?);
-            let kind = with_selection(described(noun)?, "closest_to", reference);
+            let kind = with_selection(nominal(noun)?, "closest_to", reference);
             which(Some(kind), Clause::Exists(Phrase::Hole))
         }
         ("which_carries", [kind, load]) => which(
-            Some(described(kind)?),
-            holds("supports", vec![Phrase::Hole, phrase(load)?]),
+            Some(nominal(kind)?),
+            atomic_clause("supports", vec![Phrase::Hole, phrase(load)?]),
         ),
         ("which_holds_inside", [kind, content]) => which(
-            Some(described(kind)?),
-            holds("contains", vec![Phrase::Hole, phrase(content)?]),
+            Some(nominal(kind)?),
+            atomic_clause("contains", vec![Phrase::Hole, phrase(content)?]),
         ),
         ("how_many_seen", [noun]) => {
-            count(described(noun)?.with_modifier(Modifier::new("visible", [])))
+            count(nominal(noun)?.with_modifier(Modifier::new("visible", [])))
         }
         ("how_many_room_has", [noun, place]) => {
-            count(described(noun)?.with_modifier(Modifier::new("in_room", [room(place)?])))
+            count(nominal(noun)?.with_modifier(Modifier::new("in_room", [room(place)?])))
         }
         ("what_place", [place]) => {
             let (predicate, place) = place_of(place)?;
-            which(None, holds(&predicate, vec![Phrase::Hole, place]))
+            which(None, atomic_clause(&predicate, vec![Phrase::Hole, place]))
         }
         ("what_mount", [mount]) => {
             let mount = places::mount_from_tree(mount)?;
-            which(None, holds("hangs_on", vec![Phrase::Hole, mount]))
+            which(None, atomic_clause("hangs_on", vec![Phrase::Hole, mount]))
         }
         ("which_mount", [kind, mount]) => {
             let mount = places::mount_from_tree(mount)?;
             which(
-                Some(described(kind)?),
-                holds("hangs_on", vec![Phrase::Hole, mount]),
+                Some(nominal(kind)?),
+                atomic_clause("hangs_on", vec![Phrase::Hole, mount]),
             )
         }
         ("which_is_most" | "which_is_least" | "which_is_superlative", [word]) => {
@@ -159,96 +164,101 @@ fn read_only_question(function: &str, arguments: &[Tree]) -> Option<Question> {
             let any = Description::new(Quantifier::Some, Noun::Room(Noun::ANY_ROOM.to_owned()));
             which(
                 Some(any),
-                holds("leads_to", vec![phrase(door)?, Phrase::Hole]),
+                atomic_clause("leads_to", vec![phrase(door)?, Phrase::Hole]),
             )
         }
         ("what_seen_there", [relation, landmark]) => which(
             None,
             Clause::All(vec![
-                holds("visible", vec![Phrase::Hole]),
-                holds(&entry_id(relation)?, vec![Phrase::Hole, phrase(landmark)?]),
+                atomic_clause("visible", vec![Phrase::Hole]),
+                atomic_clause(&entry_id(relation)?, vec![Phrase::Hole, phrase(landmark)?]),
             ]),
         ),
         ("what_between", [a, b]) => which(
             None,
-            holds("between", vec![Phrase::Hole, phrase(a)?, phrase(b)?]),
+            atomic_clause("between", vec![Phrase::Hole, phrase(a)?, phrase(b)?]),
         ),
         ("where_stands", [of, _]) => Question::Attribute {
             kind: AttributeKind::Place,
             of: phrase(of)?,
         },
         ("which_stranded", [kind, subject, word]) => which(
-            Some(described(kind)?),
-            holds(&entry_id(word)?, vec![phrase(subject)?, Phrase::Hole]),
+            Some(nominal(kind)?),
+            atomic_clause(&entry_id(word)?, vec![phrase(subject)?, Phrase::Hole]),
         ),
         ("what_stranded", [subject, word]) | ("what_stranded_standing", [subject, _, word]) => {
             which(
                 None,
-                holds(&entry_id(word)?, vec![phrase(subject)?, Phrase::Hole]),
+                atomic_clause(&entry_id(word)?, vec![phrase(subject)?, Phrase::Hole]),
             )
         }
         ("what_says", [said]) => which(None, verb_phrases::clause(Phrase::Hole, said)?),
         ("which_says", [kind, said]) => which(
-            Some(described(kind)?),
+            Some(nominal(kind)?),
             verb_phrases::clause(Phrase::Hole, said)?,
         ),
         ("what_stands", [posture, said]) => which(
             None,
-            verb_phrases::clause(Phrase::Hole, &standing(posture, said))?,
+            verb_phrases::clause(Phrase::Hole, &posture_phrase(posture, said))?,
         ),
         ("which_stands", [kind, posture, said]) => which(
-            Some(described(kind)?),
-            verb_phrases::clause(Phrase::Hole, &standing(posture, said))?,
+            Some(nominal(kind)?),
+            verb_phrases::clause(Phrase::Hole, &posture_phrase(posture, said))?,
         ),
         ("which_of_says", [set, said]) => which(
-            Some(sets::set(set)?),
+            Some(sets::set_description(set)?),
             verb_phrases::clause(Phrase::Hole, said)?,
         ),
         ("which_of_stands", [set, posture, said]) => which(
-            Some(sets::set(set)?),
-            verb_phrases::clause(Phrase::Hole, &standing(posture, said))?,
+            Some(sets::set_description(set)?),
+            verb_phrases::clause(Phrase::Hole, &posture_phrase(posture, said))?,
         ),
         ("which_of_is", [set, order]) => which(
-            Some(with_selection(sets::set(set)?, &entry_id(order)?, None)),
+            Some(with_selection(
+                sets::set_description(set)?,
+                &entry_id(order)?,
+                None,
+            )),
             Clause::Exists(Phrase::Hole),
         ),
         ("which_of_is_more" | "which_of_is_less", [set, word]) => {
             let order = superlative_of(&entry_id(word)?, function == "which_of_is_less")?;
             which(
-                Some(with_selection(sets::set(set)?, order, None)),
+                Some(with_selection(sets::set_description(set)?, order, None)),
                 Clause::Exists(Phrase::Hole),
             )
         }
-        ("how_many_say", [kind, said]) => count(verb_phrases::with_said(described(kind)?, said)?),
-        ("how_many_of_say", [set, said]) => count(verb_phrases::with_said(sets::set(set)?, said)?),
-        ("how_many_stand", [kind, posture, said]) => count(verb_phrases::with_said(
-            described(kind)?,
-            &standing(posture, said),
+        ("how_many_say", [kind, said]) => {
+            count(verb_phrases::with_predications(nominal(kind)?, said)?)
+        }
+        ("how_many_of_say", [set, said]) => count(verb_phrases::with_predications(
+            sets::set_description(set)?,
+            said,
+        )?),
+        ("how_many_stand", [kind, posture, said]) => count(verb_phrases::with_predications(
+            nominal(kind)?,
+            &posture_phrase(posture, said),
         )?),
         ("how_many_carry", [kind, load]) => {
-            count(described(kind)?.with_modifier(Modifier::new("supports", [phrase(load)?])))
+            count(nominal(kind)?.with_modifier(Modifier::new("supports", [phrase(load)?])))
         }
         ("how_many_hold_inside", [kind, content]) => {
-            count(described(kind)?.with_modifier(Modifier::new("contains", [phrase(content)?])))
+            count(nominal(kind)?.with_modifier(Modifier::new("contains", [phrase(content)?])))
         }
         ("which_room_has", [set, thing]) => which(
-            Some(sets::set(set)?),
-            holds("room_contains", vec![Phrase::Hole, phrase(thing)?]),
+            Some(sets::set_description(set)?),
+            atomic_clause("room_contains", vec![Phrase::Hole, phrase(thing)?]),
         ),
         ("how_many_rooms_have", [noun, thing]) => {
             let rooms = Description::new(Quantifier::Some, Noun::Room(entry_id(noun)?));
             count(rooms.with_modifier(Modifier::new("room_contains", [phrase(thing)?])))
         }
         ("which_superlative", [noun, order]) => {
-            let kind = with_selection(described(noun)?, &entry_id(order)?, None);
+            let kind = with_selection(nominal(noun)?, &entry_id(order)?, None);
             which(Some(kind), Clause::Exists(Phrase::Hole))
         }
         ("which_order_to", [noun, order, reference]) => {
-            let kind = with_selection(
-                described(noun)?,
-                &entry_id(order)?,
-                Some(phrase(reference)?),
-            );
+            let kind = with_selection(nominal(noun)?, &entry_id(order)?, Some(phrase(reference)?));
             which(Some(kind), Clause::Exists(Phrase::Hole))
         }
         _ => return None,
@@ -256,7 +266,7 @@ fn read_only_question(function: &str, arguments: &[Tree]) -> Option<Question> {
 }
 
 /// "Stands next to the door".
-pub(super) fn standing(posture: &Tree, said: &Tree) -> Tree {
+pub(super) fn posture_phrase(posture: &Tree, said: &Tree) -> Tree {
     Tree::apply("vp_standing", [posture.clone(), said.clone()])
 }
 
@@ -295,7 +305,7 @@ pub(super) fn question(tree: &Tree) -> Option<Question> {
     };
     let which = |kind: Option<&Tree>, clause: Clause| {
         let kind = match kind {
-            Some(kind) => Some(Box::new(described(kind)?)),
+            Some(kind) => Some(Box::new(nominal(kind)?)),
             None => None,
         };
         Some(Question::Which { kind, clause })
@@ -307,7 +317,7 @@ pub(super) fn question(tree: &Tree) -> Option<Question> {
         return Some(other);
     }
     match (function, arguments) {
-        ("how_many", [what]) => Some(Question::HowMany(Box::new(described(what)?))),
+        ("how_many", [what]) => Some(Question::HowMany(Box::new(nominal(what)?))),
         ("how_many_rooms", [noun]) => {
             let noun = Noun::Room(entry_id(noun)?);
             let what = Description::new(Quantifier::Some, noun);
@@ -318,23 +328,26 @@ pub(super) fn question(tree: &Tree) -> Option<Question> {
             Some(Question::HowMany(Box::new(what)))
         }
         ("how_many_of", [what, added]) => {
-            let mut description = described(what)?;
+            let mut description = nominal(what)?;
             description.modifiers.push(modifier(added)?);
             Some(Question::HowMany(Box::new(description)))
         }
         ("what_holds", [relation @ Tree::Entry { class, .. }, object]) if class == RELATION => {
             which(
                 None,
-                holds(&entry_id(relation)?, vec![Phrase::Hole, phrase(object)?]),
+                atomic_clause(&entry_id(relation)?, vec![Phrase::Hole, phrase(object)?]),
             )
         }
         ("which_holds", [kind, relation, object]) => {
-            let clause = holds(&entry_id(relation)?, vec![Phrase::Hole, phrase(object)?]);
+            let clause = atomic_clause(&entry_id(relation)?, vec![Phrase::Hole, phrase(object)?]);
             which(Some(kind), clause)
         }
         ("which_place", [kind, place]) => {
             let (predicate, place) = place_of(place)?;
-            which(Some(kind), holds(&predicate, vec![Phrase::Hole, place]))
+            which(
+                Some(kind),
+                atomic_clause(&predicate, vec![Phrase::Hole, place]),
+            )
         }
         ("which_is", [kind, quality]) => {
             let quality = quality_of(quality)?;
@@ -345,12 +358,12 @@ pub(super) fn question(tree: &Tree) -> Option<Question> {
         ("which_room", [of]) => attribute(AttributeKind::Room, of),
         ("what_color", [of]) => attribute(AttributeKind::Color, of),
         ("what_material", [of]) => attribute(AttributeKind::Material, of),
-        _ => Some(Question::Whether(affirmed(function, arguments)?)),
+        _ => Some(Question::Whether(affirmative_clause(function, arguments)?)),
     }
 }
 
 /// A question within another sentence: "tell me whether the lamp is on".
-pub(super) fn indirect(tree: &Tree) -> Option<Question> {
+pub(super) fn indirect_question(tree: &Tree) -> Option<Question> {
     let attribute = |kind, of: &Tree| {
         let of = phrase(of)?;
         Some(Question::Attribute { kind, of })
@@ -374,7 +387,7 @@ impl TreeBuilder<'_> {
     /// The tree of a question.
     pub(super) fn question(&self, question: &Question) -> Option<Tree> {
         Some(match question {
-            Question::Whether(clause) => self.whether(clause)?,
+            Question::Whether(clause) => self.whether_question(clause)?,
             Question::HowMany(what) => match &what.noun {
                 Noun::Room(noun) if is_bare(what) => {
                     Tree::apply("how_many_rooms", [self.lexicon_entry(ROOM_NOUN, noun)?])
@@ -391,12 +404,12 @@ impl TreeBuilder<'_> {
                     AttributeKind::Place => "where",
                     AttributeKind::Room => "which_room",
                 };
-                Tree::apply(function, [self.phrase(of, Position::Free)?])
+                Tree::apply(function, [self.phrase(of, PhrasePosition::Free)?])
             }
         })
     }
 
-    pub(super) fn whether(&self, clause: &Clause) -> Option<Tree> {
+    pub(super) fn whether_question(&self, clause: &Clause) -> Option<Tree> {
         let (function, arguments) = match clause {
             Clause::Holds {
                 predicate,
@@ -415,12 +428,12 @@ impl TreeBuilder<'_> {
                 (function, arguments)
             }
             Clause::Is { subject, quality } => {
-                let subject = self.phrase(subject, Position::Free)?;
+                let subject = self.phrase(subject, PhrasePosition::Free)?;
                 ("whether_is", vec![subject, self.quality(quality)?])
             }
             Clause::Exists(what) => ("whether_exists", vec![self.item(what)?]),
             Clause::More { more, than } => {
-                let (more, than) = self.compared(more, than)?;
+                let (more, than) = self.compared_nouns(more, than)?;
                 ("whether_more", vec![more, than])
             }
             _ => return None,
@@ -447,7 +460,7 @@ impl TreeBuilder<'_> {
                 let [Phrase::Hole, one, other] = &arguments[..] else {
                     return None;
                 };
-                let free = |phrase| self.phrase(phrase, Position::Free);
+                let free = |phrase| self.phrase(phrase, PhrasePosition::Free);
                 Some(Tree::apply("what_between", [free(one)?, free(other)?]))
             }
             (
@@ -461,7 +474,7 @@ impl TreeBuilder<'_> {
                     return None;
                 };
                 if let Some(word) = self.lexicon_entry(RELATION, predicate) {
-                    let object = self.phrase(object, Position::Free)?;
+                    let object = self.phrase(object, PhrasePosition::Free)?;
                     return Some(match kind {
                         Some(kind) => Tree::apply("which_holds", [kind, word, object]),
                         None => Tree::apply("what_holds", [word, object]),

@@ -24,7 +24,7 @@ pub struct UnknownWord {
 /// The reason why a text has no reading.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
-pub enum ReadError {
+pub enum ParseError {
     /// The text has no words.
     #[error("the text has no words")]
     Empty,
@@ -97,7 +97,7 @@ pub struct SentenceError {
     /// The sentence.
     pub sentence: String,
     /// The reason.
-    pub error: ReadError,
+    pub error: ParseError,
 }
 
 /// The places of the sentences of a text: each ends with a mark before a space, or with a line.
@@ -144,11 +144,11 @@ impl Language {
             let before = read.last().and_then(|last| last.forms.first());
             let forms = found.forms.iter();
             let forms: Vec<Form> = forms
-                .flat_map(|form| form.readings_after(before))
-                .filter(Form::is_complete)
+                .flat_map(|form| form.resolve_anaphora(before))
+                .filter(Form::is_free_of_anaphora)
                 .collect();
             if forms.is_empty() {
-                return Err(fault(ReadError::NoAntecedent));
+                return Err(fault(ParseError::NoAntecedent));
             }
             read.push(SentenceReadings { start, end, forms });
         }
@@ -159,9 +159,9 @@ impl Language {
     /// adjectives do not matter.
     ///
     /// # Errors
-    /// [`ReadError`] says which words are unknown, or how far the text was understood. Nothing is guessed.
-    pub fn read(&self, text: &str) -> Result<Readings, ReadError> {
-        let too_long = |unit, found, allowed| ReadError::TooLong {
+    /// [`ParseError`] says which words are unknown, or how far the text was understood. Nothing is guessed.
+    pub fn read(&self, text: &str) -> Result<Readings, ParseError> {
+        let too_long = |unit, found, allowed| ParseError::TooLong {
             unit,
             found,
             allowed,
@@ -171,14 +171,14 @@ impl Language {
         }
         let words = words(text);
         if words.is_empty() {
-            return Err(ReadError::Empty);
+            return Err(ParseError::Empty);
         }
         if words.len() > MAX_WORDS {
             return Err(too_long("words", words.len(), MAX_WORDS));
         }
         let read = self.read_words(&words);
         // "The lamp stands on the floor" is no plural of "lamp stand".
-        let is_sentence = |read: &Result<Readings, ReadError>| {
+        let is_sentence = |read: &Result<Readings, ParseError>| {
             let first = read.as_ref().ok().and_then(|read| read.forms.first());
             first.is_some_and(|form| !matches!(form, Form::NounPhrase(_)))
         };
@@ -187,7 +187,7 @@ impl Language {
         }
         // "What's" apart, then phrases replaced, too.
         let apart = self.grammar.split_clitics(&words);
-        let paraphrase = self.grammar.paraphrase(&words);
+        let paraphrase = self.grammar.canonicalize(&words);
         let mut best = read;
         for other in [apart, paraphrase] {
             if other == words || other.is_empty() {
@@ -204,7 +204,7 @@ impl Language {
         best
     }
 
-    fn read_words(&self, words: &[String]) -> Result<Readings, ReadError> {
+    fn read_words(&self, words: &[String]) -> Result<Readings, ParseError> {
         let unknown = words.iter().filter(|word| !self.grammar.has_word(word));
         let unknown: Vec<UnknownWord> = unknown
             .map(|word| UnknownWord {
@@ -213,7 +213,7 @@ impl Language {
             })
             .collect();
         if !unknown.is_empty() {
-            return Err(ReadError::UnknownWords(unknown));
+            return Err(ParseError::UnknownWords(unknown));
         }
         let parse = self.grammar.parse(words);
         // "The chair near the table larger than the bed" compares the chair: few describe a landmark by a comparison.
@@ -221,7 +221,7 @@ impl Language {
             let form = from_tree::form(&plurals::resolve_plurals(tree.clone()))?;
             // "The TV stands in front of the window" is no plural of "TV stand".
             let phrase = usize::from(matches!(form, Form::NounPhrase(_)));
-            let penalty = 3 * form.described_comparisons() + 2 * phrase;
+            let penalty = 3 * form.comparison_count() + 2 * phrase;
             Some((*cost as usize + penalty, form))
         });
         let mut ranked: Vec<(usize, Form)> = forms.collect();
@@ -230,7 +230,7 @@ impl Language {
         let mut forms: Vec<Form> = Vec::new();
         for form in ranked
             .iter()
-            .flat_map(|(_, form)| form.readings_after(None))
+            .flat_map(|(_, form)| form.resolve_anaphora(None))
         {
             if !forms.contains(&form) {
                 forms.push(form);
@@ -240,7 +240,7 @@ impl Language {
             let found = words.get(parse.understood);
             let mut expected = parse.expected;
             expected.truncate(12);
-            return Err(ReadError::NotASentence {
+            return Err(ParseError::NotASentence {
                 understood: words[..parse.understood.min(words.len())].join(" "),
                 found: found.map_or_else(|| "the end".to_owned(), |word| format!("{word:?}")),
                 expected,

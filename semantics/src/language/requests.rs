@@ -4,7 +4,7 @@ use super::from_tree::{entry_id, parts, place_of, possibly_negated_clause, room,
 use super::lexicon::{RELATION, VERB};
 use super::phrases::{between_two, phrase};
 use super::places;
-use super::to_tree::{Position, TreeBuilder};
+use super::to_tree::{PhrasePosition, TreeBuilder};
 use crate::form::{
     Clause, Description, Modifier, Noun, Phrase, Quantifier, RequestStep, TurnDirection,
 };
@@ -345,7 +345,7 @@ impl TreeBuilder<'_> {
                     otherwise,
                 },
             ] => {
-                let condition = self.simple(condition)?;
+                let condition = self.simple_clause(condition)?;
                 // A condition within another one would be taken for the next step.
                 let nested = |step: &RequestStep| matches!(step, RequestStep::If { .. });
                 if then.iter().chain(otherwise).any(nested) {
@@ -378,7 +378,7 @@ impl TreeBuilder<'_> {
     }
 
     fn step(&self, step: &RequestStep) -> Option<Tree> {
-        let free = |phrase: &Phrase| self.phrase(phrase, Position::Free);
+        let free = |phrase: &Phrase| self.phrase(phrase, PhrasePosition::Free);
         Some(match step {
             RequestStep::GoTo(room) => Tree::apply("go_to", [self.room(room)?]),
             RequestStep::Leave(room) => Tree::apply("leave_room", [self.room(room)?]),
@@ -421,7 +421,7 @@ impl TreeBuilder<'_> {
                     let relation = self.lexicon_entry(RELATION, predicate)?;
                     return Some(Tree::apply("stand_at", [relation, free(to)?]));
                 }
-                let object = self.phrase(object, Position::Landmark)?;
+                let object = self.phrase(object, PhrasePosition::Landmark)?;
                 if let ("between", Phrase::List(landmarks)) = (predicate.as_str(), to) {
                     let [one, other] = &landmarks[..] else {
                         return None;

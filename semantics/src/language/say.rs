@@ -4,7 +4,7 @@ use super::Language;
 use super::from_tree;
 use super::to_tree::{TreeBuilder, count};
 use crate::form::{Description, Form, Noun, Phrase};
-use crate::grammar::{ChooseWording, Span, Tree};
+use crate::grammar::{Span, Tree, WordingChooser};
 use dwell_scene::random::RandomKey;
 use serde::{Deserialize, Serialize};
 
@@ -35,7 +35,10 @@ impl Language {
         let builder = self.builder();
         let tree = Tree::apply(
             "which_meant",
-            [builder.noun_with_adjectives(kind)?, builder.any_of(named)?],
+            [
+                builder.noun_with_adjectives(kind)?,
+                builder.disjunction(named)?,
+            ],
         );
         Some(self.grammar.linearize(&tree, &mut |_| 0)?.0)
     }
@@ -77,7 +80,7 @@ impl Language {
     }
 
     /// As [`Self::say`], with wordings that `choose` chooses.
-    pub(crate) fn say_choosing(&self, form: &Form, choose: ChooseWording<'_>) -> Option<Sentence> {
+    pub(crate) fn say_choosing(&self, form: &Form, choose: WordingChooser<'_>) -> Option<Sentence> {
         let tree = self.builder().form(form)?;
         let (mut text, spans) = self.grammar.linearize(&tree, choose)?;
         if matches!(form, Form::NounPhrase(_))

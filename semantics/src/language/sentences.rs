@@ -15,7 +15,7 @@ impl TreeBuilder<'_> {
                 Form::Request(steps),
                 Form::Question(Question::Whether(clause)),
             ] => {
-                let whether = Tree::apply("indirect_whether", [self.simple(clause)?]);
+                let whether = Tree::apply("indirect_whether", [self.simple_clause(clause)?]);
                 Some(Tree::apply("request_ask", [self.plan(steps)?, whether]))
             }
             _ => None,
@@ -35,18 +35,21 @@ impl TreeBuilder<'_> {
                     Clause::Not(_) => "no_longer",
                     _ => "now",
                 };
-                Tree::apply(function, [self.simple(inner)?])
+                Tree::apply(function, [self.simple_clause(inner)?])
             }
-            _ => Tree::apply("one_clause", [self.simple(clause)?]),
+            _ => Tree::apply("one_clause", [self.simple_clause(clause)?]),
         })
     }
 
     fn list(&self, clauses: &[Clause], pair: &str, more: &str) -> Option<Tree> {
         match clauses {
-            [first, last] => Some(Tree::apply(pair, [self.simple(first)?, self.simple(last)?])),
+            [first, last] => Some(Tree::apply(
+                pair,
+                [self.simple_clause(first)?, self.simple_clause(last)?],
+            )),
             [first, rest @ ..] if rest.len() > 1 => Some(Tree::apply(
                 more,
-                [self.simple(first)?, self.list(rest, pair, more)?],
+                [self.simple_clause(first)?, self.list(rest, pair, more)?],
             )),
             _ => None,
         }

@@ -1,12 +1,12 @@
 //! Things of a set: "one of the chairs", "the two cups", "none of them", "both bedrooms".
 
 use super::from_tree::{entry_id, number, parts};
-use super::phrases::described;
+use super::phrases::nominal;
 use crate::form::{Description, Noun, Phrase, Quantifier};
 use crate::grammar::Tree;
 
 /// The phrase of some, all or none of a set; `None` for other trees.
-pub(super) fn phrase_of_set(function: &str, arguments: &[Tree]) -> Option<Phrase> {
+pub(super) fn partitive_phrase(function: &str, arguments: &[Tree]) -> Option<Phrase> {
     let (quantifier, of) = match (function, arguments) {
         ("one_of", [of]) => (Quantifier::Some, of),
         ("only_one_of", [of]) => (Quantifier::Exactly(1), of),
@@ -20,7 +20,7 @@ pub(super) fn phrase_of_set(function: &str, arguments: &[Tree]) -> Option<Phrase
         ("fewer_than_of", [count, of]) => (fewer_than(count)?, of),
         _ => return None,
     };
-    Some(set(of)?.with_quantifier(quantifier).into())
+    Some(set_description(of)?.with_quantifier(quantifier).into())
 }
 
 /// "More than three" is at least four.
@@ -34,7 +34,7 @@ pub(super) fn fewer_than(count: &Tree) -> Option<Quantifier> {
 }
 
 /// The description of the members of a set; the caller sets its quantifier.
-pub(super) fn set(tree: &Tree) -> Option<Description> {
+pub(super) fn set_description(tree: &Tree) -> Option<Description> {
     let room = |noun: &Tree| {
         Some(Description::new(
             Quantifier::Some,
@@ -43,8 +43,8 @@ pub(super) fn set(tree: &Tree) -> Option<Description> {
     };
     match parts(tree)? {
         // How many there are is what the speaker takes for granted, as with "the chair".
-        ("set" | "set_counted", [.., noun]) => described(noun),
-        ("set_other", [noun]) => Some(described(noun)?.other()),
+        ("set" | "set_counted", [.., noun]) => nominal(noun),
+        ("set_other", [noun]) => Some(nominal(noun)?.other()),
         ("set_same", []) => Some(Description::new(Quantifier::Some, Noun::SameThings)),
         ("room_set" | "room_set_counted", [.., noun]) => room(noun),
         ("room_set_other", [noun]) => Some(room(noun)?.other()),

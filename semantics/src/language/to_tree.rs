@@ -34,7 +34,7 @@ fn ordinal(value: u32) -> Tree {
 
 /// The position of a noun phrase. Landmarks have grammar functions of their own (`i_the`), with fewer modifiers.
 #[derive(Clone, Copy, PartialEq)]
-pub(super) enum Position {
+pub(super) enum PhrasePosition {
     /// Subject, object, or the topic of a question.
     Free,
     /// Inside another noun phrase.
@@ -58,12 +58,12 @@ impl TreeBuilder<'_> {
             Form::Question(question) => Tree::apply("ask", [self.question(question)?]),
             Form::NounPhrase(phrase) => match self.room(phrase) {
                 Some(room) => Tree::apply("phrase_room", [room]),
-                None => Tree::apply("phrase", [self.phrase(phrase, Position::Free)?]),
+                None => Tree::apply("phrase", [self.phrase(phrase, PhrasePosition::Free)?]),
             },
         })
     }
 
-    pub(super) fn simple(&self, clause: &Clause) -> Option<Tree> {
+    pub(super) fn simple_clause(&self, clause: &Clause) -> Option<Tree> {
         let (clause, negated) = match clause {
             Clause::Not(inner) => (&**inner, true),
             clause => (clause, false),
@@ -86,13 +86,13 @@ impl TreeBuilder<'_> {
             Clause::Is { subject, quality } => Tree::apply(
                 &function("is"),
                 [
-                    self.phrase(subject, Position::Free)?,
+                    self.phrase(subject, PhrasePosition::Free)?,
                     self.quality(quality)?,
                 ],
             ),
             Clause::Exists(what) => self.existence(what, negated)?,
             Clause::More { more, than } if !negated => {
-                let (more, than) = self.compared(more, than)?;
+                let (more, than) = self.compared_nouns(more, than)?;
                 Tree::apply("more", [more, than])
             }
             Clause::Area {
@@ -134,7 +134,7 @@ impl TreeBuilder<'_> {
         predicate: &str,
         arguments: &[Phrase],
     ) -> Option<(&'static str, Vec<Tree>)> {
-        let free = |phrase: &Phrase| self.phrase(phrase, Position::Free);
+        let free = |phrase: &Phrase| self.phrase(phrase, PhrasePosition::Free);
         match (predicate, arguments) {
             ("in_room" | "on_storey", [Phrase::List(items), place]) => Some((
                 "list_holds_place",
@@ -199,13 +199,14 @@ impl TreeBuilder<'_> {
     }
 
     /// "The red chair, the white chair or the chair next to the bed".
-    pub(super) fn any_of(&self, items: &[Phrase]) -> Option<Tree> {
-        let free = |phrase: &Phrase| self.phrase(phrase, Position::Free);
+    pub(super) fn disjunction(&self, items: &[Phrase]) -> Option<Tree> {
+        let free = |phrase: &Phrase| self.phrase(phrase, PhrasePosition::Free);
         match items {
             [first, last] => Some(Tree::apply("any_pair", [free(first)?, free(last)?])),
-            [first, rest @ ..] if rest.len() > 1 => {
-                Some(Tree::apply("any_more", [free(first)?, self.any_of(rest)?]))
-            }
+            [first, rest @ ..] if rest.len() > 1 => Some(Tree::apply(
+                "any_more",
+                [free(first)?, self.disjunction(rest)?],
+            )),
             _ => None,
         }
     }
@@ -219,7 +220,7 @@ impl TreeBuilder<'_> {
     }
 
     fn subjects(&self, items: &[Phrase]) -> Option<Tree> {
-        let free = |phrase: &Phrase| self.phrase(phrase, Position::Free);
+        let free = |phrase: &Phrase| self.phrase(phrase, PhrasePosition::Free);
         match items {
             [first, last] => Some(Tree::apply("subjects_pair", [free(first)?, free(last)?])),
             [first, rest @ ..] if rest.len() > 1 => Some(Tree::apply(
@@ -295,7 +296,7 @@ impl TreeBuilder<'_> {
                     Quantifier::The => "room_with",
                     _ => "room_some_with",
                 };
-                let thing = self.phrase(thing, Position::Landmark)?;
+                let thing = self.phrase(thing, PhrasePosition::Landmark)?;
                 Some(Tree::apply(function, [kind, thing]))
             }
             (None, [other], Quantifier::Some)
@@ -320,8 +321,8 @@ impl TreeBuilder<'_> {
         }
     }
 
-    pub(super) fn phrase(&self, phrase: &Phrase, position: Position) -> Option<Tree> {
-        let landmark = position == Position::Landmark;
+    pub(super) fn phrase(&self, phrase: &Phrase, position: PhrasePosition) -> Option<Tree> {
+        let landmark = position == PhrasePosition::Landmark;
         Some(match phrase {
             Phrase::Pronoun => Tree::apply(if landmark { "i_it" } else { "it" }, []),
             Phrase::Described(description) if matches!(description.noun, Noun::Structure(_)) => {
@@ -391,7 +392,7 @@ impl TreeBuilder<'_> {
                 if matches!(only.predicate.as_str(), "in_room" | "on_storey") {
                     return Some(Tree::apply(&named("_place"), [own, self.place(other)?]));
                 }
-                let other = self.phrase(other, Position::Landmark)?;
+                let other = self.phrase(other, PhrasePosition::Landmark)?;
                 if only.predicate == "belongs_to" {
                     return Some(Tree::apply(&format!("i_{article}_from"), [own, other]));
                 }
@@ -441,7 +442,7 @@ impl TreeBuilder<'_> {
             reference,
         } = selection;
         if let Some(reference) = reference {
-            let reference = self.phrase(reference, Position::Landmark)?;
+            let reference = self.phrase(reference, PhrasePosition::Landmark)?;
             let order = self.lexicon_entry(ORDER_TO, order)?;
             return (*place == 1).then(|| Tree::apply("selected_to", [noun, order, reference]));
         }
@@ -478,12 +479,12 @@ impl TreeBuilder<'_> {
             return None;
         };
         (modifier.negated && modifier.predicate == Modifier::IDENTICAL).then_some(())?;
-        let of = self.phrase(of, Position::Landmark)?;
+        let of = self.phrase(of, PhrasePosition::Landmark)?;
         Some(Tree::apply("modifier_other", [of]))
     }
 
     fn modifier(&self, modifier: &Modifier) -> Option<Tree> {
-        let landmark = |phrase: &Phrase| self.phrase(phrase, Position::Landmark);
+        let landmark = |phrase: &Phrase| self.phrase(phrase, PhrasePosition::Landmark);
         if let Some(place) = self.place_modifier(modifier) {
             return Some(place);
         }

@@ -1,7 +1,7 @@
 //! What is said of a subject: "is red", "stands next to the door but is not open".
 
-use super::from_tree::{entry_id, holds, parts, place_of, quality_of, subjects};
-use super::phrases::{between_two, described, phrase, relation_to};
+use super::from_tree::{atomic_clause, entry_id, parts, place_of, quality_of, subjects};
+use super::phrases::{between_two, nominal, phrase, relation_predicate};
 use super::{places, questions};
 use crate::form::{Clause, Description, Modifier, Noun, Phrase, Quality, Quantifier};
 use crate::grammar::Tree;
@@ -26,23 +26,23 @@ pub(super) enum Predication {
 }
 
 /// What is said, each with whether it is denied.
-pub(super) type SaidList = Vec<(Predication, bool)>;
+pub(super) type PredicationList = Vec<(Predication, bool)>;
 
-fn relation(predicate: &str, arguments: impl Into<Vec<Phrase>>) -> SaidList {
+fn relation(predicate: &str, arguments: impl Into<Vec<Phrase>>) -> PredicationList {
     affirmed(Predication::Relation(Modifier::new(predicate, arguments)))
 }
 
-fn affirmed(said: Predication) -> SaidList {
+fn affirmed(said: Predication) -> PredicationList {
     vec![(said, false)]
 }
 
 /// The reading of a verb phrase; `None` for other trees.
-pub(super) fn predications(tree: &Tree) -> Option<SaidList> {
+pub(super) fn predications(tree: &Tree) -> Option<PredicationList> {
     Some(match parts(tree)? {
         ("vp_relation", [word, object]) => {
             let object = phrase(object)?;
             relation(
-                &relation_to(entry_id(word)?, &any_thing(), &object),
+                &relation_predicate(entry_id(word)?, &any_thing(), &object),
                 [object],
             )
         }
@@ -81,18 +81,18 @@ pub(super) fn predications(tree: &Tree) -> Option<SaidList> {
             affirmed(Predication::Converse(entry_id(word)?, phrase(object)?))
         }
         ("vp_superlative", [order, noun]) => {
-            let selected = questions::with_selection(described(noun)?, &entry_id(order)?, None);
+            let selected = questions::with_selection(nominal(noun)?, &entry_id(order)?, None);
             relation("identical", [selected.into()])
         }
         ("vp_any_other" | "vp_less_any_other", [word, noun]) => {
             let order = questions::superlative_of(&entry_id(word)?, is_less_than_any_other(tree))?;
-            let selected = questions::with_selection(described(noun)?, order, None);
+            let selected = questions::with_selection(nominal(noun)?, order, None);
             relation("identical", [selected.into()])
         }
-        ("vp_is_a", [noun]) => relation("identical", [described(noun)?.into()]),
+        ("vp_is_a", [noun]) => relation("identical", [nominal(noun)?.into()]),
         ("vp_both_sides", [landmark]) => affirmed(Predication::BothSides(phrase(landmark)?)),
         ("vp_one_the_other", [word]) => affirmed(Predication::OneTheOther(entry_id(word)?)),
-        ("vp_only", [noun]) => affirmed(Predication::Only(described(noun)?)),
+        ("vp_only", [noun]) => affirmed(Predication::Only(nominal(noun)?)),
         ("vp_same_color", [other]) => relation("same_color", [phrase(other)?]),
         ("vp_same_material", [other]) => relation("same_material", [phrase(other)?]),
         ("vp_side_by_side", []) => affirmed(Predication::EachOther("next_to".to_owned())),
@@ -163,7 +163,7 @@ fn hangs(posture: &Tree) -> bool {
 }
 
 /// What hangs "on" a thing is mounted on it.
-fn use_hangs_on(all: &mut SaidList) {
+fn use_hangs_on(all: &mut PredicationList) {
     for (said, _) in all {
         if let Predication::Relation(modifier) = said
             && modifier.predicate == "on"
@@ -177,7 +177,7 @@ fn is_less_than_any_other(tree: &Tree) -> bool {
     matches!(parts(tree), Some(("vp_less_any_other", _)))
 }
 
-fn negate_single(mut all: SaidList) -> Option<SaidList> {
+fn negate_single(mut all: PredicationList) -> Option<PredicationList> {
     // "Not in the left corner" denies both together, which no list of two denials does.
     let [(_, negated)] = &mut all[..] else {
         return None;
@@ -202,16 +202,16 @@ fn clause_of(subject: Phrase, (said, negated): (Predication, bool)) -> Option<Cl
         Predication::Relation(modifier) => {
             let mut arguments = vec![subject];
             arguments.extend(modifier.arguments);
-            holds(&modifier.predicate, arguments)
+            atomic_clause(&modifier.predicate, arguments)
         }
-        Predication::Converse(predicate, other) => holds(&predicate, vec![other, subject]),
+        Predication::Converse(predicate, other) => atomic_clause(&predicate, vec![other, subject]),
         Predication::Quality(quality) => Clause::Is { subject, quality },
         Predication::BothSides(landmark) => {
             let Phrase::Described(own) = &subject else {
                 return None;
             };
             let one = own.clone().with_quantifier(Quantifier::Some);
-            let side = |name| holds(name, vec![one.clone().into(), landmark.clone()]);
+            let side = |name| atomic_clause(name, vec![one.clone().into(), landmark.clone()]);
             Clause::All(vec![side("left_of"), side("right_of")])
         }
         Predication::OneTheOther(predicate) => {
@@ -219,15 +219,15 @@ fn clause_of(subject: Phrase, (said, negated): (Predication, bool)) -> Option<Cl
                 return None;
             };
             let one: Phrase = own.with_quantifier(Quantifier::Some).into();
-            holds(&predicate, vec![one.clone(), one])
+            atomic_clause(&predicate, vec![one.clone(), one])
         }
         Predication::Only(only) => Clause::All(vec![
-            holds("identical", vec![subject, only.clone().into()]),
+            atomic_clause("identical", vec![subject, only.clone().into()]),
             Clause::Exists(only.with_quantifier(Quantifier::Exactly(1)).into()),
         ]),
         Predication::EachOther(predicate) => match &subject {
             Phrase::List(_) | Phrase::Described(_) => {
-                holds(&predicate, vec![subject, Phrase::EachOther])
+                atomic_clause(&predicate, vec![subject, Phrase::EachOther])
             }
             _ => return None,
         },
@@ -245,9 +245,9 @@ pub(super) fn clause(subject: Phrase, tree: &Tree) -> Option<Clause> {
     if let [_] = all[..] {
         return clause_of(subject, all.remove(0));
     }
-    let (mut own, others): (SaidList, SaidList) =
+    let (mut own, others): (PredicationList, PredicationList) =
         all.into_iter().partition(|(said, _)| is_attributive(said));
-    let conjunction = |subject: &Phrase, all: SaidList| -> Option<Vec<Clause>> {
+    let conjunction = |subject: &Phrase, all: PredicationList| -> Option<Vec<Clause>> {
         let all = all.into_iter();
         all.map(|one| clause_of(subject.clone(), one)).collect()
     };
@@ -279,7 +279,7 @@ fn is_attributive(said: &Predication) -> bool {
 }
 
 /// Adds to a description what a verb phrase says.
-pub(super) fn add_predications(description: &mut Description, all: SaidList) -> Option<()> {
+pub(super) fn add_predications(description: &mut Description, all: PredicationList) -> Option<()> {
     let mut predicates: Vec<String> = Vec::new();
     for (said, negated) in all {
         match (said, negated) {
@@ -310,13 +310,16 @@ pub(super) fn add_predications(description: &mut Description, all: SaidList) -> 
 }
 
 /// The description with what a verb phrase says added.
-pub(super) fn with_said(mut description: Description, tree: &Tree) -> Option<Description> {
+pub(super) fn with_predications(mut description: Description, tree: &Tree) -> Option<Description> {
     add_predications(&mut description, predications(tree)?)?;
     Some(description)
 }
 
 /// The description with what a relative clause says: "that is not on the table", "standing by the door".
-pub(super) fn with_relative(mut description: Description, tree: &Tree) -> Option<Description> {
+pub(super) fn with_relative_clause(
+    mut description: Description,
+    tree: &Tree,
+) -> Option<Description> {
     let all = match parts(tree)? {
         ("relative", [inner]) => predications(inner)?,
         ("relative_not", [inner]) => negate_single(predications(inner)?)?,

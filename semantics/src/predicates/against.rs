@@ -1,7 +1,7 @@
 //! The predicate `against`.
 
 use super::{
-    OBJECT, OBJECT_OR_STRUCTURE, Predicate, RelationProperties, on::On, shape::shared_height_m,
+    OBJECT, OBJECT_OR_STRUCTURE, Predicate, RelationProperties, on::On, shape::vertical_overlap_m,
 };
 use crate::geometry::Hull;
 use crate::scene::MOST_NEAR;
@@ -33,12 +33,12 @@ fn is_along(scene: &SemanticScene<'_>, thing: ObjectId, bounds: &Aabb, outline: 
         return false;
     }
     let own = &extent.footprint;
-    let width_m = own.width_m();
-    shared_height_m(&extent.bounds, bounds) >= SHARE * extent.bounds.size().y
+    let width_m = own.min_width_m();
+    vertical_overlap_m(&extent.bounds, bounds) >= SHARE * extent.bounds.size().y
         && own.distance(outline) <= GAP_M
         && own.overlap_m2(outline) <= SHARE * own.area_m2().min(outline.area_m2())
         && width_m > 0.0
-        && own.border_near_m(outline, GAP_M) >= SHARE * width_m
+        && own.border_length_near_m(outline, GAP_M) >= SHARE * width_m
 }
 
 fn is_against(scene: &SemanticScene<'_>, thing: ObjectId, other: ObjectId) -> bool {
@@ -126,7 +126,7 @@ impl Predicate for Against {
         };
         let objects = scene.stands_against(thing).iter().copied();
         let reach = scene.extent(thing).bounds.grown(GAP_M);
-        let walls = scene.semantics.structure_at(&reach);
+        let walls = scene.semantics.structures_in_box(&reach);
         let walls = walls.filter(|wall| is_against_wall(scene, thing, *wall));
         objects
             .map(Term::Object)

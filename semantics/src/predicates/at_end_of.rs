@@ -47,11 +47,11 @@ impl Predicate for AtEndOf {
             return Truth::False;
         };
         let outline = scene.semantics.room_outline(room);
-        let share = outline.lengthwise_share(shape.middle_xz());
+        let share = outline.lengthwise_position(shape.middle_xz());
         let eye = viewer.map(|viewer| viewer.world_from_camera.position);
         let from = eye.filter(|eye| scene.house().room_at(*eye) == Some(room));
         let far = from.is_none_or(|eye| {
-            let own = outline.lengthwise_share(glam::Vec2::new(eye.x, eye.z));
+            let own = outline.lengthwise_position(glam::Vec2::new(eye.x, eye.z));
             own.is_sign_positive() != share.is_sign_positive()
         });
         Truth::from(share.abs() >= BETWEEN_ENDS && far)

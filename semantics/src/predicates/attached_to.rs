@@ -30,7 +30,7 @@ fn wall_of(scene: &SemanticScene<'_>, opening: ObjectId) -> Option<StructureId> 
     let extent = scene.extent(opening);
     let (house, semantics) = (scene.house(), scene.semantics);
     let reach = extent.bounds.grown(WALL_GAP_M);
-    let walls = semantics.structure_at(&reach).filter_map(|piece| {
+    let walls = semantics.structures_in_box(&reach).filter_map(|piece| {
         let away_m = extent
             .footprint
             .distance(semantics.structure_outline(piece));

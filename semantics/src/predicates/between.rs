@@ -2,7 +2,7 @@
 
 use super::{
     Predicate, RelationProperties, THING,
-    shape::{shape_of, share_room, shared_height_m},
+    shape::{shape_of, share_room, vertical_overlap_m},
 };
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::Truth;
@@ -59,7 +59,7 @@ impl Predicate for Between {
         let (Some(to_b), Some(to_c)) = (towards(&q.outline), towards(&r.outline)) else {
             return Truth::False;
         };
-        let level = shared_height_m(&p.bounds, &q.bounds.union(&r.bounds)) > 0.0;
+        let level = vertical_overlap_m(&p.bounds, &q.bounds.union(&r.bounds)) > 0.0;
         Truth::from(level && to_b.dot(to_c) <= LARGEST_COSINE)
     }
 }

@@ -1,7 +1,7 @@
 //! The predicate `checked`.
 
 use super::{OBJECT, Predicate, RelationProperties};
-use crate::color::Pattern;
+use crate::color::SurfacePattern;
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::Truth;
 
@@ -35,6 +35,6 @@ impl Predicate for Checkered {
 
     fn decide(&self, scene: &SemanticScene<'_>, args: &[Term], _: Option<&Viewer>) -> Truth {
         let facts = args[0].object().map(|id| scene.facts(id));
-        Truth::from(facts.is_some_and(|facts| facts.pattern == Some(Pattern::Checked)))
+        Truth::from(facts.is_some_and(|facts| facts.pattern == Some(SurfacePattern::Checked)))
     }
 }

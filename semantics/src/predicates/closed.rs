@@ -1,6 +1,6 @@
 //! The predicate `closed`.
 
-use super::openness::{CLOSED, openness_is};
+use super::openness::{CLOSED, openness_satisfies};
 use super::{OBJECT, Predicate, RelationProperties};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::Truth;
@@ -33,6 +33,6 @@ impl Predicate for Closed {
     }
 
     fn decide(&self, scene: &SemanticScene<'_>, args: &[Term], _: Option<&Viewer>) -> Truth {
-        openness_is(scene, args[0], |share| share <= CLOSED)
+        openness_satisfies(scene, args[0], |share| share <= CLOSED)
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{
     Predicate, RelationProperties, THING,
-    shape::{bounds_of, gap_m, least_gap_m},
+    shape::{bounds_of, gap_lower_bound_m, gap_m},
 };
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::Truth;
@@ -47,7 +47,7 @@ impl Predicate for Far {
         let (Some(p), Some(q)) = boxes else {
             return Truth::False;
         };
-        let far = least_gap_m(&p, &q) > FAR_M;
+        let far = gap_lower_bound_m(&p, &q) > FAR_M;
         Truth::from(far || gap_m(scene, a, b).is_some_and(|gap| gap > FAR_M))
     }
 }

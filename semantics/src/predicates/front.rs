@@ -1,6 +1,6 @@
 //! The intrinsic front of a thing.
 
-use super::shape::{Shape, shape_of, share_room};
+use super::shape::{TermShape, shape_of, share_room};
 use crate::scene::{SemanticScene, Term};
 use crate::truth::{Truth, UndecidedReason};
 use dwell_scene::space::forward_from_yaw;
@@ -52,7 +52,7 @@ pub(super) fn is_at_side(scene: &SemanticScene<'_>, a: Term, b: Term, side: f32)
 }
 
 /// Returns whether the middle of `p` is before the face of `q` with outward direction `out`, within its width and 45 degrees more.
-fn is_before(p: &Shape<'_>, q: &Shape<'_>, out: Vec2) -> bool {
+fn is_before(p: &TermShape<'_>, q: &TermShape<'_>, out: Vec2) -> bool {
     let (_, face) = q.outline.range_along(out);
     let (left, right) = q.outline.range_along(out.perp());
     let ahead_m = out.dot(p.middle_xz()) - face;

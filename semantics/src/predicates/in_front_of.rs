@@ -50,8 +50,8 @@ impl Predicate for InFrontOf {
     fn decide(&self, scene: &SemanticScene<'_>, args: &[Term], viewer: Option<&Viewer>) -> Truth {
         let sights = viewer.and_then(|viewer| ViewedPair::of(scene, viewer, [args[0], args[1]]));
         sights.map_or(Truth::Undecided(UndecidedReason::NotInFront), |sights| {
-            let nearer = sights.nearer_m() >= LEAST_M;
-            Truth::from(nearer && sights.shared_width(scene) >= SHARE)
+            let nearer = sights.depth_difference_m() >= LEAST_M;
+            Truth::from(nearer && sights.width_overlap_fraction(scene) >= SHARE)
         })
     }
 }

@@ -1,6 +1,6 @@
 //! The predicate `left_of`.
 
-use super::{Predicate, RelationProperties, THING, view::picture_x};
+use super::{Predicate, RelationProperties, THING, view::image_x};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::{Truth, UndecidedReason};
 
@@ -50,7 +50,7 @@ impl Predicate for LeftOf {
     }
 
     fn decide(&self, scene: &SemanticScene<'_>, args: &[Term], viewer: Option<&Viewer>) -> Truth {
-        let x = |term| picture_x(scene, viewer?, term);
+        let x = |term| image_x(scene, viewer?, term);
         let (Some(a), Some(b)) = (x(args[0]), x(args[1])) else {
             return Truth::Undecided(UndecidedReason::NotInFront);
         };

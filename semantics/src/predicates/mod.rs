@@ -75,11 +75,11 @@ mod visible_from;
 mod visible_from_room;
 mod wider_than;
 
-pub use crate::scene::SurfaceSupport;
+pub use crate::scene::SupportShare;
 pub(crate) use left_of::LEAST_TANGENT;
 pub(crate) use mount::mount_of;
 pub(crate) use shape::{bounds_of, gap_m};
-pub(crate) use view::{is_in_front, picture_x};
+pub(crate) use view::{image_x, is_in_front};
 
 use crate::error::SemanticsError;
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};

@@ -1,6 +1,6 @@
 //! The mounts of hanging things: walls, ceilings, windows.
 
-use crate::scene::{MOST_NEAR, SemanticScene, SurfaceSupport, Term};
+use crate::scene::{MOST_NEAR, SemanticScene, SupportShare, Term};
 use dwell_scene::{Mobility, ObjectId, StructureId, StructureKind};
 
 /// The largest gap between a thing and the wall or ceiling it hangs on, m.
@@ -33,10 +33,10 @@ fn is_cloth(scene: &SemanticScene<'_>, thing: ObjectId) -> bool {
 /// This holds for upright cloth. It also holds for things that the table marks as mounted, near a wall or a ceiling, if they end
 /// a centimetre or more above the surfaces, or are fixed in place and of a kind that never stands, or are fixed and too flat to
 /// stand.
-pub(super) fn hangs_despite(
+pub(super) fn hangs_despite_support(
     scene: &SemanticScene<'_>,
     thing: ObjectId,
-    supports: &[SurfaceSupport],
+    supports: &[SupportShare],
 ) -> bool {
     let facts = scene.facts(thing);
     let Some(row) = facts.category.filter(|row| row.mounted) else {
@@ -51,7 +51,7 @@ pub(super) fn hangs_despite(
     }
     // A thing that stands in a shelf may be near the wall behind it.
     let (house, inner) = (scene.house(), scene.extent(thing).bounds);
-    let stands_in = |support: &SurfaceSupport| {
+    let stands_in = |support: &SupportShare| {
         let by = support.by.object();
         by.is_some_and(|by| house.encloses(scene.state, by, &scene.extent(by).bounds, &inner))
     };
@@ -67,7 +67,7 @@ pub(super) fn hangs_despite(
 /// The structure pieces from which a thing may hang, ascending.
 fn pieces_at(scene: &SemanticScene<'_>, thing: ObjectId) -> impl Iterator<Item = StructureId> {
     let reach = scene.extent(thing).bounds.grown(WALL_GAP_M);
-    let pieces = scene.semantics.structure_at(&reach);
+    let pieces = scene.semantics.structures_in_box(&reach);
     pieces.filter(move |piece| is_at(scene, thing, *piece))
 }
 
@@ -115,7 +115,7 @@ fn is_before(scene: &SemanticScene<'_>, cloth: ObjectId, window: ObjectId) -> bo
 
 /// The candidate mounts of `thing`: windows, then structure pieces, each ascending.
 fn candidate_mounts(scene: &SemanticScene<'_>, thing: ObjectId) -> Vec<Term> {
-    if scene.holder(thing).is_some() || !scene.supports(thing).is_empty() {
+    if scene.holder(thing).is_some() || !scene.supporting_surfaces(thing).is_empty() {
         return Vec::new();
     }
     let windows = if is_cloth(scene, thing) {
@@ -138,7 +138,7 @@ pub(crate) fn mount_of(scene: &SemanticScene<'_>, thing: ObjectId) -> Option<Ter
 }
 
 fn find_mount(scene: &SemanticScene<'_>, thing: ObjectId) -> Option<Term> {
-    if scene.facts(thing).is_opening() && !is_cloth(scene, thing) {
+    if scene.facts(thing).belongs_to_opening() && !is_cloth(scene, thing) {
         return None;
     }
     let here = &scene.extent(thing).footprint;

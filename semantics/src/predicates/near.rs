@@ -2,7 +2,7 @@
 
 use super::{
     Predicate, RelationProperties, THING,
-    shape::{gap_m, least_gap_m, shape_of, share_room},
+    shape::{gap_lower_bound_m, gap_m, shape_of, share_room},
 };
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::Truth;
@@ -54,7 +54,7 @@ impl Predicate for Near {
         let (Some(p), Some(q)) = (shape_of(scene, a), shape_of(scene, b)) else {
             return Truth::False;
         };
-        let may = least_gap_m(&p.bounds, &q.bounds) <= NEAR_M;
+        let may = gap_lower_bound_m(&p.bounds, &q.bounds) <= NEAR_M;
         Truth::from(may && gap_m(scene, a, b).is_some_and(|gap| gap <= NEAR_M))
     }
 }

@@ -1,6 +1,6 @@
 //! The predicate `next_to`.
 
-use super::{OBJECT, Predicate, RelationProperties, on::On, shape::shared_height_m};
+use super::{OBJECT, Predicate, RelationProperties, on::On, shape::vertical_overlap_m};
 use crate::scene::MOST_NEAR;
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::Truth;
@@ -11,7 +11,7 @@ const NEIGHBOUR_GAP_M: f32 = 0.5;
 
 /// Returns the vertical overlap of two boxes and the least that neighbours have, m.
 fn vertical_overlap_and_minimum_m(p: &Aabb, q: &Aabb) -> (f32, f32) {
-    (shared_height_m(p, q), 0.5 * p.size().y.min(q.size().y))
+    (vertical_overlap_m(p, q), 0.5 * p.size().y.min(q.size().y))
 }
 
 impl SemanticScene<'_> {

@@ -57,7 +57,7 @@ impl Predicate for On {
         let Term::Object(thing) = args[0] else {
             return Truth::False;
         };
-        let mut supports = scene.supports(thing).iter();
+        let mut supports = scene.supporting_surfaces(thing).iter();
         let rests = supports.any(|support| support.by == args[1] && support.share >= REST_SHARE);
         Truth::from(rests && !is_in_it(scene, thing, args[1]))
     }
@@ -66,7 +66,7 @@ impl Predicate for On {
         let Term::Object(thing) = subject else {
             return Vec::new();
         };
-        let supports = scene.supports(thing).iter();
+        let supports = scene.supporting_surfaces(thing).iter();
         let carries = supports
             .filter(|support| support.share >= REST_SHARE && !is_in_it(scene, thing, support.by));
         carries.map(|support| support.by).collect()

@@ -1,6 +1,6 @@
 //! The predicate `open`.
 
-use super::openness::{OPEN, openness_is};
+use super::openness::{OPEN, openness_satisfies};
 use super::{OBJECT, Predicate, RelationProperties};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::Truth;
@@ -34,6 +34,6 @@ impl Predicate for Open {
     }
 
     fn decide(&self, scene: &SemanticScene<'_>, args: &[Term], _: Option<&Viewer>) -> Truth {
-        openness_is(scene, args[0], |share| share > OPEN)
+        openness_satisfies(scene, args[0], |share| share > OPEN)
     }
 }

@@ -9,7 +9,7 @@ pub(super) const OPEN: f32 = 0.5;
 pub(super) const CLOSED: f32 = 0.02;
 
 /// Returns whether the openness of a thing is as `test` says; undecided for what does not open.
-pub(super) fn openness_is(
+pub(super) fn openness_satisfies(
     scene: &SemanticScene<'_>,
     term: Term,
     test: impl Fn(f32) -> bool,

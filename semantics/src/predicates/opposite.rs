@@ -3,7 +3,7 @@
 use super::{
     OBJECT_OR_AGENT, Predicate, RelationProperties,
     front::front_of,
-    shape::{Shape, room_of, shape_of, share_room},
+    shape::{TermShape, room_of, shape_of, share_room},
 };
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::Truth;
@@ -72,7 +72,7 @@ impl Predicate for Opposite {
                     outline.normalized_position(p.middle_xz()),
                     outline.normalized_position(q.middle_xz()),
                 );
-                let along = outline.along();
+                let along = outline.long_axis();
                 let across = |axis: Vec2| faces(&p, &q, axis) || faces(&p, &q, -axis);
                 (from.x * to.x < 0.0 && across(along))
                     || (from.y * to.y < 0.0 && across(along.perp()))
@@ -84,7 +84,7 @@ impl Predicate for Opposite {
 
 /// Returns whether `q` lies beyond the face of `p` with outward direction `front`, at least [`LEAST_GAP_M`] away, and across it
 /// within at least [`SHARE`] of the narrower one's width.
-fn faces(p: &Shape<'_>, q: &Shape<'_>, front: Vec2) -> bool {
+fn faces(p: &TermShape<'_>, q: &TermShape<'_>, front: Vec2) -> bool {
     let (_, face) = p.outline.range_along(front);
     let (near, _) = q.outline.range_along(front);
     let across = front.perp();

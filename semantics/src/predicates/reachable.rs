@@ -60,9 +60,11 @@ impl Predicate for Reachable {
         };
         Truth::from(match args[0] {
             Term::Object(id) => {
-                let room = scene.room_of(id).filter(|_| !scene.facts(id).is_opening());
+                let room = scene
+                    .room_of(id)
+                    .filter(|_| !scene.facts(id).belongs_to_opening());
                 // Walls between rooms are in the way of hands.
-                area.reaches(&scene.extent(id).bounds, |place| {
+                area.hand_reaches(&scene.extent(id).bounds, |place| {
                     let here = || house.room_at(place + glam::Vec3::Y * 0.1);
                     room.is_none() || here() == room
                 })

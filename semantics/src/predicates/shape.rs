@@ -11,12 +11,12 @@ use std::borrow::Cow;
 const CORNERS: usize = 12;
 
 /// A thing's box and its outline from above.
-pub(super) struct Shape<'a> {
+pub(super) struct TermShape<'a> {
     pub(super) bounds: Aabb,
     pub(super) outline: Cow<'a, Hull>,
 }
 
-impl Shape<'_> {
+impl TermShape<'_> {
     pub(super) fn middle_xz(&self) -> Vec2 {
         let middle = self.bounds.center();
         Vec2::new(middle.x, middle.z)
@@ -24,16 +24,16 @@ impl Shape<'_> {
 }
 
 /// Returns the box and outline of a thing; `None` for rooms, storeys, parts and unknown agents.
-pub(super) fn shape_of<'a>(scene: &'a SemanticScene<'_>, term: Term) -> Option<Shape<'a>> {
+pub(super) fn shape_of<'a>(scene: &'a SemanticScene<'_>, term: Term) -> Option<TermShape<'a>> {
     match term {
         Term::Object(id) => {
             let extent = scene.extent(id);
-            Some(Shape {
+            Some(TermShape {
                 bounds: extent.bounds,
                 outline: Cow::Borrowed(&extent.footprint),
             })
         }
-        Term::Structure(id) => Some(Shape {
+        Term::Structure(id) => Some(TermShape {
             bounds: *scene.semantics.structure_bounds(id),
             outline: Cow::Borrowed(scene.semantics.structure_outline(id)),
         }),
@@ -46,7 +46,7 @@ pub(super) fn shape_of<'a>(scene: &'a SemanticScene<'_>, term: Term) -> Option<S
                 Vec2::new(feet.x + radius_m * sine, feet.z + radius_m * cosine)
             };
             let side = Vec3::new(radius_m, 0.0, radius_m);
-            Some(Shape {
+            Some(TermShape {
                 bounds: Aabb::new(feet - side, feet + side + Vec3::Y * agent.height_m()),
                 outline: Cow::Owned(Hull::around((0..CORNERS).map(corner))),
             })
@@ -61,7 +61,7 @@ pub(crate) fn bounds_of(scene: &SemanticScene<'_>, term: Term) -> Option<Aabb> {
 }
 
 /// Returns the vertical overlap of two boxes, m; negative for a gap.
-pub(super) fn shared_height_m(p: &Aabb, q: &Aabb) -> f32 {
+pub(super) fn vertical_overlap_m(p: &Aabb, q: &Aabb) -> f32 {
     p.max.y.min(q.max.y) - p.min.y.max(q.min.y)
 }
 
@@ -69,12 +69,12 @@ pub(super) fn shared_height_m(p: &Aabb, q: &Aabb) -> f32 {
 pub(crate) fn gap_m(scene: &SemanticScene<'_>, a: Term, b: Term) -> Option<f32> {
     let (p, q) = (shape_of(scene, a)?, shape_of(scene, b)?);
     let beside_m = p.outline.distance(&q.outline);
-    let above_m = (-shared_height_m(&p.bounds, &q.bounds)).max(0.0);
+    let above_m = (-vertical_overlap_m(&p.bounds, &q.bounds)).max(0.0);
     Some(Vec2::new(beside_m, above_m).length())
 }
 
 /// A lower bound of [`gap_m`], from the boxes alone, m.
-pub(super) fn least_gap_m(p: &Aabb, q: &Aabb) -> f32 {
+pub(super) fn gap_lower_bound_m(p: &Aabb, q: &Aabb) -> f32 {
     let apart = (p.min - q.max).max(q.min - p.max).max(Vec3::ZERO);
     apart.length()
 }
@@ -84,7 +84,7 @@ pub(super) fn shape_in_room<'a>(
     scene: &'a SemanticScene<'_>,
     term: Term,
     room: RoomId,
-) -> Option<Shape<'a>> {
+) -> Option<TermShape<'a>> {
     shape_of(scene, term).filter(|_| room_of(scene, term) == Some(room))
 }
 

@@ -1,8 +1,8 @@
 //! Support: the carriers of a thing.
 
-use super::mount::hangs_despite;
+use super::mount::hangs_despite_support;
 use crate::geometry::{height_under, object_triangles_near, structure_triangles};
-use crate::scene::{MOST_NEAR, SemanticScene, SurfaceSupport, Term};
+use crate::scene::{MOST_NEAR, SemanticScene, SupportShare, Term};
 use dwell_scene::interrupt;
 use dwell_scene::{Aabb, ObjectId, StructureKind};
 use glam::Vec3;
@@ -51,7 +51,7 @@ impl SupportSearch {
 
 impl SemanticScene<'_> {
     /// Returns the carriers of the object, the largest share first.
-    pub fn supports(&self, object: ObjectId) -> &[SurfaceSupport] {
+    pub fn supporting_surfaces(&self, object: ObjectId) -> &[SupportShare] {
         let supports = &self.cache(object).supports;
         supports.get_or_init(|| supports_of(self, object))
     }
@@ -62,7 +62,7 @@ impl SemanticScene<'_> {
 /// Each point of its sole counts for the highest surface that lies within 3 cm of it and is flatter than 60 degrees, of
 /// whatever object or structure piece. Nothing carries a curtain that touches a desk, or a picture just above a sofa: they
 /// hang. Where the boxes of more than 128 others touch its own, those about its middle count.
-fn supports_of(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<SurfaceSupport> {
+fn supports_of(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<SupportShare> {
     interrupt::unwind_if_cancelled();
     let house = scene.house();
     let extent = scene.extent(object);
@@ -88,7 +88,7 @@ fn supports_of(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<SurfaceSuppor
             search.offer(corners, Term::Object(other), least_m);
         });
     }
-    for id in scene.semantics.structure_at(&reach) {
+    for id in scene.semantics.structures_in_box(&reach) {
         if house.structure[id].kind != StructureKind::Ceiling {
             structure_triangles(house, id, |corners| {
                 search.offer(corners, Term::Structure(id), f32::MIN);
@@ -111,15 +111,15 @@ fn supports_of(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<SurfaceSuppor
     }
     supports.sort_by(|p, q| q.1.cmp(&p.1).then(p.0.cmp(&q.0)));
     let count = search.sole.len().max(1);
-    let supports: Vec<SurfaceSupport> = supports
+    let supports: Vec<SupportShare> = supports
         .into_iter()
-        .map(|(by, points, gap_m)| SurfaceSupport {
+        .map(|(by, points, gap_m)| SupportShare {
             by,
             share: points as f32 / count as f32,
             gap_m,
         })
         .collect();
-    if hangs_despite(scene, object, &supports) {
+    if hangs_despite_support(scene, object, &supports) {
         return Vec::new();
     }
     supports

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 impl SemanticScene<'_> {
     /// Returns the objects on an object or a structure piece, ascending.
-    pub(crate) fn loads_of(&self, carrier: Term) -> &[ObjectId] {
+    pub(crate) fn supported_objects(&self, carrier: Term) -> &[ObjectId] {
         let loads = self.loads.get_or_init(|| {
             let mut loads: BTreeMap<Term, Vec<ObjectId>> = BTreeMap::new();
             for thing in self.house().objects.ids() {
@@ -61,7 +61,7 @@ impl Predicate for Supports {
 
     fn related(&self, scene: &SemanticScene<'_>, subject: Term) -> Vec<Term> {
         scene
-            .loads_of(subject)
+            .supported_objects(subject)
             .iter()
             .map(|id| Term::Object(*id))
             .collect()

@@ -60,7 +60,7 @@ fn touch(scene: &SemanticScene<'_>, a: Term, b: Term) -> bool {
     }
     let tree = BoxTree::new(few.iter().map(|(_, bounds)| *bounds).collect());
     many.iter().any(|(corners, bounds)| {
-        let near = tree.touching(bounds).into_iter();
+        let near = tree.intersecting(bounds).into_iter();
         let mut near = near.map(|k| &few[k].0);
         near.any(|other| are_within(corners, other, GAP_M))
     })

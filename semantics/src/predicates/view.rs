@@ -22,7 +22,7 @@ pub(super) fn azimuth_rad(scene: &SemanticScene<'_>, viewer: &Viewer, term: Term
 
 /// Returns where a thing's middle falls in the viewer's picture: x over depth, growing to the right; `None` when it is not in
 /// front of the viewer.
-pub(crate) fn picture_x(scene: &SemanticScene<'_>, viewer: &Viewer, term: Term) -> Option<f32> {
+pub(crate) fn image_x(scene: &SemanticScene<'_>, viewer: &Viewer, term: Term) -> Option<f32> {
     tangent(viewer.upright_from_world(scene.center(term)?))
 }
 
@@ -35,7 +35,7 @@ fn tangent(point: Vec3) -> Option<f32> {
 
 /// Returns whether a thing's middle is in front of a viewer.
 pub(crate) fn is_in_front(scene: &SemanticScene<'_>, viewer: &Viewer, term: Term) -> bool {
-    picture_x(scene, viewer, term).is_some()
+    image_x(scene, viewer, term).is_some()
 }
 
 /// Two things as a viewer sees them, both in front of it.
@@ -63,12 +63,12 @@ impl ViewedPair {
     }
 
     /// Returns how much nearer the first one is along where the viewer looks, m.
-    pub(super) fn nearer_m(&self) -> f32 {
+    pub(super) fn depth_difference_m(&self) -> f32 {
         self.middles[0].z - self.middles[1].z
     }
 
     /// The share of the narrower one's width in the picture that both have in common, 0 to 1.
-    pub(super) fn shared_width(&self, scene: &SemanticScene<'_>) -> f32 {
+    pub(super) fn width_overlap_fraction(&self, scene: &SemanticScene<'_>) -> f32 {
         let edges = [0, 1].map(|k| self.edges(scene, k));
         let [Some((left, right)), Some((other_left, other_right))] = edges else {
             return 0.0;

@@ -6,7 +6,7 @@ use crate::predicates;
 use crate::scene::{
     Attribute, DistractorSet, LandmarkQuery, ObjectList, RelatedPairs, SemanticScene,
 };
-use dwell_scene::interrupt::PollEvery;
+use dwell_scene::interrupt::CancelPoller;
 use dwell_scene::{ObjectId, RoomId};
 use std::cell::{OnceCell, RefCell};
 use std::collections::BTreeMap;
@@ -18,7 +18,7 @@ pub(super) const TELLING: [&str; 3] = ["in", "on", "next_to"];
 const THINGS_PER_CHECK: usize = 64;
 
 /// The common elements of all lists, which are ascending, at most `most`; shorter lists are faster.
-pub(super) fn common(lists: &[&[ObjectId]], most: usize) -> Vec<ObjectId> {
+pub(super) fn intersection(lists: &[&[ObjectId]], most: usize) -> Vec<ObjectId> {
     let Some((shortest, list)) = lists.iter().enumerate().min_by_key(|(_, list)| list.len()) else {
         return Vec::new();
     };
@@ -61,11 +61,13 @@ impl SemanticScene<'_> {
 impl DistractorSet {
     fn gather(scene: &SemanticScene<'_>, noun: &str) -> Self {
         let semantics = scene.semantics;
-        let things = semantics.kinds().things(&semantics.kinds_called(noun));
-        let mut pace = PollEvery::new(THINGS_PER_CHECK);
+        let things = semantics
+            .noun_index()
+            .objects_of_kinds(&semantics.kinds_called(noun));
+        let mut pace = CancelPoller::new(THINGS_PER_CHECK);
         let mut in_rooms = BTreeMap::new();
         for id in &things {
-            pace.turn();
+            pace.count_one();
             if let Some(room) = scene.room_of(*id) {
                 *in_rooms.entry(room).or_default() += 1;
             }
@@ -87,11 +89,11 @@ impl DistractorSet {
 
     fn with_attribute(&self, scene: &SemanticScene<'_>) -> &BTreeMap<Attribute, ObjectList> {
         self.having.get_or_init(|| {
-            let mut pace = PollEvery::new(THINGS_PER_CHECK);
+            let mut pace = CancelPoller::new(THINGS_PER_CHECK);
             let words = ColorVocabulary::Spoken.words();
             let mut lists: BTreeMap<Attribute, Vec<ObjectId>> = BTreeMap::new();
             for id in self.things.iter().copied() {
-                pace.turn();
+                pace.count_one();
                 let facts = scene.facts(id);
                 push(&mut lists, Attribute::Size(facts.size), id);
                 // Also the words on which people divide: what some would call white is not told apart from it as the white one.
@@ -139,7 +141,7 @@ impl DistractorSet {
             .iter()
             .map(|key| having.get(key).map(|list| &**list))
             .collect();
-        let found = lists.map_or_else(Vec::new, |lists| common(&lists, usize::MAX));
+        let found = lists.map_or_else(Vec::new, |lists| intersection(&lists, usize::MAX));
         let found: ObjectList = found.into();
         let mut known = self.having_all.borrow_mut();
         known.insert(traits, found.clone());
@@ -148,16 +150,16 @@ impl DistractorSet {
 
     fn pairs(&self, scene: &SemanticScene<'_>) -> &BTreeMap<(&'static str, u32), RelatedPairs> {
         self.pairs.get_or_init(|| {
-            let mut pace = PollEvery::new(1);
+            let mut pace = CancelPoller::new(1);
             let mut pairs: BTreeMap<(&'static str, u32), RelatedPairs> = BTreeMap::new();
             for predicate in predicates::all() {
                 if !TELLING.contains(&predicate.name()) {
                     continue;
                 }
                 for id in self.things.iter().copied() {
-                    pace.turn();
+                    pace.count_one();
                     for other in predicates::related_objects(scene, *predicate, id) {
-                        let kind = scene.semantics.kinds().class_of(other);
+                        let kind = scene.semantics.noun_index().kind_of(other);
                         let list = pairs.entry((predicate.name(), kind)).or_default();
                         list.push((id, other));
                     }
@@ -193,7 +195,7 @@ impl DistractorSet {
         for kind in scene.semantics.kinds_called(noun) {
             let pairs = name.and_then(|name| pairs.get(&(*name, kind)));
             for (id, other) in pairs.into_iter().flatten() {
-                if found.last() != Some(id) && scene.facts(*other).may_fit(landmark) {
+                if found.last() != Some(id) && scene.facts(*other).may_match_properties(landmark) {
                     found.push(*id);
                 }
             }
@@ -218,10 +220,10 @@ mod tests {
             all.iter().map(|k| ObjectId::from_index(*k)).collect()
         };
         let (a, b, c) = (ids(&[1, 2, 4, 8, 9]), ids(&[2, 3, 4, 9]), ids(&[0, 2, 9]));
-        assert_eq!(common(&[&a, &b, &c], usize::MAX), ids(&[2, 9]));
-        assert_eq!(common(&[&a, &b, &c], 1), ids(&[2]));
-        assert_eq!(common(&[&a], 2), ids(&[1, 2]));
-        assert!(common(&[&a, &[]], 2).is_empty());
-        assert!(common(&[], 2).is_empty());
+        assert_eq!(intersection(&[&a, &b, &c], usize::MAX), ids(&[2, 9]));
+        assert_eq!(intersection(&[&a, &b, &c], 1), ids(&[2]));
+        assert_eq!(intersection(&[&a], 2), ids(&[1, 2]));
+        assert!(intersection(&[&a, &[]], 2).is_empty());
+        assert!(intersection(&[], 2).is_empty());
     }
 }

@@ -1,6 +1,6 @@
 //! The shortest description that fits exactly one thing.
 
-use super::distractors::{TELLING, common};
+use super::distractors::{TELLING, intersection};
 use crate::category::SemanticCategory;
 use crate::form::{Description, Modifier, Noun, Quantifier};
 use crate::predicates;
@@ -10,7 +10,10 @@ use dwell_scene::interrupt;
 use std::collections::BTreeSet;
 
 /// The descriptions of `target` by its own properties, shortest first.
-pub(crate) fn by_properties(scene: &SemanticScene<'_>, target: ObjectId) -> Vec<Description> {
+pub(crate) fn property_descriptions(
+    scene: &SemanticScene<'_>,
+    target: ObjectId,
+) -> Vec<Description> {
     let facts = scene.facts(target);
     let noun = Description::new(Quantifier::The, Noun::Object(facts.noun.clone()));
     // A thing without a prevailing colour is not identified by one.
@@ -58,7 +61,7 @@ pub(crate) fn by_properties(scene: &SemanticScene<'_>, target: ObjectId) -> Vec<
 }
 
 /// The relations of `target` to other things, each named by its noun and at most one adjective; each once.
-pub(crate) fn by_relations(scene: &SemanticScene<'_>, target: ObjectId) -> Vec<Modifier> {
+pub(crate) fn relation_modifiers(scene: &SemanticScene<'_>, target: ObjectId) -> Vec<Modifier> {
     let mut found: Vec<Modifier> = Vec::new();
     let mut known: BTreeSet<(&str, &str, Option<&str>)> = BTreeSet::new();
     for name in TELLING {
@@ -68,7 +71,7 @@ pub(crate) fn by_relations(scene: &SemanticScene<'_>, target: ObjectId) -> Vec<M
         for landmark in predicates::related_objects(scene, predicate, target) {
             let row = scene.facts(landmark).category;
             if row.is_none_or(SemanticCategory::is_vague)
-                || scene.facts(landmark).is_opening()
+                || scene.facts(landmark).belongs_to_opening()
                 || (name == "in" && scene.is_seat_or_bed(landmark))
             {
                 continue;
@@ -129,7 +132,7 @@ pub fn refer(scene: &SemanticScene<'_>, target: ObjectId) -> Option<Description>
         let room = Description::new(quantifier, Noun::Room(facts.noun.clone()));
         Modifier::new("in_room", [room.into()])
     });
-    let own = by_properties(scene, target);
+    let own = property_descriptions(scene, target);
     let in_room: Vec<Description> = match &room {
         None => own.clone(),
         Some(room) => {
@@ -147,7 +150,7 @@ pub fn refer(scene: &SemanticScene<'_>, target: ObjectId) -> Option<Description>
     if let Some(found) = plain.into_iter().find(|description| unique(description)) {
         return Some(found.clone());
     }
-    let relations = by_relations(scene, target);
+    let relations = relation_modifiers(scene, target);
     let marked = relations.iter().map(|relation| {
         interrupt::unwind_if_cancelled();
         alike.with_landmark(scene, relation)
@@ -156,7 +159,7 @@ pub fn refer(scene: &SemanticScene<'_>, target: ObjectId) -> Option<Description>
     for description in own.iter().chain(&in_room).take(8) {
         let fitting = alike.matching(scene, description);
         for (relation, marked) in relations.iter().zip(&marked) {
-            if common(&[&fitting, marked], 2) == [target] {
+            if intersection(&[&fitting, marked], 2) == [target] {
                 let mut description = description.clone();
                 let relation = with_article(scene, relation.clone());
                 // "The lamp on the table in the kitchen": the relation before the room.

@@ -5,5 +5,5 @@ mod generate;
 mod room;
 
 pub use generate::refer;
-pub(crate) use generate::{by_properties, by_relations};
+pub(crate) use generate::{property_descriptions, relation_modifiers};
 pub use room::{refer_to_room, room_phrase};

@@ -44,7 +44,7 @@ pub(crate) struct SampledRoute {
     pub(crate) points: Vec<Vec3>,
 }
 
-pub(crate) fn flat(point: Vec3) -> Vec2 {
+pub(crate) fn to_xz(point: Vec3) -> Vec2 {
     Vec2::new(point.x, point.z)
 }
 
@@ -69,7 +69,7 @@ impl SampledRoute {
         } else {
             at.saturating_sub(reach)
         };
-        let along = flat(self.points[other]) - flat(self.points[at]);
+        let along = to_xz(self.points[other]) - to_xz(self.points[at]);
         let along = if ahead { along } else { -along };
         (along.length() > 0.5 * HEADING_M).then(|| along.normalize())
     }
@@ -108,7 +108,7 @@ impl RouteFinder<'_, '_> {
         let near = self.scene.semantics.doorways().filter_map(|(door, way)| {
             let joins = between.iter().all(|room| way.rooms.contains(room));
             let bounds = self.scene.extent(door).bounds;
-            let distance = flat(bounds.center()).distance(flat(place));
+            let distance = to_xz(bounds.center()).distance(to_xz(place));
             (joins && distance <= DOOR_M).then_some((distance, door))
         });
         near.min_by(|p, q| p.0.total_cmp(&q.0))
@@ -182,13 +182,17 @@ impl RouteFinder<'_, '_> {
                 let is_small = volume < LANDMARK_M3 || bounds.size().y < 0.4;
                 let is_worse = best.is_some_and(|(most, ..)| most >= volume);
                 let hangs = bounds.min.y > self.scene.house().rooms[room].floor_y + 0.5;
-                if is_small || is_worse || hangs || facts.is_opening() || self.goal == Some(object)
+                if is_small
+                    || is_worse
+                    || hangs
+                    || facts.belongs_to_opening()
+                    || self.goal == Some(object)
                 {
                     continue;
                 }
                 let distance = |at: usize| {
-                    let point = flat(self.route.points[at]);
-                    let (low, high) = (flat(bounds.min), flat(bounds.max));
+                    let point = to_xz(self.route.points[at]);
+                    let (low, high) = (to_xz(bounds.min), to_xz(bounds.max));
                     point.distance(point.clamp(low, high))
                 };
                 let nearest = (leg[0]..=leg[1])
@@ -221,7 +225,8 @@ impl RouteFinder<'_, '_> {
         let from = Modifier::new("leads_from", [room_phrase(scene, rooms[0])]);
         let both = plain.clone().with_modifier(from).with_modifier(to.clone());
         let tried = [plain.clone(), plain.with_modifier(to), both.clone()];
-        let is_certain = |own: &&Description| checker.denotes(own) == Some(Term::Object(door));
+        let is_certain =
+            |own: &&Description| checker.certain_referent(own) == Some(Term::Object(door));
         tried
             .iter()
             .find(is_certain)

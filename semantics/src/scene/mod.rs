@@ -8,7 +8,7 @@ pub(crate) use distractor_set::{
     Attribute, DistractorSet, LandmarkQuery, ObjectList, RelatedPairs,
 };
 pub(crate) use object_cache::ObjectCache;
-pub use object_cache::SurfaceSupport;
+pub use object_cache::SupportShare;
 pub use term::{Term, TermKind, Viewer};
 
 use crate::facts::ObjectFacts;
@@ -106,7 +106,9 @@ impl<'a> SemanticScene<'a> {
             BoxTree::new(boxes.collect())
         });
         let counts = |k| counts(ObjectId::from_index(k));
-        let found = boxes.nearest_intersecting(reach, most, counts).into_iter();
+        let found = boxes
+            .k_nearest_intersecting(reach, most, counts)
+            .into_iter();
         found.map(ObjectId::from_index).collect()
     }
 

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 /// A carrier of a thing, with its share of the load.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SurfaceSupport {
+pub struct SupportShare {
     /// The carrier: an object or a structure piece.
     pub by: Term,
     /// The share of the sole's points that rest on it, 0 to 1.
@@ -23,7 +23,7 @@ pub(crate) struct ObjectCache {
     pub(super) extent: OnceCell<Arc<Extent>>,
     pub(super) room: OnceCell<Option<RoomId>>,
     /// Its carriers, the largest share first.
-    pub(crate) supports: OnceCell<Vec<SurfaceSupport>>,
+    pub(crate) supports: OnceCell<Vec<SupportShare>>,
     /// Its containers, ascending.
     pub(crate) around: OnceCell<Vec<ObjectId>>,
     /// Its mount: the term on which it hangs.

@@ -1,7 +1,7 @@
 //! The order `from_left`.
 
 use super::Selection;
-use crate::predicates::{LEAST_TANGENT, picture_x};
+use crate::predicates::{LEAST_TANGENT, image_x};
 use crate::scene::{SemanticScene, Term, Viewer};
 
 /// See [`Selection::definition`].
@@ -32,7 +32,7 @@ impl Selection for FromLeft {
         _: Option<Term>,
         viewer: Option<&Viewer>,
     ) -> Option<f32> {
-        picture_x(scene, viewer?, candidate)
+        image_x(scene, viewer?, candidate)
     }
 
     fn margin(&self) -> f32 {

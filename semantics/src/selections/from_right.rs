@@ -1,7 +1,7 @@
 //! The order `from_right`.
 
 use super::Selection;
-use crate::predicates::{LEAST_TANGENT, picture_x};
+use crate::predicates::{LEAST_TANGENT, image_x};
 use crate::scene::{SemanticScene, Term, Viewer};
 
 /// See [`Selection::definition`].
@@ -32,7 +32,7 @@ impl Selection for FromRight {
         _: Option<Term>,
         viewer: Option<&Viewer>,
     ) -> Option<f32> {
-        Some(-picture_x(scene, viewer?, candidate)?)
+        Some(-image_x(scene, viewer?, candidate)?)
     }
 
     fn margin(&self) -> f32 {

@@ -3,7 +3,7 @@
 use super::ViewSurvey;
 use crate::check::Checker;
 use crate::form::{Description, Modifier, Noun, OrdinalSelection, Phrase, Quantifier};
-use crate::refer::{by_properties, by_relations};
+use crate::refer::{property_descriptions, relation_modifiers};
 use crate::scene::Term;
 use dwell_scene::ObjectId;
 use dwell_scene::interrupt;
@@ -31,16 +31,16 @@ pub fn refer_in_view(
     let scene = checker.scene();
     let denotes = |description: &Description| {
         interrupt::unwind_if_cancelled();
-        checker.denotes(description) == Some(Term::Object(target))
+        checker.certain_referent(description) == Some(Term::Object(target))
     };
-    let own = by_properties(scene, target);
+    let own = property_descriptions(scene, target);
     if let Some(found) = own.iter().find(|description| denotes(description)) {
         return Some(found.clone());
     }
-    let relations = by_relations(scene, target).into_iter().filter(|relation| {
+    let relations = relation_modifiers(scene, target).into_iter().filter(|relation| {
         let landmark = &relation.arguments[0];
         survey.objects.keys().any(
-            |other| matches!(landmark, Phrase::Described(own) if scene.facts(*other).may_fit(own)),
+            |other| matches!(landmark, Phrase::Described(own) if scene.facts(*other).may_match_properties(own)),
         )
     });
     let relations: Vec<Modifier> = relations.collect();
@@ -63,8 +63,9 @@ pub fn refer_in_view(
         .collect();
     landmarks.sort_by(|p, q| q.0.total_cmp(&p.0).then(p.1.cmp(&q.1)));
     for (_, landmark) in landmarks.into_iter().take(MAX_LANDMARKS) {
-        let mut named = by_properties(scene, landmark).into_iter().take(2);
-        let is_landmark = |own: &Description| checker.denotes(own) == Some(Term::Object(landmark));
+        let mut named = property_descriptions(scene, landmark).into_iter().take(2);
+        let is_landmark =
+            |own: &Description| checker.certain_referent(own) == Some(Term::Object(landmark));
         let Some(named) = named.find(is_landmark) else {
             continue;
         };
@@ -102,6 +103,7 @@ fn counted_from_left(
             }),
             ..Description::new(Quantifier::The, Noun::Object(noun.clone()))
         };
-        (checker.denotes(&description) == Some(Term::Object(target))).then_some(description)
+        (checker.certain_referent(&description) == Some(Term::Object(target)))
+            .then_some(description)
     })
 }

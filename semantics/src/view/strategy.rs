@@ -4,7 +4,7 @@ use super::refer::refer_in_view;
 use super::survey::ViewSurvey;
 use crate::check::Checker;
 use crate::form::{Description, Modifier, Noun, Phrase, Quantifier};
-use crate::refer::{by_properties, by_relations, refer, room_phrase};
+use crate::refer::{property_descriptions, refer, relation_modifiers, room_phrase};
 use crate::scene::Term;
 use dwell_scene::ObjectId;
 use dwell_scene::interrupt;
@@ -53,14 +53,14 @@ pub fn refer_to(
     let scene = checker.scene();
     let denotes = |own: &Description| {
         interrupt::unwind_if_cancelled();
-        checker.denotes(own) == Some(Term::Object(target))
+        checker.certain_referent(own) == Some(Term::Object(target))
     };
     let found = match strategy {
         ReferStrategy::Shortest => None,
         ReferStrategy::Incremental => Some(incremental(checker, target)).filter(denotes),
         ReferStrategy::Relational => {
-            let own = by_properties(scene, target);
-            let related = by_relations(scene, target)
+            let own = property_descriptions(scene, target);
+            let related = relation_modifiers(scene, target)
                 .into_iter()
                 .flat_map(|relation| {
                     let own = own.iter().take(2).cloned();
@@ -114,12 +114,12 @@ fn incremental(checker: &Checker<'_>, target: ObjectId) -> Description {
     let steps: [&dyn Fn(&Description) -> Description; 4] =
         [&with_color, &with_material, &with_size, &with_room];
     for step in steps {
-        let left = checker.possible(&description);
+        let left = checker.possible_count(&description);
         if left <= 1 {
             break;
         }
         let longer = step(&description);
-        let still = checker.possible(&longer);
+        let still = checker.possible_count(&longer);
         if still >= 1 && still < left {
             description = longer;
         }

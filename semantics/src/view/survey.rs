@@ -1,9 +1,9 @@
 //! What a viewer sees of each thing: shares of the picture, what is hidden, where it falls and how far it is.
 
-use crate::clear_glass::is_clear;
+use crate::clear_glass::is_transparent;
 use crate::scene::{SemanticScene, Viewer};
 use dwell_scene::bvh::{Hit, Ray, RayMask};
-use dwell_scene::interrupt::PollEvery;
+use dwell_scene::interrupt::CancelPoller;
 use dwell_scene::{Entity, EntityId, ObjectId, StructureId, StructureKind};
 use glam::Vec3;
 use std::collections::BTreeMap;
@@ -77,10 +77,10 @@ impl ViewSurvey {
         let mut counts: BTreeMap<i32, RayCounts> = BTreeMap::new();
         let mut hits: Vec<Hit> = Vec::new();
         let mut met: Vec<i32> = Vec::new();
-        let mut poll = PollEvery::new(RAYS_PER_CHECK);
+        let mut poll = CancelPoller::new(RAYS_PER_CHECK);
         let tangent = |k: usize| ((k as f32 + 0.5) / RAYS as f32 * 2.0 - 1.0) * HALF_WIDTH;
         for k in 0..RAYS * RAYS {
-            poll.turn();
+            poll.count_one();
             let (x, y) = (tangent(k % RAYS), tangent(k / RAYS));
             let direction = viewer
                 .world_from_camera
@@ -91,7 +91,7 @@ impl ViewSurvey {
             let mut is_seen = true;
             for hit in &hits {
                 let was_seen = is_seen;
-                is_seen = is_seen && is_clear(rays, hit);
+                is_seen = is_seen && is_transparent(rays, hit);
                 if met.contains(&hit.id) {
                     continue;
                 }

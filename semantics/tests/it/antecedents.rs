@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "tests stop at the first surprise")]
 
 use dwell_semantics::form::{Form, Noun, Phrase, RequestStep};
-use dwell_semantics::language::{Language, ReadError};
+use dwell_semantics::language::{Language, ParseError};
 
 fn preferred(text: &str) -> Form {
     let mut reading = Language::english()
@@ -154,9 +154,9 @@ fn what_nothing_stands_for_stays() {
         "It is red.",
         "Both of them are open.",
     ] {
-        assert!(!preferred(text).is_complete(), "{text}");
+        assert!(!preferred(text).is_free_of_anaphora(), "{text}");
         let error = Language::english().read_text(text).unwrap_err();
-        assert_eq!(error.error, ReadError::NoAntecedent, "{text}");
+        assert_eq!(error.error, ParseError::NoAntecedent, "{text}");
     }
 }
 
@@ -191,7 +191,7 @@ fn the_other_is_not_the_one_that_was_named() {
         ),
     ] {
         let form = preferred(text);
-        assert!(form.is_complete(), "{text}: {form:?}");
+        assert!(form.is_free_of_anaphora(), "{text}: {form:?}");
         let said = Language::english().say(&form, None).map(|said| said.text);
         assert_eq!(said.as_deref(), Some(meant), "{text}: {form:?}");
     }
@@ -202,7 +202,7 @@ fn the_other_is_not_the_one_that_was_named() {
         "Is there another sofa?",
     ] {
         let error = Language::english().read_text(text).unwrap_err();
-        assert_eq!(error.error, ReadError::NoAntecedent, "{text}");
+        assert_eq!(error.error, ParseError::NoAntecedent, "{text}");
     }
 }
 
@@ -231,7 +231,7 @@ fn they_are_what_the_sentence_was_about() {
         ),
     ] {
         let form = preferred(text);
-        assert!(form.is_complete(), "{text}: {form:?}");
+        assert!(form.is_free_of_anaphora(), "{text}: {form:?}");
         assert_eq!(said(text), meant, "{text}");
     }
 }
@@ -374,7 +374,7 @@ fn the_same_place_and_what_somebody_left() {
     ] {
         assert!(matches!(
             Language::english().read(text),
-            Err(ReadError::NotASentence { .. })
+            Err(ParseError::NotASentence { .. })
         ));
     }
 }

@@ -4,7 +4,7 @@
 use dwell_houses::open;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{JointId, ObjectId, State};
-use dwell_semantics::check::{Checker, Listener};
+use dwell_semantics::check::{Addressee, Checker};
 use dwell_semantics::describe::{GroundedText, describe_changes};
 use dwell_semantics::form::{Clause, Form, Quality};
 use dwell_semantics::{Semantics, Term};
@@ -36,7 +36,7 @@ fn what_was_changed_is_told() {
         let same = describe_changes(
             &semantics.scene(&before),
             &semantics.scene(&before),
-            Listener::default(),
+            Addressee::default(),
             None,
         );
         assert_eq!(same.text, "", "{name}");
@@ -86,15 +86,15 @@ fn what_was_changed_is_told() {
                 }
             }
             let scenes = (semantics.scene(&before), semantics.scene(&after));
-            let text = describe_changes(&scenes.0, &scenes.1, Listener::default(), None);
-            let checker = Checker::new(&scenes.1, Listener::default());
+            let text = describe_changes(&scenes.0, &scenes.1, Addressee::default(), None);
+            let checker = Checker::new(&scenes.1, Addressee::default());
             for claim in &text.claims {
                 let said = &text.text[claim.start..claim.end];
                 let Form::Claim(Clause::Now(inner)) = &claim.form else {
                     panic!("{said}");
                 };
                 assert!(checker.check(inner).truth.is_true(), "{name}: {said}");
-                let earlier = Checker::new(&scenes.0, Listener::default());
+                let earlier = Checker::new(&scenes.0, Addressee::default());
                 assert!(
                     !earlier.check(inner).truth.is_true(),
                     "{name}: {said} was so before"

@@ -5,7 +5,7 @@ use dwell_houses::open;
 use dwell_scene::material::library;
 use dwell_scene::units::linear_from_srgb;
 use dwell_scene::{House, MaterialId, ObjectId, State};
-use dwell_semantics::check::{CheckResult, Checker, Listener, QuestionAnswer};
+use dwell_semantics::check::{Addressee, CheckResult, Checker, QuestionAnswer};
 use dwell_semantics::color::ColorVocabulary;
 use dwell_semantics::form::{Clause, Form, Phrase, Question};
 use dwell_semantics::language::Language;
@@ -37,7 +37,7 @@ fn question(text: &str) -> Question {
 }
 
 fn check(scene: &SemanticScene<'_>, text: &str) -> CheckResult {
-    Checker::new(scene, Listener::default()).check(&clause(text))
+    Checker::new(scene, Addressee::default()).check(&clause(text))
 }
 
 /// Things that may be called by each noun, counted one by one.
@@ -141,7 +141,7 @@ fn each_landmark_has_its_own_thing() {
                 let Form::Claim(clause) = &read.forms[0] else {
                     panic!("{text}: {read:?}");
                 };
-                let verdict = Checker::new(&scene, Listener::default()).check(clause);
+                let verdict = Checker::new(&scene, Addressee::default()).check(clause);
                 assert_eq!(
                     verdict.truth,
                     Truth::from(expected),
@@ -236,7 +236,7 @@ fn rooms_and_pieces_of_the_building_have_colors_and_substances() {
                 subject: Phrase::Id(house.entity_of_structure(id).0.unsigned_abs()),
                 quality,
             };
-            let checker = Checker::new(&scene, Listener::default());
+            let checker = Checker::new(&scene, Addressee::default());
             for word in ["white", "blue", "gray", own] {
                 let verdict = checker.check(&asks(kinds(word.to_owned())));
                 let expected = if lies_between(own, word) {
@@ -395,7 +395,7 @@ fn what_cannot_be_asked_is_undecided_with_its_reason() {
             0.3,
         ),
     };
-    let listener = Listener {
+    let listener = Addressee {
         viewer: Some(viewer),
         agent: None,
     };
@@ -412,7 +412,7 @@ fn questions_get_what_was_counted() {
     let semantics = Semantics::new(&house);
     let state = State::new(&house);
     let scene = semantics.scene(&state);
-    let checker = Checker::new(&scene, Listener::default());
+    let checker = Checker::new(&scene, Addressee::default());
     let nouns = called(&scene);
     let chairs = &nouns["chair"];
     assert_eq!(
@@ -451,7 +451,7 @@ fn sentences_are_checked_and_their_phrases_grounded() {
     let semantics = Semantics::new(&house);
     let state = State::new(&house);
     let scene = semantics.scene(&state);
-    let checker = Checker::new(&scene, Listener::default());
+    let checker = Checker::new(&scene, Addressee::default());
     let checked = checker.check_text("there's a bet").unwrap_err();
     assert!(
         checked.to_string().contains("\"bet\" (known are bed"),
@@ -494,7 +494,7 @@ fn ambiguous_nouns_ask_which_thing_is_meant() {
     let semantics = Semantics::new(&house);
     let state = State::new(&house);
     let scene = semantics.scene(&state);
-    let checker = Checker::new(&scene, Listener::default());
+    let checker = Checker::new(&scene, Addressee::default());
     let language = semantics.language();
     let asked = |text: &str| {
         let form = language.read(text).unwrap().forms.remove(0);
@@ -508,7 +508,7 @@ fn ambiguous_nouns_ask_which_thing_is_meant() {
         let Form::NounPhrase(Phrase::Described(what)) = &things.forms[0] else {
             panic!("{:?}", things.forms[0]);
         };
-        let fitting = checker.fitting(what);
+        let fitting = checker.matching_terms(what);
         if fitting.len() < 2 {
             assert!(found.is_empty(), "{noun}: {found:?}");
             continue;
@@ -527,7 +527,7 @@ fn ambiguous_nouns_ask_which_thing_is_meant() {
             .split(", ")
             .flat_map(|part| part.split(" or "))
             .map(|phrase| match &language.read(phrase).unwrap().forms[0] {
-                Form::NounPhrase(phrase) => checker.denoted(phrase),
+                Form::NounPhrase(phrase) => checker.denotation(phrase),
                 other => panic!("{other:?}"),
             })
             .collect();

@@ -62,7 +62,8 @@ fn colours_are_those_that_readers_name() {
             };
             asked += 1;
             // Things of two colours are named by both; cream is what some call white, others beige.
-            let meets = |own: &str, given: &&str| own == *given || color::divides(own, given);
+            let meets =
+                |own: &str, given: &&str| own == *given || color::speakers_disagree(own, given);
             main += u32::from(spoken.iter().any(|(own, _)| meets(own, &majority)));
             let given = readers
                 .iter()

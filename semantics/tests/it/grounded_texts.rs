@@ -7,7 +7,7 @@ use common::Builder;
 use dwell_houses::open;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{House, State};
-use dwell_semantics::check::{Checker, Listener};
+use dwell_semantics::check::{Addressee, Checker};
 use dwell_semantics::describe::{
     GroundedText, TextLength, TextOptions, TextStyle, captions, describe_house, describe_rooms,
     describe_view,
@@ -25,7 +25,7 @@ fn houses() -> Vec<String> {
 }
 
 /// Checks the claims of a text, and that its sentences read back as its forms.
-fn examine(scene: &SemanticScene<'_>, listener: Listener, text: &GroundedText, name: &str) {
+fn examine(scene: &SemanticScene<'_>, listener: Addressee, text: &GroundedText, name: &str) {
     let checker = Checker::new(scene, listener);
     let language = scene.semantics.language();
     let read = language
@@ -51,7 +51,7 @@ fn examine_house(name: &str) {
     let semantics = Semantics::new(&house);
     let state = State::new(&house);
     let scene = semantics.scene(&state);
-    let nobody = Listener::default();
+    let nobody = Addressee::default();
     let drawn = TextOptions {
         wording: Some(RandomKey::root(5)),
         ..TextOptions::default()
@@ -86,7 +86,7 @@ fn examine_house(name: &str) {
         let viewer = Viewer {
             world_from_camera: dwell_scene::Pose::from_position_yaw(eye, 0.7),
         };
-        let listener = Listener {
+        let listener = Addressee {
             viewer: Some(viewer),
             agent: None,
         };
@@ -155,7 +155,7 @@ fn odd_nouns_are_said_and_their_texts_are_true() {
         texts.extend(describe_rooms(&scene, drawn));
         texts.push(describe_house(&scene, TextOptions::default()));
         assert!(house.rooms.get(room).is_some());
-        let checker = Checker::new(&scene, Listener::default());
+        let checker = Checker::new(&scene, Addressee::default());
         for text in texts {
             assert!(!text.claims.is_empty(), "{noun:?}");
             for claim in &text.claims {

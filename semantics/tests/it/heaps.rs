@@ -5,7 +5,7 @@ use crate::common;
 use common::Builder;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{House, State};
-use dwell_semantics::check::{Checker, Listener};
+use dwell_semantics::check::{Addressee, Checker};
 use dwell_semantics::form::{Description, Modifier, Noun, Quantifier};
 use dwell_semantics::graph::scene_graph;
 use dwell_semantics::predicates::find;
@@ -95,7 +95,7 @@ fn what_is_at_some_landmark_is_what_has_the_relation_to_one_of_them() {
         let semantics = Semantics::new(&house);
         let state = State::new(&house);
         let scene = semantics.scene(&state);
-        let checker = Checker::new(&scene, Listener::default());
+        let checker = Checker::new(&scene, Addressee::default());
         let some = |noun: &str| Description::new(Quantifier::Some, Noun::Object(noun.to_owned()));
         let red = Description {
             colors: vec!["red".to_owned()],
@@ -104,16 +104,16 @@ fn what_is_at_some_landmark_is_what_has_the_relation_to_one_of_them() {
         for name in ["in", "next_to", "on", "above"] {
             let predicate = find(name).unwrap();
             for landmark in [some("bowl"), red.clone(), some("thing")] {
-                let marks = checker.fitting(&landmark);
+                let marks = checker.matching_terms(&landmark);
                 assert!(!marks.is_empty());
                 let phrase = some("cup").with_modifier(Modifier::new(name, [landmark.into()]));
-                let cups = checker.fitting(&some("cup")).into_iter();
+                let cups = checker.matching_terms(&some("cup")).into_iter();
                 let holds = |cup: &Term| {
                     let mut of = marks.iter();
                     of.any(|mark| predicate.holds(&scene, &[*cup, *mark], None).is_true())
                 };
                 let expected: Vec<Term> = cups.filter(holds).collect();
-                assert_eq!(checker.fitting(&phrase), expected, "{name}");
+                assert_eq!(checker.matching_terms(&phrase), expected, "{name}");
             }
         }
     }
@@ -126,10 +126,10 @@ fn what_is_referred_to_in_a_heap_is_one_thing() {
         let semantics = Semantics::new(&house);
         let state = State::new(&house);
         let scene = semantics.scene(&state);
-        let checker = Checker::new(&scene, Listener::default());
+        let checker = Checker::new(&scene, Addressee::default());
         for id in house.objects.ids() {
             if let Some(expression) = refer(&scene, id) {
-                let fits = checker.fitting(&expression);
+                let fits = checker.matching_terms(&expression);
                 assert_eq!(fits, [Term::Object(id)], "{expression:?}");
             }
             let caption = describe::caption(&scene, id, describe::TextOptions::default()).text;

@@ -20,7 +20,7 @@ proptest! {
         prop_assert!(said.is_some(), "no words for {form:?}");
         let said = said.unwrap();
         let reading = english.read(&said.text);
-        prop_assume!(!matches!(reading, Err(dwell_semantics::language::ReadError::TooLong { .. })));
+        prop_assume!(!matches!(reading, Err(dwell_semantics::language::ParseError::TooLong { .. })));
         let reading = reading.map_err(|error| TestCaseError::fail(format!("{}: {error}", said.text)))?;
         prop_assert_eq!(&reading.forms[0], &form, "{}", said.text);
         for span in &said.phrases {
@@ -28,7 +28,7 @@ proptest! {
         }
         let other = english.say(&form, Some(RandomKey::root(seed))).unwrap();
         let reading = english.read(&other.text);
-        prop_assume!(!matches!(reading, Err(dwell_semantics::language::ReadError::TooLong { .. })));
+        prop_assume!(!matches!(reading, Err(dwell_semantics::language::ParseError::TooLong { .. })));
         prop_assert!(reading.is_ok_and(|reading| reading.forms.contains(&form)), "{}", other.text);
     }
 

@@ -3,7 +3,7 @@
 
 use dwell_houses::open;
 use dwell_scene::{Pose, State};
-use dwell_semantics::check::{Checker, Listener};
+use dwell_semantics::check::{Addressee, Checker};
 use dwell_semantics::describe::describe_reference;
 use dwell_semantics::form::{Form, Phrase};
 use dwell_semantics::view::{ReferStrategy, ViewSurvey};
@@ -38,14 +38,14 @@ fn each_reference_denotes_its_thing_alone() {
         let again = Arc::new(open(&name).unwrap().0);
         let reader = Semantics::new(&again);
         let reading = reader.scene(&state);
-        let resolve = |text: &str, listener: Listener| {
+        let resolve = |text: &str, listener: Addressee| {
             let read = reader.language().read(text).unwrap();
             let Form::NounPhrase(Phrase::Described(own)) = &read.forms[0] else {
                 panic!("{name}: {text:?} is read as {:?}", read.forms[0]);
             };
-            Checker::new(&reading, listener).denotes(own)
+            Checker::new(&reading, listener).certain_referent(own)
         };
-        let nobody = Listener::default();
+        let nobody = Addressee::default();
         for object in house.objects.ids() {
             in_house.asked += 1;
             for strategy in ReferStrategy::ALL {
@@ -70,7 +70,7 @@ fn each_reference_denotes_its_thing_alone() {
             let viewer = Viewer {
                 world_from_camera: Pose::from_position_yaw(point, 0.7),
             };
-            let listener = Listener {
+            let listener = Addressee {
                 viewer: Some(viewer),
                 agent: None,
             };

@@ -12,8 +12,8 @@ use dwell_scene::rays::RayScene;
 use dwell_scene::{Id, ObjectId, RoomId, State};
 use dwell_semantics::form::{Form, TurnDirection};
 use dwell_semantics::instruct::{
-    MAX_TEXT_LEN, RouteInstruction, RouteMilestone, RouteWalk, StepCondition, ToldWay, WordSplit,
-    is_sought,
+    DescribedPath, InstructionSplit, MAX_TEXT_LEN, RouteInstruction, RouteMilestone, RouteTracker,
+    StepCondition, is_search_target,
 };
 use dwell_semantics::{SemanticScene, Semantics, vocabulary};
 use glam::{Vec2, Vec3};
@@ -34,12 +34,12 @@ fn passed(
     places: &[Vec3],
     arrives: bool,
 ) -> usize {
-    let mut walk = RouteWalk::new(milestones.to_vec());
+    let mut walk = RouteTracker::new(milestones.to_vec());
     for (k, place) in places.iter().enumerate() {
         let is_at_end = arrives && k + 1 == places.len();
         walk.advance((scene, rays), [*place, *place + Vec3::Y * EYE_M], is_at_end);
     }
-    walk.done()
+    walk.passed_count()
 }
 
 /// The places with those taken away for which `is_away` holds: one rises before the first of them, and comes down behind the last.
@@ -101,9 +101,13 @@ fn check(
     let language = scene.semantics.language();
     let form = Form::Request(route.requests());
     // What is said in any wording is read as it was meant.
-    for (k, split) in [WordSplit::All, WordSplit::Train, WordSplit::Wordings]
-        .into_iter()
-        .enumerate()
+    for (k, split) in [
+        InstructionSplit::All,
+        InstructionSplit::Train,
+        InstructionSplit::Wordings,
+    ]
+    .into_iter()
+    .enumerate()
     {
         let key = RandomKey::root(tally.told as u64).child(k as u64);
         let Some(said) = split.compose(language, route.requests(), key) else {
@@ -269,7 +273,8 @@ fn routes_are_true_of_their_ways_and_of_no_others() {
         };
         let mut key = RandomKey::root(5);
         for from in house.rooms.ids() {
-            let sought = |object: &ObjectId| scene.facts(*object).category.is_some_and(is_sought);
+            let sought =
+                |object: &ObjectId| scene.facts(*object).category.is_some_and(is_search_target);
             let things: Vec<ObjectId> = house.objects.ids().filter(sought).collect();
             let ends = house.rooms.ids().map(StepCondition::AgentIn);
             let things = things
@@ -301,13 +306,13 @@ fn routes_are_true_of_their_ways_and_of_no_others() {
                     .collect();
                 let yaw_rad = key.child("yaw").stream().range(-3.0, 3.0);
                 let looks = Vec2::new(-yaw_rad.sin(), -yaw_rad.cos());
-                let way = ToldWay {
+                let way = DescribedPath {
                     corners: &corners,
                     yaw_rad,
                     eye_m: EYE_M,
                     end,
                 };
-                match RouteInstruction::tell((&scene, rays), way, &mut key.stream()) {
+                match RouteInstruction::generate((&scene, rays), way, &mut key.stream()) {
                     Some(route) => {
                         tally.told += 1;
                         check((&scene, rays), &route, looks, &mut tally);
@@ -441,7 +446,7 @@ fn walks_by_hand_are_judged_as_one_would() {
     assert_eq!(passed(seen, &swapped, &first_past, false), 1);
     let _ = hall;
     // What is known of one walk is nothing for another.
-    let mut walk = RouteWalk::new(past.to_vec());
-    assert!(!walk.restore(RouteWalk::new(both.clone()).progress().clone()));
-    assert!(walk.restore(RouteWalk::new(past.to_vec()).progress().clone()));
+    let mut walk = RouteTracker::new(past.to_vec());
+    assert!(!walk.restore(RouteTracker::new(both.clone()).progress().clone()));
+    assert!(walk.restore(RouteTracker::new(past.to_vec()).progress().clone()));
 }

@@ -6,7 +6,7 @@ use crate::common;
 use common::Builder;
 use dwell_houses::open;
 use dwell_scene::{Id, Pose, RoomId, State};
-use dwell_semantics::check::{Checker, Listener};
+use dwell_semantics::check::{Addressee, Checker};
 use dwell_semantics::describe::{TextLength, TextOptions, describe_route};
 use dwell_semantics::form::{Description, Form, Phrase, RequestStep, TurnDirection};
 use dwell_semantics::{SemanticScene, Semantics, Term, Viewer};
@@ -27,14 +27,14 @@ fn follow(
     start: RoomId,
     steps: &[RequestStep],
 ) -> (RoomId, Option<Vec<Term>>) {
-    let checker = Checker::new(scene, Listener::default());
+    let checker = Checker::new(scene, Addressee::default());
     let mut room = start;
     let mut reached = None;
     for step in steps {
         match step {
             RequestStep::Turn(_) => {}
             RequestStep::Do { verb, object } => {
-                let things = checker.fitting(described(object));
+                let things = checker.matching_terms(described(object));
                 assert!(!things.is_empty(), "{step:?} names nothing");
                 match verb.as_str() {
                     "go_through" => {
@@ -43,7 +43,7 @@ fn follow(
                             .map(|door| scene.semantics.doorway(door.object().unwrap()).unwrap());
                         let beyond = ways
                             .filter(|way| way.rooms.contains(&room))
-                            .flat_map(|way| way.beyond(room));
+                            .flat_map(|way| way.rooms_beyond(room));
                         let beyond: BTreeSet<RoomId> = beyond.collect();
                         assert_eq!(beyond.len(), 1, "{step:?} from {room:?}");
                         room = *beyond.first().unwrap();
@@ -57,7 +57,7 @@ fn follow(
                 }
             }
             RequestStep::GoTo(to) => {
-                let [Term::Room(next)] = checker.fitting(described(to))[..] else {
+                let [Term::Room(next)] = checker.matching_terms(described(to))[..] else {
                     panic!("{to:?}");
                 };
                 room = next;
@@ -92,7 +92,7 @@ fn whoever_follows_the_words_arrives() {
             let viewer = Viewer {
                 world_from_camera: Pose::from_position_yaw(eye, k as f32),
             };
-            let listener = Listener {
+            let listener = Addressee {
                 viewer: Some(viewer),
                 agent: None,
             };
@@ -176,7 +176,7 @@ fn turns_are_those_of_the_body() {
         let viewer = Viewer {
             world_from_camera: Pose::from_position_yaw(Vec3::new(4.0, 1.5, 4.0), yaw),
         };
-        let listener = Listener {
+        let listener = Addressee {
             viewer: Some(viewer),
             agent: None,
         };
@@ -203,7 +203,7 @@ fn turns_are_those_of_the_body() {
     // Without a viewer, and for what is no place, there is none.
     let goal = Term::Object(things[0]);
     assert_eq!(
-        describe_route(&scene, Listener::default(), goal, TextLength::Short.into()),
+        describe_route(&scene, Addressee::default(), goal, TextLength::Short.into()),
         None
     );
     let _ = things[0].index();

@@ -6,7 +6,7 @@ use common::{Builder, small_house};
 use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{AgentBody, AgentId, AgentState, Pose, State};
-use dwell_semantics::check::{Checker, Listener};
+use dwell_semantics::check::{Addressee, Checker};
 use dwell_semantics::describe::{
     TextOptions, caption, describe_house, describe_room, describe_view,
 };
@@ -28,7 +28,7 @@ fn said(semantics: &Semantics, description: &Description) -> String {
 
 /// What a description fits, without a viewer.
 fn fitting(scene: &SemanticScene<'_>, description: &Description) -> Vec<Term> {
-    Checker::new(scene, Listener::default()).fitting(description)
+    Checker::new(scene, Addressee::default()).matching_terms(description)
 }
 
 #[test]
@@ -173,7 +173,7 @@ fn descriptions_read_aloud() {
     let scene = semantics.scene(&state);
     let view = describe_view(
         &scene,
-        Listener::agent(&scene, AgentId(0)),
+        Addressee::agent(&scene, AgentId(0)),
         TextOptions::default(),
     );
     assert_eq!(
@@ -185,7 +185,7 @@ fn descriptions_read_aloud() {
     );
     // Without eyes nothing is seen.
     assert_eq!(
-        describe_view(&scene, Listener::default(), TextOptions::default()).text,
+        describe_view(&scene, Addressee::default(), TextOptions::default()).text,
         ""
     );
 }

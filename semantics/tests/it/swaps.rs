@@ -4,7 +4,7 @@
 use dwell_houses::open;
 use dwell_scene::random::{RandomKey, RandomStream};
 use dwell_scene::{Entity, EntityId, House, ObjectId, State, StructureKind};
-use dwell_semantics::check::{Checker, Listener};
+use dwell_semantics::check::{Addressee, Checker};
 use dwell_semantics::color::ColorVocabulary;
 use dwell_semantics::describe::{TextOptions, captions, describe_rooms};
 use dwell_semantics::english::ordinal;
@@ -226,7 +226,7 @@ fn swap_in(name: &str) -> usize {
     let semantics = Semantics::new(&house);
     let state = State::new(&house);
     let scene = semantics.scene(&state);
-    let checker = Checker::new(&scene, Listener::default());
+    let checker = Checker::new(&scene, Addressee::default());
     let objects = || house.objects.ids();
     let facts = Facts {
         house: &house,

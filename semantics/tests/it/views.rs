@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "tests stop at the first surprise")]
 
 use dwell_scene::{House, ObjectId, Pose, RoomId, State};
-use dwell_semantics::check::Listener;
+use dwell_semantics::check::Addressee;
 use dwell_semantics::describe::{TextOptions, describe_view};
 use dwell_semantics::predicates;
 use dwell_semantics::{Semantics, Term, Viewer};
@@ -66,7 +66,7 @@ fn windows_of_other_rooms_are_told_as_such() {
                 if house.room_at(eye) != Some(room) {
                     continue;
                 }
-                let listener = Listener {
+                let listener = Addressee {
                     viewer: Some(viewer),
                     agent: None,
                 };

@@ -6,7 +6,7 @@ use common::{Builder, Corners, fix};
 use dwell_scene::{
     AgentBody, AgentId, AgentState, MaterialId, Mesh, ObjectId, RoomId, State, StructureKind,
 };
-use dwell_semantics::check::{Checker, Listener};
+use dwell_semantics::check::{Addressee, Checker};
 use dwell_semantics::describe::{
     TextOptions, caption, describe_house, describe_room, describe_view,
 };
@@ -61,8 +61,8 @@ impl Told {
     fn refers(&self, object: ObjectId) -> String {
         let scene = self.semantics.scene(&self.state);
         let expression = refer(&scene, object).expect("it can be told apart");
-        let checker = Checker::new(&scene, Listener::default());
-        assert_eq!(checker.fitting(&expression), [Term::Object(object)]);
+        let checker = Checker::new(&scene, Addressee::default());
+        assert_eq!(checker.matching_terms(&expression), [Term::Object(object)]);
         let form = Form::NounPhrase(expression.into());
         let said = self.semantics.language().say(&form, None);
         said.expect("the language has words for it").text
@@ -299,7 +299,7 @@ fn one_is_on_a_balcony_and_in_a_kitchen() {
         let scene = told.semantics.scene(&state);
         describe_view(
             &scene,
-            Listener::agent(&scene, AgentId(0)),
+            Addressee::agent(&scene, AgentId(0)),
             TextOptions::default(),
         )
         .text

@@ -8,7 +8,7 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 
 use dwell_acoustics::Recording;
 use dwell_acoustics::hdf5::Hdf5;
-use dwell_calibration::{Options, calibrate};
+use dwell_calibration::{CalibrationOptions, calibrate};
 use dwell_semantics::language::Language;
 use tempfile::TempDir;
 
@@ -202,7 +202,7 @@ impl Target for MeasuredBundle {
         // What is read after all is stopped before the work begins.
         let read = calibrate(
             self.folder.path(),
-            &Options::default(),
+            &CalibrationOptions::default(),
             &mut |fraction, _| fraction <= 0.0,
         );
         fs::write(path, sound).expect("a folder of our own can be written to");

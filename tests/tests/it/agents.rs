@@ -65,7 +65,7 @@ fn batch(env: Env) -> Batch {
 /// Returns the observations of each agent of a batch of one environment, in order. Shape (agent,) of (sensor,).
 fn seen(batch: &mut Batch) -> Vec<Vec<Vec<u8>>> {
     let mut by_agent = vec![Vec::new(); batch.acting_agents().len()];
-    for (agent, bits) in batch.agent_of_sensors().into_iter().zip(observe(batch)) {
+    for (agent, bits) in batch.sensor_agents().into_iter().zip(observe(batch)) {
         by_agent[agent].push(bits);
     }
     by_agent
@@ -247,13 +247,17 @@ fn agents_have_tasks_and_sensors_of_their_own() {
         ..acting(1)
     };
     let mut batch = batch(env(vec![acting(0), follower], own_sensors()));
-    let names: Vec<String> = batch.specs().into_iter().map(|spec| spec.name).collect();
+    let names: Vec<String> = batch
+        .sensor_specs()
+        .into_iter()
+        .map(|spec| spec.name)
+        .collect();
     assert_eq!(
         names,
         [&OWN[..], &["instruction", "gps"]].concat(),
         "those of the first agent, then of the second"
     );
-    assert_eq!(batch.agent_of_sensors(), [0, 0, 0, 0, 1, 1]);
+    assert_eq!(batch.sensor_agents(), [0, 0, 0, 0, 1, 1]);
     batch.reset(&[Some(SEED)]).unwrap();
     let env = &batch.envs()[0];
     assert_eq!(env.episode(0).unwrap().instruction, "Explore.");

@@ -8,7 +8,7 @@
 use crate::calibration_support;
 
 use calibration_support::{Random, table};
-use dwell_calibration::{CalibrationReport, CalibrationVerdict, Options, calibrate};
+use dwell_calibration::{CalibrationOptions, CalibrationReport, CalibrationVerdict, calibrate};
 use std::fmt::Write as _;
 
 const RATE_HZ: f64 = 20.0;
@@ -119,9 +119,9 @@ fn drives(robot: Robot, seed: u64) -> CalibrationReport {
     ] {
         std::fs::write(folder.path().join(name), text).unwrap();
     }
-    let options = Options {
+    let options = CalibrationOptions {
         seed,
-        ..Options::default()
+        ..CalibrationOptions::default()
     };
     calibrate(folder.path(), &options, &mut |_, _| true).unwrap()
 }

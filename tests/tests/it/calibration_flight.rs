@@ -8,7 +8,7 @@
 use crate::calibration_support;
 
 use calibration_support::{Files, Random, runge_kutta, table};
-use dwell_calibration::{CalibrationReport, CalibrationVerdict, Options, calibrate};
+use dwell_calibration::{CalibrationOptions, CalibrationReport, CalibrationVerdict, calibrate};
 use dwell_scene::LawInfo;
 use std::f64::consts::TAU;
 
@@ -161,9 +161,9 @@ fn throws(world: World, seed: u64) -> CalibrationReport {
     files.write(folder.path());
     calibrate(
         folder.path(),
-        &Options {
+        &CalibrationOptions {
             seed,
-            ..Options::default()
+            ..CalibrationOptions::default()
         },
         &mut |_, _| true,
     )
@@ -355,9 +355,9 @@ fn the_report_is_one_page_and_the_same_for_any_number_of_threads() {
     let hidden = dwell_calibration::example::write(folder.path(), 3).unwrap();
     let mut fractions = Vec::new();
     let run = |threads, fractions: &mut Vec<f32>| {
-        let options = Options {
+        let options = CalibrationOptions {
             threads: Some(threads),
-            ..Options::default()
+            ..CalibrationOptions::default()
         };
         calibrate(folder.path(), &options, &mut |fraction, _| {
             fractions.push(fraction);
@@ -388,10 +388,14 @@ fn the_caller_can_stop_it() {
     let folder = tempfile::tempdir().unwrap();
     dwell_calibration::example::write(folder.path(), 1).unwrap();
     let mut calls = 0;
-    let stopped = calibrate(folder.path(), &Options::default(), &mut |_, _| {
-        calls += 1;
-        calls < 5
-    });
+    let stopped = calibrate(
+        folder.path(),
+        &CalibrationOptions::default(),
+        &mut |_, _| {
+            calls += 1;
+            calls < 5
+        },
+    );
     assert!(matches!(
         stopped,
         Err(dwell_calibration::CalibrationError::Interrupted)

@@ -9,7 +9,7 @@
 use crate::calibration_support;
 
 use calibration_support::Files;
-use dwell_calibration::{CalibrationVerdict, Options, calibrate};
+use dwell_calibration::{CalibrationOptions, CalibrationVerdict, calibrate};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -80,7 +80,12 @@ fn falling_balls_get_a_defensible_verdict() {
     }
     let bundle = tempfile::tempdir().unwrap();
     files.write(bundle.path());
-    let report = calibrate(bundle.path(), &Options::default(), &mut |_, _| true).unwrap();
+    let report = calibrate(
+        bundle.path(),
+        &CalibrationOptions::default(),
+        &mut |_, _| true,
+    )
+    .unwrap();
     println!("ball drops: {}", report.sentence);
     for candidate in &report.candidates {
         let p = &candidate.parameters[0];

@@ -8,7 +8,7 @@
 
 use crate::calibration_support::shoebox::{AIR_10_PCT, SIDES, STATED, Truth, write};
 use crate::calibration_support::table;
-use dwell_calibration::{CalibrationReport, CalibrationVerdict, Options, calibrate};
+use dwell_calibration::{CalibrationOptions, CalibrationReport, CalibrationVerdict, calibrate};
 
 const POSITIONS: usize = 12;
 /// Rays where times decide: fewer than usual, for speed.
@@ -28,16 +28,16 @@ fn is_skipped() -> bool {
 }
 
 fn judge(truth: &Truth, environment: &str, seed: u64) -> CalibrationReport {
-    judge_with(truth, environment, seed, Options::default().rays)
+    judge_with(truth, environment, seed, CalibrationOptions::default().rays)
 }
 
 fn judge_with(truth: &Truth, environment: &str, seed: u64, rays: usize) -> CalibrationReport {
     let folder = tempfile::tempdir().unwrap();
     write(folder.path(), truth, POSITIONS, environment, seed);
-    let options = Options {
+    let options = CalibrationOptions {
         seed,
         rays,
-        ..Options::default()
+        ..CalibrationOptions::default()
     };
     let report = calibrate(folder.path(), &options, &mut |_, _| true).unwrap();
     println!("seed {seed}: {}", table(&report));

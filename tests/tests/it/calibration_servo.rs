@@ -8,7 +8,7 @@
 use crate::calibration_support;
 
 use calibration_support::{Files, Random, runge_kutta, table};
-use dwell_calibration::{CalibrationReport, CalibrationVerdict, Options, calibrate};
+use dwell_calibration::{CalibrationOptions, CalibrationReport, CalibrationVerdict, calibrate};
 
 const INERTIA: f64 = 0.004;
 const STIFFNESS: f64 = 1.6;
@@ -154,9 +154,9 @@ fn runs(joint: Joint, seed: u64) -> CalibrationReport {
     files.write(folder.path());
     calibrate(
         folder.path(),
-        &Options {
+        &CalibrationOptions {
             seed,
-            ..Options::default()
+            ..CalibrationOptions::default()
         },
         &mut |_, _| true,
     )

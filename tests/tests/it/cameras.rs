@@ -332,7 +332,7 @@ fn env(sensors: &[(&str, Value)], laws: Vec<LawSpec>, agents: usize) -> Env {
 }
 
 fn observe(batch: &mut Batch) -> Vec<Vec<f32>> {
-    let specs = batch.specs();
+    let specs = batch.sensor_specs();
     let count = batch.envs().len();
     let mut floats: Vec<Vec<f32>> = specs
         .iter()
@@ -389,7 +389,11 @@ fn an_agent_carries_several_cameras() {
     ];
     let mut batch = Batch::new(vec![env(&sensors, Vec::new(), 1)], Threads::ONE).unwrap();
     batch.reset(&[Some(2)]).unwrap();
-    let names: Vec<String> = batch.specs().into_iter().map(|spec| spec.name).collect();
+    let names: Vec<String> = batch
+        .sensor_specs()
+        .into_iter()
+        .map(|spec| spec.name)
+        .collect();
     assert_eq!(names, ["left", "right", "round", "down", "rgb"]);
     let seen = observe(&mut batch);
     assert!(seen[0] != seen[1] && seen[0] != seen[2]);

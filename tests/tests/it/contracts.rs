@@ -8,7 +8,7 @@ use dwell_tests::observations::{all_sensors, observe};
 fn every_sensor_fills_its_buffer_within_its_range() {
     let mut batch = Batch::new(vec![dwell_tests::env(&all_sensors())], Threads::ONE).unwrap();
     batch.reset(&[Some(1)]).unwrap();
-    for (spec, bits) in batch.specs().iter().zip(observe(&mut batch)) {
+    for (spec, bits) in batch.sensor_specs().iter().zip(observe(&mut batch)) {
         assert!(!bits.is_empty(), "{} wrote nothing", spec.name);
         assert!(!spec.about.is_empty() && !spec.unit.is_empty());
     }

@@ -62,7 +62,7 @@ fn actions() -> Vec<DiscreteAction> {
 /// A number for the state and all observations of environment `k` of several.
 fn digest(batch: &mut Batch, k: usize) -> u64 {
     let count = batch.envs().len();
-    let specs = batch.specs();
+    let specs = batch.sensor_specs();
     let mut bytes = batch.envs()[k].world().hash().to_le_bytes().to_vec();
     for (sensor, (spec, seen)) in specs.iter().zip(observe(batch)).enumerate() {
         if spec.dtype == dwell::sensors::Dtype::Text {

@@ -7,7 +7,7 @@ use dwell::{DiscreteAction, Engines, Env, EnvConfig};
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, ObjectId, RoomId};
 use dwell_semantics::Term;
-use dwell_semantics::check::{Checker, Listener};
+use dwell_semantics::check::{Addressee, Checker};
 use dwell_semantics::form::{Description, Form, Phrase, RequestStep, TurnDirection};
 use glam::{Vec2, Vec3};
 use serde_json::{Value, json};
@@ -33,18 +33,18 @@ fn meant(env: &Env) -> Vec<Meant> {
     let text = &env.episode(0).expect("an episode has begun").instruction;
     let semantics = env.world().engines().semantics();
     let scene = semantics.scene(env.world().state());
-    let checker = Checker::new(&scene, Listener::default());
+    let checker = Checker::new(&scene, Addressee::default());
     let described = |phrase: &Phrase| -> Description {
         match phrase {
             Phrase::Described(description) => (**description).clone(),
             other => panic!("{text:?}: {other:?}"),
         }
     };
-    let room = |phrase: &Phrase| match checker.denotes(&described(phrase)) {
+    let room = |phrase: &Phrase| match checker.certain_referent(&described(phrase)) {
         Some(Term::Room(room)) => room,
         other => panic!("{text:?}: {phrase:?} means {other:?}"),
     };
-    let thing = |phrase: &Phrase| match checker.denotes(&described(phrase)) {
+    let thing = |phrase: &Phrase| match checker.certain_referent(&described(phrase)) {
         Some(Term::Object(object)) => object,
         other => panic!("{text:?}: {phrase:?} means {other:?}"),
     };

@@ -6,7 +6,7 @@
 use dwell::{DiscreteAction, Engines, Env, EnvConfig};
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, ObjectId, RoomId};
-use dwell_semantics::check::{Checker, Listener};
+use dwell_semantics::check::{Addressee, Checker};
 use dwell_semantics::form::{Clause, Description, Form, Phrase, Quality, Quantifier, RequestStep};
 use dwell_semantics::instruct::InstructionGoal;
 use dwell_semantics::{FieldOfView, Term, Viewer, is_in_line_of_sight};
@@ -148,18 +148,18 @@ fn meant(env: &Env) -> MeantInstruction {
     let text = &env.episode(0).expect("an episode has begun").instruction;
     let semantics = env.world().engines().semantics();
     let scene = semantics.scene(env.world().state());
-    let checker = Checker::new(&scene, Listener::default());
+    let checker = Checker::new(&scene, Addressee::default());
     let described = |phrase: &Phrase| -> Description {
         match phrase {
             Phrase::Described(description) => (**description).clone(),
             other => panic!("{text:?}: {other:?}"),
         }
     };
-    let room = |phrase: &Phrase| match checker.denotes(&described(phrase)) {
+    let room = |phrase: &Phrase| match checker.certain_referent(&described(phrase)) {
         Some(Term::Room(room)) => room,
         other => panic!("{text:?}: {phrase:?} means {other:?}"),
     };
-    let thing = |phrase: &Phrase| match checker.denotes(&described(phrase)) {
+    let thing = |phrase: &Phrase| match checker.certain_referent(&described(phrase)) {
         Some(Term::Object(object)) => object,
         other => panic!("{text:?}: {phrase:?} means {other:?}"),
     };
@@ -167,7 +167,7 @@ fn meant(env: &Env) -> MeantInstruction {
     let several = |phrase: &Phrase, of: &dyn Fn(ObjectId) -> Meant| {
         let words = described(phrase);
         let fitting = || {
-            let fitting = checker.fitting(&words).into_iter();
+            let fitting = checker.matching_terms(&words).into_iter();
             fitting.map(|term| of(term.object().expect("a thing")))
         };
         match words.quantifier {

@@ -35,7 +35,7 @@ fn physics_and_words_agree_on_what_rests_on_what() {
         };
         let carries = |by: &ObjectId| {
             let rests = |by: Term| {
-                let mut supports = scene.supports(*thing).iter();
+                let mut supports = scene.supporting_surfaces(*thing).iter();
                 supports.any(|support| support.by == by && support.share * 3.0 >= 1.0)
             };
             // What lies in a bowl is in it, not on it.

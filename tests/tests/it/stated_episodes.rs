@@ -1,7 +1,7 @@
 //! Episodes that state their start and goal begin, go on and end as drawn ones do.
 
 use dwell::{
-    Batch, DiscreteAction, Env, EnvConfig, EpisodeSpec, GoalPart, StatedGoal, StatedStart,
+    Batch, DiscreteAction, Env, EnvConfig, EpisodeSpec, GoalField, StatedGoal, StatedStart,
     WorldError, tasks,
 };
 use dwell_scene::AgentId;
@@ -397,7 +397,7 @@ fn a_sound_begins_and_ends_when_it_is_stated() {
 #[test]
 fn sensors_of_goals_tell_stated_goals() {
     let kind = tasks::find("PointNav").unwrap();
-    assert_eq!(kind.goal_parts, [GoalPart::Position]);
+    assert_eq!(kind.goal_parts, [GoalField::Position]);
     let mut batch = Batch::new(
         vec![env("PointNav", &["pointgoal_with_gps_compass"])],
         Threads::ONE,

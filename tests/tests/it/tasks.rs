@@ -31,7 +31,7 @@ fn batch_of(env: Env) -> Batch {
 
 /// What a batch of one environment observes with a sensor.
 fn seen(batch: &mut Batch, name: &str) -> Vec<u8> {
-    let specs = batch.specs();
+    let specs = batch.sensor_specs();
     let place = specs.iter().position(|spec| spec.name == name);
     let place = place.expect("the environment has the sensor");
     observe(batch).swap_remove(place)

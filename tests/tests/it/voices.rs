@@ -82,12 +82,12 @@ fn words_arrive_in_order_from_their_speaker() {
             .say(SPEAKER, said(&tokens, VocalEffort::Loud))
             .unwrap()
     );
-    assert!(world.speaks(SPEAKER) && !world.speaks(LISTENER));
+    assert!(world.is_speaking(SPEAKER) && !world.is_speaking(LISTENER));
     // Who speaks does not begin anew.
     assert!(!world.say(SPEAKER, said(&[5], VocalEffort::Loud)).unwrap());
     let heard = listen(&mut world);
     assert_eq!(heard.len(), tokens.len(), "{heard:?}");
-    assert!(!world.speaks(SPEAKER));
+    assert!(!world.is_speaking(SPEAKER));
     let right = heard.iter().zip(tokens);
     let right = right.filter(|((_, heard), token)| heard.token == Some(*token));
     assert!(right.count() >= 6, "{heard:?}");
@@ -281,7 +281,7 @@ fn nothing_passes_a_wall_and_nothing_is_said_when_muted() {
             .say(SPEAKER, said(&[3, 4, 5], VocalEffort::Shout))
             .unwrap()
     );
-    assert!(!muted.speaks(SPEAKER) && listen(&mut muted).is_empty());
+    assert!(!muted.is_speaking(SPEAKER) && listen(&mut muted).is_empty());
 }
 
 /// A snapshot in the middle of an utterance goes on with the same bits, and the same words.

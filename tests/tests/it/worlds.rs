@@ -333,7 +333,7 @@ fn one_parameter_in_two_spellings_is_refused_and_is_one_parameter_afterwards() {
 #[test]
 fn the_size_of_a_room_is_the_same_in_numbers_and_in_words() {
     let engines = dwell_tests::apartment();
-    let info = dwell::info(&engines, &serde_json::json!([]));
+    let info = dwell::house_info(&engines, &serde_json::json!([]));
     let views = dwell::best_room_viewpoints(&engines).unwrap();
     for (k, room) in engines.house().rooms.ids().enumerate() {
         let own = engines.house().exclusive_area_m2(room);

@@ -8,8 +8,8 @@ mod rig;
 
 use super::windows::spread_evenly;
 use super::{
-    Cause, ChannelInfo, EpisodeData, EpisodeParameters, Experiment, Fault, FitParameter,
-    Intervention, ParameterIndex, ResidualStructure,
+    Cause, ChannelInfo, EpisodeData, EpisodeParameters, Experiment, FitParameter, MeasurementFault,
+    ModelChanges, ParameterIndex, ResidualStructure,
 };
 use crate::bundle::Bundle;
 use crate::error::CalibrationError;
@@ -89,9 +89,9 @@ impl DriveExperiment {
             .filter(|law| law.acts_on == "agent" && law.regimes.contains(&LawRegime::Driven))
             .map(|law| Cause::of_law(law, &[], &[]));
         let faults = [
-            Fault::LengthScale,
-            Fault::HeadingOffset,
-            Fault::TrackerDelay,
+            MeasurementFault::LengthScale,
+            MeasurementFault::HeadingOffset,
+            MeasurementFault::TrackerDelay,
         ];
         Ok(Self {
             channels: CHANNELS
@@ -102,7 +102,7 @@ impl DriveExperiment {
                     noise_known: false,
                 })
                 .collect(),
-            causes: laws.chain(faults.map(Fault::cause)).collect(),
+            causes: laws.chain(faults.map(MeasurementFault::cause)).collect(),
             own: vec![
                 FitParameter::nuisance("start x", "m", 1e-3),
                 FitParameter::nuisance("start y", "m", 1e-3),
@@ -168,7 +168,7 @@ impl Experiment for DriveExperiment {
         episode: usize,
         at: &EpisodeParameters<'_>,
     ) -> Result<Vec<f64>, CalibrationError> {
-        let intervention = Intervention::new(&self.causes, at.causes);
+        let intervention = ModelChanges::new(&self.causes, at.causes);
         let faults = intervention.faults;
         let rig = DriveRig::new(&self.base, self.rate_hz, intervention.laws)?;
         let path = rig.simulated_path(&self.turned_rad[episode], self.rate_hz)?;
@@ -220,7 +220,7 @@ impl Experiment for DriveExperiment {
         };
         let channel = &self.episodes[episode].channel;
         let samples = base.len() / CHANNELS.len();
-        let faults = Intervention::new(&self.causes, at.causes).faults;
+        let faults = ModelChanges::new(&self.causes, at.causes).faults;
         let scale = faults.length_scale;
         let [x, y, _] = at.episode_nuisances else {
             return None;
@@ -255,7 +255,7 @@ mod tests {
         let experiment = DriveExperiment {
             episodes,
             channels: Vec::new(),
-            causes: vec![Fault::LengthScale.cause()],
+            causes: vec![MeasurementFault::LengthScale.cause()],
             own: vec![FitParameter::nuisance("start", "m", 1e-4); 3],
             base: NominalBase {
                 wheel_radius_m: 0.05,

@@ -71,14 +71,14 @@ fn planar(rows: &[DriveRow]) -> Vec<[f64; 3]> {
     let mut last = rows.first().map_or(0.0, |row| row.heading);
     rows.iter()
         .map(|row| {
-            last += wrapped(row.heading - last);
+            last += wrap_angle(row.heading - last);
             [row.x, row.y, last]
         })
         .collect()
 }
 
 /// The same angle within half a turn of zero, rad.
-pub(super) fn wrapped(angle_rad: f64) -> f64 {
+pub(super) fn wrap_angle(angle_rad: f64) -> f64 {
     angle_rad - TAU * ((angle_rad + PI) / TAU).floor()
 }
 

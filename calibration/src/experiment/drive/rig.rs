@@ -1,6 +1,6 @@
 //! The simulation of a robot on an empty floor.
 
-use super::recording::{NominalBase, wrapped};
+use super::recording::{NominalBase, wrap_angle};
 use crate::error::CalibrationError;
 use dwell_physics::{AgentControl, PhysicsConfig, PhysicsWorld};
 use dwell_scene::{
@@ -97,7 +97,7 @@ impl DriveRig {
                 .map_err(|error| CalibrationError::simulation("a step of the robot", error))?;
             let agent = &state.agents[self.robot];
             let yaw = f64::from(agent.yaw_rad);
-            heading += wrapped(yaw - last_yaw);
+            heading += wrap_angle(yaw - last_yaw);
             last_yaw = yaw;
             let moved = agent.position - start;
             way.push([-f64::from(moved.z), -f64::from(moved.x), heading]);

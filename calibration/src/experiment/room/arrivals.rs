@@ -43,7 +43,7 @@ pub(super) fn time_sd_s(position_sd_m: Option<f64>, speed_m_s: f64) -> f64 {
 }
 
 /// Returns whether echoes of this standard deviation (s) can be told apart.
-pub(super) fn are_comparable(time_sd_s: f64) -> bool {
+pub(super) fn are_resolvable(time_sd_s: f64) -> bool {
     time_sd_s <= MOST_SD_S
 }
 

@@ -1,11 +1,11 @@
 //! What may be missing or wrong in a room: its surfaces and walls, the air, what is recorded with.
 
 use super::scan::{self, BoxRecording};
-use super::stage::RoomStage;
+use super::setup::RoomSetup;
 use crate::bundle::file::{MeasurementDescription, RoomManifest};
 use crate::bundle::{Bundle, ROOM_SURFACES};
 use crate::error::CalibrationError;
-use crate::experiment::{Cause, CauseBinding, Fault, FitParameter};
+use crate::experiment::{Cause, CauseBinding, FitParameter, MeasurementFault};
 use dwell_acoustics::bands::NOMINAL_CENTRES_HZ;
 use dwell_scene::{House, State};
 
@@ -44,7 +44,7 @@ pub(super) const SIDES: [(usize, bool); 6] = [
 /// All causes of a room.
 pub(super) fn causes(
     bundle: &Bundle,
-    stage: &RoomStage,
+    stage: &RoomSetup,
     room: Option<&RoomManifest>,
     bands: &std::ops::Range<usize>,
     recordings: &[BoxRecording<'_>],
@@ -71,15 +71,15 @@ pub(super) fn causes(
         all.push(cause);
     }
     for (fault, scale) in [
-        (Fault::ClockScale, stretch),
-        (Fault::LengthScale, 1.0 / stretch),
+        (MeasurementFault::ClockScale, stretch),
+        (MeasurementFault::LengthScale, 1.0 / stretch),
     ] {
         let mut cause = fault.cause();
         if (scale - 1.0).abs() > 1e-9 {
             cause.probes.push(vec![scale]);
         }
         let (name, experiment) = match fault {
-            Fault::ClockScale => (
+            MeasurementFault::ClockScale => (
                 "another rate of the recorder's clock",
                 "record a known clock for ten minutes with the recorder, or measure the length of the excitation in the recording",
             ),
@@ -100,7 +100,7 @@ pub(super) fn causes(
 }
 
 /// The positions of causes that cannot be told from one of the causes by times alone.
-pub(super) fn equivalents(causes: &[Cause], of: usize) -> Vec<usize> {
+pub(super) fn indistinguishable_causes(causes: &[Cause], of: usize) -> Vec<usize> {
     if !STRETCHING.contains(&causes[of].id.as_str()) {
         return Vec::new();
     }
@@ -144,7 +144,7 @@ fn wall(
 ) -> Cause {
     let name = ROOM_SURFACES[side];
     let edge_m = room.size_m[SIDES[side].0];
-    let inward_m = scan::inward_room_m(recordings, room.size_m, SIDES[side]);
+    let inward_m = scan::inward_clearance_m(recordings, room.size_m, SIDES[side]);
     let low = -inward_m.min(WALL_SHARE * edge_m);
     // Where it is told how well places are known, only that is plausible.
     let known = room.position_sd_m.map(|sd| WALL_SDS * sd);

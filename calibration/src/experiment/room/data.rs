@@ -122,7 +122,7 @@ pub(super) fn episode_data(
                 let edges = &levels::EDGES_S[window..window + 2];
                 measured.channel.push(band - bands.start);
                 measured.t_s.push(0.5 * (edges[0] + edges[1]));
-                let chance_db = levels::random_deviation_db(band, window);
+                let chance_db = levels::level_sd_db(band, window);
                 measured.sd.push(chance_db.hypot(LEAST_SD_DB));
             }
         }

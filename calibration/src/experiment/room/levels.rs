@@ -187,7 +187,7 @@ impl FilterRingingModel {
 ///
 /// # Source
 /// M. R. Schroeder, JASA 45, 1077 (1969): statistics of band-limited decays.
-pub(super) fn random_deviation_db(band: usize, window: usize) -> f64 {
+pub(super) fn level_sd_db(band: usize, window: usize) -> f64 {
     let width_hz = f64::from(NOMINAL_CENTRES_HZ[band]) * std::f64::consts::FRAC_1_SQRT_2;
     let length_s = EDGES_S[window + 1] - EDGES_S[window];
     10.0 / std::f64::consts::LN_10 / (width_hz * length_s).max(1.0).sqrt()

@@ -8,17 +8,17 @@ mod causes;
 mod data;
 mod levels;
 mod scan;
+mod setup;
 mod simulation;
-mod stage;
 
 use super::{
     Cause, CauseBinding, ChannelInfo, EpisodeData, EpisodeParameters, Experiment, FitParameter,
-    Intervention, ParameterIndex, ParameterVector, ResidualStructure, StructureTest,
+    ModelChanges, ParameterIndex, ParameterVector, ResidualStructure, StructureTest,
 };
 use crate::bundle::Bundle;
-use crate::bundle::file::ResponseTimes;
+use crate::bundle::file::ResponseTimeOrigin;
 use crate::error::CalibrationError;
-use crate::options::Options;
+use crate::options::CalibrationOptions;
 use arrivals::PickedArrivals;
 use causes::ABSORPTION_STEP;
 use data::{EpisodeLayout, MS, channels, check_rates, episode_data, layout};
@@ -28,8 +28,8 @@ use glam::Vec3;
 use levels::{FilterRingingModel, WINDOWS};
 use nalgebra::DMatrix;
 use scan::BoxRecording;
+use setup::RoomSetup;
 use simulation::{RoomSimulator, SimulatedResponse};
-use stage::RoomStage;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::sync::Arc;
@@ -55,7 +55,7 @@ pub(crate) struct RoomExperiment {
     smear: FilterRingingModel,
     /// The bands that are compared, by their position in the engine's.
     bands: std::ops::Range<usize>,
-    times: ResponseTimes,
+    times: ResponseTimeOrigin,
     /// Standard deviation of a time, s.
     time_sd_s: f64,
     /// The cause of each parameter, and its position in it.
@@ -64,7 +64,10 @@ pub(crate) struct RoomExperiment {
 
 impl RoomExperiment {
     /// Prepares the room of a bundle, or the house that the options name.
-    pub(crate) fn new(bundle: &Bundle, options: &Options) -> Result<Self, CalibrationError> {
+    pub(crate) fn new(
+        bundle: &Bundle,
+        options: &CalibrationOptions,
+    ) -> Result<Self, CalibrationError> {
         let fault =
             |error: &dyn std::fmt::Display| CalibrationError::simulation(&bundle.name, error);
         let responses = || {
@@ -83,9 +86,9 @@ impl RoomExperiment {
         let stage = match (&options.house, &room) {
             (Some(house), _) => {
                 let house = dwell_houses::open(house).map_err(|e| fault(&e))?.0;
-                RoomStage::new(Arc::new(house), Vec3::ZERO, config)?
+                RoomSetup::new(Arc::new(house), Vec3::ZERO, config)?
             }
-            (None, Some(room)) => RoomStage::of_box(room, &[0.0; 6], config)?,
+            (None, Some(room)) => RoomSetup::of_box(room, &[0.0; 6], config)?,
             (None, None) => {
                 return Err(CalibrationError::Missing {
                     at: format!("{}/manifest.json", bundle.name),
@@ -102,12 +105,12 @@ impl RoomExperiment {
         let time_sd_s = arrivals::time_sd_s(position_sd_m, speed_m_s);
         // Which echoes are compared follows from how dense the room as described makes them.
         for (k, (layout, episode)) in layouts.iter_mut().zip(&bundle.episodes).enumerate() {
-            let simulated = simulator.responses(k, &Intervention::default())?;
+            let simulated = simulator.responses(k, &ModelChanges::default())?;
             let both = episode.responses.iter().zip(simulated.iter());
             layout.picked = both
                 .map(|(response, simulated)| arrivals::pick(response, &simulated.times_s))
                 .collect();
-            if !arrivals::are_comparable(time_sd_s) {
+            if !arrivals::are_resolvable(time_sd_s) {
                 layout.picked.iter_mut().for_each(|one| one.echoes.clear());
             }
         }
@@ -153,7 +156,7 @@ impl RoomExperiment {
                 FitParameter::nuisance(&name, "dB", 1.0)
             })
             .collect();
-        if times == ResponseTimes::CommonOffset {
+        if times == ResponseTimeOrigin::CommonOffset {
             shared.push(FitParameter::nuisance("time offset", "ms", OFFSET_STEP_MS));
         }
         let owners = causes
@@ -167,7 +170,7 @@ impl RoomExperiment {
                 .map(|(episode, layout)| episode_data(episode, layout, &bands, time_sd_s))
                 .collect(),
             channels: channels(&bands),
-            own: if times == ResponseTimes::Relative {
+            own: if times == ResponseTimeOrigin::Relative {
                 vec![offset]
             } else {
                 Vec::new()
@@ -187,7 +190,7 @@ impl RoomExperiment {
     fn simulated(
         &self,
         episode: usize,
-        intervention: &Intervention,
+        intervention: &ModelChanges,
     ) -> Result<Arc<Vec<SimulatedResponse>>, CalibrationError> {
         self.simulator
             .responses(episode, intervention)
@@ -203,12 +206,12 @@ impl RoomExperiment {
         stretch: f64,
     ) -> f64 {
         match self.times {
-            ResponseTimes::Absolute => 0.0,
-            ResponseTimes::CommonOffset => at.shared.last().map_or(0.0, |offset| offset / MS),
-            ResponseTimes::Relative => {
+            ResponseTimeOrigin::Absolute => 0.0,
+            ResponseTimeOrigin::CommonOffset => at.shared.last().map_or(0.0, |offset| offset / MS),
+            ResponseTimeOrigin::Relative => {
                 let own = at.episode_nuisances.first().map_or(0.0, |own| own / MS);
                 let first = simulated.first();
-                own - first.map_or(0.0, |one| one.written_s(one.direct_s, stretch))
+                own - first.map_or(0.0, |one| one.recorded_time_s(one.direct_s, stretch))
             }
         }
     }
@@ -218,7 +221,7 @@ impl RoomExperiment {
         &self,
         episode: usize,
         at: &EpisodeParameters<'_>,
-        intervention: &Intervention,
+        intervention: &ModelChanges,
         simulated: &[SimulatedResponse],
     ) -> Vec<f64> {
         let layout = &self.layouts[episode];
@@ -239,7 +242,7 @@ impl RoomExperiment {
                 by_band.flat_map(|(band, levels)| levels.iter().map(move |l| l + at.shared[band])),
             );
             let predicted = predicted_s(one, stretch, offset_s);
-            numbers.push(MS * (one.written_s(one.direct_s, stretch) + offset_s));
+            numbers.push(MS * (one.recorded_time_s(one.direct_s, stretch) + offset_s));
             let echoes = picked.echoes.iter();
             numbers.extend(echoes.map(|e| MS * (e.t_s - arrivals::mismatch_s(e.t_s, &predicted))));
         }
@@ -249,8 +252,9 @@ impl RoomExperiment {
                 None => Some(one.direct_s),
                 Some(side) => one.side_times_s[side],
             };
-            let there =
-                from_source_s.map_or(f64::INFINITY, |t| one.written_s(t, stretch) + offset_s);
+            let there = from_source_s.map_or(f64::INFINITY, |t| {
+                one.recorded_time_s(t, stretch) + offset_s
+            });
             let off = arrivals::known_path_mismatch_s(known.t_s, there);
             numbers.push(MS * (known.t_s - off));
         }
@@ -286,14 +290,14 @@ fn without_taken_up(
     causes: Vec<Cause>,
     simulator: &RoomSimulator,
     smear: &FilterRingingModel,
-    times: ResponseTimes,
+    times: ResponseTimeOrigin,
 ) -> Vec<Cause> {
     let acts = |cause: &Cause| {
         if !matches!(cause.binding, CauseBinding::Law { .. }) {
             return true;
         }
         let responses = |values: &[f64]| {
-            let intervention = Intervention::new(std::slice::from_ref(cause), values);
+            let intervention = ModelChanges::new(std::slice::from_ref(cause), values);
             simulator.responses(0, &intervention)
         };
         let defaults: Vec<f64> = cause.parameters.iter().map(|p| p.default).collect();
@@ -301,7 +305,7 @@ fn without_taken_up(
             let (Ok(before), Ok(changed)) = (responses(&defaults), responses(probe)) else {
                 return false;
             };
-            let any_offset = times != ResponseTimes::Absolute;
+            let any_offset = times != ResponseTimeOrigin::Absolute;
             simulation::differs_beyond_nuisances(&before, &changed, smear, any_offset)
         })
     };
@@ -312,12 +316,12 @@ fn without_taken_up(
 fn predicted_s(one: &SimulatedResponse, stretch: f64, offset_s: f64) -> Vec<f64> {
     let times = one.times_s.iter();
     times
-        .map(|t| one.written_s(*t, stretch) + offset_s)
+        .map(|t| one.recorded_time_s(*t, stretch) + offset_s)
         .collect()
 }
 
 /// Returns the acoustic settings of the experiment.
-fn config(bundle: &Bundle, options: &Options, rate_hz: Option<u32>) -> AcousticConfig {
+fn config(bundle: &Bundle, options: &CalibrationOptions, rate_hz: Option<u32>) -> AcousticConfig {
     let air = &bundle.manifest.scene.environment;
     let is_box = options.house.is_none();
     AcousticConfig {
@@ -366,7 +370,7 @@ impl Experiment for RoomExperiment {
     }
 
     fn equivalents(&self, cause: usize) -> Vec<usize> {
-        causes::equivalents(&self.causes, cause)
+        causes::indistinguishable_causes(&self.causes, cause)
     }
 
     /// The gain of source and microphone in each band, and the offset of times where all episodes share it.
@@ -383,7 +387,7 @@ impl Experiment for RoomExperiment {
         if self.own.is_empty() {
             return Vec::new();
         }
-        let Ok(simulated) = self.simulated(episode, &Intervention::default()) else {
+        let Ok(simulated) = self.simulated(episode, &ModelChanges::default()) else {
             return vec![0.0];
         };
         let layout = &self.layouts[episode];
@@ -404,7 +408,7 @@ impl Experiment for RoomExperiment {
         episode: usize,
         at: &EpisodeParameters<'_>,
     ) -> Result<Vec<f64>, CalibrationError> {
-        let intervention = Intervention::new(&self.causes, at.causes);
+        let intervention = ModelChanges::new(&self.causes, at.causes);
         let simulated = self.simulated(episode, &intervention)?;
         Ok(self.written(episode, at, &intervention, &simulated))
     }
@@ -460,7 +464,7 @@ impl Experiment for RoomExperiment {
         let mut simulations = Vec::new();
         for episode in set {
             let at = point.values(*episode);
-            let intervention = Intervention::new(&self.causes, at.causes);
+            let intervention = ModelChanges::new(&self.causes, at.causes);
             let simulated = self.simulated(*episode, &intervention)?;
             let stretch = intervention.faults.clock_scale / intervention.faults.length_scale;
             let offset_s = self.offset_s(&at, &simulated, stretch);
@@ -475,7 +479,7 @@ impl Experiment for RoomExperiment {
                     sum += (arrivals::mismatch_s(echo.t_s, &predicted) / self.time_sd_s).powi(2);
                     count += 1;
                 }
-                let direct_s = one.written_s(one.direct_s, *stretch) + offset_s;
+                let direct_s = one.recorded_time_s(one.direct_s, *stretch) + offset_s;
                 recordings.push((picked, predicted.iter().map(|t| t - direct_s).collect()));
             }
         }

@@ -3,7 +3,7 @@
 //! Images are those of an empty box in closed form, for speed; fits go on with the engine's paths.
 
 use super::arrivals::{PickedArrivals, mismatch_s};
-use crate::bundle::file::ResponseTimes;
+use crate::bundle::file::ResponseTimeOrigin;
 
 /// Reflections of the images.
 const ORDER: i32 = 4;
@@ -65,14 +65,16 @@ fn mismatch(
     recording: &BoxRecording<'_>,
     lengths_m: &[f64],
     speed_m_s: f64,
-    times: ResponseTimes,
+    times: ResponseTimeOrigin,
 ) -> f64 {
     let picked = recording.picked;
     let direct_s = lengths_m[0] / speed_m_s;
     // Without a known zero the direct sounds are laid over each other.
     let zero_s = match times {
-        ResponseTimes::Absolute => 0.0,
-        ResponseTimes::Relative | ResponseTimes::CommonOffset => picked.direct_s - direct_s,
+        ResponseTimeOrigin::Absolute => 0.0,
+        ResponseTimeOrigin::Relative | ResponseTimeOrigin::CommonOffset => {
+            picked.direct_s - direct_s
+        }
     };
     let predicted: Vec<f64> = lengths_m.iter().map(|l| zero_s + l / speed_m_s).collect();
     let off = |t_s: f64| mismatch_s(t_s, &predicted).powi(2);
@@ -85,7 +87,7 @@ pub(super) fn best_stretch(
     recordings: &[BoxRecording<'_>],
     size_m: [f64; 3],
     speed_m_s: f64,
-    times: ResponseTimes,
+    times: ResponseTimeOrigin,
 ) -> f64 {
     let lengths: Vec<Vec<f64>> = recordings
         .iter()
@@ -110,7 +112,7 @@ pub(super) fn best_wall_offset_m(
     size_m: [f64; 3],
     (axis, first): (usize, bool),
     speed_m_s: f64,
-    times: ResponseTimes,
+    times: ResponseTimeOrigin,
 ) -> Option<f64> {
     let total = |offset_m: f64| -> f64 {
         let (mut low, mut high) = ([0.0; 3], size_m);
@@ -127,7 +129,7 @@ pub(super) fn best_wall_offset_m(
             })
             .sum()
     };
-    let least = -inward_room_m(recordings, size_m, (axis, first));
+    let least = -inward_clearance_m(recordings, size_m, (axis, first));
     let [from, to] = WALL_RANGE.map(|share| (share * size_m[axis] / WALL_STEP_M).round() as i32);
     let tried = (from..=to).map(|k| f64::from(k) * WALL_STEP_M);
     tried
@@ -139,7 +141,7 @@ pub(super) fn best_wall_offset_m(
 }
 
 /// How far a side can move inwards before it meets a source or a microphone, m.
-pub(super) fn inward_room_m(
+pub(super) fn inward_clearance_m(
     recordings: &[BoxRecording<'_>],
     size_m: [f64; 3],
     (axis, first): (usize, bool),
@@ -158,7 +160,7 @@ pub(super) fn inward_room_m(
 
 #[cfg(test)]
 mod tests {
-    use super::super::stage::RoomStage;
+    use super::super::setup::RoomSetup;
     use super::*;
     use crate::bundle::file::{RoomManifest, SurfaceManifest};
     use dwell_acoustics::{AcousticConfig, SoundSourcePose};
@@ -177,7 +179,7 @@ mod tests {
             discovery_rays: 0,
             ..AcousticConfig::full()
         };
-        let stage = RoomStage::of_box(
+        let stage = RoomSetup::of_box(
             &RoomManifest {
                 size_m,
                 surfaces,

@@ -1,11 +1,11 @@
 //! Simulated responses of a room, and their memory.
 
 use super::levels::{self, FilterRingingModel};
-use super::stage::RoomStage;
+use super::setup::RoomSetup;
 use crate::bundle::MeasuredResponse;
 use crate::bundle::file::RoomManifest;
 use crate::error::CalibrationError;
-use crate::experiment::Intervention;
+use crate::experiment::ModelChanges;
 use dwell_acoustics::{AcousticConfig, Echogram, PropagationPath, Receiver, SoundSourcePose};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
@@ -54,7 +54,7 @@ type Memory = Mutex<Vec<(SimulationInputs, Arc<Vec<SimulatedResponse>>)>>;
 
 /// The simulator of a bundle's room.
 pub(super) struct RoomSimulator {
-    stage: RoomStage,
+    stage: RoomSetup,
     /// The box, where walls can be moved.
     room: Option<RoomManifest>,
     config: AcousticConfig,
@@ -66,7 +66,7 @@ pub(super) struct RoomSimulator {
 
 impl RoomSimulator {
     pub(super) fn new(
-        stage: RoomStage,
+        stage: RoomSetup,
         room: Option<RoomManifest>,
         config: AcousticConfig,
         pairs: Vec<Vec<(Vec3, Vec3)>>,
@@ -83,7 +83,7 @@ impl RoomSimulator {
     }
 
     /// The room as it was described.
-    pub(super) fn stage(&self) -> &RoomStage {
+    pub(super) fn stage(&self) -> &RoomSetup {
         &self.stage
     }
 
@@ -91,7 +91,7 @@ impl RoomSimulator {
     pub(super) fn responses(
         &self,
         episode: usize,
-        intervention: &Intervention,
+        intervention: &ModelChanges,
     ) -> Result<Arc<Vec<SimulatedResponse>>, CalibrationError> {
         let inputs = SimulationInputs {
             laws: intervention.laws.clone(),
@@ -124,7 +124,7 @@ impl RoomSimulator {
         let moved;
         let stage = match &self.room {
             Some(room) if inputs.wall_offsets_m != [0.0; 6] => {
-                moved = RoomStage::of_box(room, &inputs.wall_offsets_m, self.config)?;
+                moved = RoomSetup::of_box(room, &inputs.wall_offsets_m, self.config)?;
                 &moved
             }
             _ => &self.stage,
@@ -287,7 +287,9 @@ pub(super) fn differs_beyond_nuisances(
             .chunks_exact(levels::WINDOWS)
             .any(|band| spread(band) > TAKEN_UP_DB);
         let times = before.times_s.iter().zip(&changed.times_s);
-        let mut later: Vec<f64> = times.map(|(a, b)| changed.written_s(*b, 1.0) - a).collect();
+        let mut later: Vec<f64> = times
+            .map(|(a, b)| changed.recorded_time_s(*b, 1.0) - a)
+            .collect();
         if !any_offset {
             later.push(0.0);
         }
@@ -313,7 +315,7 @@ impl SimulatedResponse {
     }
 
     /// A written time of what arrives at `t_s`, by faults' stretch and microphones' laws.
-    pub(super) fn written_s(&self, t_s: f64, stretch: f64) -> f64 {
+    pub(super) fn recorded_time_s(&self, t_s: f64, stretch: f64) -> f64 {
         let t_s = stretch * t_s;
         match &self.microphone {
             Some(effect) => effect.scale * t_s + effect.delay_s,

@@ -17,7 +17,7 @@ use super::residuals::{self, ResidualGroups};
 use super::{
     BoardRig, MeanDeviation, PoseTracks, REFINEMENT_FACTOR, ScoreSummary, StepRefinementEffect,
     TrackerNoise, WindowOptions, WindowPrediction, WindowScore, diverges_under_noise,
-    predict_windows, refinements, scores, window_scores,
+    predict_windows, scores, step_refinement_effects, window_scores,
 };
 use crate::error::CalibrationError;
 use crate::progress::{CallbackProgress, ProgressReporter};
@@ -275,7 +275,7 @@ fn study_model(
         chaos_guard: None,
         ..windowing
     };
-    let refined = refinements(&found, &predict_windows(tracks, &finer, &unguarded)?);
+    let refined = step_refinement_effects(&found, &predict_windows(tracks, &finer, &unguarded)?);
     let every: Vec<MeanDeviation> = by_episode.iter().map(|(score, _)| *score).collect();
     let steady = by_episode.iter().filter(|(_, diverges)| !diverges);
     let steady: Vec<MeanDeviation> = steady.map(|(score, _)| *score).collect();

@@ -1,6 +1,6 @@
 //! Scores of another simulator on the same episodes, compared episode by episode.
 
-use crate::bundle::refused;
+use crate::bundle::read_error;
 use crate::error::CalibrationError;
 use crate::fit::median;
 use crate::rollout::{MeanDeviation, PoseTracks, ScoreSummary};
@@ -41,7 +41,7 @@ impl PeerScores {
     /// [`CalibrationError::Read`], [`CalibrationError::Syntax`], [`CalibrationError::TooLarge`] name file and line.
     pub fn read(path: &Path) -> Result<Self, CalibrationError> {
         let at = path.display().to_string();
-        let text = file::read(path, MOST_BYTES).map_err(refused(path))?;
+        let text = file::read(path, MOST_BYTES).map_err(read_error(path))?;
         let mut scores = BTreeMap::new();
         for (k, row) in csv::Reader::from_reader(&text[..])
             .deserialize()

@@ -73,7 +73,7 @@ impl Search<'_> {
                 .filter(|other| *other != left_out)
                 .collect();
             let trials = self.trials(&without, &others, 0.0)?;
-            let worth = now.effective_weight();
+            let worth = now.effective_sample_ratio();
             let fall =
                 |scored: &ScoredModel| self.all.advantage_over(scored, base, worth).delta_bic;
             if let Some(better) = best_trial(&trials)

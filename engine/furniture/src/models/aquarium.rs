@@ -5,7 +5,7 @@ use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::{Finish, glass};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
-use crate::shapes::{block, rounded_block, trough};
+use crate::shapes::{block, open_top_box, rounded_block};
 use crate::style::Style;
 use dwell_scene::random::RandomKey;
 use glam::Vec3;
@@ -47,7 +47,7 @@ fn aquarium(style: &Style, key: RandomKey) -> Model {
         .with(wood, block([-x, low, -z], [x, low + 0.02, z]))
         .with(
             &glass(),
-            trough(
+            open_top_box(
                 [-x + 0.01, low + 0.02, -z + 0.01],
                 [x - 0.01, h - 0.01, z - 0.01],
                 0.008,

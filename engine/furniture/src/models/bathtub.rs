@@ -3,7 +3,7 @@
 use super::taps::with_mixer_tap;
 use super::washbasins::sanitary_finish;
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{chrome, sanitary};
+use crate::finishes::{chrome, sanitary_ware};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{SolidMesh, block, cylinder, extrude};
@@ -24,7 +24,7 @@ const TUB_RIM_M: f32 = 0.57;
 /// A tub along x, boxed in; its tap stands on the rim of the end where it is deep.
 fn bathtub(length_m: f32, width_m: f32, tap_left: bool) -> Model {
     let (x, z, h) = (0.5 * length_m, 0.5 * width_m, TUB_RIM_M);
-    let white = sanitary();
+    let white = sanitary_ware();
     let (ix, iz, floor) = (x - 0.09, z - 0.07, 0.14);
     let shell = [
         block([-x, 0.0, -z], [x, floor, z]),

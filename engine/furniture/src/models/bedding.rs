@@ -16,7 +16,7 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[
 ];
 
 /// Foam inside a cover: how much of its volume is substance of the cover's weight.
-pub(super) fn foam_solid_fraction(cover: &Finish) -> f32 {
+pub(super) fn foam_fill_fraction(cover: &Finish) -> f32 {
     let density = |name| {
         dwell_scene::material::library()
             .get_or_default(name)
@@ -46,7 +46,7 @@ fn mattress(_style: &Style, key: RandomKey) -> Model {
         .with_fill_fraction(
             &cover,
             rounded_block([-x, 0.0, -z], [x, 0.35 * h, z], 0.03, 2),
-            foam_solid_fraction(&cover),
+            foam_fill_fraction(&cover),
         )
         .with_fill_fraction(
             &band,
@@ -54,12 +54,12 @@ fn mattress(_style: &Style, key: RandomKey) -> Model {
                 [-x + 0.004, 0.35 * h, -z + 0.004],
                 [x - 0.004, 0.65 * h, z - 0.004],
             ),
-            foam_solid_fraction(&band),
+            foam_fill_fraction(&band),
         )
         .with_fill_fraction(
             &cover,
             rounded_block([-x, 0.65 * h, -z], [x, h, z], 0.03, 2),
-            foam_solid_fraction(&cover),
+            foam_fill_fraction(&cover),
         );
     Model::movable("mattress", "mattress")
         .part(body)

@@ -1,6 +1,6 @@
 //! Single and double beds.
 
-use super::bedding::foam_solid_fraction;
+use super::bedding::foam_fill_fraction;
 use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::{Finish, cloth, oak};
 use crate::model::{Model, PartBuilder};
@@ -83,7 +83,7 @@ impl Bed {
         body = body.with_fill_fraction(
             &self.sheet,
             rounded_block([-mx, 0.27, -mz], [mx, MATTRESS_TOP_M, mz], 0.06, 2),
-            foam_solid_fraction(&self.sheet),
+            foam_fill_fraction(&self.sheet),
         );
         // The blanket leaves the upper third of the mattress to the pillows and is turned back there.
         let cover = 0.68 * length;

@@ -4,7 +4,7 @@ use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::Finish;
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
-use crate::shapes::{block, rounded_block, trough};
+use crate::shapes::{block, open_top_box, rounded_block};
 use crate::style::Style;
 use dwell_scene::random::RandomKey;
 use glam::Vec3;
@@ -51,7 +51,7 @@ fn bench(style: &Style, key: RandomKey) -> Model {
             2,
         );
         let cover = style.random_upholstery(&mut d.stream("cover"));
-        body = body.with_fill_fraction(cover, pad, 0.4 * cover.padded_fill());
+        body = body.with_fill_fraction(cover, pad, 0.4 * cover.padded_fill_fraction());
     }
     Model::movable("bench", "bench_chair")
         .part(body)
@@ -82,7 +82,7 @@ fn shoe_bench(width_m: f32, wood: &Finish, cloth: &Finish) -> Model {
                 0.02,
                 2,
             ),
-            0.5 * cloth.padded_fill(),
+            0.5 * cloth.padded_fill_fraction(),
         );
     Model::movable("shoe_bench", "bench_chair")
         .part(body)
@@ -122,7 +122,7 @@ fn storage_bench(style: &Style, key: RandomKey) -> Model {
     let feet = style.legs([x - 0.06, z - 0.06], 0.06, 0.045);
     let low = 0.06;
     let body = PartBuilder::new("body")
-        .with(wood, trough([-x, low, -z], [x, under, z], 0.02))
+        .with(wood, open_top_box([-x, low, -z], [x, under, z], 0.02))
         .with_all_hollow(style.leg_finish(), feet);
     let cover = style.random_upholstery(&mut d.stream("cover"));
     let top = PartBuilder::new("lid")
@@ -135,7 +135,7 @@ fn storage_bench(style: &Style, key: RandomKey) -> Model {
                 0.02,
                 2,
             ),
-            0.4 * cover.padded_fill(),
+            0.4 * cover.padded_fill_fraction(),
         );
     Model::articulated("storage_bench", "storage_bench")
         .part(body)

@@ -4,7 +4,7 @@ use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::{Finish, black_plastic, chrome, painted_steel};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
-use crate::shapes::{SolidMesh, ball, block, cylinder, ring, rod, rounded_block, tube};
+use crate::shapes::{SolidMesh, ball, block, cylinder, rod, rounded_block, torus, tube};
 use crate::style::Style;
 use dwell_scene::random::RandomKey;
 use std::f32::consts::{FRAC_PI_2, TAU};
@@ -50,7 +50,7 @@ fn bicycle(_style: &Style, key: RandomKey) -> Model {
         rod(head_low, head, 0.018),
     ];
     let wheel = |at: [f32; 3]| {
-        ring(r - 0.018, 0.018, 32)
+        torus(r - 0.018, 0.018, 32)
             .rotated_x(FRAC_PI_2)
             .translated(at[0], at[1], at[2])
     };

@@ -4,7 +4,7 @@ use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::{Finish, black_plastic, rattan};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
-use crate::shapes::{block, ring, surface_of_revolution, vessel};
+use crate::shapes::{block, surface_of_revolution, torus, vessel};
 use crate::style::Style;
 use dwell_scene::random::RandomKey;
 use glam::Vec3;
@@ -34,7 +34,7 @@ fn laundry_basket() -> Model {
         ],
         24,
     );
-    let grip = ring(0.04, 0.006, 14)
+    let grip = torus(0.04, 0.006, 14)
         .rotated_x(FRAC_PI_2)
         .translated(0.0, h + 0.06, 0.0);
     let lid = PartBuilder::new("lid")

@@ -1,6 +1,6 @@
 //! A bunk bed with a ladder.
 
-use super::bedding::foam_solid_fraction;
+use super::bedding::foam_fill_fraction;
 use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::cloth;
 use crate::model::{Model, PartBuilder};
@@ -67,7 +67,7 @@ fn bunk_bed(style: &Style, key: RandomKey) -> Model {
                     0.04,
                     2,
                 ),
-                foam_solid_fraction(&sheet),
+                foam_fill_fraction(&sheet),
             )
             .with_fill_fraction(
                 cover,

@@ -31,7 +31,7 @@ pub(super) struct Carcass {
 
 impl Carcass {
     /// A carcass on the floor (from `base_m` up), its back at z = `-depth_m / 2`.
-    pub(super) fn standing(width_m: f32, base_m: f32, top_m: f32, depth_m: f32) -> Self {
+    pub(super) fn floor_standing(width_m: f32, base_m: f32, top_m: f32, depth_m: f32) -> Self {
         Self {
             min: [-0.5 * width_m, base_m, -0.5 * depth_m],
             max: [0.5 * width_m, top_m, 0.5 * depth_m],
@@ -153,7 +153,7 @@ pub(super) fn door(
     let pull = if front.knobs {
         knob(x, middle, face)
     } else {
-        upright_handle(x, middle - half, middle + half, face)
+        vertical_handle(x, middle - half, middle + half, face)
     };
     front
         .trim(
@@ -174,7 +174,7 @@ fn knob(x: f32, y: f32, z: f32) -> SolidMesh {
 }
 
 /// An upright bar handle on the face at `z`.
-pub(super) fn upright_handle(x: f32, low: f32, high: f32, z: f32) -> SolidMesh {
+pub(super) fn vertical_handle(x: f32, low: f32, high: f32, z: f32) -> SolidMesh {
     let bar = rod(
         [x, low - 0.015, z + 0.025],
         [x, high + 0.015, z + 0.025],
@@ -185,7 +185,7 @@ pub(super) fn upright_handle(x: f32, low: f32, high: f32, z: f32) -> SolidMesh {
 }
 
 /// A level bar handle on the face at `z`.
-pub(super) fn level_handle(x: f32, y: f32, z: f32, half: f32) -> SolidMesh {
+pub(super) fn horizontal_handle(x: f32, y: f32, z: f32, half: f32) -> SolidMesh {
     let bar = rod(
         [x - half - 0.015, y, z + 0.025],
         [x + half + 0.015, y, z + 0.025],
@@ -226,7 +226,7 @@ pub(super) fn drawer(
     let pull = if front.knobs {
         knob(x, y, face)
     } else {
-        level_handle(x, y, face, half)
+        horizontal_handle(x, y, face, half)
     };
     let leaf = block([low[0], low[1], z], [high[0], high[1], face]);
     front

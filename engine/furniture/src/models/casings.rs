@@ -5,7 +5,7 @@ use crate::sampling::SizeSampler;
 use crate::style::Style;
 
 /// The casing of an appliance: the style's, or white, or steel.
-pub(super) fn casing(style: &Style, d: &SizeSampler, name: &'static str) -> Finish {
+pub(super) fn casing_finish(style: &Style, d: &SizeSampler, name: &'static str) -> Finish {
     let white = Finish {
         name,
         srgb: [238, 239, 240],

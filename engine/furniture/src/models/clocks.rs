@@ -4,7 +4,7 @@ use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::{Finish, black_plastic, lacquer, plastic};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
-use crate::shapes::{block, cylinder, panel, ring};
+use crate::shapes::{block, cylinder, panel, torus};
 use crate::style::Style;
 use dwell_scene::random::RandomKey;
 use std::f32::consts::FRAC_PI_2;
@@ -30,7 +30,7 @@ fn wall_clock(radius_m: f32) -> Model {
         .with(&plate, cylinder(radius_m, 0.022, 32).rotated_x(FRAC_PI_2))
         .with(
             &frame,
-            ring(radius_m, 0.012, 32)
+            torus(radius_m, 0.012, 32)
                 .rotated_x(FRAC_PI_2)
                 .translated(0.0, 0.0, 0.014)
                 .visual_only(),

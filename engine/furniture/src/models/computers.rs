@@ -16,7 +16,7 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[
 ];
 
 /// A glowing picture of a screen.
-pub(super) fn screen(name: &'static str, d: &SizeSampler) -> Finish {
+pub(super) fn screen_finish(name: &'static str, d: &SizeSampler) -> Finish {
     let ground = d.choose(
         "desktop",
         [[52, 96, 150], [38, 60, 70], [110, 70, 110], [60, 120, 100]],
@@ -78,7 +78,7 @@ fn computer(_style: &Style, key: RandomKey) -> Model {
             0.35,
         )
         .with(
-            &screen("desktop", &d),
+            &screen_finish("desktop", &d),
             panel(w - 0.02, h - low - 0.035, 0.002)
                 .translated(0.0, low + 0.022, at + 0.015)
                 .visual_only(),

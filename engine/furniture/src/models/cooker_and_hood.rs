@@ -1,7 +1,7 @@
 //! A cooker with an oven, and the hood above it.
 
-use super::cabinet_parts::level_handle;
-use super::casings::casing;
+use super::cabinet_parts::horizontal_handle;
+use super::casings::casing_finish;
 use super::kitchen_units::{UNIT_DEPTH_M, WORKTOP_M};
 use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::{Finish, black_plastic, enamel, painted_steel, steel};
@@ -73,7 +73,7 @@ fn cooker() -> Model {
         .with(&case, block([-x, 0.3, face + 0.002], [x, 0.36, z]))
         .with(&case, block([-x, 0.7, face + 0.002], [x, 0.78, z]))
         .with(&dark, block([-x, 0.36, face + 0.002], [x, 0.7, z]))
-        .with(&steel(), level_handle(0.0, 0.74, z, 0.2));
+        .with(&steel(), horizontal_handle(0.0, 0.74, z, 0.2));
     Model::articulated("cooker", "cooker")
         .with_switch_state(false)
         .part(body)
@@ -86,7 +86,7 @@ fn cooker() -> Model {
 
 fn sample_cooker(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("cooker", key);
-    cooker().with_finish_replaced("cooker_steel", &casing(style, &d, "cooker_casing"))
+    cooker().with_finish_replaced("cooker_steel", &casing_finish(style, &d, "cooker_casing"))
 }
 
 /// A hood on the wall over a cooker; y = 0 is its lower edge.

@@ -1,6 +1,6 @@
 //! A bed with bars for a small child.
 
-use super::bedding::foam_solid_fraction;
+use super::bedding::foam_fill_fraction;
 use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::cloth;
 use crate::model::{Model, PartBuilder};
@@ -90,7 +90,7 @@ fn cot(style: &Style, key: RandomKey) -> Model {
                 0.03,
                 2,
             ),
-            foam_solid_fraction(&sheet),
+            foam_fill_fraction(&sheet),
         );
     Model::fixed("cot", "baby_bed")
         .part(body)

@@ -1,6 +1,6 @@
 //! A shoe cabinet, a larder and a safe.
 
-use super::cabinet_parts::{BOARD_M, Carcass, GAP_M, SHELVES, door, level_handle};
+use super::cabinet_parts::{BOARD_M, Carcass, GAP_M, SHELVES, door, horizontal_handle};
 use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::{black_plastic, chrome, grey_board, painted_steel};
 use crate::model::{Model, PartBuilder};
@@ -29,7 +29,7 @@ fn shoe_cabinet(style: &Style, key: RandomKey) -> Model {
     );
     let rows = if h > 1.25 { 3 } else { 2 };
     let (x, top) = (0.5 * w, h - 0.02);
-    let carcass = Carcass::standing(w - 0.01, 0.05, top, depth - BOARD_M - 0.01);
+    let carcass = Carcass::floor_standing(w - 0.01, 0.05, top, depth - BOARD_M - 0.01);
     let z = carcass.max[2];
     let body = PartBuilder::new("body")
         .with(
@@ -58,7 +58,7 @@ fn shoe_cabinet(style: &Style, key: RandomKey) -> Model {
             )
             .with(
                 &style.metal,
-                level_handle(0.0, high - 0.05, z + BOARD_M, 0.06),
+                horizontal_handle(0.0, high - 0.05, z + BOARD_M, 0.06),
             );
         model = model
             .part(flap)
@@ -85,7 +85,7 @@ fn larder(style: &Style, key: RandomKey) -> Model {
         d.sample_m("height"),
         d.sample_m("depth"),
     );
-    let carcass = Carcass::standing(w, 0.1, h, depth - BOARD_M);
+    let carcass = Carcass::floor_standing(w, 0.1, h, depth - BOARD_M);
     let (x, z) = (0.5 * w, carcass.max[2]);
     let split = 0.6;
     let body = PartBuilder::new("body")

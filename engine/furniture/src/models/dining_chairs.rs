@@ -154,7 +154,7 @@ fn upholstered(style: &Style, d: &SizeSampler) -> Model {
         .with_fill_fraction(
             cover,
             rounded_block([-x, under, -z], [x, seat, z], 0.03, 2),
-            0.5 * cover.padded_fill(),
+            0.5 * cover.padded_fill_fraction(),
         )
         .with_fill_fraction(
             cover,
@@ -164,7 +164,7 @@ fn upholstered(style: &Style, d: &SizeSampler) -> Model {
                 0.03,
                 2,
             ),
-            0.5 * cover.padded_fill(),
+            0.5 * cover.padded_fill_fraction(),
         );
     Model::movable("dining_chair", "chair")
         .part(body)

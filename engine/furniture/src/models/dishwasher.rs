@@ -1,6 +1,6 @@
 //! A dishwasher.
 
-use super::cabinet_parts::level_handle;
+use super::cabinet_parts::horizontal_handle;
 use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::{black_plastic, steel};
 use crate::model::{Model, PartBuilder};
@@ -73,7 +73,7 @@ fn dishwasher(style: &Style, key: RandomKey) -> Model {
             &black_plastic(),
             block([-x + 0.03, h - 0.07, z], [x - 0.03, h - 0.02, z + 0.002]).visual_only(),
         )
-        .with(&steel(), level_handle(0.0, h - 0.11, z, 0.36 * w));
+        .with(&steel(), horizontal_handle(0.0, h - 0.11, z, 0.36 * w));
     Model::articulated("dishwasher", "dishwasher")
         .with_switch_state(false)
         .part(body)

@@ -35,7 +35,8 @@ impl Dresser {
     fn build(&self) -> Model {
         const LEG_M: f32 = 0.12;
         let (x, top) = (0.5 * self.width_m, self.height_m - 0.022);
-        let carcass = Carcass::standing(self.width_m - 0.02, LEG_M, top, self.depth_m - BOARD_M);
+        let carcass =
+            Carcass::floor_standing(self.width_m - 0.02, LEG_M, top, self.depth_m - BOARD_M);
         let z = carcass.max[2];
         let mut body = PartBuilder::new("body")
             .with(

@@ -1,6 +1,6 @@
 //! Vases, empty or with flowers.
 
-use super::plants::fresh_green;
+use super::plants::fresh_foliage;
 use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::Finish;
 use crate::model::{Model, PartBuilder};
@@ -63,7 +63,7 @@ fn flowers(style: &Style, key: RandomKey) -> Model {
     ];
     let bloom = Finish::plain("petals", "leaves", d.choose("petals", petals));
     let heart = Finish::plain("flower_heart", "leaves", [222, 176, 50]);
-    let stem = fresh_green();
+    let stem = fresh_foliage();
     let r = 0.26 * w;
     let pot = 0.45 * h;
     let glaze = style.random_glaze(&mut d.stream("glaze"));

@@ -162,12 +162,12 @@ fn garden_swing(style: &Style, key: RandomKey) -> Model {
         .with_fill_fraction(
             cover,
             cushion([-seat, 0.43, -0.25], [seat, 0.52, 0.27]),
-            0.3 * cover.padded_fill(),
+            0.3 * cover.padded_fill_fraction(),
         )
         .with_fill_fraction(
             cover,
             cushion([-seat, 0.5, -0.31], [seat, 0.98, -0.21]),
-            0.3 * cover.padded_fill(),
+            0.3 * cover.padded_fill_fraction(),
         )
         .with_fill_fraction(&steel, block([-seat, 0.4, -0.25], [seat, 0.43, 0.25]), 0.05);
     Model::fixed("garden_swing", "swing")

@@ -4,7 +4,7 @@ use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::{Finish, black_plastic, chrome, enamel, plastic};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
-use crate::shapes::{SolidMesh, block, cylinder, ring, rod, rounded_block, surface_of_revolution};
+use crate::shapes::{SolidMesh, block, cylinder, rod, rounded_block, surface_of_revolution, torus};
 use crate::style::Style;
 use dwell_scene::random::RandomKey;
 use std::f32::consts::{FRAC_PI_2, TAU};
@@ -143,7 +143,7 @@ fn pedestal_fan(style: &Style, key: RandomKey) -> Model {
     }
     for z in [-0.045_f32, 0.045] {
         for (k, size) in [1.0_f32, 0.55].into_iter().enumerate() {
-            let wire = ring(size * (r - 0.006), 0.003, 18)
+            let wire = torus(size * (r - 0.006), 0.003, 18)
                 .rotated_x(FRAC_PI_2)
                 .translated(
                     0.0,

@@ -1,6 +1,6 @@
 //! Small kitchen appliances: kettle, toaster, coffee machine, microwave, blender.
 
-use super::casings::{CASING_COLORS, casing};
+use super::casings::{CASING_COLORS, casing_finish};
 use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::{
     Finish, black_plastic, chrome, enamel, glass, painted_steel, plastic, steel,
@@ -239,7 +239,10 @@ fn sample_microwave(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("microwave", key);
     microwave()
         .resized(d.sample_m("width") / 0.48)
-        .with_finish_replaced("microwave_white", &casing(style, &d, "microwave_casing"))
+        .with_finish_replaced(
+            "microwave_white",
+            &casing_finish(style, &d, "microwave_casing"),
+        )
 }
 
 /// A blender: a jug of glass on a motor.

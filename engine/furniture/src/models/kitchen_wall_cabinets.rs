@@ -1,6 +1,6 @@
 //! Wall cabinets of fitted kitchens.
 
-use super::cabinet_parts::{BOARD_M, Carcass, GAP_M, upright_handle};
+use super::cabinet_parts::{BOARD_M, Carcass, GAP_M, vertical_handle};
 use super::kitchen_units::{DOORS, carcass_board};
 use crate::catalogue_entry::CatalogueEntry;
 use crate::model::{Model, PartBuilder};
@@ -77,7 +77,7 @@ fn wall_cabinet(doors: usize, door_m: f32, height_m: f32, front: &FrontStyle) ->
             )
             .with(
                 &front.handle,
-                upright_handle(
+                vertical_handle(
                     if hinge_left { b - 0.04 } else { a + 0.04 },
                     0.05,
                     0.15,

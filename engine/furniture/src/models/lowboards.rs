@@ -38,7 +38,8 @@ impl Lowboard {
     /// The model of these sizes and finishes.
     fn build(&self) -> Model {
         let (x, top) = (0.5 * self.width_m, self.height_m - 0.02);
-        let carcass = Carcass::standing(self.width_m - 0.01, 0.07, top, self.depth_m - BOARD_M);
+        let carcass =
+            Carcass::floor_standing(self.width_m - 0.01, 0.07, top, self.depth_m - BOARD_M);
         let z = carcass.max[2];
         let body = PartBuilder::new("body")
             .with(

@@ -21,7 +21,7 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[CatalogueEntry::new(
 fn nightstand(width_m: f32, height_m: f32, wood: &Finish, front: &FrontStyle) -> Model {
     const DEPTH_M: f32 = 0.38;
     const SHARE: f32 = 0.52;
-    let carcass = Carcass::standing(width_m, 0.14, height_m, DEPTH_M);
+    let carcass = Carcass::floor_standing(width_m, 0.14, height_m, DEPTH_M);
     let (x, z) = (0.5 * width_m - 0.03, 0.5 * DEPTH_M - 0.03);
     let legs = [(-x, -z), (x, -z), (x, z), (-x, z)]
         .map(|(a, b)| tapered_leg([a, 0.0, b], [a, 0.14, b], 0.024, 0.036));

@@ -35,13 +35,13 @@ fn office_chair(cloth: &Finish) -> Model {
         .with_fill_fraction(
             cloth,
             cushion([-0.24, 0.445, -0.23], [0.24, 0.52, 0.25]),
-            0.7 * cloth.padded_fill(),
+            0.7 * cloth.padded_fill_fraction(),
         )
         .with(&dark, block([-0.03, 0.43, -0.27], [0.03, 0.72, -0.245]))
         .with_fill_fraction(
             cloth,
             cushion([-0.22, 0.62, -0.245], [0.22, 1.08, -0.175]),
-            0.7 * cloth.padded_fill(),
+            0.7 * cloth.padded_fill_fraction(),
         );
     let mut body = body;
     for side in [-1.0, 1.0] {

@@ -4,7 +4,7 @@ use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::{Finish, oak};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
-use crate::shapes::{ball, block, cylinder, ring, rounded_block, surface_of_revolution};
+use crate::shapes::{ball, block, cylinder, rounded_block, surface_of_revolution, torus};
 use crate::style::Style;
 use dwell_scene::random::RandomKey;
 use std::f32::consts::FRAC_PI_2;
@@ -21,13 +21,13 @@ fn sculpture(stone: &Finish) -> Model {
         .with(&oak(), block([-0.06, 0.0, -0.04], [0.06, 0.03, 0.04]))
         .with(
             stone,
-            ring(0.07, 0.014, 26)
+            torus(0.07, 0.014, 26)
                 .rotated_x(FRAC_PI_2)
                 .translated(-0.015, 0.11, 0.0),
         )
         .with(
             stone,
-            ring(0.045, 0.011, 22)
+            torus(0.045, 0.011, 22)
                 .rotated_x(FRAC_PI_2)
                 .rotated_y(0.9)
                 .translated(0.04, 0.083, 0.01)

@@ -1,6 +1,6 @@
 //! Mobile phones, tablets and telephones with a cord.
 
-use super::computers::screen;
+use super::computers::screen_finish;
 use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::{Finish, electronics, plastic};
 use crate::model::{Model, PartBuilder};
@@ -52,7 +52,7 @@ fn slab(name: &'static str, category: &'static str, key: RandomKey) -> Model {
         .translated(0.0, h, z - rim);
     let body = PartBuilder::new("body")
         .with(&case, rounded_block([-x, 0.0, -z], [x, h, z], 0.45 * h, 1))
-        .with(&screen("slab_screen", &d), face.visual_only());
+        .with(&screen_finish("slab_screen", &d), face.visual_only());
     Model::pickable(name, category)
         .with_switch_state(true)
         .part(body)

@@ -98,7 +98,7 @@ const fn deep_green() -> Finish {
 }
 
 /// Fresh green leaves.
-pub(super) const fn fresh_green() -> Finish {
+pub(super) const fn fresh_foliage() -> Finish {
     green("fresh_green_leaves", [92, 140, 62], [160, 190, 104])
 }
 
@@ -106,7 +106,7 @@ fn leaf_green(d: &SizeSampler) -> Finish {
     if d.chance("deep", 0.5) {
         deep_green()
     } else {
-        fresh_green()
+        fresh_foliage()
     }
 }
 

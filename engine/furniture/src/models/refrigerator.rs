@@ -1,7 +1,7 @@
 //! A refrigerator with a freezer below.
 
-use super::cabinet_parts::upright_handle;
-use super::casings::casing;
+use super::cabinet_parts::vertical_handle;
+use super::casings::casing_finish;
 use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::{enamel, glass, steel};
 use crate::model::{Model, PartBuilder};
@@ -63,7 +63,7 @@ fn refrigerator(width_m: f32, height_m: f32, depth_m: f32) -> Model {
                 &white,
                 rounded_block([-x, low, front + 0.002], [x, high, z], 0.012, 1),
             )
-            .with(&steel(), upright_handle(x - 0.05, handle[0], handle[1], z))
+            .with(&steel(), vertical_handle(x - 0.05, handle[0], handle[1], z))
     };
     Model::articulated("refrigerator", "refrigerator")
         .with_switch_state(true)
@@ -91,7 +91,7 @@ fn refrigerator(width_m: f32, height_m: f32, depth_m: f32) -> Model {
 
 fn sample_refrigerator(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("refrigerator", key);
-    let case = casing(style, &d, "fridge_casing");
+    let case = casing_finish(style, &d, "fridge_casing");
     refrigerator(
         d.sample_m("width"),
         d.sample_m("height"),

@@ -34,7 +34,7 @@ struct Bookshelf {
 impl Bookshelf {
     /// The model of these sizes and finishes.
     fn build(&self) -> Model {
-        let carcass = Carcass::standing(self.width_m, 0.0, self.height_m, self.depth_m);
+        let carcass = Carcass::floor_standing(self.width_m, 0.0, self.height_m, self.depth_m);
         let levels = self.levels.clamp(2, SHELVES.len());
         let shares: Vec<f32> = (1..levels).map(|k| k as f32 / levels as f32).collect();
         let body = PartBuilder::new("body").with_all(&self.wood, carcass.boards(&shares, &[]));
@@ -101,7 +101,7 @@ fn cube_shelf(style: &Style, key: RandomKey) -> Model {
     );
     let count = |length: f32| ((length / 0.37).round() as usize).clamp(1, 4);
     let (columns, rows) = (count(w), count(h));
-    let carcass = Carcass::standing(w, 0.0, h, depth);
+    let carcass = Carcass::floor_standing(w, 0.0, h, depth);
     let share = |k: usize, n: usize| k as f32 / n as f32;
     let levels: Vec<f32> = (1..rows).map(|k| share(k, rows)).collect();
     let walls: Vec<f32> = (1..columns).map(|k| share(k, columns)).collect();

@@ -1,7 +1,7 @@
 //! Shower cabins, heads and screens.
 
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{chrome, glass, sanitary};
+use crate::finishes::{chrome, glass, sanitary_ware};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{block, cylinder, rod, rounded_block, tube};
@@ -47,7 +47,7 @@ fn shower_cabin(style: &Style, key: RandomKey) -> Model {
     );
     let body = PartBuilder::new("body")
         .with_fill_fraction(
-            &sanitary(),
+            &sanitary_ware(),
             rounded_block([-x, 0.0, -z], [x, step, z], 0.012, 1),
             0.3,
         )

@@ -89,14 +89,14 @@ fn bar_stool(style: &Style, key: RandomKey) -> Model {
         body.with_fill_fraction(
             cover,
             cylinder(0.46 * w, 0.05, 24).translated(0.0, under, 0.0),
-            0.5 * cover.padded_fill(),
+            0.5 * cover.padded_fill_fraction(),
         )
     } else {
         let s = 0.44 * w;
         body.with_fill_fraction(
             cover,
             rounded_block([-s, under, -s], [s, h, s], 0.018, 2),
-            0.5 * cover.padded_fill(),
+            0.5 * cover.padded_fill_fraction(),
         )
     };
     let half = 0.3 * w;

@@ -2,7 +2,7 @@
 
 use super::washbasins::sanitary_finish;
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, chrome, plastic, sanitary};
+use crate::finishes::{Finish, chrome, plastic, sanitary_ware};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{block, cylinder, loft, rounded_block};
@@ -36,7 +36,7 @@ fn outline(half_width: f32, back: f32, front: f32, y: f32) -> Vec<Vec3> {
 
 /// A toilet, its cistern at -Z.
 fn toilet() -> Model {
-    let white = sanitary();
+    let white = sanitary_ware();
     let seat = plastic("white_plastic", [240, 240, 236]);
     let z = 0.34;
     let back = -z + 0.165;

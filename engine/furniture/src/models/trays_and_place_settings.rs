@@ -4,7 +4,7 @@ use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::{Finish, plastic, steel};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
-use crate::shapes::{block, rod, surface_of_revolution, trough};
+use crate::shapes::{block, open_top_box, rod, surface_of_revolution};
 use crate::style::Style;
 use dwell_scene::random::RandomKey;
 
@@ -62,7 +62,7 @@ fn tray(style: &Style, key: RandomKey) -> Model {
         ))
     };
     let body = PartBuilder::new("body")
-        .with(&stuff, trough([-x, 0.0, -z], [x, h, z], 0.008))
+        .with(&stuff, open_top_box([-x, 0.0, -z], [x, h, z], 0.008))
         .with_all(&style.metal, [grip(-1.0), grip(1.0)]);
     Model::pickable("tray", "food_tray")
         .part(body)

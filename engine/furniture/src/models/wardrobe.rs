@@ -37,7 +37,8 @@ struct Wardrobe {
 impl Wardrobe {
     /// The model of these sizes and finishes.
     fn build(&self) -> Model {
-        let carcass = Carcass::standing(self.width_m, 0.06, self.height_m, self.depth_m - BOARD_M);
+        let carcass =
+            Carcass::floor_standing(self.width_m, 0.06, self.height_m, self.depth_m - BOARD_M);
         let (x, z) = (0.5 * self.width_m, carcass.max[2]);
         let rail = self.height_m - 0.42;
         let body = PartBuilder::new("body")

@@ -3,7 +3,7 @@
 use super::cabinet_parts::{BOARD_M, Carcass, GAP_M, door};
 use super::taps::with_mixer_tap;
 use crate::catalogue_entry::CatalogueEntry;
-use crate::finishes::{Finish, chrome, sanitary};
+use crate::finishes::{Finish, chrome, sanitary_ware};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
 use crate::shapes::{SolidMesh, block, cylinder, surface_of_revolution, tube};
@@ -21,12 +21,12 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[
 pub(super) fn sanitary_finish(d: &SizeSampler) -> Finish {
     let tones = [[236, 230, 214], [226, 232, 230], [230, 214, 206]];
     if d.chance("white", 0.75) {
-        sanitary()
+        sanitary_ware()
     } else {
         Finish {
             name: "pale_porcelain",
             srgb: d.choose("tone", tones),
-            ..sanitary()
+            ..sanitary_ware()
         }
     }
 }
@@ -37,7 +37,7 @@ const BASIN_RIM_M: f32 = 0.86;
 /// A washbasin on a cabinet with two doors; its tap stands at the middle of the back.
 fn washbasin(width_m: f32, look: &FrontStyle) -> Model {
     let (x, z) = (0.5 * width_m, 0.23);
-    let white = sanitary();
+    let white = sanitary_ware();
     let (rim, low, t) = (BASIN_RIM_M, 0.74, 0.03);
     let (bx, back, front_z) = (x - 0.06, -0.11, z - 0.04);
     let carcass = Carcass {
@@ -121,7 +121,7 @@ fn basin(_style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("basin", key);
     let (w, h, depth) = (d.sample_m("width"), d.sample_m("rim"), d.sample_m("depth"));
     let (x, z) = (0.5 * w, 0.5 * depth);
-    let white = sanitary();
+    let white = sanitary_ware();
     let (low, floor, wall) = (h - 0.17, h - 0.13, 0.035);
     let ledge = -z + 0.12;
     let shell = [

@@ -1,11 +1,11 @@
 //! A washing machine and a tumble dryer.
 
-use super::casings::casing;
+use super::casings::casing_finish;
 use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::{Finish, black_plastic, chrome, enamel, plastic};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
-use crate::shapes::{SolidMesh, block, cylinder, ring};
+use crate::shapes::{SolidMesh, block, cylinder, torus};
 use crate::style::Style;
 use dwell_scene::random::RandomKey;
 use glam::Vec3;
@@ -63,7 +63,7 @@ fn washer() -> Model {
         .with_all(&white, drum_case(x, case_low, case_high, 0.42))
         .with(
             &chrome(),
-            ring(0.15, 0.006, 28)
+            torus(0.15, 0.006, 28)
                 .rotated_x(FRAC_PI_2)
                 .translated(0.0, 0.42, z)
                 .visual_only(),
@@ -95,7 +95,7 @@ fn washer() -> Model {
         )
         .with(
             &chrome(),
-            ring(0.155, 0.016, 28)
+            torus(0.155, 0.016, 28)
                 .rotated_x(FRAC_PI_2)
                 .translated(0.0, 0.42, z + 0.018),
         );
@@ -112,7 +112,7 @@ fn washer() -> Model {
 
 fn sample_washer(style: &Style, key: RandomKey) -> Model {
     let d = SizeSampler::new("washer", key);
-    washer().with_finish_replaced("washer_white", &casing(style, &d, "washer_casing"))
+    washer().with_finish_replaced("washer_white", &casing_finish(style, &d, "washer_casing"))
 }
 
 /// A tumble dryer: as wide as a washing machine, its door larger and darker, a drawer for water above.

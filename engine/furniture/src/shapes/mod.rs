@@ -33,8 +33,8 @@ pub use panel::panel;
 pub use polygon::triangulate;
 pub use revolve::{ball, cone, cylinder, surface_of_revolution};
 pub use solid::{SolidMesh, axis_rotation};
-pub use trough::trough;
-pub use tube::{ring, rod, tube};
+pub use trough::open_top_box;
+pub use tube::{rod, torus, tube};
 pub use vessel::vessel;
 
 #[cfg(test)]

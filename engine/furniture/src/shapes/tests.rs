@@ -47,7 +47,7 @@ fn all() -> Vec<(&'static str, SolidMesh)> {
                 8,
             ),
         ),
-        ("ring", ring(0.1, 0.01, 16)),
+        ("ring", torus(0.1, 0.01, 16)),
         ("curtain", curtain(0.9, 2.2, 0.1, 6)),
         ("blanket", blanket(1.6, 1.4, 0.3, 0.04)),
         ("leaf", leaf(0.3, 0.1, 0.5)),
@@ -130,7 +130,7 @@ fn known_volumes_come_out() {
     near("cone", &cone(0.5, 0.0, 3.0, 48), pi * 0.25);
     near(
         "ring",
-        &ring(0.5, 0.1, 48),
+        &torus(0.5, 0.1, 48),
         2.0 * pi * pi * 0.5 * 0.01 * 0.9,
     );
     near(

@@ -3,7 +3,7 @@
 use super::{SolidMesh, block};
 
 /// A box of five boards without a lid between two outer corners, `wall_m` thick. It collides as its boards.
-pub fn trough(min: [f32; 3], max: [f32; 3], wall_m: f32) -> SolidMesh {
+pub fn open_top_box(min: [f32; 3], max: [f32; 3], wall_m: f32) -> SolidMesh {
     let ([x0, y0, z0], [x1, y1, z1], t) = (min, max, wall_m);
     [
         block([x0, y0, z0], [x1, y0 + t, z1]),

@@ -65,7 +65,7 @@ pub fn tube(path: &[[f32; 3]], radius_m: f32, sides: usize) -> SolidMesh {
 }
 
 /// A round bar bent to a ring about +Y, in the plane y = 0. It collides as a cylinder for each of eight pieces.
-pub fn ring(radius_m: f32, bar_radius_m: f32, segments: usize) -> SolidMesh {
+pub fn torus(radius_m: f32, bar_radius_m: f32, segments: usize) -> SolidMesh {
     let sides = 8;
     let mut mesh = Mesh::default();
     add_grid(&mut mesh, segments + 1, sides + 1, |i, j| {

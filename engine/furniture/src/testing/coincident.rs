@@ -48,7 +48,7 @@ impl Facet {
 
 /// Two materials whose faces coincide where they can be seen.
 #[derive(Clone, Copy, Debug)]
-pub struct Coincidence {
+pub struct CoincidentFaces {
     /// The materials, as the facets number them.
     pub materials: [usize; 2],
     /// Area that is shared by faces of both, m².
@@ -96,13 +96,13 @@ pub fn object_facets(house: &House, object: ObjectId) -> Vec<Facet> {
 /// The pairs of materials of which faces coincide, looking the same way, outside of all solids of the thing.
 ///
 /// Where faces of closed solids look against each other, each lies within the other's solid.
-pub fn coincidences(facets: &[Facet]) -> Vec<Coincidence> {
+pub fn coincidences(facets: &[Facet]) -> Vec<CoincidentFaces> {
     let mut order: Vec<(f32, &Facet)> = facets
         .iter()
         .map(|facet| (facet.normal.dot(GENERIC), facet))
         .collect();
     order.sort_by(|p, q| p.0.total_cmp(&q.0));
-    let mut found: BTreeMap<[usize; 2], Coincidence> = BTreeMap::new();
+    let mut found: BTreeMap<[usize; 2], CoincidentFaces> = BTreeMap::new();
     for (k, (along, p)) in order.iter().enumerate() {
         let parallel = order[k + 1..]
             .iter()
@@ -115,7 +115,7 @@ pub fn coincidences(facets: &[Facet]) -> Vec<Coincidence> {
                 continue;
             };
             let materials = [p.material.min(q.material), p.material.max(q.material)];
-            let one = found.entry(materials).or_insert(Coincidence {
+            let one = found.entry(materials).or_insert(CoincidentFaces {
                 materials,
                 area_m2: 0.0,
                 place,

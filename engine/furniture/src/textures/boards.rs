@@ -41,10 +41,10 @@ pub(super) fn planks(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     let noise = &paint.noise;
     canvas.fill(|u, v| {
         let course = (v * COURSES).floor();
-        let shift = noise.cell(course as i32, 7);
+        let shift = noise.lattice_value(course as i32, 7);
         let along = (u + shift) * 2.0;
         let board = along.floor().rem_euclid(2.0);
-        let tone = noise.cell(course as i32 * 5 + board as i32, 31);
+        let tone = noise.lattice_value(course as i32 * 5 + board as i32, 31);
         // Each board shows another piece of the tree.
         let color = grain(noise, paint.colors, u + tone, v + tone * 3.0, 8.0);
         let (x, y) = (along - along.floor(), v * COURSES - course);
@@ -72,7 +72,7 @@ pub(super) fn herringbone(canvas: &mut PixelCanvas, paint: &TexturePaint) {
         } else {
             (i, j - (2 * LONG - 1 - place))
         };
-        let tone = noise.cell(
+        let tone = noise.lattice_value(
             start_i.rem_euclid(CELLS) + 17 * start_j.rem_euclid(CELLS),
             i32::from(lying),
         );

@@ -28,7 +28,7 @@ pub(super) fn weave(canvas: &mut PixelCanvas, paint: &TexturePaint) {
         let round = math::sin(std::f32::consts::PI * (across - across.floor()));
         let yarn = paint
             .noise
-            .cell(if over { y as i32 } else { 40 + x as i32 }, 3);
+            .lattice_value(if over { y as i32 } else { 40 + x as i32 }, 3);
         let color = if over {
             ground
         } else {
@@ -57,8 +57,8 @@ pub(super) fn leather(canvas: &mut PixelCanvas, paint: &TexturePaint) {
             (1, 1),
         ] {
             let (a, b) = ((i + di).rem_euclid(24), (j + dj).rem_euclid(24));
-            let px = (i + di) as f32 + paint.noise.cell(a, b * 2);
-            let py = (j + dj) as f32 + paint.noise.cell(a + 60, b * 2 + 1);
+            let px = (i + di) as f32 + paint.noise.lattice_value(a, b * 2);
+            let py = (j + dj) as f32 + paint.noise.lattice_value(a + 60, b * 2 + 1);
             nearest = nearest.min((px - x) * (px - x) + (py - y) * (py - y));
         }
         let worn = paint.noise.fractal(u, v, 3, 3, 3);
@@ -104,7 +104,7 @@ pub(super) fn wicker(canvas: &mut PixelCanvas, paint: &TexturePaint) {
         let (x, y) = (u * 4.0, v * 8.0);
         let front = math::sin(TAU * 0.5 * (x + if y as i32 % 2 == 0 { 0.0 } else { 1.0 }));
         let round = math::sin(std::f32::consts::PI * (y - y.floor()));
-        let rod = paint.noise.cell(y as i32, 9);
+        let rod = paint.noise.lattice_value(y as i32, 9);
         mix(
             dark,
             light,

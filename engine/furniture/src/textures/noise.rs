@@ -31,7 +31,7 @@ impl ValueNoise {
 
     /// A value in [0, 1) for an integer place; equal places, equal values.
     #[inline]
-    pub(super) fn cell(&self, x: i32, y: i32) -> f32 {
+    pub(super) fn lattice_value(&self, x: i32, y: i32) -> f32 {
         // The table's length is a power of two, so that masking is the remainder, of negative numbers too.
         let mask = TABLE as i32 - 1;
         let column = self.order[(x & mask) as usize];
@@ -53,8 +53,10 @@ impl ValueNoise {
             let f = x - cell as f32;
             (first, second, f * f * (3.0 - 2.0 * f))
         });
-        let low = self.cell(i0, j0) + (self.cell(i1, j0) - self.cell(i0, j0)) * fx;
-        let high = self.cell(i0, j1) + (self.cell(i1, j1) - self.cell(i0, j1)) * fx;
+        let low = self.lattice_value(i0, j0)
+            + (self.lattice_value(i1, j0) - self.lattice_value(i0, j0)) * fx;
+        let high = self.lattice_value(i0, j1)
+            + (self.lattice_value(i1, j1) - self.lattice_value(i0, j1)) * fx;
         low + (high - low) * fy
     }
 

@@ -49,7 +49,7 @@ pub(super) fn stars(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     canvas.fill(|u, v| {
         let (x, y) = (u * 4.0, v * 4.0);
         let (i, j) = (x.floor() as i32, y.floor() as i32);
-        let jitter = |k: i32| 0.5 + 0.36 * (paint.noise.cell(i * 4 + k, j * 9) - 0.5);
+        let jitter = |k: i32| 0.5 + 0.36 * (paint.noise.lattice_value(i * 4 + k, j * 9) - 0.5);
         let (dx, dy) = (x - i as f32 - jitter(1), y - j as f32 - jitter(2));
         let angle = math::atan2(dx, dy) + TAU * jitter(3);
         let radius = (dx * dx + dy * dy).sqrt();

@@ -113,7 +113,7 @@ pub(super) fn rings(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     canvas.fill(|u, v| {
         let (x, y) = (u * 3.0, v * 4.0);
         let (column, row) = (x as i32, y as i32);
-        let pick = paint.noise.cell(column * 5 + 2, row * 9 + 4);
+        let pick = paint.noise.lattice_value(column * 5 + 2, row * 9 + 4);
         let index = (pick * 2.999) as usize;
         let (dx, dy) = (x - column as f32, y - row as f32);
         // The middle of the rings: a corner of the square, or the middle of an edge.

@@ -23,7 +23,9 @@ pub(super) fn television(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     canvas.disc([0.62, 0.5], 0.1, [1.0, 0.9, 0.7]);
     canvas.map_pixels(|u, v, old| {
         let roof = 0.42
-            + 0.2 * noise.cell((u * 26.0) as i32, 4) * smooth_step(0.05, 0.3, (u - 0.55).abs());
+            + 0.2
+                * noise.lattice_value((u * 26.0) as i32, 4)
+                * smooth_step(0.05, 0.3, (u - 0.55).abs());
         if v > 0.4 && v < roof {
             shade(sea, 0.35)
         } else {
@@ -51,7 +53,7 @@ pub(super) fn desktop(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     for line in 0..12 {
         let (v, width) = (
             0.76 - 0.05 * line as f32,
-            0.2 + 0.42 * paint.noise.cell(line, 2),
+            0.2 + 0.42 * paint.noise.lattice_value(line, 2),
         );
         canvas.rectangle([0.16, v], [0.16 + width, v + 0.02], text);
     }

@@ -9,7 +9,7 @@ pub(super) fn tile(canvas: &mut PixelCanvas, paint: &TexturePaint) {
     canvas.fill(|u, v| {
         let (x, y) = (u * 2.0, v * 2.0);
         let (dx, dy) = (x - x.floor(), y - y.floor());
-        let tone = paint.noise.cell(x as i32 + 3, y as i32 * 2 + 5);
+        let tone = paint.noise.lattice_value(x as i32 + 3, y as i32 * 2 + 5);
         let veil = paint.noise.fractal(u, v, 6, 6, 3);
         let edge = dx.min(1.0 - dx).min(dy).min(1.0 - dy);
         let body = shade(
@@ -31,7 +31,7 @@ pub(super) fn brick(canvas: &mut PixelCanvas, paint: &TexturePaint) {
         let (dx, dy) = (x - x.floor(), y - course);
         let tone = paint
             .noise
-            .cell((x.floor() as i32).rem_euclid(2) * 3 + 1, course as i32 * 7);
+            .lattice_value((x.floor() as i32).rem_euclid(2) * 3 + 1, course as i32 * 7);
         let rough = paint.noise.fractal(u, v, 16, 16, 3);
         let edge = (dx.min(1.0 - dx) * 3.0).min(dy.min(1.0 - dy));
         let body = shade(mix(brick, burnt, 0.6 * tone), 0.85 + 0.3 * rough);
@@ -51,7 +51,7 @@ pub(super) fn metro(canvas: &mut PixelCanvas, paint: &TexturePaint) {
         let course = y as i32;
         let x = u * 2.0 + if course % 2 == 0 { 0.0 } else { 0.5 };
         let (dx, dy) = (x - x.floor(), y - course as f32);
-        let tone = paint.noise.cell(x as i32 % 2 * 3 + 1, course * 7);
+        let tone = paint.noise.lattice_value(x as i32 % 2 * 3 + 1, course * 7);
         // The glaze is thinner towards the rims.
         let edge = (dx.min(1.0 - dx) * 2.0).min(dy.min(1.0 - dy));
         let body = shade(

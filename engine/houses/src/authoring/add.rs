@@ -49,7 +49,7 @@ pub(super) fn add(
         ObjectSource::Catalogue { kind, style, seed } => {
             let model =
                 model(kind, style.as_deref(), *seed).map_err(prefix_field("what.catalogue"))?;
-            from_model(&mut session.data, model)
+            add_model_instance(&mut session.data, model)
         }
         ObjectSource::File { path, scale, up } => {
             from_file(session, path, *scale, *up, &wanted.attributes)
@@ -159,7 +159,7 @@ pub(super) fn model(
 }
 
 /// An instance of a model, at the origin.
-pub(super) fn from_model(data: &mut HouseData, model: Arc<Model>) -> ObjectId {
+pub(super) fn add_model_instance(data: &mut HouseData, model: Arc<Model>) -> ObjectId {
     let mut assembly = HouseAssembly::new("", "");
     assembly.add_storey();
     let kind = assembly.add_model(model);
@@ -185,7 +185,7 @@ fn copy(
             return Ok(first(&copy_objects(&mut session.data, &own, &alone)));
         }
         Some(house) => {
-            let house = session.files.house("house", house)?;
+            let house = session.files.resolve_house("house", house)?;
             if let Some(known) = session.houses.get(&house) {
                 known.clone()
             } else {

@@ -261,7 +261,7 @@ impl<'a> EditSession<'a> {
         let yaw =
             check_range("yaw_deg", robot.yaw_deg, [-36_000.0, 36_000.0], "degrees")?.to_radians();
         self.check_name_is_free("name", &robot.name)?;
-        let path = self.files.path("path", &robot.path)?;
+        let path = self.files.resolve_path("path", &robot.path)?;
         let (model, report) = crate::open_robot(&path)?;
         self.report.append(report);
         let fixed = robot.fixed_base.unwrap_or_else(|| model.has_fixed_base());

@@ -21,7 +21,7 @@ impl FileAccess {
     ///
     /// # Errors
     /// [`HousesError::PathLeavesRoot`].
-    pub(super) fn path(&self, field: &str, name: &str) -> Result<PathBuf, HousesError> {
+    pub(super) fn resolve_path(&self, field: &str, name: &str) -> Result<PathBuf, HousesError> {
         if name.is_empty() {
             return Err(invalid_field(field, "nothing", "the path of a file"));
         }
@@ -41,11 +41,11 @@ impl FileAccess {
         Ok(full)
     }
 
-    /// The HOUSE of a string: paths as of [`FileAccess::path`]; no plan rests on another plan.
+    /// The HOUSE of a string: paths as of [`FileAccess::resolve_path`]; no plan rests on another plan.
     ///
     /// # Errors
     /// [`HousesError::PathLeavesRoot`], and [`HousesError::Spec`] for a plan.
-    pub(super) fn house(&self, field: &str, house: &str) -> Result<String, HousesError> {
+    pub(super) fn resolve_house(&self, field: &str, house: &str) -> Result<String, HousesError> {
         if super::open::recognizes(Path::new(house)) || house.contains("?map=") {
             let possible = "a HOUSE that is no plan and has no map";
             return Err(invalid_field(field, format_args!("{house:?}"), possible));
@@ -53,6 +53,9 @@ impl FileAccess {
         if house.starts_with("builtin:") || house.starts_with("seed:") {
             return Ok(house.to_owned());
         }
-        Ok(self.path(field, house)?.to_string_lossy().into_owned())
+        Ok(self
+            .resolve_path(field, house)?
+            .to_string_lossy()
+            .into_owned())
     }
 }

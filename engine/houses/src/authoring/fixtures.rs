@@ -9,7 +9,7 @@ use dwell_scene::{
 };
 use glam::{Affine3A, Vec3};
 
-use super::add::{from_model, model, place_new_object};
+use super::add::{add_model_instance, model, place_new_object};
 use super::apply::EditSession;
 use super::copy_objects::copy_objects;
 use super::edit_errors::{check_range, checked_point, invalid_field, prefix_field};
@@ -211,7 +211,7 @@ pub(super) fn add_lamp(session: &mut EditSession<'_>, wanted: &AddLamp) -> Resul
     if wanted.place.at.is_none() && wanted.place.on.is_none() {
         return Err(invalid_field("place", "no place", "`at`, `on`, or both"));
     }
-    let id = from_model(&mut session.data, lamp);
+    let id = add_model_instance(&mut session.data, lamp);
     place_new_object(session, id, wanted.name.as_deref(), &wanted.place)?;
     session.data.objects[id].switch = Some(wanted.on);
     let own = session

@@ -44,7 +44,7 @@ pub(super) fn load(
     if let Some(known) = session.meshes.get(&key) {
         return Ok(known.clone());
     }
-    let path = session.files.path("path", name)?;
+    let path = session.files.resolve_path("path", name)?;
     let mut report = LoadReport::new();
     let scene = read(&path, session.threads, &mut report)?;
     let turn = match up {

@@ -272,7 +272,7 @@ impl NameMapping {
                 continue;
             }
             let place = format!("materials.{pattern:?}");
-            surfaces::change_in_place(data, id, &look).map_err(prefix_field(place))?;
+            surfaces::restyle_material(data, id, &look).map_err(prefix_field(place))?;
         }
         Ok(())
     }

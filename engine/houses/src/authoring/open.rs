@@ -11,12 +11,12 @@ use super::edit_errors::{invalid_field, prefix_field};
 use super::edits::Edit;
 use super::files::FileAccess;
 use super::floor_plan::{BuildingPlan, build_house_data};
-use crate::data_root::{UserFile, is_json_with};
+use crate::data_root::{UserFile, is_json_containing};
 use crate::error::HousesError;
 use crate::formats::{FORMATS, open_by};
 use crate::json;
 use crate::limits::MAX_TEXT_BYTES;
-use crate::opened::Opened;
+use crate::opened::OpenResult;
 use crate::report::{FileLocation, LoadReport};
 
 /// Value of the field `format` of a plan file.
@@ -139,7 +139,7 @@ fn build_with(
     threads: Threads,
 ) -> Result<(House, LoadReport), HousesError> {
     let (base, mut report) = match (&plan.house, &plan.building) {
-        (Some(house), None) => open_by(FORMATS, &files.house("house", house)?, threads)?,
+        (Some(house), None) => open_by(FORMATS, &files.resolve_house("house", house)?, threads)?,
         (None, Some(building)) => {
             let data = build_house_data(&plan.name, building).map_err(prefix_field("building"))?;
             let house =
@@ -168,11 +168,11 @@ pub(crate) fn recognizes(path: &Path) -> bool {
             .to_ascii_lowercase()
             .ends_with(ENDING)
     });
-    named || is_json_with(path, &[&["\"dwell-plan\""]])
+    named || is_json_containing(path, &[&["\"dwell-plan\""]])
 }
 
 /// Opens a plan file; the files that it names are read below its folder.
-pub(crate) fn open(path: &Path, threads: Threads) -> Opened {
+pub(crate) fn open(path: &Path, threads: Threads) -> OpenResult {
     let UserFile { root, name, bytes } = UserFile::read(path, MAX_TEXT_BYTES)?;
     let mut plan = HousePlan::from_json(&bytes, &FileLocation::file(&name))?;
     if plan.name.is_empty() && plan.building.is_some() {

@@ -41,7 +41,7 @@ pub(super) fn overlapping_pairs(house: &House, put: &[ObjectId]) -> Vec<(ObjectI
     // Later things were put into earlier ones.
     for one in put.iter().rev() {
         let own = bounds(*one);
-        let others = tree.nearest_intersecting(&own, MOST_COMPARED, |other| {
+        let others = tree.k_nearest_intersecting(&own, MOST_COMPARED, |other| {
             let other = ObjectId::from_index(other);
             let theirs = bounds(other);
             let deep = Vec3::splat(DEEP_M);

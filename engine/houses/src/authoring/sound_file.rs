@@ -18,7 +18,7 @@ const BEGINNINGS: [&[u8]; 3] = [b"RIFF", b"fLaC", b"OggS"];
 /// [`HousesError::PathLeavesRoot`], [`HousesError::Io`], [`HousesError::TooLarge`] above [`SoundFile::MAX_BYTES`], and
 /// [`HousesError::Spec`] for a file of another form.
 pub(super) fn read_sound_file(files: &FileAccess, file: &str) -> Result<SoundFile, HousesError> {
-    let path = files.path("file", file)?;
+    let path = files.resolve_path("file", file)?;
     let UserFile { name, bytes, .. } = UserFile::read(&path, SoundFile::MAX_BYTES)?;
     if !BEGINNINGS.iter().any(|begin| bytes.starts_with(begin)) {
         let begins: Vec<u8> = bytes.iter().copied().take(4).collect();

@@ -54,7 +54,7 @@ pub(super) fn change_material(
                 let names = data.materials.iter().map(|material| material.name.as_str());
                 unknown_name("of.material", name, "materials", names)
             })?;
-            change_in_place(data, id, look).map_err(prefix_field("look"))
+            restyle_material(data, id, look).map_err(prefix_field("look"))
         }
         SurfaceSelector::Structure(name) => {
             let data = &mut session.data;
@@ -85,7 +85,7 @@ pub(super) fn change_material(
 ///
 /// # Errors
 /// [`HousesError::Spec`] for an unknown substance or a number out of range.
-pub(super) fn change_in_place(
+pub(super) fn restyle_material(
     data: &mut HouseData,
     id: MaterialId,
     look: &SurfaceStyle,

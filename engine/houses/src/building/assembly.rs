@@ -237,7 +237,7 @@ impl HouseAssembly {
             attenuation: ATTENUATION,
         }));
         data.emitters.extend(model.sounds.iter().map(|sound| {
-            SoundEmitter::steady(
+            SoundEmitter::looping(
                 object,
                 part_id(sound.part),
                 sound.position,

@@ -23,12 +23,12 @@ pub use spec::{AssetSplit, DoorStates, HomeKind, HouseSpec};
 
 use crate::building::assembly::HouseAssembly;
 use crate::error::HousesError;
-use crate::opened::Opened;
+use crate::opened::OpenResult;
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
 use dwell_furniture::style::{STYLES, Style};
 use dwell_scene::random::RandomKey;
-use dwell_scene::{Daytime, House, SceneError, Sky};
+use dwell_scene::{House, SceneError, Sky, SkyConditions};
 use openings::WallHole;
 use plan::{GeneratedPlan, StoreyCells};
 use room_program::RoomProgram;
@@ -169,7 +169,7 @@ fn furnished_plan(
 }
 
 /// Opens `seed:N` and `seed:N?field=value&field=value`, the fields those of a [`HouseSpec`] and the values JSON or words.
-pub(crate) fn open(house: &str) -> Opened {
+pub(crate) fn open(house: &str) -> OpenResult {
     let wanted = house.strip_prefix("seed:").unwrap_or(house);
     let (number, fields) = wanted.split_once('?').unwrap_or((wanted, ""));
     let seed = number.parse().map_err(|_| HousesError::Spec {
@@ -302,10 +302,10 @@ fn style(spec: &HouseSpec, key: RandomKey) -> &'static Style {
 
 /// The open air at the hour of the spec; north lies anywhere.
 fn sky(spec: &HouseSpec, key: RandomKey) -> Result<Sky, SceneError> {
-    Sky::at(&Daytime {
+    Sky::at(&SkyConditions {
         hour_h: spec.time_of_day,
         north_yaw_deg: key.stream().uniform_f32() * 360.0 - 180.0,
-        ..Daytime::default()
+        ..SkyConditions::default()
     })
 }
 

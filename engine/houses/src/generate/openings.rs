@@ -4,7 +4,7 @@
 //! against the wall. No two leaves meet, and no open leaf stands before another door.
 
 use super::plan::{
-    ConnectionKind, GeneratedPlan, GeneratedStorey, GridRect, GridSteps, RoomBoundary,
+    BoundarySegment, ConnectionKind, GeneratedPlan, GeneratedStorey, GridRect, GridSteps,
     StairwellPlan, StoreyCells, metres, steps,
 };
 use super::reachability::count_unreachable_when_empty;
@@ -195,7 +195,7 @@ const DEALS: usize = 24;
 /// The doors of a storey; the second is the number of those that block others all the same.
 fn doors(
     storey: &GeneratedStorey,
-    runs: &[RoomBoundary],
+    runs: &[BoundarySegment],
     stairs: Option<StairwellPlan>,
     stream: &mut RandomStream,
 ) -> (Vec<WallHole>, usize) {
@@ -218,7 +218,7 @@ fn doors(
 
 fn sample_doors(
     storey: &GeneratedStorey,
-    runs: &[RoomBoundary],
+    runs: &[BoundarySegment],
     stairs: Option<GridRect>,
     stream: &mut RandomStream,
 ) -> (Vec<WallHole>, usize) {
@@ -249,7 +249,7 @@ fn sample_doors(
 const FREE_LEAF_M: f32 = 1.75;
 
 /// Returns whether one can pass the open leaf: it lies against a wall of a corner, or the room is deep.
-fn leaves_passage(storey: &GeneratedStorey, runs: &[RoomBoundary], hole: &WallHole) -> bool {
+fn leaves_passage(storey: &GeneratedStorey, runs: &[BoundarySegment], hole: &WallHole) -> bool {
     let HoleContents::Door { hinge_right, .. } = hole.contents else {
         return true;
     };
@@ -309,7 +309,7 @@ fn apart(a: &WallHole, b: &WallHole) -> bool {
 /// Returns where a door between two rooms can be: at both ends and in the middle of every stretch that is long enough.
 fn candidates(
     storey: &GeneratedStorey,
-    runs: &[RoomBoundary],
+    runs: &[BoundarySegment],
     room: usize,
     behind: Option<usize>,
     kind: ConnectionKind,
@@ -373,7 +373,7 @@ fn candidates(
 
 fn windows(
     storey: &GeneratedStorey,
-    runs: &[RoomBoundary],
+    runs: &[BoundarySegment],
     stairs: Option<GridRect>,
     holes: &mut Vec<WallHole>,
     stream: &mut RandomStream,
@@ -395,7 +395,7 @@ fn windows(
             WindowStyle::Frosted => (stream.range(0.5, 0.7), 1.45, 2.1, 1, 3.0),
             WindowStyle::None => continue,
         };
-        let mut outer: Vec<&RoomBoundary> = runs
+        let mut outer: Vec<&BoundarySegment> = runs
             .iter()
             .filter(|run| run.separates(Some(room), None) && run.to - run.from >= 18)
             .collect();

@@ -3,7 +3,7 @@
 use super::furnish::RoomFurniture;
 use super::openings::{HoleContents, INNER_WALL_M, OUTER_WALL_M, WallHole, ZoneXz, overlap};
 use super::plan::{
-    GeneratedPlan, GeneratedRoom, GeneratedStorey, RoomBoundary, StoreyCells, metres,
+    BoundarySegment, GeneratedPlan, GeneratedRoom, GeneratedStorey, StoreyCells, metres,
 };
 use super::room_finishes::{RoomFinishes, facade_finish, reveal_finish, room_finishes};
 use super::rooms::GeneratedRoomKind;
@@ -272,7 +272,7 @@ impl ShellBuilder<'_> {
         assembly: &mut HouseAssembly,
     ) {
         let storey = self.storey(level);
-        let runs: Vec<RoomBoundary> = cells
+        let runs: Vec<BoundarySegment> = cells
             .boundaries()
             .into_iter()
             .filter(|run| !is_railing(storey, run))
@@ -472,7 +472,7 @@ impl ShellBuilder<'_> {
         assembly: &mut HouseAssembly,
     ) {
         let storey = self.storey(level);
-        let rails: Vec<RoomBoundary> = cells
+        let rails: Vec<BoundarySegment> = cells
             .boundaries()
             .into_iter()
             .filter(|run| is_railing(storey, run))
@@ -519,7 +519,7 @@ impl ShellBuilder<'_> {
 }
 
 /// Returns whether a stretch separates a balcony from the open air.
-fn is_railing(storey: &GeneratedStorey, run: &RoomBoundary) -> bool {
+fn is_railing(storey: &GeneratedStorey, run: &BoundarySegment) -> bool {
     let outside = |room: &GeneratedRoom| room.kind.is_outside();
     match run.sides {
         [Some(room), None] | [None, Some(room)] => outside(&storey.rooms[room]),
@@ -528,7 +528,7 @@ fn is_railing(storey: &GeneratedStorey, run: &RoomBoundary) -> bool {
 }
 
 /// Thickness of the wall over a stretch, m.
-fn thickness(storey: &GeneratedStorey, run: &RoomBoundary) -> f32 {
+fn thickness(storey: &GeneratedStorey, run: &BoundarySegment) -> f32 {
     let indoors = |side: &Option<usize>| side.is_some_and(|k| !storey.rooms[k].kind.is_outside());
     if run.sides.iter().all(indoors) {
         INNER_WALL_M
@@ -541,12 +541,12 @@ fn thickness(storey: &GeneratedStorey, run: &RoomBoundary) -> f32 {
 /// a gap and without overlap: a straight wall goes through, and at a corner the wall along z does.
 fn wall_end_extension(
     storey: &GeneratedStorey,
-    runs: &[RoomBoundary],
-    run: &RoomBoundary,
+    runs: &[BoundarySegment],
+    run: &BoundarySegment,
     end: bool,
 ) -> f32 {
     let at = if end { run.to } else { run.from };
-    let here = |other: &&RoomBoundary| {
+    let here = |other: &&BoundarySegment| {
         let (along, across) = if other.along_x == run.along_x {
             (at, run.at)
         } else {
@@ -554,9 +554,9 @@ fn wall_end_extension(
         };
         other.at == across && (other.from == along || other.to == along) && *other != run
     };
-    let half = |other: &RoomBoundary| 0.5 * thickness(storey, other);
+    let half = |other: &BoundarySegment| 0.5 * thickness(storey, other);
     let straight = runs.iter().filter(here).find(|o| o.along_x == run.along_x);
-    let crossing: Vec<&RoomBoundary> = runs
+    let crossing: Vec<&BoundarySegment> = runs
         .iter()
         .filter(here)
         .filter(|other| other.along_x != run.along_x)

@@ -3,7 +3,7 @@
 use super::rooms::GeneratedRoomKind;
 use crate::error::HousesError;
 use dwell_furniture::style::{STYLES, StyleSplit};
-use dwell_scene::Daytime;
+use dwell_scene::SkyConditions;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -113,7 +113,7 @@ impl Default for HouseSpec {
             furniture_density: 0.8,
             clutter: 0.6,
             doors: DoorStates::default(),
-            time_of_day: Daytime::default().hour_h,
+            time_of_day: SkyConditions::default().hour_h,
             split: AssetSplit::default(),
         }
     }

@@ -25,7 +25,7 @@ impl<'a> Buffers<'a> {
         at: &FileLocation,
         report: &mut LoadReport,
     ) -> Result<Self, HousesError> {
-        let read = |uri: &str| read_shared(uri, library, MAX_BUFFER_BYTES);
+        let read = |uri: &str| read_library_file(uri, library, MAX_BUFFER_BYTES);
         Self::read(json, blob, read, at, report)
     }
 
@@ -116,7 +116,7 @@ pub(super) fn read_uri(uri: &str, root: &DataRoot, max_bytes: u64) -> Result<Vec
 }
 
 /// The bytes of a file of a library, which must be those that its name says.
-pub(super) fn read_shared(
+pub(super) fn read_library_file(
     uri: &str,
     library: &DataRoot,
     max_bytes: u64,

@@ -17,7 +17,7 @@ pub(super) fn split_glb(bytes: &[u8]) -> Result<(Root, &[u8]), String> {
     if bytes.is_empty() {
         return Err("the file is empty; expected a GLB, or glTF 2.0 as JSON".to_owned());
     }
-    let (text, blob) = text_and_blob(bytes)?;
+    let (text, blob) = json_and_bin_chunks(bytes)?;
     if text.len() as u64 > MAX_TEXT_BYTES {
         return Err(format!(
             "{} bytes of JSON; {MAX_TEXT_BYTES} are read",
@@ -44,7 +44,7 @@ pub(super) fn split_glb(bytes: &[u8]) -> Result<(Root, &[u8]), String> {
 ///
 /// # Errors
 /// A sentence when the bytes begin as a GLB and are none.
-pub(super) fn text_and_blob(bytes: &[u8]) -> Result<(&[u8], &[u8]), String> {
+pub(super) fn json_and_bin_chunks(bytes: &[u8]) -> Result<(&[u8], &[u8]), String> {
     if bytes.starts_with(b"glTF") {
         chunks(bytes)
     } else {

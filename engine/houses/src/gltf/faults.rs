@@ -12,7 +12,7 @@ pub(super) fn error_sentence(error: &::gltf::Error, bytes: &[u8]) -> String {
     let ::gltf::Error::Validation(places) = error else {
         return error.to_string();
     };
-    let text = container::text_and_blob(bytes).map_or(&[][..], |(text, _)| text);
+    let text = container::json_and_bin_chunks(bytes).map_or(&[][..], |(text, _)| text);
     let tables: Value = serde_json::from_slice(text).unwrap_or_default();
     let told: Vec<String> = places
         .iter()

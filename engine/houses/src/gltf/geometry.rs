@@ -6,7 +6,7 @@ use ::gltf::json::{Index, Root};
 use dwell_scene::Texture;
 
 use super::accessor;
-use super::buffers::{Buffers, read_shared};
+use super::buffers::{Buffers, read_library_file};
 use crate::data_root::DataRoot;
 use crate::error::HousesError;
 use crate::import::decode;
@@ -72,7 +72,7 @@ impl<'a> ParsedGlb<'a> {
     pub(crate) fn texture(&self, image: usize, size: [u32; 2]) -> Result<Texture, String> {
         let image = self.json.images.get(image).ok_or("no such image")?;
         let bytes = if let Some(uri) = &image.uri {
-            let read = read_shared(uri, self.library, MAX_IMAGE_BYTES);
+            let read = read_library_file(uri, self.library, MAX_IMAGE_BYTES);
             Cow::Owned(read.map_err(|damage| damage.to_string())?)
         } else {
             let view = image

@@ -33,7 +33,7 @@ pub(super) struct LampExtras {
 }
 
 /// The light that a node carries, if it is of a kind that is read.
-pub(super) fn lamp(
+pub(super) fn light(
     json: &Root,
     node: &Node,
     world_from_node: Affine3A,

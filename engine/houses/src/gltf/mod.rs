@@ -16,7 +16,7 @@ mod write;
 
 pub(crate) use geometry::ParsedGlb;
 pub use write::write;
-pub(crate) use write::{MeshAccessors, Storage, encode};
+pub(crate) use write::{AssetStorage, MeshAccessors, encode};
 
 use std::path::Path;
 

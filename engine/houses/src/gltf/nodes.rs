@@ -195,7 +195,7 @@ pub(super) fn node_tree(
         if let (Some(object), Some(light)) = (object, known.light.clone()) {
             found.objects[object].lights.push(light);
         } else {
-            let lamp = lights::lamp(json, node, world_from_mesh, said, &node_at, report);
+            let lamp = lights::light(json, node, world_from_mesh, said, &node_at, report);
             found.lamps.extend(lamp);
         }
         found.sky = found.sky.or(known.sky);

@@ -247,7 +247,7 @@ pub(super) fn materials(
             metallic: Some(metallic),
             ..ImportedMaterial::plain(&name, substance)
         });
-        looks.refine(id, |material| {
+        looks.modify(id, |material| {
             // The colour of the file takes precedence over one that was rounded on the way.
             if trusted && said.is_some() {
                 material.base_color = [r, g, b].map(|c| c.clamp(0.0, 1.0));

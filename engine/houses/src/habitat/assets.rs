@@ -9,7 +9,7 @@ use dwell_scene::{Aabb, HouseData, MaterialId, Mesh, MeshId, TextureId};
 use super::dataset::ResolvedTemplate;
 use crate::data_root::{DataRoot, parent_folder};
 use crate::gltf;
-use crate::import::{ImportedScene, MeshPieces, UniqueNames, merge_meshes};
+use crate::import::{HullPointSets, ImportedScene, UniqueNames, merge_meshes};
 use crate::limits::MAX_BUFFER_BYTES;
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
@@ -35,8 +35,8 @@ pub(super) struct MergedAsset {
 pub(super) struct AssetCache {
     pieces: BTreeMap<String, Option<Arc<Vec<AssetMesh>>>>,
     wholes: BTreeMap<String, Option<MergedAsset>>,
-    shapes: BTreeMap<String, Option<Arc<MeshPieces>>>,
-    whole_shapes: BTreeMap<String, Arc<MeshPieces>>,
+    shapes: BTreeMap<String, Option<Arc<HullPointSets>>>,
+    whole_shapes: BTreeMap<String, Arc<HullPointSets>>,
     material_names: UniqueNames,
 }
 
@@ -130,8 +130,8 @@ impl AssetCache {
         path: &str,
         whole: &MergedAsset,
         data: &HouseData,
-    ) -> Arc<MeshPieces> {
-        let shape = || Arc::new(MeshPieces::from_mesh(&data.meshes[whole.mesh]));
+    ) -> Arc<HullPointSets> {
+        let shape = || Arc::new(HullPointSets::from_mesh(&data.meshes[whole.mesh]));
         let known = self.whole_shapes.entry(path.to_owned());
         known.or_insert_with(shape).clone()
     }
@@ -144,7 +144,7 @@ impl AssetCache {
         path: &str,
         threads: Threads,
         report: &mut LoadReport,
-    ) -> Option<Arc<MeshPieces>> {
+    ) -> Option<Arc<HullPointSets>> {
         if let Some(known) = self.shapes.get(path) {
             return known.clone();
         }
@@ -154,7 +154,7 @@ impl AssetCache {
                 for thing in scene.nodes {
                     shape.append(&thing.mesh.transformed(&thing.world_from_mesh), 0);
                 }
-                Some(Arc::new(MeshPieces::from_mesh(&shape)))
+                Some(Arc::new(HullPointSets::from_mesh(&shape)))
             }
             Err(reason) => {
                 let path = path.to_owned();

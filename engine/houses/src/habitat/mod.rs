@@ -19,7 +19,7 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use crate::error::HousesError;
-use crate::import::{UniqueNames, drop_rooms_without_floor, report_covered_rooms};
+use crate::import::{UniqueNames, drop_rooms_without_floor, report_contained_rooms};
 use crate::limits::MAX_NODES;
 use crate::report::{FileLocation, LoadReport};
 use crate::robot::Robot;
@@ -104,7 +104,7 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, LoadReport), Houses
     }
     drop_rooms_without_floor(&mut data, &semantic_at, &mut report);
     let house = House::new(data).map_err(HousesError::scene(&at))?;
-    report_covered_rooms(&house, &semantic_at, &mut report);
+    report_contained_rooms(&house, &semantic_at, &mut report);
     Ok((house, report))
 }
 

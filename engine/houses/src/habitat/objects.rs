@@ -11,7 +11,7 @@ use super::assets::AssetCache;
 use super::dataset::{ResolvedTemplate, TemplateKind};
 use super::file::{ObjectInstance, Template};
 use super::place;
-use crate::import::{CategoryRow, MeshPieces, category, category_of};
+use crate::import::{CategoryRow, HullPointSets, category, category_of};
 use crate::report::FileLocation;
 use crate::warning_kind::{UnmappedKind, WarningKind};
 
@@ -143,7 +143,7 @@ impl HabitatReader<'_> {
         found: &ResolvedTemplate,
         template: &Template,
         render: &str,
-    ) -> Option<std::sync::Arc<MeshPieces>> {
+    ) -> Option<std::sync::Arc<HullPointSets>> {
         if template.collision_asset.is_empty() {
             return None;
         }

@@ -347,7 +347,7 @@ impl ImportedObject {
             data.emitters.push(SoundEmitter {
                 loops: sound.loops,
                 start_s: sound.start_s,
-                ..SoundEmitter::steady(id, part(of), sound.position, sound.signal, sound.level_db)
+                ..SoundEmitter::looping(id, part(of), sound.position, sound.signal, sound.level_db)
             });
         }
         for light in object.lights {

@@ -5,7 +5,7 @@ use glam::Vec3;
 
 /// Connected triangles.
 #[derive(Debug, Clone)]
-pub(crate) struct Component {
+pub(crate) struct ConnectedComponent {
     /// Indices of its triangles, rising.
     pub(crate) triangles: Vec<u32>,
     /// The box around them, mesh space.
@@ -13,7 +13,7 @@ pub(crate) struct Component {
 }
 
 /// The connected pieces of `mesh`, ordered by their first triangle. Vertices at exactly the same place are one.
-pub(crate) fn components(mesh: &Mesh) -> Vec<Component> {
+pub(crate) fn components(mesh: &Mesh) -> Vec<ConnectedComponent> {
     let welded = weld(&mesh.positions);
     let mut parent: Vec<u32> = (0..mesh.positions.len() as u32).collect();
     for triangle in &mesh.triangles {
@@ -25,12 +25,12 @@ pub(crate) fn components(mesh: &Mesh) -> Vec<Component> {
     }
     // Several roots may have been joined after a triangle was seen, so the pieces are read in a second pass.
     let mut piece_of_root = vec![u32::MAX; parent.len()];
-    let mut pieces: Vec<Component> = Vec::new();
+    let mut pieces: Vec<ConnectedComponent> = Vec::new();
     for (k, triangle) in mesh.triangles.iter().enumerate() {
         let root = find(&mut parent, welded[triangle[0] as usize]) as usize;
         if piece_of_root[root] == u32::MAX {
             piece_of_root[root] = pieces.len() as u32;
-            pieces.push(Component {
+            pieces.push(ConnectedComponent {
                 triangles: Vec::new(),
                 bounds: Aabb::EMPTY,
             });

@@ -3,7 +3,7 @@
 use dwell_scene::{Aabb, Collider, Mesh};
 use glam::{Affine3A, Vec3};
 
-use super::components::{Component, components};
+use super::components::{ConnectedComponent, components};
 
 /// Largest number of convex pieces of one body.
 const MAX_PIECES: usize = 24;
@@ -12,17 +12,17 @@ const MIN_HALF_M: f32 = 0.0025;
 
 /// The vertices of a mesh's connected pieces, of which each gets a convex hull.
 #[derive(Debug)]
-pub(crate) struct MeshPieces {
+pub(crate) struct HullPointSets {
     /// Vertices of each piece, mesh space; the largest first.
     points: Vec<Vec<Vec3>>,
 }
 
-/// Convex pieces that cover `mesh`: one hull for each of its [`MeshPieces`].
+/// Convex pieces that cover `mesh`: one hull for each of its [`HullPointSets`].
 pub(crate) fn convex_pieces(mesh: &Mesh, part_from_mesh: &Affine3A) -> Vec<Collider> {
-    MeshPieces::from_mesh(mesh).hulls(part_from_mesh)
+    HullPointSets::from_mesh(mesh).hulls(part_from_mesh)
 }
 
-impl MeshPieces {
+impl HullPointSets {
     /// The connected pieces of `mesh`, at most 24; the smallest ones are joined to the piece whose box grows least.
     ///
     /// Models of furniture are built from boards and legs that do not touch, so this keeps the room under a table free.
@@ -67,7 +67,7 @@ impl MeshPieces {
     }
 }
 
-fn largest_components(mesh: &Mesh) -> Vec<Component> {
+fn largest_components(mesh: &Mesh) -> Vec<ConnectedComponent> {
     let mut pieces = components(mesh);
     pieces.sort_by(|a, b| diagonal(&b.bounds).total_cmp(&diagonal(&a.bounds)));
     let small = pieces.split_off(pieces.len().min(MAX_PIECES));

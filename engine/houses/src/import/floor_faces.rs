@@ -97,7 +97,7 @@ pub(crate) fn floor_faces<'a>(meshes: impl Iterator<Item = &'a Mesh>) -> Option<
 }
 
 /// The entry of a report on a floor of which no room can be made.
-pub(crate) fn floor_without_level_faces() -> WarningKind {
+pub(crate) fn no_level_floor_warning() -> WarningKind {
     WarningKind::Simplified {
         what: "this floor has no face that is level within 5 degrees; no room is made over it"
             .to_owned(),

@@ -111,7 +111,7 @@ impl MaterialTableBuilder {
     }
 
     /// Changes a material that was added.
-    pub(crate) fn refine(&mut self, id: MaterialId, change: impl FnOnce(&mut Material)) {
+    pub(crate) fn modify(&mut self, id: MaterialId, change: impl FnOnce(&mut Material)) {
         if let Some(material) = self.materials.get_mut(id) {
             change(material);
         }

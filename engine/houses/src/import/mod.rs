@@ -13,16 +13,16 @@ mod scene;
 mod textures;
 
 pub(crate) use annotated::{AnnotatedLight, AnnotatedObject, AnnotatedPart};
-pub(crate) use components::{Component, components, submesh};
-pub(crate) use convex_pieces::{MeshPieces, convex_pieces};
+pub(crate) use components::{ConnectedComponent, components, submesh};
+pub(crate) use convex_pieces::{HullPointSets, convex_pieces};
 pub(crate) use dwell_furniture::shapes::triangulate;
 pub(crate) use dwell_furniture::tables::{CategoryRow, category, room_kind, substance_of};
-pub(crate) use floor_faces::{FloorFaces, floor_faces, floor_without_level_faces};
+pub(crate) use floor_faces::{FloorFaces, floor_faces, no_level_floor_warning};
 pub(crate) use lamps::ImportedLamp;
 pub(crate) use materials::{ImportedMaterial, MaterialTableBuilder};
 pub(crate) use merge_meshes::merge_meshes;
 pub(crate) use names::UniqueNames;
-pub(crate) use rooms_check::{drop_rooms_without_floor, report_covered_rooms};
+pub(crate) use rooms_check::{drop_rooms_without_floor, report_contained_rooms};
 pub(crate) use scene::{
     ImportedScene, NamedRoom, NodeRole, SceneNode, category_of, room_over_floors, structure_kind,
 };

@@ -40,7 +40,7 @@ pub(crate) fn drop_rooms_without_floor(
 }
 
 /// Tells of rooms whose whole floor lies in another room, which is where all that stands on it is.
-pub(crate) fn report_covered_rooms(house: &House, at: &FileLocation, report: &mut LoadReport) {
+pub(crate) fn report_contained_rooms(house: &House, at: &FileLocation, report: &mut LoadReport) {
     for (id, room) in house.rooms.iter_ids() {
         if !house.points_in_room(id, POINTS).is_empty() || house.exclusive_area_m2(id) > 0.0 {
             continue;

@@ -15,9 +15,9 @@ use glam::{Affine3A, Vec2, Vec3};
 
 use super::CategoryRow;
 use super::annotated::{AnnotatedObject, ImportedObject};
-use super::floor_faces::{FloorFaces, floor_faces, floor_without_level_faces};
+use super::floor_faces::{FloorFaces, floor_faces, no_level_floor_warning};
 use super::lamps::{self, ImportedLamp};
-use super::rooms_check::report_covered_rooms;
+use super::rooms_check::report_contained_rooms;
 use super::{MaterialTableBuilder, UniqueNames, category, convex_pieces};
 use crate::error::HousesError;
 use crate::report::{FileLocation, LoadReport};
@@ -170,7 +170,7 @@ impl ImportedScene {
             return Err(HousesError::empty(at, report));
         }
         let house = House::new(builder.data).map_err(HousesError::scene(at))?;
-        report_covered_rooms(&house, at, report);
+        report_contained_rooms(&house, at, report);
         Ok(house)
     }
 }
@@ -265,7 +265,7 @@ pub(crate) fn room_over_floors(data: &mut HouseData, at: &FileLocation, report: 
     else {
         let floor = |piece: &&Structure| piece.kind == StructureKind::Floor;
         if let Some(piece) = data.structure.iter().find(floor) {
-            report.warn(at.field(&piece.name), floor_without_level_faces());
+            report.warn(at.field(&piece.name), no_level_floor_warning());
         }
         return;
     };

@@ -7,7 +7,7 @@ mod convert;
 mod file;
 mod unknown_names;
 
-use crate::data_root::{DataRoot, is_json_with};
+use crate::data_root::{DataRoot, is_json_containing};
 use crate::error::HousesError;
 use crate::json;
 use crate::limits::MAX_TEXT_BYTES;
@@ -24,7 +24,7 @@ const WORDS: [&[&str]; 2] = [
 
 /// Returns whether `path` is a measured room: a JSON file with materials and a shape, or with absorption.
 pub(crate) fn recognizes(path: &Path) -> bool {
-    is_json_with(path, &WORDS)
+    is_json_containing(path, &WORDS)
 }
 
 /// Opens a measured room. Z is up in the file, Y in the house: (x, y, z) becomes (x, z, -y).

@@ -17,7 +17,7 @@ use super::geoms::BodyGeom;
 use super::read::{MjcfSource, name_of, pose};
 use crate::error::HousesError;
 use crate::import::{
-    CategoryRow, FloorFaces, UniqueNames, category_of, floor_faces, floor_without_level_faces,
+    CategoryRow, FloorFaces, UniqueNames, category_of, floor_faces, no_level_floor_warning,
     room_kind, structure_kind, substance_of,
 };
 use crate::report::LoadReport;
@@ -261,7 +261,7 @@ impl MjcfHouseReader {
             let found = floor_faces(std::iter::once(&**mesh));
             let Some(FloorFaces { footprint, floor_y }) = found else {
                 let at = source.at.field(format_args!("worldbody.{}", piece.name));
-                report.warn(at, floor_without_level_faces());
+                report.warn(at, no_level_floor_warning());
                 continue;
             };
             let over = |other: &&Aabb| {

@@ -9,7 +9,7 @@ use super::file::{FORMAT, NativeFile, VERSION, sound_path};
 use super::{GEOMETRY, TABLES};
 use crate::atomic::write_folder;
 use crate::error::HousesError;
-use crate::gltf::{Storage, encode};
+use crate::gltf::{AssetStorage, encode};
 use crate::limits::MAX_TEXT_BYTES;
 
 /// Returns whether a house may be written to `path`: by its name it is what [`open`](super::open) takes.
@@ -30,7 +30,7 @@ fn check_name(path: &Path) -> Result<(), HousesError> {
 /// exceeds 4 GiB, when its tables exceed what is read again, or when something else stands at `path`; [`HousesError::Io`] when the system refuses.
 pub fn write(house: &House, path: &Path) -> Result<(), HousesError> {
     check_name(path)?;
-    write_as(house, path, Storage::Inside)
+    write_as(house, path, AssetStorage::Inside)
 }
 
 /// Writes a house as `root/house/NAME.dwell`; meshes of objects and images go into `root/object` and `root/texture`, where
@@ -44,11 +44,11 @@ pub fn write_into(house: &House, root: &Path, name: &str) -> Result<PathBuf, Hou
         let folder = root.join(folder);
         fs::create_dir_all(&folder).map_err(HousesError::io(&folder))?;
     }
-    write_as(house, &path, Storage::Shared)?;
+    write_as(house, &path, AssetStorage::Shared)?;
     Ok(path)
 }
 
-fn write_as(house: &House, path: &Path, storage: Storage) -> Result<(), HousesError> {
+fn write_as(house: &House, path: &Path, storage: AssetStorage) -> Result<(), HousesError> {
     let unwritable = |message: String| HousesError::NotRepresentable {
         path: path.to_owned(),
         message,

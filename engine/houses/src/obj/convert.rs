@@ -79,7 +79,7 @@ pub(crate) fn read_scene(
         } else {
             &run.object
         };
-        let run = (slots.of_run(run), run);
+        let run = (slots.slot_of_group(run), run);
         let place = *places.entry(thing).or_insert(things.len());
         match things.get_mut(place) {
             Some((_, runs)) => runs.push(run),

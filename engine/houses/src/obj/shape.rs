@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use dwell_scene::Mesh;
-use dwell_scene::interrupt::PollEvery;
+use dwell_scene::interrupt::CancelPoller;
 use glam::{Vec2, Vec3, Vec3Swizzles as _};
 
 use super::file::{FaceCorner, FaceGroup, MtlFile, NONE, ObjFile};
@@ -76,7 +76,7 @@ impl MaterialSlots {
     }
 
     /// The slot that a stretch of faces shows.
-    pub(crate) fn of_run(&self, run: &FaceGroup) -> u16 {
+    pub(crate) fn slot_of_group(&self, run: &FaceGroup) -> u16 {
         self.find(run.material.as_deref().unwrap_or(""))
             .unwrap_or(0)
     }
@@ -123,7 +123,7 @@ pub(crate) fn build_mesh(
     let mut degenerate = 0;
     let (mut points, mut ring) = (Vec::new(), Vec::new());
     let mut cutter = FaceTriangulator::default();
-    let mut poll = PollEvery::new(100_000);
+    let mut poll = CancelPoller::new(100_000);
     for (slot, face) in faces() {
         let face = obj.face(face);
         poll.count_many(face.len());
@@ -283,7 +283,7 @@ mod tests {
         let runs = obj
             .face_groups
             .iter()
-            .map(|run| (slots.of_run(run), run))
+            .map(|run| (slots.slot_of_group(run), run))
             .collect();
         let mesh = build_mesh(
             &ObjGroupSelection {
@@ -424,8 +424,8 @@ mod tests {
         );
         assert_eq!(
             (
-                slots.of_run(&obj.face_groups[0]),
-                slots.of_run(&obj.face_groups[1])
+                slots.slot_of_group(&obj.face_groups[0]),
+                slots.slot_of_group(&obj.face_groups[1])
             ),
             (1, 2)
         );

@@ -15,9 +15,9 @@ use dwell_scene::{Aabb, House, Room, RoomId};
 use glam::{DVec2, Quat, Vec2, Vec3};
 
 use crate::building::assembly::HouseAssembly;
-use crate::data_root::{DataRoot, is_json_with};
+use crate::data_root::{DataRoot, is_json_containing};
 use crate::error::HousesError;
-use crate::import::{drop_rooms_without_floor, report_covered_rooms};
+use crate::import::{drop_rooms_without_floor, report_contained_rooms};
 use crate::json;
 use crate::limits::{MAX_NODES, MAX_TEXT_BYTES};
 use crate::report::{FileLocation, LoadReport};
@@ -27,7 +27,7 @@ use sizes::AssetSizes;
 
 /// Returns whether `path` is a house of ProcTHOR: a JSON file that speaks of its parameters and of walls.
 pub(crate) fn recognizes(path: &Path) -> bool {
-    is_json_with(path, &[&["\"proceduralParameters\""], &["\"walls\""]])
+    is_json_containing(path, &[&["\"proceduralParameters\""], &["\"walls\""]])
 }
 
 /// Opens a house. Sizes of assets come from an `asset-database.json` beside it, or up to two folders above, where there is
@@ -96,7 +96,7 @@ fn convert(
     let mut data = reader.assembly.finish();
     drop_rooms_without_floor(&mut data, &at, &mut report);
     let house = House::new(data).map_err(HousesError::scene(&at))?;
-    report_covered_rooms(&house, &at, &mut report);
+    report_contained_rooms(&house, &at, &mut report);
     Ok((house, report))
 }
 

@@ -187,7 +187,7 @@ impl ParsedSuncgFiles {
     }
 
     /// The texture that an override names, with its path.
-    pub(super) fn override_texture(&self, name: &str) -> Option<&str> {
+    pub(super) fn override_texture_path(&self, name: &str) -> Option<&str> {
         let candidates = paths::texture_path_candidates(name)?;
         candidates
             .iter()

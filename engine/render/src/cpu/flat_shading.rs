@@ -146,7 +146,9 @@ impl ImageBand<'_> {
                 others |= same;
                 continue;
             }
-            let pose = renderer.triangle_table.pose(instance, self.posed());
+            let pose = renderer
+                .triangle_table
+                .pose(instance, self.scene_and_state());
             let image = renderer.textures.image(texture);
             let places = SimdLevel::best_available().run(TexelLocator {
                 seen,

@@ -210,7 +210,7 @@ impl CpuRenderer {
                 let eye = job.view.world_from_camera.position;
                 (
                     &lightings[k],
-                    lightings[k].exposure(self.house_light(), eye),
+                    lightings[k].exposure(self.static_lighting(), eye),
                 )
             });
             ImageBand::split(job, light, &mut bands);
@@ -237,7 +237,7 @@ impl CpuRenderer {
         job.frame.check(view, pixels)
     }
 
-    pub(crate) fn house_light(&self) -> &StaticLighting {
+    pub(crate) fn static_lighting(&self) -> &StaticLighting {
         self.light.get_or_init(|| {
             StaticLighting::new(&self.house, &self.shading_materials, &self.textures)
         })
@@ -248,7 +248,7 @@ impl CpuRenderer {
     pub(crate) fn cached_or_computed_lighting(&self, scene: &RayScene, state: &State) -> Lighting {
         let inputs = LightingInputs {
             house: &self.house,
-            fixed: self.house_light(),
+            fixed: self.static_lighting(),
             scene,
             state,
         };

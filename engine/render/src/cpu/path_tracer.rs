@@ -19,8 +19,8 @@ use super::shade::{
 };
 use super::tile::ImageBand;
 use crate::light::{
-    Exposure, IncidentLight, LightSource, Lighting, ShadingPoint, room_lookup_point, sky_luminance,
-    tone_map,
+    Exposure, IncidentLight, LightSource, Lighting, ShadingPoint, exposed_background_luminance,
+    room_lookup_point, tone_map,
 };
 use crate::material::ShadingMaterial;
 use dwell_scene::EntityId;
@@ -138,8 +138,8 @@ impl PathTracer<'_> {
         if path.bounces == 0 {
             return light;
         }
-        let fixed = self.renderer.house_light();
-        light + sky_luminance(ray.direction, Some((fixed, self.exposure))) * rest
+        let fixed = self.renderer.static_lighting();
+        light + exposed_background_luminance(ray.direction, Some((fixed, self.exposure))) * rest
     }
 
     /// Returns the radiance that a surface sends back along the ray that met it, and its opacity.
@@ -154,8 +154,14 @@ impl PathTracer<'_> {
         let position = renderer
             .triangle_table
             .table_index(sight.instance, sight.triangle);
-        let skin = renderer.surface_at_point(&self.band.rays, self.band.posed(), sight, position);
-        let (facing, smooth) = renderer.normals(&skin, sight, position, weights);
+        let skin = renderer.surface_at_point(
+            &self.band.rays,
+            self.band.scene_and_state(),
+            sight,
+            position,
+        );
+        let (facing, smooth) =
+            renderer.geometric_and_shading_normals(&skin, sight, position, weights);
         let off = sight.point + facing * SHADOW_RAY_OFFSET_M;
         if skin.material.mirror && path.mirrors > 0 {
             let seen = FacetAndGeometricNormals {
@@ -176,9 +182,10 @@ impl PathTracer<'_> {
             ),
             entity: sight.id,
         };
-        let fixed = renderer.house_light();
+        let fixed = renderer.static_lighting();
         if path.bounces == 0 {
-            let incoming: IncidentLight<2> = self.lighting.incoming(fixed, self.exposure, &site);
+            let incoming: IncidentLight<2> =
+                self.lighting.incident_light(fixed, self.exposure, &site);
             let light = incoming.total_arriving(|source| {
                 renderer.is_source_unoccluded(self.band.scene, self.lighting, source, (off, facing))
             });
@@ -198,7 +205,7 @@ impl PathTracer<'_> {
             });
         let mut shown = skin.color * sum;
         if path.mirrors > 0 && has_specular_reflection(skin.material) {
-            let facet = sampler.sample_microfacet(smooth, skin.material.roughness);
+            let facet = sampler.sample_microfacet_normal(smooth, skin.material.roughness);
             let share = reflectance(skin.material, skin.color, -sight.direction.dot(facet));
             let seen = FacetAndGeometricNormals { facet, facing };
             let light = self.reflected(sight, off, seen, path, sampler);
@@ -271,7 +278,7 @@ impl PathTracer<'_> {
         let (target, hidden) = match source {
             LightSource::None | LightSource::RoomWalls => return true,
             LightSource::Sun => {
-                let to_sun = sampler.uniform_cone(renderer.house_light().sun.0, SUN_RADIUS);
+                let to_sun = sampler.uniform_cone(renderer.static_lighting().sun.0, SUN_RADIUS);
                 return renderer.is_sky_visible(scene, off, to_sun);
             }
             LightSource::Sky => {
@@ -280,7 +287,7 @@ impl PathTracer<'_> {
                 return direction.y < 0.0 || renderer.is_sky_visible(scene, off, direction);
             }
             LightSource::Window(position) => {
-                let window = &renderer.house_light().windows[position as usize];
+                let window = &renderer.static_lighting().windows[position as usize];
                 let (x, y) = sampler.uniform_pair();
                 let [across, along] = window.half_edges;
                 let on_pane = window.center + across * (2.0 * x - 1.0) + along * (2.0 * y - 1.0);
@@ -289,7 +296,9 @@ impl PathTracer<'_> {
             LightSource::LampCluster(position) => {
                 let caster = self.lighting.lamp_cluster(position);
                 let (pick, within) = (sampler.uniform_pair(), sampler.uniform_ball());
-                let place = self.lighting.point_in_cluster(caster, off, pick, within);
+                let place = self
+                    .lighting
+                    .sample_point_in_cluster(caster, off, pick, within);
                 (place, caster.entity)
             }
         };

@@ -67,7 +67,7 @@ impl PixelSampler {
     }
 
     /// The normal of a facet of a rough surface: tan² of its slope is a² u / (1 - u), with a the square of the roughness.
-    pub(super) fn sample_microfacet(&mut self, normal: Vec3, roughness: f32) -> Vec3 {
+    pub(super) fn sample_microfacet_normal(&mut self, normal: Vec3, roughness: f32) -> Vec3 {
         let (u, v) = self.uniform_pair();
         let slope = roughness * roughness * (u / (1.0 - u).max(1e-6)).sqrt();
         let (across, along) = normal.any_orthonormal_pair();
@@ -126,7 +126,7 @@ mod tests {
         assert!((square.x - 0.6).abs() < 0.005, "{square}");
         // Half of all facets are steeper than a.
         let steep = all(|sampler| {
-            let facet = sampler.sample_microfacet(normal, 0.5);
+            let facet = sampler.sample_microfacet_normal(normal, 0.5);
             let cosine = facet.dot(normal);
             let tangent = (1.0 / (cosine * cosine) - 1.0).max(0.0).sqrt();
             Vec3::splat(f32::from(u8::from(tangent > 0.25)))

@@ -6,7 +6,9 @@ use super::camera_rays::{CameraRayPacket, LANES, PACKET_COLUMNS, PrimaryHit, VIS
 use super::flat_shading::set_bit_positions;
 use super::tile::ImageBand;
 use crate::color::SrgbTables;
-use crate::light::{IncidentLight, ShadingPoint, room_lookup_point, sky_luminance, tone_map};
+use crate::light::{
+    IncidentLight, ShadingPoint, exposed_background_luminance, room_lookup_point, tone_map,
+};
 use crate::material::ShadingMaterial;
 use crate::texture_filter::{MIN_FOOTPRINT_COSINE, TextureFootprint};
 use dwell_scene::bvh::Ray;
@@ -220,7 +222,7 @@ impl CpuRenderer {
 
     /// Of the flat triangle and, interpolated between its corners, of the surface that it stands for, both towards the viewer.
     #[inline]
-    pub(super) fn normals(
+    pub(super) fn geometric_and_shading_normals(
         &self,
         skin: &ShadedSurface<'_>,
         sight: &PrimaryHit,
@@ -275,7 +277,7 @@ impl ImageBand<'_> {
         }
         for one in pending {
             let (lane, light, opacity) = (one.lane, one.incoming.light, one.opacity);
-            palette.bytes[lane] = self.encode(light);
+            palette.bytes[lane] = self.tone_mapped_srgb(light);
             if opacity < OPAQUE_THRESHOLD {
                 palette.open.push(TransmittedPixel {
                     lane,
@@ -303,7 +305,7 @@ impl ImageBand<'_> {
             if direction == Vec3::ZERO {
                 return Ok([0; 3]);
             }
-            return Ok(self.encode(self.sky(renderer, direction)));
+            return Ok(self.tone_mapped_srgb(self.sky(renderer, direction)));
         };
         let position = renderer
             .triangle_table
@@ -312,7 +314,7 @@ impl ImageBand<'_> {
             packet.barycentric_weights(self.scene, lane)
         });
         if self.light.is_none() && sent.opacity >= OPAQUE_THRESHOLD {
-            return Ok(self.encode(sent.incoming.light));
+            return Ok(self.tone_mapped_srgb(sent.incoming.light));
         }
         Err(UnshadowedPixel {
             lane,
@@ -343,8 +345,9 @@ impl ImageBand<'_> {
             } in open.all()
             {
                 let Some(sight) = packet.closest_hit(lane) else {
-                    bytes[lane] =
-                        self.encode(light + self.sky(renderer, packet.direction(lane)) * rest);
+                    bytes[lane] = self.tone_mapped_srgb(
+                        light + self.sky(renderer, packet.direction(lane)) * rest,
+                    );
                     continue;
                 };
                 let position = renderer
@@ -355,7 +358,7 @@ impl ImageBand<'_> {
                 });
                 let (more, opacity) = self.shadowed_radiance(renderer, &sent);
                 if opacity >= OPAQUE_THRESHOLD || layer == MAX_TRANSPARENT_LAYERS {
-                    bytes[lane] = self.encode(light + more * rest);
+                    bytes[lane] = self.tone_mapped_srgb(light + more * rest);
                     continue;
                 }
                 next.push(TransmittedPixel {
@@ -376,12 +379,12 @@ impl ImageBand<'_> {
     fn sky(&self, renderer: &CpuRenderer, direction: Vec3) -> Vec3 {
         let light = self
             .light
-            .map(|(_, exposure)| (renderer.house_light(), exposure));
-        sky_luminance(direction, light)
+            .map(|(_, exposure)| (renderer.static_lighting(), exposure));
+        exposed_background_luminance(direction, light)
     }
 
     #[inline]
-    pub(super) fn encode(&self, light: Vec3) -> [u8; 3] {
+    pub(super) fn tone_mapped_srgb(&self, light: Vec3) -> [u8; 3] {
         let shown = if self.light.is_some() {
             tone_map(light)
         } else {
@@ -412,7 +415,7 @@ impl ImageBand<'_> {
         mirrors: u32,
         weights: impl FnOnce() -> (f32, f32),
     ) -> OutgoingLight {
-        let skin = renderer.surface_at_point(&self.rays, self.posed(), sight, position);
+        let skin = renderer.surface_at_point(&self.rays, self.scene_and_state(), sight, position);
         let &PrimaryHit {
             point, direction, ..
         } = sight;
@@ -424,14 +427,15 @@ impl ImageBand<'_> {
             let light = self.reflected(renderer, sight, facing, mirrors - 1);
             return OutgoingLight::plain(skin.color * light, skin.opacity);
         }
-        let (facing, smooth) = renderer.normals(&skin, sight, position, weights());
+        let (facing, smooth) =
+            renderer.geometric_and_shading_normals(&skin, sight, position, weights());
         let site = ShadingPoint {
             point,
             normal: smooth,
             room_lookup_point: room_lookup_point(point, facing, direction),
             entity: sight.id,
         };
-        let incoming = lighting.incoming(renderer.house_light(), *exposure, &site);
+        let incoming = lighting.incident_light(renderer.static_lighting(), *exposure, &site);
         let mut incoming = incoming.reflected_by(skin.color);
         incoming.light += self.emitted_light(renderer, skin.material.emission, sight.id);
         OutgoingLight {

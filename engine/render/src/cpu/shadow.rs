@@ -39,7 +39,7 @@ impl CpuRenderer {
 
     /// Returns whether the middle of the sun shines on a point.
     pub(super) fn is_sun_visible(&self, scene: SceneBvh<'_>, point: Vec3) -> bool {
-        self.is_sky_visible(scene, point, self.house_light().sun.0)
+        self.is_sky_visible(scene, point, self.static_lighting().sun.0)
     }
 
     /// Returns whether light comes to a point from far away. `direction`: unit length, towards it.

@@ -8,7 +8,7 @@ use crate::frame::{FrameMut, PreviousPoses};
 use crate::light::{Exposure, Lighting};
 use dwell_scene::State;
 use dwell_scene::bvh::SceneBvh;
-use dwell_scene::interrupt::PollEvery;
+use dwell_scene::interrupt::CancelPoller;
 use dwell_scene::rays::RayScene;
 use glam::Vec3;
 
@@ -63,7 +63,7 @@ impl<'a> ImageBand<'a> {
     }
 
     /// What says how things stand: scene and state.
-    pub(super) fn posed(&self) -> (&'a RayScene, &'a State) {
+    pub(super) fn scene_and_state(&self) -> (&'a RayScene, &'a State) {
         (self.all, self.state)
     }
 
@@ -72,14 +72,14 @@ impl<'a> ImageBand<'a> {
         let (mut packet, mut palette) = (CameraRayPacket::new(), ShadeScratch::new());
         let end = (self.size.0, self.first_row + self.rows);
         // All light of a packet takes milliseconds.
-        let mut pace = PollEvery::new(if self.rays.is_path_traced() {
+        let mut pace = CancelPoller::new(if self.rays.is_path_traced() {
             1
         } else {
             PACKETS_PER_CHECK
         });
         for top in (0..self.rows).step_by(PACKET_ROWS) {
             for left in (0..self.size.0).step_by(PACKET_COLUMNS) {
-                pace.turn();
+                pace.count_one();
                 let corner = (left, self.first_row + top);
                 self.rays.cast(self.scene, corner, end, &mut packet);
                 self.write(renderer, &mut packet, &mut palette, (left, top));
@@ -170,7 +170,7 @@ impl<'a> ImageBand<'a> {
         let sight = packet.closest_hit(lane);
         let skin = sight
             .as_ref()
-            .map(|sight| renderer.surface_at_hit(&self.rays, self.posed(), sight));
+            .map(|sight| renderer.surface_at_hit(&self.rays, self.scene_and_state(), sight));
         let put = |buffer: &mut Option<&mut [f32]>, value: Vec3| {
             if let Some(buffer) = buffer {
                 buffer[pixel * 3..pixel * 3 + 3].copy_from_slice(&value.to_array());
@@ -185,7 +185,7 @@ impl<'a> ImageBand<'a> {
         };
         put(&mut self.frame.normals, normal);
         put(&mut self.frame.albedo, albedo);
-        let posed = self.posed();
+        let posed = self.scene_and_state();
         let Some(buffer) = &mut self.frame.flow else {
             return;
         };

@@ -14,7 +14,7 @@ static NOTHING: LazyLock<TriangleBvh> = LazyLock::new(TriangleBvh::default);
 impl CpuRenderer {
     /// Returns the number of pixels of a view that would show a thing if nothing else were there: those whose middle's ray meets it within
     /// the camera's range. 0 for what is neither an object nor an agent.
-    pub fn unoccluded_pixels(
+    pub fn unoccluded_pixel_count(
         &self,
         scene: &RayScene,
         state: &State,

@@ -189,7 +189,7 @@ impl PackedBatch {
                 let shown = match &light {
                     Some((light, first)) if is_lit(job) => {
                         let eye = job.view.world_from_camera.position;
-                        let exposure = light.exposure(cpu.house_light(), eye);
+                        let exposure = light.exposure(cpu.static_lighting(), eye);
                         [1, *first, exposure.white_per_lx().to_bits(), 0]
                     }
                     _ => [0; 4],

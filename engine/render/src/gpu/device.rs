@@ -245,7 +245,7 @@ impl Gpu {
     }
 
     /// The program that draws; made at first use.
-    pub(super) fn raster(&self) -> &wgpu::RenderPipeline {
+    pub(super) fn raster_pipeline(&self) -> &wgpu::RenderPipeline {
         self.raster
             .get_or_init(|| raster::pipeline(&self.device, &self.layouts))
     }

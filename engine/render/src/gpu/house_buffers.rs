@@ -140,7 +140,7 @@ impl HouseBuffers {
         tables.0[3] = point(fixed.bounds.min, 0);
         tables.0[4] = point(fixed.bounds.max, 0);
         let light = tables.0.len();
-        tables.add(cpu.house_light().to_rows(light));
+        tables.add(cpu.static_lighting().to_rows(light));
         tables.0[2][1] = light as u32;
         let triangles = cpu.triangle_table.to_rows();
         let name = &house.name;

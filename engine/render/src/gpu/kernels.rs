@@ -112,7 +112,7 @@ impl Kernels {
     }
 
     /// Lit colour.
-    pub(super) fn lit(
+    pub(super) fn lit_kernel(
         &self,
         device: &wgpu::Device,
         layouts: &BindGroupLayouts,

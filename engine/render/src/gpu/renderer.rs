@@ -247,7 +247,7 @@ impl GpuRenderer {
         let atlas = slot.atlas.as_ref().filter(|_| is_drawn);
         if let (Some(atlas), Some(rows)) = (atlas, &slot.rows_group) {
             let mut pass = atlas.pass(&mut encoder);
-            pass.set_pipeline(gpu.raster());
+            pass.set_pipeline(gpu.raster_pipeline());
             pass.set_bind_group(0, &self.house.group, &[]);
             pass.set_bind_group(1, rows, &[]);
             slot.batch.draw_batch.draw(&mut pass);
@@ -271,7 +271,7 @@ impl GpuRenderer {
                 (slot.batch.has_flat_color, &kernels.flat_color),
             ];
             let lit = slot.batch.has_lit_color.then(|| {
-                let kernel = kernels.lit(&gpu.device, &gpu.layouts);
+                let kernel = kernels.lit_kernel(&gpu.device, &gpu.layouts);
                 (true, kernel)
             });
             for (_, kernel) in steps.into_iter().chain(lit).filter(|(wanted, _)| *wanted) {

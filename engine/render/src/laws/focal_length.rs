@@ -40,7 +40,7 @@ fn apply(values: LawValues<'_>, camera: Camera) -> Camera {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Optics;
+    use super::super::CameraLaws;
     use super::super::testing::{camera, law};
     use dwell_scene::AgentId;
     use glam::{Vec2, Vec3};
@@ -49,7 +49,10 @@ mod tests {
     #[test]
     fn points_move_outwards_by_the_part_of_their_radius() {
         let laws = [law("focal_length_error", &[("relative_error", 0.02)])];
-        let (stated, real) = (camera(), Optics::of(&laws, AgentId(0)).camera(camera()));
+        let (stated, real) = (
+            camera(),
+            CameraLaws::of(&laws, AgentId(0)).apply_to_camera(camera()),
+        );
         let middle = Vec2::new(24.0, 16.0);
         for point in [Vec3::new(0.3, 0.2, -1.0), Vec3::new(-2.0, 0.7, -3.0)] {
             let [before, after] = [stated, real].map(|camera| camera.project(point).unwrap().0);

@@ -98,7 +98,7 @@ fn apply(values: LawValues<'_>, scan: &DepthContext<'_>, key: RandomKey, image: 
 
 #[cfg(test)]
 mod tests {
-    use super::super::Optics;
+    use super::super::CameraLaws;
     use super::super::testing::{law, moments};
     use super::*;
     use crate::camera::Camera;
@@ -112,9 +112,9 @@ mod tests {
     fn read(spec: LawSpec, seed: u64, image: &[f32], normal: Vec3) -> Vec<f32> {
         let normals: Vec<f32> = image.iter().flat_map(|_| normal.to_array()).collect();
         let (laws, mut read) = ([spec], image.to_vec());
-        let optics = Optics::of(&laws, AgentId(0));
+        let optics = CameraLaws::of(&laws, AgentId(0));
         assert!(optics.needs_normals());
-        optics.depth(&camera(), &normals, RandomKey::root(seed), &mut read);
+        optics.apply_to_depth(&camera(), &normals, RandomKey::root(seed), &mut read);
         read
     }
 

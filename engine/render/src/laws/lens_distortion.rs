@@ -77,7 +77,7 @@ fn apply(values: LawValues<'_>, camera: Camera) -> Camera {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Optics;
+    use super::super::CameraLaws;
     use super::super::testing::{camera, law};
     use dwell_scene::AgentId;
     use glam::Vec3;
@@ -87,7 +87,7 @@ mod tests {
     fn the_first_radial_term_moves_points_by_the_cube_of_their_radius() {
         let one = law("lens_distortion", &[("k1", -0.1)]);
         for (laws, k1) in [(vec![one.clone()], -0.1), (vec![one.clone(), one], -0.2)] {
-            let real = Optics::of(&laws, AgentId(0)).camera(camera());
+            let real = CameraLaws::of(&laws, AgentId(0)).apply_to_camera(camera());
             for r in [0.1_f32, 0.2, 0.4, 0.8] {
                 let (image, _) = real.project(Vec3::new(2.0 * r, 0.0, -2.0)).unwrap();
                 let expected = 24.0 * (r + k1 * r * r * r);

@@ -120,18 +120,18 @@ pub fn check(laws: &[LawSpec], agents: usize) -> Result<(), RenderError> {
 }
 
 /// The laws that act on one agent's cameras.
-pub struct Optics<'a> {
+pub struct CameraLaws<'a> {
     laws: Vec<ActiveLaw<'a, RenderStage>>,
 }
 
-impl std::fmt::Debug for Optics<'_> {
+impl std::fmt::Debug for CameraLaws<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let specs = self.laws.iter().map(|law| law.values.spec);
         f.debug_list().entries(specs).finish()
     }
 }
 
-impl<'a> Optics<'a> {
+impl<'a> CameraLaws<'a> {
     /// Those of `laws` that act on the cameras of `agent`.
     pub fn of(laws: &'a [LawSpec], agent: AgentId) -> Self {
         let acting = LAWS.active(laws);
@@ -149,7 +149,7 @@ impl<'a> Optics<'a> {
 
     /// The real camera, from the ideal one.
     #[must_use]
-    pub fn camera(&self, mut camera: Camera) -> Camera {
+    pub fn apply_to_camera(&self, mut camera: Camera) -> Camera {
         for law in &self.laws {
             if let RenderStage::Lens(change) = law.effect {
                 camera = change(law.values, camera);
@@ -169,7 +169,7 @@ impl<'a> Optics<'a> {
         shutter
     }
 
-    /// Returns whether [`Self::depth`] needs normals.
+    /// Returns whether [`Self::apply_to_depth`] needs normals.
     pub fn needs_normals(&self) -> bool {
         let mut laws = self.laws.iter();
         laws.any(|law| matches!(law.effect, RenderStage::DepthByNormals(_)))
@@ -181,7 +181,13 @@ impl<'a> Optics<'a> {
     ///
     /// # Determinism
     /// Equal keys, equal bits.
-    pub fn depth(&self, camera: &Camera, normals: &[f32], key: RandomKey, image: &mut [f32]) {
+    pub fn apply_to_depth(
+        &self,
+        camera: &Camera,
+        normals: &[f32],
+        key: RandomKey,
+        image: &mut [f32],
+    ) {
         let scan = DepthContext { camera, normals };
         if image.len() != camera.pixels() {
             return;
@@ -212,7 +218,7 @@ impl<'a> Optics<'a> {
     ///
     /// # Determinism
     /// Equal keys, equal bits.
-    pub fn color(&self, camera: &Camera, key: RandomKey, image: &mut [u8]) {
+    pub fn apply_to_color(&self, camera: &Camera, key: RandomKey, image: &mut [u8]) {
         let is_color =
             |law: &ActiveLaw<'_, RenderStage>| matches!(law.effect, RenderStage::Color(_));
         if !self.laws.iter().any(is_color) || image.len() != 3 * camera.pixels() {
@@ -273,11 +279,11 @@ mod tests {
             let none = [info.spec(&[])];
             none[0].check(info).unwrap();
             for laws in [&none[..], &[]] {
-                let optics = Optics::of(laws, AgentId(0));
+                let optics = CameraLaws::of(laws, AgentId(0));
                 let (mut z, mut rgb) = (depth.clone(), color.clone());
-                optics.depth(&camera, &normals, RandomKey::root(1), &mut z);
-                optics.color(&camera, RandomKey::root(1), &mut rgb);
-                assert!(z == depth && rgb == color && optics.camera(camera) == camera);
+                optics.apply_to_depth(&camera, &normals, RandomKey::root(1), &mut z);
+                optics.apply_to_color(&camera, RandomKey::root(1), &mut rgb);
+                assert!(z == depth && rgb == color && optics.apply_to_camera(camera) == camera);
                 assert!(optics.shutter().is_global_instant() && !optics.needs_normals());
             }
         }
@@ -291,7 +297,12 @@ mod tests {
         let depth = |agent: u32| {
             let mut image = vec![1.0; camera.pixels()];
             let laws = [spec.clone()];
-            Optics::of(&laws, AgentId(agent)).depth(&camera, &[], RandomKey::root(0), &mut image);
+            CameraLaws::of(&laws, AgentId(agent)).apply_to_depth(
+                &camera,
+                &[],
+                RandomKey::root(0),
+                &mut image,
+            );
             image[0]
         };
         assert_eq!((depth(0), depth(1), depth(2)), (1.0, 1.5, 1.0));

@@ -42,7 +42,7 @@ fn apply(values: LawValues<'_>, camera: Camera) -> Camera {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Optics;
+    use super::super::CameraLaws;
     use super::super::testing::{camera, law};
     use dwell_scene::AgentId;
     use glam::{Vec2, Vec3};
@@ -54,7 +54,10 @@ mod tests {
             "principal_point_error",
             &[("right_px", 3.5), ("down_px", -2.0)],
         )];
-        let (stated, real) = (camera(), Optics::of(&laws, AgentId(0)).camera(camera()));
+        let (stated, real) = (
+            camera(),
+            CameraLaws::of(&laws, AgentId(0)).apply_to_camera(camera()),
+        );
         for point in [Vec3::new(0.3, 0.2, -1.0), Vec3::new(-2.0, 0.7, -3.0)] {
             let [before, after] = [stated, real].map(|camera| camera.project(point).unwrap().0);
             assert!((after - before - Vec2::new(3.5, -2.0)).length() < 1e-4);

@@ -1,6 +1,6 @@
 //! Helpers for tests of laws.
 
-use super::Optics;
+use super::CameraLaws;
 use crate::camera::Camera;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, LawSpec};
@@ -16,7 +16,7 @@ pub(super) fn law(id: &str, params: &[(&str, f64)]) -> LawSpec {
 /// Depths under a law that needs no normals.
 pub(super) fn read_depth(spec: &LawSpec, camera: &Camera, seed: u64, image: &[f32]) -> Vec<f32> {
     let mut read = image.to_vec();
-    Optics::of(std::slice::from_ref(spec), AgentId(0)).depth(
+    CameraLaws::of(std::slice::from_ref(spec), AgentId(0)).apply_to_depth(
         camera,
         &[],
         RandomKey::root(seed),
@@ -28,7 +28,7 @@ pub(super) fn read_depth(spec: &LawSpec, camera: &Camera, seed: u64, image: &[f3
 /// Colours under a law.
 pub(super) fn read_color(spec: &LawSpec, camera: &Camera, seed: u64, image: &[u8]) -> Vec<u8> {
     let mut read = image.to_vec();
-    Optics::of(std::slice::from_ref(spec), AgentId(0)).color(
+    CameraLaws::of(std::slice::from_ref(spec), AgentId(0)).apply_to_color(
         camera,
         RandomKey::root(seed),
         &mut read,

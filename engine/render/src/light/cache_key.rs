@@ -32,7 +32,7 @@ impl LightingInputs<'_> {
             let numbers = numbers.chain(pose.rotation.to_array());
             numbers.for_each(|number| tell(number.to_bits()));
         }
-        let doors = self.fixed.openness(self.house, self.state);
+        let doors = self.fixed.passage_openness(self.house, self.state);
         doors.for_each(|open| tell(open.to_bits()));
     }
 
@@ -95,7 +95,7 @@ mod tests {
         };
         let inputs = LightingInputs {
             house: cpu.house(),
-            fixed: cpu.house_light(),
+            fixed: cpu.static_lighting(),
             scene,
             state,
         };

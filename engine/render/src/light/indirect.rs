@@ -114,7 +114,11 @@ impl StaticLighting {
     }
 
     /// Returns the openness of each passage between rooms, 0 to 1.
-    pub(super) fn openness(&self, house: &House, state: &State) -> impl Iterator<Item = f32> {
+    pub(super) fn passage_openness(
+        &self,
+        house: &House,
+        state: &State,
+    ) -> impl Iterator<Item = f32> {
         let passages = self.passages.iter();
         passages.map(|passage| state.openness(house, passage.door).unwrap_or(1.0))
     }
@@ -154,7 +158,7 @@ impl StaticLighting {
         let areas: Vec<f32> = self
             .passages
             .iter()
-            .zip(self.openness(house, state))
+            .zip(self.passage_openness(house, state))
             .map(|(passage, open)| passage.area_m2 * (CLOSED_DOOR + (1.0 - CLOSED_DOOR) * open))
             .collect();
         let all = exchange_light(

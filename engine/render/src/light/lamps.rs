@@ -95,7 +95,7 @@ pub(crate) fn add_lamps(
             cone,
             attenuation,
             entity: house.entity_of_object(light.object).0,
-            room: grid.room(position),
+            room: grid.room_at(position),
             cluster: super::lamp_clusters::NONE,
             flux_lm: flux_lm * share,
         }

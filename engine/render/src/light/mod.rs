@@ -122,7 +122,7 @@ impl Lighting {
         now.clear();
         let flux = self.flux_lm.iter().flat_map(Vec3::to_array);
         let numbers = flux.chain(self.sunlit.iter().copied());
-        let numbers = numbers.chain(fixed.openness(house, state));
+        let numbers = numbers.chain(fixed.passage_openness(house, state));
         now.extend(numbers.map(f32::to_bits));
         if now == last {
             return;
@@ -140,7 +140,7 @@ impl Lighting {
     /// Returns the exposure of a camera at `eye`: by the mean light of its room, not quite to the full, so that dim rooms look
     /// dimmer than bright ones.
     pub(crate) fn exposure(&self, fixed: &StaticLighting, eye: Vec3) -> Exposure {
-        let mean = if let Some(room) = fixed.grid.room(eye) {
+        let mean = if let Some(room) = fixed.grid.room_at(eye) {
             self.rooms[room].mean
         } else {
             // From outside or from above: the middle one of all rooms.
@@ -160,7 +160,7 @@ impl Lighting {
 
     /// A point of a shadow caster from which light comes to `point`: in one of its lamps, as likely as that one's flux, on the
     /// side that the point sees. `pick`: which lamp and where along it, from 0 up to 1 each; `within`: in a ball of radius 1.
-    pub(crate) fn point_in_cluster(
+    pub(crate) fn sample_point_in_cluster(
         &self,
         caster: &LampCluster,
         point: Vec3,
@@ -187,7 +187,7 @@ impl Lighting {
 
     /// Returns the light on a surface of reflectance 1, for red, green and blue: of its strongest sources apart, before shadows.
     #[inline]
-    pub(crate) fn incoming<const N: usize>(
+    pub(crate) fn incident_light<const N: usize>(
         &self,
         fixed: &StaticLighting,
         exposure: Exposure,
@@ -210,7 +210,7 @@ impl Lighting {
         mut tell: impl FnMut(LightSource, Vec3),
     ) {
         let &ShadingPoint { point, normal, .. } = site;
-        let room = fixed.grid.room(site.room_lookup_point);
+        let room = fixed.grid.room_at(site.room_lookup_point);
         let Some(position) = room else {
             let Some(air) = &fixed.outdoor else {
                 tell(LightSource::Sky, default_outdoor_radiance(normal));
@@ -364,7 +364,10 @@ fn default_outdoor_radiance(normal: Vec3) -> Vec3 {
 }
 
 /// Returns the radiance of the background, in units of display white, along a unit direction. `light`: `None` on a flat picture.
-pub(crate) fn sky_luminance(direction: Vec3, light: Option<(&StaticLighting, Exposure)>) -> Vec3 {
+pub(crate) fn exposed_background_luminance(
+    direction: Vec3,
+    light: Option<(&StaticLighting, Exposure)>,
+) -> Vec3 {
     match light {
         None => plain_sky(direction),
         Some((fixed, exposure)) => match &fixed.outdoor {

@@ -58,8 +58,8 @@ pub(crate) fn openings(
         };
         let normal = thin.normalize_or(Vec3::X);
         let sides = [
-            grid.room(center + thin + normal * STEP_M),
-            grid.room(center - thin - normal * STEP_M),
+            grid.room_at(center + thin + normal * STEP_M),
+            grid.room_at(center - thin - normal * STEP_M),
         ];
         // Glass doors are windows, too, where there is a sky to be seen.
         let lets_in = is("window") || (house.sky.is_some() && is_glazed(house, id));

@@ -112,7 +112,7 @@ impl OutdoorLight {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use dwell_scene::{Daytime, Weather};
+    use dwell_scene::{SkyConditions, Weather};
 
     /// Against the sum of luminance times cosine over the sky.
     #[test]
@@ -123,10 +123,10 @@ mod tests {
             (18.0, Weather::CLEAR_DEFAULT),
             (12.0, Weather::Overcast),
         ] {
-            let sky = Sky::at(&Daytime {
+            let sky = Sky::at(&SkyConditions {
                 hour_h,
                 weather,
-                ..Daytime::default()
+                ..SkyConditions::default()
             })
             .unwrap();
             let air = OutdoorLight::new(&sky);

@@ -143,7 +143,7 @@ impl RoomGrid {
 
     /// The position of the room that holds `point`, walls around it included to half their thickness.
     #[inline]
-    pub(crate) fn room(&self, point: Vec3) -> Option<usize> {
+    pub(crate) fn room_at(&self, point: Vec3) -> Option<usize> {
         let place = (Vec2::new(point.x, point.z) - self.corner) * self.cells_per_m;
         if !(place.x >= 0.0 && place.y >= 0.0) {
             return None;
@@ -186,7 +186,7 @@ mod tests {
             Vec3::new(3.9, 2.9, 4.9),
             Vec3::new(-0.05, 1.0, 2.0),
         ] {
-            assert_eq!(grid.room(inside), Some(0), "{inside}");
+            assert_eq!(grid.room_at(inside), Some(0), "{inside}");
         }
         let nowhere = Vec3::new(f32::NAN, 1.0, 1.0);
         for outside in [
@@ -195,13 +195,13 @@ mod tests {
             Vec3::new(1e30, 1.0, 0.0),
             nowhere,
         ] {
-            assert_eq!(grid.room(outside), None, "{outside}");
+            assert_eq!(grid.room_at(outside), None, "{outside}");
         }
     }
 
     #[test]
     fn a_house_without_rooms_is_all_outside() {
         let house = House::new(dwell_scene::HouseData::default()).unwrap();
-        assert_eq!(RoomGrid::new(&house).room(Vec3::ZERO), None);
+        assert_eq!(RoomGrid::new(&house).room_at(Vec3::ZERO), None);
     }
 }

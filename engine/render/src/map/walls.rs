@@ -1,7 +1,7 @@
 //! Walls on maps: a camera that starts inside a wall sees nothing of it.
 
 use super::StoreyMap;
-use dwell_scene::interrupt::PollEvery;
+use dwell_scene::interrupt::CancelPoller;
 use dwell_scene::{House, Mesh, StructureKind};
 use glam::Vec2;
 
@@ -67,7 +67,7 @@ impl StoreyMap {
                 pixel.copy_from_slice(&SRGB);
             }
         };
-        let mut pace = PollEvery::new(PIXELS_PER_CHECK);
+        let mut pace = CancelPoller::new(PIXELS_PER_CHECK);
         // Each line in its own box: walls of scanned houses have thousands.
         for [a, b] in lines {
             let (low, high) = (a.min(*b) - half_m, a.max(*b) + half_m);

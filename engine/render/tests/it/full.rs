@@ -11,7 +11,7 @@ use common::{Builder, World, look};
 use dwell_render::{Camera, Frame, ImageChannels, Preset, RenderJob, View};
 use dwell_scene::parallel::Threads;
 use dwell_scene::units::linear_from_srgb;
-use dwell_scene::{Daytime, House, Light, LightShape, Mesh, Pose, ShoeboxMaterials, Sky};
+use dwell_scene::{House, Light, LightShape, Mesh, Pose, ShoeboxMaterials, Sky, SkyConditions};
 use glam::Vec3;
 
 /// A grey room with a lamp below the middle of its ceiling, and things in it.
@@ -207,11 +207,11 @@ fn the_suns_shadows_have_a_border_as_wide_as_the_sun() {
     let mut paint = grey();
     paint.name = "paint".into();
     builder.add("roof", roof, paint, false, Pose::IDENTITY);
-    let moment = Daytime {
+    let moment = SkyConditions {
         hour_h: 12.0,
         day: 172,
         latitude_deg: 23.44,
-        ..Daytime::default()
+        ..SkyConditions::default()
     };
     // The sun stands overhead: the lower edge of the roof is above x = 0.
     let sky = Sky::at(&moment).unwrap();

@@ -11,7 +11,7 @@ use common::{Builder, World, look, pixel, quad};
 use dwell_render::{Camera, Preset, View};
 use dwell_scene::units::linear_from_srgb;
 use dwell_scene::{
-    Category, Daytime, House, Light, LightShape, Mesh, ObjectId, Pose, ShoeboxMaterials, Sky,
+    Category, House, Light, LightShape, Mesh, ObjectId, Pose, ShoeboxMaterials, Sky, SkyConditions,
 };
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
@@ -363,11 +363,11 @@ fn sunny_room(hour_h: f32, awning: bool) -> World {
         );
     }
     // South is +Z. At the equinox the sun of noon stands 45 degrees high at this latitude.
-    let moment = Daytime {
+    let moment = SkyConditions {
         hour_h,
         day: 80,
         latitude_deg: 45.0,
-        ..Daytime::default()
+        ..SkyConditions::default()
     };
     builder.data.sky = Some(Sky::at(&moment).unwrap());
     builder.build()

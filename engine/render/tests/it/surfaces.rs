@@ -266,10 +266,12 @@ fn lists_of_things_agree_with_brute_force() {
                 let expected = (0..camera.pixels())
                     .filter(|pixel| meets_it(*pixel))
                     .count() as i64;
-                let alone =
-                    world
-                        .renderer
-                        .unoccluded_pixels(&world.scene, &world.state, &view, entity);
+                let alone = world.renderer.unoccluded_pixel_count(
+                    &world.scene,
+                    &world.state,
+                    &view,
+                    entity,
+                );
                 // A ray through an edge may count either way.
                 assert!(
                     (i64::from(alone) - expected).abs() <= 1,
@@ -279,9 +281,12 @@ fn lists_of_things_agree_with_brute_force() {
                 assert!(seen.map_or(0, |seen| seen.pixels) <= alone + 1);
             }
             assert_eq!(
-                world
-                    .renderer
-                    .unoccluded_pixels(&world.scene, &world.state, &view, EntityId(0)),
+                world.renderer.unoccluded_pixel_count(
+                    &world.scene,
+                    &world.state,
+                    &view,
+                    EntityId(0)
+                ),
                 0
             );
         }
@@ -310,7 +315,7 @@ fn half_hidden_is_half_the_pixels() {
     let seen = things.iter().find(|thing| thing.entity == entity).unwrap();
     let alone = world
         .renderer
-        .unoccluded_pixels(&world.scene, &world.state, &view, entity);
+        .unoccluded_pixel_count(&world.scene, &world.state, &view, entity);
     // 2 m at 4 m: 16 by 16 pixels.
     assert_eq!((seen.pixels, alone), (128, 256));
     assert_eq!((seen.first_pixel, seen.end_pixel), ([24, 24], [32, 40]));
@@ -404,7 +409,7 @@ fn cameras_see_agents_bodies() {
     assert!((normal - Vec3::Z).length() < 0.2);
     let alone = world
         .renderer
-        .unoccluded_pixels(&world.scene, &world.state, &view, other);
+        .unoccluded_pixel_count(&world.scene, &world.state, &view, other);
     assert_eq!(alone, seen.pixels);
     let bounds = world.renderer.oriented_box(&world.state, other).unwrap();
     assert!(

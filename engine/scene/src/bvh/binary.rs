@@ -25,12 +25,12 @@ pub(super) struct BinaryBvh {
 /// of moving things, and for input that clusters badly.
 pub(super) fn median_tree(boxes: &[Aabb]) -> BinaryBvh {
     let mut tree = BinaryBvh::default();
-    rebuild(boxes, WIDTH, &mut tree);
+    rebuild_median_tree(boxes, WIDTH, &mut tree);
     tree
 }
 
 /// As [`median_tree`] with at most `leaf` boxes in a leaf, reusing an earlier tree's memory.
-pub(super) fn rebuild(boxes: &[Aabb], leaf: usize, tree: &mut BinaryBvh) {
+pub(super) fn rebuild_median_tree(boxes: &[Aabb], leaf: usize, tree: &mut BinaryBvh) {
     tree.nodes.clear();
     tree.primitive_order.clear();
     tree.primitive_order.extend(0..boxes.len() as u32);

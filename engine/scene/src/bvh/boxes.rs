@@ -1,6 +1,6 @@
 //! Search for boxes near a place.
 
-use super::binary::{BinaryBvh, rebuild};
+use super::binary::{BinaryBvh, rebuild_median_tree};
 use crate::bounds::Aabb;
 use glam::Vec3;
 
@@ -19,8 +19,8 @@ const TESTS_PER_BOX: usize = 32;
 /// use glam::Vec3;
 /// let at = |x: f32| Aabb::new(Vec3::splat(x), Vec3::splat(x + 1.0));
 /// let tree = BoxTree::new((0..100).map(|k| at(2.0 * k as f32)).collect());
-/// assert_eq!(tree.touching(&at(20.5)), [10]);
-/// assert_eq!(tree.touching(&at(20.5).grown(1.0)), [10, 11]);
+/// assert_eq!(tree.intersecting(&at(20.5)), [10]);
+/// assert_eq!(tree.intersecting(&at(20.5).grown(1.0)), [10, 11]);
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct BoxTree {
@@ -32,7 +32,7 @@ impl BoxTree {
     /// Builds the tree; boxes keep their numbers.
     pub fn new(boxes: Vec<Aabb>) -> Self {
         let mut tree = BinaryBvh::default();
-        rebuild(&boxes, LEAF, &mut tree);
+        rebuild_median_tree(&boxes, LEAF, &mut tree);
         Self { tree, boxes }
     }
 
@@ -42,15 +42,15 @@ impl BoxTree {
     }
 
     /// Returns the numbers of all boxes that share a point with `reach`, rising.
-    pub fn touching(&self, reach: &Aabb) -> Vec<usize> {
-        self.nearest_intersecting(reach, usize::MAX, |_| true)
+    pub fn intersecting(&self, reach: &Aabb) -> Vec<usize> {
+        self.k_nearest_intersecting(reach, usize::MAX, |_| true)
     }
 
     /// Returns the numbers of at most `most` boxes that share a point with `reach` and for which `counts` is true, rising.
     ///
     /// Of more than `most` it returns those about the middle of `reach`: of two branches of the tree the one whose middle
     /// is nearer is searched first. It calls `counts` for at most 32 times `most` boxes, however many lie in one place.
-    pub fn nearest_intersecting(
+    pub fn k_nearest_intersecting(
         &self,
         reach: &Aabb,
         most: usize,
@@ -128,12 +128,15 @@ mod tests {
             let all = boxes.iter().enumerate();
             let touching = all.filter(|(_, b)| !b.is_empty() && b.intersects(&reach));
             let expected: Vec<usize> = touching.map(|(k, _)| k).collect();
-            assert_eq!(tree.touching(&reach), expected);
+            assert_eq!(tree.intersecting(&reach), expected);
             let odd: Vec<usize> = expected.into_iter().filter(|k| k % 2 == 1).collect();
-            assert_eq!(tree.nearest_intersecting(&reach, 1000, |k| k % 2 == 1), odd);
+            assert_eq!(
+                tree.k_nearest_intersecting(&reach, 1000, |k| k % 2 == 1),
+                odd
+            );
         }
-        assert!(tree.touching(&Aabb::EMPTY).is_empty());
-        assert!(BoxTree::new(Vec::new()).touching(&boxes[0]).is_empty());
+        assert!(tree.intersecting(&Aabb::EMPTY).is_empty());
+        assert!(BoxTree::new(Vec::new()).intersecting(&boxes[0]).is_empty());
     }
 
     #[test]
@@ -142,7 +145,7 @@ mod tests {
         let tree = BoxTree::new(vec![one; 10_000]);
         for (counts, expected) in [(true, (64, 64)), (false, (0, 32 * 64))] {
             let mut asked = 0;
-            let found = tree.nearest_intersecting(&one, 64, |_| {
+            let found = tree.k_nearest_intersecting(&one, 64, |_| {
                 asked += 1;
                 counts
             });
@@ -157,7 +160,7 @@ mod tests {
             .collect();
         let tree = BoxTree::new(boxes);
         let reach = Aabb::new(Vec3::X * 500.0, Vec3::X * 700.0);
-        let found = tree.nearest_intersecting(&reach, 20, |_| true);
+        let found = tree.k_nearest_intersecting(&reach, 20, |_| true);
         assert_eq!(found.len(), 20);
         assert!(found.iter().all(|k| (560..640).contains(k)), "{found:?}");
     }

@@ -27,7 +27,7 @@ const MAX_UNMERGED: usize = 4096;
 /// # Source
 /// Meister and Bittner, "Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy Construction" (2018), and
 /// "Parallel Reinsertion for Bounding Volume Hierarchy Optimization" (2018), as built by obvhs.
-pub(super) fn tree(boxes: &[Aabb]) -> BinaryBvh {
+pub(super) fn ploc_tree(boxes: &[Aabb]) -> BinaryBvh {
     struct Primitive(ObvhsBox);
     impl Boundable for Primitive {
         fn aabb(&self) -> ObvhsBox {
@@ -145,7 +145,7 @@ mod tests {
             .collect();
         boxes.extend((0..20_000).map(alike));
         assert!(longest_unmerged_run(&boxes) > MAX_UNMERGED);
-        let tree = tree(&boxes);
+        let tree = ploc_tree(&boxes);
         assert!(depth(&tree, 0) <= 16, "{}", depth(&tree, 0));
         let mut order = tree.primitive_order;
         order.sort_unstable();

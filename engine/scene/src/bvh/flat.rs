@@ -53,7 +53,7 @@ fn rebase_link(link: NodeLink, first_node: usize, first_leaf: usize) -> u32 {
     if link == NodeLink::NONE {
         return NO_LINK;
     }
-    let link = match link.parts() {
+    let link = match link.unpack() {
         (true, leaf) => NodeLink::leaf(first_leaf + leaf),
         (false, node) => NodeLink::node(first_node + node),
     };
@@ -74,7 +74,7 @@ fn write_nodes(tree: &WideBvh, first_node: usize, first_leaf: usize, rows: &mut 
 
 /// Returns the largest number of stacked links below a link.
 fn max_stack_depth(tree: &WideBvh, link: NodeLink) -> usize {
-    let (true, node) = (link != NodeLink::NONE, link.parts()) else {
+    let (true, node) = (link != NodeLink::NONE, link.unpack()) else {
         return 0;
     };
     let (false, index) = node else { return 0 };
@@ -156,7 +156,7 @@ pub fn flat_pose(pose: &Pose) -> [PackedRow; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bvh::TriangleTag;
+    use crate::bvh::TriangleAttributes;
     use crate::random::RandomKey;
 
     /// Traversal of the rows from the root visits every triangle of the list once, inside the boxes above it.
@@ -173,7 +173,7 @@ mod tests {
             })
             .collect();
         let triangles: Vec<[u32; 3]> = (0..300).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
-        let bvh = TriangleBvh::build_tagged(&positions, &triangles, |k| TriangleTag {
+        let bvh = TriangleBvh::build_tagged(&positions, &triangles, |k| TriangleAttributes {
             id: k as i32 + 7,
             mask: if k % 3 == 0 {
                 RayMask::EAR

@@ -72,12 +72,12 @@ impl MeshFromWorld {
     }
 
     #[inline(always)]
-    pub(super) fn point(&self, [x, y, z]: [f32; 3]) -> [f32; 3] {
-        self.vector(x - self.origin[0], y - self.origin[1], z - self.origin[2])
+    pub(super) fn transform_point(&self, [x, y, z]: [f32; 3]) -> [f32; 3] {
+        self.transform_vector(x - self.origin[0], y - self.origin[1], z - self.origin[2])
     }
 
     #[inline(always)]
-    pub(super) fn vector(&self, x: f32, y: f32, z: f32) -> [f32; 3] {
+    pub(super) fn transform_vector(&self, x: f32, y: f32, z: f32) -> [f32; 3] {
         let [a, b, c] = &self.rows;
         [
             (a[0] * x + a[1] * y) + a[2] * z,
@@ -188,7 +188,7 @@ impl InstanceSet {
         self.boxes.clear();
         self.boxes
             .extend(self.placed.iter().map(|placed| placed.bounds));
-        binary::rebuild(&self.boxes, 1, &mut self.binary);
+        binary::rebuild_median_tree(&self.boxes, 1, &mut self.binary);
         let order = &self.binary.primitive_order;
         // Halving makes no tree too deep.
         self.tree.fill(&self.binary, &mut |leaf| {
@@ -199,7 +199,7 @@ impl InstanceSet {
         for (index, node) in self.tree.nodes.iter().enumerate() {
             for child in (0..WIDTH).filter(|child| node.present & (1 << child) != 0) {
                 let home = (index as u32, child as u32);
-                match node.links[child].parts() {
+                match node.links[child].unpack() {
                     (true, instance) => self.placed[instance].home = home,
                     (false, node) => self.parents[node] = home,
                 }

@@ -34,4 +34,4 @@ pub use instances::{Instance, InstanceSet};
 pub use packet::{PacketHits, RayPacket};
 pub use ray::{Hit, Ray, RayMask};
 pub use scene::SceneBvh;
-pub use triangles::{TriangleBvh, TriangleTag};
+pub use triangles::{TriangleAttributes, TriangleBvh};

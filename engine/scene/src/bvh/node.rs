@@ -35,7 +35,7 @@ impl NodeLink {
 
     /// Returns whether it is a leaf, and its position.
     #[inline(always)]
-    pub(super) fn parts(self) -> (bool, usize) {
+    pub(super) fn unpack(self) -> (bool, usize) {
         (self.0 & Self::LEAF != 0, (self.0 & !Self::LEAF) as usize)
     }
 }

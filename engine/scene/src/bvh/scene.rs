@@ -1,7 +1,7 @@
 //! Ray queries on static geometry and moving instances.
 
 use super::instances::InstanceSet;
-use super::kernels::closest_hit::{ClosestHit, HitIndex, TieBreak, coincidence_min_distance};
+use super::kernels::closest_hit::{ClosestHit, HitTriangle, TieBreak, coincidence_min_distance};
 use super::kernels::dispatch::{ClosestPacketQuery, OccludedPacketQuery};
 use super::kernels::scene_ray::{AllHitsVisitor, AnyHitVisitor, ClosestHitVisitor, SceneRayQuery};
 use super::kernels::tree_ray::HitVisitor;
@@ -111,7 +111,7 @@ impl SceneBvh<'_> {
         hits: &PacketHits<N>,
         k: usize,
     ) -> Option<Hit> {
-        let place = HitIndex {
+        let place = HitTriangle {
             source: hits.source[k],
             slot: hits.slot[k],
         };
@@ -145,7 +145,8 @@ impl SceneBvh<'_> {
         for k in 0..N {
             if hits.is_hit(k) {
                 let (source, slot) = (hits.source[k], hits.slot[k]);
-                (hits.id[k], hits.triangle[k]) = self.triangle_identity(HitIndex { source, slot });
+                (hits.id[k], hits.triangle[k]) =
+                    self.triangle_identity(HitTriangle { source, slot });
             } else {
                 (hits.id[k], hits.triangle[k]) = (0, 0);
             }
@@ -161,7 +162,7 @@ impl SceneBvh<'_> {
         if nearest.is_ambiguous() {
             nearest = self.resolve_ambiguous(ray, filter, &nearest);
         }
-        (nearest.closest != HitIndex::NONE)
+        (nearest.closest != HitTriangle::NONE)
             .then(|| self.hit(ray, nearest.closest, nearest.distance))
     }
 
@@ -180,7 +181,7 @@ impl SceneBvh<'_> {
     /// Offers all hits that may matter.
     fn offer_all(&self, ray: &Ray, filter: &HitFilter, nearest: &mut ClosestHit) {
         let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
-        let claim = |place: HitIndex| self.tie_break(origin, direction, place);
+        let claim = |place: HitTriangle| self.tie_break(origin, direction, place);
         self.visit_hits(
             ray,
             filter,
@@ -217,8 +218,8 @@ impl SceneBvh<'_> {
         let id = Some(placed.id);
         LocalRay {
             bvh: &placed.mesh,
-            origin: map.point(origin),
-            direction: map.vector(x, y, z),
+            origin: map.transform_point(origin),
+            direction: map.transform_vector(x, y, z),
             id,
         }
     }
@@ -228,7 +229,7 @@ impl SceneBvh<'_> {
         &self,
         origin: [f32; 3],
         direction: [f32; 3],
-        place: HitIndex,
+        place: HitTriangle,
     ) -> TieBreak {
         let LocalRay {
             bvh,
@@ -251,7 +252,7 @@ impl SceneBvh<'_> {
 
     /// The id and the triangle's position in its list.
     #[inline(always)]
-    fn triangle_identity(&self, place: HitIndex) -> (i32, u32) {
+    fn triangle_identity(&self, place: HitTriangle) -> (i32, u32) {
         if let Some(instance) = place.source.checked_sub(1) {
             let placed = &self.moving.placed[instance as usize];
             return (placed.id, placed.mesh.surfaces[place.slot as usize].index);
@@ -260,7 +261,7 @@ impl SceneBvh<'_> {
         (surface.id, surface.index)
     }
 
-    fn hit(&self, ray: &Ray, place: HitIndex, distance_m: f32) -> Hit {
+    fn hit(&self, ray: &Ray, place: HitTriangle, distance_m: f32) -> Hit {
         let LocalRay {
             bvh,
             origin,

@@ -14,14 +14,14 @@ const FURTHEST_M: f32 = 1e12;
 
 /// The attributes of a triangle besides its corners.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TriangleTag {
+pub struct TriangleAttributes {
     /// Reported by hits, and the tie-break among coincident surfaces: the lower id wins.
     pub id: i32,
     /// The rays that see the triangle.
     pub mask: RayMask,
 }
 
-impl TriangleTag {
+impl TriangleAttributes {
     /// A tag seen by every ray.
     pub fn new(id: i32) -> Self {
         Self {
@@ -52,14 +52,14 @@ impl TriangleBvh {
     /// # Determinism
     /// Equal input, equal tree.
     pub fn build(positions: &[Vec3], triangles: &[[u32; 3]]) -> Self {
-        Self::build_tagged(positions, triangles, |_| TriangleTag::new(0))
+        Self::build_tagged(positions, triangles, |_| TriangleAttributes::new(0))
     }
 
     /// As [`Self::build`]; `tag` gives the attributes of the triangle at a position of the list.
     pub fn build_tagged(
         positions: &[Vec3],
         triangles: &[[u32; 3]],
-        tag: impl Fn(usize) -> TriangleTag,
+        tag: impl Fn(usize) -> TriangleAttributes,
     ) -> Self {
         let mut list = BuildTriangles::default();
         for (index, triangle) in triangles.iter().enumerate() {
@@ -73,7 +73,7 @@ impl TriangleBvh {
             left_out: triangles.len() - list.boxes.len(),
             ..Self::default()
         };
-        if !bvh.fill(&list, &build::tree(&list.boxes)) {
+        if !bvh.fill(&list, &build::ploc_tree(&list.boxes)) {
             // A balanced tree is never too deep.
             bvh.fill(&list, &median_tree(&list.boxes));
         }
@@ -144,7 +144,12 @@ struct BuildTriangles {
 }
 
 impl BuildTriangles {
-    fn push(&mut self, [a, b, c]: [Vec3; 3], index: usize, tag: impl Fn(usize) -> TriangleTag) {
+    fn push(
+        &mut self,
+        [a, b, c]: [Vec3; 3],
+        index: usize,
+        tag: impl Fn(usize) -> TriangleAttributes,
+    ) {
         let usable = |v: Vec3| v.is_finite() && v.abs().max_element() <= FURTHEST_M;
         if !(usable(a) && usable(b) && usable(c)) {
             return;
@@ -158,7 +163,7 @@ impl BuildTriangles {
             min: a.min(b).min(c),
             max: a.max(b).max(c),
         });
-        let TriangleTag { id, mask } = tag(index);
+        let TriangleAttributes { id, mask } = tag(index);
         self.surfaces.push(TriangleInfo {
             id,
             index: index as u32,

@@ -1,7 +1,7 @@
 //! The triangles of a house, prepared for rays once and shared by all of its worlds.
 
 use super::data::HouseData;
-use crate::bvh::{TriangleBvh, TriangleTag};
+use crate::bvh::{TriangleAttributes, TriangleBvh};
 use crate::ids::{EntityId, Id, IdVec, MaterialId, MeshId, PartId, StructureId};
 use crate::interrupt;
 use crate::mesh::Mesh;
@@ -116,7 +116,7 @@ impl Geometry {
             static_triangles.extend(sources);
         }
         let tag = |index: usize| {
-            TriangleTag::new(placed[static_triangles[index].placed as usize].entity.0)
+            TriangleAttributes::new(placed[static_triangles[index].placed as usize].entity.0)
         };
         let static_bvh = TriangleBvh::build_tagged(&baked.positions, &baked.triangles, tag);
         let static_bvh = Arc::new(static_bvh);
@@ -155,6 +155,6 @@ pub struct SurfaceHit {
 }
 
 /// The map of normals for a map of points: its inverse transpose.
-pub(crate) fn normals_map(world_from_mesh: &Affine3A) -> Mat3A {
+pub(crate) fn normal_matrix(world_from_mesh: &Affine3A) -> Mat3A {
     world_from_mesh.matrix3.inverse().transpose()
 }

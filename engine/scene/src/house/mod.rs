@@ -13,7 +13,7 @@ pub use data::{
     AgentStart, Category, HouseData, Inertial, Level, Mobility, Object, Part, Room, Structure,
     StructureKind,
 };
-pub(crate) use geometry::normals_map;
+pub(crate) use geometry::normal_matrix;
 pub use geometry::{Geometry, PlacedMesh, StaticTriangleSource, SurfaceHit, SurfaceOwner};
 pub use shoebox::ShoeboxMaterials;
 

@@ -43,7 +43,7 @@ pub struct PairContact {
 
 /// All substances.
 #[derive(Clone, Debug)]
-pub struct Library {
+pub struct MaterialLibrary {
     substances: BTreeMap<String, Substance>,
     pairs: BTreeMap<(String, String), (f32, Option<f32>)>,
     by_word: BTreeMap<String, String>,
@@ -96,11 +96,12 @@ struct PairRow {
 ///
 /// # Panics
 /// Never: the file is part of the build, and tested.
-pub fn library() -> &'static Library {
-    static LIBRARY: OnceLock<Library> = OnceLock::new();
+pub fn library() -> &'static MaterialLibrary {
+    static LIBRARY: OnceLock<MaterialLibrary> = OnceLock::new();
     LIBRARY.get_or_init(|| {
         let text = include_str!("../../../../assets/materials.toml");
-        Library::parse(text).expect("assets/materials.toml is checked by this crate's tests")
+        MaterialLibrary::parse(text)
+            .expect("assets/materials.toml is checked by this crate's tests")
     })
 }
 
@@ -112,7 +113,7 @@ fn mass_law_db(surface_density_kg_m2: f32, frequency_hz: f32) -> f32 {
     (20.0 * libm::log10f(surface_density_kg_m2 * frequency_hz) - 47.0).max(0.0)
 }
 
-impl Library {
+impl MaterialLibrary {
     /// Reads a table of the form of `assets/materials.toml`.
     ///
     /// # Errors
@@ -246,7 +247,7 @@ impl Library {
 
     /// Friction and restitution between two substances: the published pair, else the geometric mean of the two.
     /// Unknown names count as the default substance.
-    pub fn pair(&self, a: &str, b: &str) -> PairContact {
+    pub fn pair_contact(&self, a: &str, b: &str) -> PairContact {
         let (a, b) = (self.get_or_default(a), self.get_or_default(b));
         let key = if a.name <= b.name {
             (a.name.clone(), b.name.clone())
@@ -273,7 +274,8 @@ mod tests {
 
     #[test]
     fn every_row_is_in_range_in_all_bands_and_names_its_sources() {
-        let library = Library::parse(include_str!("../../../../assets/materials.toml")).unwrap();
+        let library =
+            MaterialLibrary::parse(include_str!("../../../../assets/materials.toml")).unwrap();
         for substance in library.iter() {
             assert_eq!(
                 substance.absorption.values.len(),
@@ -299,8 +301,8 @@ mod tests {
         for a in library.iter() {
             for b in library.iter() {
                 assert_eq!(
-                    library.pair(&a.name, &b.name),
-                    library.pair(&b.name, &a.name)
+                    library.pair_contact(&a.name, &b.name),
+                    library.pair_contact(&b.name, &a.name)
                 );
             }
         }

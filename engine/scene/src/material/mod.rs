@@ -4,7 +4,7 @@ mod bands;
 mod library;
 
 pub use bands::Bands;
-pub use library::{Library, PairContact, Substance, library};
+pub use library::{MaterialLibrary, PairContact, Substance, library};
 
 use crate::error::SceneError;
 use crate::ids::TextureId;
@@ -31,7 +31,7 @@ pub struct Material {
     pub roughness: f32,
     /// Density of the substance in the house, kg/m³.
     pub density_kg_m3: f32,
-    /// Coefficient of kinetic friction on itself; the pair's value comes from [`Library::pair`].
+    /// Coefficient of kinetic friction on itself; the pair's value comes from [`MaterialLibrary::pair_contact`].
     pub friction: f32,
     /// Coefficient of restitution on itself.
     pub restitution: f32,

@@ -63,14 +63,14 @@ impl NavConfig {
         ];
         for (field, found, low, high, allowed) in checks {
             if !(low..=high).contains(&found) {
-                return Err(range(field, found, allowed));
+                return Err(range_error(field, found, allowed));
             }
         }
         Ok(())
     }
 }
 
-pub(super) fn range(field: &'static str, found: f32, allowed: &'static str) -> SceneError {
+pub(super) fn range_error(field: &'static str, found: f32, allowed: &'static str) -> SceneError {
     SceneError::Range {
         at: "navigation".to_owned(),
         field,

@@ -78,7 +78,7 @@ impl NavGrid {
     }
 
     /// Returns the closed doors that straight pieces between `corners` pass, in order.
-    pub(super) fn shut_doors_on(&self, corners: &[NavCell]) -> Vec<JointId> {
+    pub(super) fn closed_doors_along(&self, corners: &[NavCell]) -> Vec<JointId> {
         let crosses = |ends: &[NavCell]| {
             let crossing = self.straight_path_between(ends[0], ends[1]);
             crossing.is_some_and(|crossing| crossing.door_crossings > 0)

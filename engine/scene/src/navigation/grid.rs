@@ -1,10 +1,10 @@
 //! The walkable grid.
 
-use super::config::{DoorPolicy, NavConfig, range};
+use super::config::{DoorPolicy, NavConfig, range_error};
 use super::heightfield::{HeightSpan, merge_spans};
-use super::layers::{DOORWAY, FREE, INDOORS, Layers, NO_CELL, ON_FLOOR, column_centre};
+use super::layers::{DOORWAY, FREE, INDOORS, NO_CELL, ON_FLOOR, SurfaceLayers, column_centre};
 use super::obstacles::{Obstacles, is_passable, openness};
-use super::static_grid::{MAX_CELLS, StaticGrid, columns_around, is_standing_blocked};
+use super::static_grid::{MAX_CELLS, StaticNavGrid, columns_around, is_standing_blocked};
 use crate::error::SceneError;
 use crate::house::House;
 use crate::ids::LevelId;
@@ -23,11 +23,11 @@ pub struct NavCell(pub u32);
 #[derive(Clone, Debug)]
 pub struct NavGrid {
     pub(super) config: NavConfig,
-    pub(super) ground: Arc<StaticGrid>,
+    pub(super) ground: Arc<StaticNavGrid>,
     obstacles: Obstacles,
     /// Height spans of the columns that moving parts occupy; `None`: the static spans alone.
     mixed: Vec<Option<Box<[HeightSpan]>>>,
-    pub(super) layers: Layers,
+    pub(super) layers: SurfaceLayers,
     /// Shape (cell,); [`NO_CELL`] where an agent cannot stand.
     island: Vec<u32>,
     /// Openness of each passage.
@@ -67,13 +67,13 @@ impl NavGrid {
     /// [`SceneError::Range`] for a setting out of range, a house too large for the cell size, or another house's state.
     pub fn build(house: &House, state: &State, config: &NavConfig) -> Result<Self, SceneError> {
         config.check()?;
-        let ground = Arc::new(StaticGrid::new(house, config)?);
+        let ground = Arc::new(StaticNavGrid::new(house, config)?);
         let columns = ground.frame.count();
         let mut grid = Self {
             config: *config,
             obstacles: Obstacles::new(house),
             mixed: vec![None; columns],
-            layers: Layers::new(columns),
+            layers: SurfaceLayers::new(columns),
             island: Vec::new(),
             openness: vec![0.0; ground.doors.len()],
             ground,
@@ -124,7 +124,7 @@ impl NavGrid {
             Ok(())
         } else {
             let allowed = "as many as the house of the grid has";
-            Err(range("parts", state.part_pose.len() as f32, allowed))
+            Err(range_error("parts", state.part_pose.len() as f32, allowed))
         }
     }
 
@@ -170,7 +170,7 @@ impl NavGrid {
             if self.layers.height.len() >= MAX_CELLS {
                 let allowed = "0.1 to 3 m, and so tall that there are fewer than 2^25 surfaces to stand on; a house this large may be in centimetres or \
                      millimetres where metres are meant";
-                return Err(range("height_m", self.config.height_m, allowed));
+                return Err(range_error("height_m", self.config.height_m, allowed));
             }
         }
         self.layers.drop_empty_top_layers();
@@ -360,7 +360,7 @@ impl NavGrid {
 
 fn spans_at<'a>(
     mixed: &'a [Option<Box<[HeightSpan]>>],
-    ground: &'a StaticGrid,
+    ground: &'a StaticNavGrid,
     column: usize,
 ) -> &'a [HeightSpan] {
     mixed[column]

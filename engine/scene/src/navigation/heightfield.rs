@@ -3,7 +3,7 @@
 use super::clip::ClipPolygon;
 use super::config::NavConfig;
 use crate::bounds::Aabb;
-use crate::interrupt::PollEvery;
+use crate::interrupt::CancelPoller;
 use crate::math;
 use glam::{Vec2, Vec3};
 
@@ -172,11 +172,11 @@ pub(super) struct Heightfield {
 impl Heightfield {
     /// Joins the spans of each of `count` columns; `raw`: columns and spans in any order.
     pub(super) fn new(count: usize, raw: &[(u32, HeightSpan)]) -> Self {
-        let mut pace = PollEvery::new(COLUMNS_PER_CHECK);
+        let mut pace = CancelPoller::new(COLUMNS_PER_CHECK);
         // Sorted by counting.
         let mut ends = vec![0_usize; count + 1];
         for (column, _) in raw {
-            pace.turn();
+            pace.count_one();
             ends[*column as usize + 1] += 1;
         }
         for column in 0..count {
@@ -185,7 +185,7 @@ impl Heightfield {
         let mut spans = vec![HeightSpan::NONE; raw.len()];
         // Next free place of each column: in the end, where the column ends.
         for (column, span) in raw {
-            pace.turn();
+            pace.count_one();
             let next = &mut ends[*column as usize];
             spans[*next] = *span;
             *next += 1;
@@ -193,7 +193,7 @@ impl Heightfield {
         let mut first = Vec::with_capacity(count + 1);
         let (mut start, mut kept) = (0, 0);
         for end in &ends[..count] {
-            pace.turn();
+            pace.count_one();
             first.push(kept as u32);
             let joined = merge_spans_in_place(&mut spans[start..*end]);
             spans.copy_within(start..start + joined, kept);

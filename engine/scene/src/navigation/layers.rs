@@ -3,7 +3,7 @@
 use super::config::NavConfig;
 use super::heightfield::{GridFrame, HeightSpan};
 use super::static_grid::{columns_around, standing_heights};
-use crate::interrupt::{self, PollEvery};
+use crate::interrupt::{self, CancelPoller};
 use glam::Vec3;
 
 /// Surfaces between checks for cancellation.
@@ -30,7 +30,7 @@ pub(super) const NORTH: usize = 3;
 /// Surfaces in layers: the lowest of each column in layer 0, the next one above it in layer 1, and so on. The number of a
 /// surface is `layer * columns + column`, so that a column that changes renumbers no other.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Layers {
+pub(super) struct SurfaceLayers {
     /// Number of columns.
     pub(super) columns: usize,
     /// m; NaN where a column has no such layer. Shape (cell,).
@@ -43,7 +43,7 @@ pub(super) struct Layers {
     used: Vec<usize>,
 }
 
-impl Layers {
+impl SurfaceLayers {
     pub(super) fn new(columns: usize) -> Self {
         Self {
             columns,
@@ -218,7 +218,7 @@ impl Layers {
         let mut island = vec![NO_CELL; self.height.len()];
         let mut found: Vec<(usize, usize, bool)> = Vec::new();
         let mut stack = Vec::new();
-        let mut pace = PollEvery::new(SURFACES_PER_CHECK);
+        let mut pace = CancelPoller::new(SURFACES_PER_CHECK);
         for start in 0..self.height.len() {
             if island[start] != NO_CELL || !self.is_free(start) {
                 continue;
@@ -229,7 +229,7 @@ impl Layers {
             island[start] = label;
             stack.push(start as u32);
             while let Some(cell) = stack.pop() {
-                pace.turn();
+                pace.count_one();
                 let flags = self.flags[cell as usize];
                 indoors += usize::from(flags & INDOORS != 0);
                 kept |= flags & ON_FLOOR != 0;

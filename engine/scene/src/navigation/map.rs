@@ -23,7 +23,7 @@ impl ColumnFrame {
     }
 
     /// Returns the coordinates of a point (x, z), m, in columns from the corner.
-    pub fn in_columns(&self, [x, z]: [f32; 2]) -> [f32; 2] {
+    pub fn column_coordinates(&self, [x, z]: [f32; 2]) -> [f32; 2] {
         let [x0, z0] = self.corner;
         [(x - x0) / self.cell_m, (z - z0) / self.cell_m]
     }
@@ -37,7 +37,7 @@ impl ColumnFrame {
     /// Returns the column that holds a point (x, z), m, if there is one.
     pub fn column_at(&self, point: [f32; 2]) -> Option<usize> {
         // What is not finite is in no column.
-        let [x, z] = self.in_columns(point).map(f32::floor);
+        let [x, z] = self.column_coordinates(point).map(f32::floor);
         (x >= 0.0 && z >= 0.0)
             .then(|| self.column([x as i64, z as i64]))
             .flatten()
@@ -46,7 +46,7 @@ impl ColumnFrame {
 
 impl NavGrid {
     /// Returns the columns of the grid.
-    pub fn columns(&self) -> ColumnFrame {
+    pub fn column_frame(&self) -> ColumnFrame {
         let frame = &self.ground.frame;
         ColumnFrame {
             width: frame.width,
@@ -63,7 +63,7 @@ impl NavGrid {
 
     /// Returns whether an agent can stand in the middle of a column on a storey, as in [`NavGrid::occupancy`].
     pub fn is_free(&self, column: usize, level: LevelId) -> bool {
-        let count = self.columns().count();
+        let count = self.column_frame().count();
         column < count
             && self.layers.cells_of(column).any(|cell| {
                 let cell = super::NavCell(cell as u32);
@@ -81,7 +81,7 @@ mod tests {
     fn a_column_is_free_where_the_occupancy_map_says_so() {
         let house = House::shoebox([3.0, 2.5, 4.0], &ShoeboxMaterials::default()).unwrap();
         let grid = NavGrid::build(&house, &State::new(&house), &NavConfig::default()).unwrap();
-        let (columns, level) = (grid.columns(), LevelId(0));
+        let (columns, level) = (grid.column_frame(), LevelId(0));
         let map = grid.occupancy(level).unwrap();
         assert_eq!(map.free.len(), columns.count());
         for (column, free) in map.free.iter().enumerate() {

@@ -2,10 +2,10 @@
 
 use super::config::{DoorPolicy, NavConfig};
 use super::heightfield::{GridFrame, HeightSpan, merge_spans};
-use super::static_grid::{StaticGrid, leaf_transform};
+use super::static_grid::{StaticNavGrid, leaf_transform};
 use crate::house::House;
 use crate::ids::PartId;
-use crate::interrupt::PollEvery;
+use crate::interrupt::CancelPoller;
 use crate::state::State;
 use glam::{Affine3A, Vec3};
 use std::collections::BTreeMap;
@@ -66,7 +66,7 @@ impl Obstacles {
         &mut self,
         house: &House,
         state: &State,
-        ground: &StaticGrid,
+        ground: &StaticNavGrid,
         config: &NavConfig,
     ) -> ObstacleChanges {
         let mut moved = ObstacleChanges {
@@ -113,7 +113,12 @@ impl Obstacles {
 }
 
 /// Returns the openness of a passage's door in `state`, 0 to 1.
-pub(super) fn openness(house: &House, state: &State, ground: &StaticGrid, passage: usize) -> f32 {
+pub(super) fn openness(
+    house: &House,
+    state: &State,
+    ground: &StaticNavGrid,
+    passage: usize,
+) -> f32 {
     let id = ground.doors[passage].joint;
     house.joints[id].openness(state.joint_position[id])
 }
@@ -127,7 +132,7 @@ pub(super) fn is_passable(openness: f32) -> bool {
 fn unheld_part_transform(
     house: &House,
     state: &State,
-    ground: &StaticGrid,
+    ground: &StaticNavGrid,
     config: &NavConfig,
     part: PartId,
 ) -> Option<Affine3A> {
@@ -165,9 +170,9 @@ pub(super) fn rasterize_part(
         .map(|p| world_from_mesh.transform_point3(*p))
         .collect();
     let mut crossed: Vec<(u32, HeightSpan)> = Vec::new();
-    let mut pace = PollEvery::new(TRIANGLES_PER_CHECK);
+    let mut pace = CancelPoller::new(TRIANGLES_PER_CHECK);
     for triangle in &mesh.triangles {
-        pace.turn();
+        pace.count_one();
         frame.rasterize_triangle(triangle.map(|v| points[v as usize]), |column, span| {
             crossed.push((column as u32, span));
         });

@@ -40,7 +40,7 @@ impl NavGrid {
         Some(Route {
             // A sum of nothing is -0.
             length_m: pieces.fold(0.0, |sum, piece| sum + piece.length_m),
-            shut_doors: self.shut_doors_on(&corners),
+            shut_doors: self.closed_doors_along(&corners),
             points,
         })
     }

@@ -1,6 +1,6 @@
 //! The static part of the grid: the columns of walls, floors and fixed objects, and the doors that agents pass.
 
-use super::config::{NavConfig, range};
+use super::config::{NavConfig, range_error};
 use super::heightfield::{GridFrame, HeightSpan, Heightfield};
 use super::obstacles::rasterize_part;
 use crate::articulation::Joint;
@@ -15,7 +15,7 @@ use glam::{Affine3A, Vec3};
 
 /// The parts of a grid that no state changes; grids of one house and one agent share them.
 #[derive(Debug)]
-pub(super) struct StaticGrid {
+pub(super) struct StaticNavGrid {
     pub(super) frame: GridFrame,
     /// All triangles that never move.
     pub(super) fixed: Heightfield,
@@ -40,7 +40,7 @@ pub(super) struct DoorObstacle {
 /// The largest number of cells: 32 million would be 100 by 100 m in 1.8 cm cells, or a town in 10 cm cells.
 pub(super) const MAX_CELLS: usize = 1 << 25;
 
-impl StaticGrid {
+impl StaticNavGrid {
     pub(super) fn new(house: &House, config: &NavConfig) -> Result<Self, SceneError> {
         let levels: Vec<(LevelId, Aabb)> = house
             .levels
@@ -55,7 +55,7 @@ impl StaticGrid {
         if (size.x + 3.0) * (size.z + 3.0) >= MAX_CELLS as f32 {
             let allowed = "a cell size that gives fewer than 2^25 cells; a house this large may be in centimetres or millimetres where metres \
                  are meant";
-            return Err(range("cell_m", config.cell_m, allowed));
+            return Err(range_error("cell_m", config.cell_m, allowed));
         }
         let lowest = levels.iter().map(|(_, b)| b.min.y);
         let lowest = lowest.fold(f32::INFINITY, f32::min);

@@ -33,7 +33,10 @@ impl Threads {
     pub fn try_resolve(requested: Option<usize>) -> Result<Self, SceneError> {
         match requested {
             Some(count) if (1..=Self::MAX).contains(&count) => Ok(Self(count)),
-            Some(count) => Err(thread_count::refuse("threads", count.to_string())),
+            Some(count) => Err(thread_count::thread_count_error(
+                "threads",
+                count.to_string(),
+            )),
             None => Ok(Self::new(thread_count::default_thread_count(
                 threads_variable()?,
             ))),
@@ -64,7 +67,7 @@ impl Threads {
         if items.len() > 1
             && let Some(pool) = self.pool()
         {
-            let token = interrupt::token();
+            let token = interrupt::current_token();
             pool::install(&pool, || {
                 items
                     .par_iter_mut()
@@ -89,7 +92,7 @@ impl Threads {
         second: impl FnOnce() -> B + Send,
     ) -> (A, B) {
         if let Some(pool) = self.pool() {
-            let token = interrupt::token();
+            let token = interrupt::current_token();
             let token = token.as_ref();
             return pool::install(&pool, || {
                 rayon::join(
@@ -107,7 +110,7 @@ impl Threads {
         if count > 1
             && let Some(pool) = self.pool()
         {
-            let token = interrupt::token();
+            let token = interrupt::current_token();
             return pool::install(&pool, || {
                 (0..count)
                     .into_par_iter()

@@ -45,11 +45,11 @@ pub fn threads_variable() -> Result<Option<usize>, SceneError> {
     count
         .filter(|count| range.contains(count))
         .map(Some)
-        .ok_or_else(|| refuse(VARIABLE, format!("{:?}", text.to_string_lossy())))
+        .ok_or_else(|| thread_count_error(VARIABLE, format!("{:?}", text.to_string_lossy())))
 }
 
 /// The error of an invalid number of threads.
-pub(super) fn refuse(at: &'static str, found: String) -> SceneError {
+pub(super) fn thread_count_error(at: &'static str, found: String) -> SceneError {
     SceneError::Threads {
         at,
         found,

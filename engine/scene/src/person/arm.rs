@@ -11,7 +11,7 @@ const STRAIGHT: f32 = 1.0 - 1e-5;
 ///
 /// # Source
 /// The law of cosines for the distance of the joint from the root along the line to the target.
-pub(super) fn two_links(
+pub(super) fn solve_two_link_ik(
     root: Vec3,
     target: Vec3,
     [first, second]: [f32; 2],
@@ -39,14 +39,14 @@ pub(super) fn two_links(
 /// The joints of an arm whose palm is at `palm`: elbow, wrist, palm, finger tip. The hand is straight with the forearm.
 pub(super) fn arm_to_palm(shoulder: Vec3, palm: Vec3, height_m: f32, side: Vec3) -> [Vec3; 4] {
     let lengths = [UPPER_ARM, FOREARM + PALM].map(|part| part * height_m);
-    let (elbow, palm) = two_links(shoulder, palm, lengths, side);
+    let (elbow, palm) = solve_two_link_ik(shoulder, palm, lengths, side);
     along_forearm(elbow, palm, height_m)
 }
 
 /// As [`arm_to_palm`], with the finger tip at `tip`.
 pub(super) fn arm_to_tip(shoulder: Vec3, tip: Vec3, height_m: f32, side: Vec3) -> [Vec3; 4] {
     let lengths = [UPPER_ARM, FOREARM + HAND].map(|part| part * height_m);
-    let (elbow, tip) = two_links(shoulder, tip, lengths, side);
+    let (elbow, tip) = solve_two_link_ik(shoulder, tip, lengths, side);
     along_forearm(elbow, tip, height_m)
 }
 
@@ -88,7 +88,7 @@ mod tests {
             let root = stream.direction() * 3.0;
             let lengths = [stream.range(0.2, 0.4), stream.range(0.2, 0.4)];
             let target = root + stream.direction() * stream.range(0.0, 1.0);
-            let (joint, end) = two_links(root, target, lengths, stream.direction());
+            let (joint, end) = solve_two_link_ik(root, target, lengths, stream.direction());
             assert!(((joint - root).length() - lengths[0]).abs() < 2e-6);
             assert!(((end - joint).length() - lengths[1]).abs() < 2e-6);
             let distance = (target - root).length();

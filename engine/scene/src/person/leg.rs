@@ -1,8 +1,8 @@
 //! Legs: where feet are in a stride, and how hips, knees and ankles follow.
 
-use super::arm::two_links;
+use super::arm::solve_two_link_ik;
 use super::proportions::{ANKLE, BALL, SHIN, THIGH};
-use super::skeleton::Leg;
+use super::skeleton::LegJoints;
 use crate::math;
 use crate::state::PersonGait;
 use glam::{Quat, Vec3};
@@ -26,7 +26,7 @@ const HEEL_UP_RAD: f32 = 0.8;
 const LIFT: f32 = 0.025;
 
 /// How large movements are, 0 to 1.
-pub(super) fn amplitude(gait: &PersonGait, height_m: f32) -> f32 {
+pub(super) fn gait_amplitude(gait: &PersonGait, height_m: f32) -> f32 {
     (gait.stride_m / (FULL_STRIDE * height_m)).min(1.0)
 }
 
@@ -46,7 +46,7 @@ fn smooth(t: f32) -> f32 {
 
 /// The foot of a leg at a part of its own stride. While it stands it moves back as fast as the body moves on.
 fn foot_at(phase: f32, gait: &PersonGait, height_m: f32) -> Foot {
-    let size = amplitude(gait, height_m);
+    let size = gait_amplitude(gait, height_m);
     let way = STANCE * gait.stride_m;
     let (first, last) = (AHEAD * way, (AHEAD - 1.0) * way);
     if phase < STANCE {
@@ -77,7 +77,7 @@ pub(super) fn hip_drop_m(gait: &PersonGait, height_m: f32) -> f32 {
 }
 
 /// The joints of a leg. `hip`, in the person's frame, whose origin is on the floor; `phase`: of its own stride.
-pub(super) fn leg_at(hip: Vec3, phase: f32, gait: &PersonGait, height_m: f32) -> Leg {
+pub(super) fn leg_at(hip: Vec3, phase: f32, gait: &PersonGait, height_m: f32) -> LegJoints {
     let foot = foot_at(phase, gait, height_m);
     let way = Vec3::new(gait.direction.x, 0.0, -gait.direction.y);
     let flat = Vec3::new(hip.x, ANKLE * height_m + foot.above_m, hip.z) + way * foot.along_m;
@@ -90,8 +90,8 @@ pub(super) fn leg_at(hip: Vec3, phase: f32, gait: &PersonGait, height_m: f32) ->
     };
     let target = flat + pivot - turn * pivot;
     let lengths = [THIGH, SHIN].map(|part| part * height_m);
-    let (knee, ankle) = two_links(hip, target, lengths, Vec3::new(0.0, 0.0, -1.0));
-    Leg {
+    let (knee, ankle) = solve_two_link_ik(hip, target, lengths, Vec3::new(0.0, 0.0, -1.0));
+    LegJoints {
         hip,
         knee,
         ankle,

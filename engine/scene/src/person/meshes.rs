@@ -5,7 +5,7 @@ use super::proportions::{
     ANKLE, FOOT, FOOT_BREADTH, FOREARM, HAND, HIP_BREADTH, SHIN, SHOULDER_BREADTH, THIGH, TRUNK,
     UPPER_ARM,
 };
-use crate::bvh::{RayMask, TriangleBvh, TriangleTag};
+use crate::bvh::{RayMask, TriangleAttributes, TriangleBvh};
 use crate::math;
 use crate::mesh::Mesh;
 use glam::{Quat, Vec2, Vec3};
@@ -23,7 +23,7 @@ pub struct PersonMesh {
 
 /// The kinds of pieces, in the order of [`person_meshes`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Shape {
+pub(super) enum PieceKind {
     Head,
     Hair,
     Face,
@@ -327,56 +327,56 @@ fn foot() -> Mesh {
     with_normals(mesh)
 }
 
-fn shape(kind: Shape) -> Mesh {
+fn shape(kind: PieceKind) -> Mesh {
     let at = Vec2::new;
     match kind {
-        Shape::Head => head(),
-        Shape::Hair => hair(),
-        Shape::Face => face(),
-        Shape::Neck => limb(0.07, &[at(0.0, 0.028), at(1.0, 0.032)], 8),
-        Shape::Trunk => trunk(),
-        Shape::Pelvis => pelvis(),
-        Shape::UpperArm => limb(
+        PieceKind::Head => head(),
+        PieceKind::Hair => hair(),
+        PieceKind::Face => face(),
+        PieceKind::Neck => limb(0.07, &[at(0.0, 0.028), at(1.0, 0.032)], 8),
+        PieceKind::Trunk => trunk(),
+        PieceKind::Pelvis => pelvis(),
+        PieceKind::UpperArm => limb(
             UPPER_ARM,
             &[at(0.0, 0.026), at(0.5, 0.0255), at(1.0, 0.021)],
             8,
         ),
-        Shape::Forearm => limb(
+        PieceKind::Forearm => limb(
             FOREARM,
             &[at(0.0, 0.019), at(0.3, 0.0205), at(1.0, 0.0125)],
             8,
         ),
-        Shape::LeftPalm => palm(1.0),
-        Shape::RightPalm => palm(-1.0),
-        Shape::Fingers => fingers(),
-        Shape::PointingFinger => pointing_finger(),
-        Shape::Thigh => limb(THIGH, &[at(0.0, 0.046), at(0.4, 0.044), at(1.0, 0.031)], 8),
-        Shape::Shin => limb(SHIN, &[at(0.0, 0.030), at(0.3, 0.032), at(1.0, 0.0215)], 8),
-        Shape::Foot => foot(),
+        PieceKind::LeftPalm => palm(1.0),
+        PieceKind::RightPalm => palm(-1.0),
+        PieceKind::Fingers => fingers(),
+        PieceKind::PointingFinger => pointing_finger(),
+        PieceKind::Thigh => limb(THIGH, &[at(0.0, 0.046), at(0.4, 0.044), at(1.0, 0.031)], 8),
+        PieceKind::Shin => limb(SHIN, &[at(0.0, 0.030), at(0.3, 0.032), at(1.0, 0.0215)], 8),
+        PieceKind::Foot => foot(),
     }
 }
 
 static MESHES: LazyLock<[PersonMesh; SHAPES]> = LazyLock::new(|| {
     [
-        Shape::Head,
-        Shape::Hair,
-        Shape::Face,
-        Shape::Neck,
-        Shape::Trunk,
-        Shape::Pelvis,
-        Shape::UpperArm,
-        Shape::Forearm,
-        Shape::LeftPalm,
-        Shape::RightPalm,
-        Shape::Fingers,
-        Shape::PointingFinger,
-        Shape::Thigh,
-        Shape::Shin,
-        Shape::Foot,
+        PieceKind::Head,
+        PieceKind::Hair,
+        PieceKind::Face,
+        PieceKind::Neck,
+        PieceKind::Trunk,
+        PieceKind::Pelvis,
+        PieceKind::UpperArm,
+        PieceKind::Forearm,
+        PieceKind::LeftPalm,
+        PieceKind::RightPalm,
+        PieceKind::Fingers,
+        PieceKind::PointingFinger,
+        PieceKind::Thigh,
+        PieceKind::Shin,
+        PieceKind::Foot,
     ]
     .map(|kind| {
         let mesh = shape(kind);
-        let tag = |_| TriangleTag {
+        let tag = |_| TriangleAttributes {
             id: 0,
             mask: RayMask::BODY,
         };
@@ -389,7 +389,7 @@ static MESHES: LazyLock<[PersonMesh; SHAPES]> = LazyLock::new(|| {
 });
 
 /// The mesh of a kind of piece.
-pub(super) fn mesh_of(kind: Shape) -> &'static PersonMesh {
+pub(super) fn mesh_of(kind: PieceKind) -> &'static PersonMesh {
     &MESHES[kind as usize]
 }
 

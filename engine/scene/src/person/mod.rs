@@ -13,5 +13,5 @@ mod stride;
 
 pub use meshes::{PersonMesh, person_meshes};
 pub use pieces::{PERSON_PIECES, PersonPiece, person_pieces};
-pub use skeleton::{Arm, Leg, PersonSkeleton, held_point, skeleton_of};
+pub use skeleton::{ArmJoints, LegJoints, PersonSkeleton, grasp_point, skeleton_of};
 pub use stride::{WALK_RATIO, advance_persons};

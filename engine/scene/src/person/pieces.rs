@@ -1,14 +1,14 @@
 //! The pieces of a person: which mesh stands where, and in which colour.
 
-use super::meshes::Shape;
+use super::meshes::PieceKind;
 use super::skeleton::{PersonSkeleton, limb_rotation};
 use crate::space::Pose;
-use crate::state::PersonLook;
+use crate::state::ResolvedPersonColors;
 use glam::{Affine3A, Quat, Vec3};
 
 /// The colour of a piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Tone {
+pub(super) enum ColorRole {
     Skin,
     Hair,
     Face,
@@ -24,29 +24,29 @@ const FACE: [u8; 3] = [44, 24, 24];
 pub const PERSON_PIECES: usize = 22;
 
 /// Their kinds and colours; those of arms and legs left first.
-pub(super) const PIECES: [(Shape, Tone); PERSON_PIECES] = [
-    (Shape::Head, Tone::Skin),
-    (Shape::Hair, Tone::Hair),
-    (Shape::Face, Tone::Face),
-    (Shape::Neck, Tone::Skin),
-    (Shape::Trunk, Tone::Shirt),
-    (Shape::Pelvis, Tone::Trousers),
-    (Shape::UpperArm, Tone::Shirt),
-    (Shape::Forearm, Tone::Skin),
-    (Shape::LeftPalm, Tone::Skin),
-    (Shape::Fingers, Tone::Skin),
-    (Shape::PointingFinger, Tone::Skin),
-    (Shape::UpperArm, Tone::Shirt),
-    (Shape::Forearm, Tone::Skin),
-    (Shape::RightPalm, Tone::Skin),
-    (Shape::Fingers, Tone::Skin),
-    (Shape::PointingFinger, Tone::Skin),
-    (Shape::Thigh, Tone::Trousers),
-    (Shape::Shin, Tone::Trousers),
-    (Shape::Foot, Tone::Shoes),
-    (Shape::Thigh, Tone::Trousers),
-    (Shape::Shin, Tone::Trousers),
-    (Shape::Foot, Tone::Shoes),
+pub(super) const PIECES: [(PieceKind, ColorRole); PERSON_PIECES] = [
+    (PieceKind::Head, ColorRole::Skin),
+    (PieceKind::Hair, ColorRole::Hair),
+    (PieceKind::Face, ColorRole::Face),
+    (PieceKind::Neck, ColorRole::Skin),
+    (PieceKind::Trunk, ColorRole::Shirt),
+    (PieceKind::Pelvis, ColorRole::Trousers),
+    (PieceKind::UpperArm, ColorRole::Shirt),
+    (PieceKind::Forearm, ColorRole::Skin),
+    (PieceKind::LeftPalm, ColorRole::Skin),
+    (PieceKind::Fingers, ColorRole::Skin),
+    (PieceKind::PointingFinger, ColorRole::Skin),
+    (PieceKind::UpperArm, ColorRole::Shirt),
+    (PieceKind::Forearm, ColorRole::Skin),
+    (PieceKind::RightPalm, ColorRole::Skin),
+    (PieceKind::Fingers, ColorRole::Skin),
+    (PieceKind::PointingFinger, ColorRole::Skin),
+    (PieceKind::Thigh, ColorRole::Trousers),
+    (PieceKind::Shin, ColorRole::Trousers),
+    (PieceKind::Foot, ColorRole::Shoes),
+    (PieceKind::Thigh, ColorRole::Trousers),
+    (PieceKind::Shin, ColorRole::Trousers),
+    (PieceKind::Foot, ColorRole::Shoes),
 ];
 
 /// A piece of a person where it stands.
@@ -72,16 +72,16 @@ impl PersonPiece {
     }
 }
 
-impl PersonLook {
+impl ResolvedPersonColors {
     /// The colour of a piece, sRGB.
     pub fn color(&self, piece: usize) -> [u8; 3] {
         match PIECES[piece % PERSON_PIECES].1 {
-            Tone::Skin => self.skin,
-            Tone::Hair => self.hair,
-            Tone::Face => FACE,
-            Tone::Shirt => self.shirt,
-            Tone::Trousers => self.trousers,
-            Tone::Shoes => self.shoes,
+            ColorRole::Skin => self.skin,
+            ColorRole::Hair => self.hair,
+            ColorRole::Face => FACE,
+            ColorRole::Shirt => self.shirt,
+            ColorRole::Trousers => self.trousers,
+            ColorRole::Shoes => self.shoes,
         }
     }
 }
@@ -168,7 +168,7 @@ mod tests {
                     let point = map.transform_point3(*point);
                     (low, high) = (low.min(point.y), high.max(point.y));
                     // The upper arms are the widest at the shoulders.
-                    if PIECES[k].0 == Shape::UpperArm && point.y > joints.arms[0].shoulder.y {
+                    if PIECES[k].0 == PieceKind::UpperArm && point.y > joints.arms[0].shoulder.y {
                         (left, right) = (left.min(point.x), right.max(point.x));
                     }
                 }

@@ -1,7 +1,7 @@
 //! The joints of a person.
 
 use super::arm::{arm_to_palm, arm_to_tip, pointing_tip};
-use super::leg::{amplitude, hip_drop_m, leg_at};
+use super::leg::{gait_amplitude, hip_drop_m, leg_at};
 use super::proportions::{
     BEHIND_EYES, FOREARM, HIP_HEIGHT, HIP_SIDE, PALM, SHOULDER_HEIGHT, SHOULDER_SIDE, UPPER_ARM,
 };
@@ -32,7 +32,7 @@ const ARM_OUT_RAD: f32 = 0.1;
 
 /// The joints of an arm, m, in world coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Arm {
+pub struct ArmJoints {
     /// The shoulder.
     pub shoulder: Vec3,
     /// The elbow.
@@ -49,7 +49,7 @@ pub struct Arm {
 
 /// The joints of a leg, m, in world coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Leg {
+pub struct LegJoints {
     /// The hip.
     pub hip: Vec3,
     /// The knee.
@@ -76,9 +76,9 @@ pub struct PersonSkeleton {
     /// The middle of the head, m.
     pub head: Vec3,
     /// The arms.
-    pub arms: [Arm; 2],
+    pub arms: [ArmJoints; 2],
     /// The legs.
-    pub legs: [Leg; 2],
+    pub legs: [LegJoints; 2],
 }
 
 impl PersonSkeleton {
@@ -119,12 +119,12 @@ pub fn skeleton_of(house: &House, state: &State, agent: AgentId) -> Option<Perso
     let held = body
         .holding
         .map(|object| (object, shoulder_of(body, person.body.hand)))
-        .and_then(|(object, from)| held_point(house, state, object, from));
+        .and_then(|(object, from)| grasp_point(house, state, object, from));
     Some(skeleton(body, person, held))
 }
 
 /// Returns the point of a thing's boxes that is nearest to `from`, m: where a hand holds it.
-pub fn held_point(house: &House, state: &State, object: ObjectId, from: Vec3) -> Option<Vec3> {
+pub fn grasp_point(house: &House, state: &State, object: ObjectId, from: Vec3) -> Option<Vec3> {
     let thing = house.objects.get(object)?;
     let first = thing.first_part.index();
     let parts = (first..first + thing.part_count as usize).map(PartId::from_index);
@@ -216,7 +216,7 @@ fn skeleton(agent: &AgentState, person: &PersonState, held: Option<Vec3>) -> Per
         };
         let leg = leg_at(hip, own - own.floor(), &person.gait, height_m);
         let world = |point: Vec3| world_from_body.transform_point(point);
-        Leg {
+        LegJoints {
             hip: world(leg.hip),
             knee: world(leg.knee),
             ankle: world(leg.ankle),
@@ -267,12 +267,12 @@ fn arm(
     (shoulder, side, world_from_body): (Vec3, Side, &Pose),
     eyes: Vec3,
     held: Option<Vec3>,
-) -> Arm {
+) -> ArmJoints {
     let height_m = agent.body.height_m;
     // Elbows hang, a little to the outside and behind.
     let elbow_side = world_from_body.rotation * Vec3::new(0.5 * sign(side), -1.0, 0.3);
     let gesture = &person.gesture;
-    let stated = gesture.hand(side);
+    let stated = gesture.hand_target(side);
     let pointing = gesture.pointing.filter(|pointing| pointing.hand == side);
     let reached = person.reach.filter(|_| side == person.body.hand);
     let palm = stated.or_else(|| {
@@ -305,7 +305,7 @@ fn arm(
         }
     };
     let [elbow, wrist, palm, finger_tip] = joints;
-    Arm {
+    ArmJoints {
         shoulder,
         elbow,
         wrist,
@@ -317,7 +317,7 @@ fn arm(
 
 /// Angles of upper arm and forearm that swing against the leg of their side, rad, positive ahead.
 fn swing(person: &PersonState, side: Side, height_m: f32) -> (f32, f32) {
-    let size = amplitude(&person.gait, height_m) * person.gait.direction.y;
+    let size = gait_amplitude(&person.gait, height_m) * person.gait.direction.y;
     let phase = match side {
         Side::Left => person.gait.phase,
         Side::Right => person.gait.phase + 0.5,

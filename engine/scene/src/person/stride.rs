@@ -95,7 +95,7 @@ fn advance(gait: &mut PersonGait, (way, turned): (Vec2, f32), step_s: f32, heigh
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::person::{Leg, PersonSkeleton, skeleton_of};
+    use crate::person::{LegJoints, PersonSkeleton, skeleton_of};
     use crate::random::RandomKey;
     use crate::{AgentBody, AgentId, AgentState, House, PersonState, ShoeboxMaterials};
 
@@ -132,7 +132,7 @@ mod tests {
             // Of the toes, or of the heel while the toes come down.
             let slip = [0, 1].map(|leg| {
                 let [a, b] = [0, 1].map(|k| pair[k].legs[leg]);
-                let heel = |leg: &Leg| leg.ankle + leg.foot * Vec3::new(0.0, -0.0663, 0.0);
+                let heel = |leg: &LegJoints| leg.ankle + leg.foot * Vec3::new(0.0, -0.0663, 0.0);
                 let heels = heel(&b).distance(heel(&a));
                 b.toe.distance(a.toe).min(heels)
             });

@@ -1,7 +1,7 @@
 //! Meshes of agents' bodies for cameras: capsules of three pieces, each a mesh of unit size that is stretched to the agent, and
 //! the pieces of persons. Every agent has places for both; those of the other kind are hidden.
 
-use crate::bvh::{RayMask, TriangleBvh, TriangleTag};
+use crate::bvh::{RayMask, TriangleAttributes, TriangleBvh};
 use crate::house::House;
 use crate::ids::AgentId;
 use crate::mesh::Mesh;
@@ -40,7 +40,7 @@ static SHAPES: LazyLock<AgentMeshes> = LazyLock::new(|| {
     let tube = turned(&[(1.0, 0.0), (1.0, 1.0)], &[(1.0, 0.0), (1.0, 0.0)]);
     let mut meshes = vec![ball.clone(), tube, ball];
     let tree = |mesh: &Mesh| {
-        let tag = |_| TriangleTag {
+        let tag = |_| TriangleAttributes {
             id: 0,
             mask: RayMask::BODY,
         };

@@ -5,7 +5,7 @@ mod agent_meshes;
 pub use agent_meshes::{BODY_PIECES, CAPSULE_PIECES, PlacedPiece, body_meshes, body_trees};
 
 use crate::bvh::{Hit, Instance, InstanceSet, PacketHits, Ray, RayMask, RayPacket, SceneBvh};
-use crate::house::{House, PlacedMesh, SurfaceHit, SurfaceOwner, normals_map};
+use crate::house::{House, PlacedMesh, SurfaceHit, SurfaceOwner, normal_matrix};
 use crate::ids::{EntityId, Id, MaterialId, PartId};
 use crate::state::State;
 use glam::{Affine3A, Mat3A, Vec2, Vec3};
@@ -200,7 +200,7 @@ impl RayScene {
         let (placed, triangle, world_from_mesh) = self.placed(hit);
         let mesh = &self.house.meshes[placed.mesh];
         let [a, b, c] = mesh.corners(triangle as usize);
-        let normal = normals_map(&world_from_mesh) * glam::Vec3A::from((b - a).cross(c - a));
+        let normal = normal_matrix(&world_from_mesh) * glam::Vec3A::from((b - a).cross(c - a));
         SurfaceHit {
             entity: placed.entity,
             owner: placed.owner,
@@ -234,7 +234,7 @@ impl RayScene {
         let [a, b, c] =
             mesh.triangles[triangle as usize].map(|vertex| mesh.normals[vertex as usize]);
         let normal = a * (1.0 - hit.u - hit.v) + b * hit.u + c * hit.v;
-        let normals: Mat3A = normals_map(&world_from_mesh);
+        let normals: Mat3A = normal_matrix(&world_from_mesh);
         let turned = Vec3::from(normals * glam::Vec3A::from(normal)).normalize_or_zero();
         if turned == Vec3::ZERO {
             self.surface(hit).normal

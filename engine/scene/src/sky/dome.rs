@@ -193,13 +193,13 @@ fn srgb_from_xyy(x: f32, y: f32, luminance: f32) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sky::Daytime;
+    use crate::sky::SkyConditions;
 
     fn sky(hour_h: f32, weather: Weather) -> Sky {
-        Sky::at(&Daytime {
+        Sky::at(&SkyConditions {
             hour_h,
             weather,
-            ..Daytime::default()
+            ..SkyConditions::default()
         })
         .unwrap()
     }

@@ -50,7 +50,7 @@ pub struct Sky {
 /// The time and place that determine a [`Sky`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Daytime {
+pub struct SkyConditions {
     /// Local solar time, h: 0 to 24, the sun highest at 12.
     pub hour_h: f32,
     /// Day of the year, 1 to 366.
@@ -63,7 +63,7 @@ pub struct Daytime {
     pub weather: Weather,
 }
 
-impl Default for Daytime {
+impl Default for SkyConditions {
     /// Half past one on a fine day in the middle of April, at 48 degrees north, with north along -Z.
     fn default() -> Self {
         Self {
@@ -83,21 +83,21 @@ impl Sky {
     /// [`SceneError::Range`] for a number out of the range that its field names.
     ///
     /// # Source
-    /// Position of the sun: see [`Daytime`]'s fields and J. W. Spencer, "Fourier series representation of the position of the
+    /// Position of the sun: see [`SkyConditions`]'s fields and J. W. Spencer, "Fourier series representation of the position of the
     /// sun", Search 2 (5), 172 (1971). Light of the sun: A. J. Preetham, P. Shirley, B. Smits, "A Practical Analytic Model
     /// for Daylight", SIGGRAPH 1999, appendix A.1, of the illuminance outside the air that the IES recommends. Light of the
     /// sky: IES Calculation Procedures Committee, "Recommended Practice for the Calculation of Daylight Availability",
     /// J. IES 13, 381 (1984); below level, P. M. Janiczek, J. A. De Young, USNO Circular 171 (1987).
     ///
     /// ```
-    /// use dwell_scene::{Daytime, Sky};
-    /// let noon = Sky::at(&Daytime { hour_h: 12.0, ..Daytime::default() })?;
-    /// let night = Sky::at(&Daytime { hour_h: 23.0, ..Daytime::default() })?;
+    /// use dwell_scene::{SkyConditions, Sky};
+    /// let noon = Sky::at(&SkyConditions { hour_h: 12.0, ..SkyConditions::default() })?;
+    /// let night = Sky::at(&SkyConditions { hour_h: 23.0, ..SkyConditions::default() })?;
     /// assert!(noon.to_sun.y > 0.7 && noon.sun_lx[1] > 50_000.0);
     /// assert!(night.to_sun.y < 0.0 && night.sun_lx == [0.0; 3]);
     /// # Ok::<(), dwell_scene::SceneError>(())
     /// ```
-    pub fn at(moment: &Daytime) -> Result<Self, SceneError> {
+    pub fn at(moment: &SkyConditions) -> Result<Self, SceneError> {
         moment.check()?;
         let north_yaw = moment.north_yaw_deg.to_radians();
         let north = space::rotation_from_yaw_pitch(north_yaw, 0.0) * Vec3::NEG_Z;
@@ -178,7 +178,7 @@ impl Weather {
     }
 }
 
-impl Daytime {
+impl SkyConditions {
     fn check(&self) -> Result<(), SceneError> {
         let hour = self.hour_h;
         check_range(AT, "hour_h", (0.0..=24.0).contains(&hour), hour, "0 to 24")?;
@@ -199,9 +199,9 @@ mod tests {
     use super::*;
 
     fn at(hour_h: f32) -> Sky {
-        Sky::at(&Daytime {
+        Sky::at(&SkyConditions {
             hour_h,
-            ..Daytime::default()
+            ..SkyConditions::default()
         })
         .unwrap()
     }
@@ -214,10 +214,10 @@ mod tests {
         assert!(noon.x.abs() < 1e-4 && noon.z > 0.5, "{noon}");
         assert!(evening.x < -0.5 && evening.y > 0.1, "{evening}");
         // A quarter turn of north turns the sun with it.
-        let turned = Sky::at(&Daytime {
+        let turned = Sky::at(&SkyConditions {
             hour_h: 12.0,
             north_yaw_deg: 90.0,
-            ..Daytime::default()
+            ..SkyConditions::default()
         })
         .unwrap();
         assert!(turned.north.abs_diff_eq(Vec3::NEG_X, 1e-6));
@@ -235,10 +235,10 @@ mod tests {
         let redness = |sky: &Sky| sky.sun_lx[0] / sky.sun_lx[2];
         assert!(redness(&evening) > 2.0 * redness(&noon));
         assert!(level(&night) < 0.1);
-        let dull = Sky::at(&Daytime {
+        let dull = Sky::at(&SkyConditions {
             hour_h: 12.0,
             weather: Weather::Overcast,
-            ..Daytime::default()
+            ..SkyConditions::default()
         })
         .unwrap();
         assert!(dull.sun_lx == [0.0; 3] && (10e3..25e3).contains(&dull.diffuse_lx));
@@ -246,8 +246,8 @@ mod tests {
 
     #[test]
     fn impossible_moments_are_refused_by_field() {
-        let refused = |change: &dyn Fn(&mut Daytime)| {
-            let mut moment = Daytime::default();
+        let refused = |change: &dyn Fn(&mut SkyConditions)| {
+            let mut moment = SkyConditions::default();
             change(&mut moment);
             Sky::at(&moment).unwrap_err().to_string()
         };

@@ -27,7 +27,9 @@ impl State {
         if self.overrides.is_empty() {
             return nominal;
         }
-        nominal.with(|field| self.override_value(format!("agent/{}/base/{field}", agent.index())))
+        nominal.with_overrides(|field| {
+            self.override_value(format!("agent/{}/base/{field}", agent.index()))
+        })
     }
 
     /// Returns the overridden horizontal field of view of the cameras at an agent's eyes, degrees; `None`: each has its own.

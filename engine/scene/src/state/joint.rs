@@ -290,7 +290,7 @@ impl State {
         else {
             return Ok(());
         };
-        let number = |field, base| self.scalar(&Address::of_joint(id, field), base);
+        let number = |field, base| self.override_or(&Address::of_joint(id, field), base);
         let axis = Vec3::new(
             number("axis_x", joint.axis.x),
             number("axis_y", joint.axis.y),

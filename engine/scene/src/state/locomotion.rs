@@ -138,7 +138,7 @@ impl Locomotion {
 
     /// Returns a copy with the numbers for which `value_of` gives a value replaced.
     #[must_use]
-    pub fn with(mut self, value_of: impl Fn(&str) -> Option<f32>) -> Self {
+    pub fn with_overrides(mut self, value_of: impl Fn(&str) -> Option<f32>) -> Self {
         match &mut self {
             Self::Walking(gait) => set(GAIT, gait, value_of),
             Self::DifferentialDrive(base) => set(DIFFERENTIAL, base, value_of),
@@ -192,7 +192,7 @@ mod tests {
             locomotion.check().unwrap();
             for (name, parameter) in locomotion.parameters() {
                 let other = parameter.low as f32 + 0.01;
-                let changed = locomotion.with(|field| (field == name).then_some(other));
+                let changed = locomotion.with_overrides(|field| (field == name).then_some(other));
                 for ((field, before), (_, after)) in locomotion
                     .parameters()
                     .into_iter()
@@ -205,7 +205,7 @@ mod tests {
                     };
                     assert_eq!(after.value, expected, "{name} {field}");
                 }
-                let wrong = locomotion.with(|field| (field == name).then_some(f32::NAN));
+                let wrong = locomotion.with_overrides(|field| (field == name).then_some(f32::NAN));
                 assert!(wrong.check().unwrap_err().to_string().contains(name));
             }
         }

@@ -28,7 +28,8 @@ pub use joint::JointParameters;
 pub use locomotion::{DifferentialDrive, HolonomicBase, LeggedLocomotion, Locomotion};
 pub use parameter::Parameter;
 pub use person::{
-    Gesture, PersonBody, PersonColors, PersonGait, PersonLook, PersonState, Pointing, Reach, Side,
+    Gesture, PersonBody, PersonColors, PersonGait, PersonState, PointingGesture, ReachGesture,
+    ResolvedPersonColors, Side,
 };
 pub use relations::{Contact, SupportDirection};
 

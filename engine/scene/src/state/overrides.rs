@@ -8,7 +8,7 @@ use crate::material::{Bands, PairContact, library};
 use crate::units::STANDARD_GRAVITY_M_S2;
 
 impl State {
-    pub(super) fn scalar(&self, address: &Address, base: f32) -> f32 {
+    pub(super) fn override_or(&self, address: &Address, base: f32) -> f32 {
         self.overrides
             .get(address)
             .map_or(base, |value| *value as f32)
@@ -26,7 +26,7 @@ impl State {
 
     /// Returns friction and restitution between two substances, with overrides.
     pub fn pair_contact(&self, a: &str, b: &str) -> PairContact {
-        let base = library().pair(a, b);
+        let base = library().pair_contact(a, b);
         let field = |name: &str| self.override_value(pair_address(a, b, name));
         PairContact {
             friction: field("friction").unwrap_or(base.friction),

@@ -58,9 +58,9 @@ impl State {
             ["material", material, field] => {
                 let material = &house.materials[find_material(house, address, material)?];
                 match field {
-                    "friction" => make(self.scalar(&known, material.friction), "1", 0.0, 10.0),
-                    "restitution" => make(self.scalar(&known, material.restitution), "1", 0.0, 1.0),
-                    "density_kg_m3" => make(self.scalar(&known, material.density_kg_m3), "kg/m3", 0.01, 30_000.0),
+                    "friction" => make(self.override_or(&known, material.friction), "1", 0.0, 10.0),
+                    "restitution" => make(self.override_or(&known, material.restitution), "1", 0.0, 1.0),
+                    "density_kg_m3" => make(self.override_or(&known, material.density_kg_m3), "kg/m3", 0.01, 30_000.0),
                     _ => Err(address.invalid(format!(
                         "no field {field:?}; a material has friction, restitution, density_kg_m3, absorption/HZ, scattering/HZ, transmission_loss_db/HZ"
                     ))),
@@ -106,14 +106,14 @@ impl State {
                 })?;
                 let base = (found.get)(joint).unwrap_or(0.0);
                 let [low, high] = self.joint_range(house, id, found);
-                make(self.scalar(&known, base), found.unit, low, high)
+                make(self.override_or(&known, base), found.unit, low, high)
             }
             ["part", part, "mass_kg"] => {
                 let part = &house.parts[find_part(house, address, part)?];
                 let base = part.mass_kg.ok_or_else(|| {
                     address.invalid("the part has no mass of its own: it follows from its material's density")
                 })?;
-                make(self.scalar(&known, base), "kg", 1e-6, 1e6)
+                make(self.override_or(&known, base), "kg", 1e-6, 1e6)
             }
             ["part", part, field] => {
                 let part = find_part(house, address, part)?;

@@ -58,7 +58,7 @@ impl PersonBody {
 
 /// The colours of a person's skin, hair, shirt, trousers and shoes, sRGB.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct PersonLook {
+pub struct ResolvedPersonColors {
     /// Of the skin.
     pub skin: [u8; 3],
     /// Of the hair.
@@ -109,7 +109,7 @@ const TROUSERS: [[u8; 3]; 5] = [
 ];
 const SHOES: [[u8; 3]; 3] = [[32, 30, 30], [222, 220, 216], [110, 70, 42]];
 
-impl PersonLook {
+impl ResolvedPersonColors {
     /// The look of a person: what is stated, and for the rest a draw of `key`.
     pub fn draw(stated: &PersonColors, key: RandomKey) -> Self {
         let pick = |what: &str, table: &[[u8; 3]], stated: Option<[u8; 3]>| {
@@ -139,7 +139,7 @@ pub struct PersonGait {
 
 /// What a person shows with an arm.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Pointing {
+pub struct PointingGesture {
     /// The hand.
     pub hand: Side,
     /// What is pointed at, m; `None`: what is looked at.
@@ -156,12 +156,12 @@ pub struct Gesture {
     /// The place of the right palm; `None`: the arm hangs or swings.
     pub right_hand: Option<Vec3>,
     /// The hand whose index finger is stretched.
-    pub pointing: Option<Pointing>,
+    pub pointing: Option<PointingGesture>,
 }
 
 impl Gesture {
     /// The target of a hand.
-    pub fn hand(&self, side: Side) -> Option<Vec3> {
+    pub fn hand_target(&self, side: Side) -> Option<Vec3> {
         match side {
             Side::Left => self.left_hand,
             Side::Right => self.right_hand,
@@ -169,7 +169,7 @@ impl Gesture {
     }
 
     /// Its points, by name.
-    pub fn points(&self) -> impl Iterator<Item = (&'static str, Vec3)> {
+    pub fn named_points(&self) -> impl Iterator<Item = (&'static str, Vec3)> {
         let at = self.pointing.and_then(|pointing| pointing.at);
         let named = [
             ("look_at", self.look_at),
@@ -184,7 +184,7 @@ impl Gesture {
 
 /// A hand that has just acted on something.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Reach {
+pub struct ReachGesture {
     /// Where it acted, m.
     pub point: Vec3,
     /// How long it stays there, s.
@@ -197,13 +197,13 @@ pub struct PersonState {
     /// Its body, as it was made.
     pub body: PersonBody,
     /// Its colours.
-    pub look: PersonLook,
+    pub look: ResolvedPersonColors,
     /// Its stride.
     pub gait: PersonGait,
     /// What it looks at and reaches for.
     pub gesture: Gesture,
     /// What its hand acted on a moment ago.
-    pub reach: Option<Reach>,
+    pub reach: Option<ReachGesture>,
 }
 
 impl PersonState {
@@ -211,7 +211,7 @@ impl PersonState {
     pub fn new(body: PersonBody, key: RandomKey) -> Self {
         Self {
             body,
-            look: PersonLook::draw(&body.colors, key),
+            look: ResolvedPersonColors::draw(&body.colors, key),
             gait: PersonGait::default(),
             gesture: Gesture::default(),
             reach: None,
@@ -229,6 +229,9 @@ impl PersonState {
             && stride
             && gait.direction.is_finite()
             && reach
-            && self.gesture.points().all(|(_, point)| point.is_finite())
+            && self
+                .gesture
+                .named_points()
+                .all(|(_, point)| point.is_finite())
     }
 }

@@ -1,6 +1,6 @@
 //! Random scenes, and an oracle in double precision that shares no code with the engine.
 
-use dwell_scene::bvh::{Hit, Instance, InstanceSet, Ray, RayMask, TriangleBvh, TriangleTag};
+use dwell_scene::bvh::{Hit, Instance, InstanceSet, Ray, RayMask, TriangleAttributes, TriangleBvh};
 use dwell_scene::random::RandomKey;
 use glam::{Affine3A, DVec3, Quat, Vec3};
 use std::sync::Arc;
@@ -13,17 +13,17 @@ pub(crate) struct Soup {
     center: Vec3,
 }
 
-fn tag(id: i32) -> TriangleTag {
+fn tag(id: i32) -> TriangleAttributes {
     // Odd ids are for ears only.
     let mask = if id % 2 == 0 {
         RayMask::ALL
     } else {
         RayMask::EAR
     };
-    TriangleTag { id, mask }
+    TriangleAttributes { id, mask }
 }
 
-fn tree(corners: &[[Vec3; 3]], tag: impl Fn(usize) -> TriangleTag) -> TriangleBvh {
+fn tree(corners: &[[Vec3; 3]], tag: impl Fn(usize) -> TriangleAttributes) -> TriangleBvh {
     let positions: Vec<Vec3> = corners.iter().flatten().copied().collect();
     let triangles: Vec<[u32; 3]> = (0..corners.len() as u32)
         .map(|k| [3 * k, 3 * k + 1, 3 * k + 2])
@@ -70,7 +70,7 @@ impl Soup {
     }
 
     pub(crate) fn tree(&self) -> TriangleBvh {
-        tree(&self.corners, |k| TriangleTag::new(self.ids[k]))
+        tree(&self.corners, |k| TriangleAttributes::new(self.ids[k]))
     }
 
     /// Returns the transforms of the instances of [`Self::split`].
@@ -105,10 +105,10 @@ impl Soup {
                     .iter()
                     .map(|t| t.map(|v| v - self.center))
                     .collect();
-                let TriangleTag { id, mask } = tag(20 + k as i32);
+                let TriangleAttributes { id, mask } = tag(20 + k as i32);
                 let world_from_mesh = Affine3A::from_translation(self.center) * *pose;
                 Instance {
-                    mesh: Arc::new(tree(&local, |_| TriangleTag::new(0))),
+                    mesh: Arc::new(tree(&local, |_| TriangleAttributes::new(0))),
                     world_from_mesh,
                     id,
                     mask,
@@ -346,6 +346,6 @@ pub(crate) fn joined(
     let triangles: Vec<[u32; 3]> = first.1.iter().copied().chain(later).collect();
     let count = first.1.len();
     TriangleBvh::build_tagged(&positions, &triangles, |k| {
-        TriangleTag::new(ids[usize::from(k >= count)])
+        TriangleAttributes::new(ids[usize::from(k >= count)])
     })
 }

@@ -1,6 +1,6 @@
 //! A control step of discrete actions.
 
-use super::hand_order::HandOrder;
+use super::hand_action_order::HandActionOrder;
 use super::step_sizes::turn_rate_rad_s;
 use super::{DiscreteAction, StepSizes};
 use crate::error::WorldError;
@@ -111,7 +111,7 @@ impl World {
             *control = own;
         }
         let mut hands = vec![None; steps.len()];
-        let HandOrder { order, contested } = self.hand_order(steps);
+        let HandActionOrder { order, contested } = self.hand_order(steps);
         for place in order {
             hands[place] = match contested[place] {
                 Some(object) => Some(self.contested_outcome(object)),
@@ -144,7 +144,10 @@ impl World {
     }
 
     /// Returns the hand's part of an action, or the refusal where it has no target; `None` for an action of the feet or neck.
-    pub(super) fn hand_action(&self, step: &AgentAction) -> Result<Option<HandPart>, WorldError> {
+    pub(super) fn hand_action(
+        &self,
+        step: &AgentAction,
+    ) -> Result<Option<HandActionResult>, WorldError> {
         let kind = step.action.kind();
         if !kind.is_hand_action() {
             return Ok(None);
@@ -182,4 +185,4 @@ impl World {
 }
 
 /// The hand's part of an action, or why it is refused.
-pub(super) type HandPart = Result<Box<dyn HandAction>, ActionOutcome>;
+pub(super) type HandActionResult = Result<Box<dyn HandAction>, ActionOutcome>;

@@ -81,7 +81,7 @@ pub(super) fn zero_velocity(_: &StepSizes, _: f64) -> AgentControl {
 
 impl ActionKind {
     /// One sentence about it.
-    pub fn about(&self) -> String {
+    pub fn description(&self) -> String {
         match self.about {
             DescriptionSource::Here(about) => about.to_owned(),
             DescriptionSource::DocComment(about) => about(),

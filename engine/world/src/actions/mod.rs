@@ -4,7 +4,7 @@
 
 mod action_set;
 mod discrete;
-mod hand_order;
+mod hand_action_order;
 mod kind;
 mod look_down;
 mod look_up;
@@ -109,7 +109,7 @@ mod tests {
         assert_eq!(names.len(), all().len());
         for kind in all() {
             let documented = kind.fields().iter().all(|field| !field.about.is_empty());
-            assert!(documented && kind.about().ends_with('.'), "{kind:?}");
+            assert!(documented && kind.description().ends_with('.'), "{kind:?}");
             let target = kind.target_description();
             assert_eq!(target.is_some(), kind.takes_target(), "{}", kind.name);
             assert!(target.is_none_or(|about| !about.is_empty()), "{kind:?}");

@@ -39,7 +39,7 @@ impl World {
         };
         let eye = state.world_from_eye() * eye_from_camera;
         let place = Vec2::new(column + 0.5, row + 0.5);
-        Self::image_target(camera, eye, place).ok_or_else(|| WorldError::Config {
+        Self::ray_target(camera, eye, place).ok_or_else(|| WorldError::Config {
             field: "pixel",
             found: format!("[{column}, {row}]"),
             allowed: "a pixel that sees something".to_owned(),
@@ -47,7 +47,7 @@ impl World {
     }
 
     /// Returns the ray through a place of an image, pixels from its left and upper edge; `None` where the camera sees nothing.
-    pub(crate) fn image_target(
+    pub(crate) fn ray_target(
         camera: &Camera,
         world_from_camera: Pose,
         place: Vec2,

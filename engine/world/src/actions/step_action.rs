@@ -126,7 +126,7 @@ impl StepAction {
         if let Some(velocity) = self.velocity.filter(|velocity| outside(velocity, -1.0)) {
             return fault("velocity", format!("{velocity:?}"), "numbers from -1 to 1");
         }
-        let words = dwell_semantics::vocabulary::count();
+        let words = dwell_semantics::vocabulary::size();
         let said = self.utterance.iter().flat_map(|said| &said.tokens);
         let mut written = said.chain(&self.question);
         if let Some(token) = written.find(|token| **token as usize >= words) {

@@ -27,7 +27,7 @@ pub(super) fn run(
     let start = Instant::now();
     batch.reset(&seeds)?;
     let reset_s = start.elapsed().as_secs_f64();
-    let specs = batch.specs();
+    let specs = batch.sensor_specs();
     let (n, which) = (options.envs, vec![true; options.envs]);
     let length = |spec: &SensorSpec, dtype| {
         if spec.dtype == dtype {

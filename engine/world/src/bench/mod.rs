@@ -10,7 +10,7 @@ mod table;
 mod unwinding;
 
 pub use physics::{BenchBoxes, BoxBody};
-pub use progress::BenchListener;
+pub use progress::BenchCallback;
 
 use crate::engines::Engines;
 use crate::error::WorldError;
@@ -167,7 +167,7 @@ pub fn run(
     what: &str,
     house: &str,
     options: &BenchOptions,
-    listener: BenchListener<'_>,
+    listener: BenchCallback<'_>,
 ) -> Result<Value, WorldError> {
     options.check()?;
     let stage = STAGES.iter().find(|(name, _)| *name == what);

@@ -3,17 +3,17 @@
 use crate::error::WorldError;
 
 /// A callback with a fraction (0 to 1) and what is measured next, which answers whether to go on.
-pub type BenchListener<'a> = &'a mut dyn FnMut(f64, &str) -> bool;
+pub type BenchCallback<'a> = &'a mut dyn FnMut(f64, &str) -> bool;
 
 /// Counts the parts of a bench, between which nothing is timed, and tells a listener.
 pub(super) struct BenchProgress<'a> {
-    listener: BenchListener<'a>,
+    listener: BenchCallback<'a>,
     parts: usize,
     done: usize,
 }
 
 impl<'a> BenchProgress<'a> {
-    pub(super) fn new(listener: BenchListener<'a>) -> Self {
+    pub(super) fn new(listener: BenchCallback<'a>) -> Self {
         Self {
             listener,
             parts: 1,

@@ -2,11 +2,11 @@
 
 mod shutter;
 
-pub(crate) use shutter::ImageExposure;
+pub(crate) use shutter::OngoingExposure;
 
 use crate::error::WorldError;
 use crate::world::World;
-use dwell_render::{Camera, Frame, ImageChannels, Optics, Preset, PreviousPoses, View};
+use dwell_render::{Camera, CameraLaws, Frame, ImageChannels, Preset, PreviousPoses, View};
 use dwell_scene::parallel::Threads;
 use dwell_scene::{AgentId, AgentState, EntityId, Pose};
 
@@ -34,7 +34,7 @@ pub enum CameraMount {
 
 /// A view with its camera's previous pose.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct MovingView {
+pub(crate) struct ViewMotion {
     pub(crate) view: View,
     /// The camera's pose a control step ago.
     pub(crate) previous_pose: Pose,
@@ -42,16 +42,16 @@ pub(crate) struct MovingView {
 
 impl World {
     /// The laws of a mount's cameras.
-    pub(crate) fn optics(&self, place: &CameraMount) -> Optics<'_> {
+    pub(crate) fn optics(&self, place: &CameraMount) -> CameraLaws<'_> {
         match place {
-            CameraMount::Agent(agent, _) => Optics::of(&self.state().laws, *agent),
-            CameraMount::World(_) | CameraMount::WorldWithout(..) => Optics::ideal(),
+            CameraMount::Agent(agent, _) => CameraLaws::of(&self.state().laws, *agent),
+            CameraMount::World(_) | CameraMount::WorldWithout(..) => CameraLaws::ideal(),
         }
     }
 
-    pub(crate) fn moving_view(&self, request: &ImageRequest) -> MovingView {
+    pub(crate) fn moving_view(&self, request: &ImageRequest) -> ViewMotion {
         let state = self.state();
-        let camera = self.optics(&request.mount).camera(request.camera);
+        let camera = self.optics(&request.mount).apply_to_camera(request.camera);
         let (is, was, hide): (Pose, Pose, Option<EntityId>) = match request.mount {
             CameraMount::World(pose) => (pose, pose, None),
             CameraMount::WorldWithout(agent, pose) => {
@@ -73,7 +73,7 @@ impl World {
             hidden_entity: hide,
             ..View::new(camera, is)
         };
-        MovingView {
+        ViewMotion {
             view,
             previous_pose: was,
         }
@@ -90,7 +90,7 @@ impl World {
         threads: Threads,
     ) -> Result<(Camera, Frame), WorldError> {
         channels.normals |= channels.depth && self.optics(&request.mount).needs_normals();
-        let mut take = ImageExposure::new(self, request, channels.rgb);
+        let mut take = OngoingExposure::new(self, request, channels.rgb);
         let mut frame = Frame::new(&take.camera(), channels);
         let mut jobs = Vec::new();
         take.jobs(self, frame.as_mut(), &mut jobs);

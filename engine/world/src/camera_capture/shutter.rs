@@ -1,6 +1,6 @@
 //! Pictures whose shutter is open or rolls: the moments that they are made of, and how those become one picture.
 
-use super::{ImageRequest, MovingView};
+use super::{ImageRequest, ViewMotion};
 use crate::motion_history::interpolate_back;
 use crate::world::World;
 use dwell_render::laws::mean_color;
@@ -33,15 +33,15 @@ struct SimultaneousRows<'a> {
 
 /// A picture that is being taken.
 #[derive(Debug)]
-pub(crate) struct ImageExposure {
-    shot: MovingView,
+pub(crate) struct OngoingExposure {
+    shot: ViewMotion,
     timing: RowTiming,
     moments: PastStates,
     /// Colours at each moment of the exposure; empty without one.
     exposed: Vec<Vec<u8>>,
 }
 
-impl ImageExposure {
+impl OngoingExposure {
     /// A picture of a world as it stands, as the laws of its camera have it. `has_color`: whether colours are wanted.
     pub(crate) fn new(world: &World, request: &ImageRequest, has_color: bool) -> Self {
         let shot = world.moving_view(request);

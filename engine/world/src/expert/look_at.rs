@@ -21,7 +21,7 @@ const STEEPEST_RAD: f32 = 1.5;
 
 /// What brings the middle of the view onto a thing.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum LookStep {
+pub(crate) enum LookAction {
     /// Nothing: it is there.
     Done,
     /// A turn or tilt.
@@ -32,7 +32,7 @@ pub(crate) enum LookStep {
 
 /// What of a thing is looked at.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum LookedAt {
+pub(crate) enum LookTarget {
     /// Anything.
     Anywhere,
     /// A level surface, on which things can be put.
@@ -43,15 +43,15 @@ pub(crate) enum LookedAt {
 pub(crate) fn look_at(
     world: &World,
     agent: AgentId,
-    (object, part): (ObjectId, LookedAt),
+    (object, part): (ObjectId, LookTarget),
     stride: &StepSizes,
-) -> LookStep {
+) -> LookAction {
     let Some(agent) = world.state().agents.get(agent) else {
-        return LookStep::Missed;
+        return LookAction::Missed;
     };
     let eye = agent.eye_position();
     // What is in the hand is looked past where something is put down, as the hand does.
-    let in_hand = agent.holding.filter(|_| part == LookedAt::LevelSurface);
+    let in_hand = agent.holding.filter(|_| part == LookTarget::LevelSurface);
     let held = in_hand.map(|held| world.house().entity_of_object(held));
     let entity = world.house().entity_of_object(object);
     let (turn, look) = (stride.turn_deg.to_radians(), stride.look_deg.to_radians());
@@ -84,7 +84,7 @@ pub(crate) fn look_at(
         };
         hit.is_some_and(|hit| {
             let surface = world.rays().surface(&hit);
-            let fits = part == LookedAt::Anywhere || surface.normal.y.abs() > LEVEL;
+            let fits = part == LookTarget::Anywhere || surface.normal.y.abs() > LEVEL;
             surface.entity == entity && fits
         })
     };
@@ -104,15 +104,15 @@ pub(crate) fn look_at(
     let find = |beside_rad: f32| steps.iter().copied().find(|own| meets(*own, beside_rad));
     // Where something is put down, a place with room around it comes first.
     let found = match part {
-        LookedAt::Anywhere => find(0.0),
-        LookedAt::LevelSurface => find(BESIDE_RAD).or_else(|| find(0.0)),
+        LookTarget::Anywhere => find(0.0),
+        LookTarget::LevelSurface => find(BESIDE_RAD).or_else(|| find(0.0)),
     };
     match found {
-        None => LookStep::Missed,
-        Some((0, 0)) => LookStep::Done,
-        Some((across, _)) if across > 0 => LookStep::Turn(DiscreteAction::TurnLeft),
-        Some((across, _)) if across < 0 => LookStep::Turn(DiscreteAction::TurnRight),
-        Some((_, up)) if up > 0 => LookStep::Turn(DiscreteAction::LookUp),
-        Some(_) => LookStep::Turn(DiscreteAction::LookDown),
+        None => LookAction::Missed,
+        Some((0, 0)) => LookAction::Done,
+        Some((across, _)) if across > 0 => LookAction::Turn(DiscreteAction::TurnLeft),
+        Some((across, _)) if across < 0 => LookAction::Turn(DiscreteAction::TurnRight),
+        Some((_, up)) if up > 0 => LookAction::Turn(DiscreteAction::LookUp),
+        Some(_) => LookAction::Turn(DiscreteAction::LookDown),
     }
 }

@@ -3,7 +3,7 @@
 mod door_opening;
 mod look_at;
 
-pub(crate) use look_at::{LookStep, LookedAt, look_at};
+pub(crate) use look_at::{LookAction, LookTarget, look_at};
 
 use crate::actions::{DiscreteAction, StepSizes};
 use crate::world::World;
@@ -198,7 +198,7 @@ impl ShortestPathFollower {
     }
 
     /// The next step of opening a thing in front of which it stands: towards it, or out of the way of its leaf.
-    pub fn open_thing(&mut self, world: &World, thing: ObjectId) -> DiscreteAction {
+    pub fn action_to_open(&mut self, world: &World, thing: ObjectId) -> DiscreteAction {
         let agent = world.state().agents.get(self.agent);
         let here = agent.and_then(|agent| self.grid.nearest(agent.position, 0.6));
         let aside = here.and_then(|here| self.avoid_swinging_door(world, here));
@@ -235,7 +235,7 @@ fn turn_towards(yaw_rad: f32, direction: Vec3, stride: &StepSizes) -> Option<Dis
 }
 
 /// The turn or tilt that brings a point into the middle of an agent's view; `None` when it already is there.
-pub(crate) fn face_point(
+pub(crate) fn action_towards_point(
     world: &World,
     agent: AgentId,
     target: Vec3,
@@ -264,7 +264,7 @@ pub fn action_towards_object(
     object: ObjectId,
     stride: &StepSizes,
 ) -> Option<DiscreteAction> {
-    face_point(
+    action_towards_point(
         world,
         agent,
         world.house().object_bounds(world.state(), object).center(),

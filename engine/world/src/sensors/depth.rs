@@ -43,6 +43,7 @@ fn write(look: ImageContext<'_>, out: ObservationBuffer<'_>) {
     if let ObservationBuffer::Float32(out) = out {
         let (frame, camera) = (look.frame, look.camera);
         out.copy_from_slice(&frame.depth);
-        look.optics().depth(camera, &frame.normals, look.key, out);
+        look.optics()
+            .apply_to_depth(camera, &frame.normals, look.key, out);
     }
 }

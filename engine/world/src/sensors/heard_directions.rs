@@ -1,6 +1,6 @@
 //! Whence the words come that an agent hears, and how loudly.
 
-use super::heard_tokens::{HeardConfig, request_ears};
+use super::heard_tokens::{HeardTokensConfig, request_ears};
 use super::{
     Dtype, ObservationBuffer, ObservedAgent, Sensor, SensorContext, SensorKind, SensorSetup,
     SensorSpec, parse_sensor_settings,
@@ -20,7 +20,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: "heard_directions",
     about: ABOUT,
     build,
-    settings: schema::fields_of::<HeardConfig>,
+    settings: schema::fields_of::<HeardTokensConfig>,
     image: None,
     goal_part: None,
 };
@@ -32,7 +32,8 @@ struct HeardDirectionsSensor {
 }
 
 fn build(value: &serde_json::Value, setup: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
-    let (own, slots) = parse_sensor_settings::<HeardConfig>(value)?.build(KIND.name, setup)?;
+    let (own, slots) =
+        parse_sensor_settings::<HeardTokensConfig>(value)?.build(KIND.name, setup)?;
     Ok(Box::new(HeardDirectionsSensor { own, slots }))
 }
 

@@ -23,7 +23,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: "heard_tokens",
     about: ABOUT,
     build,
-    settings: schema::fields_of::<HeardConfig>,
+    settings: schema::fields_of::<HeardTokensConfig>,
     image: None,
     goal_part: None,
 };
@@ -31,7 +31,7 @@ pub(super) const KIND: SensorKind = SensorKind {
 /// The settings of what is heard of words.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
-pub(super) struct HeardConfig {
+pub(super) struct HeardTokensConfig {
     /// The key in the observation; by default the sensor's kind.
     pub(super) name: Option<String>,
     /// Whose ears; by default those of the agent whom the environment is about.
@@ -40,7 +40,7 @@ pub(super) struct HeardConfig {
     pub(super) slots: u32,
 }
 
-impl Default for HeardConfig {
+impl Default for HeardTokensConfig {
     fn default() -> Self {
         Self {
             name: None,
@@ -50,7 +50,7 @@ impl Default for HeardConfig {
     }
 }
 
-impl HeardConfig {
+impl HeardTokensConfig {
     /// Returns the agent, and the number of slots.
     pub(super) fn build(
         self,
@@ -84,13 +84,14 @@ struct HeardTokensSensor {
 }
 
 fn build(value: &serde_json::Value, setup: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
-    let (own, slots) = parse_sensor_settings::<HeardConfig>(value)?.build(KIND.name, setup)?;
+    let (own, slots) =
+        parse_sensor_settings::<HeardTokensConfig>(value)?.build(KIND.name, setup)?;
     Ok(Box::new(HeardTokensSensor { own, slots }))
 }
 
 /// The number of a word that was not understood.
 fn unknown_token() -> i32 {
-    dwell_semantics::vocabulary::count() as i32
+    dwell_semantics::vocabulary::size() as i32
 }
 
 impl Sensor for HeardTokensSensor {

@@ -10,7 +10,7 @@ use crate::error::WorldError;
 use crate::eye_camera::EyeCamera;
 use crate::sensor_requests::SensorRequests;
 use crate::world::World;
-use dwell_render::{Camera, ClassSet, Frame, ImageChannels, Optics, View};
+use dwell_render::{Camera, CameraLaws, ClassSet, Frame, ImageChannels, View};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use serde::Serialize;
@@ -121,7 +121,7 @@ pub(super) struct ImageContext<'a> {
 
 impl ImageContext<'_> {
     /// The laws of the camera.
-    pub(super) fn optics(&self) -> Optics<'_> {
+    pub(super) fn optics(&self) -> CameraLaws<'_> {
         self.world.optics(&self.request.mount)
     }
 

@@ -6,7 +6,7 @@ use super::{
     parse_sensor_settings,
 };
 use crate::camera_capture::{CameraMount, ImageRequest};
-use crate::episode::{Episode, GoalPart};
+use crate::episode::{Episode, GoalField};
 use crate::error::WorldError;
 use crate::eye_camera::EyeCamera;
 use crate::schema;
@@ -23,7 +23,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     build,
     settings: schema::fields_of::<CameraConfig>,
     image: None,
-    goal_part: Some(GoalPart::Image),
+    goal_part: Some(GoalField::Image),
 };
 
 #[derive(Debug)]

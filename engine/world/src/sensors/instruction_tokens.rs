@@ -35,7 +35,7 @@ impl Sensor for InstructionTokensSensor {
             dtype: Dtype::Int32,
             unit: "token",
             low: 0.0,
-            high: dwell_semantics::vocabulary::count() as f64,
+            high: dwell_semantics::vocabulary::size() as f64,
             about: ABOUT,
         }
     }

@@ -50,7 +50,7 @@ pub(crate) use camera::mount;
 pub use image::{DisplayStyle, ImageObservationOptions, Observation, ObservationData};
 pub(crate) use picture_memory::{image_bytes, observation_bytes};
 
-use crate::episode::{Episode, GoalPart};
+use crate::episode::{Episode, GoalField};
 use crate::error::WorldError;
 use crate::schema::FieldSchema;
 use crate::sensor_requests::{RenderedImages, SensorRequests};
@@ -332,7 +332,7 @@ pub struct SensorKind {
     /// The image sensor's part in [`World::image_observations`].
     pub(crate) image: Option<image::ClassImageSensor>,
     /// What it observes of the goal; `None` for sensors that observe nothing of it, or in words.
-    pub goal_part: Option<GoalPart>,
+    pub goal_part: Option<GoalField>,
 }
 
 impl SensorKind {

@@ -4,7 +4,7 @@ use super::{
     Dtype, NameSettings, ObservationBuffer, Sensor, SensorContext, SensorKind, SensorSetup,
     SensorSpec, parse_sensor_settings,
 };
-use crate::episode::GoalPart;
+use crate::episode::GoalField;
 use crate::error::WorldError;
 use crate::schema;
 use dwell_semantics::category::categories;
@@ -17,7 +17,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     build,
     settings: schema::fields_of::<NameSettings>,
     image: None,
-    goal_part: Some(GoalPart::Class),
+    goal_part: Some(GoalField::Class),
 };
 
 #[derive(Debug)]

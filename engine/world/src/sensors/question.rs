@@ -4,7 +4,7 @@ use super::{
     Dtype, NoSettings, ObservationBuffer, Sensor, SensorContext, SensorKind, SensorSetup,
     SensorSpec, parse_sensor_settings,
 };
-use crate::episode::GoalPart;
+use crate::episode::GoalField;
 use crate::error::WorldError;
 use crate::schema;
 
@@ -16,7 +16,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     build,
     settings: schema::fields_of::<NoSettings>,
     image: None,
-    goal_part: Some(GoalPart::Question),
+    goal_part: Some(GoalField::Question),
 };
 
 #[derive(Debug)]

@@ -4,7 +4,7 @@ use super::{
     Dtype, NoSettings, ObservationBuffer, Sensor, SensorContext, SensorKind, SensorSetup,
     SensorSpec, parse_sensor_settings,
 };
-use crate::episode::GoalPart;
+use crate::episode::GoalField;
 use crate::error::WorldError;
 use crate::schema;
 
@@ -17,7 +17,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     build,
     settings: schema::fields_of::<NoSettings>,
     image: None,
-    goal_part: Some(GoalPart::Question),
+    goal_part: Some(GoalField::Question),
 };
 
 #[derive(Debug)]
@@ -36,7 +36,7 @@ impl Sensor for QuestionTokensSensor {
             dtype: Dtype::Int32,
             unit: "token",
             low: 0.0,
-            high: dwell_semantics::vocabulary::count() as f64,
+            high: dwell_semantics::vocabulary::size() as f64,
             about: ABOUT,
         }
     }

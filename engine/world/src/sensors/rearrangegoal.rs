@@ -4,7 +4,7 @@ use super::{
     AgentSensorSettings, Dtype, ObservationBuffer, ObservedAgent, Sensor, SensorContext,
     SensorKind, SensorSetup, SensorSpec,
 };
-use crate::episode::GoalPart;
+use crate::episode::GoalField;
 use crate::error::WorldError;
 use crate::schema;
 use dwell_scene::Pose;
@@ -23,7 +23,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     build,
     settings: schema::fields_of::<AgentSensorSettings>,
     image: None,
-    goal_part: Some(GoalPart::Placements),
+    goal_part: Some(GoalField::Placements),
 };
 
 #[derive(Debug)]

@@ -4,7 +4,7 @@ use super::{
     Dtype, NoSettings, ObservationBuffer, Sensor, SensorContext, SensorKind, SensorSetup,
     SensorSpec, parse_sensor_settings,
 };
-use crate::episode::GoalPart;
+use crate::episode::GoalField;
 use crate::error::WorldError;
 use crate::schema;
 use dwell_semantics::instruct::{CHARSET, MAX_TEXT_LEN};
@@ -18,7 +18,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     build,
     settings: schema::fields_of::<NoSettings>,
     image: None,
-    goal_part: Some(GoalPart::Replies),
+    goal_part: Some(GoalField::Replies),
 };
 
 #[derive(Debug)]

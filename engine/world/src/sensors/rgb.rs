@@ -41,6 +41,6 @@ fn build(value: &serde_json::Value, site: SensorSetup<'_>) -> Result<Box<dyn Sen
 fn write(look: ImageContext<'_>, out: ObservationBuffer<'_>) {
     if let ObservationBuffer::Uint8(out) = out {
         out.copy_from_slice(&look.frame.rgb);
-        look.optics().color(look.camera, look.key, out);
+        look.optics().apply_to_color(look.camera, look.key, out);
     }
 }

@@ -4,7 +4,7 @@ use super::{
     Dtype, NameSettings, ObservationBuffer, Sensor, SensorContext, SensorKind, SensorSetup,
     SensorSpec, parse_sensor_settings,
 };
-use crate::episode::GoalPart;
+use crate::episode::GoalField;
 use crate::error::WorldError;
 use crate::schema;
 use dwell_semantics::room_kind::room_kinds;
@@ -17,7 +17,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     build,
     settings: schema::fields_of::<NameSettings>,
     image: None,
-    goal_part: Some(GoalPart::Room),
+    goal_part: Some(GoalField::Room),
 };
 
 #[derive(Debug)]

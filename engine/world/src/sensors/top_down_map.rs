@@ -220,9 +220,9 @@ impl TopDownMapSensor {
 
     /// Writes all cells of the map in axes of the world.
     fn write_columns(&self, grid: &NavGrid, agent: &AgentState, level: LevelId, out: &mut [u8]) {
-        let columns = grid.columns();
+        let columns = grid.column_frame();
         let [x, z] = columns
-            .in_columns([agent.position.x, agent.position.z])
+            .column_coordinates([agent.position.x, agent.position.z])
             .map(|middle| middle.floor() as i64);
         let (width, height) = (self.config.width as usize, self.config.height as usize);
         for (cell, out) in out.iter_mut().enumerate() {
@@ -245,7 +245,7 @@ impl TopDownMapSensor {
         (world_from_map, level): (Pose, LevelId),
         out: &mut [u8],
     ) {
-        let columns = grid.columns();
+        let columns = grid.column_frame();
         let (width, height) = (self.config.width as usize, self.config.height as usize);
         let cell_m = self.config.cell_m;
         for (cell, out) in out.iter_mut().enumerate() {
@@ -291,7 +291,7 @@ impl Sensor for TopDownMapSensor {
         {
             let hidden = world.house().entity_of_agent(self.of.agent);
             self.seen
-                .look(grid, level, &self.sight, (agent, world.rays(), hidden));
+                .mark_visible(grid, level, &self.sight, (agent, world.rays(), hidden));
         }
         Ok(())
     }
@@ -310,7 +310,7 @@ impl Sensor for TopDownMapSensor {
     }
 
     fn restore(&mut self, world: &World, bytes: &[u8]) -> Result<(), WorldError> {
-        let columns = Self::update_grid(&mut self.grid, &self.walker, world)?.columns();
+        let columns = Self::update_grid(&mut self.grid, &self.walker, world)?.column_frame();
         let levels = world.house().levels.len();
         let found = SightedCells::from_bytes(&self.fingerprint(), levels, columns.count(), bytes);
         self.seen = found

@@ -5,7 +5,7 @@ use super::{
     Dtype, ObservationBuffer, Sensor, SensorContext, SensorKind, SensorSetup, SensorSpec,
     parse_sensor_settings,
 };
-use crate::episode::{Episode, GoalPart};
+use crate::episode::{Episode, GoalField};
 use crate::error::WorldError;
 use crate::eye_camera::EyeCamera;
 use crate::schema;
@@ -26,7 +26,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     build,
     settings: schema::fields_of::<CameraConfig>,
     image: None,
-    goal_part: Some(GoalPart::Placements),
+    goal_part: Some(GoalField::Placements),
 };
 
 struct UnshuffledRgbSensor {

@@ -52,7 +52,7 @@ fn write(look: ImageContext<'_>, out: ObservationBuffer<'_>) {
     };
     object_list::write_object_rows(&look, out, |sighting| {
         let (scene, state) = (world.rays(), world.state());
-        let alone = renderer.unoccluded_pixels(scene, state, &view, sighting.entity);
+        let alone = renderer.unoccluded_pixel_count(scene, state, &view, sighting.entity);
         let hidden = 1.0 - sighting.pixels as f32 / alone.max(sighting.pixels) as f32;
         [sighting.entity.0 as f32, sighting.pixels as f32, hidden]
     });

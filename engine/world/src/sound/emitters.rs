@@ -84,7 +84,7 @@ impl EmitterStates {
     }
 
     /// Returns the gains in the block that ended last. Shape (emitter,).
-    pub(super) fn fades(&self, house: &House, state: &State) -> Vec<GainRamp> {
+    pub(super) fn gain_ramps(&self, house: &House, state: &State) -> Vec<GainRamp> {
         if self.fades.is_empty() {
             let targets = self.target_pressures_pa(house, state).into_iter();
             return targets.map(GainRamp::steady).collect();

@@ -218,7 +218,7 @@ impl WorldSound {
             JointKind::Slide => ContactSound::Friction(FrictionSound {
                 position: middle,
                 kind: FrictionSoundKind::Slide,
-                force_n: friction / library().pair("wood", "wood").friction.max(0.1),
+                force_n: friction / library().pair_contact("wood", "wood").friction.max(0.1),
                 speed_m_s: speed,
                 length_s: 2.0 * step.length_s as f32,
                 partners: partners.clone(),

@@ -222,7 +222,7 @@ fn understand(
         intelligibility::speech_transmission_index(&speech_db, &noise_db, &transfer).ok()?;
     let sti = transmission.sti;
     // Number 0 is no word.
-    let words = dwell_semantics::vocabulary::count() as u32 - 1;
+    let words = dwell_semantics::vocabulary::size() as u32 - 1;
     let probability = intelligibility::token_recognition_probability(sti, words).ok()?;
     let word = token.checked_sub(1)?;
     let heard = intelligibility::hear_tokens(&[word], probability, words, key).ok()?;

@@ -129,7 +129,11 @@ impl WorldSound {
     }
 
     /// The signals of emitters that are on, each once, and the rate at which they are heard.
-    pub(crate) fn active_signals(&self, house: &House, state: &State) -> (Vec<String>, u32) {
+    pub(crate) fn active_signals_and_rate(
+        &self,
+        house: &House,
+        state: &State,
+    ) -> (Vec<String>, u32) {
         let emitters = house.emitters.iter().enumerate();
         let on = emitters.filter(|(k, emitter)| {
             emitter.sound_file.is_none() && self.emitters.is_on(house, state, *k)
@@ -205,7 +209,7 @@ impl WorldSound {
             let sources = self.sources(engines, rays, state, self.blocks - 1)?;
             ears.render_block(engines.house(), rays, state, &sources)?;
             // In the order of agents and receivers, whichever began first.
-            let order = |listener: &Listener| (listener.agent, listener.receiver_text());
+            let order = |listener: &Listener| (listener.agent, listener.receiver_key());
             let own = order(listener);
             let before = |other: &AgentListener| order(&other.listener) < own;
             let place = self.ears.partition_point(before);
@@ -245,7 +249,7 @@ impl WorldSound {
         }
         // The receivers of an agent are in one sound field, each with a noise of its own.
         let receiver = own.child("receiver");
-        Ok(stream.with_microphone_key(receiver.child(listener.receiver_text().as_str())))
+        Ok(stream.with_microphone_key(receiver.child(listener.receiver_key().as_str())))
     }
 
     /// Returns the sources of the block that has just ended or ends now: emitters, playbacks, and contacts.
@@ -259,8 +263,8 @@ impl WorldSound {
         let house = engines.house();
         let start = block * self.block as u64;
         let mut sources = Vec::new();
-        let fades = self.emitters.fades(house, state);
-        let places = engines.emitter_listening_points();
+        let fades = self.emitters.gain_ramps(house, state);
+        let places = engines.emission_points();
         for (k, (emitter, fade)) in house.emitters.iter().zip(fades).enumerate() {
             if fade.is_silent() {
                 continue;
@@ -285,7 +289,7 @@ impl WorldSound {
                 signal,
             });
         }
-        sources.extend(self.voices(state, rays, start));
+        sources.extend(self.voice_sources(state, rays, start));
         for touch in &self.touches {
             let mut signal = vec![0.0; self.block];
             touch.read(self.rate_hz, start, &mut signal);
@@ -327,7 +331,7 @@ impl WorldSound {
     }
 
     /// Lets a sound that has not begun yet begin so many seconds later, and end so long after its beginning, to the block.
-    pub(crate) fn delay(&mut self, handle: u64, offset_s: Option<f64>, duration_s: Option<f64>) {
+    pub(crate) fn schedule(&mut self, handle: u64, offset_s: Option<f64>, duration_s: Option<f64>) {
         let samples = |seconds: f64| (seconds * f64::from(self.rate_hz)).round() as u64;
         let (wait, length) = (offset_s.map_or(0, samples), duration_s.map(samples));
         let mut start = self.blocks * self.block as u64;

@@ -112,7 +112,7 @@ impl WorldSound {
             utterance,
         };
         let active = ActiveUtterance::new(spoken, (self.rate_hz, self.block), key)?;
-        if self.speaks(agent) {
+        if self.is_speaking(agent) {
             return Ok(false);
         }
         // In the order of agents, whoever begins first.
@@ -122,14 +122,19 @@ impl WorldSound {
     }
 
     /// Returns whether an agent's voice sounds in the next block.
-    pub(crate) fn speaks(&self, agent: AgentId) -> bool {
+    pub(crate) fn is_speaking(&self, agent: AgentId) -> bool {
         let next = self.blocks * self.block as u64;
         let mut spoken = self.spoken.iter();
         spoken.any(|own| own.spoken.agent == agent && own.end() > next)
     }
 
     /// Returns the voices of a block that begins at sample `start`.
-    pub(super) fn voices(&self, state: &State, rays: &RayScene, start: u64) -> Vec<BlockSource> {
+    pub(super) fn voice_sources(
+        &self,
+        state: &State,
+        rays: &RayScene,
+        start: u64,
+    ) -> Vec<BlockSource> {
         let sounding = self.spoken.iter().filter(|own| own.end() > start);
         let voices = sounding.filter_map(|own| {
             let speaker = state.agents.get(own.spoken.agent)?;

@@ -5,7 +5,7 @@
 //! the floor and sounds all the time; success within 1 m.
 
 use super::navigation::{
-    GoalKind, GoalSite, NavigationGoal, NavigationTask, StatedPoint, navigation_settings,
+    GoalContext, GoalKind, NavigationGoal, NavigationTask, StatedPoint, navigation_settings,
 };
 use super::point_nav::check_success_distance;
 use super::{Task, TaskKind, TaskSetup};
@@ -137,7 +137,7 @@ impl GoalKind for AudioNav {
         allowed: &dyn Fn(NavCell) -> bool,
     ) -> Option<NavigationGoal> {
         let cell = grid.sample(key, allowed)?;
-        Some(NavigationGoal::place(
+        Some(NavigationGoal::at_cell(
             "sound",
             grid,
             cell,
@@ -147,7 +147,7 @@ impl GoalKind for AudioNav {
 
     fn stated(
         &self,
-        site: &GoalSite<'_>,
+        site: &GoalContext<'_>,
         asked: &StatedGoal,
     ) -> Result<Arc<NavigationGoal>, WorldError> {
         let own = [
@@ -159,7 +159,7 @@ impl GoalKind for AudioNav {
             "offset_s",
             "duration_s",
         ];
-        asked.refuse_others(Self::NAME, &own)?;
+        asked.reject_other_fields(Self::NAME, &own)?;
         if asked.sound.is_some() && asked.sound_file.is_some() {
             return Err(WorldError::Config {
                 field: "episode.goal",
@@ -167,10 +167,10 @@ impl GoalKind for AudioNav {
                 allowed: "one of the two".to_owned(),
             });
         }
-        let place = asked.place(Self::NAME)?;
+        let place = asked.position(Self::NAME)?;
         let point = StatedPoint::on_grid(site.grid, "episode.goal.position", place)?;
         let radius_m = self.settings.success_distance_m;
-        Ok(Arc::new(NavigationGoal::point("sound", point, radius_m)))
+        Ok(Arc::new(NavigationGoal::at_point("sound", point, radius_m)))
     }
 
     fn begin(
@@ -203,7 +203,7 @@ impl GoalKind for AudioNav {
             place: SoundPlace::Point(floor + Vec3::Y * height_m),
             loops: true,
         };
-        world.play_between(request, asked.offset_s, asked.duration_s)?;
+        world.play_scheduled(request, asked.offset_s, asked.duration_s)?;
         Ok(ASKED.to_owned())
     }
 }

@@ -6,12 +6,12 @@
 use super::goal_cells::LargestIslandIndex;
 use super::navigation::{Leg, NavigationGoal, NavigationRules, navigation_settings};
 use super::object_nav::class_goals;
-use super::others::{Tour, TourMemory, position};
+use super::others::{Patrol, PatrolState, position};
 use super::point_nav::check_success_distance;
 use super::standing_room::FreeStartCells;
-use super::{PlayedAction, Task, TaskKind, TaskSetup, door_leaves::DoorLeaves, random_yaw_rad};
+use super::{ExecutedAction, Task, TaskKind, TaskSetup, door_leaves::DoorLeaves, random_yaw_rad};
 use crate::actions::DiscreteAction;
-use crate::episode::{Episode, EpisodeGoal, GoalPart, StepResult, category_of_class};
+use crate::episode::{Episode, EpisodeGoal, GoalField, StepResult, category_of_class};
 use crate::error::WorldError;
 use crate::metrics::NavigationMetrics;
 use crate::schema;
@@ -46,7 +46,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     about: "One agent knows of which class a thing is that the others are to find; they know what they hear of it.",
     has_goal: true,
     min_agents: 2,
-    goal_parts: &[GoalPart::Class],
+    goal_parts: &[GoalField::Class],
     max_steps: 1500,
     actions: DiscreteAction::DEFAULT,
     sensors: &[
@@ -135,7 +135,7 @@ struct ActiveEpisode {
     /// The way that the expert has chosen.
     chosen: Option<Leg>,
     /// Where the scripted guide goes to make way.
-    tour: Tour,
+    tour: Patrol,
     key: RandomKey,
     memory: FollowerMemory,
 }
@@ -328,7 +328,7 @@ impl Task for CooperateTask {
             choices,
             leg,
             chosen: None,
-            tour: Tour::default(),
+            tour: Patrol::default(),
             key,
             memory,
         });
@@ -345,7 +345,7 @@ impl Task for CooperateTask {
 
     fn restore(&mut self, _world: &World, bytes: &[u8]) -> Result<(), WorldError> {
         let refuse = || WorldError::Snapshot("what its follower has heard is none".to_owned());
-        let (memory, tour): (FollowerMemory, TourMemory) =
+        let (memory, tour): (FollowerMemory, PatrolState) =
             postcard::from_bytes(bytes).map_err(|_| refuse())?;
         let active = self.active.as_mut().ok_or_else(refuse)?;
         let count = active.choices.len();
@@ -353,7 +353,7 @@ impl Task for CooperateTask {
             return Err(refuse());
         }
         active.memory = memory;
-        active.tour = Tour::restored(tour, &self.setup, active.leg.guide.grid());
+        active.tour = Patrol::restored(tour, &self.setup, active.leg.guide.grid());
         active.chosen = None;
         Ok(())
     }
@@ -362,7 +362,7 @@ impl Task for CooperateTask {
         &mut self,
         world: &World,
         episode: &mut Episode,
-        played: &PlayedAction<'_>,
+        played: &ExecutedAction<'_>,
     ) -> StepResult {
         let own = self.setup.agent;
         let (Some(active), Some(agent)) = (&mut self.active, world.state().agents.get(own)) else {
@@ -428,12 +428,12 @@ impl Task for CooperateTask {
         };
         let goal = active.choices[chosen as usize].goal.clone();
         let leg = &active.leg;
-        let leg = active.chosen.get_or_insert_with(|| leg.to(goal));
+        let leg = active.chosen.get_or_insert_with(|| leg.with_goal(goal));
         if let Some(step) = leg.approach(world) {
             return step;
         }
         let looks_in_vain = !leg.is_reached(world, None);
-        if looks_in_vain && leg.leave_out_goals_here(world, super::navigation::ELSEWHERE_M) {
+        if looks_in_vain && leg.exclude_goals_within(world, super::navigation::ELSEWHERE_M) {
             return DiscreteAction::Wait;
         }
         DiscreteAction::Stop
@@ -443,7 +443,7 @@ impl Task for CooperateTask {
         let mut tokens = [0; MAX_TOKENS];
         let active = self.active.as_ref().filter(|_| self.role == Role::Guide);
         if let Some(goal) = active.and_then(|active| active.choices.first())
-            && !world.speaks(self.setup.agent)
+            && !world.is_speaking(self.setup.agent)
         {
             tokens[0] = goal.word;
         }

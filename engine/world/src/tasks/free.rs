@@ -4,7 +4,7 @@
 //! floor that it can walk, looking anywhere. Every reward is 0, and an episode ends with `stop`, without success.
 
 use super::standing_room::sample_start;
-use super::{PlayedAction, Task, TaskKind, TaskSetup, random_yaw_rad};
+use super::{ExecutedAction, Task, TaskKind, TaskSetup, random_yaw_rad};
 use crate::actions::DiscreteAction;
 use crate::episode::{Episode, EpisodeGoal, StepResult};
 use crate::error::WorldError;
@@ -133,7 +133,7 @@ impl Task for FreeTask {
         &mut self,
         world: &World,
         episode: &mut Episode,
-        played: &PlayedAction<'_>,
+        played: &ExecutedAction<'_>,
     ) -> StepResult {
         if let Some(agent) = world.state().agents.get(self.setup.agent) {
             let progress = &mut episode.progress;

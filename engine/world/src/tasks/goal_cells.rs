@@ -1,6 +1,6 @@
 //! Candidate cells of goals: those of a grid's largest island, by place and by room.
 
-use dwell_scene::interrupt::PollEvery;
+use dwell_scene::interrupt::CancelPoller;
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::{Aabb, House, RoomId};
 use glam::Vec3;
@@ -59,12 +59,12 @@ impl<'a> LargestIslandIndex<'a> {
 
     /// The cells that have one of some rooms all around, so that an agent that stops anywhere on them counts; rising.
     pub(super) fn cells_in_rooms(&self, house: &House, rooms: &[RoomId]) -> Vec<NavCell> {
-        let mut pace = PollEvery::new(CELLS_PER_CHECK);
+        let mut pace = CancelPoller::new(CELLS_PER_CHECK);
         let sides = self.sides.get_or_init(|| {
             let edge = self.grid.config().cell_m;
             let sides = [(-edge, 0.0), (edge, 0.0), (0.0, -edge), (0.0, edge)];
             let of = |cell: &NavCell| {
-                pace.turn();
+                pace.count_one();
                 let at = self.grid.position(*cell);
                 sides.map(|(dx, dz)| house.room_at(at + Vec3::new(dx, 0.1, dz)))
             };

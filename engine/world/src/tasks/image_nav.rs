@@ -7,7 +7,7 @@ use super::navigation::{GoalKind, NavigationGoal, NavigationTask, navigation_set
 use super::point_nav::check_success_distance;
 use super::{Task, TaskKind, TaskSetup, random_yaw_rad};
 use crate::actions::DiscreteAction;
-use crate::episode::GoalPart;
+use crate::episode::GoalField;
 use crate::episode_spec::StatedGoal;
 use crate::error::WorldError;
 use crate::schema;
@@ -21,7 +21,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     about: "Go to where a picture was taken, then stop within 1 m of there.",
     has_goal: true,
     min_agents: 1,
-    goal_parts: &[GoalPart::Image],
+    goal_parts: &[GoalField::Image],
     max_steps: 1000,
     actions: DiscreteAction::DEFAULT,
     sensors: &["rgb", "depth", "imagegoal"],
@@ -68,7 +68,8 @@ impl GoalKind for ImageNav {
         allowed: &dyn Fn(NavCell) -> bool,
     ) -> Option<NavigationGoal> {
         let cell = grid.sample(key, allowed)?;
-        let mut goal = NavigationGoal::place("image", grid, cell, self.settings.success_distance_m);
+        let mut goal =
+            NavigationGoal::at_cell("image", grid, cell, self.settings.success_distance_m);
         goal.told.yaw_rad = random_yaw_rad(key);
         Some(goal)
     }

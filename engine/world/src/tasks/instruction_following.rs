@@ -95,7 +95,8 @@ impl GoalKind for InstructionFollowing {
                     objects: asked.objects.clone(),
                     ..EpisodeGoal::default()
                 };
-                let offer = NavigationGoal::fulfilled((world, agent), ground, asked, told);
+                let offer =
+                    NavigationGoal::from_instruction_goal((world, agent), ground, asked, told);
                 offers.extend(offer.map(|offer| NavigationGoal {
                     instruction: Some(instruction),
                     ..offer

@@ -29,8 +29,8 @@ mod tidy;
 
 use crate::actions::{ActionSet, DiscreteAction, HandTarget, StepAction, StepSizes};
 use crate::episode::{
-    Answer, AnswerField, Episode, GoalPart, MAX_ANSWER_FIELDS, MAX_QUESTION_TOKENS, QuestionTokens,
-    StepResult, TaskMeasure,
+    Answer, AnswerField, Episode, GoalField, MAX_ANSWER_FIELDS, MAX_QUESTION_TOKENS,
+    QuestionTokens, StepResult, TaskMeasure,
 };
 use crate::episode_spec::EpisodeSpec;
 use crate::error::WorldError;
@@ -111,7 +111,7 @@ pub trait Task: Debug + Send + Sync {
         &mut self,
         world: &World,
         episode: &mut Episode,
-        played: &PlayedAction<'_>,
+        played: &ExecutedAction<'_>,
     ) -> StepResult;
 
     /// Judges a step again when those of all agents have been judged, `verdicts` by agent: of tasks that several agents have together.
@@ -150,7 +150,7 @@ pub trait Task: Debug + Send + Sync {
         [0; MAX_QUESTION_TOKENS]
     }
 
-    /// What its oracle replied to what was asked in the latest step; of tasks whose goals have [`GoalPart::Replies`].
+    /// What its oracle replied to what was asked in the latest step; of tasks whose goals have [`GoalField::Replies`].
     fn reply(&self) -> Option<&Reply> {
         None
     }
@@ -166,14 +166,14 @@ pub trait Task: Debug + Send + Sync {
 
 /// An action that was made, and what became of it.
 #[derive(Clone, Copy, Debug)]
-pub struct PlayedAction<'a> {
+pub struct ExecutedAction<'a> {
     /// The action.
     pub action: &'a StepAction,
     /// What became of it.
     pub outcome: &'a ActionOutcome,
 }
 
-impl PlayedAction<'_> {
+impl ExecutedAction<'_> {
     /// Returns whether it declares the task done.
     pub fn is_stop(&self) -> bool {
         self.action.action == DiscreteAction::Stop
@@ -227,7 +227,7 @@ pub struct TaskKind {
     /// How many agents must act at least in its environment.
     pub min_agents: usize,
     /// What its goals have in every episode.
-    pub goal_parts: &'static [GoalPart],
+    pub goal_parts: &'static [GoalField],
     /// Control steps after which an episode is cut off.
     pub max_steps: u64,
     /// The discrete actions of its environment by default, in the order of their numbers.

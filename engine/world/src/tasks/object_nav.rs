@@ -4,12 +4,14 @@
 //! The success rule of `RoboTHOR` (M. Deitke et al., CVPR 2020): `stop` within 1 m of a thing of the class that is in view.
 
 use super::goal_cells::LargestIslandIndex;
-use super::navigation::{GoalKind, GoalSite, NavigationGoal, NavigationTask, navigation_settings};
+use super::navigation::{
+    GoalContext, GoalKind, NavigationGoal, NavigationTask, navigation_settings,
+};
 use super::point_nav::check_success_distance;
-use super::stated_things::stated_things;
+use super::stated_things::resolve_stated_objects;
 use super::{Task, TaskKind, TaskSetup};
 use crate::actions::DiscreteAction;
-use crate::episode::{EpisodeGoal, GoalPart, category_of_class};
+use crate::episode::{EpisodeGoal, GoalField, category_of_class};
 use crate::episode_spec::StatedGoal;
 use crate::error::WorldError;
 use crate::schema;
@@ -19,7 +21,7 @@ use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, ObjectId};
 use dwell_semantics::category::categories;
 use dwell_semantics::english;
-use dwell_semantics::instruct::{InstructionGoal, is_sought};
+use dwell_semantics::instruct::{InstructionGoal, is_search_target};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -29,7 +31,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     about: "Find a thing of a class, such as a chair, and stop within 1 m of it with the thing in view.",
     has_goal: true,
     min_agents: 1,
-    goal_parts: &[GoalPart::Class],
+    goal_parts: &[GoalField::Class],
     max_steps: 1000,
     actions: DiscreteAction::DEFAULT,
     sensors: &["rgb", "depth", "semantic", "gps", "compass", "objectgoal"],
@@ -92,11 +94,11 @@ impl GoalKind for ObjectNav {
 
     fn stated(
         &self,
-        site: &GoalSite<'_>,
+        site: &GoalContext<'_>,
         asked: &StatedGoal,
     ) -> Result<Arc<NavigationGoal>, WorldError> {
-        asked.refuse_others(Self::NAME, &["class", "also", "objects", "positions"])?;
-        let (objects, class) = stated_things(site.world, asked)?;
+        asked.reject_other_fields(Self::NAME, &["class", "also", "objects", "positions"])?;
+        let (objects, class) = resolve_stated_objects(site.world, asked)?;
         let mut offers = site.offers.iter();
         if let Some(offer) =
             offers.find(|offer| offer.told.class == class && offer.told.objects == objects)
@@ -112,7 +114,8 @@ impl GoalKind for ObjectNav {
         let ground = LargestIslandIndex::of(site.grid);
         let radius_m = self.settings.success_distance_m as f32;
         let goal = InstructionGoal::objects(objects, radius_m);
-        let found = NavigationGoal::fulfilled((site.world, site.agent), &ground, goal, told);
+        let found =
+            NavigationGoal::from_instruction_goal((site.world, site.agent), &ground, goal, told);
         found.map(Arc::new).ok_or_else(|| WorldError::Config {
             field: "episode.goal",
             found: "one of things that nobody can stand near and see".to_owned(),
@@ -146,7 +149,7 @@ pub(super) fn class_goals(
     for object in house.objects.ids() {
         let class = classes.of(house.entity_of_object(object).0);
         let sought = category_of_class(class).is_some_and(|row| {
-            is_sought(row) && (asked.is_empty() || asked.iter().any(|name| name == row.name))
+            is_search_target(row) && (asked.is_empty() || asked.iter().any(|name| name == row.name))
         });
         if sought {
             by_class.entry(class).or_default().push(object);
@@ -160,7 +163,7 @@ pub(super) fn class_goals(
             class,
             ..EpisodeGoal::default()
         };
-        NavigationGoal::fulfilled((world, agent), ground, goal, told)
+        NavigationGoal::from_instruction_goal((world, agent), ground, goal, told)
     });
     goals.collect()
 }

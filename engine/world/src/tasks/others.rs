@@ -20,21 +20,21 @@ const NEXT_PLACE_M: f32 = 3.0;
 
 /// A walk from place to place, each drawn from a key.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Tour {
+pub(super) struct Patrol {
     way: Option<ShortestPathFollower>,
-    memory: TourMemory,
+    memory: PatrolState,
 }
 
 /// Where a tour has come to. A guide to its place is made anew from it, and only forgets a manoeuvre that it was about.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct TourMemory {
+pub(super) struct PatrolState {
     /// Number of places so far.
     places: u64,
     /// The present one, m.
     goal: Option<[f32; 3]>,
 }
 
-impl Tour {
+impl Patrol {
     /// Returns the next step; `wait` where the next place has just been chosen.
     pub(super) fn next_action(
         &mut self,
@@ -51,31 +51,31 @@ impl Tour {
         let goal = grid.sample(place, |cell| {
             grid.island(cell) == Some(0) && grid.position(cell).distance(here) >= NEXT_PLACE_M
         });
-        self.memory = TourMemory {
+        self.memory = PatrolState {
             places: self.memory.places + 1,
             goal: goal.map(|cell| grid.position(cell).to_array()),
         };
-        self.way = goal.map(|cell| way_to(setup, grid, &[cell]));
+        self.way = goal.map(|cell| follower_to(setup, grid, &[cell]));
         DiscreteAction::Wait
     }
 
     /// What is kept of it in snapshots.
-    pub(super) fn memory(&self) -> TourMemory {
+    pub(super) fn memory(&self) -> PatrolState {
         self.memory
     }
 
     /// The tour that has come to where `memory` says.
-    pub(super) fn restored(memory: TourMemory, setup: &TaskSetup, grid: &Arc<NavGrid>) -> Self {
+    pub(super) fn restored(memory: PatrolState, setup: &TaskSetup, grid: &Arc<NavGrid>) -> Self {
         let cell = memory.goal.and_then(|goal| grid.nearest(goal.into(), 0.5));
         Self {
-            way: cell.map(|cell| way_to(setup, grid, &[cell])),
+            way: cell.map(|cell| follower_to(setup, grid, &[cell])),
             memory,
         }
     }
 }
 
 /// Returns what a task keeps of an episode and of a tour, as bytes for snapshots.
-pub(super) fn episode_bytes<M: Serialize>(memory: &M, tour: &Tour) -> Vec<u8> {
+pub(super) fn episode_bytes<M: Serialize>(memory: &M, tour: &Patrol) -> Vec<u8> {
     postcard::to_stdvec(&(memory, tour.memory)).expect("plain data can always be written to memory")
 }
 
@@ -87,11 +87,11 @@ pub(super) fn restored_episode<M: DeserializeOwned>(
     world: &World,
     (setup, task): (&TaskSetup, &str),
     bytes: &[u8],
-) -> Result<(M, Tour), WorldError> {
+) -> Result<(M, Patrol), WorldError> {
     let (memory, tour) = postcard::from_bytes(bytes)
         .map_err(|_| WorldError::Snapshot(format!("what {task} keeps of its episode is none")))?;
     let grid = world.engines().nav_grid(&setup.body(world, task)?)?;
-    Ok((memory, Tour::restored(tour, setup, &grid)))
+    Ok((memory, Patrol::restored(tour, setup, &grid)))
 }
 
 /// Opens all doors, and places an agent anywhere on the largest piece of floor, looking anywhere. Returns where, m, and its heading, rad.
@@ -127,7 +127,7 @@ pub(super) fn position(world: &World, agent: AgentId) -> Vec3 {
 }
 
 /// Returns a guide to the nearest of some cells.
-pub(super) fn way_to(
+pub(super) fn follower_to(
     setup: &TaskSetup,
     grid: &Arc<NavGrid>,
     cells: &[NavCell],

@@ -5,8 +5,10 @@
 //! That following is to stay within 2 m is as in the social navigation of X. Puig et al., "Habitat 3.0", 2023.
 
 use super::audio_nav::{check_sounds, play_signal};
-use super::others::{Tour, episode_bytes, place_anywhere, position, restored_episode, way_to};
-use super::{PlayedAction, Task, TaskKind, TaskSetup};
+use super::others::{
+    Patrol, episode_bytes, follower_to, place_anywhere, position, restored_episode,
+};
+use super::{ExecutedAction, Task, TaskKind, TaskSetup};
 use crate::actions::DiscreteAction;
 use crate::episode::{Episode, EpisodeGoal, StepResult, TaskMeasure};
 use crate::error::WorldError;
@@ -179,7 +181,7 @@ struct ActiveEpisode {
     target: AgentId,
     leads: bool,
     key: RandomKey,
-    tour: Tour,
+    tour: Patrol,
     memory: Progress,
 }
 
@@ -246,7 +248,7 @@ impl Task for PiedPiperTask {
             target,
             leads,
             key,
-            tour: Tour::default(),
+            tour: Patrol::default(),
             memory: Progress {
                 distance_m: self.distance_m(world, target),
                 ..Progress::default()
@@ -284,7 +286,7 @@ impl Task for PiedPiperTask {
         &mut self,
         world: &World,
         episode: &mut Episode,
-        played: &PlayedAction<'_>,
+        played: &ExecutedAction<'_>,
     ) -> StepResult {
         let Some(agent) = world.state().agents.get(self.setup.agent) else {
             return StepResult::default();
@@ -361,7 +363,8 @@ impl Task for PiedPiperTask {
         }
         // The right one moves on, and so does its place.
         let cell = grid.nearest(there, 1.0);
-        let step = cell.and_then(|cell| way_to(&self.setup, &grid, &[cell]).next_action(world));
+        let step =
+            cell.and_then(|cell| follower_to(&self.setup, &grid, &[cell]).next_action(world));
         step.unwrap_or(DiscreteAction::Wait)
     }
 }

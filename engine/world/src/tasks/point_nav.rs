@@ -5,11 +5,11 @@
 //! habitat-lab: 0.2 m, twice the radius of its agent.
 
 use super::navigation::{
-    GoalKind, GoalSite, NavigationGoal, NavigationTask, StatedPoint, navigation_settings,
+    GoalContext, GoalKind, NavigationGoal, NavigationTask, StatedPoint, navigation_settings,
 };
 use super::{Task, TaskKind, TaskSetup};
 use crate::actions::DiscreteAction;
-use crate::episode::GoalPart;
+use crate::episode::GoalField;
 use crate::episode_spec::StatedGoal;
 use crate::error::WorldError;
 use crate::schema;
@@ -24,7 +24,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     about: "Go to a point that is given by distance and direction, then stop within 0.2 m of it.",
     has_goal: true,
     min_agents: 1,
-    goal_parts: &[GoalPart::Position],
+    goal_parts: &[GoalField::Position],
     max_steps: 1000,
     actions: DiscreteAction::DEFAULT,
     sensors: &["rgb", "depth", "pointgoal_with_gps_compass"],
@@ -83,7 +83,7 @@ impl GoalKind for PointNav {
         allowed: &dyn Fn(NavCell) -> bool,
     ) -> Option<NavigationGoal> {
         let cell = grid.sample(key, allowed)?;
-        Some(NavigationGoal::place(
+        Some(NavigationGoal::at_cell(
             "point",
             grid,
             cell,
@@ -93,14 +93,14 @@ impl GoalKind for PointNav {
 
     fn stated(
         &self,
-        site: &GoalSite<'_>,
+        site: &GoalContext<'_>,
         asked: &StatedGoal,
     ) -> Result<Arc<NavigationGoal>, WorldError> {
-        asked.refuse_others(Self::NAME, &["position"])?;
-        let place = asked.place(Self::NAME)?;
+        asked.reject_other_fields(Self::NAME, &["position"])?;
+        let place = asked.position(Self::NAME)?;
         let point = StatedPoint::on_grid(site.grid, "episode.goal.position", place)?;
         let radius_m = self.settings.success_distance_m;
-        Ok(Arc::new(NavigationGoal::point("point", point, radius_m)))
+        Ok(Arc::new(NavigationGoal::at_point("point", point, radius_m)))
     }
 
     fn begin(

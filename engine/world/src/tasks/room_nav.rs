@@ -4,7 +4,7 @@ use super::goal_cells::LargestIslandIndex;
 use super::navigation::{GoalKind, NavigationGoal, NavigationTask, navigation_settings};
 use super::{Task, TaskKind, TaskSetup};
 use crate::actions::DiscreteAction;
-use crate::episode::{EpisodeGoal, GoalPart};
+use crate::episode::{EpisodeGoal, GoalField};
 use crate::episode_spec::StatedGoal;
 use crate::error::WorldError;
 use crate::schema;
@@ -22,7 +22,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     about: "Go to a room of a kind, such as a kitchen, then stop in it.",
     has_goal: true,
     min_agents: 1,
-    goal_parts: &[GoalPart::Room],
+    goal_parts: &[GoalField::Room],
     max_steps: 1000,
     actions: DiscreteAction::DEFAULT,
     sensors: &["rgb", "depth", "gps", "compass", "roomgoal"],
@@ -99,7 +99,7 @@ impl GoalKind for RoomNav {
                 room_kind: row as i32 + 1,
                 ..EpisodeGoal::default()
             };
-            NavigationGoal::fulfilled((world, agent), ground, goal, told)
+            NavigationGoal::from_instruction_goal((world, agent), ground, goal, told)
         });
         goals.collect()
     }

@@ -10,7 +10,7 @@ use super::navigation::{GoalKind, NavigationGoal, NavigationTask, navigation_set
 use super::point_nav::check_success_distance;
 use super::{Task, TaskKind, TaskSetup};
 use crate::actions::DiscreteAction;
-use crate::episode::{EpisodeGoal, GoalPart, category_of_class};
+use crate::episode::{EpisodeGoal, GoalField, category_of_class};
 use crate::episode_spec::StatedGoal;
 use crate::error::WorldError;
 use crate::schema;
@@ -54,7 +54,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     about: "Go to the thing that was heard, also when it has fallen silent, and stop within 1 m of it with the thing in view.",
     has_goal: true,
     min_agents: 1,
-    goal_parts: &[GoalPart::Class],
+    goal_parts: &[GoalField::Class],
     max_steps: 1000,
     actions: DiscreteAction::DEFAULT,
     sensors: &["rgb", "depth", "gps", "compass", "audio", "spectrogram"],
@@ -159,7 +159,7 @@ impl GoalKind for SemanticAudioNav {
                 class,
                 ..EpisodeGoal::default()
             };
-            NavigationGoal::fulfilled((world, agent), ground, goal, told)
+            NavigationGoal::from_instruction_goal((world, agent), ground, goal, told)
         });
         sounding.collect()
     }

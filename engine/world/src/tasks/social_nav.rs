@@ -5,9 +5,9 @@
 //! look at it. The names of the measures follow those of habitat-lab's `SocialNavStats`.
 
 use super::others::{
-    Tour, episode_bytes, place_anywhere, position, restored_episode, sees, way_to,
+    Patrol, episode_bytes, follower_to, place_anywhere, position, restored_episode, sees,
 };
-use super::{PlayedAction, Task, TaskKind, TaskSetup};
+use super::{ExecutedAction, Task, TaskKind, TaskSetup};
 use crate::actions::DiscreteAction;
 use crate::episode::{Episode, EpisodeGoal, StepResult, TaskMeasure};
 use crate::error::WorldError;
@@ -128,7 +128,7 @@ struct SocialNavTask {
 #[derive(Debug)]
 struct ActiveEpisode {
     key: RandomKey,
-    tour: Tour,
+    tour: Patrol,
     memory: Progress,
 }
 
@@ -222,7 +222,7 @@ impl Task for SocialNavTask {
         };
         self.active = Some(ActiveEpisode {
             key,
-            tour: Tour::default(),
+            tour: Patrol::default(),
             memory: Progress {
                 // Who is placed first does not know yet where the person begins.
                 distance_m: f32::INFINITY,
@@ -261,7 +261,7 @@ impl Task for SocialNavTask {
         &mut self,
         world: &World,
         episode: &mut Episode,
-        played: &PlayedAction<'_>,
+        played: &ExecutedAction<'_>,
     ) -> StepResult {
         let (own, person) = (self.setup.agent, self.person());
         let Some(agent) = world.state().agents.get(own) else {
@@ -366,14 +366,15 @@ impl Task for SocialNavTask {
                 (ASIDE_M[0]..ASIDE_M[1]).contains(&apart_m)
             };
             let aside: Vec<NavCell> = grid.walkable().filter(is_aside).collect();
-            let step = way_to(&self.setup, &grid, &aside).next_action(world);
+            let step = follower_to(&self.setup, &grid, &aside).next_action(world);
             return step.unwrap_or(DiscreteAction::Wait);
         }
         if seen && distance_m < KEEP_M {
             return self.face_person(world).unwrap_or(DiscreteAction::Wait);
         }
         let cell = grid.nearest(there, 1.0);
-        let step = cell.and_then(|cell| way_to(&self.setup, &grid, &[cell]).next_action(world));
+        let step =
+            cell.and_then(|cell| follower_to(&self.setup, &grid, &[cell]).next_action(world));
         step.unwrap_or(DiscreteAction::Wait)
     }
 }

@@ -7,7 +7,7 @@
 
 use super::audio_nav::{SOUNDS, check_sounds, play_signal};
 use super::standing_room::sample_start;
-use super::{PlayedAction, Task, TaskKind, TaskSetup, random_yaw_rad};
+use super::{ExecutedAction, Task, TaskKind, TaskSetup, random_yaw_rad};
 use crate::actions::DiscreteAction;
 use crate::episode::{
     Answer, AnswerField, Episode, EpisodeGoal, MAX_ANSWER_FIELDS, StepResult, TaskMeasure,
@@ -425,7 +425,7 @@ impl Task for SoundLocalization {
         &mut self,
         world: &World,
         episode: &mut Episode,
-        played: &PlayedAction<'_>,
+        played: &ExecutedAction<'_>,
     ) -> StepResult {
         let Some(agent) = world.state().agents.get(self.setup.agent) else {
             return StepResult::default();

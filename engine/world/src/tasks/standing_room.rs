@@ -50,16 +50,16 @@ impl FreeStartCells {
         allowed: impl Fn(NavCell) -> bool,
     ) -> Option<NavCell> {
         let first = grid.sample(key, &allowed)?;
-        if self.holds(grid.position(first)) {
+        if self.is_free(grid.position(first)) {
             return Some(first);
         }
         grid.sample(key.child("beside"), |cell| {
-            self.holds(grid.position(cell)) && allowed(cell)
+            self.is_free(grid.position(cell)) && allowed(cell)
         })
     }
 
     /// Returns whether the agent can stand at `feet`, m.
-    pub(super) fn holds(&self, feet: Vec3) -> bool {
+    pub(super) fn is_free(&self, feet: Vec3) -> bool {
         let mut taken = self.taken.iter();
         taken.all(|(position, apart_m)| position.distance(feet) >= *apart_m)
     }

@@ -18,7 +18,7 @@ const BESIDE_M: f32 = 0.5;
 /// # Errors
 /// [`WorldError::Config`] and [`WorldError::Unknown`] for a class that there is not, here or at all, for a thing that does not exist or
 /// is of another class, and for a point where none of the class is.
-pub(super) fn stated_things(
+pub(super) fn resolve_stated_objects(
     world: &World,
     asked: &StatedGoal,
 ) -> Result<(Vec<ObjectId>, i32), WorldError> {

@@ -1,11 +1,11 @@
 //! Sizes of bodies.
 
-use crate::model::BodyPlan;
+use crate::model::BodyDefinition;
 use rapier3d::geometry::{SharedShape, TypedShape};
 use std::f32::consts::PI;
 
 /// The mean cross-section of a body's pieces: a quarter of their surface.
-pub(super) fn cross_section_m2(plan: &BodyPlan) -> f32 {
+pub(super) fn cross_section_m2(plan: &BodyDefinition) -> f32 {
     plan.pieces
         .iter()
         .map(|piece| surface_m2(&piece.shape))
@@ -36,7 +36,7 @@ fn surface_m2(shape: &SharedShape) -> f32 {
 }
 
 /// The volume of a body's pieces.
-pub(super) fn volume_m3(plan: &BodyPlan) -> f32 {
+pub(super) fn volume_m3(plan: &BodyDefinition) -> f32 {
     plan.pieces
         .iter()
         .map(|piece| piece.shape.mass_properties(1.0).mass())

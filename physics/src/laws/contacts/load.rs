@@ -22,7 +22,7 @@ pub(super) struct ContactLoad {
 }
 
 /// All loaded contact planes within a scope, in a fixed order.
-pub(super) fn loads(stage: &LawContext<'_>, scope: &ContactScope) -> Vec<ContactLoad> {
+pub(super) fn contact_loads(stage: &LawContext<'_>, scope: &ContactScope) -> Vec<ContactLoad> {
     let engine = &stage.engine;
     let run_s = engine.solver_call_s();
     let mut loads = Vec::new();
@@ -82,7 +82,7 @@ pub(super) fn loads(stage: &LawContext<'_>, scope: &ContactScope) -> Vec<Contact
                 normal: plane.data.normal,
                 point: moment / impulse,
                 normal_force_n: impulse / run_s,
-                friction: stage.table.pair(classes.0, classes.1).friction,
+                friction: stage.table.pair_contact(classes.0, classes.1).friction,
             });
         }
     }

@@ -1,6 +1,6 @@
 //! Rolling friction.
 
-use super::load::loads;
+use super::load::contact_loads;
 use crate::contact::ContactScope;
 use crate::error::PhysicsError;
 use crate::laws::{BodyLaw, LawContext, LawEffect, PhysicsLaw};
@@ -59,7 +59,7 @@ fn install(
 
 impl BodyLaw for RollingResistance {
     fn before_step(&self, stage: &mut LawContext<'_>) {
-        for load in loads(stage, &self.scope) {
+        for load in contact_loads(stage, &self.scope) {
             // The angular velocity at the end of the step without resistance.
             let spin =
                 load.relative_spin(stage) + load.gravity_angular_acceleration(stage) * stage.dt_s;

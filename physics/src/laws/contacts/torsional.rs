@@ -1,6 +1,6 @@
 //! Torsional friction.
 
-use super::load::loads;
+use super::load::contact_loads;
 use crate::contact::ContactScope;
 use crate::error::PhysicsError;
 use crate::laws::{BodyLaw, LawContext, LawEffect, PhysicsLaw};
@@ -58,7 +58,7 @@ fn install(
 
 impl BodyLaw for TorsionalFriction {
     fn before_step(&self, stage: &mut LawContext<'_>) {
-        for load in loads(stage, &self.scope) {
+        for load in contact_loads(stage, &self.scope) {
             let spin = load.relative_spin(stage).dot(load.normal);
             // mu N r h, and no more than the I omega that stops it.
             let most = load.friction * load.normal_force_n * self.radius_m * stage.dt_s;

@@ -43,7 +43,7 @@ pub enum RouteMilestone {
 
 /// What counts for a milestone.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct RouteLimits {
+pub(super) struct MilestoneThresholds {
     /// Least and largest change of direction of a turn to a side, rad.
     turn_rad: [f32; 2],
     /// Least change of direction of a turn around, rad.
@@ -56,7 +56,7 @@ pub(super) struct RouteLimits {
     pub(super) door_m: f32,
 }
 
-impl RouteLimits {
+impl MilestoneThresholds {
     /// What counts of somebody who follows a route.
     pub(super) const FOLLOWED: Self = Self {
         turn_rad: [PI / 6.0, 5.0 * PI / 6.0],

@@ -1,14 +1,14 @@
 //! Routes that are told of a way.
 
-use super::milestone::{RouteLimits, RouteMilestone};
-use super::walk::RouteWalk;
-use crate::check::{Checker, Listener};
+use super::milestone::{MilestoneThresholds, RouteMilestone};
+use super::walk::RouteTracker;
+use crate::check::{Addressee, Checker};
 use crate::form::{
     Description, Form, Modifier, Noun, Phrase, Quantifier, RequestStep, TurnDirection,
 };
 use crate::instruct::{StepCondition, say};
 use crate::refer::{refer, refer_to_room};
-use crate::route::{RouteEvent, RouteFinder, SampledRoute, flat};
+use crate::route::{RouteEvent, RouteFinder, SampledRoute, to_xz};
 use crate::scene::{SemanticScene, Term};
 use dwell_scene::random::RandomStream;
 use dwell_scene::rays::RayScene;
@@ -28,7 +28,7 @@ const CUT: usize = 8;
 
 /// A way that a route is told of.
 #[derive(Clone, Copy, Debug)]
-pub struct ToldWay<'a> {
+pub struct DescribedPath<'a> {
     /// Its corners on the ground, m; straight lines between them can be walked.
     pub corners: &'a [Vec3],
     /// Where one looks at its start, rad.
@@ -92,9 +92,9 @@ impl RouteInstruction {
     /// out: those who walk beside the way shall have passed them, too.
     ///
     /// `rays` must be up to date with the scene's state.
-    pub fn tell(
+    pub fn generate(
         (scene, rays): (&SemanticScene<'_>, &RayScene),
-        way: ToldWay<'_>,
+        way: DescribedPath<'_>,
         stream: &mut RandomStream,
     ) -> Option<Self> {
         let finder = RouteFinder {
@@ -103,7 +103,7 @@ impl RouteInstruction {
             goal: way.end.object(),
         };
         let teller = RouteTeller {
-            checker: Checker::new(scene, Listener::default()),
+            checker: Checker::new(scene, Addressee::default()),
             finder,
             rays,
             way,
@@ -112,7 +112,7 @@ impl RouteInstruction {
         steps.retain(|own| !own.is_optional() || teller.is_clear(own));
         teller.keep_passed(&mut steps)?;
         teller.keep_to_length(&mut steps)?;
-        let places = teller.places(&steps, RouteLimits::FOLLOWED)?;
+        let places = teller.places(&steps, MilestoneThresholds::FOLLOWED)?;
         let way = teller.finder.route.points;
         let mut lengths_m = vec![0.0];
         for piece in way.windows(2) {
@@ -137,9 +137,9 @@ impl RouteInstruction {
     }
 
     /// The judge of somebody who begins to follow it.
-    pub fn walk(&self) -> RouteWalk {
+    pub fn walk(&self) -> RouteTracker {
         let milestones = self.steps.iter().map(|own| own.milestone.clone());
-        RouteWalk::new(milestones.collect())
+        RouteTracker::new(milestones.collect())
     }
 
     /// The length of its way, m.
@@ -152,7 +152,7 @@ struct RouteTeller<'a, 'b> {
     checker: Checker<'b>,
     finder: RouteFinder<'a, 'b>,
     rays: &'b RayScene,
-    way: ToldWay<'b>,
+    way: DescribedPath<'b>,
 }
 
 impl RouteTeller<'_, '_> {
@@ -169,7 +169,7 @@ impl RouteTeller<'_, '_> {
                 rooms.push(*room);
             }
         }
-        let looks = flat(forward_from_yaw(self.way.yaw_rad));
+        let looks = to_xz(forward_from_yaw(self.way.yaw_rad));
         let mut events = finder.turns(looks);
         events.extend(finder.landmarks(&entries));
         // A way to a room ends at its border.
@@ -216,7 +216,7 @@ impl RouteTeller<'_, '_> {
 
     fn is_by_start(&self, at: usize) -> bool {
         let points = &self.finder.route.points;
-        flat(points[at]).distance(flat(points[0])) < BY_START_M
+        to_xz(points[at]).distance(to_xz(points[0])) < BY_START_M
     }
 
     /// The ways to say that one goes from a room to another.
@@ -255,7 +255,8 @@ impl RouteTeller<'_, '_> {
             plain.clone().with_modifier(to)
         });
         let tried = [Some(plain.clone()), leading];
-        let means_it = |own: &Description| self.checker.denotes(own) == Some(Term::Object(door));
+        let means_it =
+            |own: &Description| self.checker.certain_referent(own) == Some(Term::Object(door));
         tried.into_iter().flatten().find(means_it)
     }
 
@@ -279,13 +280,13 @@ impl RouteTeller<'_, '_> {
     }
 
     /// Where on the way each of some steps is done; `None` where not all are, in their order.
-    fn places(&self, steps: &[Candidate], limits: RouteLimits) -> Option<Vec<usize>> {
+    fn places(&self, steps: &[Candidate], limits: MilestoneThresholds) -> Option<Vec<usize>> {
         let places = self.places_of_done(steps, limits);
         (places.len() == steps.len()).then_some(places)
     }
 
     /// Where on the way each of those steps is done that are done in order.
-    fn places_of_done(&self, steps: &[Candidate], limits: RouteLimits) -> Vec<usize> {
+    fn places_of_done(&self, steps: &[Candidate], limits: MilestoneThresholds) -> Vec<usize> {
         self.places_along(&self.finder.route.points, steps, limits)
     }
 
@@ -294,16 +295,16 @@ impl RouteTeller<'_, '_> {
         &self,
         points: &[Vec3],
         steps: &[Candidate],
-        limits: RouteLimits,
+        limits: MilestoneThresholds,
     ) -> Vec<usize> {
         let milestones = steps.iter().map(|own| own.milestone.clone());
-        let mut walk = RouteWalk::with_limits(milestones.collect(), limits);
+        let mut walk = RouteTracker::with_limits(milestones.collect(), limits);
         let mut places = Vec::new();
         for (at, point) in points.iter().enumerate() {
             let is_last = at + 1 == points.len();
             let eye = *point + Vec3::Y * self.way.eye_m;
             walk.advance((self.finder.scene, self.rays), [*point, eye], is_last);
-            places.resize(walk.done(), at);
+            places.resize(walk.passed_count(), at);
         }
         places
     }
@@ -313,13 +314,13 @@ impl RouteTeller<'_, '_> {
         let step = std::slice::from_ref(step);
         let points = &self.finder.route.points;
         let follows = |points: &[Vec3]| {
-            let done = self.places_along(points, step, RouteLimits::FOLLOWED);
+            let done = self.places_along(points, step, MilestoneThresholds::FOLLOWED);
             done.len() == step.len()
         };
         let beside = [Vec3::X, Vec3::NEG_X, Vec3::Z, Vec3::NEG_Z];
         let ends = points.last().copied();
         let cut: Vec<Vec3> = points.iter().copied().step_by(CUT).chain(ends).collect();
-        self.places(step, RouteLimits::TOLD).is_some()
+        self.places(step, MilestoneThresholds::TOLD).is_some()
             && follows(&cut)
             && beside.iter().all(|side| {
                 let moved = points.iter().map(|own| *own + *side * BESIDE_M);
@@ -329,7 +330,7 @@ impl RouteTeller<'_, '_> {
 
     /// Leaves steps out that the way does not pass clearly after those before them; `None` where it does not so pass those that are left.
     fn keep_passed(&self, steps: &mut Vec<Candidate>) -> Option<()> {
-        for limits in [RouteLimits::TOLD, RouteLimits::FOLLOWED] {
+        for limits in [MilestoneThresholds::TOLD, MilestoneThresholds::FOLLOWED] {
             loop {
                 let done = self.places_of_done(steps, limits).len();
                 if done == steps.len() {

@@ -1,8 +1,8 @@
 //! The path of somebody who follows a route, and the milestones that it has passed.
 
-use super::milestone::{RouteLimits, RouteMilestone, TURN_M};
+use super::milestone::{MilestoneThresholds, RouteMilestone, TURN_M};
 use crate::line_of_sight::{FieldOfView, is_in_line_of_sight};
-use crate::route::{ABOVE_FLOOR_M, flat};
+use crate::route::{ABOVE_FLOOR_M, to_xz};
 use crate::scene::{SemanticScene, Viewer};
 use dwell_scene::rays::RayScene;
 use dwell_scene::{ObjectId, Pose, RoomId};
@@ -35,7 +35,7 @@ struct ZoneStay {
 
 /// What is known of a walk so far.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct WalkProgress {
+pub struct RouteProgress {
     /// The number of places that were looked at.
     time: u32,
     /// Feet and eyes at the last one, m.
@@ -53,23 +53,26 @@ pub struct WalkProgress {
 /// Each milestone is passed at a place (a door), or over a stretch of the path (a landmark, a turn). A walk has passed the first k
 /// milestones if there are places p1, ..., pk on it, none before the one before it, with each milestone passed at its place.
 #[derive(Clone, Debug)]
-pub struct RouteWalk {
+pub struct RouteTracker {
     milestones: Vec<RouteMilestone>,
-    limits: RouteLimits,
-    progress: WalkProgress,
+    limits: MilestoneThresholds,
+    progress: RouteProgress,
 }
 
-impl RouteWalk {
+impl RouteTracker {
     /// A walk that has not begun.
     pub fn new(milestones: Vec<RouteMilestone>) -> Self {
-        Self::with_limits(milestones, RouteLimits::FOLLOWED)
+        Self::with_limits(milestones, MilestoneThresholds::FOLLOWED)
     }
 
-    pub(super) fn with_limits(milestones: Vec<RouteMilestone>, limits: RouteLimits) -> Self {
-        let progress = WalkProgress {
+    pub(super) fn with_limits(
+        milestones: Vec<RouteMilestone>,
+        limits: MilestoneThresholds,
+    ) -> Self {
+        let progress = RouteProgress {
             stays: vec![None; milestones.len()],
             passed: vec![Vec::new(); milestones.len()],
-            ..WalkProgress::default()
+            ..RouteProgress::default()
         };
         Self {
             milestones,
@@ -117,7 +120,7 @@ impl RouteWalk {
                 (RouteMilestone::Entered(room), Some((_, to))) => *room == to,
                 (RouteMilestone::Through { door, to: room }, Some((_, to))) => {
                     let middle = scene.extent(*door).bounds.center();
-                    let near = flat(middle).distance(flat(feet)) <= self.limits.door_m;
+                    let near = to_xz(middle).distance(to_xz(feet)) <= self.limits.door_m;
                     let level = (middle.y - feet.y - 1.0).abs() <= SAME_STOREY_M;
                     *room == to && near && level
                 }
@@ -141,12 +144,12 @@ impl RouteWalk {
         (scene, rays): (&SemanticScene<'_>, &RayScene),
         [feet, eye]: [Vec3; 2],
     ) {
-        let here = flat(feet);
+        let here = to_xz(feet);
         let time = self.progress.time - 1;
         let outside_m = match &self.milestones[number] {
             RouteMilestone::Turned { place, .. } => {
                 let level = (place.y - feet.y).abs() <= SAME_STOREY_M;
-                let outside_m = flat(*place).distance(here) - TURN_M;
+                let outside_m = to_xz(*place).distance(here) - TURN_M;
                 if level { outside_m } else { f32::INFINITY }
             }
             RouteMilestone::Passed(thing) => {
@@ -211,7 +214,7 @@ impl RouteWalk {
                 before: Some(before),
             } => self
                 .limits
-                .is_turn(*direction, *before, exit - flat(*place)),
+                .is_turn(*direction, *before, exit - to_xz(*place)),
             // From where it was nearest: a straight line beside the place is no turn.
             RouteMilestone::Turned { direction, .. } => {
                 let (nearest, _) = stay.nearest;
@@ -236,7 +239,7 @@ impl RouteWalk {
     }
 
     /// How many milestones are passed, in their order.
-    pub fn done(&self) -> usize {
+    pub fn passed_count(&self) -> usize {
         let mut time = 0;
         for (number, passed) in self.progress.passed.iter().enumerate() {
             let late = passed.iter().filter(|[_, end]| *end >= time);
@@ -254,13 +257,13 @@ impl RouteWalk {
     }
 
     /// What is known so far.
-    pub fn progress(&self) -> &WalkProgress {
+    pub fn progress(&self) -> &RouteProgress {
         &self.progress
     }
 
     /// Goes to a [`Self::progress`] of a walk with the same milestones; `false` for one that is none, which changes nothing.
     #[must_use]
-    pub fn restore(&mut self, progress: WalkProgress) -> bool {
+    pub fn restore(&mut self, progress: RouteProgress) -> bool {
         let count = self.milestones.len();
         let times = || progress.passed.iter().flatten();
         let fits = progress.stays.len() == count

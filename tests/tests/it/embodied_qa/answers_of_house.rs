@@ -6,7 +6,7 @@ use dwell_scene::{Aabb, Entity, House, ObjectId, RoomId};
 use dwell_semantics::Term;
 use dwell_semantics::ask::answers;
 use dwell_semantics::category::categories;
-use dwell_semantics::check::{Checker, Listener};
+use dwell_semantics::check::{Addressee, Checker};
 use dwell_semantics::form::{AttributeKind, Clause, Description, Form, Noun, Phrase, Question};
 use glam::{Vec2, Vec3};
 use std::collections::BTreeSet;
@@ -40,7 +40,7 @@ pub(super) fn meant(env: &Env, phrase: &Phrase) -> Term {
     let Phrase::Described(description) = phrase else {
         panic!("{phrase:?} is no description");
     };
-    let term = Checker::new(&scene, Listener::default()).denotes(description);
+    let term = Checker::new(&scene, Addressee::default()).certain_referent(description);
     term.unwrap_or_else(|| panic!("{}: {phrase:?}", text(env)))
 }
 

@@ -14,9 +14,9 @@ use dwell::{
 use dwell_render::{Camera, Preset};
 use dwell_scene::parallel::Threads;
 use dwell_scene::{AgentId, Pose};
-use dwell_semantics::ask::answer_number;
+use dwell_semantics::ask::answer_index;
 use dwell_semantics::category::categories;
-use dwell_semantics::check::{Checker, Listener};
+use dwell_semantics::check::{Addressee, Checker};
 use dwell_semantics::form::{Clause, Question};
 use glam::Vec3;
 use serde_json::{Value, json};
@@ -202,14 +202,14 @@ fn every_question_means_one_thing_and_has_one_answer() {
             let tokens = dwell_semantics::vocabulary::tokenize(&text).unwrap();
             assert_eq!(env.episode(0).unwrap().tokens, tokens);
             let scene = env.world().engines().semantics().scene(env.world().state());
-            let checker = Checker::new(&scene, Listener::default());
+            let checker = Checker::new(&scene, Addressee::default());
             let told = checker.check_text(&text).unwrap();
             assert!(
                 told.answer.is_some_and(|answer| answer.is_decided()),
                 "{text}"
             );
             assert!(checker.ambiguities(&told.form).is_empty(), "{text}");
-            assert!(answer_number(given).is_some());
+            assert!(answer_index(given).is_some());
             texts.insert(text);
         }
     }

@@ -356,7 +356,8 @@ impl StoreyBuilder<'_> {
         assembly: &mut HouseAssembly,
     ) -> Result<(), HousesError> {
         let middle = 0.5 * (hole.opening.along[0] + hole.opening.along[1]);
-        let across = 0.5 * (metres(stretch.depth()[0]) + metres(stretch.depth()[1]));
+        let across =
+            0.5 * (metres(stretch.thickness_span()[0]) + metres(stretch.thickness_span()[1]));
         let (x, z) = if stretch.along_x {
             (middle, across)
         } else {
@@ -368,7 +369,7 @@ impl StoreyBuilder<'_> {
             (false, true) => 90.0,
             (false, false) => -90.0,
         });
-        let wall_m = metres(stretch.depth()[1] - stretch.depth()[0]);
+        let wall_m = metres(stretch.thickness_span()[1] - stretch.thickness_span()[0]);
         let width_m = hole.opening.along[1] - hole.opening.along[0];
         let [low, high] = hole.opening.up;
         let room = ids[hole.room];
@@ -514,7 +515,7 @@ fn doorway(hole: &PlanOpening<'_>, stretch: &WallSegment, room: usize) -> Option
         .sides
         .iter()
         .position(|side| *side == PlanCell::Room(room))?;
-    let [low, high] = stretch.depth().map(metres);
+    let [low, high] = stretch.thickness_span().map(metres);
     let middle = 0.5 * (low + high);
     let [from, to] = hole.opening.along;
     let [near, far] = if side == 0 {

@@ -1,6 +1,6 @@
 //! The plan of a building as plain data. `docs/authoring.md` lists the fields.
 
-use dwell_scene::Daytime;
+use dwell_scene::SkyConditions;
 use serde::{Deserialize, Serialize};
 
 /// The name that a door gives instead of a room when it leads outside.
@@ -17,7 +17,7 @@ pub struct BuildingPlan {
     /// Thickness of walls to the outside, m; 0.05 to 1. Walls between rooms fill the space between their floors.
     pub outer_wall_m: f32,
     /// Sun and sky.
-    pub daytime: Daytime,
+    pub daytime: SkyConditions,
     /// The storeys from the ground up.
     pub storeys: Vec<StoreyPlan>,
 }
@@ -28,7 +28,7 @@ impl Default for BuildingPlan {
             style: None,
             seed: 0,
             outer_wall_m: 0.2,
-            daytime: Daytime::default(),
+            daytime: SkyConditions::default(),
             storeys: Vec::new(),
         }
     }

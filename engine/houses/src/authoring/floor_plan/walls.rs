@@ -23,7 +23,7 @@ impl WallSegment {
     }
 
     /// The faces across the wall.
-    pub(super) fn depth(&self) -> [Millimetres; 2] {
+    pub(super) fn thickness_span(&self) -> [Millimetres; 2] {
         let [x0, z0, x1, z1] = self.rect;
         if self.along_x { [z0, z1] } else { [x0, x1] }
     }
@@ -91,7 +91,7 @@ pub(super) fn wall_segments(grid: &PlanGrid, thickest: Millimetres) -> Vec<WallS
             for slice in slices {
                 let before = open.iter_mut().find(|other| {
                     other.sides == slice.sides
-                        && other.depth() == slice.depth()
+                        && other.thickness_span() == slice.thickness_span()
                         && touches(&other.rect, &slice.rect, along_x)
                 });
                 match before {

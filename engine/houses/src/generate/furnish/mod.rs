@@ -251,7 +251,7 @@ impl RoomFurnisher<'_> {
                     continue;
                 };
                 let pose = Pose::new(place + Vec3::Y * height_m, yaw_rotation(hole.yaw_deg()));
-                let piece = PlacedFurniture::new(&stock, pose).beside_window();
+                let piece = PlacedFurniture::new(&stock, pose).for_window();
                 if self.space.can_place(&piece) {
                     self.space.add(piece);
                 }

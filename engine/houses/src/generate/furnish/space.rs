@@ -117,7 +117,7 @@ impl PlacedFurniture {
     }
 
     /// The same thing, made for a window.
-    pub(crate) fn beside_window(mut self) -> Self {
+    pub(crate) fn for_window(mut self) -> Self {
         self.at_window = true;
         self
     }

@@ -4,7 +4,7 @@ use super::{GeneratedRoom, GridRect, GridSteps};
 
 /// A straight stretch between the same two rooms (or a room and the outside).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct RoomBoundary {
+pub(crate) struct BoundarySegment {
     /// True if it runs along x (west to east); else along z.
     pub(crate) along_x: bool,
     /// Its position across: z of one along x, x of one along z.
@@ -15,7 +15,7 @@ pub(crate) struct RoomBoundary {
     pub(crate) sides: [Option<usize>; 2],
 }
 
-impl RoomBoundary {
+impl BoundarySegment {
     /// Returns whether it separates these two.
     pub(crate) fn separates(&self, a: Option<usize>, b: Option<usize>) -> bool {
         self.sides == [a, b] || self.sides == [b, a]
@@ -95,12 +95,12 @@ impl StoreyCells {
     }
 
     /// All stretches, those along x first, from north to south and west to east.
-    pub(crate) fn boundaries(&self) -> Vec<RoomBoundary> {
+    pub(crate) fn boundaries(&self) -> Vec<BoundarySegment> {
         let mut runs = Vec::new();
         for along_x in [true, false] {
             let (along, across) = if along_x { (0, 1) } else { (1, 0) };
             for (k, at) in self.lines[across].iter().enumerate() {
-                let mut open: Option<RoomBoundary> = None;
+                let mut open: Option<BoundarySegment> = None;
                 for pair in 0..self.lines[along].len().saturating_sub(1) {
                     let side = |across: Option<usize>| {
                         if along_x {
@@ -115,7 +115,7 @@ impl StoreyCells {
                         Some(run) if run.sides == sides => run.to = to,
                         _ => {
                             runs.extend(open.take().filter(|run| run.sides[0] != run.sides[1]));
-                            open = Some(RoomBoundary {
+                            open = Some(BoundarySegment {
                                 along_x,
                                 at: *at,
                                 from,

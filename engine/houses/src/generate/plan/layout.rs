@@ -1,7 +1,9 @@
 //! Layout of rooms: the best of many drawn plans.
 
 use super::links::{connect_rooms, missing_links};
-use super::storey::{STAIRS_DEPTH, STAIRS_WIDTH, StoreyFrame, StripLayout, draw_storey, end_width};
+use super::storey::{
+    STAIRS_DEPTH, STAIRS_WIDTH, StoreyFrame, StripLayout, draw_storey, full_depth_width,
+};
 use super::{
     GeneratedPlan, GeneratedRoom, GeneratedStorey, GridRect, GridSteps, StairwellPlan, metres,
     steps,
@@ -202,8 +204,8 @@ fn draw_frame(
         } else {
             0.0
         };
-        let ends = end_width(arrangement.east_m2(), frame.depth())
-            + end_width(arrangement.west.map_or(0.0, |r| r.area_m2), frame.depth());
+        let ends = full_depth_width(arrangement.east_area_m2(), frame.depth())
+            + full_depth_width(arrangement.west.map_or(0.0, |r| r.area_m2), frame.depth());
         steps(mean).max(widest * 9 / 10) + ends
     };
     let widths: Vec<GridSteps> = arrangements.iter().map(width).collect();

@@ -1,7 +1,7 @@
 //! Connections of rooms: all with the hallway or the living room, never through a bedroom or a bathroom.
 
 use super::{
-    ConnectionKind, GeneratedRoom, GeneratedStorey, GridSteps, RoomBoundary, RoomConnection,
+    BoundarySegment, ConnectionKind, GeneratedRoom, GeneratedStorey, GridSteps, RoomConnection,
     StoreyCells,
 };
 use crate::generate::rooms::GeneratedRoomKind;
@@ -12,7 +12,7 @@ const DOOR_RUN: GridSteps = 24;
 const OPEN_RUN: GridSteps = 40;
 
 /// The longest stretch between two rooms.
-fn longest_shared_wall(runs: &[RoomBoundary], a: usize, b: Option<usize>) -> GridSteps {
+fn longest_shared_wall(runs: &[BoundarySegment], a: usize, b: Option<usize>) -> GridSteps {
     let between = runs.iter().filter(|run| run.separates(Some(a), b));
     between.map(|run| run.to - run.from).max().unwrap_or(0)
 }

@@ -9,7 +9,7 @@ mod layout;
 mod links;
 mod storey;
 
-pub(crate) use cells::{RoomBoundary, StoreyCells};
+pub(crate) use cells::{BoundarySegment, StoreyCells};
 pub(crate) use layout::best_plan;
 
 use super::rooms::GeneratedRoomKind;

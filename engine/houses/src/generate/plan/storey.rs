@@ -49,7 +49,7 @@ pub(super) struct StripLayout {
 
 impl StripLayout {
     /// Floor of the rooms at the east end, m².
-    pub(super) fn east_m2(&self) -> f32 {
+    pub(super) fn east_area_m2(&self) -> f32 {
         let rooms = self.east.iter().chain(&self.corridor_rooms);
         rooms.map(|room| room.area_m2).sum()
     }
@@ -100,8 +100,8 @@ pub(super) fn draw_storey(
     stream: &mut RandomStream,
 ) -> Option<Vec<GeneratedRoom>> {
     let depth = frame.depth();
-    let east_width = end_width(arrangement.east_m2(), depth);
-    let west_width = end_width(arrangement.west.map_or(0.0, |room| room.area_m2), depth);
+    let east_width = full_depth_width(arrangement.east_area_m2(), depth);
+    let west_width = full_depth_width(arrangement.west.map_or(0.0, |room| room.area_m2), depth);
     let (from, to) = (west_width, frame.width - east_width);
     let [north, south] = frame.corridor_span();
     let mut rooms = Vec::new();
@@ -194,7 +194,7 @@ pub(super) fn draw_storey(
 }
 
 /// The width of a room over the full depth.
-pub(super) fn end_width(area_m2: f32, depth: GridSteps) -> GridSteps {
+pub(super) fn full_depth_width(area_m2: f32, depth: GridSteps) -> GridSteps {
     if area_m2 > 0.0 {
         steps(area_m2 / metres(depth).max(0.5)).max(steps(2.8))
     } else {

@@ -25,7 +25,7 @@ pub(super) struct LightWithNode {
 }
 
 /// The `index`-th light of the file.
-pub(super) fn lamp(house: &HouseData, light: &Light, index: usize) -> LightWithNode {
+pub(super) fn light(house: &HouseData, light: &Light, index: usize) -> LightWithNode {
     let object = &house.objects[light.object];
     let part = &house.parts[light.part];
     let lumens = light.power_w * LUMENS_PER_WATT;

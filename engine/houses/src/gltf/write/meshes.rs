@@ -32,7 +32,7 @@ pub(super) struct MeshInFile {
 }
 
 /// Writes the numbers of a mesh.
-pub(super) fn store(binary: &mut GlbBufferBuilder, mesh: &Mesh) -> MeshInFile {
+pub(super) fn write_mesh(binary: &mut GlbBufferBuilder, mesh: &Mesh) -> MeshInFile {
     let some = |count: usize| (count > 0).then_some(());
     let positions = some(mesh.positions.len()).map(|()| {
         binary.add_float_accessor(mesh.positions.iter().map(Vec3::to_array), "VEC3", true)

@@ -32,7 +32,7 @@ pub(crate) struct WrittenGlb {
 
 /// The storage of meshes of objects, and of images.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Storage {
+pub(crate) enum AssetStorage {
     /// In the file: it needs nothing beside it.
     Inside,
     /// In files named by their content, in `object/` and `texture/` of the folder two above the file's, so that houses share
@@ -53,7 +53,7 @@ pub fn write(house: &House, path: &Path) -> Result<Vec<ExportLoss>, HousesError>
         let message = "its name does not end in .glb, by which it is known again";
         return Err(unwritable(message.to_owned()));
     }
-    let written = encode(house, Storage::Inside).map_err(unwritable)?;
+    let written = encode(house, AssetStorage::Inside).map_err(unwritable)?;
     crate::atomic::write_file(path, &written.file)?;
     Ok(losses(house))
 }
@@ -100,7 +100,7 @@ fn losses(house: &HouseData) -> Vec<ExportLoss> {
 }
 
 /// The file's bytes.
-pub(crate) fn encode(house: &HouseData, storage: Storage) -> Result<WrittenGlb, String> {
+pub(crate) fn encode(house: &HouseData, storage: AssetStorage) -> Result<WrittenGlb, String> {
     let mut binary = GlbBufferBuilder::default();
     let mut of_building = vec![false; house.meshes.len()];
     for piece in &house.structure {
@@ -110,8 +110,8 @@ pub(crate) fn encode(house: &HouseData, storage: Storage) -> Result<WrittenGlb, 
         .meshes
         .iter_ids()
         .map(|(id, mesh)| {
-            let apart = storage == Storage::Shared && !of_building[id.index()];
-            binary.with_buffer("object", apart, |binary| meshes::store(binary, mesh))
+            let apart = storage == AssetStorage::Shared && !of_building[id.index()];
+            binary.with_buffer("object", apart, |binary| meshes::write_mesh(binary, mesh))
         })
         .collect();
     let images: Vec<Value> = house
@@ -121,8 +121,8 @@ pub(crate) fn encode(house: &HouseData, storage: Storage) -> Result<WrittenGlb, 
             let bytes = encode_png(texture)?;
             let mut image = json!({"mimeType": "image/png", "name": texture.name});
             match storage {
-                Storage::Inside => image["bufferView"] = json!(binary.add_buffer_view(&bytes)),
-                Storage::Shared => {
+                AssetStorage::Inside => image["bufferView"] = json!(binary.add_buffer_view(&bytes)),
+                AssetStorage::Shared => {
                     image["uri"] = json!(binary.add_sidecar("texture", "png", bytes));
                 }
             }
@@ -235,7 +235,7 @@ impl<'a> NodeTreeBuilder<'a> {
                 );
             }
             for light in house.lights.iter().filter(|light| light.object == id) {
-                let lamp = lights::lamp(house, light, self.lights.len());
+                let lamp = lights::light(house, light, self.lights.len());
                 self.lights.push(lamp.light);
                 self.add(lamp.node, Some(node));
             }

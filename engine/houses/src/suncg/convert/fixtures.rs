@@ -62,7 +62,7 @@ impl Converter<'_> {
                     .warn(at.clone(), WarningKind::Simplified { what });
                 continue;
             };
-            let emitter = SoundEmitter::steady(object, part_id, position, signal, level_db);
+            let emitter = SoundEmitter::looping(object, part_id, position, signal, level_db);
             self.data.emitters.push(emitter);
         }
         self.data.emitters.len() > before

@@ -7,7 +7,7 @@
 use dwell_scene::{Aabb, Mesh};
 use glam::{DMat2, DVec2, Vec3};
 
-use crate::import::Component;
+use crate::import::ConnectedComponent;
 
 /// Largest difference of the boxes of pieces that stand still, m.
 const STILL_M: f32 = 1e-3;
@@ -43,7 +43,7 @@ pub(super) struct HingeFit {
 }
 
 /// Finds the hinge between two states; `None` when no single vertical hinge explains them.
-pub(super) fn fit(meshes: [&Mesh; 2], pieces: &[Vec<Component>; 2]) -> Option<HingeFit> {
+pub(super) fn fit(meshes: [&Mesh; 2], pieces: &[Vec<ConnectedComponent>; 2]) -> Option<HingeFit> {
     let mut still_in_second = vec![false; pieces[1].len()];
     let mut moving = [Vec::new(), Vec::new()];
     for piece in &pieces[0] {

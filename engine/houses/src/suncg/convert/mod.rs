@@ -23,7 +23,7 @@ use tracing::debug_span;
 use super::read::ParsedSuncgFiles;
 use crate::error::HousesError;
 use crate::import::{
-    MaterialTableBuilder, UniqueNames, drop_rooms_without_floor, report_covered_rooms,
+    MaterialTableBuilder, UniqueNames, drop_rooms_without_floor, report_contained_rooms,
 };
 use crate::report::{FileLocation, LoadReport};
 
@@ -171,7 +171,7 @@ impl Converter<'_> {
         let _span = debug_span!("check").entered();
         drop_rooms_without_floor(&mut self.data, &self.at, self.report);
         let house = House::new(self.data).map_err(HousesError::scene(&self.at))?;
-        report_covered_rooms(&house, &self.at, self.report);
+        report_contained_rooms(&house, &self.at, self.report);
         Ok(house)
     }
 }

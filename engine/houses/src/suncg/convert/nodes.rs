@@ -51,7 +51,7 @@ pub(super) fn names(
 
 impl Converter<'_> {
     /// The room that lists each node. A room may come after its nodes; the first room to list a node keeps it.
-    pub(super) fn membership(&mut self) -> BTreeMap<NodeKey, RoomId> {
+    pub(super) fn node_rooms(&mut self) -> BTreeMap<NodeKey, RoomId> {
         let mut rooms = BTreeMap::new();
         for (id, key) in self.room_nodes() {
             let (level, index) = key;

@@ -15,7 +15,7 @@ use crate::warning_kind::{UnmappedKind, WarningKind};
 
 impl<'a> Converter<'a> {
     pub(super) fn objects(&mut self) {
-        let rooms = self.membership();
+        let rooms = self.node_rooms();
         for (key, node) in self.files.house.valid_nodes() {
             let room = rooms.get(&key).copied();
             match node.kind.as_deref() {
@@ -109,7 +109,7 @@ impl<'a> Converter<'a> {
             let reason = "it flattens space".to_owned();
             self.report.warn(at, WarningKind::BadTransform { reason });
         }
-        split.map(|(pose, rest)| (pose, place::without_rotation_rounding(rest)))
+        split.map(|(pose, rest)| (pose, place::snap_to_integers(rest)))
     }
 
     /// The OBJ file of a node's state: `_0` for state 1 where it exists.

@@ -85,7 +85,7 @@ pub(super) fn transform(numbers: Option<&[f64]>) -> Result<DMat4, String> {
 
 /// Scale and mirror without the rounding of the rotation that was removed from them: instances of a model that differ by a
 /// turn alone have the same bits.
-pub(super) fn without_rotation_rounding(mut rest: Affine3A) -> Affine3A {
+pub(super) fn snap_to_integers(mut rest: Affine3A) -> Affine3A {
     let snap = |x: f32| {
         if (x - x.round()).abs() < 4e-6 {
             x.round()

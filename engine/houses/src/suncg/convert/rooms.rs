@@ -337,7 +337,7 @@ fn piece_mesh(
     let mut used: Vec<u16> = Vec::new();
     let mut own = Vec::new();
     for run in runs {
-        let slot = slots.of_run(run);
+        let slot = slots.slot_of_group(run);
         let position = used
             .iter()
             .position(|known| *known == slot)

@@ -161,7 +161,7 @@ fn model_mesh(
         .obj
         .face_groups
         .iter()
-        .map(|run| (slots.of_run(run), run))
+        .map(|run| (slots.slot_of_group(run), run))
         .collect();
     build_mesh(
         &ObjGroupSelection {

@@ -141,7 +141,7 @@ impl<'a> Converter<'a> {
         let texture = change
             .texture
             .as_deref()
-            .and_then(|name| self.files.override_texture(name));
+            .and_then(|name| self.files.override_texture_path(name));
         if let Some(name) = &change.name {
             surface.names.insert(0, name);
         }

@@ -41,7 +41,7 @@ impl VoteTable {
         ) else {
             return table;
         };
-        rows.each(&at, report, |row| {
+        rows.for_each(&at, report, |row| {
             let level = row.number(1).ok_or("level is no number")?;
             let positive = row.number(2).ok_or("posvote is no number")?;
             let negative = row.number(3).ok_or("negvote is no number")?;

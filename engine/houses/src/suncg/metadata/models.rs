@@ -50,7 +50,7 @@ impl ModelTable {
         let Some(rows) = CsvRows::new(text, &names, &at, consequence, report) else {
             return table;
         };
-        rows.each(&at, report, |row| {
+        rows.for_each(&at, report, |row| {
             if row.cell(0).is_empty() {
                 return Err("no id");
             }

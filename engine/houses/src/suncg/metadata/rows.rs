@@ -75,7 +75,7 @@ impl<'a> CsvRows<'a> {
     }
 
     /// Calls `row` for every row; rows that cannot be read, and those for which it returns an error, are reported.
-    pub(super) fn each(
+    pub(super) fn for_each(
         mut self,
         at: &FileLocation,
         report: &mut LoadReport,

@@ -195,7 +195,7 @@ impl SuncgWriter<'_> {
         }
         row.id.clone_from(&id);
         if self.shared {
-            self.row_file(&row)?;
+            self.write_row_file(&row)?;
         }
         if !self.models.rows.iter().any(|known| known.id == id) {
             self.models.rows.push(row);

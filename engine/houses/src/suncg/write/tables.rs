@@ -32,7 +32,7 @@ const ROW: &str = "row.json";
 
 impl SuncgWriter<'_> {
     /// Writes the table row of a shared model beside it.
-    pub(super) fn row_file(&self, row: &ModelRow) -> Result<(), HousesError> {
+    pub(super) fn write_row_file(&self, row: &ModelRow) -> Result<(), HousesError> {
         let path = format!("object/{}/{ROW}", row.id);
         let text = serde_json::to_vec(row).map_err(|error| HousesError::NotRepresentable {
             path: self.folder.join(&path),

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use dwell_scene::space::is_singular;
 use dwell_scene::{
-    Aabb, Bands, Category, Collider, Daytime, HouseData, Joint, JointKind, Level, LevelId, Light,
+    Aabb, Bands, Category, Collider, HouseData, Joint, JointKind, Level, LevelId, Light,
     LightShape, Material, MaterialId, Mesh, MeshId, Mobility, Object, ObjectId, Part, PartId, Pose,
-    Receptacle, ReceptacleKind, Room, RoomId, Servo, Sky, SoundEmitter, Structure, StructureKind,
-    Texture, TextureId, Weather,
+    Receptacle, ReceptacleKind, Room, RoomId, Servo, Sky, SkyConditions, SoundEmitter, Structure,
+    StructureKind, Texture, TextureId, Weather,
 };
 use glam::{Affine3A, Mat3A, Quat, Vec2, Vec3, Vec3A};
 
@@ -324,7 +324,7 @@ pub(crate) fn house(numbers: &[u32]) -> HouseData {
         });
         fixtures(n, &mut data, object, first_part);
     }
-    let moment = Daytime {
+    let moment = SkyConditions {
         hour_h: n.unit() * 24.0,
         day: 1 + n.below(366) as u16,
         latitude_deg: n.unit() * 180.0 - 90.0,
@@ -400,7 +400,7 @@ fn fixtures(n: &mut Numbers<'_>, data: &mut HouseData, object: ObjectId, part: P
         });
     }
     for k in 0..n.below(2) {
-        let emitter = SoundEmitter::steady(object, part, n.vec3(), n.name(k), n.unit() * 100.0);
+        let emitter = SoundEmitter::looping(object, part, n.vec3(), n.name(k), n.unit() * 100.0);
         data.emitters.push(emitter);
         let holding = if n.flag() {
             ReceptacleKind::On

@@ -6,8 +6,8 @@ use super::compare::Count;
 use crate::common::{Builder, look, quad};
 use dwell_render::{Camera, Preset, PreviousPoses, View, VisibilityPath};
 use dwell_scene::{
-    Daytime, House, Light, LightShape, Material, Mesh, ObjectId, PartId, Pose, ShoeboxMaterials,
-    Sky,
+    House, Light, LightShape, Material, Mesh, ObjectId, PartId, Pose, ShoeboxMaterials, Sky,
+    SkyConditions,
 };
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
@@ -73,11 +73,11 @@ pub(super) fn room() -> Arc<House> {
         power_w: 20.0,
         attenuation: [0.0, 0.0, 1.0],
     });
-    let moment = Daytime {
+    let moment = SkyConditions {
         hour_h: 12.0,
         day: 80,
         latitude_deg: 45.0,
-        ..Daytime::default()
+        ..SkyConditions::default()
     };
     room.data.sky = Some(Sky::at(&moment).unwrap());
     room.build().house

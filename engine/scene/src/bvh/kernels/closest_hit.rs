@@ -32,12 +32,12 @@ pub(in super::super) fn coincidence_max_distance(distance: f32) -> f32 {
 
 /// The triangle of a hit: `source` 0 for static geometry, else the instance plus 1; `slot` the triangle's place in its tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in super::super) struct HitIndex {
+pub(in super::super) struct HitTriangle {
     pub(in super::super) source: u32,
     pub(in super::super) slot: u32,
 }
 
-impl HitIndex {
+impl HitTriangle {
     pub(in super::super) const NONE: Self = Self {
         source: 0,
         slot: u32::MAX,
@@ -62,7 +62,7 @@ pub(in super::super) struct ClosestHit {
     /// Boxes and hits beyond this distance cannot matter.
     pub(in super::super) limit: f32,
     /// The winner so far.
-    pub(in super::super) closest: HitIndex,
+    pub(in super::super) closest: HitTriangle,
     /// The smallest reach of any other hit since the last clear win; stale values lie beyond `distance`.
     pub(in super::super) nearest_other_reach: f32,
     /// The distance at which the winner became unknown; forgotten once beyond the horizon.
@@ -76,7 +76,7 @@ impl ClosestHit {
         Self {
             distance: infinite,
             limit: far,
-            closest: HitIndex::NONE,
+            closest: HitTriangle::NONE,
             nearest_other_reach: infinite,
             ambiguous_at: infinite,
         }
@@ -112,8 +112,8 @@ impl ClosestHit {
     pub(in super::super) fn consider(
         &mut self,
         distance: f32,
-        hit: HitIndex,
-        claim: impl Fn(HitIndex) -> TieBreak,
+        hit: HitTriangle,
+        claim: impl Fn(HitTriangle) -> TieBreak,
     ) {
         if coincidence_max_distance(distance) < self.distance {
             // Clearly nearer than all before: none of them can be coincident with it.
@@ -129,8 +129,8 @@ impl ClosestHit {
     pub(in super::super) fn consider_coincident(
         &mut self,
         distance: f32,
-        hit: HitIndex,
-        claim: &dyn Fn(HitIndex) -> TieBreak,
+        hit: HitTriangle,
+        claim: &dyn Fn(HitTriangle) -> TieBreak,
     ) {
         let new = claim(hit);
         if new.reach > self.distance {
@@ -138,7 +138,7 @@ impl ClosestHit {
         }
         let shorter = distance < self.distance;
         let nearest = if shorter { distance } else { self.distance };
-        if self.closest == HitIndex::NONE {
+        if self.closest == HitTriangle::NONE {
             self.closest = hit;
         } else {
             let old = claim(self.closest);
@@ -181,7 +181,7 @@ mod tests {
         for &k in order {
             // Traversal skips what lies beyond the limit.
             if hits[k].0 <= nearest.limit {
-                let place = |slot| HitIndex { source: 0, slot };
+                let place = |slot| HitTriangle { source: 0, slot };
                 nearest.consider(hits[k].0, place(k as u32), |p| hits[p.slot as usize].1);
             }
         }
@@ -212,7 +212,7 @@ mod tests {
                     offer_all(&mut nearest, &hits, &order);
                     prop_assert!(!nearest.is_ambiguous());
                 }
-                let found = (nearest.closest != HitIndex::NONE).then_some(nearest.closest.slot as usize);
+                let found = (nearest.closest != HitTriangle::NONE).then_some(nearest.closest.slot as usize);
                 prop_assert_eq!(found, expected);
             }
         }

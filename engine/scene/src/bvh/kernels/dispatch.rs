@@ -42,10 +42,10 @@ impl<const N: usize> SimdKernel for OccludedPacketQuery<'_, '_, N> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::closest_hit::{ClosestHit, HitIndex};
+    use super::super::closest_hit::{ClosestHit, HitTriangle};
     use super::super::scene_ray::{AnyHitVisitor, ClosestHitVisitor, SceneRayQuery};
     use super::*;
-    use crate::bvh::{Instance, InstanceSet, PacketHits, RayMask, TriangleBvh, TriangleTag};
+    use crate::bvh::{Instance, InstanceSet, PacketHits, RayMask, TriangleAttributes, TriangleBvh};
     use crate::random::{RandomKey, RandomStream};
     use crate::simd_dispatch::SimdLevel;
     use glam::{Affine3A, Quat, Vec3};
@@ -63,7 +63,7 @@ mod tests {
             .map(|k| [3 * k, 3 * k + 1, 3 * k + 2])
             .collect();
         TriangleBvh::build_tagged(&positions, &triangles, |k| {
-            TriangleTag::new(1 + k as i32 % 9)
+            TriangleAttributes::new(1 + k as i32 % 9)
         })
     }
 
@@ -111,7 +111,7 @@ mod tests {
                         hits: &mut AnyHitVisitor,
                     });
                     assert_eq!(met, blocked >> k & 1 == 1);
-                    assert_eq!(nearest.closest != HitIndex::NONE, hits.is_hit(k));
+                    assert_eq!(nearest.closest != HitTriangle::NONE, hits.is_hit(k));
                     if hits.is_hit(k) && !nearest.is_ambiguous() {
                         let found = (nearest.closest.source, nearest.closest.slot);
                         assert_eq!(found, (hits.source[k], hits.slot[k]));

@@ -4,7 +4,7 @@ use super::super::instances::{InstanceSet, PreparedInstance};
 use super::super::packet::RayPacket;
 use super::super::scene::SceneBvh;
 use super::HitFilter;
-use super::closest_hit::{HitIndex, TieBreak, coincidence_max_distance};
+use super::closest_hit::{HitTriangle, TieBreak, coincidence_max_distance};
 use super::prepared_packet::PreparedPacket;
 use super::slab::min_f32;
 use super::tree_packet::{
@@ -20,7 +20,7 @@ pub(super) fn closest<const N: usize>(
     answers: &mut PacketClosestHits<N>,
 ) {
     let (origin, far) = (rays.origin.to_array(), rays.effective_far());
-    let claim = |k: usize, place: HitIndex| {
+    let claim = |k: usize, place: HitTriangle| {
         scene.tie_break(origin, rays.ray(k).direction.to_array(), place)
     };
     let bvh = scene.fixed;
@@ -106,11 +106,11 @@ fn packet_in_instance<const N: usize>(
     }
     let (start, mut end) = fan.range_in_box(&placed.bounds);
     let map = &placed.mesh_from_world;
-    let origin = map.point(fan.origin);
+    let origin = map.transform_point(fan.origin);
     let mut direction = [[0.0; N]; 3];
     let [x, y, z] = &fan.direction;
     for k in 0..N {
-        let local = map.vector(x[k], y[k], z[k]);
+        let local = map.transform_vector(x[k], y[k], z[k]);
         [direction[0][k], direction[1][k], direction[2][k]] = local;
         let finite = (local[0].is_finite() & local[1].is_finite()) & local[2].is_finite();
         end[k] = if finite { end[k] } else { f32::NEG_INFINITY };
@@ -134,7 +134,7 @@ struct ClosestInstanceVisitor<'a, const N: usize, C> {
     claim: C,
 }
 
-impl<const N: usize, C: Fn(usize, HitIndex) -> TieBreak + Copy> PacketLeafVisitor<N>
+impl<const N: usize, C: Fn(usize, HitTriangle) -> TieBreak + Copy> PacketLeafVisitor<N>
     for ClosestInstanceVisitor<'_, N, C>
 {
     #[inline(always)]

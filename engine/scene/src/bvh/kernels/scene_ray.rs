@@ -4,7 +4,7 @@ use super::super::instances::InstanceSet;
 use super::super::ray::Ray;
 use super::super::scene::SceneBvh;
 use super::HitFilter;
-use super::closest_hit::{ClosestHit, HitIndex, TieBreak};
+use super::closest_hit::{ClosestHit, HitTriangle, TieBreak};
 use super::slab::min_f32;
 use super::tree_ray::{HitVisitor, PreparedRay, RayLeafVisitor, intersect_tree, traverse};
 use crate::bounds::Aabb;
@@ -71,8 +71,11 @@ impl<H: HitVisitor> RayLeafVisitor for LeafInstanceIntersector<'_, H> {
         // The ray in the space of the instance, where it lies in the instance's box.
         let map = &placed.mesh_from_world;
         let [x, y, z] = self.probe.direction;
-        let direction = map.vector(x, y, z);
-        let (bounds, origin) = (&placed.mesh.tree.bounds, map.point(self.probe.origin));
+        let direction = map.transform_vector(x, y, z);
+        let (bounds, origin) = (
+            &placed.mesh.tree.bounds,
+            map.transform_point(self.probe.origin),
+        );
         let local = PreparedRay::new(bounds, origin, direction, (start, end), map.max_component);
         if !local.is_usable() {
             return false;
@@ -90,9 +93,9 @@ pub(in super::super) struct ClosestHitVisitor<'a, C> {
     pub(in super::super) tie_break: C,
 }
 
-impl<C: Fn(HitIndex) -> TieBreak> HitVisitor for ClosestHitVisitor<'_, C> {
+impl<C: Fn(HitTriangle) -> TieBreak> HitVisitor for ClosestHitVisitor<'_, C> {
     #[inline(always)]
-    fn visit_hit(&mut self, place: HitIndex, distance: f32) -> bool {
+    fn visit_hit(&mut self, place: HitTriangle, distance: f32) -> bool {
         if distance <= self.nearest.limit {
             self.nearest.consider(distance, place, &self.tie_break);
         }
@@ -110,7 +113,7 @@ pub(in super::super) struct AnyHitVisitor;
 
 impl HitVisitor for AnyHitVisitor {
     #[inline(always)]
-    fn visit_hit(&mut self, _: HitIndex, _: f32) -> bool {
+    fn visit_hit(&mut self, _: HitTriangle, _: f32) -> bool {
         true
     }
 
@@ -123,9 +126,9 @@ impl HitVisitor for AnyHitVisitor {
 /// Calls a function for every hit.
 pub(in super::super) struct AllHitsVisitor<F>(pub(in super::super) F);
 
-impl<F: FnMut(HitIndex, f32)> HitVisitor for AllHitsVisitor<F> {
+impl<F: FnMut(HitTriangle, f32)> HitVisitor for AllHitsVisitor<F> {
     #[inline(always)]
-    fn visit_hit(&mut self, place: HitIndex, distance: f32) -> bool {
+    fn visit_hit(&mut self, place: HitTriangle, distance: f32) -> bool {
         (self.0)(place, distance);
         false
     }

@@ -4,7 +4,7 @@ use super::super::node::{NodeLink, STACK};
 use super::super::triangles::TriangleBvh;
 use super::super::wide::WideBvh;
 use super::HitFilter;
-use super::closest_hit::{ClosestHit, HitIndex, TieBreak, coincidence_max_distance};
+use super::closest_hit::{ClosestHit, HitTriangle, TieBreak, coincidence_max_distance};
 use super::prepared_packet::PreparedPacket;
 use super::slab::min_f32;
 use super::triangle::{EdgePlanes, OriginTriangles};
@@ -30,7 +30,7 @@ pub(in super::super) fn traverse<const N: usize>(
         return;
     }
     loop {
-        let (is_leaf, index) = link.parts();
+        let (is_leaf, index) = link.unpack();
         if is_leaf {
             if visit.visit_leaf(fan, index) {
                 return;
@@ -70,7 +70,7 @@ pub(in super::super) struct PacketClosestHits<const N: usize> {
 impl<const N: usize> PacketClosestHits<N> {
     pub(in super::super) fn new() -> Self {
         let infinite = [f32::INFINITY; N];
-        let HitIndex { source, slot } = HitIndex::NONE;
+        let HitTriangle { source, slot } = HitTriangle::NONE;
         Self {
             distance: infinite,
             slot: [slot; N],
@@ -81,7 +81,7 @@ impl<const N: usize> PacketClosestHits<N> {
     }
 
     pub(in super::super) fn lane(&self, k: usize, limit: f32) -> ClosestHit {
-        let best = HitIndex {
+        let best = HitTriangle {
             source: self.source[k],
             slot: self.slot[k],
         };
@@ -101,8 +101,8 @@ impl<const N: usize> PacketClosestHits<N> {
         k: usize,
         limit: &mut f32,
         distance: f32,
-        hit: HitIndex,
-        claim: &dyn Fn(HitIndex) -> TieBreak,
+        hit: HitTriangle,
+        claim: &dyn Fn(HitTriangle) -> TieBreak,
     ) {
         let mut nearest = self.lane(k, *limit);
         nearest.consider_coincident(distance, hit, claim);
@@ -117,7 +117,7 @@ impl<const N: usize> PacketClosestHits<N> {
         self.lane(k, f32::INFINITY).is_ambiguous()
     }
 
-    pub(in super::super) fn set(&mut self, k: usize, best: HitIndex) {
+    pub(in super::super) fn set(&mut self, k: usize, best: HitTriangle) {
         (self.source[k], self.slot[k]) = (best.source, best.slot);
     }
 }
@@ -154,7 +154,7 @@ pub(in super::super) struct ClosestLeafVisitor<'a, const N: usize, C> {
     pub(in super::super) tie_break: C,
 }
 
-impl<const N: usize, C: Fn(usize, HitIndex) -> TieBreak> PacketLeafVisitor<N>
+impl<const N: usize, C: Fn(usize, HitTriangle) -> TieBreak> PacketLeafVisitor<N>
     for ClosestLeafVisitor<'_, N, C>
 {
     #[inline(always)]
@@ -188,7 +188,7 @@ impl<const N: usize> PacketLeafVisitor<N> for OccludedLeafVisitor<'_> {
     }
 }
 
-impl<const N: usize, C: Fn(usize, HitIndex) -> TieBreak> ClosestLeafVisitor<'_, N, C> {
+impl<const N: usize, C: Fn(usize, HitTriangle) -> TieBreak> ClosestLeafVisitor<'_, N, C> {
     /// Offers the hits with one triangle; no hit where the distance is NaN.
     #[inline(always)]
     fn take(&mut self, fan: &mut PreparedPacket<N>, slot: u32, distances: &[f32; N]) {
@@ -223,7 +223,7 @@ impl<const N: usize, C: Fn(usize, HitIndex) -> TieBreak> ClosestLeafVisitor<'_, 
         if any_close != 0 {
             for k in 0..N {
                 if close[k] != 0 {
-                    let hit = HitIndex {
+                    let hit = HitTriangle {
                         source: self.source,
                         slot,
                     };

@@ -5,7 +5,7 @@ use glam::Vec4;
 use super::super::node::{Node, NodeLink, STACK, TriangleBlock};
 use super::super::triangles::TriangleBvh;
 use super::super::wide::WideBvh;
-use super::closest_hit::HitIndex;
+use super::closest_hit::HitTriangle;
 use super::slab::{
     PaddedOrigin, box_margin, max_f32, min_f32, safe_inverse, slab_range, slab_range4,
 };
@@ -116,7 +116,7 @@ pub(super) fn traverse(
         return false;
     }
     loop {
-        let (is_leaf, index) = link.parts();
+        let (is_leaf, index) = link.unpack();
         if is_leaf {
             if visit.visit_leaf(index, &mut limit) {
                 return true;
@@ -145,13 +145,13 @@ pub(super) fn traverse(
 /// A visitor of hits.
 pub(in super::super) trait HitVisitor {
     /// Takes a hit. Returns whether to stop.
-    fn visit_hit(&mut self, place: HitIndex, distance: f32) -> bool;
+    fn visit_hit(&mut self, place: HitTriangle, distance: f32) -> bool;
 
     /// Returns the distance beyond which no hit matters.
     fn limit(&self) -> f32;
 }
 
-/// Passes the hits with the triangles of a tree to `hits`, until it stops; `source` as in [`HitIndex`].
+/// Passes the hits with the triangles of a tree to `hits`, until it stops; `source` as in [`HitTriangle`].
 #[inline(always)]
 pub(super) fn intersect_tree<H: HitVisitor>(
     bvh: &TriangleBvh,
@@ -197,7 +197,7 @@ impl<H: HitVisitor> RayLeafVisitor for LeafTriangleIntersector<'_, H> {
                 continue;
             }
             let slot = slot as u32;
-            if self.hits.visit_hit(HitIndex { source, slot }, distance) {
+            if self.hits.visit_hit(HitTriangle { source, slot }, distance) {
                 return true;
             }
         }

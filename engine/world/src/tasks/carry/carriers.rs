@@ -1,6 +1,6 @@
 //! What the scripted carriers do: both take hold, walk at the same time from pose to pose, let go and stop.
 
-use super::formation::{Formation, turn_between};
+use super::formation::{CarryFormation, yaw_between};
 use crate::actions::{DiscreteAction, StepSizes};
 use crate::world::World;
 use dwell_scene::{AgentId, Pose, math};
@@ -51,7 +51,7 @@ impl Carriers {
     pub(super) fn next_action(
         &self,
         world: &World,
-        formation: &Formation,
+        formation: &CarryFormation,
         (carrier, stride): (usize, &StepSizes),
         at: &mut usize,
     ) -> DiscreteAction {
@@ -68,7 +68,7 @@ impl Carriers {
             - goal.transform_point(formation.middle))
         .with_y(0.0)
         .length();
-        let turned_rad = turn_between(now.rotation, goal.rotation).abs();
+        let turned_rad = yaw_between(now.rotation, goal.rotation).abs();
         let is_put = off_m <= PUT_M && turned_rad <= 0.15;
         if !holds(own) {
             if is_put && *at >= last {
@@ -93,8 +93,14 @@ impl Carriers {
             let Some(pose) = self.way.get(*at) else {
                 return DiscreteAction::Drop;
             };
-            let next =
-                [0, 1].map(|k| next_of(world, self.agents[k], formation.foot(pose, k), stride));
+            let next = [0, 1].map(|k| {
+                next_of(
+                    world,
+                    self.agents[k],
+                    formation.carrier_position(pose, k),
+                    stride,
+                )
+            });
             if next == [Next::There; 2] {
                 if *at >= last {
                     return DiscreteAction::Drop;

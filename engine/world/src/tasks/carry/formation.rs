@@ -17,7 +17,7 @@ const BESIDE_M: f32 = 0.03;
 
 /// A thing with two carriers. Frames: that of its first part.
 #[derive(Clone, Debug)]
-pub(super) struct Formation {
+pub(super) struct CarryFormation {
     pub(super) object: ObjectId,
     pub(super) part: PartId,
     /// Where it stands at the start.
@@ -33,13 +33,13 @@ pub(super) struct Formation {
 }
 
 /// Returns a yaw about the vertical.
-pub(super) fn turn(yaw_rad: f32) -> Quat {
+pub(super) fn yaw_rotation(yaw_rad: f32) -> Quat {
     let (sine, cosine) = math::sin_cos(0.5 * yaw_rad);
     Quat::from_xyzw(0.0, sine, 0.0, cosine)
 }
 
 /// The turn about the vertical from one orientation to another, rad, -pi to pi.
-pub(super) fn turn_between(from: Quat, to: Quat) -> f32 {
+pub(super) fn yaw_between(from: Quat, to: Quat) -> f32 {
     let ahead = (to * from.inverse()) * Vec3::X;
     math::atan2(-ahead.z, ahead.x)
 }
@@ -60,7 +60,7 @@ fn things_on(house: &House, supports: &[Vec<Option<ObjectId>>], object: ObjectId
     found.split_off(1)
 }
 
-impl Formation {
+impl CarryFormation {
     /// The formations of a house's things that two bodies can carry.
     pub(super) fn all(world: &World, body: &AgentBody) -> Vec<Self> {
         let house = world.house();
@@ -126,13 +126,13 @@ impl Formation {
     }
 
     /// Where a carrier stands with the thing at a pose, m.
-    pub(super) fn foot(&self, pose: &Pose, carrier: usize) -> Vec3 {
+    pub(super) fn carrier_position(&self, pose: &Pose, carrier: usize) -> Vec3 {
         pose.transform_point(self.feet[carrier])
     }
 
     /// The pose after the middle has been moved by `way` from the start and the thing turned by `yaw_rad`.
     pub(super) fn pose(&self, way: Vec3, yaw_rad: f32) -> Pose {
-        let rotation = (turn(yaw_rad) * self.start.rotation).normalize();
+        let rotation = (yaw_rotation(yaw_rad) * self.start.rotation).normalize();
         let middle = self.start.transform_point(self.middle) + way;
         Pose::new(middle - rotation * self.middle, rotation)
     }
@@ -140,7 +140,7 @@ impl Formation {
     /// Returns whether both carriers have room beside the thing at a pose, on the floor of a room.
     pub(super) fn carriers_have_room(&self, world: &World, pose: &Pose) -> bool {
         (0..2).all(|carrier| {
-            let feet = self.foot(pose, carrier);
+            let feet = self.carrier_position(pose, carrier);
             let size = (self.body.radius_m + BESIDE_M, self.body.height_m);
             world.house().room_at(feet + Vec3::Y * 0.1).is_some()
                 && world

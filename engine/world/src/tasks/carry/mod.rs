@@ -10,9 +10,9 @@ mod search;
 mod settings;
 
 use super::others::place_anywhere;
-use super::{PlayedAction, Task, TaskKind, TaskSetup, door_leaves};
+use super::{ExecutedAction, Task, TaskKind, TaskSetup, door_leaves};
 use crate::actions::{DiscreteAction, HandTarget};
-use crate::episode::{Episode, EpisodeGoal, GoalPart, ObjectPlacement, StepResult, TaskMeasure};
+use crate::episode::{Episode, EpisodeGoal, GoalField, ObjectPlacement, StepResult, TaskMeasure};
 use crate::error::WorldError;
 use crate::metrics::NavigationMetrics;
 use crate::schema;
@@ -22,8 +22,8 @@ use dwell_scene::random::RandomKey;
 use dwell_scene::space::yaw_from_forward;
 use dwell_scene::{AgentId, Pose};
 use dwell_semantics::vocabulary;
-use formation::{Formation, turn_between};
-use search::draw_way;
+use formation::{CarryFormation, yaw_between};
+use search::sample_path;
 use serde::{Deserialize, Serialize};
 use settings::CarrySettings;
 
@@ -38,7 +38,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     about: "Two carry a table, or another thing that one alone cannot lift, to a place, and put it down there.",
     has_goal: true,
     min_agents: 2,
-    goal_parts: &[GoalPart::Placements],
+    goal_parts: &[GoalField::Placements],
     max_steps: 1500,
     actions: &[
         DiscreteAction::Stop,
@@ -96,7 +96,7 @@ struct CarryTask {
 
 #[derive(Debug)]
 struct ActiveEpisode {
-    formation: Formation,
+    formation: CarryFormation,
     carriers: Carriers,
     /// The place of the agent among those who carry; `None` of others.
     carrier: Option<usize>,
@@ -122,17 +122,17 @@ impl ActiveEpisode {
         let now = world.state().part_pose[self.formation.part];
         let middle = self.formation.middle;
         let way = now.transform_point(middle) - self.goal.transform_point(middle);
-        let angle_rad = turn_between(now.rotation, self.goal.rotation).abs();
+        let angle_rad = yaw_between(now.rotation, self.goal.rotation).abs();
         (way.with_y(0.0).length(), angle_rad)
     }
 }
 
 impl CarryTask {
     /// Draws the thing and its way: of the episode, not of the agent.
-    fn draw(&self, world: &World) -> Result<(Formation, Vec<Pose>), WorldError> {
+    fn draw(&self, world: &World) -> Result<(CarryFormation, Vec<Pose>), WorldError> {
         let body = self.setup.body(world, NAME)?;
         let key = world.episode_key().child("carry");
-        let mut things = Formation::all(world, &body);
+        let mut things = CarryFormation::all(world, &body);
         let unplayable = |why: &str| WorldError::TaskNotPlayable {
             task: NAME,
             house: world.house().name.clone(),
@@ -146,7 +146,7 @@ impl CarryTask {
         key.child("things").stream().shuffle(&mut things);
         let distances_m = [self.settings.min_distance_m, self.settings.max_distance_m];
         let ways = things.into_iter().take(TRIES).find_map(|formation| {
-            let way = draw_way(world, &formation, distances_m, key.child("goal"))?;
+            let way = sample_path(world, &formation, distances_m, key.child("goal"))?;
             Some((formation, way))
         });
         ways.ok_or_else(|| unplayable("there is no way to carry anything as far as is asked"))
@@ -175,7 +175,7 @@ impl Task for CarryTask {
         let carrier = agents.iter().position(|own| *own == agent);
         let (feet, yaw_rad) = match carrier {
             Some(place) => {
-                let feet = formation.foot(&formation.start, place);
+                let feet = formation.carrier_position(&formation.start, place);
                 let middle = formation.start.transform_point(formation.middle);
                 let yaw_rad = yaw_from_forward((middle - feet).with_y(0.0));
                 world.place_agent(agent, feet, yaw_rad)?;
@@ -235,7 +235,7 @@ impl Task for CarryTask {
         &mut self,
         world: &World,
         episode: &mut Episode,
-        played: &PlayedAction<'_>,
+        played: &ExecutedAction<'_>,
     ) -> StepResult {
         let (Some(active), Some(agent)) =
             (&mut self.active, world.state().agents.get(self.setup.agent))

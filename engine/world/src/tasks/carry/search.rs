@@ -1,9 +1,9 @@
 //! Ways of a thing with its carriers through a house, and goals that can be reached.
 
-use super::formation::Formation;
+use super::formation::CarryFormation;
 use crate::world::World;
 use dwell_scene::Pose;
-use dwell_scene::interrupt::PollEvery;
+use dwell_scene::interrupt::CancelPoller;
 use dwell_scene::random::RandomKey;
 use glam::Vec3;
 use std::cmp::{Ordering, Reverse};
@@ -50,27 +50,27 @@ fn yaw_rad(place: Place) -> f32 {
 }
 
 /// Way of the middle from the start to a place, m.
-fn way(formation: &Formation, place: Place) -> Vec3 {
+fn way(formation: &CarryFormation, place: Place) -> Vec3 {
     let own = Vec3::new(place[0] as f32, 0.0, place[1] as f32) * STEP_M;
     (formation.start.rotation * own).with_y(0.0)
 }
 
-fn pose(formation: &Formation, place: Place) -> Pose {
+fn pose(formation: &CarryFormation, place: Place) -> Pose {
     formation.pose(way(formation, place), yaw_rad(place))
 }
 
 /// Draws a goal that can be reached, from `distances_m` away on, and the way to it: poses one after another, the last the goal. `None` where
 /// there is none near enough to be found.
-pub(super) fn draw_way(
+pub(super) fn sample_path(
     world: &World,
-    formation: &Formation,
+    formation: &CarryFormation,
     distances_m: [f32; 2],
     key: RandomKey,
 ) -> Option<Vec<Pose>> {
     if !formation.carriers_have_room(world, &formation.start) {
         return None;
     }
-    let mut pace = PollEvery::new(PLACES_PER_CHECK);
+    let mut pace = CancelPoller::new(PLACES_PER_CHECK);
     let start: Place = [0; 3];
     let mut room: BTreeMap<Place, bool> = BTreeMap::from([(start, true)]);
     let mut from: BTreeMap<Place, (f32, Place)> = BTreeMap::from([(start, (0.0, start))]);
@@ -97,7 +97,7 @@ pub(super) fn draw_way(
                 if room.len() >= MOST_PLACES {
                     continue;
                 }
-                pace.turn();
+                pace.count_one();
                 let has_room = formation.has_room(world, &pose(formation, to));
                 room.insert(to, has_room);
             }

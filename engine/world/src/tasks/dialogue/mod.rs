@@ -8,36 +8,36 @@
 //! al., "`DialFRED`", IEEE Robotics and Automation Letters 7(4), 10049 (2022): questions are the agent's own choice, an oracle answers
 //! them from the simulator's state; T.-C. Chi et al., "Just Ask", AAAI 2020: each question costs.
 
-mod asker;
-mod offers;
+mod candidates;
+mod known_questions;
 mod progress;
 mod settings;
 
 use super::door_leaves::DoorLeaves;
 use super::navigation::{ELSEWHERE_M, Leg, NavigationRules};
 use super::standing_room::FreeStartCells;
-use super::{PlayedAction, Task, TaskKind, TaskSetup, random_yaw_rad};
+use super::{ExecutedAction, Task, TaskKind, TaskSetup, random_yaw_rad};
 use crate::actions::DiscreteAction;
 use crate::episode::{
-    Episode, GoalPart, MAX_QUESTION_TOKENS, QuestionTokens, StepResult, TaskMeasure,
+    Episode, GoalField, MAX_QUESTION_TOKENS, QuestionTokens, StepResult, TaskMeasure,
 };
 use crate::error::WorldError;
-use crate::expert::LookStep;
+use crate::expert::LookAction;
 use crate::metrics::NavigationMetrics;
 use crate::schema;
 use crate::world::World;
-use asker::{Asker, Stakes};
+use candidates::{DialogueCandidate, enumerate_instructions};
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::interrupt;
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, Pose};
-use dwell_semantics::check::{Checker, Listener};
+use dwell_semantics::check::{Addressee, Checker};
 use dwell_semantics::dialogue::{self, Reply};
 use dwell_semantics::instruct::InstructionGoal;
 use dwell_semantics::{Term, vocabulary};
 use glam::Vec3;
-use offers::{DialogueOffer, survey};
+use known_questions::{DialogueRewards, KnownQuestions};
 use progress::DialogueProgress;
 use settings::DialogueSettings;
 use std::collections::BTreeMap;
@@ -74,7 +74,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     about: "Find the thing that an ambiguous instruction means: ask an oracle which it is, each question at a cost; then stop at it.",
     has_goal: true,
     min_agents: 1,
-    goal_parts: &[GoalPart::Replies],
+    goal_parts: &[GoalField::Replies],
     max_steps: 1000,
     actions: DiscreteAction::DEFAULT,
     sensors: &[
@@ -101,14 +101,14 @@ struct Dialogue {
     rules: NavigationRules,
     setup: TaskSetup,
     /// What the house offers at its start, by the number of things; found once.
-    offers: BTreeMap<usize, Vec<DialogueOffer>>,
+    offers: BTreeMap<usize, Vec<DialogueCandidate>>,
     active: Option<ActiveDialogue>,
 }
 
 /// An episode under way.
 #[derive(Debug)]
 struct ActiveDialogue {
-    offer: DialogueOffer,
+    offer: DialogueCandidate,
     /// The thing that is meant, by its place among those that fit.
     meant: usize,
     /// The way to it.
@@ -116,7 +116,7 @@ struct ActiveDialogue {
     progress: DialogueProgress,
     /// What the oracle replied in the latest step.
     reply: Option<Reply>,
-    asker: Asker,
+    asker: KnownQuestions,
     /// The things in the order in which the scripted asker guesses.
     guesses: Vec<usize>,
     /// The thing that it goes to, and its way.
@@ -132,7 +132,7 @@ impl ActiveDialogue {
             .map(|token| token.cast_signed())
             .collect();
         let scene = world.engines().semantics().scene(world.state());
-        let checker = Checker::new(&scene, Listener::agent(&scene, agent));
+        let checker = Checker::new(&scene, Addressee::agent(&scene, agent));
         let asked = &self.offer.asked;
         let read = (asked.topic).read_question(&checker, &vocabulary::detokenize(&words));
         let reply = match read {
@@ -142,7 +142,7 @@ impl ActiveDialogue {
                     dialogue::reply(&checker, &form, Term::Object(asked.things[place]))
                 };
                 let heard = of(self.meant);
-                self.progress.keep(|place| of(place) == heard);
+                self.progress.retain(|place| of(place) == heard);
                 heard
             }
         };
@@ -185,12 +185,12 @@ impl ActiveDialogue {
         settings: &DialogueSettings,
         rules: &NavigationRules,
     ) -> Option<QuestionTokens> {
-        let stakes = Stakes {
+        let stakes = DialogueRewards {
             success: rules.rewards.success,
             question_cost: settings.question_cost,
         };
         let budget = settings.max_questions.saturating_sub(self.progress.asked());
-        (self.asker).next_question(&self.progress.left(), budget, stakes)
+        (self.asker).next_question(&self.progress.remaining(), budget, stakes)
     }
 }
 
@@ -207,10 +207,10 @@ impl Dialogue {
     }
 
     /// An instruction: first the number of its things, then the instruction.
-    fn draw(&self, key: RandomKey) -> Option<&DialogueOffer> {
+    fn draw(&self, key: RandomKey) -> Option<&DialogueCandidate> {
         let mut stream = key.stream();
-        let by_count: Vec<&Vec<DialogueOffer>> = self.offers.values().collect();
-        let alike: &[DialogueOffer] = stream.choose(&by_count)?;
+        let by_count: Vec<&Vec<DialogueCandidate>> = self.offers.values().collect();
+        let alike: &[DialogueCandidate] = stream.choose(&by_count)?;
         stream.choose(alike)
     }
 
@@ -276,7 +276,7 @@ impl Task for Dialogue {
     fn survey_house(&mut self, world: &World) -> Result<(), WorldError> {
         if self.offers.is_empty() {
             let grid = world.engines().nav_grid(&self.setup.body(world, NAME)?)?;
-            self.offers = survey(world, self.setup.agent, &grid, &self.settings);
+            self.offers = enumerate_instructions(world, self.setup.agent, &grid, &self.settings);
         }
         Ok(())
     }
@@ -307,10 +307,10 @@ impl Task for Dialogue {
             };
             let engines = world.engines().clone();
             let scene = engines.semantics().scene(world.state());
-            let checker = Checker::new(&scene, Listener::agent(&scene, agent));
-            let asker = Asker::new(&checker, &offer.asked);
+            let checker = Checker::new(&scene, Addressee::agent(&scene, agent));
+            let asker = KnownQuestions::new(&checker, &offer.asked);
             let count = offer.asked.things.len();
-            if !asker.tells_all_apart(count) {
+            if !asker.distinguishes_all(count) {
                 continue;
             }
             // Of all that fits one is as probable as another, wherever the agent stands.
@@ -363,7 +363,7 @@ impl Task for Dialogue {
         &mut self,
         world: &World,
         episode: &mut Episode,
-        played: &PlayedAction<'_>,
+        played: &ExecutedAction<'_>,
     ) -> StepResult {
         let id = self.setup.agent;
         let (Some(active), Some(agent)) = (&mut self.active, world.state().agents.get(id)) else {
@@ -384,7 +384,7 @@ impl Task for Dialogue {
         if stops {
             let radius_m = self.settings.success_distance_m as f32;
             let place = active.stands_at(world, id, radius_m);
-            active.progress.stop_at(place);
+            active.progress.record_stop(place);
             success = place == Some(active.meant);
         }
         let mut result = (self.rules).step_result((gain_m, agent.collided), stops, || success);
@@ -413,7 +413,7 @@ impl Task for Dialogue {
         if active.next_question(&self.settings, &self.rules).is_some() {
             return DiscreteAction::Wait;
         }
-        let left = active.progress.left();
+        let left = active.progress.remaining();
         let guess = active.guesses.iter().find(|place| left.contains(place));
         let Some(target) = guess.copied() else {
             return DiscreteAction::Stop;
@@ -423,7 +423,7 @@ impl Task for Dialogue {
             .as_ref()
             .is_none_or(|(place, _)| *place != target)
         {
-            let leg = active.leg.to(active.offer.goals[target].clone());
+            let leg = active.leg.with_goal(active.offer.goals[target].clone());
             active.chosen = Some((target, leg));
         }
         let radius_m = self.settings.success_distance_m as f32;
@@ -440,15 +440,15 @@ impl Task for Dialogue {
         }
         let middle = world.house().object_bounds(world.state(), thing).center();
         let turn = match leg.look_at(world, thing) {
-            LookStep::Turn(turn) => Some(turn),
-            LookStep::Done => None,
-            LookStep::Missed => leg.face(world, middle),
+            LookAction::Turn(turn) => Some(turn),
+            LookAction::Done => None,
+            LookAction::Missed => leg.face(world, middle),
         };
         if let Some(turn) = turn {
             return turn;
         }
         // It looks in vain: from elsewhere, then.
-        if leg.leave_out_goals_here(world, ELSEWHERE_M) {
+        if leg.exclude_goals_within(world, ELSEWHERE_M) {
             return DiscreteAction::Wait;
         }
         DiscreteAction::Stop
@@ -482,7 +482,7 @@ mod tests {
             };
             let step = AgentAction::new(ME, action.action, StepSizes::default());
             let outcome = world.step_discrete_actions(&[step]).unwrap().swap_remove(0);
-            let played = PlayedAction {
+            let played = ExecutedAction {
                 action: &action,
                 outcome: &outcome,
             };

@@ -38,7 +38,7 @@ impl DialogueProgress {
     }
 
     /// The places of the things that are left, ascending.
-    pub(super) fn left(&self) -> Vec<usize> {
+    pub(super) fn remaining(&self) -> Vec<usize> {
         let places = self.left.iter().enumerate();
         places
             .filter_map(|(place, left)| left.then_some(place))
@@ -50,7 +50,7 @@ impl DialogueProgress {
     }
 
     /// Rules out the things of which `fits` is false.
-    pub(super) fn keep(&mut self, fits: impl Fn(usize) -> bool) {
+    pub(super) fn retain(&mut self, fits: impl Fn(usize) -> bool) {
         for (place, left) in self.left.iter_mut().enumerate() {
             *left = *left && fits(place);
         }
@@ -62,7 +62,7 @@ impl DialogueProgress {
     }
 
     /// Takes in at which thing the agent stopped.
-    pub(super) fn stop_at(&mut self, place: Option<usize>) {
+    pub(super) fn record_stop(&mut self, place: Option<usize>) {
         self.stopped_at = Some(place.is_some());
     }
 
@@ -124,11 +124,11 @@ mod tests {
     #[test]
     fn progress_comes_back_from_bytes_and_nothing_else_is_taken() {
         let mut progress = DialogueProgress::begin(3);
-        progress.keep(|place| place != 1);
+        progress.retain(|place| place != 1);
         progress.count_question(true);
         progress.count_question(false);
-        assert_eq!(progress.left(), [0, 2]);
-        progress.stop_at(Some(2));
+        assert_eq!(progress.remaining(), [0, 2]);
+        progress.record_stop(Some(2));
         assert_eq!(progress.measures(), [2.0, 1.0, 3.0, 1.0]);
         let reply = Reply::undecided();
         let bytes = progress.to_bytes(Some(&reply));

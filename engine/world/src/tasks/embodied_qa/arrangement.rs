@@ -3,7 +3,7 @@
 use crate::error::WorldError;
 use crate::world::World;
 use dwell_scene::{Aabb, JointId, ObjectId};
-use dwell_semantics::ask::StateToSet;
+use dwell_semantics::ask::StateArrangement;
 
 /// Room between an opened part and what else there is, m.
 pub(super) const APART_M: f32 = 0.05;
@@ -30,11 +30,11 @@ impl Undo {
 /// Sets a state; `None` where there is no room for it, and then nothing has changed.
 pub(super) fn arrange(
     world: &mut World,
-    sets: Option<StateToSet>,
+    sets: Option<StateArrangement>,
 ) -> Result<Option<Undo>, WorldError> {
     match sets {
         None => Ok(Some(Undo::default())),
-        Some(StateToSet::Switch(object, is_on)) => {
+        Some(StateArrangement::Switch(object, is_on)) => {
             let switch = Some((object, world.state.switched_on[object]));
             world.state.switched_on[object] = is_on;
             Ok(Some(Undo {
@@ -42,7 +42,7 @@ pub(super) fn arrange(
                 ..Undo::default()
             }))
         }
-        Some(StateToSet::Open(object, is_open)) => {
+        Some(StateArrangement::Open(object, is_open)) => {
             // What cannot stand open is not asked about when it is closed either: else closed things would be asked about more often.
             if holds_things(world, object) {
                 return Ok(None);
@@ -101,8 +101,8 @@ fn holds_things(world: &World, object: ObjectId) -> bool {
 }
 
 /// The boxes around the parts of a thing that stand open, as they stand now.
-pub(super) fn opened_bounds(world: &World, sets: Option<StateToSet>) -> Vec<Aabb> {
-    let Some(StateToSet::Open(object, true)) = sets else {
+pub(super) fn opened_bounds(world: &World, sets: Option<StateArrangement>) -> Vec<Aabb> {
+    let Some(StateArrangement::Open(object, true)) = sets else {
         return Vec::new();
     };
     let (house, state) = (world.house(), world.state());
@@ -117,7 +117,7 @@ pub(super) fn opened_bounds(world: &World, sets: Option<StateToSet>) -> Vec<Aabb
 /// Returns whether the opened parts of a thing keep clear of all other things, and of the agents.
 fn has_room(world: &World, object: ObjectId) -> bool {
     let (house, state) = (world.house(), world.state());
-    let parts = opened_bounds(world, Some(StateToSet::Open(object, true)));
+    let parts = opened_bounds(world, Some(StateArrangement::Open(object, true)));
     let others = house.objects.ids().filter(|other| *other != object);
     let mut others = others.map(|other| house.object_bounds(state, other));
     let mut agents = state.agents.iter();

@@ -4,29 +4,29 @@
 //! A. Das et al., "Embodied Question Answering", CVPR 2018: the task, its kinds of questions, and what is measured of the way.
 
 mod arrangement;
-mod offers;
+mod candidates;
 mod progress;
 mod settings;
 
 use super::door_leaves::DoorLeaves;
 use super::navigation::{Leg, NavigationRules};
 use super::standing_room::FreeStartCells;
-use super::{PlayedAction, Task, TaskKind, TaskSetup, random_yaw_rad};
+use super::{ExecutedAction, Task, TaskKind, TaskSetup, random_yaw_rad};
 use crate::actions::DiscreteAction;
 use crate::episode::{
-    Answer, AnswerField, Episode, GoalPart, MAX_ANSWER_FIELDS, StepResult, TaskMeasure,
+    Answer, AnswerField, Episode, GoalField, MAX_ANSWER_FIELDS, StepResult, TaskMeasure,
 };
 use crate::error::WorldError;
 use crate::metrics::NavigationMetrics;
 use crate::schema;
 use crate::world::World;
+use candidates::{QuestionCandidate, enumerate_questions};
 use dwell_scene::interrupt;
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, Pose};
 use dwell_semantics::ask::{self, QuestionKind};
 use dwell_semantics::vocabulary;
-use offers::{QuestionOffer, survey};
 use progress::QuestionProgress;
 use settings::EmbodiedQaSettings;
 use std::collections::BTreeMap;
@@ -65,7 +65,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     about: "Answer a question about the house: walk, look, and say the answer with stop.",
     has_goal: true,
     min_agents: 1,
-    goal_parts: &[GoalPart::Question],
+    goal_parts: &[GoalField::Question],
     max_steps: 1000,
     actions: DiscreteAction::DEFAULT,
     sensors: &["rgb", "depth", "question", "question_tokens"],
@@ -92,12 +92,12 @@ struct ActiveQuestion {
     answer: usize,
     /// The way to where it is seen.
     leg: Leg,
-    offer: Arc<QuestionOffer>,
+    offer: Arc<QuestionCandidate>,
     progress: QuestionProgress,
 }
 
 /// What a house offers of a kind of question, by answer.
-type OffersByAnswer = BTreeMap<&'static str, Vec<Arc<QuestionOffer>>>;
+type OffersByAnswer = BTreeMap<&'static str, Vec<Arc<QuestionCandidate>>>;
 
 #[derive(Debug)]
 struct EmbodiedQa {
@@ -111,10 +111,10 @@ struct EmbodiedQa {
 
 impl EmbodiedQa {
     /// A question: first its kind, then its answer, so that rare answers are as often right as others, then the question itself.
-    fn draw(&self, key: RandomKey) -> Option<Arc<QuestionOffer>> {
+    fn draw(&self, key: RandomKey) -> Option<Arc<QuestionCandidate>> {
         let mut stream = key.stream();
         let kinds: Vec<&OffersByAnswer> = self.offers.values().collect();
-        let answers: Vec<&Vec<Arc<QuestionOffer>>> = stream.choose(&kinds)?.values().collect();
+        let answers: Vec<&Vec<Arc<QuestionCandidate>>> = stream.choose(&kinds)?.values().collect();
         let offers = stream.choose(&answers)?;
         stream.choose(offers).cloned()
     }
@@ -123,7 +123,7 @@ impl EmbodiedQa {
     fn place(
         &mut self,
         world: &mut World,
-        (offer, grid): (&Arc<QuestionOffer>, &Arc<NavGrid>),
+        (offer, grid): (&Arc<QuestionCandidate>, &Arc<NavGrid>),
         room: &FreeStartCells,
         key: RandomKey,
     ) -> Result<Option<Pose>, WorldError> {
@@ -156,7 +156,7 @@ impl EmbodiedQa {
         if answer != Some(offer.asked.answer) {
             return Ok(None);
         }
-        let Some(answer) = answer.and_then(ask::answer_number) else {
+        let Some(answer) = answer.and_then(ask::answer_index) else {
             return Ok(None);
         };
         let start_m = leg.guide.distance_at(start);
@@ -199,7 +199,7 @@ impl Task for EmbodiedQa {
         }
         let body = self.setup.body(world, NAME)?;
         let grid = world.engines().nav_grid(&body)?;
-        for offer in survey(world, self.setup.agent, &grid, &self.settings.kinds) {
+        for offer in enumerate_questions(world, self.setup.agent, &grid, &self.settings.kinds) {
             let of_kind = self.offers.entry(offer.asked.kind).or_default();
             let alike = of_kind.entry(offer.asked.answer).or_default();
             alike.push(Arc::new(offer));
@@ -266,7 +266,7 @@ impl Task for EmbodiedQa {
         &mut self,
         world: &World,
         episode: &mut Episode,
-        played: &PlayedAction<'_>,
+        played: &ExecutedAction<'_>,
     ) -> StepResult {
         let id = self.setup.agent;
         let (Some(active), Some(agent)) = (&mut self.active, world.state().agents.get(id)) else {

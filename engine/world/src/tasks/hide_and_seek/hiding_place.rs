@@ -3,7 +3,7 @@
 use crate::world::World;
 use dwell_scene::AgentState;
 use dwell_scene::bvh::{Ray, RayMask};
-use dwell_scene::interrupt::PollEvery;
+use dwell_scene::interrupt::CancelPoller;
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::random::RandomKey;
 use glam::Vec3;
@@ -38,7 +38,7 @@ pub(super) fn hiding_place(
     });
     let starts = seekers.iter().map(|feet| (*feet + eye, START_WEIGHT));
     let views: Vec<(Vec3, u32)> = starts.chain(views).collect();
-    let mut pace = PollEvery::new(RAYS_PER_CHECK);
+    let mut pace = CancelPoller::new(RAYS_PER_CHECK);
     let mut best: Option<(u32, f32, NavCell)> = None;
     for k in 0..PLACES {
         let place = key.child("place").child(k);
@@ -50,7 +50,7 @@ pub(super) fn hiding_place(
         let seen: u32 = views
             .iter()
             .filter(|(from, _)| {
-                pace.turn();
+                pace.count_one();
                 is_seen(world, *from, (feet, hider), most_m)
             })
             .map(|(_, weight)| weight)

@@ -8,13 +8,13 @@ mod hiding_place;
 mod settings;
 
 use super::others::{
-    Tour, episode_bytes, place_anywhere, position, restored_episode, sees, way_to,
+    Patrol, episode_bytes, follower_to, place_anywhere, position, restored_episode, sees,
 };
-use super::{PlayedAction, Task, TaskKind, TaskSetup};
+use super::{ExecutedAction, Task, TaskKind, TaskSetup};
 use crate::actions::DiscreteAction;
 use crate::episode::{Episode, EpisodeGoal, StepResult, TaskMeasure};
 use crate::error::WorldError;
-use crate::expert::{ShortestPathFollower, face_point};
+use crate::expert::{ShortestPathFollower, action_towards_point};
 use crate::metrics::NavigationMetrics;
 use crate::schema;
 use crate::world::World;
@@ -86,7 +86,7 @@ struct HideAndSeekTask {
 struct ActiveEpisode {
     teams: Teams,
     key: RandomKey,
-    tour: Tour,
+    tour: Patrol,
     /// The way of the scripted hider.
     way: Option<ShortestPathFollower>,
     memory: Progress,
@@ -169,7 +169,7 @@ impl HideAndSeekTask {
             }
             let place = active.memory.place.map(Vec3::from_array);
             let cell = place.and_then(|place| grid.nearest(place, 0.6));
-            active.way = cell.map(|cell| way_to(&self.setup, grid, &[cell]));
+            active.way = cell.map(|cell| follower_to(&self.setup, grid, &[cell]));
         }
         let step = active.way.as_mut().and_then(|way| way.next_action(world));
         step.unwrap_or(DiscreteAction::Wait)
@@ -206,12 +206,13 @@ impl HideAndSeekTask {
                 .agents
                 .get(hider)
                 .map(AgentState::eye_position);
-            let turn =
-                head.and_then(|head| face_point(world, self.setup.agent, head, &self.setup.stride));
+            let turn = head.and_then(|head| {
+                action_towards_point(world, self.setup.agent, head, &self.setup.stride)
+            });
             return turn.unwrap_or(DiscreteAction::Wait);
         }
         let cell = grid.nearest(there, 1.0);
-        let step = cell.and_then(|cell| way_to(&self.setup, grid, &[cell]).next_action(world));
+        let step = cell.and_then(|cell| follower_to(&self.setup, grid, &[cell]).next_action(world));
         step.unwrap_or(DiscreteAction::Wait)
     }
 
@@ -262,7 +263,7 @@ impl Task for HideAndSeekTask {
         self.active = Some(ActiveEpisode {
             teams,
             key,
-            tour: Tour::default(),
+            tour: Patrol::default(),
             way: None,
             memory,
         });
@@ -287,7 +288,8 @@ impl Task for HideAndSeekTask {
     }
 
     fn restore(&mut self, world: &World, bytes: &[u8]) -> Result<(), WorldError> {
-        let (memory, tour): (Progress, Tour) = restored_episode(world, (&self.setup, NAME), bytes)?;
+        let (memory, tour): (Progress, Patrol) =
+            restored_episode(world, (&self.setup, NAME), bytes)?;
         if let Some(active) = &mut self.active {
             if memory.found.len() != active.teams.hiders.len() {
                 let why = "it is of an episode with another number of hiders";
@@ -307,7 +309,7 @@ impl Task for HideAndSeekTask {
         &mut self,
         world: &World,
         episode: &mut Episode,
-        played: &PlayedAction<'_>,
+        played: &ExecutedAction<'_>,
     ) -> StepResult {
         let Some(agent) = world.state().agents.get(self.setup.agent) else {
             return StepResult::default();

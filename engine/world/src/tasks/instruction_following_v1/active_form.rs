@@ -61,10 +61,10 @@ impl ActiveForm {
     }
 
     /// The action of the expert.
-    pub(super) fn expert(&mut self, world: &World) -> DiscreteAction {
+    pub(super) fn expert_action(&mut self, world: &World) -> DiscreteAction {
         match self {
-            Self::Steps(steps) => steps.expert(world),
-            Self::Route(route) => route.expert(world),
+            Self::Steps(steps) => steps.expert_action(world),
+            Self::Route(route) => route.expert_action(world),
         }
     }
 

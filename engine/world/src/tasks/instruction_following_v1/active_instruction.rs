@@ -1,16 +1,16 @@
 //! The instruction of an episode: what is done of it, and what the expert does next.
 
-use super::planned_step::{EndOfLeg, PlannedStep};
+use super::planned_step::{LegEndAction, PlannedStep};
 use super::step_places::reach_goal;
 use crate::actions::{DiscreteAction, StepSizes};
 use crate::error::WorldError;
-use crate::expert::LookStep;
+use crate::expert::LookAction;
 use crate::tasks::goal_cells::LargestIslandIndex;
 use crate::tasks::navigation::{BESIDE_M, ELSEWHERE_M, Leg, NavigationGoal};
 use crate::world::World;
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::{AgentId, ObjectId};
-use dwell_semantics::instruct::{StepCondition, StepView};
+use dwell_semantics::instruct::{ConditionContext, StepCondition};
 use std::sync::Arc;
 
 /// Control steps for which the expert waits for what its hand has begun.
@@ -78,12 +78,12 @@ impl ActiveInstruction {
     }
 
     /// The straight distance of a cell to the nearest place of the first leg, and the walkable way from there on, m.
-    pub(super) fn straight_from(&self, cell: NavCell) -> f64 {
+    pub(super) fn straight_line_from_m(&self, cell: NavCell) -> f64 {
         self.leg.straight_m(cell) + self.later_m[0][0][0]
     }
 
     /// The walkable way of the whole instruction from a cell, m.
-    pub(super) fn way_from(&self, cell: NavCell) -> Option<f64> {
+    pub(super) fn geodesic_from_m(&self, cell: NavCell) -> Option<f64> {
         Some(self.leg.guide.distance_at(cell)? + self.later_m[0][0][0])
     }
 
@@ -93,7 +93,7 @@ impl ActiveInstruction {
     }
 
     /// Returns whether something was done that was not to be done.
-    pub(super) fn is_broken(&self) -> bool {
+    pub(super) fn is_violated(&self) -> bool {
         self.progress.is_broken
     }
 
@@ -103,7 +103,7 @@ impl ActiveInstruction {
             return 0.0;
         }
         let scene = world.engines().semantics().scene(world.state());
-        let view = StepView {
+        let view = ConditionContext {
             scene: &scene,
             rays: world.rays(),
             agent,
@@ -126,7 +126,7 @@ impl ActiveInstruction {
     ) -> usize {
         let before = self.progress.done;
         let scene = world.engines().semantics().scene(world.state());
-        let mut view = StepView {
+        let mut view = ConditionContext {
             scene: &scene,
             rays: world.rays(),
             agent,
@@ -140,7 +140,7 @@ impl ActiveInstruction {
         while let Some(PlannedStep { step, .. }) = self.steps.get(progress.done) {
             progress.met.resize(step.conditions.len(), false);
             for (condition, met) in step.conditions.iter().zip(&mut progress.met) {
-                let was = *met && condition.is_passing();
+                let was = *met && condition.is_transient();
                 *met = was || condition.holds(&view);
             }
             if progress.met.iter().filter(|met| **met).count() < step.needed {
@@ -157,20 +157,20 @@ impl ActiveInstruction {
             let is_again = at.step == self.at.step && at.leg < self.at.leg;
             let goal = match planned.end {
                 // What was put down elsewhere is fetched from there.
-                EndOfLeg::Hand(DiscreteAction::Pick, object) if is_again => {
+                LegEndAction::Hand(DiscreteAction::Pick, object) if is_again => {
                     let ground = LargestIslandIndex::of(self.leg.guide.grid());
                     reach_goal(world, agent, &ground, object)
                 }
                 _ => planned.goal.clone(),
             };
-            self.leg = self.leg.to(goal);
+            self.leg = self.leg.with_goal(goal);
             (self.at, self.busy, self.rounds) = (at, 0, 0);
         }
         self.progress.done - before
     }
 
     /// The leg that is to be gone: of the first target of the plan that is not as it should be.
-    fn leg_place(&self, view: &StepView<'_>) -> LegPlace {
+    fn leg_place(&self, view: &ConditionContext<'_>) -> LegPlace {
         let Some(planned) = self.steps.get(self.progress.done) else {
             return self.at;
         };
@@ -209,7 +209,7 @@ impl ActiveInstruction {
             return false;
         }
         let scene = world.engines().semantics().scene(world.state());
-        let view = StepView {
+        let view = ConditionContext {
             scene: &scene,
             rays: world.rays(),
             agent,
@@ -219,17 +219,17 @@ impl ActiveInstruction {
     }
 
     /// Returns whether a step that was done is as it should be at the end.
-    fn is_still_done(&self, number: usize, view: &StepView<'_>) -> bool {
+    fn is_still_done(&self, number: usize, view: &ConditionContext<'_>) -> bool {
         let step = &self.steps[number].step;
         let lasting = self.lasting(number, view);
         lasting == step.needed || (lasting > step.needed && !step.is_exact)
     }
 
     /// Of how many of its things a step that was done is as it should be at the end: of all that were needed, or more, where it is.
-    fn lasting(&self, number: usize, view: &StepView<'_>) -> usize {
+    fn lasting(&self, number: usize, view: &ConditionContext<'_>) -> usize {
         let step = &self.steps[number].step;
         let is_last = number + 1 == self.steps.len();
-        if step.conditions[0].is_passing() {
+        if step.conditions[0].is_transient() {
             // Where the agent is and looks counts for the last step alone, and for one place: it cannot be at two.
             let lasts = is_last && step.conditions.len() == 1 && !step.conditions[0].is_event();
             return if !lasts || step.conditions[0].holds(view) {
@@ -244,7 +244,7 @@ impl ActiveInstruction {
             let object = condition.object();
             let changes = |planned: &PlannedStep| {
                 let own = planned.step.conditions.iter();
-                let mut own = own.filter(|condition| !condition.is_passing());
+                let mut own = own.filter(|condition| !condition.is_transient());
                 own.any(|condition| condition.object() == object)
             };
             later.iter().any(changes)
@@ -254,13 +254,13 @@ impl ActiveInstruction {
     }
 
     /// The action of the expert: the way, then the hand.
-    pub(super) fn expert(&mut self, world: &World) -> DiscreteAction {
+    pub(super) fn expert_action(&mut self, world: &World) -> DiscreteAction {
         if self.is_done() {
             return DiscreteAction::Stop;
         }
         let LegPlace { step, target, leg } = self.at;
         let end = self.steps[step].targets[target].legs[leg].end;
-        if let EndOfLeg::Hand(DiscreteAction::Open, object) = end
+        if let LegEndAction::Hand(DiscreteAction::Open, object) = end
             && self.busy > 0
         {
             self.busy += 1;
@@ -277,26 +277,26 @@ impl ActiveInstruction {
             return self.elsewhere(world, ELSEWHERE_M);
         }
         match end {
-            EndOfLeg::Arrive => {
+            LegEndAction::Arrive => {
                 let step = self.leg.approach(world);
                 step.unwrap_or_else(|| self.elsewhere(world, ELSEWHERE_M))
             }
-            EndOfLeg::Drop => self.leg.walk(world).unwrap_or_else(|| {
+            LegEndAction::Drop => self.leg.walk(world).unwrap_or_else(|| {
                 self.busy = 1;
                 DiscreteAction::Drop
             }),
-            EndOfLeg::Hand(action, object) => {
+            LegEndAction::Hand(action, object) => {
                 if let Some(step) = self.leg.walk(world) {
                     return step;
                 }
                 let look = self.leg.look_at(world, object);
                 self.use_hand(world, look, action)
             }
-            EndOfLeg::Above(action, object) => {
+            LegEndAction::Above(action, object) => {
                 if let Some(step) = self.leg.walk(world) {
                     return step;
                 }
-                let look = self.leg.look_on(world, object);
+                let look = self.leg.look_at_level_surface(world, object);
                 self.use_hand(world, look, action)
             }
         }
@@ -306,13 +306,13 @@ impl ActiveInstruction {
     fn use_hand(
         &mut self,
         world: &World,
-        look: LookStep,
+        look: LookAction,
         action: DiscreteAction,
     ) -> DiscreteAction {
         match look {
-            LookStep::Turn(step) => step,
-            LookStep::Missed => self.elsewhere(world, BESIDE_M),
-            LookStep::Done => {
+            LookAction::Turn(step) => step,
+            LookAction::Missed => self.elsewhere(world, BESIDE_M),
+            LookAction::Done => {
                 self.busy = 1;
                 action
             }
@@ -322,14 +322,14 @@ impl ActiveInstruction {
     /// Goes on from another place; gives up where there is none.
     fn elsewhere(&mut self, world: &World, radius_m: f32) -> DiscreteAction {
         self.busy = 0;
-        if self.leg.leave_out_goals_here(world, radius_m) {
+        if self.leg.exclude_goals_within(world, radius_m) {
             return DiscreteAction::Wait;
         }
         // It stands elsewhere in a cell when it comes again.
         if self.rounds < ROUNDS {
             self.rounds += 1;
-            self.leg.try_all_goals_again();
-            if self.leg.leave_out_goals_here(world, radius_m) {
+            self.leg.restore_all_goals();
+            if self.leg.exclude_goals_within(world, radius_m) {
                 return DiscreteAction::Wait;
             }
         }
@@ -412,7 +412,7 @@ fn later_distances(steps: &[PlannedStep], grid: &NavGrid) -> Vec<Vec<Vec<f64>>> 
         for (target, own) in planned.targets.iter().enumerate().rev() {
             for (leg, planned) in own.legs.iter().enumerate().rev() {
                 if let Some(next) = next {
-                    after_m += shortest_m(&planned.goal, next, grid);
+                    after_m += geodesic_between_m(&planned.goal, next, grid);
                 }
                 later_m[step][target][leg] = after_m;
                 next = Some(&planned.goal);
@@ -423,7 +423,11 @@ fn later_distances(steps: &[PlannedStep], grid: &NavGrid) -> Vec<Vec<Vec<f64>>> 
 }
 
 /// The walkable way from the nearest cell of a goal to another goal, m; 0 where there is none.
-pub(super) fn shortest_m(from: &NavigationGoal, to: &NavigationGoal, grid: &NavGrid) -> f64 {
+pub(super) fn geodesic_between_m(
+    from: &NavigationGoal,
+    to: &NavigationGoal,
+    grid: &NavGrid,
+) -> f64 {
     let field = grid.distance_field(&to.cells);
     let ways = from.cells.iter().filter_map(|cell| field.at(*cell));
     let shortest = ways.fold(f64::INFINITY, f64::min);

@@ -7,7 +7,9 @@ use crate::tasks::navigation::{ELSEWHERE_M, Leg, NavigationGoal};
 use crate::world::World;
 use dwell_scene::AgentId;
 use dwell_scene::navigation::NavGrid;
-use dwell_semantics::instruct::{PathWarp, RouteInstruction, RouteWalk, StepCondition, StepView};
+use dwell_semantics::instruct::{
+    ConditionContext, DynamicTimeWarping, RouteInstruction, RouteTracker, StepCondition,
+};
 use std::sync::Arc;
 
 /// Distance behind the place where a step is done to which one walks for it, as places of the way: two of 0.1 m.
@@ -31,8 +33,8 @@ struct StepPlace {
 #[derive(Debug)]
 pub(super) struct ActiveRoute {
     agent: AgentId,
-    walk: RouteWalk,
-    warp: PathWarp,
+    walk: RouteTracker,
+    warp: DynamicTimeWarping,
     end: StepCondition,
     places: Vec<StepPlace>,
     /// The way to the first step that is not done, and its number.
@@ -58,12 +60,12 @@ impl ActiveRoute {
             route, end, goal, ..
         } = drawn;
         let places = step_places(route, goal, grid)?;
-        let start = NavigationGoal::place("", grid, drawn.start, 0.0);
+        let start = NavigationGoal::at_cell("", grid, drawn.start, 0.0);
         let leg = Leg::new(agent, grid.clone(), places[0].goal.clone(), stride);
         Some(Self {
             agent,
             walk: route.walk(),
-            warp: PathWarp::new(&route.way, stride.forward_m.max(LEAST_SPACING_M)),
+            warp: DynamicTimeWarping::new(&route.way, stride.forward_m.max(LEAST_SPACING_M)),
             end: *end,
             places,
             expert_leg: leg.clone(),
@@ -78,7 +80,7 @@ impl ActiveRoute {
 
     fn is_at_end(&self, world: &World) -> bool {
         let scene = world.engines().semantics().scene(world.state());
-        self.end.holds(&StepView {
+        self.end.holds(&ConditionContext {
             scene: &scene,
             rays: world.rays(),
             agent: self.agent,
@@ -91,22 +93,22 @@ impl ActiveRoute {
         let Some(agent) = world.state().agents.get(self.agent) else {
             return 0;
         };
-        let before = self.walk.done();
+        let before = self.walk.passed_count();
         let scene = world.engines().semantics().scene(world.state());
         let place = [agent.position, agent.eye_position()];
         let is_at_end = self.is_at_end(world);
         self.walk.advance((&scene, world.rays()), place, is_at_end);
         self.warp.add(agent.position);
-        let done = self.walk.done();
+        let done = self.walk.passed_count();
         self.lead_on();
         done - before
     }
 
     /// Leads to the first step that is not done.
     fn lead_on(&mut self) {
-        let step = self.walk.done().min(self.places.len() - 1);
+        let step = self.walk.passed_count().min(self.places.len() - 1);
         if step != self.leg_step {
-            self.leg = self.leg.to(self.places[step].goal.clone());
+            self.leg = self.leg.with_goal(self.places[step].goal.clone());
             self.leg_step = step;
         }
     }
@@ -119,13 +121,13 @@ impl ActiveRoute {
 
     /// Returns whether all steps are done and the agent is where it is to stop.
     pub(super) fn is_fulfilled(&self, world: &World) -> bool {
-        self.walk.done() == self.places.len() && self.is_at_end(world)
+        self.walk.passed_count() == self.places.len() && self.is_at_end(world)
     }
 
     /// The share of the steps that are done, 0 to 1; the last counts where the agent is at the end now.
     pub(super) fn condition_success(&self, world: &World) -> f64 {
         let all = self.places.len();
-        let mut done = self.walk.done();
+        let mut done = self.walk.passed_count();
         if done == all && !self.is_at_end(world) {
             done -= 1;
         }
@@ -138,18 +140,18 @@ impl ActiveRoute {
     }
 
     /// The action of the expert: to the place of each step in order, then to the end; back to where a step begins that it missed.
-    pub(super) fn expert(&mut self, world: &World) -> DiscreteAction {
+    pub(super) fn expert_action(&mut self, world: &World) -> DiscreteAction {
         let last = self.places.len() - 1;
         if self.is_fulfilled(world) {
             return DiscreteAction::Stop;
         }
-        let next = self.walk.done().min(last);
+        let next = self.walk.passed_count().min(last);
         if self.goes_back {
             if let Some(action) = self.expert_leg.walk(world) {
                 return action;
             }
             self.goes_back = false;
-            self.expert_leg = self.expert_leg.to(self.places[next].goal.clone());
+            self.expert_leg = self.expert_leg.with_goal(self.places[next].goal.clone());
             self.expert_step = next;
         }
         self.lead_expert(next);
@@ -165,11 +167,11 @@ impl ActiveRoute {
         if next < last && self.returns < RETURNS {
             let before = next.checked_sub(1).map(|step| &self.places[step].goal);
             let back = before.unwrap_or(&self.start).clone();
-            self.expert_leg = self.expert_leg.to(back);
+            self.expert_leg = self.expert_leg.with_goal(back);
             (self.goes_back, self.returns) = (true, self.returns + 1);
             return DiscreteAction::Wait;
         }
-        if self.expert_leg.leave_out_goals_here(world, ELSEWHERE_M) {
+        if self.expert_leg.exclude_goals_within(world, ELSEWHERE_M) {
             return DiscreteAction::Wait;
         }
         DiscreteAction::Stop
@@ -178,7 +180,7 @@ impl ActiveRoute {
     /// Leads the expert on to a step, never back.
     fn lead_expert(&mut self, step: usize) {
         if step > self.expert_step {
-            self.expert_leg = self.expert_leg.to(self.places[step].goal.clone());
+            self.expert_leg = self.expert_leg.with_goal(self.places[step].goal.clone());
             self.expert_step = step;
         }
     }
@@ -226,7 +228,7 @@ fn step_places(
         let at = (done + FURTHER).min(route.way.len() - 1);
         let cell = grid.nearest(route.way[at], NEAR_M)?;
         places.push(StepPlace {
-            goal: Arc::new(NavigationGoal::place("", grid, cell, 0.0)),
+            goal: Arc::new(NavigationGoal::at_cell("", grid, cell, 0.0)),
             later_m: last.way_m - at_m[at],
         });
     }

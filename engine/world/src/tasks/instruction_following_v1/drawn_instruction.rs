@@ -1,8 +1,8 @@
 //! Instructions that are drawn from what a house offers.
 
-use super::active_instruction::shortest_m;
+use super::active_instruction::geodesic_between_m;
 use super::planned_step::PlannedStep;
-use super::step_pool::{GroupOffer, StepPool};
+use super::step_candidates::{GroupCandidate, StepCandidates};
 use dwell_scene::navigation::NavGrid;
 use dwell_scene::random::RandomStream;
 use dwell_semantics::SemanticScene;
@@ -76,8 +76,8 @@ pub(super) struct DrawnInstruction {
 }
 
 /// A source of drawn instructions.
-pub(super) struct InstructionDraw<'a> {
-    pub(super) pool: &'a StepPool,
+pub(super) struct InstructionSampler<'a> {
+    pub(super) pool: &'a StepCandidates,
     pub(super) scene: &'a SemanticScene<'a>,
     pub(super) grid: &'a NavGrid,
     /// Kinds of steps that can be asked.
@@ -85,7 +85,7 @@ pub(super) struct InstructionDraw<'a> {
     pub(super) max_sequence_steps: usize,
 }
 
-impl InstructionDraw<'_> {
+impl InstructionSampler<'_> {
     /// An instruction of a form; `None` where what was drawn cannot be done, or the house has none of the form, and for routes, which are
     /// drawn with their starts.
     pub(super) fn draw(
@@ -113,7 +113,7 @@ impl InstructionDraw<'_> {
     fn step(&self, kind: StepKind, stream: &mut RandomStream) -> Option<InstructionStep> {
         let pool = self.pool;
         if kind == StepKind::GoToRoom {
-            return pool.go_to(*stream.choose(&pool.rooms())?);
+            return pool.go_to_step(*stream.choose(&pool.rooms())?);
         }
         let object = *stream.choose(pool.by_kind.get(&kind)?)?;
         let to = match kind {
@@ -121,9 +121,9 @@ impl InstructionDraw<'_> {
             StepKind::PutOn | StepKind::PutIn => {
                 Term::Object(*stream.choose(&pool.destinations(kind, object))?)
             }
-            _ => return pool.of_thing(kind, object),
+            _ => return pool.object_step(kind, object),
         };
-        pool.to_destination(kind, object, to)
+        pool.transport_step(kind, object, to)
     }
 
     /// Steps that one hand can do one after the other: none but going between picking something up and the end.
@@ -135,7 +135,7 @@ impl InstructionDraw<'_> {
             let later = &steps[number + 1..];
             let walks = |step: &PlannedStep| step.step.kind == StepKind::GoToRoom;
             let apart = later.iter().all(|other| !shares_a_thing(step, other));
-            apart && (!step.holds() || later.iter().all(walks))
+            apart && (!step.leaves_object_held() || later.iter().all(walks))
         });
         fits.then(|| DrawnInstruction::of(steps))
     }
@@ -160,7 +160,7 @@ impl InstructionDraw<'_> {
         let [first, second] = requests;
         Some(DrawnInstruction {
             requests: vec![conditional(
-                (self.pool.words(object)?, state),
+                (self.pool.description(object)?, state),
                 first,
                 second,
             )],
@@ -189,15 +189,15 @@ impl InstructionDraw<'_> {
             return None;
         }
         Some(DrawnInstruction {
-            requests: vec![asked.step.request.clone(), other.forbidden()?],
+            requests: vec![asked.step.request.clone(), other.prohibition()?],
             steps: vec![asked],
             forbidden: vec![condition],
         })
     }
 
     fn quantity(&self, stream: &mut RandomStream) -> Option<DrawnInstruction> {
-        let offer: &GroupOffer = stream.choose(&self.pool.groups)?;
-        let step = self.pool.of_group(offer)?;
+        let offer: &GroupCandidate = stream.choose(&self.pool.groups)?;
+        let step = self.pool.group_step(offer)?;
         let group = &offer.group;
         let number = |object| group.objects.iter().position(|own| own == object);
         let mut left: Vec<usize> = group.undone.iter().filter_map(number).collect();
@@ -222,7 +222,7 @@ impl InstructionDraw<'_> {
             if from == to {
                 return 0.0;
             }
-            shortest_m(&last.goal, &first.goal, self.grid)
+            geodesic_between_m(&last.goal, &first.goal, self.grid)
         };
         let ways_m: Vec<Vec<f64>> = (0..count)
             .map(|from| (0..count).map(|to| between(from, to)).collect())

@@ -1,6 +1,6 @@
 //! Routes that are drawn: an end, a start, and a way between them.
 
-use super::step_pool::StepPool;
+use super::step_candidates::StepCandidates;
 use crate::tasks::door_leaves::DoorLeaves;
 use crate::tasks::navigation::{NavigationGoal, NavigationRules};
 use crate::tasks::random_yaw_rad;
@@ -10,7 +10,7 @@ use dwell_scene::navigation::{DistanceField, NavCell, NavGrid};
 use dwell_scene::random::{RandomKey, RandomStream};
 use dwell_semantics::SemanticScene;
 use dwell_semantics::instruct::{
-    InstructionStep, RouteInstruction, StepCondition, StepKind, ToldWay, room_changes,
+    DescribedPath, InstructionStep, RouteInstruction, StepCondition, StepKind, room_changes,
 };
 use glam::Vec3;
 use std::sync::Arc;
@@ -34,8 +34,8 @@ pub(super) struct DrawnRoute {
 }
 
 /// A source of drawn routes.
-pub(super) struct RouteDraw<'a> {
-    pub(super) pool: &'a StepPool,
+pub(super) struct RouteSampler<'a> {
+    pub(super) pool: &'a StepCandidates,
     pub(super) world: &'a World,
     pub(super) scene: &'a SemanticScene<'a>,
     pub(super) grid: &'a NavGrid,
@@ -46,7 +46,7 @@ pub(super) struct RouteDraw<'a> {
     pub(super) eye_m: f32,
 }
 
-impl RouteDraw<'_> {
+impl RouteSampler<'_> {
     /// A route; `None` where that which was drawn cannot be told.
     pub(super) fn draw(&self, key: RandomKey) -> Option<DrawnRoute> {
         let grid = self.grid;
@@ -83,13 +83,13 @@ impl RouteDraw<'_> {
         let to_via = to_via.map(|(field, _)| field);
         let corners = self.corners(start, via.zip(to_via.as_ref()), &to_end)?;
         let yaw_rad = random_yaw_rad(key);
-        let way = ToldWay {
+        let way = DescribedPath {
             corners: &corners,
             yaw_rad,
             eye_m: self.eye_m,
             end,
         };
-        let route = RouteInstruction::tell((self.scene, self.world.rays()), way, &mut stream)?;
+        let route = RouteInstruction::generate((self.scene, self.world.rays()), way, &mut stream)?;
         allows(start, route.length_m()).then_some(DrawnRoute {
             route,
             end,
@@ -103,10 +103,10 @@ impl RouteDraw<'_> {
     fn end(&self, stream: &mut RandomStream) -> Option<InstructionStep> {
         let pool = self.pool;
         if stream.below(ENDS_IN_ROOM) == 0 {
-            return pool.go_to(*stream.choose(&pool.rooms())?);
+            return pool.go_to_step(*stream.choose(&pool.rooms())?);
         }
         let things = pool.by_kind.get(&StepKind::FindObject)?;
-        pool.of_thing(StepKind::FindObject, *stream.choose(things)?)
+        pool.object_step(StepKind::FindObject, *stream.choose(things)?)
     }
 
     /// The corners of the way: the shortest one, or the shortest one through the rooms that one goes through by a place.

@@ -13,13 +13,13 @@ mod drawn_instruction;
 mod drawn_route;
 mod planned_step;
 mod settings;
+mod step_candidates;
 mod step_places;
-mod step_pool;
 
 use super::door_leaves::DoorLeaves;
 use super::navigation::NavigationRules;
 use super::standing_room::FreeStartCells;
-use super::{PlayedAction, Task, TaskKind, TaskSetup, random_yaw_rad};
+use super::{ExecutedAction, Task, TaskKind, TaskSetup, random_yaw_rad};
 use crate::actions::DiscreteAction;
 use crate::episode::{Episode, EpisodeGoal, StepResult, TaskMeasure};
 use crate::error::WorldError;
@@ -29,8 +29,8 @@ use crate::world::World;
 use active_form::ActiveForm;
 use active_instruction::ActiveInstruction;
 use active_route::ActiveRoute;
-use drawn_instruction::{DrawnInstruction, InstructionDraw, InstructionForm};
-use drawn_route::{DrawnRoute, RouteDraw};
+use drawn_instruction::{DrawnInstruction, InstructionForm, InstructionSampler};
+use drawn_route::{DrawnRoute, RouteSampler};
 use dwell_scene::interrupt;
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::random::RandomKey;
@@ -39,7 +39,7 @@ use dwell_semantics::instruct::{RouteMilestone, StepCondition, StepKind};
 use dwell_semantics::vocabulary;
 use settings::InstructionFollowingV1Settings;
 use std::sync::Arc;
-use step_pool::{StepPool, is_carried_out};
+use step_candidates::{StepCandidates, can_carry_out};
 
 const NAME: &str = "InstructionFollowing-v1";
 /// Instructions that are tried for an episode.
@@ -100,7 +100,7 @@ fn build(value: &serde_json::Value, setup: TaskSetup) -> Result<Box<dyn Task>, W
     let (settings, rules) = InstructionFollowingV1Settings::read(value)?;
     let asked = settings.kinds.iter().copied();
     let kinds: Vec<StepKind> = asked
-        .filter(|kind| is_carried_out(*kind, setup.actions))
+        .filter(|kind| can_carry_out(*kind, setup.actions))
         .collect();
     let has_steps = settings
         .forms
@@ -133,7 +133,7 @@ struct InstructionFollowingV1 {
     rules: NavigationRules,
     setup: TaskSetup,
     /// What the house offers at its start; found once.
-    pool: Option<StepPool>,
+    pool: Option<StepCandidates>,
     active: Option<ActiveForm>,
     /// The values of the kind's measures, in their order.
     measured: [f64; 3],
@@ -188,7 +188,8 @@ impl Task for InstructionFollowingV1 {
         let grid = world.engines().nav_grid(&body)?;
         let with_groups = self.settings.forms.contains(&InstructionForm::Quantity);
         let agent = (self.setup.agent, body);
-        let pool = StepPool::survey(world, agent, &grid, &self.surveyed_kinds(), with_groups);
+        let pool =
+            StepCandidates::from_world(world, agent, &grid, &self.surveyed_kinds(), with_groups);
         self.pool = Some(pool);
         Ok(())
     }
@@ -233,8 +234,9 @@ impl Task for InstructionFollowingV1 {
             let mut active = ActiveInstruction::new(drawn.steps, drawn.forbidden, plan);
             let allowed = |cell: NavCell| {
                 grid.island(cell) == Some(0)
-                    && active.way_from(cell).is_some_and(|way_m| {
-                        self.rules.allow_start(way_m, || active.straight_from(cell))
+                    && active.geodesic_from_m(cell).is_some_and(|way_m| {
+                        self.rules
+                            .allow_start(way_m, || active.straight_line_from_m(cell))
                     })
                     && !leaves.is_blocked(&grid, cell)
             };
@@ -244,7 +246,7 @@ impl Task for InstructionFollowingV1 {
             let yaw_rad = random_yaw_rad(key);
             let position = grid.position(start);
             world.place_agent(agent, position, yaw_rad)?;
-            if active.advance(world, agent, None) > 0 || active.is_broken() {
+            if active.advance(world, agent, None) > 0 || active.is_violated() {
                 continue;
             }
             let distance_m = active.distance_m(world);
@@ -280,7 +282,7 @@ impl Task for InstructionFollowingV1 {
         &mut self,
         world: &World,
         episode: &mut Episode,
-        played: &PlayedAction<'_>,
+        played: &ExecutedAction<'_>,
     ) -> StepResult {
         let id = self.setup.agent;
         let (Some(active), Some(agent)) = (&mut self.active, world.state().agents.get(id)) else {
@@ -305,7 +307,7 @@ impl Task for InstructionFollowingV1 {
 
     fn expert(&mut self, world: &mut World, _episode: &Episode) -> DiscreteAction {
         let active = self.active.as_mut();
-        active.map_or(DiscreteAction::Stop, |active| active.expert(world))
+        active.map_or(DiscreteAction::Stop, |active| active.expert_action(world))
     }
 }
 
@@ -358,7 +360,7 @@ impl InstructionFollowingV1 {
             return Ok(None);
         };
         let scene = world.engines().semantics().scene(world.state());
-        let draw = RouteDraw {
+        let draw = RouteSampler {
             pool,
             world,
             scene: &scene,
@@ -406,7 +408,7 @@ impl InstructionFollowingV1 {
         let pool = self.pool.as_ref()?;
         let offered = self.kinds.iter().copied().filter(|kind| pool.has(*kind));
         let scene = world.engines().semantics().scene(world.state());
-        let draw = InstructionDraw {
+        let draw = InstructionSampler {
             pool,
             scene: &scene,
             grid,
@@ -420,7 +422,7 @@ impl InstructionFollowingV1 {
 }
 
 /// The thing that a step pointed at.
-fn pointed_object(world: &World, played: &PlayedAction<'_>) -> Option<ObjectId> {
+fn pointed_object(world: &World, played: &ExecutedAction<'_>) -> Option<ObjectId> {
     let pointed = played.outcome.pointed.filter(|_| played.outcome.success)?;
     match world.house().entity(pointed.entity)? {
         Entity::Object(object) => Some(object),

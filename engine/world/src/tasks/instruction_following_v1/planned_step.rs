@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 /// What the expert does where a leg ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum EndOfLeg {
+pub(super) enum LegEndAction {
     /// Nothing: to stand there and to look is enough.
     Arrive,
     /// An action of the hand on a thing that it looks at.
@@ -23,7 +23,7 @@ pub(super) enum EndOfLeg {
 #[derive(Clone, Debug)]
 pub(super) struct PlannedLeg {
     pub(super) goal: Arc<NavigationGoal>,
-    pub(super) end: EndOfLeg,
+    pub(super) end: LegEndAction,
     /// What makes it unnecessary: a thing that is held already need not be picked up.
     pub(super) unless: Option<StepCondition>,
 }
@@ -44,7 +44,7 @@ pub(super) struct PlannedStep {
 
 impl PlannedStep {
     /// Returns whether it leaves a thing in the hand.
-    pub(super) fn holds(&self) -> bool {
+    pub(super) fn leaves_object_held(&self) -> bool {
         let held = |target: &StepTarget| matches!(target.condition, StepCondition::Held(_));
         self.targets.iter().any(held)
     }

@@ -3,7 +3,7 @@
 use super::drawn_instruction::InstructionForm;
 use crate::error::WorldError;
 use crate::tasks::navigation::{NavigationRules, navigation_settings};
-use dwell_semantics::instruct::{StepKind, WordSplit};
+use dwell_semantics::instruct::{InstructionSplit, StepKind};
 
 navigation_settings! {
     /// The task's settings.
@@ -16,7 +16,7 @@ navigation_settings! {
         max_sequence_steps: u32 = 2,
         /// Which instructions by their words: `train` holds out pairs of colour and noun, relations and wordings, `colors`, `relations`
         /// and `wordings` ask for what is held out; default all.
-        words: WordSplit = WordSplit::All,
+        words: InstructionSplit = InstructionSplit::All,
         /// What every step that is done is paid, beside `reward`; default 0.5.
         step_done_reward: f64 = 0.5,
     }

@@ -1,10 +1,10 @@
 //! Where the steps of instructions are carried out.
 
-use super::planned_step::{EndOfLeg, PlannedLeg, StepTarget};
+use super::planned_step::{LegEndAction, PlannedLeg, StepTarget};
 use crate::actions::DiscreteAction;
 use crate::episode::EpisodeGoal;
 use crate::tasks::goal_cells::LargestIslandIndex;
-use crate::tasks::navigation::{NavigationGoal, SuccessRule, cells_in_reach, cells_that_reach};
+use crate::tasks::navigation::{NavigationGoal, SuccessRule, cells_in_reach, goal_region};
 use crate::world::World;
 use dwell_scene::navigation::NavCell;
 use dwell_scene::{AgentBody, AgentId, ObjectId, RoomId};
@@ -67,18 +67,18 @@ impl PlaceFinder<'_> {
     }
 
     /// Returns whether a thing can be found.
-    pub(super) fn is_found(&mut self, object: ObjectId) -> bool {
+    pub(super) fn is_findable(&mut self, object: ObjectId) -> bool {
         let (world, agent, ground) = (self.world, self.agent, &self.ground);
         let known = self.places.found.entry(object);
         let found = known.or_insert_with(|| {
-            let asked = StepCondition::found_goal(object);
-            goal(cells_that_reach(world, agent, ground, &asked), asked)
+            let asked = StepCondition::find_object_goal(object);
+            goal(goal_region(world, agent, ground, &asked), asked)
         });
         !found.cells.is_empty()
     }
 
     /// Returns whether one can go to a room.
-    pub(super) fn is_walkable(&mut self, room: RoomId) -> bool {
+    pub(super) fn is_room_reachable(&mut self, room: RoomId) -> bool {
         let (house, ground) = (self.world.house(), &self.ground);
         let known = self.places.rooms.entry(room);
         let walkable = known.or_insert_with(|| {
@@ -91,7 +91,7 @@ impl PlaceFinder<'_> {
     }
 
     /// Returns whether the agent can pick a thing up.
-    pub(super) fn is_carried(&mut self, object: ObjectId) -> bool {
+    pub(super) fn can_pick_up(&mut self, object: ObjectId) -> bool {
         let (house, state) = (self.world.house(), self.world.state());
         let size = house.object_bounds(state, object).size().max_element();
         let part = house.objects[object].first_part;
@@ -116,7 +116,7 @@ impl StepPlaces {
         };
         let hand = |action, object| {
             let reached = self.in_reach.get(&object)?;
-            Some(leg(reached, EndOfLeg::Hand(action, object)))
+            Some(leg(reached, LegEndAction::Hand(action, object)))
         };
         let unless = |leg: PlannedLeg, condition| PlannedLeg {
             unless: Some(condition),
@@ -127,12 +127,12 @@ impl StepPlaces {
             Some(unless(leg, StepCondition::Held(object)))
         };
         let legs = match condition {
-            StepCondition::AgentIn(room) => vec![leg(self.rooms.get(&room)?, EndOfLeg::Arrive)],
+            StepCondition::AgentIn(room) => vec![leg(self.rooms.get(&room)?, LegEndAction::Arrive)],
             StepCondition::Found(object) | StepCondition::Faced(object) => {
-                vec![leg(self.found.get(&object)?, EndOfLeg::Arrive)]
+                vec![leg(self.found.get(&object)?, LegEndAction::Arrive)]
             }
             StepCondition::PointedAt(object) => {
-                let end = EndOfLeg::Hand(DiscreteAction::Point, object);
+                let end = LegEndAction::Hand(DiscreteAction::Point, object);
                 vec![leg(self.found.get(&object)?, end)]
             }
             StepCondition::Held(object) => vec![hand(DiscreteAction::Pick, object)?],
@@ -142,10 +142,13 @@ impl StepPlaces {
                 vec![hand(DiscreteAction::Toggle, object)?]
             }
             StepCondition::LeftIn(object, room) => {
-                vec![pick(object)?, leg(self.rooms.get(&room)?, EndOfLeg::Drop)]
+                vec![
+                    pick(object)?,
+                    leg(self.rooms.get(&room)?, LegEndAction::Drop),
+                ]
             }
             StepCondition::On(object, support) => {
-                let end = EndOfLeg::Above(DiscreteAction::Place, support);
+                let end = LegEndAction::Above(DiscreteAction::Place, support);
                 vec![pick(object)?, leg(self.in_reach.get(&support)?, end)]
             }
             StepCondition::Inside(object, container) => {

@@ -5,7 +5,7 @@ use crate::episode::EpisodeGoal;
 use crate::tasks::goal_cells::LargestIslandIndex;
 use crate::world::World;
 use dwell_scene::bvh::{Ray, RayMask};
-use dwell_scene::interrupt::PollEvery;
+use dwell_scene::interrupt::CancelPoller;
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::{AgentId, ObjectId};
 use dwell_semantics::instruct::{Instruction, InstructionGoal};
@@ -37,13 +37,13 @@ pub(in crate::tasks) struct NavigationGoal {
 
 impl NavigationGoal {
     /// The goal to be where `asked` is fulfilled; `None` where that is nowhere on the largest island.
-    pub(in crate::tasks) fn fulfilled(
+    pub(in crate::tasks) fn from_instruction_goal(
         (world, agent): (&World, AgentId),
         ground: &LargestIslandIndex<'_>,
         asked: InstructionGoal,
         told: EpisodeGoal,
     ) -> Option<Self> {
-        let cells = cells_that_reach(world, agent, ground, &asked);
+        let cells = goal_region(world, agent, ground, &asked);
         (!cells.is_empty()).then_some(Self {
             cells,
             success: SuccessRule::Fulfilled(asked),
@@ -53,18 +53,18 @@ impl NavigationGoal {
     }
 
     /// The goal to come near the middle of a cell.
-    pub(in crate::tasks) fn place(
+    pub(in crate::tasks) fn at_cell(
         kind: &'static str,
         grid: &NavGrid,
         cell: NavCell,
         success_distance_m: f64,
     ) -> Self {
         let position = grid.position(cell);
-        Self::point(kind, StatedPoint { cell, position }, success_distance_m)
+        Self::at_point(kind, StatedPoint { cell, position }, success_distance_m)
     }
 
     /// The goal to come near a point.
-    pub(in crate::tasks) fn point(
+    pub(in crate::tasks) fn at_point(
         kind: &'static str,
         StatedPoint { cell, position }: StatedPoint,
         success_distance_m: f64,
@@ -91,7 +91,7 @@ impl NavigationGoal {
 }
 
 /// The walkable cells of the largest island in which a goal is reached by someone who looks the right way.
-pub(in crate::tasks) fn cells_that_reach(
+pub(in crate::tasks) fn goal_region(
     world: &World,
     agent: AgentId,
     ground: &LargestIslandIndex<'_>,
@@ -128,11 +128,11 @@ pub(in crate::tasks) fn cells_in_reach(
     object: ObjectId,
 ) -> Vec<NavCell> {
     // A little less than the whole reach, as from the border of a cell.
-    cells_in_share_of_reach(world, agent, ground, (object, 0.85))
+    cells_in_reach_fraction(world, agent, ground, (object, 0.85))
 }
 
 /// As [`cells_in_reach`], with a share of the reach.
-pub(in crate::tasks) fn cells_in_share_of_reach(
+pub(in crate::tasks) fn cells_in_reach_fraction(
     world: &World,
     agent: AgentId,
     ground: &LargestIslandIndex<'_>,
@@ -168,10 +168,10 @@ fn cells_in_sight(
     let bounds = scene.extent(object).bounds;
     let entity = world.house().entity_of_object(object);
     let edge = grid.config().cell_m;
-    let mut pace = PollEvery::new(CELLS_PER_CHECK);
+    let mut pace = CancelPoller::new(CELLS_PER_CHECK);
     let mut cells = ground.cells_around(&bounds.grown(radius_m + 0.01));
     cells.retain(|cell| {
-        pace.turn();
+        pace.count_one();
         let at = grid.position(*cell);
         let sides = [(0.0, 0.0), (-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0)];
         near(at)

@@ -3,7 +3,8 @@
 use super::goal::{NavigationGoal, SuccessRule};
 use crate::actions::{DiscreteAction, StepSizes};
 use crate::expert::{
-    LookStep, LookedAt, ShortestPathFollower, action_towards_object, face_point, look_at,
+    LookAction, LookTarget, ShortestPathFollower, action_towards_object, action_towards_point,
+    look_at,
 };
 use crate::world::World;
 use dwell_scene::navigation::{NavCell, NavGrid};
@@ -57,7 +58,7 @@ impl Leg {
 
     /// Leads to goals further than `radius_m` from here from now on; `false` when there are none. Of a cell on whose border the agent
     /// stands the thing may be hidden, though it is seen from the middle.
-    pub(in crate::tasks) fn leave_out_goals_here(&mut self, world: &World, radius_m: f32) -> bool {
+    pub(in crate::tasks) fn exclude_goals_within(&mut self, world: &World, radius_m: f32) -> bool {
         let id = self.expert_path.agent();
         let Some(agent) = world.state().agents.get(id) else {
             return false;
@@ -74,7 +75,7 @@ impl Leg {
     }
 
     /// Leads to all goals again.
-    pub(in crate::tasks) fn try_all_goals_again(&mut self) {
+    pub(in crate::tasks) fn restore_all_goals(&mut self) {
         self.expert_cells.clone_from(&self.goal.cells);
         self.expert_path = self.guide.clone();
     }
@@ -91,7 +92,7 @@ impl Leg {
     }
 
     /// The way of the same agent to another goal.
-    pub(in crate::tasks) fn to(&self, goal: Arc<NavigationGoal>) -> Self {
+    pub(in crate::tasks) fn with_goal(&self, goal: Arc<NavigationGoal>) -> Self {
         Self::new(
             self.guide.agent(),
             self.guide.grid().clone(),
@@ -106,20 +107,24 @@ impl Leg {
     }
 
     /// What brings the middle of the view onto a thing from here.
-    pub(in crate::tasks) fn look_at(&self, world: &World, object: ObjectId) -> LookStep {
-        let at = (object, LookedAt::Anywhere);
+    pub(in crate::tasks) fn look_at(&self, world: &World, object: ObjectId) -> LookAction {
+        let at = (object, LookTarget::Anywhere);
         look_at(world, self.guide.agent(), at, &self.stride)
     }
 
     /// What brings the middle of the view onto a level surface of a thing from here.
-    pub(in crate::tasks) fn look_on(&self, world: &World, object: ObjectId) -> LookStep {
-        let at = (object, LookedAt::LevelSurface);
+    pub(in crate::tasks) fn look_at_level_surface(
+        &self,
+        world: &World,
+        object: ObjectId,
+    ) -> LookAction {
+        let at = (object, LookTarget::LevelSurface);
         look_at(world, self.guide.agent(), at, &self.stride)
     }
 
     /// The turn or tilt that brings a point into the middle of the view; `None` once it is there.
     pub(in crate::tasks) fn face(&self, world: &World, point: Vec3) -> Option<DiscreteAction> {
-        face_point(world, self.guide.agent(), point, &self.stride)
+        action_towards_point(world, self.guide.agent(), point, &self.stride)
     }
 
     /// The expert's next step on the way, and then towards the nearest thing of the goal; `None` once it stands and looks right.
@@ -134,7 +139,7 @@ impl Leg {
 
     /// The expert's next step to open a thing in front of which it stands.
     pub(in crate::tasks) fn open(&mut self, world: &World, object: ObjectId) -> DiscreteAction {
-        self.expert_path.open_thing(world, object)
+        self.expert_path.action_to_open(world, object)
     }
 }
 

@@ -9,7 +9,7 @@ mod settings;
 mod stated;
 
 pub(super) use goal::{
-    NavigationGoal, SuccessRule, cells_in_reach, cells_in_share_of_reach, cells_that_reach,
+    NavigationGoal, SuccessRule, cells_in_reach, cells_in_reach_fraction, goal_region,
 };
 pub(super) use leg::{BESIDE_M, ELSEWHERE_M, Leg};
 pub(super) use settings::{NavigationRewards, NavigationRules, navigation_settings};
@@ -18,7 +18,7 @@ pub(super) use stated::StatedPoint;
 use super::door_leaves::DoorLeaves;
 use super::goal_cells::LargestIslandIndex;
 use super::standing_room::FreeStartCells;
-use super::{PlayedAction, Task, TaskSetup};
+use super::{ExecutedAction, Task, TaskSetup};
 use crate::actions::DiscreteAction;
 use crate::episode::{Episode, StepResult};
 use crate::episode_spec::{EpisodeSpec, StatedGoal};
@@ -75,7 +75,7 @@ pub(super) trait GoalKind: Debug + Send + Sync {
     /// [`WorldError::Config`] for one that the house does not have, and of kinds whose goals cannot be stated.
     fn stated(
         &self,
-        _site: &GoalSite<'_>,
+        _site: &GoalContext<'_>,
         _asked: &StatedGoal,
     ) -> Result<Arc<NavigationGoal>, WorldError> {
         Err(WorldError::Config {
@@ -102,7 +102,7 @@ pub(super) trait GoalKind: Debug + Send + Sync {
 }
 
 /// Where a stated goal is looked for.
-pub(super) struct GoalSite<'a> {
+pub(super) struct GoalContext<'a> {
     pub(super) world: &'a World,
     /// Who goes there.
     pub(super) agent: AgentId,
@@ -275,7 +275,7 @@ impl<K: GoalKind> Task for NavigationTask<K> {
             Some(start) => Some(stated::stated_start(&grid, start, &leaves, &room)?),
             None => None,
         };
-        let site = GoalSite {
+        let site = GoalContext {
             world,
             agent,
             grid: &grid,
@@ -330,7 +330,7 @@ impl<K: GoalKind> Task for NavigationTask<K> {
         &mut self,
         world: &World,
         episode: &mut Episode,
-        played: &PlayedAction<'_>,
+        played: &ExecutedAction<'_>,
     ) -> StepResult {
         let (Some(active), Some(agent)) =
             (&self.active, world.state().agents.get(self.setup.agent))
@@ -355,7 +355,7 @@ impl<K: GoalKind> Task for NavigationTask<K> {
             return step;
         }
         let looks_in_vain = !leg.goal.objects().is_empty() && !leg.is_reached(world, None);
-        if looks_in_vain && leg.leave_out_goals_here(world, ELSEWHERE_M) {
+        if looks_in_vain && leg.exclude_goals_within(world, ELSEWHERE_M) {
             return DiscreteAction::Wait;
         }
         DiscreteAction::Stop

@@ -99,7 +99,7 @@ pub(in crate::tasks) fn stated_start(
     if leaves.is_blocked(grid, point.cell) {
         return refuse("a point that is clear of door leaves, and one stands there");
     }
-    if !room.holds(point.position) {
+    if !room.is_free(point.position) {
         return refuse("a point that is clear of other agents, and one starts there");
     }
     Ok((point, start.heading_rad()))

@@ -3,7 +3,7 @@
 use super::box_overlap::OrientedBox;
 use super::energy::{ThingGoal, TrackedThing};
 use crate::episode::{EpisodeGoal, ObjectPlacement, TaskMeasure};
-use crate::tasks::relocation::{Misplaced, Restorer};
+use crate::tasks::relocation::{Misplacement, RestoreExpert};
 use crate::world::World;
 use dwell_scene::Pose;
 
@@ -45,7 +45,7 @@ pub(super) struct ActiveEpisode {
     /// Energies at the start, and now. Shape (thing,).
     pub(super) start: Vec<f64>,
     pub(super) now: Vec<f64>,
-    pub(super) restorer: Restorer,
+    pub(super) restorer: RestoreExpert,
 }
 
 impl ActiveEpisode {
@@ -86,19 +86,23 @@ impl ActiveEpisode {
     }
 
     /// What is not as it is to be.
-    pub(super) fn misplaced(&self) -> Vec<Misplaced> {
+    pub(super) fn misplaced(&self) -> Vec<Misplacement> {
         let things = self.things.iter().zip(&self.now);
         let misplaced = things.filter(|(_, energy)| **energy > 0.0);
         let misplaced = misplaced.map(|(thing, _)| match thing.goal {
-            ThingGoal::Pose { .. } => Misplaced::Thing(thing.object),
-            ThingGoal::Openness(goal) => Misplaced::Furniture(thing.object, goal > 0.5),
+            ThingGoal::Pose { .. } => Misplacement::Thing(thing.object),
+            ThingGoal::Openness(goal) => Misplacement::Furniture(thing.object, goal > 0.5),
         });
         misplaced.collect()
     }
 }
 
 /// What sensors and infos tell of the things that are to be put back.
-pub(super) fn told(things: &[TrackedThing], energies: &[f64], world: &World) -> EpisodeGoal {
+pub(super) fn episode_goal(
+    things: &[TrackedThing],
+    energies: &[f64],
+    world: &World,
+) -> EpisodeGoal {
     let misplaced = things.iter().zip(energies);
     let misplaced = misplaced.filter(|(_, energy)| **energy > 0.0);
     let placements = misplaced.map(|(thing, _)| match thing.goal {

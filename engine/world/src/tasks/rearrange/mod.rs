@@ -12,16 +12,16 @@ mod wording;
 
 use super::door_leaves::{self, DoorLeaves};
 use super::goal_cells::LargestIslandIndex;
-use super::relocation::{HandMover, MovableThings, MoveTarget, PlaceToRestore, Restorer};
+use super::relocation::{HandMover, MovableThings, MoveTarget, OriginalPlace, RestoreExpert};
 use super::standing_room::FreeStartCells;
-use super::{PlayedAction, Task, TaskKind, TaskSetup, random_yaw_rad};
+use super::{ExecutedAction, Task, TaskKind, TaskSetup, random_yaw_rad};
 use crate::actions::{DiscreteAction, HandTarget};
-use crate::episode::{Episode, GoalPart, StepResult};
+use crate::episode::{Episode, GoalField, StepResult};
 use crate::error::WorldError;
 use crate::metrics::NavigationMetrics;
 use crate::schema;
 use crate::world::World;
-use active_episode::{ActiveEpisode, MEASURES, told};
+use active_episode::{ActiveEpisode, MEASURES, episode_goal};
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::random::RandomKey;
 use dwell_scene::{Aabb, AgentBody, AgentId, JointId, ObjectId, Pose};
@@ -32,7 +32,7 @@ use settings::RearrangeSettings;
 use shuffle::{OpenableThing, openable_things};
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use wording::{Resting, resting};
+use wording::{RestingRelation, support_relation};
 
 const NAME: &str = "Rearrange";
 /// Things that are tried for one that is moved.
@@ -46,7 +46,7 @@ pub(super) const KIND: TaskKind = TaskKind {
     about: "Put everything back as it was: one to five things lie elsewhere, or stand open or closed; then stop.",
     has_goal: true,
     min_agents: 1,
-    goal_parts: &[GoalPart::Placements],
+    goal_parts: &[GoalField::Placements],
     max_steps: 5000,
     actions: DiscreteAction::ALL.split_at(13).0,
     sensors: &[
@@ -86,9 +86,9 @@ struct Shuffled {
     /// Furniture that was opened or closed.
     swung: Vec<ObjectId>,
     /// Where things lay that were moved.
-    places: BTreeMap<ObjectId, PlaceToRestore>,
+    places: BTreeMap<ObjectId, OriginalPlace>,
     /// What they were in or on.
-    rested: BTreeMap<ObjectId, Resting>,
+    rested: BTreeMap<ObjectId, RestingRelation>,
 }
 
 #[derive(Debug)]
@@ -131,7 +131,7 @@ impl Rearrange {
         let mut stream = key.child("openables").stream();
         stream.shuffle(&mut openable);
         for thing in openable.into_iter().take(TRIES) {
-            if shuffled.swung.len() < swung && thing.swing(mover.world, &mut stream)? {
+            if shuffled.swung.len() < swung && thing.toggle_open(mover.world, &mut stream)? {
                 shuffled.swung.push(thing.object);
             }
         }
@@ -149,7 +149,7 @@ impl Rearrange {
             if shuffled.places.len() == wanted {
                 break;
             }
-            let Some(cell) = mover.puts_back(thing, &mut stream)? else {
+            let Some(cell) = mover.try_put_back(thing, &mut stream)? else {
                 continue;
             };
             let (house, state) = (mover.world.house(), mover.world.state());
@@ -160,10 +160,10 @@ impl Rearrange {
             // Well elsewhere on the same furniture is elsewhere, too.
             let is_allowed =
                 |_: &World, _: MoveTarget, point: Vec3| distances.contains(&point.distance(middle));
-            let rested = resting(mover.world, thing.object);
+            let rested = support_relation(mover.world, thing.object);
             mover.kept_free.push(bounds);
-            if mover.move_to((thing.object, cell), &targets, &mut stream, &is_allowed)? {
-                let place = PlaceToRestore::new(thing, (bounds, world_from_part));
+            if mover.try_move_to((thing.object, cell), &targets, &mut stream, &is_allowed)? {
+                let place = OriginalPlace::new(thing, (bounds, world_from_part));
                 shuffled.places.insert(thing.object, place);
                 shuffled
                     .rested
@@ -219,7 +219,7 @@ impl Task for Rearrange {
         let is_free = |cell: NavCell| {
             grid.island(cell) == Some(0)
                 && !leaves.is_blocked(&grid, cell)
-                && room.holds(grid.position(cell))
+                && room.is_free(grid.position(cell))
         };
         let ground = LargestIslandIndex::of(&grid);
         let mut things = tracked_things(world, &room_doors(&grid));
@@ -277,7 +277,7 @@ impl Task for Rearrange {
         };
         let (position, yaw_rad) = (grid.position(cell), random_yaw_rad(key));
         world.place_agent(agent, position, yaw_rad)?;
-        let goal = told(&things, &start, world);
+        let goal = episode_goal(&things, &start, world);
         let instruction = wording::instruction(world, &goal.placements, &shuffled.rested);
         // What is knocked over on the way is put back, too.
         let goals: BTreeMap<ObjectId, Pose> = things
@@ -296,14 +296,14 @@ impl Task for Rearrange {
             {
                 let bounds = world.house().object_bounds(world.state(), thing.object);
                 let at = (bounds, *world_from_part);
-                places.insert(thing.object, PlaceToRestore::new(thing, at));
+                places.insert(thing.object, OriginalPlace::new(thing, at));
             }
         }
         let setup = (agent, &grid, self.setup.stride);
         let openable = offer.openable.iter();
         let openable = openable.map(|thing| (thing.object, thing.cells.clone()));
         self.active = Some(ActiveEpisode {
-            restorer: Restorer::new(setup, places, openable.collect()),
+            restorer: RestoreExpert::new(setup, places, openable.collect()),
             now: start.clone(),
             start,
             things,
@@ -370,7 +370,7 @@ impl Task for Rearrange {
         &mut self,
         world: &World,
         episode: &mut Episode,
-        played: &PlayedAction<'_>,
+        played: &ExecutedAction<'_>,
     ) -> StepResult {
         let agent = world.state().agents.get(self.setup.agent);
         let (Some(active), Some(agent)) = (&mut self.active, agent) else {
@@ -409,6 +409,6 @@ impl Task for Rearrange {
             return DiscreteAction::Stop;
         };
         let misplaced = active.misplaced();
-        active.restorer.next(world, &misplaced)
+        active.restorer.next_action(world, &misplaced)
     }
 }

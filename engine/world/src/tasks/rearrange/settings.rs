@@ -2,7 +2,7 @@
 
 use crate::error::WorldError;
 use crate::tasks::relocation::{
-    MOST_THINGS, check_classes, check_counts, check_moves, check_rewards, fault,
+    MOST_THINGS, check_classes, check_counts, check_moves, check_rewards, setting_error,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -82,7 +82,7 @@ impl RearrangeSettings {
         check_counts(self.min_things, self.max_things)?;
         if self.max_openables > MOST_THINGS {
             let allowed = format!("0 to {MOST_THINGS}");
-            return Err(fault("max_openables", self.max_openables, allowed));
+            return Err(setting_error("max_openables", self.max_openables, allowed));
         }
         check_moves(self.min_move_m, self.max_move_m)?;
         check_classes(&self.classes)?;

@@ -76,7 +76,7 @@ pub(super) fn openable_things(
 
 impl OpenableThing {
     /// Opens what is closed and closes what is open, where it then stands still and nothing else moves. Returns whether it did.
-    pub(super) fn swing(
+    pub(super) fn toggle_open(
         &self,
         world: &mut World,
         stream: &mut RandomStream,

@@ -13,10 +13,10 @@ use std::collections::BTreeMap;
 const ASKED: &str = "Put all things back.";
 
 /// The relation that a thing had to another one.
-pub(super) type Resting = (&'static str, ObjectId);
+pub(super) type RestingRelation = (&'static str, ObjectId);
 
 /// What a thing is in or on; `None` for what rests on the building.
-pub(super) fn resting(world: &World, object: ObjectId) -> Option<Resting> {
+pub(super) fn support_relation(world: &World, object: ObjectId) -> Option<RestingRelation> {
     let (house, state) = (world.house(), world.state());
     let boxes = house.object_boxes(state);
     let containers = state.containers_of(house, object, &boxes);
@@ -30,7 +30,7 @@ pub(super) fn resting(world: &World, object: ObjectId) -> Option<Resting> {
 pub(super) fn instruction(
     world: &World,
     placements: &[ObjectPlacement],
-    rested: &BTreeMap<ObjectId, Resting>,
+    rested: &BTreeMap<ObjectId, RestingRelation>,
 ) -> String {
     let engines = world.engines();
     let scene = engines.semantics().scene(world.state());

@@ -94,7 +94,7 @@ impl HandMover<'_> {
     }
 
     /// Takes a thing and puts it back, from one of its cells; returns that cell where this works. The thing then lies as hands put it.
-    pub(in crate::tasks) fn puts_back(
+    pub(in crate::tasks) fn try_put_back(
         &mut self,
         thing: &MovableThing,
         stream: &mut RandomStream,
@@ -123,7 +123,7 @@ impl HandMover<'_> {
 
     /// Takes a thing and puts it down again on the level surface at which it looks, from one of its cells; returns that cell where the
     /// thing then lies as `is_right` says. Where it does not it lies as before.
-    pub(in crate::tasks) fn puts_down(
+    pub(in crate::tasks) fn try_put_down(
         &mut self,
         thing: &MovableThing,
         stream: &mut RandomStream,
@@ -155,10 +155,10 @@ impl HandMover<'_> {
         Ok(None)
     }
 
-    /// Moves a thing that [`Self::puts_back`] from `cell` to one of some targets. Returns whether it was moved; else it lies as before.
+    /// Moves a thing that [`Self::try_put_back`] from `cell` to one of some targets. Returns whether it was moved; else it lies as before.
     ///
     /// `is_allowed`: whether it may lie at a point of a target.
-    pub(in crate::tasks) fn move_to(
+    pub(in crate::tasks) fn try_move_to(
         &mut self,
         (object, cell): (ObjectId, NavCell),
         targets: &[MoveTarget],

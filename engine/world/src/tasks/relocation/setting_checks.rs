@@ -8,7 +8,7 @@ use std::fmt::Display;
 pub(in crate::tasks) const MOST_THINGS: u32 = 20;
 
 /// Refuses a setting.
-pub(in crate::tasks) fn fault(
+pub(in crate::tasks) fn setting_error(
     field: &'static str,
     found: impl Display,
     allowed: impl Into<String>,
@@ -23,11 +23,15 @@ pub(in crate::tasks) fn fault(
 /// Refuses numbers of things that no episode can have.
 pub(in crate::tasks) fn check_counts(least: u32, most: u32) -> Result<(), WorldError> {
     if !(1..=MOST_THINGS).contains(&most) {
-        return Err(fault("max_things", most, format!("1 to {MOST_THINGS}")));
+        return Err(setting_error(
+            "max_things",
+            most,
+            format!("1 to {MOST_THINGS}"),
+        ));
     }
     if !(1..=most).contains(&least) {
         let allowed = format!("1 to max_things, which is {most}");
-        return Err(fault("min_things", least, allowed));
+        return Err(setting_error("min_things", least, allowed));
     }
     Ok(())
 }
@@ -35,11 +39,11 @@ pub(in crate::tasks) fn check_counts(least: u32, most: u32) -> Result<(), WorldE
 /// Refuses distances that nothing can be moved by.
 pub(in crate::tasks) fn check_moves(least_m: f32, most_m: f32) -> Result<(), WorldError> {
     if !(0.1..=1000.0).contains(&most_m) {
-        return Err(fault("max_move_m", most_m, "0.1 to 1000"));
+        return Err(setting_error("max_move_m", most_m, "0.1 to 1000"));
     }
     if !(0.1..=most_m).contains(&least_m) {
         let allowed = format!("0.1 to max_move_m, which is {most_m}");
-        return Err(fault("min_move_m", least_m, allowed));
+        return Err(setting_error("min_move_m", least_m, allowed));
     }
     Ok(())
 }
@@ -65,6 +69,6 @@ pub(in crate::tasks) fn check_rewards(rewards: &[(&'static str, f64)]) -> Result
         .find(|(_, value)| value.is_nan() || value.abs() > 1e6);
     match wrong {
         None => Ok(()),
-        Some((field, value)) => Err(fault(field, value, "-1,000,000 to 1,000,000")),
+        Some((field, value)) => Err(setting_error(field, value, "-1,000,000 to 1,000,000")),
     }
 }

@@ -6,10 +6,10 @@ mod settings;
 use super::door_leaves::{self, DoorLeaves};
 use super::goal_cells::LargestIslandIndex;
 use super::relocation::{
-    HandMover, Misplaced, MovableThings, MoveTarget, PlaceToRestore, Restorer,
+    HandMover, Misplacement, MovableThings, MoveTarget, OriginalPlace, RestoreExpert,
 };
 use super::standing_room::FreeStartCells;
-use super::{PlayedAction, Task, TaskKind, TaskSetup, random_yaw_rad};
+use super::{ExecutedAction, Task, TaskKind, TaskSetup, random_yaw_rad};
 use crate::actions::DiscreteAction;
 use crate::episode::{Episode, EpisodeGoal, StepResult, TaskMeasure};
 use crate::error::WorldError;
@@ -100,7 +100,7 @@ struct RuledThing {
 #[derive(Debug)]
 struct ActiveEpisode {
     things: Vec<RuledThing>,
-    restorer: Restorer,
+    restorer: RestoreExpert,
 }
 
 impl ActiveEpisode {
@@ -156,7 +156,7 @@ impl Tidy {
         mover: &mut HandMover<'_>,
         movable: &MovableThings,
         key: RandomKey,
-    ) -> Result<BTreeMap<ObjectId, PlaceToRestore>, WorldError> {
+    ) -> Result<BTreeMap<ObjectId, OriginalPlace>, WorldError> {
         let settings = &self.settings;
         let mut stream = key.child("count").stream();
         let (least, most) = (settings.min_things as usize, settings.max_things as usize);
@@ -178,7 +178,7 @@ impl Tidy {
                 let scene = engines.semantics().scene(world.state());
                 is_tidy(&scene, thing.object)
             };
-            let Some(cell) = mover.puts_down(thing, &mut stream, &is_right)? else {
+            let Some(cell) = mover.try_put_down(thing, &mut stream, &is_right)? else {
                 continue;
             };
             let (house, state) = (mover.world.house().clone(), mover.world.state());
@@ -208,13 +208,13 @@ impl Tidy {
             };
             mover.kept_free.push(bounds);
             let of_hand = (thing.object, cell);
-            if mover.move_to(of_hand, &targets, &mut stream, &is_wrong)?
+            if mover.try_move_to(of_hand, &targets, &mut stream, &is_wrong)?
                 && !is_tidy(
                     &engines.semantics().scene(mover.world.state()),
                     thing.object,
                 )
             {
-                let place = PlaceToRestore::new(thing, (bounds, world_from_part));
+                let place = OriginalPlace::new(thing, (bounds, world_from_part));
                 places.insert(thing.object, place);
             }
         }
@@ -270,7 +270,7 @@ impl Task for Tidy {
         let room = FreeStartCells::excluding_agents(world, placed, &body);
         let allowed =
             |cell: NavCell| grid.island(cell) == Some(0) && !leaves.is_blocked(&grid, cell);
-        let is_free = |cell: NavCell| allowed(cell) && room.holds(grid.position(cell));
+        let is_free = |cell: NavCell| allowed(cell) && room.is_free(grid.position(cell));
         let ground = LargestIslandIndex::of(&grid);
         let Some(offer) = &self.offer else {
             return Err(Self::unplayable(world, "it was not looked at"));
@@ -330,13 +330,13 @@ impl Task for Tidy {
                 let bounds = house.object_bounds(world.state(), thing.object);
                 let part = house.objects[thing.object].first_part;
                 let at = (bounds, world.state().part_pose[part]);
-                PlaceToRestore::new(thing, at)
+                OriginalPlace::new(thing, at)
             });
         }
         let setup = (agent, &grid, self.setup.stride);
         self.active = Some(ActiveEpisode {
             things,
-            restorer: Restorer::new(setup, places, BTreeMap::new()).by_view(),
+            restorer: RestoreExpert::new(setup, places, BTreeMap::new()).placing_by_view(),
         });
         Ok(Episode {
             agent,
@@ -377,7 +377,7 @@ impl Task for Tidy {
         &mut self,
         world: &World,
         episode: &mut Episode,
-        played: &PlayedAction<'_>,
+        played: &ExecutedAction<'_>,
     ) -> StepResult {
         let agent = world.state().agents.get(self.setup.agent);
         let (Some(active), Some(agent)) = (&mut self.active, agent) else {
@@ -418,8 +418,10 @@ impl Task for Tidy {
         let Some(active) = &mut self.active else {
             return DiscreteAction::Stop;
         };
-        let untidy = active.untidy().map(|thing| Misplaced::Thing(thing.object));
-        let untidy: Vec<Misplaced> = untidy.collect();
-        active.restorer.next(world, &untidy)
+        let untidy = active
+            .untidy()
+            .map(|thing| Misplacement::Thing(thing.object));
+        let untidy: Vec<Misplacement> = untidy.collect();
+        active.restorer.next_action(world, &untidy)
     }
 }

@@ -1,7 +1,9 @@
 //! The settings of the task.
 
 use crate::error::WorldError;
-use crate::tasks::relocation::{check_classes, check_counts, check_moves, check_rewards, fault};
+use crate::tasks::relocation::{
+    check_classes, check_counts, check_moves, check_rewards, setting_error,
+};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -77,7 +79,7 @@ impl TidySettings {
         check_moves(self.min_move_m, self.max_move_m)?;
         check_classes(&self.classes)?;
         if !(0.0..=1.0).contains(&self.floor_share) {
-            return Err(fault("floor_share", self.floor_share, "0 to 1"));
+            return Err(setting_error("floor_share", self.floor_share, "0 to 1"));
         }
         let TidyRewards {
             tidied,

@@ -23,7 +23,7 @@ const DRAWS: u64 = 16;
 /// Which instructions are asked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum WordSplit {
+pub enum InstructionSplit {
     /// All.
     #[default]
     All,
@@ -37,7 +37,7 @@ pub enum WordSplit {
     Wordings,
 }
 
-impl WordSplit {
+impl InstructionSplit {
     /// Returns whether a form has what is asked, its wording aside.
     pub fn admits(self, form: &Form) -> bool {
         let (mut pair, mut relation) = (false, false);
@@ -127,7 +127,7 @@ mod tests {
         }
     }
 
-    fn texts(split: WordSplit, request: &RequestStep) -> BTreeSet<String> {
+    fn texts(split: InstructionSplit, request: &RequestStep) -> BTreeSet<String> {
         let language = Language::english();
         let keys = (0..40).map(RandomKey::root);
         keys.filter_map(|key| split.compose(language, vec![request.clone()], key))
@@ -143,11 +143,14 @@ mod tests {
         for color in COLORS {
             for noun in NOUNS {
                 let asked = Form::Request(vec![request("find", thing(color, noun))]);
-                let splits = [WordSplit::Train, WordSplit::Colors];
+                let splits = [InstructionSplit::Train, InstructionSplit::Colors];
                 let [train, colors] = splits.map(|split| split.admits(&asked));
                 assert!(train != colors, "{color} {noun}");
                 held_out += usize::from(colors);
-                assert!(!WordSplit::Relations.admits(&asked) && WordSplit::All.admits(&asked));
+                assert!(
+                    !InstructionSplit::Relations.admits(&asked)
+                        && InstructionSplit::All.admits(&asked)
+                );
             }
         }
         assert!((4..=16).contains(&held_out), "{held_out}");
@@ -160,11 +163,15 @@ mod tests {
             let beside = Modifier::new(relation, [noun("table").into()]);
             let asked = Form::Request(vec![request("find", noun("book").with_modifier(beside))]);
             assert_eq!(
-                WordSplit::Relations.admits(&asked),
+                InstructionSplit::Relations.admits(&asked),
                 is_held_out,
                 "{relation}"
             );
-            assert_eq!(WordSplit::Train.admits(&asked), !is_held_out, "{relation}");
+            assert_eq!(
+                InstructionSplit::Train.admits(&asked),
+                !is_held_out,
+                "{relation}"
+            );
         }
     }
 
@@ -174,14 +181,14 @@ mod tests {
         let noun = |noun: &str| Description::new(Quantifier::The, Noun::Object(noun.to_owned()));
         for verb in ["find", "pick_up", "close"] {
             let asked = request(verb, noun("book"));
-            let train = texts(WordSplit::Train, &asked);
-            let held_out = texts(WordSplit::Wordings, &asked);
+            let train = texts(InstructionSplit::Train, &asked);
+            let held_out = texts(InstructionSplit::Wordings, &asked);
             assert!(!train.is_empty() && !held_out.is_empty(), "{verb}");
             assert!(
                 train.is_disjoint(&held_out),
                 "{verb}: {train:?} {held_out:?}"
             );
-            let all = texts(WordSplit::All, &asked);
+            let all = texts(InstructionSplit::All, &asked);
             assert!(
                 all.iter().any(|text| held_out.contains(text)),
                 "{verb}: {all:?}"

@@ -38,14 +38,14 @@ impl Reach {
 
 /// The places of `steps` in the order in which their hands act, and those whose hands get nothing. Shape (agent,) each.
 #[derive(Debug)]
-pub(super) struct HandOrder {
+pub(super) struct HandActionOrder {
     pub(super) order: Vec<usize>,
     pub(super) contested: Vec<Option<ObjectId>>,
 }
 
 impl World {
     /// Returns the order of the hands of a step.
-    pub(super) fn hand_order(&mut self, steps: &[AgentAction]) -> HandOrder {
+    pub(super) fn hand_order(&mut self, steps: &[AgentAction]) -> HandActionOrder {
         let mut order: Vec<usize> = (0..steps.len()).collect();
         let mut contested = vec![None; steps.len()];
         if steps.len() > 1 {
@@ -58,7 +58,7 @@ impl World {
                 }
             }
         }
-        HandOrder { order, contested }
+        HandActionOrder { order, contested }
     }
 
     fn reach_of(&mut self, step: &AgentAction) -> Reach {

@@ -25,13 +25,13 @@ struct KnownQuestion {
 
 /// The questions that an asker knows in an episode.
 #[derive(Clone, Debug)]
-pub(super) struct Asker {
+pub(super) struct KnownQuestions {
     questions: Vec<KnownQuestion>,
 }
 
 /// What a question costs and what success is worth to the asker.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Stakes {
+pub(super) struct DialogueRewards {
     pub(super) success: f64,
     pub(super) question_cost: f64,
 }
@@ -49,7 +49,7 @@ fn question_tokens(text: &str) -> Option<QuestionTokens> {
     words.next().is_none().then_some(tokens)
 }
 
-impl Asker {
+impl KnownQuestions {
     /// Asks each question of the pool in thought, of each thing.
     pub(super) fn new(checker: &Checker<'_>, asked: &AmbiguousInstruction) -> Self {
         let pool = dialogue::question_pool(checker, &asked.things);
@@ -73,7 +73,7 @@ impl Asker {
     }
 
     /// Returns whether some question tells each two of so many things apart.
-    pub(super) fn tells_all_apart(&self, things: usize) -> bool {
+    pub(super) fn distinguishes_all(&self, things: usize) -> bool {
         let told = |one: usize, other: usize| {
             let mut questions = self.questions.iter();
             questions.any(|question| question.outcomes[one] != question.outcomes[other])
@@ -86,7 +86,7 @@ impl Asker {
         &self,
         left: &[usize],
         budget: u32,
-        stakes: Stakes,
+        stakes: DialogueRewards,
     ) -> Option<QuestionTokens> {
         if left.len() < 2 || budget == 0 {
             return None;
@@ -123,7 +123,7 @@ impl Asker {
         parts: &[Vec<usize>],
         count: usize,
         budget: u32,
-        stakes: Stakes,
+        stakes: DialogueRewards,
     ) -> f64 {
         let parts = parts
             .iter()
@@ -132,7 +132,7 @@ impl Asker {
     }
 
     /// What is expected where one goes on asking as long as it pays.
-    fn value(&self, left: &[usize], budget: u32, stakes: Stakes) -> f64 {
+    fn value(&self, left: &[usize], budget: u32, stakes: DialogueRewards) -> f64 {
         let guess = guess_value(left.len(), stakes);
         if left.len() < 2 || budget == 0 {
             return guess;
@@ -145,7 +145,7 @@ impl Asker {
 }
 
 /// What is expected of a guess among so many things.
-fn guess_value(things: usize, stakes: Stakes) -> f64 {
+fn guess_value(things: usize, stakes: DialogueRewards) -> f64 {
     stakes.success / things.max(1) as f64
 }
 
@@ -162,13 +162,13 @@ fn information_bits(parts: &[Vec<usize>], count: usize) -> f64 {
 mod tests {
     use super::*;
 
-    const STAKES: Stakes = Stakes {
+    const STAKES: DialogueRewards = DialogueRewards {
         success: 2.5,
         question_cost: 0.1,
     };
 
     /// Questions by their outcomes; the first token is the question's number.
-    fn asker(outcomes: &[&[usize]]) -> Asker {
+    fn asker(outcomes: &[&[usize]]) -> KnownQuestions {
         let questions = outcomes.iter().zip(1..).map(|(outcomes, number)| {
             let mut tokens = [0; MAX_QUESTION_TOKENS];
             tokens[0] = number;
@@ -177,7 +177,7 @@ mod tests {
                 outcomes: outcomes.to_vec(),
             }
         });
-        Asker {
+        KnownQuestions {
             questions: questions.collect(),
         }
     }
@@ -194,8 +194,8 @@ mod tests {
         assert_eq!(first(&[2, 3], 8), Some(1));
         assert_eq!(first(&[2], 8), None);
         assert_eq!(first(&[0, 1, 2, 3], 0), None);
-        assert!(own.tells_all_apart(4));
-        assert!(!asker(&[&[0, 0, 1]]).tells_all_apart(3));
+        assert!(own.distinguishes_all(4));
+        assert!(!asker(&[&[0, 0, 1]]).distinguishes_all(3));
     }
 
     /// Of two things a question raises the chance from one half to one: worth half of the success, 1.25, and no more.
@@ -203,7 +203,7 @@ mod tests {
     fn a_question_is_asked_where_it_pays() {
         let own = asker(&[&[0, 1]]);
         for (question_cost, is_asked) in [(1.24, true), (1.26, false)] {
-            let stakes = Stakes {
+            let stakes = DialogueRewards {
                 question_cost,
                 ..STAKES
             };
@@ -211,7 +211,7 @@ mod tests {
             assert_eq!(asked.is_some(), is_asked, "{question_cost}");
         }
         // What tells nothing is not asked, free as it may be.
-        let stakes = Stakes {
+        let stakes = DialogueRewards {
             question_cost: 0.0,
             ..STAKES
         };

@@ -23,7 +23,7 @@ const BELOW_EYES_M: f32 = 0.15;
 
 /// Several things that are asked for by number, and the room that they are brought to.
 #[derive(Debug)]
-pub(super) struct GroupOffer {
+pub(super) struct GroupCandidate {
     pub(super) kind: StepKind,
     pub(super) group: ThingGroup,
     pub(super) to: Option<RoomId>,
@@ -31,7 +31,7 @@ pub(super) struct GroupOffer {
 
 /// What a house offers to be asked for.
 #[derive(Debug, Default)]
-pub(super) struct StepPool {
+pub(super) struct StepCandidates {
     places: StepPlaces,
     rooms: BTreeMap<RoomId, Description>,
     /// Words for things that can be told from all others.
@@ -45,7 +45,7 @@ pub(super) struct StepPool {
     sizes: BTreeMap<ObjectId, Vec3>,
     /// Containers that are closed at the start.
     closed: BTreeSet<ObjectId>,
-    pub(super) groups: Vec<GroupOffer>,
+    pub(super) groups: Vec<GroupCandidate>,
     /// Things of which one says that they are in one of two states.
     pub(super) state_things: Vec<(ObjectId, [&'static str; 2])>,
 }
@@ -66,15 +66,15 @@ fn action_of(kind: StepKind) -> Option<DiscreteAction> {
 }
 
 /// Returns whether an agent with some actions can carry out a kind of step.
-pub(super) fn is_carried_out(kind: StepKind, actions: ActionSet) -> bool {
+pub(super) fn can_carry_out(kind: StepKind, actions: ActionSet) -> bool {
     let carries = matches!(kind, StepKind::Bring | StepKind::PutOn | StepKind::PutIn);
     action_of(kind).is_none_or(|action| actions.contains(action))
         && (!carries || actions.contains(DiscreteAction::Pick))
 }
 
-impl StepPool {
+impl StepCandidates {
     /// What `world` offers at its start of some kinds.
-    pub(super) fn survey(
+    pub(super) fn from_world(
         world: &World,
         (agent, body): (AgentId, AgentBody),
         grid: &NavGrid,
@@ -92,14 +92,15 @@ impl StepPool {
         let mut pool = Self::default();
         for room in world.house().rooms.ids() {
             if let Some(words) = refer_to_room(&scene, room)
-                && finder.is_walkable(room)
+                && finder.is_room_reachable(room)
             {
                 pool.rooms.insert(room, words);
             }
         }
         for object in world.house().objects.ids() {
             let category = scene.facts(object).category;
-            if !category.is_some_and(instruct::is_sought) || scene.room_of(object).is_none() {
+            if !category.is_some_and(instruct::is_search_target) || scene.room_of(object).is_none()
+            {
                 continue;
             }
             interrupt::unwind_if_cancelled();
@@ -110,7 +111,7 @@ impl StepPool {
                 .filter(|kind| is_possible(&mut finder, *kind, object))
                 .collect();
             let is_destination = pool.add_destination(&scene, &mut finder, kinds, object);
-            let states = instruct::states_of(&scene, object).filter(|_| finder.is_found(object));
+            let states = instruct::states_of(&scene, object).filter(|_| finder.is_findable(object));
             if can.is_empty() && !is_destination && states.is_none() {
                 continue;
             }
@@ -221,7 +222,7 @@ impl StepPool {
                     .into_iter()
                     .filter(|group| group.is_exact || group.undone.len() <= MOST_UNDONE);
                 self.groups
-                    .extend(short.map(|group| GroupOffer { kind, group, to }));
+                    .extend(short.map(|group| GroupCandidate { kind, group, to }));
             }
         }
     }
@@ -234,7 +235,7 @@ impl StepPool {
         }
     }
 
-    pub(super) fn words(&self, object: ObjectId) -> Option<Description> {
+    pub(super) fn description(&self, object: ObjectId) -> Option<Description> {
         self.things.get(&object).cloned()
     }
 
@@ -264,17 +265,17 @@ impl StepPool {
     }
 
     /// The step to go to a room.
-    pub(super) fn go_to(&self, room: RoomId) -> Option<InstructionStep> {
+    pub(super) fn go_to_step(&self, room: RoomId) -> Option<InstructionStep> {
         Some(InstructionStep::go_to(room, self.rooms.get(&room)?.clone()))
     }
 
     /// The step to do something to a thing.
-    pub(super) fn of_thing(&self, kind: StepKind, object: ObjectId) -> Option<InstructionStep> {
-        InstructionStep::of_thing(kind, object, self.words(object)?)
+    pub(super) fn object_step(&self, kind: StepKind, object: ObjectId) -> Option<InstructionStep> {
+        InstructionStep::on_object(kind, object, self.description(object)?)
     }
 
     /// The step to take a thing somewhere.
-    pub(super) fn to_destination(
+    pub(super) fn transport_step(
         &self,
         kind: StepKind,
         object: ObjectId,
@@ -282,18 +283,22 @@ impl StepPool {
     ) -> Option<InstructionStep> {
         let destination = match to {
             Term::Room(room) => self.rooms.get(&room)?.clone(),
-            to => self.words(to.object()?)?,
+            to => self.description(to.object()?)?,
         };
-        InstructionStep::to_destination(kind, (object, self.words(object)?), (to, destination))
+        InstructionStep::to_destination(
+            kind,
+            (object, self.description(object)?),
+            (to, destination),
+        )
     }
 
     /// The step of a group.
-    pub(super) fn of_group(&self, offer: &GroupOffer) -> Option<InstructionStep> {
+    pub(super) fn group_step(&self, offer: &GroupCandidate) -> Option<InstructionStep> {
         let to = match offer.to {
             Some(room) => Some((room, self.rooms.get(&room)?.clone())),
             None => None,
         };
-        InstructionStep::of_group(offer.kind, &offer.group, to)
+        InstructionStep::on_group(offer.kind, &offer.group, to)
     }
 
     /// How a step is played: the conditions with numbers in `planned`, in that order.
@@ -316,9 +321,9 @@ impl StepPool {
 fn is_possible(finder: &mut PlaceFinder<'_>, kind: StepKind, object: ObjectId) -> bool {
     match kind {
         StepKind::GoToRoom => false,
-        StepKind::FindObject | StepKind::Face | StepKind::PointAt => finder.is_found(object),
+        StepKind::FindObject | StepKind::Face | StepKind::PointAt => finder.is_findable(object),
         StepKind::PickUp | StepKind::Bring | StepKind::PutOn | StepKind::PutIn => {
-            finder.is_carried(object)
+            finder.can_pick_up(object)
         }
         StepKind::Open | StepKind::Close | StepKind::SwitchOn | StepKind::SwitchOff => {
             finder.is_in_reach(object)

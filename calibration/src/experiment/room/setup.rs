@@ -17,7 +17,7 @@ const LAST_SIDES: [usize; 3] = [3, 1, 5];
 
 /// A house with what sound needs of it.
 #[derive(Clone)]
-pub(super) struct RoomStage {
+pub(super) struct RoomSetup {
     pub(super) house: Arc<House>,
     pub(super) scene: AcousticScene,
     pub(super) rays: RayScene,
@@ -25,7 +25,7 @@ pub(super) struct RoomStage {
     pub(super) shift: Vec3,
 }
 
-impl RoomStage {
+impl RoomSetup {
     /// A house with the origin of the bundle.
     pub(super) fn new(
         house: Arc<House>,
@@ -128,7 +128,7 @@ mod tests {
         for (moved, offset_m) in [(0, 0.0), (2, 0.5), (3, 0.7), (0, -0.2), (5, 0.4)] {
             let mut offsets_m = [0.0; 6];
             offsets_m[moved] = offset_m;
-            let stage = RoomStage::of_box(&room, &offsets_m, config).unwrap();
+            let stage = RoomSetup::of_box(&room, &offsets_m, config).unwrap();
             let paths = stage
                 .scene
                 .early_paths(

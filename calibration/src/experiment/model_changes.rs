@@ -6,7 +6,7 @@ use dwell_scene::LawSpec;
 
 /// The laws, values and faults of a model.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Intervention {
+pub(crate) struct ModelChanges {
     pub(crate) laws: Vec<LawSpec>,
     /// Values by address.
     pub(crate) overrides: Vec<(String, f64)>,
@@ -15,7 +15,7 @@ pub(crate) struct Intervention {
     pub(crate) wall_offsets_m: [f64; 6],
 }
 
-impl Intervention {
+impl ModelChanges {
     /// The causes that act at these values (one after the other, as in [`super::ParameterVector::causes`]). Laws act on all
     /// that they can: an experiment simulates one thing at a time.
     pub(crate) fn new(causes: &[Cause], values: &[f64]) -> Self {
@@ -56,7 +56,7 @@ impl Intervention {
     }
 
     /// What the causes with these positions change in a simulator that others run: each law on its targets, no faults.
-    pub(crate) fn to_install(causes: &[Cause], values: &[f64], which: &[usize]) -> Self {
+    pub(crate) fn installable(causes: &[Cause], values: &[f64], which: &[usize]) -> Self {
         let mut found = Self::default();
         for (index, (cause, values)) in with_values(causes, values).enumerate() {
             if !which.contains(&index) {

@@ -19,7 +19,7 @@ const NEXT_WAY_M: f64 = 3.0;
 /// Data of the house (its planes) is shared by clones; data of the world (overridden materials, moved planes) is not, and
 /// is small.
 #[derive(Clone, Debug)]
-pub(crate) struct PropagationData {
+pub(crate) struct PropagationScene {
     house: Arc<House>,
     /// The settings, with the air as changed by laws.
     config: AcousticConfig,
@@ -36,7 +36,7 @@ pub(crate) struct PropagationData {
     overrides: BTreeMap<Address, f64>,
 }
 
-impl PropagationData {
+impl PropagationScene {
     /// The data of `house` in its initial state.
     pub(crate) fn new(house: Arc<House>, config: AcousticConfig) -> Self {
         let table = Arc::new(PlaneTable::new(&house));

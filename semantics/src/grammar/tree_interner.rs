@@ -4,44 +4,44 @@ use super::Tree;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
-/// A tree in [`Nodes`]; equal trees have equal ids.
+/// A tree in [`TreeInterner`]; equal trees have equal ids.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct NodeId(usize);
+pub(super) struct TreeId(usize);
 
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Node {
     /// A function, by its number.
-    Apply(usize, Vec<NodeId>),
+    Apply(usize, Vec<TreeId>),
     Leaf(Tree),
 }
 
 /// Trees, each once.
 #[derive(Default)]
-pub(super) struct Nodes {
+pub(super) struct TreeInterner {
     all: Vec<Node>,
-    ids: BTreeMap<Node, NodeId>,
+    ids: BTreeMap<Node, TreeId>,
     functions: Vec<String>,
     numbers: BTreeMap<String, usize>,
 }
 
-impl Nodes {
-    fn add(&mut self, node: Node) -> NodeId {
+impl TreeInterner {
+    fn add(&mut self, node: Node) -> TreeId {
         if let Some(known) = self.ids.get(&node) {
             return *known;
         }
-        let id = NodeId(self.all.len());
+        let id = TreeId(self.all.len());
         self.all.push(node.clone());
         self.ids.insert(node, id);
         id
     }
 
     /// Adds a word or a number.
-    pub(super) fn leaf(&mut self, leaf: Tree) -> NodeId {
+    pub(super) fn leaf(&mut self, leaf: Tree) -> TreeId {
         self.add(Node::Leaf(leaf))
     }
 
     /// Adds a function of trees.
-    pub(super) fn apply(&mut self, function: &str, arguments: Vec<NodeId>) -> NodeId {
+    pub(super) fn apply(&mut self, function: &str, arguments: Vec<TreeId>) -> TreeId {
         let number = self.numbers.get(function).copied().unwrap_or_else(|| {
             let number = self.functions.len();
             self.functions.push(function.to_owned());
@@ -52,7 +52,7 @@ impl Nodes {
     }
 
     /// Compares two trees as [`Tree`] does.
-    pub(super) fn compare(&self, a: NodeId, b: NodeId) -> Ordering {
+    pub(super) fn compare(&self, a: TreeId, b: TreeId) -> Ordering {
         if a == b {
             return Ordering::Equal;
         }
@@ -69,8 +69,8 @@ impl Nodes {
     /// Compares two lists of trees, the first difference deciding.
     pub(super) fn compare_all<'a>(
         &self,
-        a: impl Iterator<Item = &'a NodeId>,
-        b: impl Iterator<Item = &'a NodeId>,
+        a: impl Iterator<Item = &'a TreeId>,
+        b: impl Iterator<Item = &'a TreeId>,
     ) -> Ordering {
         let mut b = b;
         for one in a {
@@ -89,7 +89,7 @@ impl Nodes {
     }
 
     /// Returns the tree of a node.
-    pub(super) fn tree(&self, node: NodeId) -> Tree {
+    pub(super) fn tree(&self, node: TreeId) -> Tree {
         match &self.all[node.0] {
             Node::Apply(function, arguments) => Tree::Apply {
                 function: self.functions[*function].clone(),

@@ -3,7 +3,7 @@
 use super::settings::DialogueSettings;
 use crate::episode::EpisodeGoal;
 use crate::tasks::goal_cells::LargestIslandIndex;
-use crate::tasks::navigation::{NavigationGoal, SuccessRule, cells_that_reach};
+use crate::tasks::navigation::{NavigationGoal, SuccessRule, goal_region};
 use crate::world::World;
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::{AgentId, ObjectId};
@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 /// An instruction, and where each of its things is reached.
 #[derive(Clone, Debug)]
-pub(super) struct DialogueOffer {
+pub(super) struct DialogueCandidate {
     pub(super) asked: AmbiguousInstruction,
     /// Shape (thing,).
     pub(super) goals: Vec<Arc<NavigationGoal>>,
@@ -30,17 +30,17 @@ pub(super) fn goal_kind(things: usize) -> &'static str {
 }
 
 /// The instructions whose things can all be reached, by their number of things.
-pub(super) fn survey(
+pub(super) fn enumerate_instructions(
     world: &World,
     agent: AgentId,
     grid: &NavGrid,
     settings: &DialogueSettings,
-) -> BTreeMap<usize, Vec<DialogueOffer>> {
+) -> BTreeMap<usize, Vec<DialogueCandidate>> {
     let scene = world.engines().semantics().scene(world.state());
     let ground = LargestIslandIndex::of(grid);
     let radius_m = settings.success_distance_m as f32;
     let mut places: BTreeMap<ObjectId, Vec<NavCell>> = BTreeMap::new();
-    let mut offers: BTreeMap<usize, Vec<DialogueOffer>> = BTreeMap::new();
+    let mut offers: BTreeMap<usize, Vec<DialogueCandidate>> = BTreeMap::new();
     for asked in ambiguous_instructions(&scene, settings.max_candidates as usize) {
         let count = asked.things.len();
         if count < settings.min_candidates as usize {
@@ -50,7 +50,7 @@ pub(super) fn survey(
             let reached = InstructionGoal::objects(vec![thing], radius_m);
             let found = places
                 .entry(thing)
-                .or_insert_with(|| cells_that_reach(world, agent, &ground, &reached));
+                .or_insert_with(|| goal_region(world, agent, &ground, &reached));
             (!found.is_empty()).then(|| {
                 Arc::new(NavigationGoal {
                     cells: found.clone(),
@@ -67,7 +67,7 @@ pub(super) fn survey(
         let goals: Option<Vec<_>> = asked.things.iter().map(|thing| goal(*thing)).collect();
         if let Some(goals) = goals {
             let alike = offers.entry(count).or_default();
-            alike.push(DialogueOffer { asked, goals });
+            alike.push(DialogueCandidate { asked, goals });
         }
     }
     offers

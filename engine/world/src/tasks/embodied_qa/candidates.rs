@@ -2,7 +2,7 @@
 
 use crate::episode::EpisodeGoal;
 use crate::tasks::goal_cells::LargestIslandIndex;
-use crate::tasks::navigation::{NavigationGoal, SuccessRule, cells_that_reach};
+use crate::tasks::navigation::{NavigationGoal, SuccessRule, goal_region};
 use crate::world::World;
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::{AgentId, ObjectId, RoomId};
@@ -13,12 +13,12 @@ use std::sync::Arc;
 
 /// A question, and where its answer is seen.
 #[derive(Clone, Debug)]
-pub(super) struct QuestionOffer {
+pub(super) struct QuestionCandidate {
     pub(super) asked: AskedQuestion,
     pub(super) goal: Arc<NavigationGoal>,
 }
 
-impl QuestionOffer {
+impl QuestionCandidate {
     /// Returns whether an agent is in the room in which the answer is seen.
     pub(super) fn is_in_room(&self, world: &World, agent: AgentId) -> bool {
         let scene = world.engines().semantics().scene(world.state());
@@ -27,12 +27,12 @@ impl QuestionOffer {
 }
 
 /// The questions of some kinds whose things can all be gone to and seen, in order.
-pub(super) fn survey(
+pub(super) fn enumerate_questions(
     world: &World,
     agent: AgentId,
     grid: &NavGrid,
     kinds: &[QuestionKind],
-) -> Vec<QuestionOffer> {
+) -> Vec<QuestionCandidate> {
     let ground = LargestIslandIndex::of(grid);
     let engines = world.engines().clone();
     let scene = engines.semantics().scene(world.state());
@@ -71,7 +71,7 @@ pub(super) fn survey(
                 },
                 instruction: None,
             };
-            offers.push(QuestionOffer {
+            offers.push(QuestionCandidate {
                 asked,
                 goal: Arc::new(goal),
             });
@@ -92,8 +92,8 @@ struct Places<'a> {
 impl Places<'_> {
     fn of_thing(&mut self, thing: ObjectId) -> Vec<NavCell> {
         let found = self.things.entry(thing).or_insert_with(|| {
-            let asked = StepCondition::found_goal(thing);
-            cells_that_reach(self.world, self.agent, &self.ground, &asked)
+            let asked = StepCondition::find_object_goal(thing);
+            goal_region(self.world, self.agent, &self.ground, &asked)
         });
         found.clone()
     }
@@ -101,7 +101,7 @@ impl Places<'_> {
     fn in_room(&mut self, room: RoomId) -> Vec<NavCell> {
         let found = self.rooms.entry(room).or_insert_with(|| {
             let asked = InstructionGoal::rooms(vec![room]);
-            cells_that_reach(self.world, self.agent, &self.ground, &asked)
+            goal_region(self.world, self.agent, &self.ground, &asked)
         });
         found.clone()
     }

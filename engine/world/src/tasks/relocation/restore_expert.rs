@@ -1,11 +1,11 @@
 //! The expert: it brings one thing after the other to where it is to be, furniture first.
 
 use super::MovableThing;
-use super::carrier::{Carrier, Errand};
+use super::manipulation::{Manipulation, OngoingManipulation};
 use crate::actions::{DiscreteAction, StepSizes};
 use crate::expert::ShortestPathFollower;
 use crate::tasks::goal_cells::LargestIslandIndex;
-use crate::tasks::navigation::{cells_in_reach, cells_in_share_of_reach};
+use crate::tasks::navigation::{cells_in_reach, cells_in_reach_fraction};
 use crate::world::World;
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::{Aabb, AgentId, ObjectId, Pose};
@@ -34,7 +34,7 @@ type ErrandRank = (bool, bool, f64);
 
 /// The place of a thing before it was moved.
 #[derive(Clone, Debug)]
-pub(in crate::tasks) struct PlaceToRestore {
+pub(in crate::tasks) struct OriginalPlace {
     /// Of the thing's first part.
     pub(in crate::tasks) world_from_part: Pose,
     /// The middle of the lower side of the box around it there, m.
@@ -43,7 +43,7 @@ pub(in crate::tasks) struct PlaceToRestore {
     cells: Vec<NavCell>,
 }
 
-impl PlaceToRestore {
+impl OriginalPlace {
     /// The place of a thing that had a box and a pose there.
     pub(in crate::tasks) fn new(
         thing: &MovableThing,
@@ -59,14 +59,14 @@ impl PlaceToRestore {
 
 /// What is not as it is to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::tasks) enum Misplaced {
+pub(in crate::tasks) enum Misplacement {
     /// A thing that lies elsewhere.
     Thing(ObjectId),
     /// Furniture that is to be closed, or with `true` opened.
     Furniture(ObjectId, bool),
 }
 
-impl Misplaced {
+impl Misplacement {
     fn object(self) -> ObjectId {
         match self {
             Self::Thing(object) | Self::Furniture(object, _) => object,
@@ -87,16 +87,16 @@ struct BlockedDoor {
 
 /// The expert of an episode.
 #[derive(Debug)]
-pub(in crate::tasks) struct Restorer {
+pub(in crate::tasks) struct RestoreExpert {
     agent: AgentId,
     grid: Arc<NavGrid>,
     stride: StepSizes,
-    places: BTreeMap<ObjectId, PlaceToRestore>,
+    places: BTreeMap<ObjectId, OriginalPlace>,
     /// Where a hand reaches furniture.
     furniture: BTreeMap<ObjectId, Vec<NavCell>>,
     /// True if what is held is put where the view has a level surface, and not where it belongs.
     by_view: bool,
-    carrier: Option<Carrier>,
+    carrier: Option<OngoingManipulation>,
     /// Control steps for which it has been carrying.
     carrying: u32,
     /// Control steps for which it has been opening a door with a full hand.
@@ -110,10 +110,10 @@ pub(in crate::tasks) struct Restorer {
     left: BTreeSet<ObjectId>,
 }
 
-impl Restorer {
+impl RestoreExpert {
     pub(in crate::tasks) fn new(
         (agent, grid, stride): (AgentId, &Arc<NavGrid>, StepSizes),
-        places: BTreeMap<ObjectId, PlaceToRestore>,
+        places: BTreeMap<ObjectId, OriginalPlace>,
         furniture: BTreeMap<ObjectId, Vec<NavCell>>,
     ) -> Self {
         Self {
@@ -134,7 +134,7 @@ impl Restorer {
     }
 
     /// The expert of an agent whose `place` goes by its view alone.
-    pub(in crate::tasks) fn by_view(self) -> Self {
+    pub(in crate::tasks) fn placing_by_view(self) -> Self {
         Self {
             by_view: true,
             ..self
@@ -142,10 +142,10 @@ impl Restorer {
     }
 
     /// The next action while some things are misplaced.
-    pub(in crate::tasks) fn next(
+    pub(in crate::tasks) fn next_action(
         &mut self,
         world: &World,
-        misplaced: &[Misplaced],
+        misplaced: &[Misplacement],
     ) -> DiscreteAction {
         let holder = world.state().agents.get(self.agent);
         let held = holder.and_then(|agent| agent.holding);
@@ -160,12 +160,12 @@ impl Restorer {
         let is_misplaced = |object: ObjectId| misplaced.iter().any(|one| one.object() == object);
         if let Some(carrier) = &self.carrier {
             let is_over = match carrier.errand {
-                Errand::Take(object) => held == Some(object) || !is_misplaced(object),
-                Errand::Put(object, _) => held != Some(object),
-                Errand::Open(object) | Errand::Close(object) => !is_misplaced(object),
+                Manipulation::Take(object) => held == Some(object) || !is_misplaced(object),
+                Manipulation::Put(object, _) => held != Some(object),
+                Manipulation::Open(object) | Manipulation::Close(object) => !is_misplaced(object),
             };
             if is_over {
-                if let (Errand::Put(object, _), Some(agent)) = (carrier.errand, holder)
+                if let (Manipulation::Put(object, _), Some(agent)) = (carrier.errand, holder)
                     && let Some(place) = self.places.get_mut(&object)
                 {
                     let grid = &self.grid;
@@ -189,20 +189,20 @@ impl Restorer {
             let Some(carrier) = &mut self.carrier else {
                 break;
             };
-            if let Some(action) = carrier.next(world) {
+            if let Some(action) = carrier.next_action(world) {
                 self.count_opening(world, held, action);
                 return action;
             }
             match carrier.errand {
                 // What was kicked away meanwhile is reached from elsewhere; it counts how often it takes a thing.
-                Errand::Take(_) => {}
+                Manipulation::Take(_) => {}
                 // Something may lie there that it puts in its own place first.
-                Errand::Put(object, _) => {
+                Manipulation::Put(object, _) => {
                     self.postponed.insert(object);
                     self.carrier = None;
                     return DiscreteAction::Drop;
                 }
-                Errand::Open(object) | Errand::Close(object) => {
+                Manipulation::Open(object) | Manipulation::Close(object) => {
                     self.left.insert(object);
                 }
             }
@@ -265,7 +265,7 @@ impl Restorer {
             self.door = None;
             return None;
         }
-        Some(blocked.follower.open_thing(world, blocked.door))
+        Some(blocked.follower.action_to_open(world, blocked.door))
     }
 
     /// The next errand; `None` where there is none.
@@ -273,18 +273,18 @@ impl Restorer {
         &mut self,
         world: &World,
         held: Option<ObjectId>,
-        misplaced: &[Misplaced],
-    ) -> Option<Carrier> {
+        misplaced: &[Misplacement],
+    ) -> Option<OngoingManipulation> {
         let setup = (self.agent, &self.grid, self.stride);
         if let Some(object) = held {
             if self.left.contains(&object) {
                 return None;
             }
             let place = self.places.get(&object)?;
-            let errand = Errand::Put(object, place.foot);
-            let carrier = Carrier::new(errand, place.cells.clone(), setup);
+            let errand = Manipulation::Put(object, place.foot);
+            let carrier = OngoingManipulation::new(errand, place.cells.clone(), setup);
             return Some(if self.by_view {
-                carrier.by_view()
+                carrier.placing_by_view()
             } else {
                 carrier
             });
@@ -293,13 +293,13 @@ impl Restorer {
         let here = self.grid.nearest(here, 0.6)?;
         let ways = self.grid.distance_field(&[here]);
         let ground = LargestIslandIndex::of(&self.grid);
-        let mut best: Option<(ErrandRank, Errand, Vec<NavCell>)> = None;
+        let mut best: Option<(ErrandRank, Manipulation, Vec<NavCell>)> = None;
         for one in misplaced {
             if self.left.contains(&one.object()) {
                 continue;
             }
             let (errand, cells) = match *one {
-                Misplaced::Thing(object) => {
+                Misplacement::Thing(object) => {
                     let tries = self.takes.get(&object).copied().unwrap_or(0);
                     if tries >= TAKES || !self.places.contains_key(&object) {
                         continue;
@@ -307,16 +307,16 @@ impl Restorer {
                     let mut cells = cells_in_reach(world, self.agent, &ground, object);
                     if cells.is_empty() {
                         let far = (object, FAR_SHARE);
-                        cells = cells_in_share_of_reach(world, self.agent, &ground, far);
+                        cells = cells_in_reach_fraction(world, self.agent, &ground, far);
                     }
-                    (Errand::Take(object), cells)
+                    (Manipulation::Take(object), cells)
                 }
-                Misplaced::Furniture(object, opens) => {
+                Misplacement::Furniture(object, opens) => {
                     let cells = self.furniture.get(&object).cloned().unwrap_or_default();
                     let errand = if opens {
-                        Errand::Open(object)
+                        Manipulation::Open(object)
                     } else {
-                        Errand::Close(object)
+                        Manipulation::Close(object)
                     };
                     (errand, cells)
                 }
@@ -328,15 +328,15 @@ impl Restorer {
             }
             // What stands open may hide a place, or bar the way.
             let is_late = self.postponed.contains(&one.object());
-            let rank = (is_late, matches!(errand, Errand::Take(_)), way_m);
+            let rank = (is_late, matches!(errand, Manipulation::Take(_)), way_m);
             if best.as_ref().is_none_or(|(other, ..)| rank < *other) {
                 best = Some((rank, errand, cells));
             }
         }
         let (_, errand, cells) = best?;
-        if let Errand::Take(object) = errand {
+        if let Manipulation::Take(object) = errand {
             *self.takes.entry(object).or_default() += 1;
         }
-        Some(Carrier::new(errand, cells, setup))
+        Some(OngoingManipulation::new(errand, cells, setup))
     }
 }

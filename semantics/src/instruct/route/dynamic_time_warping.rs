@@ -13,14 +13,14 @@ const SCALE_M: f64 = 3.0;
 /// G. Ilharco et al., "General Evaluation for Instruction Conditioned Navigation using Dynamic Time Warping", arXiv:1907.05446 (2019):
 /// nDTW = exp(-DTW(P, R) / (|R| r)), with Euclidean distances, repeated places of P dropped, and r = 3 m as in VLN-CE.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct PathWarp {
+pub struct DynamicTimeWarping {
     reference: Vec<Vec3>,
     /// The cost of the path so far to each beginning of the reference, m; empty before the first place.
     costs: Vec<f64>,
     last: Option<Vec3>,
 }
 
-impl PathWarp {
+impl DynamicTimeWarping {
     /// Begins with a reference of places on a line with corners at `way`, `spacing_m` apart.
     pub fn new(way: &[Vec3], spacing_m: f32) -> Self {
         let mut reference: Vec<Vec3> = way.first().copied().into_iter().collect();
@@ -117,7 +117,7 @@ mod tests {
         };
         let way: Vec<Vec3> = (0..6).map(|k| place(k, 0.3)).collect();
         let path: Vec<Vec3> = (0..7).map(|k| place(k, 1.1)).collect();
-        let mut warp = PathWarp::new(&way, 1.4);
+        let mut warp = DynamicTimeWarping::new(&way, 1.4);
         assert!(warp.ndtw().abs() < 1e-12);
         for (k, place) in path.iter().enumerate() {
             warp.add(*place);
@@ -136,7 +136,7 @@ mod tests {
             Vec3::new(0.55, 0.0, 0.0),
             Vec3::new(0.55, 0.0, 0.7),
         ];
-        let mut warp = PathWarp::new(&way, 0.25);
+        let mut warp = DynamicTimeWarping::new(&way, 0.25);
         assert_eq!(warp.reference.len(), 6);
         // 0.75 m of the way are 0.2 m beyond its corner.
         assert!(warp.reference[3].distance(Vec3::new(0.55, 0.0, 0.2)) < 1e-5);

@@ -2,7 +2,7 @@
 
 use super::movable_things::cells_goal;
 use crate::actions::{DiscreteAction, StepSizes};
-use crate::expert::LookStep;
+use crate::expert::LookAction;
 use crate::tasks::navigation::{BESIDE_M, ELSEWHERE_M, Leg};
 use crate::world::World;
 use dwell_scene::bvh::{Ray, RayMask};
@@ -29,7 +29,7 @@ const ROUNDS: u32 = 2;
 
 /// Something to do at the end of a way.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Errand {
+pub(super) enum Manipulation {
     /// Take a thing.
     Take(ObjectId),
     /// Put what is held down, looking at a point.
@@ -42,8 +42,8 @@ pub(super) enum Errand {
 
 /// An errand that is under way.
 #[derive(Debug)]
-pub(super) struct Carrier {
-    pub(super) errand: Errand,
+pub(super) struct OngoingManipulation {
+    pub(super) errand: Manipulation,
     leg: Leg,
     /// True if it puts things down only where the middle of the view is on a surface at the height of the point.
     by_view: bool,
@@ -56,10 +56,10 @@ pub(super) struct Carrier {
     rounds: u32,
 }
 
-impl Carrier {
+impl OngoingManipulation {
     /// Begins an errand that is done from one of some cells.
     pub(super) fn new(
-        errand: Errand,
+        errand: Manipulation,
         cells: Vec<NavCell>,
         (agent, grid, stride): (AgentId, &Arc<NavGrid>, StepSizes),
     ) -> Self {
@@ -75,9 +75,9 @@ impl Carrier {
     }
 
     /// The next action; `None` where it gives up.
-    pub(super) fn next(&mut self, world: &World) -> Option<DiscreteAction> {
+    pub(super) fn next_action(&mut self, world: &World) -> Option<DiscreteAction> {
         match self.errand {
-            Errand::Take(object) => {
+            Manipulation::Take(object) => {
                 if self.busy > 0 {
                     self.busy += 1;
                     return (self.busy < GRASPING).then_some(DiscreteAction::Wait);
@@ -86,15 +86,15 @@ impl Carrier {
                     return Some(step);
                 }
                 match self.leg.look_at(world, object) {
-                    LookStep::Turn(step) => Some(step),
-                    LookStep::Missed => self.elsewhere(world, BESIDE_M),
-                    LookStep::Done => {
+                    LookAction::Turn(step) => Some(step),
+                    LookAction::Missed => self.elsewhere(world, BESIDE_M),
+                    LookAction::Done => {
                         self.busy = 1;
                         Some(DiscreteAction::Pick)
                     }
                 }
             }
-            Errand::Put(_, point) => {
+            Manipulation::Put(_, point) => {
                 if self.busy > 0 {
                     // It is done at once, or not at all.
                     self.refused += 1;
@@ -118,7 +118,7 @@ impl Carrier {
                 self.busy = 1;
                 Some(DiscreteAction::Place)
             }
-            Errand::Open(object) => {
+            Manipulation::Open(object) => {
                 if self.busy > 0 {
                     self.busy += 1;
                     if self.busy < SWINGING {
@@ -128,7 +128,7 @@ impl Carrier {
                 }
                 self.look_and_use(world, object, DiscreteAction::Open)
             }
-            Errand::Close(object) => {
+            Manipulation::Close(object) => {
                 if self.busy > 0 {
                     return self.wait(world, PATIENCE);
                 }
@@ -138,7 +138,7 @@ impl Carrier {
     }
 
     /// An errand of an agent whose `place` goes by its view alone.
-    pub(super) fn by_view(self) -> Self {
+    pub(super) fn placing_by_view(self) -> Self {
         Self {
             by_view: true,
             ..self
@@ -178,9 +178,9 @@ impl Carrier {
             return Some(step);
         }
         match self.leg.look_at(world, object) {
-            LookStep::Turn(step) => Some(step),
-            LookStep::Missed => self.elsewhere(world, BESIDE_M),
-            LookStep::Done => {
+            LookAction::Turn(step) => Some(step),
+            LookAction::Missed => self.elsewhere(world, BESIDE_M),
+            LookAction::Done => {
                 self.busy = 1;
                 Some(action)
             }
@@ -198,14 +198,14 @@ impl Carrier {
     /// Goes on from another place.
     fn elsewhere(&mut self, world: &World, radius_m: f32) -> Option<DiscreteAction> {
         self.busy = 0;
-        if self.leg.leave_out_goals_here(world, radius_m) {
+        if self.leg.exclude_goals_within(world, radius_m) {
             return Some(DiscreteAction::Wait);
         }
         // It stands elsewhere in a cell when it comes again.
         if self.rounds < ROUNDS {
             self.rounds += 1;
-            self.leg.try_all_goals_again();
-            if self.leg.leave_out_goals_here(world, radius_m) {
+            self.leg.restore_all_goals();
+            if self.leg.exclude_goals_within(world, radius_m) {
                 return Some(DiscreteAction::Wait);
             }
         }

@@ -1,11 +1,11 @@
 //! What questions of all kinds share: the things and rooms that have names of their own, and words with their answer.
 
 use super::guessable::is_guessable;
-use super::{AskedQuestion, QuestionKind, StateToSet, answers};
-use crate::check::{Checker, Listener};
+use super::{AskedQuestion, QuestionKind, StateArrangement, answers};
+use crate::check::{Addressee, Checker};
 use crate::form::{Description, Form, Modifier, Noun, Quantifier, Question};
-use crate::instruct::{self, is_sought};
-use crate::refer::by_properties;
+use crate::instruct::{self, is_search_target};
+use crate::refer::property_descriptions;
 use crate::scene::{SemanticScene, Term};
 use dwell_scene::interrupt;
 use dwell_scene::{ObjectId, RoomId};
@@ -13,7 +13,7 @@ use std::collections::BTreeSet;
 
 /// Where the answer of a question is seen.
 #[derive(Clone, Debug)]
-pub(super) struct Sight {
+pub(super) struct AnswerEvidence {
     /// The things that one must see.
     pub(super) seen: Vec<ObjectId>,
     /// The thing to go to; `None`: the room.
@@ -22,53 +22,57 @@ pub(super) struct Sight {
 }
 
 /// Asks questions about a scene.
-pub(super) struct Asker<'a> {
+pub(super) struct QuestionGenerator<'a> {
     pub(super) scene: &'a SemanticScene<'a>,
     pub(super) checker: Checker<'a>,
     /// The things that are asked about, with their rooms.
     pub(super) things: Vec<(ObjectId, RoomId)>,
 }
 
-impl<'a> Asker<'a> {
+impl<'a> QuestionGenerator<'a> {
     pub(super) fn new(scene: &'a SemanticScene<'a>) -> Self {
         let objects = scene.house().objects.ids();
         let things = objects.filter_map(|object| {
-            let sought = scene.facts(object).category.is_some_and(is_sought);
+            let sought = scene.facts(object).category.is_some_and(is_search_target);
             let room = scene.room_of(object).filter(|_| sought)?;
             scene.holder(object).is_none().then_some((object, room))
         });
         Self {
             scene,
-            checker: Checker::new(scene, Listener::default()),
+            checker: Checker::new(scene, Addressee::default()),
             things: things.collect(),
         }
     }
 
     /// The names of a thing by its own properties, shortest first, of which each means it alone.
-    pub(super) fn names(&self, object: ObjectId) -> impl Iterator<Item = Description> {
+    pub(super) fn referring_expressions(
+        &self,
+        object: ObjectId,
+    ) -> impl Iterator<Item = Description> {
         interrupt::unwind_if_cancelled();
-        let own = by_properties(self.scene, object).into_iter();
-        own.filter(move |name| self.means(name, Term::Object(object)))
+        let own = property_descriptions(self.scene, object).into_iter();
+        own.filter(move |name| self.refers_uniquely_to(name, Term::Object(object)))
     }
 
     /// Returns whether a description means one thing or room alone, in the eyes of all who may divide on it.
-    pub(super) fn means(&self, description: &Description, term: Term) -> bool {
-        self.checker.denotes(description) == Some(term)
+    pub(super) fn refers_uniquely_to(&self, description: &Description, term: Term) -> bool {
+        self.checker.certain_referent(description) == Some(term)
     }
 
     /// The name of a room that is the only one of its kind.
-    pub(super) fn room_name(&self, room: RoomId) -> Option<Description> {
+    pub(super) fn room_description(&self, room: RoomId) -> Option<Description> {
         let facts = self.scene.semantics.room(room);
         answers::noun(self.scene, Term::Room(room))?;
         let name = Description::new(Quantifier::The, Noun::Room(facts.noun.clone()));
-        self.means(&name, Term::Room(room)).then_some(name)
+        self.refers_uniquely_to(&name, Term::Room(room))
+            .then_some(name)
     }
 
     /// The rooms that have names, with these.
     pub(super) fn named_rooms(&self) -> Vec<(RoomId, Description)> {
         let rooms = self.scene.house().rooms.ids();
         rooms
-            .filter_map(|room| Some((room, self.room_name(room)?)))
+            .filter_map(|room| Some((room, self.room_description(room)?)))
             .collect()
     }
 
@@ -81,36 +85,36 @@ impl<'a> Asker<'a> {
     }
 
     /// "Chairs in the kitchen".
-    pub(super) fn in_room(noun: &str, room: &Description) -> Description {
+    pub(super) fn noun_in_room(noun: &str, room: &Description) -> Description {
         let things = Description::new(Quantifier::Some, Noun::Object(noun.to_owned()));
         things.with_modifier(Modifier::new("in_room", [room.clone().into()]))
     }
 
     /// The things that a description fits.
-    pub(super) fn fitting(&self, description: &Description) -> Vec<ObjectId> {
-        let fits = self.checker.fitting(description).into_iter();
+    pub(super) fn matching_objects(&self, description: &Description) -> Vec<ObjectId> {
+        let fits = self.checker.matching_terms(description).into_iter();
         fits.filter_map(Term::object).collect()
     }
 
     /// The question, where there are words for it that do not give its answer away, and one answer.
-    pub(super) fn ask(
+    pub(super) fn compose(
         &self,
         kind: QuestionKind,
         question: Question,
-        sight: Sight,
+        sight: AnswerEvidence,
     ) -> Option<AskedQuestion> {
         let text = self.text(&question)?;
-        let answer = answers::spoken(self.scene, &self.checker.answer(&question))?;
+        let answer = answers::answer_word(self.scene, &self.checker.answer(&question))?;
         Some(asked(kind, question, (text, answer), sight, None))
     }
 
     /// The question whose answer is `answer` once something is arranged.
-    pub(super) fn ask_arranged(
+    pub(super) fn compose_rearranged(
         &self,
         kind: QuestionKind,
         question: Question,
-        (sets, answer): (StateToSet, &'static str),
-        sight: Sight,
+        (sets, answer): (StateArrangement, &'static str),
+        sight: AnswerEvidence,
     ) -> Option<AskedQuestion> {
         let text = self.text(&question)?;
         Some(asked(kind, question, (text, answer), sight, Some(sets)))
@@ -127,8 +131,8 @@ fn asked(
     kind: QuestionKind,
     question: Question,
     (text, answer): (String, &'static str),
-    Sight { seen, target, room }: Sight,
-    sets: Option<StateToSet>,
+    AnswerEvidence { seen, target, room }: AnswerEvidence,
+    sets: Option<StateArrangement>,
 ) -> AskedQuestion {
     AskedQuestion {
         kind,
