@@ -123,7 +123,11 @@ def ended(script: str, status: int = 0) -> str:
 
 
 @pytest.mark.parametrize("call", CALLS)
-@pytest.mark.parametrize("first", ["", HOLDS_THE_GIL], ids=["at work", "waiting for the GIL"])
+@pytest.mark.parametrize(
+    "first",
+    [pytest.param("", marks=pytest.mark.slow), HOLDS_THE_GIL],
+    ids=["at work", "waiting for the GIL"],
+)
 def test_a_process_ends_well_while_a_daemon_thread_works(call: str, first: str) -> None:
     for _ in range(2):
         prepare = ENV if call == "env" else ""

@@ -207,9 +207,13 @@ def test_errors_of_a_policy_keep_their_cause() -> None:
 @pytest.mark.parametrize(
     ("task", "mode"),
     [
-        *(("PointNav", mode) for mode in ACTION_MODES if mode != "discrete"),
+        *(
+            pytest.param("PointNav", mode, marks=() if mode == "dict" else pytest.mark.slow)
+            for mode in ACTION_MODES
+            if mode != "discrete"
+        ),
         ("SoundLocalization", "velocity"),
-        ("SoundLocalization", "dict"),
+        pytest.param("SoundLocalization", "dict", marks=pytest.mark.slow),
     ],
 )
 def test_every_mode_is_played_stated_and_verified(task: str, mode: str) -> None:

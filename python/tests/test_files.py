@@ -240,7 +240,7 @@ sys.exit(cli.main(["generate", *sys.argv[1:]]))
 """
 
 
-@pytest.mark.parametrize("form", ["dwell", "suncg", "glb"])
+@pytest.mark.parametrize("form", ["dwell", pytest.param("suncg", marks=pytest.mark.slow), "glb"])
 def test_houses_that_had_no_room_are_made_by_the_next_run(tmp_path: Path, form: str) -> None:
     pytest.importorskip("resource")
     out = tmp_path / "many"

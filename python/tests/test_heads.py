@@ -410,6 +410,7 @@ def test_kemar_is_heard_as_measured() -> None:
                 assert abs(left - right - ild_db) < 2.0, azimuth
 
 
+@pytest.mark.slow
 @needs_kemar
 def test_kemar_between_its_directions() -> None:
     """From every other azimuth: those left out within 0.5 dB by octave on average and 20 us."""

@@ -59,7 +59,14 @@ def test_it_learns_what_can_be_told_apart(example: dict[str, Any]) -> None:
     assert (said == labels[:, 0]).mean() > 0.9
 
 
-@pytest.mark.parametrize("task", ["PointNav", "EmbodiedQA", "SoundLocalization"])
+@pytest.mark.parametrize(
+    "task",
+    [
+        "PointNav",
+        pytest.param("EmbodiedQA", marks=pytest.mark.slow),
+        pytest.param("SoundLocalization", marks=pytest.mark.slow),
+    ],
+)
 def test_it_runs_and_writes_the_curve(
     task: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -249,7 +249,9 @@ def beyond(measured: Means, simulated: Means, name: str, *octaves_hz: float) -> 
     return {hz: db for hz, db in off.items() if abs(db) > TOLERANCE_DB}
 
 
-@pytest.mark.parametrize("distance", ["1.5", "2.0", "3.0"])
+@pytest.mark.parametrize(
+    "distance", ["1.5", *(pytest.param(m, marks=pytest.mark.slow) for m in ("2.0", "3.0"))]
+)
 def test_clarity_and_direct_sound_follow_from_the_decay(tmp_path: Path, distance: str) -> None:
     """M4: absorption from T30 of the bare state by Sabine, then C50 and DRR at 1.5, 2 and 3 m.
 
@@ -261,7 +263,7 @@ def test_clarity_and_direct_sound_follow_from_the_decay(tmp_path: Path, distance
     assert not beyond(measured, simulated, "drr_db", 1000.0, 2000.0, 4000.0)
 
 
-@pytest.mark.parametrize("state", ["000", "100"])
+@pytest.mark.parametrize("state", ["000", pytest.param("100", marks=pytest.mark.slow)])
 def test_the_decay_gives_the_absorption_that_gives_the_decay(tmp_path: Path, state: str) -> None:
     """Absorption by Eyring from T30 of the corners: the simulation has that T30 again, within 5 %.
 
@@ -317,6 +319,7 @@ def test_states_between_follow_from_the_first_and_the_last(
         assert simulated["t30_s", hz] == pytest.approx(measured["t30_s", hz], rel=0.1)
 
 
+@pytest.mark.slow
 def test_turned_panels_as_the_loudspeaker_hears_them(tmp_path: Path) -> None:
     """M4: all panels turned, absorption from T30 of the corners, then the loudspeaker at 2 m.
 
