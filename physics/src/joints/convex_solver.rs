@@ -249,13 +249,7 @@ impl EffortProblem {
         velocity
     }
 
-    /// Returns the efforts that lead to these velocities. Shape (freedom,).
-    pub(super) fn efforts(&self, velocity: &[f64]) -> Vec<f64> {
-        let mut efforts = vec![0.0; velocity.len()];
-        self.efforts_into(velocity, &mut efforts);
-        efforts
-    }
-
+    /// Writes the efforts that lead to these velocities. Shape (freedom,).
     fn efforts_into(&self, velocity: &[f64], efforts: &mut [f64]) {
         efforts.fill(0.0);
         for element in &self.terms {
