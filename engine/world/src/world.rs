@@ -163,7 +163,7 @@ impl World {
             Ok(outcome) => outcome?,
             Err(interrupted) => {
                 (self.state, self.physics, self.events) = before;
-                interrupted.unwind();
+                interrupted.resume_unwind();
             }
         }
         interrupt::uninterruptible(|| self.conclude_step(began_s))
