@@ -61,6 +61,13 @@ CALLS = [
         "SCENE.impulse_response((1, 1, 1), dwell.Receiver.omni((2, 1, 2)), yaw_deg=30)",
         "mic, yaw_deg: found both",
     ),
+    (
+        "SCENE.impulse_response((1, 1, 1), (2, 1, 2), yaw_deg=90)",
+        "yaw_deg is 90: a microphone at a point hears alike from all sides; expected ears=True",
+    ),
+    ('SCENE.impulse_response((1, 1, 1), "mic")', "mic: expected three numbers (x, y, z) in metres"),
+    ('SCENE.impulse_response((1, 1, 1), "mic", ears=True)', "mic: expected three numbers"),
+    ('SCENE.metrics_at((1, 1, 1), [(1, 1, 1), "mic"])', "mics[1]: expected three numbers"),
     ('dwell.sounds.read_wav("x.wav", full_scale_pa=nan)', "full_scale_pa is nan"),
     ('dwell.sounds.read_wav("x.wav", full_scale_pa=0)', "full_scale_pa is 0; allowed are numbers"),
     ('dwell.sounds.read_wav("x.wav", full_scale_pa=-1)', "full_scale_pa is -1; allowed are num"),
