@@ -34,7 +34,9 @@ Randomize = str | os.PathLike[str] | Mapping[str, Any] | None
 
 _FOUND = {"laws", "parameters"}
 #: What calibration says of it besides, for readers.
-_FOUND_ABOUT = {"intervals", "provenance"}
+_FOUND_ABOUT = {"version", "intervals", "provenance"}
+#: The version of the form of ``found.json``; older files do not say it.
+_FOUND_VERSION = 1
 #: More than anybody has causes for; each is looked for among those before it.
 _MAX_LAWS = 1_000
 _EXPECTED = (
@@ -80,6 +82,7 @@ def found(laws: Laws) -> tuple[list[dict[str, Any]], dict[str, float]]:
         if unknown := sorted(set(laws) - _FOUND - _FOUND_ABOUT):
             allowed = sorted(_FOUND | _FOUND_ABOUT)
             raise ConfigError(f"{at}: no field {unknown[0]!r}; allowed are {allowed}")
+        _refuse_other_version(at, laws)
         parameters = laws.get("parameters", {})
         laws = laws.get("laws", [])
     if not isinstance(parameters, Mapping):
@@ -128,10 +131,22 @@ def intervals(randomize: Randomize) -> tuple[Laws, dict[str, list[float]]]:
         if unknown := sorted(set(given) - _FOUND - _FOUND_ABOUT):
             allowed = sorted(_FOUND | _FOUND_ABOUT)
             raise ConfigError(f"{at}: no field {unknown[0]!r}; allowed are {allowed}")
+        _refuse_other_version(at, given)
         fixed = {name: given[name] for name in sorted(_FOUND & set(given))}
         given = mapping(f"{at}: intervals", given.get("intervals", {}), "[low, high] by address")
     rows = {address: _interval(f"{at}: {address}", ends) for address, ends in given.items()}
     return fixed, rows
+
+
+def _refuse_other_version(at: str, given: Mapping[str, Any]) -> None:
+    """Refuses what a newer release found.
+
+    Raises:
+        ConfigError: It says another version than this dwell reads.
+    """
+    version = given.get("version", _FOUND_VERSION)
+    if version != _FOUND_VERSION or isinstance(version, bool):
+        raise ConfigError(f"{at}: version is {quoted(version)}; this dwell reads {_FOUND_VERSION}")
 
 
 def _interval(at: str, ends: object) -> list[float]:

@@ -101,7 +101,8 @@ def test_what_calibration_found_reaches_worlds_and_environments(
     found = {"laws": [], "parameters": {MOON: 1.62}}
     path = tmp_path / "found.json"
     path.write_text(json.dumps(found), "utf-8")
-    for laws in (path, str(path), found):
+    # What this release writes says its version, what older ones wrote does not.
+    for laws in (path, str(path), found, {"version": 1, **found}):
         assert dwell.World(apartment, laws=laws).parameter(MOON)["value"] == pytest.approx(1.62)
     nearer = dwell.World(apartment, laws=path, parameters={MOON: 3.7})
     assert nearer.parameter(MOON)["value"] == pytest.approx(3.7)
@@ -121,6 +122,8 @@ def test_what_calibration_found_reaches_worlds_and_environments(
         ("[" * 100_000, "nested 100000 deep"),
         ('{"lows": []}', "lows"),
         ('{"parameters": [1]}', "by address"),
+        ('{"version": 2, "laws": []}', "version is 2; this dwell reads 1"),
+        ('{"version": true, "laws": []}', "version is True; this dwell reads 1"),
     ],
 )
 def test_files_of_laws_that_are_none_are_refused_by_name(

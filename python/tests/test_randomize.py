@@ -72,6 +72,12 @@ def test_episodes_draw_anew_and_an_episode_comes_back_as_it_was(tmp_path: Path) 
     assert drawn(own.world) == values
 
 
+def test_findings_of_a_newer_release_are_refused(shoebox: dwell.House) -> None:
+    with pytest.raises(dwell.ConfigError, match="version is 2; this dwell reads 1"):
+        dwell.World(shoebox, randomize={**FOUND, "version": 2})
+    dwell.World(shoebox, randomize={**FOUND, "version": 1})
+
+
 def test_vector_environments_draw_what_single_ones_do() -> None:
     settings: dict[str, Any] = {
         "houses": "builtin:studio",

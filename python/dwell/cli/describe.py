@@ -8,7 +8,7 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from dwell.cli.common import ProgressBar, count, path
-from dwell.cli.job_journal import Journal, contents_of
+from dwell.cli.job_journal import VERSION, Journal, contents_of
 from dwell.files import open_file
 
 if TYPE_CHECKING:
@@ -147,7 +147,7 @@ def _rows(
 ) -> Iterator[dict[str, Any]]:
     from dwell.house import House
 
-    about = {"house": name, "level": level}
+    about = {"version": VERSION, "house": name, "level": level}
     if level == "changes":
         yield {**about, **_changes(name, options["seed"]).as_dict()}
         return
