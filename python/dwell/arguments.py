@@ -341,13 +341,21 @@ def allowed_values(name: str, known: Iterable[str]) -> str:
     return f"{meant}allowed are {', '.join(names)}"
 
 
+#: Arguments that are called otherwise elsewhere, and their names here, where these are known.
+_CALLED_OTHERWISE = {"max_episode_steps": "max_cycles"}
+
+
 def refuse_unknown(of: str, unknown: Iterable[str], known: Iterable[str]) -> None:
     """Refuses arguments that something does not have.
 
     Raises:
         ConfigError: There is one; the message has the nearest names.
     """
+    known = [*known]
     for name in unknown:
+        own = _CALLED_OTHERWISE.get(name)
+        if own in known:
+            raise ConfigError(f"{of}: no argument {name!r}; here it is called {own}")
         raise ConfigError(f"{of}: no argument {name!r}; {allowed_values(name, known)}")
 
 
