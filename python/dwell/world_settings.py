@@ -249,7 +249,8 @@ def world_settings(
     What calibration found is installed with ``randomize``, too, where ``laws`` do not say else.
 
     Raises:
-        ConfigError: ``further`` names what has an argument of its own.
+        ConfigError: ``further`` names what has an argument of its own; a parameter is stated and
+            drawn, too.
     """
     further = {} if further is None else mapping("world", further)
     for name in sorted({*_FOUND, "randomize"} & set(further)):
@@ -272,6 +273,11 @@ def world_settings(
     if (renderer := os.environ.get("DWELL_RENDERER")) and "renderer" not in further:
         further = {**further, "renderer": renderer}
     own = {} if parameters is None else _values("parameters", parameters)
+    for address in sorted({*own} & {*drawn}):
+        raise ConfigError(
+            f"parameters, randomize: found both for {address!r}; expected one of them: a value, or "
+            "an interval to draw it from"
+        )
     # What is usual is not stated: files say it as they always did.
     more = {"randomize": drawn} if drawn else {}
     return {"laws": rows, "parameters": {**values, **own}, **more, **further}
