@@ -301,7 +301,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
             seed: One seed (then environment k has ``seed + k``), or one for each environment.
             options: ``reset_mask``: which environments to reset, shape (num_envs,) bool.
                 ``episode_id``: an earlier ``info["episode_id"]`` for each environment, to play the
-                same episodes again; ``None`` where one is drawn.
+                same episodes again; ``None`` where one is drawn, and for those left out.
 
         Returns:
             Observations and infos: ``scene_id``, ``episode_id`` and what is asked, as
