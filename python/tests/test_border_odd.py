@@ -36,6 +36,10 @@ CALLS = [
     ("W.place_agent(itertools.count())", "position: expected three numbers (x, y, z) in metres"),
     ('W.relations(itertools.repeat("on"))', "has more than 1000000 elements"),
     ("W.step(itertools.repeat({}))", "has more than 1000000 elements"),
+    (
+        'dwell.Camera(projection="fish")',
+        "camera.projection is 'fish'; expected a kind (one of pinhole, brown_conrady, fisheye,",
+    ),
     ("dwell.Camera(position_m=itertools.count())", "camera.position_m: expected three numbers"),
     ("dwell.House.shoebox(itertools.count(1))", "size_m: expected three numbers (x, y, z) in"),
     ('DwellEnv(sensors=itertools.repeat("gps"))', "has more than 1000000 elements"),
