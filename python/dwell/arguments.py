@@ -72,8 +72,10 @@ def integer_in_range(name: str, value: object, *, low: int = 0, high: int = _MAX
 def finite_number(name: str, value: object) -> float:
     """A finite number as Python's own float; ``True``, ``"1"`` and complex numbers are none."""
     try:
-        # NumPy drops the imaginary part of what is complex.
-        if isinstance(value, bool | str | bytes) or np.iscomplexobj(np.asarray(value)):
+        # NumPy drops the imaginary part of what is complex. Nothing else is made an array: a range
+        # may have any length.
+        is_complex = hasattr(value, "__array__") and np.iscomplexobj(value)
+        if isinstance(value, bool | str | bytes) or is_complex:
             raise TypeError
         number = float(value)  # type: ignore[arg-type] # what this finds out
     except (TypeError, ValueError, OverflowError):
@@ -147,6 +149,13 @@ def hashable(value: object) -> object:
     return value
 
 
+class _Endless(itertools.chain[Any]):
+    """Too many elements, which those refuse who read them; a list would be written out first."""
+
+    def __repr__(self) -> str:
+        return "an iterator without an end in sight"
+
+
 def kept(value: object) -> Any:  # noqa: ANN401 - of the same kind
     """A copy to keep: who gave lists, mappings or arrays may change them later.
 
@@ -174,8 +183,8 @@ def _kept(value: object, depth: int, made: dict[int, Any]) -> Any:  # noqa: ANN4
     if isinstance(value, np.ndarray):
         return value.copy()
     if isinstance(value, Iterator):
-        # Too many are refused by those who read them.
-        return [*itertools.islice(value, _MOST_LISTED + 1)]
+        rows = [*itertools.islice(value, _MOST_LISTED + 1)]
+        return rows if len(rows) <= _MOST_LISTED else _Endless(rows, value)
     return value
 
 
