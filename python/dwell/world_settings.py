@@ -49,9 +49,9 @@ def _laws() -> dict[str, dict[str, Any]]:
     return {law["id"]: law for law in _native.laws()}
 
 
-def _read(path: str | os.PathLike[str]) -> Any:  # noqa: ANN401 - any JSON value
+def _read(file: str) -> Any:  # noqa: ANN401 - any JSON value
     try:
-        return read_json(path)
+        return read_json(file)
     except ValueError as error:
         raise ConfigError(f"laws: {error}") from error
 
@@ -71,7 +71,8 @@ def found(laws: Laws) -> tuple[list[dict[str, Any]], dict[str, float]]:
     """
     at = "laws"
     if isinstance(laws, os.PathLike) or (isinstance(laws, str) and _is_path(laws)):
-        at = f"laws: {os.fspath(laws)}"
+        laws = path(at, laws)
+        at = f"laws: {laws}"
         laws = _read(laws)
     if laws is None:
         return [], {}
@@ -117,9 +118,10 @@ def intervals(randomize: Randomize) -> tuple[Laws, dict[str, list[float]]]:
         return None, {}
     at = "randomize"
     if isinstance(randomize, str | os.PathLike):
-        at = f"randomize: {os.fspath(randomize)}"
+        file = path(at, randomize)
+        at = f"randomize: {file}"
         try:
-            randomize = read_json(randomize)
+            randomize = read_json(file)
         except ValueError as error:
             raise ConfigError(f"randomize: {error}") from error
     given = mapping(at, randomize, "what calibration found, or [low, high] by address")

@@ -268,3 +268,30 @@ def test_settings_without_an_end_are_refused_before_they_are_written_out() -> No
     found = kept(iter(range(many)))
     assert next(found) == 0
     assert sum(1 for _ in found) == many - 1
+
+
+class OfBytes:
+    """A path as bytes, which ``os.PathLike`` allows."""
+
+    def __fspath__(self) -> bytes:
+        return b"x"
+
+
+@pytest.mark.parametrize(
+    ("name", "make"),
+    [
+        (r"houses\[0\]", lambda path: DwellEnv("Free", houses=path)),
+        (r"houses\[1\]", lambda path: DwellEnv("Free", houses=[HOUSE, path])),
+        ("laws", lambda path: dwell.World(HOUSE, laws=path)),
+        ("randomize", lambda path: dwell.World(HOUSE, randomize=path)),
+        ("laws", lambda path: dwell.AcousticScene(HOUSE, laws=path)),
+        ("episodes", lambda path: DwellEnv("Free", episodes=path)),
+        ("path", dwell.sounds.is_whole_wav),
+        ("path", dwell.sounds.read_wav),
+        ("path", dwell.Head.from_sofa),
+        ("path", dwell.Replay.read),
+    ],
+)
+def test_paths_of_bytes_are_told(name: str, make: Callable[[object], object]) -> None:
+    with pytest.raises(dwell.ConfigError, match=f"{name} is b'x'; expected text"):
+        make(OfBytes())

@@ -22,6 +22,7 @@ from dwell.arguments import (
     integer_in_range,
     kept,
     mapping,
+    path,
     quoted,
     sequence_items,
     text,
@@ -161,7 +162,7 @@ class HouseCache:
             elif isinstance(row, str):
                 self.names.append(text(f"houses[{k}]", row))
             elif isinstance(row, os.PathLike):
-                self.names.append_name(os.fspath(row))
+                self.names.append_name(path(f"houses[{k}]", row))
             else:
                 raise ConfigError(
                     f"houses[{k}] is {quoted(row)}; expected a HOUSE string or a House"
