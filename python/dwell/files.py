@@ -168,6 +168,8 @@ def atomic_write(path: _Name, *, new: bool = False) -> Iterator[Path]:
         FileExistsError: It shall be new and is not.
     """
     path = Path(path)
+    if new:
+        _refuse_existing(path)
     place = path if new else _place(path)
     make_folder(place.parent)
     try:
@@ -399,6 +401,12 @@ def _place(path: Path) -> Path:
         told = "is a link that leads to no file"
         raise FileNotFoundError(errno.ENOENT, told, os.fspath(path)) from None
     return real
+
+
+def _refuse_existing(path: Path) -> None:
+    """Refuses what is there, as ``/`` and ``.``, which have no name beside which a draft lies."""
+    if os.path.lexists(path):
+        raise FileExistsError(errno.EEXIST, "is there already", os.fspath(path))
 
 
 def _link(name: str, place: Path) -> None:

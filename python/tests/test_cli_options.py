@@ -174,3 +174,9 @@ def test_a_measured_room_s_numbers_are_told_by_its_own_names(
         path.write_text(ROOM.replace('"duration_s": 0.1', field), "utf-8")
         assert cli.main(["ir", str(path)]) == 1
         assert told in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("out", ["/", ".", ".."])
+def test_a_map_is_no_folder(out: str, capfd: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["info", HOUSE, "--init-map", out]) == 1
+    assert f"--init-map: {out} is there already; name a new file" in capfd.readouterr().err

@@ -152,6 +152,12 @@ def test_slips_are_told_when_they_are_made(tmp_path: Path, change: Any, told: st
         played(Recorder(Arm(), tmp_path / "a.measured", mapping, step_s=DT_S))
 
 
+@pytest.mark.parametrize("out", ["/", ".", ".."])
+def test_a_folder_is_no_new_bundle(out: str) -> None:
+    with pytest.raises(FileExistsError, match="is there already; remove it or choose"):
+        Recorder(Arm(), out, MAP, step_s=DT_S)
+
+
 def test_nothing_is_written_over(tmp_path: Path) -> None:
     (tmp_path / "a.log.csv").write_text("")
     with pytest.raises(FileExistsError, match=r"a\.log\.csv: is there already"):

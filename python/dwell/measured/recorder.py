@@ -74,8 +74,9 @@ class Recorder(gymnasium.Wrapper[ObsType, ActType, ObsType, ActType], Generic[Ob
         self._out = Path(file_path("out", out))
         self._mapping = _checked(mapping)
         stem = self._out.name.removesuffix(".measured")
-        self.log_file = self._out.with_name(f"{stem}.log.csv")
-        self.map_file = self._out.with_name(f"{stem}.map.json")
+        # Not with_name, which "/" has none of.
+        self.log_file = self._out.parent / f"{stem}.log.csv"
+        self.map_file = self._out.parent / f"{stem}.map.json"
         for path in (self._out, self.log_file, self.map_file):
             if os.path.lexists(path):
                 raise FileExistsError(f"{path}: is there already; remove it or choose another name")
