@@ -207,6 +207,11 @@ class HouseCache:
         del house, seed
         return None
 
+    def place(self, house: int, seed: int) -> str | None:
+        """File and line where an episode states its start or goal; here no file states any."""
+        del house, seed
+        return None
+
     def refuse_stated(self) -> None:
         """Refuses that somebody states an episode's start and goal; here everybody may."""
 

@@ -260,7 +260,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
         stated: list[dict[str, Any] | None] = [None] * self.num_envs
         for k, (house, seed) in episodes.items():
             seeds[k], stated[k] = seed, self._shelf.stated(house, seed)
-        self._runner.reset(seeds, moved, stated)
+        self._runner.reset(seeds, moved, stated, lambda k: self._shelf.place(*episodes[k]))
         for k, (house, seed) in episodes.items():
             self._shelf.check(house, seed, self._runner.batch, k)
             self._seeds[k] = seed
