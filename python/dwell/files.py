@@ -185,11 +185,18 @@ def atomic_write(path: _Name, *, new: bool = False) -> Iterator[Path]:
         named = Path(error.filename) if isinstance(error.filename, str | os.PathLike) else None
         is_ours = named is None or any(is_draft(name) for name in (named.name, named.parent.name))
         if is_ours and error.errno is not None:
-            error.filename, error.filename2 = os.fspath(path), None
+            rename_error(error, path)
         elif is_ours:
             # Some libraries say what went wrong in words alone.
             raise OSError(errno.EIO, f"cannot be written: {error}", os.fspath(path)) from error
         raise
+
+
+def rename_error(error: OSError, path: _Name) -> None:
+    """Gives an error the name that people know, alone."""
+    error.filename = os.fspath(path)
+    # None in its place would be told as "-> None".
+    del error.filename2
 
 
 def save_array(path: Path, array: NDArray[Any]) -> None:

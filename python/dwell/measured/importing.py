@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from dwell.files import make_folder
+from dwell.files import make_folder, rename_error
 from dwell.measured.draft import BundleDraft
 from dwell.measured.kinds import KINDS
 from dwell.measured.maps import Job, read_map
@@ -60,7 +60,7 @@ def import_files(
         # What people know is the name that they gave.
         named = "" if error.filename is None else os.fsdecode(error.filename)
         if error.errno is not None and (not named or named.startswith(str(part))):
-            error.filename, error.filename2 = os.fspath(out), None
+            rename_error(error, out)
         raise
     finally:
         shutil.rmtree(part, ignore_errors=True)
