@@ -24,7 +24,7 @@ from dwell.files import MAX_DIGITS, open_file, parse_json
 #: What the border holds: seeds and counts are unsigned and have 64 bits.
 _MAX_UINT64 = 2**64 - 1
 #: The engines reckon in 32 bits: what is larger would be infinite there.
-_MAX_FLOAT32 = float(np.finfo(np.float32).max)
+MAX_FLOAT32 = float(np.finfo(np.float32).max)
 #: How deep lists and mappings lie in each other at most, as the native side reads them.
 _MAX_DEPTH = 100
 #: More than anybody lists; what never ends is told by it.
@@ -82,9 +82,9 @@ def finite_number(name: str, value: object) -> float:
         raise ConfigError(f"{name} is {quoted(value)}; expected a number") from None
     if not math.isfinite(number):
         raise ConfigError(f"{name} is {number}; allowed are finite numbers")
-    if abs(number) > _MAX_FLOAT32:
+    if abs(number) > MAX_FLOAT32:
         raise ConfigError(
-            f"{name} is {number}; allowed are numbers up to {_MAX_FLOAT32:.3g} either way"
+            f"{name} is {number}; allowed are numbers up to {MAX_FLOAT32:.3g} either way"
         )
     return number
 
@@ -206,7 +206,7 @@ def finite_row(name: str, row: NDArray[np.float64]) -> NDArray[np.float32]:
     """A row of finite numbers of 32 bits; the first that is none is told by its place."""
     if row.ndim != 1:
         raise ConfigError(f"{name}: expected one row of numbers, found the shape {row.shape}")
-    wrong = np.flatnonzero(~(np.abs(row) <= _MAX_FLOAT32))
+    wrong = np.flatnonzero(~(np.abs(row) <= MAX_FLOAT32))
     if wrong.size:
         finite_number(f"{name}[{wrong[0]}]", row[wrong[0]])
     return row.astype(np.float32)
