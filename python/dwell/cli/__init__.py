@@ -53,6 +53,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns:
         0 done, 1 failed with a sentence on standard error, 2 bad usage, 130 interrupted.
     """
+    try:
+        return _printed(arguments)
+    except KeyboardInterrupt:
+        # In the middle of imports, before anything was done.
+        with contextlib.suppress(OSError, ValueError):
+            if sys.stderr is not None:
+                print("dwell: interrupted", file=sys.stderr)
+        return 130
+
+
+def _printed(arguments: Sequence[str] | None) -> int:
+    """Runs a command, whatever it prints through one place."""
     from dwell.cli.common import Printable, sentence
 
     with contextlib.ExitStack() as stack:
