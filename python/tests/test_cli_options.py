@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import json
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -189,7 +190,21 @@ def test_an_interruption_before_a_command_begins_is_told(
     def stopped(name: str) -> None:
         raise KeyboardInterrupt
 
-    # While modules are imported.
-    monkeypatch.setattr(importlib, "import_module", stopped)
-    assert cli.main(["info", HOUSE]) == 130
-    assert capfd.readouterr().err == "dwell: interrupted\n"
+    def pressed(name: str) -> None:
+        seen.append(name)
+        os.kill(os.getpid(), signal.SIGINT)
+        seen.append("and went on")
+
+    seen: list[str] = []
+    # What is started in the background of a script ignores Ctrl-C.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        # While modules are imported; NumPy's import is not disturbed.
+        for importing in (stopped, pressed):
+            monkeypatch.setattr(importlib, "import_module", importing)
+            assert cli.main(["info", HOUSE]) == 130
+            assert capfd.readouterr().err == "dwell: interrupted\n"
+        assert seen == ["dwell.cli.common", "and went on"]
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    finally:
+        signal.signal(signal.SIGINT, before)

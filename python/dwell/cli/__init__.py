@@ -6,8 +6,10 @@ import argparse
 import contextlib
 import importlib
 import os
+import signal
 import sys
-from collections.abc import Sequence
+import threading
+from collections.abc import Iterator, Sequence
 
 #: Command and what it does; the file of that name has ``configure(parser)`` and ``run(args)``.
 COMMANDS = {
@@ -54,6 +56,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         0 done, 1 failed with a sentence on standard error, 2 bad usage, 130 interrupted.
     """
     try:
+        with _interrupted_at_the_end():
+            importlib.import_module("dwell.cli.common")
         return _printed(arguments)
     except KeyboardInterrupt:
         # In the middle of imports, before anything was done.
@@ -61,6 +65,26 @@ def main(arguments: Sequence[str] | None = None) -> int:
             if sys.stderr is not None:
                 print("dwell: interrupted", file=sys.stderr)
         return 130
+
+
+@contextlib.contextmanager
+def _interrupted_at_the_end() -> Iterator[None]:
+    """Ctrl-C in the block ends it behind its last line.
+
+    In the middle of its import NumPy would take it for a damaged installation.
+    """
+    seen: list[int] = []
+    is_usual = signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    if not is_usual or threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    signal.signal(signal.SIGINT, lambda number, _: seen.append(number))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+    if seen:
+        raise KeyboardInterrupt
 
 
 def _printed(arguments: Sequence[str] | None) -> int:
