@@ -416,3 +416,33 @@ def test_a_map_may_begin_with_a_byte_order_mark(tmp_path: Path) -> None:
     mapping, files = tmp_path / "map.json", [tmp_path / "data.csv", tmp_path / "index.csv"]
     mapping.write_text("\ufeff" + mapping.read_text())
     import_files(files, mapping, tmp_path / "b.measured", lambda *_: None)
+
+
+@pytest.mark.parametrize(
+    ("mapping", "change", "told"),
+    [
+        (FLIGHT, {"channels": {"x": "x", "y": "y", "z": "x"}}, r"channels\.x and channels\.z"),
+        (FLIGHT, {"channels": {"y": "t_s"}}, r"'t_s' is both t_s and channels\.y"),
+        (POSES, {"position": ["x", "x", "z"]}, r"position\[0\] and position\[1\]"),
+        (
+            POSES,
+            {"quaternion_xyzw": ["qx", "qy", "z", "qw"]},
+            r"position\[2\] and z of the quaternion",
+        ),
+        (DRIVE, {"ticks_right": "left"}, "'left' is both ticks_left and ticks_right"),
+    ],
+)
+def test_a_column_is_one_thing(
+    tmp_path: Path, mapping: dict[str, Any], change: dict[str, Any], told: str
+) -> None:
+    changed = {**mapping, "table": {**mapping["table"], **change}}
+    with pytest.raises(ValueError, match=told):
+        brought(tmp_path, changed)
+
+
+@pytest.mark.parametrize("alone", ["velocity", "angular_velocity"])
+def test_velocities_of_tosses_come_together_or_not_at_all(tmp_path: Path, alone: str) -> None:
+    (other,) = {"velocity", "angular_velocity"} - {alone}
+    table = {key: value for key, value in POSES["table"].items() if key != other}
+    with pytest.raises(ValueError, match=f"table: '{alone}' without '{other}'; both or neither"):
+        brought(tmp_path, {**POSES, "table": table})

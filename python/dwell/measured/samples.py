@@ -32,11 +32,22 @@ class Field:
         column: The user's.
         dimension: What it measures.
         optional: Whether a sample without it is kept.
+        key: Where the table's part of the map names the column.
     """
 
     column: str
     dimension: str
     optional: bool = False
+    key: str = ""
+
+
+def fields_of(
+    columns: Sequence[str], dimension: str, key: str, *, optional: bool = False
+) -> list[Field]:
+    """A field of each of a list's columns."""
+    return [
+        Field(column, dimension, optional, f"{key}[{k}]") for k, column in enumerate(columns)
+    ]
 
 
 @dataclass(frozen=True)
@@ -146,6 +157,7 @@ class SampleReader:
         self.group = names_of(part, "split_group", at, self.episode)
         self.conditions = names_of(part, "conditions", at, [])
         self.clock: str = require(part, "t_s", at)
+        _refuse_shared(at, self.clock, [*fields, *([] if held is None else [held])])
         names = [*self.episode, *self.group, *self.conditions, self.clock]
         if held is not None:
             names.append(held.column)
@@ -269,6 +281,18 @@ class SampleReader:
         if empty:
             self.job.notes.append(f"episodes without any number: left out {_listed(empty)}")
         return growing
+
+
+def _refuse_shared(at: str, clock: str, fields: Sequence[Field]) -> None:
+    """Refuses a column that is to be two things."""
+    keys = {clock: "t_s"}
+    for own in fields:
+        if own.column in keys:
+            raise ValueError(
+                f"{at}: column {own.column!r} is both {keys[own.column]} and {own.key}; each of "
+                "them needs a column of its own"
+            )
+        keys[own.column] = own.key
 
 
 def _lost(count: int, of: int, columns: Sequence[str]) -> str:

@@ -81,7 +81,7 @@ def _write(job: Job) -> dict[str, Any]:
         raise ValueError(f"{here}: channels are {names}; a flight has a place, y or x, y and z")
     spins = [_CHANNELS[name][0] == "spin" for name in names]
     fields = [
-        Field(channels[name], _CHANNELS[name][0], optional=spin)
+        Field(channels[name], _CHANNELS[name][0], optional=spin, key=f"channels.{name}")
         for name, spin in zip(names, spins, strict=True)
     ]
     reader = SampleReader(job, part, here, fields)

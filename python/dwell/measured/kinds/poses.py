@@ -11,7 +11,7 @@ from dwell.measured import rotations
 from dwell.measured.axes import Axes
 from dwell.measured.kinds.form import Kind, counted, listing, write_episodes, write_manifest
 from dwell.measured.maps import TABLE, Job, Map, choice, columns_of, require, require_filled
-from dwell.measured.samples import Episode, Field, SampleReader, single, singles
+from dwell.measured.samples import Episode, Field, SampleReader, fields_of, single, singles
 from dwell.measured.tables import MeasuredTable
 from dwell.measured.units import ColumnUnits
 
@@ -117,12 +117,20 @@ def _write(job: Job) -> dict[str, Any]:
     ]
     if rates[1]:
         require(form, "angular_velocity", form_at)
-    has_rates = bool(rates[0] and rates[1])
-    fields = [Field(column, "length") for column in place]
-    fields += [Field(column, "number") for column in quaternion]
-    if has_rates:
-        fields += [Field(column, "speed", optional=True) for column in rates[0]]
-        fields += [Field(column, "spin", optional=True) for column in rates[1]]
+    if bool(rates[0]) != bool(rates[1]):
+        told, other = ("velocity", "angular_velocity")[:: 1 if rates[0] else -1]
+        raise ValueError(
+            f"{here}: {told!r} without {other!r}; both or neither are read: name the columns of "
+            f"{other!r} too, or leave {told!r} out"
+        )
+    has_rates = bool(rates[0])
+    fields = fields_of(place, "length", "position")
+    fields += [
+        Field(column, "number", key=f"{axis} of the quaternion")
+        for column, axis in zip(quaternion, "xyzw", strict=True)
+    ]
+    fields += fields_of(rates[0], "speed", "velocity", optional=True)
+    fields += fields_of(rates[1], "spin", "angular_velocity", optional=True)
     reader = SampleReader(job, part, here, fields)
     step_s = 1.0 / rate_hz if rate_hz > 0 else None
     samples = reader.read(step_s=step_s, fewest=FEWEST)

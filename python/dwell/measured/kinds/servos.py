@@ -92,8 +92,8 @@ def _write(job: Job) -> dict[str, Any]:
             f"{'no' if commands is None else 'a'} 'commands' part; a servo's targets are a column "
             "of its own table or a table of commands"
         )
-    held = None if target is None else Field(target, "angle")
-    reader = SampleReader(job, part, here, [Field(position, "angle")], held)
+    held = None if target is None else Field(target, "angle", key="target")
+    reader = SampleReader(job, part, here, [Field(position, "angle", key="position")], held)
     samples = reader.read(step_s=None, fewest=FEWEST)
     origin = {"t_s": [reader.clock], "episode": ["/".join(reader.episode)], "value": [position]}
     with job.draft.table("trajectory.csv", "episode,t_s,entity,channel,value", origin) as write:
