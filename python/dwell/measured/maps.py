@@ -14,6 +14,14 @@ from dwell.measured.draft import BundleDraft
 
 Map = dict[str, Any]
 
+
+@dataclass(frozen=True)
+class Numbers:
+    """The form of a list of numbers; ``count``: so many, or any number of them."""
+
+    count: int | None = None
+
+
 #: What a key may hold, for keys that may hold one of several kinds.
 TEXT_OR_LIST: tuple[type, ...] = (str, list)
 TEXT_OR_OBJECT: tuple[type, ...] = (str, dict)
@@ -115,6 +123,9 @@ def check_keys(found: Map, schema: Map, at: str) -> None:
         form = schema[key]
         if value is None or form is ANYTHING:
             continue
+        if isinstance(form, Numbers):
+            _check_numbers(f"{at}: {key}", value, form.count)
+            continue
         if isinstance(form, tuple):
             kinds = form
             names = {str: "text", list: "a list", dict: "an object"}
@@ -125,6 +136,14 @@ def check_keys(found: Map, schema: Map, at: str) -> None:
             raise ValueError(f"{at}: {key} is {value!r:.60}; {expected} is needed")
         if isinstance(form, dict) and form:
             check_keys(value, form, f"{at}: {key}")
+
+
+def _check_numbers(name: str, value: object, count: int | None) -> None:
+    if not isinstance(value, list) or (count is not None and len(value) != count):
+        many = "" if count is None else f"{count} "
+        raise ValueError(f"{name} is {value!r:.60}; a list of {many}numbers is needed")
+    for k, number in enumerate(value):
+        finite_number(f"{name}[{k}]", number)
 
 
 def require(part: Mapping[str, Any], key: str, at: str) -> Any:  # noqa: ANN401 - any JSON value
@@ -146,6 +165,11 @@ def choice(part: Mapping[str, Any], key: str, allowed: tuple[str, ...], at: str)
     if value is not None and value not in allowed:
         raise ValueError(f"{at}: {key} is {value!r}; allowed is one of {list(allowed)}")
     return value
+
+
+def filled(part: Mapping[str, Any]) -> Map:
+    """A part without the keys that say nothing."""
+    return {key: value for key, value in part.items() if value is not None}
 
 
 def columns_of(part: Mapping[str, Any], key: str, count: int, at: str) -> list[str]:

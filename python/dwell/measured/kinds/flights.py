@@ -140,6 +140,8 @@ def _write(job: Job) -> dict[str, Any]:
         }
         for name in names
     ]
+    for k, name in enumerate(names):
+        job.draft.fields[f"channels[{k}].noise_sd"] = f"{job.at}: noise_sd.{name}"
     write_manifest(job, KIND.version, {"bodies": list(bodies.values())}, {"channels": told})
     write_episodes(job, listing(samples.episodes))
     return counted(job, samples.rows, len(samples.episodes), left_out)
