@@ -45,9 +45,7 @@ def fields_of(
     columns: Sequence[str], dimension: str, key: str, *, optional: bool = False
 ) -> list[Field]:
     """A field of each of a list's columns."""
-    return [
-        Field(column, dimension, optional, f"{key}[{k}]") for k, column in enumerate(columns)
-    ]
+    return [Field(column, dimension, optional, f"{key}[{k}]") for k, column in enumerate(columns)]
 
 
 @dataclass(frozen=True)

@@ -177,7 +177,9 @@ def _write(job: Job) -> dict[str, Any]:
             "first sample"
         )
     scene = {"bodies": [body], "board": board}
-    write_manifest(job, KIND.version, scene, {"poses": {"angular_velocity": "world", **filled(form)}})
+    write_manifest(
+        job, KIND.version, scene, {"poses": {"angular_velocity": "world", **filled(form)}}
+    )
     write_episodes(job, listing(samples.episodes))
     return counted(job, samples.rows, len(samples.episodes), {})
 
