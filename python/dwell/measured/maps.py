@@ -104,15 +104,20 @@ def read_map(path: Path, schemas: Mapping[str, Map]) -> Map:
     if not isinstance(kind, str) or kind not in schemas:
         raise ValueError(f"{path}: kind is {kind!r}; allowed is one of {sorted(schemas)}")
     check_keys(mapping, schemas[kind], str(path))
+    refuse_unconfirmed(mapping, str(path))
+    result: Map = mapping
+    return result
+
+
+def refuse_unconfirmed(mapping: Mapping[str, Any], at: str) -> None:
+    """Refuses a map that says itself that nobody has looked at it."""
     if mapping.get("confirmed") is False:
         count = len(mapping.get("why") or {})
         guesses = f"its {count} guesses, each with its reason under 'why'," if count else "it,"
         raise ValueError(
-            f'{path}: "confirmed" is false: read {guesses} correct what is wrong, and write '
+            f'{at}: "confirmed" is false: read {guesses} correct what is wrong, and write '
             '"confirmed": true; until then nothing is imported'
         )
-    result: Map = mapping
-    return result
 
 
 def check_keys(found: Map, schema: Map, at: str) -> None:
