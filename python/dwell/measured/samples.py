@@ -20,6 +20,8 @@ from dwell.measured.tables import FILE_COLUMN, MeasuredTable, names_of
 from dwell.measured.units import ColumnUnits
 
 Array = NDArray[np.float64]
+#: Time from sample to sample, where it need not be even, from which on it is a gap, s.
+_LONGEST_S = 0.5
 #: Rows between two words of progress.
 _ROWS_A_WORD = 4096
 
@@ -209,8 +211,8 @@ class SampleReader:
         if self._from_first:
             episodes = [_from_first(episode) for episode in episodes]
         seconds = self._time.factor
-        longest_s = 0.5 if step_s is None else 1.5 * step_s
-        episodes = self.cleaning.parts(episodes, longest_s / seconds, fewest, self.job.notes)
+        longest = cleaning.Longest(_LONGEST_S if step_s is None else 1.5 * step_s, seconds)
+        episodes = self.cleaning.parts(episodes, longest, fewest, self.job.notes)
         for episode in episodes:
             self.job.draft.begins(episode.name, episode.place(0))
         in_si = [replace(episode, values=self._si(episode.values)) for episode in episodes]
