@@ -4,7 +4,7 @@ import gymnasium
 
 import dwell  # registers the environments
 
-env = gymnasium.make("dwell/InstructionFollowing-v0", sensors=["rgb", "depth", "instruction"])
+env = gymnasium.make("dwell/InstructionFollowing-v1", sensors=["rgb", "depth", "instruction"])
 observation, info = env.reset(seed=7)
 print(observation["instruction"])
 print({name: getattr(value, "shape", "text") for name, value in observation.items()})

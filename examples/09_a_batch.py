@@ -13,7 +13,7 @@ import dwell  # registers the environments
 
 COUNT = 8
 batch = gymnasium.make_vec(
-    "dwell/InstructionFollowing-v0",
+    "dwell/InstructionFollowing-v1",
     num_envs=COUNT,
     houses="seed:0..1?home=studio",
     sensors={"rgb": {"width": 64, "height": 64}, "instruction_tokens": {}},

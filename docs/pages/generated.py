@@ -67,8 +67,17 @@ def stale() -> list[str]:
 
 
 def _environments() -> str:
-    rows = [(code(task["id"]), task["about"], _names(task["sensors"])) for task in _native.tasks()]
-    return table(("id", "what is asked", "sensors without `sensors=`"), rows)
+    makers = {True: code("dwell.pettingzoo"), False: code("gymnasium.make")}
+    rows = [
+        (
+            code(task["id"]),
+            task["about"],
+            _names(task["sensors"]),
+            makers[task["min_agents"] > 1],
+        )
+        for task in _native.tasks()
+    ]
+    return table(("id", "what is asked", "sensors without `sensors=`", "made by"), rows)
 
 
 def _task(task: Mapping[str, Any]) -> str:

@@ -108,9 +108,9 @@ for. This page is written from the sensors' specifications, of which environment
 Shapes are those of default settings. A unit that is left out is none.
 
 ```python
-env = gymnasium.make("dwell/InstructionFollowing-v0", sensors=["rgb", "gps", "compass"])
+env = gymnasium.make("dwell/InstructionFollowing-v1", sensors=["rgb", "gps", "compass"])
 env = gymnasium.make(
-    "dwell/InstructionFollowing-v0",
+    "dwell/InstructionFollowing-v1",
     sensors={{"left": {{"kind": "rgb", "position_m": [-0.05, 0, 0]}}, "depth": {{"width": 64}}}},
 )
 ```

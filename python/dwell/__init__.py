@@ -5,7 +5,7 @@
 >>> world = dwell.World(house)
 >>> image = world.render(agent=0)["rgb"]  # (128, 128, 3) uint8
 
-Environments are registered on import: ``gymnasium.make("dwell/InstructionFollowing-v0")``.
+Environments are registered on import: ``gymnasium.make("dwell/InstructionFollowing-v1")``.
 """
 
 from __future__ import annotations

@@ -103,7 +103,7 @@ class AcousticScene:
             source: What sounds, or the point (m) from which sound goes equally to all sides.
             mic: What hears, or the point (m) of a microphone or of the middle of a head.
             ears: Only at a point: two ears on a spherical head, left first, not a microphone.
-            yaw_deg: Where that head faces.
+            yaw_deg: Where that head faces; of a microphone it means nothing, and is refused.
             head: Only at a point: the head that the ears are on, or the path of its SOFA file; by
                 default, with ``ears``, a sphere of ``head_radius_m``.
             seed: The seed of the rays and of the tail's details.
@@ -114,7 +114,7 @@ class AcousticScene:
 
         Raises:
             ConfigError: ``ears``, ``yaw_deg`` or ``head`` is given beside a receiver, which has its
-                own.
+                own; ``yaw_deg`` without ears.
         """
         given = {"ears": boolean("ears", ears), "head": head is not None}
         given["yaw_deg"] = finite_number("yaw_deg", yaw_deg) != 0.0
@@ -126,9 +126,14 @@ class AcousticScene:
                 )
         else:
             if given["ears"] or given["head"]:
-                mic = Receiver.binaural(mic, yaw_deg=yaw_deg, head=head)
+                mic = Receiver.binaural(point("mic", mic), yaw_deg=yaw_deg, head=head)
+            elif given["yaw_deg"]:
+                raise ConfigError(
+                    f"yaw_deg is {yaw_deg!r}: a microphone at a point hears alike from all sides; "
+                    "expected ears=True or a head beside it"
+                )
             else:
-                mic = Receiver.omni(mic)
+                mic = _microphone("mic", mic)
         return self.impulse_responses(source, [mic], seed=seed, threads=threads)[0]
 
     def impulse_responses(
@@ -209,7 +214,7 @@ class AcousticScene:
         threads: int | None = None,
     ) -> Echogram:
         """The echogram at the middle of a receiver, from which responses are made."""
-        receiver = mic if isinstance(mic, Receiver) else Receiver.omni(mic)
+        receiver = _microphone("mic", mic)
         sounding = source_of(source)
         self._tell_outside(sounding, [receiver])
         found = self._native.echogram(
@@ -246,7 +251,12 @@ class AcousticScene:
 def _receivers(name: str, given: object) -> list[Receiver]:
     """Receivers; points become microphones."""
     rows = sequence_items(name, given, "expected a list of receivers or points")
-    return [one if isinstance(one, Receiver) else Receiver.omni(one) for one in rows]
+    return [_microphone(f"{name}[{k}]", one) for k, one in enumerate(rows)]
+
+
+def _microphone(name: str, given: object) -> Receiver:
+    """A receiver; a point becomes a microphone."""
+    return given if isinstance(given, Receiver) else Receiver.omni(point(name, given))
 
 
 def _threads(threads: int | None) -> int | None:

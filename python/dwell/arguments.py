@@ -24,7 +24,7 @@ from dwell.files import MAX_DIGITS, open_file, parse_json
 #: What the border holds: seeds and counts are unsigned and have 64 bits.
 _MAX_UINT64 = 2**64 - 1
 #: The engines reckon in 32 bits: what is larger would be infinite there.
-_MAX_FLOAT32 = float(np.finfo(np.float32).max)
+MAX_FLOAT32 = float(np.finfo(np.float32).max)
 #: How deep lists and mappings lie in each other at most, as the native side reads them.
 _MAX_DEPTH = 100
 #: More than anybody lists; what never ends is told by it.
@@ -72,17 +72,19 @@ def integer_in_range(name: str, value: object, *, low: int = 0, high: int = _MAX
 def finite_number(name: str, value: object) -> float:
     """A finite number as Python's own float; ``True``, ``"1"`` and complex numbers are none."""
     try:
-        # NumPy drops the imaginary part of what is complex.
-        if isinstance(value, bool | str | bytes) or np.iscomplexobj(np.asarray(value)):
+        # NumPy drops the imaginary part of what is complex. Nothing else is made an array: a range
+        # may have any length.
+        is_complex = hasattr(value, "__array__") and np.iscomplexobj(value)
+        if isinstance(value, bool | str | bytes) or is_complex:
             raise TypeError
         number = float(value)  # type: ignore[arg-type] # what this finds out
     except (TypeError, ValueError, OverflowError):
         raise ConfigError(f"{name} is {quoted(value)}; expected a number") from None
     if not math.isfinite(number):
         raise ConfigError(f"{name} is {number}; allowed are finite numbers")
-    if abs(number) > _MAX_FLOAT32:
+    if abs(number) > MAX_FLOAT32:
         raise ConfigError(
-            f"{name} is {number}; allowed are numbers up to {_MAX_FLOAT32:.3g} either way"
+            f"{name} is {number}; allowed are numbers up to {MAX_FLOAT32:.3g} either way"
         )
     return number
 
@@ -147,6 +149,13 @@ def hashable(value: object) -> object:
     return value
 
 
+class _Endless(itertools.chain[Any]):
+    """Too many elements, which those refuse who read them; a list would be written out first."""
+
+    def __repr__(self) -> str:
+        return "an iterator without an end in sight"
+
+
 def kept(value: object) -> Any:  # noqa: ANN401 - of the same kind
     """A copy to keep: who gave lists, mappings or arrays may change them later.
 
@@ -174,8 +183,8 @@ def _kept(value: object, depth: int, made: dict[int, Any]) -> Any:  # noqa: ANN4
     if isinstance(value, np.ndarray):
         return value.copy()
     if isinstance(value, Iterator):
-        # Too many are refused by those who read them.
-        return [*itertools.islice(value, _MOST_LISTED + 1)]
+        rows = [*itertools.islice(value, _MOST_LISTED + 1)]
+        return rows if len(rows) <= _MOST_LISTED else _Endless(rows, value)
     return value
 
 
@@ -197,7 +206,7 @@ def finite_row(name: str, row: NDArray[np.float64]) -> NDArray[np.float32]:
     """A row of finite numbers of 32 bits; the first that is none is told by its place."""
     if row.ndim != 1:
         raise ConfigError(f"{name}: expected one row of numbers, found the shape {row.shape}")
-    wrong = np.flatnonzero(~(np.abs(row) <= _MAX_FLOAT32))
+    wrong = np.flatnonzero(~(np.abs(row) <= MAX_FLOAT32))
     if wrong.size:
         finite_number(f"{name}[{wrong[0]}]", row[wrong[0]])
     return row.astype(np.float32)
@@ -341,13 +350,21 @@ def allowed_values(name: str, known: Iterable[str]) -> str:
     return f"{meant}allowed are {', '.join(names)}"
 
 
+#: Arguments that are called otherwise elsewhere, and their names here, where these are known.
+_CALLED_OTHERWISE = {"max_episode_steps": "max_cycles"}
+
+
 def refuse_unknown(of: str, unknown: Iterable[str], known: Iterable[str]) -> None:
     """Refuses arguments that something does not have.
 
     Raises:
         ConfigError: There is one; the message has the nearest names.
     """
+    known = [*known]
     for name in unknown:
+        own = _CALLED_OTHERWISE.get(name)
+        if own in known:
+            raise ConfigError(f"{of}: no argument {name!r}; here it is called {own}")
         raise ConfigError(f"{of}: no argument {name!r}; {allowed_values(name, known)}")
 
 

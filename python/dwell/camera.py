@@ -134,7 +134,7 @@ def camera_settings(name: str, camera: object) -> dict[str, Any]:
 
 
 def _projection(name: str, projection: object) -> dict[str, Any]:
-    rows = mapping(name, projection, "a kind with its numbers")
+    rows = mapping(name, projection, f"a kind (one of {', '.join(PROJECTIONS)}) with its numbers")
     kind = choice(f"{name}.kind", rows.pop("kind", None), tuple(PROJECTIONS))
     known: dict[str, Callable[[str, object], float]] = dict.fromkeys(
         PROJECTIONS[kind], finite_number

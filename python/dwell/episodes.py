@@ -247,6 +247,10 @@ class EpisodeFile:
             number += 1
             yield number, line
 
+    def in_header(self) -> _Place:
+        """Errors in the block begin with the place of the header."""
+        return self._at(1)
+
     def _at(self, number: int) -> _Place:
         return _Place(f"{self.path} line {number}")
 

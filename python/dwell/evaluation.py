@@ -21,6 +21,7 @@ from dwell.evaluation_summary import summary
 from dwell.files import atomic_write, read_json
 from dwell.house_list import HouseList
 from dwell.played_actions import element_of, packed, written_action
+from dwell.plugin_parts import refusing_exit
 from dwell.policies import BASELINES, name_of, naming_policy, policy_of
 from dwell.policy_source import file_digest, source_hash
 from dwell.schemas import settings
@@ -85,6 +86,7 @@ class _Chained:
 class Evaluation:
     """A policy, its episodes and how they are played."""
 
+    @refusing_exit()
     def __init__(
         self,
         policy: object,
@@ -189,11 +191,13 @@ class Evaluation:
             chosen["episode"] = one.stated
         return chosen
 
+    @refusing_exit()
     def play(self, one: Episode) -> dict[str, Any]:
         """Plays an episode; gives what the result says of it.
 
         Raises:
             PolicyError: The policy raised something.
+            UsageError: A sensor of one's own called ``sys.exit``.
             ConfigError: Its action is none of the environment's; the message names the step.
         """
         if not self._is_as_counted:

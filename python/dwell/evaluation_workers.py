@@ -18,6 +18,7 @@ from dwell import ConfigError, UsageError
 from dwell.arguments import integer_in_range, quoted
 from dwell.episodes import Episode
 from dwell.evaluation import Evaluation
+from dwell.plugin_parts import refusing_exit
 
 #: Of a process that plays: what makes its evaluation, and that once it is made.
 _RECIPE: dict[str, Any] = {}
@@ -94,6 +95,7 @@ def _begin(pickled: bytes) -> None:
     _RECIPE["pickled"] = pickled
 
 
+@refusing_exit()
 def _play(one: Episode) -> dict[str, Any]:
     if not _JOB:
         _JOB.append(Evaluation(**pickle.loads(_RECIPE["pickled"])))

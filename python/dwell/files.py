@@ -168,6 +168,8 @@ def atomic_write(path: _Name, *, new: bool = False) -> Iterator[Path]:
         FileExistsError: It shall be new and is not.
     """
     path = Path(path)
+    if new:
+        _refuse_existing(path)
     place = path if new else _place(path)
     make_folder(place.parent)
     try:
@@ -183,11 +185,18 @@ def atomic_write(path: _Name, *, new: bool = False) -> Iterator[Path]:
         named = Path(error.filename) if isinstance(error.filename, str | os.PathLike) else None
         is_ours = named is None or any(is_draft(name) for name in (named.name, named.parent.name))
         if is_ours and error.errno is not None:
-            error.filename, error.filename2 = os.fspath(path), None
+            rename_error(error, path)
         elif is_ours:
             # Some libraries say what went wrong in words alone.
             raise OSError(errno.EIO, f"cannot be written: {error}", os.fspath(path)) from error
         raise
+
+
+def rename_error(error: OSError, path: _Name) -> None:
+    """Gives an error the name that people know, alone."""
+    error.filename = os.fspath(path)
+    # None in its place would be told as "-> None".
+    del error.filename2
 
 
 def save_array(path: Path, array: NDArray[Any]) -> None:
@@ -399,6 +408,12 @@ def _place(path: Path) -> Path:
         told = "is a link that leads to no file"
         raise FileNotFoundError(errno.ENOENT, told, os.fspath(path)) from None
     return real
+
+
+def _refuse_existing(path: Path) -> None:
+    """Refuses what is there, as ``/`` and ``.``, which have no name beside which a draft lies."""
+    if os.path.lexists(path):
+        raise FileExistsError(errno.EEXIST, "is there already", os.fspath(path))
 
 
 def _link(name: str, place: Path) -> None:

@@ -160,8 +160,11 @@ def _unpacked(file: BinaryIO, name: str) -> bytes:
                     f"{name}: more than {MAX_TEXT_BYTES} bytes when unpacked; as many are read"
                 )
             parts.append(part)
-    except (EOFError, gzip.BadGzipFile, zlib.error) as error:
-        raise ValueError(f"{name}: no gzip after {size} bytes: {error}") from None
+    except EOFError:
+        packed = os.fstat(file.fileno()).st_size
+        raise ValueError(f"{name}: its {packed} bytes are no whole gzip: it was cut") from None
+    except (gzip.BadGzipFile, zlib.error) as error:
+        raise ValueError(f"{name}: no gzip, or a damaged one: {error}") from None
     return b"".join(parts)
 
 

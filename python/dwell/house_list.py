@@ -10,7 +10,7 @@ from typing import overload
 
 from dwell import ConfigError
 from dwell.arguments import quoted, sequence_items, text
-from dwell.house_strings import Seeds, parts_of
+from dwell.house_strings import FEWER_HOUSES, HOUSES_END, Seeds, parts_of
 
 #: One house of a seed, as ranges name theirs.
 _SEED = re.compile(r"seed:(0|[1-9][0-9]{0,19})((?s:\?.*)?)")
@@ -56,8 +56,8 @@ class HouseList(Sequence[str]):
                 self.append_name(part)
                 continue
             end = len(self) + part.end - part.begin
-            if end >= 2**63:
-                raise ConfigError(f"{end} houses; allowed are fewer than 2**63")
+            if end >= HOUSES_END:
+                raise ConfigError(f"{end} houses; {FEWER_HOUSES}")
             self._parts.append(part)
             self._ends.append(end)
 

@@ -15,6 +15,9 @@ from dwell.path_patterns import matching_paths
 
 #: Splits are the seeds below this; of a split's houses each has a number, its place among them.
 SPLIT_SEEDS_END = 1_000_000
+#: Python counts no sequence that has as many elements.
+HOUSES_END = 2**63
+FEWER_HOUSES = "allowed are fewer than 2**63"
 #: Lines of a list, and files that a pattern finds.
 _MOST_NAMED = 1_000_000
 #: The last digits of the seeds of a split, ascending; without a split all.
@@ -75,6 +78,7 @@ def parts_of(house: str, folder: str = "") -> Iterator[str | Seeds]:
     Raises:
         HouseError: A range or split is none, or has no such houses; a list names another.
         HouseNotFoundError: No path is of a pattern.
+        ConfigError: There are more than any sequence of Python holds.
         OSError: A list cannot be read.
     """
     if house.startswith("@"):
@@ -82,6 +86,8 @@ def parts_of(house: str, folder: str = "") -> Iterator[str | Seeds]:
     elif house.startswith("split:"):
         yield _split(house)
     elif (found := _native.seed_range(house)) is not None:
+        if found[1] - found[0] >= HOUSES_END:
+            raise ConfigError(f"{house}: {found[1] - found[0]} houses; {FEWER_HOUSES}")
         yield Seeds("", found[0], found[1], found[2])
     else:
         yield from _paths(house, folder)

@@ -10,6 +10,33 @@ from dwell.arguments import text as checked_text
 from dwell.grounded_text import Length, Style, Text, texts
 from dwell.relation_api import RelationApi, Thing, Viewer, thing_argument, viewer_argument
 
+#: The arguments of ``describe`` that not every level reads, and the levels that do.
+_READ_BY = {
+    "viewer": ("view", "route", "changes"),
+    "agent": ("view", "route", "changes"),
+    "to": ("route",),
+    "since": ("changes",),
+}
+#: The levels that read none of them.
+_WITHOUT = ("object", "room", "house", "graph", "instructions")
+
+
+def _refuse_unread(level: str, given: dict[str, object]) -> None:
+    """Refuses arguments of ``describe`` that its level does not read.
+
+    Raises:
+        ConfigError: It names the first one, and the levels that read it.
+    """
+    if level not in _WITHOUT and not any(level in levels for levels in _READ_BY.values()):
+        # The engine says which levels there are.
+        return
+    for name, levels in _READ_BY.items():
+        if given[name] is not None and level not in levels:
+            raise ConfigError(
+                f"{name} is given, and level {level!r} does not read it; levels that do are "
+                f"{', '.join(levels)}"
+            )
+
 
 class LanguageApi(RelationApi):
     """Texts about a world, and claims and questions in English, checked by its predicates."""
@@ -67,14 +94,15 @@ class LanguageApi(RelationApi):
             length: Of the levels object, room, house, view and route.
             style: Of the levels object, room, house and view.
             seed: Draws the wordings.
-            viewer: Whose view: an agent's number or a camera, as for :meth:`holds`. Without it the
-                eyes of ``agent``.
-            agent: Who "you" is.
+            viewer: Of the levels view, route and changes. Whose view: an agent's number or a
+                camera, as for :meth:`holds`. Without it the eyes of ``agent``.
+            agent: Of the same levels. Who "you" is.
             to: The goal of a route: a thing by name or id, or a room as ``room:NAME``.
-            since: What :meth:`snapshot` gave before, of this world.
+            since: Of the level changes. What :meth:`snapshot` gave before, of this world.
 
         Raises:
-            ConfigError: A level without what it needs; a goal that there is not.
+            ConfigError: A level without what it needs, or with what it does not read; a goal that
+                there is not.
             DwellError: ``since`` is no snapshot of this world.
 
         Examples:
@@ -94,11 +122,13 @@ class LanguageApi(RelationApi):
         """
         if since is not None and not isinstance(since, bytes):
             raise ConfigError(f"since is {quoted(since)}; expected the bytes of snapshot()")
+        level = checked_text("level", level)
+        _refuse_unread(level, {"viewer": viewer, "agent": agent, "to": to, "since": since})
         seed = None if seed is None else integer_in_range("seed", seed)
         listener = None if agent is None else integer_in_range("agent", agent, high=2**31 - 1)
         looks = viewer_argument(viewer)
         rows = self._native.describe(
-            checked_text("level", level),
+            level,
             (checked_text("length", length), checked_text("style", style), seed),
             looks,
             listener,

@@ -31,6 +31,9 @@ class Walker:
         doors: ``as_they_stand`` (a shut door blocks), ``open`` (all fully open), or ``priced``
             (shut doors can be opened, which adds ``door_price_m`` to the way).
         door_price_m: What opening a door adds to a way, m.
+
+    Raises:
+        ConfigError: One is no number, or ``doors`` none of these.
     """
 
     cell_m: float = 0.1
@@ -40,6 +43,10 @@ class Walker:
     max_slope_rad: float = 0.785
     doors: Literal["as_they_stand", "open", "priced"] = "as_they_stand"
     door_price_m: float = 2.0
+
+    def __post_init__(self) -> None:
+        """Refuses what are no numbers and no way of doors; ranges are the engine's."""
+        walker_settings(self)
 
 
 def walker_settings(walker: Walker | None) -> dict[str, Any]:

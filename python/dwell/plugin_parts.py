@@ -2,17 +2,41 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import importlib
 import inspect
+import os
+import traceback
 import types
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any, TypeVar
 
-from dwell import ConfigError
+from dwell import ConfigError, UsageError
 from dwell.arguments import mapping, quoted, refuse_unknown, text
 
 _Part = TypeVar("_Part", bound="PluginPart")
+
+
+@contextlib.contextmanager
+def refusing_exit() -> Iterator[None]:
+    """Code of a user's that is called in the block does not end the process without a word.
+
+    Raises:
+        UsageError: It called ``sys.exit``.
+    """
+    try:
+        yield
+    except SystemExit as stop:
+        raise UsageError(f"code that dwell called ends the process: {_exit(stop)}") from stop
+
+
+def _exit(stop: SystemExit) -> str:
+    """What was called, and where."""
+    frames = traceback.extract_tb(stop.__traceback__)
+    code = "" if stop.code is None else quoted(stop.code)
+    where = f"{os.path.basename(frames[-1].filename)} line {frames[-1].lineno}"
+    return f"sys.exit({code}) in {where}; to say that something is wrong, raise an error"
 
 
 class PluginPart:
@@ -104,11 +128,15 @@ def imported(at: str, given: str) -> object:
     """What ``"module:Name"`` stands for; nothing of it is called.
 
     Raises:
-        ConfigError: There is no such module or name.
+        ConfigError: There is no such module or name, or the module called ``sys.exit``.
     """
     module, _, name = given.partition(":")
     try:
         return getattr(importlib.import_module(text(at, module)), name)
+    except SystemExit as stop:
+        raise ConfigError(
+            f"{at} is {given!r}, whose module ends the process: {_exit(stop)}"
+        ) from stop
     # TypeError: a relative name, of which nobody knows whose relative it is.
     except (ImportError, AttributeError, ValueError, TypeError) as error:
         raise ConfigError(f"{at} is {given!r}; expected 'module:Name': {error}") from None

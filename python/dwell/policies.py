@@ -61,11 +61,11 @@ def naming_policy(name: str, where: str) -> Iterator[None]:
         where: What it was doing.
 
     Raises:
-        PolicyError: Something was raised that is no interruption.
+        PolicyError: Something was raised that is no interruption; ``sys.exit`` raises, too.
     """
     try:
         yield
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         shown = "".join(traceback.format_exception(type(error), error, _own_trace(error)))
         said = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
         raise PolicyError(f"the policy {name} raised {said}, {where}", shown) from error

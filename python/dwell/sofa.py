@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import MeasuredDataError, _native
+from dwell.arguments import MAX_FLOAT32
 
 CONVENTION = "SimpleFreeFieldHRIR"
 _LENGTHS = {"metre", "metres", "meter", "meters", "m"}
@@ -120,11 +121,13 @@ class SofaReader:
         return np.broadcast_to(values, (count, columns))
 
     def numbers(self, name: str) -> NDArray[np.float64]:
-        """A variable, all of it finite."""
+        """A variable, all of it finite, also in 32 bits."""
         self.shape(name)
         numbers, shape = self.file.numbers(name)
         if not np.isfinite(numbers).all():
             raise self.fault(name, "holds values that are not finite")
+        if (np.abs(numbers) > MAX_FLOAT32).any():
+            raise self.fault(name, f"holds values above {MAX_FLOAT32:.3g} either way")
         return numbers.reshape(shape)
 
     def shape(self, name: str) -> tuple[int, ...]:

@@ -145,10 +145,11 @@ def is_whole_wav(path: str | os.PathLike[str]) -> bool:
     """Whether a file of :func:`write_wav` is there and as long as it says.
 
     Raises:
+        ConfigError: ``path`` is none.
         OSError: The system refuses, or it is no regular file.
     """
     try:
-        with open_file(path) as file:
+        with open_file(arguments.file_path("path", path)) as file:
             head, size = file.read(12), os.fstat(file.fileno()).st_size
     except FileNotFoundError:
         return False

@@ -90,7 +90,7 @@ class World(ActionApi, BodyApi, GuideApi, PersonApi, SoundApi):
                 found (laws and parameters), as a mapping or as the path of its ``found.json``.
                 ``None`` and what is empty install none.
             parameters: Values by address, such as ``{"world/gravity_m_s2": 1.62}``; they go before
-                those that calibration found.
+                those that calibration found. What ``randomize`` draws is not stated, too.
             randomize: Intervals from which ``seed`` draws, evenly: ``{address: [low, high]}``; or
                 what calibration found, as a mapping or as the path of its ``found.json``, which is
                 installed, too.

@@ -34,7 +34,9 @@ Randomize = str | os.PathLike[str] | Mapping[str, Any] | None
 
 _FOUND = {"laws", "parameters"}
 #: What calibration says of it besides, for readers.
-_FOUND_ABOUT = {"intervals", "provenance"}
+_FOUND_ABOUT = {"version", "intervals", "provenance"}
+#: The version of the form of ``found.json``; older files do not say it.
+_FOUND_VERSION = 1
 #: More than anybody has causes for; each is looked for among those before it.
 _MAX_LAWS = 1_000
 _EXPECTED = (
@@ -49,9 +51,9 @@ def _laws() -> dict[str, dict[str, Any]]:
     return {law["id"]: law for law in _native.laws()}
 
 
-def _read(path: str | os.PathLike[str]) -> Any:  # noqa: ANN401 - any JSON value
+def _read(file: str) -> Any:  # noqa: ANN401 - any JSON value
     try:
-        return read_json(path)
+        return read_json(file)
     except ValueError as error:
         raise ConfigError(f"laws: {error}") from error
 
@@ -71,7 +73,8 @@ def found(laws: Laws) -> tuple[list[dict[str, Any]], dict[str, float]]:
     """
     at = "laws"
     if isinstance(laws, os.PathLike) or (isinstance(laws, str) and _is_path(laws)):
-        at = f"laws: {os.fspath(laws)}"
+        laws = path(at, laws)
+        at = f"laws: {laws}"
         laws = _read(laws)
     if laws is None:
         return [], {}
@@ -80,6 +83,7 @@ def found(laws: Laws) -> tuple[list[dict[str, Any]], dict[str, float]]:
         if unknown := sorted(set(laws) - _FOUND - _FOUND_ABOUT):
             allowed = sorted(_FOUND | _FOUND_ABOUT)
             raise ConfigError(f"{at}: no field {unknown[0]!r}; allowed are {allowed}")
+        _refuse_other_version(at, laws)
         parameters = laws.get("parameters", {})
         laws = laws.get("laws", [])
     if not isinstance(parameters, Mapping):
@@ -117,9 +121,10 @@ def intervals(randomize: Randomize) -> tuple[Laws, dict[str, list[float]]]:
         return None, {}
     at = "randomize"
     if isinstance(randomize, str | os.PathLike):
-        at = f"randomize: {os.fspath(randomize)}"
+        file = path(at, randomize)
+        at = f"randomize: {file}"
         try:
-            randomize = read_json(randomize)
+            randomize = read_json(file)
         except ValueError as error:
             raise ConfigError(f"randomize: {error}") from error
     given = mapping(at, randomize, "what calibration found, or [low, high] by address")
@@ -128,10 +133,22 @@ def intervals(randomize: Randomize) -> tuple[Laws, dict[str, list[float]]]:
         if unknown := sorted(set(given) - _FOUND - _FOUND_ABOUT):
             allowed = sorted(_FOUND | _FOUND_ABOUT)
             raise ConfigError(f"{at}: no field {unknown[0]!r}; allowed are {allowed}")
+        _refuse_other_version(at, given)
         fixed = {name: given[name] for name in sorted(_FOUND & set(given))}
         given = mapping(f"{at}: intervals", given.get("intervals", {}), "[low, high] by address")
     rows = {address: _interval(f"{at}: {address}", ends) for address, ends in given.items()}
     return fixed, rows
+
+
+def _refuse_other_version(at: str, given: Mapping[str, Any]) -> None:
+    """Refuses what a newer release found.
+
+    Raises:
+        ConfigError: It says another version than this dwell reads.
+    """
+    version = given.get("version", _FOUND_VERSION)
+    if version != _FOUND_VERSION or isinstance(version, bool):
+        raise ConfigError(f"{at}: version is {quoted(version)}; this dwell reads {_FOUND_VERSION}")
 
 
 def _interval(at: str, ends: object) -> list[float]:
@@ -234,7 +251,8 @@ def world_settings(
     What calibration found is installed with ``randomize``, too, where ``laws`` do not say else.
 
     Raises:
-        ConfigError: ``further`` names what has an argument of its own.
+        ConfigError: ``further`` names what has an argument of its own; a parameter is stated and
+            drawn, too.
     """
     further = {} if further is None else mapping("world", further)
     for name in sorted({*_FOUND, "randomize"} & set(further)):
@@ -257,6 +275,11 @@ def world_settings(
     if (renderer := os.environ.get("DWELL_RENDERER")) and "renderer" not in further:
         further = {**further, "renderer": renderer}
     own = {} if parameters is None else _values("parameters", parameters)
+    for address in sorted({*own} & {*drawn}):
+        raise ConfigError(
+            f"parameters, randomize: found both for {address!r}; expected one of them: a value, or "
+            "an interval to draw it from"
+        )
     # What is usual is not stated: files say it as they always did.
     more = {"randomize": drawn} if drawn else {}
     return {"laws": rows, "parameters": {**values, **own}, **more, **further}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
 from collections.abc import Callable
@@ -12,7 +13,9 @@ import numpy as np
 import pytest
 
 import dwell
+from dwell.arguments import kept
 from dwell.envs import DwellEnv, DwellVectorEnv
+from dwell.localization import Settings
 
 pytestmark = pytest.mark.usefixtures("open_once")
 
@@ -101,7 +104,8 @@ def test_what_calibration_found_reaches_worlds_and_environments(
     found = {"laws": [], "parameters": {MOON: 1.62}}
     path = tmp_path / "found.json"
     path.write_text(json.dumps(found), "utf-8")
-    for laws in (path, str(path), found):
+    # What this release writes says its version, what older ones wrote does not.
+    for laws in (path, str(path), found, {"version": 1, **found}):
         assert dwell.World(apartment, laws=laws).parameter(MOON)["value"] == pytest.approx(1.62)
     nearer = dwell.World(apartment, laws=path, parameters={MOON: 3.7})
     assert nearer.parameter(MOON)["value"] == pytest.approx(3.7)
@@ -121,6 +125,8 @@ def test_what_calibration_found_reaches_worlds_and_environments(
         ("[" * 100_000, "nested 100000 deep"),
         ('{"lows": []}', "lows"),
         ('{"parameters": [1]}', "by address"),
+        ('{"version": 2, "laws": []}', "version is 2; this dwell reads 1"),
+        ('{"version": true, "laws": []}', "version is True; this dwell reads 1"),
     ],
 )
 def test_files_of_laws_that_are_none_are_refused_by_name(
@@ -222,3 +228,73 @@ def test_what_is_nested_too_deep_is_refused(give: Callable[[Any], object], deep:
     with pytest.raises(dwell.DwellError) as caught:
         give(deep)
     assert len(str(caught.value)) < 1000
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda value: dwell.World(HOUSE, control_rate_hz=value),
+        lambda value: dwell.World(HOUSE, parameters={MOON: value}),
+        lambda value: dwell.House.shoebox((4.0, 3.0, 4.0), absorption=value),
+        dwell.Head.spherical,
+        lambda value: Settings(duration_s=value),
+        lambda value: dwell.Camera(fov_deg=value),
+    ],
+)
+def test_a_number_that_is_a_long_range_is_refused_at_once(
+    make: Callable[[object], object], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def made(values: object, *_: object) -> None:
+        raise AssertionError(f"an array of {values}")
+
+    # Of the range it would have 8 GB.
+    monkeypatch.setattr(np, "asarray", made)
+    with pytest.raises(dwell.ConfigError, match=r"is range\(0, 1000000000\); expected a number"):
+        make(range(10**9))
+
+
+@pytest.mark.parametrize("value", [np.complex128(1j), np.array(1j), 1j])
+def test_complex_numbers_are_no_numbers(value: object) -> None:
+    with pytest.raises(dwell.ConfigError, match="expected a number"):
+        dwell.World(HOUSE, parameters={MOON: value})  # type: ignore[dict-item]
+
+
+def test_settings_without_an_end_are_refused_before_they_are_written_out() -> None:
+    for settings in (
+        {"max_distance_m": itertools.count()},
+        {"max_distance_m": [itertools.count()]},
+    ):
+        with pytest.raises(dwell.ConfigError, match="an iterator without an end in sight; exp"):
+            DwellEnv("PointNav", houses="builtin:studio", task_settings=settings)
+    # Elements that were looked at are not lost.
+    many = 1_000_005
+    found = kept(iter(range(many)))
+    assert next(found) == 0
+    assert sum(1 for _ in found) == many - 1
+
+
+class OfBytes:
+    """A path as bytes, which ``os.PathLike`` allows."""
+
+    def __fspath__(self) -> bytes:
+        return b"x"
+
+
+@pytest.mark.parametrize(
+    ("name", "make"),
+    [
+        (r"houses\[0\]", lambda path: DwellEnv("Free", houses=path)),
+        (r"houses\[1\]", lambda path: DwellEnv("Free", houses=[HOUSE, path])),
+        ("laws", lambda path: dwell.World(HOUSE, laws=path)),
+        ("randomize", lambda path: dwell.World(HOUSE, randomize=path)),
+        ("laws", lambda path: dwell.AcousticScene(HOUSE, laws=path)),
+        ("episodes", lambda path: DwellEnv("Free", episodes=path)),
+        ("path", dwell.sounds.is_whole_wav),
+        ("path", dwell.sounds.read_wav),
+        ("path", dwell.Head.from_sofa),
+        ("path", dwell.Replay.read),
+    ],
+)
+def test_paths_of_bytes_are_told(name: str, make: Callable[[object], object]) -> None:
+    with pytest.raises(dwell.ConfigError, match=f"{name} is b'x'; expected text"):
+        make(OfBytes())

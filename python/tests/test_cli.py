@@ -93,6 +93,7 @@ def test_describe_writes_lines_and_reports_bad_houses(tmp_path: Path, command: C
     rows = [json.loads(line) for line in out.read_text("utf-8").splitlines()]
     assert len(rows) >= 5
     assert all(row["text"].endswith(".") for row in rows)
+    assert all(row["version"] == 1 for row in rows)
 
 
 def test_ir_writes_a_sound_and_its_measures(
@@ -187,6 +188,7 @@ def test_calibrate_finds_what_the_example_hides(tmp_path: Path, command: Command
     assert "drag" in str(report["sentence"])
     assert "<svg" in (out / "report.html").read_text("utf-8")
     found = json.loads((out / "found.json").read_text("utf-8"))
+    assert found["version"] == 1
     assert found["laws"][0]["id"] == "drag"
     assert command("calibrate", tmp_path / "nothing").returncode == 1
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 import os
 import subprocess
@@ -174,3 +175,21 @@ def test_a_measured_room_s_numbers_are_told_by_its_own_names(
         path.write_text(ROOM.replace('"duration_s": 0.1', field), "utf-8")
         assert cli.main(["ir", str(path)]) == 1
         assert told in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("out", ["/", ".", ".."])
+def test_a_map_is_no_folder(out: str, capfd: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["info", HOUSE, "--init-map", out]) == 1
+    assert f"--init-map: {out} is there already; name a new file" in capfd.readouterr().err
+
+
+def test_an_interruption_before_a_command_begins_is_told(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    def stopped(name: str) -> None:
+        raise KeyboardInterrupt
+
+    # While modules are imported.
+    monkeypatch.setattr(importlib, "import_module", stopped)
+    assert cli.main(["info", HOUSE]) == 130
+    assert capfd.readouterr().err == "dwell: interrupted\n"

@@ -133,3 +133,16 @@ def test_a_restored_sensor_observes_what_it_did_at_the_moment_of_the_snapshot() 
     step = many.step([2, 2])[0]["remembers"].copy()
     assert many.restore(rows[::-1])[0]["remembers"].tolist() == moments[::-1].tolist()
     assert many.step([2, 2])[0]["remembers"].tolist() == step[::-1].tolist()
+
+
+@pytest.mark.parametrize("given", [None, ["gps"]])
+@pytest.mark.parametrize("sensors", [lambda self: ["gps"], 5, [5], {"gps"}])
+def test_sensors_of_a_task_are_sensors_whether_they_are_used_or_not(
+    sensors: object,
+    given: Any,  # noqa: ANN401
+) -> None:
+    task = type("Walk", (dwell.Task,), {"sensors": sensors})
+    with pytest.raises(
+        dwell.ConfigError, match=r"Walk\.sensors.* is .*; expected names of sensors"
+    ):
+        DwellEnv(task, sensors=given)

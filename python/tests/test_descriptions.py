@@ -91,6 +91,18 @@ def test_levels_say_what_they_need() -> None:
     assert world.describe("changes", since=world.snapshot()) == [""]
 
 
+@pytest.mark.parametrize("level", ["object", "room", "house", "graph", "instructions", "view"])
+def test_what_a_level_does_not_read_is_refused(level: str) -> None:
+    world = dwell.World(HOUSE)
+    given = {"to": "room:studio", "since": world.snapshot(), "viewer": 0, "agent": 0}
+    if level == "view":
+        del given["viewer"], given["agent"]
+    for name, value in given.items():
+        told = f"{name} is given, and level '{level}' does not read it; levels that do are"
+        with pytest.raises(dwell.ConfigError, match=told):
+            world.describe(level, **{name: value})  # type: ignore[call-overload]
+
+
 def test_the_command_tells_views_routes_and_changes(tmp_path: Path, command: Command) -> None:
     done = command("describe", HOUSE, "--level", "view", "--json")
     rooms = len(dwell.House.open(HOUSE).rooms())
@@ -114,7 +126,12 @@ def test_the_command_tells_views_routes_and_changes(tmp_path: Path, command: Com
     assert json.loads(done.stdout)["rows"][0]["text"] == ""
     refused = command("describe", HOUSE, "--level", "changes")
     assert refused.returncode == 1
-    assert "No such file" in refused.stderr or "no dwell-replay" in refused.stderr
+    told = f"{HOUSE}: --level changes expects the file of a replay, as ReplayRecorder writes it"
+    assert told in refused.stderr
+    # What was played before goes on to be told.
+    done = command("describe", HOUSE, file, "--level", "changes", "--out", tmp_path / "c.jsonl")
+    assert done.returncode == 1
+    assert len((tmp_path / "c.jsonl").read_text("utf-8").splitlines()) == 1
 
 
 def test_a_reference_is_checked_to_mean_its_thing() -> None:

@@ -182,6 +182,68 @@ def test_what_a_policy_raises_is_told_as_its_own(folder: Path, command: Command)
     assert "expected 'module:Name'" in missing.stderr
 
 
+LEAVERS = """
+import sys
+
+import dwell
+import gymnasium
+
+
+class Acting:
+    def act(self, observation):
+        sys.exit(0)
+
+
+class Beginning:
+    def reset(self, observation, info):
+        raise SystemExit
+
+    def act(self, observation):
+        return 0
+
+
+class Made:
+    def __init__(self):
+        sys.exit()
+
+    def act(self, observation):
+        return 0
+
+
+class Looking(dwell.Sensor):
+    name = "looking"
+    space = gymnasium.spaces.Discrete(2)
+
+    def observe(self, world, rng):
+        sys.exit(0)
+"""
+
+
+def test_code_that_ends_the_process_is_told_and_fails(folder: Path, command: Command) -> None:
+    (folder / "my_faulty_policy.py").write_text(LEAVERS)
+    out = folder / "r.json"
+
+    def told(policy: str, sensor: str = "gps") -> str:
+        done = command("evaluate", policy, *OPTIONS, "--sensors", sensor, "--out", out)
+        assert done.returncode == 1
+        return done.stderr.splitlines()[-1]
+
+    module = "my_faulty_policy"
+    acting = told(f"{module}:Acting")
+    assert f"the policy {module}:Acting raised SystemExit: 0, at step 1 of episode" in acting
+    assert "raised SystemExit, in reset, at the start" in told(f"{module}:Beginning")
+    assert "raised SystemExit, when it was made" in told(f"{module}:Made")
+    looking = f"{module}:Looking"
+    # The policy brings its folder.
+    (folder / "spinner.py").write_text("class Spin:\n    def act(self, observation): return 0\n")
+    assert "sys.exit(0) in my_faulty_policy.py line 34" in told("spinner:Spin", looking)
+    (folder / f"{module}.py").write_text("raise SystemExit(0)\n")
+    del sys.modules[module]
+    assert "raised SystemExit: 0, when its module was imported" in told(f"{module}:Acting")
+    assert "whose module ends the process: sys.exit(0) in" in told("spinner:Spin", looking)
+    assert not out.exists()
+
+
 def test_errors_of_a_policy_keep_their_cause() -> None:
     class Beginning:
         def reset(self, observation: object, info: object) -> None:

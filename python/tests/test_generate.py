@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 import weakref
+import zlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -220,6 +221,7 @@ def test_houses_that_were_deleted_are_made_again(tmp_path: Path, generate: Comma
     manifest = out / "manifest.jsonl"
     other = [{**row, "hash": "0"} for row in rows(manifest)]
     for row in other:
+        assert row["version"] == 1
         del row["check"]
     manifest.write_text("".join(json.dumps(row) + "\n" for row in other), "utf-8")
     shutil.rmtree(first)
@@ -296,8 +298,25 @@ def test_a_manifest_that_was_changed_is_refused_by_its_line(
         refused = generate(*two)
         assert refused.returncode == 1
         assert told in refused.stderr
-    manifest.write_text("\n".join(lines) + "\n", "utf-8")
-    assert generate(*two).returncode == 0
+    newer = json.dumps({**json.loads(second), "version": 2})
+    manifest.write_text(f"{first}\n{newer}\n", "utf-8")
+    assert "line 2: version is 2; this dwell reads 1" in generate(*two).stderr
+    # What an older release wrote said no version.
+    for file in (manifest, out / "dataset.json"):
+        assert '"version": 1' in file.read_text("utf-8")
+    older = [{key: row[key] for key in row if key != "version"} for row in map(json.loads, lines)]
+    for row in older:
+        written = {key: row[key] for key in row if key != "check"}
+        row["check"] = f"{zlib.crc32(json.dumps(written, sort_keys=True).encode()):08x}"
+    manifest.write_text("".join(json.dumps(row) + "\n" for row in older), "utf-8")
+    dataset = json.loads((out / "dataset.json").read_text("utf-8"))
+    del dataset["version"]
+    (out / "dataset.json").write_text(json.dumps(dataset), "utf-8")
+    shutil.rmtree(out / older[0]["path"])
+    again = generate(*two)
+    assert "(1 made now" in again.stdout, again.stderr
+    (out / "dataset.json").write_text(json.dumps({**dataset, "version": 2}), "utf-8")
+    assert "dataset.json: version is 2; this dwell reads 1" in generate(*two).stderr
 
 
 @pytest.mark.parametrize(

@@ -143,8 +143,8 @@ def test_what_is_no_json_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     path = tmp_path / "bad.json.gz"
     packed = gzip.compress(b'{"episodes": [' + b"1, " * 50_000 + b"1]}")
     for content, told in (
-        (packed[: len(packed) // 2], "no gzip after "),
-        (packed[:20] + b"\xff" * 40 + packed[60:], "no gzip after "),
+        (packed[: len(packed) // 2], f"its {len(packed) // 2} bytes are no whole gzip: it was cut"),
+        (packed[:20] + b"\xff" * 40 + packed[60:], "no gzip, or a damaged one: "),
         (gzip.compress(b'{"episodes": [}'), "no JSON: line 1 column 15"),
         (gzip.compress(b"\xff"), "no JSON: byte 0 is not UTF-8"),
         (gzip.compress(b"[" * 500 + b"]" * 500), "nested 500 deep"),

@@ -266,6 +266,7 @@ def _spoil(file: File) -> None:
         (_drop("ReceiverPosition"), "ReceiverPosition: missing"),
         (_drop("Data.SamplingRate"), "Data.SamplingRate: missing"),
         (_spoil, "Data.IR: holds values that are not finite"),
+        (_set("Data.IR", np.full((9, 2, 64), 1e39)), r"Data.IR: holds values above 3\.4e\+38"),
         (_set("Data.SamplingRate", [0.0]), "Data.SamplingRate: "),
         (_set("Data.SamplingRate", [44100.0, 48000.0]), "Data.SamplingRate: "),
         (_attribute("Units", "kilohertz", "Data.SamplingRate"), "Data.SamplingRate: Units"),

@@ -39,6 +39,8 @@ def maker() -> DatasetMaker:
 def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("whole") / "data"
     assert [is_new for _, is_new in maker().make(out)] == [True, True]
+    # As the command writes it.
+    (out / "dataset.json").write_text(json.dumps(maker().to_json()))
     return out
 
 
@@ -136,7 +138,17 @@ def test_labels_name_sources_and_frames_that_are_there(data: Path, command: Comm
     labels = sorted(data.glob("metadata_dev/*/*.csv"))[0]
     labels.write_text("0,3,9,0,0,100\n")
     ran = command("localize", "score", data, *BASELINE)
-    assert "source is 9;" in ran.stderr
+    assert f"{labels.name} line 1: source is 9; there are 1, counted from 0" in ran.stderr
+    labels.write_text("0,3,0,0,0,100\n0,99,0,0,0,100\n")
+    ran = command("localize", "score", data, *BASELINE)
+    assert f"{labels.name} line 2: class is 99; there are 12, counted from 0" in ran.stderr
+    (data / "dataset.json").write_text('{"classes": 5}')
+    ran = command("localize", "score", data, *BASELINE)
+    assert "dataset.json: classes is 5; expected a list of text" in ran.stderr
+    (data / "dataset.json").unlink()
+    labels.write_text("0,0,0,0,0,0\n" * 200)
+    ran = command("localize", "score", data, *BASELINE)
+    assert f"{labels.name} line 101: more than 100 rows of class 0 in frame 0" in ran.stderr
     labels.write_text("999999,3,0,0,0,100\n")
     ran = command("localize", "score", data, *BASELINE)
     assert "has 10 frames of 100 ms, counted from 0; its labels name frame 999999" in ran.stderr
@@ -189,7 +201,28 @@ def test_a_frame_has_no_more_rows_of_a_class_than_can_be_paired(
         (tmp_path / labels.name).write_text("0,0,0,0,0,100\n" * 101)
     ran = command("localize", "score", whole, "--estimates", tmp_path)
     assert ran.returncode == 1
-    assert "estimate: more than 100 rows of class 0 in frame 0; allowed are 100" in ran.stderr
+    assert ".csv line 101: more than 100 rows of class 0 in frame 0; allowed are 100" in ran.stderr
+    for labels in whole.glob("metadata_dev/*/*.csv"):
+        (tmp_path / labels.name).write_text("0,12,0,0,0,100\n")
+    ran = command("localize", "score", whole, "--estimates", tmp_path)
+    assert ".csv line 1: class is 12; there are 12, counted from 0" in ran.stderr
+
+
+@pytest.mark.parametrize("name", ["arrays", "held_out_arrays"])
+@pytest.mark.parametrize(
+    ("value", "told"),
+    [
+        (5, " is 5; expected a list of text"),
+        ("foa", " is 'foa'; expected a list of text"),
+        (np.zeros(3), "[0] is np.float64(0.0); expected text"),
+        (np.zeros(()), " is array(0.); expected a list of text"),
+        ([["foa"]], "[0] is ['foa']; expected text"),
+    ],
+)
+def test_arrays_are_a_list_of_text(name: str, value: Any, told: str) -> None:  # noqa: ANN401
+    with pytest.raises(dwell.ConfigError, match=re.escape(f"{name}{told}")):
+        Settings(**{name: value})
+    assert Settings(arrays=["foa"]) == Settings(arrays=("foa",))  # type: ignore[arg-type]
 
 
 ODD_LABELS = [

@@ -14,6 +14,7 @@ from typing import Any
 
 import pytest
 
+import dwell
 from dwell import _native
 from dwell.measured.importing import import_files
 from dwell.measured.readers import open_table
@@ -297,3 +298,20 @@ def test_episodes_that_are_left_out_are_named(
     command += ["--map", str(tmp_path / "map.json"), "--out", str(tmp_path / "o.measured")]
     assert cli.main(command) == 0
     assert "1 left out, without mass and diameter of their bodies: 'e'" in capsys.readouterr().out
+
+
+def test_a_bundle_is_no_file(tmp_path: Path) -> None:
+    for name in ("b.csv", "b.PARQUET", "b.json"):
+        with pytest.raises(
+            dwell.ConfigError, match=r"ends the name of a file; allowed is .*b\.meas"
+        ):
+            import_files([], tmp_path / "map.json", tmp_path / name, lambda *_: None)
+    # Names with points are names.
+    with pytest.raises(FileNotFoundError):
+        import_files([], tmp_path / "map.json", tmp_path / "throws.v1.2", lambda *_: None)
+
+
+def test_what_cannot_be_used_is_measured_data(tmp_path: Path) -> None:
+    (tmp_path / "map.json").write_text('{"kind": "x"}')
+    with pytest.raises(dwell.MeasuredDataError, match=r"map\.json: kind is 'x'"):
+        import_files([], tmp_path / "map.json", tmp_path / "b.measured", lambda *_: None)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import math
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -380,3 +381,32 @@ def test_a_file_a_throw_is_a_pattern(tmp_path: Path) -> None:
     (tmp_path / "e2.csv").write_text("\n".join(put_in))
     with pytest.raises(ValueError, match=r"e2\.csv row 5: column 't_s' is 'x5\.04'"):
         import_files(files, tmp_path / "map.json", tmp_path / "c.measured", lambda *_: None)
+
+
+def test_short_gaps_of_flights_stay_and_are_told(tmp_path: Path) -> None:
+    def lost(rows: Rows) -> None:
+        """A gap of 0.13 s in the first flight, and one of 0.61 s in the second."""
+        for row in rows[60:80]:
+            row[1] += 0.6
+            row[3] = 1.5 + 2.3 * (row[1] - 5.0) - 4.905 * (row[1] - 5.0) ** 2
+        del rows[10:22]
+
+    counts: dict[str, Any] = brought(tmp_path, with_table(FLIGHT, cleaning={"gaps": "split"}), lost)
+    assert counts["notes"] == [
+        "1 gaps: an episode of each part",
+        "1 gap of at most 0.5 s: left, since samples need not be evenly spaced",
+    ]
+
+
+def test_places_of_unlike_noise_are_told(tmp_path: Path) -> None:
+    draw = np.random.default_rng(1)
+
+    def noisy(rows: Rows) -> None:
+        for row in rows:
+            row[2:5] = np.array(row[2:5]) + 1e-3 * draw.standard_normal(3)
+
+    assert "notes" not in brought(tmp_path, FLIGHT, noisy)
+    (tmp_path / "o.measured").rename(tmp_path / "first")
+    counts: dict[str, Any] = brought(tmp_path, with_table(FLIGHT, units={"z": "cm"}), noisy)
+    (note,) = counts["notes"]
+    assert re.match("places in column '[xy]' have noise of .* those in column 'z' ", note), note

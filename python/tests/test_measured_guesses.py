@@ -18,6 +18,7 @@ from test_measured_kinds import JOINT, SERVO, log, recordings
 from test_measured_readers import lerobot
 from test_slips import DRIVE, FLIGHT, HEADS, POSES, Rows, brought, exchanged, scaled
 
+import dwell
 from dwell import cli
 from dwell.measured.guessing import guessed_map
 from dwell.measured.importing import import_files
@@ -301,3 +302,19 @@ def test_units_and_triples_in_names() -> None:
     names = [f"orientation.{axis}" for axis in "wxyz"]
     assert quaternion(names) == ([*names[1:], names[0]], True)
     assert np.all([quaternion(["x", "y", "z"]) is None])
+
+
+def test_files_are_paths_or_texts(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text("a,b\n" + "0,1\n" * 9)
+    path = tmp_path / "a.csv"
+    for files in ([str(path)], [path]):
+        with pytest.raises(dwell.MeasuredDataError, match="nothing that is known"):
+            guessed_map(files)
+    with pytest.raises(dwell.ConfigError, match=r"files is 'a\.csv'; expected paths of files"):
+        guessed_map("a.csv")
+    with pytest.raises(dwell.ConfigError, match=r"files\[0\] is 3"):
+        guessed_map([3])  # type: ignore[list-item]
+    with pytest.raises(dwell.ConfigError, match="kind is 'flight'; allowed are drive"):
+        guessed_map([path], "flight")
+    with pytest.raises(FileNotFoundError):
+        guessed_map([tmp_path / "none.csv"])

@@ -287,6 +287,13 @@ def test_channels_become_receivers_and_their_places_the_engine_s(tmp_path: Path)
         (lambda m: m.update(axes=["x", "y", "-z"]), "left-handed: the data would be mirrored"),
         (lambda m: m.update(axes="x_up"), "axes is 'x_up'; allowed is"),
         (lambda m: m.update(origin=None), r"source_z"),
+        (
+            lambda m: m["room"]["surfaces"].update(
+                floor={"absorption": {"centres_hz": [1000.0, "x"]}}
+            ),
+            r"room: surfaces: floor: absorption: centres_hz\[1\] is .x.",
+        ),
+        (lambda m: m["room"].update(size_m=[6.0, 2.5]), "room: size_m is .* 3 numbers"),
         (lambda m: m["room"]["surfaces"].pop("floor"), "room.surfaces.floor"),
     ],
 )

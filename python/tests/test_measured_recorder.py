@@ -45,6 +45,8 @@ class Arm(gymnasium.Env[dict[str, Any], Any]):
         return self._seen(), {"temperature": 31.0}
 
     def step(self, action: Any) -> tuple[dict[str, Any], float, bool, bool, dict[str, Any]]:  # noqa: ANN401
+        if math.isnan(action[0]):
+            raise RuntimeError("broken")
         self.k += 1
         self.angle += 0.3 * (float(action[0]) - self.angle)
         return self._seen(), 0.0, False, self.k >= self.steps, {"temperature": 31.0}
@@ -130,6 +132,81 @@ def test_a_recording_that_is_refused_is_kept(tmp_path: Path) -> None:
     recorder.close()
 
 
+def episodes_of(bundle: Path) -> list[str]:
+    with (bundle / "episodes.csv").open() as file:
+        return [row["episode"] for row in csv.DictReader(file)]
+
+
+def test_what_comes_after_a_refused_write_is_written_at_the_end(tmp_path: Path) -> None:
+    recorder = Recorder(Arm(), tmp_path / "a.measured", MAP, step_s=DT_S)
+    played(recorder, 2)
+    with pytest.raises(dwell.MeasuredDataError, match="2 episodes"):
+        recorder.write()
+    played(recorder, 1)
+    with pytest.raises(dwell.MeasuredDataError, match="3 episodes"):
+        recorder.close()
+    played(recorder, 1)
+    recorder.close()
+    assert episodes_of(tmp_path / "a.measured") == ["e1", "e2", "e3", "e4"]
+
+
+def test_what_comes_after_a_bundle_is_put_into_it(tmp_path: Path) -> None:
+    recorder = Recorder(Arm(), tmp_path / "a.measured", MAP, step_s=DT_S)
+    played(recorder, 4)
+    recorder.write()
+    recorder.reset()
+    recorder.step(np.array([10.0]))
+    with pytest.raises(dwell.MeasuredDataError, match="episode e5: 2 rows"):
+        recorder.write()
+    # The bundle that was there is there, and nothing else.
+    assert episodes_of(tmp_path / "a.measured") == ["e1", "e2", "e3", "e4"]
+    assert {path.name for path in tmp_path.iterdir()} == {"a.measured", "a.log.csv", "a.map.json"}
+    log = (tmp_path / "a.log.csv").read_text().splitlines(keepends=True)
+    (tmp_path / "a.log.csv").write_text("".join(log[:-2]))
+    played(recorder, 1)
+    recorder.close()
+    assert episodes_of(tmp_path / "a.measured") == ["e1", "e2", "e3", "e4", "e6"]
+
+
+def test_steps_without_a_reset_are_not_recorded(tmp_path: Path) -> None:
+    with Recorder(Arm(steps=40), tmp_path / "a.measured", MAP, step_s=DT_S) as recorder:
+        recorder.step(np.array([10.0]))
+        played(recorder, 3)
+        recorder.step(np.array([10.0]))
+        recorder.reset()
+        for _ in range(10):
+            recorder.step(np.array([10.0]))
+        with pytest.raises(RuntimeError, match="broken"):
+            recorder.step(np.array([math.nan]))
+        recorder.step(np.array([10.0]))
+    with (tmp_path / "a.log.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    names = [row["episode"] for row in rows]
+    assert [names.count(f"e{k}") for k in range(6)] == [0, 41, 41, 41, 11, 0]
+
+
+def test_a_map_may_be_a_file(tmp_path: Path) -> None:
+    (tmp_path / "map.json").write_text(json.dumps(MAP))
+    with Recorder(Arm(), tmp_path / "a.measured", tmp_path / "map.json", step_s=DT_S) as recorder:
+        played(recorder)
+    assert len(episodes_of(tmp_path / "a.measured")) == 4
+    for text, told in (
+        ("[]", r"map\.json: found \[\]; an object"),
+        ("{", r"map\.json"),
+        ('{"kind": "x"}', r"map\.json: kind is 'x'"),
+        (json.dumps({**MAP, "confirmed": False}), r"map\.json: \"confirmed\" is false"),
+    ):
+        (tmp_path / "map.json").write_text(text)
+        with pytest.raises(dwell.ConfigError, match=told):
+            Recorder(Arm(), tmp_path / "b.measured", str(tmp_path / "map.json"))
+    with pytest.raises(FileNotFoundError):
+        Recorder(Arm(), tmp_path / "b.measured", "none.json")
+    with pytest.raises(dwell.ConfigError, match="mapping is 3; expected a map or the path of one"):
+        Recorder(Arm(), tmp_path / "b.measured", 3)  # type: ignore[arg-type]
+    with pytest.raises(dwell.ConfigError, match=r"allowed is .*b\.measured"):
+        Recorder(Arm(), tmp_path / "b.csv", MAP)
+
+
 @pytest.mark.parametrize(
     ("change", "told"),
     [
@@ -150,6 +227,12 @@ def test_slips_are_told_when_they_are_made(tmp_path: Path, change: Any, told: st
     change(mapping)
     with pytest.raises(dwell.ConfigError, match=told):
         played(Recorder(Arm(), tmp_path / "a.measured", mapping, step_s=DT_S))
+
+
+@pytest.mark.parametrize("out", ["/", ".", ".."])
+def test_a_folder_is_no_new_bundle(out: str) -> None:
+    with pytest.raises(FileExistsError, match="is there already; remove it or choose"):
+        Recorder(Arm(), out, MAP, step_s=DT_S)
 
 
 def test_nothing_is_written_over(tmp_path: Path) -> None:

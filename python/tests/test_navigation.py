@@ -5,6 +5,8 @@ from __future__ import annotations
 import copy
 import math
 import pickle
+import re
+from typing import Any
 
 import numpy as np
 import pytest
@@ -52,6 +54,20 @@ def test_a_walker_out_of_range_is_refused_by_its_number(shoebox: dwell.House) ->
     for where in (shoebox, dwell.World(shoebox)):
         with pytest.raises(dwell.ConfigError, match=r"cell_m is 5; allowed is 0\.02 to 1"):
             where.navigation(dwell.Walker(cell_m=5.0))
+
+
+@pytest.mark.parametrize(
+    ("fields", "told"),
+    [
+        ({"radius_m": math.nan}, "walker.radius_m is nan; allowed are finite numbers"),
+        ({"height_m": "tall"}, "walker.height_m is 'tall'; expected a number"),
+        ({"cell_m": [0.1]}, "walker.cell_m is [0.1]; expected a number"),
+        ({"doors": "shut"}, "walker.doors is 'shut'; allowed are as_they_stand, open, priced"),
+    ],
+)
+def test_a_walker_is_of_numbers(fields: dict[str, Any], told: str) -> None:
+    with pytest.raises(dwell.ConfigError, match=re.escape(told)):
+        dwell.Walker(**fields)
 
 
 def test_a_grid_follows_no_world_of_another_house_with_as_many_parts(

@@ -16,6 +16,7 @@ from test_measure import quiet, tosses
 
 import dwell
 from dwell import pettingzoo as zoo
+from dwell.cli import main
 from dwell.episode_maker import EpisodeMaker
 from dwell.evaluation import evaluate
 from dwell.measured.importing import import_files
@@ -79,6 +80,28 @@ def test_a_long_sentence_is_not_told_whole(command: Command) -> None:
     assert ran.returncode == 1
     assert len(ran.stderr) < 500
     assert "the text has 30000 bytes; allowed are 4096" in ran.stderr
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        ("--yaw-deg 90", "--yaw-deg is given, and the response of a pair without --ears or --head"),
+        ("--bits 16", "--bits is given, and the response of a pair without --out does not read it"),
+        ("--grid 1 --out x --yaw-deg 90", "--yaw-deg is given, and --grid without --ears or"),
+        ("--grid 1 --out x --source-height 1", "--source-height is given, and --grid with --so"),
+        ("--rate-hz -5", "--rate-hz: expected a whole number from 8000 to 192000, found '-5'"),
+    ],
+)
+def test_options_of_responses_that_nothing_reads_are_refused(
+    options: str, told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    mic = [] if "--grid" in options else ["--mic", "2,1,2"]
+    try:
+        status = main(["ir", "builtin:studio", "--source", "1,1,1", *mic, *options.split()])
+    except SystemExit as error:
+        status = error.code
+    assert status in (1, 2)
+    assert told in capsys.readouterr().err
 
 
 def test_a_constant_of_a_map_is_told_with_the_map(tmp_path: Path) -> None:

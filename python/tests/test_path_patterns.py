@@ -101,3 +101,12 @@ def test_a_search_can_be_interrupted(tree: Path, monkeypatch: pytest.MonkeyPatch
     with pytest.raises(KeyboardInterrupt):
         matching_paths("**/*", str(tree))
     assert len(seen) == 3
+
+
+def test_a_list_of_more_houses_than_can_be_counted_is_told_by_its_line(tmp_path: Path) -> None:
+    (tmp_path / "many").write_text("builtin:studio\nseed:0..18446744073709551615\n")
+    told = "many line 2: seed:.*: 18446744073709551615 houses; allowed are fewer than"
+    with pytest.raises(dwell.HouseError, match=told):
+        HouseList([f"@{tmp_path}/many"])
+    with pytest.raises(dwell.ConfigError, match=r"seed:.* houses; allowed are fewer than 2\*\*63"):
+        HouseList(["seed:0..18446744073709551615"])

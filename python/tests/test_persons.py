@@ -344,7 +344,8 @@ def test_snapshots_and_copies_have_the_same_figure_and_bits() -> None:
             one.render(position=eye, channels=("rgb", "flow", "depth")) for one in (world, again)
         )
         assert all(np.array_equal(a[name], b[name]) for name in a)
-    with pytest.raises(dwell.DwellError, match="bodies they were made with"):
+    told = "its agent 0 was made with another body than the world's; the bodies they were made with"
+    with pytest.raises(dwell.DwellError, match=told):
         World(hall(), agents=[{"height_m": 1.7, "eye_height_m": 0.936 * 1.7}, {}]).restore(saved)
 
 

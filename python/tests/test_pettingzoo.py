@@ -8,6 +8,7 @@ import types
 import warnings
 from typing import Any
 
+import gymnasium
 import numpy as np
 import pytest
 from pettingzoo.test import (
@@ -412,3 +413,18 @@ def test_agents_with_voices_speak_as_the_world_says() -> None:
     assert len(found) == 3
     assert {row["speaker"] for row in found} == {0}
     assert all(0.0 <= row["sti"] <= 1.0 and row["level_db"] > 30.0 for row in found)
+
+
+@pytest.mark.parametrize("task", ["Cooperate", "PiedPiper", "SocialNav", "HideAndSeek", "Carry"])
+def test_gymnasium_says_who_has_tasks_of_several_agents(task: str) -> None:
+    told = rf"{task} is a task of several agents, .* dwell\.pettingzoo\.parallel_env\('{task}'"
+    for make in (gymnasium.make, gymnasium.make_vec):
+        with pytest.raises(dwell.UsageError, match=told):
+            make(f"dwell/{task}-v0", houses="builtin:studio")
+
+
+def test_a_limit_of_steps_is_called_max_cycles() -> None:
+    told = "no argument 'max_episode_steps'; here it is called max_cycles"
+    for make in (zoo.parallel_env, lambda **settings: zoo.vector_env(2, **settings)):
+        with pytest.raises(dwell.ConfigError, match=told):
+            make(max_episode_steps=5)

@@ -72,6 +72,12 @@ def test_episodes_draw_anew_and_an_episode_comes_back_as_it_was(tmp_path: Path) 
     assert drawn(own.world) == values
 
 
+def test_findings_of_a_newer_release_are_refused(shoebox: dwell.House) -> None:
+    with pytest.raises(dwell.ConfigError, match="version is 2; this dwell reads 1"):
+        dwell.World(shoebox, randomize={**FOUND, "version": 2})
+    dwell.World(shoebox, randomize={**FOUND, "version": 1})
+
+
 def test_vector_environments_draw_what_single_ones_do() -> None:
     settings: dict[str, Any] = {
         "houses": "builtin:studio",
@@ -91,6 +97,10 @@ def test_what_is_told_goes_before_what_was_found(shoebox: dwell.House) -> None:
     fixed = {**FOUND, "intervals": {}}
     world = dwell.World(shoebox, laws=own, parameters={GRAVITY: 3.0}, randomize=fixed)
     assert drawn(world) == (3.0, pytest.approx(0.9))
+    # A value is stated or drawn.
+    for randomize in (FOUND, {GRAVITY: [1.0, 2.0]}):
+        with pytest.raises(dwell.ConfigError, match=f"found both for '{GRAVITY}'"):
+            dwell.World(shoebox, parameters={GRAVITY: 3.0}, randomize=randomize)
     # Bounds of a parameter hold whatever the interval says.
     edge = dwell.World(shoebox, randomize={DRAG: [-1.0, 0.0]})
     assert edge.parameter(DRAG)["value"] == 0.0

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import json
 import math
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -416,3 +417,63 @@ def test_a_map_may_begin_with_a_byte_order_mark(tmp_path: Path) -> None:
     mapping, files = tmp_path / "map.json", [tmp_path / "data.csv", tmp_path / "index.csv"]
     mapping.write_text("\ufeff" + mapping.read_text())
     import_files(files, mapping, tmp_path / "b.measured", lambda *_: None)
+
+
+@pytest.mark.parametrize(
+    ("mapping", "change", "told"),
+    [
+        (FLIGHT, {"channels": {"x": "x", "y": "y", "z": "x"}}, r"channels\.x and channels\.z"),
+        (FLIGHT, {"channels": {"y": "t_s"}}, r"'t_s' is both t_s and channels\.y"),
+        (POSES, {"position": ["x", "x", "z"]}, r"position\[0\] and position\[1\]"),
+        (
+            POSES,
+            {"quaternion_xyzw": ["qx", "qy", "z", "qw"]},
+            r"position\[2\] and z of the quaternion",
+        ),
+        (DRIVE, {"ticks_right": "left"}, "'left' is both ticks_left and ticks_right"),
+    ],
+)
+def test_a_column_is_one_thing(
+    tmp_path: Path, mapping: dict[str, Any], change: dict[str, Any], told: str
+) -> None:
+    changed = {**mapping, "table": {**mapping["table"], **change}}
+    with pytest.raises(ValueError, match=told):
+        brought(tmp_path, changed)
+
+
+@pytest.mark.parametrize("alone", ["velocity", "angular_velocity"])
+def test_velocities_of_tosses_come_together_or_not_at_all(tmp_path: Path, alone: str) -> None:
+    (other,) = {"velocity", "angular_velocity"} - {alone}
+    table = {key: value for key, value in POSES["table"].items() if key != other}
+    with pytest.raises(ValueError, match=f"table: '{alone}' without '{other}'; both or neither"):
+        brought(tmp_path, {**POSES, "table": table})
+
+
+@pytest.mark.parametrize(
+    ("mapping", "change", "told"),
+    [
+        (POSES, {"body": {"half_extents_m": [0.05, 0.05]}}, "body: half_extents_m is .* 3 numbers"),
+        (POSES, {"body": {"inertia_kg_m2": [1, 1, "a"]}}, r"body: inertia_kg_m2\[2\] is 'a'"),
+        (POSES, {"board": {"substances": ["rubber"]}}, "board: substances is .* names of two"),
+        (POSES, {"board": {"friction": 11.0}}, r"board\.friction is 11"),
+        (FLIGHT, {"noise_sd": {"x": 1e-3, "y": 0.0}}, r"noise_sd\.y is 0"),
+        (FLIGHT, {"g_m_s2": -9.81}, "g_m_s2 is -9.81; .* which is 9.81"),
+        (FLIGHT, {"environment": {"pressure_pa": 1013}}, "environment.pressure_pa is 1013"),
+        (DRIVE, {"base": {"wheel_radius_m": 42.0}}, r"base\.wheel_radius_m is 42"),
+    ],
+)
+def test_faults_of_a_map_are_told_as_the_map_s(
+    tmp_path: Path, mapping: dict[str, Any], change: dict[str, Any], told: str
+) -> None:
+    changed = {**mapping}
+    for key, value in change.items():
+        changed[key] = {**mapping.get(key, {}), **value} if isinstance(value, dict) else value
+    message = refused(tmp_path, changed)
+    assert re.match(rf"{re.escape(str(tmp_path / 'map.json'))}: {told}", message), message
+    assert "manifest" not in message
+
+
+def test_what_is_null_in_a_map_is_not_there(tmp_path: Path) -> None:
+    poses = {**POSES, "poses": {**POSES["poses"], "filtering": None}}
+    poses["body"] = {**POSES["body"], "inertia_kg_m2": None}
+    assert brought(tmp_path, poses)["episodes"] == 4

@@ -114,6 +114,42 @@ def test_a_file_that_states_wrongly_is_refused(points: Path, tmp_path: Path) -> 
         env.reset(options={"episode_id": lines[3]["episode_id"]})
 
 
+def test_what_the_engine_refuses_is_told_by_file_and_line(points: Path, tmp_path: Path) -> None:
+    out = tmp_path / "val.jsonl"
+    converted(points, out)
+    lines = [json.loads(line) for line in out.read_text("utf-8").splitlines()]
+    one, other = lines[1]["episode_id"], lines[2]["episode_id"]
+    for name, value, told in (
+        ("start", {"position": [1e9, 0, 0]}, "allowed is three numbers up to 1,000,000 m"),
+        ("goal", {"position": [1e3, 0, 0]}, "allowed is a point where the agent can stand"),
+    ):
+        changed = [*lines[:2], {**lines[2], name: value}, *lines[3:]]
+        out.write_text("".join(json.dumps(line) + "\n" for line in changed), "utf-8")
+        expected = rf"val\.jsonl line 3: episode\.{name}\.position is .*; {told}"
+        env = DwellEnv("PointNav", episodes=out, sensors=["gps"])
+        with pytest.raises(dwell.MeasuredDataError, match=expected):
+            env.reset(options={"episode_id": other})
+        many = DwellVectorEnv(2, "PointNav", episodes=out, sensors=["gps"])
+        with pytest.raises(dwell.MeasuredDataError, match=expected):
+            many.reset(seed=1, options={"episode_id": [one, other]})
+        # It is the file's fault, not the environment's.
+        assert env.reset(options={"episode_id": one})[1]["episode_id"] == one
+        many.reset(seed=1, options={"episode_id": [one, lines[3]["episode_id"]]})
+    for settings, told in (
+        ({"min_distance_m": -1}, "min_distance_m is -1; allowed is 0 or more"),
+        ({"min_distance": 1}, "task_settings: no argument 'min_distance'; did you mean min_dist"),
+        ({"reward": {"step": "x"}}, "task_settings: reward is .*, expected a number"),
+    ):
+        own = {**lines[0], "task_settings": {**lines[0]["task_settings"], **settings}}
+        out.write_text("".join(json.dumps(line) + "\n" for line in [own, *lines[1:]]), "utf-8")
+        for make in (
+            lambda: DwellEnv("PointNav", episodes=out, sensors=["gps"]),
+            lambda: evaluate("stop", episodes=out),
+        ):
+            with pytest.raises(dwell.MeasuredDataError, match=rf"val\.jsonl line 1: {told}"):
+                make()
+
+
 def test_stated_episodes_are_played_side_by_side(points: Path, tmp_path: Path) -> None:
     out = tmp_path / "val.jsonl"
     converted(points, out)

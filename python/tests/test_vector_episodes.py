@@ -118,6 +118,10 @@ def test_any_environment_plays_any_episode_and_any_snapshot_of_the_houses(
     saved, before = many.snapshot(), many.state_hashes()
     _, infos = many.reset(options={"episode_id": [ids[1], None], "reset_mask": [True, False]})
     assert infos["episode_id"][0] == ids[1]
+    before_refusal = many.state_hashes()
+    with pytest.raises(dwell.ConfigError, match=r"episode_id\[1\] is .* leaves environment 1 out"):
+        many.reset(options={"episode_id": ids, "reset_mask": [True, False]})
+    assert many.state_hashes() == before_refusal
     _, infos = many.restore(saved[::-1])
     assert infos["episode_id"].tolist() == ids[::-1]
     assert many.state_hashes() == before[::-1]

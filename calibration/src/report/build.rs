@@ -350,6 +350,7 @@ fn found(
     }
     let is_installed = !install.laws.is_empty() || !install.overrides.is_empty();
     FoundEffects {
+        version: FoundEffects::VERSION,
         laws: install.laws,
         parameters: install.overrides.into_iter().collect(),
         intervals,

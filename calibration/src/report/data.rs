@@ -107,8 +107,10 @@ pub struct NuisanceParameter {
 }
 
 /// The effects to install in the simulator: the content of `found.json`.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FoundEffects {
+    /// The version of this form.
+    pub version: u32,
     /// Laws to install.
     pub laws: Vec<LawSpec>,
     /// Parameters to override, by address.
@@ -117,6 +119,23 @@ pub struct FoundEffects {
     pub intervals: BTreeMap<String, [f64; 2]>,
     /// What it rests on; `null` where nothing was found.
     pub provenance: Option<Provenance>,
+}
+
+impl FoundEffects {
+    /// The version of the form that this release writes. Files without one are of this form, too.
+    pub const VERSION: u32 = 1;
+}
+
+impl Default for FoundEffects {
+    fn default() -> Self {
+        Self {
+            version: Self::VERSION,
+            laws: Vec::new(),
+            parameters: BTreeMap::new(),
+            intervals: BTreeMap::new(),
+            provenance: None,
+        }
+    }
 }
 
 /// The data and the fit that a finding rests on.

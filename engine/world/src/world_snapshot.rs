@@ -130,9 +130,16 @@ impl World {
         }
         if agents != self.config().agents {
             let (found, allowed) = (agents.len(), self.config().agents.len());
-            return Err(refuse(format!(
-                "it has {found} agents, and the world {allowed}; their number and the bodies they were made with must be the same"
-            )));
+            let mut pairs = agents.iter().zip(&self.config().agents);
+            let other = pairs.position(|(found, own)| found != own);
+            return Err(refuse(match other {
+                Some(k) if found == allowed => format!(
+                    "its agent {k} was made with another body than the world's; the bodies they were made with must be the same"
+                ),
+                _ => format!(
+                    "it has {found} agents, and the world {allowed}; their number must be the same"
+                ),
+            }));
         }
         let base = self.base();
         if head.base != base.checksum {

@@ -53,6 +53,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns:
         0 done, 1 failed with a sentence on standard error, 2 bad usage, 130 interrupted.
     """
+    try:
+        return _printed(arguments)
+    except KeyboardInterrupt:
+        # In the middle of imports, before anything was done.
+        with contextlib.suppress(OSError, ValueError):
+            if sys.stderr is not None:
+                print("dwell: interrupted", file=sys.stderr)
+        return 130
+
+
+def _printed(arguments: Sequence[str] | None) -> int:
+    """Runs a command, whatever it prints through one place."""
     from dwell.cli.common import Printable, sentence
 
     with contextlib.ExitStack() as stack:
@@ -79,6 +91,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _run(arguments: Sequence[str] | None) -> int:
     from dwell import DwellError, __version__
     from dwell.cli.common import join_negative_points, sentence
+    from dwell.plugin_parts import refusing_exit
 
     arguments = join_negative_points(sys.argv[1:] if arguments is None else arguments)
     top = parser(next((word for word in arguments if not word.startswith("-")), None))
@@ -93,7 +106,8 @@ def _run(arguments: Sequence[str] | None) -> int:
         top.print_usage(sys.stderr)
         return 2
     try:
-        return int(args.run(args))
+        with refusing_exit():
+            return int(args.run(args))
     except KeyboardInterrupt:
         print("dwell: interrupted; nothing was left half written", file=sys.stderr)
         return 130

@@ -47,12 +47,12 @@ def number(text: str) -> float:
     return value
 
 
-def count(text: str, low: int = 0) -> int:
+def count(text: str, low: int = 0, high: int = sys.maxsize) -> int:
     """Reads a whole number that is not negative: a seed, a size, how many."""
     # What Python counts with.
     is_whole = re.fullmatch(r"\+?[0-9]{1,19}", text.strip())
-    if not is_whole or not low <= int(text) <= sys.maxsize:
-        allowed = f"a whole number from {low} to {sys.maxsize}"
+    if not is_whole or not low <= int(text) <= high:
+        allowed = f"a whole number from {low} to {high}"
         raise argparse.ArgumentTypeError(f"expected {allowed}, found {text[:60]!r}")
     return int(text)
 
@@ -60,6 +60,11 @@ def count(text: str, low: int = 0) -> int:
 def count_from_1(text: str) -> int:
     """Reads a whole number of which there is at least one."""
     return count(text, low=1)
+
+
+def sound_rate(text: str) -> int:
+    """Reads the rate of impulse responses, Hz."""
+    return count(text, low=8_000, high=192_000)
 
 
 def shard(text: str) -> tuple[int, int]:

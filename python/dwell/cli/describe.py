@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import sys
 from typing import TYPE_CHECKING, Any
 
 from dwell.cli.common import ProgressBar, count, path
-from dwell.cli.job_journal import Journal, contents_of
+from dwell.cli.job_journal import VERSION, Journal, contents_of, is_of_files
 from dwell.files import open_file
 
 if TYPE_CHECKING:
@@ -147,7 +148,7 @@ def _rows(
 ) -> Iterator[dict[str, Any]]:
     from dwell.house import House
 
-    about = {"house": name, "level": level}
+    about = {"version": VERSION, "house": name, "level": level}
     if level == "changes":
         yield {**about, **_changes(name, options["seed"]).as_dict()}
         return
@@ -186,9 +187,18 @@ def _from_viewpoints(
 
 
 def _changes(path: str, seed: int | None) -> Text:
-    """What an episode changed, told to its agent."""
+    """What an episode changed, told to its agent.
+
+    Raises:
+        ConfigError: It is a house.
+    """
+    from dwell import ConfigError
     from dwell.replays import Replay
 
+    if not is_of_files(path) or os.path.isdir(path):
+        raise ConfigError(
+            "--level changes expects the file of a replay, as ReplayRecorder writes it, not a house"
+        )
     before: bytes | None = None
     world: World | None = None
     for step in Replay.read(path).play():

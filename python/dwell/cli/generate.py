@@ -20,7 +20,7 @@ from typing import Any
 from dwell import _native
 from dwell.arguments import integer_in_range
 from dwell.cli.common import ProgressBar, count, count_from_1, path, print_json, shard
-from dwell.cli.job_journal import Journal, claim
+from dwell.cli.job_journal import VERSION, Journal, claim, refuse_other_version
 from dwell.files import MAX_TEXT_BYTES, lines, open_file, parse_json, read, read_json
 
 _FORMS = ("dwell", "suncg", "glb")
@@ -192,8 +192,9 @@ def _regenerate_missing(args: argparse.Namespace, manifest: Path) -> int:
             for row, new in zip(
                 some, pool.map(lambda row: _regenerate_house(args, row), some), strict=True
             ):
-                # Older manifests have fewer fields.
-                if {key: new[key] for key in new if key in row} != row:
+                # Older manifests have fewer fields; the check of those of this one is another.
+                old = {key: row[key] for key in row if key != "check"}
+                if {key: new[key] for key in new if key in old} != old:
                     raise ValueError(
                         f"{manifest}: {row.get('path')} was missing or changed, and seed "
                         f"{row.get('seed')} gives another house now than the manifest says; remove "
@@ -291,6 +292,7 @@ def _rows(manifest: Path) -> Iterator[dict[str, Any]]:
             row = parse_json(line, at)
             if not isinstance(row, dict):
                 raise ValueError(f"{at}: expected an object, found {row!r:.60}")
+            refuse_other_version(at, row)
             # Older manifests have none.
             if "check" in row and row["check"] != _check(row):
                 raise ValueError(
@@ -333,7 +335,7 @@ def _house(args: argparse.Namespace, seed: int) -> dict[str, Any]:
     split = split_of_seed(seed)
     fields = [f"split={split}", *args.spec]
     name = f"seed:{seed}?{'&'.join(fields)}"
-    row: dict[str, Any] = {"seed": seed, "split": split, "house": name}
+    row: dict[str, Any] = {"version": VERSION, "seed": seed, "split": split, "house": name}
     try:
         house = House.open(name)
     except OSError:

@@ -15,6 +15,7 @@ from dwell.cli.common import (
     print_json,
     refuse_other_suffix,
     refuse_unused,
+    sound_rate,
 )
 from dwell.cli.write_files import add_bits, save_sound
 from dwell.files import check_writable
@@ -36,7 +37,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--source", type=point, metavar="X,Y,Z", help="where the impulse is made, m"
     )
     parser.add_argument("--mic", type=point, metavar="X,Y,Z", help="where it is heard, m")
-    parser.add_argument("--rate-hz", type=count, default=16_000)
+    parser.add_argument("--rate-hz", type=sound_rate, default=16_000, help="8000 to 192000")
     parser.add_argument(
         "--ears", action="store_true", help="two ears on a head instead of a microphone"
     )
@@ -46,7 +47,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="FILE.sofa",
         help="ears on the measured head of a SOFA file (SimpleFreeFieldHRIR)",
     )
-    parser.add_argument("--yaw-deg", type=number, default=0.0, help="where the head faces")
+    parser.add_argument(
+        "--yaw-deg", type=number, default=0.0, help="where the head of --ears or --head faces"
+    )
     parser.add_argument("--seed", type=count, default=0)
     parser.add_argument("--rays", type=count, default=5000)
     parser.add_argument("--image-order", type=count, default=3, help="0 to 4")
@@ -89,6 +92,12 @@ def run(args: argparse.Namespace) -> int:
         return ir_picture.run(args)
     way, used = ("--grid", _GRID) if args.grid is not None else ("the response of a pair", _PAIR)
     refuse_unused(args, used, way)
+    if not args.ears and args.head is None:
+        refuse_unused(args, used - {"yaw_deg"}, f"{way} without --ears or --head")
+    if args.grid is None and args.out is None:
+        refuse_unused(args, used - {"bits"}, f"{way} without --out")
+    if args.grid is not None and args.source is not None:
+        refuse_unused(args, used - {"source_height"}, f"{way} with --source")
     if args.head is not None:
         # Before anything is computed.
         args.head, args.ears = Head.from_sofa(args.head), True

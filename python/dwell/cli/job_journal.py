@@ -30,6 +30,8 @@ _MOST_DIFFERENCES = 3
 _NAME_BYTES = 230
 #: What is the same for a whole folder; it stands there from the beginning.
 _DATASET = "dataset.json"
+#: The version of its form, and of the rows of a job's result; older files do not say it.
+VERSION = 1
 
 
 def claim(out: Path, dataset: dict[str, Any]) -> None:
@@ -42,7 +44,8 @@ def claim(out: Path, dataset: dict[str, Any]) -> None:
     path = out / _DATASET
     if not path.exists():
         with contextlib.suppress(FileExistsError), atomic_write(path, new=True) as draft:
-            draft.write_text(json.dumps(dataset, indent=2) + "\n", "utf-8")
+            about = {"version": VERSION, **dataset}
+            draft.write_text(json.dumps(about, indent=2) + "\n", "utf-8")
         refuse_other(out, dataset)
 
 
@@ -63,10 +66,22 @@ def refuse_other(out: Path, dataset: dict[str, Any]) -> None:
     found = read_json(path)
     if not isinstance(found, dict):
         raise ValueError(f"{path}: expected an object, found {found!r:.60}")
+    refuse_other_version(str(path), found)
     other = [key for key in dataset if found.get(key) != dataset[key]]
     if other:
         said = ", ".join(f"{key} {found.get(key)!r:.60}" for key in other)
         raise ValueError(f"{out} was begun with {said}; give another --out, or the same again")
+
+
+def refuse_other_version(at: str, found: dict[str, Any]) -> None:
+    """Refuses what a newer release wrote.
+
+    Raises:
+        ValueError: It says another version than this dwell reads.
+    """
+    version = found.get("version", VERSION)
+    if version != VERSION or isinstance(version, bool):
+        raise ValueError(f"{at}: version is {quoted(version)}; this dwell reads {VERSION}")
 
 
 def _hidden_name(name: str) -> str:

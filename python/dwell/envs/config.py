@@ -22,6 +22,7 @@ from dwell.arguments import (
     integer_in_range,
     kept,
     mapping,
+    path,
     quoted,
     sequence_items,
     text,
@@ -161,7 +162,7 @@ class HouseCache:
             elif isinstance(row, str):
                 self.names.append(text(f"houses[{k}]", row))
             elif isinstance(row, os.PathLike):
-                self.names.append_name(os.fspath(row))
+                self.names.append_name(path(f"houses[{k}]", row))
             else:
                 raise ConfigError(
                     f"houses[{k}] is {quoted(row)}; expected a HOUSE string or a House"
@@ -203,6 +204,11 @@ class HouseCache:
 
     def stated(self, house: int, seed: int) -> dict[str, Any] | None:
         """What an episode states of its start and goal; here all of them are drawn."""
+        del house, seed
+        return None
+
+    def place(self, house: int, seed: int) -> str | None:
+        """File and line where an episode states its start or goal; here no file states any."""
         del house, seed
         return None
 

@@ -3,12 +3,45 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import TypeVar
 
-from dwell import _native
+from dwell import ConfigError, MeasuredDataError, _native
 from dwell.envs.config import HouseCache
 from dwell.heads import Head
 from dwell.house import House
+
+_Begun = TypeVar("_Begun")
+
+
+def begun_as_stated(
+    begin: Callable[[Sequence[int]], _Begun],
+    envs: Sequence[int],
+    place: Callable[[int], str | None],
+) -> _Begun:
+    """Begins the episodes of environments.
+
+    Args:
+        begin: Begins those of some of the environments.
+        envs: All of them.
+        place: Gives file and line of an environment's episode, where it states how it begins.
+
+    Raises:
+        MeasuredDataError: An episode cannot begin as its line states it.
+        ConfigError: Another one cannot begin.
+    """
+    try:
+        return begin(envs)
+    except ConfigError:
+        # The engine does not say whose episode it refuses.
+        for env in envs:
+            at = place(env)
+            if at is not None:
+                try:
+                    begin([env])
+                except ConfigError as error:
+                    raise MeasuredDataError(f"{at}: {error}") from None
+        raise
 
 
 @dataclasses.dataclass(frozen=True)
@@ -34,6 +67,7 @@ class EnvPool:
         """An environment in each house, by its number, with the episode of its seed begun.
 
         Raises:
+            MeasuredDataError: An episode cannot begin as its file states it.
             DwellError: A house cannot be opened, or holds no such episode.
         """
         threads = self.threads if threads is None else threads
@@ -44,9 +78,21 @@ class EnvPool:
         stated = [
             None if seed is None else self.shelf.stated(house, seed) for house, seed in episodes
         ]
-        made = _native.prepared_envs(
-            [house.native for house in houses], self.config, seeds, threads, stated
-        )
+
+        def begin(rows: Sequence[int]) -> list[_native.PreparedEnv]:
+            return _native.prepared_envs(
+                [houses[k].native for k in rows],
+                self.config,
+                [seeds[k] for k in rows],
+                threads,
+                [stated[k] for k in rows],
+            )
+
+        def place(row: int) -> str | None:
+            house, seed = episodes[row]
+            return None if seed is None else self.shelf.place(house, seed)
+
+        made = begun_as_stated(begin, range(len(houses)), place)
         return [PreparedEnv(house, native) for house, native in zip(houses, made, strict=True)]
 
     def make_behind(self, wanted: tuple[int, int, int]) -> PreparedEnv:

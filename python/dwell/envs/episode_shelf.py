@@ -12,10 +12,18 @@ from typing import Any
 import numpy as np
 
 from dwell import ConfigError, MeasuredDataError, _native, arguments
-from dwell.arguments import mapping, plain_settings, quoted, sequence_items
+from dwell.arguments import (
+    mapping,
+    plain_settings,
+    quoted,
+    refuse_unknown,
+    sequence_items,
+    to_json,
+)
 from dwell.envs.config import USUAL_HOUSE, EpisodeFiles, HouseCache, Houses
 from dwell.envs.python_tasks import TaskChoice
 from dwell.episodes import Episode, Header, read, task_of
+from dwell.house import House
 from dwell.house_list import HouseList
 
 #: What the settings of a task say about steps, not about which episodes there are: who plays the
@@ -47,6 +55,8 @@ class EpisodeIndex:
             raise ConfigError(f"episodes is []; {expected}")
         self._files = [read(arguments.file_path("episodes", one)) for one in given]
         self.header = self._files[0].header
+        with self._files[0].in_header():
+            _refuse_settings(self.header)
         for file in self._files[1:]:
             _refuse_other(self._files[0].path, self.header, file.path, file.header)
         numbers: dict[str, int] = {}
@@ -78,8 +88,8 @@ class EpisodeIndex:
             first = int(np.flatnonzero(same)[0])
             before, again = sorted(map(int, order[first : first + 2]))
             raise MeasuredDataError(
-                f"{self._place(again)}: episode_id {quoted(self.id_of(again))} stands in "
-                f"{self._place(before)} already; an episode stands once"
+                f"{self.place(again)}: episode_id {quoted(self.id_of(again))} stands in "
+                f"{self.place(before)} already; an episode stands once"
             )
 
     def __len__(self) -> int:
@@ -109,7 +119,7 @@ class EpisodeIndex:
         one = file.line_at(offset)
         if one.episode_id != self.id_of(number):
             raise MeasuredDataError(
-                f"{self._place(number)}: the episode {quoted(self.id_of(number))} stood there; the "
+                f"{self.place(number)}: the episode {quoted(self.id_of(number))} stood there; the "
                 "file has changed since"
             )
         return one.stated
@@ -132,7 +142,7 @@ class EpisodeIndex:
         stated = self._stated(self.id_of(number))
         name = next((key for key in asked if stated.get(key) != asked[key]), "what is asked")
         raise MeasuredDataError(
-            f"{self._place(number)}: {name}: the file states {quoted(stated.get(name))}, played it "
+            f"{self.place(number)}: {name}: the file states {quoted(stated.get(name))}, played it "
             f"is {quoted(asked.get(name))}: the file was made by something else than this "
             f"environment (it by dwell {self.header.made_by}, with the default world), or changed"
         )
@@ -148,8 +158,8 @@ class EpisodeIndex:
             pass
         return {}
 
-    def _place(self, number: int) -> str:
-        """File and line of an episode."""
+    def place(self, number: int) -> str:
+        """File and line of an episode, counted from 0."""
         which = int(np.searchsorted(self._ends, number, "right"))
         begin = self._ends[which - 1] if which else 0
         return f"{self._files[which].path} line {number - begin + 2}"
@@ -224,6 +234,18 @@ class EpisodeShelf(HouseCache):
         """
         number = self._number(house, seed)
         return None if number is None else self._index.stated(number)
+
+    def place(self, house: int, seed: int) -> str | None:
+        """File and line where an episode states its start or goal.
+
+        Raises:
+            MeasuredDataError: The file has changed since.
+            OSError: The system refuses to read it.
+        """
+        number = self._number(house, seed)
+        if number is None or self._index.stated(number) is None:
+            return None
+        return self._index.place(number)
 
     def refuse_stated(self) -> None:
         """Refuses: episodes of a file state what they state there.
@@ -300,6 +322,29 @@ def settings_as_stated(
                 f"{', '.join(_OF_STEPS)} alone may differ"
             )
     return {**stated.task_settings, **own}
+
+
+def _refuse_settings(header: Header) -> None:
+    """Refuses settings that are none of the task, before anybody plays by them.
+
+    Raises:
+        ConfigError: The message names the field.
+    """
+    task = task_of(header.task)
+    if header.task_version != task["version"] or task["min_agents"] > 1:
+        # Environments refuse these tasks themselves, whatever the settings.
+        return
+    known = [row["name"] for row in task["settings"]]
+    unknown = [name for name in header.task_settings if name not in known]
+    refuse_unknown("task_settings", unknown, known)
+    config = {
+        "task": header.task,
+        "task_settings": header.task_settings,
+        "sensors": [{"kind": "gps", "settings": {}}],
+    }
+    # The engine checks them in a house, whichever that is.
+    room = House.shoebox((3.0, 2.5, 3.0), absorption=0.5)
+    _native.Batch([room.native], to_json(config), 1)
 
 
 def _refuse_other(path: str, header: Header, other_path: str, other: Header) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import weakref
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from dwell import ConfigError, _native
 from dwell.envs.action_modes import ActionForm, AnsweredActions, EngineActions
 from dwell.envs.asking import AskingActions
-from dwell.envs.env_pool import PreparedEnv, add_heads
+from dwell.envs.env_pool import PreparedEnv, add_heads, begun_as_stated
 from dwell.envs.info_keys import GOAL_KEYS
 from dwell.envs.python_tasks import PythonEpisode, PythonTask
 from dwell.envs.silence import SWS, silence_measures, success_when_silent
@@ -101,6 +101,7 @@ class NativeBatch:
         seeds: Sequence[int | None],
         begun: Collection[int] = (),
         stated: Sequence[Mapping[str, Any] | None] | None = None,
+        place: Callable[[int], str | None] = lambda env: None,
     ) -> None:
         """Begins the episodes of seeds, one for each environment; ``None``: goes on.
 
@@ -108,9 +109,20 @@ class NativeBatch:
             seeds: The seeds.
             begun: The environments in which the engine has begun them already.
             stated: What each episode states of its start and goal, where it states anything.
+            place: Gives file and line where an environment's episode states it.
+
+        Raises:
+            MeasuredDataError: An episode cannot begin as its file states it.
+            ConfigError: Another one cannot begin.
         """
-        left = [None if k in begun else seed for k, seed in enumerate(seeds)]
-        self.batch.reset(left, stated)
+
+        def begin(envs: Sequence[int]) -> None:
+            given = [seed if k in envs else None for k, seed in enumerate(seeds)]
+            own = [one if k in envs else None for k, one in enumerate(stated or ())]
+            self.batch.reset(given, own or None)
+
+        left = [k for k, seed in enumerate(seeds) if seed is not None and k not in begun]
+        begun_as_stated(begin, left, place)
         for play, seed in zip(self.plays, seeds, strict=False):
             if seed is not None:
                 play.begin(seed)

@@ -91,18 +91,22 @@ def split(
     sensors: Sensors,
 ) -> tuple[NativeSettings, PythonTask]:
     """Separates the engine's settings from the parts that are played in Python."""
-    make_task = None
+    make_task, own_sensors = None, None
     if not isinstance(task, str) or ":" in task:
         make_task = factory("task", task, Task, settings)
         one = make_task()
         task, settings = text("task.base", one.base), one.base_settings
-        sensors = one.sensors if sensors is None else sensors
-    names, own = _sensors(sensors)
+        # Also those that are not used: whoever writes a task shall see that they are none.
+        own_sensors = _sensors(f"{type(one).__name__}.sensors", one.sensors)
+    names, own = _sensors("sensors", sensors)
+    if sensors is None and own_sensors is not None:
+        names, own = own_sensors
     make_reward = None if reward is None else factory("reward", reward, Reward)  # type: ignore[type-abstract] # its kind
     return NativeSettings(task, settings, names), PythonTask(make_task, make_reward, own)
 
 
 def _sensors(
+    at: str,
     sensors: Sensors,
 ) -> tuple[NativeSensors, tuple[Callable[[], Sensor], ...]]:
     if sensors is None:
@@ -110,21 +114,21 @@ def _sensors(
     own: list[Callable[[], Sensor]] = []
     if isinstance(sensors, Mapping):
         settings = {}
-        for name, row in mapping("sensors", sensors).items():
+        for name, row in mapping(at, sensors).items():
             if callable(row) or isinstance(row, str):
-                own.append(_named(name, factory(f"sensors.{name}", row, Sensor)))  # type: ignore[type-abstract]
+                own.append(_named(name, factory(f"{at}.{name}", row, Sensor)))  # type: ignore[type-abstract]
             else:
                 settings[name] = row
         return settings, tuple(own)
     if isinstance(sensors, str):
         return sensors, ()
-    rows = sequence_items("sensors", sensors, _SENSORS_EXPECTED)
+    rows = sequence_items(at, sensors, _SENSORS_EXPECTED)
     names = []
     for k, row in enumerate(rows):
         if not isinstance(row, str) and not callable(row) and not isinstance(row, Sensor):
-            raise ConfigError(f"sensors[{k}] is {quoted(row)}; {_SENSORS_EXPECTED}")
+            raise ConfigError(f"{at}[{k}] is {quoted(row)}; {_SENSORS_EXPECTED}")
         if not isinstance(row, str) or ":" in row:
-            own.append(factory(f"sensors[{k}]", row, Sensor))  # type: ignore[type-abstract]
+            own.append(factory(f"{at}[{k}]", row, Sensor))  # type: ignore[type-abstract]
         else:
             names.append(row)
     return names, tuple(own)

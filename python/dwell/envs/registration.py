@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 import gymnasium
 
-from dwell import ConfigError, _native
+from dwell import ConfigError, UsageError, _native
 from dwell.arguments import integer_in_range, refuse_unknown, text
 from dwell.envs.config import EnvSettings
 from dwell.envs.python_tasks import TaskChoice
@@ -22,11 +22,31 @@ def env_ids() -> list[str]:
     return [task["id"] for task in _native.tasks() if task["min_agents"] == 1]
 
 
+def refuse_several(task: str, **_: object) -> NoReturn:
+    """Takes the place of an environment that Gymnasium cannot have.
+
+    Raises:
+        UsageError: Always; it says what has the task.
+    """
+    raise UsageError(
+        f"{task} is a task of several agents, and gymnasium.make has environments of one; make it "
+        f"with dwell.pettingzoo.parallel_env({task!r}, ...), env or vector_env"
+    )
+
+
 def register_envs() -> None:
-    """Registers every task that one agent can play; again does nothing."""
+    """Registers every task; again does nothing.
+
+    Those of several agents are there to say who has them: :func:`env_ids` has the others.
+    """
     for task in _native.tasks():
         name = task["id"]
-        if name in gymnasium.registry or task["min_agents"] > 1:
+        if name in gymnasium.registry:
+            continue
+        if task["min_agents"] > 1:
+            refusal = f"{__name__}:{refuse_several.__name__}"
+            own = {"task": task["name"]}
+            gymnasium.register(name, entry_point=refusal, vector_entry_point=refusal, kwargs=own)
             continue
         gymnasium.register(
             name,

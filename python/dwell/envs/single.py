@@ -268,7 +268,11 @@ class DwellEnv(EpisodeCalls, CurrentStateApi, gymnasium.Env[dict[str, Any], Any]
             self._house = drawn[0] if house is None else house
             self._seed = drawn[1] if episode is None else episode
             self._stated = stated
-            self._runner.reset([self._seed], stated=[self.stated_episode()])
+            self._runner.reset(
+                [self._seed],
+                stated=[self.stated_episode()],
+                place=lambda _: self._shelf.place(self._house, self._seed),
+            )
             self._ended = False
             self._shelf.check(self._house, self._seed, self._runner.batch)
             self._goal = self._runner.batch.episode_goal(0)

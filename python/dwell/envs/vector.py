@@ -260,7 +260,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
         stated: list[dict[str, Any] | None] = [None] * self.num_envs
         for k, (house, seed) in episodes.items():
             seeds[k], stated[k] = seed, self._shelf.stated(house, seed)
-        self._runner.reset(seeds, moved, stated)
+        self._runner.reset(seeds, moved, stated, lambda k: self._shelf.place(*episodes[k]))
         for k, (house, seed) in episodes.items():
             self._shelf.check(house, seed, self._runner.batch, k)
             self._seeds[k] = seed
@@ -301,7 +301,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
             seed: One seed (then environment k has ``seed + k``), or one for each environment.
             options: ``reset_mask``: which environments to reset, shape (num_envs,) bool.
                 ``episode_id``: an earlier ``info["episode_id"]`` for each environment, to play the
-                same episodes again; ``None`` where one is drawn.
+                same episodes again; ``None`` where one is drawn, and for those left out.
 
         Returns:
             Observations and infos: ``scene_id``, ``episode_id`` and what is asked, as

@@ -87,4 +87,11 @@ def _episode_ids(episodes: object, which: NDArray[np.bool_]) -> dict[int, object
         raise ConfigError(f"episode_id is {quoted(episodes)}; {expected}")
     if len(episodes) != len(which):
         raise ConfigError(f"episode_id: found {len(episodes)}; {expected}")
-    return {k: one for k, one in enumerate(episodes) if one is not None and which[k]}
+    asked = {k: one for k, one in enumerate(episodes) if one is not None}
+    for k in asked:
+        if not which[k]:
+            raise ConfigError(
+                f"episode_id[{k}] is {quoted(asked[k])}, and reset_mask leaves environment {k} "
+                "out; expected None there"
+            )
+    return asked

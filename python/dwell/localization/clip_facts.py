@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from dwell import ConfigError
-from dwell.arguments import above_zero, finite_number, inner_path, integer_in_range, mapping, text
+from dwell.arguments import (
+    above_zero,
+    finite_number,
+    inner_path,
+    integer_in_range,
+    mapping,
+    text,
+    text_list,
+)
 from dwell.files import read_json
 from dwell.localization.settings import RATES_HZ
 
@@ -29,6 +38,25 @@ def read_details(path: Path) -> dict[str, Any]:
     if not isinstance(found, dict) or not {"clip", "sources", "recordings"} <= set(found):
         raise ConfigError(f"{path}: no details of a clip, as dwell localize make writes them")
     return found
+
+
+def class_count(folder: Path) -> int | None:
+    """How many classes a data set has; ``None`` where it does not say.
+
+    Raises:
+        ConfigError: What it says is no list.
+        OSError: The system refuses.
+    """
+    path = folder / "dataset.json"
+    try:
+        found = mapping(os.fspath(path), read_json(path))
+    except FileNotFoundError:
+        return None
+    except ValueError as error:
+        raise ConfigError(str(error)) from None
+    if "classes" not in found:
+        return None
+    return len(text_list(f"{path}: classes", found["classes"]))
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
@@ -16,6 +17,8 @@ from dwell.files import atomic_write, read
 
 #: A frame of labels, s.
 FRAME_S = 0.1
+#: Rows of a class in a frame: they are paired, in a time that grows with the third power.
+MOST_AT_ONCE = 100
 #: More than hours of labels have.
 _MAX_BYTES = 256 * 2**20
 _EXPECTED = "frame, class, source, azimuth, elevation and, if known, distance"
@@ -103,11 +106,19 @@ def _tenth(value: float) -> str:
     return f"{round(value, 1) + 0.0:.1f}"
 
 
-def read_labels(path: str | os.PathLike[str]) -> list[Label]:
+def read_labels(
+    path: str | os.PathLike[str], *, classes: int | None = None, sources: int | None = None
+) -> list[Label]:
     """Reads labels as :func:`write_labels` and the challenge write them: 5 or 6 columns.
 
+    Args:
+        path: The file.
+        classes: How many classes there are; ``None``: any number.
+        sources: How many sources there are; ``None``: any number.
+
     Raises:
-        ConfigError: A row is of another form, or a number is out of range.
+        ConfigError: A row is of another form, a number is out of range, or a frame has more than
+            100 rows of a class; the message names file and line.
         OSError: The system refuses, or it is no regular file.
     """
     name = file_path("path", path)
@@ -117,11 +128,32 @@ def read_labels(path: str | os.PathLike[str]) -> list[Label]:
         raise ConfigError(f"{name}: byte {error.start} is not UTF-8") from None
     except ValueError as error:
         raise ConfigError(str(error)) from None
-    rows = []
+    rows: list[Label] = []
+    at_once: Counter[tuple[int, int]] = Counter()
     for number, line in enumerate(text.splitlines(), start=1):
-        if line.strip():
-            rows.append(_label(f"{name} line {number}", line))
+        if not line.strip():
+            continue
+        at = f"{name} line {number}"
+        row = _label(at, line)
+        for what, found, count in (
+            ("class", row.class_index, classes),
+            ("source", row.source, sources),
+        ):
+            if count is not None and found >= count:
+                raise ConfigError(f"{at}: {what} is {found}; there are {count}, counted from 0")
+        at_once[row.frame, row.class_index] += 1
+        if at_once[row.frame, row.class_index] > MOST_AT_ONCE:
+            raise ConfigError(f"{at}: {too_many(row)}")
+        rows.append(row)
     return rows
+
+
+def too_many(row: Label) -> str:
+    """What is said of more rows of a class in a frame than can be paired."""
+    return (
+        f"more than {MOST_AT_ONCE} rows of class {row.class_index} in frame {row.frame}; allowed "
+        f"are {MOST_AT_ONCE}"
+    )
 
 
 def _label(at: str, line: str) -> Label:

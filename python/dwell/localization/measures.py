@@ -25,12 +25,10 @@ from dwell.arguments import (
     sequence_items,
 )
 from dwell.localization.assignment import least_cost_pairs
-from dwell.localization.labels import Label, checked_labels, direction
+from dwell.localization.labels import MOST_AT_ONCE, Label, checked_labels, direction, too_many
 
 #: What is averaged over classes.
 _AVERAGED = ("f20", "le_cd_deg", "lr_cd", "relative_distance_error")
-#: Rows of a class in a frame.
-_MOST_AT_ONCE = 100
 #: Labels of one class by frame.
 _Frames = dict[int, list[Label]]
 
@@ -134,12 +132,8 @@ class JointMeasures:
             kinds = found.setdefault(row.frame // self._segment, {})
             rows = kinds.setdefault(row.class_index, {}).setdefault(row.frame, [])
             rows.append(row)
-            if len(rows) > _MOST_AT_ONCE:
-                # They are paired, in a time that grows with the third power.
-                raise ConfigError(
-                    f"{name}: more than {_MOST_AT_ONCE} rows of class {row.class_index} in frame "
-                    f"{row.frame}; allowed are {_MOST_AT_ONCE}"
-                )
+            if len(rows) > MOST_AT_ONCE:
+                raise ConfigError(f"{name}: {too_many(row)}")
         return found
 
     def _judge(self, counts: _Counts, given: _Frames, found: _Frames) -> tuple[int, int]:

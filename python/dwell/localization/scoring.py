@@ -20,6 +20,7 @@ from dwell.localization.clip_facts import (
     OCCLUSIONS,
     ClipFacts,
     array_names,
+    class_count,
     clip_facts,
     read_details,
 )
@@ -62,12 +63,14 @@ class Clip:
         labels: Where sources are.
         sound: Its file.
         name: Its name.
+        classes: How many classes the data set has; ``None``: nobody knows.
     """
 
     facts: ClipFacts
     labels: list[Label]
     sound: Path
     name: str
+    classes: int | None = None
 
 
 def clips_of(folder: Path, array: str, part: str | None = None) -> Iterator[Clip]:
@@ -77,22 +80,16 @@ def clips_of(folder: Path, array: str, part: str | None = None) -> Iterator[Clip
         ConfigError: There is none, or a file is none of a data set; the message names it.
         OSError: The system refuses.
     """
-    found = 0
+    found, classes = 0, class_count(folder)
     for path in sorted((folder / "details_dev").glob(f"{part or '*'}/*.json")):
         details = read_details(path)
         if array not in array_names(path, details):
             continue
         facts = clip_facts(path, details, array)
         csv = folder / "metadata_dev" / path.parent.name / f"{path.stem}.csv"
-        labels = read_labels(csv)
-        for row in labels:
-            if row.source >= len(facts.drr_db):
-                raise ConfigError(
-                    f"{csv}: source is {row.source}; {path} has {len(facts.drr_db)} of them, "
-                    "counted from 0"
-                )
+        labels = read_labels(csv, classes=classes, sources=len(facts.drr_db))
         found += 1
-        yield Clip(facts, labels, folder / facts.file, path.stem)
+        yield Clip(facts, labels, folder / facts.file, path.stem, classes)
     if not found:
         raise ConfigError(
             f"{folder}: no recording of {quoted(array)}"
@@ -171,7 +168,7 @@ def estimates_in(folder: Path) -> Callable[[Clip], list[Label]]:
         path = folder / f"{clip.name}.csv"
         if not path.exists():
             raise ConfigError(f"{path}: not there; expected a file for each clip, empty if silent")
-        return read_labels(path)
+        return read_labels(path, classes=clip.classes)
 
     return said
 

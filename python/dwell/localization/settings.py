@@ -14,6 +14,7 @@ from dwell.arguments import (
     number_in_range,
     quoted,
     text,
+    text_list,
     two_numbers,
 )
 from dwell.localization.layouts import Layout, layout
@@ -79,7 +80,9 @@ class Settings:
     seed: int = 0
 
     def __post_init__(self) -> None:
-        """Checks the fields."""
+        """Checks the fields; lists become tuples."""
+        for name in ("arrays", "held_out_arrays"):
+            object.__setattr__(self, name, tuple(text_list(name, getattr(self, name))))
         if not self.arrays:
             raise ConfigError("arrays is empty; expected one or more")
         names = [one.folder for one in self.layouts()]
@@ -107,7 +110,7 @@ class Settings:
 
     def layouts(self) -> list[Layout]:
         """The arrays."""
-        return [layout(text(f"arrays[{k}]", name)) for k, name in enumerate(self.arrays)]
+        return [*map(layout, self.arrays)]
 
     @property
     def samples(self) -> int:

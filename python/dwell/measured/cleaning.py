@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,9 +20,18 @@ if TYPE_CHECKING:
 
 #: Frames that each stand so many times at most are recognised.
 _MOST_REPEATS = 10
+#: A step of more usual ones than this is told as a gap.
+_GAP_STEPS = 2.5
 #: Share of frames that stand a whole number of times, and changes of frames, that tell.
 _TELLING_SHARE = 0.9
 _FEWEST_CHANGES = 20
+
+
+class Longest(NamedTuple):
+    """The longest time between samples that is no gap, s, and the seconds in one of the column."""
+
+    s: float
+    seconds_per_unit: float
 
 
 class Cleaning:
@@ -80,16 +89,27 @@ class Cleaning:
         return episodes
 
     def parts(
-        self, episodes: list[Episode], longest_step: float, fewest: int, notes: list[str]
+        self, episodes: list[Episode], longest: Longest, fewest: int, notes: list[str]
     ) -> list[Episode]:
-        """An episode for each part between gaps, where the map says so."""
+        """An episode for each part between gaps, where the map says so.
+
+        Args:
+            episodes: In the order of time.
+            longest: The longest time between samples that is no gap.
+            fewest: Parts of fewer samples are left out.
+            notes: Takes what was done.
+        """
         if self.gaps is None:
             return episodes
         names = {episode.name for episode in episodes}
         found: list[Episode] = []
-        cut = short = lost = 0
+        longest_step = longest.s / longest.seconds_per_unit
+        cut = short = lost = kept = 0
         for episode in episodes:
-            ends = np.flatnonzero(np.diff(episode.times) > longest_step) + 1
+            steps = np.diff(episode.times)
+            ends = np.flatnonzero(steps > longest_step) + 1
+            usual = float(np.median(steps)) if len(steps) else 0.0
+            kept += int(((steps > _GAP_STEPS * usual) & (steps <= longest_step)).sum())
             pieces = np.split(np.arange(len(episode.times)), ends)
             cut += len(ends)
             number = 0
@@ -108,6 +128,11 @@ class Cleaning:
                 found.append(replace(episode.of(piece), name=name))
         if cut:
             notes.append(f"{cut:,} gaps: an episode of each part")
+        if kept:
+            notes.append(
+                f"{kept:,} gap{'s' if kept > 1 else ''} of at most {longest.s:g} s: left, since "
+                "samples need not be evenly spaced"
+            )
         if short:
             notes.append(f"{short:,} parts of fewer than {fewest} rows ({lost:,} rows): left out")
         return found

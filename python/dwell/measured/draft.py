@@ -97,6 +97,9 @@ class BundleDraft:
         here = re.escape(str(self.folder))
         if found := re.match(rf"{here}/manifest\.json: (\S+)( is .*)", fault, re.DOTALL):
             return f"{self._field(found[1])}{found[2]}"
+        if found := re.match(rf"{here}/manifest\.json(?: line \d+)?: (.*)", fault, re.DOTALL):
+            # Lines and columns are those of a file that its user has never seen.
+            return f"{self._map_file}: {re.sub(r' at line [0-9]+ column [0-9]+$', '', found[1])}"
         if found := re.match(rf"{here}/episodes\.csv line (\d+): \S+( is .*)", fault, re.DOTALL):
             row = [*self._episodes.values()][int(found[1]) - 2 :][:1]
             where = str(row[0]) if row else self._table()

@@ -6,17 +6,20 @@ Nothing of it counts until a person has confirmed it: :func:`read_map` refuses i
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+import os
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
 
+from dwell.arguments import choice, file_path, sequence_items
 from dwell.measured.guesses import Guess
 from dwell.measured.guesses.drives import guess_drive
 from dwell.measured.guesses.flights import guess_flight
 from dwell.measured.guesses.poses import guess_poses
 from dwell.measured.guesses.responses import guess_responses
 from dwell.measured.guesses.servos import guess_servo
+from dwell.measured.importing import measured_faults
 from dwell.measured.kinds import KINDS
 from dwell.measured.maps import Map
 from dwell.measured.survey import Survey, surveyed
@@ -30,7 +33,7 @@ _GUESSES: dict[str, Callable[[list[Survey], list[Path]], Guess]] = {
 }
 
 
-def guessed_map(files: list[Path], kind: str | None = None) -> Map:
+def guessed_map(files: Sequence[str | os.PathLike[str]], kind: str | None = None) -> Map:
     """A map of files, to be read by a person and confirmed.
 
     Args:
@@ -38,8 +41,21 @@ def guessed_map(files: list[Path], kind: str | None = None) -> Map:
         kind: What they measure; ``None``: what their columns look like.
 
     Raises:
-        ValueError: No kind of measurement has such columns.
+        MeasuredDataError: A table cannot be read, or no kind of measurement has such columns. It
+            is a ``ValueError``.
+        ConfigError: ``files`` are no paths, or the kind is unknown.
+        OSError: The system refuses to read a file.
+        ModuleNotFoundError: A package that reads a file is missing; the message names the extra.
     """
+    given = sequence_items("files", files, "expected paths of files")
+    paths = [Path(file_path(f"files[{k}]", file)) for k, file in enumerate(given)]
+    if kind is not None:
+        choice("kind", kind, sorted(KINDS))
+    with measured_faults():
+        return _guessed(paths, kind)
+
+
+def _guessed(files: list[Path], kind: str | None) -> Map:
     sounds = [path for path in files if path.suffix.lower() in (".wav", ".sofa")]
     tables = surveyed([path for path in files if path not in sounds])
     names_sounds = any(

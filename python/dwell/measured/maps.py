@@ -14,6 +14,14 @@ from dwell.measured.draft import BundleDraft
 
 Map = dict[str, Any]
 
+
+@dataclass(frozen=True)
+class Numbers:
+    """The form of a list of numbers; ``count``: so many, or any number of them."""
+
+    count: int | None = None
+
+
 #: What a key may hold, for keys that may hold one of several kinds.
 TEXT_OR_LIST: tuple[type, ...] = (str, list)
 TEXT_OR_OBJECT: tuple[type, ...] = (str, dict)
@@ -96,15 +104,20 @@ def read_map(path: Path, schemas: Mapping[str, Map]) -> Map:
     if not isinstance(kind, str) or kind not in schemas:
         raise ValueError(f"{path}: kind is {kind!r}; allowed is one of {sorted(schemas)}")
     check_keys(mapping, schemas[kind], str(path))
+    refuse_unconfirmed(mapping, str(path))
+    result: Map = mapping
+    return result
+
+
+def refuse_unconfirmed(mapping: Mapping[str, Any], at: str) -> None:
+    """Refuses a map that says itself that nobody has looked at it."""
     if mapping.get("confirmed") is False:
         count = len(mapping.get("why") or {})
         guesses = f"its {count} guesses, each with its reason under 'why'," if count else "it,"
         raise ValueError(
-            f'{path}: "confirmed" is false: read {guesses} correct what is wrong, and write '
+            f'{at}: "confirmed" is false: read {guesses} correct what is wrong, and write '
             '"confirmed": true; until then nothing is imported'
         )
-    result: Map = mapping
-    return result
 
 
 def check_keys(found: Map, schema: Map, at: str) -> None:
@@ -114,6 +127,9 @@ def check_keys(found: Map, schema: Map, at: str) -> None:
             raise ValueError(f"{at}: no key {key!r}; allowed are {list(schema)}")
         form = schema[key]
         if value is None or form is ANYTHING:
+            continue
+        if isinstance(form, Numbers):
+            _check_numbers(f"{at}: {key}", value, form.count)
             continue
         if isinstance(form, tuple):
             kinds = form
@@ -125,6 +141,14 @@ def check_keys(found: Map, schema: Map, at: str) -> None:
             raise ValueError(f"{at}: {key} is {value!r:.60}; {expected} is needed")
         if isinstance(form, dict) and form:
             check_keys(value, form, f"{at}: {key}")
+
+
+def _check_numbers(name: str, value: object, count: int | None) -> None:
+    if not isinstance(value, list) or (count is not None and len(value) != count):
+        many = "" if count is None else f"{count} "
+        raise ValueError(f"{name} is {value!r:.60}; a list of {many}numbers is needed")
+    for k, number in enumerate(value):
+        finite_number(f"{name}[{k}]", number)
 
 
 def require(part: Mapping[str, Any], key: str, at: str) -> Any:  # noqa: ANN401 - any JSON value
@@ -146,6 +170,11 @@ def choice(part: Mapping[str, Any], key: str, allowed: tuple[str, ...], at: str)
     if value is not None and value not in allowed:
         raise ValueError(f"{at}: {key} is {value!r}; allowed is one of {list(allowed)}")
     return value
+
+
+def filled(part: Mapping[str, Any]) -> Map:
+    """A part without the keys that say nothing."""
+    return {key: value for key, value in part.items() if value is not None}
 
 
 def columns_of(part: Mapping[str, Any], key: str, count: int, at: str) -> list[str]:

@@ -6,19 +6,21 @@ import csv
 import itertools
 import json
 import os
+import shutil
+import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import Any, Generic, SupportsFloat, TypeVar
+from typing import Any, Generic, SupportsFloat, TypeVar, cast
 
 import gymnasium
 import numpy as np
 
 from dwell import ConfigError
-from dwell.arguments import above_zero, file_path
-from dwell.files import make_folder
+from dwell.arguments import above_zero, file_path, quoted
+from dwell.files import make_folder, read_json
 from dwell.measured import maps
-from dwell.measured.importing import import_files
+from dwell.measured.importing import import_files, refuse_file_name
 from dwell.measured.kinds import KINDS
 from dwell.measured.maps import Map
 
@@ -40,6 +42,8 @@ class Recorder(gymnasium.Wrapper[ObsType, ActType, ObsType, ActType], Generic[Ob
     those of any map. Row k of an episode has the observation and the info of step k, and the
     action that was taken then. The rows stand in ``NAME.log.csv`` beside the bundle
     ``NAME.measured`` and the map in ``NAME.map.json``: what the import refuses is not lost.
+    Recorded is from a reset to the end of the episode, to the next reset, or to :meth:`write`;
+    steps without a reset before them are the environment's own affair.
 
     Attributes:
         group: Episodes that begin while it stands are held out together; ``None``: each alone.
@@ -50,7 +54,7 @@ class Recorder(gymnasium.Wrapper[ObsType, ActType, ObsType, ActType], Generic[Ob
         self,
         env: gymnasium.Env[ObsType, ActType],
         out: str | os.PathLike[str],
-        mapping: Mapping[str, Any],
+        mapping: Mapping[str, Any] | str | os.PathLike[str],
         *,
         step_s: float | None = None,
         clock: Callable[[], float] = time.monotonic,
@@ -60,22 +64,25 @@ class Recorder(gymnasium.Wrapper[ObsType, ActType, ObsType, ActType], Generic[Ob
         Args:
             env: The environment, or a robot's wrapper that speaks Gymnasium.
             out: The bundle to be written, ``NAME.measured``.
-            mapping: The map: ``kind``, what is known (``joint``, ``body``, ...), and ``table``
-                with the columns.
+            mapping: The map, or a JSON file of it: ``kind``, what is known (``joint``, ``body``,
+                ...), and ``table`` with the columns.
             step_s: The time of a step, s; ``None``: ``clock`` tells when an observation comes.
             clock: Returns seconds.
 
         Raises:
             ConfigError: The map's kind or a key of it is unknown, or impulse responses are asked
-                for.
+                for; or ``out`` is named as a file.
             FileExistsError: The bundle or its log is there already.
+            OSError: The system refuses to read the map.
         """
         super().__init__(env)
         self._out = Path(file_path("out", out))
-        self._mapping = _checked(mapping)
+        refuse_file_name(self._out)
+        self._mapping = _checked(*_map_of(mapping))
         stem = self._out.name.removesuffix(".measured")
-        self.log_file = self._out.with_name(f"{stem}.log.csv")
-        self.map_file = self._out.with_name(f"{stem}.map.json")
+        # Not with_name, which "/" has none of.
+        self.log_file = self._out.parent / f"{stem}.log.csv"
+        self.map_file = self._out.parent / f"{stem}.map.json"
         for path in (self._out, self.log_file, self.map_file):
             if os.path.lexists(path):
                 raise FileExistsError(f"{path}: is there already; remove it or choose another name")
@@ -89,7 +96,10 @@ class Recorder(gymnasium.Wrapper[ObsType, ActType, ObsType, ActType], Generic[Ob
         self._zero_s = 0.0
         self._group = ""
         self._row: dict[str, float] | None = None
-        self._is_written = False
+        #: Whether something was recorded since the last :meth:`write`, and whether one made the
+        #: bundle.
+        self._has_news = False
+        self._has_bundle = False
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -99,20 +109,26 @@ class Recorder(gymnasium.Wrapper[ObsType, ActType, ObsType, ActType], Generic[Ob
         observation, info = super().reset(seed=seed, options=options)
         self._zero_s = self._clock()
         self._k = 0
+        row = self._seen(observation, info)
+        missing = [name for name in self._columns if not name.startswith("action")]
+        self._refuse_missing([name for name in missing if name not in row], row)
         self.episodes += 1
         self._group = self.group or f"e{self.episodes}"
-        self._row = self._seen(observation, info)
-        missing = [name for name in self._columns if not name.startswith("action")]
-        self._refuse_missing([name for name in missing if name not in self._row], self._row)
+        self._row = row
         return observation, info
 
     def step(self, action: ActType) -> tuple[ObsType, SupportsFloat, bool, bool, dict[str, Any]]:
         """Acts, and records the observation before it with the action."""
-        if self._row is not None:
-            told = dict(_numbers("action", action))
-            wanted = [name for name in self._columns if name.startswith("action")]
-            self._refuse_missing([name for name in wanted if name not in told], told)
-            self._write({**self._row, **told})
+        before = self._row
+        if before is None:
+            # Nothing is recorded before a reset, and after an episode's end.
+            return super().step(action)
+        told = dict(_numbers("action", action))
+        wanted = [name for name in self._columns if name.startswith("action")]
+        self._refuse_missing([name for name in wanted if name not in told], told)
+        self._write({**before, **told})
+        # An environment that raises leaves an episode that ends with this row.
+        self._row = None
         observation, reward, terminated, truncated, info = super().step(action)
         self._k += 1
         self._row = self._seen(observation, info)
@@ -121,33 +137,57 @@ class Recorder(gymnasium.Wrapper[ObsType, ActType, ObsType, ActType], Generic[Ob
         return observation, reward, terminated, truncated, info
 
     def write(self) -> dict[str, Any]:
-        """Makes the bundle of what was recorded.
+        """Makes the bundle of all that was recorded; an episode that is under way ends here.
+
+        The bundle of an earlier call is replaced, once the new one is whole.
 
         Returns:
             Counts, as of ``dwell measure import``.
 
         Raises:
             ConfigError: Nothing was recorded.
-            ValueError: The bundle's checks refuse the recording; log and map stay.
+            MeasuredDataError: The bundle's checks refuse the recording; log and map stay, more may
+                be recorded, and it may be written again. It is a ``ValueError``.
         """
         self._end()
         if not self.episodes:
             raise ConfigError(f"{self._out}: nothing was recorded; reset and step before")
-        self._is_written = True
+        self._has_news = False
         table = {**self._mapping["table"], "file": self.log_file.name}
         table |= {"episode": "episode", "split_group": "group", "t_s": "t_s"}
         table.setdefault("conditions", "conditions")
         mapping = {**self._mapping, "table": table}
         self.map_file.write_text(json.dumps(mapping, indent=1) + "\n", "utf-8")
-        return import_files([self.log_file], self.map_file, self._out, lambda *_: None)
+        counts = self._replaced() if self._has_bundle else self._imported(self._out)
+        self._has_bundle = True
+        return counts
 
     def close(self) -> None:
-        """Writes the bundle, if something was recorded and nothing written, and closes."""
+        """Writes the bundle, if something was recorded since it was last tried, and closes.
+
+        Raises:
+            MeasuredDataError: As of :meth:`write`.
+        """
         try:
-            if self.episodes and not self._is_written:
+            if self._has_news or self._row is not None:
                 self.write()
         finally:
             super().close()
+
+    def _imported(self, out: Path) -> dict[str, Any]:
+        return import_files([self.log_file], self.map_file, out, lambda *_: None)
+
+    def _replaced(self) -> dict[str, Any]:
+        """A new bundle in the place of the own one, which stays where the new one is refused."""
+        beside = Path(tempfile.mkdtemp(prefix=f".{self._out.name}.", dir=self._out.parent))
+        try:
+            counts = self._imported(beside / self._out.name)
+            if self._out.exists():
+                self._out.rename(beside / "before")
+            (beside / self._out.name).rename(self._out)
+        finally:
+            shutil.rmtree(beside, ignore_errors=True)
+        return counts
 
     def _seen(self, observation: object, info: dict[str, Any]) -> dict[str, float]:
         t_s = self._clock() - self._zero_s if self._step_s is None else self._k * self._step_s
@@ -162,6 +202,7 @@ class Recorder(gymnasium.Wrapper[ObsType, ActType, ObsType, ActType], Generic[Ob
         self._row = None
 
     def _write(self, row: Mapping[str, float]) -> None:
+        self._has_news = True
         is_new = not self.log_file.exists()
         if is_new:
             make_folder(self.log_file.parent)
@@ -181,21 +222,40 @@ class Recorder(gymnasium.Wrapper[ObsType, ActType, ObsType, ActType], Generic[Ob
             )
 
 
-def _checked(mapping: Mapping[str, Any]) -> Map:
+def _map_of(mapping: object) -> tuple[Mapping[str, Any], str]:
+    """A map, or that of a file, and how messages name it."""
+    if isinstance(mapping, Mapping):
+        return mapping, "mapping"
+    if not isinstance(mapping, str | os.PathLike):
+        raise ConfigError(f"mapping is {quoted(mapping)}; expected a map or the path of one")
+    path = file_path("mapping", mapping)
+    try:
+        found = read_json(path)
+    except ValueError as error:
+        raise ConfigError(str(error)) from None
+    if not isinstance(found, dict):
+        raise ConfigError(
+            f"{path}: found {quoted(found)}; an object with the keys of a map is needed"
+        )
+    return cast("dict[str, Any]", found), path
+
+
+def _checked(mapping: Mapping[str, Any], at: str) -> Map:
     """A map whose keys are known, but for the files."""
     kind = mapping.get("kind")
     kinds = sorted(name for name in KINDS if name != "impulse_response")
     if kind not in kinds:
-        raise ConfigError(f"mapping: kind is {kind!r}; a recorder writes one of {kinds}")
+        raise ConfigError(f"{at}: kind is {kind!r}; a recorder writes one of {kinds}")
     try:
-        maps.check_keys(dict(mapping), KINDS[str(kind)].keys(), "mapping")
-        maps.require(mapping, "table", "mapping")
+        maps.check_keys(dict(mapping), KINDS[str(kind)].keys(), at)
+        maps.require(mapping, "table", at)
+        maps.refuse_unconfirmed(mapping, at)
     except ValueError as error:
         raise ConfigError(str(error)) from None
     keys = ("file", "part", "episode", "split_group", "t_s")
     own = [key for key in keys if mapping["table"].get(key)]
     if own:
-        raise ConfigError(f"mapping: table: {own[0]!r} is the recorder's own; leave it out")
+        raise ConfigError(f"{at}: table: {own[0]!r} is the recorder's own; leave it out")
     return json.loads(json.dumps(mapping))  # type: ignore[no-any-return]
 
 

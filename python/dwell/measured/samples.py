@@ -20,6 +20,8 @@ from dwell.measured.tables import FILE_COLUMN, MeasuredTable, names_of
 from dwell.measured.units import ColumnUnits
 
 Array = NDArray[np.float64]
+#: Time from sample to sample, where it need not be even, from which on it is a gap, s.
+_LONGEST_S = 0.5
 #: Rows between two words of progress.
 _ROWS_A_WORD = 4096
 
@@ -32,11 +34,20 @@ class Field:
         column: The user's.
         dimension: What it measures.
         optional: Whether a sample without it is kept.
+        key: Where the table's part of the map names the column.
     """
 
     column: str
     dimension: str
     optional: bool = False
+    key: str = ""
+
+
+def fields_of(
+    columns: Sequence[str], dimension: str, key: str, *, optional: bool = False
+) -> list[Field]:
+    """A field of each of a list's columns."""
+    return [Field(column, dimension, optional, f"{key}[{k}]") for k, column in enumerate(columns)]
 
 
 @dataclass(frozen=True)
@@ -146,6 +157,7 @@ class SampleReader:
         self.group = names_of(part, "split_group", at, self.episode)
         self.conditions = names_of(part, "conditions", at, [])
         self.clock: str = require(part, "t_s", at)
+        _refuse_shared(at, self.clock, [*fields, *([] if held is None else [held])])
         names = [*self.episode, *self.group, *self.conditions, self.clock]
         if held is not None:
             names.append(held.column)
@@ -199,8 +211,8 @@ class SampleReader:
         if self._from_first:
             episodes = [_from_first(episode) for episode in episodes]
         seconds = self._time.factor
-        longest_s = 0.5 if step_s is None else 1.5 * step_s
-        episodes = self.cleaning.parts(episodes, longest_s / seconds, fewest, self.job.notes)
+        longest = cleaning.Longest(_LONGEST_S if step_s is None else 1.5 * step_s, seconds)
+        episodes = self.cleaning.parts(episodes, longest, fewest, self.job.notes)
         for episode in episodes:
             self.job.draft.begins(episode.name, episode.place(0))
         in_si = [replace(episode, values=self._si(episode.values)) for episode in episodes]
@@ -269,6 +281,18 @@ class SampleReader:
         if empty:
             self.job.notes.append(f"episodes without any number: left out {_listed(empty)}")
         return growing
+
+
+def _refuse_shared(at: str, clock: str, fields: Sequence[Field]) -> None:
+    """Refuses a column that is to be two things."""
+    keys = {clock: "t_s"}
+    for own in fields:
+        if own.column in keys:
+            raise ValueError(
+                f"{at}: column {own.column!r} is both {keys[own.column]} and {own.key}; each of "
+                "them needs a column of its own"
+            )
+        keys[own.column] = own.key
 
 
 def _lost(count: int, of: int, columns: Sequence[str]) -> str:

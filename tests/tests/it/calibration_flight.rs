@@ -379,6 +379,7 @@ fn the_report_is_one_page_and_the_same_for_any_number_of_threads() {
     one.write(out.path()).unwrap();
     let found: serde_json::Value =
         serde_json::from_slice(&std::fs::read(out.path().join("found.json")).unwrap()).unwrap();
+    assert_eq!(found["version"], 1);
     assert_eq!(found["laws"][0]["id"], "drag");
     assert_eq!(std::fs::read_dir(out.path()).unwrap().count(), 3);
 }

@@ -11,7 +11,7 @@ from dwell.measured.kinds.form import Kind, counted, listing, write_episodes, wr
 from dwell.measured.maps import TABLE, Job, Map, column_list, columns_of, require, require_filled
 from dwell.measured.places import Place
 from dwell.measured.readers import Row
-from dwell.measured.samples import Field, SampleReader, singles
+from dwell.measured.samples import Field, SampleReader, fields_of, singles
 from dwell.measured.tables import MeasuredTable
 
 TEMPLATE: Map = {
@@ -78,8 +78,8 @@ def _write(job: Job) -> dict[str, Any]:
     place = columns_of(part, "position", 2, here)
     heading = require(part, "heading_rad", here)
     wheels = [require(part, key, here) for key in ("ticks_left", "ticks_right")]
-    fields = [Field(column, "length") for column in place]
-    fields += [Field(heading, "angle"), *(Field(column, "number") for column in wheels)]
+    fields = [*fields_of(place, "length", "position"), Field(heading, "angle", key="heading_rad")]
+    fields += [Field(part[key], "number", key=key) for key in ("ticks_left", "ticks_right")]
     reader = SampleReader(job, part, here, fields)
 
     def accept(place: Place, name: str) -> bool:

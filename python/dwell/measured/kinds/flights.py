@@ -10,7 +10,7 @@ from dwell.measured.axes import Axes
 from dwell.measured.kinds.form import Kind, counted, listing, write_episodes, write_manifest
 from dwell.measured.maps import TABLE, Job, Map, require, require_filled
 from dwell.measured.places import Place
-from dwell.measured.samples import Field, SampleReader, single
+from dwell.measured.samples import Episode, Field, SampleReader, single
 from dwell.measured.tables import MeasuredTable, cell_text
 from dwell.measured.units import ColumnUnits
 
@@ -56,6 +56,8 @@ _CHANNELS = {
     **dict.fromkeys("xyz", ("length", "m")),
     **dict.fromkeys(("wx", "wy", "wz"), ("spin", "rad/s")),
 }
+#: Ratio of the noise of two coordinates of one tracker from which on their units are doubted.
+_UNLIKE_NOISE = 30.0
 #: Samples of an episode below which nothing can be predicted.
 FEWEST = 6
 
@@ -81,7 +83,7 @@ def _write(job: Job) -> dict[str, Any]:
         raise ValueError(f"{here}: channels are {names}; a flight has a place, y or x, y and z")
     spins = [_CHANNELS[name][0] == "spin" for name in names]
     fields = [
-        Field(channels[name], _CHANNELS[name][0], optional=spin)
+        Field(channels[name], _CHANNELS[name][0], optional=spin, key=f"channels.{name}")
         for name, spin in zip(names, spins, strict=True)
     ]
     reader = SampleReader(job, part, here, fields)
@@ -130,6 +132,8 @@ def _write(job: Job) -> dict[str, Any]:
                         continue
                     write([episode.name, stamp, body, name, single(float(value))], place)
     job.progress(0.7, f"{samples.rows} rows of {reader.table.name}")
+    if (unlike := _unlike_noise(samples.episodes, fields)) is not None:
+        job.notes.append(unlike)
     noise = job.mapping.get("noise_sd") or {}
     told = [
         {
@@ -140,9 +144,31 @@ def _write(job: Job) -> dict[str, Any]:
         }
         for name in names
     ]
+    for k, name in enumerate(names):
+        job.draft.fields[f"channels[{k}].noise_sd"] = f"{job.at}: noise_sd.{name}"
     write_manifest(job, KIND.version, {"bodies": list(bodies.values())}, {"channels": told})
     write_episodes(job, listing(samples.episodes))
     return counted(job, samples.rows, len(samples.episodes), left_out)
+
+
+def _unlike_noise(episodes: list[Episode], fields: list[Field]) -> str | None:
+    """A word on places with much more noise than others: a fall tells the unit of heights alone."""
+    noise: dict[str, float] = {}
+    for k, own in enumerate(fields):
+        if own.dimension == "length":
+            # Third differences hold little of a motion.
+            sizes = [np.abs(np.diff(episode.values[:, k], 3)) for episode in episodes]
+            all_sizes = np.concatenate([np.zeros(0), *sizes])
+            median = float(np.median(all_sizes)) if len(all_sizes) else 0.0
+            noise[own.column] = median / (0.6745 * 20.0**0.5)
+    calm, loud = (least(noise, key=lambda name: noise[name]) for least in (min, max))
+    # What is written with few digits, or made up, has none.
+    if noise[calm] <= 0.0 or noise[loud] < _UNLIKE_NOISE * noise[calm]:
+        return None
+    return (
+        f"places in column {loud!r} have noise of {noise[loud]:.2g} m, those in column {calm!r} "
+        f"{noise[calm]:.2g} m: are the units of both right?"
+    )
 
 
 def _turned_names(channels: Map, here: str) -> list[str]:

@@ -10,8 +10,18 @@ from dwell.arguments import finite_number
 from dwell.measured import rotations
 from dwell.measured.axes import Axes
 from dwell.measured.kinds.form import Kind, counted, listing, write_episodes, write_manifest
-from dwell.measured.maps import TABLE, Job, Map, choice, columns_of, require, require_filled
-from dwell.measured.samples import Episode, Field, SampleReader, single, singles
+from dwell.measured.maps import (
+    TABLE,
+    Job,
+    Map,
+    Numbers,
+    choice,
+    columns_of,
+    filled,
+    require,
+    require_filled,
+)
+from dwell.measured.samples import Episode, Field, SampleReader, fields_of, single, singles
 from dwell.measured.tables import MeasuredTable
 from dwell.measured.units import ColumnUnits
 
@@ -56,8 +66,8 @@ _SCHEMA: Map = {
         "name": "",
         "mass_kg": 1.0,
         "radius_m": 1.0,
-        "half_extents_m": [],
-        "inertia_kg_m2": [],
+        "half_extents_m": Numbers(3),
+        "inertia_kg_m2": Numbers(3),
     },
     "board": {"friction": 1.0, "restitution": 1.0, "substances": []},
     "poses": {"rate_hz": 1.0, "angular_velocity": "", "filtering": ""},
@@ -107,6 +117,12 @@ def _write(job: Job) -> dict[str, Any]:
     if body.get("radius_m") is None:
         require(body, "half_extents_m", f"{at}: body")
     require_filled(board, ("friction", "restitution"), board_at)
+    substances = board.get("substances")
+    if substances is not None and [type(name) for name in substances] != [str, str]:
+        raise ValueError(
+            f"{board_at}: substances is {substances!r:.60}; the names of two, of the body and of "
+            "the board, are needed"
+        )
     rate_hz = finite_number(f"{form_at}: rate_hz", require(form, "rate_hz", form_at))
     frame = choice(form, "angular_velocity", ("body", "world"), form_at)
     place = columns_of(part, "position", 3, here)
@@ -117,12 +133,20 @@ def _write(job: Job) -> dict[str, Any]:
     ]
     if rates[1]:
         require(form, "angular_velocity", form_at)
-    has_rates = bool(rates[0] and rates[1])
-    fields = [Field(column, "length") for column in place]
-    fields += [Field(column, "number") for column in quaternion]
-    if has_rates:
-        fields += [Field(column, "speed", optional=True) for column in rates[0]]
-        fields += [Field(column, "spin", optional=True) for column in rates[1]]
+    if bool(rates[0]) != bool(rates[1]):
+        told, other = ("velocity", "angular_velocity")[:: 1 if rates[0] else -1]
+        raise ValueError(
+            f"{here}: {told!r} without {other!r}; both or neither are read: name the columns of "
+            f"{other!r} too, or leave {told!r} out"
+        )
+    has_rates = bool(rates[0])
+    fields = fields_of(place, "length", "position")
+    fields += [
+        Field(column, "number", key=f"{axis} of the quaternion")
+        for column, axis in zip(quaternion, "xyzw", strict=True)
+    ]
+    fields += fields_of(rates[0], "speed", "velocity", optional=True)
+    fields += fields_of(rates[1], "spin", "angular_velocity", optional=True)
     reader = SampleReader(job, part, here, fields)
     step_s = 1.0 / rate_hz if rate_hz > 0 else None
     samples = reader.read(step_s=step_s, fewest=FEWEST)
@@ -153,7 +177,9 @@ def _write(job: Job) -> dict[str, Any]:
             "first sample"
         )
     scene = {"bodies": [body], "board": board}
-    write_manifest(job, KIND.version, scene, {"poses": {"angular_velocity": "world", **form}})
+    write_manifest(
+        job, KIND.version, scene, {"poses": {"angular_velocity": "world", **filled(form)}}
+    )
     write_episodes(job, listing(samples.episodes))
     return counted(job, samples.rows, len(samples.episodes), {})
 

@@ -18,6 +18,8 @@ from dwell.measured.maps import (
     TEXT_OR_LIST,
     Job,
     Map,
+    Numbers,
+    check_keys,
     choice,
     column_list,
     point,
@@ -78,7 +80,7 @@ _PLACES: Map = {
 _SCHEMA: Map = {
     "axes": TEXT_OR_LIST,
     "origin": [],
-    "room": {"size_m": [], "surfaces": NAMES, "position_sd_m": 1.0},
+    "room": {"size_m": Numbers(3), "surfaces": NAMES, "position_sd_m": 1.0},
     "table": {
         "file": TEXT_OR_LIST,
         "part": "",
@@ -109,6 +111,13 @@ _SCHEMA: Map = {
         "t_s": "",
     },
     "response_times": "",
+}
+#: Keys of each side of a room.
+_SURFACE: Map = {
+    "substance": "",
+    "absorption": {"centres_hz": Numbers(), "values": Numbers()},
+    "scattering": 1.0,
+    "material": "",
 }
 #: What is known of times, as in bundles.
 _TIMES = ("relative", "common_offset", "absolute")
@@ -155,12 +164,27 @@ def _write(job: Job) -> dict[str, Any]:
     scene = {}
     if mapping.get("room") is not None:
         require_filled(mapping["room"], ("size_m", "surfaces"), f"{at}: room")
-        scene["room"] = mapping["room"]
+        scene["room"] = _room(mapping["room"], f"{at}: room")
     job.draft.fields["scene.room."] = f"{at}: room."
     more = {} if times is None else {"response_times": times}
     write_manifest(job, KIND.version, scene, more)
     write_episodes(job, [*episodes.values()])
     return counted(job, count, len(episodes), {})
+
+
+def _room(room: Map, at: str) -> Map:
+    """The room, each of whose sides has the form that bundles have."""
+    for side, surface in room["surfaces"].items():
+        where = f"{at}: surfaces: {side}"
+        if not isinstance(surface, dict):
+            raise ValueError(
+                f"{where} is {surface!r:.60}; an object with some of {list(_SURFACE)} is needed"
+            )
+        check_keys(surface, _SURFACE, where)
+        absorption = surface.get("absorption")
+        if absorption is not None:
+            require_filled(absorption, ("centres_hz", "values"), f"{where}: absorption")
+    return room
 
 
 def _write_responses(

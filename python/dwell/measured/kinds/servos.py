@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from dwell.measured.kinds.form import Kind, counted, listing, write_episodes, write_manifest
-from dwell.measured.maps import TABLE, Job, Map, column_list, require, require_filled
+from dwell.measured.maps import TABLE, Job, Map, column_list, filled, require, require_filled
 from dwell.measured.places import Place
 from dwell.measured.samples import Episode, Field, SampleReader, Samples, single
 from dwell.measured.tables import MeasuredTable
@@ -92,8 +92,8 @@ def _write(job: Job) -> dict[str, Any]:
             f"{'no' if commands is None else 'a'} 'commands' part; a servo's targets are a column "
             "of its own table or a table of commands"
         )
-    held = None if target is None else Field(target, "angle")
-    reader = SampleReader(job, part, here, [Field(position, "angle")], held)
+    held = None if target is None else Field(target, "angle", key="target")
+    reader = SampleReader(job, part, here, [Field(position, "angle", key="position")], held)
     samples = reader.read(step_s=None, fewest=FEWEST)
     origin = {"t_s": [reader.clock], "episode": ["/".join(reader.episode)], "value": [position]}
     with job.draft.table("trajectory.csv", "episode,t_s,entity,channel,value", origin) as write:
@@ -114,11 +114,12 @@ def _write(job: Job) -> dict[str, Any]:
             "episode needs what it was told to do"
         )
     job.draft.fields["scene.joints[0]."] = f"{joint_at}."
+    job.draft.fields["channels[0].noise_sd"] = f"{job.at}: noise_sd.position"
     noise = (job.mapping.get("noise_sd") or {}).get("position")
     channel = {"name": "position", "unit": "rad", "clock": "encoder", "noise_sd": noise}
     # Targets that stand beside the positions have their time.
     clock = {} if target is None else {"command_clock": channel["clock"]}
-    write_manifest(job, KIND.version, {"joints": [joint]}, {"channels": [channel], **clock})
+    write_manifest(job, KIND.version, {"joints": [filled(joint)]}, {"channels": [channel], **clock})
     write_episodes(job, listing(samples.episodes))
     return counted(job, samples.rows, len(samples.episodes), {})
 
