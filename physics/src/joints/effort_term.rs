@@ -227,7 +227,9 @@ mod tests {
             dt_s: DT_S,
         };
         let velocity = problem.solve();
-        (problem.efforts(&velocity)[0], velocity[0])
+        let terms = problem.terms.iter();
+        let efforts = terms.map(|term| term.effort_and_slope(velocity[0]).0);
+        (efforts.sum(), velocity[0])
     }
 
     /// At rest where the spring carries the weight, the effort is the weight, for any gains.
