@@ -13,7 +13,10 @@ const FEWEST_SAMPLES: usize = 42;
 /// Path length by the wheels above which it is compared with the tracker's, m.
 const TELLING_WAY_M: f64 = 1.0;
 /// Ratios of the path length by the wheels to that by the tracker beyond which units or signs are wrong.
-const WAYS: [f64; 2] = [0.5, 2.0];
+/// A diameter in place of a radius is beyond them.
+const WAYS: [f64; 2] = [0.55, 1.8];
+/// Such ratios, of a diameter for a radius and of a radius for a diameter, within a tenth.
+const DIAMETER_WAYS: [f64; 2] = [2.0, 0.5];
 
 /// Sum of squared turns in a sample by the wheels above which their sense is compared with the tracker's, rad2.
 const TELLING_TURN_RAD2: f64 = 0.01;
@@ -131,6 +134,11 @@ impl WheelAndTrackerPaths {
                     "do wheels count backwards, or do headings point to the back? Turn the sign"
                         .into(),
                 )
+            } else if DIAMETER_WAYS
+                .iter()
+                .any(|way| (ratio / way - 1.0).abs() <= 0.1)
+            {
+                Some("is wheel_radius_m the diameter, or half the radius?".into())
             } else {
                 unit_checks::length_unit_hint("positions", 1.0 / ratio.abs())
             };

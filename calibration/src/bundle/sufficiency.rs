@@ -2,7 +2,7 @@
 
 use super::check::missing;
 use super::file::BundleKind;
-use super::{Bundle, odometry, poses, unit_checks};
+use super::{Bundle, jumps, odometry, poses, unit_checks};
 use crate::error::CalibrationError;
 
 type CheckResult = Result<(), CalibrationError>;
@@ -121,10 +121,16 @@ pub(super) fn check_sufficient_data(bundle: &Bundle) -> CheckResult {
         BundleKind::Drive => {
             odometry::check_drives(&bundle.name, &bundle.manifest, &bundle.episodes)?;
         }
-        BundleKind::Trajectory | BundleKind::Servo | BundleKind::ImpulseResponse => {}
+        BundleKind::Servo => {
+            jumps::check_servos(&bundle.name, &bundle.manifest, &bundle.episodes)?;
+        }
+        BundleKind::Trajectory | BundleKind::ImpulseResponse => {}
     }
     durations(bundle)?;
-    unit_checks::check_flights(&bundle.name, &bundle.manifest, &bundle.episodes)
+    let (name, manifest, episodes) = (&bundle.name, &bundle.manifest, &bundle.episodes);
+    unit_checks::check_falls(name, manifest, episodes)?;
+    jumps::check_places(name, manifest, episodes)?;
+    unit_checks::check_bounces(name, manifest, episodes)
 }
 
 /// Checks that no episode is longer than can be computed.

@@ -35,6 +35,19 @@ const TIMES: [UnitScale; 3] = [
     ("microseconds", 1e6),
     ("nanoseconds", 1e9),
 ];
+/// Units that lengths in metres may be read as, by mistake, and the metres in one of them.
+const SMALL_LENGTHS: [UnitScale; 3] = [
+    ("millimetres", 1e-3),
+    ("centimetres", 1e-2),
+    ("inches", 0.0254),
+];
+/// Units that times in seconds may be read as, by mistake, and the seconds in one of them.
+const WRONG_TIMES: [UnitScale; 4] = [
+    ("milliseconds", 1e-3),
+    ("microseconds", 1e-6),
+    ("nanoseconds", 1e-9),
+    ("minutes", 60.0),
+];
 /// Degrees in a radian.
 pub(super) const DEGREES: f64 = 180.0 / std::f64::consts::PI;
 
@@ -66,7 +79,8 @@ pub(super) fn length_unit_hint(what: &str, factor: f64) -> Option<String> {
     Some(unit_conversion_hint(what, *unit, "metres_per_unit"))
 }
 
-fn median(values: &mut [f64]) -> Option<f64> {
+/// The median; sorts.
+pub(super) fn median(values: &mut [f64]) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied()
 }
@@ -119,9 +133,9 @@ pub(super) fn check_even_sampling(at: &str, times: &[f64], rate_hz: f64) -> Unit
 }
 
 /// A coordinate of a body over time.
-struct CoordinateTrack {
-    t_s: Vec<f64>,
-    m: Vec<f64>,
+pub(super) struct CoordinateTrack {
+    pub(super) t_s: Vec<f64>,
+    pub(super) m: Vec<f64>,
 }
 
 impl CoordinateTrack {
@@ -169,7 +183,10 @@ impl CoordinateTrack {
 }
 
 /// The tracks of an episode along x, y and z; empty where there is none.
-fn tracks(manifest: &MeasurementDescription, episode: &MeasuredEpisode) -> [CoordinateTrack; 3] {
+pub(super) fn tracks(
+    manifest: &MeasurementDescription,
+    episode: &MeasuredEpisode,
+) -> [CoordinateTrack; 3] {
     ["x", "y", "z"].map(|axis| {
         let samples = episode.samples.iter();
         let of_axis = samples.filter(|s| manifest.channels[s.channel].name == axis);
@@ -192,27 +209,42 @@ fn tracks(manifest: &MeasurementDescription, episode: &MeasuredEpisode) -> [Coor
     })
 }
 
-/// Checks that bodies fall along y by what the manifest says, in metres and seconds, and that flights are flights alone.
-pub(super) fn check_flights(
+/// The table that holds the places of bodies; none for kinds without such.
+pub(super) fn table_of_places(kind: BundleKind) -> Option<&'static str> {
+    match kind {
+        BundleKind::Trajectory => Some("trajectory.csv"),
+        BundleKind::PoseTrajectory => Some("poses.csv"),
+        BundleKind::Servo | BundleKind::ImpulseResponse | BundleKind::Drive => None,
+    }
+}
+
+/// Checks that bodies fall along y by what the manifest says, in metres and seconds.
+pub(super) fn check_falls(
     name: &str,
     manifest: &MeasurementDescription,
     episodes: &[MeasuredEpisode],
 ) -> UnitCheck {
-    let file = match manifest.kind {
-        BundleKind::Trajectory => "trajectory.csv",
-        BundleKind::PoseTrajectory => "poses.csv",
-        BundleKind::Servo | BundleKind::ImpulseResponse | BundleKind::Drive => return Ok(()),
+    let Some(file) = table_of_places(manifest.kind) else {
+        return Ok(());
     };
-    let at = format!("{name}/{file}");
     let all: Vec<[CoordinateTrack; 3]> = episodes.iter().map(|e| tracks(manifest, e)).collect();
-    check_fall_direction(&at, manifest, &all)?;
+    check_fall_direction(&format!("{name}/{file}"), manifest, &all)
+}
+
+/// Checks that flights are flights alone.
+pub(super) fn check_bounces(
+    name: &str,
+    manifest: &MeasurementDescription,
+    episodes: &[MeasuredEpisode],
+) -> UnitCheck {
     if manifest.kind != BundleKind::Trajectory {
         return Ok(());
     }
-    for (episode, [_, height, _]) in episodes.iter().zip(&all) {
+    for episode in episodes {
+        let [_, height, _] = tracks(manifest, episode);
         if let Some((t_s, rise_m)) = height.bounce() {
             return Err(CalibrationError::field(
-                format!("{at}, episode {}", episode.name),
+                format!("{name}/trajectory.csv, episode {}", episode.name),
                 "y",
                 format!("falling until t_s {t_s:.4} and rising by {rise_m:.3} m after it"),
                 "free flight, which never rises again: a bounce, or a hand? Leave out the rows from there on, or give them \
@@ -223,8 +255,69 @@ pub(super) fn check_flights(
     Ok(())
 }
 
-/// A guess at wrong axes: along which one things fall, whether upwards, and in what unit.
-type AxisGuess = (usize, f64, Option<UnitScale>);
+/// What makes things fall by another acceleration.
+#[derive(Clone, Copy)]
+enum FallScale {
+    /// Nothing: metres and seconds.
+    Right,
+    /// Lengths are in a smaller unit.
+    Lengths(UnitScale),
+    /// Lengths in metres were read as a smaller unit.
+    LengthsReadAs(UnitScale),
+    /// Times in seconds were read as another unit.
+    TimesReadAs(UnitScale),
+}
+
+impl FallScale {
+    /// All of them; the right one first.
+    fn all() -> Vec<Self> {
+        let lengths = LENGTHS.map(Self::Lengths).into_iter();
+        let small = SMALL_LENGTHS.map(Self::LengthsReadAs);
+        let times = WRONG_TIMES.map(Self::TimesReadAs);
+        std::iter::once(Self::Right)
+            .chain(lengths)
+            .chain(small)
+            .chain(times)
+            .collect()
+    }
+
+    /// The acceleration that it makes of 1 m/s2.
+    fn factor(self) -> f64 {
+        match self {
+            Self::Right => 1.0,
+            Self::Lengths((_, factor)) | Self::LengthsReadAs((_, factor)) => factor,
+            Self::TimesReadAs((_, factor)) => factor.powi(-2),
+        }
+    }
+
+    /// Returns whether it may be along an axis: things that fly slow down by little along the others.
+    fn may_be_along(self, axis: usize) -> bool {
+        axis == 1 || matches!(self, Self::Right | Self::Lengths(_))
+    }
+
+    /// The remedy; empty where nothing is wrong.
+    fn hint(self) -> String {
+        match self {
+            Self::Right => String::new(),
+            Self::Lengths(unit) => {
+                format!(
+                    "; {}",
+                    unit_conversion_hint("lengths", unit, "metres_per_unit")
+                )
+            }
+            Self::LengthsReadAs((name, factor)) => format!(
+                "; were lengths in metres read as {name}? Multiply by {}, or leave their unit out of the map's table (\"units\" \
+                 or \"metres_per_unit\")",
+                1.0 / factor
+            ),
+            Self::TimesReadAs((name, factor)) => format!(
+                "; were times in seconds read as {name}? Multiply by {}, or leave their unit out of the map's table (\"units\" \
+                 or \"seconds_per_unit\")",
+                1.0 / factor
+            ),
+        }
+    }
+}
 
 /// Refuses motions of which hardly any falls along y, while most fall along another axis or in another unit.
 fn check_fall_direction(
@@ -232,7 +325,12 @@ fn check_fall_direction(
     manifest: &MeasurementDescription,
     all: &[[CoordinateTrack; 3]],
 ) -> UnitCheck {
-    let g = manifest.scene.environment.g_m_s2.unwrap_or(9.806_65);
+    let told = manifest.scene.environment.g_m_s2;
+    let g = told.unwrap_or(9.806_65);
+    if g == 0.0 {
+        return Ok(());
+    }
+    let scales = FallScale::all();
     // Reaches of an acceleration, samples: near ones catch short flights, far ones see through noise.
     let shares = [4, 8, 16].map(|part| {
         let mut found: BTreeMap<(usize, i8, usize), usize> = BTreeMap::new();
@@ -241,8 +339,8 @@ fn check_fall_direction(
             let reach = (track.m.len() / part).max(1);
             for a in track.accelerations(reach).filter(|a| a.is_finite()) {
                 counts[axis] += 1;
-                for (k, factor) in length_unit_factors().enumerate() {
-                    if is_near(a.abs(), g * factor, FACTOR_TOLERANCE) {
+                for (k, scale) in scales.iter().enumerate() {
+                    if is_near(a.abs(), g * scale.factor(), FACTOR_TOLERANCE) {
                         let sign = if a < 0.0 { -1 } else { 1 };
                         *found.entry((axis, sign, k)).or_default() += 1;
                     }
@@ -261,45 +359,39 @@ fn check_fall_direction(
         found.sort_by(f64::total_cmp);
         found[1]
     };
-    if g == 0.0 {
-        return Ok(());
-    }
     let in_metres = share((1, -1, 0));
     let keys = (0..3).flat_map(|axis| [-1, 1].map(|sign| (axis, sign)));
-    let keys = keys.flat_map(|(axis, sign)| (0..=LENGTHS.len()).map(move |k| (axis, sign, k)));
-    let best = keys.max_by(|a, b| telling(*a).total_cmp(&telling(*b)));
+    let keys = keys.flat_map(|(axis, sign)| (0..scales.len()).map(move |k| (axis, sign, k)));
+    let possible = keys.filter(|(axis, _, k)| scales[*k].may_be_along(*axis));
+    let best = possible.max_by(|a, b| telling(*a).total_cmp(&telling(*b)));
     // What drag slows in another unit passes through the metres' range too: then more must fall in that unit.
     let explains = |(axis, sign, k): &(usize, i8, usize)| {
         let share = telling((*axis, *sign, *k));
-        let falls_along_y = (*axis, *sign) == (1, -1) && *k > 0;
+        let falls_along_y =
+            (*axis, *sign) == (1, -1) && matches!(scales[*k], FallScale::Lengths(_));
         share >= TELLING_SHARE
             && (in_metres < FALLING_SHARE || (falls_along_y && share > in_metres))
     };
     let Some((axis, sign, k)) = best.filter(explains) else {
         return Ok(());
     };
-    let unit = k.checked_sub(1).map(|k| LENGTHS[k]);
     let letter = ["x", "y", "z"][axis];
-    let found = f64::from(sign) * g * unit.map_or(1.0, |unit| unit.1);
+    let found = f64::from(sign) * g * scales[k].factor();
+    let by = told.map_or("", |_| " by g_m_s2");
     Err(CalibrationError::field(
         at,
         "the acceleration in free flight",
         format!("about {found:.4} m/s2 along {letter}"),
         format!(
-            "{:.4} along y, which points up{}",
+            "{:.4} along y{by}, which points up{}",
             -g,
-            suggested_fix((axis, f64::from(sign), unit), manifest.kind)
+            suggested_fix(axis, f64::from(sign), scales[k], manifest.kind)
         ),
     ))
 }
 
-/// Factors of lengths: metres first.
-fn length_unit_factors() -> impl Iterator<Item = f64> {
-    std::iter::once(1.0).chain(LENGTHS.iter().map(|unit| unit.1))
-}
-
 /// Returns the remedy for a guess.
-fn suggested_fix((axis, sign, unit): AxisGuess, kind: BundleKind) -> String {
+fn suggested_fix(axis: usize, sign: f64, scale: FallScale, kind: BundleKind) -> String {
     let mut told = String::new();
     if axis != 1 {
         told.push_str(if kind == BundleKind::PoseTrajectory {
@@ -313,10 +405,7 @@ fn suggested_fix((axis, sign, unit): AxisGuess, kind: BundleKind) -> String {
             "; do heights grow downwards? Turn their sign (for a flight, \"metres_per_unit\": -1 in the map's table does)",
         );
     }
-    if let Some(unit) = unit {
-        told.push_str("; ");
-        told.push_str(&unit_conversion_hint("lengths", unit, "metres_per_unit"));
-    }
+    told.push_str(&scale.hint());
     told
 }
 

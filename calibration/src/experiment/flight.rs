@@ -25,6 +25,10 @@ const FIRST_SPIN: usize = 3;
 const EARTH_GRAVITY_M_S2: [f64; 2] = [9.77, 9.84];
 /// The precision of a local gravity that was measured, m/s².
 const MEASURED_GRAVITY_M_S2: f64 = 2e-3;
+/// The largest acceleration of free fall that is tried, m/s2; of a larger one that was told, twice that.
+const STRONGEST_GRAVITY_M_S2: f64 = 30.0;
+/// The address of gravity.
+const GRAVITY: &str = "world/gravity_m_s2";
 /// The ball in its tiny house.
 const BALL: PartId = PartId(0);
 
@@ -122,7 +126,10 @@ impl FlightExperiment {
                 solver_substeps: 1,
                 ..PhysicsConfig::default()
             };
-            stages.push(ExperimentWorld::new(size_m, &ball, config)?);
+            // Causes change what differs from the gravity that was told: the stage has it from the start.
+            let gravity = [(GRAVITY, gravity_m_s2(manifest))];
+            let stage = ExperimentWorld::new(size_m, &ball, config)?;
+            stages.push(stage.with_laws_and_overrides(Vec::new(), &gravity)?);
         }
         Ok(Self {
             episodes: bundle
@@ -216,24 +223,31 @@ fn causes(bundle: &Bundle) -> Vec<Cause> {
     laws.chain([gravity(manifest)]).chain(faults).collect()
 }
 
-/// Another acceleration of free fall. Where it was measured, only that value is plausible.
+/// Another acceleration of free fall. Where it was measured on Earth, only that value is plausible; one that is told and none
+/// of the Earth's may be a mistake.
 fn gravity(manifest: &crate::bundle::file::MeasurementDescription) -> Cause {
     let told = gravity_m_s2(manifest);
-    let plausible = if manifest.scene.environment.g_m_s2.is_some() {
+    let [least, most] = EARTH_GRAVITY_M_S2;
+    let is_told = manifest.scene.environment.g_m_s2.is_some();
+    let plausible = if is_told && (least..=most).contains(&told) {
         [told - MEASURED_GRAVITY_M_S2, told + MEASURED_GRAVITY_M_S2]
     } else {
-        EARTH_GRAVITY_M_S2
+        [least.min(told), most.max(told)]
     };
     Cause {
         id: "gravity".into(),
-        name: "another acceleration of free fall".into(),
+        name: if is_told {
+            "another acceleration of free fall than g_m_s2 tells".into()
+        } else {
+            "another acceleration of free fall".into()
+        },
         equation: "dv/dt = -g, with g in m/s2".into(),
         parameters: vec![FitParameter {
             name: "gravity_m_s2".into(),
             unit: "m/s2".into(),
             default: told,
             low: 0.0,
-            high: 30.0,
+            high: STRONGEST_GRAVITY_M_S2.max(2.0 * told).min(100.0),
             plausible,
             step: 0.2,
         }],
@@ -242,7 +256,7 @@ fn gravity(manifest: &crate::bundle::file::MeasurementDescription) -> Cause {
                                 amount at every speed; for scales of lengths and of the clock, measure a known length and \
                                 time a pendulum"
             .into(),
-        binding: CauseBinding::Addresses(vec!["world/gravity_m_s2".into()]),
+        binding: CauseBinding::Addresses(vec![GRAVITY.into()]),
         fixed: Vec::new(),
     }
 }
@@ -388,17 +402,62 @@ mod tests {
     use super::*;
     use crate::experiment::{ParameterVector, parameter_range};
 
-    fn experiment() -> FlightExperiment {
+    /// An experiment of the example's bodies and times, where gravity was told.
+    fn experiment(told_m_s2: Option<f64>) -> FlightExperiment {
         let folder = tempfile::tempdir().unwrap();
         crate::example::write(folder.path(), 1).unwrap();
-        let bundle = crate::bundle::read(folder.path()).unwrap();
+        let mut bundle = crate::bundle::read(folder.path()).unwrap();
+        bundle.manifest.scene.environment.g_m_s2 = told_m_s2;
         FlightExperiment::new(&bundle, &CalibrationOptions::default()).unwrap()
+    }
+
+    /// No cause acts, or gravity alone: the fall is by the gravity that the manifest tells, or by the cause's.
+    #[test]
+    fn things_fall_by_the_gravity_that_was_told() {
+        for (told, tried) in [
+            (Some(1.62), None),
+            (Some(1.62), Some(9.806_65)),
+            (Some(0.0), None),
+            (None, None),
+        ] {
+            let experiment = experiment(told);
+            let mut causes = ParameterVector::start(&experiment).causes;
+            let index = experiment
+                .causes
+                .iter()
+                .position(|cause| cause.id == "gravity")
+                .unwrap();
+            let place = cause_range(&experiment, index).start;
+            assert_eq!(causes[place], told.unwrap_or(f64::from(9.806_65_f32)));
+            causes[place] = tried.unwrap_or(causes[place]);
+            let gravity = causes[place];
+            let values = EpisodeParameters {
+                causes: &causes,
+                shared: &[],
+                episode_nuisances: &[0.0, 0.0, 0.0, 2.0, 0.0, 0.0],
+            };
+            let found = experiment.predict(0, &values).unwrap();
+            let measured = &experiment.episodes[0];
+            for (k, found) in found
+                .iter()
+                .enumerate()
+                .filter(|(k, _)| measured.channel[*k] == 1)
+            {
+                let t = measured.t_s[k];
+                let exact = 2.0 * t - 0.5 * gravity * t * t;
+                let drift = 0.5 * gravity * t / 240.0;
+                assert!(
+                    (found - exact).abs() < 2e-4 + drift,
+                    "{told:?} {tried:?} {t}: {found} {exact}"
+                );
+            }
+        }
     }
 
     /// Flights of the engine match closed forms: a parabola under any gravity, and Stokes' fall.
     #[test]
     fn flights_meet_their_closed_forms() {
-        let experiment = experiment();
+        let experiment = experiment(None);
         let own = [1.0, 3.0, 1.5, 2.0, -1.0, 0.5];
         let (start, speed) = ([1.0, 1.5, -1.0], [3.0, 2.0, 0.5]);
         for (gravity, rate) in [(9.806_65, 0.0), (9.78, 0.0), (5.0, 0.0), (9.806_65, 0.7)] {

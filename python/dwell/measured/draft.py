@@ -107,11 +107,23 @@ class BundleDraft:
         if found := re.match(rf"{here}/([a-z]+\.csv)(?: line (\d+))?(.*)", fault, re.DOTALL):
             origin = self._origins.get(found[1])
             if origin is not None and origin.paths:
-                return _in_table(origin, found[2], found[3])
+                line = found[2] or self._line(found[1], found[3])
+                return _in_table(origin, line, found[3])
         elif found := re.match(rf"{here}(, episode .*?)?: (.*)", fault, re.DOTALL):
             said = re.sub(r"^t_s is", f"column {self._clock!r} is", found[2])
             return f"{self._table()}{found[1] or ''}: {said}"
         return fault.replace(str(self.folder), str(out))
+
+    def _line(self, table: str, rest: str) -> str | None:
+        """The line of a table in which a fault's episode and time stand, if it tells both."""
+        told = re.match(r", episode (.*), t_s (\S+): ", rest, re.DOTALL)
+        if told is None:
+            return None
+        with (self.folder / table).open(newline="", encoding="utf-8") as file:
+            for line, row in enumerate(csv.DictReader(file), 2):
+                if row["episode"] == told[1] and float(row["t_s"]) == float(told[2]):
+                    return str(line)
+        return None
 
     def _table(self) -> str:
         return self._main or self._map_file

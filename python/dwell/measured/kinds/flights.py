@@ -152,7 +152,7 @@ def _write(job: Job) -> dict[str, Any]:
 
 
 def _unlike_noise(episodes: list[Episode], fields: list[Field]) -> str | None:
-    """A word on places with much more noise than others: a fall tells the unit of heights alone."""
+    """A word on places of which some have much more noise; falls tell the unit of heights alone."""
     noise: dict[str, float] = {}
     for k, own in enumerate(fields):
         if own.dimension == "length":

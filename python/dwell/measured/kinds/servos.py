@@ -96,6 +96,7 @@ def _write(job: Job) -> dict[str, Any]:
     reader = SampleReader(job, part, here, [Field(position, "angle", key="position")], held)
     samples = reader.read(step_s=None, fewest=FEWEST)
     origin = {"t_s": [reader.clock], "episode": ["/".join(reader.episode)], "value": [position]}
+    origin["position"] = [position]
     with job.draft.table("trajectory.csv", "episode,t_s,entity,channel,value", origin) as write:
         for episode in samples.episodes:
             for k, stamp in enumerate(samples.stamps(episode)):
