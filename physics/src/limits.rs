@@ -30,11 +30,58 @@ const REACH_M: f32 = 0.01;
 /// Pairs from which construction of a world checks for cancellation between them.
 const MANY_PAIRS: usize = 10_000;
 
+/// Work of rapier's list of pairs in one flush, steps of [`PairWork`]: some tenths of a second, in which it asks nobody.
+const STEPS_PER_FLUSH: u64 = 1_000_000;
+/// Such work from which on the bodies of a new world are inserted in portions, with a flush behind each.
+const MANY_STEPS: u64 = 5 * STEPS_PER_FLUSH;
+
 /// The number of pairs of pieces in a world; with many of them a flush takes long.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum PairDensity {
     Low,
     High,
+}
+
+/// The pairs of pieces of a new world.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct PairLoad {
+    pub(crate) density: PairDensity,
+    /// The bodies before which those inserted so far are flushed, in order.
+    pub(crate) pauses: Vec<usize>,
+}
+
+impl PairLoad {
+    pub(crate) const LOW: Self = Self {
+        density: PairDensity::Low,
+        pauses: Vec::new(),
+    };
+}
+
+/// The work of adding the pairs of each body with those before it: rapier looks through the pairs that a piece has already.
+struct PairWork {
+    /// Shape (body,).
+    steps: Vec<u64>,
+}
+
+impl PairWork {
+    /// Returns where to flush in between. Joints are attached only later, so bodies on joints, and those after them, wait.
+    fn pauses(&self, model: &PhysicsModel) -> Vec<usize> {
+        if self.steps.iter().sum::<u64>() < MANY_STEPS {
+            return Vec::new();
+        }
+        let first_jointed = model.bodies.iter().position(|plan| plan.joint.is_some());
+        let mut pauses = Vec::new();
+        let mut since = 0;
+        for (body, steps) in self.steps.iter().enumerate() {
+            if since + steps > STEPS_PER_FLUSH && since > 0 {
+                pauses.push(body);
+                since = 0;
+            }
+            since += steps;
+        }
+        pauses.retain(|body| first_jointed.is_none_or(|first| *body <= first));
+        pauses
+    }
 }
 
 fn refuse<T>(
@@ -51,7 +98,7 @@ fn refuse<T>(
 }
 
 /// Returns whether a world can hold a house in the given state.
-pub(crate) fn check(model: &PhysicsModel, state: &State) -> Result<PairDensity, PhysicsError> {
+pub(crate) fn check(model: &PhysicsModel, state: &State) -> Result<PairLoad, PhysicsError> {
     let house = &model.house;
     let bodies = model.bodies.len();
     if bodies > MAX_BODIES {
@@ -72,13 +119,16 @@ pub(crate) fn check(model: &PhysicsModel, state: &State) -> Result<PairDensity, 
     }
     // Fewer pieces have no more pairs.
     if pieces * pieces.saturating_sub(1) / 2 <= MANY_PAIRS {
-        return Ok(PairDensity::Low);
+        return Ok(PairLoad::LOW);
     }
-    let near = broad_phase_pairs(model, state)?;
-    Ok(if near > MANY_PAIRS {
-        PairDensity::High
-    } else {
-        PairDensity::Low
+    let (near, work) = broad_phase_pairs(model, state)?;
+    Ok(PairLoad {
+        density: if near > MANY_PAIRS {
+            PairDensity::High
+        } else {
+            PairDensity::Low
+        },
+        pauses: work.pauses(model),
     })
 }
 
@@ -121,8 +171,11 @@ pub(crate) fn check_excluded_pairs(
     refuse(what, (pairs, MAX_EXCLUDED_PAIRS), change)
 }
 
-/// Returns the number of pairs that rapier keeps as a world begins.
-fn broad_phase_pairs(model: &PhysicsModel, state: &State) -> Result<usize, PhysicsError> {
+/// Returns the number of pairs that rapier keeps as a world begins, and the work of adding them.
+fn broad_phase_pairs(
+    model: &PhysicsModel,
+    state: &State,
+) -> Result<(usize, PairWork), PhysicsError> {
     /// The owner of all static pieces.
     const STATIC_OWNER: u32 = u32::MAX;
     let mut boxes: Vec<Aabb> = Vec::new();
@@ -145,15 +198,25 @@ fn broad_phase_pairs(model: &PhysicsModel, state: &State) -> Result<usize, Physi
     }
     let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
     let (mut met, mut near) = (0, 0);
+    let mut steps = vec![0; model.bodies.len()];
     for (first, bounds) in boxes.iter().enumerate() {
         interrupt::unwind_if_cancelled();
+        let mut found = 0_u64;
         for second in tree.intersect_aabb(bounds) {
             // Each pair once.
             if second as usize <= first {
                 continue;
             }
             met += 1;
-            near += usize::from(owners[first] != owners[second as usize]);
+            let other = owners[second as usize];
+            if owners[first] != other {
+                near += 1;
+                found += 1;
+                // Of a pair with a static piece it looks through those of the body.
+                if owners[first] != STATIC_OWNER {
+                    steps[other as usize] += found;
+                }
+            }
             let (what, most) = if near > MAX_NEAR_PAIRS {
                 ("pairs of collision pieces near each other", MAX_NEAR_PAIRS)
             } else if met > MAX_OVERLAPPING_BOX_PAIRS {
@@ -172,12 +235,83 @@ fn broad_phase_pairs(model: &PhysicsModel, state: &State) -> Result<usize, Physi
             });
         }
     }
-    Ok(near)
+    Ok((near, PairWork { steps }))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use dwell_scene::{
+        Category, Id, LevelId, MaterialId, Mesh, Mobility, Object, Part, PartId, Pose,
+        ShoeboxMaterials,
+    };
+    use glam::{Affine3A, Vec3};
+    use std::sync::Arc;
+
+    /// A room with boxes at one place, or `apart_m` from each other.
+    fn boxes(count: usize, apart_m: f32) -> (PhysicsModel, State) {
+        let room = House::shoebox([4.0, 3.0, 4.0], &ShoeboxMaterials::default()).unwrap();
+        let mut data = room.data().clone();
+        let half = Vec3::splat(0.1);
+        let mesh = data.meshes.push(Arc::new(Mesh::cuboid(-half, half)));
+        for k in 0..count {
+            data.parts.push(Part {
+                object: ObjectId::from_index(k),
+                name: "body".into(),
+                fixed: false,
+                world_from_part: Pose::from_position(Vec3::new(k as f32 * apart_m, 1.0, 2.0)),
+                mesh,
+                part_from_mesh: Affine3A::IDENTITY,
+                materials: vec![MaterialId(0)],
+                colliders: vec![dwell_scene::Collider::Cuboid {
+                    part_from_box: Pose::IDENTITY,
+                    half_extents: half,
+                }],
+                mass_kg: None,
+                density_kg_m3: 500.0,
+                inertial: None,
+            });
+            data.objects.push(Object {
+                name: format!("box_{k}"),
+                source_id: String::new(),
+                model: String::new(),
+                category: Category::default(),
+                level: LevelId(0),
+                room: None,
+                mobility: Mobility::Movable,
+                pickable: true,
+                switch: None,
+                first_part: PartId::from_index(k),
+                part_count: 1,
+            });
+        }
+        let model = PhysicsModel::new(Arc::new(House::new(data).unwrap()));
+        let state = State::new(&model.house);
+        (model, state)
+    }
+
+    /// rapier looks through all pairs of a piece for each that it adds, and asks nobody meanwhile.
+    #[test]
+    fn a_heap_is_inserted_in_portions_of_bounded_work() {
+        let (model, state) = boxes(400, 0.0);
+        let (near, work) = broad_phase_pairs(&model, &state).unwrap();
+        assert!(near >= 400 * 399 / 2, "{near}");
+        let pauses = check(&model, &state).unwrap().pauses;
+        let ends = pauses.iter().copied().chain([400]);
+        let starts = std::iter::once(0).chain(pauses.iter().copied());
+        let largest = *work.steps.iter().max().unwrap();
+        for (start, end) in starts.zip(ends) {
+            let steps: u64 = work.steps[start..end].iter().sum();
+            assert!(
+                steps <= STEPS_PER_FLUSH.max(largest),
+                "{start}..{end}: {steps}"
+            );
+        }
+        assert!((5..20).contains(&pauses.len()), "{pauses:?}");
+        // As many that hardly touch are inserted at once.
+        let (model, state) = boxes(400, 0.15);
+        assert_eq!(check(&model, &state).unwrap(), PairLoad::LOW);
+    }
 
     /// The page's table gives every cap of this file.
     #[test]

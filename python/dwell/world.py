@@ -335,8 +335,15 @@ class World(ActionApi, BodyApi, GuideApi, PersonApi, SoundApi):
     ) -> tuple[NDArray[np.uint8], tuple[float, float], float]:
         """A storey from above, cut open below its ceilings; :mod:`dwell.plans` writes names on it.
 
+        Args:
+            longest_edge: Pixels of its longer edge, 1 to 16384.
+            level: The storey, from 0.
+
         Returns:
             The image (height, width, 3), the x and z of its upper left corner in m, pixels a metre.
+
+        Raises:
+            DwellError: There is no such storey; a picture that the free memory cannot hold.
         """
         edge = integer_in_range("longest_edge", longest_edge, low=1, high=MAX_PIXELS)
         level = integer_in_range("level", level, high=_MAX_ID)

@@ -129,7 +129,7 @@ impl PyBatch {
             .map(|house| house.get().engines.clone())
             .collect();
         let batch = py.engine(|| -> Result<Batch, PyFault> {
-            let config: EnvConfig = serde_json::from_str(config_json)?;
+            let config: EnvConfig = dwell::parse_config(config_json).map_err(PyFault::Config)?;
             let threads = Threads::try_resolve(threads)?;
             let count = shared.len();
             let mut envs = Vec::new();

@@ -30,7 +30,7 @@ pub(crate) fn chosen_actions(
     agent: usize,
 ) -> PyResult<Vec<&'static str>> {
     py.engine(|| -> Result<_, PyFault> {
-        let config: dwell::EnvConfig = serde_json::from_str(config_json)?;
+        let config: dwell::EnvConfig = dwell::parse_config(config_json).map_err(PyFault::Config)?;
         let actions = config.chosen_actions(agent)?.into_iter();
         Ok(actions.map(DiscreteAction::name).collect())
     })

@@ -6,7 +6,7 @@ use crate::errors::PyFault;
 use crate::house::PyHouse;
 use crate::values::JsonArgument;
 use crate::world::PyWorld;
-use dwell_render::{Dollhouse, DollhouseConfig, StoreyMap};
+use dwell_render::DollhouseConfig;
 use dwell_scene::parallel::Threads;
 use dwell_scene::{House, LevelId};
 use glam::Vec3;
@@ -26,12 +26,13 @@ pub(crate) fn map<'py>(
 ) -> PyResult<(RgbArray<'py>, f32, f32, f32)> {
     let (rgb, map) = world.get().read_interruptible(py, |running| {
         let world = &running.world;
-        let map = StoreyMap::new(world.house(), LevelId(level), longest_edge)?;
-        let (renderer, threads) = (world.engines().cpu_renderer()?, Threads::try_resolve(None)?);
-        Ok((
-            map.render(renderer, world.rays(), world.state(), threads)?,
-            map,
-        ))
+        let threads = Threads::try_resolve(None)?;
+        Ok(dwell::map_picture(
+            world,
+            LevelId(level),
+            longest_edge,
+            threads,
+        )?)
     })?;
     let size = (map.view.camera.height(), map.view.camera.width());
     let picture = picture(py, rgb, size)?;
@@ -49,9 +50,8 @@ pub(crate) fn dollhouse<'py>(
     let (rgb, size) = world.get().read_interruptible(py, |running| {
         let world = &running.world;
         let config: DollhouseConfig = config.read()?;
-        let doll = Dollhouse::new(world.house(), LevelId(level), &config)?;
-        let (renderer, threads) = (world.engines().cpu_renderer()?, Threads::try_resolve(None)?);
-        let rgb = doll.render(renderer, world.rays(), world.state(), threads)?;
+        let threads = Threads::try_resolve(None)?;
+        let (rgb, doll) = dwell::dollhouse_picture(world, LevelId(level), &config, threads)?;
         Ok((rgb, (doll.view.camera.height(), doll.view.camera.width())))
     })?;
     picture(py, rgb, size)

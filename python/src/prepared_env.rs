@@ -41,7 +41,7 @@ pub(crate) fn prepared_envs(
         .map(|house| house.get().engines.clone())
         .collect();
     py.engine(|| -> Result<_, PyFault> {
-        let config: EnvConfig = serde_json::from_str(config_json)?;
+        let config: EnvConfig = dwell::parse_config(config_json).map_err(PyFault::Config)?;
         let threads = Threads::try_resolve(threads)?;
         let specs = stated_episodes(stated, shared.len(), config.agents.len())?;
         let envs = threads.map(shared.len(), |k| {

@@ -128,7 +128,7 @@ impl PyWorld {
         arrays::init_numpy(py)?;
         let engines = house.get().engines.clone();
         let world = py.engine(|| -> Result<World, PyFault> {
-            let config: WorldConfig = serde_json::from_str(config_json)?;
+            let config: WorldConfig = dwell::parse_config(config_json).map_err(PyFault::Config)?;
             let mut world = World::new(engines, &config)?;
             world.set_threads(Threads::default());
             world.reset(RandomKey::root(seed))?;

@@ -221,6 +221,10 @@ CALLS = [
     ('dwell.World(H, parameters={"world/gravity_m_s2": None})', "world/gravity_m_s2 is None"),
     ("dwell.World(H, nope=1)", "unknown field `nope`, expected one of `control_rate_hz`, `ph"),
     ('dwell.World(H, control_rate_hz="x")', "control_rate_hz is 'x'"),
+    (
+        "dwell.World(H, sound_rate_hz=-1)",
+        "sound_rate_hz: found integer `-1`, expected a whole number from 0",
+    ),
     ("dwell.World(H, control_rate_hz=0)", "control_rate_hz is 0"),
     ("dwell.World(H, control_rate_hz=1e300)", "control_rate_hz is 1e+300"),
     ("dwell.World(H, physics_rate_hz=[1])", "physics_rate_hz is [1]"),

@@ -391,6 +391,32 @@ except dwell.ConfigError as error:
 """
 
 
+#: Asks for the largest map with little memory left.
+MAP_SHORT_OF_MEMORY = """
+import re, resource
+import dwell
+world = dwell.World("builtin:studio", agents=0)
+world.map(64)
+used = int(re.search("VmSize:\\s*([0-9]+)", open("/proc/self/status").read())[1]) * 1024
+resource.setrlimit(resource.RLIMIT_AS, (used + 400 * 2**20, resource.RLIM_INFINITY))
+try:
+    world.map(16_384)
+except dwell.ConfigError as error:
+    print(error)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems do not say how much is free")
+def test_a_map_that_the_memory_does_not_hold_is_refused_by_a_sentence() -> None:
+    command = [sys.executable, "-c", MAP_SHORT_OF_MEMORY]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith(
+        "longest_edge is 16384; allowed is what the memory of this machine"
+    )
+    assert "are free; take fewer pixels" in done.stdout
+
+
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems do not say how much is free")
 def test_images_that_the_memory_does_not_hold_are_refused_by_a_sentence(tmp_path: Path) -> None:
     from PIL import Image

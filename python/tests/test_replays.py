@@ -290,6 +290,7 @@ def test_errors_name_the_file(file: Path, tmp_path: Path) -> None:
     faults = [
         ("house", "nowhere.glb", "nowhere.glb"),
         ("config", {"task": "Nothing"}, "Nothing"),
+        ("config", {"world": {"sound_rate_hz": -1}}, "world.sound_rate_hz: found integer `-1`"),
         ("parts", ["Shouting"], "Shouting"),
     ]
     for field, value, said in faults:

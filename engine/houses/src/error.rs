@@ -180,13 +180,16 @@ impl HousesError {
         self
     }
 
-    /// The same of the user's file `name`: an [`HousesError::Spec`] and what is wrong with the edits as a whole name it, as all
-    /// others do.
+    /// The same of the user's file `name`: an [`HousesError::Spec`], a path out of its folder, and what is wrong with the edits as a
+    /// whole name it, as all others do.
     pub(crate) fn in_file(mut self, name: &str) -> Self {
         match &mut self {
             Self::Spec { field, .. } => *field = format!("{name}: {field}"),
             Self::TooLarge { at, .. } | Self::Scene { at, .. } if at.file == "edits" => {
                 at.file = format!("{name}: edits");
+            }
+            Self::PathLeavesRoot { at, .. } | Self::Scene { at, .. } if at.file == "plan" => {
+                name.clone_into(&mut at.file);
             }
             _ => {}
         }

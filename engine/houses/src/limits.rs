@@ -13,8 +13,8 @@ pub(crate) const MAX_IMAGE_SIDE: u32 = 16_384;
 pub(crate) const MAX_IMAGE_PIXELS: u64 = 64 << 20;
 /// Most pixels of all images that a file names, after decoding (2 GiB as RGBA). Those above it are left out.
 pub(crate) const MAX_ALL_PIXELS: u64 = 512 << 20;
-/// Most vertices and indices that the meshes of a glTF file have, that its nodes show, and that rooms of SUNCG show: all may name
-/// the same bytes any number of times.
+/// Most vertices and indices that the meshes of a glTF file or of the native form have, that its nodes, parts and pieces of the
+/// building show, and that rooms of SUNCG show: all may name the same bytes any number of times.
 pub(crate) const MAX_CORNERS_SHOWN: u64 = 64 << 20;
 /// Most MTL files of one OBJ file.
 pub(crate) const MAX_LIBRARIES: usize = 1000;

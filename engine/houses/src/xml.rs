@@ -1,7 +1,7 @@
 //! Bounded parsing of XML: the parser calls itself for every nested element, and takes memory for every node.
 
 use dwell_scene::interrupt;
-use roxmltree::{Document, ParsingOptions};
+use roxmltree::{Document, Node, ParsingOptions};
 
 use crate::error::HousesError;
 use crate::limits::{MAX_XML_ATTRIBUTES, MAX_XML_DEPTH, MAX_XML_ELEMENTS};
@@ -28,6 +28,44 @@ pub(crate) fn parse<'a>(text: &'a str, at: &FileLocation) -> Result<Document<'a>
             error => error.to_string(),
         },
     })
+}
+
+/// Bytes between the places where a [`LineIndex`] knows the line.
+const LINE_BLOCK: usize = 4096;
+
+/// The lines of a document's nodes. The parser itself counts all lines from the start of the text at each question.
+pub(crate) struct LineIndex {
+    /// Line breaks before each block of the text.
+    before: Vec<u32>,
+}
+
+impl LineIndex {
+    pub(crate) fn new(document: &Document<'_>) -> Self {
+        let mut breaks = 0;
+        let blocks = document.input_text().as_bytes().chunks(LINE_BLOCK);
+        let before = blocks.map(|block| {
+            interrupt::unwind_if_cancelled();
+            let before = breaks;
+            breaks += break_count(block);
+            before
+        });
+        Self {
+            before: before.collect(),
+        }
+    }
+
+    /// The 1-based line on which a node of the document begins.
+    pub(crate) fn line(&self, node: Node<'_, '_>) -> u32 {
+        let start = node.range().start;
+        let block = start / LINE_BLOCK;
+        let rest = &node.document().input_text().as_bytes()[block * LINE_BLOCK..start];
+        1 + self.before.get(block).copied().unwrap_or(0) + break_count(rest)
+    }
+}
+
+/// The line breaks in a piece of a text; texts have at most 64 MiB.
+fn break_count(text: &[u8]) -> u32 {
+    text.iter().map(|byte| u32::from(*byte == b'\n')).sum()
 }
 
 /// Refuses elements that are nested deeper than is read, and those with more attributes. As long as the text is XML, the counts
@@ -154,6 +192,23 @@ mod tests {
         assert!(parse(&format!("<b>{flat}</b>"), &FileLocation::file("a.xml")).is_ok());
         let quoted = "<a b='/>'>".repeat(1000);
         assert_eq!(told(&quoted), found.replace(":201:", ":1:"));
+    }
+
+    #[test]
+    fn nodes_begin_on_the_lines_that_the_parser_counts() {
+        let mut text = "<a>".to_owned();
+        for k in 0..900 {
+            text += &"\n ".repeat(k % 7);
+            text += "<b c='\n'/>";
+        }
+        text += "</a>";
+        assert!(text.len() > 3 * LINE_BLOCK);
+        let document = parse(&text, &FileLocation::file("a.xml")).unwrap();
+        let lines = LineIndex::new(&document);
+        for node in document.descendants() {
+            let row = document.text_pos_at(node.range().start).row;
+            assert_eq!(lines.line(node), row);
+        }
     }
 
     #[test]

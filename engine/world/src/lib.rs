@@ -31,6 +31,7 @@ mod info;
 mod initial_state;
 pub mod laws;
 mod listener;
+mod map_pictures;
 pub mod memory_estimate;
 pub mod metrics;
 mod motion_history;
@@ -76,7 +77,9 @@ pub use fixtures::{
 pub use floor_plan::{FloorPlanLabels, PlanDoor, PlanRoom, floor_plan};
 pub use info::{RoomViewpoint, best_room_viewpoints, house_info};
 pub use listener::{Listener, MountedReceiver};
+pub use map_pictures::{dollhouse_picture, map_picture};
 pub use motion_history::LastStepMotion;
+pub use parse_settings::parse_config;
 pub use plain_json_error::plain_json_error;
 pub use room_surfaces::{RoomMaterialMesh, room_surfaces};
 pub use sensor_requests::{RenderedImages, RenderedView, SensorRequests, ViewRequest};

@@ -1,8 +1,12 @@
 //! Settings from JSON, refused in plain words: the field, what was found, what is allowed.
 
 use crate::error::WorldError;
+use crate::plain_json_error::plain_json_error;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
+
+/// Values of a list or mapping beyond which none is looked for that cannot be read: each is tried.
+const MOST_TRIED: usize = 64;
 
 /// Reads settings whose fields all have defaults.
 ///
@@ -40,6 +44,86 @@ pub(crate) fn parse_task_settings<T: DeserializeOwned + Default>(
     parse_settings("task_settings", value)
 }
 
+/// Reads a configuration whose fields have defaults.
+///
+/// # Errors
+/// What was found and what is expected, after the fields that lead there: `world.sound_rate_hz: found ...`.
+pub fn parse_config<T: DeserializeOwned>(text: &str) -> Result<T, String> {
+    serde_json::from_str(text).map_err(|error| {
+        let told = plain_json_error(&error);
+        // An unknown field is named already.
+        if told.contains("field `") {
+            return told;
+        }
+        let value = serde_json::from_str(text).unwrap_or_default();
+        match unreadable_place::<T>(&value) {
+            Some(place) => format!("{place}: {told}"),
+            None => told,
+        }
+    })
+}
+
+/// A way from a value into it.
+#[derive(Clone, Debug)]
+enum Step {
+    Field(String),
+    Row(usize),
+}
+
+impl Step {
+    fn into_value<'a>(&self, value: &'a mut Value) -> Option<&'a mut Value> {
+        match self {
+            Self::Field(name) => value.get_mut(name),
+            Self::Row(row) => value.get_mut(row),
+        }
+    }
+
+    fn remove_from(&self, value: &mut Value) {
+        match (self, value) {
+            (Self::Field(name), Value::Object(fields)) => drop(fields.remove(name)),
+            (Self::Row(row), Value::Array(rows)) => drop(rows.remove(*row)),
+            _ => {}
+        }
+    }
+}
+
+/// The place of the innermost value without which all else can be read; `None` without one.
+fn unreadable_place<T: DeserializeOwned>(root: &Value) -> Option<String> {
+    fn inside<'a>(root: &'a mut Value, path: &[Step]) -> Option<&'a mut Value> {
+        path.iter()
+            .try_fold(root, |value, step| step.into_value(value))
+    }
+    let mut path: Vec<Step> = Vec::new();
+    loop {
+        let mut whole = root.clone();
+        let steps: Vec<Step> = match inside(&mut whole, &path) {
+            Some(Value::Object(fields)) => fields.keys().cloned().map(Step::Field).collect(),
+            Some(Value::Array(rows)) => (0..rows.len()).map(Step::Row).collect(),
+            _ => Vec::new(),
+        };
+        if steps.len() > MOST_TRIED {
+            break;
+        }
+        let is_at_fault = |step: &Step| {
+            let mut rest = root.clone();
+            if let Some(holder) = inside(&mut rest, &path) {
+                step.remove_from(holder);
+            }
+            serde_json::from_value::<T>(rest).is_ok()
+        };
+        match steps.into_iter().find(is_at_fault) {
+            Some(step) => path.push(step),
+            None => break,
+        }
+    }
+    let words = path.iter().enumerate().map(|(k, step)| match step {
+        Step::Field(name) if k == 0 => name.clone(),
+        Step::Field(name) => format!(".{name}"),
+        Step::Row(row) => format!("[{row}]"),
+    });
+    (!path.is_empty()).then(|| words.collect())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -50,6 +134,36 @@ mod tests {
     struct SampleSettings {
         width: u32,
         gain: f32,
+    }
+
+    #[test]
+    fn a_value_of_a_configuration_is_named_with_the_fields_it_is_in() {
+        use crate::env_config::EnvConfig;
+        let told = |text: &str| parse_config::<EnvConfig>(text).unwrap_err();
+        assert_eq!(
+            told(r#"{"task": "Free", "world": {"control_rate_hz": 10.0, "sound_rate_hz": -1}}"#),
+            "world.sound_rate_hz: found integer `-1`, expected a whole number from 0"
+        );
+        assert_eq!(
+            told(r#"{"sensors": [{"kind": "gps"}, 5]}"#),
+            "sensors[1]: found integer `5`, expected values by name"
+        );
+        assert_eq!(told("5"), "found integer `5`, expected values by name");
+        let nope = told(r#"{"world": {"nope": 1}}"#);
+        assert!(nope.starts_with("unknown field `nope`, expected"), "{nope}");
+        // Of two faults neither is the one without which all else can be read.
+        let both = told(r#"{"task": 5, "world": {"sound_rate_hz": -1}}"#);
+        assert!(both.starts_with("found integer"), "{both}");
+        // Long lists are not searched.
+        let long = format!(
+            r#"{{"sensors": [{}5]}}"#,
+            r#"{"kind": "gps"},"#.repeat(1000)
+        );
+        assert!(
+            told(&long).starts_with("sensors: found integer"),
+            "{}",
+            told(&long)
+        );
     }
 
     #[test]

@@ -2,11 +2,11 @@
 
 use crate::body::{self, BodyHandle, BodyStatus, body_type};
 use crate::config::ResolvedConfig;
-use crate::contact::{ColliderMetadata, ContactProperties};
+use crate::contact::{ColliderMetadata, CollisionExclusions, ContactHooks, ContactProperties};
 use crate::engine::{ContactCompliance, RapierWorld};
 use crate::inertia::{self, BodyInertia};
 use crate::laws::LawSet;
-use crate::limits::PairDensity;
+use crate::limits::{PairDensity, PairLoad};
 use crate::model::{BodyDefinition, CollisionPiece, PhysicsModel};
 use dwell_scene::material::PairContact;
 use dwell_scene::{State, interrupt};
@@ -47,13 +47,13 @@ pub(crate) struct AssembledWorld {
 const FIXED_BODIES: usize = 2;
 
 /// Inserts the pieces of a house: statics, then bodies in order, at the given poses. `sizes`: gravity, m/s², the number of
-/// agents to come, and the number of pairs of the pieces.
+/// agents to come, and the pairs of the pieces.
 pub(crate) fn assemble(
     model: &PhysicsModel,
     settings: &ResolvedConfig,
     values: ContactProperties<'_>,
     compliance: Option<ContactCompliance>,
-    (gravity_m_s2, agents, crowding): (f32, usize, PairDensity),
+    (gravity_m_s2, agents, crowding): (f32, usize, &PairLoad),
     places: impl Fn(usize) -> (RapierPose, BodyStatus),
     weights: &BodyMasses,
 ) -> AssembledWorld {
@@ -67,8 +67,18 @@ pub(crate) fn assemble(
     let mut entries = insert_statics(&mut engine, model, values);
     let anchor = engine.bodies.insert(RigidBodyBuilder::fixed());
     let mut bodies = Vec::with_capacity(model.bodies.len());
+    let mut pauses = crowding.pauses.iter().peekable();
     for (index, plan) in model.bodies.iter().enumerate() {
         interrupt::unwind_if_cancelled();
+        if pauses.next_if_eq(&&index).is_some() {
+            engine.flush(&ContactHooks {
+                entries: &entries,
+                properties: values,
+                excluded: &CollisionExclusions::default(),
+                friction_storage: engine.friction_storage(),
+                dt_s: 0.0,
+            });
+        }
         let (world_from_body, hold) = places(index);
         let place = BodyPlacement {
             index: index as u32,
@@ -77,7 +87,7 @@ pub(crate) fn assemble(
             mass_factors: &weights.factors[index],
             inertia: weights.overridden[index],
             sleeping_allowed: settings.config.sleeping,
-            needs_hook: plan.joint.is_some() || crowding == PairDensity::High,
+            needs_hook: plan.joint.is_some() || crowding.density == PairDensity::High,
             event_force_n: settings.event_force_n(),
         };
         bodies.push(insert_body(&mut engine, plan, values, &mut entries, place));

@@ -102,7 +102,7 @@ impl PhysicsWorld {
         };
         let gravity = state.gravity_m_s2();
         let values = laws.contact_properties(&model.house, &table);
-        let sizes = (gravity, state.agents.len(), crowding);
+        let sizes = (gravity, state.agents.len(), &crowding);
         let assembly = assemble(
             &model,
             &settings,

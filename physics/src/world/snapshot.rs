@@ -22,7 +22,7 @@ use crate::error::PhysicsError;
 use crate::hands::HeldObject;
 use crate::joints::{self, HandDrives, JointActuation};
 use crate::laws::{self, LawSet};
-use crate::limits::PairDensity;
+use crate::limits::PairLoad;
 use dwell_scene::columnar;
 use dwell_scene::packing::{pack_to_size, unpack};
 use dwell_scene::{AgentId, Id, State};
@@ -227,7 +227,7 @@ impl PhysicsWorld {
             (place, BodyStatus::Frozen)
         };
         let gravity = state.gravity_m_s2();
-        let sizes = (gravity, state.agents.len(), PairDensity::Low);
+        let sizes = (gravity, state.agents.len(), &PairLoad::LOW);
         let mut built = assemble(
             &model,
             &self.dynamics.settings,

@@ -87,6 +87,20 @@ fn what_is_in_a_crowd_is_frozen_and_told() {
     run.steps(2);
 }
 
+/// So many pairs are made in portions, which changes nothing.
+#[test]
+fn a_larger_crowd_is_frozen_and_told_alike() {
+    let mut build = Build::room([4.0, 3.0, 4.0]);
+    let count = 340;
+    for k in 0..count {
+        build.movable(&format!("desk_{k}"), cube(Vec3::new(2.0, HALF_M, 2.0)));
+    }
+    let report = build.run().report;
+    assert_eq!((report.overlaps, report.moved.len()), (count - 1, 0));
+    assert_eq!(report.frozen.len(), count - 1);
+    assert!(report.frozen.iter().all(|frozen| frozen.with == "desk_0"));
+}
+
 #[test]
 fn more_bodies_than_a_world_holds_are_refused_by_number() {
     let mut build = Build::room([4.0, 3.0, 4.0]);

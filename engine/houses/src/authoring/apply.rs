@@ -266,7 +266,14 @@ impl<'a> EditSession<'a> {
         self.report.append(report);
         let fixed = robot.fixed_base.unwrap_or_else(|| model.has_fixed_base());
         let base = Pose::from_position_yaw(at, yaw) * crate::robot::dwell_from_robot();
-        crate::robot::add(&mut self.data, &model, &robot.name, base, fixed);
+        crate::robot::add(
+            &mut self.data,
+            &model,
+            &robot.name,
+            base,
+            fixed,
+            &mut crate::robot::MaterialNames::default(),
+        );
         Ok(())
     }
 

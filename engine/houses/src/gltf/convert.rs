@@ -121,14 +121,14 @@ pub(super) fn convert(
 
 /// Numbers of vertices and indices so far.
 #[derive(Default)]
-struct VertexBudget(u64);
+pub(crate) struct VertexBudget(u64);
 
 impl VertexBudget {
     /// Counts those of a mesh.
     ///
     /// # Errors
     /// A sentence when they are more than what is left of [`MAX_CORNERS_SHOWN`].
-    fn reserve(&mut self, vertices: usize, indices: usize) -> Result<(), String> {
+    pub(crate) fn reserve(&mut self, vertices: usize, indices: usize) -> Result<(), String> {
         let all = self
             .0
             .saturating_add((vertices as u64).saturating_add(indices as u64));

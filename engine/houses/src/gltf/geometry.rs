@@ -49,6 +49,13 @@ impl<'a> ParsedGlb<'a> {
         }
     }
 
+    /// Returns the number of elements that an accessor states; 0 for one that does not exist.
+    pub(crate) fn count(&self, accessor: usize) -> usize {
+        let accessor = self.json.accessors.get(accessor);
+        let count = accessor.map_or(0, |accessor| accessor.count.0);
+        usize::try_from(count).unwrap_or(usize::MAX)
+    }
+
     /// The rows of an accessor.
     ///
     /// # Errors

@@ -14,6 +14,7 @@ mod nodes;
 mod surface;
 mod write;
 
+pub(crate) use convert::VertexBudget;
 pub(crate) use geometry::ParsedGlb;
 pub use write::write;
 pub(crate) use write::{AssetStorage, MeshAccessors, encode};

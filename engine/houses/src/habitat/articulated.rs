@@ -86,7 +86,14 @@ impl HabitatReader<'_> {
             .names
             .numbered(row.map_or(word, |row| row.name.as_str()));
         let (first_joint, object) = (self.data.joints.len(), self.data.objects.len());
-        robot::add(&mut self.data, &robot, &unique, pose, fixed);
+        robot::add(
+            &mut self.data,
+            &robot,
+            &unique,
+            pose,
+            fixed,
+            &mut self.material_names,
+        );
         // Joints of a robot state no direction: doors and drawers of furniture open towards their farther limit.
         for joint in &mut self.data.joints.as_mut_slice()[first_joint..] {
             if let (Some([low, high]), None) = (joint.limits, &joint.mimic) {
@@ -95,12 +102,8 @@ impl HabitatReader<'_> {
             }
         }
         let mut bounds = Aabb::EMPTY;
-        for part in self
-            .data
-            .parts
-            .iter()
-            .filter(|part| part.object.0 as usize == object)
-        {
+        for part in self.data.objects.as_slice()[object].parts() {
+            let part = &self.data.parts[part];
             let place = part.world_from_part.to_affine();
             bounds = bounds.union(&self.data.meshes[part.mesh].bounds().transformed(&place));
         }

@@ -22,7 +22,7 @@ use crate::error::HousesError;
 use crate::import::{UniqueNames, drop_rooms_without_floor, report_contained_rooms};
 use crate::limits::MAX_NODES;
 use crate::report::{FileLocation, LoadReport};
-use crate::robot::Robot;
+use crate::robot::{MaterialNames, Robot};
 use crate::warning_kind::WarningKind;
 use assets::AssetCache;
 use dataset::{Dataset, ResolvedTemplate, SCENE_ENDING, TemplateKind};
@@ -70,6 +70,7 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, LoadReport), Houses
         },
         assets: AssetCache::default(),
         robots: BTreeMap::new(),
+        material_names: MaterialNames::default(),
         names: UniqueNames::default(),
         lexicon,
         origin: scene.translation_origin,
@@ -116,6 +117,7 @@ struct HabitatReader<'a> {
     data: HouseData,
     assets: AssetCache,
     robots: BTreeMap<String, Result<Robot, String>>,
+    material_names: MaterialNames,
     names: UniqueNames,
     /// Names by semantic id.
     lexicon: BTreeMap<i64, String>,

@@ -1,6 +1,8 @@
 //! Actuators: motors driven by an effort, a position or a velocity.
 
-use dwell_scene::Servo;
+use std::collections::BTreeMap;
+
+use dwell_scene::{Servo, interrupt};
 use mjcf_rs::Model;
 use mjcf_rs::extras::{Actuator, ActuatorKind};
 
@@ -11,17 +13,19 @@ use crate::warning_kind::WarningKind;
 /// The effort of a motor that states no bound, N·m or N.
 const UNBOUNDED: f64 = 1e6;
 
-/// Adds motors to joints from their actuators. Each joint has one motor that takes every kind of command; values that an actuator
+/// Adds motors to joints from their actuators; `by_name` gives positions in `joints`. Each joint has one motor that takes every kind of command; values that an actuator
 /// does not state stay 0.
 pub(super) fn add_servos(
     model: &Model,
     joints: &mut [RobotJoint],
+    by_name: &BTreeMap<String, usize>,
     at: &FileLocation,
     report: &mut LoadReport,
 ) {
     for actuator in &model.actuators {
+        interrupt::unwind_if_cancelled();
         let name = actuator.joint.as_deref().unwrap_or("");
-        let Some(joint) = joints.iter_mut().find(|joint| joint.name == name) else {
+        let Some(joint) = by_name.get(name).map(|k| &mut joints[*k]) else {
             let what = format!("an actuator of {name:?} drives no joint that is read; left out");
             report.warn(at.field("actuator"), WarningKind::Simplified { what });
             continue;

@@ -20,18 +20,15 @@ pub(super) struct DefaultClasses {
 }
 
 impl DefaultClasses {
-    /// Records the classes that `node` of the file `at` defines or names.
+    /// Records the classes that `node` defines or names; `at` gives its line.
     pub(super) fn record(
         &mut self,
         node: Node<'_, '_>,
-        at: &FileLocation,
+        at: impl Fn() -> FileLocation,
         report: &mut LoadReport,
     ) {
         let tag = node.tag_name().name();
-        let at = |field: &str| {
-            at.line(node.document().text_pos_at(node.range().start).row)
-                .field(format_args!("{tag}.{field}"))
-        };
+        let at = |field: &str| at().field(format_args!("{tag}.{field}"));
         for field in ["class", "childclass"] {
             let Some(name) = node.attribute(field) else {
                 continue;

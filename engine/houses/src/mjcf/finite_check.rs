@@ -47,11 +47,11 @@ const FINITE: [&str; 34] = [
 /// Attributes whose ends may be infinite.
 const RANGES: [&str; 4] = ["range", "ctrlrange", "forcerange", "actfrcrange"];
 
-/// Refuses an element with a number that is not finite, or with commas between numbers; `at` is its file.
+/// Refuses an element with a number that is not finite, or with commas between numbers; `at` gives its line.
 ///
 /// # Errors
 /// [`HousesError::Field`] names line, element and attribute.
-pub(super) fn check(node: Node<'_, '_>, at: &FileLocation) -> Result<(), HousesError> {
+pub(super) fn check(node: Node<'_, '_>, at: impl Fn() -> FileLocation) -> Result<(), HousesError> {
     for attribute in node.attributes() {
         let name = attribute.name();
         let finite = FINITE.contains(&name);
@@ -62,7 +62,7 @@ pub(super) fn check(node: Node<'_, '_>, at: &FileLocation) -> Result<(), HousesE
             return refuse(
                 node,
                 name,
-                at,
+                &at(),
                 "numbers with spaces between them, no commas",
                 attribute.value(),
             );
@@ -70,7 +70,7 @@ pub(super) fn check(node: Node<'_, '_>, at: &FileLocation) -> Result<(), HousesE
         let is_bad = |x: f64| x.is_nan() || (finite && x.is_infinite());
         let mut words = attribute.value().split_ascii_whitespace();
         if let Some(word) = words.find(|word| word.parse().is_ok_and(is_bad)) {
-            return refuse(node, name, at, "finite numbers", word);
+            return refuse(node, name, &at(), "finite numbers", word);
         }
     }
     Ok(())
@@ -83,10 +83,9 @@ fn refuse(
     expected: &'static str,
     found: &str,
 ) -> Result<(), HousesError> {
-    let row = node.document().text_pos_at(node.range().start).row;
     let field = format!("{}.{name}", node.tag_name().name());
     Err(HousesError::Field {
-        at: at.line(row).field(field),
+        at: at.field(field),
         expected,
         found: format!("{found:.200?}"),
     })

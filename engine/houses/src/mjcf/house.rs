@@ -8,7 +8,7 @@ use std::sync::Arc;
 use dwell_scene::material::{Substance, library};
 use dwell_scene::{
     Aabb, Category, House, HouseData, Level, LevelId, Material, MaterialId, Mobility, ObjectId,
-    Pose, Room, RoomId, Structure, StructureKind, units,
+    Pose, Room, RoomId, Structure, StructureKind, interrupt, units,
 };
 use glam::{Vec2, Vec3};
 use mjcf_rs::BodyId;
@@ -62,6 +62,7 @@ pub(super) fn read(mut source: MjcfSource, report: &mut LoadReport) -> Result<Ho
         },
         structure_names: UniqueNames::default(),
         names: UniqueNames::default(),
+        material_names: robot::MaterialNames::default(),
         world_from_file: robot::dwell_from_robot(),
     };
     reader.data.levels.push(Level {
@@ -82,6 +83,7 @@ pub(super) fn read(mut source: MjcfSource, report: &mut LoadReport) -> Result<Ho
     }
     reader.rooms(report, &source);
     for root in objects {
+        interrupt::unwind_if_cancelled();
         match source.robot(root, report) {
             Ok(thing) => reader.object(&source, root, &thing, report),
             Err(error) => report_skipped_body(&error, &source, report),
@@ -107,6 +109,7 @@ struct MjcfHouseReader {
     data: HouseData,
     structure_names: UniqueNames,
     names: UniqueNames,
+    material_names: robot::MaterialNames,
     /// From the file's axes, +Z up, to ours.
     world_from_file: Pose,
 }
@@ -121,14 +124,14 @@ impl MjcfHouseReader {
     ) {
         let mut open = vec![(root, Pose::IDENTITY)];
         while let Some((id, file_from_parent)) = open.pop() {
+            interrupt::unwind_if_cancelled();
             let file_from_body = file_from_parent * pose(&source.model.bodies[id].body.pose);
             match source.body_geoms(id, report) {
                 Ok(pieces) => self.building(source, id, file_from_body, &pieces, report),
                 Err(error) => report_skipped_body(&error, source, report),
             }
-            let children = source.model.bodies_iter();
-            let children = children.filter(|(_, entry)| entry.parent == Some(id));
-            open.extend(children.map(|(child, _)| (child, file_from_body)));
+            let children = source.children(id).iter();
+            open.extend(children.map(|child| (*child, file_from_body)));
         }
     }
 
@@ -144,6 +147,7 @@ impl MjcfHouseReader {
         let body = name_of(&source.model, id);
         let seen = pieces.iter().any(|piece| piece.is_visible);
         for piece in pieces.iter().filter(|piece| piece.is_visible || !seen) {
+            interrupt::unwind_if_cancelled();
             let name = match (&piece.name, id) {
                 (Some(name), _) if structure_kind(name).is_some() || id == 0 => name.clone(),
                 (None, 0) => "geom".to_owned(),
@@ -252,6 +256,7 @@ impl MjcfHouseReader {
         let ceilings = bounds_of(&self.data, StructureKind::Ceiling);
         let walls = bounds_of(&self.data, StructureKind::Wall);
         for k in 0..self.data.structure.len() {
+            interrupt::unwind_if_cancelled();
             let piece = &self.data.structure.as_slice()[k];
             if piece.kind != StructureKind::Floor {
                 continue;
@@ -324,6 +329,7 @@ impl MjcfHouseReader {
             &name,
             world_from_root,
             thing.has_fixed_base(),
+            &mut self.material_names,
         );
         let Some(object) = self.data.objects.as_mut_slice().last_mut() else {
             return;
@@ -391,6 +397,7 @@ fn room_kind_from_name(name: &str) -> Option<String> {
 /// Assigns objects to rooms, and sets the storey's box; small loose things can be taken.
 fn assign_rooms(data: &mut HouseData) {
     for k in 0..data.objects.len() {
+        interrupt::unwind_if_cancelled();
         let id = ObjectId(k as u32);
         let parts = data.objects[id].parts().map(|part| &data.parts[part]);
         let bounds = parts.fold(Aabb::EMPTY, |all, part| {

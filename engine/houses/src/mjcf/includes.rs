@@ -14,7 +14,7 @@ use crate::error::HousesError;
 use crate::limits::{MAX_TEXT_BYTES, MAX_XML_ELEMENTS, MAX_XML_FILES};
 use crate::report::{FileLocation, LoadReport};
 use crate::robot::RobotFileLoader;
-use crate::xml;
+use crate::xml::{self, LineIndex};
 
 /// Checks the text of `files` and everything it includes or attaches; also that all its numbers are finite. Parts that the parser
 /// skips is reported.
@@ -69,6 +69,7 @@ impl IncludeChecker<'_> {
             return Err(refuse(format!("it includes itself: {chain} > {name}")));
         }
         let document = xml::parse(text, &at)?;
+        let lines = LineIndex::new(&document);
         self.open.push(name.to_owned());
         let too_many = |found: u64| HousesError::TooLarge {
             at: at.clone(),
@@ -82,18 +83,23 @@ impl IncludeChecker<'_> {
             if elements % 4096 == 0 {
                 interrupt::unwind_if_cancelled();
             }
-            finite_check::check(node, &at)?;
-            unread_elements::report_unread_elements(node, &at, self.report);
-            self.classes.record(node, &at, self.report);
+            let node_at = || at.line(lines.line(node));
+            finite_check::check(node, node_at)?;
+            unread_elements::report_unread_elements(node, node_at, self.report);
+            self.classes.record(node, node_at, self.report);
             match node.tag_name().name() {
                 "include" => {
-                    elements = elements.saturating_add(self.check_referenced_file(node, name)?);
+                    elements = elements.saturating_add(self.check_referenced_file(
+                        node,
+                        name,
+                        &node_at(),
+                    )?);
                 }
                 // Models of `<asset>` are copied by each `<attach>`.
                 "model" if node.has_attribute("file") => {
                     // It has classes of its own.
                     let outer = mem::take(&mut self.classes);
-                    largest = largest.max(self.check_referenced_file(node, name)?);
+                    largest = largest.max(self.check_referenced_file(node, name, &node_at())?);
                     mem::replace(&mut self.classes, outer).report_undefined(self.report);
                 }
                 _ => {}
@@ -114,17 +120,15 @@ impl IncludeChecker<'_> {
         Ok(all)
     }
 
-    /// The elements of the file that `node` of the file `name` names.
+    /// The elements of the file that `node` of the file `name`, at the line `at`, names.
     fn check_referenced_file(
         &mut self,
         node: Node<'_, '_>,
         name: &str,
+        at: &FileLocation,
     ) -> Result<u64, HousesError> {
-        let row = node.document().text_pos_at(node.range().start).row;
         let tag = node.tag_name().name();
-        let at = FileLocation::file(name)
-            .line(row)
-            .field(format_args!("{tag}.file"));
+        let at = at.field(format_args!("{tag}.file"));
         // The parser resolves paths from the folder of the file that names them.
         let stated = node.attribute("file").unwrap_or("");
         let path = self.files.resolve(parent_folder(name), stated, &at)?;

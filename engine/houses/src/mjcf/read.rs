@@ -79,6 +79,11 @@ impl MjcfSource {
         roots.map(|(id, _)| id).collect()
     }
 
+    /// The child bodies of a body.
+    pub(super) fn children(&self, id: BodyId) -> &[BodyId] {
+        &self.children[id]
+    }
+
     /// A body with its descendants, parents first.
     fn subtree(&self, root: BodyId) -> Vec<BodyId> {
         let mut found = vec![root];
@@ -159,10 +164,15 @@ impl MjcfSource {
             let parent = place(entry.parent.unwrap_or(root));
             joints.push(joint(&self.model, *id, [parent, place(*id)], &at)?);
         }
+        // The first of a name, where files give it twice.
+        let names = joints.iter().enumerate().rev();
+        let by_name: BTreeMap<String, usize> =
+            names.map(|(k, joint)| (joint.name.clone(), k)).collect();
         for equality in &self.model.equality {
-            apply_joint_equality(equality, &mut joints, &self.at, report);
+            interrupt::unwind_if_cancelled();
+            apply_joint_equality(equality, &mut joints, &by_name, &self.at, report);
         }
-        actuators::add_servos(&self.model, &mut joints, &self.at, report);
+        actuators::add_servos(&self.model, &mut joints, &by_name, &self.at, report);
         check(Robot {
             name: self
                 .model
@@ -364,10 +374,11 @@ fn stated_inertia(stated: &Inertial) -> LinkInertia {
     }
 }
 
-/// Ties a joint to another by an equality.
+/// Ties a joint to another by an equality; `by_name` gives positions in `joints`.
 fn apply_joint_equality(
     equality: &Equality,
     joints: &mut [RobotJoint],
+    by_name: &BTreeMap<String, usize>,
     at: &FileLocation,
     report: &mut LoadReport,
 ) {
@@ -376,7 +387,7 @@ fn apply_joint_equality(
         return report.warn(at.field("equality"), WarningKind::Simplified { what });
     };
     let [offset, multiplier, higher @ ..] = tie.polycoef.map(|x| x as f32);
-    let named = |name: &str| joints.iter().position(|joint| joint.name == name);
+    let named = |name: &str| by_name.get(name).copied();
     let leader = tie.joint2.as_deref().and_then(named);
     match (named(&tie.joint1), leader) {
         (Some(follower), Some(leader)) if tie.common.active && higher == [0.0; 3] => {

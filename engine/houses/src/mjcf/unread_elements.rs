@@ -26,13 +26,12 @@ const MAKERS: [&str; 3] = ["composite", "flexcomp", "replicate"];
 /// Characters of an element's name that a report shows.
 const SHOWN: usize = 60;
 
-/// Reports the losses of an element; `at` is its file.
+/// Reports the losses of an element; `at` gives its line.
 pub(super) fn report_unread_elements(
     node: Node<'_, '_>,
-    at: &FileLocation,
+    at: impl Fn() -> FileLocation,
     report: &mut LoadReport,
 ) {
-    let at = || at.line(node.document().text_pos_at(node.range().start).row);
     let tag = node.tag_name().name();
     let holder = node.parent_element().map(|parent| parent.tag_name().name());
     let is_lost = holder.is_some_and(|holder| {

@@ -1,18 +1,19 @@
 //! Reading of `NAME.dwell/`.
 
+use std::collections::BTreeMap;
 use std::io;
 use std::path::Path;
 use std::sync::Arc;
 
 use dwell_scene::parallel::Threads;
-use dwell_scene::{House, Mesh, SoundFile};
+use dwell_scene::{House, HouseData, Id, Mesh, MeshId, SoundFile, interrupt};
 use glam::{Vec2, Vec3};
 
 use super::file::{FORMAT, FormatHeader, NativeFile, VERSIONS, sound_path};
 use super::{GEOMETRY, TABLES};
 use crate::data_root::DataRoot;
 use crate::error::HousesError;
-use crate::gltf::{MeshAccessors, ParsedGlb};
+use crate::gltf::{MeshAccessors, ParsedGlb, VertexBudget};
 use crate::import::PixelBudget;
 use crate::json;
 use crate::limits::{MAX_ALL_SOUND_BYTES, MAX_BUFFER_BYTES, MAX_TEXT_BYTES};
@@ -68,15 +69,10 @@ fn read(path: &Path, threads: Threads) -> Result<House, HousesError> {
     let library = DataRoot::new(path.join("../.."))?;
     let geometry = ParsedGlb::read(&bytes, GEOMETRY, &library)?;
     let mut data = file.house;
-    let meshes = threads.map(file.mesh_accessors.len(), |k| {
-        read_mesh(&geometry, &file.mesh_accessors[k])
-    });
-    for (k, mesh) in meshes.into_iter().enumerate() {
-        let at = FileLocation::file(TABLES).field(format_args!("mesh_accessors[{k}]"));
-        data.meshes.push(Arc::new(
-            mesh.map_err(|message| HousesError::Syntax { at, message })?,
-        ));
+    for mesh in read_meshes(&geometry, &file.mesh_accessors, threads)? {
+        data.meshes.push(mesh);
     }
+    check_shown(&data)?;
     let sizes = &file.texture_sizes;
     let mut budget = PixelBudget::default();
     for (k, [width, height]) in sizes.iter().enumerate() {
@@ -100,6 +96,69 @@ fn read(path: &Path, threads: Threads) -> Result<House, HousesError> {
         data.sound_files.push(Arc::new(SoundFile { name, bytes }));
     }
     House::new(data).map_err(HousesError::scene(&at))
+}
+
+/// Reads the mesh of each row; rows that are the same share one.
+///
+/// # Errors
+/// [`HousesError::Syntax`] with the row that cannot be read, or with which there are more vertices and indices than are read.
+fn read_meshes(
+    geometry: &ParsedGlb<'_>,
+    rows: &[MeshAccessors],
+    threads: Threads,
+) -> Result<Vec<Arc<Mesh>>, HousesError> {
+    let fault = |k: usize, message: String| HousesError::Syntax {
+        at: FileLocation::file(TABLES).field(format_args!("mesh_accessors[{k}]")),
+        message,
+    };
+    let mut budget = VertexBudget::default();
+    // The first row of each mesh, and the mesh of each row.
+    let (mut firsts, mut meshes) = (Vec::new(), Vec::with_capacity(rows.len()));
+    let mut known: BTreeMap<&MeshAccessors, usize> = BTreeMap::new();
+    for (k, row) in rows.iter().enumerate() {
+        interrupt::unwind_if_cancelled();
+        let count = |accessor: Option<usize>| accessor.map_or(0, |k| geometry.count(k));
+        let vertices = [row.positions, row.normals, row.uvs].map(count);
+        let vertices = vertices.into_iter().max().unwrap_or(0);
+        let indices = count(row.triangles).max(count(row.slots));
+        let reserved = budget.reserve(vertices, indices);
+        reserved.map_err(|message| fault(k, message))?;
+        meshes.push(*known.entry(row).or_insert_with(|| {
+            firsts.push(k);
+            firsts.len() - 1
+        }));
+    }
+    let read = threads.map(firsts.len(), |k| read_mesh(geometry, &rows[firsts[k]]));
+    let read = read.into_iter().zip(&firsts).map(|(mesh, first)| {
+        let mesh = mesh.map_err(|message| fault(*first, message));
+        mesh.map(Arc::new)
+    });
+    let read = read.collect::<Result<Vec<_>, _>>()?;
+    Ok(meshes.into_iter().map(|k| read[k].clone()).collect())
+}
+
+/// Refuses tables that show more vertices and indices than are read: all pieces may show the same mesh.
+fn check_shown(data: &HouseData) -> Result<(), HousesError> {
+    let mut budget = VertexBudget::default();
+    let mut show = |table: &str, k: usize, mesh: MeshId| {
+        interrupt::unwind_if_cancelled();
+        // A mesh that does not exist is a fault of the scene.
+        let Some(mesh) = data.meshes.as_slice().get(mesh.index()) else {
+            return Ok(());
+        };
+        let reserved = budget.reserve(mesh.positions.len(), 3 * mesh.triangles.len());
+        reserved.map_err(|message| HousesError::Syntax {
+            at: FileLocation::file(TABLES).field(format_args!("house.{table}[{k}].mesh")),
+            message,
+        })
+    };
+    for (k, piece) in data.structure.iter().enumerate() {
+        show("structure", k, piece.mesh)?;
+    }
+    for (k, part) in data.parts.iter().enumerate() {
+        show("parts", k, part.mesh)?;
+    }
+    Ok(())
 }
 
 fn read_mesh(geometry: &ParsedGlb<'_>, accessors: &MeshAccessors) -> Result<Mesh, String> {

@@ -12,6 +12,7 @@ use dwell_scene::{
 use glam::{Affine3A, Mat3, Quat, Vec2, Vec3};
 
 use super::masses::{FixedJointTree, combined_inertia};
+use super::material_names::MaterialNames;
 use super::model::{LinkShape, Robot, RobotJointKind};
 use super::shape::colliders;
 use crate::error::HousesError;
@@ -29,13 +30,15 @@ pub(crate) fn dwell_from_robot() -> Pose {
     Pose::new(Vec3::ZERO, Quat::from_mat3(&axes))
 }
 
-/// Adds a robot to the tables of a house, the frame of its root link, as the file has it, at `world_from_root`.
+/// Adds a robot to the tables of a house, the frame of its root link, as the file has it, at `world_from_root`. `material_names`:
+/// those of the house; one for all robots that are added to it, or an empty one.
 pub(crate) fn add(
     data: &mut HouseData,
     robot: &Robot,
     name: &str,
     world_from_root: Pose,
     fixed_base: bool,
+    material_names: &mut MaterialNames,
 ) {
     let object = ObjectId(data.objects.len() as u32);
     let first_part = PartId(data.parts.len() as u32);
@@ -58,7 +61,11 @@ pub(crate) fn add(
             homes[*link] = Some((k, *place));
         }
     }
-    let mut looks = RobotMaterials::default();
+    material_names.add_new(&data.materials);
+    let mut looks = RobotMaterials {
+        names: material_names,
+        known: BTreeMap::new(),
+    };
     let mut world_from: Vec<Pose> = vec![world_from_root];
     let mut joints: Vec<Joint> = Vec::new();
     let mut by_name: BTreeMap<&str, usize> = BTreeMap::new();
@@ -121,6 +128,7 @@ pub(crate) fn add(
         };
         let mut mesh = Mesh::default();
         let mut materials: Vec<MaterialId> = Vec::new();
+        let mut slots: BTreeMap<MaterialId, usize> = BTreeMap::new();
         let visible = shapes(|link| &link.visuals).count() > 0;
         let seen: Vec<(&LinkShape, Pose)> = if visible {
             shapes(|link| &link.visuals).collect()
@@ -129,9 +137,9 @@ pub(crate) fn add(
         };
         let with_images = seen.iter().any(|(shape, _)| shape.image.is_some());
         for (shape, place) in seen {
+            interrupt::unwind_if_cancelled();
             let material = looks.material(data, shape, name);
-            let known = materials.iter().position(|other| *other == material);
-            let slot = known.unwrap_or_else(|| {
+            let slot = *slots.entry(material).or_insert_with(|| {
                 materials.push(material);
                 materials.len() - 1
             });
@@ -198,13 +206,16 @@ pub(crate) fn add(
     }
 }
 
+/// What tells the materials of one robot apart: colour, name in the file, image.
+type MaterialKey = ([u32; 4], String, Option<TextureId>);
+
 /// Materials that the robot has already added.
-#[derive(Default)]
-struct RobotMaterials {
-    known: Vec<([u32; 4], String, Option<TextureId>, MaterialId)>,
+struct RobotMaterials<'n> {
+    names: &'n mut MaterialNames,
+    known: BTreeMap<MaterialKey, MaterialId>,
 }
 
-impl RobotMaterials {
+impl RobotMaterials<'_> {
     fn material(&mut self, data: &mut HouseData, shape: &LinkShape, robot: &str) -> MaterialId {
         let texture = shape.image.as_ref().map(|image| texture(data, image));
         let usual = match texture {
@@ -219,13 +230,9 @@ impl RobotMaterials {
                 0.0
             }
         });
-        let bits = rgba.map(f32::to_bits);
-        let same =
-            |(known, name, image, _): &&([u32; 4], String, Option<TextureId>, MaterialId)| {
-                *known == bits && *name == shape.material && *image == texture
-            };
-        if let Some((_, _, _, id)) = self.known.iter().find(same) {
-            return *id;
+        let key = (rgba.map(f32::to_bits), shape.material.clone(), texture);
+        if let Some(known) = self.known.get(&key) {
+            return *known;
         }
         let substance =
             substance_of(&shape.material).unwrap_or_else(|| library().get_or_default("steel"));
@@ -235,10 +242,7 @@ impl RobotMaterials {
         } else {
             shape.material.replace(['/', '\\'], "-")
         };
-        let mut name = format!("{robot}:{word}");
-        while data.materials.iter().any(|material| material.name == name) {
-            name.push('\'');
-        }
+        let name = self.names.unique(&format!("{robot}:{word}"));
         let id = data.materials.push(Material {
             base_color: [r, g, b].map(units::linear_from_srgb),
             opacity,
@@ -246,7 +250,7 @@ impl RobotMaterials {
             metallic: 0.0,
             ..Material::from_substance(name, substance)
         });
-        self.known.push((bits, shape.material.clone(), texture, id));
+        self.known.insert(key, id);
         id
     }
 }
@@ -295,6 +299,7 @@ pub(crate) fn house_with_robot_only(robot: &Robot) -> Result<House, HousesError>
         &robot.name,
         dwell_from_robot(),
         robot.fixed_base,
+        &mut MaterialNames::default(),
     );
     // It stands on the ground with its lowest point.
     let lowest = data

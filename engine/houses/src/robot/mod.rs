@@ -7,6 +7,7 @@ mod assemble;
 mod check;
 mod files;
 mod masses;
+mod material_names;
 mod model;
 mod scale;
 mod shape;
@@ -17,6 +18,7 @@ pub use model::Robot;
 pub(crate) use assemble::{add, dwell_from_robot, house_with_robot_only, texture};
 pub(crate) use check::check;
 pub(crate) use files::RobotFileLoader;
+pub(crate) use material_names::MaterialNames;
 pub(crate) use model::{
     LinkInertia, LinkShape, RobotJoint, RobotJointKind, RobotLink, ShapeGeometry,
 };
@@ -45,6 +47,13 @@ pub fn with_robot(
 ) -> Result<House, HousesError> {
     let mut data = house.data().clone();
     let world_from_root = world_from_base * assemble::dwell_from_robot();
-    assemble::add(&mut data, robot, name, world_from_root, fixed_base);
+    assemble::add(
+        &mut data,
+        robot,
+        name,
+        world_from_root,
+        fixed_base,
+        &mut MaterialNames::default(),
+    );
     House::new(data).map_err(HousesError::scene(&FileLocation::file(&robot.source)))
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use dwell_scene::{Pose, Servo};
+use dwell_scene::{Pose, Servo, interrupt};
 use glam::{DMat3, DVec3, EulerRot, Quat, Vec3};
 use roxmltree::Node;
 
@@ -16,7 +16,7 @@ use crate::robot::{
     ShapeGeometry, check,
 };
 use crate::warning_kind::WarningKind;
-use crate::xml;
+use crate::xml::{self, LineIndex};
 
 /// Position error at which a position motor that states no gains applies full effort, rad or m: URDF names no gains, so they come
 /// from the limits of effort and velocity.
@@ -41,6 +41,7 @@ pub(crate) fn read(path: &Path, report: &mut LoadReport) -> Result<Robot, Houses
     }
     let mut reader = UrdfReader {
         at,
+        lines: LineIndex::new(&document),
         files,
         report,
         colours: BTreeMap::new(),
@@ -51,6 +52,7 @@ pub(crate) fn read(path: &Path, report: &mut LoadReport) -> Result<Robot, Houses
     let mut links = Vec::new();
     let mut places = BTreeMap::new();
     for node in named(root, "link") {
+        interrupt::unwind_if_cancelled();
         let link = reader.link(node)?;
         places.insert(link.name.clone(), links.len());
         links.push(link);
@@ -60,6 +62,7 @@ pub(crate) fn read(path: &Path, report: &mut LoadReport) -> Result<Robot, Houses
     }
     let mut joints = Vec::new();
     for node in named(root, "joint") {
+        interrupt::unwind_if_cancelled();
         joints.push(reader.joint(node, &places)?);
     }
     check(Robot {
@@ -83,6 +86,7 @@ fn first<'a, 'b>(node: Node<'a, 'b>, name: &'static str) -> Option<Node<'a, 'b>>
 
 struct UrdfReader<'r> {
     at: FileLocation,
+    lines: LineIndex,
     files: RobotFileLoader,
     report: &'r mut LoadReport,
     colours: BTreeMap<String, [f32; 4]>,
@@ -105,7 +109,7 @@ impl UrdfReader<'_> {
 
     /// The line of a node, and the link or joint it is in: `arm.urdf:12: link[hand].visual`.
     fn place(&self, node: Node<'_, '_>) -> FileLocation {
-        let line = node.document().text_pos_at(node.range().start).row;
+        let line = self.lines.line(node);
         let mut words: Vec<String> = node
             .ancestors()
             .filter(|node| node.is_element() && node.tag_name().name() != "robot")
@@ -277,6 +281,11 @@ impl UrdfReader<'_> {
                 let Some(name) = form.attribute("filename") else {
                     return self.fault(form, "filename", "a path", "nothing");
                 };
+                let local = ["package://", "file://"];
+                if name.contains("://") && !local.iter().any(|start| name.starts_with(start)) {
+                    let expected = "a path, or package://NAME/PATH";
+                    return self.fault(form, "filename", expected, format!("{name:?}"));
+                }
                 let scale = self.numbers(form, "scale", [1.0; 3])?;
                 let folder = parent_folder(&self.files.file).to_owned();
                 let path = self.files.resolve(&folder, name, &at)?;

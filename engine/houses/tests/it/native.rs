@@ -248,6 +248,75 @@ fn broken_free(folder: &Path) -> String {
     std::fs::read_to_string(path.join("house.json")).unwrap()
 }
 
+/// A room with a mesh of 400,000 vertices and indices, and `more` rows like that mesh's.
+fn repeated_rows(folder: &Path, more: usize) -> Result<House, HousesError> {
+    let mut data = shoebox().data().clone();
+    data.meshes.push(std::sync::Arc::new(dwell_scene::Mesh {
+        positions: vec![Vec3::ZERO; 100_000],
+        triangles: vec![[0, 1, 2]; 100_000],
+        ..dwell_scene::Mesh::default()
+    }));
+    let path = folder.join("a.dwell");
+    native::write(&House::new(data).unwrap(), &path).unwrap();
+    let tables = path.join("house.json");
+    let text = std::fs::read(&tables).unwrap();
+    let mut file: serde_json::Value = serde_json::from_slice(&text).unwrap();
+    let rows = file["mesh_accessors"].as_array_mut().unwrap();
+    let last = rows.last().unwrap().clone();
+    rows.extend(std::iter::repeat_n(last, more));
+    std::fs::write(&tables, file.to_string()).unwrap();
+    open(&path.to_string_lossy()).map(|(house, _)| house)
+}
+
+#[test]
+fn rows_that_are_the_same_share_a_mesh_and_count_each() {
+    let folder = tempfile::tempdir().unwrap();
+    let house = repeated_rows(folder.path(), 100).unwrap();
+    let meshes = house.meshes.as_slice();
+    let (own, like_it) = meshes.split_at(meshes.len() - 100);
+    for mesh in like_it {
+        assert!(std::sync::Arc::ptr_eq(mesh, own.last().unwrap()));
+    }
+    let error = repeated_rows(folder.path(), 30_000).unwrap_err();
+    let row = own.len() - 1 + (64 << 20) / 400_000;
+    let message = error.to_string();
+    assert!(
+        message.starts_with(&format!(
+            "a.dwell/house.json: mesh_accessors[{row}]: with it there are "
+        )) && message.ends_with(" vertices and indices; 67108864 are read"),
+        "{message}"
+    );
+}
+
+/// Parts that never move are baked into one mesh, each on its own.
+#[test]
+fn pieces_that_show_the_same_mesh_count_each() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut data = shoebox().data().clone();
+    let mesh = data.meshes.push(std::sync::Arc::new(dwell_scene::Mesh {
+        positions: vec![Vec3::ZERO; 100_000],
+        triangles: vec![[0, 1, 2]; 100_000],
+        ..dwell_scene::Mesh::default()
+    }));
+    let piece = data.structure.as_slice()[0].clone();
+    let first = data.structure.len();
+    for k in 0..200 {
+        data.structure.push(dwell_scene::Structure {
+            name: format!("again_{k}"),
+            mesh,
+            ..piece.clone()
+        });
+    }
+    let path = folder.path().join("a.dwell");
+    native::write(&House::new(data).unwrap(), &path).unwrap();
+    let message = open(&path.to_string_lossy()).unwrap_err().to_string();
+    let place = format!(
+        "a.dwell/house.json: house.structure[{}].mesh: ",
+        first + (64 << 20) / 400_000
+    );
+    assert!(message.starts_with(&place), "{message}");
+}
+
 #[test]
 fn positions_keep_the_sign_of_zero() {
     let mut data = shoebox().data().clone();

@@ -138,6 +138,11 @@ impl Dollhouse {
         })
     }
 
+    /// The camera of the map on which walls at the cut are found; [`Self::render`] draws them as a picture of its size.
+    pub fn plan_camera(&self) -> &Camera {
+        &self.plan.view.camera
+    }
+
     /// The picture, walls dark where they are cut, paper where nothing is. Shape (height, width, 3) of [`Self::view`]'s camera.
     ///
     /// # Errors

@@ -7,6 +7,7 @@ use crate::collider::Collider;
 use crate::error::{SceneError, check_range};
 use crate::fixtures::{LightShape, SoundFile};
 use crate::ids::{Id, IdVec, JointId, MaterialId, MeshId};
+use crate::interrupt;
 use crate::space::is_singular;
 use glam::Vec3A;
 use std::collections::BTreeSet;
@@ -108,6 +109,7 @@ pub(super) fn check(data: &HouseData) -> Result<(), SceneError> {
         "fewer than 2^30",
     )?;
     for (id, mesh) in data.meshes.iter_ids() {
+        interrupt::unwind_if_cancelled();
         mesh.check(&format!("meshes[{}]", id.0))?;
     }
     for (id, texture) in data.textures.iter_ids() {
@@ -122,6 +124,7 @@ pub(super) fn check(data: &HouseData) -> Result<(), SceneError> {
     }
     check_rooms::check(data)?;
     for (id, piece) in data.structure.iter_ids() {
+        interrupt::unwind_if_cancelled();
         let at = format!("structure[{}] {:?}", id.0, piece.name);
         check_id(&at, "levels", &data.levels, piece.level)?;
         if let Some(room) = piece.room {
@@ -170,6 +173,7 @@ fn objects(data: &HouseData) -> Result<(), SceneError> {
             "parts that exist",
         )?;
         for part in object.parts() {
+            interrupt::unwind_if_cancelled();
             let part = &data.parts[part];
             let at = format!("{at} part {:?}", part.name);
             check_range(
@@ -284,6 +288,7 @@ fn objects(data: &HouseData) -> Result<(), SceneError> {
 fn joints(data: &HouseData) -> Result<(), SceneError> {
     let mut moved = BTreeSet::new();
     for (id, joint) in data.joints.iter_ids() {
+        interrupt::unwind_if_cancelled();
         let at = format!("joints[{}] {:?}", id.0, joint.name);
         check_id(&at, "objects", &data.objects, joint.object)?;
         check_id(&at, "parts", &data.parts, joint.child)?;

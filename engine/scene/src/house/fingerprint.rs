@@ -2,6 +2,7 @@
 
 use super::HouseData;
 use crate::ids::IdVec;
+use crate::interrupt;
 use glam::Vec3;
 use xxhash_rust::xxh3::Xxh3;
 
@@ -20,6 +21,7 @@ pub(super) fn of(data: &HouseData) -> u64 {
         .expect("a house's tables are plain data that postcard can always write to memory");
     hash.update(&tables);
     for mesh in &data.meshes {
+        interrupt::unwind_if_cancelled();
         hash.update(&(mesh.positions.len() as u64).to_le_bytes());
         for position in &mesh.positions {
             hash.update(&bytes_of(position));

@@ -147,10 +147,13 @@ impl GridFrame {
             return;
         }
         let triangle = ClipPolygon::new(&corners);
+        // The floor of a hall is two triangles.
+        let mut pace = CancelPoller::new(COLUMNS_PER_CHECK);
         for z in zs {
             let z_low = self.origin.y + z as f32 * self.cell_m;
             let row = triangle.clipped(2, z_low, z_low + self.cell_m);
             for x in xs.clone() {
+                pace.count_one();
                 let x_low = self.origin.x + x as f32 * self.cell_m;
                 let piece = row.clipped(0, x_low, x_low + self.cell_m);
                 if let Some(range) = piece.heights() {
@@ -220,6 +223,7 @@ impl Heightfield {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::interrupt::interruptible;
     use crate::random::{RandomKey, RandomStream};
 
     fn frame() -> GridFrame {
@@ -263,6 +267,22 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn the_columns_of_one_large_triangle_can_be_stopped() {
+        let bounds = Aabb::new(Vec3::ZERO, Vec3::new(400.0, 3.0, 400.0));
+        let frame = GridFrame::new(&bounds, [-0.5, f32::INFINITY], &NavConfig::default());
+        let corner = |x: f32, z: f32| Vec3::new(x, 0.0, z);
+        let floor = [corner(0.0, 0.0), corner(400.0, 0.0), corner(0.0, 400.0)];
+        let mut columns = 0;
+        let stopped = interruptible(
+            || true,
+            || {
+                frame.rasterize_triangle(floor, |_, _| columns += 1);
+            },
+        );
+        assert!(stopped.is_err() && columns < frame.count() / 2, "{columns}");
     }
 
     #[test]

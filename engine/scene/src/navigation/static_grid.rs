@@ -92,6 +92,7 @@ impl StaticNavGrid {
     /// Finds doors: joints of fixed-base objects whose closed leaf covers ground that is walkable without it.
     fn find_passages(&mut self, house: &House, config: &NavConfig) {
         for (id, joint) in house.joints.iter_ids() {
+            interrupt::unwind_if_cancelled();
             let stands = joint.parent.is_none_or(|parent| house.parts[parent].fixed);
             if !stands || house.parts[joint.child].fixed {
                 continue;

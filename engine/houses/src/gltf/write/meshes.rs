@@ -9,7 +9,9 @@ use serde_json::{Value, json};
 use super::super::glb::{GlbBufferBuilder, UNSIGNED_INT, UNSIGNED_SHORT};
 
 /// The accessors of a mesh in the file.
-#[derive(Debug, Clone, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Debug, Clone, Default, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
+)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct MeshAccessors {
     /// Vertices, each three floats; `None` for a mesh without vertices.

@@ -111,7 +111,11 @@ pub(super) const PLAN: Column = Column {
             Is(fails(
                 "..",
                 |d| adds(d, "../../etc/passwd.obj"),
-                &["plan: path", "../../etc/passwd.obj", "leaves the folder"],
+                &[
+                    "a.plan.json: path",
+                    "../../etc/passwd.obj",
+                    "leaves the folder",
+                ],
             )),
         ),
         (
@@ -119,7 +123,7 @@ pub(super) const PLAN: Column = Column {
             Is(fails(
                 "absolute",
                 |d| adds(d, "/etc/passwd.obj"),
-                &["plan: path", "/etc/passwd.obj", "leaves the folder"],
+                &["a.plan.json: path", "/etc/passwd.obj", "leaves the folder"],
             )),
         ),
         (

@@ -2,7 +2,7 @@
 #![expect(clippy::unwrap_used, reason = "tests may stop at the first surprise")]
 
 use dwell_houses::{HousesError, Robot, open, open_robot, with_robot};
-use dwell_scene::{House, JointKind, Mobility, Pose, ShoeboxMaterials, State};
+use dwell_scene::{House, JointKind, Mobility, Pose, ShoeboxMaterials, State, interrupt};
 use glam::{DQuat, DVec3, Quat, Vec3};
 use std::path::{Path, PathBuf};
 
@@ -149,6 +149,33 @@ fn a_robot_opens_alone_on_a_ground() {
     }
 }
 
+/// Links of a box each, every joint on the link before it.
+fn chain(links: usize) -> String {
+    let mass = r#"<mass value="1"/><inertia ixx="1" iyy="1" izz="1"/>"#;
+    let shape = r#"<visual><geometry><box size=".1 .1 .1"/></geometry></visual>"#;
+    let mut text = "<robot name='chain'>\n".to_owned();
+    for k in 0..links {
+        text += &format!("<link name='l{k}'><inertial>{mass}</inertial>{shape}</link>\n");
+    }
+    for k in 1..links {
+        let ends = format!("<parent link='l{}'/><child link='l{k}'/>", k - 1);
+        text += &format!("<joint name='j{k}' type='continuous'>{ends}</joint>\n");
+    }
+    text + "</robot>\n"
+}
+
+#[test]
+fn a_long_chain_opens_and_can_be_stopped_on_the_way() {
+    let (_folder, path) = Folder::with("chain.urdf", &chain(20_000));
+    let (house, report) = open(&path.to_string_lossy()).unwrap();
+    assert_eq!((house.parts.len(), house.joints.len()), (20_000, 19_999));
+    assert!(report.is_empty(), "{report}");
+    // Of one colour, so of one material.
+    assert_eq!(house.materials.len(), 2);
+    let stopped = interrupt::interruptible(|| true, || open_robot(&path).is_ok());
+    assert!(stopped.is_err(), "{stopped:?}");
+}
+
 #[test]
 fn a_name_that_is_taken_is_refused() {
     let arm = robot("arm.urdf", URDF);
@@ -193,6 +220,15 @@ fn bad_robots_are_refused_with_file_node_and_field() {
             r#"<mass value="1.5"/>"#,
             r#"<mass value="nan"/>"#,
             vec!["link[upper].inertial.mass.value", "finite"],
+        ),
+        (
+            "package://arm/palm.stl",
+            "http://127.0.0.1/palm.stl",
+            vec![
+                "link[palm].visual.geometry.mesh.filename",
+                "expected a path, or package://NAME/PATH",
+                "http://127.0.0.1/palm.stl",
+            ],
         ),
         (
             "package://arm/palm.stl",
