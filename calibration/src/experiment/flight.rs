@@ -427,7 +427,7 @@ mod tests {
                 .iter()
                 .position(|cause| cause.id == "gravity")
                 .unwrap();
-            let place = cause_range(&experiment, index).start;
+            let place = parameter_range(&experiment, index).start;
             assert_eq!(causes[place], told.unwrap_or(f64::from(9.806_65_f32)));
             causes[place] = tried.unwrap_or(causes[place]);
             let gravity = causes[place];
