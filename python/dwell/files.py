@@ -122,7 +122,7 @@ def parse_json(
         ValueError: It is none, names a key twice in one object, is nested too deep, or holds more
             than is read; the message begins with ``at``.
     """
-    depth, values = _native.json_extent(text)
+    depth, values = _native.json_size_bounds(text)
     if depth > _MAX_DEPTH:
         raise ValueError(f"{at}: nested {depth} deep; at most {_MAX_DEPTH} is read")
     if values > most_values:
