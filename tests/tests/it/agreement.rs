@@ -56,12 +56,12 @@ fn stage(name: &str, most: usize) -> Stage {
     }
 }
 
-/// Views of the sample house and of a generated one: 8 and 6, or 200, and 100 in two, with `DWELL_TEST_ALL=1`.
+/// Views of the sample house and of a generated one: 10 each, or 200, and 100 in two, with `DWELL_TEST_ALL=1`.
 fn stages() -> Vec<Stage> {
     let (of_sample, of_seed) = if dwell_tests::runs_all() {
         (200, 100)
     } else {
-        (8, 6)
+        (10, 10)
     };
     let seeds: &[&str] = if dwell_tests::runs_all() {
         &["seed:3", "seed:12"]
