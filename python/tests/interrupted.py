@@ -148,15 +148,20 @@ def _mujoco(folder: Path, bodies: Iterator[str]) -> dwell.House:
     return dwell.House.open(str(path))
 
 
-def make_pile(folder: Path) -> Call:
-    """A world of 4,096 things, each a little in its neighbours."""
-    places = enumerate(itertools.product(range(16), repeat=3))
+def boxes_in_a_pile(folder: Path, edge: int) -> dwell.House:
+    """A house of ``edge`` boxes along each edge of a cube, each a little in its neighbours."""
+    places = enumerate(itertools.product(range(edge), repeat=3))
     bodies = (
         f'<body name="thing_{k}" pos="{0.195 * x} {0.195 * y} {0.1 + 0.195 * z}"><freejoint/>'
         '<geom type="box" size="0.1 0.1 0.1"/></body>'
         for k, (x, y, z) in places
     )
-    house = _mujoco(folder, bodies)
+    return _mujoco(folder, bodies)
+
+
+def make_pile(folder: Path) -> Call:
+    """A world of 4,096 things, each a little in its neighbours."""
+    house = boxes_in_a_pile(folder, 16)
     return lambda: dwell.World(house)
 
 

@@ -144,7 +144,7 @@ def test_a_snapshot_of_other_agents_or_another_rate_is_refused(shoebox: dwell.Ho
     saved = dwell.World(shoebox, agents=1).snapshot()
     for other, told in [
         (dwell.World(shoebox, agents=2), "agents"),
-        (dwell.World(shoebox, agents=[{"height_m": 1.4}]), "agents"),
+        (dwell.World(shoebox, agents=[{"height_m": 1.4}]), "agent 0 was made with another body"),
         (dwell.World(shoebox, sound_rate_hz=8000), "8000"),
     ]:
         before = other.state_hash()

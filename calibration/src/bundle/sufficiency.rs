@@ -116,6 +116,8 @@ pub(super) fn check_sufficient_data(bundle: &Bundle) -> CheckResult {
     }
     match bundle.kind() {
         BundleKind::PoseTrajectory => {
+            // To the check of velocities a number that stands for nothing looks like a wrong unit.
+            jumps::check_places(&bundle.name, &bundle.manifest, &bundle.episodes)?;
             poses::check_poses(&bundle.name, &bundle.manifest, &bundle.episodes)?;
         }
         BundleKind::Drive => {

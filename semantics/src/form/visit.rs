@@ -145,7 +145,7 @@ pub(super) fn visit_clause(clause: &mut Clause, visit: PhraseVisitor<'_>) {
         | Clause::Exists(phrase)
         | Clause::Area { room: phrase, .. }
         | Clause::HasSurfaces { room: phrase, .. } => {
-            visit_phrase(phrase, PhraseRole::Topic, visit)
+            visit_phrase(phrase, PhraseRole::Topic, visit);
         }
         Clause::Distance { subject, from, .. } => {
             visit_phrase(subject, PhraseRole::Topic, visit);
@@ -171,7 +171,7 @@ pub(super) fn visit_step(step: &mut RequestStep, visit: PhraseVisitor<'_>) {
         | RequestStep::Leave(phrase)
         | RequestStep::Do { object: phrase, .. }
         | RequestStep::DoNot { object: phrase, .. } => {
-            visit_phrase(phrase, PhraseRole::Topic, visit)
+            visit_phrase(phrase, PhraseRole::Topic, visit);
         }
         RequestStep::Put { object, to, .. } | RequestStep::Bring { object, to } => {
             visit_phrase(object, PhraseRole::Topic, visit);
