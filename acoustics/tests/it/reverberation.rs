@@ -189,11 +189,11 @@ fn the_order_of_the_images_does_not_change_the_energy() {
 /// closed forms trace with roulette, too.
 #[test]
 fn roulette_is_unbiased() {
+    const TRACES: u64 = 8;
     if std::env::var_os("DWELL_TEST_ALL").is_none() {
         println!("skipped: slow; DWELL_TEST_ALL=1 runs it");
         return;
     }
-    const TRACES: u64 = 8;
     let [all, thinned] = [120.0, 15.0].map(|roulette_db| {
         let config = AcousticConfig {
             roulette_db,

@@ -71,7 +71,7 @@ enum Step {
 }
 
 impl Step {
-    fn into_value<'a>(&self, value: &'a mut Value) -> Option<&'a mut Value> {
+    fn value_in<'a>(&self, value: &'a mut Value) -> Option<&'a mut Value> {
         match self {
             Self::Field(name) => value.get_mut(name),
             Self::Row(row) => value.get_mut(row),
@@ -91,7 +91,7 @@ impl Step {
 fn unreadable_place<T: DeserializeOwned>(root: &Value) -> Option<String> {
     fn inside<'a>(root: &'a mut Value, path: &[Step]) -> Option<&'a mut Value> {
         path.iter()
-            .try_fold(root, |value, step| step.into_value(value))
+            .try_fold(root, |value, step| step.value_in(value))
     }
     let mut path: Vec<Step> = Vec::new();
     loop {

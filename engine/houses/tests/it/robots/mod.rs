@@ -4,6 +4,7 @@
 use dwell_houses::{HousesError, Robot, open, open_robot, with_robot};
 use dwell_scene::{House, JointKind, Mobility, Pose, ShoeboxMaterials, State, interrupt};
 use glam::{DQuat, DVec3, Quat, Vec3};
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 const URDF: &str = include_str!("arm.urdf");
@@ -155,11 +156,15 @@ fn chain(links: usize) -> String {
     let shape = r#"<visual><geometry><box size=".1 .1 .1"/></geometry></visual>"#;
     let mut text = "<robot name='chain'>\n".to_owned();
     for k in 0..links {
-        text += &format!("<link name='l{k}'><inertial>{mass}</inertial>{shape}</link>\n");
+        writeln!(
+            text,
+            "<link name='l{k}'><inertial>{mass}</inertial>{shape}</link>"
+        )
+        .unwrap();
     }
     for k in 1..links {
         let ends = format!("<parent link='l{}'/><child link='l{k}'/>", k - 1);
-        text += &format!("<joint name='j{k}' type='continuous'>{ends}</joint>\n");
+        writeln!(text, "<joint name='j{k}' type='continuous'>{ends}</joint>").unwrap();
     }
     text + "</robot>\n"
 }
