@@ -15,7 +15,6 @@ from test_slips import DRIVE, FLIGHT, POSES, Rows, brought, put, refused, with_t
 from dwell.calibration import calibrate
 from dwell.measured.importing import import_files
 
-
 #: Without velocities, which tell some of it first.
 TOSSES = {**POSES, "table": {k: v for k, v in POSES["table"].items() if "velocity" not in k}}
 
