@@ -15,6 +15,9 @@ from test_slips import DRIVE, FLIGHT, POSES, Rows, brought, put, refused, with_t
 from dwell.calibration import calibrate
 from dwell.measured.importing import import_files
 
+#: Without velocities, which tell some of it first.
+TOSSES = {**POSES, "table": {k: v for k, v in POSES["table"].items() if "velocity" not in k}}
+
 
 @pytest.mark.parametrize(
     ("mapping", "units", "told"),
@@ -33,16 +36,12 @@ from dwell.measured.importing import import_files
         (FLIGHT, {"y": "cm"}, "were lengths in metres read as centimetres"),
         (FLIGHT, {"t_s": "ms"}, "were times in seconds read as milliseconds.* by 1000,"),
         (FLIGHT, {"t_s": "us"}, "were times in seconds read as microseconds"),
-        (POSES, dict.fromkeys("xyz", "cm"), "were lengths in metres read as centimetres"),
+        (TOSSES, dict.fromkeys("xyz", "cm"), "were lengths in metres read as centimetres"),
     ],
 )
 def test_units_that_make_a_motion_too_small_are_named(
     tmp_path: Path, mapping: dict[str, Any], units: dict[str, str], told: str
 ) -> None:
-    if mapping is POSES:
-        # Without velocities, which would tell it first.
-        table = {k: v for k, v in POSES["table"].items() if "velocity" not in k}
-        mapping = {**POSES, "table": table}
     with pytest.raises(ValueError, match=f"the acceleration in free flight is .*{told}"):
         brought(tmp_path, with_table(mapping, units=units))
 
@@ -81,7 +80,7 @@ def test_numbers_that_stand_for_nothing_are_refused_by_row(
 
 
 def test_numbers_that_stand_for_nothing_are_refused_in_tosses(tmp_path: Path) -> None:
-    told = refused(tmp_path, POSES, put(48, 4, -30.0))
+    told = refused(tmp_path, TOSSES, put(48, 4, -30.0))
     assert "data.csv row 48, episode e1, t_s 0.07" in told
     assert "column 'z' is -30 after " in told
 
