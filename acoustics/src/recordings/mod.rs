@@ -67,7 +67,7 @@ impl<'a> MonoMix<'a> {
 
     /// Takes the next sample of the interleaved channels.
     fn push(&mut self, sample: f64) -> Result<(), AcousticsError> {
-        // Samples beyond 24 times full scale in 32-bit float files are damage, and would overflow later.
+        // Samples beyond 24 times full scale in files of float are damage, and would overflow later.
         if !sample.is_finite() || sample.abs() > 1e6 {
             let at = format!("sample {}", self.samples.len());
             return Err(fault(self.name, &at, &sample, "finite numbers to 1e6"));
@@ -108,7 +108,7 @@ fn damaged(name: &str, error: &dyn Display) -> AcousticsError {
 }
 
 impl Recording {
-    /// Decodes the bytes of a file: WAV (PCM of 8, 16, 24 and 32 bits, float of 32), FLAC, Ogg Vorbis, recognized by their
+    /// Decodes the bytes of a file: WAV (PCM of 8, 16, 24 and 32 bits, float of 32 and 64), FLAC, Ogg Vorbis, recognized by their
     /// first bytes. `name`: for errors.
     ///
     /// # Errors

@@ -44,6 +44,38 @@ fn wav(bits: u16, float: bool, channels: u16, rate_hz: u32, samples: &[f32]) -> 
     bytes.into_inner()
 }
 
+/// Samples of 64-bit float, in the plain or the extensible layout.
+fn double_wav(channels: u16, rate_hz: u32, samples: &[f32], is_extensible: bool) -> Vec<u8> {
+    let frame = 8 * channels;
+    let mut layout = Vec::new();
+    let kind: u16 = if is_extensible { 0xfffe } else { 3 };
+    layout.extend(kind.to_le_bytes());
+    layout.extend(channels.to_le_bytes());
+    layout.extend(rate_hz.to_le_bytes());
+    layout.extend((rate_hz * u32::from(frame)).to_le_bytes());
+    layout.extend(frame.to_le_bytes());
+    layout.extend(64_u16.to_le_bytes());
+    if is_extensible {
+        // 22 bytes more: valid bits, the mask of channels, and the identifier, which begins with the kind.
+        layout.extend([22, 0, 64, 0, 0, 0, 0, 0, 3, 0]);
+        layout.extend([0; 14]);
+    }
+    let data: Vec<u8> = samples
+        .iter()
+        .flat_map(|x| f64::from(*x).to_le_bytes())
+        .collect();
+    let mut body = b"WAVE".to_vec();
+    for (name, content) in [(b"fmt ", layout), (b"LIST", vec![0; 6]), (b"data", data)] {
+        body.extend(name);
+        body.extend((content.len() as u32).to_le_bytes());
+        body.extend(content);
+    }
+    let mut file = b"RIFF".to_vec();
+    file.extend((body.len() as u32).to_le_bytes());
+    file.extend(body);
+    file
+}
+
 fn refusal(bytes: &[u8]) -> String {
     let message = Recording::decode("bell", bytes).unwrap_err().to_string();
     assert!(message.starts_with("bell: "), "{message}");
@@ -67,6 +99,29 @@ fn every_kind_of_wav_gives_its_samples_back() {
             assert!((found - wanted).abs() <= 0.51 * step, "{bits} {float}");
         }
     }
+}
+
+/// What programs write that reckon with NumPy; once an "ill-formed" file.
+#[test]
+fn doubles_give_the_samples_of_floats() {
+    let samples = tone(22_050, 700.0, 3_000);
+    let floats = Recording::decode("bell", &wav(32, true, 2, 22_050, &samples)).unwrap();
+    for is_extensible in [false, true] {
+        let file = double_wav(2, 22_050, &samples, is_extensible);
+        assert_eq!(Recording::decode("bell", &file).unwrap(), floats);
+        for cut in [1, 8, 100] {
+            assert!(refusal(&file[..file.len() - cut]).contains("undamaged"));
+        }
+        assert!(refusal(&file[..60]).contains("undamaged"));
+    }
+    let wrong = double_wav(1, 22_050, &[0.1, f32::NAN], false);
+    assert!(refusal(&wrong).contains("sample 1: found NaN"));
+    assert!(refusal(&double_wav(0, 22_050, &samples, false)).contains("1 to 64"));
+    // A-law.
+    let mut other = wav(8, false, 1, 16_000, &samples);
+    other[20] = 6;
+    let message = refusal(&other);
+    assert!(message.contains("float of 32 and 64"), "{message}");
 }
 
 #[test]
@@ -200,7 +255,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
     #[test]
     fn mutated_files_give_a_sound_or_an_error(
-        which in 0_usize..3,
+        which in 0_usize..4,
         edits in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..12),
         head in any::<bool>(),
     ) {
@@ -208,6 +263,7 @@ proptest! {
         let mut bytes = match which {
             0 => wav(16, false, 2, 16_000, &samples),
             1 => FLAC.to_vec(),
+            3 => double_wav(2, 16_000, &samples, true),
             _ => OGG.to_vec(),
         };
         // Headers are where claims stand.
