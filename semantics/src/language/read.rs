@@ -46,16 +46,23 @@ pub enum ParseError {
     NoAntecedent,
     /// All words are known, but they form no sentence of the grammar.
     #[error(
-        "understood as far as {understood:?}; then {found} was found, and one of {expected:?} can follow"
+        "understood as far as {understood:?}; then {found} was found, and {}", list_expected(.expected)
     )]
     NotASentence {
         /// The longest beginning of the text that could begin a sentence.
         understood: String,
         /// The word after it, in quotes, or "the end".
         found: String,
-        /// Words and lexicon classes that could follow; at most 12.
+        /// Words and lexicon classes that could follow; at most 12, and none after a whole sentence.
         expected: Vec<String>,
     },
+}
+
+fn list_expected(words: &[String]) -> String {
+    if words.is_empty() {
+        return "nothing can follow: expected one sentence".to_owned();
+    }
+    format!("one of {words:?} can follow")
 }
 
 fn list_unknown(words: &[UnknownWord]) -> String {

@@ -377,4 +377,12 @@ fn the_same_place_and_what_somebody_left() {
             Err(ParseError::NotASentence { .. })
         ));
     }
+    let two = Language::english()
+        .read("There is a bed. There is a sofa.")
+        .unwrap_err();
+    assert!(
+        two.to_string()
+            .ends_with("nothing can follow: expected one sentence"),
+        "{two}"
+    );
 }
