@@ -105,9 +105,14 @@ impl<'a> TextWriter<'a> {
             debug_assert!(false, "no words for {form:?}");
             return;
         };
-        for span in &mut said.phrases {
-            if let (Phrase::Pronoun, Some(antecedent)) = (&span.phrase, &self.antecedent) {
-                span.phrase = antecedent.clone();
+        if let Some(antecedent) = &self.antecedent {
+            // Also within others: the pillows of "on it there are two pillows" are those on it.
+            for span in &mut said.phrases {
+                let whole = Form::NounPhrase(span.phrase.clone());
+                let whole = whole.with_phrase(&Phrase::Pronoun, antecedent);
+                if let Form::NounPhrase(phrase) = whole {
+                    span.phrase = phrase;
+                }
             }
         }
         if !self.written.text.is_empty() && !self.written.text.ends_with('\n') {

@@ -14,7 +14,8 @@ use dwell_semantics::describe::{
 };
 use dwell_semantics::form::Form;
 use dwell_semantics::instruct::{InstructionKind, candidates};
-use dwell_semantics::{SemanticScene, Semantics, Truth, Viewer};
+use dwell_semantics::predicates;
+use dwell_semantics::{SemanticScene, Semantics, Term, Truth, Viewer};
 use std::sync::Arc;
 
 fn houses() -> Vec<String> {
@@ -42,7 +43,15 @@ fn examine(scene: &SemanticScene<'_>, listener: Addressee, text: &GroundedText, 
         assert_eq!(verdict.truth, Truth::True, "{name}: {said}");
     }
     for phrase in &text.phrases {
-        assert!(!text.text[phrase.start..phrase.end].trim().is_empty());
+        let said = &text.text[phrase.start..phrase.end];
+        assert!(!said.trim().is_empty());
+        let is_none = ["nothing", "no "].iter().any(|none| said.starts_with(none));
+        assert_eq!(
+            phrase.terms.is_empty(),
+            is_none,
+            "{name}: the things of {said:?} in {}",
+            text.text
+        );
     }
 }
 
@@ -109,6 +118,56 @@ fn texts_are_true_and_read_back_as_they_were_meant() {
     for name in houses() {
         examine_house(&name);
     }
+}
+
+/// "On it there are two pillows." Once no thing was named for what lies on "it".
+#[test]
+fn long_captions_name_all_that_lies_on_and_in_it() {
+    let mut with_pronoun = 0;
+    for name in ["builtin:studio", "builtin:apartment"] {
+        let house: Arc<House> = Arc::new(open(name).unwrap().0);
+        let semantics = Semantics::new(&house);
+        let state = State::new(&house);
+        let scene = semantics.scene(&state);
+        let texts = captions(&scene, TextLength::Long.into());
+        for (object, text) in house.objects.ids().zip(&texts) {
+            for claim in &text.claims[1..] {
+                let said = &text.text[claim.start..claim.end];
+                let Some(place) = ["on", "in"]
+                    .into_iter()
+                    .zip(["On it ", "In it "])
+                    .find_map(|(place, start)| said.starts_with(start).then_some(place))
+                else {
+                    continue;
+                };
+                let predicate = predicates::find(place).unwrap();
+                let lies_there = |other: &Term| {
+                    let pair = [*other, Term::Object(object)];
+                    predicate.holds(&scene, &pair, None).is_true()
+                };
+                let all = house.objects.ids().map(Term::Object);
+                let mut meant: Vec<Term> = all.filter(lies_there).collect();
+                let own_phrases = text.phrases.iter().filter(|phrase| {
+                    claim.start <= phrase.start
+                        && phrase.end <= claim.end
+                        && &text.text[phrase.start..phrase.end] != "it"
+                });
+                let mut named: Vec<Term> = own_phrases
+                    .flat_map(|phrase| phrase.terms.clone())
+                    .collect();
+                named.sort_unstable();
+                assert_eq!(named, meant, "{name}: {said}");
+                meant.push(Term::Object(object));
+                meant.sort_unstable();
+                assert_eq!(claim.terms, meant, "{name}: {said}");
+                with_pronoun += 1;
+            }
+        }
+    }
+    assert!(
+        with_pronoun > 10,
+        "{with_pronoun} sentences of what lies there"
+    );
 }
 
 /// Nouns that files may hold: those of pieces of the building and of rooms, marks, words of the grammar, nothing.
