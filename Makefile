@@ -33,7 +33,7 @@ demo: venv ## walk an agent through HOUSE and write what it saw, heard and did t
 	$(bin)/dwell demo $(HOUSE) --out $(OUT)
 	@echo "Open $(OUT)/index.html"
 
-test: build ## Rust tests, doc tests, Python tests
+test: build ## Rust, doc and Python tests; of the long ones a share, chosen by the commit
 	@status=0; \
 	$(stage) 'Rust tests' sh xtask/sh/rust-tests.sh $(locked) || status=1; \
 	$(stage) 'doc tests' cargo test $(locked) --workspace --doc --quiet || status=1; \
@@ -41,7 +41,7 @@ test: build ## Rust tests, doc tests, Python tests
 	exit $$status
 
 test-all: export DWELL_TEST_ALL = 1
-test-all: test ## the same with the slow tests, and the benches once each
+test-all: test ## the same with all long and slow tests, and the benches once each
 	@$(stage) 'benches, once each' sh xtask/sh/benches.sh --once $(locked)
 
 check: venv ## formatting, lints, docs, layers, sizes, licences, types

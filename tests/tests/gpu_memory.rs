@@ -20,6 +20,7 @@ const VIEWS: usize = 48;
 const EDGE: u32 = 24;
 
 #[test]
+#[ignore = "long"]
 fn later_batches_take_little_from_the_heap() {
     let Some(first) = adapters().into_iter().next() else {
         println!("skipped: no graphics adapter, not even of software");

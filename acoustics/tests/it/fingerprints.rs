@@ -419,6 +419,7 @@ fn hide(id: &str, random: &mut Random) -> LawSpec {
 }
 
 #[test]
+#[ignore = "long"]
 fn every_law_is_found_by_its_fingerprint() {
     let halls = [WINTER_PCT, SUMMER_PCT].map(room);
     // A seed for each law in turn; all of three with all tests.
@@ -438,6 +439,7 @@ fn every_law_is_found_by_its_fingerprint() {
 }
 
 #[test]
+#[ignore = "long"]
 fn nothing_is_found_where_nothing_is_hidden() {
     let hall = room(WINTER_PCT);
     for seed in 0..6 {

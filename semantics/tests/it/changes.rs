@@ -27,6 +27,7 @@ fn states(text: &GroundedText) -> Vec<(&str, &[Term])> {
 }
 
 #[test]
+#[ignore = "long"]
 fn what_was_changed_is_told() {
     let mut counts = [0; 3];
     for name in ["builtin:apartment", "seed:3", "seed:8"] {

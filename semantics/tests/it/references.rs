@@ -25,6 +25,7 @@ struct Counts {
 }
 
 #[test]
+#[ignore = "long"]
 fn each_reference_denotes_its_thing_alone() {
     let mut in_house = Counts::default();
     let mut in_view = Counts::default();

@@ -69,6 +69,7 @@ fn follow(
 }
 
 #[test]
+#[ignore = "long"]
 fn whoever_follows_the_words_arrives() {
     let (mut told, mut none, mut past) = (0, 0, 0);
     let houses = [

@@ -33,7 +33,7 @@ fn env(renderer: &BackEnd, edge: u32, blurs: bool) -> Env {
 /// Returns what a caller sees who resets, steps, changes and restores worlds, and looks at all or some of them.
 fn play(renderer: &BackEnd, blurs: bool, overlaps: bool) -> Vec<Vec<Vec<u8>>> {
     use DiscreteAction::{MoveForward, TurnLeft, TurnRight};
-    let envs = (0..COUNT).map(|_| env(renderer, 16, blurs)).collect();
+    let envs = (0..COUNT).map(|_| env(renderer, 8, blurs)).collect();
     let batch = Batch::new(envs, Threads::new(2)).unwrap();
     let mut batch = batch.with_overlapped_rendering(overlaps);
     let all = [true; COUNT];
@@ -71,6 +71,7 @@ fn play(renderer: &BackEnd, blurs: bool, overlaps: bool) -> Vec<Vec<Vec<u8>>> {
 }
 
 #[test]
+#[ignore = "long"]
 fn overlapped_pictures_are_those_of_the_same_step() {
     let mut renderers = vec![BackEnd::Cpu];
     renderers.extend(adapter_paths());
@@ -92,6 +93,7 @@ fn overlapped_pictures_are_those_of_the_same_step() {
 
 /// A picture too large for the adapter is refused when it is waited for, not when it is started, and again by the next call.
 #[test]
+#[ignore = "long"]
 fn what_goes_wrong_meanwhile_is_told_by_the_call_that_waits() {
     for renderer in adapter_paths() {
         // The first hits of 16 million pixels take 256 MiB, twice what many an adapter lets a kernel use.

@@ -108,6 +108,7 @@ fn back_ends() -> Vec<BackEnd> {
 }
 
 #[test]
+#[ignore = "long"]
 fn shutters_in_a_batch_give_the_bits_of_worlds_alone() {
     for renderer in back_ends() {
         let still = observe(&mut batch(0..2, &renderer, &[]));
@@ -158,6 +159,7 @@ fn shutters_in_a_batch_give_the_bits_of_worlds_alone() {
 
 /// More worlds than are exposed at once.
 #[test]
+#[ignore = "long"]
 fn many_worlds_with_open_shutters_are_those_of_few() {
     let laws = [blurs()];
     let all = observe(&mut batch(0..40, &BackEnd::Cpu, &laws));
@@ -166,6 +168,7 @@ fn many_worlds_with_open_shutters_are_those_of_few() {
 }
 
 #[test]
+#[ignore = "long"]
 fn adapters_roll_and_blur_as_the_processor_does() {
     let laws = [rolls(), blurs()];
     let by_cpu = observe(&mut batch(0..4, &BackEnd::Cpu, &laws));

@@ -214,6 +214,7 @@ fn understood(world: &mut World, effort: VocalEffort) -> (f64, f64) {
 
 /// Noise at the listener's side masks: the louder it is the less is understood, and a shout comes through again.
 #[test]
+#[ignore = "long"]
 fn noise_masks_and_shouting_helps() {
     let engines = room();
     let run = |noise_db: Option<f32>, effort| {

@@ -102,6 +102,7 @@ fn rows_are_those_of_the_whole_picture() {
 }
 
 #[test]
+#[ignore = "long"]
 fn later_batches_make_no_buffers() {
     let Some(shared) = gpu() else { return };
     for path in VisibilityPath::ALL {
@@ -129,6 +130,7 @@ fn later_batches_make_no_buffers() {
 
 /// However many pieces a house has, and with all of them drawn: one call for a view.
 #[test]
+#[ignore = "long"]
 fn a_view_is_drawn_by_one_call() {
     let Some(pair) = pair_by(VisibilityPath::Raster) else {
         return;
@@ -160,6 +162,7 @@ fn a_view_is_drawn_by_one_call() {
 }
 
 #[test]
+#[ignore = "long"]
 fn culling_changes_no_pixel() {
     let Some(pair) = pair_by(VisibilityPath::Raster) else {
         return;

@@ -116,6 +116,7 @@ fn moved(path: VisibilityPath) -> Option<Moved> {
 }
 
 #[test]
+#[ignore = "long"]
 fn every_camera_sees_the_same_by_cpu_and_gpu_after_things_moved() {
     cameras_agree(VisibilityPath::Compute, &cameras());
 }

@@ -72,6 +72,7 @@ fn agree(name: &str, house: &Arc<House>, count: usize, path: VisibilityPath) {
 }
 
 #[test]
+#[ignore = "long"]
 fn the_sample_house_looks_the_same_by_cpu_and_gpu() {
     if let Some(house) = suncg() {
         let count = if tests_all() { 50 } else { 10 };
@@ -114,6 +115,7 @@ fn lit_agrees(name: &str, house: Arc<House>, count: usize, path: VisibilityPath)
 }
 
 #[test]
+#[ignore = "long"]
 fn lit_houses_look_the_same_by_cpu_and_gpu() {
     let (in_suncg, generated) = if tests_all() { (200, 40) } else { (4, 3) };
     for path in VisibilityPath::ALL {
@@ -128,6 +130,7 @@ fn lit_houses_look_the_same_by_cpu_and_gpu() {
 }
 
 #[test]
+#[ignore = "long"]
 fn generated_houses_look_the_same_by_cpu_and_gpu() {
     for seed in ["seed:3", "seed:8"] {
         let house = Arc::new(dwell_houses::open(seed).unwrap().0);

@@ -99,6 +99,7 @@ pub(super) fn views(camera: Camera, preset: Preset) -> Vec<View> {
 }
 
 #[test]
+#[ignore = "long"]
 fn glass_mirrors_and_light_look_the_same_by_every_camera() {
     for path in VisibilityPath::ALL {
         let Some(pair) = Pair::new(room(), path) else {
@@ -129,6 +130,7 @@ fn glass_mirrors_and_light_look_the_same_by_every_camera() {
 
 /// `full` is rendered by `cpu` whoever is asked, between pictures that are not.
 #[test]
+#[ignore = "long"]
 fn full_pictures_are_those_of_cpu() {
     let Some(pair) = Pair::new(room(), VisibilityPath::Raster) else {
         return;
