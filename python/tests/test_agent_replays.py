@@ -53,6 +53,7 @@ def played(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[dict[st
     return folder / "episode_0000.replay", steps
 
 
+@pytest.mark.long
 def test_an_episode_of_several_agents_is_played_again_to_the_same_bits(
     played: tuple[Path, list[dict[str, Any]]],
 ) -> None:
@@ -174,6 +175,7 @@ def test_what_is_edited_is_found(
     assert said in capsys.readouterr().err
 
 
+@pytest.mark.long
 def test_an_agent_is_chosen_to_see_and_hear_again(
     played: tuple[Path, list[dict[str, Any]]],
     tmp_path: Path,

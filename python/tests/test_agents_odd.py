@@ -175,6 +175,7 @@ OTHERS: dict[str, list[Any]] = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "seed", [0, 1, 2, *(pytest.param(k, marks=pytest.mark.slow) for k in range(3, 30))]
 )

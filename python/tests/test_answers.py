@@ -85,6 +85,7 @@ def test_what_is_no_answer_is_refused(change: dict[str, Any], part: str) -> None
         env.step(0)
 
 
+@pytest.mark.long
 def test_files_and_results_hold_answers(tmp_path: Path) -> None:
     env = ReplayRecorder(made(), tmp_path)
     env.reset(seed=2)

@@ -47,6 +47,7 @@ def two_points() -> tuple[str, str]:
     return f"{x},{y},{z}", f"{stand_x},1.5,{stand_z}"
 
 
+@pytest.mark.long
 def test_exit_statuses_tell_failure_from_bad_usage() -> None:
     assert process("info", HOUSE).returncode == 0
     missing = process("info", "builtin:castle")
@@ -60,6 +61,7 @@ def test_exit_statuses_tell_failure_from_bad_usage() -> None:
     assert process().returncode == 2
 
 
+@pytest.mark.long
 def test_doctor_and_info_print_one_object(monkeypatch: pytest.MonkeyPatch) -> None:
     # As on a server, where drivers of the desktop complain.
     monkeypatch.delenv("XDG_RUNTIME_DIR", raising=False)
@@ -123,6 +125,7 @@ def test_ir_writes_a_sound_and_its_measures(
     assert command(*asked, "--bits", "24").returncode == 2
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("stage", "figure", "small"),
     [
@@ -153,6 +156,7 @@ def test_bench_tells_how_far_it_is_and_ends_where_its_listener_raises() -> None:
         _native.bench("physics", HOUSE, options, stop)
 
 
+@pytest.mark.long
 def test_bench_measures_batches_by_size_and_path(command: Command) -> None:
     small = ("--repeats", "1", "--batch", "1,3", "--resolution", "16,24", "--json")
     by_cpu = one_object(command("bench", "render", HOUSE, "--backend", "cpu", *small))["rows"]
@@ -216,6 +220,7 @@ def test_demo_writes_a_page_that_needs_no_network(tmp_path: Path) -> None:
     assert done.returncode == 1, "a folder that no demo wrote"
 
 
+@pytest.mark.long
 def test_demo_of_a_small_house_writes_a_page(
     tmp_path: Path, command: Command, monkeypatch: pytest.MonkeyPatch
 ) -> None:

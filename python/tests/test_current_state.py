@@ -76,6 +76,7 @@ def test_a_fork_goes_on_alone_with_the_same_bits() -> None:
         many.world(2)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("many", [False, True])
 def test_episodes_after_a_restore_are_those_that_followed_the_snapshot(many: bool) -> None:
     houses = ["builtin:studio", "builtin:apartment"]

@@ -122,6 +122,7 @@ def ended(script: str, status: int = 0) -> str:
     return done.stdout
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("call", CALLS)
 @pytest.mark.parametrize(
     "first",

@@ -24,6 +24,7 @@ def viewpoints(world: dwell.World) -> list[dict[str, object]]:
     return [{"position": r["eye"], "yaw_deg": r["yaw_deg"]} for r in world.house.rooms()]
 
 
+@pytest.mark.long
 def test_what_a_view_tells_is_in_the_picture() -> None:
     """By the instance image, which texts do not use: what is told is seen, the largest is told."""
     camera = dwell.Camera(width=256, height=256, fov_deg=90)
@@ -103,6 +104,7 @@ def test_what_a_level_does_not_read_is_refused(level: str) -> None:
             world.describe(level, **{name: value})  # type: ignore[call-overload]
 
 
+@pytest.mark.long
 def test_the_command_tells_views_routes_and_changes(tmp_path: Path, command: Command) -> None:
     done = command("describe", HOUSE, "--level", "view", "--json")
     rooms = len(dwell.House.open(HOUSE).rooms())

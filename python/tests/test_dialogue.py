@@ -90,6 +90,7 @@ def test_a_vector_environment_asks_for_each() -> None:
     env.close()
 
 
+@pytest.mark.long
 def test_what_was_asked_is_in_recorded_files(tmp_path: Path) -> None:
     env = DwellEnv("Dialogue", houses="builtin:apartment", sensors=["reply"])
     recorded = ReplayRecorder(env, tmp_path)
@@ -117,6 +118,7 @@ def test_gymnasium_makes_it() -> None:
     env.close()
 
 
+@pytest.mark.long
 def test_an_evaluation_keeps_what_was_asked() -> None:
     result = evaluate(
         "expert", task="Dialogue", houses="builtin:apartment", count=3, sensors=["reply"]

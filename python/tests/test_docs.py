@@ -39,6 +39,7 @@ PROGRAMS = [
 ]
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("open_once")
 @pytest.mark.parametrize("file", PROGRAMS)
 def test_the_python_of_a_page_runs_from_its_beginning_to_its_end(
@@ -124,6 +125,7 @@ def test_links_of_the_site_lead_to_its_pages(pages: ModuleType) -> None:
     assert linked("index.md", "[a](docs/none.md)") == "[a](docs/none.md)"
 
 
+@pytest.mark.long
 def test_every_sensor_stands_in_the_table_with_its_space(pages: ModuleType) -> None:
     rows = {row[0]: row for row in rows_of(pages.observations.page(), "# Observations")}
     sensors = {sensor["name"]: sensor["about"] for sensor in _native.sensors()}

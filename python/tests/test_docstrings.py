@@ -28,6 +28,7 @@ def _has(name: str) -> bool:
     return source is not None and ">>> " in source.read_text("utf-8")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("module", modules())
 def test_the_examples_of_a_module_run(module: str) -> None:
     failed, tried = doctest.testmod(importlib.import_module(module))

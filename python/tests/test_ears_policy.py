@@ -63,6 +63,7 @@ def test_a_chart_finds_where_bearings_cross() -> None:
     assert chart.source(np.array([0.0, 0.0]))[0] < 0.0
 
 
+@pytest.mark.long
 def test_it_turns_to_the_side_of_the_source() -> None:
     """In an open room with carpets it faces the source before it walks.
 
@@ -88,6 +89,7 @@ def test_it_turns_to_the_side_of_the_source() -> None:
     assert right >= 12
 
 
+@pytest.mark.long
 def test_it_plays_by_name_and_the_result_is_verified() -> None:
     given: dict[str, Any] = {
         "task": "AudioNav",

@@ -125,6 +125,7 @@ def address(array: np.ndarray[Any, Any]) -> int:
     return int(array.__array_interface__["data"][0])
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("open_once")
 def test_observations_are_written_where_they_are_read() -> None:
     envs = DwellVectorEnv(2, sensors=["rgb", "depth", "audio"])
@@ -185,6 +186,7 @@ def counted(program: str, **variables: str) -> dict[str, Any]:
     return facts
 
 
+@pytest.mark.long
 def test_threads_are_the_cores_that_affinity_and_variable_leave() -> None:
     facts = counted(DOCTOR, DWELL_THREADS="1")
     assert (facts["threads"], facts["threads_variable"]) == (1, 1)
@@ -195,6 +197,7 @@ def test_threads_are_the_cores_that_affinity_and_variable_leave() -> None:
         assert (facts["threads"], facts["available_cores"]) == (1, 1)
 
 
+@pytest.mark.long
 @pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="threads are counted by /proc")
 def test_no_more_threads_are_started_than_were_counted() -> None:
     program = """

@@ -23,6 +23,7 @@ SMALL = {
 }
 
 
+@pytest.mark.long
 def test_check_env_has_nothing_to_say() -> None:
     # Warnings are errors in this suite.
     env = gymnasium.make(ENV_ID, disable_env_checker=True).unwrapped

@@ -268,6 +268,7 @@ def test_cut_and_empty_snapshots_are_called_so() -> None:
         many.restore([row[:-1]])
 
 
+@pytest.mark.long
 def test_a_restored_environment_goes_on_as_before() -> None:
     env = DwellEnv(houses=["builtin:apartment"])
     env.reset(seed=6)

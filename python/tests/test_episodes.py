@@ -179,6 +179,7 @@ def test_an_episode_states_what_is_found_when_it_is_played(made: Path) -> None:
         assert line["instruction"] == env.instruction()
 
 
+@pytest.mark.long
 def test_shards_give_the_same_episodes_by_any_number_of_threads(
     made: Path, tmp_path: Path, command: Command
 ) -> None:
@@ -226,6 +227,7 @@ def test_a_run_that_was_stopped_goes_on(
     assert "is there already" in command(*args, "--out", out).stderr
 
 
+@pytest.mark.long
 def test_houses_that_cannot_host_are_skipped_and_told(tmp_path: Path, command: Command) -> None:
     # Only one of the two is large enough.
     args = ("episodes", "PointNav", "--count", "2", "--set", "min_distance_m=12")

@@ -79,6 +79,7 @@ def result(made: Path) -> dict[str, Any]:
     return evaluate(Half(), episodes=made, sensors=["gps"])
 
 
+@pytest.mark.long
 def test_metrics_are_those_that_are_reckoned_by_hand(made: Path, result: dict[str, Any]) -> None:
     stated = {one.episode_id: one for one in dwell.episodes.read(made)}
     assert [row["episode_id"] for row in result["episodes"]] == [*stated]
@@ -153,6 +154,7 @@ def at(*place: str | int, to: object) -> Callable[[dict[str, Any]], None]:
     return edit
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("edit", "told"),
     [
@@ -230,6 +232,7 @@ def test_actions_that_are_none_are_told(count: str, result: dict[str, Any]) -> N
     assert "more than 10000000 actions" in told or "expected NUMBER or NUMBER*COUNT" in told
 
 
+@pytest.mark.long
 def test_the_files_that_were_played_are_compared(
     made: Path, result: dict[str, Any], tmp_path: Path, command: Command
 ) -> None:
@@ -255,6 +258,7 @@ def test_the_files_that_were_played_are_compared(
     assert any("the episodes' 5" in one for one in differences(of_reversed, episodes=reversed_ones))
 
 
+@pytest.mark.long
 def test_a_baseline_is_asked_what_it_does() -> None:
     result = evaluate("random", task="PointNav", houses="builtin:studio", count=2, seed=4)
     assert differences(result) == []
@@ -284,6 +288,7 @@ def test_a_file_with_an_edited_mean_fails_the_command(
     assert "no dwell-evaluation file" in command("evaluate", "--verify", path).stderr
 
 
+@pytest.mark.long
 def test_the_command_gives_what_the_function_does(
     made: Path, tmp_path: Path, command: Command, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -312,6 +317,7 @@ def test_the_command_gives_what_the_function_does(
     assert cut.read_bytes() == out.read_bytes()
 
 
+@pytest.mark.long
 def test_baselines_and_policies_by_name_play(made: Path) -> None:
     stopped = evaluate("stop", episodes=made)
     assert stopped["metrics"]["steps"]["mean"] == 1.0
@@ -326,6 +332,7 @@ def test_baselines_and_policies_by_name_play(made: Path) -> None:
         assert differences(wandered) == []
 
 
+@pytest.mark.long
 def test_a_policy_is_imported_by_the_command(
     tmp_path: Path, command: Command, monkeypatch: pytest.MonkeyPatch
 ) -> None:

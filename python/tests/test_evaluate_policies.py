@@ -75,6 +75,7 @@ def stopped_after(count: int) -> Iterator[None]:
         yield
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("changed", ["spinner.py", "beside.py"])
 def test_a_policy_that_has_changed_does_not_go_on(
     changed: str, folder: Path, command: Command
@@ -115,6 +116,7 @@ def test_a_policy_that_has_changed_does_not_go_on(
     assert "has changed since" in checked.stderr
 
 
+@pytest.mark.long
 def test_what_a_policy_says_of_itself_is_part_of_its_source() -> None:
     class Weighted:
         identity = "weights 1"
@@ -266,6 +268,7 @@ def test_errors_of_a_policy_keep_their_cause() -> None:
         evaluate(Wrong, sensors=["gps"], **ONE)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("task", "mode"),
     [
@@ -317,6 +320,7 @@ def test_more_modes_than_there_are_are_refused(command: Command) -> None:
     assert command("evaluate", "stop", *OPTIONS, "--action-mode", "thought").returncode == 2
 
 
+@pytest.mark.long
 def test_processes_give_the_same_bytes(folder: Path, command: Command) -> None:
     (folder / "spinner.py").write_text(SPINNER)
     (folder / "beside.py").write_text("DIRECTION = 2\n")

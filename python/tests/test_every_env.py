@@ -44,6 +44,7 @@ def bits(observation: dict[str, Any]) -> dict[str, bytes]:
     return {name: np.asarray(value).tobytes() for name, value in observation.items()}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("env_id", "mode"), PAIRS)
 def test_check_env_has_nothing_to_say(env_id: str, mode: str) -> None:
     # Warnings are errors in this suite.
@@ -55,6 +56,7 @@ def test_check_env_has_nothing_to_say(env_id: str, mode: str) -> None:
         env.reset(seed=1)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("env_id", "mode"), PAIRS)
 def test_bits_are_the_same_whoever_steps_and_after_a_restore(env_id: str, mode: str) -> None:
     settings = settings_of(mode)
@@ -91,6 +93,7 @@ def test_bits_are_the_same_whoever_steps_and_after_a_restore(env_id: str, mode: 
             assert (bits(again.step(own)[0]), again.state_hash()) == (seen, state)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("sensor", _native.sensors(), ids=lambda row: row["name"])
 def test_check_env_has_nothing_to_say_of_any_sensor(sensor: dict[str, Any]) -> None:
     task = (sensor["goal_tasks"] or ["Free"])[0]

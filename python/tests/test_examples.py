@@ -23,6 +23,7 @@ def test_an_example_runs_in_a_process_of_its_own() -> None:
     assert done.stdout.strip()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
 def test_an_example_runs_and_says_something(
     example: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
@@ -43,6 +44,7 @@ def test_examples_are_short_and_listed() -> None:
 PROGRAMS = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text("utf-8"), re.DOTALL)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("program", PROGRAMS, ids=range(len(PROGRAMS)))
 def test_the_programs_of_the_readme_run(
     program: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]

@@ -194,6 +194,7 @@ env.close()
 """
 
 
+@pytest.mark.long
 def test_processes_that_record_into_one_folder_lose_nothing(tmp_path: Path) -> None:
     command = [sys.executable, "-c", RECORDS, str(tmp_path)]
     opened = [
@@ -240,6 +241,7 @@ sys.exit(cli.main(["generate", *sys.argv[1:]]))
 """
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("form", ["dwell", pytest.param("suncg", marks=pytest.mark.slow), "glb"])
 def test_houses_that_had_no_room_are_made_by_the_next_run(tmp_path: Path, form: str) -> None:
     pytest.importorskip("resource")

@@ -49,6 +49,7 @@ def in_child(work: Callable[[], Any]) -> Any:  # noqa: ANN401 - whatever the wor
         process.join()
 
 
+@pytest.mark.long
 @warned
 def test_a_child_of_a_used_parent_steps_sees_and_hears_the_same() -> None:
     world, twin = dwell.World("builtin:studio"), dwell.World("builtin:studio")
@@ -59,6 +60,7 @@ def test_a_child_of_a_used_parent_steps_sees_and_hears_the_same() -> None:
     assert in_child(lambda: in_child(lambda: senses(twin))) == senses(world)
 
 
+@pytest.mark.long
 @warned
 def test_environments_in_forked_workers_play_what_one_here_plays() -> None:
     here = DwellEnv(houses="builtin:studio", sensors=["rgb", "audio"])
@@ -79,6 +81,7 @@ def test_environments_in_forked_workers_play_what_one_here_plays() -> None:
             assert (many[name][1] == value).all(), name
 
 
+@pytest.mark.long
 @warned
 def test_a_fork_beside_a_busy_thread_waits_for_its_call(caplog: pytest.LogCaptureFixture) -> None:
     """Locks that another thread holds at the fork would stay locked in the child for ever."""
@@ -107,6 +110,7 @@ def test_a_fork_beside_a_busy_thread_waits_for_its_call(caplog: pytest.LogCaptur
     assert not [record for record in caplog.records if record.levelno >= logging.WARNING]
 
 
+@pytest.mark.long
 def test_a_fork_waits_for_a_while_and_no_longer() -> None:
     # The thread's call takes many minutes; forks before it has begun do not wait.
     program = """

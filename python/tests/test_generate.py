@@ -49,6 +49,7 @@ def test_a_range_of_seeds_is_several_houses() -> None:
     assert [*shelf.names] == ["builtin:studio", "seed:0", "seed:1", "seed:2"]
 
 
+@pytest.mark.long
 def test_houses_of_thousands_of_seeds_are_not_all_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     assert 1 < config.CACHED_HOUSES < 100
     most = 4
@@ -74,6 +75,7 @@ def test_houses_of_thousands_of_seeds_are_not_all_kept(monkeypatch: pytest.Monke
     env.close()
 
 
+@pytest.mark.long
 def test_built_in_houses_are_listed_and_open() -> None:
     names = dwell.House.builtins()
     assert {"builtin:apartment", "builtin:studio", "builtin:house", "builtin:office"} <= set(names)
@@ -152,6 +154,7 @@ def test_bulk_houses_open_again_and_the_manifest_tells_them(
             assert house.info()["objects"] == row["objects"]
 
 
+@pytest.mark.long
 def test_a_run_that_was_killed_goes_on_and_ends_as_if_it_had_not_been(tmp_path: Path) -> None:
     whole, cut = tmp_path / "whole", tmp_path / "cut"
     assert process(*STUDIOS, "--out", whole).returncode == 0
@@ -253,6 +256,7 @@ def test_a_house_that_could_not_be_written_is_tried_again(
     assert content(out) == content(whole)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("form", ["dwell", "suncg"])
 def test_models_and_images_that_are_gone_or_cut_are_made_again(
     tmp_path: Path, form: str, generate: Command

@@ -168,6 +168,7 @@ def test_what_is_no_json_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 # ---- conversion
 
 
+@pytest.mark.long
 def test_episodes_of_points_are_played_to_their_goals(
     points: Path, tmp_path: Path, places: list[Any]
 ) -> None:

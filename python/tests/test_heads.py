@@ -374,6 +374,7 @@ def _kemar() -> tuple[HeadFile, NDArray[np.float64]]:
     return file, np.stack([azimuth, np.degrees(np.arcsin(up))], axis=1)
 
 
+@pytest.mark.long
 @needs_kemar
 def test_kemar_is_heard_as_measured() -> None:
     """V17: 10 us and 0.5 dB against the file, at its rate and at 16 kHz; the table's figures."""

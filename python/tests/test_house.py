@@ -152,6 +152,7 @@ def test_agents_that_start_outside_are_told(caplog: pytest.LogCaptureFixture) ->
     assert row == "edits: agent_starts[0]: stands outside of every room"
 
 
+@pytest.mark.long
 def test_no_goal_has_no_distance() -> None:
     env = gymnasium.make("dwell/Free-v0", sensors=["gps"])
     env.reset(seed=1)
@@ -202,6 +203,7 @@ def test_lines_of_obj_files_end_and_begin_as_editors_have_them(text: str, tmp_pa
     assert not house.info()["report"]["warnings"]
 
 
+@pytest.mark.long
 def test_a_house_that_could_not_be_read_again_is_not_written(tmp_path: Path) -> None:
     edits = dwell.House.open("builtin:studio").edit()
     for k in range(2):

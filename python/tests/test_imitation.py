@@ -49,6 +49,7 @@ def test_gradients_are_those_of_the_loss(example: dict[str, Any]) -> None:
             assert (sides[0] - sides[1]) / 2e-6 == pytest.approx(slopes[at], rel=1e-4, abs=1e-7)
 
 
+@pytest.mark.long
 def test_it_learns_what_can_be_told_apart(example: dict[str, Any]) -> None:
     rng = np.random.default_rng(4)
     inputs = rng.normal(size=(500, 3)).astype(np.float32)
@@ -59,6 +60,7 @@ def test_it_learns_what_can_be_told_apart(example: dict[str, Any]) -> None:
     assert (said == labels[:, 0]).mean() > 0.9
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "task",
     [

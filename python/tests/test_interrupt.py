@@ -25,6 +25,7 @@ pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals are sent by 
 TRIES = 5
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", interrupted.CALLS)
 def test_ctrl_c_ends_a_long_call(name: str, tmp_path: Path) -> None:
     found = []
@@ -63,6 +64,7 @@ def test_a_world_that_was_only_looked_at_goes_on_as_if_nothing_had_been() -> Non
     assert (world.render(agent=0)["rgb"] == twin.render(agent=0)["rgb"]).all()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("threads", [1, 2])
 def test_a_batch_that_was_stopped_wants_a_reset_and_then_plays_as_ever(threads: int) -> None:
     def new() -> DwellVectorEnv:
@@ -83,6 +85,7 @@ def test_a_batch_that_was_stopped_wants_a_reset_and_then_plays_as_ever(threads: 
     assert envs.state_hashes() == twin.state_hashes()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("threads", [1, 2])
 def test_a_first_reset_that_was_stopped_wants_another_and_then_plays_as_ever(threads: int) -> None:
     def new() -> DwellVectorEnv:
@@ -115,6 +118,7 @@ def test_a_first_reset_that_was_stopped_wants_another_and_then_plays_as_ever(thr
     assert refused > 0
 
 
+@pytest.mark.long
 def test_an_environment_whose_restoring_was_stopped_is_restored_the_next_time() -> None:
     def new() -> _native.Batch:
         house = dwell.House.generate(4, home="house")
@@ -130,6 +134,7 @@ def test_an_environment_whose_restoring_was_stopped_is_restored_the_next_time() 
     assert env.state_hash(0) == twin.state_hash(0)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("at", [1, 3])
 @pytest.mark.parametrize(
     "look",
@@ -150,6 +155,7 @@ def test_what_was_stopped_while_it_was_prepared_is_prepared_again(
     assert world.state_hash() == twin.state_hash()
 
 
+@pytest.mark.long
 def test_a_long_step_that_was_stopped_leaves_the_world_as_it_was(tmp_path: Path) -> None:
     house = interrupted.boxes_in_a_pile(tmp_path, 8)
     world, twin = (dwell.World(house, settle_s=0.0) for _ in range(2))

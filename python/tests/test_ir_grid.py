@@ -156,6 +156,7 @@ def test_two_processes_do_not_write_one_file(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.long
 def test_a_stopped_run_goes_on_and_gives_the_same_data(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -220,6 +221,7 @@ def test_without_the_extra_it_says_what_to_install(
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.long
 def test_maps_and_plots_are_pictures(
     tmp_path: Path, studio: dwell.House, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -274,6 +276,7 @@ def test_what_cannot_be_asked_for_begins_no_folder(
     assert "holds something else" in capsys.readouterr().err
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("form", ["hdf5", "sofa"])
 def test_a_finished_file_that_was_cut_is_made_again(tmp_path: Path, form: str) -> None:
     pytest.importorskip("h5py", reason="HDF5 needs h5py")

@@ -97,6 +97,7 @@ def test_what_has_nothing_finished_in_it_is_begun_anew(left: bytes, tmp_path: Pa
     assert [path.name for path in tmp_path.iterdir()] == ["rows"]
 
 
+@pytest.mark.long
 def test_a_mended_command_makes_episodes_where_one_has_failed(
     tmp_path: Path, command: Command, monkeypatch: pytest.MonkeyPatch
 ) -> None:

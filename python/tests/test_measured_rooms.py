@@ -249,6 +249,7 @@ def beyond(measured: Means, simulated: Means, name: str, *octaves_hz: float) -> 
     return {hz: db for hz, db in off.items() if abs(db) > TOLERANCE_DB}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "distance", ["1.5", *(pytest.param(m, marks=pytest.mark.slow) for m in ("2.0", "3.0"))]
 )
@@ -263,6 +264,7 @@ def test_clarity_and_direct_sound_follow_from_the_decay(tmp_path: Path, distance
     assert not beyond(measured, simulated, "drr_db", 1000.0, 2000.0, 4000.0)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("state", ["000", pytest.param("100", marks=pytest.mark.slow)])
 def test_the_decay_gives_the_absorption_that_gives_the_decay(tmp_path: Path, state: str) -> None:
     """Absorption by Eyring from T30 of the corners: the simulation has that T30 again, within 5 %.
@@ -281,6 +283,7 @@ def test_the_decay_gives_the_absorption_that_gives_the_decay(tmp_path: Path, sta
             assert simulated["t30_s", hz] == pytest.approx(measured["t30_s", hz], rel=0.1)
 
 
+@pytest.mark.long
 def test_a_quarter_of_the_panels_follows_from_a_table(tmp_path: Path) -> None:
     """M4: other states from nothing measured in them, with panels as a book has them.
 
@@ -379,6 +382,7 @@ def azimuth_deg(responses: NDArray[Any], rate_hz: float) -> float:
     return float(np.argmax(power))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("state", ["000", "100"])
 def test_an_array_hears_the_loudspeaker_where_it_stands(tmp_path: Path, state: str) -> None:
     """The recorded array and the computed one find twelve azimuths, one by one, with one code.

@@ -26,6 +26,7 @@ def _decaying(rate_hz: int, t60_s: float, seed: int) -> NDArray[np.float64]:
     return noise * 10.0 ** (-3.0 * np.arange(len(noise)) / rate_hz / t60_s)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("bands", "count", "at_1_khz"), [("octave", 8, 4), ("third_octave", 24, 13)]
 )

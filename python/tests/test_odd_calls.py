@@ -120,6 +120,7 @@ def test_of_many_columns_the_first_are_told(tmp_path: Path) -> None:
     assert len(str(raised.value)) < 500
 
 
+@pytest.mark.long
 def test_who_stops_making_episodes_does_not_wait_for_experts() -> None:
     maker = EpisodeMaker("PointNav", "builtin:studio", count=64, seed=1, expert=True)
     alone = maker.in_parts(maker.parts())

@@ -23,6 +23,7 @@ def questions(request: pytest.FixtureRequest) -> list[Question]:
     return found
 
 
+@pytest.mark.long
 def test_predicates_agree_with_oracles(questions: list[Question]) -> None:
     rows: dict[str, list[Question]] = {}
     for question in questions:

@@ -53,6 +53,7 @@ def seed_spaces(env: zoo.DwellParallelEnv, seed: int = 7) -> None:
         env.action_space(name).seed(seed + number)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "task", [pytest.param(t, marks=() if t in QUICK else pytest.mark.slow) for t in TASKS]
 )
@@ -148,6 +149,7 @@ def test_a_vector_has_the_episodes_of_single_environments(threads: int) -> None:
         many.reset(seed=1)
 
 
+@pytest.mark.long
 def test_others_change_what_one_sees_by_the_world_alone() -> None:
     def play(other: dict[str, Any], ends: bool) -> list[dict[str, bytes]]:
         env = zoo.parallel_env(
@@ -201,6 +203,7 @@ def test_snapshots_forks_and_pickles_go_on_with_the_same_bits(mode: str) -> None
         env.restore(single.snapshot())
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("mode", ["discrete", "dict"])
 def test_snapshots_and_forks_of_a_vector_go_on_with_the_same_bits(mode: str) -> None:
     settings: dict[str, Any] = {
@@ -355,6 +358,7 @@ def test_a_vector_says_when_it_has_no_episodes() -> None:
             call()
 
 
+@pytest.mark.long
 def test_the_pair_that_cooperates_ends_together() -> None:
     env = zoo.parallel_env(
         "Cooperate",

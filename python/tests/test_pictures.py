@@ -111,6 +111,7 @@ def test_ways_are_drawn_where_they_lead(shoebox: dwell.House) -> None:
     assert abs(high[1] - (5.0 - left) * scale) < 12
 
 
+@pytest.mark.long
 def test_render_writes_plans_and_sheets(tmp_path: Path, render: Command, files: Files) -> None:
     house = "builtin:studio"
     paths = files(house, "--map", "--dollhouse", "--sheet", "--width", "200", "--out", tmp_path)
@@ -149,6 +150,7 @@ def test_columns_are_refused_before_a_picture_is_made(
         plans.houses_sheet(["builtin:studio"], columns=columns)
 
 
+@pytest.mark.long
 def test_a_sheet_says_how_far_it_is() -> None:
     from dwell import plans
 

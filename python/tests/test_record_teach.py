@@ -52,6 +52,7 @@ def contents(folder: Path) -> dict[str, bytes]:
     return {str(file.relative_to(folder)): file.read_bytes() for file in files}
 
 
+@pytest.mark.long
 def test_a_user_points_shows_and_speaks(folder: Path, clips: dict[str, RecordedClip]) -> None:
     assert sorted(clips) == ["point", "show", "speak"]
     rows = [json.loads(line) for line in (folder / "manifest.jsonl").read_text().splitlines()]
@@ -235,6 +236,7 @@ class Stopped(Exception):
     """What a test stops a recording with."""
 
 
+@pytest.mark.long
 def test_a_recording_that_was_stopped_ends_up_with_the_same_bytes(
     folder: Path, tmp_path: Path
 ) -> None:

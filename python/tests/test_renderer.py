@@ -35,6 +35,7 @@ def test_a_back_end_that_is_not_there_is_refused_with_those_that_are(shoebox: dw
         dwell.World(shoebox, renderer="gpu:no such card")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("path", ["compute", "raster"])
 def test_an_adapter_shows_what_the_processor_shows(
     apartment: dwell.House, path: str, monkeypatch: pytest.MonkeyPatch
@@ -59,6 +60,7 @@ def test_an_adapter_shows_what_the_processor_shows(
     assert np.abs(by_cpu["rgb"].astype(int) - by_gpu["rgb"]).mean() < 0.5
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("autoreset_mode", ["NextStep", "SameStep"])
 def test_pictures_that_overlap_with_steps_are_the_same(
     apartment: dwell.House, autoreset_mode: str
@@ -113,6 +115,7 @@ def _in_a_child(pipe: Connection, world: dwell.World, chosen: str) -> None:
     os._exit(0)
 
 
+@pytest.mark.long
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="this system does not fork")
 @pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
 def test_what_another_process_opened_is_refused_after_a_fork(apartment: dwell.House) -> None:

@@ -19,6 +19,7 @@ def meeting(apartment: dwell.House, tmp_path_factory: pytest.TempPathFactory) ->
     return second_agent.meet(apartment, tmp_path_factory.mktemp("meeting"))
 
 
+@pytest.mark.long
 def test_it_is_heard_before_it_is_seen(meeting: dict[str, Any]) -> None:
     heard, seen = meeting["heard"], meeting["seen"]
     assert heard["step"] < seen["step"]
@@ -64,6 +65,7 @@ def test_the_page_says_when(meeting: dict[str, Any], tmp_path: Path) -> None:
     assert "No room" in page._second_agent(studio)
 
 
+@pytest.mark.long
 def test_without_a_voice_nothing_is_heard(
     apartment: dwell.House, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -174,6 +174,7 @@ def test_stated_episodes_are_played_side_by_side(points: Path, tmp_path: Path) -
     again.reset(seed=4)
 
 
+@pytest.mark.long
 def test_results_of_stated_episodes_hold(points: Path, tmp_path: Path) -> None:
     out = tmp_path / "val.jsonl"
     converted(points, out)

@@ -48,6 +48,7 @@ def test_spectrograms_are_those_of_the_same_window_of_sound(
     env.close()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "task", [task["name"] for task in _native.tasks() if task["min_agents"] == 1]
 )
@@ -101,6 +102,7 @@ def test_a_task_in_python_asks_for_its_own() -> None:
         assert observation["pointgoal_with_gps_compass"].tolist() == [0.0, 0.0]
 
 
+@pytest.mark.long
 def test_a_curriculum_is_a_setting() -> None:
     for furthest_m in (2.0, 4.0):
         env = gymnasium.make(

@@ -45,6 +45,7 @@ def single(seed: int, actions: list[int], houses: Any) -> Iterator[list[Any]]:  
             yield [bits(observation), env.state_hash(), info["episode_id"], 0.0, False, False]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("mode", "load_ahead"), [*((mode, 16) for mode in MODES), (MODES[0], 0)])
 def test_environment_k_plays_the_episodes_of_a_single_one(
     mode: str, load_ahead: int, houses: list[dwell.House]
@@ -147,6 +148,7 @@ class Counting(dwell.Task):
         return dwell.StepResult(reward=rooms, terminated=self.state["steps"] == 2)
 
 
+@pytest.mark.long
 def test_tasks_in_python_go_from_house_to_house(
     houses: list[dwell.House], apartment: dwell.House
 ) -> None:
@@ -202,6 +204,7 @@ def test_the_houses_that_wait_are_bounded(
         DwellVectorEnv(1, load_ahead=-1)
 
 
+@pytest.mark.long
 def test_sync_async_and_native_environments_give_what_the_single_one_gives() -> None:
     given = {"houses": "builtin:studio", "sensors": SMALL, "max_episode_steps": 3}
     env_id = "dwell/InstructionFollowing-v0"
